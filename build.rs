@@ -1,0 +1,2 @@
+//! Finds Embree.
+fn main() {}

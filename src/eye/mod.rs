@@ -1,0 +1,1 @@
+//! Eye samples: what a pixel sees, through mirrors and glass.

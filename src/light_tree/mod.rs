@@ -1,0 +1,1 @@
+//! Stage 2: VPLs clustered in trees, each cluster with bounds, cone, intensity and representative.

@@ -1,0 +1,2 @@
+//! The `lightsplat` command.
+fn main() {}

@@ -1,0 +1,17 @@
+//! The small mathematics every stage shares: linear colour and orthonormal frames.
+
+mod frame;
+
+pub use frame::Frame;
+
+/// Linear colour with sRGB (Rec. 709) primaries: radiance, irradiance, flux or reflectance as the name says.
+pub type Rgb = glam::Vec3;
+
+/// Rec. 709 luminance weights, `dot` them with an [`Rgb`].
+pub const LUMINANCE: Rgb = Rgb::new(0.2126, 0.7152, 0.0722);
+
+/// Luminance of a linear colour, in the colour's own unit.
+#[inline]
+pub fn luminance(c: Rgb) -> f32 {
+    c.dot(LUMINANCE)
+}

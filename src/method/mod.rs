@@ -1,0 +1,1 @@
+//! The renderers compared, one folder each; they share every stage they can.

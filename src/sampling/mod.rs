@@ -1,0 +1,1 @@
+//! Owen-scrambled Sobol points and the warps from the unit square.

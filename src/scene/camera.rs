@@ -1,0 +1,35 @@
+//! Pinhole camera with square pixels.
+
+use glam::Vec3;
+
+/// A perspective pinhole camera. Pixel (0, 0) is the top-left corner of the film.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Pinhole, relative to the scene's centre.
+    pub origin: Vec3,
+    /// Unit vector through the film's centre.
+    pub forward: Vec3,
+    /// Unit vector towards the film's right edge.
+    pub right: Vec3,
+    /// Unit vector towards the film's top edge.
+    pub up: Vec3,
+    /// Tangent of half the horizontal field of view, for the scene's own aspect ratio.
+    pub tan_half_x: f32,
+    /// Surfaces nearer than this along `forward` are not seen.
+    pub near: f32,
+    /// Surfaces farther than this along `forward` are not seen.
+    pub far: f32,
+}
+
+impl Camera {
+    /// Unit direction through film position `pixel` (in pixels, continuous) of a `resolution` film.
+    ///
+    /// The horizontal field of view is kept when the aspect ratio changes.
+    #[inline]
+    pub fn direction(&self, pixel: [f32; 2], resolution: [u32; 2]) -> Vec3 {
+        let [w, h] = resolution.map(|r| r as f32);
+        let x = (2.0 * pixel[0] / w - 1.0) * self.tan_half_x;
+        let y = (h - 2.0 * pixel[1]) / w * self.tan_half_x;
+        (self.forward + self.right * x + self.up * y).normalize()
+    }
+}

@@ -1,0 +1,1 @@
+//! Scene readers: native TOML and Mitsuba XML, one model.

@@ -1,0 +1,62 @@
+//! Lights without a surface: point, spot and directional lights, and the environment.
+//!
+//! Light from surfaces is [`super::Emission`] on a mesh.
+
+use crate::math::Rgb;
+use glam::{Mat3, Vec3};
+
+/// A light that no ray can hit by chance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DeltaLight {
+    /// Radiates equally in all directions.
+    Point {
+        /// Position relative to the scene's centre.
+        position: Vec3,
+        /// Radiant intensity, W/sr.
+        intensity: Rgb,
+    },
+    /// Radiates into a cone; intensity falls linearly in angle from `cos_inner` to `cos_outer`
+    /// (Mitsuba's falloff: `(outer_angle - angle) / (outer_angle - inner_angle)`).
+    Spot {
+        /// Position relative to the scene's centre.
+        position: Vec3,
+        /// Unit axis of the cone, away from the light.
+        direction: Vec3,
+        /// Radiant intensity on the axis, W/sr.
+        intensity: Rgb,
+        /// Half angle within which the intensity is full, radians.
+        inner_angle: f32,
+        /// Half angle beyond which it is zero, radians.
+        outer_angle: f32,
+    },
+    /// Parallel light from infinitely far.
+    Directional {
+        /// Unit direction in which the light travels.
+        direction: Vec3,
+        /// Irradiance on a surface facing the light, W/m².
+        irradiance: Rgb,
+    },
+}
+
+/// Light from infinitely far in every direction.
+#[derive(Clone, Debug)]
+pub enum Environment {
+    /// The same radiance from everywhere.
+    Constant(Rgb),
+    /// A latitude-longitude map.
+    Map(EnvironmentMap),
+}
+
+/// Latitude-longitude radiance map, Mitsuba's convention: with `d` the direction in the map's own
+/// frame, `u = atan2(d.x, -d.z) / 2π` (wrapped to [0, 1)) and `v = acos(d.y) / π`; row 0 is +y.
+#[derive(Clone, Debug)]
+pub struct EnvironmentMap {
+    /// Columns of the image.
+    pub width: usize,
+    /// Rows of the image.
+    pub height: usize,
+    /// Radiance, row-major, `scale` already applied; bilinear between texel centres.
+    pub radiance: Vec<Rgb>,
+    /// World direction to the map's frame.
+    pub to_local: Mat3,
+}

@@ -1,0 +1,111 @@
+//! How a surface scatters: one Lambert base, at most one lobe above it, and an optional clear coat.
+//!
+//! Every material of the supported formats is one of these combinations, so a stage that handles base,
+//! lobe and coat handles them all: `plastic` is a base under a coat with a mirror lobe, `roughplastic`
+//! the same with a rough lobe, `conductor` a mirror lobe alone.
+
+use super::texture::TextureId;
+use crate::math::Rgb;
+
+/// Index into [`super::Scene::materials`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MaterialId(pub u32);
+
+/// A reflectance that may vary over the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reflectance {
+    /// The same everywhere.
+    Constant(Rgb),
+    /// The texture's value times `scale`.
+    Textured {
+        /// Which texture.
+        texture: TextureId,
+        /// Factor on every texel.
+        scale: Rgb,
+    },
+}
+
+/// A material: base + lobe, seen from one side or two.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name for reports.
+    pub name: String,
+    /// True: the side away from the normal behaves as the front does. False: it is black
+    /// (except for [`Lobe::Dielectric`], which always has two sides).
+    pub two_sided: bool,
+    /// Albedo of the Lambert base, before the coat takes its share; zero where there is none.
+    pub diffuse: Reflectance,
+    /// Dielectric interface over the base.
+    pub coat: Option<Coat>,
+    /// What scatters besides the base.
+    pub lobe: Lobe,
+}
+
+/// A smooth or rough dielectric interface over the Lambert base, as Mitsuba's `plastic` and
+/// `roughplastic` define it: the base is attenuated by the transmittance in and out and by internal reflection.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coat {
+    /// Interior over exterior index of refraction.
+    pub eta: f32,
+    /// Whether internal scattering shifts the base's colour (`1 - albedo * F_dr` per channel) or not (`1 - F_dr`).
+    pub nonlinear: bool,
+}
+
+/// The part of a material that is not the Lambert base.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lobe {
+    /// A purely diffuse material.
+    None,
+    /// Isotropic microfacet reflection.
+    Rough {
+        /// Microfacet distribution.
+        distribution: Distribution,
+        /// Roughness α.
+        alpha: f32,
+        /// Reflectance of a facet.
+        fresnel: Fresnel,
+        /// Factor on the lobe.
+        scale: Reflectance,
+    },
+    /// Perfect mirror.
+    Mirror {
+        /// Reflectance by angle.
+        fresnel: Fresnel,
+        /// Factor on the lobe.
+        scale: Reflectance,
+    },
+    /// Smooth glass: reflects and refracts.
+    Dielectric {
+        /// Interior over exterior index of refraction; the interior is behind the normal.
+        eta: f32,
+        /// Factor on reflection.
+        reflectance: Reflectance,
+        /// Factor on refraction (radiance also scales by 1/η² as it enters the denser side).
+        transmittance: Reflectance,
+    },
+}
+
+/// Microfacet distributions, both with Smith's separable shadowing as Mitsuba uses it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Distribution {
+    /// Trowbridge-Reitz.
+    Ggx,
+    /// Beckmann.
+    Beckmann,
+}
+
+/// Reflectance of a smooth interface by angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fresnel {
+    /// 1 at every angle; the lobe's scale says the rest.
+    One,
+    /// Dielectric of the given relative index of refraction.
+    Dielectric(f32),
+    /// Conductor of index `eta + i k`, per channel.
+    Conductor {
+        /// Real part.
+        eta: Rgb,
+        /// Absorption.
+        k: Rgb,
+    },
+}

@@ -1,0 +1,44 @@
+//! Indexed triangle meshes.
+
+use super::material::MaterialId;
+use super::texture::TextureId;
+use crate::math::Rgb;
+use glam::{Vec2, Vec3};
+
+/// An indexed triangle mesh with one material.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    /// Name for reports.
+    pub name: String,
+    /// Vertex positions relative to the scene's centre.
+    pub positions: Vec<Vec3>,
+    /// Unit shading normals by vertex, or empty: then the geometric normal is used.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates by vertex, v up, or empty: then the barycentric coordinates stand in.
+    pub uvs: Vec<Vec2>,
+    /// Vertex indices, counter-clockwise seen from the front; all in range.
+    pub triangles: Vec<[u32; 3]>,
+    /// Material of every triangle.
+    pub material: MaterialId,
+    /// Present where the surface emits.
+    pub emission: Option<Emission>,
+}
+
+/// Diffuse emission of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Emission {
+    /// Radiance leaving every point in every direction of the front side.
+    pub radiance: Rgb,
+    /// Factor by texture over the surface.
+    pub texture: Option<TextureId>,
+    /// Whether the back emits as well.
+    pub two_sided: bool,
+}
+
+impl Mesh {
+    /// The corners of triangle `t`.
+    #[inline]
+    pub fn corners(&self, t: usize) -> [Vec3; 3] {
+        self.triangles[t].map(|i| self.positions[i as usize])
+    }
+}

@@ -1,0 +1,51 @@
+//! What is rendered: plain data, as the readers in `formats` leave it after sanitising and recentring.
+//!
+//! Units: lengths are the scene file's; radiance W/(sr m²) in linear Rec. 709; all positions are
+//! relative to [`Scene::centre`], which is kept in f64 so that a scene far from its origin loses nothing.
+
+mod camera;
+pub mod formats;
+pub mod generate;
+mod light;
+mod material;
+mod mesh;
+mod texture;
+
+use glam::DVec3;
+use std::path::PathBuf;
+
+pub use camera::Camera;
+pub use light::{DeltaLight, Environment, EnvironmentMap};
+pub use material::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance};
+pub use mesh::{Emission, Mesh};
+pub use texture::{Filter, Texture, TextureId, Wrap};
+
+/// A scene, ready for the acceleration structure.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name for reports and file metadata.
+    pub name: String,
+    /// The files the scene was read from, main file first; the scene hash covers their bytes.
+    pub sources: Vec<PathBuf>,
+    /// The camera of a still, or of the first frame.
+    pub camera: Camera,
+    /// One camera a frame where the scene has a walk-through, else empty.
+    pub camera_path: Vec<Camera>,
+    /// Width and height in pixels.
+    pub resolution: [u32; 2],
+    /// Longest path in edges counted from the eye (1 = emitters in view only, 2 = direct light);
+    /// `None` leaves the end to Russian roulette.
+    pub max_depth: Option<u32>,
+    /// Triangle meshes; a mesh's index is its geometry id.
+    pub meshes: Vec<Mesh>,
+    /// Materials, indexed by [`MaterialId`].
+    pub materials: Vec<Material>,
+    /// Textures, indexed by [`TextureId`].
+    pub textures: Vec<Texture>,
+    /// Point, spot and directional lights.
+    pub lights: Vec<DeltaLight>,
+    /// Light from infinitely far in every direction.
+    pub environment: Option<Environment>,
+    /// World position of the local origin.
+    pub centre: DVec3,
+}

@@ -1,0 +1,1 @@
+//! Counters and stage times of a run.
