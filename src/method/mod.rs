@@ -1,1 +1,7 @@
 //! The renderers compared, one folder each; they share every stage they can.
+
+pub mod control;
+pub mod output;
+
+pub use control::{Control, Progress};
+pub use output::Output;

@@ -1,0 +1,105 @@
+//! How a running method is watched and stopped from another thread.
+//!
+//! A method calls [`Control::begin`] when a stage starts, [`Control::advance`] as it goes, and between units
+//! of work (a tile, a batch of photon paths) asks [`Control::is_cancelled`]; once that is true it returns
+//! what it has, marked incomplete. Nothing here influences the picture.
+
+use crate::stats::Stage;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Shared between the thread that renders and those that watch.
+#[derive(Debug, Default)]
+pub struct Control {
+    cancelled: AtomicBool,
+    /// Stage and total; `done` is reset under this lock, so a snapshot never mixes two stages.
+    stage: Mutex<Option<(Stage, u64)>>,
+    done: AtomicU64,
+}
+
+/// How far a method has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// The stage that runs.
+    pub stage: Stage,
+    /// Units of work done in this stage, at most `total`.
+    pub done: u64,
+    /// Units of work in this stage; 0 if not known.
+    pub total: u64,
+}
+
+impl Control {
+    /// Not cancelled, no stage begun.
+    pub fn new() -> Control {
+        Control::default()
+    }
+
+    /// Asks the method to stop soon. Safe to call from a signal-handling thread, any number of times.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the method should return what it has.
+    #[inline]
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// A stage of `total` units starts (0 if their number is not known). Stages follow one another.
+    pub fn begin(&self, stage: Stage, total: u64) {
+        let mut current = self.lock();
+        self.done.store(0, Ordering::Relaxed);
+        *current = Some((stage, total));
+    }
+
+    /// `n` more units of the current stage are done. Callable from any worker.
+    #[inline]
+    pub fn advance(&self, n: u64) {
+        self.done.fetch_add(n, Ordering::Relaxed);
+    }
+
+    /// How far the method has come; `None` before the first stage.
+    pub fn progress(&self) -> Option<Progress> {
+        let current = self.lock();
+        let (stage, total) = (*current)?;
+        let done = self.done.load(Ordering::Relaxed);
+        Some(Progress { stage, done: if total > 0 { done.min(total) } else { done }, total })
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Option<(Stage, u64)>> {
+        // The data is plain: a panic elsewhere cannot have left it half-written.
+        self.stage.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_restarts_with_each_stage_and_never_passes_the_total() {
+        let control = Control::new();
+        assert_eq!(control.progress(), None);
+        control.begin(Stage::LightPass, 10);
+        control.advance(25);
+        assert_eq!(control.progress(), Some(Progress { stage: Stage::LightPass, done: 10, total: 10 }));
+        control.begin(Stage::Render, 0);
+        control.advance(3);
+        assert_eq!(control.progress(), Some(Progress { stage: Stage::Render, done: 3, total: 0 }));
+    }
+
+    #[test]
+    fn workers_advance_together_and_cancellation_reaches_them() {
+        let control = Control::new();
+        control.begin(Stage::Render, 4000);
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| (0..1000).for_each(|_| control.advance(1)));
+            }
+        });
+        assert_eq!(control.progress().unwrap().done, 4000);
+        assert!(!control.is_cancelled());
+        std::thread::scope(|scope| drop(scope.spawn(|| control.cancel())));
+        assert!(control.is_cancelled());
+    }
+}

@@ -1,0 +1,21 @@
+//! What every method returns.
+
+use crate::image::Image;
+use crate::stats::Stats;
+
+/// The result of rendering one frame. All images have the size of the rendered window.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// Radiance by pixel.
+    pub color: Image,
+    /// Variance of the pixel mean in `color`, per channel, where the method can estimate it.
+    pub variance: Option<Image>,
+    /// Further images by layer name; the film writes them as `name.R`, `name.G`, `name.B`.
+    pub extra: Vec<(String, Image)>,
+    /// What was counted and timed.
+    pub stats: Stats,
+    /// False if the method was cancelled: the picture is partial.
+    pub complete: bool,
+    /// Samples that were not finite and were dropped; anything but 0 is a defect worth reporting.
+    pub nonfinite: u64,
+}

@@ -1,0 +1,143 @@
+//! The stages a run is timed by.
+
+use serde::Serialize;
+use std::ops::AddAssign;
+use std::time::Instant;
+
+/// A stage of the pipeline, in the order they run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stage {
+    /// Reading, sanitising and recentring the scene.
+    Load,
+    /// Building the acceleration structure and the tables of materials and lights.
+    Build,
+    /// Eye rays and specular chains, where they are a pass of their own.
+    EyePass,
+    /// Photon paths: lights become virtual point lights.
+    LightPass,
+    /// Clustering the virtual point lights.
+    Tree,
+    /// Computing cache records.
+    Records,
+    /// Splatting and adapting records.
+    Splat,
+    /// Everything per pixel in methods without records.
+    Render,
+    /// Encoding and writing the pictures.
+    Write,
+    /// The whole run, from the command to the last file.
+    Total,
+}
+
+impl Stage {
+    /// All stages, in order.
+    pub const ALL: [Stage; 10] = [
+        Stage::Load,
+        Stage::Build,
+        Stage::EyePass,
+        Stage::LightPass,
+        Stage::Tree,
+        Stage::Records,
+        Stage::Splat,
+        Stage::Render,
+        Stage::Write,
+        Stage::Total,
+    ];
+
+    /// Name for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::Load => "load",
+            Stage::Build => "build",
+            Stage::EyePass => "eye pass",
+            Stage::LightPass => "light pass",
+            Stage::Tree => "tree",
+            Stage::Records => "records",
+            Stage::Splat => "splat",
+            Stage::Render => "render",
+            Stage::Write => "write",
+            Stage::Total => "total",
+        }
+    }
+
+    /// Name in machine-readable output.
+    pub fn key(self) -> &'static str {
+        match self {
+            Stage::EyePass => "eye_pass",
+            Stage::LightPass => "light_pass",
+            other => other.name(),
+        }
+    }
+}
+
+/// What a stage took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct StageTime {
+    /// Elapsed seconds.
+    pub wall_seconds: f64,
+    /// Seconds of processor time over all threads of the process.
+    pub cpu_seconds: f64,
+}
+
+impl AddAssign for StageTime {
+    fn add_assign(&mut self, other: StageTime) {
+        self.wall_seconds += other.wall_seconds;
+        self.cpu_seconds += other.cpu_seconds;
+    }
+}
+
+/// Measures wall and CPU time since its start.
+#[derive(Clone, Copy, Debug)]
+pub struct Stopwatch {
+    wall: Instant,
+    cpu_seconds: f64,
+}
+
+impl Stopwatch {
+    /// Starts measuring.
+    pub fn start() -> Stopwatch {
+        Stopwatch { wall: Instant::now(), cpu_seconds: process_cpu_seconds() }
+    }
+
+    /// What has passed since the start.
+    pub fn elapsed(&self) -> StageTime {
+        StageTime {
+            wall_seconds: self.wall.elapsed().as_secs_f64(),
+            cpu_seconds: process_cpu_seconds() - self.cpu_seconds,
+        }
+    }
+}
+
+fn process_cpu_seconds() -> f64 {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_lists_the_stages_in_order_with_distinct_keys() {
+        assert!(Stage::ALL.windows(2).all(|w| w[0] < w[1] && w[0].key() != w[1].key()));
+    }
+
+    #[test]
+    fn keys_are_what_serde_writes() {
+        for stage in Stage::ALL {
+            assert_eq!(serde_json::to_string(&stage).unwrap(), format!("\"{}\"", stage.key()));
+        }
+    }
+
+    #[test]
+    fn work_costs_processor_time() {
+        let watch = Stopwatch::start();
+        let mut x = 1u64;
+        for i in 0..3_000_000u64 {
+            x = std::hint::black_box(x.wrapping_mul(6364136223846793005).wrapping_add(i));
+        }
+        let time = watch.elapsed();
+        assert!(time.cpu_seconds > 0.0 && time.wall_seconds > 0.0, "{time:?} {x}");
+    }
+}
