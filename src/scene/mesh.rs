@@ -41,4 +41,15 @@ impl Mesh {
     pub fn corners(&self, t: usize) -> [Vec3; 3] {
         self.triangles[t].map(|i| self.positions[i as usize])
     }
+
+    /// Texture coordinates at barycentric weights `b` of corners 1 and 2 of triangle `t`;
+    /// the weights themselves where the mesh has no coordinates.
+    #[inline]
+    pub fn uv(&self, t: usize, b: Vec2) -> Vec2 {
+        if self.uvs.is_empty() {
+            return b;
+        }
+        let [u0, u1, u2] = self.triangles[t].map(|i| self.uvs[i as usize]);
+        u0 * (1.0 - b.x - b.y) + u1 * b.x + u2 * b.y
+    }
 }

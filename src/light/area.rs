@@ -1,0 +1,134 @@
+//! Light from surfaces: the emitting triangles of one mesh, sampled uniformly by area.
+
+use super::distribution::Distribution;
+use crate::math::{Rgb, luminance};
+use crate::sampling::uniform_triangle;
+use crate::scene::{Emission, Mesh, Scene};
+use glam::{Vec2, Vec3};
+
+/// One mesh that emits.
+#[derive(Clone, Debug)]
+pub struct AreaLight {
+    /// Which mesh.
+    pub mesh: u32,
+    /// What it emits.
+    pub emission: Emission,
+    /// Total area of its triangles.
+    pub area: f32,
+    /// Flux of all sides, W, as luminance (textured emission by its mean).
+    pub power: f32,
+    /// Centre of a sphere around the mesh.
+    pub centre: Vec3,
+    /// Radius of that sphere.
+    pub radius: f32,
+    /// The front's normal where the mesh is flat and emits from one side: behind its plane it is invisible.
+    flat_normal: Option<Vec3>,
+    triangles: Distribution,
+}
+
+/// A point on an area light.
+#[derive(Clone, Copy, Debug)]
+pub struct AreaPoint {
+    /// Triangle of the light's mesh.
+    pub triangle: u32,
+    /// Position relative to the scene's centre.
+    pub position: Vec3,
+    /// Unit geometric normal of the front.
+    pub normal: Vec3,
+    /// Barycentric weights of corners 1 and 2.
+    pub barycentric: Vec2,
+}
+
+/// Unit normal and area of a triangle; a zero normal if it has no area.
+pub fn normal_and_area([a, b, c]: [Vec3; 3]) -> (Vec3, f32) {
+    let cross = (b - a).cross(c - a);
+    (cross.normalize_or_zero(), 0.5 * cross.length())
+}
+
+impl AreaLight {
+    /// The light of mesh `index`, or `None` if it emits nothing.
+    pub fn new(scene: &Scene, index: u32) -> Option<AreaLight> {
+        let mesh = &scene.meshes[index as usize];
+        let emission = mesh.emission?;
+        let shapes: Vec<(Vec3, f32)> =
+            (0..mesh.triangles.len()).map(|t| normal_and_area(mesh.corners(t))).collect();
+        let triangles = Distribution::new(shapes.iter().map(|s| s.1));
+        let area = triangles.total() as f32;
+        let mean_texture = emission.texture.map_or(Rgb::ONE, |t| {
+            let texels = &scene.textures[t.0 as usize].texels;
+            texels.iter().copied().sum::<Rgb>() / texels.len().max(1) as f32
+        });
+        let sides = if emission.two_sided { 2.0 } else { 1.0 };
+        let power = luminance(emission.radiance * mean_texture) * area * std::f32::consts::PI * sides;
+        if !(power > 0.0 && power.is_finite()) {
+            return None;
+        }
+        let (low, high) = bounds(mesh);
+        let first = shapes.iter().find(|s| s.1 > 0.0)?.0;
+        let flat = !emission.two_sided && shapes.iter().all(|s| s.1 == 0.0 || s.0.dot(first) > 0.99999);
+        Some(AreaLight {
+            mesh: index,
+            emission,
+            area,
+            power,
+            centre: 0.5 * (low + high),
+            radius: 0.5 * (high - low).length(),
+            flat_normal: flat.then_some(first),
+            triangles,
+        })
+    }
+
+    /// A point uniform over the area; density 1/area.
+    #[inline]
+    pub fn sample(&self, mesh: &Mesh, u: Vec2) -> AreaPoint {
+        let (triangle, rest) = self.triangles.sample(u.x);
+        let [a, b, c] = mesh.corners(triangle);
+        let barycentric = uniform_triangle(Vec2::new(rest, u.y));
+        AreaPoint {
+            triangle: triangle as u32,
+            position: a + (b - a) * barycentric.x + (c - a) * barycentric.y,
+            normal: normal_and_area([a, b, c]).0,
+            barycentric,
+        }
+    }
+
+    /// Radiance leaving a point of the light towards the unit vector `out`.
+    #[inline]
+    pub fn radiance(&self, scene: &Scene, point: &AreaPoint, out: Vec3) -> Rgb {
+        emitted(scene, self.mesh, point.triangle, point.barycentric, point.normal, out)
+    }
+
+    /// Rough irradiance at `x` on a surface facing the light, for choosing between lights only.
+    #[inline]
+    pub fn importance(&self, x: Vec3) -> f32 {
+        let to_light = self.centre - x;
+        if let Some(n) = self.flat_normal
+            && n.dot(to_light) >= self.radius
+        {
+            return 0.0;
+        }
+        self.power / to_light.length_squared().max(self.radius * self.radius).max(f32::MIN_POSITIVE)
+    }
+}
+
+/// Radiance that a point of a mesh emits towards `out`; zero where it does not emit.
+#[inline]
+pub fn emitted(scene: &Scene, mesh: u32, triangle: u32, barycentric: Vec2, normal: Vec3, out: Vec3) -> Rgb {
+    let mesh = &scene.meshes[mesh as usize];
+    let Some(emission) = mesh.emission else { return Rgb::ZERO };
+    if !emission.two_sided && normal.dot(out) <= 0.0 {
+        return Rgb::ZERO;
+    }
+    match emission.texture {
+        None => emission.radiance,
+        Some(t) => {
+            let uv = mesh.uv(triangle as usize, barycentric);
+            emission.radiance * scene.textures[t.0 as usize].lookup(uv)
+        }
+    }
+}
+
+fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
+    let corners = mesh.triangles.iter().flatten().map(|i| mesh.positions[*i as usize]);
+    corners.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)))
+}

@@ -1,0 +1,84 @@
+//! Discrete distributions by cumulative sums.
+
+/// A discrete distribution over `0..len`, in proportion to non-negative weights.
+#[derive(Clone, Debug)]
+pub struct Distribution {
+    /// `cumulative[i]` = sum of the weights before `i`, over the total; the last entry is 1.
+    cumulative: Vec<f32>,
+    total: f64,
+}
+
+impl Distribution {
+    /// Sums in f64; a total of zero makes an empty distribution that is never sampled.
+    pub fn new(weights: impl IntoIterator<Item = f32>) -> Distribution {
+        let mut sum = 0.0f64;
+        let mut sums = vec![0.0f64];
+        for w in weights {
+            sum += w.max(0.0) as f64;
+            sums.push(sum);
+        }
+        let scale = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+        let mut cumulative: Vec<f32> = sums.iter().map(|s| (s * scale) as f32).collect();
+        if let Some(last) = cumulative.last_mut() {
+            *last = 1.0;
+        }
+        Distribution { cumulative, total: sum }
+    }
+
+    /// Sum of the weights.
+    pub fn total(&self) -> f64 {
+        self.total
+    }
+
+    /// Number of outcomes.
+    pub fn len(&self) -> usize {
+        self.cumulative.len() - 1
+    }
+
+    /// Whether there is no outcome to draw.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0 || self.total <= 0.0
+    }
+
+    /// Probability of outcome `i`.
+    #[inline]
+    pub fn probability(&self, i: usize) -> f32 {
+        if self.total > 0.0 { self.cumulative[i + 1] - self.cumulative[i] } else { 0.0 }
+    }
+
+    /// The outcome at `u` in [0, 1), and `u` stretched to [0, 1) within it.
+    ///
+    /// Never returns an outcome of probability zero unless all are.
+    #[inline]
+    pub fn sample(&self, u: f32) -> (usize, f32) {
+        let i = self.cumulative.partition_point(|c| *c <= u).clamp(1, self.len().max(1)) - 1;
+        let width = self.probability(i);
+        let rest = if width > 0.0 { (u - self.cumulative[i]) / width } else { 0.0 };
+        (i, rest.clamp(0.0, 1.0 - f32::EPSILON))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frequencies_follow_weights_and_zero_is_never_drawn() {
+        let d = Distribution::new([0.0, 1.0, 0.0, 3.0, 0.0]);
+        let n = 4000;
+        let mut counts = [0; 5];
+        for i in 0..n {
+            let (k, rest) = d.sample(i as f32 / n as f32);
+            assert!((0.0..1.0).contains(&rest));
+            counts[k] += 1;
+        }
+        assert_eq!(counts, [0, n / 4, 0, 3 * n / 4, 0]);
+        assert_eq!(d.probability(3), 0.75);
+    }
+
+    #[test]
+    fn nothing_to_draw() {
+        assert!(Distribution::new([]).is_empty());
+        assert!(Distribution::new([0.0, 0.0]).is_empty());
+    }
+}

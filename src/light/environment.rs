@@ -1,0 +1,247 @@
+//! Light from infinitely far: evaluation and sampling in proportion to the bilinear radiance.
+//!
+//! A map is sampled by its cells: the squares between texel centres (and the half squares at the poles),
+//! chosen by the mean luminance of their corners times the sine of their latitude, then within a cell by the
+//! bilinear luminance itself. So the density follows what [`EnvironmentLight::radiance`] returns
+//! up to the variation of the sine over one row, and a sun one texel wide costs no variance.
+
+use super::distribution::Distribution;
+use crate::math::{Rgb, luminance};
+use crate::sampling::uniform_sphere;
+use crate::scene::{Environment, EnvironmentMap};
+use glam::{Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, PI, TAU};
+
+/// The environment, ready to be sampled.
+#[derive(Clone, Debug)]
+pub struct EnvironmentLight {
+    source: Source,
+    /// Mean luminance over the sphere, W/(sr m²).
+    mean_luminance: f32,
+}
+
+#[derive(Clone, Debug)]
+enum Source {
+    Constant(Rgb),
+    Map { map: EnvironmentMap, rows: Distribution, columns: Vec<Distribution> },
+}
+
+/// A direction drawn from the environment.
+#[derive(Clone, Copy, Debug)]
+pub struct EnvironmentSample {
+    /// Unit world direction towards the environment.
+    pub direction: Vec3,
+    /// Radiance from there.
+    pub radiance: Rgb,
+    /// Density by solid angle.
+    pub pdf: f32,
+}
+
+impl EnvironmentLight {
+    /// Builds the distributions; `None` if the environment is black.
+    pub fn new(environment: &Environment) -> Option<EnvironmentLight> {
+        let light = match environment {
+            Environment::Constant(radiance) => {
+                EnvironmentLight { source: Source::Constant(*radiance), mean_luminance: luminance(*radiance) }
+            }
+            Environment::Map(map) => {
+                let cells: Vec<Vec<f32>> = (0..=map.height)
+                    .map(|row| {
+                        let (low, high) = row_span(map, row);
+                        // The exact share of the sphere between the two latitudes.
+                        let weight = ((PI * low).cos() - (PI * high).cos()).max(0.0);
+                        (0..map.width)
+                            .map(|x| corners(map, x, row).iter().sum::<f32>() * 0.25 * weight)
+                            .collect()
+                    })
+                    .collect();
+                let columns: Vec<Distribution> =
+                    cells.into_iter().map(|row| Distribution::new(row)).collect();
+                let rows = Distribution::new(columns.iter().map(|c| c.total() as f32));
+                let mean_luminance = rows.total() as f32 / (2.0 * map.width as f32);
+                EnvironmentLight { source: Source::Map { map: map.clone(), rows, columns }, mean_luminance }
+            }
+        };
+        (light.mean_luminance > 0.0 && light.mean_luminance.is_finite()).then_some(light)
+    }
+
+    /// Mean luminance over the sphere of directions.
+    pub fn mean_luminance(&self) -> f32 {
+        self.mean_luminance
+    }
+
+    /// Radiance arriving from the unit world direction `d`.
+    pub fn radiance(&self, d: Vec3) -> Rgb {
+        match &self.source {
+            Source::Constant(radiance) => *radiance,
+            Source::Map { map, .. } => {
+                let (x, row, f) = locate(map, d);
+                let [a, b, c, d] = corner_indices(map, x, row).map(|i| map.radiance[i]);
+                a.lerp(b, f.x).lerp(c.lerp(d, f.x), f.y)
+            }
+        }
+    }
+
+    /// Density with which [`EnvironmentLight::sample`] draws `d`.
+    pub fn pdf(&self, d: Vec3) -> f32 {
+        match &self.source {
+            Source::Constant(_) => 0.25 * FRAC_1_PI,
+            Source::Map { map, rows, columns } => {
+                let (x, row, f) = locate(map, d);
+                let cell = rows.probability(row) * columns[row].probability(x);
+                let local = map.to_local * d;
+                let sin_theta = (local.x * local.x + local.z * local.z).sqrt();
+                cell * bilinear_density(corners(map, x, row), f) / cell_solid_angle(map, row, sin_theta)
+            }
+        }
+    }
+
+    /// A direction in proportion to luminance; `None` where the density vanishes.
+    pub fn sample(&self, u: Vec2) -> Option<EnvironmentSample> {
+        match &self.source {
+            Source::Constant(radiance) => Some(EnvironmentSample {
+                direction: uniform_sphere(u),
+                radiance: *radiance,
+                pdf: 0.25 * FRAC_1_PI,
+            }),
+            Source::Map { map, rows, columns } => {
+                let (row, rest_y) = rows.sample(u.y);
+                let (x, rest_x) = columns[row].sample(u.x);
+                let f = sample_bilinear(corners(map, x, row), Vec2::new(rest_x, rest_y));
+                let (low, high) = row_span(map, row);
+                let theta = PI * (low + (high - low) * f.y);
+                let phi = TAU * (x as f32 + 0.5 + f.x) / map.width as f32;
+                let (sin_theta, cos_theta) = theta.sin_cos();
+                let (sin_phi, cos_phi) = phi.sin_cos();
+                let local = Vec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta);
+                // The map's frame is a rotation, so the transpose is the inverse.
+                let direction = (map.to_local.transpose() * local).normalize();
+                let pdf = self.pdf(direction);
+                let radiance = self.radiance(direction);
+                (pdf > 0.0 && pdf.is_finite()).then_some(EnvironmentSample { direction, radiance, pdf })
+            }
+        }
+    }
+}
+
+/// Latitudes, over π, between which row `row` of cells lies: row 0 and row `height` are the half rows at the poles.
+fn row_span(map: &EnvironmentMap, row: usize) -> (f32, f32) {
+    let h = map.height as f32;
+    (((row as f32 - 0.5) / h).max(0.0), ((row as f32 + 0.5) / h).min(1.0))
+}
+
+/// Solid angle per unit of the cell's own square, at the given sine of the latitude.
+fn cell_solid_angle(map: &EnvironmentMap, row: usize, sin_theta: f32) -> f32 {
+    let (low, high) = row_span(map, row);
+    (TAU / map.width as f32) * (PI * (high - low)) * sin_theta.max(1e-7)
+}
+
+/// The cell of direction `d` and the position in it.
+fn locate(map: &EnvironmentMap, d: Vec3) -> (usize, usize, Vec2) {
+    let local = map.to_local * d;
+    let u = local.x.atan2(-local.z) / TAU;
+    let theta = local.y.clamp(-1.0, 1.0).acos() * FRAC_1_PI;
+    let x = (u - u.floor()) * map.width as f32 - 0.5;
+    let column = x.floor();
+    let row = ((theta * map.height as f32 + 0.5) as usize).min(map.height);
+    let (low, high) = row_span(map, row);
+    let fy = ((theta - low) / (high - low)).clamp(0.0, 1.0);
+    ((column as i64).rem_euclid(map.width as i64) as usize, row, Vec2::new(x - column, fy))
+}
+
+/// Texels at the corners of a cell: top left, top right, bottom left, bottom right.
+fn corner_indices(map: &EnvironmentMap, x: usize, row: usize) -> [usize; 4] {
+    let right = (x + 1) % map.width;
+    let top = row.saturating_sub(1) * map.width;
+    let bottom = row.min(map.height - 1) * map.width;
+    [top + x, top + right, bottom + x, bottom + right]
+}
+
+fn corners(map: &EnvironmentMap, x: usize, row: usize) -> [f32; 4] {
+    corner_indices(map, x, row).map(|i| luminance(map.radiance[i]))
+}
+
+/// Density over the unit square in proportion to the bilinear function of the corners.
+fn bilinear_density([a, b, c, d]: [f32; 4], f: Vec2) -> f32 {
+    let mean = 0.25 * (a + b + c + d);
+    let value = (a * (1.0 - f.x) + b * f.x) * (1.0 - f.y) + (c * (1.0 - f.x) + d * f.x) * f.y;
+    if mean > 0.0 { value / mean } else { 0.0 }
+}
+
+fn sample_bilinear([a, b, c, d]: [f32; 4], u: Vec2) -> Vec2 {
+    let y = sample_linear(a + b, c + d, u.y);
+    let x = sample_linear(a + (c - a) * y, b + (d - b) * y, u.x);
+    Vec2::new(x, y)
+}
+
+/// Inverse of the distribution whose density goes linearly from `a` to `b`.
+fn sample_linear(a: f32, b: f32, u: f32) -> f32 {
+    if a + b <= 0.0 {
+        return u;
+    }
+    let root = (a * a + (b * b - a * a) * u).max(0.0).sqrt();
+    (u * (a + b) / (a + root)).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::owen_sobol_2d;
+    use glam::Mat3;
+
+    fn map() -> EnvironmentMap {
+        let (width, height) = (16, 8);
+        let mut radiance: Vec<Rgb> =
+            (0..width * height).map(|i| Rgb::splat(0.1 + (i * 37 % 11) as f32 * 0.05)).collect();
+        radiance[3 * width + 15] = Rgb::new(500.0, 400.0, 300.0);
+        EnvironmentMap { width, height, radiance, to_local: Mat3::from_rotation_y(0.7) }
+    }
+
+    #[test]
+    fn density_integrates_to_one_and_estimates_the_mean() {
+        let light = EnvironmentLight::new(&Environment::Map(map())).unwrap();
+        let n = 1 << 18;
+        let (mut mass, mut uniform_mean, mut sampled_mean) = (0.0f64, 0.0f64, 0.0f64);
+        for i in 0..n {
+            let u = owen_sobol_2d(i, 3);
+            let d = uniform_sphere(u);
+            mass += light.pdf(d) as f64 * 4.0 * std::f64::consts::PI;
+            uniform_mean += luminance(light.radiance(d)) as f64;
+            let s = light.sample(u).unwrap();
+            assert!((light.radiance(s.direction) - s.radiance).length() < 1e-2 * s.radiance.length());
+            sampled_mean += (luminance(s.radiance) / s.pdf) as f64 / (4.0 * std::f64::consts::PI);
+        }
+        let n = n as f64;
+        assert!((mass / n - 1.0).abs() < 0.01, "{}", mass / n);
+        assert!((uniform_mean / sampled_mean - 1.0).abs() < 0.01);
+        // The weight of the mean in closed form uses cell means, not the sine inside a cell.
+        assert!((sampled_mean / n / light.mean_luminance() as f64 - 1.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn a_one_texel_sun_costs_little_variance() {
+        let light = EnvironmentLight::new(&Environment::Map(map())).unwrap();
+        let weights: Vec<f64> = (0..4096)
+            .filter_map(|i| light.sample(owen_sobol_2d(i, 5)))
+            .map(|s| (luminance(s.radiance) / s.pdf) as f64)
+            .collect();
+        let mean = weights.iter().sum::<f64>() / weights.len() as f64;
+        let worst = weights.iter().fold(0.0f64, |m, w| m.max(*w));
+        assert!(worst < 2.0 * mean, "worst weight {worst}, mean {mean}");
+    }
+
+    #[test]
+    fn one_pixel_map_is_constant() {
+        let map = EnvironmentMap {
+            width: 1,
+            height: 1,
+            radiance: vec![Rgb::new(1.0, 2.0, 3.0)],
+            to_local: Mat3::IDENTITY,
+        };
+        let light = EnvironmentLight::new(&Environment::Map(map)).unwrap();
+        for i in 0..64 {
+            let s = light.sample(owen_sobol_2d(i, 1)).unwrap();
+            assert!((s.radiance - Rgb::new(1.0, 2.0, 3.0)).length() < 1e-5);
+        }
+    }
+}
