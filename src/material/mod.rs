@@ -1,1 +1,26 @@
-//! What a surface reflects: BSDF evaluation, sampling and the upper bounds that lightcuts need.
+//! What a surface does to light: [`Materials`] holds what is computed once a scene, [`Bsdf`] is a material at
+//! one point, to be evaluated, sampled and bounded.
+//!
+//! Every material is a Lambert base, perhaps under a dielectric coat, and at most one lobe (see
+//! [`crate::scene::Material`]); definitions are Mitsuba 3's `diffuse`, `plastic`, `roughplastic`, `conductor`,
+//! `roughconductor`, `dielectric` and `twosided`, so that pictures agree with its references.
+//!
+//! All directions are in the local shading frame (z = shading normal), point away from the surface and have
+//! unit length: `wo` towards the eye (or wherever the path came from), `wi` towards the light.
+
+mod bound;
+mod bsdf;
+mod fresnel;
+mod microfacet;
+mod model;
+mod quadrature;
+mod sample;
+mod table;
+
+pub use bound::DirectionBound;
+pub use bsdf::Bsdf;
+pub use model::Materials;
+pub use sample::{BsdfSample, DeltaLobes};
+
+#[cfg(test)]
+mod tests;
