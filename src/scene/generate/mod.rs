@@ -1,6 +1,8 @@
 //! The larger scenes of the project, generated: each generator yields named parts, and the scene's TOML
 //! file gives every part its material, so that what a scene looks like stays editable.
 
+pub mod builder;
+
 use glam::{Vec2, Vec3};
 
 /// A named piece of generated geometry.

@@ -1,0 +1,95 @@
+//! Surfaces of revolution about the y axis.
+
+use super::{Shell, grid};
+use glam::{Vec2, Vec3};
+use std::f32::consts::{PI, TAU};
+
+/// Turns `profile`, points (radius, height) from bottom to top with the material on the axis side, in
+/// `segments` around the y axis. The ends are open unless they lie on the axis. Corners of the profile
+/// sharper than 40° stay sharp.
+pub fn lathe(profile: &[Vec2], segments: usize) -> Shell {
+    turn(profile, segments, false)
+}
+
+/// The same for a closed profile that does not touch the axis (rings, rims), given counter-clockwise with
+/// radius to the right and height upwards.
+pub fn profile_lathe(profile: &[Vec2], segments: usize) -> Shell {
+    turn(profile, segments, true)
+}
+
+fn turn(profile: &[Vec2], segments: usize, closed: bool) -> Shell {
+    let rows: Vec<Vec<Vec3>> = profile
+        .iter()
+        .map(|p| {
+            (0..segments)
+                .map(|i| {
+                    // Clockwise about +y, so that across x up looks outwards.
+                    let (sin, cos) = (-TAU * i as f32 / segments as f32).sin_cos();
+                    Vec3::new(p.x * cos, p.y, p.x * sin)
+                })
+                .collect()
+        })
+        .collect();
+    // Few segments must still look round across them.
+    let crease = f32::max(40.0, 360.0 / segments as f32 + 1.0);
+    grid(&rows, true, closed, crease)
+}
+
+/// A closed cylinder on the y axis from the origin to `height`.
+pub fn cylinder(radius: f32, height: f32, segments: usize) -> Shell {
+    cone(radius, radius, height, segments)
+}
+
+/// A closed truncated cone on the y axis from the origin; a radius of 0 gives a point.
+pub fn cone(bottom_radius: f32, top_radius: f32, height: f32, segments: usize) -> Shell {
+    let mut profile = vec![Vec2::new(0.0, 0.0)];
+    if bottom_radius > 0.0 {
+        profile.push(Vec2::new(bottom_radius, 0.0));
+    }
+    if top_radius > 0.0 {
+        profile.push(Vec2::new(top_radius, height));
+    }
+    profile.push(Vec2::new(0.0, height));
+    lathe(&profile, segments)
+}
+
+/// A closed pipe wall on the y axis from the origin to `height`.
+pub fn tube(inner_radius: f32, outer_radius: f32, height: f32, segments: usize) -> Shell {
+    ring(inner_radius, outer_radius, 0.0, height, segments)
+}
+
+/// A closed ring of rectangular section (a flange, a hoop) between two heights.
+pub fn ring(inner_radius: f32, outer_radius: f32, low: f32, high: f32, segments: usize) -> Shell {
+    profile_lathe(
+        &[
+            Vec2::new(inner_radius, low),
+            Vec2::new(outer_radius, low),
+            Vec2::new(outer_radius, high),
+            Vec2::new(inner_radius, high),
+        ],
+        segments,
+    )
+}
+
+/// A ring of round section about the y axis.
+pub fn torus(major_radius: f32, minor_radius: f32, segments: usize, section_segments: usize) -> Shell {
+    let profile: Vec<Vec2> = (0..section_segments)
+        .map(|k| {
+            let (sin, cos) = (TAU * k as f32 / section_segments as f32).sin_cos();
+            Vec2::new(major_radius + minor_radius * cos, minor_radius * sin)
+        })
+        .collect();
+    profile_lathe(&profile, segments).creased(75.0)
+}
+
+/// An ellipsoid about the origin.
+pub fn ellipsoid(radii: Vec3, segments: usize, rings: usize) -> Shell {
+    let profile: Vec<Vec2> = (0..=rings)
+        .map(|k| {
+            let polar = PI * k as f32 / rings as f32;
+            let radius = if k == 0 || k == rings { 0.0 } else { polar.sin() };
+            Vec2::new(radius, -polar.cos())
+        })
+        .collect();
+    lathe(&profile, segments).creased(75.0).mapped(|p| p * radii)
+}

@@ -1,0 +1,108 @@
+//! An indexed surface before it has normals: corners that belong together share a point, so that whether
+//! a shell is closed can be asked of its topology and creases can be found by angle.
+
+use glam::{Affine3A, DVec3, Mat3, Vec2, Vec3};
+
+/// A surface with a texture coordinate at every triangle corner.
+#[derive(Clone, Debug, Default)]
+pub struct Shell {
+    /// Points, shared between the triangles that meet there.
+    pub points: Vec<Vec3>,
+    /// Point indices, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Texture coordinates by triangle corner, in metres.
+    pub uvs: Vec<[Vec2; 3]>,
+    /// Faces that meet at more than this many degrees are shaded with a crease between them; 0 is flat.
+    pub crease_degrees: f32,
+}
+
+impl Shell {
+    /// An empty shell with the given crease angle.
+    pub fn new(crease_degrees: f32) -> Self {
+        Shell { crease_degrees, ..Shell::default() }
+    }
+
+    /// Appends a point and returns its index.
+    pub fn point(&mut self, position: Vec3) -> u32 {
+        self.points.push(position);
+        self.points.len() as u32 - 1
+    }
+
+    /// Appends a triangle, unless two of its corners are the same point.
+    pub fn triangle(&mut self, corners: [u32; 3], uvs: [Vec2; 3]) {
+        let [a, b, c] = corners;
+        if a != b && b != c && c != a {
+            self.triangles.push(corners);
+            self.uvs.push(uvs);
+        }
+    }
+
+    /// Appends the quadrilateral `corners` as two triangles, or one where it has collapsed.
+    pub fn quad(&mut self, corners: [u32; 4], uvs: [Vec2; 4]) {
+        let [a, b, c, d] = corners;
+        let [ta, tb, tc, td] = uvs;
+        self.triangle([a, b, c], [ta, tb, tc]);
+        self.triangle([a, c, d], [ta, tc, td]);
+    }
+
+    /// The shell with another crease angle.
+    pub fn creased(mut self, degrees: f32) -> Self {
+        self.crease_degrees = degrees;
+        self
+    }
+
+    /// The shell moved by `transform`; a mirroring transform keeps the outside outside.
+    pub fn transformed(mut self, transform: &Affine3A) -> Self {
+        for point in &mut self.points {
+            *point = transform.transform_point3(*point);
+        }
+        if Mat3::from(transform.matrix3).determinant() < 0.0 { self.flipped() } else { self }
+    }
+
+    /// The shell with inside and outside exchanged.
+    pub fn flipped(mut self) -> Self {
+        for (triangle, uvs) in self.triangles.iter_mut().zip(&mut self.uvs) {
+            triangle.swap(1, 2);
+            uvs.swap(1, 2);
+        }
+        self
+    }
+
+    /// The shell with every point moved by `f`, for bending and tapering.
+    pub fn mapped(mut self, f: impl Fn(Vec3) -> Vec3) -> Self {
+        for point in &mut self.points {
+            *point = f(*point);
+        }
+        self
+    }
+
+    /// Both shells as one; the crease angle is `self`'s.
+    pub fn joined(mut self, other: &Shell) -> Self {
+        let base = self.points.len() as u32;
+        self.points.extend_from_slice(&other.points);
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| base + i)));
+        self.uvs.extend_from_slice(&other.uvs);
+        self
+    }
+
+    /// The volume inside, positive where the faces look outwards; meaningful for closed shells only.
+    pub fn signed_volume(&self) -> f64 {
+        let origin = self.points.first().map_or(DVec3::ZERO, |p| p.as_dvec3());
+        self.triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|i| self.points[i as usize].as_dvec3() - origin);
+                a.dot(b.cross(c)) / 6.0
+            })
+            .sum()
+    }
+
+    /// Whether every edge is shared by exactly two triangles that run along it in opposite directions.
+    pub fn is_closed(&self) -> bool {
+        let mut edges: Vec<(u32, u32)> =
+            self.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
+        edges.sort_unstable();
+        edges.windows(2).all(|pair| pair[0] != pair[1])
+            && edges.iter().all(|&(a, b)| edges.binary_search(&(b, a)).is_ok())
+    }
+}
