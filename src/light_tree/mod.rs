@@ -1,1 +1,90 @@
 //! Stage 2: VPLs clustered in trees, each cluster with bounds, cone, intensity and representative.
+//!
+//! One tree for each kind and origin that the scene has, all in one array of nodes; the roots together
+//! stand for the virtual root above them. Both families of builders produce the same kind of tree.
+//!
+//! The same VPLs give the same trees for any number of threads.
+
+mod agglomerative;
+mod cost;
+mod divisive;
+mod finish;
+mod node;
+#[cfg(test)]
+mod tests;
+mod topology;
+
+use crate::math::luminance;
+use crate::vpl::{SpotProfile, Vpl, VplSet};
+use cost::Record;
+
+pub use node::{MAX_VPLS, Node};
+
+/// How a tree is built.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Family {
+    /// Top-down, binned splits in position and normal.
+    #[default]
+    Divisive,
+    /// Bottom-up, locally-ordered clustering.
+    Agglomerative,
+}
+
+/// The light trees of a scene.
+#[derive(Clone, Debug, Default)]
+pub struct LightTrees {
+    /// Nodes of all trees.
+    pub nodes: Vec<Node>,
+    /// Indices of the roots in `nodes`.
+    pub roots: Vec<u32>,
+    /// The VPLs in the order of the leaves, tree after tree: what is near in a tree is near in memory.
+    pub vpls: Vec<Vpl>,
+    /// Profiles of the spot lights among the omni VPLs.
+    pub spots: Vec<SpotProfile>,
+}
+
+impl LightTrees {
+    /// Builds a tree over each of `sets`; `diagonal` of the scene sets what an angle weighs against a length.
+    ///
+    /// VPLs beyond [`MAX_VPLS`] in all are ignored.
+    pub fn build(sets: &[VplSet], spots: Vec<SpotProfile>, diagonal: f32, family: Family) -> LightTrees {
+        let mut trees = LightTrees { spots, ..LightTrees::default() };
+        for set in sets {
+            trees.add(set, diagonal, family);
+        }
+        trees
+    }
+
+    fn add(&mut self, set: &VplSet, diagonal: f32, family: Family) {
+        let n = set.len().min(MAX_VPLS - self.vpls.len());
+        if n == 0 {
+            return;
+        }
+        let record = |i: usize| Record::new(&set.vpls[i], set.kind, luminance(set.intensities[i]), i as u32);
+        let records = (0..n).map(record).collect();
+        let topology = match family {
+            Family::Divisive => divisive::build(records, diagonal * diagonal),
+            Family::Agglomerative => agglomerative::build(records, diagonal * diagonal),
+        };
+        let (first_node, first_vpl) = (self.nodes.len(), self.vpls.len());
+        let blank = Node::new(crate::math::Rgb::ZERO, 0, set.kind, set.origin);
+        self.nodes.resize(first_node + 2 * n, blank);
+        finish::finish(&topology, set, &mut self.nodes[first_node..], first_node as u32, first_vpl as u32);
+        self.vpls.extend(topology.leaves.iter().map(|r| set.vpls[r.index() as usize]));
+        self.roots.push(first_node as u32);
+    }
+
+    /// Numbers of nodes that are leaves, in order of their VPLs within each tree.
+    pub fn leaves(&self) -> impl Iterator<Item = &Node> {
+        let mut stack: Vec<u32> = self.roots.iter().rev().copied().collect();
+        std::iter::from_fn(move || {
+            loop {
+                let node = &self.nodes[stack.pop()? as usize];
+                match node.children() {
+                    None => return Some(node),
+                    Some(left) => stack.extend([left + 1, left]),
+                }
+            }
+        })
+    }
+}

@@ -1,0 +1,142 @@
+//! From the shape of a tree to its nodes: exact boxes and cones, f64 intensity sums, representatives.
+//!
+//! Paper: Walter et al. 2005: a cluster's representative is drawn from its children's in proportion to
+//! their intensities, so one child shares it and a split costs at most one new shadow ray.
+//! Deviations: the cone is the smallest about the centre of the normals' box that holds every member's
+//! normal, found from the members themselves; merging the children's cones would be looser at every level.
+
+use super::cost::{Bounds, Record};
+use super::node::Node;
+use super::topology::Topology;
+use crate::math::{Rgb, luminance};
+use crate::vpl::{VplKind, VplSet};
+use glam::{DVec3, Vec3};
+
+/// Above this size both halves are finished in parallel.
+const PARALLEL: usize = 4096;
+/// Cosines are lowered by this much: more than the rounding of a dot product of unit vectors.
+const COSINE_SLACK: f32 = 1e-6;
+
+/// The part of a cluster that its parent needs and its node does not hold.
+struct Summary {
+    bounds: Bounds,
+    intensity: DVec3,
+    luminance: f64,
+    representative: u32,
+}
+
+/// What all subtrees share.
+struct Finisher<'a> {
+    set: &'a VplSet,
+    /// Number of the set's first VPL among all VPLs of all trees.
+    first_vpl: u32,
+}
+
+/// Fills `nodes` (two a leaf: the root, a gap that keeps siblings aligned, then pairs of siblings, depth first)
+/// with the nodes of a tree; `first_node` is the index of `nodes[0]` among all nodes.
+pub fn finish(topology: &Topology, set: &VplSet, nodes: &mut [Node], first_node: u32, first_vpl: u32) {
+    let finisher = Finisher { set, first_vpl };
+    if let Some((root, rest)) = nodes.split_first_mut() {
+        let below = rest.get_mut(1..).unwrap_or_default();
+        finisher.subtree(&topology.leaves, &topology.left_sizes, root, below, first_node + 2, 0);
+    }
+}
+
+impl Finisher<'_> {
+    /// Fills `node` and its descendants `below`, of which the first has index `below_index`;
+    /// `first_leaf` is the place of the subtree's first leaf in the tree.
+    fn subtree(
+        &self,
+        leaves: &[Record],
+        left_sizes: &[u32],
+        node: &mut Node,
+        below: &mut [Node],
+        below_index: u32,
+        first_leaf: u32,
+    ) -> Summary {
+        let Some((&left, rest)) = left_sizes.split_first() else {
+            return self.leaf(&leaves[0], first_leaf, node);
+        };
+        let left = left as usize;
+        let (left_leaves, right_leaves) = leaves.split_at(left);
+        let (left_rest, right_rest) = rest.split_at(left - 1);
+        let (children, below) = below.split_at_mut(2);
+        let (left_below, right_below) = below.split_at_mut(2 * (left - 1));
+        let (left_node, right_node) = children.split_at_mut(1);
+        let left_index = below_index + 2;
+        let right_index = left_index + left_below.len() as u32;
+        let right_leaf = first_leaf + left as u32;
+        let mut do_left =
+            || self.subtree(left_leaves, left_rest, &mut left_node[0], left_below, left_index, first_leaf);
+        let mut do_right = || {
+            self.subtree(right_leaves, right_rest, &mut right_node[0], right_below, right_index, right_leaf)
+        };
+        let (a, b) =
+            if leaves.len() > PARALLEL { rayon::join(do_left, do_right) } else { (do_left(), do_right()) };
+
+        let mut bounds = a.bounds;
+        bounds.add(&b.bounds);
+        let luminance = a.luminance + b.luminance;
+        let takes_left = unit_hash(below_index) * luminance < a.luminance;
+        let representative = if takes_left { a.representative } else { b.representative };
+        let intensity = a.intensity + b.intensity;
+        *node = Node::new(rounded_up(intensity), representative, self.set.kind, self.set.origin);
+        node.set_children(below_index);
+        self.set_box(node, &bounds);
+        if self.set.kind == VplKind::Oriented {
+            let centre = Vec3::from_array(std::array::from_fn(|i| bounds.min[3 + i] + bounds.max[3 + i]));
+            let axis = centre.try_normalize().unwrap_or_else(|| leaves[0].normal());
+            set_cone(node, axis, leaves);
+        }
+        Summary { bounds, intensity, luminance, representative }
+    }
+
+    fn leaf(&self, record: &Record, place: u32, node: &mut Node) -> Summary {
+        let intensity = self.set.intensities[record.index() as usize];
+        let representative = self.first_vpl + place;
+        *node = Node::new(intensity, representative, self.set.kind, self.set.origin);
+        let bounds = Bounds::of(record);
+        self.set_box(node, &bounds);
+        if self.set.kind == VplKind::Oriented {
+            set_cone(node, record.normal(), std::slice::from_ref(record));
+        }
+        let luminance = f64::from(luminance(intensity));
+        Summary { bounds, intensity: intensity.as_dvec3(), luminance, representative }
+    }
+
+    fn set_box(&self, node: &mut Node, bounds: &Bounds) {
+        let first = if self.set.kind == VplKind::Directional { 3 } else { 0 };
+        node.min = Vec3::from_array(std::array::from_fn(|i| bounds.min[first + i]));
+        node.max = Vec3::from_array(std::array::from_fn(|i| bounds.max[first + i]));
+    }
+}
+
+/// The cone about `axis` that holds every normal.
+fn set_cone(node: &mut Node, axis: Vec3, members: &[Record]) {
+    let cos_beta = members.iter().fold(1.0f32, |least, r| {
+        let cos = r.normal().dot(axis);
+        if cos < least { cos } else { least }
+    });
+    node.axis = axis;
+    node.cos_beta = (cos_beta - COSINE_SLACK).max(-1.0);
+    node.sin_beta = (1.0 - node.cos_beta * node.cos_beta).sqrt();
+}
+
+/// The f32 colour not below `c` in any channel, so that a cluster is never dimmer than its members.
+fn rounded_up(c: DVec3) -> Rgb {
+    let up = |x: f64| {
+        let nearest = x.min(f64::from(f32::MAX)) as f32;
+        if f64::from(nearest) < x { nearest.next_up().min(f32::MAX) } else { nearest }
+    };
+    Rgb::new(up(c.x), up(c.y), up(c.z))
+}
+
+/// A number in [0, 1) that depends on the node alone.
+///
+/// Paper: the finaliser of Stafford's *Better Bit Mixing*, variant 13.
+fn unit_hash(node: u32) -> f64 {
+    let mut h = u64::from(node).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    h = (h ^ h >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    h = (h ^ h >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (h >> 11) as f64 / (1u64 << 53) as f64
+}

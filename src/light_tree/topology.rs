@@ -1,0 +1,46 @@
+//! The shape of a binary tree over a row of leaves, before it has any bounds.
+
+use super::cost::Record;
+
+/// A binary tree: leaves in order, and for each inner node, in preorder, how many leaves its left child has.
+///
+/// A subtree over `n` leaves owns `n` consecutive records and `n - 1` consecutive entries of
+/// `left_sizes`, of which the first is its root's: so a subtree is a pair of slices.
+#[derive(Debug)]
+pub struct Topology {
+    /// The leaves, in the tree's order.
+    pub leaves: Vec<Record>,
+    /// Leaves in the left child of each inner node, preorder.
+    pub left_sizes: Vec<u32>,
+}
+
+impl Topology {
+    /// From inner nodes given as pairs of children: ids below `leaves.len()` are leaves, the others
+    /// inner nodes in the order of `pairs`; the last pair is the root.
+    pub fn from_pairs(leaves: &[Record], pairs: &[[u32; 2]]) -> Topology {
+        let n = leaves.len();
+        // Children precede their parents, so one sweep finds every size.
+        let mut sizes = vec![1u32; n + pairs.len()];
+        for (i, &[a, b]) in pairs.iter().enumerate() {
+            sizes[n + i] = sizes[a as usize] + sizes[b as usize];
+        }
+        let mut topology =
+            Topology { leaves: Vec::with_capacity(n), left_sizes: Vec::with_capacity(pairs.len()) };
+        let mut stack = Vec::new();
+        if n > 0 {
+            stack.push((n + pairs.len() - 1) as u32);
+        }
+        while let Some(id) = stack.pop() {
+            let id = id as usize;
+            if id < n {
+                topology.leaves.push(leaves[id]);
+            } else {
+                let [left, right] = pairs[id - n];
+                topology.left_sizes.push(sizes[left as usize]);
+                stack.push(right);
+                stack.push(left);
+            }
+        }
+        topology
+    }
+}
