@@ -1,1 +1,34 @@
-//! The safe face of Embree 4: device, triangle scene, closest-hit and occlusion queries.
+//! The safe face of Embree 4: device, triangle scene, closest-hit and occlusion queries for one ray
+//! and for sixteen. With `vendor-bindings/`, the only place with unsafe code.
+//!
+//! A [`Device`] is made once, an [`Accel`] once per scene; queries go to the `Accel` from any number of
+//! threads. What the queries guarantee, and what not:
+//!
+//! * Every answer is for the segment `t_near < t <= t_far` of the ray, half-open up to rounding, and is the
+//!   same for any number of threads. It is *not* the same bit for bit between processors (Embree has AVX-512, AVX2 and SSE
+//!   kernels), nor need a packet agree with single rays where a ray passes within rounding of an edge.
+//! * A hit next to the origin is a hit: keeping rays off their own surface is the caller's part.
+//! * A ray with a NaN or infinite origin or direction, a zero direction, or `t_near > t_far` or either
+//!   NaN meets nothing. `t_far` may be infinite.
+//! * Both sides of a triangle are met; triangles of zero area are not.
+//! * The floating-point control word (MXCSR) of the calling thread is left as it is.
+//!
+//! Units: `t` counts in lengths of the ray's direction, which need not be a unit vector.
+
+#![allow(unsafe_code)]
+
+mod accel;
+mod device;
+mod error;
+mod occluder;
+mod packet;
+mod ray;
+#[cfg(test)]
+mod tests;
+
+pub use accel::{Accel, TriangleMesh};
+pub use device::{Device, Version};
+pub use error::EmbreeError;
+pub use occluder::{Occluder, Occluders16, Skip16, TriangleId};
+pub use packet::{Hits16, Rays16};
+pub use ray::{ALL_GEOMETRY, Hit, Ray};

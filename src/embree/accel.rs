@@ -1,0 +1,250 @@
+//! The acceleration structure over triangle meshes, and queries of one ray.
+
+use super::{ALL_GEOMETRY, Device, EmbreeError, Hit, Ray};
+use embree4_sys as sys;
+use glam::Vec3;
+
+/// Embree leaves out triangles with a coordinate of this size or more (its `FLT_LARGE`).
+const COORDINATE_LIMIT: f32 = 1.844e18;
+
+/// Triangles to build from; borrowed, for [`Accel::build`] copies them.
+#[derive(Clone, Copy, Debug)]
+pub struct TriangleMesh<'a> {
+    /// Vertex positions.
+    pub positions: &'a [Vec3],
+    /// Vertex indices of each triangle.
+    pub triangles: &'a [[u32; 3]],
+    /// A ray meets the mesh only if this and the ray's mask have a bit in common.
+    pub mask: u32,
+}
+
+/// A built bounding volume hierarchy, ready for queries from any thread.
+///
+/// Built once with medium quality; MEDIUM without further flags is the fastest that loses no hits worth
+/// counting (occlusion differs from the robust mode in about one ray of a million).
+pub struct Accel {
+    scene: sys::RTCScene,
+    bounds: Option<(Vec3, Vec3)>,
+    device: Device,
+}
+
+// SAFETY: a committed scene is not changed any more, and Embree allows queries of it, and its release,
+// from any thread.
+unsafe impl Send for Accel {}
+// SAFETY: as above; all methods take `&self` and only query.
+unsafe impl Sync for Accel {}
+
+impl Accel {
+    /// Builds with all threads of `device`. Ids in hits are indices into `meshes` and into the mesh's
+    /// `triangles`. Meshes without triangles keep their index and are never met. The vertices are
+    /// copied, so `meshes` may go afterwards.
+    ///
+    /// # Errors
+    /// If a triangle names a missing vertex, or has a coordinate for which Embree would leave it out
+    /// without a word, or if Embree fails (memory).
+    pub fn build(device: &Device, meshes: &[TriangleMesh]) -> Result<Accel, EmbreeError> {
+        if u32::try_from(meshes.len()).is_err() {
+            return Err(EmbreeError::TooMany { what: "meshes", count: meshes.len() });
+        }
+        for (index, mesh) in meshes.iter().enumerate() {
+            validate(index, mesh)?;
+        }
+        // SAFETY: the device is live.
+        let scene = unsafe { sys::rtcNewScene(device.handle()) };
+        device.check("making a scene")?;
+        // From here on dropping releases the scene.
+        let mut accel = Accel { scene, bounds: None, device: device.clone() };
+        // SAFETY: the scene is live and not yet committed. The flag is what lets a query bring its own
+        // filter; without it Embree ignores the filter silently.
+        unsafe {
+            sys::rtcSetSceneBuildQuality(scene, sys::RTC_BUILD_QUALITY_MEDIUM);
+            sys::rtcSetSceneFlags(scene, sys::RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
+        }
+        for (id, mesh) in (0u32..).zip(meshes) {
+            if !mesh.triangles.is_empty() {
+                accel.attach(id, mesh)?;
+            }
+        }
+        // SAFETY: the scene is live; committing takes no pointers. Embree restores MXCSR afterwards.
+        unsafe { sys::rtcCommitScene(scene) };
+        device.check("building the acceleration structure")?;
+        accel.bounds = accel.committed_bounds();
+        Ok(accel)
+    }
+
+    fn attach(&mut self, id: u32, mesh: &TriangleMesh) -> Result<(), EmbreeError> {
+        // SAFETY: the device is live.
+        let geometry = unsafe { sys::rtcNewGeometry(self.device.handle(), sys::RTC_GEOMETRY_TYPE_TRIANGLE) };
+        self.device.check("making a mesh")?;
+        let copied =
+            copy_buffer(geometry, sys::RTC_BUFFER_TYPE_VERTEX, sys::RTC_FORMAT_FLOAT3, mesh.positions)
+                && copy_buffer(geometry, sys::RTC_BUFFER_TYPE_INDEX, sys::RTC_FORMAT_UINT3, mesh.triangles);
+        // SAFETY: geometry and scene are live; the scene takes a reference of its own, so ours goes. A
+        // geometry whose buffers are missing is not attached.
+        unsafe {
+            if copied {
+                sys::rtcSetGeometryBuildQuality(geometry, sys::RTC_BUILD_QUALITY_MEDIUM);
+                sys::rtcSetGeometryMask(geometry, mesh.mask);
+                sys::rtcCommitGeometry(geometry);
+                sys::rtcAttachGeometryByID(self.scene, geometry, id);
+            }
+            sys::rtcReleaseGeometry(geometry);
+        }
+        self.device.check("copying a mesh")
+    }
+
+    fn committed_bounds(&self) -> Option<(Vec3, Vec3)> {
+        let mut b = sys::RTCBounds {
+            lower_x: f32::INFINITY,
+            lower_y: f32::INFINITY,
+            lower_z: f32::INFINITY,
+            align0: 0.0,
+            upper_x: f32::NEG_INFINITY,
+            upper_y: f32::NEG_INFINITY,
+            upper_z: f32::NEG_INFINITY,
+            align1: 0.0,
+        };
+        // SAFETY: the scene is committed, and the bounds are of the type and alignment asked for.
+        unsafe { sys::rtcGetSceneBounds(self.scene, &mut b) };
+        let (lower, upper) =
+            (Vec3::new(b.lower_x, b.lower_y, b.lower_z), Vec3::new(b.upper_x, b.upper_y, b.upper_z));
+        (lower.is_finite() && upper.is_finite()).then_some((lower, upper))
+    }
+
+    /// The box around all triangles, as corners with the least and the greatest coordinates; none if
+    /// there is no triangle.
+    #[inline]
+    pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        self.bounds
+    }
+
+    /// The first triangle along the ray. Which of several at the same `t` is not specified, but it is
+    /// always the same one.
+    #[inline]
+    pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
+        self.closest_hit_masked(ray, ALL_GEOMETRY)
+    }
+
+    /// As [`Accel::closest_hit`], among meshes whose mask has a bit of `mask`.
+    #[inline]
+    pub fn closest_hit_masked(&self, ray: &Ray, mask: u32) -> Option<Hit> {
+        if self.is_empty() || !ray.is_traceable() {
+            return None;
+        }
+        let mut rayhit = sys::RTCRayHit {
+            ray: ray.to_embree(mask),
+            hit: sys::RTCHit {
+                Ng_x: 0.0,
+                Ng_y: 0.0,
+                Ng_z: 0.0,
+                u: 0.0,
+                v: 0.0,
+                primID: sys::RTC_INVALID_GEOMETRY_ID,
+                geomID: sys::RTC_INVALID_GEOMETRY_ID,
+                instID: [sys::RTC_INVALID_GEOMETRY_ID],
+                instPrimID: [sys::RTC_INVALID_GEOMETRY_ID],
+            },
+        };
+        // SAFETY: the scene is committed; the ray is ours, has the library's layout (the version is
+        // checked) and is 16-byte aligned by its type; null arguments stand for the defaults.
+        unsafe { sys::rtcIntersect1(self.scene, &mut rayhit, std::ptr::null_mut()) };
+        let hit = &rayhit.hit;
+        (hit.geomID != sys::RTC_INVALID_GEOMETRY_ID).then_some(Hit {
+            t: rayhit.ray.tfar,
+            u: hit.u,
+            v: hit.v,
+            geometry: hit.geomID,
+            primitive: hit.primID,
+        })
+    }
+
+    /// Whether any triangle lies on the ray's segment.
+    #[inline]
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        self.occluded_masked(ray, ALL_GEOMETRY)
+    }
+
+    /// As [`Accel::occluded`], among meshes whose mask has a bit of `mask`.
+    #[inline]
+    pub fn occluded_masked(&self, ray: &Ray, mask: u32) -> bool {
+        if self.is_empty() || !ray.is_traceable() {
+            return false;
+        }
+        let mut shadow_ray = ray.to_embree(mask);
+        // SAFETY: as for `rtcIntersect1` above.
+        unsafe { sys::rtcOccluded1(self.scene, &mut shadow_ray, std::ptr::null_mut()) };
+        // Embree sets tfar so, and a traceable ray has not come with it: t_near <= t_far and -inf would
+        // need t_near to be -inf as well.
+        shadow_ray.tfar == f32::NEG_INFINITY
+    }
+
+    /// Whether there is nothing to meet. Embree is not asked then.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.bounds.is_none()
+    }
+
+    /// The device that the structure was built with.
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+
+    pub(super) fn scene(&self) -> sys::RTCScene {
+        self.scene
+    }
+}
+
+impl Drop for Accel {
+    fn drop(&mut self) {
+        // SAFETY: the scene is live and this is the only reference that we hold.
+        unsafe { sys::rtcReleaseScene(self.scene) };
+    }
+}
+
+/// Copies `items`, three 32-bit numbers each, into a new buffer of Embree's, which it pads as it
+/// needs. False if there is no memory; Embree has then reported it.
+fn copy_buffer<T: Copy>(
+    geometry: sys::RTCGeometry,
+    buffer_type: sys::RTCBufferType,
+    format: sys::RTCFormat,
+    items: &[T],
+) -> bool {
+    const { assert!(size_of::<T>() == 12) };
+    // SAFETY: the geometry is live and the format is of 12 bytes.
+    let buffer = unsafe {
+        sys::rtcSetNewGeometryBuffer(geometry, buffer_type, 0, format, size_of::<T>(), items.len())
+    };
+    if buffer.is_null() {
+        return false;
+    }
+    // SAFETY: the new buffer holds at least `items.len()` items of 12 bytes, is 16-byte aligned and
+    // overlaps nothing of ours; `T` is `Copy`.
+    unsafe { std::ptr::copy_nonoverlapping(items.as_ptr(), buffer.cast::<T>(), items.len()) };
+    true
+}
+
+/// Refuses what Embree would read out of bounds or leave out silently.
+fn validate(mesh_index: usize, mesh: &TriangleMesh) -> Result<(), EmbreeError> {
+    for (what, count) in [("triangles", mesh.triangles.len()), ("vertices", mesh.positions.len())] {
+        if u32::try_from(count).is_err() {
+            return Err(EmbreeError::TooMany { what, count });
+        }
+    }
+    let (mut first, mut count) = (0, 0);
+    for (triangle, corners) in mesh.triangles.iter().enumerate() {
+        let mut is_valid = true;
+        for &index in corners {
+            let Some(p) = mesh.positions.get(index as usize) else {
+                let vertices = mesh.positions.len();
+                return Err(EmbreeError::VertexIndex { mesh: mesh_index, triangle, index, vertices });
+            };
+            // Also false for NaN.
+            is_valid &= p.abs().cmplt(Vec3::splat(COORDINATE_LIMIT)).all();
+        }
+        if !is_valid {
+            first = if count == 0 { triangle } else { first };
+            count += 1;
+        }
+    }
+    if count > 0 { Err(EmbreeError::InvalidTriangles { mesh: mesh_index, first, count }) } else { Ok(()) }
+}

@@ -1,0 +1,188 @@
+//! The Embree device: version check and error messages.
+
+use super::EmbreeError;
+use embree4_sys as sys;
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Messages kept until they are asked for; later ones are dropped, for the first tells the cause.
+const MESSAGE_CAPACITY: usize = 16;
+
+/// A version of Embree; compares in release order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Version {
+    /// First number: the ABI.
+    pub major: u32,
+    /// Second number.
+    pub minor: u32,
+    /// Third number.
+    pub patch: u32,
+}
+
+impl Version {
+    /// Whether the bindings describe this version: 4.2 has a smaller hit, 5 is another interface.
+    pub(super) fn is_supported(self) -> bool {
+        self.major == 4 && self.minor >= 3
+    }
+}
+
+impl fmt::Display for Version {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}.{}.{}", self.major, self.minor, self.patch)
+    }
+}
+
+/// A handle to the library, with the threads it builds with. Clones share one device; an
+/// [`super::Accel`] keeps its device alive.
+#[derive(Clone)]
+pub struct Device {
+    shared: Arc<Shared>,
+}
+
+struct Shared {
+    handle: sys::RTCDevice,
+    version: Version,
+    // Boxed, since Embree keeps its address.
+    errors: Box<ErrorLog>,
+}
+
+// SAFETY: Embree's devices are reference-counted and their functions may be called from any thread;
+// the log that the error callback writes is behind a mutex.
+unsafe impl Send for Shared {}
+// SAFETY: as above.
+unsafe impl Sync for Shared {}
+
+impl Device {
+    /// A device that builds with `threads` threads; 0 stands for one per hardware thread. Queries run
+    /// on the caller's threads and are not limited by it.
+    ///
+    /// # Errors
+    /// If Embree gives no device, or is a version or build that the bindings do not describe.
+    pub fn new(threads: usize) -> Result<Device, EmbreeError> {
+        Device::with_config(&format!("threads={threads}"))
+    }
+
+    /// As [`Device::new`], with a configuration string of `rtcNewDevice`. Tests choose an ISA by it.
+    pub(super) fn with_config(config: &str) -> Result<Device, EmbreeError> {
+        let config = CString::new(config).unwrap_or_default();
+        // SAFETY: the string is NUL-terminated and outlives the call.
+        let handle = unsafe { sys::rtcNewDevice(config.as_ptr()) };
+        if handle.is_null() {
+            // SAFETY: a null device stands for the calling thread's last error; both functions take it.
+            let (code, message) =
+                unsafe { (sys::rtcGetDeviceError(handle), text(sys::rtcGetDeviceLastErrorMessage(handle))) };
+            return Err(EmbreeError::NoDevice { code: code_name(code), message });
+        }
+        let mut device =
+            Shared { handle, version: Version { major: 0, minor: 0, patch: 0 }, errors: Box::default() };
+        let property = |which| {
+            // SAFETY: the handle is a live device.
+            unsafe { sys::rtcGetDeviceProperty(handle, which) }
+        };
+        let number = u32::try_from(property(sys::RTC_DEVICE_PROPERTY_VERSION)).unwrap_or(0);
+        device.version = Version { major: number / 10000, minor: number / 100 % 100, patch: number % 100 };
+        if !device.version.is_supported() {
+            return Err(EmbreeError::Version { found: device.version });
+        }
+        for (which, feature) in [
+            (sys::RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED, "EMBREE_RAY_MASK"),
+            (sys::RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED, "EMBREE_FILTER_FUNCTION"),
+            (sys::RTC_DEVICE_PROPERTY_TRIANGLE_GEOMETRY_SUPPORTED, "EMBREE_GEOMETRY_TRIANGLE"),
+        ] {
+            if property(which) == 0 {
+                return Err(EmbreeError::Feature { feature });
+            }
+        }
+        let log: *const ErrorLog = &*device.errors;
+        // SAFETY: the log is boxed, and `Shared::drop` takes the callback away before the box goes; the
+        // callback has the type that Embree asks for and reads the log only through a shared reference.
+        unsafe { sys::rtcSetDeviceErrorFunction(handle, Some(record_error), log.cast_mut().cast()) };
+        Ok(Device { shared: Arc::new(device) })
+    }
+
+    /// The version of the library that was loaded.
+    pub fn version(&self) -> Version {
+        self.shared.version
+    }
+
+    /// Whether sixteen-wide packets run natively (AVX-512). Where they do not, the packet queries give
+    /// the same answers by single rays, and packing rays gains nothing.
+    pub fn native_packets16(&self) -> bool {
+        // SAFETY: the handle is a live device.
+        unsafe {
+            sys::rtcGetDeviceProperty(self.handle(), sys::RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0
+        }
+    }
+
+    /// The first error that was reported since the last look, if any; the rest are forgotten.
+    ///
+    /// # Errors
+    /// With what Embree reported; `during` says what was being done.
+    pub fn check(&self, during: &'static str) -> Result<(), EmbreeError> {
+        let reported = std::mem::take(&mut *self.shared.errors.lock());
+        match reported.into_iter().next() {
+            None => Ok(()),
+            Some((code, message)) => Err(EmbreeError::Call { during, code: code_name(code), message }),
+        }
+    }
+
+    pub(super) fn handle(&self) -> sys::RTCDevice {
+        self.shared.handle
+    }
+}
+
+impl fmt::Debug for Device {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "Embree {}", self.shared.version)
+    }
+}
+
+impl Drop for Shared {
+    fn drop(&mut self) {
+        // SAFETY: the handle is live and ours to release. Scenes may hold the device longer than we do
+        // (an `Accel` releases its scene before its `Device`, but Embree counts by itself), so the
+        // callback is taken away from it first.
+        unsafe {
+            sys::rtcSetDeviceErrorFunction(self.handle, None, std::ptr::null_mut());
+            sys::rtcReleaseDevice(self.handle);
+        }
+    }
+}
+
+/// What the error callback was told, in order.
+#[derive(Default)]
+struct ErrorLog(Mutex<Vec<(sys::RTCError, String)>>);
+
+impl ErrorLog {
+    fn lock(&self) -> MutexGuard<'_, Vec<(sys::RTCError, String)>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Called by Embree from any of its threads.
+unsafe extern "C" fn record_error(log: *mut c_void, code: sys::RTCError, message: *const c_char) {
+    // SAFETY: `log` is what was registered, a live `ErrorLog` that is only ever shared.
+    let log = unsafe { &*log.cast::<ErrorLog>() };
+    let mut reported = log.lock();
+    if reported.len() < MESSAGE_CAPACITY {
+        // SAFETY: Embree passes null or a NUL-terminated string that lives through the call.
+        reported.push((code, unsafe { text(message) }));
+    }
+}
+
+/// Embree's name of an error code.
+fn code_name(code: sys::RTCError) -> String {
+    // SAFETY: takes any value and returns a string with static lifetime.
+    unsafe { text(sys::rtcGetErrorString(code)) }
+}
+
+/// # Safety
+/// `string` must be null or NUL-terminated and live through the call.
+unsafe fn text(string: *const c_char) -> String {
+    if string.is_null() {
+        return "no message".into();
+    }
+    // SAFETY: not null, the rest by contract.
+    unsafe { CStr::from_ptr(string) }.to_string_lossy().into_owned()
+}
