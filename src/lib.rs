@@ -17,3 +17,4 @@ pub mod scene;
 pub mod shadow;
 pub mod stats;
 pub mod vpl;
+pub mod world;

@@ -2,6 +2,7 @@
 
 pub mod control;
 pub mod output;
+pub mod path;
 
 pub use control::{Control, Progress};
 pub use output::Output;

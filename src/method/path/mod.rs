@@ -1,0 +1,21 @@
+//! Path tracing: the unbiased reference.
+//!
+//! | setting | default | meaning |
+//! |---|---|---|
+//! | `spp` | 64 | paths a pixel |
+//! | `seed` | 0 | another seed, other noise |
+//! | `max_depth` | the scene's | longest path in edges, counted from the eye |
+//!
+//! Use it to know the truth; it converges in any scene whose light can be found by next-event estimation or
+//! by chance, with noise that falls with the square root of the samples. It does not converge in reasonable time
+//! where small lights shine through glass.
+//!
+//! Every pixel averages Owen-scrambled Sobol samples over a box one pixel wide. Next-event estimation and BSDF
+//! sampling are joined by the power heuristic. The variance beside the picture is the sample variance over
+//! the number of samples: an estimate on the safe side, since stratification makes the true one smaller.
+
+mod integrator;
+mod render;
+
+pub use integrator::{Counts, radiance};
+pub use render::{Settings, render};

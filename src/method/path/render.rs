@@ -1,0 +1,132 @@
+//! The picture: pixels in tiles, samples in passes.
+
+use super::integrator::{Counts, radiance};
+use crate::eye::{Window, primary_ray};
+use crate::image::Image;
+use crate::math::Rgb;
+use crate::method::{Control, Output};
+use crate::sampling::{Sampler, hash};
+use crate::stats::{Stage, Stats};
+use crate::world::World;
+use rayon::prelude::*;
+
+/// Pixels along a tile's edge.
+const TILE: u32 = 16;
+
+/// Samples a pixel takes before the next pass; a cancelled render keeps whole passes of each tile.
+const PASS: u32 = 16;
+
+/// What the user may set.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Paths a pixel.
+    pub spp: u32,
+    /// Another seed, other noise.
+    pub seed: u32,
+    /// Longest path in edges; `None` for the scene's own limit.
+    pub max_depth: Option<u32>,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { spp: 64, seed: 0, max_depth: None }
+    }
+}
+
+/// Running mean and sum of squared differences of one pixel (Welford).
+#[derive(Clone, Copy, Default)]
+struct Pixel {
+    mean: Rgb,
+    squares: Rgb,
+}
+
+/// A tile's pixels and what was counted for them.
+struct Tile {
+    pixels: Vec<Pixel>,
+    samples: u32,
+    counts: Counts,
+    nonfinite: u64,
+}
+
+/// Renders `window` of the scene's film.
+pub fn render(world: &World, window: &Window, settings: &Settings, control: &Control) -> Output {
+    let mut stats = Stats::new();
+    let (across, down) = (window.width.div_ceil(TILE), window.height.div_ceil(TILE));
+    let mut tiles: Vec<Tile> = (0..across * down)
+        .map(|_| Tile { pixels: Vec::new(), samples: 0, counts: Counts::default(), nonfinite: 0 })
+        .collect();
+    let passes = settings.spp.div_ceil(PASS);
+    control.begin(Stage::Render, passes as u64 * tiles.len() as u64);
+    stats.time(Stage::Render, || {
+        for pass in 0..passes {
+            let end = ((pass + 1) * PASS).min(settings.spp);
+            tiles.par_iter_mut().enumerate().for_each(|(i, tile)| {
+                if !control.is_cancelled() {
+                    let corner = [i as u32 % across * TILE, i as u32 / across * TILE];
+                    tile.render(world, window, settings, corner, end);
+                    control.advance(1);
+                }
+            });
+        }
+    });
+    let mut color = Image::new(window.width, window.height);
+    let mut variance = Image::new(window.width, window.height);
+    let (mut rays, mut shadow_rays, mut nonfinite, mut paths) = (0, 0, 0, 0);
+    for (i, tile) in tiles.iter().enumerate() {
+        let corner = [i as u32 % across * TILE, i as u32 / across * TILE];
+        let n = tile.samples as f32;
+        for (pixel, [x, y]) in tile.pixels.iter().zip(tile_pixels(window, corner)) {
+            let at = (y * window.width + x) as usize;
+            color.pixels[at] = pixel.mean;
+            variance.pixels[at] = if n > 1.0 { pixel.squares / (n * (n - 1.0)) } else { Rgb::ZERO };
+        }
+        paths += tile.samples as u64 * tile.pixels.len() as u64;
+        rays += tile.counts.rays;
+        shadow_rays += tile.counts.shadow_rays;
+        nonfinite += tile.nonfinite;
+    }
+    stats.count("Paths/total", paths);
+    stats.count("Rays/closest hit", rays);
+    stats.count("Rays/shadow", shadow_rays);
+    let complete = tiles.iter().all(|t| t.samples == settings.spp);
+    // With a single sample there is no spread to measure.
+    let variance = (settings.spp > 1).then_some(variance);
+    Output { color, variance, extra: Vec::new(), stats, complete, nonfinite }
+}
+
+/// The pixels of the tile whose first pixel is `corner`, in rows, relative to the window.
+fn tile_pixels(window: &Window, corner: [u32; 2]) -> impl Iterator<Item = [u32; 2]> + use<> {
+    let (right, bottom) = ((corner[0] + TILE).min(window.width), (corner[1] + TILE).min(window.height));
+    (corner[1]..bottom).flat_map(move |y| (corner[0]..right).map(move |x| [x, y]))
+}
+
+impl Tile {
+    /// Takes the samples up to `end` of every pixel.
+    fn render(&mut self, world: &World, window: &Window, settings: &Settings, corner: [u32; 2], end: u32) {
+        let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
+        let begin = self.samples;
+        let coordinates = tile_pixels(window, corner);
+        if self.pixels.is_empty() {
+            self.pixels = vec![Pixel::default(); coordinates.count()];
+        }
+        for (pixel, at) in self.pixels.iter_mut().zip(tile_pixels(window, corner)) {
+            let [x, y] = window.film_pixel(at);
+            // The film's own coordinates, so that a crop repeats the whole picture's pixels.
+            let seed = hash(hash(x, y), settings.seed);
+            for sample in begin..end {
+                let mut sampler = Sampler::new(seed, sample);
+                let jitter = sampler.next_2d();
+                let ray = primary_ray(&world.scene.camera, window, [x, y], jitter);
+                let mut value = radiance(world, ray, max_depth, &mut sampler, &mut self.counts);
+                if !value.is_finite() {
+                    self.nonfinite += 1;
+                    value = Rgb::ZERO;
+                }
+                let difference = value - pixel.mean;
+                pixel.mean += difference / (sample + 1) as f32;
+                pixel.squares += difference * (value - pixel.mean);
+            }
+        }
+        self.samples = end;
+    }
+}
