@@ -1,0 +1,31 @@
+# Everything on a fresh machine that has a Rust toolchain. `make` alone lists the targets.
+
+CARGO ?= cargo
+TARGET_DIR := $(or $(CARGO_TARGET_DIR),target)
+
+.PHONY: help setup build demo test lint doc
+
+help: ## this list
+	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
+
+setup: ## install what a build needs: a C++ compiler and Embree 4
+	@vendor-bindings/embree4-sys/setup.sh
+
+build: setup ## target/release/lightsplat
+	$(CARGO) build --release --locked
+	@echo "built $(TARGET_DIR)/release/lightsplat"
+
+demo: build ## render a first scene to out/
+	@mkdir -p out
+	$(TARGET_DIR)/release/lightsplat render scenes/cornell.toml -o out/cornell.exr
+	@echo "rendered out/cornell.exr and out/cornell.png"
+
+test: setup ## every test
+	$(CARGO) test --workspace --locked
+
+lint: setup ## format and clippy, warnings denied
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
+
+doc: setup ## the documentation, warnings denied
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --document-private-items --locked
