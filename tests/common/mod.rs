@@ -1,0 +1,120 @@
+//! Small scenes made in memory, shared by the behaviour tests.
+#![allow(dead_code, missing_docs)]
+
+use glam::{DVec3, Vec3};
+use lightsplat::math::Rgb;
+use lightsplat::scene::{Camera, Emission, Fresnel, Lobe, Material, MaterialId, Mesh, Reflectance, Scene};
+use lightsplat::world::World;
+
+pub fn camera(origin: Vec3, target: Vec3, tan_half_x: f32) -> Camera {
+    let forward = (target - origin).normalize();
+    let helper = if forward.y.abs() > 0.9 { Vec3::Z } else { Vec3::Y };
+    let right = forward.cross(helper).normalize();
+    Camera { origin, forward, right, up: right.cross(forward), tan_half_x, near: 0.0, far: f32::INFINITY }
+}
+
+pub fn scene(camera: Camera, resolution: [u32; 2]) -> Scene {
+    Scene {
+        name: "test".into(),
+        sources: Vec::new(),
+        camera,
+        camera_path: Vec::new(),
+        resolution,
+        max_depth: None,
+        meshes: Vec::new(),
+        materials: Vec::new(),
+        textures: Vec::new(),
+        lights: Vec::new(),
+        environment: None,
+        centre: DVec3::ZERO,
+    }
+}
+
+pub fn diffuse(reflectance: Rgb) -> Material {
+    Material {
+        name: "diffuse".into(),
+        two_sided: true,
+        diffuse: Reflectance::Constant(reflectance),
+        coat: None,
+        lobe: Lobe::None,
+    }
+}
+
+pub fn mirror() -> Material {
+    Material {
+        lobe: Lobe::Mirror { fresnel: Fresnel::One, scale: Reflectance::Constant(Rgb::ONE) },
+        ..diffuse(Rgb::ZERO)
+    }
+}
+
+pub fn glass(eta: f32) -> Material {
+    let one = Reflectance::Constant(Rgb::ONE);
+    Material { lobe: Lobe::Dielectric { eta, reflectance: one, transmittance: one }, ..diffuse(Rgb::ZERO) }
+}
+
+pub fn add_material(scene: &mut Scene, material: Material) -> MaterialId {
+    scene.materials.push(material);
+    MaterialId(scene.materials.len() as u32 - 1)
+}
+
+/// A parallelogram `corner + s·a + t·b` whose front is on the side of `a × b`.
+pub fn quad(corner: Vec3, a: Vec3, b: Vec3, material: MaterialId) -> Mesh {
+    Mesh {
+        name: "quad".into(),
+        positions: vec![corner, corner + a, corner + a + b, corner + b],
+        normals: Vec::new(),
+        uvs: Vec::new(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        material,
+        emission: None,
+    }
+}
+
+/// The six walls of an axis-aligned box, fronts inward.
+pub fn room(low: Vec3, high: Vec3, material: MaterialId) -> Vec<Mesh> {
+    let d = high - low;
+    let (x, y, z) = (Vec3::X * d.x, Vec3::Y * d.y, Vec3::Z * d.z);
+    vec![
+        quad(low, z, x, material),
+        quad(low + y, x, z, material),
+        quad(low, x, y, material),
+        quad(low + z, y, x, material),
+        quad(low, y, z, material),
+        quad(low + x, z, y, material),
+    ]
+}
+
+pub fn emitting(mut mesh: Mesh, radiance: Rgb) -> Mesh {
+    mesh.emission = Some(Emission { radiance, texture: None, two_sided: false });
+    mesh
+}
+
+/// A sphere with smooth normals, `n` steps around the equator.
+pub fn sphere(centre: Vec3, radius: f32, n: u32, material: MaterialId) -> Mesh {
+    let rows = n / 2;
+    let mut mesh = quad(centre, Vec3::X, Vec3::Y, material);
+    mesh.positions.clear();
+    mesh.triangles.clear();
+    for r in 0..=rows {
+        let (sin_t, cos_t) = (std::f32::consts::PI * r as f32 / rows as f32).sin_cos();
+        for c in 0..=n {
+            let (sin_p, cos_p) = (std::f32::consts::TAU * c as f32 / n as f32).sin_cos();
+            let normal = Vec3::new(sin_t * cos_p, cos_t, sin_t * sin_p);
+            mesh.positions.push(centre + normal * radius);
+            mesh.normals.push(normal);
+        }
+    }
+    for r in 0..rows {
+        for c in 0..n {
+            let i = r * (n + 1) + c;
+            let j = i + n + 1;
+            mesh.triangles.push([i, i + 1, j]);
+            mesh.triangles.push([i + 1, j + 1, j]);
+        }
+    }
+    mesh
+}
+
+pub fn world(scene: Scene) -> World {
+    World::new(scene, 2).expect("the scene builds")
+}
