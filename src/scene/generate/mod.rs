@@ -2,6 +2,7 @@
 //! file gives every part its material, so that what a scene looks like stays editable.
 
 pub mod builder;
+mod knot;
 
 use glam::{Vec2, Vec3};
 
@@ -22,6 +23,8 @@ pub struct Part {
 
 /// The parts of the scene called `name`, or `None` where there is no such generator.
 pub fn generate(name: &str) -> Option<Vec<Part>> {
-    let _ = name;
-    None
+    match name {
+        "knot" => Some(knot::parts()),
+        _ => None,
+    }
 }

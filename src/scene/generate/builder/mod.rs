@@ -8,6 +8,7 @@
 //! Units: metres; angles in degrees where a name says so, else radians.
 
 mod arch;
+mod assembly;
 mod extrude;
 mod normals;
 mod patch;
@@ -22,6 +23,7 @@ mod sweep;
 mod tests;
 
 pub use arch::{PointedArch, arc, circle, rectangle};
+pub use assembly::Assembly;
 pub use extrude::{Faces, extrude, extrude_faces, upright};
 pub use patch::{grid, parallelogram, patch};
 pub use path::{fillet, helix};

@@ -68,6 +68,19 @@ impl Shell {
         self
     }
 
+    /// The shell without the flat faces that look along the unit vector `direction`, for things whose back
+    /// touches a wall; it is then no longer closed.
+    pub fn without_faces(mut self, direction: Vec3) -> Self {
+        let points = &self.points;
+        let looks_along = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| points[i as usize]);
+            (b - a).cross(c - a).normalize_or_zero().dot(direction) > 0.999
+        };
+        let kept = self.triangles.iter().zip(&self.uvs).filter(|(t, _)| !looks_along(t));
+        (self.triangles, self.uvs) = kept.map(|(t, uvs)| (*t, *uvs)).unzip();
+        self
+    }
+
     /// The shell with every point moved by `f`, for bending and tapering.
     pub fn mapped(mut self, f: impl Fn(Vec3) -> Vec3) -> Self {
         for point in &mut self.points {
