@@ -55,8 +55,7 @@ impl EnvironmentLight {
                             .collect()
                     })
                     .collect();
-                let columns: Vec<Distribution> =
-                    cells.into_iter().map(|row| Distribution::new(row)).collect();
+                let columns: Vec<Distribution> = cells.into_iter().map(Distribution::new).collect();
                 let rows = Distribution::new(columns.iter().map(|c| c.total() as f32));
                 let mean_luminance = rows.total() as f32 / (2.0 * map.width as f32);
                 EnvironmentLight { source: Source::Map { map: map.clone(), rows, columns }, mean_luminance }

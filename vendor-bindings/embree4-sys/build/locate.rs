@@ -1,8 +1,9 @@
 //! Where Embree 4 is, in this order: `EMBREE_DIR`, pkg-config, the system's library folders, and the
 //! redistributable that `make setup` unpacks into `.embree/`.
 //!
-//! The version is not known before the library is loaded (Debian's file is `libembree4.so.4`), so it
-//! is checked at run time, when the device is made.
+//! The library's file does not tell its version (Debian's is `libembree4.so.4`), so what counts is the
+//! check at run time, when the device is made. Of the system's libraries those are passed over whose
+//! headers say that they are too old, so that `make setup` helps there too.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -78,7 +79,19 @@ fn from_system() -> Option<Library> {
     env::split_paths(&from_variable)
         .filter(|dir| !dir.as_os_str().is_empty())
         .chain(system_folders())
+        .filter(|dir| !headers_are_too_old(dir))
         .find_map(|dir| mark_system(library_in(&dir)?))
+}
+
+/// Whether the headers installed with the libraries of `dir` are of 4.0 to 4.2.
+fn headers_are_too_old(dir: &Path) -> bool {
+    dir.ancestors()
+        .filter_map(|prefix| std::fs::read_to_string(prefix.join("include/embree4/rtcore_config.h")).ok())
+        .flat_map(|header| {
+            header.lines().filter_map(|l| l.strip_prefix("#define RTC_VERSION ")?.trim().parse().ok()).next()
+        })
+        .next()
+        .is_some_and(|version: u32| version < 40300)
 }
 
 fn from_repository() -> Option<Library> {
