@@ -1,5 +1,28 @@
 //! The film: images in memory, EXR and PNG files, tone mapping and error metrics.
 
+//!
+//! [`Film`] is what a frame's file holds; [`write_exr`] and [`write_png`] replace a file whole or not at all;
+//! [`metrics`] says how far two pictures are apart, and [`heatmap`] where.
+
+pub mod atomic;
+mod error;
+mod exr_read;
+#[cfg(test)]
+mod exr_tests;
+mod exr_write;
+mod film;
+pub mod heatmap;
+pub mod metrics;
+mod png;
+pub mod tone;
+
+pub use error::ImageError;
+pub use exr_read::{ExrFile, read_exr};
+pub use exr_write::write_exr;
+pub use film::{Film, Metadata, Value};
+pub use png::{write_png, write_srgb8};
+pub use tone::Exposure;
+
 use crate::math::Rgb;
 
 /// The part of a film that is rendered, in pixels from the top-left corner.
@@ -50,5 +73,12 @@ impl Image {
     /// A black image.
     pub fn new(width: u32, height: u32) -> Image {
         Image { width, height, pixels: vec![Rgb::ZERO; width as usize * height as usize] }
+    }
+
+    /// Replaces every channel that is not finite by 0 and says how many there were.
+    pub fn remove_nonfinite(&mut self) -> u64 {
+        let channels = self.pixels.iter_mut().flat_map(|pixel| pixel.as_mut());
+        let bad = channels.filter(|channel| !channel.is_finite());
+        bad.map(|channel| *channel = 0.0).count() as u64
     }
 }

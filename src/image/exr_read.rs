@@ -1,0 +1,198 @@
+//! Reads the colours of any flat OpenEXR file: half, float or integer channels, layered names, several parts.
+
+use super::exr_write::PREFIX;
+use super::{Image, ImageError, Metadata, Value, Window};
+use crate::math::Rgb;
+use ::exr::meta::header::Header;
+use ::exr::prelude::{
+    AnyChannel, AttributeValue, Error, FlatImage, FlatSamples, Layer, ReadChannels, ReadLayers, Text, Vec2,
+    read,
+};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// An OpenEXR file in memory.
+#[derive(Clone, Debug)]
+pub struct ExrFile {
+    path: PathBuf,
+    parts: FlatImage,
+}
+
+impl ExrFile {
+    /// Reads all channels of the file at `path`.
+    pub fn read(path: &Path) -> Result<ExrFile, ImageError> {
+        let file = File::open(path).map_err(|source| ImageError::Read { path: path.to_owned(), source })?;
+        let decode = |error: Error| match error {
+            Error::Io(source) => ImageError::Read { path: path.to_owned(), source },
+            other => ImageError::Decode { path: path.to_owned(), reason: other.to_string() },
+        };
+        let chunks = ::exr::block::read(BufReader::new(file), false).map_err(decode)?;
+        check_memory(chunks.headers())
+            .map_err(|reason| ImageError::Decode { path: path.to_owned(), reason })?;
+        let parts = read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .all_layers()
+            .all_attributes()
+            .from_chunks(chunks)
+            .map_err(decode)?;
+        Ok(ExrFile { path: path.to_owned(), parts })
+    }
+
+    /// The picture's colour: `R`, `G`, `B` where there are such channels, else the luminance `Y` as grey,
+    /// else the colours of the only layer that has any.
+    pub fn color(&self) -> Result<Image, ImageError> {
+        if let Some(image) = self.find("")? {
+            return Ok(image);
+        }
+        let layers = self.layers();
+        match layers.as_slice() {
+            [only] => self.layer(only),
+            _ => Err(self.no_color("colour (R, G, B or Y)".to_owned())),
+        }
+    }
+
+    /// The colours of layer `name`: the channels `name.R`, `name.G`, `name.B`, or a part of that name.
+    pub fn layer(&self, name: &str) -> Result<Image, ImageError> {
+        self.find(name)?.ok_or_else(|| self.no_color(format!("layer `{name}`")))
+    }
+
+    /// The names of all layers that have a colour, in the file's order; "" stands for the picture's own.
+    pub fn layers(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        for name in self.channel_names() {
+            let layer = match name.rsplit_once('.') {
+                Some((layer, "R" | "Y")) => layer,
+                None if name == "R" || name == "Y" => "",
+                _ => continue,
+            };
+            if !names.iter().any(|known| known == layer) {
+                names.push(layer.to_owned());
+            }
+        }
+        names
+    }
+
+    /// The window that the first part covers, and the whole film's size.
+    pub fn window(&self) -> (Window, [u32; 2]) {
+        let display = self.parts.attributes.display_window;
+        let [width, height] = [display.size.0 as u32, display.size.1 as u32];
+        let Some(part) = self.parts.layer_data.first() else {
+            return (Window { x: 0, y: 0, width: 0, height: 0 }, [width, height]);
+        };
+        let Vec2(x, y) = part.attributes.layer_position - display.position;
+        let window = Window {
+            x: x.max(0) as u32,
+            y: y.max(0) as u32,
+            width: part.size.0 as u32,
+            height: part.size.1 as u32,
+        };
+        (window, [width, height])
+    }
+
+    /// What we wrote about the picture, sorted by key; empty for files of other programs.
+    pub fn metadata(&self) -> Metadata {
+        let attributes = self.parts.layer_data.first().map(|part| &part.attributes.other);
+        let mut facts: Vec<(String, Value)> = attributes
+            .into_iter()
+            .flatten()
+            .filter_map(|(name, value)| {
+                let key = text(name).strip_prefix(PREFIX)?.to_owned();
+                match value {
+                    AttributeValue::Text(words) => Some((key, Value::Text(text(words)))),
+                    AttributeValue::F64(number) => Some((key, Value::Number(*number))),
+                    _ => None,
+                }
+            })
+            .collect();
+        facts.sort_by(|a, b| a.0.cmp(&b.0));
+        let mut metadata = Metadata::default();
+        facts.into_iter().for_each(|(key, value)| metadata.set(&key, value));
+        metadata
+    }
+
+    fn find(&self, layer: &str) -> Result<Option<Image>, ImageError> {
+        let prefix = if layer.is_empty() { String::new() } else { format!("{layer}.") };
+        for part in &self.parts.layer_data {
+            let own = part_name(part);
+            let channel = |component: &str| {
+                let wanted = format!("{prefix}{component}");
+                part.channel_data.list.iter().find(|c| {
+                    let name = text(&c.name);
+                    name == wanted || (!own.is_empty() && format!("{own}.{name}") == wanted)
+                })
+            };
+            if let [Some(r), Some(g), Some(b)] = [channel("R"), channel("G"), channel("B")] {
+                return self.join(part.size, [r, g, b]).map(Some);
+            }
+            if let Some(y) = channel("Y") {
+                return self.join(part.size, [y, y, y]).map(Some);
+            }
+        }
+        Ok(None)
+    }
+
+    fn join(&self, size: Vec2<usize>, channels: [&AnyChannel<FlatSamples>; 3]) -> Result<Image, ImageError> {
+        let decode = |reason: String| ImageError::Decode { path: self.path.clone(), reason };
+        let [width, height] = [size.0, size.1];
+        for channel in channels {
+            if channel.sampling != Vec2(1, 1) || channel.sample_data.len() != width * height {
+                return Err(decode(format!("channel {} is subsampled", text(&channel.name))));
+            }
+        }
+        let (Ok(columns), Ok(rows)) = (u32::try_from(width), u32::try_from(height)) else {
+            return Err(decode(format!("{width}x{height} pixels are too many")));
+        };
+        let [r, g, b] = channels.map(|channel| channel.sample_data.values_as_f32());
+        let pixels = r.zip(g).zip(b).map(|((r, g), b)| Rgb::new(r, g, b)).collect();
+        Ok(Image { width: columns, height: rows, pixels })
+    }
+
+    fn channel_names(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        for part in &self.parts.layer_data {
+            let own = part_name(part);
+            for channel in &part.channel_data.list {
+                let name = text(&channel.name);
+                names.push(if own.is_empty() { name } else { format!("{own}.{name}") });
+            }
+        }
+        names
+    }
+
+    fn no_color(&self, wanted: String) -> ImageError {
+        ImageError::NoColor { path: self.path.clone(), wanted, channels: self.channel_names() }
+    }
+}
+
+/// Reads the colour of the OpenEXR picture at `path`; see [`ExrFile::color`].
+pub fn read_exr(path: &Path) -> Result<Image, ImageError> {
+    ExrFile::read(path)?.color()
+}
+
+/// Asks for the memory that the header claims to need, and returns it: a damaged header must be an error, but
+/// the reader would abort the process when it cannot have its terabytes.
+fn check_memory(headers: &[Header]) -> Result<(), String> {
+    let mut bytes = 0usize;
+    for header in headers {
+        let Vec2(width, height) = header.layer_size;
+        let pixel: usize = header.channels.list.iter().map(|c| c.sample_type.bytes_per_sample()).sum();
+        let part = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(pixel));
+        bytes = part
+            .and_then(|part| bytes.checked_add(part))
+            .ok_or_else(|| format!("its header claims {width}x{height} pixels"))?;
+    }
+    Vec::<u8>::new()
+        .try_reserve_exact(bytes)
+        .map_err(|_| format!("its header claims {} MiB of pixels, more than there is memory", bytes >> 20))
+}
+
+fn part_name<C>(part: &Layer<C>) -> String {
+    part.attributes.layer_name.as_ref().map(text).unwrap_or_default()
+}
+
+fn text(text: &Text) -> String {
+    String::from_utf8_lossy(text.as_slice()).into_owned()
+}

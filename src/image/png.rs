@@ -1,0 +1,44 @@
+//! 8-bit sRGB PNG files for looking at.
+
+use super::{Image, ImageError, atomic, tone};
+use ::image::codecs::png::PngEncoder;
+use ::image::{ExtendedColorType, ImageEncoder, ImageError as EncodeError};
+use std::io;
+use std::path::Path;
+
+/// Writes `image`, times `factor`, clipped at 1 and sRGB-encoded, to `path`, whole or not at all.
+pub fn write_png(path: &Path, image: &Image, factor: f32) -> Result<(), ImageError> {
+    write_srgb8(path, [image.width, image.height], &tone::to_srgb8(image, factor))
+}
+
+/// Writes display values, row-major, three bytes a pixel, to `path`, whole or not at all.
+pub fn write_srgb8(path: &Path, size: [u32; 2], bytes: &[u8]) -> Result<(), ImageError> {
+    atomic::write_atomically(path, |file| {
+        PngEncoder::new(file).write_image(bytes, size[0], size[1], ExtendedColorType::Rgb8).map_err(|error| {
+            match error {
+                EncodeError::IoError(error) => error,
+                other => io::Error::other(other.to_string()),
+            }
+        })
+    })
+    .map_err(|source| ImageError::Write { path: path.to_owned(), source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rgb;
+
+    #[test]
+    fn png_holds_the_exposed_srgb_values() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let mut image = Image::new(2, 1);
+        image.pixels = vec![Rgb::new(0.25, 0.0, f32::NAN), Rgb::new(0.5, 2.0, -1.0)];
+        write_png(&path, &image, 2.0).unwrap();
+        let read = ::image::open(&path).unwrap().into_rgb8();
+        assert_eq!(read.dimensions(), (2, 1));
+        // 0.5 in sRGB is 0.7354, 188 of 255.
+        assert_eq!(read.into_raw(), [188, 0, 0, 255, 255, 0]);
+    }
+}

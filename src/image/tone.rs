@@ -1,0 +1,172 @@
+//! From radiance to display values: exposure, clip at 1, sRGB.
+//!
+//! Units: display values are in [0, 1], encoded with the sRGB curve.
+
+use super::Image;
+use crate::math::{Rgb, luminance};
+use std::fmt;
+use std::str::FromStr;
+
+/// The luminance percentile that automatic exposure places at [`AUTO_TARGET`].
+pub const AUTO_PERCENTILE: f64 = 0.9;
+/// Linear display value of that percentile.
+pub const AUTO_TARGET: f64 = 0.8;
+
+/// How radiance is scaled before it is clipped.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Exposure {
+    /// The 90th percentile of luminance becomes 0.8.
+    #[default]
+    Auto,
+    /// Radiance times 2^EV.
+    Ev(f32),
+}
+
+impl Exposure {
+    /// The factor on radiance for this image.
+    pub fn factor(self, image: &Image) -> f32 {
+        match self {
+            Exposure::Auto => auto_factor(image),
+            Exposure::Ev(ev) => ev.exp2(),
+        }
+    }
+}
+
+impl FromStr for Exposure {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Exposure, String> {
+        if text.eq_ignore_ascii_case("auto") {
+            return Ok(Exposure::Auto);
+        }
+        match text.parse::<f32>() {
+            Ok(ev) if (-60.0..=60.0).contains(&ev) => Ok(Exposure::Ev(ev)),
+            _ => Err("expected `auto` or an exposure value between -60 and 60 stops".to_owned()),
+        }
+    }
+}
+
+impl fmt::Display for Exposure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Exposure::Auto => f.write_str("auto"),
+            Exposure::Ev(ev) => write!(f, "{ev}"),
+        }
+    }
+}
+
+/// The factor that brings the 90th percentile of luminance to 0.8; where that percentile is black, the
+/// brightest pixel stands in for it, and a black image is left alone.
+pub fn auto_factor(image: &Image) -> f32 {
+    let mut luminances: Vec<f32> =
+        image.pixels.iter().map(|&p| luminance(p)).filter(|l| l.is_finite()).collect();
+    let level = match percentile(&mut luminances, AUTO_PERCENTILE) {
+        level if level > 0.0 => level,
+        _ => luminances.iter().fold(0.0f32, |a, &b| a.max(b)) as f64,
+    };
+    let factor = (AUTO_TARGET / level) as f32;
+    if level > 0.0 && factor.is_finite() && factor > 0.0 { factor } else { 1.0 }
+}
+
+/// The `share` quantile, linear between the two nearest order statistics; 0 for no values. Reorders them.
+fn percentile(values: &mut [f32], share: f64) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let position = share * (values.len() - 1) as f64;
+    let (_, &mut low, above) = values.select_nth_unstable_by(position as usize, f32::total_cmp);
+    // The next order statistic is the least of those above; at the end there is none, and no fraction.
+    let high = above.iter().copied().fold(f32::INFINITY, f32::min);
+    let fraction = position.fract();
+    if fraction == 0.0 || above.is_empty() {
+        low as f64
+    } else {
+        low as f64 + (high as f64 - low as f64) * fraction
+    }
+}
+
+/// Linear value to sRGB, clipped to [0, 1]; NaN becomes 0.
+#[inline]
+pub fn srgb_encode(linear: f32) -> f32 {
+    // `max` first: it returns the other operand for NaN.
+    let x = linear.max(0.0).min(1.0);
+    if x <= 0.0031308 {
+        12.92 * x
+    } else if x < 1.0 {
+        1.055 * x.powf(1.0 / 2.4) - 0.055
+    } else {
+        // 1.055 - 0.055 is not 1 in f32.
+        1.0
+    }
+}
+
+/// Exposed, clipped and encoded display colour.
+#[inline]
+pub fn display(radiance: Rgb, factor: f32) -> Rgb {
+    let exposed = radiance * factor;
+    Rgb::new(srgb_encode(exposed.x), srgb_encode(exposed.y), srgb_encode(exposed.z))
+}
+
+/// The image as 8-bit sRGB, row-major, three bytes a pixel.
+pub fn to_srgb8(image: &Image, factor: f32) -> Vec<u8> {
+    let quantise = |value: f32| (value * 255.0 + 0.5) as u8;
+    image.pixels.iter().flat_map(|&p| display(p, factor).to_array().map(quantise)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grey(values: &[f32]) -> Image {
+        let pixels = values.iter().map(|&v| Rgb::splat(v)).collect();
+        Image { width: values.len() as u32, height: 1, pixels }
+    }
+
+    #[test]
+    fn percentiles_interpolate_between_order_statistics() {
+        let mut values = [5.0, 1.0, 4.0, 2.0, 3.0];
+        assert_eq!(percentile(&mut values, 0.5), 3.0);
+        assert!((percentile(&mut values, 0.9) - 4.6).abs() < 1e-12);
+        assert_eq!(percentile(&mut values, 1.0), 5.0);
+        assert_eq!(percentile(&mut [], 0.9), 0.0);
+    }
+
+    #[test]
+    fn auto_exposure_puts_the_percentile_at_its_target() {
+        let image = grey(&(0..=10).map(|i| i as f32).collect::<Vec<_>>());
+        // The 90th percentile of 0..=10 is 9.
+        assert!((auto_factor(&image) * 9.0 - 0.8).abs() < 1e-6);
+    }
+
+    #[test]
+    fn auto_exposure_survives_black_and_nonfinite_images() {
+        assert_eq!(auto_factor(&grey(&[0.0; 5])), 1.0);
+        assert_eq!(auto_factor(&grey(&[])), 1.0);
+        assert_eq!(auto_factor(&grey(&[f32::NAN, f32::INFINITY])), 1.0);
+        assert_eq!(auto_factor(&grey(&[-1.0; 3])), 1.0);
+        // Mostly black: the brightest pixel counts.
+        let mut values = [0.0; 100];
+        values[3] = 4.0;
+        assert!((auto_factor(&grey(&values)) - 0.2).abs() < 1e-7);
+    }
+
+    #[test]
+    fn srgb_matches_the_standard_at_known_points() {
+        for (linear, encoded) in
+            [(0.0, 0.0), (1.0, 1.0), (0.5, 0.735357), (0.0031308, 0.04045), (0.18, 0.461356)]
+        {
+            assert!((srgb_encode(linear) - encoded).abs() < 1e-5, "{linear}");
+        }
+        assert_eq!([-1.0, f32::NAN, 7.0, f32::INFINITY].map(srgb_encode), [0.0, 0.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn exposures_are_parsed_and_refused() {
+        assert_eq!("Auto".parse(), Ok(Exposure::Auto));
+        assert_eq!("-1.5".parse(), Ok(Exposure::Ev(-1.5)));
+        assert_eq!(Exposure::Ev(3.0).factor(&grey(&[1.0])), 8.0);
+        for bad in ["", "nan", "inf", "1e9", "two"] {
+            assert!(bad.parse::<Exposure>().is_err(), "{bad}");
+        }
+    }
+}
