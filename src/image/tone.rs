@@ -88,8 +88,8 @@ fn percentile(values: &mut [f32], share: f64) -> f64 {
 /// Linear value to sRGB, clipped to [0, 1]; NaN becomes 0.
 #[inline]
 pub fn srgb_encode(linear: f32) -> f32 {
-    // `max` first: it returns the other operand for NaN.
-    let x = linear.max(0.0).min(1.0);
+    // `max` returns the other operand for NaN.
+    let x = linear.max(0.0);
     if x <= 0.0031308 {
         12.92 * x
     } else if x < 1.0 {
