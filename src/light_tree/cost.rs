@@ -90,11 +90,10 @@ impl Bounds {
 /// the scene's diagonal, which makes an angle comparable with a length.
 #[inline]
 pub fn cluster_cost(bounds: &Bounds, intensity: f64, c_sq: f32) -> f64 {
-    let mut sq = [0.0f32; 8];
-    for i in 0..8 {
-        let e = bounds.max[i] - bounds.min[i];
-        sq[i] = e * e;
-    }
+    let sq: Lanes = std::array::from_fn(|i| {
+        let extent = bounds.max[i] - bounds.min[i];
+        extent * extent
+    });
     let diagonal_sq = sq[0] + sq[1] + sq[2];
     let quarter_chord_sq = 0.25 * (sq[3] + sq[4] + sq[5]);
     let one_minus_cos = if quarter_chord_sq < 1.0 {

@@ -1,1 +1,21 @@
 //! Stage 3: a cut through the light trees per point, refined until every cluster's error bound is below the threshold.
+//!
+//! Paper: Walter et al., *Lightcuts: A Scalable Approach to Illumination*, 2005.
+//!
+//! A [`Receiver`] says what is gathered (reflected radiance, irradiance), [`Transfer`] what reaches it from a VPL
+//! and at most from a cluster, [`Lightcut`] finds the cut, [`gather_all`] is the exact sum that it approximates.
+
+mod exhaustive;
+mod geometry;
+mod receiver;
+mod refine;
+mod transfer;
+
+#[cfg(test)]
+mod tests;
+
+pub use exhaustive::gather_all;
+pub use geometry::{OffsetBox, max_cos_to_cone};
+pub use receiver::{IrradianceReceiver, Receiver, Reflector};
+pub use refine::{CutCounts, CutEntry, CutSettings, Lightcut};
+pub use transfer::{MIN_DISTANCE, Transfer, Unoccluded, Visibility};

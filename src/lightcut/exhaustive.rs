@@ -1,0 +1,27 @@
+//! The sum over all VPLs, one shadow ray each: what a lightcut approximates, and is tested against.
+
+use super::receiver::Receiver;
+use super::transfer::{Transfer, Visibility};
+use crate::light_tree::LightTrees;
+use crate::math::Rgb;
+use glam::DVec3;
+
+/// What `receiver` gathers from all VPLs. Time is proportional to their number; nothing is clamped.
+pub fn gather_all<R: Receiver, V: Visibility>(
+    trees: &LightTrees,
+    transfer: &Transfer,
+    visibility: &V,
+    receiver: &R,
+) -> Rgb {
+    let mut sum = DVec3::ZERO;
+    for leaf in trees.leaves() {
+        let vpl = &trees.vpls[leaf.representative()];
+        let contribution = leaf.intensity * transfer.unshadowed(receiver, vpl, leaf.kind());
+        if contribution != Rgb::ZERO
+            && visibility.visible(receiver.position(), receiver.geometric_normal(), vpl, leaf.kind())
+        {
+            sum += contribution.as_dvec3();
+        }
+    }
+    sum.as_vec3()
+}

@@ -1,0 +1,151 @@
+//! What gathers light at a point: the function a lightcut integrates against, and its upper bound.
+
+use super::geometry::OffsetBox;
+use crate::material::{Bsdf, DirectionBound};
+use crate::math::{Frame, Rgb};
+use glam::Vec3;
+use std::f32::consts::FRAC_1_PI;
+
+/// A point that gathers light, with the weight it gives to each direction.
+///
+/// The weight decides what the cut's sum is: BRDF · cosine gives reflected radiance, the cosine alone irradiance.
+pub trait Receiver {
+    /// Where.
+    fn position(&self) -> Vec3;
+
+    /// Unit geometric normal, for starting shadow rays; zero if the point lies on no surface.
+    fn geometric_normal(&self) -> Vec3;
+
+    /// Weight of light from the unit direction `wi`.
+    fn response(&self, wi: Vec3) -> Rgb;
+
+    /// No smaller, in any channel, than the weight of any direction in `offsets`.
+    fn max_response(&self, offsets: &OffsetBox) -> Rgb;
+}
+
+/// A point on a surface seen from a direction: the cut's sum is the radiance it reflects there.
+#[derive(Clone, Copy, Debug)]
+pub struct Reflector<'m> {
+    position: Vec3,
+    geometric_normal: Vec3,
+    /// Shading frame, z on the side of `wo`.
+    frame: Frame,
+    /// Frame whose z is the mirror direction of `wo`.
+    mirror: Frame,
+    wo: Vec3,
+    material: Kind<'m>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Kind<'m> {
+    /// BRDF.
+    Lambert(Rgb),
+    General(Bsdf<'m>),
+}
+
+impl<'m> Reflector<'m> {
+    /// The surface at `position` with the given normals and material, seen from the unit vector `out`.
+    pub fn new(
+        position: Vec3,
+        geometric_normal: Vec3,
+        frame: &Frame,
+        bsdf: Bsdf<'m>,
+        out: Vec3,
+    ) -> Reflector<'m> {
+        let mut wo = frame.to_local(out);
+        let mut frame = *frame;
+        let front = wo.z > 0.0;
+        if !front {
+            frame.normal = -frame.normal;
+            wo.z = -wo.z;
+        }
+        let material = match bsdf.lambert_albedo() {
+            _ if !front && !bsdf.two_sided() => Kind::Lambert(Rgb::ZERO),
+            Some(albedo) => Kind::Lambert(albedo * FRAC_1_PI),
+            None => Kind::General(bsdf),
+        };
+        let mirror = Frame::from_normal(frame.to_world(Vec3::new(-wo.x, -wo.y, wo.z)));
+        Reflector { position, geometric_normal, frame, mirror, wo, material }
+    }
+
+    /// The same surface elsewhere.
+    pub fn moved(self, position: Vec3) -> Self {
+        Reflector { position, ..self }
+    }
+}
+
+impl Receiver for Reflector<'_> {
+    #[inline]
+    fn position(&self) -> Vec3 {
+        self.position
+    }
+
+    #[inline]
+    fn geometric_normal(&self) -> Vec3 {
+        self.geometric_normal
+    }
+
+    #[inline]
+    fn response(&self, wi: Vec3) -> Rgb {
+        match &self.material {
+            Kind::Lambert(brdf) => *brdf * self.frame.normal.dot(wi).max(0.0),
+            Kind::General(bsdf) => {
+                let wi = self.frame.to_local(wi);
+                if wi.z > 0.0 { bsdf.eval(self.wo, wi) * wi.z } else { Rgb::ZERO }
+            }
+        }
+    }
+
+    #[inline]
+    fn max_response(&self, offsets: &OffsetBox) -> Rgb {
+        let local = offsets.turned(&self.frame);
+        let cos_max = local.max_cos_z();
+        if cos_max <= 0.0 {
+            return Rgb::ZERO;
+        }
+        match &self.material {
+            Kind::Lambert(brdf) => *brdf * cos_max,
+            Kind::General(bsdf) => {
+                let bound = DirectionBound {
+                    cos_i_max: cos_max,
+                    cos_i_min: local.min_cos_z(),
+                    cos_mirror_max: offsets.turned(&self.mirror).max_cos_z(),
+                };
+                bsdf.bound(self.wo, &bound)
+            }
+        }
+    }
+}
+
+/// A point that collects irradiance on the side of its normal.
+#[derive(Clone, Copy, Debug)]
+pub struct IrradianceReceiver {
+    /// Where.
+    pub position: Vec3,
+    /// Unit geometric normal.
+    pub geometric_normal: Vec3,
+    /// z is the normal that the cosine is measured to.
+    pub frame: Frame,
+}
+
+impl Receiver for IrradianceReceiver {
+    #[inline]
+    fn position(&self) -> Vec3 {
+        self.position
+    }
+
+    #[inline]
+    fn geometric_normal(&self) -> Vec3 {
+        self.geometric_normal
+    }
+
+    #[inline]
+    fn response(&self, wi: Vec3) -> Rgb {
+        Rgb::splat(self.frame.normal.dot(wi).max(0.0))
+    }
+
+    #[inline]
+    fn max_response(&self, offsets: &OffsetBox) -> Rgb {
+        Rgb::splat(offsets.turned(&self.frame).max_cos_z().max(0.0))
+    }
+}
