@@ -10,6 +10,7 @@
 mod arch;
 mod assembly;
 mod extrude;
+mod loft;
 mod normals;
 mod patch;
 mod path;
@@ -17,6 +18,7 @@ mod revolve;
 mod rng;
 mod shell;
 mod solids;
+mod spline;
 mod sweep;
 
 #[cfg(test)]
@@ -25,12 +27,14 @@ mod tests;
 pub use arch::{PointedArch, arc, circle, rectangle};
 pub use assembly::Assembly;
 pub use extrude::{Faces, extrude, extrude_faces, upright};
+pub use loft::{disc, loft, rounded_box, rounded_rectangle, stacked, superellipsoid};
 pub use patch::{grid, parallelogram, patch};
 pub use path::{fillet, helix};
 pub use revolve::{cone, cylinder, ellipsoid, lathe, profile_lathe, ring, torus, tube};
 pub use rng::Rng;
 pub use shell::Shell;
 pub use solids::{beveled_box, block, frustum};
+pub use spline::{spline, spline3};
 pub use sweep::{Section, pipe, rod, sweep, sweep_along};
 
 use super::Part;
