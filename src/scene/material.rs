@@ -8,7 +8,7 @@ use super::texture::TextureId;
 use crate::math::Rgb;
 
 /// Index into [`super::Scene::materials`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct MaterialId(pub u32);
 
 /// A reflectance that may vary over the surface.

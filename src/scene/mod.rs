@@ -4,11 +4,14 @@
 //! relative to [`Scene::centre`], which is kept in f64 so that a scene far from its origin loses nothing.
 
 mod camera;
+mod draft;
 pub mod formats;
 pub mod generate;
 mod light;
 mod material;
 mod mesh;
+mod recentre;
+mod sanitize;
 mod texture;
 
 use glam::DVec3;

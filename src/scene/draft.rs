@@ -1,0 +1,59 @@
+//! A scene as it stands in its files: world coordinates in f64, not yet sanitised or recentred.
+//!
+//! Every reader ends in a [`Draft`]; [`super::sanitize`] and [`super::recentre`] make the
+//! [`Scene`](super::Scene) of it.
+
+use super::formats::Place;
+use super::light::{DeltaLight, Environment};
+use super::material::{Material, MaterialId};
+use super::mesh::Emission;
+use super::texture::Texture;
+use glam::{DVec3, Vec2, Vec3};
+use std::path::PathBuf;
+
+/// A camera in world coordinates; the fields mean what those of [`super::Camera`] do.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DraftCamera {
+    pub origin: DVec3,
+    pub forward: DVec3,
+    pub right: DVec3,
+    pub up: DVec3,
+    pub tan_half_x: f64,
+    pub near: f64,
+    pub far: f64,
+}
+
+/// A mesh in world coordinates.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct DraftMesh {
+    pub name: String,
+    pub positions: Vec<DVec3>,
+    /// By vertex, or empty; may hold zeros or NaN until sanitised.
+    pub normals: Vec<Vec3>,
+    /// By vertex, v up, or empty.
+    pub uvs: Vec<Vec2>,
+    pub triangles: Vec<[u32; 3]>,
+    pub material: MaterialId,
+    pub emission: Option<Emission>,
+    /// How many triangles were turned to agree with their vertex normals.
+    pub turned: usize,
+}
+
+/// A scene in world coordinates.
+#[derive(Clone, Debug)]
+pub(crate) struct Draft {
+    pub name: String,
+    pub sources: Vec<PathBuf>,
+    pub camera: DraftCamera,
+    pub camera_path: Vec<DraftCamera>,
+    pub resolution: [u32; 2],
+    pub max_depth: Option<u32>,
+    pub meshes: Vec<DraftMesh>,
+    pub materials: Vec<Material>,
+    /// Where each material is described.
+    pub material_places: Vec<Place>,
+    pub textures: Vec<Texture>,
+    /// Each with its world position, which stands in for the one inside.
+    pub lights: Vec<(DeltaLight, DVec3)>,
+    pub environment: Option<Environment>,
+}

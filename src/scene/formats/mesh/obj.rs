@@ -1,0 +1,248 @@
+//! Wavefront OBJ: positions, texture coordinates, normals, polygons and material groups of the whole file.
+//!
+//! A vertex is a distinct (position, uv, normal) triple of indices, numbered by first use, and polygons
+//! are fans, as in Mitsuba. Lines, points, curves and smoothing groups are passed over.
+//!
+//! Why not `tobj` (which still reads the MTL files): it splits a file at every `o`, `g` and `usemtl`, so
+//! that vertices are no longer shared where normals have to be computed, and its errors name no line.
+
+use super::RawMesh;
+use crate::scene::formats::error::{Place, SceneError};
+use glam::{DVec3, Vec2, Vec3};
+use std::collections::HashMap;
+use std::path::Path;
+
+const MISSING: u32 = u32::MAX;
+
+/// Reads the OBJ text `bytes`; `path` is for messages.
+pub(crate) fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
+    let mut reader = Reader::default();
+    // Guesses from the usual 30 bytes a line; only the speed depends on them.
+    reader.positions.reserve(bytes.len() / 100);
+    reader.mesh.triangles.reserve(bytes.len() / 60);
+    for (number, line) in bytes.split(|&b| b == b'\n').enumerate() {
+        let fail = |what: String| SceneError::mesh(Place::line(path, number as u32 + 1), what);
+        reader.line(line).map_err(fail)?;
+    }
+    Ok(reader.finish())
+}
+
+/// The `mtllib` names of the OBJ text `bytes`, in order.
+pub(crate) fn material_libraries(bytes: &[u8]) -> Vec<String> {
+    let lines = bytes.split(|&b| b == b'\n').filter(|l| l.starts_with(b"mtllib"));
+    lines.map(|l| String::from_utf8_lossy(&l[6..]).trim().to_owned()).filter(|n| !n.is_empty()).collect()
+}
+
+#[derive(Default)]
+struct Reader {
+    positions: Vec<DVec3>,
+    uvs: Vec<Vec2>,
+    normals: Vec<Vec3>,
+    /// Vertices by position index: a chain through `next`, which beats a hash map on real files.
+    first: Vec<u32>,
+    vertices: Vec<Vertex>,
+    mesh: RawMesh,
+    corners: Vec<u32>,
+}
+
+struct Vertex {
+    position: u32,
+    uv: u32,
+    normal: u32,
+    next: u32,
+}
+
+impl Reader {
+    fn line(&mut self, line: &[u8]) -> Result<(), String> {
+        let line = line.trim_ascii();
+        let word_end = line.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(line.len());
+        let (word, rest) = line.split_at(word_end);
+        match word {
+            b"v" => self.positions.push(DVec3::from(numbers(rest)?)),
+            b"vn" => self.normals.push(DVec3::from(numbers(rest)?).as_vec3()),
+            b"vt" => {
+                // The second coordinate may be left out (1-D textures).
+                let [u, v] = numbers(rest).or_else(|e| numbers::<1>(rest).map(|[u]| [u, 0.0]).map_err(|_| e))?;
+                self.uvs.push(Vec2::new(u as f32, v as f32));
+            }
+            b"f" => self.face(rest)?,
+            b"usemtl" => {
+                let name = String::from_utf8_lossy(rest).trim().to_owned();
+                self.mesh.groups.push((name, self.mesh.triangles.len()));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn face(&mut self, rest: &[u8]) -> Result<(), String> {
+        let mut corners = std::mem::take(&mut self.corners);
+        corners.clear();
+        for token in rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty()) {
+            let mut parts = token.split(|&b| b == b'/');
+            let position = index(parts.next(), self.positions.len(), "vertex")?;
+            if position == MISSING {
+                return Err(format!("cannot read face corner \"{}\"", String::from_utf8_lossy(token)));
+            }
+            let uv = index(parts.next(), self.uvs.len(), "texture coordinate")?;
+            let normal = index(parts.next(), self.normals.len(), "normal")?;
+            corners.push(self.vertex(position, uv, normal));
+        }
+        if corners.len() < 3 {
+            return Err(format!("a face needs three corners, this one has {}", corners.len()));
+        }
+        self.mesh.triangles.extend(corners[1..].windows(2).map(|w| [corners[0], w[0], w[1]]));
+        self.corners = corners;
+        Ok(())
+    }
+
+    fn vertex(&mut self, position: u32, uv: u32, normal: u32) -> u32 {
+        if self.first.len() < self.positions.len() {
+            self.first.resize(self.positions.len(), MISSING);
+        }
+        let mut at = self.first[position as usize];
+        while at != MISSING {
+            let vertex = &self.vertices[at as usize];
+            if vertex.uv == uv && vertex.normal == normal {
+                return at;
+            }
+            at = vertex.next;
+        }
+        let new = self.vertices.len() as u32;
+        self.vertices.push(Vertex { position, uv, normal, next: self.first[position as usize] });
+        self.first[position as usize] = new;
+        new
+    }
+
+    fn finish(self) -> RawMesh {
+        let Reader { positions, uvs, normals, vertices, mut mesh, .. } = self;
+        mesh.positions = vertices.iter().map(|v| positions[v.position as usize]).collect();
+        if vertices.iter().any(|v| v.uv != MISSING) {
+            mesh.uvs = vertices.iter().map(|v| uvs.get(v.uv as usize).copied().unwrap_or_default()).collect();
+        }
+        if !normals.is_empty() {
+            // A corner without a normal gets zero, which the sanitiser turns into the geometric one.
+            let normal = |v: &Vertex| normals.get(v.normal as usize).copied().unwrap_or_default();
+            mesh.normals = vertices.iter().map(normal).collect();
+        }
+        mesh
+    }
+}
+
+/// Splits the mesh at its material groups: name (empty before the first `usemtl`) and mesh, by first use.
+pub(crate) fn split_by_material(raw: RawMesh) -> Vec<(String, RawMesh)> {
+    let mut names: Vec<String> = Vec::new();
+    let mut of_name: HashMap<String, usize> = HashMap::new();
+    let mut parts: Vec<Vec<[u32; 3]>> = Vec::new();
+    let mut groups = raw.groups.clone();
+    groups.insert(0, (String::new(), 0));
+    for (g, (name, start)) in groups.iter().enumerate() {
+        let end = groups.get(g + 1).map_or(raw.triangles.len(), |next| next.1);
+        if *start == end {
+            continue;
+        }
+        let part = *of_name.entry(name.clone()).or_insert_with(|| {
+            names.push(name.clone());
+            parts.push(Vec::new());
+            names.len() - 1
+        });
+        parts[part].extend_from_slice(&raw.triangles[*start..end]);
+    }
+    names.into_iter().zip(parts).map(|(name, triangles)| (name, with_used_vertices(&raw, triangles))).collect()
+}
+
+/// A mesh of `triangles` over just the vertices of `raw` they use. Indices are in range: the reader made them.
+fn with_used_vertices(raw: &RawMesh, mut triangles: Vec<[u32; 3]>) -> RawMesh {
+    let mut renumbered = vec![MISSING; raw.positions.len()];
+    let mut part = RawMesh::default();
+    for i in triangles.iter_mut().flatten() {
+        let old = *i as usize;
+        if renumbered[old] == MISSING {
+            renumbered[old] = part.positions.len() as u32;
+            part.positions.push(raw.positions[old]);
+            part.uvs.extend(raw.uvs.get(old));
+            part.normals.extend(raw.normals.get(old));
+        }
+        *i = renumbered[old];
+    }
+    part.triangles = triangles;
+    part
+}
+
+/// The first `N` numbers of a line; what follows them (w, vertex colours) is passed over.
+fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
+    let mut values = [0.0; N];
+    let mut tokens = rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty());
+    for value in &mut values {
+        let token = tokens.next().ok_or_else(|| format!("expected {N} numbers"))?;
+        let text = std::str::from_utf8(token).ok();
+        let bad = || format!("cannot read the number \"{}\"", String::from_utf8_lossy(token));
+        *value = text.and_then(|t| t.parse().ok()).ok_or_else(bad)?;
+    }
+    Ok(values)
+}
+
+/// A one-based index, or one counted back from the latest if negative; `MISSING` where it is left out.
+fn index(token: Option<&[u8]>, count: usize, what: &str) -> Result<u32, String> {
+    let Some(token) = token.filter(|t| !t.is_empty()) else { return Ok(MISSING) };
+    let text = String::from_utf8_lossy(token);
+    let value: i64 = text.parse().map_err(|_| format!("cannot read the index \"{text}\""))?;
+    let count = count as i64;
+    let zero_based = if value > 0 { value - 1 } else { count + value };
+    if value == 0 || zero_based < 0 || zero_based >= count.min(MISSING as i64) {
+        return Err(format!("{what} {value} does not exist: {count} are defined so far"));
+    }
+    Ok(zero_based as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read_text(text: &str) -> Result<RawMesh, String> {
+        read(text.as_bytes(), Path::new("t.obj")).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn quads_become_fans_and_vertices_are_distinct_index_triples() {
+        let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1 4/1\nf 1/2 2/1 -2/-2\n";
+        let mesh = read_text(text).unwrap();
+        assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [4, 1, 2]]);
+        assert_eq!(mesh.positions[4], DVec3::ZERO);
+        assert_eq!(mesh.uvs[4], Vec2::ONE);
+        assert!(mesh.normals.is_empty());
+    }
+
+    #[test]
+    fn vertices_defined_after_a_face_and_never_used_are_no_trouble() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 5 5 5\nv 0 0 1\r\n  f 1 2 5\t\r\n";
+        let mesh = read_text(text).unwrap();
+        assert_eq!(mesh.positions.len(), 4);
+        assert_eq!(mesh.triangles, [[0, 1, 2], [0, 1, 3]]);
+    }
+
+    #[test]
+    fn errors_name_the_line_and_what_is_wrong() {
+        for (text, line, what) in [
+            ("v 0 0 0\nf 1 1 2\n", 2, "vertex 2 does not exist"),
+            ("v 0 0\n", 1, "expected 3 numbers"),
+            ("v 0 0 zero\n", 1, "\"zero\""),
+            ("\n\nv 1 2 3\nf 1 1\n", 4, "three corners"),
+            ("v 1 2 3\nf 1/1 1 1\n", 2, "texture coordinate 1"),
+            ("v 1 2 3\nf 0 1 1\n", 2, "vertex 0"),
+            ("v 1 2 3\nf /1 1 1\n", 2, "face corner"),
+        ] {
+            let message = read_text(text).unwrap_err();
+            assert!(message.contains(&format!("t.obj:{line}:")) && message.contains(what), "{message}");
+        }
+    }
+
+    #[test]
+    fn material_groups_split_the_mesh_and_share_nothing() {
+        let text = "mtllib a b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nusemtl x\nf 1 2 4\nusemtl y\nusemtl x\nf 2 3 4\n";
+        assert_eq!(material_libraries(text.as_bytes()), ["a b.mtl"]);
+        let parts = split_by_material(read_text(text).unwrap());
+        let names: Vec<_> = parts.iter().map(|p| (p.0.as_str(), p.1.triangles.len(), p.1.positions.len())).collect();
+        assert_eq!(names, [("", 1, 3), ("x", 2, 4)]);
+    }
+}

@@ -1,0 +1,114 @@
+//! Emitters: of shapes, of the whole scene, and those without a surface.
+
+use super::Converter;
+use super::tree::Object;
+use crate::math::Rgb;
+use crate::scene::formats::error::SceneError;
+use crate::scene::formats::plan::EnvironmentPlan;
+use crate::scene::light::DeltaLight;
+use crate::scene::material::Reflectance;
+use crate::scene::mesh::Emission;
+use glam::{DMat4, DVec3, Vec3};
+
+impl Converter<'_> {
+    /// The emission of a shape's emitter.
+    pub(super) fn area_emitter(&mut self, emitter: &Object) -> Result<Option<Emission>, SceneError> {
+        if emitter.plugin != "area" {
+            let what = format!("a shape cannot emit as \"{}\"", emitter.plugin);
+            self.log.warn(&emitter.place, what, "the shape does not emit")?;
+            return Ok(None);
+        }
+        emitter.ignore(&["sampling_weight"]);
+        let textured = self.document.named(emitter, "radiance")?;
+        let emission = match textured {
+            Some(texture) => match self.texture(&texture, 0)? {
+                Reflectance::Constant(radiance) => Emission { radiance, texture: None, two_sided: false },
+                Reflectance::Textured { texture, scale } => {
+                    Emission { radiance: scale, texture: Some(texture), two_sided: false }
+                }
+            },
+            None => {
+                let radiance = self.emissive_colour(emitter, "radiance")?.unwrap_or(Rgb::ONE);
+                Emission { radiance, texture: None, two_sided: false }
+            }
+        };
+        emitter.report_unused(self.log)?;
+        Ok(Some(emission))
+    }
+
+    pub(super) fn scene_emitter(&mut self, emitter: &Object) -> Result<(), SceneError> {
+        emitter.ignore(&["sampling_weight", "mis_compensation"]);
+        let to_world = emitter.transform("to_world")?;
+        match emitter.plugin.as_str() {
+            "point" => {
+                let intensity = self.emissive_colour(emitter, "intensity")?.unwrap_or(Rgb::ONE);
+                let at = to_world.unwrap_or(DMat4::IDENTITY).transform_point3(DVec3::ZERO);
+                let position = emitter.vector("position")?.unwrap_or(at);
+                self.parts.lights.push((DeltaLight::Point { position: Vec3::ZERO, intensity }, position));
+            }
+            "spot" => self.spot(emitter, to_world.unwrap_or(DMat4::IDENTITY))?,
+            "directional" => {
+                let irradiance = self.emissive_colour(emitter, "irradiance")?.unwrap_or(Rgb::ONE);
+                let along = to_world.unwrap_or(DMat4::IDENTITY).transform_vector3(DVec3::Z);
+                let direction = emitter.vector("direction")?.unwrap_or(along);
+                let direction = self.unit(emitter, direction)?;
+                self.parts.lights.push((DeltaLight::Directional { direction, irradiance }, DVec3::ZERO));
+            }
+            "constant" => {
+                let radiance = self.emissive_colour(emitter, "radiance")?.unwrap_or(Rgb::ONE);
+                self.environment(emitter, EnvironmentPlan::Constant(radiance))?;
+            }
+            "envmap" => {
+                let path = self.file(emitter, "filename")?;
+                let scale = emitter.float("scale")?.unwrap_or(1.0) as f32;
+                let to_world = to_world.unwrap_or(DMat4::IDENTITY);
+                if glam::DMat3::from_mat4(to_world).determinant().abs() < 1e-12 {
+                    return Err(SceneError::value(&emitter.place, "to_world is singular", "use a rotation"));
+                }
+                let place = emitter.place.clone();
+                self.environment(emitter, EnvironmentPlan::Map { place, path, scale, to_world })?;
+            }
+            other => {
+                let what = format!("the emitter \"{other}\" is not modelled");
+                self.log.warn(&emitter.place, what, "it gives no light")?;
+                return Ok(());
+            }
+        }
+        emitter.report_unused(self.log)
+    }
+
+    fn spot(&mut self, emitter: &Object, to_world: DMat4) -> Result<(), SceneError> {
+        let intensity = self.emissive_colour(emitter, "intensity")?.unwrap_or(Rgb::ONE);
+        let outer = emitter.positive("cutoff_angle", 20.0)?;
+        let inner = emitter.float("beam_width")?.unwrap_or(0.75 * outer);
+        if !(0.0..=outer).contains(&inner) || outer > 180.0 {
+            let what = format!("beam_width {inner} and cutoff_angle {outer} make no cone");
+            return Err(SceneError::value(&emitter.place, what, "keep 0 <= beam_width <= cutoff_angle <= 180"));
+        }
+        let direction = self.unit(emitter, to_world.transform_vector3(DVec3::Z))?;
+        let position = to_world.transform_point3(DVec3::ZERO);
+        let light = DeltaLight::Spot {
+            position: Vec3::ZERO,
+            direction,
+            intensity,
+            inner_angle: inner.to_radians() as f32,
+            outer_angle: outer.to_radians() as f32,
+        };
+        self.parts.lights.push((light, position));
+        Ok(())
+    }
+
+    fn unit(&self, emitter: &Object, direction: DVec3) -> Result<Vec3, SceneError> {
+        let none = || SceneError::value(&emitter.place, "the emitter has no direction", "give one that is not zero");
+        Ok(direction.try_normalize().ok_or_else(none)?.as_vec3())
+    }
+
+    fn environment(&mut self, emitter: &Object, plan: EnvironmentPlan) -> Result<(), SceneError> {
+        if self.parts.environment.is_some() {
+            let what = "the scene has more than one environment";
+            return Err(SceneError::value(&emitter.place, what, "leave one"));
+        }
+        self.parts.environment = Some(plan);
+        Ok(())
+    }
+}

@@ -1,0 +1,23 @@
+//! What the integrator says about the expected image: the longest path. All else about it is the renderer's
+//! own business.
+
+use super::Converter;
+use super::tree::Object;
+use crate::scene::formats::error::SceneError;
+
+impl Converter<'_> {
+    /// Longest path in edges, `None` for no limit.
+    pub(super) fn max_depth(&mut self, integrator: &Object) -> Result<Option<u32>, SceneError> {
+        if integrator.boolean("hide_emitters", false)? {
+            self.log.warn(&integrator.place, "hide_emitters is not modelled", "emitters in view are shown")?;
+        }
+        if integrator.plugin == "direct" {
+            return Ok(Some(2));
+        }
+        match integrator.integer("max_depth")? {
+            None => Ok(None),
+            Some(depth) if depth < 0 => Ok(None),
+            Some(depth) => Ok(Some(u32::try_from(depth).unwrap_or(u32::MAX))),
+        }
+    }
+}

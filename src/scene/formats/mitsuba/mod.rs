@@ -1,0 +1,109 @@
+//! Mitsuba XML: the parts of the 3.x format that the renderer models, and the 0.6 spellings of the same.
+//!
+//! `tree` reads the XML, the other modules turn sensors, shapes, bsdfs, textures and emitters into a
+//! [`Plan`]. Defaults and conventions are those of Mitsuba 3.9.1 in its `rgb` variants.
+//!
+//! Deviations: what has no counterpart in the scene model is replaced, and every replacement is reported.
+
+mod access;
+mod bsdf;
+mod emitter;
+mod integrator;
+mod sensor;
+mod shape;
+mod texture;
+mod tree;
+mod value;
+
+use super::error::{Log, Place, SceneError};
+use super::plan::{EnvironmentPlan, MeshPlan, Plan, TexturePlan};
+use crate::scene::light::DeltaLight;
+use crate::scene::material::{Material, MaterialId};
+use glam::DVec3;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use tree::{Document, Object};
+
+/// Reads the description at `path`.
+pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
+    let document = Document::read(path)?;
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let mut converter = Converter { document: &document, folder, log, parts: Parts::default() };
+    converter.scene()?;
+    let view = converter.view()?;
+    let parts = converter.parts;
+    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let folder_name = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
+    // Scene files are usually called scene.xml; then the folder says more.
+    let name = if stem == "scene" { folder_name.unwrap_or(stem) } else { stem };
+    Ok(Plan {
+        name,
+        sources: document.sources,
+        camera: view.camera,
+        camera_path: Vec::new(),
+        resolution: view.resolution,
+        max_depth: view.max_depth,
+        meshes: parts.meshes,
+        materials: parts.materials,
+        material_places: parts.material_places,
+        textures: parts.textures,
+        lights: parts.lights,
+        environment: parts.environment,
+    })
+}
+
+struct Converter<'a> {
+    document: &'a Document,
+    /// Where file names start.
+    folder: PathBuf,
+    log: &'a mut Log,
+    parts: Parts,
+}
+
+/// What has been converted so far.
+#[derive(Default)]
+struct Parts {
+    meshes: Vec<MeshPlan>,
+    materials: Vec<Material>,
+    material_places: Vec<Place>,
+    /// The bsdf object and wrapping that each material came from.
+    material_of: Vec<(*const Object, MaterialId)>,
+    default_materials: [Option<MaterialId>; 2],
+    textures: Vec<TexturePlan>,
+    lights: Vec<(DeltaLight, DVec3)>,
+    environment: Option<EnvironmentPlan>,
+}
+
+impl Converter<'_> {
+    fn scene(&mut self) -> Result<(), SceneError> {
+        let document = self.document;
+        for child in &document.root.children {
+            let object = document.object(child)?;
+            match object.tag.as_str() {
+                "shape" => self.shape(&object)?,
+                "emitter" => self.scene_emitter(&object)?,
+                // Sensors and integrators are read by `view`, the others where they are referred to.
+                "sensor" | "integrator" | "bsdf" | "texture" | "scene" => {}
+                tag => self.log.warn(&object.place, format!("<{tag}> is not modelled"), "it is ignored")?,
+            }
+        }
+        Ok(())
+    }
+
+    /// A file named by `object`: beside the main file, or beside the file that names it.
+    fn file(&self, object: &Object, name: &str) -> Result<PathBuf, SceneError> {
+        let missing = || {
+            let what = format!("{} \"{}\" names no file", object.tag, object.plugin);
+            SceneError::value(&object.place, what, format!("add <string name=\"{name}\" value=\"...\"/>"))
+        };
+        // Descriptions written on Windows name files with backslashes.
+        let file = object.string(name)?.ok_or_else(missing)?.replace('\\', "/");
+        let beside_main = self.folder.join(&file);
+        let beside_own = object.place.path.parent().unwrap_or(Path::new("")).join(&file);
+        Ok(if !beside_main.exists() && beside_own.exists() { beside_own } else { beside_main })
+    }
+
+    fn tagged(&self, object: &Object, tag: &str) -> Result<Vec<Rc<Object>>, SceneError> {
+        self.document.tagged(object, tag)
+    }
+}

@@ -1,0 +1,151 @@
+//! The perspective sensor and its film.
+
+use super::Converter;
+use super::tree::Object;
+use crate::scene::draft::DraftCamera;
+use crate::scene::formats::error::{Place, SceneError};
+use glam::{DMat4, DVec3};
+
+/// What is seen, how large and with paths how long.
+pub(super) struct View {
+    pub camera: DraftCamera,
+    pub resolution: [u32; 2],
+    pub max_depth: Option<u32>,
+}
+
+impl Converter<'_> {
+    pub(super) fn view(&mut self) -> Result<View, SceneError> {
+        let root = &self.document.root;
+        let integrators = self.tagged(root, "integrator")?;
+        let max_depth = match integrators.first() {
+            Some(integrator) => self.max_depth(integrator)?,
+            None => None,
+        };
+        let sensors = self.tagged(root, "sensor")?;
+        let Some(sensor) = sensors.first() else {
+            let remedy = "add <sensor type=\"perspective\"> with a to_world transform";
+            return Err(SceneError::value(&root.place, "the scene has no sensor", remedy));
+        };
+        if let Some(second) = sensors.get(1) {
+            self.log.warn(&second.place, "there is more than one sensor", "the first is used")?;
+        }
+        match sensor.plugin.as_str() {
+            "perspective" => {}
+            "thinlens" => {
+                sensor.ignore(&["aperture_radius", "focus_distance"]);
+                self.log.warn(&sensor.place, "a thin lens is not modelled", "everything is in focus")?;
+            }
+            other => {
+                let what = format!("the sensor \"{other}\" is not modelled");
+                return Err(SceneError::value(&sensor.place, what, "use type=\"perspective\""));
+            }
+        }
+        let resolution = self.film(sensor)?;
+        let to_world = sensor.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
+        let aspect = f64::from(resolution[0]) / f64::from(resolution[1]);
+        let tan_half_x = (0.5 * horizontal_fov(sensor, aspect)?).tan();
+        let near = sensor.positive("near_clip", 1e-2)?;
+        let far = sensor.positive("far_clip", 1e4)?;
+        if near >= far {
+            let what = format!("near_clip {near} is not below far_clip {far}");
+            return Err(SceneError::value(&sensor.place, what, "swap them"));
+        }
+        for offset in ["principal_point_offset_x", "principal_point_offset_y"] {
+            if sensor.float(offset)?.is_some_and(|v| v != 0.0) {
+                self.log.warn(&sensor.place, "a shifted principal point is not modelled", "it is centred")?;
+            }
+        }
+        sensor.ignore(&["shutter_open", "shutter_close", "focus_distance"]);
+        self.tagged(sensor, "sampler")?;
+        let camera = self.camera(&sensor.place, &to_world, tan_half_x, near, far)?;
+        sensor.report_unused(self.log)?;
+        Ok(View { camera, resolution, max_depth })
+    }
+
+    /// Mitsuba's camera looks along +z with +x to the left.
+    fn camera(
+        &mut self,
+        place: &Place,
+        to_world: &DMat4,
+        tan_half_x: f64,
+        near: f64,
+        far: f64,
+    ) -> Result<DraftCamera, SceneError> {
+        let axes = [DVec3::NEG_X, DVec3::Y, DVec3::Z].map(|a| to_world.transform_vector3(a));
+        let singular = || SceneError::value(place, "the sensor's to_world is singular", "use a rotation");
+        let [right, up, forward] = axes.map(|a| a.try_normalize());
+        let (right, up, forward) =
+            (right.ok_or_else(singular)?, up.ok_or_else(singular)?, forward.ok_or_else(singular)?);
+        if axes.iter().any(|a| (a.length_squared() - 1.0).abs() > 1e-3) {
+            self.log.warn(place, "the sensor's to_world scales", "the scale is left out")?;
+        }
+        if right.dot(up).abs().max(up.dot(forward).abs()).max(forward.dot(right).abs()) > 1e-3 {
+            return Err(SceneError::value(place, "the sensor's to_world shears", "use a rotation"));
+        }
+        let origin = to_world.transform_point3(DVec3::ZERO);
+        Ok(DraftCamera { origin, forward, right, up, tan_half_x, near, far })
+    }
+
+    fn film(&mut self, sensor: &Object) -> Result<[u32; 2], SceneError> {
+        let films = self.tagged(sensor, "film")?;
+        let Some(film) = films.first() else { return Ok([768, 576]) };
+        let size = |name: &str, default: i64| {
+            let value = film.integer(name)?.unwrap_or(default);
+            let fits = u32::try_from(value).ok().filter(|v| (1..=65536).contains(v));
+            let what = format!("the film's {name} is {value}");
+            fits.ok_or_else(|| SceneError::value(&film.place, what, "give 1 to 65536"))
+        };
+        let resolution = [size("width", 768)?, size("height", 576)?];
+        for crop in ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"] {
+            if film.property(crop).is_some() {
+                self.log.warn(&film.place, "the film's crop is not taken over", "the whole film is rendered")?;
+            }
+        }
+        // A pixel is the mean over its square here, whatever the filter asked for.
+        let filters = self.tagged(film, "rfilter")?;
+        let filter = filters.first().map_or("gaussian", |f| f.plugin.as_str());
+        if filter != "box" {
+            let what = format!("the film's reconstruction filter is \"{filter}\"");
+            self.log.note(&film.place, what, "pixels are box-filtered");
+        }
+        Ok(resolution)
+    }
+}
+
+/// Radians.
+fn horizontal_fov(sensor: &Object, aspect: f64) -> Result<f64, SceneError> {
+    let wrong = |what: String, remedy: &str| SceneError::value(&sensor.place, what, remedy);
+    let (fov, axis) = match (sensor.float("fov")?, sensor.property("focal_length")) {
+        (Some(_), Some(_)) => {
+            return Err(wrong("both fov and focal_length are given".into(), "leave one out"));
+        }
+        (Some(fov), None) => {
+            let axis = sensor.string("fov_axis")?.unwrap_or("x".into()).to_lowercase();
+            (fov.to_radians(), axis)
+        }
+        (None, _) => {
+            let text = sensor.string("focal_length")?.unwrap_or("50mm".into());
+            let millimetres = text.trim_end_matches("mm").trim().parse::<f64>().ok().filter(|v| *v > 0.0);
+            let millimetres =
+                millimetres.ok_or_else(|| wrong(format!("cannot read focal_length \"{text}\""), "write e.g. 50mm"))?;
+            // The diagonal of 35 mm film.
+            (2.0 * (36f64.hypot(24.0) / (2.0 * millimetres)).atan(), "diagonal".into())
+        }
+    };
+    let tan = (0.5 * fov).tan();
+    let axis = match axis.as_str() {
+        "smaller" => if aspect > 1.0 { "y" } else { "x" },
+        "larger" => if aspect > 1.0 { "x" } else { "y" },
+        other => other,
+    };
+    let tan_x = match axis {
+        "x" => tan,
+        "y" => tan * aspect,
+        "diagonal" => tan / (1.0 + 1.0 / (aspect * aspect)).sqrt(),
+        other => return Err(wrong(format!("unknown fov_axis \"{other}\""), "use x, y, smaller, larger or diagonal")),
+    };
+    if !(tan_x > 0.0 && tan_x < 1e6 && fov > 0.0 && fov < std::f64::consts::PI) {
+        return Err(wrong("the field of view is not between 0 and 180 degrees".into(), "correct fov"));
+    }
+    Ok(2.0 * tan_x.atan())
+}

@@ -1,0 +1,106 @@
+//! Shapes: meshes from files and shapes by formula.
+
+use super::Converter;
+use super::tree::Object;
+use crate::scene::formats::error::SceneError;
+use crate::scene::formats::mesh::{Placement, shapes};
+use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan};
+use crate::scene::material::{Lobe, Material, MaterialId, Reflectance};
+use glam::{DMat4, DVec3};
+
+impl Converter<'_> {
+    pub(super) fn shape(&mut self, shape: &Object) -> Result<(), SceneError> {
+        let mut v_down = true;
+        let geometry = match shape.plugin.as_str() {
+            // The file's v, flipped by default for OBJ, counts downwards; ours counts upwards.
+            "obj" => {
+                v_down = !shape.boolean("flip_tex_coords", true)?;
+                Geometry::Obj(self.file(shape, "filename")?)
+            }
+            "ply" => {
+                v_down = !shape.boolean("flip_tex_coords", false)?;
+                Geometry::Ply(self.file(shape, "filename")?)
+            }
+            "serialized" => {
+                let index = shape.integer("shape_index")?.unwrap_or(0);
+                let negative = || {
+                    SceneError::value(&shape.place, format!("shape_index is {index}"), "give 0 or more")
+                };
+                let index = usize::try_from(index).map_err(|_| negative())?;
+                Geometry::Serialized(self.file(shape, "filename")?, index)
+            }
+            "rectangle" => Geometry::Ready(shapes::rectangle()),
+            "cube" => Geometry::Ready(shapes::cube()),
+            "disk" => {
+                self.tessellated(shape);
+                Geometry::Ready(shapes::disk())
+            }
+            "sphere" => {
+                self.tessellated(shape);
+                let centre = shape.vector("center")?.unwrap_or(DVec3::ZERO);
+                Geometry::Ready(shapes::sphere(centre, shape.positive("radius", 1.0)?))
+            }
+            "cylinder" => {
+                self.tessellated(shape);
+                let p0 = shape.vector("p0")?.unwrap_or(DVec3::ZERO);
+                let p1 = shape.vector("p1")?.unwrap_or(DVec3::Z);
+                Geometry::Ready(shapes::cylinder(p0, p1, shape.positive("radius", 1.0)?))
+            }
+            other => {
+                let what = format!("the shape \"{other}\" is not modelled");
+                self.log.warn(&shape.place, what, "it is left out")?;
+                return Ok(());
+            }
+        };
+        let emission = match self.tagged(shape, "emitter")?.first() {
+            Some(emitter) => self.area_emitter(emitter)?,
+            None => None,
+        };
+        let bsdfs = self.tagged(shape, "bsdf")?;
+        let material = self.material_of_shape(bsdfs.first(), emission.is_some())?;
+        let textured = self.is_textured(material) || emission.is_some_and(|e| e.texture.is_some());
+        let placement = Placement {
+            to_world: shape.transform("to_world")?.unwrap_or(DMat4::IDENTITY),
+            face_normals: shape.boolean("face_normals", false)?,
+            flip_normals: shape.boolean("flip_normals", false)?,
+            v_down,
+            needs_uv: textured,
+        };
+        shape.ignore(&["collapse", "silhouette_sampling_weight", "max_smooth_angle"]);
+        shape.report_unused(self.log)?;
+        let name = shape.id.clone().unwrap_or_else(|| match &geometry {
+            Geometry::Obj(path) | Geometry::Ply(path) => {
+                path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
+            }
+            Geometry::Serialized(path, index) => {
+                format!("{}@{index}", path.file_stem().map(|s| s.to_string_lossy()).unwrap_or_default())
+            }
+            Geometry::Ready(_) => shape.plugin.clone(),
+        });
+        let place = shape.place.clone();
+        let material = MaterialPlan::One(material);
+        self.parts.meshes.push(MeshPlan { place, name, geometry, placement, material, emission });
+        Ok(())
+    }
+
+    fn tessellated(&mut self, shape: &Object) {
+        let what = format!("the {} is tessellated", shape.plugin);
+        self.log.note(&shape.place, what, "128 facets around, area and normals exact");
+    }
+
+    fn is_textured(&self, id: MaterialId) -> bool {
+        self.parts.materials.get(id.0 as usize).is_some_and(uses_texture)
+    }
+}
+
+fn uses_texture(material: &Material) -> bool {
+    let textured = |r: &Reflectance| matches!(r, Reflectance::Textured { .. });
+    textured(&material.diffuse)
+        || match &material.lobe {
+            Lobe::None => false,
+            Lobe::Rough { scale, .. } | Lobe::Mirror { scale, .. } => textured(scale),
+            Lobe::Dielectric { reflectance, transmittance, .. } => {
+                textured(reflectance) || textured(transmittance)
+            }
+        }
+}

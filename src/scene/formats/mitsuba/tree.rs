@@ -1,0 +1,348 @@
+//! Mitsuba XML to a tree of objects with typed properties: `<default>`, `<include>`, `<alias>` and
+//! `$parameters` are resolved here, and the camelCase names of Mitsuba 0.6 become those of 3.x.
+
+use super::value::{self, Value};
+use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::formats::plan::{fnv1a, read_file};
+use std::cell::Cell;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+/// Elements nested deeper than this, or files included deeper, are an error; no real scene is.
+const MAX_DEPTH: usize = 48;
+
+/// A plugin instance: `<bsdf type="diffuse" id="a">` and what is inside.
+#[derive(Debug)]
+pub(super) struct Object {
+    /// `bsdf`, `shape`, `emitter`, ...
+    pub tag: String,
+    /// The `type` attribute; `scene` for the root.
+    pub plugin: String,
+    pub id: Option<String>,
+    pub place: Place,
+    pub properties: Vec<Property>,
+    pub children: Vec<Child>,
+}
+
+/// A named value.
+#[derive(Debug)]
+pub(super) struct Property {
+    pub name: String,
+    pub value: Value,
+    pub place: Place,
+    /// Whether a converter has asked for it; what nobody asked for is reported.
+    pub used: Cell<bool>,
+}
+
+/// An object inside another, directly or by reference.
+#[derive(Debug)]
+pub(super) struct Child {
+    pub target: Target,
+    /// The parameter it is given for.
+    pub name: Option<String>,
+    pub place: Place,
+    /// As [`Property::used`].
+    pub used: Cell<bool>,
+}
+
+/// What a child is.
+#[derive(Debug)]
+pub(super) enum Target {
+    Own(Rc<Object>),
+    Reference(String),
+}
+
+/// A whole description.
+#[derive(Debug)]
+pub(super) struct Document {
+    pub root: Object,
+    ids: BTreeMap<String, Rc<Object>>,
+    /// The files read, main file first, with the hash of their bytes.
+    pub sources: Vec<(PathBuf, u64)>,
+}
+
+impl Document {
+    pub fn read(path: &Path) -> Result<Document, SceneError> {
+        let mut builder = Builder::default();
+        let mut root = Object {
+            tag: "scene".into(),
+            plugin: "scene".into(),
+            id: None,
+            place: Place::file(path),
+            properties: Vec::new(),
+            children: Vec::new(),
+        };
+        builder.file(path, &Place::file(path), &mut root, None, 0)?;
+        Ok(Document { root, ids: builder.ids, sources: builder.sources })
+    }
+
+    /// The object a child stands for.
+    pub fn object(&self, child: &Child) -> Result<Rc<Object>, SceneError> {
+        match &child.target {
+            Target::Own(object) => Ok(object.clone()),
+            Target::Reference(id) => {
+                let place = child.place.clone();
+                let missing = || SceneError::Reference { place, kind: "object", name: id.clone() };
+                self.ids.get(id).cloned().ok_or_else(missing)
+            }
+        }
+    }
+
+    /// All children of `object` with tag `tag`, which count as used from now on.
+    pub fn tagged(&self, object: &Object, tag: &str) -> Result<Vec<Rc<Object>>, SceneError> {
+        let mut found = Vec::new();
+        for child in &object.children {
+            let target = self.object(child)?;
+            if target.tag == tag {
+                child.used.set(true);
+                found.push(target);
+            }
+        }
+        Ok(found)
+    }
+
+    /// The child of `object` given for the parameter `name`.
+    pub fn named(&self, object: &Object, name: &str) -> Result<Option<Rc<Object>>, SceneError> {
+        let child = object.children.iter().find(|c| c.name.as_deref() == Some(name));
+        child.inspect(|c| c.used.set(true)).map(|c| self.object(c)).transpose()
+    }
+}
+
+#[derive(Default)]
+struct Builder {
+    ids: BTreeMap<String, Rc<Object>>,
+    /// `$name` to its value.
+    parameters: BTreeMap<String, String>,
+    sources: Vec<(PathBuf, u64)>,
+}
+
+impl Builder {
+    /// Reads the file into `parent`: the contents of a scene, or the one object that it is, under `name`.
+    fn file(
+        &mut self,
+        path: &Path,
+        from: &Place,
+        parent: &mut Object,
+        name: Option<String>,
+        depth: usize,
+    ) -> Result<(), SceneError> {
+        let bytes = read_file(path, from)?;
+        self.sources.push((path.to_owned(), fnv1a(&bytes)));
+        let text = String::from_utf8(bytes).map_err(|e| {
+            let line = e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
+            SceneError::Syntax { place: Place::line(path, line as u32 + 1), message: "the text is not UTF-8".into() }
+        })?;
+        let document = roxmltree::Document::parse(&text).map_err(|e| SceneError::Syntax {
+            place: Place::line(path, e.pos().row),
+            message: e.to_string(),
+        })?;
+        let root = document.root_element();
+        if root.tag_name().name() == "scene" {
+            let place = self.place(path, &root);
+            if root.attribute("version").is_none() {
+                let remedy = "give it one, e.g. <scene version=\"3.0.0\">";
+                return Err(SceneError::value(&place, "the scene has no version", remedy));
+            }
+            for node in root.children() {
+                self.node(path, &node, parent, depth + 1)?;
+            }
+        } else {
+            self.element(path, &root, parent, name, depth + 1)?;
+        }
+        Ok(())
+    }
+
+    fn place(&self, path: &Path, node: &roxmltree::Node) -> Place {
+        Place::line(path, node.document().text_pos_at(node.range().start).row)
+    }
+
+    fn node(
+        &mut self,
+        path: &Path,
+        node: &roxmltree::Node,
+        parent: &mut Object,
+        depth: usize,
+    ) -> Result<(), SceneError> {
+        if node.is_element() { self.element(path, node, parent, None, depth) } else { Ok(()) }
+    }
+
+    fn element(
+        &mut self,
+        path: &Path,
+        node: &roxmltree::Node,
+        parent: &mut Object,
+        given_name: Option<String>,
+        depth: usize,
+    ) -> Result<(), SceneError> {
+        let place = self.place(path, node);
+        if depth > MAX_DEPTH {
+            return Err(SceneError::value(&place, "elements or includes nested too deeply", "flatten the file"));
+        }
+        let attributes = self.attributes(node, &place)?;
+        let get = |name: &str| attributes.get(name).map(String::as_str);
+        let need = |name: &str| {
+            let what = format!("<{}> lacks the attribute \"{name}\"", node.tag_name().name());
+            get(name).ok_or_else(|| SceneError::value(&place, what, format!("add {name}=\"...\"")))
+        };
+        let folder = path.parent().unwrap_or(Path::new(""));
+        match node.tag_name().name() {
+            "default" => {
+                let (name, value) = (need("name")?.to_owned(), need("value")?.to_owned());
+                self.parameters.entry(name).or_insert(value);
+            }
+            "include" => {
+                let name = get("name").map(str::to_owned);
+                self.file(&folder.join(need("filename")?), &place, parent, name, depth + 1)?;
+            }
+            "alias" => {
+                let id = need("id")?;
+                let missing =
+                    || SceneError::Reference { place: place.clone(), kind: "object", name: id.to_owned() };
+                let object = self.ids.get(id).cloned().ok_or_else(missing)?;
+                self.ids.insert(need("as")?.to_owned(), object);
+            }
+            "ref" => parent.children.push(Child {
+                target: Target::Reference(need("id")?.to_owned()),
+                name: given_name.as_deref().or(get("name")).map(snake_case),
+                place: place.clone(),
+                used: Cell::new(false),
+            }),
+            "path" => {
+                // A folder to search; file names here are relative to the file that holds them.
+                need("value")?;
+            }
+            tag if is_object(tag) || (tag == "spectrum" && get("type").is_some()) => {
+                let mut object = Object {
+                    tag: if tag == "spectrum" { "texture".into() } else { tag.to_owned() },
+                    plugin: need("type")?.to_owned(),
+                    id: get("id").map(str::to_owned),
+                    place: place.clone(),
+                    properties: Vec::new(),
+                    children: Vec::new(),
+                };
+                for child in node.children() {
+                    self.node(path, &child, &mut object, depth + 1)?;
+                }
+                let object = Rc::new(object);
+                if let Some(id) = &object.id
+                    && let Some(other) = self.ids.insert(id.clone(), object.clone())
+                {
+                    let what = format!("the id \"{id}\" is already taken at {}", other.place);
+                    return Err(SceneError::value(&place, what, "rename one of them"));
+                }
+                parent.children.push(Child {
+                    target: Target::Own(object),
+                    name: given_name.as_deref().or(get("name")).map(snake_case),
+                    place: place.clone(),
+                    used: Cell::new(false),
+                });
+            }
+            tag => {
+                let value = if tag == "transform" {
+                    let mut operations = Vec::new();
+                    for child in node.children().filter(|n| n.is_element()) {
+                        let place = self.place(path, &child);
+                        let attributes = self.attributes(&child, &place)?;
+                        operations.push((child.tag_name().name().to_owned(), attributes, place));
+                    }
+                    value::transform(&operations)?
+                } else {
+                    value::parse(tag, &attributes, &place)?
+                };
+                let name = snake_case(need("name")?);
+                parent.properties.push(Property { name, value, place: place.clone(), used: Cell::new(false) });
+            }
+        }
+        Ok(())
+    }
+
+    /// The attributes with their `$parameters` replaced.
+    fn attributes(
+        &self,
+        node: &roxmltree::Node,
+        place: &Place,
+    ) -> Result<BTreeMap<String, String>, SceneError> {
+        let replaced = |a: roxmltree::Attribute| Ok((a.name().to_owned(), self.substitute(a.value(), place)?));
+        node.attributes().map(replaced).collect()
+    }
+
+    fn substitute(&self, text: &str, place: &Place) -> Result<String, SceneError> {
+        let mut out = String::new();
+        let mut rest = text;
+        while let Some(at) = rest.find('$') {
+            let (before, from) = rest.split_at(at);
+            if let Some(before) = before.strip_suffix('\\') {
+                out.push_str(before);
+                out.push('$');
+                rest = &from[1..];
+                continue;
+            }
+            out.push_str(before);
+            // The longest defined name that the text continues with.
+            let known = self.parameters.iter().filter(|(name, _)| from[1..].starts_with(name.as_str()));
+            let Some((name, value)) = known.max_by_key(|(name, _)| name.len()) else {
+                let name = from[1..].split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("");
+                let name = format!("${name}");
+                return Err(SceneError::Reference { place: place.clone(), kind: "parameter", name });
+            };
+            out.push_str(value);
+            rest = &from[1 + name.len()..];
+        }
+        out.push_str(rest);
+        Ok(out)
+    }
+}
+
+fn is_object(tag: &str) -> bool {
+    const TAGS: [&str; 14] = [
+        "scene", "bsdf", "emitter", "film", "integrator", "medium", "phase", "rfilter", "sensor", "sampler", "shape",
+        "texture", "volume", "subsurface",
+    ];
+    TAGS.contains(&tag)
+}
+
+/// `intIOR` to `int_ior`, `toWorld` to `to_world`; names of 3.x stay as they are.
+pub(super) fn snake_case(name: &str) -> String {
+    let mut out = String::with_capacity(name.len() + 2);
+    let mut previous_lower = false;
+    for c in name.chars() {
+        if previous_lower && c.is_ascii_uppercase() {
+            out.push('_');
+        }
+        previous_lower = c.is_ascii_lowercase();
+        // A capital at the start or in a 3.x name ("Cr") cannot occur in a parameter's name.
+        out.push(c.to_ascii_lowercase());
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn camel_case_becomes_snake_case() {
+        let pairs = [
+            ("intIOR", "int_ior"),
+            ("toWorld", "to_world"),
+            ("diffuseReflectance", "diffuse_reflectance"),
+            ("max_depth", "max_depth"),
+            ("alphaU", "alpha_u"),
+        ];
+        for (camel, snake) in pairs {
+            assert_eq!(snake_case(camel), snake);
+        }
+    }
+
+    #[test]
+    fn parameters_are_replaced_longest_first_and_escapes_kept() {
+        let mut builder = Builder::default();
+        builder.parameters.insert("a".into(), "1".into());
+        builder.parameters.insert("ab".into(), "2".into());
+        let place = Place::line(Path::new("x.xml"), 7);
+        assert_eq!(builder.substitute(r"$a $ab-$a\$z", &place).unwrap(), "1 2-1$z");
+        let message = builder.substitute("1 $nope", &place).unwrap_err().to_string();
+        assert!(message.contains("x.xml:7") && message.contains("$nope"), "{message}");
+    }
+}

@@ -1,0 +1,98 @@
+//! Pictures from files to linear colour: PNG, JPEG, BMP, TGA through `image`, Radiance HDR and OpenEXR.
+//!
+//! 8- and 16-bit pictures are sRGB unless read raw; floating-point ones are linear. Alpha is dropped, as in
+//! Mitsuba.
+
+use super::error::{Place, SceneError};
+use crate::math::Rgb;
+use std::io::Cursor;
+use std::path::Path;
+
+/// A decoded picture, top row first.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Picture {
+    pub width: usize,
+    pub height: usize,
+    pub texels: Vec<Rgb>,
+}
+
+/// Decodes `bytes`; `raw` leaves integer values as they are instead of decoding sRGB.
+pub(crate) fn decode(bytes: &[u8], raw: bool, path: &Path, place: &Place) -> Result<Picture, SceneError> {
+    let picture = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
+        decode_exr(bytes).map_err(|e| e.to_string())
+    } else {
+        decode_common(bytes, raw, path)
+    };
+    let picture = picture.and_then(|p| match p.texels.is_empty() {
+        true => Err("it has no pixels".to_string()),
+        false => Ok(p),
+    });
+    picture.map_err(|what| SceneError::Picture { place: place.clone(), path: path.to_owned(), what })
+}
+
+fn decode_exr(bytes: &[u8]) -> Result<Picture, exr::error::Error> {
+    use exr::prelude::*;
+    // Mitsuba names luminance images Y; `rgb_channels` would refuse those.
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes))?;
+    let layer = image.layer_data;
+    let (width, height) = (layer.size.width(), layer.size.height());
+    let find = |names: &[&str]| {
+        let list = &layer.channel_data.list;
+        list.iter().find(|c| {
+            let name = c.name.to_string();
+            names.contains(&name.rsplit('.').next().unwrap_or(&name))
+        })
+    };
+    let grey = find(&["Y", "L"]);
+    let channels = [find(&["R", "r"]).or(grey), find(&["G", "g"]).or(grey), find(&["B", "b"]).or(grey)];
+    let [Some(r), Some(g), Some(b)] = channels else {
+        return Err(exr::error::Error::Invalid("no R, G, B or Y channels".into()));
+    };
+    let values = [r, g, b].map(|c| c.sample_data.values_as_f32().collect::<Vec<f32>>());
+    let [r, g, b] = values;
+    let texels = r.iter().zip(&g).zip(&b).map(|((&r, &g), &b)| Rgb::new(r, g, b)).collect::<Vec<_>>();
+    if texels.len() != width * height {
+        return Err(exr::error::Error::Invalid("subsampled channels".into()));
+    }
+    Ok(Picture { width, height, texels })
+}
+
+fn decode_common(bytes: &[u8], raw: bool, path: &Path) -> Result<Picture, String> {
+    let mut reader =
+        image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+    if reader.format().is_none() {
+        // TGA has no signature.
+        let format = image::ImageFormat::from_path(path).map_err(|e| e.to_string())?;
+        reader.set_format(format);
+    }
+    let image = reader.decode().map_err(|e| e.to_string())?;
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    use image::DynamicImage as D;
+    let texels = match image {
+        D::ImageRgb32F(_) | D::ImageRgba32F(_) => image.to_rgb32f().pixels().map(|p| Rgb::from(p.0)).collect(),
+        D::ImageRgb16(_) | D::ImageRgba16(_) | D::ImageLuma16(_) | D::ImageLumaA16(_) => {
+            let decode = |v: u16| linear(f32::from(v) / 65535.0, raw);
+            image.to_rgb16().pixels().map(|p| Rgb::from(p.0.map(decode))).collect()
+        }
+        _ => {
+            let table: Vec<f32> = (0..256).map(|v| linear(v as f32 / 255.0, raw)).collect();
+            image.to_rgb8().pixels().map(|p| Rgb::from(p.0.map(|v| table[usize::from(v)]))).collect()
+        }
+    };
+    Ok(Picture { width, height, texels })
+}
+
+fn linear(encoded: f32, raw: bool) -> f32 {
+    if raw { encoded } else { srgb_to_linear(encoded) }
+}
+
+/// The sRGB transfer function's inverse (IEC 61966-2-1).
+pub(crate) fn srgb_to_linear(encoded: f32) -> f32 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}

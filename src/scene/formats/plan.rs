@@ -1,0 +1,269 @@
+//! What a scene description asks for, before any mesh or picture is opened; [`Plan::realise`] opens them all.
+//!
+//! Both readers end in a [`Plan`]. Files are read in parallel, each once; results stand in the order of the
+//! description, and of several errors the first in that order is reported.
+
+use super::error::{Place, SceneError};
+use super::mesh::{self, Placement, RawMesh};
+use super::picture::{self, Picture};
+use crate::math::Rgb;
+use crate::scene::draft::{Draft, DraftCamera, DraftMesh};
+use crate::scene::light::{DeltaLight, Environment, EnvironmentMap};
+use crate::scene::material::{Material, MaterialId};
+use crate::scene::mesh::Emission;
+use crate::scene::texture::{Filter, Texture, Wrap};
+use glam::{DMat3, DMat4, DVec3, Mat3};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Everything a scene description says.
+#[derive(Clone, Debug)]
+pub(crate) struct Plan {
+    pub name: String,
+    /// The description's own files, main file first, with the hash of their bytes.
+    pub sources: Vec<(PathBuf, u64)>,
+    pub camera: DraftCamera,
+    pub camera_path: Vec<DraftCamera>,
+    pub resolution: [u32; 2],
+    pub max_depth: Option<u32>,
+    pub meshes: Vec<MeshPlan>,
+    pub materials: Vec<Material>,
+    /// Where each material is described.
+    pub material_places: Vec<Place>,
+    pub textures: Vec<TexturePlan>,
+    pub lights: Vec<(DeltaLight, DVec3)>,
+    pub environment: Option<EnvironmentPlan>,
+}
+
+/// A mesh to be read or made.
+#[derive(Clone, Debug)]
+pub(crate) struct MeshPlan {
+    pub place: Place,
+    pub name: String,
+    pub geometry: Geometry,
+    pub placement: Placement,
+    pub material: MaterialPlan,
+    pub emission: Option<Emission>,
+}
+
+/// Where a mesh comes from.
+#[derive(Clone, Debug)]
+pub(crate) enum Geometry {
+    Obj(PathBuf),
+    Ply(PathBuf),
+    /// File and number of the mesh in it.
+    Serialized(PathBuf, usize),
+    Ready(RawMesh),
+}
+
+/// Which material a mesh has.
+#[derive(Clone, Debug)]
+pub(crate) enum MaterialPlan {
+    One(MaterialId),
+    /// By the file's own material names; the other one where a name is unknown.
+    ByName(BTreeMap<String, MaterialId>, MaterialId),
+}
+
+/// A texture to be read.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct TexturePlan {
+    pub place: Place,
+    pub image: Image,
+    pub filter: Filter,
+    pub wrap: Wrap,
+    pub to_uv: Mat3,
+}
+
+/// Where a texture's texels come from.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Image {
+    File { path: PathBuf, raw: bool },
+    Ready(String, Picture),
+}
+
+/// An environment to be read.
+#[derive(Clone, Debug)]
+pub(crate) enum EnvironmentPlan {
+    Constant(Rgb),
+    Map { place: Place, path: PathBuf, scale: f32, to_world: DMat4 },
+}
+
+/// Something to be done with a file's bytes.
+enum Task<'a> {
+    Mesh(usize, &'a MeshPlan),
+    Texture(usize, &'a TexturePlan, bool),
+    Environment(&'a Place),
+}
+
+enum Done {
+    Meshes(usize, Vec<DraftMesh>),
+    Texture(usize, Picture),
+    Environment(Picture),
+}
+
+impl Plan {
+    /// Opens every file; returns the scene and the hash over the bytes of all its files.
+    pub fn realise(self) -> Result<(Draft, u64), SceneError> {
+        let files = self.tasks();
+        let outcomes: Vec<Result<(u64, Vec<Done>), SceneError>> =
+            files.par_iter().map(|(path, tasks)| carry_out(path, tasks)).collect();
+
+        let mut sources: Vec<PathBuf> = self.sources.iter().map(|s| s.0.clone()).collect();
+        let mut hashes: Vec<u64> = self.sources.iter().map(|s| s.1).collect();
+        let mut meshes: Vec<Vec<DraftMesh>> = vec![Vec::new(); self.meshes.len()];
+        let mut pictures: Vec<Option<Picture>> = vec![None; self.textures.len()];
+        let mut sky = None;
+        for ((path, _), outcome) in files.iter().zip(outcomes) {
+            let (hash, done) = outcome?;
+            sources.push(path.to_path_buf());
+            hashes.push(hash);
+            for done in done {
+                match done {
+                    Done::Meshes(i, m) => meshes[i] = m,
+                    Done::Texture(i, p) => pictures[i] = Some(p),
+                    Done::Environment(p) => sky = Some(p),
+                }
+            }
+        }
+        for (plan, made) in self.meshes.iter().zip(&mut meshes) {
+            if let Geometry::Ready(raw) = &plan.geometry {
+                *made = finish_mesh(plan, raw.clone());
+            }
+        }
+        let textures = self.textures.into_iter().zip(pictures).filter_map(|(t, p)| texture(t, p)).collect();
+        let environment = match (self.environment, sky) {
+            (Some(EnvironmentPlan::Constant(radiance)), _) => Some(Environment::Constant(radiance)),
+            (Some(EnvironmentPlan::Map { scale, to_world, .. }), Some(picture)) => {
+                Some(Environment::Map(environment_map(picture, scale, &to_world)))
+            }
+            _ => None,
+        };
+        let draft = Draft {
+            name: self.name,
+            sources,
+            camera: self.camera,
+            camera_path: self.camera_path,
+            resolution: self.resolution,
+            max_depth: self.max_depth,
+            meshes: meshes.into_iter().flatten().collect(),
+            materials: self.materials,
+            material_places: self.material_places,
+            textures,
+            lights: self.lights,
+            environment,
+        };
+        let bytes: Vec<u8> = hashes.iter().flat_map(|h| h.to_le_bytes()).collect();
+        Ok((draft, fnv1a(&bytes)))
+    }
+
+    /// What is to be done with each file, files by first mention.
+    fn tasks(&self) -> Vec<(&Path, Vec<Task<'_>>)> {
+        let mut files: Vec<(&Path, Vec<Task>)> = Vec::new();
+        let mut by_path: BTreeMap<&Path, usize> = BTreeMap::new();
+        let mut add = |path, task| {
+            let at = *by_path.entry(path).or_insert_with(|| {
+                files.push((path, Vec::new()));
+                files.len() - 1
+            });
+            files[at].1.push(task);
+        };
+        for (i, mesh) in self.meshes.iter().enumerate() {
+            match &mesh.geometry {
+                Geometry::Obj(path) | Geometry::Ply(path) | Geometry::Serialized(path, _) => {
+                    add(path, Task::Mesh(i, mesh));
+                }
+                Geometry::Ready(_) => {}
+            }
+        }
+        for (i, texture) in self.textures.iter().enumerate() {
+            if let Image::File { path, raw } = &texture.image {
+                add(path, Task::Texture(i, texture, *raw));
+            }
+        }
+        if let Some(EnvironmentPlan::Map { place, path, .. }) = &self.environment {
+            add(path, Task::Environment(place));
+        }
+        files
+    }
+}
+
+/// Reads a file that `from` asks for.
+pub(crate) fn read_file(path: &Path, from: &Place) -> Result<Vec<u8>, SceneError> {
+    let fail = |source| SceneError::Read { path: path.to_owned(), from: from.clone(), source };
+    std::fs::read(path).map_err(fail)
+}
+
+fn carry_out(path: &Path, tasks: &[Task]) -> Result<(u64, Vec<Done>), SceneError> {
+    let from = match tasks.first() {
+        Some(Task::Mesh(_, plan)) => &plan.place,
+        Some(Task::Texture(_, plan, _)) => &plan.place,
+        Some(Task::Environment(place)) => place,
+        None => return Ok((0, Vec::new())),
+    };
+    let bytes = read_file(path, from)?;
+    let hash = fnv1a(&bytes);
+    let done: Vec<Result<Done, SceneError>> = tasks.par_iter().map(|task| one(task, &bytes, path)).collect();
+    Ok((hash, done.into_iter().collect::<Result<_, _>>()?))
+}
+
+fn one(task: &Task, bytes: &[u8], path: &Path) -> Result<Done, SceneError> {
+    Ok(match task {
+        Task::Mesh(i, plan) => {
+            let raw = match &plan.geometry {
+                Geometry::Obj(_) => mesh::obj::read(bytes, path)?,
+                Geometry::Ply(_) => mesh::ply::read(bytes, path)?,
+                Geometry::Serialized(_, index) => mesh::serialized::read(bytes, *index, path)?,
+                Geometry::Ready(raw) => raw.clone(),
+            };
+            Done::Meshes(*i, finish_mesh(plan, raw))
+        }
+        Task::Texture(i, plan, raw) => Done::Texture(*i, picture::decode(bytes, *raw, path, &plan.place)?),
+        Task::Environment(place) => Done::Environment(picture::decode(bytes, false, path, place)?),
+    })
+}
+
+fn finish_mesh(plan: &MeshPlan, raw: RawMesh) -> Vec<DraftMesh> {
+    let parts = match &plan.material {
+        MaterialPlan::One(material) => vec![(plan.name.clone(), *material, raw)],
+        MaterialPlan::ByName(names, other) => {
+            let parts = mesh::obj::split_by_material(raw).into_iter();
+            let material = |name: &str| names.get(name).copied().unwrap_or(*other);
+            parts.map(|(name, part)| (format!("{}:{name}", plan.name), material(&name), part)).collect()
+        }
+    };
+    let finish = |(name, material, raw)| {
+        let placed = mesh::place(raw, &plan.placement);
+        DraftMesh { name, material, emission: plan.emission, ..placed }
+    };
+    parts.into_iter().map(finish).collect()
+}
+
+fn texture(plan: TexturePlan, decoded: Option<Picture>) -> Option<Texture> {
+    let (name, picture) = match plan.image {
+        Image::File { path, .. } => {
+            let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
+            (name.unwrap_or_default(), decoded?)
+        }
+        Image::Ready(name, picture) => (name, picture),
+    };
+    let Picture { width, height, texels } = picture;
+    Some(Texture { name, width, height, texels, filter: plan.filter, wrap: plan.wrap, to_uv: plan.to_uv })
+}
+
+/// The map with `scale` applied. As in Mitsuba, fewer than 3 rows are padded by repeating the last.
+fn environment_map(picture: Picture, scale: f32, to_world: &DMat4) -> EnvironmentMap {
+    let Picture { width, height, texels } = picture;
+    let mut radiance: Vec<Rgb> = texels.iter().map(|&t| t * scale).collect();
+    let last: Vec<Rgb> = radiance[radiance.len() - width..].to_vec();
+    for _ in height..3 {
+        radiance.extend_from_slice(&last);
+    }
+    let to_local = DMat3::from_mat4(*to_world).inverse().as_mat3();
+    EnvironmentMap { width, height: height.max(3), radiance, to_local }
+}
+
+/// 64-bit FNV-1a: fast enough to vanish beside parsing, and all that telling scenes apart needs.
+pub(crate) fn fnv1a(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
+}

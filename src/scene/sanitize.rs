@@ -1,0 +1,326 @@
+//! What a scene must not contain, removed or repaired before anything else sees it, with one report.
+//!
+//! Triangles that no ray could meaningfully hit are dropped, normals that are none are replaced by the
+//! geometric ones, lights that give no light are dropped. Reflectances that would create energy, and
+//! negative light, are errors: there is no picture to be had from them.
+//!
+//! Deviations: texels that would reflect more than they receive are clamped, not rejected, since filtered
+//! and compressed pictures overshoot.
+
+use super::draft::{Draft, DraftMesh};
+use super::formats::error::{Place, SceneError};
+use super::material::{Fresnel, Lobe, Material, Reflectance};
+use super::{DeltaLight, Environment, Texture, recentre};
+use crate::math::Rgb;
+use glam::{DVec3, Vec2, Vec3};
+use serde::Serialize;
+use std::fmt;
+
+/// Embree drops triangles beyond 1.8e18 without a word.
+const HUGE: f64 = 1e18;
+/// How far a reflectance may exceed 1 by rounding.
+const ALBEDO_SLACK: f32 = 1e-3;
+/// Mitsuba's smallest roughness.
+const MIN_ALPHA: f32 = 1e-4;
+
+/// What had to be removed or repaired.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct SanitizeReport {
+    /// Triangles with a vertex index out of range.
+    pub out_of_range: usize,
+    /// Triangles with NaN or infinite corners.
+    pub not_finite: usize,
+    /// Triangles with coordinates beyond 1e18.
+    pub huge: usize,
+    /// Triangles with two equal indices, or without area in f32.
+    pub degenerate: usize,
+    /// Meshes without a triangle left.
+    pub empty_meshes: usize,
+    /// Zero or NaN vertex normals, replaced by the geometric ones.
+    pub bad_normals: usize,
+    /// Triangles whose winding was turned to agree with their vertex normals.
+    pub turned: usize,
+    /// NaN or infinite texture coordinates, set to 0.
+    pub bad_uvs: usize,
+    /// Reflectances clamped to 1, and texels clamped to what cannot create energy.
+    pub clamped: usize,
+    /// NaN, infinite or negative texels, set to 0.
+    pub bad_texels: usize,
+    /// Emitters, lights and environments without light, dropped.
+    pub black_lights: usize,
+}
+
+impl SanitizeReport {
+    /// Whether nothing had to be done.
+    pub fn is_clean(&self) -> bool {
+        *self == SanitizeReport::default()
+    }
+}
+
+impl fmt::Display for SanitizeReport {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let counts = [
+            (self.out_of_range, "triangles with indices out of range dropped"),
+            (self.not_finite, "triangles with NaN or infinite corners dropped"),
+            (self.huge, "triangles beyond 1e18 dropped"),
+            (self.degenerate, "triangles without area dropped"),
+            (self.empty_meshes, "empty meshes dropped"),
+            (self.bad_normals, "zero or NaN normals replaced"),
+            (self.turned, "triangles turned to face along their vertex normals"),
+            (self.bad_uvs, "NaN texture coordinates set to 0"),
+            (self.clamped, "reflectances clamped"),
+            (self.bad_texels, "NaN or negative texels set to 0"),
+            (self.black_lights, "lights without light dropped"),
+        ];
+        let said: Vec<String> =
+            counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+        if said.is_empty() { write!(f, "nothing to repair") } else { write!(f, "{}", said.join(", ")) }
+    }
+}
+
+/// Cleans the draft; returns the report and the centre to recentre about.
+pub(crate) fn sanitize(draft: &mut Draft) -> Result<(SanitizeReport, DVec3), SceneError> {
+    let mut report = SanitizeReport::default();
+    for mesh in &mut draft.meshes {
+        drop_unusable(mesh, &mut report);
+    }
+    let centre = recentre::centre(draft);
+    for mesh in &mut draft.meshes {
+        drop_degenerate(mesh, centre, &mut report);
+        use_all_vertices(mesh);
+        repair_normals(mesh, &mut report);
+        let bad_uvs = mesh.uvs.iter_mut().filter(|uv| !uv.is_finite());
+        report.bad_uvs += bad_uvs.map(|uv| *uv = Vec2::ZERO).count();
+        report.turned += mesh.turned;
+    }
+    let before = draft.meshes.len();
+    draft.meshes.retain(|mesh| !mesh.triangles.is_empty());
+    report.empty_meshes = before - draft.meshes.len();
+    let place = |i: usize| draft.material_places.get(i).cloned().unwrap_or_else(|| main_file(&draft.sources));
+    for (i, material) in draft.materials.iter_mut().enumerate() {
+        check_material(material, &mut draft.textures, &place(i), &mut report)?;
+    }
+    check_lights(draft, &mut report)?;
+    Ok((report, centre))
+}
+
+fn main_file(sources: &[std::path::PathBuf]) -> Place {
+    Place { path: sources.first().cloned().unwrap_or_default(), line: None }
+}
+
+/// Drops triangles with impossible corners.
+fn drop_unusable(mesh: &mut DraftMesh, report: &mut SanitizeReport) {
+    let positions = &mesh.positions;
+    mesh.triangles.retain(|t| {
+        let [Some(&a), Some(&b), Some(&c)] = t.map(|i| positions.get(i as usize)) else {
+            report.out_of_range += 1;
+            return false;
+        };
+        let corners = [a, b, c];
+        if !corners.iter().all(|p| p.is_finite()) {
+            report.not_finite += 1;
+            return false;
+        }
+        if corners.iter().any(|p| p.abs().max_element() > HUGE) {
+            report.huge += 1;
+            return false;
+        }
+        true
+    });
+}
+
+/// Drops triangles that have no area once their corners are rounded to f32.
+fn drop_degenerate(mesh: &mut DraftMesh, centre: DVec3, report: &mut SanitizeReport) {
+    let positions = &mesh.positions;
+    let rounded = |i: u32| positions.get(i as usize).map_or(DVec3::ZERO, |p| (p - centre).as_vec3().as_dvec3());
+    let before = mesh.triangles.len();
+    mesh.triangles.retain(|t| {
+        let [a, b, c] = t.map(rounded);
+        (b - a).cross(c - a) != DVec3::ZERO
+    });
+    report.degenerate += before - mesh.triangles.len();
+}
+
+/// Drops vertices that no triangle uses, and attributes that are not given for every vertex.
+fn use_all_vertices(mesh: &mut DraftMesh) {
+    let count = mesh.positions.len();
+    if mesh.normals.len() != count {
+        mesh.normals.clear();
+    }
+    if mesh.uvs.len() != count {
+        mesh.uvs.clear();
+    }
+    let mut renumbered = vec![u32::MAX; count];
+    mesh.triangles.iter().flatten().for_each(|&i| renumbered[i as usize] = 0);
+    if !renumbered.contains(&u32::MAX) {
+        return;
+    }
+    let mut next = 0;
+    for number in renumbered.iter_mut().filter(|n| **n == 0) {
+        *number = next;
+        next += 1;
+    }
+    let used = |i: usize| renumbered[i] != u32::MAX;
+    keep(&mut mesh.positions, used);
+    keep(&mut mesh.normals, used);
+    keep(&mut mesh.uvs, used);
+    mesh.triangles.iter_mut().flatten().for_each(|i| *i = renumbered[*i as usize]);
+}
+
+fn keep<T>(values: &mut Vec<T>, wanted: impl Fn(usize) -> bool) {
+    let mut i = 0;
+    values.retain(|_| {
+        i += 1;
+        wanted(i - 1)
+    });
+}
+
+fn repair_normals(mesh: &mut DraftMesh, report: &mut SanitizeReport) {
+    let bad = |n: &Vec3| !n.is_finite() || n.length_squared() < 0.25;
+    if !mesh.normals.iter().any(bad) {
+        return;
+    }
+    let geometric = super::formats::smooth_normals(&mesh.positions, &mesh.triangles);
+    for (normal, geometric) in mesh.normals.iter_mut().zip(geometric) {
+        if bad(normal) {
+            report.bad_normals += 1;
+            // Faces that cancel leave no direction; any unit vector will do then.
+            *normal = if geometric == Vec3::ZERO { Vec3::Z } else { geometric };
+        }
+    }
+}
+
+fn check_material(
+    material: &mut Material,
+    textures: &mut [Texture],
+    place: &Place,
+    report: &mut SanitizeReport,
+) -> Result<(), SceneError> {
+    let name = &material.name;
+    let wrong = |what: String, remedy: &str| Err(SceneError::value(place, format!("material \"{name}\": {what}"), remedy));
+    let positive = |v: f32| v.is_finite() && v > 0.0;
+    let mut reflectances = vec![&mut material.diffuse];
+    let etas = material.coat.map(|c| c.eta);
+    match &mut material.lobe {
+        Lobe::None => {}
+        Lobe::Rough { alpha, scale, .. } => {
+            if !alpha.is_finite() || *alpha < 0.0 {
+                return wrong(format!("its roughness is {alpha}"), "give 0 to 1");
+            }
+            *alpha = alpha.max(MIN_ALPHA);
+            reflectances.push(scale);
+        }
+        Lobe::Mirror { scale, .. } => reflectances.push(scale),
+        Lobe::Dielectric { eta, reflectance, transmittance } => {
+            if !positive(*eta) {
+                return wrong(format!("its index of refraction is {eta}"), "give a number above 0");
+            }
+            reflectances.push(reflectance);
+            reflectances.push(transmittance);
+        }
+    }
+    if let Some(eta) = etas.filter(|eta| !positive(*eta)) {
+        return wrong(format!("its index of refraction is {eta}"), "give a number above 0");
+    }
+    for reflectance in reflectances {
+        match reflectance {
+            Reflectance::Constant(albedo) => {
+                if !albedo.is_finite() || albedo.min_element() < 0.0 {
+                    return wrong(format!("the reflectance {albedo} is negative or no number"), "give 0 to 1");
+                }
+                if albedo.max_element() > 1.0 + ALBEDO_SLACK {
+                    return wrong(format!("the reflectance {albedo} exceeds 1"), "give 0 to 1");
+                }
+                report.clamped += usize::from(albedo.max_element() > 1.0);
+                *albedo = albedo.min(Rgb::ONE);
+            }
+            Reflectance::Textured { texture, scale } => {
+                if !scale.is_finite() || scale.min_element() < 0.0 {
+                    return wrong(format!("the texture's factor {scale} is negative or no number"), "give 0 to 1");
+                }
+                let Some(texture) = textures.get_mut(texture.0 as usize) else { continue };
+                clamp_texels(texture, *scale, report);
+            }
+        }
+    }
+    check_sum(material, place)
+}
+
+/// A Lambert base beside a lobe of constant reflectance must not exceed 1 together.
+fn check_sum(material: &Material, place: &Place) -> Result<(), SceneError> {
+    let (Lobe::Rough { fresnel: Fresnel::One, scale, .. } | Lobe::Mirror { fresnel: Fresnel::One, scale }, None) =
+        (&material.lobe, &material.coat)
+    else {
+        return Ok(());
+    };
+    if let (Reflectance::Constant(base), Reflectance::Constant(lobe)) = (material.diffuse, *scale)
+        && (base + lobe).max_element() > 1.0 + ALBEDO_SLACK
+    {
+        let what = format!("material \"{}\": diffuse {base} and specular {lobe} exceed 1 together", material.name);
+        return Err(SceneError::value(place, what, "lower one of them"));
+    }
+    Ok(())
+}
+
+fn clamp_texels(texture: &mut Texture, scale: Rgb, report: &mut SanitizeReport) {
+    let limit = scale.max(Rgb::ONE).recip();
+    for texel in &mut texture.texels {
+        if !texel.is_finite() || texel.min_element() < 0.0 {
+            report.bad_texels += 1;
+            *texel = if texel.is_nan() { Rgb::ZERO } else { texel.max(Rgb::ZERO) };
+        }
+        if texel.cmpgt(limit).any() {
+            report.clamped += 1;
+            *texel = texel.min(limit);
+        }
+    }
+}
+
+fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), SceneError> {
+    let place = main_file(&draft.sources);
+    let check = |light: Rgb, what: &str| match light.is_finite() && light.min_element() >= 0.0 {
+        true => Ok(()),
+        false => Err(SceneError::value(&place, format!("{what} {light} is negative or no number"), "give 0 or more")),
+    };
+    for mesh in &mut draft.meshes {
+        let Some(emission) = mesh.emission else { continue };
+        check(emission.radiance, &format!("mesh \"{}\": the radiance", mesh.name))?;
+        let texture = emission.texture.and_then(|id| draft.textures.get(id.0 as usize));
+        let dark = texture.is_some_and(|t| t.texels.iter().all(|texel| texel.max_element() <= 0.0));
+        if emission.radiance == Rgb::ZERO || dark {
+            report.black_lights += 1;
+            mesh.emission = None;
+        }
+    }
+    let power = |light: &DeltaLight| match light {
+        DeltaLight::Point { intensity, .. } | DeltaLight::Spot { intensity, .. } => *intensity,
+        DeltaLight::Directional { irradiance, .. } => *irradiance,
+    };
+    for (light, position) in &draft.lights {
+        check(power(light), "a light's intensity")?;
+        if !position.is_finite() {
+            return Err(SceneError::value(&place, "a light's position is no number", "correct it"));
+        }
+    }
+    let before = draft.lights.len();
+    draft.lights.retain(|(light, _)| power(light) != Rgb::ZERO);
+    report.black_lights += before - draft.lights.len();
+    let dark = match &mut draft.environment {
+        Some(Environment::Constant(radiance)) => {
+            check(*radiance, "the environment's radiance")?;
+            *radiance == Rgb::ZERO
+        }
+        Some(Environment::Map(map)) => {
+            let bad = map.radiance.iter_mut().filter(|r| !r.is_finite() || r.min_element() < 0.0);
+            report.bad_texels +=
+                bad.map(|r| *r = if r.is_finite() { r.max(Rgb::ZERO) } else { Rgb::ZERO }).count();
+            map.radiance.iter().all(|r| *r == Rgb::ZERO)
+        }
+        None => false,
+    };
+    if dark {
+        report.black_lights += 1;
+        draft.environment = None;
+    }
+    Ok(())
+}
