@@ -1,6 +1,6 @@
 //! Light from infinitely far: evaluation and sampling in proportion to the bilinear radiance.
 //!
-//! A map is sampled by its cells: the squares between texel centres (and the half squares at the poles),
+//! A map is sampled by its cells: the squares between four texels (the first and last row lie at the poles),
 //! chosen by the mean luminance of their corners times the sine of their latitude, then within a cell by the
 //! bilinear luminance itself. So the density follows what [`EnvironmentLight::radiance`] returns
 //! up to the variation of the sine over one row, and a sun one texel wide costs no variance.
@@ -45,7 +45,7 @@ impl EnvironmentLight {
                 EnvironmentLight { source: Source::Constant(*radiance), mean_luminance: luminance(*radiance) }
             }
             Environment::Map(map) => {
-                let cells: Vec<Vec<f32>> = (0..=map.height)
+                let cells: Vec<Vec<f32>> = (0..row_count(map))
                     .map(|row| {
                         let (low, high) = row_span(map, row);
                         // The exact share of the sphere between the two latitudes.
@@ -123,10 +123,15 @@ impl EnvironmentLight {
     }
 }
 
-/// Latitudes, over π, between which row `row` of cells lies: row 0 and row `height` are the half rows at the poles.
+/// Rows of cells: one fewer than rows of texels.
+fn row_count(map: &EnvironmentMap) -> usize {
+    map.height.max(2) - 1
+}
+
+/// Latitudes, over π, between which row `row` of cells lies.
 fn row_span(map: &EnvironmentMap, row: usize) -> (f32, f32) {
-    let h = map.height as f32;
-    (((row as f32 - 0.5) / h).max(0.0), ((row as f32 + 0.5) / h).min(1.0))
+    let rows = row_count(map) as f32;
+    (row as f32 / rows, (row + 1) as f32 / rows)
 }
 
 /// Solid angle per unit of the cell's own square, at the given sine of the latitude.
@@ -142,7 +147,8 @@ fn locate(map: &EnvironmentMap, d: Vec3) -> (usize, usize, Vec2) {
     let theta = local.y.clamp(-1.0, 1.0).acos() * FRAC_1_PI;
     let x = (u - u.floor()) * map.width as f32 - 0.5;
     let column = x.floor();
-    let row = ((theta * map.height as f32 + 0.5) as usize).min(map.height);
+    let rows = row_count(map);
+    let row = ((theta * rows as f32) as usize).min(rows - 1);
     let (low, high) = row_span(map, row);
     let fy = ((theta - low) / (high - low)).clamp(0.0, 1.0);
     ((column as i64).rem_euclid(map.width as i64) as usize, row, Vec2::new(x - column, fy))
@@ -151,8 +157,8 @@ fn locate(map: &EnvironmentMap, d: Vec3) -> (usize, usize, Vec2) {
 /// Texels at the corners of a cell: top left, top right, bottom left, bottom right.
 fn corner_indices(map: &EnvironmentMap, x: usize, row: usize) -> [usize; 4] {
     let right = (x + 1) % map.width;
-    let top = row.saturating_sub(1) * map.width;
-    let bottom = row.min(map.height - 1) * map.width;
+    let top = row * map.width;
+    let bottom = (row + 1).min(map.height - 1) * map.width;
     [top + x, top + right, bottom + x, bottom + right]
 }
 

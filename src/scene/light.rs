@@ -48,14 +48,16 @@ pub enum Environment {
 }
 
 /// Latitude-longitude radiance map, Mitsuba's convention: with `d` the direction in the map's own
-/// frame, `u = atan2(d.x, -d.z) / 2π` (wrapped to [0, 1)) and `v = acos(d.y) / π`; row 0 is +y.
+/// frame, `u = atan2(d.x, -d.z) / 2π` (wrapped to [0, 1)) and `v = acos(d.y) / π`. Between texels the map
+/// is bilinear: column i lies at `u = (i + 0.5) / width`, across the seam too, but row j at
+/// `v = j / (height - 1)`, so that the first row is the pole +y and the last -y.
 #[derive(Clone, Debug)]
 pub struct EnvironmentMap {
     /// Columns of the image.
     pub width: usize,
     /// Rows of the image.
     pub height: usize,
-    /// Radiance, row-major, `scale` already applied; bilinear between texel centres.
+    /// Radiance, row-major, `scale` already applied.
     pub radiance: Vec<Rgb>,
     /// World direction to the map's frame.
     pub to_local: Mat3,

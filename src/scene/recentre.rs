@@ -55,7 +55,11 @@ pub(crate) fn recentre(draft: Draft, centre: DVec3) -> Scene {
         meshes: draft.meshes.into_iter().map(mesh).collect(),
         materials: draft.materials,
         textures: draft.textures,
-        lights: draft.lights.into_iter().map(|(light, position)| place_light(light, local(position))).collect(),
+        lights: draft
+            .lights
+            .into_iter()
+            .map(|(light, position)| place_light(light, local(position)))
+            .collect(),
         environment: draft.environment,
         centre,
     }

@@ -132,7 +132,8 @@ fn drop_unusable(mesh: &mut DraftMesh, report: &mut SanitizeReport) {
 /// Drops triangles that have no area once their corners are rounded to f32.
 fn drop_degenerate(mesh: &mut DraftMesh, centre: DVec3, report: &mut SanitizeReport) {
     let positions = &mesh.positions;
-    let rounded = |i: u32| positions.get(i as usize).map_or(DVec3::ZERO, |p| (p - centre).as_vec3().as_dvec3());
+    let rounded =
+        |i: u32| positions.get(i as usize).map_or(DVec3::ZERO, |p| (p - centre).as_vec3().as_dvec3());
     let before = mesh.triangles.len();
     mesh.triangles.retain(|t| {
         let [a, b, c] = t.map(rounded);
@@ -197,7 +198,9 @@ fn check_material(
     report: &mut SanitizeReport,
 ) -> Result<(), SceneError> {
     let name = &material.name;
-    let wrong = |what: String, remedy: &str| Err(SceneError::value(place, format!("material \"{name}\": {what}"), remedy));
+    let wrong = |what: String, remedy: &str| {
+        Err(SceneError::value(place, format!("material \"{name}\": {what}"), remedy))
+    };
     let positive = |v: f32| v.is_finite() && v > 0.0;
     let mut reflectances = vec![&mut material.diffuse];
     let etas = material.coat.map(|c| c.eta);
@@ -226,7 +229,10 @@ fn check_material(
         match reflectance {
             Reflectance::Constant(albedo) => {
                 if !albedo.is_finite() || albedo.min_element() < 0.0 {
-                    return wrong(format!("the reflectance {albedo} is negative or no number"), "give 0 to 1");
+                    return wrong(
+                        format!("the reflectance {albedo} is negative or no number"),
+                        "give 0 to 1",
+                    );
                 }
                 if albedo.max_element() > 1.0 + ALBEDO_SLACK {
                     return wrong(format!("the reflectance {albedo} exceeds 1"), "give 0 to 1");
@@ -236,7 +242,10 @@ fn check_material(
             }
             Reflectance::Textured { texture, scale } => {
                 if !scale.is_finite() || scale.min_element() < 0.0 {
-                    return wrong(format!("the texture's factor {scale} is negative or no number"), "give 0 to 1");
+                    return wrong(
+                        format!("the texture's factor {scale} is negative or no number"),
+                        "give 0 to 1",
+                    );
                 }
                 let Some(texture) = textures.get_mut(texture.0 as usize) else { continue };
                 clamp_texels(texture, *scale, report);
@@ -248,15 +257,18 @@ fn check_material(
 
 /// A Lambert base beside a lobe of constant reflectance must not exceed 1 together.
 fn check_sum(material: &Material, place: &Place) -> Result<(), SceneError> {
-    let (Lobe::Rough { fresnel: Fresnel::One, scale, .. } | Lobe::Mirror { fresnel: Fresnel::One, scale }, None) =
-        (&material.lobe, &material.coat)
+    let (
+        Lobe::Rough { fresnel: Fresnel::One, scale, .. } | Lobe::Mirror { fresnel: Fresnel::One, scale },
+        None,
+    ) = (&material.lobe, &material.coat)
     else {
         return Ok(());
     };
     if let (Reflectance::Constant(base), Reflectance::Constant(lobe)) = (material.diffuse, *scale)
         && (base + lobe).max_element() > 1.0 + ALBEDO_SLACK
     {
-        let what = format!("material \"{}\": diffuse {base} and specular {lobe} exceed 1 together", material.name);
+        let what =
+            format!("material \"{}\": diffuse {base} and specular {lobe} exceed 1 together", material.name);
         return Err(SceneError::value(place, what, "lower one of them"));
     }
     Ok(())
@@ -280,7 +292,11 @@ fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), Sc
     let place = main_file(&draft.sources);
     let check = |light: Rgb, what: &str| match light.is_finite() && light.min_element() >= 0.0 {
         true => Ok(()),
-        false => Err(SceneError::value(&place, format!("{what} {light} is negative or no number"), "give 0 or more")),
+        false => Err(SceneError::value(
+            &place,
+            format!("{what} {light} is negative or no number"),
+            "give 0 or more",
+        )),
     };
     for mesh in &mut draft.meshes {
         let Some(emission) = mesh.emission else { continue };

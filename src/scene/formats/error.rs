@@ -159,8 +159,12 @@ impl Log {
         what: impl Into<String>,
         fallback: impl Into<String>,
     ) -> Result<(), SceneError> {
-        let warning =
-            Warning { place: place.clone(), level: Level::Warning, what: what.into(), fallback: fallback.into() };
+        let warning = Warning {
+            place: place.clone(),
+            level: Level::Warning,
+            what: what.into(),
+            fallback: fallback.into(),
+        };
         if self.strict {
             return Err(SceneError::Strict(warning));
         }
@@ -170,7 +174,12 @@ impl Log {
 
     /// Something that does not change the expected picture.
     pub fn note(&mut self, place: &Place, what: impl Into<String>, fallback: impl Into<String>) {
-        self.push(Warning { place: place.clone(), level: Level::Note, what: what.into(), fallback: fallback.into() });
+        self.push(Warning {
+            place: place.clone(),
+            level: Level::Note,
+            what: what.into(),
+            fallback: fallback.into(),
+        });
     }
 
     /// The same thing at the same place is said once.

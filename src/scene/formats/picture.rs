@@ -75,7 +75,9 @@ fn decode_common(bytes: &[u8], raw: bool, path: &Path) -> Result<Picture, String
     let (width, height) = (image.width() as usize, image.height() as usize);
     use image::DynamicImage as D;
     let texels = match image {
-        D::ImageRgb32F(_) | D::ImageRgba32F(_) => image.to_rgb32f().pixels().map(|p| Rgb::from(p.0)).collect(),
+        D::ImageRgb32F(_) | D::ImageRgba32F(_) => {
+            image.to_rgb32f().pixels().map(|p| Rgb::from(p.0)).collect()
+        }
         D::ImageRgb16(_) | D::ImageRgba16(_) | D::ImageLuma16(_) | D::ImageLumaA16(_) => {
             let decode = |v: u16| linear(f32::from(v) / 65535.0, raw);
             image.to_rgb16().pixels().map(|p| Rgb::from(p.0.map(decode))).collect()

@@ -107,7 +107,8 @@ fn follow_normals(mesh: &mut DraftMesh) {
     let (positions, normals) = (&mesh.positions, &mesh.normals);
     for t in &mut mesh.triangles {
         let [a, b, c] = t.map(|i| positions.get(i as usize).copied().unwrap_or(DVec3::NAN));
-        let sum: DVec3 = t.map(|i| normals.get(i as usize).map_or(DVec3::ZERO, |n| n.as_dvec3())).iter().sum();
+        let sum: DVec3 =
+            t.map(|i| normals.get(i as usize).map_or(DVec3::ZERO, |n| n.as_dvec3())).iter().sum();
         if (b - a).cross(c - a).dot(sum) < 0.0 {
             t.swap(1, 2);
             mesh.turned += 1;

@@ -62,7 +62,8 @@ impl Reader {
             b"vn" => self.normals.push(DVec3::from(numbers(rest)?).as_vec3()),
             b"vt" => {
                 // The second coordinate may be left out (1-D textures).
-                let [u, v] = numbers(rest).or_else(|e| numbers::<1>(rest).map(|[u]| [u, 0.0]).map_err(|_| e))?;
+                let [u, v] =
+                    numbers(rest).or_else(|e| numbers::<1>(rest).map(|[u]| [u, 0.0]).map_err(|_| e))?;
                 self.uvs.push(Vec2::new(u as f32, v as f32));
             }
             b"f" => self.face(rest)?,
@@ -148,7 +149,11 @@ pub(crate) fn split_by_material(raw: RawMesh) -> Vec<(String, RawMesh)> {
         });
         parts[part].extend_from_slice(&raw.triangles[*start..end]);
     }
-    names.into_iter().zip(parts).map(|(name, triangles)| (name, with_used_vertices(&raw, triangles))).collect()
+    names
+        .into_iter()
+        .zip(parts)
+        .map(|(name, triangles)| (name, with_used_vertices(&raw, triangles)))
+        .collect()
 }
 
 /// A mesh of `triangles` over just the vertices of `raw` they use. Indices are in range: the reader made them.
@@ -242,7 +247,8 @@ mod tests {
         let text = "mtllib a b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nusemtl x\nf 1 2 4\nusemtl y\nusemtl x\nf 2 3 4\n";
         assert_eq!(material_libraries(text.as_bytes()), ["a b.mtl"]);
         let parts = split_by_material(read_text(text).unwrap());
-        let names: Vec<_> = parts.iter().map(|p| (p.0.as_str(), p.1.triangles.len(), p.1.positions.len())).collect();
+        let names: Vec<_> =
+            parts.iter().map(|p| (p.0.as_str(), p.1.triangles.len(), p.1.positions.len())).collect();
         assert_eq!(names, [("", 1, 3), ("x", 2, 4)]);
     }
 }

@@ -8,7 +8,8 @@ use std::path::Path;
 
 /// Reads the PLY file `bytes`; `path` is for messages.
 pub(crate) fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
-    let (header, body) = header(bytes).map_err(|(line, what)| SceneError::mesh(Place::line(path, line), what))?;
+    let (header, body) =
+        header(bytes).map_err(|(line, what)| SceneError::mesh(Place::line(path, line), what))?;
     let mut values: Box<dyn Values> = match header.format {
         Format::Ascii => Box::new(Ascii { rest: body, line: header.lines }),
         Format::LittleEndian => Box::new(Binary { rest: body, big_endian: false }),
@@ -264,7 +265,8 @@ fn vertices(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> R
 }
 
 fn faces(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> Result<(), String> {
-    let is_corners = |p: &Property| p.list.is_some() && ["vertex_index", "vertex_indices"].contains(&p.name.as_str());
+    let is_corners =
+        |p: &Property| p.list.is_some() && ["vertex_index", "vertex_indices"].contains(&p.name.as_str());
     if !element.properties.iter().any(is_corners) {
         return Err("the faces have no list of vertex indices".into());
     }
@@ -305,7 +307,8 @@ mod tests {
     }
 
     fn binary(big: bool) -> Vec<u8> {
-        let mut out = HEADER.replace("FORMAT", if big { "binary_big_endian" } else { "binary_little_endian" });
+        let mut out =
+            HEADER.replace("FORMAT", if big { "binary_big_endian" } else { "binary_little_endian" });
         out.push_str("");
         let mut out = out.into_bytes();
         let mut put = |bytes: &[u8]| match big {

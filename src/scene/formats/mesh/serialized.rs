@@ -92,7 +92,8 @@ struct Stream<'a> {
 impl Stream<'_> {
     fn bytes(&mut self, count: u64, size: u64) -> Result<Vec<u8>, String> {
         let bytes = count.checked_mul(size).filter(|&b| b <= self.limit as u64 * 1040);
-        let bytes = bytes.ok_or_else(|| format!("{count} elements cannot be stored in {} bytes", self.limit))?;
+        let bytes =
+            bytes.ok_or_else(|| format!("{count} elements cannot be stored in {} bytes", self.limit))?;
         let mut data = Vec::with_capacity(bytes.min(1 << 24) as usize);
         let read = self.inner.by_ref().take(bytes).read_to_end(&mut data);
         read.map_err(|e| format!("the compressed data is broken ({e})"))?;

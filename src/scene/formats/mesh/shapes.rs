@@ -166,10 +166,14 @@ mod tests {
     #[test]
     fn the_sphere_is_closed_and_within_tolerance() {
         let mesh = sphere(DVec3::ZERO, 1.0);
-        let volume: f64 = mesh.triangles.iter().map(|t| {
-            let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
-            a.dot(b.cross(c)) / 6.0
-        }).sum();
+        let volume: f64 = mesh
+            .triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+                a.dot(b.cross(c)) / 6.0
+            })
+            .sum();
         assert!((volume / (4.0 / 3.0 * PI) - 1.0).abs() < 1e-3, "{volume}");
         assert!(mesh.positions.iter().all(|p| (p.length() - 1.0).abs() < 1e-3));
     }

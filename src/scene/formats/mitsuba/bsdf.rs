@@ -72,7 +72,11 @@ impl Converter<'_> {
                 diffuse(name, self.reflectance(bsdf, "reflectance", 0.5)?)
             }
             "difftrans" => {
-                self.log.warn(&bsdf.place, "diffuse transmission is not modelled", "the surface reflects it")?;
+                self.log.warn(
+                    &bsdf.place,
+                    "diffuse transmission is not modelled",
+                    "the surface reflects it",
+                )?;
                 diffuse(name, self.reflectance(bsdf, "transmittance", 0.5)?)
             }
             "plastic" | "roughplastic" => self.plastic(bsdf, name)?,
@@ -81,9 +85,8 @@ impl Converter<'_> {
             "phong" | "ward" => self.classic_glossy(bsdf, name)?,
             "null" => glass(name, 1.0, Reflectance::Constant(Rgb::ONE), Reflectance::Constant(Rgb::ONE)),
             "twosided" => self.two_sided(bsdf, depth)?,
-            "mask" | "bumpmap" | "bump" | "normalmap" | "blendbsdf" | "mixturebsdf" | "coating" | "roughcoating" => {
-                self.wrapped(bsdf, depth)?
-            }
+            "mask" | "bumpmap" | "bump" | "normalmap" | "blendbsdf" | "mixturebsdf" | "coating"
+            | "roughcoating" => self.wrapped(bsdf, depth)?,
             other => {
                 let what = format!("the bsdf \"{other}\" is not modelled");
                 self.log.warn(&bsdf.place, what, "a diffuse grey of 0.5 stands in")?;
@@ -157,7 +160,11 @@ impl Converter<'_> {
                 Some(preset) => {
                     let unknown = || {
                         let what = format!("unknown conductor \"{preset}\"");
-                        SceneError::value(&bsdf.place, what, format!("use one of {}", constants::conductor_names()))
+                        SceneError::value(
+                            &bsdf.place,
+                            what,
+                            format!("use one of {}", constants::conductor_names()),
+                        )
                     };
                     let (eta, k) = constants::conductor(preset).ok_or_else(unknown)?;
                     Fresnel::Conductor { eta, k }
@@ -181,7 +188,11 @@ impl Converter<'_> {
             }
             "roughdielectric" => {
                 bsdf.ignore(&["alpha", "alpha_u", "alpha_v", "distribution", "sample_visible"]);
-                self.log.warn(&bsdf.place, "a rough dielectric is not modelled", "the surface is smooth glass")?;
+                self.log.warn(
+                    &bsdf.place,
+                    "a rough dielectric is not modelled",
+                    "the surface is smooth glass",
+                )?;
             }
             _ => {}
         }
@@ -225,7 +236,11 @@ impl Converter<'_> {
         let alpha = if bsdf.has("alpha_u") || bsdf.has("alpha_v") {
             let (u, v) = (self.alpha(bsdf, "alpha_u")?, self.alpha(bsdf, "alpha_v")?);
             if u != v {
-                self.log.warn(&bsdf.place, "anisotropic roughness is not modelled", "the geometric mean is used")?;
+                self.log.warn(
+                    &bsdf.place,
+                    "anisotropic roughness is not modelled",
+                    "the geometric mean is used",
+                )?;
             }
             (u * v).sqrt()
         } else {

@@ -83,7 +83,11 @@ impl Converter<'_> {
         let inner = emitter.float("beam_width")?.unwrap_or(0.75 * outer);
         if !(0.0..=outer).contains(&inner) || outer > 180.0 {
             let what = format!("beam_width {inner} and cutoff_angle {outer} make no cone");
-            return Err(SceneError::value(&emitter.place, what, "keep 0 <= beam_width <= cutoff_angle <= 180"));
+            return Err(SceneError::value(
+                &emitter.place,
+                what,
+                "keep 0 <= beam_width <= cutoff_angle <= 180",
+            ));
         }
         let direction = self.unit(emitter, to_world.transform_vector3(DVec3::Z))?;
         let position = to_world.transform_point3(DVec3::ZERO);
@@ -99,7 +103,8 @@ impl Converter<'_> {
     }
 
     fn unit(&self, emitter: &Object, direction: DVec3) -> Result<Vec3, SceneError> {
-        let none = || SceneError::value(&emitter.place, "the emitter has no direction", "give one that is not zero");
+        let none =
+            || SceneError::value(&emitter.place, "the emitter has no direction", "give one that is not zero");
         Ok(direction.try_normalize().ok_or_else(none)?.as_vec3())
     }
 

@@ -9,7 +9,11 @@ impl Converter<'_> {
     /// Longest path in edges, `None` for no limit.
     pub(super) fn max_depth(&mut self, integrator: &Object) -> Result<Option<u32>, SceneError> {
         if integrator.boolean("hide_emitters", false)? {
-            self.log.warn(&integrator.place, "hide_emitters is not modelled", "emitters in view are shown")?;
+            self.log.warn(
+                &integrator.place,
+                "hide_emitters is not modelled",
+                "emitters in view are shown",
+            )?;
         }
         if integrator.plugin == "direct" {
             return Ok(Some(2));

@@ -98,7 +98,11 @@ impl Converter<'_> {
         let resolution = [size("width", 768)?, size("height", 576)?];
         for crop in ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"] {
             if film.property(crop).is_some() {
-                self.log.warn(&film.place, "the film's crop is not taken over", "the whole film is rendered")?;
+                self.log.warn(
+                    &film.place,
+                    "the film's crop is not taken over",
+                    "the whole film is rendered",
+                )?;
             }
         }
         // A pixel is the mean over its square here, whatever the filter asked for.
@@ -126,23 +130,40 @@ fn horizontal_fov(sensor: &Object, aspect: f64) -> Result<f64, SceneError> {
         (None, _) => {
             let text = sensor.string("focal_length")?.unwrap_or("50mm".into());
             let millimetres = text.trim_end_matches("mm").trim().parse::<f64>().ok().filter(|v| *v > 0.0);
-            let millimetres =
-                millimetres.ok_or_else(|| wrong(format!("cannot read focal_length \"{text}\""), "write e.g. 50mm"))?;
+            let millimetres = millimetres
+                .ok_or_else(|| wrong(format!("cannot read focal_length \"{text}\""), "write e.g. 50mm"))?;
             // The diagonal of 35 mm film.
             (2.0 * (36f64.hypot(24.0) / (2.0 * millimetres)).atan(), "diagonal".into())
         }
     };
     let tan = (0.5 * fov).tan();
     let axis = match axis.as_str() {
-        "smaller" => if aspect > 1.0 { "y" } else { "x" },
-        "larger" => if aspect > 1.0 { "x" } else { "y" },
+        "smaller" => {
+            if aspect > 1.0 {
+                "y"
+            } else {
+                "x"
+            }
+        }
+        "larger" => {
+            if aspect > 1.0 {
+                "x"
+            } else {
+                "y"
+            }
+        }
         other => other,
     };
     let tan_x = match axis {
         "x" => tan,
         "y" => tan * aspect,
         "diagonal" => tan / (1.0 + 1.0 / (aspect * aspect)).sqrt(),
-        other => return Err(wrong(format!("unknown fov_axis \"{other}\""), "use x, y, smaller, larger or diagonal")),
+        other => {
+            return Err(wrong(
+                format!("unknown fov_axis \"{other}\""),
+                "use x, y, smaller, larger or diagonal",
+            ));
+        }
     };
     if !(tan_x > 0.0 && tan_x < 1e6 && fov > 0.0 && fov < std::f64::consts::PI) {
         return Err(wrong("the field of view is not between 0 and 180 degrees".into(), "correct fov"));

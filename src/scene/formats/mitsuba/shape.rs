@@ -23,9 +23,8 @@ impl Converter<'_> {
             }
             "serialized" => {
                 let index = shape.integer("shape_index")?.unwrap_or(0);
-                let negative = || {
-                    SceneError::value(&shape.place, format!("shape_index is {index}"), "give 0 or more")
-                };
+                let negative =
+                    || SceneError::value(&shape.place, format!("shape_index is {index}"), "give 0 or more");
                 let index = usize::try_from(index).map_err(|_| negative())?;
                 Geometry::Serialized(self.file(shape, "filename")?, index)
             }

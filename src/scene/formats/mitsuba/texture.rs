@@ -35,7 +35,11 @@ impl Converter<'_> {
             Value::Integer(v) => DVec3::splat(*v as f64),
             Value::Spectrum(v) => white * *v,
             Value::Samples(samples) => {
-                self.log.warn(&property.place, "sampled spectra are not modelled", "their mean is used as grey")?;
+                self.log.warn(
+                    &property.place,
+                    "sampled spectra are not modelled",
+                    "their mean is used as grey",
+                )?;
                 white * samples.iter().map(|s| s.1).sum::<f64>() / samples.len() as f64
             }
             _ => {
@@ -136,16 +140,25 @@ impl Converter<'_> {
             // Mitsuba 0.6: 1 means linear, -1 means what the file says.
             raw |= gamma == 1.0;
             if gamma != 1.0 && gamma > 0.0 {
-                self.log.warn(&object.place, format!("a gamma of {gamma} is not modelled"), "sRGB is taken")?;
+                self.log.warn(
+                    &object.place,
+                    format!("a gamma of {gamma} is not modelled"),
+                    "sRGB is taken",
+                )?;
             }
         }
         object.ignore(&["accel", "format", "max_anisotropy", "cache"]);
         if let Some(channel) = object.string("channel")? {
-            self.log.warn(&object.place, format!("the channel \"{channel}\" is asked for"), "all are used")?;
+            self.log.warn(
+                &object.place,
+                format!("the channel \"{channel}\" is asked for"),
+                "all are used",
+            )?;
         }
         let to_uv = self.to_uv(object)?;
         let place = object.place.clone();
-        let texture = self.add_texture(TexturePlan { place, image: Image::File { path, raw }, filter, wrap, to_uv });
+        let texture =
+            self.add_texture(TexturePlan { place, image: Image::File { path, raw }, filter, wrap, to_uv });
         Ok(Reflectance::Textured { texture, scale: Rgb::ONE })
     }
 
@@ -153,9 +166,11 @@ impl Converter<'_> {
     fn checkerboard(&mut self, object: &Object) -> Result<Reflectance, SceneError> {
         let mut texel = |name: &str, default: f32| match self.reflectance(object, name, default)? {
             Reflectance::Constant(colour) => Ok(colour),
-            Reflectance::Textured { .. } => {
-                Err(SceneError::value(&object.place, "a checkerboard of textures", "give its colours as <rgb>"))
-            }
+            Reflectance::Textured { .. } => Err(SceneError::value(
+                &object.place,
+                "a checkerboard of textures",
+                "give its colours as <rgb>",
+            )),
         };
         let (even, odd) = (texel("color0", 0.4)?, texel("color1", 0.2)?);
         let picture = Picture { width: 2, height: 2, texels: vec![even, odd, odd, even] };

@@ -131,7 +131,10 @@ impl Builder {
         self.sources.push((path.to_owned(), fnv1a(&bytes)));
         let text = String::from_utf8(bytes).map_err(|e| {
             let line = e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
-            SceneError::Syntax { place: Place::line(path, line as u32 + 1), message: "the text is not UTF-8".into() }
+            SceneError::Syntax {
+                place: Place::line(path, line as u32 + 1),
+                message: "the text is not UTF-8".into(),
+            }
         })?;
         let document = roxmltree::Document::parse(&text).map_err(|e| SceneError::Syntax {
             place: Place::line(path, e.pos().row),
@@ -177,7 +180,11 @@ impl Builder {
     ) -> Result<(), SceneError> {
         let place = self.place(path, node);
         if depth > MAX_DEPTH {
-            return Err(SceneError::value(&place, "elements or includes nested too deeply", "flatten the file"));
+            return Err(SceneError::value(
+                &place,
+                "elements or includes nested too deeply",
+                "flatten the file",
+            ));
         }
         let attributes = self.attributes(node, &place)?;
         let get = |name: &str| attributes.get(name).map(String::as_str);
@@ -251,7 +258,12 @@ impl Builder {
                     value::parse(tag, &attributes, &place)?
                 };
                 let name = snake_case(need("name")?);
-                parent.properties.push(Property { name, value, place: place.clone(), used: Cell::new(false) });
+                parent.properties.push(Property {
+                    name,
+                    value,
+                    place: place.clone(),
+                    used: Cell::new(false),
+                });
             }
         }
         Ok(())
@@ -263,7 +275,8 @@ impl Builder {
         node: &roxmltree::Node,
         place: &Place,
     ) -> Result<BTreeMap<String, String>, SceneError> {
-        let replaced = |a: roxmltree::Attribute| Ok((a.name().to_owned(), self.substitute(a.value(), place)?));
+        let replaced =
+            |a: roxmltree::Attribute| Ok((a.name().to_owned(), self.substitute(a.value(), place)?));
         node.attributes().map(replaced).collect()
     }
 
@@ -296,8 +309,20 @@ impl Builder {
 
 fn is_object(tag: &str) -> bool {
     const TAGS: [&str; 14] = [
-        "scene", "bsdf", "emitter", "film", "integrator", "medium", "phase", "rfilter", "sensor", "sampler", "shape",
-        "texture", "volume", "subsurface",
+        "scene",
+        "bsdf",
+        "emitter",
+        "film",
+        "integrator",
+        "medium",
+        "phase",
+        "rfilter",
+        "sensor",
+        "sampler",
+        "shape",
+        "texture",
+        "volume",
+        "subsurface",
     ];
     TAGS.contains(&tag)
 }

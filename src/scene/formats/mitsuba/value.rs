@@ -31,7 +31,11 @@ pub(super) fn parse(tag: &str, attributes: &Attributes, place: &Place) -> Result
         attributes.get("value").map(|v| v.trim()).ok_or_else(missing)
     };
     let unreadable = |text: &str| {
-        SceneError::value(place, format!("cannot read <{tag}> value \"{text}\""), format!("write a valid {tag}"))
+        SceneError::value(
+            place,
+            format!("cannot read <{tag}> value \"{text}\""),
+            format!("write a valid {tag}"),
+        )
     };
     Ok(match tag {
         "boolean" => match text()?.to_ascii_lowercase().as_str() {
@@ -103,7 +107,11 @@ fn colour(text: &str) -> Option<DVec3> {
 /// `x`, `y`, `z`, each `default` where left out, or all in `value`.
 fn vector(attributes: &Attributes, default: f64, place: &Place) -> Result<DVec3, SceneError> {
     let unreadable = |text: &str| {
-        SceneError::value(place, format!("cannot read the vector \"{text}\""), "write one or three finite numbers")
+        SceneError::value(
+            place,
+            format!("cannot read the vector \"{text}\""),
+            "write one or three finite numbers",
+        )
     };
     if let Some(text) = attributes.get("value") {
         return match numbers(text).as_deref() {
@@ -126,7 +134,8 @@ pub(super) fn transform(operations: &[(String, Attributes, Place)]) -> Result<Va
         matrix = operation(tag, attributes, place)? * matrix;
     }
     if !matrix.is_finite() {
-        let place = operations.last().map(|o| o.2.clone()).unwrap_or(Place { path: Default::default(), line: None });
+        let place =
+            operations.last().map(|o| o.2.clone()).unwrap_or(Place { path: Default::default(), line: None });
         return Err(SceneError::value(&place, "the transform is not finite", "correct its numbers"));
     }
     Ok(Value::Transform(matrix))
@@ -145,7 +154,8 @@ fn operation(tag: &str, attributes: &Attributes, place: &Place) -> Result<DMat4,
             let axis = vector(attributes, 0.0, place)?.try_normalize();
             let axis = axis.ok_or_else(|| bad("the rotation's axis is zero".into(), "give x, y or z"))?;
             let angle = number(need("angle")?);
-            let angle = angle.ok_or_else(|| bad("cannot read the rotation's angle".into(), "write degrees"))?;
+            let angle =
+                angle.ok_or_else(|| bad("cannot read the rotation's angle".into(), "write degrees"))?;
             DMat4::from_axis_angle(axis, angle.to_radians())
         }
         "lookat" | "lookAt" => {
@@ -158,8 +168,9 @@ fn operation(tag: &str, attributes: &Attributes, place: &Place) -> Result<DMat4,
             };
             let (origin, target) = (point("origin")?, point("target")?);
             let up = if attributes.contains_key("up") { point("up")? } else { DVec3::ZERO };
-            look_at(origin, target, up)
-                .ok_or_else(|| bad("the look-at has no direction".into(), "move target away from origin, up off axis"))?
+            look_at(origin, target, up).ok_or_else(|| {
+                bad("the look-at has no direction".into(), "move target away from origin, up off axis")
+            })?
         }
         "matrix" => {
             let text = need("value")?;
@@ -173,10 +184,20 @@ fn operation(tag: &str, attributes: &Attributes, place: &Place) -> Result<DMat4,
                     DVec4::new(*c, *f, *i, 0.0),
                     DVec4::W,
                 ),
-                _ => return Err(bad(format!("cannot read the matrix \"{text}\""), "write 9 or 16 numbers, row by row")),
+                _ => {
+                    return Err(bad(
+                        format!("cannot read the matrix \"{text}\""),
+                        "write 9 or 16 numbers, row by row",
+                    ));
+                }
             }
         }
-        _ => return Err(bad(format!("unknown transform <{tag}>"), "use translate, rotate, scale, lookat or matrix")),
+        _ => {
+            return Err(bad(
+                format!("unknown transform <{tag}>"),
+                "use translate, rotate, scale, lookat or matrix",
+            ));
+        }
     })
 }
 
