@@ -24,6 +24,8 @@ pub struct AreaLight {
     /// The front's normal where the mesh is flat and emits from one side: behind its plane it is invisible.
     flat_normal: Option<Vec3>,
     triangles: Distribution,
+    /// First corner, two edges and unit normal of each triangle.
+    shapes: Vec<[Vec3; 4]>,
 }
 
 /// A point on an area light.
@@ -75,19 +77,25 @@ impl AreaLight {
             radius: 0.5 * (high - low).length(),
             flat_normal: flat.then_some(first),
             triangles,
+            shapes: (0..mesh.triangles.len())
+                .map(|t| {
+                    let [a, b, c] = mesh.corners(t);
+                    [a, b - a, c - a, shapes[t].0]
+                })
+                .collect(),
         })
     }
 
     /// A point uniform over the area; density 1/area.
     #[inline]
-    pub fn sample(&self, mesh: &Mesh, u: Vec2) -> AreaPoint {
+    pub fn sample(&self, u: Vec2) -> AreaPoint {
         let (triangle, rest) = self.triangles.sample(u.x);
-        let [a, b, c] = mesh.corners(triangle);
+        let [corner, e1, e2, normal] = self.shapes[triangle];
         let barycentric = uniform_triangle(Vec2::new(rest, u.y));
         AreaPoint {
             triangle: triangle as u32,
-            position: a + (b - a) * barycentric.x + (c - a) * barycentric.y,
-            normal: normal_and_area([a, b, c]).0,
+            position: corner + e1 * barycentric.x + e2 * barycentric.y,
+            normal,
             barycentric,
         }
     }

@@ -83,7 +83,7 @@ impl Emitters {
     ) -> Option<DirectSample> {
         let (index, choice) = self.selection.sample(self, x, n, u_choice)?;
         if let Some(light) = self.areas.get(index) {
-            let point = light.sample(&scene.meshes[light.mesh as usize], u);
+            let point = light.sample(u);
             let offset = point.position - x;
             let dist_sq = offset.length_squared();
             let distance = dist_sq.sqrt();

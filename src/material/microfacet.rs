@@ -222,19 +222,3 @@ fn erf_inv(x: f32) -> f32 {
         )
     }
 }
-
-/// Cosine-weighted direction on the hemisphere, by the concentric map.
-#[inline]
-pub(super) fn cosine_hemisphere(u: Vec2) -> Vec3 {
-    let p = 2.0 * u - 1.0;
-    let (r, phi) = if p.x.abs() > p.y.abs() {
-        (p.x, 0.25 * PI * (p.y / p.x))
-    } else if p.y != 0.0 {
-        (p.y, 0.5 * PI - 0.25 * PI * (p.x / p.y))
-    } else {
-        return Vec3::Z;
-    };
-    let (sin, cos) = phi.sin_cos();
-    // The floor keeps the sample on the open hemisphere.
-    Vec3::new(r * cos, r * sin, (1.0 - r * r).max(1e-12).sqrt())
-}

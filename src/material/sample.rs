@@ -3,9 +3,9 @@
 
 use super::bsdf::{Bsdf, mean};
 use super::fresnel;
-use super::microfacet::cosine_hemisphere;
 use super::model::{Base, Scattering};
 use crate::math::Rgb;
+use crate::sampling::cosine_hemisphere;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 

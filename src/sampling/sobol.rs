@@ -10,6 +10,11 @@
 
 use glam::Vec2;
 
+/// Tell the dimensions of a pair, and pairs, apart: the digits of π, e and the golden ratio.
+const X_SEED: u32 = 0x6487_ed51;
+const Y_SEED: u32 = 0xb7e1_5162;
+const DIMENSION_STEP: u32 = 0x9e37_79b9;
+
 /// A well-mixed 32-bit hash of two words.
 #[inline]
 pub fn hash(a: u32, b: u32) -> u32 {
@@ -22,8 +27,18 @@ pub fn hash(a: u32, b: u32) -> u32 {
     x as u32
 }
 
+/// A cheaper hash of one word (Wellons' *lowbias32*), for seeds that the scramble will mix further.
+#[inline(always)]
+fn mix(mut x: u32) -> u32 {
+    x ^= x >> 16;
+    x = x.wrapping_mul(0x7feb_352d);
+    x ^= x >> 15;
+    x = x.wrapping_mul(0x846c_a68b);
+    x ^ (x >> 16)
+}
+
 /// Owen scrambling of a bit-reversed number: every bit is flipped by a hash of the bits below it.
-#[inline]
+#[inline(always)]
 fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);
@@ -33,7 +48,7 @@ fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
 }
 
 /// Second Sobol dimension of `index`, bit-reversed.
-#[inline]
+#[inline(always)]
 fn sobol_second_reversed(mut x: u32) -> u32 {
     x ^= (x >> 16) & 0x0000_ffff;
     x ^= (x >> 8) & 0x00ff_00ff;
@@ -43,13 +58,13 @@ fn sobol_second_reversed(mut x: u32) -> u32 {
 }
 
 /// 32 random bits to [0, 1), never 1.
-#[inline]
+#[inline(always)]
 fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
 /// The order in which `seed` visits the points: a nested shuffle, so that every power-of-two run stays stratified.
-#[inline]
+#[inline(always)]
 fn shuffled(index: u32, seed: u32) -> u32 {
     scramble_reversed(index.reverse_bits(), seed).reverse_bits()
 }
@@ -59,20 +74,20 @@ fn shuffled(index: u32, seed: u32) -> u32 {
 pub fn owen_sobol_2d(index: u32, seed: u32) -> Vec2 {
     let i = shuffled(index, seed);
     // Reversing the bits of the first Sobol dimension gives the index back.
-    let x = scramble_reversed(i, hash(seed, 1)).reverse_bits();
-    let y = scramble_reversed(sobol_second_reversed(i), hash(seed, 2)).reverse_bits();
+    let x = scramble_reversed(i, mix(seed ^ X_SEED)).reverse_bits();
+    let y = scramble_reversed(sobol_second_reversed(i), mix(seed ^ Y_SEED)).reverse_bits();
     Vec2::new(unit(x), unit(y))
 }
 
 /// Point `index` of the one-dimensional Owen-scrambled van der Corput sequence called `seed`, in [0, 1).
 #[inline]
 pub fn owen_van_der_corput(index: u32, seed: u32) -> f32 {
-    unit(scramble_reversed(shuffled(index, seed), hash(seed, 1)).reverse_bits())
+    unit(scramble_reversed(shuffled(index, seed), mix(seed ^ X_SEED)).reverse_bits())
 }
 
 /// The random numbers of one sample: as many dimensions as are asked for, each stratified over the samples
 /// that share a seed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Sampler {
     seed: u32,
     index: u32,
@@ -89,15 +104,44 @@ impl Sampler {
     /// The next dimension, in [0, 1).
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
-        self.dimension += 1;
-        owen_van_der_corput(self.index, hash(self.seed, self.dimension))
+        owen_van_der_corput(self.index, self.next_seed())
     }
 
     /// The next two dimensions, in [0, 1)².
     #[inline]
     pub fn next_2d(&mut self) -> Vec2 {
-        self.dimension += 1;
-        owen_sobol_2d(self.index, hash(self.seed, self.dimension))
+        owen_sobol_2d(self.index, self.next_seed())
+    }
+
+    /// What four calls of [`Sampler::next_2d`] return, computed side by side.
+    #[inline]
+    pub fn next_4x2d(&mut self) -> [Vec2; 4] {
+        // Step by step over all lanes, so that every step is one vector operation.
+        let mut dimensions = [0; 4];
+        for d in &mut dimensions {
+            self.dimension = self.dimension.wrapping_add(DIMENSION_STEP);
+            *d = self.dimension;
+        }
+        let seeds = dimensions.map(|d| mix(self.seed ^ d));
+        let reversed = self.index.reverse_bits();
+        let indices = seeds.map(|seed| scramble_reversed(reversed, seed)).map(u32::reverse_bits);
+        let x_seeds = seeds.map(|seed| mix(seed ^ X_SEED));
+        let y_seeds = seeds.map(|seed| mix(seed ^ Y_SEED));
+        let mut x = [0; 4];
+        let mut y = indices.map(sobol_second_reversed);
+        for lane in 0..4 {
+            x[lane] = scramble_reversed(indices[lane], x_seeds[lane]);
+            y[lane] = scramble_reversed(y[lane], y_seeds[lane]);
+        }
+        let x = x.map(u32::reverse_bits).map(unit);
+        let y = y.map(u32::reverse_bits).map(unit);
+        std::array::from_fn(|lane| Vec2::new(x[lane], y[lane]))
+    }
+
+    #[inline]
+    fn next_seed(&mut self) -> u32 {
+        self.dimension = self.dimension.wrapping_add(DIMENSION_STEP);
+        mix(self.seed ^ self.dimension)
     }
 }
 
@@ -142,6 +186,15 @@ mod tests {
         // Five standard errors of a uniform mean.
         let tolerance = 5.0 * (1.0f32 / 12.0).sqrt() / (n as f32).sqrt();
         assert!((mean - 0.5).abs().max_element() < tolerance, "{mean}");
+    }
+
+    #[test]
+    fn four_at_once_are_the_next_four() {
+        let mut one = Sampler::new(11, 12345);
+        let mut four = one.clone();
+        let expected: [Vec2; 4] = std::array::from_fn(|_| one.next_2d());
+        assert_eq!(four.next_4x2d(), expected);
+        assert_eq!(four.next_1d(), one.next_1d());
     }
 
     #[test]

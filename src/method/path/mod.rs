@@ -14,8 +14,8 @@
 //! sampling are joined by the power heuristic. The variance beside the picture is the sample variance over
 //! the number of samples: an estimate on the safe side, since stratification makes the true one smaller.
 
-mod integrator;
+mod batch;
 mod render;
+mod vertex;
 
-pub use integrator::{Counts, radiance};
 pub use render::{Settings, render};

@@ -1,6 +1,6 @@
 //! The picture: pixels in tiles, samples in passes.
 
-use super::integrator::{Counts, radiance};
+use super::batch::{Batch, Counts};
 use crate::eye::{Window, primary_ray};
 use crate::image::Image;
 use crate::math::Rgb;
@@ -15,6 +15,10 @@ const TILE: u32 = 16;
 
 /// Samples a pixel takes before the next pass; a cancelled render keeps whole passes of each tile.
 const PASS: u32 = 16;
+
+/// Samples of a tile's pixels that are traced together: enough paths to fill packets to the end, few enough
+/// for the second-level cache.
+const BATCH: u32 = 4;
 
 /// What the user may set.
 #[derive(Clone, Copy, Debug)]
@@ -109,22 +113,30 @@ impl Tile {
         if self.pixels.is_empty() {
             self.pixels = vec![Pixel::default(); coordinates.count()];
         }
-        for (pixel, at) in self.pixels.iter_mut().zip(tile_pixels(window, corner)) {
-            let [x, y] = window.film_pixel(at);
-            // The film's own coordinates, so that a crop repeats the whole picture's pixels.
-            let seed = hash(hash(x, y), settings.seed);
-            for sample in begin..end {
-                let mut sampler = Sampler::new(seed, sample);
-                let jitter = sampler.next_2d();
-                let ray = primary_ray(&world.scene.camera, window, [x, y], jitter);
-                let mut value = radiance(world, ray, max_depth, &mut sampler, &mut self.counts);
-                if !value.is_finite() {
-                    self.nonfinite += 1;
-                    value = Rgb::ZERO;
+        let mut batch = Batch::default();
+        for first in (begin..end).step_by(BATCH as usize) {
+            let samples = first..(first + BATCH).min(end);
+            for at in tile_pixels(window, corner) {
+                // The film's own coordinates, so that a crop repeats the whole picture's pixels.
+                let [x, y] = window.film_pixel(at);
+                let seed = hash(hash(x, y), settings.seed);
+                for sample in samples.clone() {
+                    let mut sampler = Sampler::new(seed, sample);
+                    let jitter = sampler.next_2d();
+                    batch.push(primary_ray(&world.scene.camera, window, [x, y], jitter), sampler);
                 }
-                let difference = value - pixel.mean;
-                pixel.mean += difference / (sample + 1) as f32;
-                pixel.squares += difference * (value - pixel.mean);
+            }
+            let mut values = batch.trace(world, max_depth, &mut self.counts);
+            for pixel in &mut self.pixels {
+                for (sample, mut value) in samples.clone().zip(values.by_ref()) {
+                    if !value.is_finite() {
+                        self.nonfinite += 1;
+                        value = Rgb::ZERO;
+                    }
+                    let difference = value - pixel.mean;
+                    pixel.mean += difference / (sample + 1) as f32;
+                    pixel.squares += difference * (value - pixel.mean);
+                }
             }
         }
         self.samples = end;
