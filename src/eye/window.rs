@@ -23,6 +23,19 @@ impl Window {
         Window { film, offset: [0, 0], width: film[0], height: film[1] }
     }
 
+    /// How many pixels are rendered.
+    pub fn pixel_count(&self) -> u64 {
+        self.width as u64 * self.height as u64
+    }
+
+    /// Whether the rectangle lies on the film and has at least one pixel.
+    pub fn is_valid(&self) -> bool {
+        let end = |offset: u32, length: u32| offset as u64 + length as u64;
+        self.pixel_count() > 0
+            && end(self.offset[0], self.width) <= self.film[0] as u64
+            && end(self.offset[1], self.height) <= self.film[1] as u64
+    }
+
     /// Film coordinates of a pixel of the window.
     #[inline]
     pub fn film_pixel(&self, [x, y]: [u32; 2]) -> [u32; 2] {

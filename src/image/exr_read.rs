@@ -1,7 +1,8 @@
 //! Reads the colours of any flat OpenEXR file: half, float or integer channels, layered names, several parts.
 
 use super::exr_write::PREFIX;
-use super::{Image, ImageError, Metadata, Value, Window};
+use super::{Image, ImageError, Metadata, Value};
+use crate::eye::Window;
 use crate::math::Rgb;
 use ::exr::meta::header::Header;
 use ::exr::prelude::{
@@ -75,21 +76,18 @@ impl ExrFile {
         names
     }
 
-    /// The window that the first part covers, and the whole film's size.
-    pub fn window(&self) -> (Window, [u32; 2]) {
+    /// The window that the first part covers within the whole film.
+    pub fn window(&self) -> Window {
         let display = self.parts.attributes.display_window;
-        let [width, height] = [display.size.0 as u32, display.size.1 as u32];
-        let Some(part) = self.parts.layer_data.first() else {
-            return (Window { x: 0, y: 0, width: 0, height: 0 }, [width, height]);
-        };
+        let film = [display.size.0 as u32, display.size.1 as u32];
+        let Some(part) = self.parts.layer_data.first() else { return Window::whole(film) };
         let Vec2(x, y) = part.attributes.layer_position - display.position;
-        let window = Window {
-            x: x.max(0) as u32,
-            y: y.max(0) as u32,
+        Window {
+            film,
+            offset: [x.max(0) as u32, y.max(0) as u32],
             width: part.size.0 as u32,
             height: part.size.1 as u32,
-        };
-        (window, [width, height])
+        }
     }
 
     /// What we wrote about the picture, sorted by key; empty for files of other programs.

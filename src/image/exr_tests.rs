@@ -1,6 +1,7 @@
 //! What is written comes back, whole, in any shape; what other programs write is read.
 
 use super::*;
+use crate::eye::Window;
 use crate::math::Rgb;
 use ::exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, ImageAttributes, Layer,
@@ -21,8 +22,7 @@ fn a_film_comes_back_bit_by_bit_with_its_layers_window_and_metadata() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("film.exr");
     let mut film = Film::new(ramp(37, 21));
-    film.resolution = [100, 60];
-    film.window = Window { x: 11, y: 7, width: 37, height: 21 };
+    film.window = Window { film: [100, 60], offset: [11, 7], width: 37, height: 21 };
     let mut variance = ramp(37, 21);
     variance.pixels.reverse();
     film.layers.push(("variance".to_owned(), variance.clone()));
@@ -37,7 +37,7 @@ fn a_film_comes_back_bit_by_bit_with_its_layers_window_and_metadata() {
     assert_eq!(file.color().unwrap(), film.color);
     assert_eq!(file.layer("variance").unwrap(), variance);
     assert_eq!(file.layers(), ["", "variance"]);
-    assert_eq!(file.window(), (film.window, film.resolution));
+    assert_eq!(file.window(), film.window);
     let metadata = file.metadata();
     assert_eq!(metadata.iter().count(), 5);
     for (key, value) in film.metadata.iter() {

@@ -43,7 +43,7 @@ pub fn write_exr(path: &Path, film: &Film) -> std::result::Result<(), ImageError
     };
     let size = Vec2(window.width as usize, window.height as usize);
     let layer = Layer::new(size, attributes(film), encoding, AnyChannels::sort(channels));
-    let resolution = Vec2(film.resolution[0] as usize, film.resolution[1] as usize);
+    let resolution = Vec2(window.film[0] as usize, window.film[1] as usize);
     let mut picture = Image::new(ImageAttributes::with_size(resolution), layer);
     picture.attributes.chromaticities = Some(::exr::meta::attribute::Chromaticities {
         red: Vec2(0.64, 0.33),
@@ -57,7 +57,7 @@ pub fn write_exr(path: &Path, film: &Film) -> std::result::Result<(), ImageError
 
 fn attributes(film: &Film) -> LayerAttributes {
     let mut attributes = LayerAttributes {
-        layer_position: Vec2(film.window.x as i32, film.window.y as i32),
+        layer_position: Vec2(film.window.offset[0] as i32, film.window.offset[1] as i32),
         software_name: Some(Text::from(concat!("lightsplat ", env!("CARGO_PKG_VERSION")))),
         ..LayerAttributes::default()
     };

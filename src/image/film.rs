@@ -1,13 +1,12 @@
 //! What a picture file holds: named layers over one window of the film, and what is known about them.
 
-use super::{Image, ImageError, Window};
+use super::{Image, ImageError};
+use crate::eye::Window;
 
 /// The picture of one frame with everything that is written beside the colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
-    /// Width and height of the whole film.
-    pub resolution: [u32; 2],
-    /// The part of it that the layers cover.
+    /// The part of the film that the layers cover.
     pub window: Window,
     /// Radiance by pixel.
     pub color: Image,
@@ -20,14 +19,8 @@ pub struct Film {
 impl Film {
     /// A film of one complete image.
     pub fn new(color: Image) -> Film {
-        let resolution = [color.width, color.height];
-        Film {
-            resolution,
-            window: Window::full(resolution),
-            color,
-            layers: Vec::new(),
-            metadata: Metadata::default(),
-        }
+        let window = Window::whole([color.width, color.height]);
+        Film { window, color, layers: Vec::new(), metadata: Metadata::default() }
     }
 
     /// All images with their layer names; the colour's is empty.
@@ -45,9 +38,9 @@ impl Film {
     /// Fails unless every image has the window's size and the window lies on the film.
     pub fn check_sizes(&self) -> Result<(), ImageError> {
         let window = [self.window.width, self.window.height];
-        if !self.window.fits(self.resolution) {
+        if !self.window.is_valid() {
             let what = "the rendered window does not lie on the film".to_owned();
-            return Err(ImageError::Size { what, sizes: [window, self.resolution] });
+            return Err(ImageError::Size { what, sizes: [window, self.window.film] });
         }
         for (name, image) in self.images() {
             if [image.width, image.height] != window || image.pixels.len() as u64 != self.window.pixel_count()
@@ -152,7 +145,7 @@ mod tests {
         film.layers.push(("variance".to_owned(), Image::new(2, 3)));
         assert!(film.check_sizes().unwrap_err().to_string().contains("variance"));
         film.layers.clear();
-        film.window.x = 1;
+        film.window.offset[0] = 1;
         assert!(film.check_sizes().is_err());
     }
 
