@@ -1,8 +1,11 @@
 //! Upper bounds of BSDF · cosine over sets of directions, for clusters of lights.
 //!
-//! The facet normal h is half-way between wo and wi, so the angle between n and h is at least half the angle
-//! between wi and the mirror direction of wo: that bounds D. Masking times cosine grows with cos θ_i, the
-//! Fresnel reflectance with the angle between wo and h, which is at most half the sum of the two inclinations.
+//! With c = cos θ_i and m = wi · (mirror direction of wo), the other angles follow: wo · wi = 2 cos θ_o c - m, so
+//! the facet normal h half-way between has cos² θ_h = (cos θ_o + c)² / (2 + 4 cos θ_o c - 2 m), and
+//! cos² (wo, h) = (1 + 2 cos θ_o c - m) / 2. The first grows with m and has no maximum in c between the ends of
+//! its range; the second is least at the smallest c and the largest m. That bounds D and the Fresnel reflectance;
+//! masking times cosine grows with c. Independently of c, the angle between n and h is at least half that between
+//! wi and the mirror direction, and the angle between wo and h at most half the sum of the two inclinations.
 //!
 //! Paper: Walter et al., *Lightcuts*, 2005, section 4.1, for the use made of such bounds.
 
@@ -23,9 +26,8 @@ pub struct DirectionBound {
     pub cos_mirror_max: f32,
 }
 
-/// Added to sin² θ_h's lower bound: twice the rounding of a cosine near 1, so that caller and bound may each
-/// have rounded once. It matters for α below 0.01.
-const SIN_SQ_SLACK: f32 = 2.5e-7;
+/// Rounding of a cosine or of a product of two, in the caller and here. It matters for α below 0.01.
+const SLACK: f32 = 5e-7;
 
 impl Bsdf<'_> {
     /// An upper bound, per channel, of `eval(wo, wi)` · cos θ_i over all `wi` within `bound`.
@@ -51,18 +53,36 @@ impl Bsdf<'_> {
         };
         let Scattering::Rough(facets, fresnel) = &self.model.lobe else { return base };
         let cos_o = wo.z.min(1.0);
-        let sin_sq_h = (0.5 * (1.0 - bound.cos_mirror_max) - SIN_SQ_SLACK).clamp(0.0, 1.0);
-        let density = facets.max_density(sin_sq_h);
+        let cos_min = bound.cos_i_min.clamp(0.0, cos_max);
+        let density = facets.max_density(min_facet_sin_sq(cos_o, cos_min, cos_max, bound.cos_mirror_max));
         let masked = density * facets.v1(cos_o) * 0.5 * facets.max_g1(cos_max);
-        let cos_d = half_angle_cos(cos_o, bound.cos_i_min.clamp(0.0, 1.0));
-        base + self.scale * fresnel.max_reflectance(cos_d) * masked
+        let cos_d = min_facet_cos(cos_o, cos_min, bound.cos_mirror_max);
+        // The factor covers the rounding of the reflectance and of D at the tip of a narrow lobe.
+        let reflectance = fresnel.max_reflectance(cos_d, self.model.normal_reflectance);
+        base + self.scale * reflectance * (masked * 1.000_01)
     }
 }
 
-/// Cosine of half the sum of two angles given by their cosines, both in 0..=1; rounded down.
+/// The least squared sine of the facet normal's inclination.
 #[inline]
-fn half_angle_cos(cos_a: f32, cos_b: f32) -> f32 {
-    let sin_product = ((1.0 - cos_a * cos_a) * (1.0 - cos_b * cos_b)).max(0.0).sqrt();
-    let cos_sum = cos_a * cos_b - sin_product;
-    (0.5 * (1.0 + cos_sum) - 1e-6).max(0.0).sqrt()
+fn min_facet_sin_sq(cos_o: f32, cos_i_min: f32, cos_i_max: f32, cos_mirror: f32) -> f32 {
+    let at = |cos_i: f32| {
+        // 1 - cos² θ_h, the numerator arranged so that nothing large cancels. Where cos_i and cos_mirror
+        // exclude each other this may be anything; the bound below then decides.
+        let length_sq = 2.0 + 4.0 * cos_o * cos_i - 2.0 * cos_mirror;
+        let difference = cos_o - cos_i;
+        (2.0 * (1.0 - cos_mirror - SLACK) - difference * difference) / length_sq.max(SLACK)
+    };
+    let by_cosines = at(cos_i_min).min(at(cos_i_max));
+    let by_mirror = 0.5 * (1.0 - cos_mirror - SLACK);
+    by_cosines.max(by_mirror).clamp(0.0, 1.0)
+}
+
+/// The least cosine between `wo` and the facet normal.
+#[inline]
+fn min_facet_cos(cos_o: f32, cos_i_min: f32, cos_mirror: f32) -> f32 {
+    let product = cos_o * cos_i_min;
+    let sin_product = ((1.0 - cos_o * cos_o) * (1.0 - cos_i_min * cos_i_min)).max(0.0).sqrt();
+    let cos_between = (2.0 * product - cos_mirror).max(product - sin_product);
+    (0.5 * (1.0 + cos_between) - SLACK).max(0.0).sqrt()
 }

@@ -5,15 +5,17 @@
 //!
 //! Paper: Walter et al., *Microfacet Models for Refraction through Rough Surfaces*, 2007 (D, G1); Heitz and
 //! d'Eon, *Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals*, 2014;
-//! Dupuy and Benyoub, *Sampling Visible GGX Normals with Spherical Caps*, 2023; Giles, *Approximating the
+//! Heitz, *Sampling the GGX Distribution of Visible Normals*, 2018; Giles, *Approximating the
 //! erfinv function*, 2010; Abramowitz and Stegun 7.1.26 (erfc).
 //! Deviations: Beckmann's masking in the BSDF is Walter's rational fit (as Mitsuba's is), but the sampling
 //! density uses the exact function, because visible normals are distributed by that one; the sample's weight
 //! makes up for the difference (up to 0.35 %).
 
+use crate::math::Rgb;
+use crate::sampling::uniform_disk;
 use crate::scene::Distribution;
 use glam::{Vec2, Vec3};
-use std::f32::consts::{FRAC_1_PI, PI, TAU};
+use std::f32::consts::FRAC_1_PI;
 
 const FRAC_1_SQRT_PI: f32 = 0.564_189_6;
 /// Smoother surfaces are given this roughness; a perfect mirror is a material of its own.
@@ -49,9 +51,14 @@ impl Microfacets {
                 FRAC_1_PI / (a2 * t * t)
             }
             Distribution::Beckmann => {
-                // The floor keeps cos⁴ representable; D there is 0 to any precision.
+                // The floor keeps cos⁴ representable; D there is 0 to any precision, as it is below e⁻⁵⁰,
+                // where subnormal numbers would only cost time.
                 let cos_sq = cos_sq.max(1e-16);
-                (-sin_sq / (a2 * cos_sq)).exp() * FRAC_1_PI / (a2 * cos_sq * cos_sq)
+                let exponent = sin_sq / (a2 * cos_sq);
+                if exponent > 50.0 {
+                    return 0.0;
+                }
+                (-exponent).exp() * FRAC_1_PI / (a2 * cos_sq * cos_sq)
             }
         }
     }
@@ -120,32 +127,72 @@ impl Microfacets {
     pub fn sample_visible(&self, wo: Vec3, u: Vec2) -> Vec3 {
         let stretched = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalize();
         match self.distribution {
-            Distribution::Ggx => {
-                let (sin_phi, cos_phi) = (TAU * u.x).sin_cos();
-                let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
-                let r = (1.0 - z * z).max(0.0).sqrt();
-                let h = Vec3::new(r * cos_phi, r * sin_phi, z) + stretched;
-                let h = Vec3::new(self.alpha * h.x, self.alpha * h.y, h.z.max(0.0));
-                // h vanishes only where the cap's far end meets a grazing wo exactly.
-                h.try_normalize().unwrap_or(Vec3::Z)
-            }
+            Distribution::Ggx => self.visible_ggx_normal(stretched, u),
             Distribution::Beckmann => {
-                let sin = (stretched.x * stretched.x + stretched.y * stretched.y).sqrt();
-                let (cos_phi, sin_phi) =
-                    if sin > 0.0 { (stretched.x / sin, stretched.y / sin) } else { (1.0, 0.0) };
-                let along = visible_gaussian_slope(sin, stretched.z, u.x);
-                let across = erf_inv(2.0 * u.y.clamp(1e-7, 1.0 - 1e-7) - 1.0);
-                let x = cos_phi * along - sin_phi * across;
-                let y = sin_phi * along + cos_phi * across;
-                Vec3::new(-self.alpha * x, -self.alpha * y, 1.0).normalize()
+                let along = visible_gaussian_slope(stretched, u.x);
+                self.normal_from_slopes(stretched, along, gaussian_slope(u.y))
             }
         }
     }
+
+    /// Mean of `f(h)` over the facet normals seen from `wo`, by a product rule of `nodes` (even) nodes each
+    /// way; `wo` is in the xz plane and `f` symmetric about it, so one half is enough.
+    pub fn mean_over_visible(&self, wo: Vec3, rule: &[(f32, f32)], f: impl Fn(Vec3) -> Rgb) -> Rgb {
+        let stretched = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalize();
+        let half = &rule[..rule.len() / 2];
+        let mut sum = Rgb::ZERO;
+        for &(u, weight_u) in rule {
+            let along = match self.distribution {
+                Distribution::Ggx => 0.0,
+                Distribution::Beckmann => visible_gaussian_slope(stretched, u),
+            };
+            for &(v, weight_v) in half {
+                let h = match self.distribution {
+                    Distribution::Ggx => self.visible_ggx_normal(stretched, Vec2::new(v, u)),
+                    Distribution::Beckmann => self.normal_from_slopes(stretched, along, gaussian_slope(v)),
+                };
+                sum += 2.0 * weight_u * weight_v * f(h);
+            }
+        }
+        sum
+    }
+
+    /// A visible normal of the unit hemisphere seen from `stretched`, unstretched.
+    #[inline]
+    fn visible_ggx_normal(&self, stretched: Vec3, u: Vec2) -> Vec3 {
+        let across = Vec3::new(-stretched.y, stretched.x, 0.0).try_normalize().unwrap_or(Vec3::Y);
+        let up = stretched.cross(across);
+        // The hemisphere seen from there: a half disk above, a half ellipse below.
+        let mut p = uniform_disk(u);
+        let s = 0.5 * (1.0 + stretched.z);
+        p.y = (1.0 - s) * (1.0 - p.x * p.x).max(0.0).sqrt() + s * p.y;
+        let towards = (1.0 - p.length_squared()).max(0.0).sqrt();
+        let n = p.x * across + p.y * up + towards * stretched;
+        Vec3::new(self.alpha * n.x, self.alpha * n.y, n.z.max(0.0)).try_normalize().unwrap_or(Vec3::Z)
+    }
+
+    /// The normal of a facet whose slopes along and across the view are given for unit roughness.
+    #[inline]
+    fn normal_from_slopes(&self, stretched: Vec3, along: f32, across: f32) -> Vec3 {
+        let sin = (stretched.x * stretched.x + stretched.y * stretched.y).sqrt();
+        let (cos_phi, sin_phi) = if sin > 0.0 { (stretched.x / sin, stretched.y / sin) } else { (1.0, 0.0) };
+        let x = cos_phi * along - sin_phi * across;
+        let y = sin_phi * along + cos_phi * across;
+        Vec3::new(-self.alpha * x, -self.alpha * y, 1.0).normalize()
+    }
+}
+
+/// Slope across the view of a facet of unit roughness; being visible does not depend on it.
+#[inline]
+fn gaussian_slope(u: f32) -> f32 {
+    erf_inv(2.0 * u.clamp(1e-7, 1.0 - 1e-7) - 1.0)
 }
 
 /// Slope along the viewing direction of a visible facet of unit roughness: distributed as
 /// (cos θ - x sin θ)⁺ exp(-x²), inverted by Newton's method within a bracket.
-fn visible_gaussian_slope(sin: f32, cos: f32, u: f32) -> f32 {
+fn visible_gaussian_slope(stretched: Vec3, u: f32) -> f32 {
+    let cos = stretched.z;
+    let sin = (stretched.x * stretched.x + stretched.y * stretched.y).sqrt();
     let u = u.clamp(1e-7, 1.0 - 1e-7);
     // Unnormalised distribution function times 2.
     let cdf = |x: f32| {

@@ -27,6 +27,8 @@ pub(super) struct Model {
     pub lobe: Scattering,
     /// Cosine-weighted mean of the coat's transmittance; 1 without a coat.
     pub mean_transmittance: f32,
+    /// Fresnel reflectance of a rough lobe at normal incidence.
+    pub normal_reflectance: Rgb,
     /// Albedo of a rough lobe by angle, where something asks for it.
     pub lobe_albedo: Option<Arc<AngleTable<Rgb>>>,
     /// Base albedo to its BRDF, less the transmittances by angle: factor, and internal reflectance.
@@ -159,6 +161,10 @@ impl Model {
             base,
             lobe,
             mean_transmittance,
+            normal_reflectance: match lobe {
+                Scattering::Rough(_, fresnel) => fresnel.reflectance(1.0),
+                _ => Rgb::ZERO,
+            },
             lobe_albedo,
             base_factor: FRAC_1_PI / (coat.eta * coat.eta),
             internal_reflectance,

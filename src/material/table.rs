@@ -10,7 +10,7 @@ use super::microfacet::Microfacets;
 use super::quadrature::gauss_legendre;
 use crate::math::Rgb;
 use crate::scene::Fresnel;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
 use std::array;
 use std::ops::{Add, Mul, Sub};
@@ -71,15 +71,16 @@ pub(super) struct RoughCoat {
 
 impl RoughCoat {
     pub fn new(facets: &Microfacets, eta: f32) -> RoughCoat {
-        let transmittance = AngleTable::new(|wo| transmittance(facets, eta, wo));
+        // Beyond the critical angle the integrand has a kink, hence more nodes towards the rarer side.
+        let (coarse, fine) = (gauss_legendre(32), gauss_legendre(128));
+        let (outside_rule, inside_rule) = if eta > 1.0 { (&coarse, &fine) } else { (&fine, &coarse) };
+        let transmittance = AngleTable::new(|wo| transmittance(facets, eta, wo, outside_rule));
         let mut max_transmittance = transmittance;
         for i in 1..ANGLES {
             max_transmittance.0[i] = max_transmittance.0[i].max(max_transmittance.0[i - 1]);
         }
         let inside = Fresnel::Dielectric(1.0 / eta);
-        // The critical angle is a kink in the integrand, hence more nodes than outside.
-        let nodes = if eta > 1.0 { 128 } else { 32 };
-        let reflected = AngleTable::new(|wo| albedo(facets, &inside, wo, nodes).x);
+        let reflected = AngleTable::new(|wo| albedo(facets, &inside, wo, inside_rule).x);
         let internal_reflectance =
             (0..ANGLES).map(|i| reflected.0[i] * direction(i).z).sum::<f32>() * 2.0 / ANGLES as f32;
         RoughCoat {
@@ -93,47 +94,33 @@ impl RoughCoat {
 
 /// Albedo of a rough lobe by angle, before its scale.
 pub(super) fn lobe_albedo(facets: &Microfacets, fresnel: &Fresnel) -> AngleTable<Rgb> {
-    AngleTable::new(|wo| albedo(facets, fresnel, wo, 32))
+    let rule = gauss_legendre(32);
+    AngleTable::new(|wo| albedo(facets, fresnel, wo, &rule))
 }
 
 /// Light from `wo` that single scattering on the facets reflects back to its side.
-fn albedo(facets: &Microfacets, fresnel: &Fresnel, wo: Vec3, nodes: usize) -> Rgb {
-    integrate_visible(facets, wo, nodes, |h, cos| {
+fn albedo(facets: &Microfacets, fresnel: &Fresnel, wo: Vec3, rule: &[(f32, f32)]) -> Rgb {
+    facets.mean_over_visible(wo, rule, |h| {
+        let cos = wo.dot(h);
         let wi = 2.0 * cos * h - wo;
-        if wi.z <= 0.0 {
+        if cos <= 0.0 || wi.z <= 0.0 {
             return Rgb::ZERO;
         }
-        fresnel.reflectance(cos) * (2.0 * wi.z * facets.v1(wi.z.min(1.0)))
+        fresnel.reflectance(cos.min(1.0)) * (2.0 * wi.z * facets.v1(wi.z.min(1.0)))
     })
 }
 
 /// Light from `wo` that single scattering on the facets refracts to the other side.
-fn transmittance(facets: &Microfacets, eta: f32, wo: Vec3) -> f32 {
-    let nodes = if eta > 1.0 { 32 } else { 128 };
-    integrate_visible(facets, wo, nodes, |h, cos| {
+fn transmittance(facets: &Microfacets, eta: f32, wo: Vec3, rule: &[(f32, f32)]) -> f32 {
+    let mean = facets.mean_over_visible(wo, rule, |h| {
+        let cos = wo.dot(h).min(1.0);
         let interface = fresnel::interface(cos, eta);
         let wi = (cos / interface.eta - interface.cos_t) * h - wo / interface.eta;
-        if wi.z >= 0.0 {
+        if cos <= 0.0 || wi.z >= 0.0 {
             return Rgb::ZERO;
         }
         let cos_t = (-wi.z).min(1.0);
         Rgb::splat((1.0 - interface.reflectance) * 2.0 * cos_t * facets.v1(cos_t))
-    })
-    .x
-}
-
-/// Mean of `f(h, wo·h)` over the visible normals.
-fn integrate_visible(facets: &Microfacets, wo: Vec3, nodes: usize, f: impl Fn(Vec3, f32) -> Rgb) -> Rgb {
-    let rule = gauss_legendre(nodes);
-    let mut sum = Rgb::ZERO;
-    for &(u, weight_u) in &rule {
-        for &(v, weight_v) in &rule {
-            let h = facets.sample_visible(wo, Vec2::new(u, v));
-            let cos = wo.dot(h);
-            if cos > 0.0 {
-                sum += weight_u * weight_v * f(h, cos.min(1.0));
-            }
-        }
-    }
-    sum
+    });
+    mean.x
 }

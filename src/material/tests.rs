@@ -1,1 +1,190 @@
-//! Properties of every kind of material.
+//! Properties of every kind of material, and what the tests share.
+
+mod agreement;
+mod bounds;
+mod energy;
+mod sampling;
+
+use super::*;
+use crate::math::Rgb;
+use crate::scene::{
+    Camera, Coat, Distribution, Filter, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene, Texture,
+    TextureId, Wrap,
+};
+use glam::{DVec3, Mat3, Vec2, Vec3};
+
+/// A scene of nothing but materials (and one 2x1 texture: red at u < 1/2, green beyond).
+fn scene(materials: Vec<Material>) -> Scene {
+    Scene {
+        name: String::new(),
+        sources: Vec::new(),
+        camera: Camera {
+            origin: Vec3::ZERO,
+            forward: Vec3::Z,
+            right: Vec3::X,
+            up: Vec3::Y,
+            tan_half_x: 1.0,
+            near: 0.0,
+            far: f32::INFINITY,
+        },
+        camera_path: Vec::new(),
+        resolution: [1, 1],
+        max_depth: None,
+        meshes: Vec::new(),
+        materials,
+        textures: vec![Texture {
+            name: String::new(),
+            width: 2,
+            height: 1,
+            texels: vec![Rgb::X, Rgb::Y],
+            filter: Filter::Nearest,
+            wrap: Wrap::Repeat,
+            to_uv: Mat3::IDENTITY,
+        }],
+        lights: Vec::new(),
+        environment: None,
+        centre: DVec3::ZERO,
+    }
+}
+
+/// Runs `f` on the BSDF of an untextured material.
+fn with_bsdf<R>(material: &Material, f: impl FnOnce(Bsdf) -> R) -> R {
+    let scene = scene(vec![material.clone()]);
+    let materials = Materials::new(&scene);
+    f(materials.at(&scene, MaterialId(0), Vec2::ZERO))
+}
+
+const GOLD: Fresnel =
+    Fresnel::Conductor { eta: Rgb::new(0.143119, 0.374957, 1.44248), k: Rgb::new(3.98316, 2.38572, 1.60322) };
+const PAINT: Rgb = Rgb::new(0.2, 0.5, 0.9);
+
+fn constant(value: Rgb) -> Reflectance {
+    Reflectance::Constant(value)
+}
+
+fn material(name: &str, diffuse: Rgb, coat: Option<Coat>, lobe: Lobe) -> Material {
+    Material { name: name.into(), two_sided: false, diffuse: constant(diffuse), coat, lobe }
+}
+
+fn lambert(albedo: Rgb) -> Material {
+    material("diffuse", albedo, None, Lobe::None)
+}
+
+fn plastic(nonlinear: bool) -> Material {
+    let lobe = Lobe::Mirror { fresnel: Fresnel::Dielectric(1.5), scale: constant(Rgb::ONE) };
+    let name = format!("plastic_{}", u8::from(nonlinear));
+    material(&name, PAINT, Some(Coat { eta: 1.5, nonlinear }), lobe)
+}
+
+fn rough_plastic(distribution: Distribution, alpha: f32, nonlinear: bool) -> Material {
+    let fresnel = Fresnel::Dielectric(1.5);
+    let lobe = Lobe::Rough { distribution, alpha, fresnel, scale: constant(Rgb::ONE) };
+    let name = format!("roughplastic_{}_{alpha}_{}", label(distribution), u8::from(nonlinear));
+    material(&name, PAINT, Some(Coat { eta: 1.5, nonlinear }), lobe)
+}
+
+fn rough_conductor(distribution: Distribution, alpha: f32, scale: Rgb) -> Material {
+    let lobe = Lobe::Rough { distribution, alpha, fresnel: GOLD, scale: constant(scale) };
+    let name = format!("roughconductor_{}_{alpha}", label(distribution));
+    material(&name, Rgb::ZERO, None, lobe)
+}
+
+fn glossy(diffuse: Rgb, specular: f32, alpha: f32) -> Material {
+    let scale = constant(Rgb::splat(specular));
+    let lobe = Lobe::Rough { distribution: Distribution::Ggx, alpha, fresnel: Fresnel::One, scale };
+    material(&format!("glossy_{alpha}"), diffuse, None, lobe)
+}
+
+fn mirror(fresnel: Fresnel) -> Material {
+    material("mirror", Rgb::ZERO, None, Lobe::Mirror { fresnel, scale: constant(Rgb::ONE) })
+}
+
+fn glass(eta: f32) -> Material {
+    let one = constant(Rgb::ONE);
+    material("glass", Rgb::ZERO, None, Lobe::Dielectric { eta, reflectance: one, transmittance: one })
+}
+
+fn label(distribution: Distribution) -> &'static str {
+    match distribution {
+        Distribution::Ggx => "ggx",
+        Distribution::Beckmann => "beckmann",
+    }
+}
+
+/// Every kind of material that has a smooth part, over the range of roughnesses.
+fn smooth_materials() -> Vec<Material> {
+    let mut all = vec![lambert(PAINT), plastic(false), plastic(true)];
+    for distribution in [Distribution::Ggx, Distribution::Beckmann] {
+        for alpha in [0.05, 0.1, 0.3, 0.8] {
+            all.push(rough_plastic(distribution, alpha, alpha == 0.1));
+            all.push(rough_conductor(distribution, alpha, Rgb::new(0.9, 0.8, 0.7)));
+        }
+    }
+    for alpha in [0.05, 0.2, 0.5, 1.0] {
+        all.push(glossy(Rgb::splat(0.4), 0.3, alpha));
+    }
+    all.push(Material { name: "two-sided".into(), two_sided: true, ..glossy(PAINT * 0.5, 0.4, 0.3) });
+    all.push(Material { name: "black glossy".into(), ..glossy(Rgb::ZERO, 0.4, 0.3) });
+    all
+}
+
+/// A small deterministic generator (PCG), enough for tests.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let x = (((self.0 >> 18) ^ self.0) >> 27) as u32;
+        let bits = x.rotate_right((self.0 >> 59) as u32);
+        (bits >> 8) as f32 / (1u32 << 24) as f32
+    }
+
+    fn next_2d(&mut self) -> Vec2 {
+        Vec2::new(self.next(), self.next())
+    }
+
+    /// Uniform on the upper hemisphere.
+    fn hemisphere(&mut self) -> Vec3 {
+        direction(self.next().acos(), self.next() * std::f32::consts::TAU)
+    }
+}
+
+/// Unit vector at inclination `theta` and azimuth `phi`.
+fn direction(theta: f32, phi: f32) -> Vec3 {
+    Vec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
+}
+
+#[test]
+fn textures_are_looked_up_where_they_are_and_only_there() {
+    let textured = Reflectance::Textured { texture: TextureId(0), scale: Rgb::splat(0.5) };
+    let mut coated = plastic(true);
+    coated.diffuse = textured;
+    let mut metal = rough_conductor(Distribution::Ggx, 0.3, Rgb::ONE);
+    if let Lobe::Rough { scale, .. } = &mut metal.lobe {
+        *scale = textured;
+    }
+    let scene = scene(vec![Material { diffuse: textured, ..lambert(Rgb::ONE) }, coated, metal]);
+    let materials = Materials::new(&scene);
+    let (wo, wi) = (direction(0.3, 0.0), direction(0.3, 3.0));
+    for (id, whole) in [(0, Rgb::splat(0.5)), (1, Rgb::splat(0.5)), (2, Rgb::splat(0.5))] {
+        let at = |u| materials.at(&scene, MaterialId(id), Vec2::new(u, 0.5)).eval(wo, wi);
+        let (red, green) = (at(0.25), at(0.75));
+        let constant = match id {
+            0 => lambert(whole),
+            1 => Material { diffuse: constant(whole), ..plastic(true) },
+            _ => rough_conductor(Distribution::Ggx, 0.3, whole),
+        };
+        let expected = with_bsdf(&constant, |b| b.eval(wo, wi));
+        assert!(expected.min_element() > 0.0);
+        assert!((red - expected * Rgb::X).length() < 1e-6, "{id}: {red} {expected}");
+        assert!((green - expected * Rgb::Y).length() < 1e-6, "{id}: {green} {expected}");
+    }
+}
+
+#[test]
+fn a_scene_may_name_a_texture_that_is_not_there() {
+    let missing = Reflectance::Textured { texture: TextureId(7), scale: Rgb::splat(0.5) };
+    with_bsdf(&Material { diffuse: missing, ..lambert(Rgb::ONE) }, |b| {
+        assert!((b.eval(Vec3::Z, Vec3::Z) * std::f32::consts::PI - 0.5).length() < 1e-6);
+    });
+}

@@ -1,0 +1,93 @@
+//! The bound is never exceeded, and not absurdly loose.
+
+use super::*;
+
+/// A set of unit directions on one side of a cluster's size, from a point to most of the hemisphere, with
+/// every third set about the mirror direction.
+fn direction_set(random: &mut Random, wo: Vec3) -> Vec<Vec3> {
+    let axis = match (random.next() * 3.0) as u32 {
+        0 => Vec3::new(-wo.x, -wo.y, wo.z),
+        1 => random.hemisphere(),
+        _ => direction(1.5 + 0.2 * random.next(), std::f32::consts::TAU * random.next()),
+    };
+    let spread = 10f32.powf(-4.0 + 4.2 * random.next());
+    let count = 1 + (random.next() * 15.0) as usize;
+    (0..count)
+        .map(|_| {
+            let offset = Vec3::new(random.next() - 0.5, random.next() - 0.5, random.next() - 0.5);
+            (axis + spread * offset).normalize()
+        })
+        .collect()
+}
+
+/// The tightest description of a set.
+fn describe(wo: Vec3, set: &[Vec3]) -> DirectionBound {
+    let mirror = Vec3::new(-wo.x, -wo.y, wo.z);
+    let max = |f: &dyn Fn(Vec3) -> f32| set.iter().map(|&wi| f(wi)).fold(f32::NEG_INFINITY, f32::max);
+    DirectionBound {
+        cos_i_max: max(&|wi| wi.z),
+        cos_i_min: -max(&|wi| -wi.z),
+        cos_mirror_max: max(&|wi| wi.dot(mirror)),
+    }
+}
+
+fn bounded_materials() -> Vec<Material> {
+    let mut all = smooth_materials();
+    for distribution in [Distribution::Ggx, Distribution::Beckmann] {
+        for alpha in [1e-4, 1e-3, 0.01, 1.0, 1.5] {
+            all.push(rough_conductor(distribution, alpha, Rgb::ONE));
+        }
+        all.push(rough_plastic(distribution, 1.0, true));
+    }
+    all.extend([mirror(GOLD), glass(1.5)]);
+    all
+}
+
+#[test]
+fn no_direction_of_a_set_exceeds_the_bound() {
+    const SETS: usize = 20_000;
+    for material in bounded_materials() {
+        let mut random = Random(9);
+        with_bsdf(&material, |bsdf| {
+            let mut looseness = Vec::new();
+            for _ in 0..SETS {
+                let wo = random.hemisphere();
+                let set = direction_set(&mut random, wo);
+                let bound = bsdf.bound(wo, &describe(wo, &set));
+                let mut largest = Rgb::ZERO;
+                for &wi in &set {
+                    largest = largest.max(bsdf.eval(wo, wi) * wi.z.max(0.0));
+                }
+                let within = largest.cmple(bound * (1.0 + 1e-6) + f32::MIN_POSITIVE).all();
+                assert!(within, "{} {wo} {set:?}: {largest} over {bound}", material.name);
+                if largest.min_element() > 1e-3 {
+                    looseness.push((bound / largest).max_element());
+                }
+            }
+            if looseness.is_empty() {
+                assert!(!bsdf.has_smooth(), "{} never reflects", material.name);
+                return;
+            }
+            looseness.sort_by(f32::total_cmp);
+            let at = |q: f32| looseness[((looseness.len() - 1) as f32 * q) as usize];
+            let (median, p90) = (at(0.5), at(0.9));
+            eprintln!("{:28} bound / largest: median {median:.3}, 90 % {p90:.3}", material.name);
+            // Of sharper lobes rounding of the cosines decides, and rougher ones peak at grazing facets.
+            let extreme =
+                matches!(material.lobe, Lobe::Rough { alpha, .. } if !(0.01..=1.0).contains(&alpha));
+            assert!(extreme || median < 1.2, "{}: median looseness {median}", material.name);
+        });
+    }
+}
+
+#[test]
+fn a_lambertian_bound_is_exact() {
+    with_bsdf(&lambert(PAINT), |bsdf| {
+        let bound = DirectionBound { cos_i_max: 0.6, cos_i_min: -1.0, cos_mirror_max: 1.0 };
+        let exact = PAINT * (0.6 / std::f32::consts::PI);
+        assert!((bsdf.bound(direction(0.5, 0.5), &bound) - exact).abs().max_element() < 1e-7);
+        let below = DirectionBound { cos_i_max: -0.1, ..bound };
+        assert_eq!(bsdf.bound(Vec3::Z, &below), Rgb::ZERO);
+        assert_eq!(bsdf.bound(-Vec3::Z, &bound), Rgb::ZERO);
+    });
+}
