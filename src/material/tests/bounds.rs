@@ -75,7 +75,7 @@ fn no_direction_of_a_set_exceeds_the_bound() {
             // Of sharper lobes rounding of the cosines decides, and rougher ones peak at grazing facets.
             let extreme =
                 matches!(material.lobe, Lobe::Rough { alpha, .. } if !(0.01..=1.0).contains(&alpha));
-            assert!(extreme || median < 1.2, "{}: median looseness {median}", material.name);
+            assert!(extreme || median < 1.5, "{}: median looseness {median}", material.name);
         });
     }
 }
