@@ -1,2 +1,7 @@
 //! The `lightsplat` command.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    lightsplat::cli::run(std::env::args_os())
+}

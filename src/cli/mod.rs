@@ -1,1 +1,54 @@
-//! The command line: what was typed becomes a validated job.
+//! The command line: what was typed ([`args`]) becomes a validated job ([`job`]) that a command carries out.
+//!
+//! stdout is data (statistics, reports), stderr is talk (progress, warnings, errors). Exit codes are in [`exit`].
+
+mod args;
+mod compare;
+mod exit;
+mod info;
+mod interrupt;
+mod job;
+mod method;
+mod progress;
+mod render;
+mod scene;
+mod talk;
+
+use args::{Cli, Command};
+use clap::Parser;
+use exit::Failure;
+use std::ffi::OsString;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+/// Parses `arguments` (the program's name first), runs the command and says how it ended.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version go to stdout with code 0, the rest to stderr with code 2; if even that cannot
+            // be printed there is nobody to tell.
+            let _ = error.print();
+            return ExitCode::from(if error.use_stderr() { exit::USAGE } else { exit::SUCCESS });
+        }
+    };
+    let outcome = catch_unwind(AssertUnwindSafe(|| match cli.command {
+        Command::Render(args) => render::run(*args),
+        Command::Info(args) => info::run(args),
+        Command::Compare(args) => compare::run(args),
+    }));
+    match outcome {
+        Ok(Ok(())) => ExitCode::from(exit::SUCCESS),
+        Ok(Err(failure)) => {
+            talk::error(&failure);
+            ExitCode::from(failure.code())
+        }
+        // The panic hook has said what and where.
+        Err(_) => {
+            talk::error(&Failure::render(anyhow::anyhow!(
+                "an internal error stopped the run; please report it with the lines above"
+            )));
+            ExitCode::from(exit::RENDER)
+        }
+    }
+}

@@ -8,12 +8,14 @@
 //! Units: stage times are wall-clock and CPU seconds, the latter over all threads of the process.
 
 mod counter;
+mod memory;
 mod report;
 mod stage;
 
 use std::collections::BTreeMap;
 
 pub use counter::{Counter, Distribution};
+pub use memory::peak_resident_bytes;
 pub use stage::{Stage, StageTime, Stopwatch};
 
 /// Counters by name and times by stage.

@@ -1,0 +1,220 @@
+//! What can be typed. Every option is documented here and nowhere else: `--help` is made of it.
+
+use super::exit;
+use crate::image::Exposure;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Global illumination by lightcuts over Intel Embree, with a path-traced reference.
+#[derive(Debug, Parser)]
+#[command(name = "lightsplat", version, about, after_help = exit::HELP, arg_required_else_help = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene to OpenEXR and PNG
+    Render(Box<RenderArgs>),
+    /// Say what a scene holds and requires
+    Info(InfoArgs),
+    /// Measure how far a picture is from a reference, and show where
+    Compare(CompareArgs),
+}
+
+/// Options of `render`.
+#[derive(Debug, Args)]
+#[command(after_help = exit::HELP)]
+pub struct RenderArgs {
+    /// Scene: native (.toml) or Mitsuba (.xml)
+    pub scene: PathBuf,
+    /// Picture to write: 32-bit float OpenEXR with variance and metadata where known
+    #[arg(short, long, value_name = "FILE.exr")]
+    pub output: PathBuf,
+    /// How to render
+    #[arg(long, value_enum, default_value_t = MethodName::Path)]
+    pub method: MethodName,
+    /// Samples a pixel [default: the method's; 64 for path]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    /// Threads to use [default: all processors]; the picture is the same for any number
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub threads: Option<u32>,
+    /// Another seed, other noise
+    #[arg(long, default_value_t = 0)]
+    pub seed: u32,
+    /// Longest path in edges from the eye (1: emitters in view, 2: direct light) [default: the scene's]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub max_depth: Option<u32>,
+    /// Width and height in pixels instead of the scene's
+    #[arg(long, value_name = "WxH")]
+    pub resolution: Option<Resolution>,
+    /// Render only this part of the film, in pixels from its top-left corner
+    #[arg(long, value_name = "X,Y,W,H")]
+    pub crop: Option<Crop>,
+    /// Frame of the scene's camera path, counted from 0, instead of its still camera
+    #[arg(long)]
+    pub frame: Option<usize>,
+    /// Tone-mapped picture to write [default: beside the OpenEXR file, named .png]
+    #[arg(long, value_name = "FILE.png")]
+    pub png: Option<PathBuf>,
+    /// Do not write a tone-mapped picture
+    #[arg(long, conflicts_with_all = ["png", "exposure"])]
+    pub no_png: bool,
+    /// Exposure of the PNG in stops, or `auto`: the 90th percentile of luminance becomes 0.8
+    #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
+    pub exposure: Exposure,
+    /// Print counters and stage times to standard output
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub stats: Option<StatsFormat>,
+    /// How progress is told on standard error
+    #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
+    pub progress: ProgressMode,
+    /// Fail on anything in the scene that is not modelled, instead of warning
+    #[arg(long)]
+    pub strict: bool,
+}
+
+/// Options of `info`.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// Scene: native (.toml) or Mitsuba (.xml)
+    pub scene: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Fail on anything in the scene that is not modelled, instead of warning
+    #[arg(long)]
+    pub strict: bool,
+}
+
+/// Options of `compare`.
+#[derive(Debug, Args)]
+#[command(after_help = exit::HELP)]
+pub struct CompareArgs {
+    /// Picture to judge (OpenEXR)
+    pub test: PathBuf,
+    /// Reference of the same scene and size (OpenEXR); it also sets the exposure
+    pub reference: PathBuf,
+    /// Write test, reference and error next to each other
+    #[arg(long, value_name = "FILE.png")]
+    pub heatmap: Option<PathBuf>,
+    /// The error that the heatmap shows
+    #[arg(long, value_enum, default_value_t = HeatmapError::Flip, requires = "heatmap")]
+    pub heatmap_of: HeatmapError,
+    /// Variance of the test's pixel means [default: its layer `variance`, if it has one]
+    #[arg(long, value_name = "FILE.exr")]
+    pub variance_a: Option<PathBuf>,
+    /// Variance of the reference's pixel means [default: its layer `variance`, if it has one]
+    #[arg(long, value_name = "FILE.exr")]
+    pub variance_b: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// The methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// Unbiased path tracing: slow to converge, the reference
+    Path,
+}
+
+/// Formats of the statistics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StatsFormat {
+    /// A table for people
+    Text,
+    /// One object for programs
+    Json,
+}
+
+/// Ways of telling progress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProgressMode {
+    /// A bar on a terminal, nothing elsewhere
+    Auto,
+    /// All talk as one JSON object a line
+    Ndjson,
+    /// None
+    None,
+}
+
+/// What a heatmap may show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum HeatmapError {
+    /// Perceived difference, 0 to 1
+    Flip,
+    /// Relative error of radiance, clipped at 1
+    Relative,
+}
+
+/// `WxH`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Resolution(pub [u32; 2]);
+
+/// Most pixels along a side: what OpenEXR and PNG readers commonly accept.
+const MAX_SIDE: u32 = 1 << 20;
+
+impl FromStr for Resolution {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Resolution, String> {
+        let sides: Option<Vec<u32>> = text.split(['x', 'X', '×']).map(|s| s.trim().parse().ok()).collect();
+        match sides.as_deref() {
+            Some(&[w, h]) if (1..=MAX_SIDE).contains(&w) && (1..=MAX_SIDE).contains(&h) => {
+                Ok(Resolution([w, h]))
+            }
+            _ => Err(format!("expected two sizes from 1 to {MAX_SIDE} like 640x480")),
+        }
+    }
+}
+
+/// `X,Y,W,H`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// First column and row.
+    pub offset: [u32; 2],
+    /// Columns and rows.
+    pub size: [u32; 2],
+}
+
+impl FromStr for Crop {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Crop, String> {
+        let numbers: Option<Vec<u32>> = text.split(',').map(|s| s.trim().parse().ok()).collect();
+        match numbers.as_deref() {
+            Some(&[x, y, w, h]) if w > 0 && h > 0 => Ok(Crop { offset: [x, y], size: [w, h] }),
+            _ => Err("expected first column, first row, width and height like 100,50,64,64".to_owned()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_and_crops_are_parsed_and_refused() {
+        assert_eq!("640x480".parse(), Ok(Resolution([640, 480])));
+        assert_eq!("1X1".parse(), Ok(Resolution([1, 1])));
+        for bad in ["", "640", "0x5", "5x0", "-1x5", "1x2x3", "9999999x1", "axb", "99999999999x1"] {
+            assert!(bad.parse::<Resolution>().is_err(), "{bad}");
+        }
+        assert_eq!("1, 2,3,4".parse(), Ok(Crop { offset: [1, 2], size: [3, 4] }));
+        for bad in ["", "1,2,3", "1,2,0,4", "1,2,3,-4", "1,2,3,4,5"] {
+            assert!(bad.parse::<Crop>().is_err(), "{bad}");
+        }
+    }
+}

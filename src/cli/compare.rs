@@ -1,0 +1,99 @@
+//! `lightsplat compare`: error measures of a picture against a reference, and a picture of where.
+
+use super::args::{CompareArgs, HeatmapError};
+use super::exit::Failure;
+use super::talk;
+use crate::image::metrics::{self, Comparison, Variances, ZTest};
+use crate::image::{ExrFile, Image, ImageError, atomic, heatmap, write_srgb8};
+use std::fmt::Write;
+use std::path::Path;
+
+/// Runs the command.
+pub fn run(args: CompareArgs) -> Result<(), Failure> {
+    if let Some(path) = &args.heatmap {
+        atomic::check_writable(path).map_err(Failure::output)?;
+    }
+    let (test, test_variance) = read(&args.test, args.variance_a.as_deref())?;
+    let (reference, reference_variance) = read(&args.reference, args.variance_b.as_deref())?;
+    let variances = Variances { test: test_variance.as_ref(), reference: reference_variance.as_ref() };
+    let comparison = metrics::compare(&test, &reference, variances).map_err(Failure::input)?;
+    if args.json {
+        talk::print(&format!("{}\n", serde_json::json!(comparison)))?;
+    } else {
+        talk::print(&to_text(&comparison))?;
+    }
+    if let Some(path) = &args.heatmap {
+        let exposure = comparison.exposure as f32;
+        let error = match args.heatmap_of {
+            HeatmapError::Flip => metrics::flip_map(&test, &reference, exposure),
+            HeatmapError::Relative => metrics::relative_error_map(&test, &reference),
+        };
+        let panel = heatmap::heatmap(&test, &reference, &error, exposure);
+        write_srgb8(path, [panel.width, panel.height], &panel.bytes).map_err(Failure::output)?;
+        talk::note(&format!("wrote {}", path.display()));
+    }
+    Ok(())
+}
+
+/// A picture and the variance of its pixel means: from `variance` if given, else from its own layer.
+fn read(path: &Path, variance: Option<&Path>) -> Result<(Image, Option<Image>), Failure> {
+    let file = ExrFile::read(path).map_err(Failure::input)?;
+    if file.metadata().text("partial") == Some("true") {
+        talk::warning(&format!("{} is partial: its rendering was interrupted", path.display()));
+    }
+    let image = finite(file.color(), path)?;
+    let variance = match variance {
+        Some(path) => Some(finite(ExrFile::read(path).and_then(|file| file.color()), path)?),
+        None if file.layers().iter().any(|layer| layer == "variance") => {
+            Some(finite(file.layer("variance"), path)?)
+        }
+        None => None,
+    };
+    Ok((image, variance))
+}
+
+fn finite(image: Result<Image, ImageError>, path: &Path) -> Result<Image, Failure> {
+    let mut image = image.map_err(Failure::input)?;
+    match image.remove_nonfinite() {
+        0 => {}
+        n => talk::warning(&format!("{n} channels in {} are NaN or infinite; taken as 0", path.display())),
+    }
+    Ok(image)
+}
+
+fn to_text(c: &Comparison) -> String {
+    let mut text = String::new();
+    // Writing to a String cannot fail, hence the `let _`.
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<28}{value}");
+    };
+    line("relMSE", format!("{:.6e}", c.rel_mse));
+    line("relMSE, worst 0.1 % left out", format!("  {:.6e}", c.rel_mse_trimmed));
+    if let Some(explained) = c.reference_rel_mse {
+        line("  of it the reference's noise", format!(" {explained:.6e}"));
+    }
+    line("RMSE", format!("{:.6e}", c.rmse));
+    line("PSNR [dB]", c.psnr.map_or("identical on screen".to_owned(), |p| format!("{p:.3}")));
+    line("FLIP", format!("{:.5}", c.flip));
+    let ratio = |r: Option<f64>| r.map_or("-".to_owned(), |r| format!("{r:.5}"));
+    line("mean ratio R, G, B", c.mean_ratio.map(ratio).join("  "));
+    if let Some(errors) = c.mean_ratio_std_error {
+        line("  standard error", errors.map(ratio).join("  "));
+    }
+    match c.z_test {
+        Some(z) => line("z-test", z_text(&z)),
+        None => line("z-test", "needs the variance of both pictures".to_owned()),
+    }
+    line("exposure", format!("x{:.4e} ({:+.2} EV)", c.exposure, c.exposure.log2()));
+    text
+}
+
+fn z_text(z: &ZTest) -> String {
+    format!(
+        "{}: {:.3} % of pixels and channels pass (required {:.2} %), mean z² {:.3}",
+        if z.passed { "passed" } else { "FAILED" },
+        100.0 * z.share_passed,
+        100.0 * metrics::SHARE_REQUIRED,
+        z.mean_z_squared
+    )
+}

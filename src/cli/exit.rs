@@ -1,0 +1,66 @@
+//! How a run can end, and the exit code that says so.
+
+use std::fmt;
+
+/// All went well.
+pub const SUCCESS: u8 = 0;
+/// Rendering failed.
+pub const RENDER: u8 = 1;
+/// The command line is wrong.
+pub const USAGE: u8 = 2;
+/// A scene or picture that was given is invalid.
+pub const INPUT: u8 = 3;
+/// The result cannot be written.
+pub const OUTPUT: u8 = 4;
+/// Interrupted by a signal; what was done so far is written, marked as partial.
+pub const INTERRUPTED: u8 = 130;
+
+/// What `--help` says about it.
+pub const HELP: &str = "Exit codes: 0 done; 1 rendering failed; 2 wrong command line; 3 invalid scene or \
+picture; 4 the result cannot be written; 130 interrupted (what is rendered so far is written, marked as partial).";
+
+/// Why a run ended without success.
+#[derive(Debug)]
+pub struct Failure {
+    code: u8,
+    error: anyhow::Error,
+}
+
+impl Failure {
+    /// Rendering failed.
+    pub fn render(error: impl Into<anyhow::Error>) -> Failure {
+        Failure { code: RENDER, error: error.into() }
+    }
+
+    /// The command line is wrong.
+    pub fn usage(error: impl Into<anyhow::Error>) -> Failure {
+        Failure { code: USAGE, error: error.into() }
+    }
+
+    /// A scene or picture that was given is invalid.
+    pub fn input(error: impl Into<anyhow::Error>) -> Failure {
+        Failure { code: INPUT, error: error.into() }
+    }
+
+    /// The result cannot be written.
+    pub fn output(error: impl Into<anyhow::Error>) -> Failure {
+        Failure { code: OUTPUT, error: error.into() }
+    }
+
+    /// Interrupted by a signal.
+    pub fn interrupted(error: impl Into<anyhow::Error>) -> Failure {
+        Failure { code: INTERRUPTED, error: error.into() }
+    }
+
+    /// The process's exit code.
+    pub fn code(&self) -> u8 {
+        self.code
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // The alternate form puts the causes behind the message, separated by colons.
+        write!(f, "{:#}", self.error)
+    }
+}

@@ -1,0 +1,49 @@
+//! `lightsplat info`: what a scene holds.
+
+use super::args::InfoArgs;
+use super::exit::Failure;
+use super::{scene, talk};
+use crate::scene::Scene;
+use crate::scene::formats::Loaded;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// Runs the command.
+pub fn run(args: InfoArgs) -> Result<(), Failure> {
+    let loaded = scene::read(&args.scene, args.strict)?;
+    let facts = facts(&loaded);
+    talk::print(&if args.json { format!("{facts}\n") } else { to_text(&facts) })
+}
+
+fn facts(loaded: &Loaded) -> Value {
+    let Scene { meshes, materials, textures, lights, .. } = &loaded.scene;
+    json!({
+        "name": loaded.scene.name,
+        "hash": format!("{:016x}", loaded.hash),
+        "resolution": loaded.scene.resolution,
+        "frames": loaded.scene.camera_path.len(),
+        "max_depth": loaded.scene.max_depth,
+        "meshes": meshes.len(),
+        "triangles": meshes.iter().map(|m| m.triangles.len()).sum::<usize>(),
+        "vertices": meshes.iter().map(|m| m.positions.len()).sum::<usize>(),
+        "materials": materials.len(),
+        "textures": textures.len(),
+        "texels": textures.iter().map(|t| t.texels.len()).sum::<usize>(),
+        "emitting_triangles":
+            meshes.iter().filter(|m| m.emission.is_some()).map(|m| m.triangles.len()).sum::<usize>(),
+        "point_spot_directional_lights": lights.len(),
+        "environment": loaded.scene.environment.is_some(),
+        "warnings": loaded.warnings.len(),
+        "repairs": loaded.repairs,
+    })
+}
+
+fn to_text(facts: &Value) -> String {
+    let mut text = String::new();
+    for (key, value) in facts.as_object().into_iter().flatten() {
+        let shown = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{:<32}{shown}", key.replace('_', " "));
+    }
+    text
+}

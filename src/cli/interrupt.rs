@@ -1,0 +1,19 @@
+//! Ctrl-C, SIGTERM and SIGHUP: the first asks the method to stop and return what it has, the second ends the
+//! process at once. Files are written whole or not at all, so even that loses nothing that was there before.
+
+use super::exit;
+use super::talk;
+use crate::method::Control;
+use std::sync::Arc;
+
+/// Cancels `control` when a signal comes. To be called once in a process.
+pub fn cancel_on_signal(control: &Arc<Control>) -> Result<(), ctrlc::Error> {
+    let control = Arc::clone(control);
+    ctrlc::set_handler(move || {
+        if control.is_cancelled() {
+            std::process::exit(exit::INTERRUPTED.into());
+        }
+        control.cancel();
+        talk::note("interrupted: stopping and writing what there is; once more to stop at once");
+    })
+}

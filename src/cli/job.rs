@@ -1,0 +1,122 @@
+//! A render command that has been checked as far as it can be without the scene.
+
+use super::args::{Crop, ProgressMode, RenderArgs, StatsFormat};
+use super::exit::Failure;
+use super::method::Method;
+use crate::eye::Window;
+use crate::image::{Exposure, atomic};
+use crate::scene::Scene;
+use anyhow::anyhow;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+/// Most pixels rendered at once: 16384 by 65536. More would exhaust the memory of most machines.
+const MAX_PIXELS: u64 = 1 << 30;
+
+/// What to render, how, and where to.
+#[derive(Debug)]
+pub struct RenderJob {
+    /// Scene file.
+    pub scene: PathBuf,
+    /// Whether what is not modelled is an error.
+    pub strict: bool,
+    /// OpenEXR file; its folder has been found writable.
+    pub output: PathBuf,
+    /// PNG file and its exposure.
+    pub png: Option<(PathBuf, Exposure)>,
+    /// How.
+    pub method: Method,
+    /// Number of threads.
+    pub threads: usize,
+    /// Film size instead of the scene's.
+    pub resolution: Option<[u32; 2]>,
+    /// Part of the film.
+    pub crop: Option<Crop>,
+    /// Frame of the camera path.
+    pub frame: Option<usize>,
+    /// Statistics on stdout.
+    pub stats: Option<StatsFormat>,
+    /// Progress on stderr.
+    pub progress: ProgressMode,
+}
+
+impl RenderJob {
+    /// Checks what was typed, and that the results can be written where they are wanted.
+    pub fn new(args: RenderArgs) -> Result<RenderJob, Failure> {
+        let method = Method::new(&args)?;
+        named(&args.output, "exr", "--output")?;
+        let png = match (args.no_png, args.png) {
+            (true, _) => None,
+            (false, Some(path)) => Some(path),
+            (false, None) => Some(args.output.with_extension("png")),
+        };
+        if let Some(path) = &png {
+            named(path, "png", "--png")?;
+        }
+        for path in std::iter::once(&args.output).chain(&png) {
+            atomic::check_writable(path).map_err(Failure::output)?;
+        }
+        let processors = || std::thread::available_parallelism().map_or(1, |n| n.get());
+        Ok(RenderJob {
+            scene: args.scene,
+            strict: args.strict,
+            output: args.output,
+            png: png.map(|path| (path, args.exposure)),
+            method,
+            threads: args.threads.map_or_else(processors, |n| n as usize),
+            resolution: args.resolution.map(|r| r.0),
+            crop: args.crop,
+            frame: args.frame,
+            stats: args.stats,
+            progress: args.progress,
+        })
+    }
+
+    /// The part of the scene's film to render.
+    pub fn window(&self, scene: &Scene) -> Result<Window, Failure> {
+        let film = self.resolution.unwrap_or(scene.resolution);
+        let mut window = Window::whole(film);
+        if let Some(crop) = self.crop {
+            window = Window { film, offset: crop.offset, width: crop.size[0], height: crop.size[1] };
+        }
+        if !window.is_valid() {
+            let [w, h] = film;
+            return Err(Failure::usage(anyhow!("--crop must lie within the film of {w}x{h} pixels")));
+        }
+        if window.pixel_count() > MAX_PIXELS {
+            return Err(Failure::usage(anyhow!(
+                "{} pixels are more than {MAX_PIXELS}: render the film in parts with --crop",
+                window.pixel_count()
+            )));
+        }
+        Ok(window)
+    }
+
+    /// Puts the camera of the frame asked for in place of the still camera.
+    pub fn choose_frame(&self, scene: &mut Scene) -> Result<(), Failure> {
+        let Some(frame) = self.frame else { return Ok(()) };
+        match scene.camera_path.get(frame) {
+            Some(&camera) => scene.camera = camera,
+            None => {
+                let frames = scene.camera_path.len();
+                let remedy = if frames == 0 {
+                    "leave --frame out".to_owned()
+                } else {
+                    format!("at most {}", frames - 1)
+                };
+                return Err(Failure::usage(anyhow!(
+                    "--frame {frame}: the scene has {frames} frames; {remedy}"
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn named(path: &Path, extension: &str, option: &str) -> Result<(), Failure> {
+    let right = path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case(extension));
+    if right {
+        return Ok(());
+    }
+    Err(Failure::usage(anyhow!("{option} {}: the file's name must end in .{extension}", path.display())))
+}

@@ -1,0 +1,167 @@
+//! `lightsplat render`: load, build, render, write; whatever happens, no file is left half-written.
+
+use super::args::{RenderArgs, StatsFormat};
+use super::exit::Failure;
+use super::job::RenderJob;
+use super::{interrupt, progress, scene, talk};
+use crate::eye::Window;
+use crate::image::metrics::rel_mse_of_variance;
+use crate::image::{Film, Image, Metadata, write_exr, write_png};
+use crate::method::{Control, Output};
+use crate::scene::formats::Loaded;
+use crate::stats::{Stage, Stats, Stopwatch, peak_resident_bytes};
+use crate::world::World;
+use anyhow::{Context, anyhow};
+use serde_json::json;
+use std::sync::Arc;
+
+/// Runs the command.
+pub fn run(args: RenderArgs) -> Result<(), Failure> {
+    let total = Stopwatch::start();
+    talk::set_mode(args.progress);
+    let job = RenderJob::new(args)?;
+    let control = Arc::new(Control::new());
+    interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(job.threads)
+        .build()
+        .with_context(|| format!("cannot start {} threads; try fewer with --threads", job.threads))
+        .map_err(Failure::render)?;
+
+    let (frame, mut stats) = pool.install(|| render(&job, &control))?;
+    let complete = frame.complete;
+    if !complete && is_black(&frame.film.color) {
+        return Err(Failure::interrupted(anyhow!("interrupted before the first pixel; nothing is written")));
+    }
+    stats.time(Stage::Write, || write(&job, frame.film))?;
+    stats.add_time(Stage::Total, total.elapsed());
+    if let Some(bytes) = peak_resident_bytes() {
+        stats.count("Memory/peak resident [MiB]", bytes >> 20);
+    }
+    match job.stats {
+        Some(StatsFormat::Text) => talk::print(&stats.to_text())?,
+        Some(StatsFormat::Json) => {
+            let mut report = stats.to_json();
+            report["run"] = frame.facts;
+            talk::print(&format!("{report}\n"))?;
+        }
+        None => {}
+    }
+    if complete {
+        Ok(())
+    } else {
+        Err(Failure::interrupted(anyhow!("interrupted; {} is partial", job.output.display())))
+    }
+}
+
+/// A rendered frame: what goes into the files, and about it.
+struct Frame {
+    film: Film,
+    facts: serde_json::Value,
+    complete: bool,
+}
+
+fn render(job: &RenderJob, control: &Control) -> Result<(Frame, Stats), Failure> {
+    let interrupted = || Failure::interrupted(anyhow!("interrupted before rendering; nothing is written"));
+    let mut stats = Stats::new();
+    let loaded = stats.time(Stage::Load, || scene::read(&job.scene, job.strict))?;
+    let Loaded { mut scene, warnings, hash, .. } = loaded;
+    let window = job.window(&scene)?;
+    job.choose_frame(&mut scene)?;
+    if control.is_cancelled() {
+        return Err(interrupted());
+    }
+    let world = stats
+        .time(Stage::Build, || World::new(scene, job.threads))
+        .with_context(|| format!("cannot build {}", job.scene.display()))
+        .map_err(Failure::render)?;
+    if control.is_cancelled() {
+        return Err(interrupted());
+    }
+    let watch = Stopwatch::start();
+    let output = progress::watched(job.progress, control, || job.method.render(&world, &window, control));
+    let render_seconds = watch.elapsed().wall_seconds;
+    stats.merge(&output.stats);
+
+    let complete = output.complete;
+    let nonfinite_samples = output.nonfinite;
+    let mut film = film(output, window);
+    let nonfinite_channels = film.remove_nonfinite();
+    for (n, what) in [(nonfinite_samples, "samples"), (nonfinite_channels, "channels of the picture")] {
+        if n > 0 {
+            talk::warning(&format!(
+                "{n} {what} were NaN or infinite and count as 0; this is a defect, please report it"
+            ));
+        }
+    }
+    let metadata = &mut film.metadata;
+    metadata.set("version", env!("CARGO_PKG_VERSION"));
+    metadata.set("scene", world.scene.name.as_str());
+    metadata.set("scene_hash", format!("{hash:016x}"));
+    metadata.set("method", job.method.name());
+    metadata.set("settings", job.method.settings().to_string());
+    metadata.set("spp", job.method.spp() as f64);
+    metadata.set("seed", job.method.seed() as f64);
+    metadata.set("partial", if complete { "false" } else { "true" });
+    metadata.set("render_seconds", render_seconds);
+    metadata.set("threads", job.threads as f64);
+    metadata.set("nonfinite", (nonfinite_samples + nonfinite_channels) as f64);
+    if let Some(frame) = job.frame {
+        metadata.set("frame", frame as f64);
+    }
+    let facts = json!({
+        "scene": world.scene.name,
+        "scene_hash": format!("{hash:016x}"),
+        "scene_warnings": warnings.len(),
+        "method": job.method.name(),
+        "settings": job.method.settings(),
+        "threads": job.threads,
+        "window": { "film": window.film, "offset": window.offset, "size": [window.width, window.height] },
+        "complete": complete,
+        "nonfinite": nonfinite_samples + nonfinite_channels,
+        "standard_error": metadata.number("standard_error"),
+        "relative_mse_of_noise": metadata.number("relative_mse_of_noise"),
+        "output": job.output,
+        "png": job.png.as_ref().map(|(path, _)| path),
+    });
+    Ok((Frame { film, facts, complete }, stats))
+}
+
+fn film(output: Output, window: Window) -> Film {
+    let mut metadata = Metadata::default();
+    if let Some(variance) = &output.variance {
+        metadata.set("standard_error", root_mean(variance));
+        metadata.set("relative_mse_of_noise", rel_mse_of_variance(variance, &output.color));
+    }
+    let mut layers: Vec<_> =
+        output.variance.map(|image| ("variance".to_owned(), image)).into_iter().collect();
+    layers.extend(output.extra);
+    Film { window, color: output.color, layers, metadata }
+}
+
+/// Root of the mean variance over pixels and channels: the standard error of a typical pixel.
+fn root_mean(variance: &Image) -> f64 {
+    let sum: f64 = variance.pixels.iter().map(|p| p.as_dvec3().element_sum() / 3.0).sum();
+    (sum / variance.pixels.len().max(1) as f64).sqrt()
+}
+
+fn is_black(image: &Image) -> bool {
+    image.pixels.iter().all(|p| *p == crate::math::Rgb::ZERO)
+}
+
+fn write(job: &RenderJob, mut film: Film) -> Result<(), Failure> {
+    let mut said = format!("wrote {}", job.output.display());
+    let mut png = None;
+    if let Some((path, exposure)) = &job.png {
+        let factor = exposure.factor(&film.color);
+        film.metadata.set("png_exposure", factor.log2() as f64);
+        said += &format!(" and {} (exposure {:+.2} EV)", path.display(), factor.log2());
+        png = Some((path, factor));
+    }
+    write_exr(&job.output, &film).map_err(Failure::output)?;
+    if let Some((path, factor)) = png {
+        write_png(path, &film.color, factor).map_err(Failure::output)?;
+    }
+    talk::note(&said);
+    Ok(())
+}

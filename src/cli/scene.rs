@@ -1,0 +1,60 @@
+//! Loads the scene a command names, and tells what was noticed on the way.
+
+use super::exit::Failure;
+use super::talk;
+use crate::scene::formats::{Level, LoadOptions, Loaded, Warning, load};
+use std::path::Path;
+
+/// Reads the scene at `path`.
+pub fn read(path: &Path, strict: bool) -> Result<Loaded, Failure> {
+    let loaded = load(path, &LoadOptions { strict }).map_err(Failure::input)?;
+    for (warning, times) in grouped(&loaded.warnings) {
+        let more = if times > 1 { format!(" (and {} times more)", times - 1) } else { String::new() };
+        match warning.level {
+            Level::Note => talk::note(&format!("{warning}{more}")),
+            Level::Warning => talk::warning(&format!("{warning}{more}")),
+        }
+    }
+    if !loaded.repairs.is_clean() {
+        talk::note(&format!("{}: {}", path.display(), loaded.repairs));
+    }
+    Ok(loaded)
+}
+
+/// Warnings that say the same of different places, once each with their number, in order of appearance.
+fn grouped(warnings: &[Warning]) -> Vec<(&Warning, usize)> {
+    let mut groups: Vec<(&Warning, usize)> = Vec::new();
+    for warning in warnings {
+        let same = |known: &Warning| {
+            (&known.what, &known.fallback, known.level) == (&warning.what, &warning.fallback, warning.level)
+        };
+        match groups.iter_mut().find(|(known, _)| same(known)) {
+            Some((_, times)) => *times += 1,
+            None => groups.push((warning, 1)),
+        }
+    }
+    groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::formats::Place;
+
+    #[test]
+    fn the_same_thing_at_many_places_is_said_once() {
+        let at = |line, what: &str| Warning {
+            place: Place::line(Path::new("a.xml"), line),
+            level: Level::Warning,
+            what: what.to_owned(),
+            fallback: "ignored".to_owned(),
+        };
+        let warnings = [at(1, "bump"), at(2, "fog"), at(3, "bump"), at(9, "bump")];
+        let groups = grouped(&warnings);
+        assert_eq!(
+            groups.iter().map(|(w, n)| (w.what.as_str(), *n)).collect::<Vec<_>>(),
+            [("bump", 3), ("fog", 1)]
+        );
+        assert_eq!(groups[0].0.place.line, Some(1));
+    }
+}

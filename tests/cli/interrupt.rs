@@ -1,0 +1,54 @@
+//! Signals: the first one ends the render with what there is, SIGKILL leaves what was there.
+#![cfg(unix)]
+
+use super::{Sandbox, read};
+use lightsplat::image::ExrFile;
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+
+/// A render that would take very long, once its first pixels are done.
+fn begun(sandbox: &Sandbox) -> Child {
+    let mut child = sandbox
+        .command(&["render", "room.xml", "-o", "a.exr", "--spp", "100000000", "--progress", "ndjson"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+    let begun = lines.any(|line| {
+        let event: serde_json::Value = serde_json::from_str(&line.unwrap()).unwrap();
+        event["event"] == "progress" && event["done"].as_u64() > Some(0)
+    });
+    assert!(begun);
+    // Someone has to go on reading, or the child would meet a closed pipe.
+    std::thread::spawn(move || lines.for_each(drop));
+    child
+}
+
+fn signal(child: &Child, name: &str) {
+    assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
+}
+
+#[test]
+fn interrupted_renders_end_with_130_and_leave_a_picture_marked_as_partial() {
+    for name in ["-INT", "-TERM"] {
+        let sandbox = Sandbox::new();
+        let mut child = begun(&sandbox);
+        signal(&child, name);
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{name}");
+        let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
+        assert_eq!(file.metadata().text("partial"), Some("true"));
+        assert!(file.color().unwrap().pixels.iter().any(|p| p.x > 0.0));
+        assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"]);
+    }
+}
+
+#[test]
+fn a_killed_render_leaves_the_old_files_whole() {
+    let sandbox = Sandbox::new();
+    sandbox.render("a.exr", &[]).expect(0);
+    let before = (read(&sandbox.path("a.exr")), read(&sandbox.path("a.png")));
+    let mut child = begun(&sandbox);
+    signal(&child, "-KILL");
+    assert_eq!(child.wait().unwrap().code(), None);
+    assert_eq!((read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))), before);
+}

@@ -1,0 +1,127 @@
+//! What a render leaves behind, and what it does not.
+
+use super::{Finished, Sandbox, read};
+use lightsplat::image::{ExrFile, Value};
+use std::process::Command;
+
+#[test]
+fn a_render_writes_picture_preview_variance_and_where_it_comes_from() {
+    let sandbox = Sandbox::new();
+    let run = sandbox.render("a.exr", &["--seed", "3"]).expect(0);
+    assert_eq!(run.stdout, "");
+    assert!(run.stderr.contains("a.exr") && run.stderr.contains("a.png") && run.stderr.contains("EV"));
+    assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"]);
+    let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
+    let color = file.color().unwrap();
+    assert_eq!((color.width, color.height), (24, 16));
+    assert!(color.pixels.iter().any(|p| p.x > 0.0));
+    assert_eq!(file.layers(), ["", "variance"]);
+    let facts = file.metadata();
+    assert_eq!((facts.text("method"), facts.text("partial")), (Some("path"), Some("false")));
+    assert_eq!((facts.number("spp"), facts.number("seed")), (Some(4.0), Some(3.0)));
+    assert_eq!(facts.text("version"), Some(env!("CARGO_PKG_VERSION")));
+    assert_eq!(facts.text("scene_hash").map(str::len), Some(16));
+    assert!(facts.number("render_seconds").unwrap() > 0.0 && facts.number("standard_error").unwrap() > 0.0);
+    assert!(matches!(facts.get("settings"), Some(Value::Text(json)) if json.contains("\"spp\":4")));
+}
+
+#[test]
+fn a_crop_repeats_the_pixels_of_the_whole_picture_for_any_number_of_threads() {
+    let sandbox = Sandbox::new();
+    sandbox.render("whole.exr", &["--threads", "1"]).expect(0);
+    sandbox.render("crop.exr", &["--threads", "3", "--crop", "5,3,7,9", "--no-png"]).expect(0);
+    let whole = ExrFile::read(&sandbox.path("whole.exr")).unwrap().color().unwrap();
+    let file = ExrFile::read(&sandbox.path("crop.exr")).unwrap();
+    assert_eq!((file.window().film, file.window().offset), ([24, 16], [5, 3]));
+    let crop = file.color().unwrap();
+    for (i, pixel) in crop.pixels.iter().enumerate() {
+        let (x, y) = (i % 7 + 5, i / 7 + 3);
+        assert_eq!(*pixel, whole.pixels[y * 24 + x]);
+    }
+    assert!(!sandbox.path("crop.png").exists());
+}
+
+#[test]
+fn extreme_resolutions_are_rendered() {
+    let sandbox = Sandbox::new();
+    for resolution in ["1x1", "1x70", "70x1", "16384x2"] {
+        let arguments = ["render", "room.xml", "-o", "a.exr", "--spp", "1", "--resolution", resolution];
+        sandbox.run(&arguments).expect(0);
+        let image = ExrFile::read(&sandbox.path("a.exr")).unwrap().color().unwrap();
+        assert_eq!(format!("{}x{}", image.width, image.height), resolution);
+    }
+}
+
+#[test]
+fn statistics_are_the_only_data_on_stdout() {
+    let sandbox = Sandbox::new();
+    let json = sandbox.render("a.exr", &["--stats", "json"]).expect(0).stdout;
+    let stats: serde_json::Value = serde_json::from_str(&json).unwrap();
+    for stage in ["load", "build", "render", "write", "total"] {
+        assert!(stats["times"][stage]["wall_seconds"].as_f64().unwrap() >= 0.0, "{stage}");
+    }
+    assert_eq!(stats["counters"]["Paths"]["total"], 24 * 16 * 4);
+    assert_eq!(stats["run"]["complete"], true);
+    let text = sandbox.render("a.exr", &["--stats", "text"]).expect(0).stdout;
+    assert!(text.contains("Rays\n") && text.contains("total"), "{text}");
+}
+
+#[test]
+fn ndjson_progress_is_one_object_a_line() {
+    let sandbox = Sandbox::new();
+    let stderr = sandbox.render("a.exr", &["--progress", "ndjson"]).expect(0).stderr;
+    let events: Vec<serde_json::Value> = stderr.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
+    let last = events.iter().rfind(|e| e["event"] == "progress").unwrap();
+    assert_eq!((&last["stage"], &last["done"]), (&"render".into(), &last["total"]));
+    assert!(events.iter().any(|e| e["event"] == "note"));
+}
+
+#[test]
+fn unwritable_outputs_end_with_4_before_rendering() {
+    let sandbox = Sandbox::new();
+    std::fs::create_dir(sandbox.path("folder.exr")).unwrap();
+    // A render that would take hours: it must not have begun.
+    let long = ["render", "room.xml", "--spp", "4000000000", "-o"];
+    for output in ["none/a.exr", "folder.exr", "room.xml/a.exr"] {
+        let stderr = sandbox.run(&[&long[..], &[output]].concat()).expect(4).stderr;
+        assert!(stderr.contains(output), "{stderr}");
+    }
+    sandbox.run(&[&long[..], &["a.exr", "--png", "none/a.png"]].concat()).expect(4);
+    assert!(!sandbox.path("a.exr").exists());
+}
+
+/// Runs the command under a limit of 4096 or 8192 bytes a file, with SIGXFSZ ignored or not.
+fn limited(sandbox: &Sandbox, on_signal: &str) -> Finished {
+    let script = format!("{on_signal} ulimit -c 0; ulimit -f 8; exec \"$0\" \"$@\"");
+    let output = Command::new("sh")
+        .args(["-c", &script, env!("CARGO_BIN_EXE_lightsplat")])
+        .args(["render", "room.xml", "-o", "a.exr", "--spp", "2"])
+        .current_dir(sandbox.folder.path())
+        .output()
+        .unwrap();
+    Finished::from(output)
+}
+
+#[cfg(unix)]
+#[test]
+fn a_disk_that_fills_up_ends_with_4_and_leaves_the_old_files_whole() {
+    let sandbox = Sandbox::new();
+    sandbox.render("a.exr", &[]).expect(0);
+    let before = (read(&sandbox.path("a.exr")), read(&sandbox.path("a.png")));
+    let stderr = limited(&sandbox, "trap '' XFSZ;").expect(4).stderr;
+    assert!(stderr.contains("a.exr") && stderr.contains("as it was before"), "{stderr}");
+    assert_eq!((read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))), before);
+    assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_process_killed_while_it_writes_leaves_the_old_files_whole() {
+    let sandbox = Sandbox::new();
+    sandbox.render("a.exr", &[]).expect(0);
+    let before = (read(&sandbox.path("a.exr")), read(&sandbox.path("a.png")));
+    // Unhandled, the signal kills the process at the write that exceeds the limit.
+    let killed = limited(&sandbox, "");
+    assert_eq!(killed.code, None, "{}", killed.stderr);
+    assert_eq!((read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))), before);
+}

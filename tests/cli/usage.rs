@@ -1,0 +1,78 @@
+//! Wrong command lines end with 2, wrong scenes with 3, before any work is done.
+
+use super::Sandbox;
+
+#[test]
+fn help_and_version_are_data_and_no_error() {
+    let sandbox = Sandbox::new();
+    let help = sandbox.run(&["--help"]).expect(0);
+    for command in ["render", "info", "compare"] {
+        assert!(help.stdout.contains(command), "{}", help.stdout);
+        assert!(sandbox.run(&[command, "--help"]).expect(0).stdout.contains("Usage"));
+    }
+    assert!(sandbox.run(&["--version"]).expect(0).stdout.contains(env!("CARGO_PKG_VERSION")));
+    assert!(help.stderr.is_empty());
+}
+
+#[test]
+fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
+    let sandbox = Sandbox::new();
+    let render = |more: &[&str]| sandbox.render("a.exr", more).expect(2).stderr;
+    assert!(!sandbox.run(&[]).expect(2).stderr.is_empty());
+    sandbox.run(&["paint"]).expect(2);
+    sandbox.run(&["render", "room.xml"]).expect(2);
+    render(&["--method", "guess"]);
+    render(&["--spp", "0"]);
+    render(&["--threads", "0"]);
+    render(&["--max-depth", "0"]);
+    render(&["--exposure", "bright"]);
+    render(&["--crop", "1,2,3"]);
+    render(&["--no-png", "--png", "b.png"]);
+    assert!(render(&["--crop", "20,0,5,5"]).contains("24x16"));
+    assert!(render(&["--frame", "0"]).contains("0 frames"));
+    assert!(render(&["--png", "b.jpg"]).contains(".png"));
+    assert!(sandbox.render("a.tiff", &[]).expect(2).stderr.contains(".exr"));
+    assert_eq!(sandbox.files(), ["room.xml"]);
+}
+
+#[test]
+fn scenes_that_are_missing_unknown_or_broken_end_with_3_and_name_the_file() {
+    let sandbox = Sandbox::new();
+    std::fs::write(sandbox.path("broken.xml"), "<scene version=\"3.0.0\">\n<shape").unwrap();
+    std::fs::write(sandbox.path("scene.usd"), "").unwrap();
+    for name in ["missing.xml", "missing.toml", "broken.xml", "scene.usd"] {
+        for arguments in [&["render", name, "-o", "a.exr"][..], &["info", name]] {
+            let stderr = sandbox.run(arguments).expect(3).stderr;
+            assert!(stderr.contains(name), "{stderr}");
+        }
+    }
+    assert!(!sandbox.path("a.exr").exists());
+}
+
+#[test]
+fn strict_turns_a_warning_into_an_error() {
+    let sandbox = Sandbox::new();
+    let text = super::ROOM.replace("type=\"diffuse\"", "type=\"velvetish\"");
+    std::fs::write(sandbox.path("odd.xml"), text).unwrap();
+    let arguments = ["render", "odd.xml", "-o", "a.exr", "--spp", "1", "--resolution", "4x4"];
+    let lenient = sandbox.run(&arguments).expect(0);
+    assert!(
+        lenient.stderr.contains("velvetish") && lenient.stderr.contains("odd.xml:"),
+        "{}",
+        lenient.stderr
+    );
+    std::fs::remove_file(sandbox.path("a.exr")).unwrap();
+    let strict = sandbox.run(&[&arguments[..], &["--strict"]].concat()).expect(3);
+    assert!(strict.stderr.contains("velvetish"), "{}", strict.stderr);
+    assert!(!sandbox.path("a.exr").exists());
+}
+
+#[test]
+fn info_tells_what_a_scene_holds_as_text_and_json() {
+    let sandbox = Sandbox::new();
+    assert!(sandbox.run(&["info", "room.xml"]).expect(0).stdout.contains("triangles"));
+    let json = sandbox.run(&["info", "room.xml", "--json"]).expect(0).stdout;
+    let facts: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(facts["triangles"], 4);
+    assert_eq!(facts["resolution"], serde_json::json!([96, 64]));
+}
