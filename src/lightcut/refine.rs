@@ -144,14 +144,15 @@ impl Lightcut {
                 }
             })
         };
-        // A few steps towards the luminance of which no leaf is more than a quarter; this one is frozen.
+        // Steps towards the luminance of which no leaf is more than a quarter; this one is frozen. A single
+        // dominant leaf leaves a quarter of the excess each step; only four or more together converge slower.
         let mut frozen = luminance(unclamped);
-        for _ in 0..4 {
-            let (sum, clamped) = limited(DOMINANT * frozen);
-            if clamped == 0 {
+        for _ in 0..12 {
+            let next = luminance(limited(DOMINANT * frozen).0.as_vec3());
+            if next > 0.99 * frozen {
                 break;
             }
-            frozen = luminance(sum.as_vec3());
+            frozen = next;
         }
         let (sum, clamped) = limited(clamp * frozen);
         self.counts.clamped += clamped;
