@@ -10,6 +10,7 @@ mod geometry;
 mod receiver;
 mod refine;
 mod transfer;
+mod visibility;
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,7 @@
 //! The renderers compared, one folder each; they share every stage they can.
 
 pub mod control;
+pub mod lightcuts;
 pub mod output;
 pub mod path;
 

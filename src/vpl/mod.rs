@@ -7,10 +7,17 @@
 //! Units: intensity is radiant intensity (W/sr) of omni VPLs, radiant intensity per cosine of oriented
 //! ones, irradiance on a facing surface (W/m²) of directional ones.
 
+mod direct;
+mod emission;
+mod indirect;
 mod octahedral;
+mod pass;
 
 use crate::math::{Rgb, luminance};
 use glam::Vec3;
+
+pub use indirect::PhotonCounts;
+pub use pass::{LightPass, LightPassSettings, light_pass};
 
 /// How a VPL radiates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

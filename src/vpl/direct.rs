@@ -1,0 +1,64 @@
+//! VPLs where light is emitted: stratified points on area lights, exact leaves for point, spot and directional
+//! lights, and luminance-stratified directions for the environment in a set of their own.
+
+use super::{LightPassSettings, Origin, SpotProfile, Vpl, VplKind, VplSet};
+use crate::light::{AreaLight, EnvironmentLight};
+use crate::sampling::{hash, owen_sobol_2d};
+use crate::scene::DeltaLight;
+use crate::world::World;
+
+/// No area light is represented by fewer points a side: penumbrae would show bands.
+const MIN_PER_LIGHT: u32 = 256;
+
+/// The direct sets, empty ones included, and the profiles of the spot lights.
+pub fn direct_vpls(world: &World, settings: &LightPassSettings) -> (Vec<VplSet>, Vec<SpotProfile>) {
+    let emitters = &world.emitters;
+    let mut oriented = VplSet::new(VplKind::Oriented, Origin::Direct);
+    let total_power: f64 = emitters.areas.iter().map(|a| f64::from(a.power)).sum();
+    for (i, light) in emitters.areas.iter().enumerate() {
+        let share = f64::from(light.power) / total_power;
+        let count = ((share * f64::from(settings.direct)).ceil() as u32).max(MIN_PER_LIGHT);
+        add_area_light(world, light, count, hash(settings.seed, 0x0a1e_a000 ^ i as u32), &mut oriented);
+    }
+    let mut omni = VplSet::new(VplKind::Omni, Origin::Direct);
+    let mut directional = VplSet::new(VplKind::Directional, Origin::Direct);
+    let mut spots = Vec::new();
+    for light in &emitters.deltas {
+        match *light {
+            DeltaLight::Point { position, intensity } => omni.push(Vpl::omni(position), intensity),
+            DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
+                omni.push(Vpl::spot(position, spots.len() as u32), intensity);
+                spots.push(SpotProfile { direction, inner_angle, outer_angle });
+            }
+            DeltaLight::Directional { direction, irradiance } => {
+                directional.push(Vpl::directional(-direction), irradiance);
+            }
+        }
+    }
+    let mut environment = VplSet::new(VplKind::Directional, Origin::Direct);
+    if let Some(light) = &emitters.environment {
+        add_environment(light, settings.direct.max(1), hash(settings.seed, 0x0e57), &mut environment);
+    }
+    (vec![oriented, omni, directional, environment], spots)
+}
+
+fn add_area_light(world: &World, light: &AreaLight, count: u32, seed: u32, set: &mut VplSet) {
+    let mesh = &world.scene.meshes[light.mesh as usize];
+    let area = light.area / count as f32;
+    for i in 0..count {
+        let point = light.sample(mesh, owen_sobol_2d(i, seed));
+        let radiance = light.radiance(&world.scene, &point, point.normal);
+        set.push(Vpl::oriented(point.position, point.normal), radiance * area);
+        if light.emission.two_sided {
+            set.push(Vpl::oriented(point.position, -point.normal), radiance * area);
+        }
+    }
+}
+
+fn add_environment(light: &EnvironmentLight, count: u32, seed: u32, set: &mut VplSet) {
+    for i in 0..count {
+        if let Some(s) = light.sample(owen_sobol_2d(i, seed)) {
+            set.push(Vpl::directional(s.direction), s.radiance / (s.pdf * count as f32));
+        }
+    }
+}

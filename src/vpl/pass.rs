@@ -1,0 +1,61 @@
+//! The light pass: all VPLs of a scene.
+
+use super::direct::direct_vpls;
+use super::indirect::{PhotonCounts, indirect_vpls};
+use super::{SpotProfile, VplSet};
+use crate::method::Control;
+use crate::world::World;
+
+/// How many VPLs to make.
+#[derive(Clone, Copy, Debug)]
+pub struct LightPassSettings {
+    /// Points shared out among all area lights by power (each gets at least 256), and directions of the environment.
+    pub direct: u32,
+    /// Indirect VPLs.
+    pub indirect: u32,
+    /// Another seed, other VPLs.
+    pub seed: u32,
+}
+
+impl Default for LightPassSettings {
+    fn default() -> LightPassSettings {
+        LightPassSettings { direct: 4096, indirect: 300_000, seed: 0 }
+    }
+}
+
+/// What the light pass leaves behind.
+#[derive(Clone, Debug)]
+pub struct LightPass {
+    /// VPLs by kind and origin; some sets may be empty.
+    pub sets: Vec<VplSet>,
+    /// Profiles that spot lights among the omni VPLs refer to.
+    pub spots: Vec<SpotProfile>,
+    /// What photon tracing took.
+    pub photons: PhotonCounts,
+}
+
+impl LightPass {
+    /// How many VPLs in all.
+    pub fn len(&self) -> usize {
+        self.sets.iter().map(VplSet::len).sum()
+    }
+
+    /// Whether nothing shines.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Makes the VPLs of a scene for paths of at most `max_depth` edges. Stops early, with fewer indirect VPLs of
+/// the right total flux, if `control` is cancelled.
+pub fn light_pass(
+    world: &World,
+    settings: &LightPassSettings,
+    max_depth: u32,
+    control: &Control,
+) -> LightPass {
+    let (mut sets, spots) = direct_vpls(world, settings);
+    let (indirect, photons) = indirect_vpls(world, settings, max_depth, control);
+    sets.push(indirect);
+    LightPass { sets, spots, photons }
+}
