@@ -43,10 +43,9 @@ pub fn direct_vpls(world: &World, settings: &LightPassSettings) -> (Vec<VplSet>,
 }
 
 fn add_area_light(world: &World, light: &AreaLight, count: u32, seed: u32, set: &mut VplSet) {
-    let mesh = &world.scene.meshes[light.mesh as usize];
     let area = light.area / count as f32;
     for i in 0..count {
-        let point = light.sample(mesh, owen_sobol_2d(i, seed));
+        let point = light.sample(owen_sobol_2d(i, seed));
         let radiance = light.radiance(&world.scene, &point, point.normal);
         set.push(Vpl::oriented(point.position, point.normal), radiance * area);
         if light.emission.two_sided {

@@ -43,7 +43,7 @@ impl<'w> PhotonSource<'w> {
         let inv_probability = 1.0 / self.by_power.probability(index);
         let emitters = &self.world.emitters;
         if let Some(light) = emitters.areas.get(index) {
-            let point = light.sample(&self.world.scene.meshes[light.mesh as usize], u_place);
+            let point = light.sample(u_place);
             let (sides, normal) = match light.emission.two_sided {
                 true if u_side < 0.5 => (2.0, -point.normal),
                 true => (2.0, point.normal),
