@@ -32,11 +32,11 @@ const SLACK: f32 = 5e-7;
 impl Bsdf<'_> {
     /// An upper bound, per channel, of `eval(wo, wi)` · cos θ_i over all `wi` within `bound`.
     ///
-    /// Exact for a Lambertian surface at `cos_i_max`. Delta lobes are not included, as they are not in `eval`.
+    /// NaN in a bound counts as not knowing. Exact for a Lambertian surface at `cos_i_max`. Delta lobes are not included, as they are not in `eval`.
     #[inline]
     pub fn bound(&self, wo: Vec3, bound: &DirectionBound) -> Rgb {
         let cos_max = bound.cos_i_max.min(1.0);
-        if cos_max.is_nan() || cos_max <= 0.0 {
+        if cos_max <= 0.0 {
             return Rgb::ZERO;
         }
         let Some((wo, _)) = self.on_front(wo, wo) else { return Rgb::ZERO };
@@ -53,7 +53,7 @@ impl Bsdf<'_> {
         };
         let Scattering::Rough(facets, fresnel) = &self.model.lobe else { return base };
         let cos_o = wo.z.min(1.0);
-        let cos_min = bound.cos_i_min.clamp(0.0, cos_max);
+        let cos_min = bound.cos_i_min.max(0.0).min(cos_max);
         let density = facets.max_density(min_facet_sin_sq(cos_o, cos_min, cos_max, bound.cos_mirror_max));
         let masked = density * facets.v1(cos_o) * 0.5 * facets.max_g1(cos_max);
         let cos_d = min_facet_cos(cos_o, cos_min, bound.cos_mirror_max);
@@ -75,7 +75,7 @@ fn min_facet_sin_sq(cos_o: f32, cos_i_min: f32, cos_i_max: f32, cos_mirror: f32)
     };
     let by_cosines = at(cos_i_min).min(at(cos_i_max));
     let by_mirror = 0.5 * (1.0 - cos_mirror - SLACK);
-    by_cosines.max(by_mirror).clamp(0.0, 1.0)
+    by_cosines.max(by_mirror).max(0.0)
 }
 
 /// The least cosine between `wo` and the facet normal.

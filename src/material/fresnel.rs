@@ -47,37 +47,30 @@ pub(super) fn dielectric(cos_i: f32, eta: f32) -> f32 {
 #[inline]
 pub(super) fn conductor(cos_i: f32, eta: Rgb, k: Rgb) -> Rgb {
     let cos_i = cos_i.clamp(0.0, 1.0);
+    // One lane stays idle; without branches the four run as one vector.
+    let (eta, k) = ([eta.x, eta.y, eta.z, 1.0], [k.x, k.y, k.z, 1.0]);
+    let [r, g, b, _] = std::array::from_fn(|i| conductor_channel(cos_i, eta[i], k[i]));
+    Rgb::new(r, g, b)
+}
+
+#[inline]
+fn conductor_channel(cos_i: f32, eta: f32, k: f32) -> f32 {
     let cos_sq = cos_i * cos_i;
     let sin_sq = 1.0 - cos_sq;
-    // a² + b² and a of the complex cosine of refraction a + i b (times the index).
+    // The complex cosine of refraction times the index is a + i b: modulus = a² + b², and a² is half of
+    // modulus + difference, rewritten where that would cancel, as it does for metals.
     let difference = eta * eta - k * k - sin_sq;
     let cross = 2.0 * eta * k;
-    let modulus = (difference * difference + cross * cross).map(f32::sqrt);
-    let a = Rgb::new(
-        half_sum_root(modulus.x, difference.x, cross.x),
-        half_sum_root(modulus.y, difference.y, cross.y),
-        half_sum_root(modulus.z, difference.z, cross.z),
-    );
-    let (sum, twice) = (modulus + cos_sq, 2.0 * cos_i * a);
-    // At cos_i = 0 with modulus 0 (eta² - k² = 1, eta k = 0) both vanish; the limit is total reflection.
-    let r_s = ratio(sum - twice, sum + twice);
-    let (sum, twice) = (modulus * cos_sq + sin_sq * sin_sq, twice * sin_sq);
-    let r_p = r_s * ratio(sum - twice, sum + twice);
-    0.5 * (r_s + r_p)
-}
-
-/// sqrt((modulus + difference) / 2), without cancellation where the difference is negative, as it is for metals.
-#[inline]
-fn half_sum_root(modulus: f32, difference: f32, cross: f32) -> f32 {
-    let sum = modulus + difference.abs();
-    let half_sum = if difference >= 0.0 { 0.5 * sum } else { 0.5 * cross * (cross / sum) };
-    half_sum.sqrt()
-}
-
-#[inline]
-fn ratio(a: Rgb, b: Rgb) -> Rgb {
-    let divide = |a: f32, b: f32| if b > 0.0 { (a / b).clamp(0.0, 1.0) } else { 1.0 };
-    Rgb::new(divide(a.x, b.x), divide(a.y, b.y), divide(a.z, b.z))
+    let modulus = (difference * difference + cross * cross).sqrt();
+    // The floors, here and below, only turn 0/0 into 0 or 1.
+    let sum = (modulus + difference.abs()).max(1e-30);
+    let twice_a_sq = if difference >= 0.0 { sum } else { cross * (cross / sum) };
+    let a = (0.5 * twice_a_sq).sqrt();
+    let (sum, twice) = (modulus + cos_sq + 1e-30, 2.0 * cos_i * a);
+    let r_s = (sum - twice) / (sum + twice);
+    let (sum, twice) = (modulus * cos_sq + sin_sq * sin_sq + 1e-30, twice * sin_sq);
+    let r_p = r_s * ((sum - twice) / (sum + twice));
+    (0.5 * (r_s + r_p)).clamp(0.0, 1.0)
 }
 
 /// Cosine-weighted average of the reflectance over the hemisphere, for light on the side where `eta` is the

@@ -91,3 +91,18 @@ fn a_lambertian_bound_is_exact() {
         assert_eq!(bsdf.bound(-Vec3::Z, &bound), Rgb::ZERO);
     });
 }
+
+#[test]
+fn not_knowing_bounds_everything() {
+    let nothing_known = DirectionBound { cos_i_max: f32::NAN, cos_i_min: f32::NAN, cos_mirror_max: f32::NAN };
+    let mut random = Random(10);
+    for material in smooth_materials() {
+        with_bsdf(&material, |bsdf| {
+            for _ in 0..200 {
+                let (wo, wi) = (random.hemisphere(), random.hemisphere());
+                let bound = bsdf.bound(wo, &nothing_known);
+                assert!((bsdf.eval(wo, wi) * wi.z).cmple(bound).all(), "{} {wo} {wi}", material.name);
+            }
+        });
+    }
+}
