@@ -5,6 +5,8 @@ use lightsplat::scene::generate::{Part, generate};
 use std::collections::BTreeMap;
 use std::path::Path;
 
+const SCENES: [&str; 2] = ["kitchen", "knot"];
+
 struct Described {
     generator: String,
     /// Material of every part.
@@ -68,8 +70,15 @@ fn knot_has_exactly_its_triangles_and_its_gloss() {
 }
 
 #[test]
+fn kitchen_is_as_large_and_as_glossy_as_promised() {
+    let (triangles, glossy) = measured("kitchen");
+    assert!((triangles as f64 / 72_000.0 - 1.0).abs() < 0.05, "{triangles} triangles");
+    assert!((glossy - 0.28).abs() < 0.03, "glossy share {glossy}");
+}
+
+#[test]
 fn generated_again_every_bit_is_the_same() {
-    for name in ["knot"] {
+    for name in SCENES {
         let scene = described(name);
         for (a, b) in parts(&scene).iter().zip(&parts(&scene)) {
             assert_eq!(a.name, b.name);
@@ -85,7 +94,7 @@ fn generated_again_every_bit_is_the_same() {
 
 #[test]
 fn generated_parts_are_sound() {
-    for name in ["knot"] {
+    for name in SCENES {
         for part in parts(&described(name)) {
             let count = part.positions.len();
             assert!(part.normals.len() == count && part.uvs.len() == count, "{name}: {}", part.name);

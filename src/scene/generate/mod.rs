@@ -2,6 +2,8 @@
 //! file gives every part its material, so that what a scene looks like stays editable.
 
 pub mod builder;
+mod furniture;
+mod kitchen;
 mod knot;
 
 use glam::{Vec2, Vec3};
@@ -24,6 +26,7 @@ pub struct Part {
 /// The parts of the scene called `name`, or `None` where there is no such generator.
 pub fn generate(name: &str) -> Option<Vec<Part>> {
     match name {
+        "kitchen" => Some(kitchen::parts()),
         "knot" => Some(knot::parts()),
         _ => None,
     }
