@@ -38,7 +38,7 @@ pub struct RenderArgs {
     /// How to render
     #[arg(long, value_enum, default_value_t = MethodName::Path)]
     pub method: MethodName,
-    /// Samples a pixel [default: the method's; 64 for path]
+    /// Samples a pixel [default: 64 for path, 1 for lightcuts]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub spp: Option<u32>,
     /// Threads to use [default: all processors]; the picture is the same for any number
@@ -77,6 +77,43 @@ pub struct RenderArgs {
     /// Fail on anything in the scene that is not modelled, instead of warning
     #[arg(long)]
     pub strict: bool,
+    /// Options of one method.
+    #[command(flatten)]
+    pub lightcuts: LightcutArgs,
+}
+
+/// Options of `--method lightcuts`. The defaults are the method's own; a test holds the text to them.
+#[derive(Clone, Debug, Default, Args, PartialEq)]
+#[command(next_help_heading = "Lightcuts")]
+pub struct LightcutArgs {
+    /// Largest error bound of a cluster, relative to the sample's luminance [default: 0.02]
+    #[arg(long, value_parser = parse_fraction)]
+    pub epsilon: Option<f32>,
+    /// Most clusters in a cut [default: 1000]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub max_cut: Option<u32>,
+    /// Virtual point lights where light is reflected, about; 0: direct light only [default: 300000]
+    #[arg(long)]
+    pub vpls: Option<u32>,
+    /// Virtual point lights on area lights and directions of the environment, about [default: 4096]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub direct_vpls: Option<u32>,
+    /// Most that one indirect virtual point light may give, relative to the sample's luminance; 0 does not
+    /// clamp [default: 0.02]
+    #[arg(long, value_parser = parse_fraction)]
+    pub clamp: Option<f32>,
+    /// How light trees are built [default: divisive]
+    #[arg(long, value_enum)]
+    pub tree: Option<TreeFamily>,
+}
+
+/// The builders of light trees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TreeFamily {
+    /// Top-down: binned splits in position and normal
+    Divisive,
+    /// Bottom-up: locally-ordered clustering
+    Agglomerative,
 }
 
 /// Options of `info`.
@@ -120,8 +157,10 @@ pub struct CompareArgs {
 /// The methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum MethodName {
-    /// Unbiased path tracing: slow to converge, the reference
+    /// Unbiased path tracing: slow to converge, the reference; the default until there is a faster one as general
     Path,
+    /// Lightcuts per pixel: virtual point lights, clustered under an error bound
+    Lightcuts,
 }
 
 /// Formats of the statistics.
@@ -195,9 +234,17 @@ impl FromStr for Crop {
     }
 }
 
+fn parse_fraction(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if (0.0..=1.0).contains(&value) => Ok(value),
+        _ => Err("expected a number from 0 to 1".to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::method::{lightcuts, path};
     use clap::CommandFactory;
 
     #[test]
@@ -215,6 +262,37 @@ mod tests {
         assert_eq!("1, 2,3,4".parse(), Ok(Crop { offset: [1, 2], size: [3, 4] }));
         for bad in ["", "1,2,3", "1,2,0,4", "1,2,3,-4", "1,2,3,4,5"] {
             assert!(bad.parse::<Crop>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn fractions_are_finite_and_in_range() {
+        assert_eq!(parse_fraction("0.02"), Ok(0.02));
+        for bad in ["-0.1", "1.5", "nan", "inf", "two"] {
+            assert!(parse_fraction(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn help_states_the_methods_own_defaults() {
+        let path = path::Settings::default();
+        let cuts = lightcuts::Settings::default();
+        let render = Cli::command().find_subcommand("render").unwrap().clone();
+        let stated = |option: &str| {
+            let argument = render.get_arguments().find(|a| a.get_long() == Some(option)).unwrap();
+            argument.get_help().unwrap().to_string()
+        };
+        let expected = [
+            ("spp", format!("{} for path, {} for lightcuts", path.spp, cuts.spp)),
+            ("epsilon", cuts.cut.epsilon.to_string()),
+            ("max-cut", cuts.cut.max_cut.to_string()),
+            ("vpls", cuts.light.indirect.to_string()),
+            ("direct-vpls", cuts.light.direct.to_string()),
+            ("clamp", cuts.cut.clamp.unwrap_or(0.0).to_string()),
+            ("tree", format!("{:?}", cuts.family).to_lowercase()),
+        ];
+        for (option, default) in expected {
+            assert!(stated(option).contains(&format!("[default: {default}]")), "--{option}: {default}");
         }
     }
 }

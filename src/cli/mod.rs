@@ -1,6 +1,6 @@
-//! The command line: what was typed ([`args`]) becomes a validated job ([`job`]) that a command carries out.
+//! The command line: what was typed (`args`) becomes a validated job (`job`) that a command carries out.
 //!
-//! stdout is data (statistics, reports), stderr is talk (progress, warnings, errors). Exit codes are in [`exit`].
+//! stdout is data (statistics, reports), stderr is talk (progress, warnings, errors). Exit codes are in `exit`.
 
 mod args;
 mod compare;

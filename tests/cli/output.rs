@@ -1,7 +1,7 @@
 //! What a render leaves behind, and what it does not.
 
 use super::{Finished, Sandbox, read};
-use lightsplat::image::{ExrFile, Value};
+use lightsplat::image::{ExrFile, Value, read_exr};
 use std::process::Command;
 
 #[test]
@@ -23,6 +23,26 @@ fn a_render_writes_picture_preview_variance_and_where_it_comes_from() {
     assert_eq!(facts.text("scene_hash").map(str::len), Some(16));
     assert!(facts.number("render_seconds").unwrap() > 0.0 && facts.number("standard_error").unwrap() > 0.0);
     assert!(matches!(facts.get("settings"), Some(Value::Text(json)) if json.contains("\"spp\":4")));
+}
+
+#[test]
+fn the_settings_of_lightcuts_reach_the_method_and_the_file() {
+    let sandbox = Sandbox::new();
+    let options =
+        ["--epsilon", "0.3", "--max-cut", "7", "--vpls", "300", "--direct-vpls", "256", "--clamp", "0"];
+    let coarse = [&["--method", "lightcuts", "--tree", "agglomerative"], &options[..]].concat();
+    sandbox.render("a.exr", &coarse).expect(0);
+    let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
+    assert_eq!(file.metadata().text("method"), Some("lightcuts"));
+    let settings: serde_json::Value =
+        serde_json::from_str(file.metadata().text("settings").unwrap()).unwrap();
+    let expected = serde_json::json!({
+        "spp": 4, "seed": 0, "max_depth": null, "epsilon": 0.3, "max_cut": 7, "vpls": 300, "direct_vpls": 256,
+        "clamp": 0.0, "tree": "agglomerative",
+    });
+    assert_eq!(settings, expected);
+    sandbox.render("b.exr", &[&coarse[..], &["--threads", "3"]].concat()).expect(0);
+    assert_eq!(read_exr(&sandbox.path("b.exr")).unwrap(), file.color().unwrap());
 }
 
 #[test]

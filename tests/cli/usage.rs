@@ -27,6 +27,8 @@ fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
     render(&["--max-depth", "0"]);
     render(&["--exposure", "bright"]);
     render(&["--crop", "1,2,3"]);
+    assert!(render(&["--vpls", "9"]).contains("lightcuts"));
+    render(&["--method", "lightcuts", "--epsilon", "2"]);
     render(&["--no-png", "--png", "b.png"]);
     assert!(render(&["--crop", "20,0,5,5"]).contains("24x16"));
     assert!(render(&["--frame", "0"]).contains("0 frames"));
