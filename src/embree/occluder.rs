@@ -218,10 +218,10 @@ unsafe extern "C" fn record_occluders(arguments: *const sys::RTCFilterFunctionNA
         return unsafe { record_split_packet(arguments, record) };
     }
     // SAFETY: with N = 16, mask, ray and hit are arrays of 16 words at these offsets, none of which
-    // overlaps our record.
+    // overlaps our record. The mask's words are 0 or -1.
     let (valid, t, geometry, primitive) = unsafe {
         (
-            &mut *arguments.valid.cast::<[i32; 16]>(),
+            &mut *arguments.valid.cast::<[u32; 16]>(),
             &*arguments.ray.cast::<f32>().add(16 * word::RAY_T_FAR).cast::<[f32; 16]>(),
             &*arguments.hit.cast::<u32>().add(16 * word::HIT_GEOMETRY).cast::<[u32; 16]>(),
             &*arguments.hit.cast::<u32>().add(16 * word::HIT_PRIMITIVE).cast::<[u32; 16]>(),
@@ -229,14 +229,27 @@ unsafe extern "C" fn record_occluders(arguments: *const sys::RTCFilterFunctionNA
     };
     let (skip, found) = (record.skip, &mut *record.found);
     for i in 0..16 {
-        let is_skipped = ((geometry[i] == skip.geometry[0][i]) & (primitive[i] == skip.primitive[0][i]))
-            | ((geometry[i] == skip.geometry[1][i]) & (primitive[i] == skip.primitive[1][i]));
-        let accepted = if is_skipped { 0 } else { valid[i] };
-        valid[i] = accepted;
-        found.t[i] = if accepted != 0 { t[i] } else { found.t[i] };
-        found.geometry[i] = if accepted != 0 { geometry[i] } else { found.geometry[i] };
-        found.primitive[i] = if accepted != 0 { primitive[i] } else { found.primitive[i] };
+        // Zero where the triangle is the one to be skipped.
+        let differs =
+            |end: usize| (geometry[i] ^ skip.geometry[end][i]) | (primitive[i] ^ skip.primitive[end][i]);
+        valid[i] &= u32::from((differs(0) != 0) & (differs(1) != 0)).wrapping_neg();
     }
+    let accepted = *valid;
+    for i in 0..16 {
+        found.t[i] = f32::from_bits(blend(accepted[i], t[i].to_bits(), found.t[i].to_bits()));
+    }
+    for i in 0..16 {
+        found.geometry[i] = blend(accepted[i], geometry[i], found.geometry[i]);
+    }
+    for i in 0..16 {
+        found.primitive[i] = blend(accepted[i], primitive[i], found.primitive[i]);
+    }
+}
+
+/// `new` where the mask is all ones, `old` where it is zero.
+#[inline]
+fn blend(mask: u32, new: u32, old: u32) -> u32 {
+    (mask & new) | (!mask & old)
 }
 
 /// The same where Embree has no sixteen-wide kernels and traces the rays of the packet one by one, or

@@ -117,7 +117,7 @@ pub(super) struct Lanes(pub(super) [i32; 16]);
 impl Lanes {
     #[inline]
     pub(super) fn any(&self) -> bool {
-        self.0.iter().fold(0, |any, lane| any | lane) != 0
+        self.0 != [0; 16]
     }
 
     /// Bit mask of the lanes that are valid and for which `f` holds.
