@@ -51,7 +51,7 @@ impl EnvironmentLight {
                         // The exact share of the sphere between the two latitudes.
                         let weight = ((PI * low).cos() - (PI * high).cos()).max(0.0);
                         (0..map.width)
-                            .map(|x| corners(map, x, row).iter().sum::<f32>() * 0.25 * weight)
+                            .map(|x| luminance(corners(map, x, row).iter().sum()) * 0.25 * weight)
                             .collect()
                     })
                     .collect();
@@ -74,23 +74,25 @@ impl EnvironmentLight {
         match &self.source {
             Source::Constant(radiance) => *radiance,
             Source::Map { map, .. } => {
-                let (x, row, f) = locate(map, d);
-                let [a, b, c, d] = corner_indices(map, x, row).map(|i| map.radiance[i]);
-                a.lerp(b, f.x).lerp(c.lerp(d, f.x), f.y)
+                let place = locate(map, d);
+                bilinear(corners(map, place.x, place.row), place.f)
             }
         }
     }
 
-    /// Density with which [`EnvironmentLight::sample`] draws `d`.
-    pub fn pdf(&self, d: Vec3) -> f32 {
+    /// Radiance arriving from the unit world direction `d`, and the density with which
+    /// [`EnvironmentLight::sample`] draws it.
+    pub fn radiance_pdf(&self, d: Vec3) -> (Rgb, f32) {
         match &self.source {
-            Source::Constant(_) => 0.25 * FRAC_1_PI,
+            Source::Constant(radiance) => (*radiance, 0.25 * FRAC_1_PI),
             Source::Map { map, rows, columns } => {
-                let (x, row, f) = locate(map, d);
-                let cell = rows.probability(row) * columns[row].probability(x);
                 let local = map.to_local * d;
                 let sin_theta = (local.x * local.x + local.z * local.z).sqrt();
-                cell * bilinear_density(corners(map, x, row), f) / cell_solid_angle(map, row, sin_theta)
+                let place = locate(map, d);
+                let corners = corners(map, place.x, place.row);
+                let cell = rows.probability(place.row) * columns[place.row].probability(place.x);
+                let radiance = bilinear(corners, place.f);
+                (radiance, cell * density(corners, radiance) / cell_solid_angle(map, sin_theta))
             }
         }
     }
@@ -106,21 +108,29 @@ impl EnvironmentLight {
             Source::Map { map, rows, columns } => {
                 let (row, rest_y) = rows.sample(u.y);
                 let (x, rest_x) = columns[row].sample(u.x);
-                let f = sample_bilinear(corners(map, x, row), Vec2::new(rest_x, rest_y));
-                let (low, high) = row_span(map, row);
-                let theta = PI * (low + (high - low) * f.y);
+                let corners = corners(map, x, row);
+                let f = sample_bilinear(corners.map(luminance), Vec2::new(rest_x, rest_y));
+                let theta = PI * (row as f32 + f.y) / row_count(map) as f32;
                 let phi = TAU * (x as f32 + 0.5 + f.x) / map.width as f32;
                 let (sin_theta, cos_theta) = theta.sin_cos();
                 let (sin_phi, cos_phi) = phi.sin_cos();
                 let local = Vec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta);
                 // The map's frame is a rotation, so the transpose is the inverse.
                 let direction = (map.to_local.transpose() * local).normalize();
-                let pdf = self.pdf(direction);
-                let radiance = self.radiance(direction);
+                let radiance = bilinear(corners, f);
+                let cell = rows.probability(row) * columns[row].probability(x);
+                let pdf = cell * density(corners, radiance) / cell_solid_angle(map, sin_theta);
                 (pdf > 0.0 && pdf.is_finite()).then_some(EnvironmentSample { direction, radiance, pdf })
             }
         }
     }
+}
+
+/// A cell of the map and the position in it.
+struct Place {
+    x: usize,
+    row: usize,
+    f: Vec2,
 }
 
 /// Rows of cells: one fewer than rows of texels.
@@ -135,42 +145,39 @@ fn row_span(map: &EnvironmentMap, row: usize) -> (f32, f32) {
 }
 
 /// Solid angle per unit of the cell's own square, at the given sine of the latitude.
-fn cell_solid_angle(map: &EnvironmentMap, row: usize, sin_theta: f32) -> f32 {
-    let (low, high) = row_span(map, row);
-    (TAU / map.width as f32) * (PI * (high - low)) * sin_theta.max(1e-7)
+fn cell_solid_angle(map: &EnvironmentMap, sin_theta: f32) -> f32 {
+    (TAU / map.width as f32) * (PI / row_count(map) as f32) * sin_theta.max(1e-7)
 }
 
-/// The cell of direction `d` and the position in it.
-fn locate(map: &EnvironmentMap, d: Vec3) -> (usize, usize, Vec2) {
+/// Where in the map direction `d` is.
+fn locate(map: &EnvironmentMap, d: Vec3) -> Place {
     let local = map.to_local * d;
     let u = local.x.atan2(-local.z) / TAU;
-    let theta = local.y.clamp(-1.0, 1.0).acos() * FRAC_1_PI;
     let x = (u - u.floor()) * map.width as f32 - 0.5;
     let column = x.floor();
     let rows = row_count(map);
-    let row = ((theta * rows as f32) as usize).min(rows - 1);
-    let (low, high) = row_span(map, row);
-    let fy = ((theta - low) / (high - low)).clamp(0.0, 1.0);
-    ((column as i64).rem_euclid(map.width as i64) as usize, row, Vec2::new(x - column, fy))
+    let y = local.y.clamp(-1.0, 1.0).acos() * FRAC_1_PI * rows as f32;
+    let row = (y as usize).min(rows - 1);
+    let f = Vec2::new(x - column, (y - row as f32).clamp(0.0, 1.0));
+    Place { x: (column as i64).rem_euclid(map.width as i64) as usize, row, f }
 }
 
-/// Texels at the corners of a cell: top left, top right, bottom left, bottom right.
-fn corner_indices(map: &EnvironmentMap, x: usize, row: usize) -> [usize; 4] {
-    let right = (x + 1) % map.width;
+/// Radiance at the corners of a cell: top left, top right, bottom left, bottom right.
+fn corners(map: &EnvironmentMap, x: usize, row: usize) -> [Rgb; 4] {
+    let right = if x + 1 == map.width { 0 } else { x + 1 };
     let top = row * map.width;
     let bottom = (row + 1).min(map.height - 1) * map.width;
-    [top + x, top + right, bottom + x, bottom + right]
+    [top + x, top + right, bottom + x, bottom + right].map(|i| map.radiance[i])
 }
 
-fn corners(map: &EnvironmentMap, x: usize, row: usize) -> [f32; 4] {
-    corner_indices(map, x, row).map(|i| luminance(map.radiance[i]))
+fn bilinear([a, b, c, d]: [Rgb; 4], f: Vec2) -> Rgb {
+    a.lerp(b, f.x).lerp(c.lerp(d, f.x), f.y)
 }
 
-/// Density over the unit square in proportion to the bilinear function of the corners.
-fn bilinear_density([a, b, c, d]: [f32; 4], f: Vec2) -> f32 {
-    let mean = 0.25 * (a + b + c + d);
-    let value = (a * (1.0 - f.x) + b * f.x) * (1.0 - f.y) + (c * (1.0 - f.x) + d * f.x) * f.y;
-    if mean > 0.0 { value / mean } else { 0.0 }
+/// Density over the cell's square in proportion to the bilinear luminance, where that is `radiance`.
+fn density(corners: [Rgb; 4], radiance: Rgb) -> f32 {
+    let mean = 0.25 * luminance(corners.iter().sum());
+    if mean > 0.0 { luminance(radiance) / mean } else { 0.0 }
 }
 
 fn sample_bilinear([a, b, c, d]: [f32; 4], u: Vec2) -> Vec2 {
@@ -210,7 +217,7 @@ mod tests {
         for i in 0..n {
             let u = owen_sobol_2d(i, 3);
             let d = uniform_sphere(u);
-            mass += light.pdf(d) as f64 * 4.0 * std::f64::consts::PI;
+            mass += light.radiance_pdf(d).1 as f64 * 4.0 * std::f64::consts::PI;
             uniform_mean += luminance(light.radiance(d)) as f64;
             let s = light.sample(u).unwrap();
             assert!((light.radiance(s.direction) - s.radiance).length() < 1e-2 * s.radiance.length());

@@ -137,12 +137,11 @@ impl Emitters {
         if pdf.is_finite() { self.selection.probability(self, x, n, index as usize) * pdf } else { 0.0 }
     }
 
-    /// Density with which [`Emitters::sample_direct`] at `x` draws the environment's direction `d`.
+    /// Probability with which [`Emitters::sample_direct`] at `x` chooses the environment.
     #[inline]
-    pub fn pdf_environment(&self, x: Vec3, n: Vec3, d: Vec3) -> f32 {
-        let Some(environment) = &self.environment else { return 0.0 };
+    pub fn environment_choice(&self, x: Vec3, n: Vec3) -> f32 {
         let index = self.areas.len() + self.deltas.len();
-        self.selection.probability(self, x, n, index) * environment.pdf(d)
+        self.selection.probability(self, x, n, index)
     }
 }
 

@@ -62,10 +62,10 @@ impl Path {
     #[inline]
     pub fn escaped(&self, world: &World) -> Rgb {
         let Some(environment) = &world.emitters.environment else { return Rgb::ZERO };
-        let direction = self.ray.direction;
+        let (radiance, pdf) = environment.radiance_pdf(self.ray.direction);
         let weight =
-            self.weight_against(|| world.emitters.pdf_environment(self.position, self.normal, direction));
-        self.throughput * environment.radiance(direction) * weight
+            self.weight_against(|| pdf * world.emitters.environment_choice(self.position, self.normal));
+        self.throughput * radiance * weight
     }
 
     /// Radiance at the eye from what the surface emits.
