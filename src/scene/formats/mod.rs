@@ -9,6 +9,7 @@ mod constants;
 pub(crate) mod error;
 mod mesh;
 mod mitsuba;
+mod native;
 mod picture;
 mod plan;
 
@@ -38,6 +39,8 @@ pub struct Loaded {
     pub repairs: SanitizeReport,
     /// Hash over the bytes of all source files, in order (64-bit FNV-1a).
     pub hash: u64,
+    /// The generator of its geometry, where it has one.
+    pub generator: Option<String>,
 }
 
 /// Reads the scene at `path`: `.toml` is native, `.xml` Mitsuba's.
@@ -45,11 +48,13 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let mut log = Log::new(options.strict);
     let plan = match extension.as_deref() {
+        Some("toml") => native::read(path, &mut log)?,
         Some("xml") => mitsuba::read(path, &mut log)?,
         _ => return Err(SceneError::UnknownFormat(path.to_owned())),
     };
+    let generator = plan.generator.clone();
     let (mut draft, hash) = plan.realise()?;
     let (repairs, centre) = sanitize::sanitize(&mut draft)?;
     let scene = recentre::recentre(draft, centre);
-    Ok(Loaded { scene, warnings: log.into_warnings(), repairs, hash })
+    Ok(Loaded { scene, warnings: log.into_warnings(), repairs, hash, generator })
 }

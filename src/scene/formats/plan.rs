@@ -23,6 +23,7 @@ pub(crate) struct Plan {
     pub name: String,
     /// The description's own files, main file first, with the hash of their bytes.
     pub sources: Vec<(PathBuf, u64)>,
+    pub generator: Option<String>,
     pub camera: DraftCamera,
     pub camera_path: Vec<DraftCamera>,
     pub resolution: [u32; 2],

@@ -29,12 +29,22 @@ pub(crate) struct RawMesh {
     pub groups: Vec<(String, usize)>,
 }
 
+/// Which normals a mesh has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Normals {
+    /// Its faces'.
+    Flat,
+    /// The file's, else its faces'.
+    AsGiven,
+    /// The file's, else smooth ones are computed.
+    Smooth,
+}
+
 /// How a raw mesh is brought into the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     pub to_world: DMat4,
-    /// Drop vertex normals.
-    pub face_normals: bool,
+    pub normals: Normals,
     /// The other side is the front.
     pub flip_normals: bool,
     /// Texture coordinates count v from the top: v becomes 1 - v.
@@ -54,8 +64,8 @@ pub(crate) fn place(raw: RawMesh, how: &Placement) -> DraftMesh {
     if how.v_down {
         mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
     }
-    if !how.face_normals {
-        if raw.normals.is_empty() {
+    if how.normals != Normals::Flat {
+        if raw.normals.is_empty() && how.normals == Normals::Smooth {
             mesh.normals = smooth::vertex_normals(&mesh.positions, &mesh.triangles);
         } else {
             let linear = glam::DMat3::from_mat4(how.to_world);

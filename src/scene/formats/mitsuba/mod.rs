@@ -39,6 +39,7 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     Ok(Plan {
         name,
         sources: document.sources,
+        generator: None,
         camera: view.camera,
         camera_path: Vec::new(),
         resolution: view.resolution,

@@ -3,7 +3,7 @@
 use super::Converter;
 use super::tree::Object;
 use crate::scene::formats::error::SceneError;
-use crate::scene::formats::mesh::{Placement, shapes};
+use crate::scene::formats::mesh::{Normals, Placement, shapes};
 use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan};
 use crate::scene::material::{Lobe, Material, MaterialId, Reflectance};
 use glam::{DMat4, DVec3};
@@ -60,7 +60,7 @@ impl Converter<'_> {
         let textured = self.is_textured(material) || emission.is_some_and(|e| e.texture.is_some());
         let placement = Placement {
             to_world: shape.transform("to_world")?.unwrap_or(DMat4::IDENTITY),
-            face_normals: shape.boolean("face_normals", false)?,
+            normals: if shape.boolean("face_normals", false)? { Normals::Flat } else { Normals::Smooth },
             flip_normals: shape.boolean("flip_normals", false)?,
             v_down,
             needs_uv: textured,

@@ -1,0 +1,108 @@
+//! Lights and environment of the native format.
+
+use super::text::{EnvironmentText, LightText};
+use super::{Builder, finite};
+use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::formats::plan::EnvironmentPlan;
+use crate::scene::light::DeltaLight;
+use glam::{DMat4, DVec3, Vec3};
+use toml::Spanned;
+
+impl Builder<'_> {
+    pub(super) fn light(&mut self, text: &Spanned<LightText>) -> Result<(), SceneError> {
+        let place = self.file.place(text.span());
+        let text = text.get_ref();
+        let need = |value: Option<[f64; 3]>, key: &str| {
+            let missing = || {
+                SceneError::value(
+                    &place,
+                    format!("the {} light lacks {key}", text.kind),
+                    format!("add {key} = [...]"),
+                )
+            };
+            finite(value.ok_or_else(missing)?, key, &place)
+        };
+        let given = [
+            ("position", text.position.is_some()),
+            ("intensity", text.intensity.is_some()),
+            ("target", text.target.is_some()),
+            ("inner_angle", text.inner_angle.is_some()),
+            ("outer_angle", text.outer_angle.is_some()),
+            ("direction", text.direction.is_some()),
+            ("irradiance", text.irradiance.is_some()),
+        ];
+        let known: &[&str] = match text.kind.as_str() {
+            "point" => &["position", "intensity"],
+            "spot" => &["position", "intensity", "target", "inner_angle", "outer_angle"],
+            "directional" => &["direction", "irradiance"],
+            other => {
+                let what = format!("unknown kind of light \"{other}\"");
+                return Err(SceneError::value(&place, what, "use point, spot or directional"));
+            }
+        };
+        if let Some((key, _)) = given.iter().find(|(key, is_given)| *is_given && !known.contains(key)) {
+            let what = format!("{key} means nothing for a {} light", text.kind);
+            return Err(SceneError::value(
+                &place,
+                what,
+                format!("leave it out; known are {}", known.join(", ")),
+            ));
+        }
+        let light = match text.kind.as_str() {
+            "point" => {
+                let intensity = need(text.intensity, "intensity")?.as_vec3();
+                (DeltaLight::Point { position: Vec3::ZERO, intensity }, need(text.position, "position")?)
+            }
+            "spot" => {
+                let position = need(text.position, "position")?;
+                let direction = unit(need(text.target, "target")? - position, &place)?;
+                let intensity = need(text.intensity, "intensity")?.as_vec3();
+                let outer = text.outer_angle.unwrap_or(20.0);
+                let inner = text.inner_angle.unwrap_or(0.75 * outer);
+                if !(0.0 <= inner && inner <= outer && outer > 0.0 && outer <= 180.0) {
+                    let what = format!("inner_angle {inner} and outer_angle {outer} make no cone");
+                    return Err(SceneError::value(
+                        &place,
+                        what,
+                        "keep 0 <= inner_angle <= outer_angle <= 180",
+                    ));
+                }
+                let [inner_angle, outer_angle] = [inner, outer].map(|a| a.to_radians() as f32);
+                let light =
+                    DeltaLight::Spot { position: Vec3::ZERO, direction, intensity, inner_angle, outer_angle };
+                (light, position)
+            }
+            _ => {
+                let direction = unit(need(text.direction, "direction")?, &place)?;
+                let irradiance = need(text.irradiance, "irradiance")?.as_vec3();
+                (DeltaLight::Directional { direction, irradiance }, DVec3::ZERO)
+            }
+        };
+        self.lights.push(light);
+        Ok(())
+    }
+
+    pub(super) fn environment(&self, text: &Spanned<EnvironmentText>) -> Result<EnvironmentPlan, SceneError> {
+        let place = self.file.place(text.span());
+        let text = text.get_ref();
+        match (text.radiance, &text.file) {
+            (Some(radiance), None) if text.scale.is_none() && text.rotate_y.is_none() => {
+                Ok(EnvironmentPlan::Constant(finite(radiance, "the radiance", &place)?.as_vec3()))
+            }
+            (None, Some(file)) => {
+                let to_world = DMat4::from_rotation_y(text.rotate_y.unwrap_or(0.0).to_radians());
+                let (path, scale) = (self.folder.join(file), text.scale.unwrap_or(1.0) as f32);
+                Ok(EnvironmentPlan::Map { place, path, scale, to_world })
+            }
+            _ => {
+                let remedy = "give radiance alone, or file with scale and rotate_y";
+                Err(SceneError::value(&place, "the environment has no single source", remedy))
+            }
+        }
+    }
+}
+
+fn unit(direction: DVec3, place: &Place) -> Result<Vec3, SceneError> {
+    let none = || SceneError::value(place, "the light has no direction", "give one that is not zero");
+    Ok(direction.try_normalize().ok_or_else(none)?.as_vec3())
+}

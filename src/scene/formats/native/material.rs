@@ -1,0 +1,215 @@
+//! Materials of the native format.
+//!
+//! | kind | keys |
+//! |---|---|
+//! | diffuse | reflectance |
+//! | glossy | diffuse, specular, alpha: Lambert and a lobe of constant reflectance |
+//! | plastic | diffuse, specular, ior, nonlinear: a smooth coat over Lambert |
+//! | roughplastic | those, alpha, distribution |
+//! | conductor | preset or eta and k; specular; alpha (0 or absent: a mirror), distribution |
+//! | mirror | reflectance |
+//! | glass | ior, reflectance, transmittance |
+//!
+//! Defaults: ior 1.5, alpha 0.1, specular 1, distribution "ggx".
+
+use super::Builder;
+use super::text::{ColourText, FilterText, MaterialText, TextureText, WrapText};
+use crate::math::Rgb;
+use crate::scene::formats::constants;
+use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::formats::plan::{Image, TexturePlan};
+use crate::scene::material::{Coat, Distribution, Fresnel, Lobe, Material, Reflectance};
+use crate::scene::texture::{Filter, TextureId, Wrap};
+use glam::{DVec3, Mat3, Vec2};
+use toml::Spanned;
+
+const BLACK: Reflectance = Reflectance::Constant(Rgb::ZERO);
+
+impl Builder<'_> {
+    pub(super) fn material(&mut self, text: &Spanned<MaterialText>) -> Result<(), SceneError> {
+        let place = self.file.place(text.span());
+        let text = text.get_ref();
+        check_keys(text, &place)?;
+        let (diffuse, coat, lobe) = self.layers(text, &place)?;
+        let two_sided = text.two_sided.unwrap_or(true);
+        let material = Material { name: text.name.clone(), two_sided, diffuse, coat, lobe };
+        let id = self.add_material(material, place.clone());
+        if self.material_ids.insert(text.name.clone(), id).is_some() {
+            let what = format!("there are two materials called \"{}\"", text.name);
+            return Err(SceneError::value(&place, what, "rename one"));
+        }
+        Ok(())
+    }
+
+    fn layers(
+        &mut self,
+        text: &MaterialText,
+        place: &Place,
+    ) -> Result<(Reflectance, Option<Coat>, Lobe), SceneError> {
+        let need = |colour: &Option<ColourText>, key: &str| {
+            let what = || format!("the material \"{}\" lacks {key}", text.name);
+            colour.clone().ok_or_else(|| SceneError::value(place, what(), format!("add {key} = ...")))
+        };
+        let one = || ColourText::Grey(1.0);
+        let ior = text.ior.unwrap_or(1.5) as f32;
+        Ok(match text.kind.as_str() {
+            "diffuse" => (self.colour(&need(&text.reflectance, "reflectance")?, place)?, None, Lobe::None),
+            "glossy" => {
+                let diffuse = self.colour(&need(&text.diffuse, "diffuse")?, place)?;
+                let scale = self.colour(&need(&text.specular, "specular")?, place)?;
+                (diffuse, None, rough(text, Fresnel::One, scale, place)?)
+            }
+            "plastic" | "roughplastic" => {
+                let diffuse = self.colour(&need(&text.diffuse, "diffuse")?, place)?;
+                let scale = self.colour(&text.specular.clone().unwrap_or(one()), place)?;
+                let fresnel = Fresnel::Dielectric(ior);
+                let lobe = match text.kind.as_str() {
+                    "plastic" => Lobe::Mirror { fresnel, scale },
+                    _ => rough(text, fresnel, scale, place)?,
+                };
+                (diffuse, Some(Coat { eta: ior, nonlinear: text.nonlinear.unwrap_or(false) }), lobe)
+            }
+            "conductor" => {
+                let scale = self.colour(&text.specular.clone().unwrap_or(one()), place)?;
+                let fresnel = conductor(text, place)?;
+                let lobe = match text.alpha {
+                    None | Some(0.0) => Lobe::Mirror { fresnel, scale },
+                    Some(_) => rough(text, fresnel, scale, place)?,
+                };
+                (BLACK, None, lobe)
+            }
+            "mirror" => {
+                let scale = self.colour(&text.reflectance.clone().unwrap_or(one()), place)?;
+                (BLACK, None, Lobe::Mirror { fresnel: Fresnel::One, scale })
+            }
+            "glass" => {
+                let reflectance = self.colour(&text.reflectance.clone().unwrap_or(one()), place)?;
+                let transmittance = self.colour(&text.transmittance.clone().unwrap_or(one()), place)?;
+                (BLACK, None, Lobe::Dielectric { eta: ior, reflectance, transmittance })
+            }
+            _ => (BLACK, None, Lobe::None),
+        })
+    }
+
+    fn colour(&mut self, text: &ColourText, place: &Place) -> Result<Reflectance, SceneError> {
+        Ok(match text {
+            ColourText::Rgb(rgb) => Reflectance::Constant(DVec3::from(*rgb).as_vec3()),
+            ColourText::Grey(grey) => Reflectance::Constant(Rgb::splat(*grey as f32)),
+            ColourText::Picture(file) => {
+                let plain = TextureText {
+                    file: file.clone(),
+                    wrap: None,
+                    filter: None,
+                    raw: false,
+                    scale: None,
+                    tiles: None,
+                };
+                self.texture(&plain, place)
+            }
+            ColourText::Texture(texture) => self.texture(texture, place),
+        })
+    }
+
+    pub(super) fn texture(&mut self, text: &TextureText, place: &Place) -> Reflectance {
+        let wrap = match text.wrap {
+            None | Some(WrapText::Repeat) => Wrap::Repeat,
+            Some(WrapText::Mirror) => Wrap::Mirror,
+            Some(WrapText::Clamp) => Wrap::Clamp,
+        };
+        let filter = match text.filter {
+            None | Some(FilterText::Bilinear) => Filter::Bilinear,
+            Some(FilterText::Nearest) => Filter::Nearest,
+        };
+        let tiles = text.tiles.unwrap_or([1.0, 1.0]).map(|t| t as f32);
+        let to_uv = Mat3::from_scale(Vec2::from(tiles));
+        let image = Image::File { path: self.folder.join(&text.file), raw: text.raw };
+        let known = self
+            .textures
+            .iter()
+            .position(|t| t.image == image && t.filter == filter && t.wrap == wrap && t.to_uv == to_uv);
+        let at = known.unwrap_or_else(|| {
+            self.textures.push(TexturePlan { place: place.clone(), image, filter, wrap, to_uv });
+            self.textures.len() - 1
+        });
+        let scale = Rgb::splat(text.scale.unwrap_or(1.0) as f32);
+        Reflectance::Textured { texture: TextureId(at as u32), scale }
+    }
+}
+
+/// Every key that is given must mean something for the kind.
+fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
+    let known: &[&str] = match text.kind.as_str() {
+        "diffuse" | "mirror" => &["reflectance"],
+        "glossy" => &["diffuse", "specular", "alpha", "distribution"],
+        "plastic" => &["diffuse", "specular", "ior", "nonlinear"],
+        "roughplastic" => &["diffuse", "specular", "ior", "nonlinear", "alpha", "distribution"],
+        "conductor" => &["preset", "eta", "k", "specular", "alpha", "distribution"],
+        "glass" => &["ior", "reflectance", "transmittance"],
+        other => {
+            let remedy = "use diffuse, glossy, plastic, roughplastic, conductor, mirror or glass";
+            return Err(SceneError::value(place, format!("unknown kind of material \"{other}\""), remedy));
+        }
+    };
+    let given = [
+        ("reflectance", text.reflectance.is_some()),
+        ("diffuse", text.diffuse.is_some()),
+        ("specular", text.specular.is_some()),
+        ("transmittance", text.transmittance.is_some()),
+        ("alpha", text.alpha.is_some()),
+        ("distribution", text.distribution.is_some()),
+        ("ior", text.ior.is_some()),
+        ("nonlinear", text.nonlinear.is_some()),
+        ("preset", text.preset.is_some()),
+        ("eta", text.eta.is_some()),
+        ("k", text.k.is_some()),
+    ];
+    match given.iter().find(|(key, is_given)| *is_given && !known.contains(key)) {
+        Some((key, _)) => {
+            let what = format!("{key} means nothing for a {} material", text.kind);
+            Err(SceneError::value(place, what, format!("leave it out; known are {}", known.join(", "))))
+        }
+        None => Ok(()),
+    }
+}
+
+fn rough(
+    text: &MaterialText,
+    fresnel: Fresnel,
+    scale: Reflectance,
+    place: &Place,
+) -> Result<Lobe, SceneError> {
+    let alpha = text.alpha.unwrap_or(0.1);
+    if !(alpha > 0.0 && alpha <= 4.0) {
+        let what = format!("the roughness of \"{}\" is {alpha}", text.name);
+        return Err(SceneError::value(place, what, "give a number above 0, usually up to 1"));
+    }
+    let distribution = match text.distribution.as_deref() {
+        None | Some("ggx") => Distribution::Ggx,
+        Some("beckmann") => Distribution::Beckmann,
+        Some(other) => {
+            let what = format!("unknown distribution \"{other}\"");
+            return Err(SceneError::value(place, what, "use ggx or beckmann"));
+        }
+    };
+    Ok(Lobe::Rough { distribution, alpha: alpha as f32, fresnel, scale })
+}
+
+fn conductor(text: &MaterialText, place: &Place) -> Result<Fresnel, SceneError> {
+    match (&text.preset, text.eta, text.k) {
+        (Some(preset), None, None) => {
+            let unknown = || {
+                let remedy = format!("use one of {}", constants::conductor_names());
+                SceneError::value(place, format!("unknown conductor \"{preset}\""), remedy)
+            };
+            let (eta, k) = constants::conductor(preset).ok_or_else(unknown)?;
+            Ok(Fresnel::Conductor { eta, k })
+        }
+        (None, Some(eta), Some(k)) => {
+            Ok(Fresnel::Conductor { eta: DVec3::from(eta).as_vec3(), k: DVec3::from(k).as_vec3() })
+        }
+        _ => {
+            let what = format!("the conductor \"{}\" is not determined", text.name);
+            Err(SceneError::value(place, what, "give either preset, or eta and k"))
+        }
+    }
+}

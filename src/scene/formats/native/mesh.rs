@@ -1,0 +1,149 @@
+//! Meshes of the native format: generated parts, files and shapes.
+
+use super::text::{MeshText, ScaleText, StepText};
+use super::{Builder, finite};
+use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::formats::mesh::{Normals, Placement, RawMesh, shapes};
+use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan};
+use crate::scene::generate::Part;
+use crate::scene::mesh::Emission;
+use glam::{DMat4, DVec3};
+use std::path::Path;
+use toml::Spanned;
+
+impl Builder<'_> {
+    pub(super) fn mesh(&mut self, text: &Spanned<MeshText>) -> Result<(), SceneError> {
+        let place = self.file.place(text.span());
+        let text = text.get_ref();
+        let (name, geometry) = self.geometry(text, &place)?;
+        let material = match (&text.material, &geometry) {
+            (Some(name), _) => {
+                let unknown = || SceneError::Reference {
+                    place: self.file.place(name.span()),
+                    kind: "material",
+                    name: name.get_ref().clone(),
+                };
+                MaterialPlan::One(*self.material_ids.get(name.get_ref()).ok_or_else(unknown)?)
+            }
+            (None, Geometry::Obj(path)) => self.mtl_materials(path, &place)?,
+            (None, _) => {
+                return Err(SceneError::value(&place, "the mesh has no material", "add material = \"...\""));
+            }
+        };
+        let emission = match text.emission {
+            Some(radiance) => {
+                let radiance = finite(radiance, "the emission", &place)?.as_vec3();
+                Some(Emission { radiance, texture: None, two_sided: text.emission_two_sided })
+            }
+            None => None,
+        };
+        let placement = Placement {
+            to_world: self.transform(&text.transform)?,
+            normals: Normals::AsGiven,
+            flip_normals: text.flip_normals,
+            // A sphere's v is counted from its north pole.
+            v_down: text.shape.as_deref() == Some("sphere"),
+            needs_uv: false,
+        };
+        self.meshes.push(MeshPlan { place, name, geometry, placement, material, emission });
+        Ok(())
+    }
+
+    fn geometry(&mut self, text: &MeshText, place: &Place) -> Result<(String, Geometry), SceneError> {
+        match (&text.part, &text.file, &text.shape) {
+            (Some(part), None, None) => {
+                let unknown = || SceneError::Reference {
+                    place: place.clone(),
+                    kind: "generated part",
+                    name: part.clone(),
+                };
+                let at = self.parts.iter().position(|p| p.name == *part).ok_or_else(unknown)?;
+                self.part_used[at] = true;
+                Ok((part.clone(), Geometry::Ready(raw_part(&self.parts[at]))))
+            }
+            (None, Some(file), None) => {
+                let path = self.folder.join(file);
+                let name = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+                let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+                let geometry = match extension.as_deref() {
+                    Some("obj") => Geometry::Obj(path),
+                    Some("ply") => Geometry::Ply(path),
+                    Some("serialized") => Geometry::Serialized(path, text.index.unwrap_or(0)),
+                    _ => {
+                        let what = format!("unknown kind of mesh file \"{file}\"");
+                        return Err(SceneError::value(place, what, "use .obj, .ply or .serialized"));
+                    }
+                };
+                Ok((name, geometry))
+            }
+            (None, None, Some(shape)) => {
+                let raw = match shape.as_str() {
+                    "rectangle" => shapes::rectangle(),
+                    "cube" => shapes::cube(),
+                    "disk" => shapes::disk(),
+                    "sphere" => shapes::sphere(DVec3::ZERO, 1.0),
+                    "cylinder" => shapes::cylinder(DVec3::ZERO, DVec3::Z, 1.0),
+                    other => {
+                        let remedy = "use rectangle, cube, sphere, disk or cylinder";
+                        return Err(SceneError::value(place, format!("unknown shape \"{other}\""), remedy));
+                    }
+                };
+                Ok((shape.clone(), Geometry::Ready(raw)))
+            }
+            _ => Err(SceneError::value(
+                place,
+                "the mesh has no single source",
+                "give one of part, file or shape",
+            )),
+        }
+    }
+
+    fn transform(&self, steps: &[Spanned<StepText>]) -> Result<DMat4, SceneError> {
+        let mut to_world = DMat4::IDENTITY;
+        for step in steps {
+            let place = self.file.place(step.span());
+            to_world = matrix(step.get_ref(), &place)? * to_world;
+        }
+        Ok(to_world)
+    }
+
+    /// Whether the OBJ's own materials are used: then `materials` are read from its MTL files.
+    fn mtl_materials(&mut self, path: &Path, place: &Place) -> Result<MaterialPlan, SceneError> {
+        let names = self.read_mtl(path, place)?;
+        let other = self.default_material(place);
+        Ok(MaterialPlan::ByName(names, other))
+    }
+}
+
+fn matrix(step: &StepText, place: &Place) -> Result<DMat4, SceneError> {
+    let matrix = match (&step.scale, &step.rotate, step.translate, step.matrix) {
+        (Some(ScaleText::Uniform(s)), None, None, None) => DMat4::from_scale(DVec3::splat(*s)),
+        (Some(ScaleText::Axes(s)), None, None, None) => DMat4::from_scale(DVec3::from(*s)),
+        (None, Some(rotate), None, None) => {
+            let axis = DVec3::from(rotate.axis).try_normalize();
+            let zero = || SceneError::value(place, "the rotation's axis is zero", "give a direction");
+            DMat4::from_axis_angle(axis.ok_or_else(zero)?, rotate.angle.to_radians())
+        }
+        (None, None, Some(by), None) => DMat4::from_translation(DVec3::from(by)),
+        (None, None, None, Some(rows)) => DMat4::from_cols_array(&rows).transpose(),
+        _ => {
+            let remedy =
+                "write { scale = 2.0 }, { rotate = { ... } }, { translate = [...] } or { matrix = [...] }";
+            return Err(SceneError::value(place, "a transform step does not say one thing", remedy));
+        }
+    };
+    match matrix.is_finite() {
+        true => Ok(matrix),
+        false => Err(SceneError::value(place, "a transform step is not finite", "write finite numbers")),
+    }
+}
+
+fn raw_part(part: &Part) -> RawMesh {
+    RawMesh {
+        positions: part.positions.iter().map(|p| p.as_dvec3()).collect(),
+        normals: part.normals.clone(),
+        uvs: part.uvs.clone(),
+        triangles: part.triangles.clone(),
+        groups: Vec::new(),
+    }
+}

@@ -1,0 +1,188 @@
+//! The native format: a TOML description over OBJ, PLY and generated geometry.
+//!
+//! ```toml
+//! name = "room"                       # optional, else the file's name
+//! generator = "nave"                  # optional: yields named parts
+//! max_depth = 17                      # optional: longest path in edges
+//! resolution = [512, 512]
+//! [camera]
+//! origin = [0.0, 1.6, 5.0]
+//! target = [0.0, 1.6, 0.0]
+//! up = [0.0, 1.0, 0.0]                # this is the default
+//! fov = 60.0                          # degrees, horizontal unless fov_axis = "y"; also near, far
+//! [camera.path]                       # optional walk-through
+//! frames = 281
+//! keys = [{ origin = [0, 1, 5], target = [0, 1, 0] }, { origin = [1, 1, 4], target = [0, 1, 0] }]
+//! [[material]]
+//! name = "stone"
+//! kind = "diffuse"                    # the kinds and their keys: see `material`
+//! reflectance = [0.6, 0.58, 0.5]      # or 0.5, "wood.png" or { file = "wood.png", wrap = "clamp" }
+//! two_sided = true                    # this is the default
+//! [[mesh]]
+//! part = "vault"                      # or file = "x.obj", or shape = "rectangle|cube|sphere|disk|cylinder"
+//! material = "stone"                  # for OBJ optional: else its MTL materials
+//! transform = [{ scale = 2.0 }, { rotate = { axis = [0, 1, 0], angle = 30 } }, { translate = [0, 1, 0] }]
+//! emission = [10.0, 9.0, 8.0]         # optional; emission_two_sided = true; flip_normals = true
+//! [[light]]
+//! kind = "point"                      # position, intensity
+//! position = [0, 2, 0]                # "spot": position, target, intensity, inner_angle, outer_angle (half
+//! intensity = [5, 5, 5]               # angles in degrees); "directional": direction, irradiance
+//! [environment]
+//! radiance = [1.0, 1.0, 1.0]          # or file = "sky.exr", scale = 1.0, rotate_y = 0.0 (degrees)
+//! ```
+//!
+//! Transform steps apply in order; `matrix` takes 16 numbers row by row. Shapes have Mitsuba's extents. v counts
+//! upwards everywhere: pictures stand upright on a rectangle, and reach from the south pole of a sphere (-z) to
+//! the north. Meshes whose file has no normals are flat. A `specular` or `diffuse` may be a texture, too.
+
+mod camera;
+mod light;
+mod material;
+mod mesh;
+mod mtl;
+mod text;
+
+use super::error::{Log, Place, SceneError};
+use super::plan::{MeshPlan, Plan, TexturePlan, fnv1a, read_file};
+use crate::scene::generate::{self, Part};
+use crate::scene::light::DeltaLight;
+use crate::scene::material::{Material, MaterialId};
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use text::SceneText;
+
+/// Reads the description at `path`.
+pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
+    let bytes = read_file(path, &Place::file(path))?;
+    let hash = fnv1a(&bytes);
+    let text = String::from_utf8(bytes).map_err(|_| SceneError::Syntax {
+        place: Place::file(path),
+        message: "the text is not UTF-8".into(),
+    })?;
+    let file = File { path, text: &text };
+    let scene: SceneText = toml::from_str(&text).map_err(|e| SceneError::Syntax {
+        place: e.span().map_or(Place::file(path), |span| file.place(span)),
+        message: e.message().to_owned(),
+    })?;
+    let mut builder = Builder::new(file, log, &scene)?;
+    for material in &scene.material {
+        builder.material(material)?;
+    }
+    for mesh in &scene.mesh {
+        builder.mesh(mesh)?;
+    }
+    builder.report_unused_parts(&scene)?;
+    for light in &scene.light {
+        builder.light(light)?;
+    }
+    let environment = scene.environment.as_ref().map(|e| builder.environment(e)).transpose()?;
+    let view = builder.view(&scene)?;
+    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let mut sources = vec![(path.to_owned(), hash)];
+    sources.append(&mut builder.sources);
+    Ok(Plan {
+        name: scene.name.unwrap_or(stem),
+        sources,
+        generator: scene.generator.map(|g| g.into_inner()),
+        camera: view.camera,
+        camera_path: view.path,
+        resolution: view.resolution,
+        max_depth: scene.max_depth,
+        meshes: builder.meshes,
+        materials: builder.materials,
+        material_places: builder.material_places,
+        textures: builder.textures,
+        lights: builder.lights,
+        environment,
+    })
+}
+
+/// The text, for line numbers.
+#[derive(Clone, Copy)]
+struct File<'a> {
+    path: &'a Path,
+    text: &'a str,
+}
+
+impl File<'_> {
+    fn place(&self, span: Range<usize>) -> Place {
+        let before = self.text.as_bytes().get(..span.start).unwrap_or_default();
+        let line = before.iter().filter(|&&b| b == b'\n').count() as u32 + 1;
+        Place::line(self.path, line)
+    }
+}
+
+struct Builder<'a> {
+    file: File<'a>,
+    /// Where file names start.
+    folder: PathBuf,
+    log: &'a mut Log,
+    parts: Vec<Part>,
+    part_used: Vec<bool>,
+    /// Files read on the way (MTL), with their hashes.
+    sources: Vec<(PathBuf, u64)>,
+    material_ids: BTreeMap<String, MaterialId>,
+    materials: Vec<Material>,
+    material_places: Vec<Place>,
+    textures: Vec<TexturePlan>,
+    meshes: Vec<MeshPlan>,
+    lights: Vec<(DeltaLight, DVec3)>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(file: File<'a>, log: &'a mut Log, scene: &SceneText) -> Result<Builder<'a>, SceneError> {
+        let mut parts = Vec::new();
+        if let Some(name) = &scene.generator {
+            let unknown = || SceneError::Reference {
+                place: file.place(name.span()),
+                kind: "generator",
+                name: name.get_ref().clone(),
+            };
+            parts = generate::generate(name.get_ref()).ok_or_else(unknown)?;
+        }
+        Ok(Builder {
+            file,
+            folder: file.path.parent().unwrap_or(Path::new("")).to_owned(),
+            log,
+            part_used: vec![false; parts.len()],
+            parts,
+            sources: Vec::new(),
+            material_ids: BTreeMap::new(),
+            materials: Vec::new(),
+            material_places: Vec::new(),
+            textures: Vec::new(),
+            meshes: Vec::new(),
+            lights: Vec::new(),
+        })
+    }
+
+    fn report_unused_parts(&mut self, scene: &SceneText) -> Result<(), SceneError> {
+        let unused = self.parts.iter().zip(&self.part_used).filter(|(_, used)| !**used);
+        let names: Vec<&str> = unused.map(|(part, _)| part.name.as_str()).collect();
+        match &scene.generator {
+            Some(generator) if !names.is_empty() => {
+                let what = format!("no mesh uses the generated parts {}", names.join(", "));
+                self.log.warn(&self.file.place(generator.span()), what, "they are left out")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn add_material(&mut self, material: Material, place: Place) -> MaterialId {
+        self.materials.push(material);
+        self.material_places.push(place);
+        MaterialId(self.materials.len() as u32 - 1)
+    }
+}
+
+/// A finite vector, or an error at `place` that says which.
+fn finite(v: [f64; 3], what: &str, place: &Place) -> Result<DVec3, SceneError> {
+    let v = DVec3::from(v);
+    let wrong = || SceneError::value(place, format!("{what} is not finite"), "write finite numbers");
+    v.is_finite().then_some(v).ok_or_else(wrong)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,179 @@
+use crate::scene::formats::{Level, LoadOptions, Loaded, load};
+use crate::scene::{DeltaLight, Environment, Fresnel, Lobe, Reflectance};
+use glam::{DVec3, Vec3};
+use std::fs;
+
+const HEAD: &str = "resolution = [8, 4]\n[camera]\norigin = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 90\n";
+const GREY: &str = "[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = 0.5\n";
+
+/// Loads the description, with the given files beside it.
+fn load_with(text: &str, files: &[(&str, &[u8])]) -> Result<Loaded, String> {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in files {
+        fs::write(folder.path().join(name), bytes).unwrap();
+    }
+    let path = folder.path().join("s.toml");
+    fs::write(&path, text).unwrap();
+    load(&path, &LoadOptions::default()).map_err(|e| e.to_string())
+}
+
+fn load_text(text: &str) -> Result<Loaded, String> {
+    load_with(text, &[])
+}
+
+#[test]
+fn every_kind_of_material_light_and_step_is_read() {
+    let text = r#"
+        name = "all"
+        max_depth = 5
+        resolution = [8, 4]
+        camera = { origin = [0, 0, 5], target = [0, 0, 0], fov = 90, fov_axis = "y" }
+        material = [
+            { name = "a", kind = "diffuse", reflectance = [0.1, 0.2, 0.3], two_sided = false },
+            { name = "b", kind = "glossy", diffuse = 0.5, specular = 0.2, alpha = 0.3 },
+            { name = "c", kind = "plastic", diffuse = 0.5 },
+            { name = "d", kind = "roughplastic", diffuse = 0.5, alpha = 0.2, ior = 1.3, nonlinear = true },
+            { name = "e", kind = "conductor", preset = "Au" },
+            { name = "f", kind = "conductor", eta = [1, 1, 1], k = [2, 2, 2], alpha = 0.2, distribution = "beckmann" },
+            { name = "g", kind = "mirror", reflectance = 0.9 },
+            { name = "h", kind = "glass", ior = 1.6 },
+        ]
+        mesh = [
+            { shape = "rectangle", material = "a", emission = [1, 2, 3], emission_two_sided = true, transform = [
+                { scale = 2.0 }, { rotate = { axis = [1, 0, 0], angle = 90 } }, { translate = [0, 0, 1] },
+                { matrix = [1, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] },
+            ] },
+            { shape = "cube", material = "h" },
+        ]
+        light = [
+            { kind = "point", position = [1, 2, 3], intensity = [4, 5, 6] },
+            { kind = "spot", position = [0, 2, 0], target = [0, 0, 0], intensity = [1, 1, 1], inner_angle = 10, outer_angle = 30 },
+            { kind = "directional", direction = [0, -2, 0], irradiance = [1, 1, 1] },
+        ]
+        environment = { radiance = [0.1, 0.2, 0.3] }
+    "#;
+    let loaded = load_text(text).unwrap();
+    let scene = &loaded.scene;
+    assert_eq!((scene.name.as_str(), scene.max_depth, scene.resolution), ("all", Some(5), [8, 4]));
+    assert!((scene.camera.tan_half_x - 2.0).abs() < 1e-6);
+    assert_eq!(scene.camera.right, Vec3::X);
+    assert_eq!((scene.camera.near, scene.camera.far), (0.0, f32::INFINITY));
+    assert_eq!(scene.materials.len(), 8);
+    assert!(!scene.materials[0].two_sided && scene.materials[1].two_sided);
+    assert!(matches!(scene.materials[3].coat, Some(c) if c.eta == 1.3 && c.nonlinear));
+    assert!(matches!(scene.materials[4].lobe, Lobe::Mirror { fresnel: Fresnel::Conductor { .. }, .. }));
+    assert!(matches!(scene.materials[5].lobe, Lobe::Rough { alpha: 0.2, .. }));
+    assert!(matches!(scene.materials[7].lobe, Lobe::Dielectric { eta: 1.6, .. }));
+    // Scaled, then laid down facing -y, then moved by 1 along z and 10 along x.
+    let corner = scene.meshes[0].positions[0].as_dvec3() + scene.centre;
+    assert!((corner - DVec3::new(8.0, 0.0, -1.0)).length() < 1e-5, "{corner}");
+    assert!((scene.meshes[0].normals[0] - Vec3::NEG_Y).length() < 1e-6);
+    assert!(scene.meshes[0].emission.unwrap().two_sided);
+    let DeltaLight::Point { position, .. } = scene.lights[0] else { panic!() };
+    assert!((position.as_dvec3() + scene.centre - DVec3::new(1.0, 2.0, 3.0)).length() < 1e-5);
+    assert!(matches!(scene.lights[1], DeltaLight::Spot { direction, .. } if direction == Vec3::NEG_Y));
+    assert!(matches!(scene.lights[2], DeltaLight::Directional { direction, .. } if direction == Vec3::NEG_Y));
+    assert!(matches!(scene.environment, Some(Environment::Constant(r)) if r == Vec3::new(0.1, 0.2, 0.3)));
+    assert_eq!(loaded.warnings, []);
+}
+
+#[test]
+fn what_is_wrong_is_named_with_its_line() {
+    let cases = [
+        ("colour = 3\n".to_string(), 1, "unknown field"),
+        (HEAD.replace("fov = 90", "fov = 190"), 2, "fov"),
+        (HEAD.replace("target = [0, 0, 0]", "target = [0, 0, 5]"), 2, "looks nowhere"),
+        (HEAD.replace("resolution = [8, 4]", "resolution = [8, 0]"), 1, "resolution"),
+        (format!("{HEAD}[[material]]\nname = \"m\"\nkind = \"felt\"\n"), 6, "\"felt\""),
+        (format!("{HEAD}[[material]]\nname = \"m\"\nkind = \"mirror\"\nalpha = 0.1\n"), 6, "alpha"),
+        (
+            format!("{HEAD}[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = 1.5\n"),
+            6,
+            "exceeds 1",
+        ),
+        (
+            format!("{HEAD}[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = [0, -1, 0]\n"),
+            6,
+            "negative",
+        ),
+        (
+            format!("{HEAD}[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = nan\n"),
+            6,
+            "no number",
+        ),
+        (format!("{HEAD}[[material]]\nname = \"m\"\nkind = \"conductor\"\npreset = \"Xx\"\n"), 6, "\"Xx\""),
+        (format!("{HEAD}{GREY}{GREY}"), 10, "two materials"),
+        (format!("{HEAD}[[mesh]]\nshape = \"cube\"\nmaterial = \"n\"\n"), 8, "\"n\""),
+        (format!("{HEAD}{GREY}[[mesh]]\nshape = \"cone\"\nmaterial = \"m\"\n"), 10, "\"cone\""),
+        (format!("{HEAD}{GREY}[[mesh]]\nmaterial = \"m\"\n"), 10, "part, file or shape"),
+        (format!("{HEAD}{GREY}[[mesh]]\nfile = \"no.obj\"\nmaterial = \"m\"\n"), 10, "no.obj"),
+        (format!("{HEAD}[[light]]\nkind = \"point\"\n"), 6, "lacks intensity"),
+        (format!("generator = \"castle\"\n{HEAD}"), 1, "\"castle\""),
+        (format!("{HEAD}[environment]\nscale = 2\n"), 6, "environment"),
+        (format!("{HEAD}nonsense"), 6, "expected"),
+    ];
+    for (text, line, what) in cases {
+        let message = load_text(&text).unwrap_err();
+        assert!(message.contains(&format!("s.toml:{line}:")) && message.contains(what), "{message}\n{text}");
+    }
+}
+
+#[test]
+fn an_obj_brings_its_mtl_materials() {
+    let obj =
+        b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 2 3\nusemtl shiny\nf 1 2 4\n\
+        usemtl lost\nf 2 3 4\n";
+    let mtl = b"newmtl red\nKd 0.8 0.1 0.1\nKs 0 0 0\nillum 2\nnewmtl shiny\nKd 0.4 0.4 0.4\nKs 0.5 0.5 0.9\nNs 98\n";
+    let text = format!("{HEAD}[[mesh]]\nfile = \"a.obj\"\n");
+    let loaded = load_with(&text, &[("a.obj", obj), ("a.mtl", mtl)]).unwrap();
+    let scene = &loaded.scene;
+    let names: Vec<&str> =
+        scene.meshes.iter().map(|m| scene.materials[m.material.0 as usize].name.as_str()).collect();
+    assert_eq!(names, ["red", "shiny", "default"]);
+    let shiny = &scene.materials[scene.meshes[1].material.0 as usize];
+    let Lobe::Rough { alpha, scale: Reflectance::Constant(scale), .. } = shiny.lobe else { panic!() };
+    assert!((alpha - (2.0f32 / 100.0).sqrt()).abs() < 1e-6);
+    assert!((scale - Vec3::new(0.5, 0.5, 0.6)).length() < 1e-6, "dimmed: {scale}");
+    assert_eq!(loaded.warnings.len(), 1, "{:?}", loaded.warnings);
+    assert_eq!(scene.sources.len(), 3);
+}
+
+#[test]
+fn a_generator_yields_named_parts_and_unused_ones_are_reported() {
+    let text = format!("generator = \"knot\"\n{HEAD}{GREY}[[mesh]]\npart = \"knot\"\nmaterial = \"m\"\n");
+    let loaded = load_text(&text).unwrap();
+    assert_eq!(loaded.generator.as_deref(), Some("knot"));
+    assert_eq!(loaded.scene.meshes[0].name, "knot");
+    assert_eq!(loaded.warnings.len(), 1);
+    assert_eq!(loaded.warnings[0].level, Level::Warning);
+    assert!(loaded.warnings[0].what.contains("floor"), "{}", loaded.warnings[0]);
+}
+
+#[test]
+fn a_path_has_a_camera_for_every_frame() {
+    let path = "[camera.path]\nframes = 5\nkeys = [{ origin = [0, 0, 5], target = [0, 0, 0] }, \
+        { origin = [4, 0, 5], target = [4, 0, 0] }]\n";
+    let loaded = load_text(&format!("{HEAD}{path}")).unwrap();
+    let xs: Vec<f32> =
+        loaded.scene.camera_path.iter().map(|c| c.origin.x + loaded.scene.centre.x as f32).collect();
+    assert_eq!(xs.len(), 5);
+    for (x, expected) in xs.iter().zip([0.0, 1.0, 2.0, 3.0, 4.0]) {
+        assert!((x - expected).abs() < 1e-5, "{xs:?}");
+    }
+}
+
+#[test]
+fn pictures_stand_upright_on_a_rectangle() {
+    let mut png = std::io::Cursor::new(Vec::new());
+    // White above, black below.
+    let image = image::RgbImage::from_fn(2, 2, |_, y| image::Rgb([if y == 0 { 255 } else { 0 }; 3]));
+    image.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let material = "[[material]]\nname = \"p\"\nkind = \"diffuse\"\nreflectance = { file = \"p.png\", wrap = \"clamp\" }\n";
+    let text = format!("{HEAD}{material}[[mesh]]\nshape = \"rectangle\"\nmaterial = \"p\"\n");
+    let loaded = load_with(&text, &[("p.png", png.get_ref())]).unwrap();
+    let mesh = &loaded.scene.meshes[0];
+    for (position, uv) in mesh.positions.iter().zip(&mesh.uvs) {
+        let expected = if position.y > 0.0 { 1.0 } else { 0.0 };
+        assert_eq!(loaded.scene.textures[0].lookup(*uv).x, expected, "{position}");
+    }
+}

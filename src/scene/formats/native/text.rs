@@ -1,0 +1,172 @@
+//! The native format as text: what each table may hold. Anything else is an error, so that a misspelt key
+//! cannot pass unnoticed.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneText {
+    pub name: Option<String>,
+    pub generator: Option<Spanned<String>>,
+    pub max_depth: Option<u32>,
+    pub resolution: Spanned<[u32; 2]>,
+    pub camera: Spanned<CameraText>,
+    #[serde(default)]
+    pub material: Vec<Spanned<MaterialText>>,
+    #[serde(default)]
+    pub mesh: Vec<Spanned<MeshText>>,
+    #[serde(default)]
+    pub light: Vec<Spanned<LightText>>,
+    pub environment: Option<Spanned<EnvironmentText>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CameraText {
+    pub origin: [f64; 3],
+    pub target: [f64; 3],
+    pub up: Option<[f64; 3]>,
+    pub fov: f64,
+    pub fov_axis: Option<Spanned<String>>,
+    pub near: Option<f64>,
+    pub far: Option<f64>,
+    pub path: Option<Spanned<PathText>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PathText {
+    pub frames: usize,
+    pub keys: Vec<KeyText>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KeyText {
+    pub origin: [f64; 3],
+    pub target: [f64; 3],
+}
+
+/// All keys of all kinds of material; `material` says which kind knows which.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MaterialText {
+    pub name: String,
+    pub kind: String,
+    pub two_sided: Option<bool>,
+    pub reflectance: Option<ColourText>,
+    pub diffuse: Option<ColourText>,
+    pub specular: Option<ColourText>,
+    pub transmittance: Option<ColourText>,
+    pub alpha: Option<f64>,
+    pub distribution: Option<String>,
+    pub ior: Option<f64>,
+    pub nonlinear: Option<bool>,
+    pub preset: Option<String>,
+    pub eta: Option<[f64; 3]>,
+    pub k: Option<[f64; 3]>,
+}
+
+/// A colour, a grey, or the name of a picture with or without how to read it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged, expecting = "expected [r, g, b], a number, a picture's name or { file = \"...\" }")]
+pub(super) enum ColourText {
+    Rgb([f64; 3]),
+    Grey(f64),
+    Picture(String),
+    Texture(TextureText),
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TextureText {
+    pub file: String,
+    pub wrap: Option<WrapText>,
+    pub filter: Option<FilterText>,
+    #[serde(default)]
+    pub raw: bool,
+    /// Factor on every texel.
+    pub scale: Option<f64>,
+    /// Repetitions along u and v.
+    pub tiles: Option<[f64; 2]>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum WrapText {
+    Repeat,
+    Mirror,
+    Clamp,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum FilterText {
+    Bilinear,
+    Nearest,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MeshText {
+    pub part: Option<String>,
+    pub file: Option<String>,
+    pub shape: Option<String>,
+    /// Which mesh of a `.serialized` file.
+    pub index: Option<usize>,
+    pub material: Option<Spanned<String>>,
+    #[serde(default)]
+    pub transform: Vec<Spanned<StepText>>,
+    pub emission: Option<[f64; 3]>,
+    #[serde(default)]
+    pub emission_two_sided: bool,
+    #[serde(default)]
+    pub flip_normals: bool,
+}
+
+/// One step of a transform; exactly one key.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StepText {
+    pub scale: Option<ScaleText>,
+    pub rotate: Option<RotateText>,
+    pub translate: Option<[f64; 3]>,
+    pub matrix: Option<[f64; 16]>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(untagged, expecting = "expected a number or [x, y, z]")]
+pub(super) enum ScaleText {
+    Uniform(f64),
+    Axes([f64; 3]),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RotateText {
+    pub axis: [f64; 3],
+    pub angle: f64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LightText {
+    pub kind: String,
+    pub position: Option<[f64; 3]>,
+    pub target: Option<[f64; 3]>,
+    pub intensity: Option<[f64; 3]>,
+    pub inner_angle: Option<f64>,
+    pub outer_angle: Option<f64>,
+    pub direction: Option<[f64; 3]>,
+    pub irradiance: Option<[f64; 3]>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct EnvironmentText {
+    pub radiance: Option<[f64; 3]>,
+    pub file: Option<String>,
+    pub scale: Option<f64>,
+    pub rotate_y: Option<f64>,
+}
