@@ -58,7 +58,10 @@ impl Bsdf<'_> {
         let masked = density * facets.v1(cos_o) * 0.5 * facets.max_g1(cos_max);
         let cos_d = min_facet_cos(cos_o, cos_min, bound.cos_mirror_max);
         // The factor covers the rounding of the reflectance and of D at the tip of a narrow lobe.
-        let reflectance = fresnel.max_reflectance(cos_d, self.model.normal_reflectance);
+        let reflectance = match &self.model.max_reflectance {
+            Some(table) => table.floor(cos_d),
+            None => fresnel.reflectance(cos_d),
+        };
         base + self.scale * reflectance * (masked * 1.000_01)
     }
 }

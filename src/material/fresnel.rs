@@ -102,7 +102,6 @@ impl Fresnel {
     ///
     /// A dielectric's grows towards grazing. A conductor's may first fall from its value at normal incidence,
     /// then rises to 1, so the larger of the ends bounds it.
-    #[inline]
     pub(super) fn max_reflectance(&self, cos_min: f32, normal: Rgb) -> Rgb {
         match *self {
             Fresnel::Conductor { eta, k } => conductor(cos_min, eta, k).max(normal),

@@ -3,7 +3,7 @@
 use super::bsdf::Bsdf;
 use super::fresnel;
 use super::microfacet::Microfacets;
-use super::table::{AngleTable, RoughCoat, lobe_albedo};
+use super::table::{AngleTable, RoughCoat, lobe_albedo, max_reflectance};
 use crate::math::Rgb;
 use crate::scene::{Coat, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
 use glam::Vec2;
@@ -27,8 +27,9 @@ pub(super) struct Model {
     pub lobe: Scattering,
     /// Cosine-weighted mean of the coat's transmittance; 1 without a coat.
     pub mean_transmittance: f32,
-    /// Fresnel reflectance of a rough lobe at normal incidence.
-    pub normal_reflectance: Rgb,
+    /// Largest Fresnel reflectance of a rough conductor by the least cosine: its formula costs more than the
+    /// rest of a bound.
+    pub max_reflectance: Option<Arc<AngleTable<Rgb>>>,
     /// Albedo of a rough lobe by angle, where something asks for it.
     pub lobe_albedo: Option<Arc<AngleTable<Rgb>>>,
     /// Base albedo to its BRDF, less the transmittances by angle: factor, and internal reflectance.
@@ -161,9 +162,11 @@ impl Model {
             base,
             lobe,
             mean_transmittance,
-            normal_reflectance: match lobe {
-                Scattering::Rough(_, fresnel) => fresnel.reflectance(1.0),
-                _ => Rgb::ZERO,
+            max_reflectance: match lobe {
+                Scattering::Rough(_, fresnel @ Fresnel::Conductor { .. }) => {
+                    Some(Arc::new(max_reflectance(&fresnel)))
+                }
+                _ => None,
             },
             lobe_albedo,
             base_factor: FRAC_1_PI / (coat.eta * coat.eta),

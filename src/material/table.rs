@@ -38,6 +38,12 @@ impl<T: Copy + Send + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>> 
         a + (b - a) * (x - i as f32)
     }
 
+    /// The entry at or next below `cos`.
+    #[inline]
+    pub fn floor(&self, cos: f32) -> T {
+        self.0[((cos * (ANGLES - 1) as f32) as usize).min(ANGLES - 1)]
+    }
+
     /// Cosine-weighted mean over the hemisphere, exact for the interpolant.
     fn mean(&self) -> T {
         let step = 1.0 / (ANGLES - 1) as f32;
@@ -96,6 +102,15 @@ impl RoughCoat {
 pub(super) fn lobe_albedo(facets: &Microfacets, fresnel: &Fresnel) -> AngleTable<Rgb> {
     let rule = gauss_legendre(32);
     AngleTable::new(|wo| albedo(facets, fresnel, wo, &rule))
+}
+
+/// The largest reflectance at any cosine >= each entry's, so that [`AngleTable::floor`] bounds it.
+pub(super) fn max_reflectance(fresnel: &Fresnel) -> AngleTable<Rgb> {
+    let normal = fresnel.reflectance(1.0);
+    AngleTable(array::from_fn(|i| {
+        let cos = i as f32 / (ANGLES - 1) as f32;
+        fresnel.max_reflectance((cos - 1e-6).max(0.0), normal)
+    }))
 }
 
 /// Light from `wo` that single scattering on the facets reflects back to its side.

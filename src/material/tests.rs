@@ -123,6 +123,12 @@ fn smooth_materials() -> Vec<Material> {
     for alpha in [0.05, 0.2, 0.5, 1.0] {
         all.push(glossy(Rgb::splat(0.4), 0.3, alpha));
     }
+    let mut inverted = rough_plastic(Distribution::Ggx, 0.2, true);
+    inverted.coat = Some(Coat { eta: 0.75, nonlinear: true });
+    if let Lobe::Rough { fresnel, .. } = &mut inverted.lobe {
+        *fresnel = Fresnel::Dielectric(0.75);
+    }
+    all.push(Material { name: "coat of lower index".into(), ..inverted });
     all.push(Material { name: "two-sided".into(), two_sided: true, ..glossy(PAINT * 0.5, 0.4, 0.3) });
     all.push(Material { name: "black glossy".into(), ..glossy(Rgb::ZERO, 0.4, 0.3) });
     all

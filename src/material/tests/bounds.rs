@@ -81,7 +81,7 @@ fn no_direction_of_a_set_exceeds_the_bound() {
 }
 
 #[test]
-fn a_lambertian_bound_is_exact() {
+fn bounds_are_exact_for_lambert_and_alike_on_two_sides() {
     with_bsdf(&lambert(PAINT), |bsdf| {
         let bound = DirectionBound { cos_i_max: 0.6, cos_i_min: -1.0, cos_mirror_max: 1.0 };
         let exact = PAINT * (0.6 / std::f32::consts::PI);
@@ -89,6 +89,12 @@ fn a_lambertian_bound_is_exact() {
         let below = DirectionBound { cos_i_max: -0.1, ..bound };
         assert_eq!(bsdf.bound(Vec3::Z, &below), Rgb::ZERO);
         assert_eq!(bsdf.bound(-Vec3::Z, &bound), Rgb::ZERO);
+    });
+    let two_sided = Material { two_sided: true, ..glossy(PAINT, 0.1, 0.3) };
+    with_bsdf(&two_sided, |bsdf| {
+        let bound = DirectionBound { cos_i_max: 0.6, cos_i_min: 0.1, cos_mirror_max: 0.9 };
+        let wo = direction(0.5, 0.5);
+        assert_eq!(bsdf.bound(wo, &bound), bsdf.bound(Vec3::new(wo.x, wo.y, -wo.z), &bound));
     });
 }
 
