@@ -67,18 +67,45 @@ impl Distribution {
     /// Never returns an outcome of probability zero unless all are.
     #[inline]
     pub fn sample(&self, u: f32) -> (usize, f32) {
+        self.search(u, self.bracket(u))
+    }
+
+    /// Outcomes between which the one at `u` lies. A step of its own so that several searches can be under way at
+    /// once while each waits for memory.
+    #[inline]
+    pub(super) fn bracket(&self, u: f32) -> Bracket {
         let spans = self.guide.len() - 1;
         let span = ((u * spans as f32) as usize).min(spans - 1);
         // One before and one after, since `u` times the number of spans was rounded.
         let first = self.guide[span.saturating_sub(1)] as usize;
-        let last = self.guide[(span + 2).min(spans)] as usize + 1;
-        let last = last.min(self.len());
-        let i = first + self.cumulative[first..=last].partition_point(|c| *c <= u);
+        let last = (self.guide[(span + 2).min(spans)] as usize + 1).min(self.len());
+        Bracket { first, last }
+    }
+
+    /// Halves a bracket once, without a branch.
+    #[inline]
+    pub(super) fn halve(&self, u: f32, b: Bracket) -> Bracket {
+        let middle = (b.first + b.last) / 2;
+        let above = self.cumulative[middle] <= u;
+        Bracket { first: if above { middle } else { b.first }, last: if above { b.last } else { middle } }
+    }
+
+    /// [`Distribution::sample`] within a bracket.
+    #[inline]
+    pub(super) fn search(&self, u: f32, b: Bracket) -> (usize, f32) {
+        let i = b.first + self.cumulative[b.first..=b.last].partition_point(|c| *c <= u);
         let i = i.clamp(1, self.len().max(1)) - 1;
         let width = self.probability(i);
         let rest = if width > 0.0 { (u - self.cumulative[i]) / width } else { 0.0 };
         (i, rest.clamp(0.0, 1.0 - f32::EPSILON))
     }
+}
+
+/// Part of a distribution that holds the outcome searched for.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Bracket {
+    first: usize,
+    last: usize,
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! bilinear luminance itself. So the density follows what [`EnvironmentLight::radiance`] returns
 //! up to the variation of the sine over one row, and a sun one texel wide costs no variance.
 
-use super::distribution::Distribution;
+use super::distribution::{Bracket, Distribution};
 use crate::math::{Rgb, luminance};
 use crate::sampling::uniform_sphere;
 use crate::scene::{Environment, EnvironmentMap};
@@ -83,50 +83,84 @@ impl EnvironmentLight {
     /// Radiance arriving from the unit world direction `d`, and the density with which
     /// [`EnvironmentLight::sample`] draws it.
     pub fn radiance_pdf(&self, d: Vec3) -> (Rgb, f32) {
+        self.radiance_pdf_many(&[d])[0]
+    }
+
+    /// [`EnvironmentLight::radiance_pdf`] of several directions, which wait for memory together.
+    pub fn radiance_pdf_many<const N: usize>(&self, d: &[Vec3; N]) -> [(Rgb, f32); N] {
         match &self.source {
-            Source::Constant(radiance) => (*radiance, 0.25 * FRAC_1_PI),
+            Source::Constant(radiance) => [(*radiance, 0.25 * FRAC_1_PI); N],
             Source::Map { map, rows, columns } => {
-                let local = map.to_local * d;
-                let sin_theta = (local.x * local.x + local.z * local.z).sqrt();
-                let place = locate(map, d);
-                let corners = corners(map, place.x, place.row);
-                let cell = rows.probability(place.row) * columns[place.row].probability(place.x);
-                let radiance = bilinear(corners, place.f);
-                (radiance, cell * density(corners, radiance) / cell_solid_angle(map, sin_theta))
+                let places = d.map(|d| locate(map, d));
+                let cells = places.map(|p| rows.probability(p.row) * columns[p.row].probability(p.x));
+                let corners = places.map(|p| corners(map, p.x, p.row));
+                std::array::from_fn(|i| {
+                    let local = map.to_local * d[i];
+                    let sin_theta = (local.x * local.x + local.z * local.z).sqrt();
+                    let radiance = bilinear(corners[i], places[i].f);
+                    let pdf = cells[i] * density(corners[i], radiance) / cell_solid_angle(map, sin_theta);
+                    (radiance, pdf)
+                })
             }
         }
     }
 
     /// A direction in proportion to luminance; `None` where the density vanishes.
     pub fn sample(&self, u: Vec2) -> Option<EnvironmentSample> {
+        self.sample_many(&[u])[0]
+    }
+
+    /// [`EnvironmentLight::sample`] for several points of the unit square, which wait for memory together: a
+    /// large map lies outside the caches, and one look-up after the other would take most of a render's time.
+    pub fn sample_many<const N: usize>(&self, u: &[Vec2; N]) -> [Option<EnvironmentSample>; N] {
         match &self.source {
-            Source::Constant(radiance) => Some(EnvironmentSample {
-                direction: uniform_sphere(u),
-                radiance: *radiance,
-                pdf: 0.25 * FRAC_1_PI,
+            Source::Constant(radiance) => u.map(|u| {
+                let pdf = 0.25 * FRAC_1_PI;
+                Some(EnvironmentSample { direction: uniform_sphere(u), radiance: *radiance, pdf })
             }),
             Source::Map { map, rows, columns } => {
-                let (row, rest_y) = rows.sample(u.y);
-                let (x, rest_x) = columns[row].sample(u.x);
-                let corners = corners(map, x, row);
-                let f = sample_bilinear(corners.map(luminance), Vec2::new(rest_x, rest_y));
-                let theta = PI * (row as f32 + f.y) / row_count(map) as f32;
-                let phi = TAU * (x as f32 + 0.5 + f.x) / map.width as f32;
-                let (sin_theta, cos_theta) = theta.sin_cos();
-                let (sin_phi, cos_phi) = phi.sin_cos();
-                let local = Vec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta);
-                // The map's frame is a rotation, so the transpose is the inverse.
-                let direction = (map.to_local.transpose() * local).normalize();
-                let radiance = bilinear(corners, f);
-                let cell = rows.probability(row) * columns[row].probability(x);
-                let pdf = cell * density(corners, radiance) / cell_solid_angle(map, sin_theta);
-                (pdf > 0.0 && pdf.is_finite()).then_some(EnvironmentSample { direction, radiance, pdf })
+                let found = u.map(|u| rows.sample(u.y));
+                let lane = |f: &dyn Fn(usize) -> Bracket| std::array::from_fn::<Bracket, N, _>(f);
+                let brackets = lane(&|i| columns[found[i].0].bracket(u[i].x));
+                let brackets = lane(&|i| columns[found[i].0].halve(u[i].x, brackets[i]));
+                let places: [(usize, f32); N] =
+                    std::array::from_fn(|i| columns[found[i].0].search(u[i].x, brackets[i]));
+                let corners: [[Rgb; 4]; N] = std::array::from_fn(|i| corners(map, places[i].0, found[i].0));
+                std::array::from_fn(|i| {
+                    let (row, rest_y) = found[i];
+                    let (x, rest_x) = places[i];
+                    let f = sample_bilinear(corners[i].map(luminance), Vec2::new(rest_x, rest_y));
+                    let cell = rows.probability(row) * columns[row].probability(x);
+                    direction_in(map, row, x, f, corners[i], cell)
+                })
             }
         }
     }
 }
 
+/// The sample at position `f` of a cell that is chosen with probability `cell`.
+fn direction_in(
+    map: &EnvironmentMap,
+    row: usize,
+    x: usize,
+    f: Vec2,
+    corners: [Rgb; 4],
+    cell: f32,
+) -> Option<EnvironmentSample> {
+    let theta = PI * (row as f32 + f.y) / row_count(map) as f32;
+    let phi = TAU * (x as f32 + 0.5 + f.x) / map.width as f32;
+    let (sin_theta, cos_theta) = theta.sin_cos();
+    let (sin_phi, cos_phi) = phi.sin_cos();
+    let local = Vec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta);
+    // The map's frame is a rotation, so the transpose is the inverse.
+    let direction = (map.to_local.transpose() * local).normalize();
+    let radiance = bilinear(corners, f);
+    let pdf = cell * density(corners, radiance) / cell_solid_angle(map, sin_theta);
+    (pdf > 0.0 && pdf.is_finite()).then_some(EnvironmentSample { direction, radiance, pdf })
+}
+
 /// A cell of the map and the position in it.
+#[derive(Clone, Copy)]
 struct Place {
     x: usize,
     row: usize,

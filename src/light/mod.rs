@@ -81,6 +81,22 @@ impl Emitters {
         u_choice: f32,
         u: Vec2,
     ) -> Option<DirectSample> {
+        let environment = || self.environment.as_ref()?.sample(u);
+        self.sample_direct_with(scene, x, n, u_choice, u, environment)
+    }
+
+    /// [`Emitters::sample_direct`] with the environment's sample for `u` given by the caller, who may have
+    /// drawn many at once.
+    #[inline]
+    pub fn sample_direct_with(
+        &self,
+        scene: &Scene,
+        x: Vec3,
+        n: Vec3,
+        u_choice: f32,
+        u: Vec2,
+        environment: impl FnOnce() -> Option<EnvironmentSample>,
+    ) -> Option<DirectSample> {
         let (index, choice) = self.selection.sample(self, x, n, u_choice)?;
         if let Some(light) = self.areas.get(index) {
             let point = light.sample(u);
@@ -113,7 +129,7 @@ impl Emitters {
                 delta: true,
             });
         }
-        let s = self.environment.as_ref()?.sample(u)?;
+        let s = environment()?;
         Some(DirectSample {
             direction: s.direction,
             distance: f32::INFINITY,

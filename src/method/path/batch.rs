@@ -3,7 +3,7 @@
 //! Deviations: Embree's packets change the last bits of a hit, never its meaning; since a batch always holds the
 //! same paths in the same order, pictures do not depend on threads.
 
-use super::vertex::{DirectLight, Path};
+use super::vertex::{DirectLight, Draws, Path};
 use crate::embree::{Hit, Hits16, Ray, Rays16};
 use crate::math::Rgb;
 use crate::sampling::Sampler;
@@ -57,13 +57,10 @@ impl Batch {
                 rays.set(lane, &path.ray);
             }
             let found = world.accel.closest_hit16(&rays, lanes(count), depth == 1, &mut hits);
-            for lane in 0..count {
+            self.escape(world, begin, lanes(count) & !found);
+            let draws = self.draw(world, begin, count);
+            for lane in (0..count).filter(|lane| (found >> lane) & 1 != 0) {
                 let path = &mut self.paths[begin + lane];
-                let slot = path.slot as usize;
-                if (found >> lane) & 1 == 0 {
-                    self.radiance[slot] += path.escaped(world);
-                    continue;
-                }
                 let hit = Hit {
                     t: hits.t[lane],
                     u: hits.u[lane],
@@ -72,8 +69,8 @@ impl Batch {
                     primitive: hits.primitive[lane],
                 };
                 let surface = world.surface(&hit);
-                self.radiance[slot] += path.emitted(world, &surface);
-                if depth < max_depth && path.scatter(world, &surface, depth, &mut self.direct) {
+                self.radiance[path.slot as usize] += path.emitted(world, &surface);
+                if depth < max_depth && path.scatter(world, &surface, depth, &draws[lane], &mut self.direct) {
                     if kept != begin + lane {
                         self.paths[kept] = self.paths[begin + lane];
                     }
@@ -82,6 +79,37 @@ impl Batch {
             }
         }
         self.paths.truncate(kept);
+    }
+
+    /// Adds the environment's light to the paths of a packet that met nothing.
+    fn escape(&mut self, world: &World, begin: usize, escaped: u16) {
+        let Some(environment) = &world.emitters.environment else { return };
+        // Four at a time, compacted: packets seldom lose all their rays at once.
+        let mut lanes = (0..16).filter(|lane| (escaped >> lane) & 1 != 0);
+        while let Some(first) = lanes.next() {
+            let four = [Some(first), lanes.next(), lanes.next(), lanes.next()];
+            let index = four.map(|lane| begin + lane.unwrap_or(first));
+            let light = environment.radiance_pdf_many(&index.map(|i| self.paths[i].ray.direction));
+            for (i, light) in index.into_iter().zip(light).take(four.iter().flatten().count()) {
+                let path = &self.paths[i];
+                self.radiance[path.slot as usize] += path.escaped(world, light);
+            }
+        }
+    }
+
+    /// The random numbers of a packet's vertices.
+    fn draw(&mut self, world: &World, begin: usize, count: usize) -> [Draws; 16] {
+        let mut draws = [Draws::default(); 16];
+        for (draws, path) in draws.iter_mut().zip(&mut self.paths[begin..begin + count]) {
+            *draws = path.draw();
+        }
+        if let Some(environment) = &world.emitters.environment {
+            let samples = environment.sample_many(&draws.map(|d| d.light()));
+            for (draws, sample) in draws.iter_mut().zip(samples) {
+                draws.environment = sample;
+            }
+        }
+        draws
     }
 
     /// Adds the direct light whose segments are free.

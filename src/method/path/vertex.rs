@@ -3,11 +3,12 @@
 //! Paper: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapters 9 and 10.
 
 use crate::embree::Ray;
+use crate::light::EnvironmentSample;
 use crate::math::Rgb;
 use crate::sampling::Sampler;
 use crate::shadow;
 use crate::world::{Surface, World};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// Edges of a path before Russian roulette may end it.
 const ROULETTE_DEPTH: u32 = 3;
@@ -30,6 +31,22 @@ pub(super) struct Path {
     sampler: Sampler,
     /// Which of the batch's results the path adds to.
     pub slot: u32,
+}
+
+/// What chance gives one vertex.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Draws {
+    /// For the light, for the direction, for the choices of emitter and lobe, for Russian roulette.
+    numbers: [Vec2; 4],
+    /// The environment's sample for the light's numbers, where there is an environment.
+    pub environment: Option<EnvironmentSample>,
+}
+
+impl Draws {
+    /// The light's numbers.
+    pub fn light(&self) -> Vec2 {
+        self.numbers[0]
+    }
 }
 
 /// Light that arrives if a segment is free.
@@ -58,11 +75,16 @@ impl Path {
         }
     }
 
-    /// Radiance at the eye from the environment, the edge having met nothing.
+    /// The random numbers of the path's next vertex; the environment's sample is left out.
     #[inline]
-    pub fn escaped(&self, world: &World) -> Rgb {
-        let Some(environment) = &world.emitters.environment else { return Rgb::ZERO };
-        let (radiance, pdf) = environment.radiance_pdf(self.ray.direction);
+    pub fn draw(&mut self) -> Draws {
+        Draws { numbers: self.sampler.next_4x2d(), environment: None }
+    }
+
+    /// Radiance at the eye from the environment, the edge having met nothing; `radiance` is the environment's
+    /// along the edge and `pdf` its density of sampling that direction.
+    #[inline]
+    pub fn escaped(&self, world: &World, (radiance, pdf): (Rgb, f32)) -> Rgb {
         let weight =
             self.weight_against(|| pdf * world.emitters.environment_choice(self.position, self.normal));
         self.throughput * radiance * weight
@@ -92,12 +114,13 @@ impl Path {
         world: &World,
         surface: &Surface,
         depth: u32,
+        draws: &Draws,
         direct: &mut Vec<DirectLight>,
     ) -> bool {
         let bsdf = world.bsdf(surface);
         let wo = surface.frame.to_local(-self.ray.direction);
         let normal = if wo.z < 0.0 { -surface.frame.normal } else { surface.frame.normal };
-        let [u_light, u_direction, u_choices, u_roulette] = self.sampler.next_4x2d();
+        let [u_light, u_direction, u_choices, u_roulette] = draws.numbers;
         if bsdf.has_smooth()
             && let Some(light) =
                 world.emitters.sample_direct(&world.scene, surface.position, normal, u_choices.x, u_light)
