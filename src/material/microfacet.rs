@@ -203,8 +203,8 @@ fn visible_gaussian_slope(stretched: Vec3, u: f32) -> f32 {
     let mut high = if cos < 4.5 * sin { cos / sin } else { 4.5 };
     let mut low = -4.5;
     let target = u * cdf(high);
-    // Exact for normal and for grazing incidence.
-    let mut x = cos * erf_inv(2.0 * u - 1.0) - (1.0 - cos) * (-u.ln()).sqrt();
+    // Exact for grazing incidence, and for normal incidence to first order in the inclination.
+    let mut x = cos * (erf_inv(2.0 * u - 1.0) - 0.5 * sin) - (1.0 - cos) * (-u.ln()).sqrt();
     for _ in 0..16 {
         if !(x > low && x < high) {
             x = 0.5 * (low + high);
