@@ -65,12 +65,12 @@ fn to_text(c: &Comparison) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail, hence the `let _`.
     let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "{name:<28}{value}");
+        let _ = writeln!(text, "{name:<31}{value}");
     };
     line("relMSE", format!("{:.6e}", c.rel_mse));
-    line("relMSE, worst 0.1 % left out", format!("  {:.6e}", c.rel_mse_trimmed));
+    line("relMSE, worst 0.1 % left out", format!("{:.6e}", c.rel_mse_trimmed));
     if let Some(explained) = c.reference_rel_mse {
-        line("  of it the reference's noise", format!(" {explained:.6e}"));
+        line("  of it the reference's noise", format!("{explained:.6e}"));
     }
     line("RMSE", format!("{:.6e}", c.rmse));
     line("PSNR [dB]", c.psnr.map_or("identical on screen".to_owned(), |p| format!("{p:.3}")));
@@ -84,13 +84,16 @@ fn to_text(c: &Comparison) -> String {
         Some(z) => line("z-test", z_text(&z)),
         None => line("z-test", "needs the variance of both pictures".to_owned()),
     }
+    if let Some(z) = c.z_test_blocks {
+        line(&format!("  of {0}x{0} pixels", metrics::BLOCK), z_text(&z));
+    }
     line("exposure", format!("x{:.4e} ({:+.2} EV)", c.exposure, c.exposure.log2()));
     text
 }
 
 fn z_text(z: &ZTest) -> String {
     format!(
-        "{}: {:.3} % of pixels and channels pass (required {:.2} %), mean z² {:.3}",
+        "{}: {:.3} % of the tests pass (required {:.2} %), mean z² {:.3}",
         if z.passed { "passed" } else { "FAILED" },
         100.0 * z.share_passed,
         100.0 * metrics::SHARE_REQUIRED,

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 pub use flip::{PIXELS_PER_DEGREE, flip_map, magma};
 pub use pixelwise::{psnr, rel_mse, rel_mse_of_variance, relative_error_map, rmse};
-pub use ztest::{SHARE_REQUIRED, SIGNIFICANCE, ZTest, z_test};
+pub use ztest::{BLOCK, SHARE_REQUIRED, SIGNIFICANCE, ZTest, z_test, z_test_blocks};
 
 /// All measures of one image against a reference.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -36,6 +36,8 @@ pub struct Comparison {
     pub mean_ratio_std_error: Option<[Option<f64>; 3]>,
     /// Whether the differences are what the two variances allow, where both are known.
     pub z_test: Option<ZTest>,
+    /// The same over means of 8x8 pixels, for pictures of few samples.
+    pub z_test_blocks: Option<ZTest>,
     /// The factor on radiance before display.
     pub exposure: f64,
 }
@@ -68,6 +70,7 @@ pub fn compare(test: &Image, reference: &Image, variances: Variances) -> Result<
         mean_ratio: pixelwise::mean_ratio(test, reference),
         mean_ratio_std_error: both.map(|(t, r)| pixelwise::mean_ratio_std_error(test, reference, t, r)),
         z_test: both.map(|(t, r)| z_test(test, reference, t, r)),
+        z_test_blocks: both.map(|(t, r)| z_test_blocks(test, reference, t, r)),
         exposure: factor as f64,
     })
 }

@@ -142,6 +142,10 @@ fn the_z_test_accepts_noise_of_the_stated_variance_and_rejects_more_or_bias() {
     let mut biased = a.clone();
     biased.pixels.iter_mut().for_each(|p| p.y += 1.5);
     assert!(!z_test(&biased, &b, &va, &vb).passed);
+    // A bias that single pixels cannot show, blocks can.
+    assert!(z_test_blocks(&a, &b, &va, &vb).passed);
+    biased.pixels.iter_mut().for_each(|p| p.y -= 1.2);
+    assert!(z_test(&biased, &b, &va, &vb).passed && !z_test_blocks(&biased, &b, &va, &vb).passed);
 }
 
 #[test]
