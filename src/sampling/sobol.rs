@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn four_at_once_are_the_next_four() {
         let mut one = Sampler::new(11, 12345);
-        let mut four = one.clone();
+        let mut four = one;
         let expected: [Vec2; 4] = std::array::from_fn(|_| one.next_2d());
         assert_eq!(four.next_4x2d(), expected);
         assert_eq!(four.next_1d(), one.next_1d());

@@ -156,10 +156,8 @@ fn use_all_vertices(mesh: &mut DraftMesh) {
     if !renumbered.contains(&u32::MAX) {
         return;
     }
-    let mut next = 0;
-    for number in renumbered.iter_mut().filter(|n| **n == 0) {
+    for (next, number) in (0..).zip(renumbered.iter_mut().filter(|n| **n == 0)) {
         *number = next;
-        next += 1;
     }
     let used = |i: usize| renumbered[i] != u32::MAX;
     keep(&mut mesh.positions, used);
