@@ -1,18 +1,8 @@
 //! Every scene of the shared collection loads whole: counts as Mitsuba 3.9.1 has them, no unexplained
-//! warnings. Skipped, saying so, where the collection is absent.
+//! warnings.
 
+use super::shared_scenes;
 use lightsplat::scene::formats::{Level, LoadOptions, Loaded, load};
-use std::path::PathBuf;
-
-fn shared() -> Option<PathBuf> {
-    let beside = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared"));
-    let folder = std::env::var_os("LIGHTSPLAT_SHARED").map_or(beside, PathBuf::from).join("scenes");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    eprintln!("skipped: no shared scenes at {}", folder.display());
-    None
-}
 
 struct Expected {
     file: &'static str,
@@ -42,7 +32,7 @@ const EXPECTED: [Expected; 7] = [
 
 #[test]
 fn every_shared_scene_loads_whole() {
-    let Some(folder) = shared() else { return };
+    let Some(folder) = shared_scenes() else { return };
     for e in EXPECTED {
         let loaded = load(&folder.join(e.file), &LoadOptions { strict: true });
         let Loaded { scene, warnings, repairs, .. } = loaded.unwrap_or_else(|error| panic!("{error}"));
@@ -62,7 +52,7 @@ fn every_shared_scene_loads_whole() {
 
 #[test]
 fn loading_twice_gives_the_same_bits() {
-    let Some(folder) = shared() else { return };
+    let Some(folder) = shared_scenes() else { return };
     let path = folder.join("kitchenette/scene.xml");
     let [a, b] = [1, 2].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

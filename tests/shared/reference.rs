@@ -1,0 +1,80 @@
+//! The path tracer against converged pictures of the same scenes by an independent renderer (Mitsuba 3).
+
+use super::shared_scenes;
+use lightsplat::eye::Window;
+use lightsplat::image::metrics::{Variances, compare};
+use lightsplat::image::{Image, read_exr};
+use lightsplat::method::Control;
+use lightsplat::method::path::{Settings, render};
+use lightsplat::scene::formats::{LoadOptions, load};
+use lightsplat::world::World;
+
+/// The window's part of a picture of the whole film.
+fn crop(image: &Image, window: &Window) -> Image {
+    let mut part = Image::new(window.width, window.height);
+    for y in 0..window.height {
+        for x in 0..window.width {
+            let [fx, fy] = window.film_pixel([x, y]);
+            part.pixels[(y * window.width + x) as usize] = image.pixels[(fy * image.width + fx) as usize];
+        }
+    }
+    part
+}
+
+/// Renders `size` pixels at `offset` with `spp` samples and asks for the z-test to pass and for means within
+/// 0.5 % or what the two standard errors allow, whichever is wider.
+fn agrees(name: &str, offset: [u32; 2], size: [u32; 2], spp: u32) {
+    let Some(directory) = shared_scenes().map(|folder| folder.join(name)) else { return };
+    let loaded = load(&directory.join("scene.xml"), &LoadOptions::default()).expect("the scene loads");
+    let film = loaded.scene.resolution;
+    let world = World::new(loaded.scene, 2).expect("the scene builds");
+    let window = Window { offset, width: size[0], height: size[1], ..Window::whole(film) };
+    assert!(window.is_valid());
+    let output = render(&world, &window, &Settings { spp, ..Settings::default() }, &Control::new());
+    assert_eq!(output.nonfinite, 0);
+    let read = |file: &str| crop(&read_exr(&directory.join(file)).expect("the reference reads"), &window);
+    let (reference, variance) = (read("reference.exr"), read("reference_variance.exr"));
+    let variances = Variances { test: output.variance.as_ref(), reference: Some(&variance) };
+    let result = compare(&output.color, &reference, variances).expect("the pictures compare");
+    let z = result.z_test.expect("both variances are known");
+    eprintln!(
+        "{name}: passed {:.5}, z² {:.2}, ratio {:?}",
+        z.share_passed, z.mean_z_squared, result.mean_ratio
+    );
+    assert!(z.passed, "{name}: only {:.4} of the pixels agree", z.share_passed);
+    let errors = result.mean_ratio_std_error.expect("both variances are known");
+    for (ratio, error) in result.mean_ratio.into_iter().zip(errors) {
+        let (ratio, error) = (ratio.expect("a lit picture"), error.expect("a lit picture"));
+        assert!((ratio - 1.0).abs() < (4.0 * error).max(0.005), "{name}: mean off: {ratio} ± {error}");
+    }
+}
+
+#[test]
+fn cbox_agrees() {
+    agrees("cbox", [150, 230], [200, 160], 128);
+}
+
+#[test]
+fn knot_agrees() {
+    agrees("knot", [150, 200], [200, 160], 128);
+}
+
+#[test]
+fn sibenik_agrees() {
+    agrees("sibenik", [180, 220], [160, 120], 128);
+}
+
+#[test]
+fn living_room_agrees() {
+    agrees("living-room", [200, 140], [128, 96], 512);
+}
+
+#[test]
+fn staircase_agrees() {
+    agrees("staircase", [200, 380], [160, 160], 128);
+}
+
+#[test]
+fn kitchenette_agrees() {
+    agrees("kitchenette", [200, 160], [96, 96], 512);
+}
