@@ -3,8 +3,8 @@
 use super::args::InfoArgs;
 use super::exit::Failure;
 use super::{scene, talk};
-use crate::scene::Scene;
 use crate::scene::formats::Loaded;
+use crate::scene::{Requirements, Scene};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -12,7 +12,14 @@ use std::fmt::Write;
 pub fn run(args: InfoArgs) -> Result<(), Failure> {
     let loaded = scene::read(&args.scene, args.strict)?;
     let facts = facts(&loaded);
-    talk::print(&if args.json { format!("{facts}\n") } else { to_text(&facts) })
+    let requires = Requirements::of(&loaded.scene);
+    if args.json {
+        let mut facts = facts;
+        facts["requires"] = json!(requires);
+        talk::print(&format!("{facts}\n"))
+    } else {
+        talk::print(&format!("{}\nrequires\n{requires}\n", to_text(&facts)))
+    }
 }
 
 fn facts(loaded: &Loaded) -> Value {

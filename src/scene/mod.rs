@@ -11,6 +11,7 @@ mod light;
 mod material;
 mod mesh;
 mod recentre;
+pub mod requirements;
 mod sanitize;
 mod texture;
 
@@ -21,6 +22,7 @@ pub use camera::Camera;
 pub use light::{DeltaLight, Environment, EnvironmentMap};
 pub use material::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance};
 pub use mesh::{Emission, Mesh};
+pub use requirements::Requirements;
 pub use texture::{Filter, Texture, TextureId, Wrap};
 
 /// A scene, ready for the acceleration structure.

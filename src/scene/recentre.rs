@@ -74,3 +74,74 @@ fn place_light(light: DeltaLight, at: Vec3) -> DeltaLight {
         directional @ DeltaLight::Directional { .. } => directional,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::formats::{LoadOptions, load};
+    use crate::scene::{DeltaLight, Scene};
+
+    /// The same small room with everything moved by `offset` and scaled by `scale`.
+    fn room(scale: f64, offset: f64) -> Scene {
+        let at = |x: f64, y: f64, z: f64| {
+            format!("[{:e}, {:e}, {:e}]", x * scale + offset, y * scale + offset, z * scale + offset)
+        };
+        let text = format!(
+            "resolution = [8, 8]\ncamera = {{ origin = {}, target = {}, fov = 60 }}\n\
+            material = [{{ name = \"m\", kind = \"diffuse\", reflectance = 0.5 }}]\n\
+            mesh = [{{ shape = \"sphere\", material = \"m\", transform = [{{ scale = {scale:e} }}, {{ translate = {} }}] }},\
+            {{ shape = \"cube\", material = \"m\", transform = [{{ scale = {:e} }}, {{ translate = {} }}] }}]\n\
+            light = [{{ kind = \"point\", position = {}, intensity = [1, 1, 1] }}]\n",
+            at(0.125, 0.5, 3.0),
+            at(0.125, 0.5, 2.0),
+            at(0.25, 0.5, -1.0),
+            scale * 4.0,
+            at(0.0, 0.0, 0.0),
+            at(0.75, 2.5, 0.375),
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.toml");
+        std::fs::write(&path, text).unwrap();
+        load(&path, &LoadOptions::default()).unwrap().scene
+    }
+
+    #[test]
+    fn an_offset_of_a_million_loses_nothing() {
+        let (here, there) = (room(1.0, 0.0), room(1.0, 1e6));
+        for (a, b) in here.meshes.iter().zip(&there.meshes) {
+            let worst =
+                a.positions.iter().zip(&b.positions).map(|(a, b)| (a - b).length()).fold(0.0, f32::max);
+            // f64 at 1e6 is good to 1e-10, f32 near 4 to 2.4e-7.
+            assert!(worst <= 5e-7, "{worst}");
+        }
+        assert!((here.camera.origin - there.camera.origin).length() < 5e-7);
+        let position = |scene: &Scene| match scene.lights[0] {
+            DeltaLight::Point { position, .. } => position,
+            _ => panic!(),
+        };
+        assert!((position(&here) - position(&there)).length() < 5e-7);
+        assert!((there.centre - here.centre - 1e6).length() < 1e-9);
+    }
+
+    #[test]
+    fn a_millimetre_at_a_thousand_kilometres_keeps_its_shape() {
+        let (unit, tiny) = (room(1.0, 0.0), room(1e-3, 1e6));
+        for (a, b) in unit.meshes.iter().zip(&tiny.meshes) {
+            let worst =
+                a.positions.iter().zip(&b.positions).map(|(a, b)| (a - b * 1e3).length()).fold(0.0, f32::max);
+            // What f64 leaves at 1e6, magnified by 1e3.
+            assert!(worst < 1e-6, "{worst}");
+        }
+    }
+
+    #[test]
+    fn scenes_from_micrometres_to_megametres_are_alike() {
+        let unit = room(1.0, 0.0);
+        for scale in [1e-6, 1e6] {
+            let scaled = room(scale, 0.0);
+            for (a, b) in unit.meshes.iter().zip(&scaled.meshes) {
+                assert_eq!(a.triangles, b.triangles);
+                assert!(a.normals.iter().zip(&b.normals).all(|(a, b)| (a - b).length() < 1e-5));
+            }
+        }
+    }
+}

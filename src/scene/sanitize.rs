@@ -338,3 +338,6 @@ fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), Sc
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

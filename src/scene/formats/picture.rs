@@ -8,6 +8,9 @@ use crate::math::Rgb;
 use std::io::Cursor;
 use std::path::Path;
 
+/// 16k by 16k.
+const MAX_PIXELS: usize = 1 << 28;
+
 /// A decoded picture, top row first.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Picture {
@@ -32,6 +35,11 @@ pub(crate) fn decode(bytes: &[u8], raw: bool, path: &Path, place: &Place) -> Res
 
 fn decode_exr(bytes: &[u8]) -> Result<Picture, exr::error::Error> {
     use exr::prelude::*;
+    // The size is checked before anything is allocated on its word.
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)?;
+    if meta.headers.iter().any(|h| h.layer_size.width().saturating_mul(h.layer_size.height()) > MAX_PIXELS) {
+        return Err(exr::error::Error::Invalid("more pixels than any real picture has".into()));
+    }
     // Mitsuba names luminance images Y; `rgb_channels` would refuse those.
     let image = read()
         .no_deep_data()
@@ -97,4 +105,61 @@ fn linear(encoded: f32, raw: bool) -> f32 {
 /// The sRGB transfer function's inverse (IEC 61966-2-1).
 pub(crate) fn srgb_to_linear(encoded: f32) -> f32 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::PathBuf;
+
+    fn decode_file(bytes: &[u8], raw: bool, name: &str) -> Result<Picture, SceneError> {
+        decode(bytes, raw, Path::new(name), &Place::file(Path::new("s.toml")))
+    }
+
+    fn corpus(name: &str) -> Vec<u8> {
+        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/valid");
+        std::fs::read(folder.join(name)).unwrap()
+    }
+
+    #[test]
+    fn integer_pictures_are_srgb_unless_raw() {
+        let png = corpus("tile.png");
+        let decoded = decode_file(&png, false, "t.png").unwrap();
+        assert_eq!((decoded.width, decoded.height), (2, 2));
+        // 200 and 60 of 255, by the standard's formula in f64.
+        assert!(
+            (decoded.texels[0] - Rgb::new(0.577580, 0.0451862, 0.0212190)).length() < 1e-6,
+            "{}",
+            decoded.texels[0]
+        );
+        let raw = decode_file(&png, true, "t.png").unwrap();
+        assert_eq!(raw.texels[0], Rgb::new(200.0, 60.0, 40.0) / 255.0);
+    }
+
+    #[test]
+    fn floating_point_pictures_are_linear_with_the_top_row_first() {
+        let sky = decode_file(&corpus("sky.exr"), false, "sky.exr").unwrap();
+        assert_eq!((sky.width, sky.height), (4, 3));
+        assert_eq!(sky.texels[1], Rgb::new(0.5, 1.0, 2.0));
+        assert_eq!(sky.texels[8], Rgb::new(2.0, 1.0, 4.0));
+    }
+
+    #[test]
+    fn a_picture_that_claims_to_be_huge_is_an_error_and_no_allocation() {
+        let mut exr = corpus("sky.exr");
+        let at = exr.windows(10).position(|w| w == b"dataWindow").unwrap() + 10 + 1 + 5 + 1 + 4;
+        exr[at + 8..at + 12].copy_from_slice(&2_000_000_000i32.to_le_bytes());
+        exr[at + 12..at + 16].copy_from_slice(&2_000_000_000i32.to_le_bytes());
+        assert!(decode_file(&exr, false, "sky.exr").is_err());
+    }
+
+    #[test]
+    fn what_is_no_picture_is_an_error_that_names_it() {
+        for (bytes, name) in
+            [(&b""[..], "a.png"), (b"hello", "b.tga"), (b"hello", "c.txt"), (b"\x76\x2f\x31\x01", "d.exr")]
+        {
+            let message = decode_file(bytes, false, name).unwrap_err().to_string();
+            assert!(message.contains(name) && message.contains("s.toml"), "{message}");
+        }
+    }
 }

@@ -260,7 +260,8 @@ fn environment_map(picture: Picture, scale: f32, to_world: &DMat4) -> Environmen
     for _ in height..3 {
         radiance.extend_from_slice(&last);
     }
-    let to_local = DMat3::from_mat4(*to_world).inverse().as_mat3();
+    // A rotation (or reflection), so that the transpose is the inverse; readers have checked that.
+    let to_local = DMat3::from_mat4(*to_world).transpose().as_mat3();
     EnvironmentMap { width, height: height.max(3), radiance, to_local }
 }
 

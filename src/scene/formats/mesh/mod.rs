@@ -5,6 +5,7 @@
 //! renderer by the winding. So where the vertex normals oppose the winding (mirrored transforms,
 //! careless exporters), the winding is turned.
 
+pub(crate) mod mtl;
 pub(crate) mod obj;
 pub(crate) mod ply;
 pub(crate) mod serialized;

@@ -3,8 +3,8 @@
 //! A vertex is a distinct (position, uv, normal) triple of indices, numbered by first use, and polygons
 //! are fans, as in Mitsuba. Lines, points, curves and smoothing groups are passed over.
 //!
-//! Why not `tobj` (which still reads the MTL files): it splits a file at every `o`, `g` and `usemtl`, so
-//! that vertices are no longer shared where normals have to be computed, and its errors name no line.
+//! Why not `tobj`: it splits a file at every `o`, `g` and `usemtl`, so that vertices are no longer shared where
+//! normals have to be computed, and its errors name no line.
 
 use super::RawMesh;
 use crate::scene::formats::error::{Place, SceneError};
@@ -175,7 +175,7 @@ fn with_used_vertices(raw: &RawMesh, mut triangles: Vec<[u32; 3]>) -> RawMesh {
 }
 
 /// The first `N` numbers of a line; what follows them (w, vertex colours) is passed over.
-fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
+pub(super) fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
     let mut values = [0.0; N];
     let mut tokens = rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty());
     for value in &mut values {

@@ -61,10 +61,7 @@ impl Converter<'_> {
             "envmap" => {
                 let path = self.file(emitter, "filename")?;
                 let scale = emitter.float("scale")?.unwrap_or(1.0) as f32;
-                let to_world = to_world.unwrap_or(DMat4::IDENTITY);
-                if glam::DMat3::from_mat4(to_world).determinant().abs() < 1e-12 {
-                    return Err(SceneError::value(&emitter.place, "to_world is singular", "use a rotation"));
-                }
+                let to_world = self.rotation(emitter, to_world.unwrap_or(DMat4::IDENTITY))?;
                 let place = emitter.place.clone();
                 self.environment(emitter, EnvironmentPlan::Map { place, path, scale, to_world })?;
             }
@@ -100,6 +97,25 @@ impl Converter<'_> {
         };
         self.parts.lights.push((light, position));
         Ok(())
+    }
+
+    /// The transform without its scale; an error where it shears or is singular.
+    fn rotation(&mut self, emitter: &Object, m: DMat4) -> Result<DMat4, SceneError> {
+        let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|a| a.truncate());
+        let [Some(a), Some(b), Some(c)] = [x, y, z].map(|a| a.try_normalize()) else {
+            return Err(SceneError::value(&emitter.place, "to_world is singular", "use a rotation"));
+        };
+        if a.dot(b).abs().max(b.dot(c).abs()).max(c.dot(a).abs()) > 1e-4 {
+            return Err(SceneError::value(&emitter.place, "to_world shears", "use a rotation"));
+        }
+        if [x, y, z].iter().any(|a| (a.length() - 1.0).abs() > 1e-4) {
+            self.log.warn(
+                &emitter.place,
+                "the to_world of an environment scales",
+                "the scale is left out",
+            )?;
+        }
+        Ok(DMat4::from_cols(a.extend(0.0), b.extend(0.0), c.extend(0.0), DVec3::ZERO.extend(1.0)))
     }
 
     fn unit(&self, emitter: &Object, direction: DVec3) -> Result<Vec3, SceneError> {

@@ -108,3 +108,6 @@ impl Converter<'_> {
         self.document.tagged(object, tag)
     }
 }
+
+#[cfg(test)]
+mod tests;

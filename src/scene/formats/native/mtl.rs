@@ -1,4 +1,4 @@
-//! Materials from an OBJ's MTL files, read by `tobj`.
+//! Materials from an OBJ's MTL files.
 //!
 //! Classic Phong materials become a Lambert base and a GGX lobe with α = sqrt(2 / (Ns + 2)); illumination models 3
 //! and 5 a mirror, 4, 6, 7 and 9, or a dissolve below 1, glass. The lobe is dimmed where base and lobe would reflect
@@ -8,6 +8,7 @@ use super::Builder;
 use super::text::TextureText;
 use crate::math::Rgb;
 use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::formats::mesh::mtl::{self, ClassicMaterial};
 use crate::scene::formats::mesh::obj;
 use crate::scene::formats::plan::{fnv1a, read_file};
 use crate::scene::material::{Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance};
@@ -33,12 +34,9 @@ impl Builder<'_> {
             if !self.sources.iter().any(|s| s.0 == file) {
                 self.sources.push((file.clone(), fnv1a(&bytes)));
             }
-            let wrong =
-                |e: tobj::LoadError| SceneError::Syntax { place: Place::file(&file), message: e.to_string() };
-            let (materials, _) = tobj::load_mtl_buf(&mut bytes.as_slice()).map_err(wrong)?;
-            for source in materials {
+            for source in mtl::read(&bytes, &file)? {
                 let material = self.convert_mtl(&source, &file)?;
-                let id = self.add_material(material, Place::file(&file));
+                let id = self.add_material(material, source.place);
                 ids.insert(source.name, id);
             }
         }
@@ -60,75 +58,56 @@ impl Builder<'_> {
         self.add_material(material, place.clone())
     }
 
-    fn convert_mtl(&mut self, source: &tobj::Material, file: &Path) -> Result<Material, SceneError> {
-        let place = Place::file(file);
-        let colour = |c: Option<[f32; 3]>| Rgb::from(c.unwrap_or_default());
-        let (kd, ks) = (colour(source.diffuse), colour(source.specular));
+    fn convert_mtl(&mut self, source: &ClassicMaterial, file: &Path) -> Result<Material, SceneError> {
+        let place = &source.place;
+        let (kd, ks) = (source.diffuse, source.specular);
         let name = source.name.clone();
         let made =
             |diffuse, lobe| Material { name: name.clone(), two_sided: true, diffuse, coat: None, lobe };
-        if colour(source.emissive) != Rgb::ZERO {
+        if source.emissive != Rgb::ZERO {
             let what = format!("the material \"{name}\" emits");
-            self.log.warn(&place, what, "it does not: give the mesh an emission in the scene file")?;
+            self.log.warn(place, what, "it does not: give the mesh an emission in the scene file")?;
         }
-        for (map, what) in [
-            (&source.specular_texture, "specular"),
-            (&source.normal_texture, "bump or normal"),
-            (&source.shininess_texture, "shininess"),
-            (&source.dissolve_texture, "opacity"),
-        ] {
-            if map.is_some() {
-                self.log.warn(
-                    &place,
-                    format!("the material \"{name}\" has a {what} map"),
-                    "it is ignored",
-                )?;
-            }
+        for map in &source.other_maps {
+            self.log.warn(place, format!("the material \"{name}\" has a {map}"), "it is ignored")?;
         }
-        let model = source.illumination_model.unwrap_or(2);
-        if matches!(model, 4 | 6 | 7 | 9) || source.dissolve.is_some_and(|d| d < 1.0) {
-            let eta = source.optical_density.filter(|n| *n > 0.0).unwrap_or(1.5);
+        if matches!(source.model, 4 | 6 | 7 | 9) || source.dissolve < 1.0 {
+            let eta = source.ior.filter(|n| *n > 0.0).unwrap_or(1.5);
             let white = Reflectance::Constant(Rgb::ONE);
             return Ok(made(BLACK, Lobe::Dielectric { eta, reflectance: white, transmittance: white }));
         }
-        if matches!(model, 3 | 5) {
+        if matches!(source.model, 3 | 5) {
             let scale = Reflectance::Constant(ks.min(Rgb::ONE));
             return Ok(made(BLACK, Lobe::Mirror { fresnel: Fresnel::One, scale }));
         }
-        let diffuse = match &source.diffuse_texture {
-            Some(map) => {
-                let texture = self.mtl_texture(map, file);
-                match texture {
-                    // Many exporters write a black Kd beside a map.
-                    Reflectance::Textured { texture, .. } if kd != Rgb::ZERO => {
-                        Reflectance::Textured { texture, scale: kd.min(Rgb::ONE) }
-                    }
-                    other => other,
+        let diffuse = match &source.diffuse_map {
+            Some(map) => match self.mtl_texture(map, file) {
+                // Many exporters write a black Kd beside a map.
+                Reflectance::Textured { texture, .. } if kd != Rgb::ZERO => {
+                    Reflectance::Textured { texture, scale: kd.min(Rgb::ONE) }
                 }
-            }
+                other => other,
+            },
             None => Reflectance::Constant(kd),
         };
-        let exponent = source.shininess.unwrap_or(0.0);
-        if model < 2 || ks == Rgb::ZERO || exponent <= 0.0 {
+        if source.model < 2 || ks == Rgb::ZERO || source.exponent <= 0.0 {
             return Ok(made(diffuse, Lobe::None));
         }
         let room = (Rgb::ONE - kd.min(Rgb::ONE)).max(Rgb::ZERO);
         let lobe = Lobe::Rough {
             distribution: Distribution::Ggx,
-            alpha: (2.0 / (exponent + 2.0)).sqrt(),
+            alpha: (2.0 / (source.exponent + 2.0)).sqrt(),
             fresnel: Fresnel::One,
             scale: Reflectance::Constant(ks.min(room)),
         };
         if ks.cmpgt(room).any() {
             let what = format!("Kd and Ks of the material \"{name}\" exceed 1 together");
-            self.log.warn(&place, what, "its lobe is dimmed")?;
+            self.log.warn(place, what, "its lobe is dimmed")?;
         }
         Ok(made(diffuse, lobe))
     }
 
-    /// `map_Kd`: options come first, the file name last.
-    fn mtl_texture(&mut self, map: &str, file: &Path) -> Reflectance {
-        let name = if map.starts_with('-') { map.split_whitespace().last().unwrap_or(map) } else { map };
+    fn mtl_texture(&mut self, name: &str, file: &Path) -> Reflectance {
         let beside = file.parent().unwrap_or(Path::new("")).join(name.replace('\\', "/"));
         let relative = beside.strip_prefix(&self.folder).unwrap_or(&beside).to_string_lossy().into_owned();
         let text =

@@ -1,0 +1,233 @@
+use crate::math::Rgb;
+use crate::scene::formats::{Level, LoadOptions, Loaded, load};
+use crate::scene::{DeltaLight, Distribution, Environment, Fresnel, Lobe, Reflectance};
+use glam::{DVec3, Vec3};
+use std::fs;
+
+const SENSOR: &str = "<sensor type=\"perspective\"><float name=\"fov\" value=\"90\"/>\n\
+    <film type=\"hdrfilm\"><integer name=\"width\" value=\"8\"/><integer name=\"height\" value=\"4\"/>\
+    <rfilter type=\"box\"/></film></sensor>\n";
+
+/// Loads a scene whose fourth line is the first of `body`, with the given files beside it.
+fn load_with(body: &str, files: &[(&str, &str)], strict: bool) -> Result<Loaded, String> {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let path = folder.path().join("s.xml");
+    fs::write(&path, format!("<scene version=\"3.0.0\">{SENSOR}\n{body}\n</scene>")).unwrap();
+    load(&path, &LoadOptions { strict }).map_err(|e| e.to_string())
+}
+
+fn load_body(body: &str) -> Result<Loaded, String> {
+    load_with(body, &[], false)
+}
+
+fn bsdf(text: &str) -> (crate::scene::Material, usize) {
+    let loaded = load_body(&format!("<shape type=\"rectangle\">{text}</shape>")).unwrap();
+    (loaded.scene.materials[0].clone(), loaded.warnings.len())
+}
+
+#[test]
+fn defaults_are_mitsubas() {
+    let (m, _) = bsdf("<bsdf type=\"roughplastic\"/>");
+    assert!(matches!(m.coat, Some(c) if (c.eta - 1.49 / 1.000277).abs() < 1e-6 && !c.nonlinear));
+    assert_eq!(m.diffuse, Reflectance::Constant(Rgb::splat(0.5)));
+    assert!(matches!(m.lobe, Lobe::Rough { distribution: Distribution::Beckmann, alpha: 0.1, .. }));
+    assert!(!m.two_sided);
+    let (m, _) = bsdf("<bsdf type=\"dielectric\"/>");
+    assert!(matches!(m.lobe, Lobe::Dielectric { eta, .. } if (eta - 1.5046 / 1.000277).abs() < 1e-6));
+    let (m, _) = bsdf("<bsdf type=\"conductor\"/>");
+    assert!(matches!(m.lobe, Lobe::Mirror { fresnel: Fresnel::One, .. }));
+    let (m, _) = bsdf("<bsdf type=\"roughconductor\"><string name=\"material\" value=\"Cr\"/></bsdf>");
+    let Lobe::Rough { fresnel: Fresnel::Conductor { eta, k }, .. } = m.lobe else { panic!("{m:?}") };
+    assert!((eta - Vec3::new(4.36967, 2.91651, 1.6549)).length() < 1e-4);
+    assert!((k - Vec3::new(5.20655, 4.23131, 3.7547)).length() < 1e-4);
+    let (m, _) = bsdf("");
+    assert_eq!(m.diffuse, Reflectance::Constant(Rgb::splat(0.5)));
+    let (m, _) = bsdf("<emitter type=\"area\"/>");
+    assert_eq!(m.diffuse, Reflectance::Constant(Rgb::ZERO));
+}
+
+#[test]
+fn the_old_spellings_mean_the_same() {
+    let old = "<shape type=\"sphere\"><transform name=\"toWorld\"><lookAt origin=\"1,2,3\" target=\"1,2,9\" up=\"0,1,0\"/>\
+        </transform><bsdf type=\"twosided\"><bsdf type=\"roughplastic\"><float name=\"intIOR\" value=\"1.7\"/>\
+        <string name=\"extIOR\" value=\"vacuum\"/><srgb name=\"diffuseReflectance\" value=\"#808080\"/></bsdf></bsdf></shape>";
+    let new = "<shape type=\"sphere\"><transform name=\"to_world\"><lookat origin=\"1,2,3\" target=\"1,2,9\" up=\"0,1,0\"/>\
+        </transform><bsdf type=\"twosided\"><bsdf type=\"roughplastic\"><float name=\"int_ior\" value=\"1.7\"/>\
+        <float name=\"ext_ior\" value=\"1\"/><rgb name=\"diffuse_reflectance\" value=\"0.215861\"/></bsdf></bsdf></shape>";
+    let [old, new] = [old, new].map(|text| load_body(text).unwrap().scene);
+    assert_eq!(old.meshes[0].positions, new.meshes[0].positions);
+    assert_eq!(old.centre, new.centre);
+    assert_eq!(
+        (old.materials[0].coat, old.materials[0].lobe),
+        (new.materials[0].coat, new.materials[0].lobe)
+    );
+    let [Reflectance::Constant(a), Reflectance::Constant(b)] =
+        [old.materials[0].diffuse, new.materials[0].diffuse]
+    else {
+        panic!()
+    };
+    assert!((a - b).length() < 1e-5);
+    assert!(old.materials[0].two_sided && new.materials[0].two_sided);
+}
+
+#[test]
+fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
+    let nested = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.3\"/></bsdf>";
+    let texture = "<texture type=\"bitmap\"><string name=\"filename\" value=\"none.png\"/></texture>";
+    let cases = [
+        (format!("<bsdf type=\"mask\"><float name=\"opacity\" value=\"0.5\"/>{nested}</bsdf>"), "\"mask\""),
+        (format!("<bsdf type=\"bumpmap\">{texture}{nested}</bsdf>"), "\"bumpmap\""),
+        ("<bsdf type=\"roughdiffuse\"><rgb name=\"reflectance\" value=\"0.3\"/></bsdf>".into(), "rough diffuse"),
+        ("<bsdf type=\"phong\"><float name=\"exponent\" value=\"98\"/></bsdf>".into(), "\"phong\""),
+        ("<bsdf type=\"thindielectric\"/>".into(), "thin sheet"),
+        ("<bsdf type=\"velvet\"/>".into(), "\"velvet\""),
+        ("<bsdf type=\"diffuse\"><float name=\"sheen\" value=\"1\"/></bsdf>".into(), "\"sheen\""),
+        ("<emitter type=\"area\"><float name=\"glow\" value=\"1\"/></emitter>".into(), "\"glow\""),
+        ("<bsdf type=\"roughconductor\"><float name=\"alpha_u\" value=\"0.1\"/><float name=\"alpha_v\" value=\"0.4\"/></bsdf>".into(), "anisotropic"),
+    ];
+    for (text, what) in cases {
+        let body = format!("<shape type=\"rectangle\">\n{text}</shape>");
+        let loaded = load_body(&body).unwrap();
+        let [warning] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
+        assert!(warning.to_string().contains(what) && warning.place.line == Some(5), "{warning}");
+        assert_eq!(warning.level, Level::Warning);
+        let message = load_with(&body, &[], true).unwrap_err();
+        assert!(message.contains("s.xml:5") && message.contains("strict"), "{message}");
+    }
+    let (phong, _) = bsdf("<bsdf type=\"phong\"><float name=\"exponent\" value=\"98\"/></bsdf>");
+    assert!(
+        matches!(phong.lobe, Lobe::Rough { alpha, .. } if (alpha - (2.0f32 / 100.0).sqrt()).abs() < 1e-6)
+    );
+    let (mask, _) = bsdf(&format!("<bsdf type=\"mask\">{nested}</bsdf>"));
+    assert_eq!(mask.diffuse, Reflectance::Constant(Rgb::splat(0.3)));
+}
+
+#[test]
+fn errors_name_the_line_and_a_remedy() {
+    let cases = [
+        ("<shape type=\"obj\"><string name=\"filename\" value=\"no.obj\"/></shape>", "no.obj"),
+        ("<shape type=\"obj\"/>", "names no file"),
+        ("<shape type=\"rectangle\"><ref id=\"nobody\"/></shape>", "\"nobody\""),
+        (
+            "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"a b c\"/></bsdf></shape>",
+            "a b c",
+        ),
+        (
+            "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"2\"/></bsdf></shape>",
+            "exceeds 1",
+        ),
+        (
+            "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><string name=\"reflectance\" value=\"red\"/></bsdf></shape>",
+            "no colour",
+        ),
+        (
+            "<shape type=\"rectangle\"><bsdf type=\"conductor\"><string name=\"material\" value=\"Zz\"/></bsdf></shape>",
+            "\"Zz\"",
+        ),
+        (
+            "<shape type=\"rectangle\"><bsdf type=\"plastic\"><string name=\"int_ior\" value=\"cheese\"/></bsdf></shape>",
+            "cheese",
+        ),
+        ("<shape type=\"rectangle\"><bsdf type=\"twosided\"/></shape>", "holds no other"),
+        ("<shape type=\"rectangle\"><boolean name=\"flip_normals\" value=\"2\"/></shape>", "boolean"),
+        ("<bsdf type=\"diffuse\" id=\"a\"/><bsdf type=\"diffuse\" id=\"a\"/>", "already taken"),
+        (
+            "<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf><shape type=\"cube\"><ref id=\"a\"/></shape>",
+            "each other",
+        ),
+        ("<emitter type=\"constant\"/><emitter type=\"constant\"/>", "more than one environment"),
+        ("<emitter type=\"constant\"><rgb name=\"radiance\" value=\"-1\"/></emitter>", "negative"),
+        ("<translate x=\"1\"/>", "outside"),
+        ("<flout name=\"a\" value=\"1\"/>", "<flout>"),
+        ("<include filename=\"s.xml\"/>", "deeply"),
+        ("<include filename=\"gone.xml\"/>", "gone.xml"),
+        ("<float name=\"a\" value=\"$x\"/>", "$x"),
+        ("<shape>", "s.xml"),
+    ];
+    for (body, what) in cases {
+        let message = load_body(body).map(|l| format!("{:?}", l.warnings)).unwrap_err();
+        assert!(message.contains(what) && message.contains("s.xml"), "{message}\n{body}");
+    }
+}
+
+#[test]
+fn defaults_includes_and_references_are_resolved() {
+    let body = "<default name=\"grey\" value=\"0.25\"/><include filename=\"mats.xml\"/>\
+        <shape type=\"cube\"><ref id=\"m\"/></shape><shape type=\"rectangle\"><ref id=\"m\"/></shape>";
+    let mats = "<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"m\"><rgb name=\"reflectance\" value=\"$grey\"/></bsdf></scene>";
+    let loaded = load_with(body, &[("mats.xml", mats)], true).unwrap();
+    assert_eq!(loaded.scene.materials.len(), 1);
+    assert_eq!(loaded.scene.materials[0].diffuse, Reflectance::Constant(Rgb::splat(0.25)));
+    assert_eq!(loaded.scene.sources.len(), 2);
+}
+
+#[test]
+fn lights_without_surface() {
+    let body = "<emitter type=\"point\"><point name=\"position\" x=\"1\" y=\"2\" z=\"3\"/><rgb name=\"intensity\" value=\"4\"/></emitter>\
+        <emitter type=\"spot\"><transform name=\"to_world\"><lookat origin=\"0,5,0\" target=\"0,0,0\" up=\"0,0,1\"/></transform>\
+        <float name=\"cutoff_angle\" value=\"40\"/></emitter>\
+        <emitter type=\"directional\"><vector name=\"direction\" x=\"0\" y=\"-3\" z=\"0\"/></emitter>\
+        <emitter type=\"constant\"><spectrum name=\"radiance\" value=\"2\"/></emitter>";
+    let scene = load_body(body).unwrap().scene;
+    let world = |p: Vec3| p.as_dvec3() + scene.centre;
+    let DeltaLight::Point { position, intensity } = scene.lights[0] else { panic!() };
+    assert_eq!((world(position), intensity), (DVec3::new(1.0, 2.0, 3.0), Rgb::splat(4.0)));
+    let DeltaLight::Spot { position, direction, inner_angle, outer_angle, .. } = scene.lights[1] else {
+        panic!()
+    };
+    assert_eq!((world(position), direction), (DVec3::new(0.0, 5.0, 0.0), Vec3::NEG_Y));
+    assert!(
+        (inner_angle - 30f32.to_radians()).abs() < 1e-6 && (outer_angle - 40f32.to_radians()).abs() < 1e-6
+    );
+    assert!(matches!(scene.lights[2], DeltaLight::Directional { direction, .. } if direction == Vec3::NEG_Y));
+    // A spectrum of equal energy is not white.
+    let Some(Environment::Constant(radiance)) = scene.environment else { panic!() };
+    assert!((radiance - Vec3::new(2.40959, 1.89658, 1.81783)).length() < 1e-4, "{radiance}");
+}
+
+#[test]
+fn mirrored_and_flipped_shapes_face_along_their_normals() {
+    let mirrored = "<transform name=\"to_world\"><scale x=\"-1\"/></transform>";
+    let flipped = "<boolean name=\"flip_normals\" value=\"true\"/>";
+    for (inside, front) in [(mirrored, Vec3::Z), (flipped, Vec3::NEG_Z), ("", Vec3::Z)] {
+        let scene = load_body(&format!("<shape type=\"rectangle\">{inside}</shape>")).unwrap().scene;
+        let [a, b, c] = scene.meshes[0].corners(0);
+        assert_eq!((b - a).cross(c - a).normalize(), front, "{inside}");
+        assert_eq!(scene.meshes[0].normals[0], front, "{inside}");
+    }
+}
+
+#[test]
+fn the_sensor_takes_every_axis_of_the_field_of_view() {
+    for (width, height, axis, expected) in [
+        (8, 4, "x", 1.0),
+        (8, 4, "y", 2.0),
+        (8, 4, "smaller", 2.0),
+        (8, 4, "larger", 1.0),
+        (4, 8, "smaller", 1.0),
+        (4, 8, "larger", 0.5),
+        (8, 4, "diagonal", 2.0 / 5f32.sqrt()),
+    ] {
+        let text = format!(
+            "<scene version=\"3.0.0\"><sensor type=\"perspective\"><float name=\"fov\" value=\"90\"/>\
+            <string name=\"fov_axis\" value=\"{axis}\"/><film type=\"hdrfilm\"><integer name=\"width\" value=\"{width}\"/>\
+            <integer name=\"height\" value=\"{height}\"/></film></sensor></scene>"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.xml");
+        fs::write(&path, text).unwrap();
+        let scene = load(&path, &LoadOptions::default()).unwrap().scene;
+        assert!(
+            (scene.camera.tan_half_x - expected).abs() < 1e-6,
+            "{axis} {width} {}",
+            scene.camera.tan_half_x
+        );
+        assert_eq!(
+            (scene.camera.forward, scene.camera.right, scene.camera.up),
+            (Vec3::Z, Vec3::NEG_X, Vec3::Y)
+        );
+    }
+}

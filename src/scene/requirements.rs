@@ -1,0 +1,320 @@
+//! What a scene requires: which materials, chains, trees and textures have to exist at run time, how much of
+//! it there is, and roughly how much memory it takes.
+//!
+//! Computed once from the scene. A stage that a scene does not require is not built.
+
+use super::material::{Lobe, Material, Reflectance};
+use super::{DeltaLight, Environment, Scene};
+use glam::DVec3;
+use serde::Serialize;
+use std::fmt;
+
+/// Embree's MEDIUM-quality hierarchy over triangles, with its copy of the indices; an estimate.
+const BVH_BYTES_PER_TRIANGLE: usize = 110;
+
+/// How many materials in use are of each kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct MaterialKinds {
+    /// A Lambert base alone.
+    pub diffuse: usize,
+    /// A base, if any, beside a rough lobe.
+    pub glossy: usize,
+    /// A base under a smooth coat.
+    pub plastic: usize,
+    /// A base under a rough coat.
+    pub rough_plastic: usize,
+    /// A mirror.
+    pub mirror: usize,
+    /// Smooth glass.
+    pub glass: usize,
+}
+
+/// Which light trees have anything to hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Trees {
+    /// Point and spot lights.
+    pub omni: bool,
+    /// Area lights.
+    pub oriented: bool,
+    /// Directional lights.
+    pub directional: bool,
+    /// The environment.
+    pub environment: bool,
+    /// Reflected light.
+    pub indirect: bool,
+}
+
+/// Bytes, estimated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Memory {
+    /// Vertices and indices, Embree's copy included.
+    pub geometry: usize,
+    /// The hierarchy over the triangles.
+    pub hierarchy: usize,
+    /// Textures and the environment with its distributions.
+    pub pictures: usize,
+}
+
+impl Memory {
+    /// All of it.
+    pub fn total(&self) -> usize {
+        self.geometry + self.hierarchy + self.pictures
+    }
+}
+
+/// What a scene requires.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Requirements {
+    /// Materials in use, by kind.
+    pub materials: MaterialKinds,
+    /// Whether the eye has to follow mirrors, glass or smooth coats.
+    pub specular_chains: bool,
+    /// Whether records need more than irradiance.
+    pub glossy: bool,
+    /// Share of the surface area with a rough lobe.
+    pub glossy_area_share: f64,
+    /// Share of the surface area with a mirror lobe or of glass.
+    pub specular_area_share: f64,
+    /// Smallest roughness of a rough lobe.
+    pub smallest_alpha: Option<f32>,
+    /// Whether a back side scatters or emits.
+    pub two_sided: bool,
+    /// Light trees with anything to hold.
+    pub trees: Trees,
+    /// Textures in use.
+    pub textures: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// Triangles that emit.
+    pub emitting_triangles: usize,
+    /// Area lights, point, spot and directional lights, and the environment.
+    pub lights: usize,
+    /// Surface area, in squares of the scene's unit.
+    pub area: f64,
+    /// Diagonal of the box around all triangles.
+    pub diagonal: f64,
+    /// Estimated memory, in bytes.
+    pub memory: Memory,
+}
+
+impl Requirements {
+    /// What `scene` requires.
+    pub fn of(scene: &Scene) -> Requirements {
+        let mut r = Requirements { textures: scene.textures.len(), ..Requirements::default() };
+        let mut used = vec![false; scene.materials.len()];
+        let (mut glossy_area, mut specular_area) = (0.0, 0.0);
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let mut reflects = false;
+        for mesh in &scene.meshes {
+            let area = area_and_bounds(mesh, &mut low, &mut high);
+            r.area += area;
+            r.triangles += mesh.triangles.len();
+            r.memory.geometry += 2 * 12 * (mesh.positions.len() + mesh.triangles.len())
+                + 12 * mesh.normals.len()
+                + 8 * mesh.uvs.len();
+            if let Some(emission) = mesh.emission {
+                r.emitting_triangles += mesh.triangles.len();
+                r.lights += 1;
+                r.two_sided |= emission.two_sided;
+                r.trees.oriented = true;
+            }
+            let Some(material) = scene.materials.get(mesh.material.0 as usize) else { continue };
+            if let Some(used) = used.get_mut(mesh.material.0 as usize) {
+                *used = true;
+            }
+            match material.lobe {
+                Lobe::None => {}
+                Lobe::Rough { .. } => glossy_area += area,
+                Lobe::Mirror { .. } | Lobe::Dielectric { .. } => specular_area += area,
+            }
+            reflects |= stores_light(material);
+        }
+        for (material, _) in scene.materials.iter().zip(&used).filter(|(_, used)| **used) {
+            r.count(material);
+        }
+        r.specular_chains = r.materials.mirror + r.materials.glass + r.materials.plastic > 0;
+        r.glossy = r.materials.glossy + r.materials.rough_plastic > 0;
+        if r.area > 0.0 {
+            r.glossy_area_share = glossy_area / r.area;
+            r.specular_area_share = specular_area / r.area;
+        }
+        if r.triangles > 0 {
+            r.diagonal = (high - low).length();
+        }
+        for light in &scene.lights {
+            r.lights += 1;
+            match light {
+                DeltaLight::Point { .. } | DeltaLight::Spot { .. } => r.trees.omni = true,
+                DeltaLight::Directional { .. } => r.trees.directional = true,
+            }
+        }
+        r.lights += usize::from(scene.environment.is_some());
+        r.trees.environment = scene.environment.is_some();
+        r.trees.indirect = r.lights > 0 && reflects && scene.max_depth.is_none_or(|depth| depth > 2);
+        r.memory.hierarchy = BVH_BYTES_PER_TRIANGLE * r.triangles;
+        r.memory.pictures = scene.textures.iter().map(|t| 12 * t.texels.len()).sum();
+        if let Some(Environment::Map(map)) = &scene.environment {
+            // The texels, and cumulative sums over them.
+            r.memory.pictures += (12 + 12 + 8) * map.radiance.len();
+        }
+        r
+    }
+
+    fn count(&mut self, material: &Material) {
+        self.two_sided |= material.two_sided && !matches!(material.lobe, Lobe::Dielectric { .. });
+        let kinds = &mut self.materials;
+        let kind = match (&material.lobe, &material.coat) {
+            (Lobe::None, _) => &mut kinds.diffuse,
+            (Lobe::Rough { alpha, .. }, coat) => {
+                self.smallest_alpha = Some(self.smallest_alpha.map_or(*alpha, |a| a.min(*alpha)));
+                if coat.is_some() { &mut kinds.rough_plastic } else { &mut kinds.glossy }
+            }
+            (Lobe::Mirror { .. }, Some(_)) => &mut kinds.plastic,
+            (Lobe::Mirror { .. }, None) => &mut kinds.mirror,
+            (Lobe::Dielectric { .. }, _) => &mut kinds.glass,
+        };
+        *kind += 1;
+    }
+}
+
+/// Whether light that arrives leaves again in all directions, so that reflected light has to be stored.
+fn stores_light(material: &Material) -> bool {
+    let black = |r: &Reflectance| matches!(r, Reflectance::Constant(c) if c.max_element() <= 0.0);
+    !black(&material.diffuse) || matches!(&material.lobe, Lobe::Rough { scale, .. } if !black(scale))
+}
+
+fn area_and_bounds(mesh: &super::Mesh, low: &mut DVec3, high: &mut DVec3) -> f64 {
+    let mut double_area = 0.0;
+    for t in 0..mesh.triangles.len() {
+        let [a, b, c] = mesh.corners(t).map(|p| p.as_dvec3());
+        double_area += (b - a).cross(c - a).length();
+        *low = low.min(a).min(b).min(c);
+        *high = high.max(a).max(b).max(c);
+    }
+    0.5 * double_area
+}
+
+impl fmt::Display for Requirements {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let listed = |pairs: &[(usize, &str)]| {
+            let given: Vec<String> =
+                pairs.iter().filter(|p| p.0 > 0).map(|(n, what)| format!("{n} {what}")).collect();
+            if given.is_empty() { "none".into() } else { given.join(", ") }
+        };
+        let named = |pairs: &[(bool, &str)]| {
+            let given: Vec<&str> = pairs.iter().filter(|p| p.0).map(|p| p.1).collect();
+            if given.is_empty() { "none".into() } else { given.join(", ") }
+        };
+        let (m, t) = (&self.materials, &self.trees);
+        let materials = listed(&[
+            (m.diffuse, "diffuse"),
+            (m.glossy, "glossy"),
+            (m.plastic, "plastic"),
+            (m.rough_plastic, "rough plastic"),
+            (m.mirror, "mirror"),
+            (m.glass, "glass"),
+        ]);
+        let trees = named(&[
+            (t.omni, "omni"),
+            (t.oriented, "oriented"),
+            (t.directional, "directional"),
+            (t.environment, "environment"),
+            (t.indirect, "indirect"),
+        ]);
+        let alpha = self.smallest_alpha.map_or(String::new(), |a| format!(", smallest alpha {a}"));
+        let yes = |b: bool| if b { "yes" } else { "no" };
+        writeln!(f, "materials        {materials}")?;
+        writeln!(
+            f,
+            "glossy           {} ({:.1} % of the area{alpha})",
+            yes(self.glossy),
+            100.0 * self.glossy_area_share
+        )?;
+        writeln!(
+            f,
+            "specular chains  {} ({:.1} % of the area)",
+            yes(self.specular_chains),
+            100.0 * self.specular_area_share
+        )?;
+        writeln!(f, "two-sided        {}", yes(self.two_sided))?;
+        writeln!(f, "light trees      {trees}")?;
+        writeln!(f, "lights           {} ({} emitting triangles)", self.lights, self.emitting_triangles)?;
+        writeln!(f, "textures         {}", self.textures)?;
+        writeln!(f, "triangles        {}", self.triangles)?;
+        writeln!(f, "area, diagonal   {:.6}, {:.6}", self.area, self.diagonal)?;
+        let mib = |bytes: usize| bytes as f64 / f64::from(1 << 20);
+        write!(
+            f,
+            "memory           about {:.1} MiB (geometry {:.1}, hierarchy {:.1}, pictures {:.1})",
+            mib(self.memory.total()),
+            mib(self.memory.geometry),
+            mib(self.memory.hierarchy),
+            mib(self.memory.pictures)
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::formats::{LoadOptions, load};
+
+    fn of(text: &str) -> Requirements {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.toml");
+        let head = "resolution = [8, 8]\ncamera = { origin = [0, 0, 5], target = [0, 0, 0], fov = 60 }\n";
+        std::fs::write(&path, format!("{head}{text}")).unwrap();
+        Requirements::of(&load(&path, &LoadOptions::default()).unwrap().scene)
+    }
+
+    #[test]
+    fn an_empty_scene_requires_nothing() {
+        let r = of("");
+        assert_eq!(r, Requirements::default());
+        assert!(r.to_string().contains("light trees      none"));
+    }
+
+    #[test]
+    fn each_stage_is_required_just_where_something_needs_it() {
+        let diffuse =
+            "material = [{ name = \"m\", kind = \"diffuse\", reflectance = 0.5, two_sided = false }]\n";
+        let square = "mesh = [{ shape = \"rectangle\", material = \"m\", emission = [1, 1, 1] }]\n";
+        let r = of(&format!("{diffuse}{square}"));
+        assert!(!r.specular_chains && !r.glossy && !r.two_sided);
+        assert_eq!(r.trees, Trees { oriented: true, indirect: true, ..Trees::default() });
+        assert_eq!((r.triangles, r.emitting_triangles, r.lights), (2, 2, 1));
+        assert!((r.area - 4.0).abs() < 1e-6 && (r.diagonal - 8f64.sqrt()).abs() < 1e-6);
+
+        let direct_only = of(&format!("max_depth = 2\n{diffuse}{square}"));
+        assert!(!direct_only.trees.indirect);
+
+        let lights = "light = [{ kind = \"directional\", direction = [0, -1, 0], irradiance = [1, 1, 1] }]\n";
+        let r = of(&format!("{diffuse}{lights}"));
+        assert_eq!(r.trees, Trees { directional: true, ..Trees::default() });
+    }
+
+    #[test]
+    fn areas_are_shared_out_by_lobe_and_unused_materials_do_not_count() {
+        let r = of("material = [
+                { name = \"d\", kind = \"diffuse\", reflectance = 0.5 },
+                { name = \"g\", kind = \"roughplastic\", diffuse = 0.5, alpha = 0.2 },
+                { name = \"s\", kind = \"glass\" },
+                { name = \"unused\", kind = \"mirror\" },
+            ]
+            mesh = [
+                { shape = \"rectangle\", material = \"d\" },
+                { shape = \"rectangle\", material = \"g\" },
+                { shape = \"cube\", material = \"s\", transform = [{ scale = 2.0 }] },
+            ]
+            environment = { radiance = [1, 1, 1] }");
+        assert!((r.glossy_area_share - 4.0 / 104.0).abs() < 1e-9);
+        assert!((r.specular_area_share - 96.0 / 104.0).abs() < 1e-9);
+        assert_eq!(
+            r.materials,
+            MaterialKinds { diffuse: 1, rough_plastic: 1, glass: 1, ..Default::default() }
+        );
+        assert_eq!(r.smallest_alpha, Some(0.2));
+        assert!(r.specular_chains && r.glossy && r.two_sided && r.trees.environment && r.trees.indirect);
+        assert!(r.memory.total() > 0);
+    }
+}

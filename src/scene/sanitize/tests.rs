@@ -1,0 +1,173 @@
+use super::*;
+use crate::scene::draft::DraftCamera;
+use crate::scene::material::{Coat, Distribution, MaterialId};
+use crate::scene::mesh::Emission;
+use crate::scene::texture::{Filter, TextureId, Wrap};
+
+fn grey() -> Material {
+    let diffuse = Reflectance::Constant(Rgb::splat(0.5));
+    Material { name: "grey".into(), two_sided: false, diffuse, coat: None, lobe: Lobe::None }
+}
+
+fn draft(meshes: Vec<DraftMesh>, materials: Vec<Material>) -> Draft {
+    let camera = DraftCamera {
+        origin: DVec3::ZERO,
+        forward: DVec3::NEG_Z,
+        right: DVec3::X,
+        up: DVec3::Y,
+        tan_half_x: 1.0,
+        near: 0.0,
+        far: f64::INFINITY,
+    };
+    Draft {
+        name: "t".into(),
+        sources: vec!["t.toml".into()],
+        camera,
+        camera_path: vec![],
+        resolution: [1, 1],
+        max_depth: None,
+        meshes,
+        materials,
+        material_places: vec![],
+        textures: vec![],
+        lights: vec![],
+        environment: None,
+    }
+}
+
+fn triangle_mesh() -> DraftMesh {
+    DraftMesh {
+        positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
+        triangles: vec![[0, 1, 2]],
+        ..DraftMesh::default()
+    }
+}
+
+#[test]
+fn each_kind_of_bad_triangle_is_dropped_and_counted() {
+    let mut mesh = triangle_mesh();
+    mesh.positions.extend([DVec3::new(f64::NAN, 0.0, 0.0), DVec3::new(1e19, 0.0, 0.0), DVec3::X * 2.0]);
+    mesh.positions.push(DVec3::new(0.0, f64::INFINITY, 0.0));
+    mesh.triangles =
+        vec![[0, 1, 2], [0, 1, 99], [0, 1, 4], [0, 1, 7], [0, 1, 5], [0, 1, 1], [0, 1, 6], [2, 1, 3]];
+    let mut d = draft(vec![mesh], vec![grey()]);
+    let (report, centre) = sanitize(&mut d).unwrap();
+    let expected = SanitizeReport {
+        out_of_range: 1,
+        not_finite: 2,
+        huge: 1,
+        degenerate: 2,
+        ..SanitizeReport::default()
+    };
+    assert_eq!(report, expected);
+    assert_eq!(d.meshes[0].triangles, [[0, 1, 2], [2, 1, 3]]);
+    assert_eq!(d.meshes[0].positions.len(), 4, "unused vertices go");
+    assert_eq!(centre, DVec3::new(1.0, 0.5, 0.5), "of what could be hit or lies in line");
+    assert!(!report.is_clean() && report.to_string().contains("2 triangles without area"));
+}
+
+#[test]
+fn triangles_that_vanish_in_f32_are_degenerate() {
+    // Far from its own centre, this triangle is smaller than the spacing of f32.
+    let mut mesh = triangle_mesh();
+    mesh.positions =
+        vec![DVec3::ZERO, DVec3::X * 1e-9, DVec3::Y * 1e-9].iter().map(|p| *p + DVec3::ONE).collect();
+    let other =
+        DraftMesh { positions: triangle_mesh().positions.iter().map(|p| -*p).collect(), ..triangle_mesh() };
+    let mut d = draft(vec![mesh.clone(), other], vec![grey()]);
+    let (report, _) = sanitize(&mut d).unwrap();
+    assert_eq!((report.degenerate, report.empty_meshes, d.meshes.len()), (1, 1, 1));
+    // Alone it is as good as any.
+    let mut d = draft(vec![mesh], vec![grey()]);
+    assert!(sanitize(&mut d).unwrap().0.is_clean());
+}
+
+#[test]
+fn bad_normals_become_geometric_and_bad_uvs_zero() {
+    let mut mesh = triangle_mesh();
+    mesh.positions.truncate(3);
+    mesh.normals = vec![Vec3::ZERO, Vec3::NAN, Vec3::new(0.0, 0.6, 0.8)];
+    mesh.uvs = vec![Vec2::NAN, Vec2::ONE, Vec2::new(f32::INFINITY, 0.0)];
+    let mut d = draft(vec![mesh], vec![grey()]);
+    let (report, _) = sanitize(&mut d).unwrap();
+    assert_eq!((report.bad_normals, report.bad_uvs), (2, 2));
+    assert_eq!(d.meshes[0].normals, [Vec3::Z, Vec3::Z, Vec3::new(0.0, 0.6, 0.8)]);
+    assert_eq!(d.meshes[0].uvs, [Vec2::ZERO, Vec2::ONE, Vec2::ZERO]);
+}
+
+#[test]
+fn reflectances_must_not_create_energy() {
+    let with = |diffuse: Rgb| Material { diffuse: Reflectance::Constant(diffuse), ..grey() };
+    for bad in
+        [Rgb::splat(1.1), Rgb::new(0.5, -0.1, 0.5), Rgb::new(0.5, f32::NAN, 0.5), Rgb::splat(f32::INFINITY)]
+    {
+        let message = sanitize(&mut draft(vec![], vec![with(bad)])).unwrap_err().to_string();
+        assert!(message.contains("\"grey\"") && message.contains("give 0 to 1"), "{message}");
+    }
+    let mut d = draft(vec![], vec![with(Rgb::new(1.0005, 1.0, 0.0))]);
+    assert_eq!(sanitize(&mut d).unwrap().0.clamped, 1);
+    assert_eq!(d.materials[0].diffuse, Reflectance::Constant(Rgb::new(1.0, 1.0, 0.0)));
+
+    let lobe = |fresnel, scale| Lobe::Rough {
+        distribution: Distribution::Ggx,
+        alpha: 0.0,
+        fresnel,
+        scale: Reflectance::Constant(Rgb::splat(scale)),
+    };
+    let glossy = |fresnel, scale| Material { lobe: lobe(fresnel, scale), ..grey() };
+    assert!(sanitize(&mut draft(vec![], vec![glossy(Fresnel::One, 0.6)])).is_err(), "0.5 + 0.6");
+    assert!(sanitize(&mut draft(vec![], vec![glossy(Fresnel::Dielectric(1.5), 1.0)])).is_ok());
+    let mut d = draft(vec![], vec![glossy(Fresnel::One, 0.5)]);
+    sanitize(&mut d).unwrap();
+    assert!(matches!(d.materials[0].lobe, Lobe::Rough { alpha, .. } if alpha == MIN_ALPHA));
+
+    let coated = |eta| Material { coat: Some(Coat { eta, nonlinear: false }), ..grey() };
+    for eta in [0.0, -1.5, f32::NAN] {
+        assert!(sanitize(&mut draft(vec![], vec![coated(eta)])).is_err());
+    }
+}
+
+#[test]
+fn texels_are_clamped_to_what_their_factor_leaves() {
+    let texels = vec![Rgb::splat(0.9), Rgb::splat(f32::NAN), Rgb::new(-1.0, 0.2, 0.2), Rgb::splat(0.4)];
+    let texture = Texture {
+        name: "t".into(),
+        width: 2,
+        height: 2,
+        texels,
+        filter: Filter::Nearest,
+        wrap: Wrap::Repeat,
+        to_uv: glam::Mat3::IDENTITY,
+    };
+    let diffuse = Reflectance::Textured { texture: TextureId(0), scale: Rgb::splat(2.0) };
+    let mut d = draft(vec![], vec![Material { diffuse, ..grey() }]);
+    d.textures.push(texture);
+    let (report, _) = sanitize(&mut d).unwrap();
+    assert_eq!((report.clamped, report.bad_texels), (1, 2));
+    let expected = [Rgb::splat(0.5), Rgb::ZERO, Rgb::new(0.0, 0.2, 0.2), Rgb::splat(0.4)];
+    assert_eq!(d.textures[0].texels, expected);
+}
+
+#[test]
+fn lights_without_light_go_and_negative_light_is_an_error() {
+    let emitting = |radiance| DraftMesh {
+        emission: Some(Emission { radiance, texture: None, two_sided: false }),
+        material: MaterialId(0),
+        ..triangle_mesh()
+    };
+    let flat = DraftMesh { triangles: vec![[0, 0, 1]], ..emitting(Rgb::ONE) };
+    let mut d = draft(vec![emitting(Rgb::ZERO), emitting(Rgb::ONE), flat], vec![grey()]);
+    let point = |intensity| (DeltaLight::Point { position: Vec3::ZERO, intensity }, DVec3::ZERO);
+    d.lights = vec![point(Rgb::ZERO), point(Rgb::X)];
+    d.environment = Some(Environment::Constant(Rgb::ZERO));
+    let (report, _) = sanitize(&mut d).unwrap();
+    assert_eq!((report.black_lights, report.empty_meshes, report.degenerate), (3, 1, 1));
+    assert_eq!(d.meshes.iter().map(|m| m.emission.is_some()).collect::<Vec<_>>(), [false, true]);
+    assert_eq!(d.lights.len(), 1);
+    assert!(d.environment.is_none());
+
+    assert!(sanitize(&mut draft(vec![emitting(Rgb::new(1.0, -1.0, 1.0))], vec![grey()])).is_err());
+    let mut d = draft(vec![], vec![]);
+    d.lights = vec![point(Rgb::splat(f32::NAN))];
+    assert!(sanitize(&mut d).is_err());
+}
