@@ -71,7 +71,7 @@ fn triangles_that_vanish_in_f32_are_degenerate() {
     // Far from its own centre, this triangle is smaller than the spacing of f32.
     let mut mesh = triangle_mesh();
     mesh.positions =
-        vec![DVec3::ZERO, DVec3::X * 1e-9, DVec3::Y * 1e-9].iter().map(|p| *p + DVec3::ONE).collect();
+        [DVec3::ZERO, DVec3::X * 1e-9, DVec3::Y * 1e-9].iter().map(|p| *p + DVec3::ONE).collect();
     let other =
         DraftMesh { positions: triangle_mesh().positions.iter().map(|p| -*p).collect(), ..triangle_mesh() };
     let mut d = draft(vec![mesh.clone(), other], vec![grey()]);
