@@ -1,4 +1,4 @@
-//! Things that more than one of the furnished scenes holds. Each function yields an [`Assembly`] that
+//! Things that more than one of the furnished scenes holds. Each function yields an [`Assembly`](super::builder::Assembly) that
 //! stands on y = 0 about the origin, looking along +z, or adds to one.
 
 mod joinery;
