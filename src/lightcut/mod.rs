@@ -7,6 +7,7 @@
 
 mod exhaustive;
 mod geometry;
+pub mod group;
 mod receiver;
 mod refine;
 mod transfer;

@@ -68,6 +68,33 @@ impl<'m> Reflector<'m> {
         Reflector { position, geometric_normal, frame, mirror, wo, material }
     }
 
+    /// BRDF, if the material is Lambertian and nothing else.
+    pub(super) fn lambert_brdf(&self) -> Option<Rgb> {
+        match self.material {
+            Kind::Lambert(brdf) => Some(brdf),
+            Kind::General(_) => None,
+        }
+    }
+
+    /// The material, where it is more than Lambertian.
+    #[cfg(test)]
+    pub(super) fn bsdf(&self) -> Option<Bsdf<'m>> {
+        match self.material {
+            Kind::Lambert(_) => None,
+            Kind::General(bsdf) => Some(bsdf),
+        }
+    }
+
+    /// Shading frame, z on the side of the eye.
+    pub(super) fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// Unit shading normal on the side of the eye.
+    pub fn normal(&self) -> Vec3 {
+        self.frame.normal
+    }
+
     /// The same surface elsewhere.
     pub fn moved(self, position: Vec3) -> Self {
         Reflector { position, ..self }

@@ -20,7 +20,7 @@ use std::collections::BinaryHeap;
 const BATCH: usize = 16;
 
 /// Largest share of the luminance that a single indirect leaf may have in what others are judged by.
-const DOMINANT: f32 = 0.25;
+pub(super) const DOMINANT: f32 = 0.25;
 
 /// When a cut is good enough.
 #[derive(Clone, Copy, Debug)]

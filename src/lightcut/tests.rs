@@ -10,25 +10,25 @@ use crate::vpl::{Origin, SpotProfile, Vpl, VplKind, VplSet};
 use glam::{DVec3, Vec2, Vec3};
 
 /// A stream of numbers in [0, 1), not of samples.
-struct Numbers(u32);
+pub(super) struct Numbers(pub u32);
 
 impl Numbers {
-    fn next(&mut self) -> f32 {
+    pub fn next(&mut self) -> f32 {
         self.0 += 1;
         (hash(self.0, 0x51ed) >> 8) as f32 / (1 << 24) as f32
     }
 
-    fn vec3(&mut self) -> Vec3 {
+    pub fn vec3(&mut self) -> Vec3 {
         Vec3::new(self.next(), self.next(), self.next())
     }
 
-    fn direction(&mut self) -> Vec3 {
+    pub fn direction(&mut self) -> Vec3 {
         uniform_sphere(Vec2::new(self.next(), self.next()))
     }
 }
 
 /// One material of every kind, in a scene of nothing else.
-fn all_materials() -> Scene {
+pub(super) fn all_materials() -> Scene {
     let constant = |r: f32, g: f32, b: f32| Reflectance::Constant(Rgb::new(r, g, b));
     let rough = |distribution, alpha, fresnel| Lobe::Rough {
         distribution,
@@ -103,13 +103,14 @@ fn grouped(n: usize, kind: VplKind, scale: f32, numbers: &mut Numbers) -> VplSet
     set
 }
 
-const SPOTS: [SpotProfile; 1] = [SpotProfile { direction: Vec3::Y, inner_angle: 0.4, outer_angle: 1.0 }];
+pub(super) const SPOTS: [SpotProfile; 1] =
+    [SpotProfile { direction: Vec3::Y, inner_angle: 0.4, outer_angle: 1.0 }];
 
-fn three_kinds(n: usize, scale: f32, numbers: &mut Numbers) -> Vec<VplSet> {
+pub(super) fn three_kinds(n: usize, scale: f32, numbers: &mut Numbers) -> Vec<VplSet> {
     [VplKind::Omni, VplKind::Oriented, VplKind::Directional].map(|k| grouped(n, k, scale, numbers)).into()
 }
 
-fn random_reflector<'m>(
+pub(super) fn random_reflector<'m>(
     materials: &'m Materials,
     scene: &Scene,
     scale: f32,
@@ -122,7 +123,7 @@ fn random_reflector<'m>(
     Reflector::new(n.vec3() * scale, geometric, &Frame::from_normal(normal), bsdf, n.direction())
 }
 
-fn members(trees: &LightTrees, id: u32, found: &mut Vec<usize>) {
+pub(super) fn members(trees: &LightTrees, id: u32, found: &mut Vec<usize>) {
     let node = &trees.nodes[id as usize];
     match node.children() {
         None => found.push(node.representative()),
@@ -174,9 +175,9 @@ fn no_member_contributes_more_than_the_clusters_bound() {
 }
 
 /// A ball that casts shadows.
-struct Ball {
-    centre: Vec3,
-    radius: f32,
+pub(super) struct Ball {
+    pub centre: Vec3,
+    pub radius: f32,
 }
 
 impl Visibility for Ball {
@@ -191,7 +192,7 @@ impl Visibility for Ball {
 }
 
 /// The inside of a box: VPLs on its six walls, facing inwards.
-fn room(n: usize, numbers: &mut Numbers) -> VplSet {
+pub(super) fn room(n: usize, numbers: &mut Numbers) -> VplSet {
     let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
     for i in 0..n {
         let axis = i % 3;
@@ -225,11 +226,11 @@ fn relative_errors(trees: &LightTrees, settings: &CutSettings, rays: &impl Visib
     (errors, cut.counts.clusters as f64 / cut.counts.cuts as f64)
 }
 
-fn rms(errors: &[f32]) -> f32 {
+pub(super) fn rms(errors: &[f32]) -> f32 {
     (errors.iter().map(|e| e * e).sum::<f32>() / errors.len() as f32).sqrt()
 }
 
-const EXACT: CutSettings = CutSettings { epsilon: 0.02, max_cut: usize::MAX, clamp: None };
+pub(super) const EXACT: CutSettings = CutSettings { epsilon: 0.02, max_cut: usize::MAX, clamp: None };
 
 #[test]
 fn cuts_are_within_their_error_and_shrink_with_epsilon() {

@@ -1,4 +1,4 @@
-//! Lightcuts per pixel: every eye sample computes a cut of its own.
+//! Lightcuts per pixel: every eye sample has its own cut, or shares one with its neighbours.
 //!
 //! Paper: Walter et al., *Lightcuts*, 2005; "LC" in Herzog et al. 2009, section 6, over direct and indirect VPLs.
 //!
@@ -12,6 +12,7 @@
 //! | `cut.epsilon` | 0.02 | largest error bound of a cluster, relative to the sample's luminance |
 //! | `cut.max_cut` | 1000 | most clusters in a cut |
 //! | `cut.clamp` | 0.02 | most that one indirect VPL may contribute, relative to the sample's luminance |
+//! | `share` | true | whether neighbouring eye samples share cuts, for speed |
 //! | `family` | divisive | how light trees are built |
 //!
 //! Use it where a picture without noise is wanted and a small, smooth error is not in the way. Not for caustics on what
@@ -19,5 +20,6 @@
 //! that surface reflects onto others is not), and clamping darkens creases.
 
 mod render;
+mod tile;
 
 pub use render::{Settings, render};

@@ -1,19 +1,16 @@
 //! The picture: light pass, trees, then pixels in tiles.
 
-use crate::eye::{ChainCounts, EyeSample, Window, primary_ray, trace};
+use super::tile::{TILE, Tile, Workspace};
+use crate::eye::Window;
 use crate::image::Image;
 use crate::light_tree::{Family, LightTrees};
-use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Transfer};
+use crate::lightcut::{CutCounts, CutSettings, Transfer};
 use crate::math::Rgb;
 use crate::method::{Control, Output};
-use crate::sampling::{Sampler, hash};
 use crate::stats::{Stage, Stats};
 use crate::vpl::{LightPassSettings, light_pass};
 use crate::world::World;
 use rayon::prelude::*;
-
-/// Pixels along a tile's edge.
-const TILE: u32 = 16;
 
 /// What the user may set.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +27,8 @@ pub struct Settings {
     pub cut: CutSettings,
     /// How light trees are built.
     pub family: Family,
+    /// Whether neighbouring eye samples share cuts.
+    pub share: bool,
 }
 
 impl Default for Settings {
@@ -41,29 +40,19 @@ impl Default for Settings {
             light: LightPassSettings::default(),
             cut: CutSettings::default(),
             family: Family::default(),
+            share: true,
         }
     }
 }
 
-/// A tile's pixels and what was counted for them.
-#[derive(Default)]
-struct Tile {
-    radiance: Vec<Rgb>,
-    cut_sizes: Vec<f32>,
-    counts: CutCounts,
-    chains: ChainCounts,
-    nonfinite: u64,
-    done: bool,
-}
-
 /// What all tiles share.
-struct Scenery<'a> {
-    world: &'a World,
-    window: &'a Window,
-    settings: &'a Settings,
-    trees: &'a LightTrees,
-    transfer: Transfer<'a>,
-    max_depth: u32,
+pub(super) struct Scenery<'a> {
+    pub world: &'a World,
+    pub window: &'a Window,
+    pub settings: &'a Settings,
+    pub trees: &'a LightTrees,
+    pub transfer: Transfer<'a>,
+    pub max_depth: u32,
 }
 
 /// Renders `window` of the scene's film.
@@ -83,14 +72,17 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let transfer = Transfer::new(&trees.spots, world.diagonal);
     let scenery = Scenery { world, window, settings, trees: &trees, transfer, max_depth };
 
-    let (across, down) = (window.width.div_ceil(TILE), window.height.div_ceil(TILE));
+    // Tiles are aligned to the film, not to the window.
+    let first = window.offset.map(|o| o / TILE);
+    let across = (window.offset[0] + window.width).div_ceil(TILE) - first[0];
+    let down = (window.offset[1] + window.height).div_ceil(TILE) - first[1];
+    let corner = |i: usize| [(i as u32 % across + first[0]) * TILE, (i as u32 / across + first[1]) * TILE];
     let mut tiles: Vec<Tile> = (0..across * down).map(|_| Tile::default()).collect();
     control.begin(Stage::Render, tiles.len() as u64);
     stats.time(Stage::Render, || {
-        tiles.par_iter_mut().enumerate().for_each_init(Lightcut::new, |cut, (i, tile)| {
+        tiles.par_iter_mut().enumerate().for_each_init(Workspace::default, |work, (i, tile)| {
             if !control.is_cancelled() {
-                let corner = [i as u32 % across * TILE, i as u32 / across * TILE];
-                tile.render(&scenery, corner, cut);
+                tile.render(&scenery, corner(i), work);
                 control.advance(1);
             }
         });
@@ -99,19 +91,20 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let mut color = Image::new(window.width, window.height);
     let mut cut_size = Image::new(window.width, window.height);
     let mut counts = CutCounts::default();
-    let (mut eye_rays, mut overflow, mut nonfinite) = (0, 0, 0);
-    for (i, tile) in tiles.iter().enumerate() {
-        let corner = [i as u32 % across * TILE, i as u32 / across * TILE];
-        for (k, [x, y]) in tile_pixels(window, corner).enumerate().take(tile.radiance.len()) {
-            let at = (y * window.width + x) as usize;
+    let (mut eye_rays, mut overflow, mut packets, mut nonfinite) = (0, 0, 0, 0);
+    for (i, tile) in tiles.iter().enumerate().filter(|(_, tile)| tile.done) {
+        for (k, [x, y]) in scenery.tile_area(corner(i)).pixels().enumerate() {
+            let at = ((y - window.offset[1]) * window.width + x - window.offset[0]) as usize;
             color.pixels[at] = tile.radiance[k];
             cut_size.pixels[at] = Rgb::splat(tile.cut_sizes[k]);
         }
         counts.add(&tile.counts);
+        packets += tile.packets;
         eye_rays += tile.chains.rays;
         overflow += tile.chains.overflow;
         nonfinite += tile.nonfinite;
     }
+    stats.count("Rays/shadow packets", packets);
     count(&mut stats, &counts);
     stats.count("Rays/closest hit", eye_rays + lights.photons.rays);
     stats.count("Eye/branches dropped", overflow);
@@ -128,55 +121,4 @@ fn count(stats: &mut Stats, counts: &CutCounts) {
     stats.count("Lightcut/bounds", counts.bounds);
     stats.count("Lightcut/clamped VPLs", counts.clamped);
     stats.add("Lightcut/mean cut", counts.clusters as f64 / counts.cuts.max(1) as f64);
-}
-
-/// The pixels of the tile whose first pixel is `corner`, in rows, relative to the window.
-fn tile_pixels(window: &Window, corner: [u32; 2]) -> impl Iterator<Item = [u32; 2]> + use<> {
-    let (right, bottom) = ((corner[0] + TILE).min(window.width), (corner[1] + TILE).min(window.height));
-    (corner[1]..bottom).flat_map(move |y| (corner[0]..right).map(move |x| [x, y]))
-}
-
-impl Tile {
-    fn render(&mut self, scenery: &Scenery, corner: [u32; 2], cut: &mut Lightcut) {
-        cut.counts = CutCounts::default();
-        let spp = scenery.settings.spp.max(1);
-        for at in tile_pixels(scenery.window, corner) {
-            let [x, y] = scenery.window.film_pixel(at);
-            // The film's own coordinates, so that a crop repeats the whole picture's pixels.
-            let seed = hash(hash(x, y), scenery.settings.seed);
-            let before = cut.counts.clusters;
-            let mut sum = Rgb::ZERO;
-            for sample in 0..spp {
-                let radiance = self.sample(scenery, [x, y], &mut Sampler::new(seed, sample), cut);
-                if radiance.is_finite() {
-                    sum += radiance;
-                } else {
-                    self.nonfinite += 1;
-                }
-            }
-            self.radiance.push(sum / spp as f32);
-            self.cut_sizes.push((cut.counts.clusters - before) as f32 / spp as f32);
-        }
-        self.counts = cut.counts;
-        self.done = true;
-    }
-
-    /// Radiance of one eye sample: emission along its specular chains, and what the surfaces at their ends reflect.
-    fn sample(&mut self, s: &Scenery, pixel: [u32; 2], sampler: &mut Sampler, cut: &mut Lightcut) -> Rgb {
-        let jitter = sampler.next_2d();
-        let ray = primary_ray(&s.world.scene.camera, s.window, pixel, jitter);
-        let mut reflected = Rgb::ZERO;
-        let visit = |eye: EyeSample| {
-            if eye.depth < s.max_depth {
-                let surface = &eye.surface;
-                let bsdf = s.world.bsdf(surface);
-                let receiver =
-                    Reflector::new(surface.position, surface.normal, &surface.frame, bsdf, eye.out);
-                let radiance = cut.gather(s.trees, &s.transfer, s.world, &receiver, &s.settings.cut);
-                reflected += eye.throughput * radiance;
-            }
-        };
-        let emitted = trace(s.world, ray, s.max_depth, sampler, &mut self.chains, visit);
-        emitted + reflected
-    }
 }

@@ -1,0 +1,29 @@
+//! One cut for up to sixteen neighbouring points, a vector lane each.
+//!
+//! Neighbours have nearly the same cut. Sharing it, every bound is evaluated for all points at once, a cluster's
+//! data is fetched once, and the shadow rays of one cluster run from neighbouring points to one light: a coherent
+//! packet, which traces several times as fast as unrelated rays. A cluster is split if *any* lane's error bound is
+//! above that lane's threshold, so each lane is at least as accurate as by itself; the price is a larger cut,
+//! which stays small while the points are close and look the same way.
+//!
+//! Deviations: a lane's luminance counts as at least 1/256 of the brightest lane's where errors are judged, so
+//! that one point in the dark does not drive the cut of fifteen in the light to its cap.
+
+mod points;
+mod refine;
+#[cfg(test)]
+mod tests;
+mod transfer;
+
+pub use points::Points;
+pub use refine::GroupLightcut;
+pub use transfer::GroupVisibility;
+
+/// Points in a group.
+pub const LANES: usize = 16;
+
+/// One number for each point.
+pub type Lanes = [f32; LANES];
+
+/// A colour for each point, by channel.
+pub type RgbLanes = [Lanes; 3];

@@ -1,0 +1,117 @@
+//! The points of a group, lane by lane.
+
+use super::{LANES, Lanes};
+use crate::lightcut::Reflector;
+use crate::lightcut::receiver::Receiver;
+use crate::math::{LUMINANCE, Rgb};
+use glam::Vec3;
+
+/// Three numbers for each point.
+pub(super) type Vec3Lanes = [Lanes; 3];
+
+/// Up to sixteen reflecting points as a structure of arrays.
+///
+/// Lanes without a point repeat the first one's and are masked.
+pub struct Points<'m> {
+    reflectors: Vec<Reflector<'m>>,
+    /// Lanes that hold a point.
+    pub(super) valid: u16,
+    /// Lanes whose material is not just Lambert: their responses and bounds are computed one by one.
+    pub(super) general: u16,
+    pub(super) position: Vec3Lanes,
+    /// Largest coordinate of any position.
+    pub(super) reach: f32,
+    pub(super) geometric_normal: Vec3Lanes,
+    /// Shading frame: tangent, bitangent, normal.
+    pub(super) frame: [Vec3Lanes; 3],
+    /// The same, absolute values.
+    pub(super) abs_frame: [Vec3Lanes; 3],
+    /// Lambert BRDF.
+    pub(super) brdf: Vec3Lanes,
+    /// The same, by what it weighs in the luminance.
+    pub(super) brdf_luminance: Vec3Lanes,
+}
+
+impl<'m> Points<'m> {
+    /// No points yet.
+    pub fn new() -> Points<'m> {
+        const ZERO: Vec3Lanes = [[0.0; LANES]; 3];
+        Points {
+            reflectors: Vec::with_capacity(LANES),
+            valid: 0,
+            general: 0,
+            position: ZERO,
+            reach: 0.0,
+            geometric_normal: ZERO,
+            frame: [ZERO; 3],
+            abs_frame: [ZERO; 3],
+            brdf: ZERO,
+            brdf_luminance: ZERO,
+        }
+    }
+
+    /// Replaces the points; all beyond [`LANES`] are left out.
+    pub fn set(&mut self, reflectors: impl IntoIterator<Item = Reflector<'m>>) {
+        self.reflectors.clear();
+        self.reflectors.extend(reflectors.into_iter().take(LANES));
+        (self.valid, self.general, self.reach) = (0, 0, 0.0);
+        let Some(first) = self.reflectors.first().copied() else { return };
+        for lane in 0..LANES {
+            let reflector = self.reflectors.get(lane).copied();
+            if let Some(r) = &reflector {
+                self.valid |= 1 << lane;
+                self.general |= u16::from(r.lambert_brdf().is_none()) << lane;
+            }
+            let r = reflector.unwrap_or(first);
+            self.reach = self.reach.max(r.position().abs().max_element());
+            put(&mut self.position, lane, r.position());
+            put(&mut self.geometric_normal, lane, r.geometric_normal());
+            let frame = r.frame();
+            for (i, axis) in [frame.tangent, frame.bitangent, frame.normal].into_iter().enumerate() {
+                put(&mut self.frame[i], lane, axis);
+                put(&mut self.abs_frame[i], lane, axis.abs());
+            }
+            let brdf = r.lambert_brdf().unwrap_or(Rgb::ZERO);
+            put(&mut self.brdf, lane, brdf);
+            put(&mut self.brdf_luminance, lane, brdf * LUMINANCE);
+        }
+    }
+
+    /// How many points.
+    pub fn len(&self) -> usize {
+        self.reflectors.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.reflectors.is_empty()
+    }
+
+    /// Point number `lane`.
+    pub fn get(&self, lane: usize) -> &Reflector<'m> {
+        &self.reflectors[lane]
+    }
+}
+
+impl Default for Points<'_> {
+    fn default() -> Self {
+        Points::new()
+    }
+}
+
+#[inline]
+fn put(lanes: &mut Vec3Lanes, lane: usize, v: Vec3) {
+    for (i, row) in lanes.iter_mut().enumerate() {
+        row[lane] = v[i];
+    }
+}
+
+/// The numbers of the lanes in a mask.
+#[inline]
+pub(super) fn lanes_of(mut mask: u16) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = (mask != 0).then(|| mask.trailing_zeros() as usize)?;
+        mask &= mask - 1;
+        Some(lane)
+    })
+}

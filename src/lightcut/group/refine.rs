@@ -1,0 +1,308 @@
+//! Refinement of a shared cut.
+
+use super::points::{Points, lanes_of};
+use super::transfer::{GroupVisibility, luminances};
+use super::{LANES, Lanes, RgbLanes};
+use crate::light_tree::LightTrees;
+use crate::lightcut::refine::DOMINANT;
+use crate::lightcut::{CutCounts, CutSettings, Transfer};
+use crate::math::{Rgb, luminance};
+use crate::vpl::Origin;
+use glam::DVec3;
+use std::collections::BinaryHeap;
+
+/// Least luminance of a lane where errors are judged, relative to the brightest lane's.
+const DARKEST: f32 = 1.0 / 256.0;
+
+const ZERO: Lanes = [0.0; LANES];
+
+/// A cluster of the cut and what is known of it in each lane.
+#[derive(Clone, Copy)]
+struct Entry {
+    node: u32,
+    /// A leaf of the indirect trees: the only kind that is clamped.
+    weak: bool,
+    /// Contribution of a representative of unit intensity, with visibility.
+    responses: RgbLanes,
+    /// Error bounds, luminance; 0 for a leaf.
+    bounds: Lanes,
+    /// Luminance with which the cluster counts in the running totals.
+    counted: Lanes,
+}
+
+/// Computes shared cuts; one a thread, so that its buffers are allocated once.
+#[derive(Default)]
+pub struct GroupLightcut {
+    entries: Vec<Entry>,
+    /// Largest relative bound (as bits) above place in `entries`.
+    offenders: BinaryHeap<u64>,
+    /// What has been done so far; a shared cut counts once for each of its points.
+    pub counts: CutCounts,
+    /// Packets of shadow rays.
+    pub packets: u64,
+}
+
+impl GroupLightcut {
+    /// An empty workspace.
+    pub fn new() -> GroupLightcut {
+        GroupLightcut::default()
+    }
+
+    /// Clusters in the last cut.
+    pub fn size(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Reflected radiance of each point, to within the settings' error or better.
+    pub fn gather<V: GroupVisibility>(
+        &mut self,
+        trees: &LightTrees,
+        transfer: &Transfer,
+        visibility: &V,
+        points: &Points,
+        settings: &CutSettings,
+        radiance: &mut [Rgb; LANES],
+    ) {
+        let mut pass = Pass {
+            trees,
+            transfer,
+            visibility,
+            points,
+            settings,
+            totals: ZERO,
+            room: settings.max_cut,
+            cut: self,
+        };
+        pass.start();
+        pass.refine();
+        let capped = pass.room == 0 && pass.watch_offenders();
+        let count = points.len() as u64;
+        self.counts.cuts += count;
+        self.counts.clusters += count * self.entries.len() as u64;
+        self.counts.capped += count * u64::from(capped);
+        self.sum(trees, points, settings.clamp, radiance);
+    }
+
+    fn sum(&mut self, trees: &LightTrees, points: &Points, clamp: Option<f32>, radiance: &mut [Rgb; LANES]) {
+        let mut sums = [ZERO; 3];
+        let mut brightest_leaf = ZERO;
+        for e in &self.entries {
+            let i = trees.nodes[e.node as usize].intensity;
+            for (c, sum) in sums.iter_mut().enumerate() {
+                for (s, r) in sum.iter_mut().zip(&e.responses[c]) {
+                    *s += i[c] * r;
+                }
+            }
+            if e.weak {
+                for (b, y) in brightest_leaf.iter_mut().zip(luminances(i, &e.responses)) {
+                    *b = if y > *b { y } else { *b };
+                }
+            }
+        }
+        for lane in lanes_of(points.valid) {
+            let unclamped = Rgb::new(sums[0][lane], sums[1][lane], sums[2][lane]);
+            radiance[lane] = match clamp {
+                // Below this nothing is clamped: the frozen luminance is less than the unclamped one only if
+                // some leaf is a dominant part of it.
+                Some(clamp) if brightest_leaf[lane] > clamp.min(DOMINANT) * luminance(unclamped) => {
+                    self.clamped_sum(trees, lane, unclamped, clamp)
+                }
+                _ => unclamped,
+            };
+        }
+    }
+
+    /// One lane's sum with its weak singularities limited, as in the single-point cut.
+    fn clamped_sum(&mut self, trees: &LightTrees, lane: usize, unclamped: Rgb, clamp: f32) -> Rgb {
+        let limited = |limit: f32| {
+            let mut clamped = 0;
+            let sum = self.entries.iter().fold(DVec3::ZERO, |sum, e| {
+                let i = trees.nodes[e.node as usize].intensity;
+                let mut contribution = i * Rgb::from_array(std::array::from_fn(|c| e.responses[c][lane]));
+                let y = luminance(contribution);
+                if e.weak && y > limit {
+                    contribution *= limit / y;
+                    clamped += 1;
+                }
+                sum + contribution.as_dvec3()
+            });
+            (sum.as_vec3(), clamped)
+        };
+        let mut frozen = luminance(unclamped);
+        for _ in 0..12 {
+            let next = luminance(limited(DOMINANT * frozen).0);
+            if next > 0.99 * frozen {
+                break;
+            }
+            frozen = next;
+        }
+        let (sum, clamped) = limited(clamp * frozen);
+        self.counts.clamped += clamped;
+        sum
+    }
+}
+
+/// One shared cut in the making.
+struct Pass<'a, 't, 'm, V> {
+    trees: &'a LightTrees,
+    transfer: &'a Transfer<'t>,
+    visibility: &'a V,
+    points: &'a Points<'m>,
+    settings: &'a CutSettings,
+    /// Luminance of the cut in each lane, as far as it counts.
+    totals: Lanes,
+    /// Splits left before the cap.
+    room: usize,
+    cut: &'a mut GroupLightcut,
+}
+
+impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
+    fn start(&mut self) {
+        self.cut.entries.clear();
+        self.cut.offenders.clear();
+        for &root in &self.trees.roots {
+            let responses = self.representative_responses(root);
+            let entry = self.entry(root, &responses, &[f32::MAX; LANES]);
+            self.count(&entry);
+            let place = self.cut.entries.len();
+            self.cut.entries.push(entry);
+            self.watch(place);
+        }
+        self.room = self.room.saturating_sub(self.cut.entries.len());
+    }
+
+    fn count(&mut self, entry: &Entry) {
+        for (total, counted) in self.totals.iter_mut().zip(&entry.counted) {
+            *total += counted;
+        }
+    }
+
+    fn refine(&mut self) {
+        loop {
+            while let Some(&offender) = self.cut.offenders.peek() {
+                let place = offender as u32 as usize;
+                let offends = self.relative_bound(&self.cut.entries[place].bounds) > self.settings.epsilon;
+                if offends && self.room == 0 {
+                    return;
+                }
+                self.cut.offenders.pop();
+                if offends {
+                    self.room -= 1;
+                    self.split(place);
+                }
+            }
+            // Totals may have fallen since a cluster was found harmless, and drifted.
+            self.retotal();
+            if !self.watch_offenders() {
+                return;
+            }
+        }
+    }
+
+    fn retotal(&mut self) {
+        self.totals = ZERO;
+        for entry in &self.cut.entries {
+            for (total, counted) in self.totals.iter_mut().zip(&entry.counted) {
+                *total += counted;
+            }
+        }
+    }
+
+    /// Queues every cluster above its threshold; false if there is none.
+    fn watch_offenders(&mut self) -> bool {
+        let mut found = false;
+        for place in 0..self.cut.entries.len() {
+            if self.relative_bound(&self.cut.entries[place].bounds) > self.settings.epsilon {
+                self.watch(place);
+                found = true;
+            }
+        }
+        found
+    }
+
+    /// Largest bound of any lane relative to the lane's total.
+    fn relative_bound(&self, bounds: &Lanes) -> f32 {
+        let brightest = self.totals.iter().fold(0.0, |a, &b| if b > a { b } else { a });
+        let floor = (DARKEST * brightest).max(f32::MIN_POSITIVE);
+        let mut largest = 0.0;
+        for l in 0..LANES {
+            let total = if self.totals[l] > floor { self.totals[l] } else { floor };
+            let relative = bounds[l] / total;
+            largest = if relative > largest { relative } else { largest };
+        }
+        largest
+    }
+
+    /// Replaces a cluster by its children. One of them shares the representative, so its responses are known.
+    fn split(&mut self, place: usize) {
+        let parent = self.cut.entries[place];
+        let node = &self.trees.nodes[parent.node as usize];
+        let Some(left) = node.children() else { return };
+        let shares_left = self.trees.nodes[left as usize].representative() == node.representative();
+        let (heir, other) = if shares_left { (left, left + 1) } else { (left + 1, left) };
+        let responses = self.representative_responses(other);
+        for l in 0..LANES {
+            let rest = self.totals[l] - parent.counted[l];
+            self.totals[l] = if rest > 0.0 { rest } else { 0.0 };
+        }
+        let rest = self.totals;
+        let heir = self.entry(heir, &parent.responses, &rest);
+        let other = self.entry(other, &responses, &rest);
+        self.count(&heir);
+        self.count(&other);
+        self.cut.entries[place] = heir;
+        self.watch(place);
+        let place = self.cut.entries.len();
+        self.cut.entries.push(other);
+        self.watch(place);
+    }
+
+    fn entry(&mut self, node: u32, responses: &RgbLanes, rest: &Lanes) -> Entry {
+        let n = &self.trees.nodes[node as usize];
+        let leaf = n.is_leaf();
+        let weak = leaf && n.origin() == Origin::Indirect;
+        let mut counted = luminances(n.intensity, responses);
+        if weak && self.settings.clamp.is_some() {
+            for (c, &rest) in counted.iter_mut().zip(rest) {
+                let limit = rest * (DOMINANT / (1.0 - DOMINANT));
+                *c = if *c > limit && rest > 0.0 { limit } else { *c };
+            }
+        }
+        let bounds = if leaf {
+            ZERO
+        } else {
+            self.cut.counts.bounds += self.points.len() as u64;
+            self.transfer.bounds16(self.points, n)
+        };
+        Entry { node, weak, responses: *responses, bounds, counted }
+    }
+
+    /// Contribution of a node's representative at unit intensity, with visibility.
+    fn representative_responses(&mut self, node: u32) -> RgbLanes {
+        let node = &self.trees.nodes[node as usize];
+        let vpl = &self.trees.vpls[node.representative()];
+        let mut responses = [ZERO; 3];
+        let lit = self.transfer.unshadowed16(self.points, vpl, node.kind(), &mut responses);
+        if lit != 0 {
+            self.cut.counts.rays += u64::from(lit.count_ones());
+            self.cut.packets += 1;
+            let seen = self.visibility.visible16(self.points, lit, vpl, node.kind());
+            for row in &mut responses {
+                for (l, r) in row.iter_mut().enumerate() {
+                    *r = if seen >> l & 1 != 0 { *r } else { 0.0 };
+                }
+            }
+        } else {
+            responses = [ZERO; 3];
+        }
+        responses
+    }
+
+    /// Queues the entry at `place` by its largest relative bound, unless it cannot be wrong.
+    fn watch(&mut self, place: usize) {
+        let key = self.relative_bound(&self.cut.entries[place].bounds);
+        if key > 0.0 {
+            self.cut.offenders.push(u64::from(key.to_bits()) << 32 | place as u64);
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! A group's lanes must agree with the single-point functions, which have tests of their own.
+
+use super::points::lanes_of;
+use super::*;
+use crate::light_tree::{Family, LightTrees};
+use crate::lightcut::tests::{
+    Ball, EXACT, Numbers, SPOTS, all_materials, members, random_reflector, rms, room, three_kinds,
+};
+use crate::lightcut::{
+    CutSettings, Lightcut, Receiver, Reflector, Transfer, Unoccluded, Visibility, gather_all,
+};
+use crate::material::Materials;
+use crate::math::{Rgb, luminance};
+use crate::scene::{MaterialId, Scene};
+use crate::vpl::{Vpl, VplKind};
+use glam::{Vec2, Vec3};
+
+impl GroupVisibility for Ball {
+    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, kind: VplKind) -> u16 {
+        let sees = |&lane: &usize| self.visible(points.get(lane).position(), Vec3::ZERO, vpl, kind);
+        lanes_of(lanes).filter(sees).fold(0, |mask, lane| mask | 1 << lane)
+    }
+}
+
+/// Neighbours on a slightly bent surface.
+fn neighbours<'m>(
+    materials: &'m Materials,
+    scene: &Scene,
+    scale: f32,
+    count: usize,
+    numbers: &mut Numbers,
+) -> Vec<Reflector<'m>> {
+    let first = random_reflector(materials, scene, scale, numbers);
+    let lambert = materials.at(scene, MaterialId(0), Vec2::ZERO);
+    (0..count)
+        .map(|i| {
+            let normal = (first.normal() + numbers.direction() * 0.1).normalize();
+            let out = (normal + numbers.direction() * 0.5).normalize();
+            let bsdf = if i % 3 == 0 { first.bsdf().unwrap_or(lambert) } else { lambert };
+            let frame = crate::math::Frame::from_normal(normal);
+            let position = first.position() + numbers.direction() * 0.01 * scale;
+            Reflector::new(position, normal, &frame, bsdf, out)
+        })
+        .collect()
+}
+
+#[test]
+fn lanes_have_the_responses_of_single_points_and_bounds_above_them() {
+    let scene = all_materials();
+    let materials = Materials::new(&scene);
+    let mut points = Points::new();
+    for round in 0..60u32 {
+        let mut numbers = Numbers(round << 20);
+        let scale = [1e-6, 1.0, 1e6][round as usize % 3];
+        let sets = three_kinds(60, scale, &mut numbers);
+        let trees = LightTrees::build(&sets, SPOTS.to_vec(), 2.0 * scale, Family::Divisive);
+        let transfer = Transfer::new(&trees.spots, 2.0 * scale);
+        for count in [16, 1, 5] {
+            points.set(neighbours(&materials, &scene, scale, count, &mut numbers));
+            for (id, node) in trees.nodes.iter().enumerate().filter(|(_, n)| n.intensity != Rgb::ZERO) {
+                let bounds = transfer.bounds16(&points, node);
+                assert!(bounds[count..].iter().all(|b| *b == 0.0), "a lane without a point");
+                let mut found = Vec::new();
+                members(&trees, id as u32, &mut found);
+                for vpl in found {
+                    let mut responses = [[0.0; LANES]; 3];
+                    let lit = transfer.unshadowed16(&points, &trees.vpls[vpl], node.kind(), &mut responses);
+                    assert_eq!(u32::from(lit) >> count, 0);
+                    for lane in 0..count {
+                        let single = transfer.unshadowed(points.get(lane), &trees.vpls[vpl], node.kind());
+                        let response = Rgb::from_array(std::array::from_fn(|c| responses[c][lane]));
+                        let difference = (response - single).abs();
+                        // Cosines near 0 lose digits, at most these of what a cosine of 1 would give.
+                        let offset = trees.vpls[vpl].position - points.get(lane).position();
+                        let falloff = match node.kind() {
+                            VplKind::Directional => 1.0,
+                            _ => 1.0 / offset.length_squared().max(transfer.min_dist_sq),
+                        };
+                        let allowed = single * 1e-4 + 1e-6 * falloff;
+                        assert!(difference.cmple(allowed).all(), "{response} {single}");
+                        assert_eq!(lit >> lane & 1 != 0, response != Rgb::ZERO);
+                        let contribution = luminance(response * node.intensity);
+                        assert!(contribution <= bounds[lane] * 1.00002, "{contribution} {}", bounds[lane]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn errors(settings: &CutSettings) -> Vec<f32> {
+    let scene = all_materials();
+    let materials = Materials::new(&scene);
+    let ball = Ball { centre: Vec3::splat(0.5), radius: 0.25 };
+    let trees = LightTrees::build(&[room(20_000, &mut Numbers(1))], Vec::new(), 1.73, Family::Divisive);
+    let transfer = Transfer::new(&trees.spots, 1.73);
+    let (mut cut, mut points) = (GroupLightcut::new(), Points::new());
+    let mut numbers = Numbers(77);
+    let mut errors = Vec::new();
+    for _ in 0..30 {
+        points.set(neighbours(&materials, &scene, 1.0, 16, &mut numbers));
+        let mut radiance = [Rgb::ZERO; LANES];
+        cut.gather(&trees, &transfer, &ball, &points, settings, &mut radiance);
+        for (lane, radiance) in radiance.iter().enumerate() {
+            let exact = luminance(gather_all(&trees, &transfer, &ball, points.get(lane)));
+            if exact > 0.0 {
+                errors.push(luminance(*radiance) / exact - 1.0);
+            }
+        }
+    }
+    errors
+}
+
+#[test]
+fn shared_cuts_are_within_the_error_of_single_ones() {
+    let (fine, medium) = (errors(&CutSettings { epsilon: 0.005, ..EXACT }), errors(&EXACT));
+    assert!(medium.len() > 200);
+    assert!(rms(&medium) <= 0.035, "{}", rms(&medium));
+    assert!(rms(&fine) < rms(&medium), "{} {}", rms(&fine), rms(&medium));
+}
+
+#[test]
+fn one_lane_clamps_as_a_single_point_does() {
+    let scene = all_materials();
+    let materials = Materials::new(&scene);
+    let mut set = room(2000, &mut Numbers(4));
+    let x = Vec3::splat(0.5);
+    set.push(Vpl::oriented(x + Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
+    let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive);
+    let transfer = Transfer::new(&[], 1.7);
+    let frame = crate::math::Frame::from_normal(Vec3::Y);
+    let lambert = materials.at(&scene, MaterialId(0), Vec2::ZERO);
+    let at = |p| Reflector::new(p, Vec3::Y, &frame, lambert, Vec3::Y);
+    let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02) };
+    let mut points = Points::new();
+    points.set([at(x), at(x + Vec3::X * 0.02)]);
+    let mut radiance = [Rgb::ZERO; LANES];
+    let mut cut = GroupLightcut::new();
+    cut.gather(&trees, &transfer, &Unoccluded, &points, &settings, &mut radiance);
+    assert!(cut.counts.clamped > 0);
+    for (lane, radiance) in radiance.iter().enumerate().take(2) {
+        let single = Lightcut::new().gather(&trees, &transfer, &Unoccluded, points.get(lane), &settings);
+        assert!((luminance(*radiance) / luminance(single) - 1.0).abs() < 0.01, "{radiance} {single}");
+    }
+}
+
+#[test]
+fn the_cap_holds_for_the_group() {
+    let scene = all_materials();
+    let materials = Materials::new(&scene);
+    let trees = LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive);
+    let mut points = Points::new();
+    points.set(neighbours(&materials, &scene, 1.0, 16, &mut Numbers(3)));
+    let settings = CutSettings { epsilon: 1e-4, max_cut: 77, clamp: None };
+    let mut cut = GroupLightcut::new();
+    let mut radiance = [Rgb::ZERO; LANES];
+    cut.gather(&trees, &Transfer::new(&[], 1.7), &Unoccluded, &points, &settings, &mut radiance);
+    assert_eq!((cut.size(), cut.counts.capped, cut.counts.cuts), (77, 16, 16));
+}

@@ -1,0 +1,220 @@
+//! A tile of the picture: eye samples gathered block by block, grouped by likeness, and lit.
+//!
+//! Blocks are aligned to the film and always computed whole, so a crop repeats the whole picture's pixels.
+
+use super::render::Scenery;
+use crate::eye::{ChainCounts, EyeSample, primary_ray, trace};
+use crate::lightcut::group::{GroupLightcut, LANES, Points};
+use crate::lightcut::{CutCounts, Lightcut, Receiver, Reflector};
+use crate::math::Rgb;
+use crate::sampling::{Sampler, hash};
+
+/// Pixels along a tile's edge.
+pub const TILE: u32 = 16;
+/// Pixels along the edge of a block, within which eye samples may share a cut.
+pub const BLOCK: u32 = 4;
+
+/// Fewer points than this have cuts of their own.
+const LEAST_SHARED: usize = 4;
+/// Points share a cut if the cosine between their normals is at least this ...
+const LEAST_COSINE: f32 = 0.8;
+/// ... and their distance at most this fraction of the scene's diagonal.
+const LARGEST_DISTANCE: f32 = 0.02;
+
+/// A thread's buffers.
+#[derive(Default)]
+pub struct Workspace<'w> {
+    single: Lightcut,
+    group: GroupLightcut,
+    points: Points<'w>,
+    samples: Vec<Lit<'w>>,
+    members: Vec<usize>,
+    values: Vec<Rgb>,
+    cut_sizes: Vec<f32>,
+}
+
+/// An eye sample waiting for light.
+struct Lit<'w> {
+    reflector: Reflector<'w>,
+    throughput: Rgb,
+    /// Which pixel and sample of the block.
+    place: usize,
+    done: bool,
+}
+
+/// A tile's pixels, in rows over the part of it that lies in the window, and what was counted for them.
+#[derive(Default)]
+pub struct Tile {
+    pub radiance: Vec<Rgb>,
+    pub cut_sizes: Vec<f32>,
+    pub counts: CutCounts,
+    pub packets: u64,
+    pub chains: ChainCounts,
+    pub nonfinite: u64,
+    pub done: bool,
+}
+
+impl Tile {
+    /// Renders the tile whose first film pixel is `corner` (a multiple of [`TILE`]).
+    pub fn render<'w>(&mut self, s: &Scenery<'w>, corner: [u32; 2], work: &mut Workspace<'w>) {
+        work.single.counts = CutCounts::default();
+        work.group.counts = CutCounts::default();
+        work.group.packets = 0;
+        let area = s.tile_area(corner);
+        let size = (area.width * area.height) as usize;
+        self.radiance = vec![Rgb::ZERO; size];
+        self.cut_sizes = vec![0.0; size];
+        let spp = s.settings.spp.max(1);
+        for block_y in (corner[1]..corner[1] + TILE).step_by(BLOCK as usize) {
+            for block_x in (corner[0]..corner[0] + TILE).step_by(BLOCK as usize) {
+                if !area.meets([block_x, block_y], BLOCK) {
+                    continue;
+                }
+                self.look(s, [block_x, block_y], spp, work);
+                light(s, work);
+                self.store(&area, [block_x, block_y], spp, work);
+            }
+        }
+        self.counts.add(&work.single.counts);
+        self.counts.add(&work.group.counts);
+        self.packets = work.group.packets;
+        self.done = true;
+    }
+
+    /// Traces the eye rays of a block.
+    fn look<'w>(&mut self, s: &Scenery<'w>, block: [u32; 2], spp: u32, work: &mut Workspace<'w>) {
+        work.samples.clear();
+        work.values.clear();
+        for (x, y) in block_pixels(block) {
+            for sample in 0..spp {
+                if x >= s.window.film[0] || y >= s.window.film[1] {
+                    work.values.push(Rgb::ZERO);
+                    continue;
+                }
+                // The film's own coordinates, so that a crop repeats the whole picture's pixels.
+                let mut sampler = Sampler::new(hash(hash(x, y), s.settings.seed), sample);
+                let jitter = sampler.next_2d();
+                let ray = primary_ray(&s.world.scene.camera, s.window, [x, y], jitter);
+                let place = work.values.len();
+                let visit = |eye: EyeSample| {
+                    if eye.depth < s.max_depth {
+                        let surface = &eye.surface;
+                        let bsdf = s.world.bsdf(surface);
+                        let reflector =
+                            Reflector::new(surface.position, surface.normal, &surface.frame, bsdf, eye.out);
+                        work.samples.push(Lit { reflector, throughput: eye.throughput, place, done: false });
+                    }
+                };
+                let emitted = trace(s.world, ray, s.max_depth, &mut sampler, &mut self.chains, visit);
+                work.values.push(emitted);
+            }
+        }
+        work.cut_sizes.clear();
+        work.cut_sizes.resize(work.values.len(), 0.0);
+    }
+
+    /// Averages the samples of the block's pixels that are in `area`.
+    fn store(&mut self, area: &Area, block: [u32; 2], spp: u32, work: &Workspace) {
+        let spp = spp as usize;
+        for (i, (x, y)) in block_pixels(block).enumerate() {
+            let Some(at) = area.index(x, y) else { continue };
+            let samples = i * spp..(i + 1) * spp;
+            let mut sum = Rgb::ZERO;
+            for value in &work.values[samples.clone()] {
+                if value.is_finite() {
+                    sum += *value;
+                } else {
+                    self.nonfinite += 1;
+                }
+            }
+            self.radiance[at] = sum / spp as f32;
+            self.cut_sizes[at] = work.cut_sizes[samples].iter().sum::<f32>() / spp as f32;
+        }
+    }
+}
+
+/// Adds the light that the eye samples of a block reflect.
+fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
+    for first in 0..work.samples.len() {
+        if work.samples[first].done {
+            continue;
+        }
+        work.members.clear();
+        let seed = &work.samples[first].reflector;
+        for (i, sample) in work.samples.iter().enumerate().skip(first) {
+            if !sample.done && work.members.len() < LANES && s.alike(seed, &sample.reflector) {
+                work.members.push(i);
+            }
+        }
+        let cut = &s.settings.cut;
+        if !s.settings.share || work.members.len() < LEAST_SHARED {
+            let sample = &mut work.samples[first];
+            sample.done = true;
+            let before = work.single.counts.clusters;
+            let radiance = work.single.gather(s.trees, &s.transfer, s.world, &sample.reflector, cut);
+            work.values[sample.place] += sample.throughput * radiance;
+            work.cut_sizes[sample.place] += (work.single.counts.clusters - before) as f32;
+            continue;
+        }
+        work.points.set(work.members.iter().map(|&i| work.samples[i].reflector));
+        let mut radiance = [Rgb::ZERO; LANES];
+        work.group.gather(s.trees, &s.transfer, s.world, &work.points, cut, &mut radiance);
+        for (&i, radiance) in work.members.iter().zip(radiance) {
+            let sample = &mut work.samples[i];
+            sample.done = true;
+            work.values[sample.place] += sample.throughput * radiance;
+            work.cut_sizes[sample.place] += work.group.size() as f32;
+        }
+    }
+}
+
+impl Scenery<'_> {
+    /// Whether two points are likely to have nearly the same cut.
+    fn alike(&self, a: &Reflector, b: &Reflector) -> bool {
+        let limit = LARGEST_DISTANCE * self.world.diagonal;
+        a.position().distance_squared(b.position()) <= limit * limit
+            && a.normal().dot(b.normal()) >= LEAST_COSINE
+    }
+
+    /// The part of a tile inside the window, in film coordinates.
+    pub fn tile_area(&self, corner: [u32; 2]) -> Area {
+        let w = self.window;
+        let low = [0, 1].map(|i| corner[i].max(w.offset[i]));
+        let high =
+            [(corner[0] + TILE).min(w.offset[0] + w.width), (corner[1] + TILE).min(w.offset[1] + w.height)];
+        Area { low, width: high[0].saturating_sub(low[0]), height: high[1].saturating_sub(low[1]) }
+    }
+}
+
+/// A rectangle of film pixels.
+pub struct Area {
+    pub low: [u32; 2],
+    pub width: u32,
+    pub height: u32,
+}
+
+impl Area {
+    /// Place of a pixel in rows, if it is inside.
+    fn index(&self, x: u32, y: u32) -> Option<usize> {
+        let (dx, dy) = (x.wrapping_sub(self.low[0]), y.wrapping_sub(self.low[1]));
+        (dx < self.width && dy < self.height).then(|| (dy * self.width + dx) as usize)
+    }
+
+    /// Whether a square of the given edge at `corner` has a pixel in common with it.
+    fn meets(&self, corner: [u32; 2], edge: u32) -> bool {
+        let overlaps =
+            |i: usize, extent: u32| corner[i] < self.low[i] + extent && self.low[i] < corner[i] + edge;
+        overlaps(0, self.width) && overlaps(1, self.height)
+    }
+
+    /// Film coordinates of all pixels, in rows.
+    pub fn pixels(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let ([x, y], [w, h]) = (self.low, [self.width, self.height]);
+        (y..y + h).flat_map(move |y| (x..x + w).map(move |x| [x, y]))
+    }
+}
+
+/// Film coordinates of a block's pixels, in rows; some may lie beyond the film.
+fn block_pixels([x, y]: [u32; 2]) -> impl Iterator<Item = (u32, u32)> {
+    (y..y + BLOCK).flat_map(move |y| (x..x + BLOCK).map(move |x| (x, y)))
+}
