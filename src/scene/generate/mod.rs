@@ -1,6 +1,7 @@
 //! The larger scenes of the project, generated: each generator yields named parts, and the scene's TOML
 //! file gives every part its material, so that what a scene looks like stays editable.
 
+mod apartment;
 pub mod builder;
 mod furniture;
 mod kitchen;
@@ -26,6 +27,7 @@ pub struct Part {
 /// The parts of the scene called `name`, or `None` where there is no such generator.
 pub fn generate(name: &str) -> Option<Vec<Part>> {
     match name {
+        "apartment" => Some(apartment::parts()),
         "kitchen" => Some(kitchen::parts()),
         "knot" => Some(knot::parts()),
         _ => None,

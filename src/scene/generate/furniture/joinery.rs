@@ -1,7 +1,7 @@
 //! Doors, panelled fronts, handles, casings, skirting.
 
 use super::builder::{
-    Assembly, Faces, Section, Shell, at, beveled_box, fillet, grid, lathe, pipe, sweep_along,
+    Assembly, Faces, Section, Shell, at, beveled_box, fillet, grid, lathe, pipe, sweep_along, turned,
 };
 use glam::{Affine3A, Quat, Vec2, Vec3};
 
@@ -54,7 +54,7 @@ pub(in super::super) fn bar_handle(length: f32, reach: f32, radius: f32) -> Shel
 /// A turned knob on the surface z = 0.
 pub(in super::super) fn knob(radius: f32) -> Shell {
     let profile = [[0.45, 0.0], [0.35, 0.5], [0.4, 0.75], [0.95, 1.0], [1.0, 1.25], [0.7, 1.5], [0.0, 1.55]];
-    lathe(&profile.map(|p| Vec2::from_array(p) * radius), 14)
+    lathe(&profile.map(|p| Vec2::from_array(p) * radius), 10)
         .creased(60.0)
         .transformed(&Affine3A::from_quat(Quat::from_rotation_x(90.0_f32.to_radians())))
 }
@@ -84,6 +84,29 @@ pub(in super::super) fn skirting(length: f32, height: f32) -> Shell {
     let path = [Vec3::ZERO, Vec3::X * length];
     let section = Section { points: &profile, closed: true, crease_degrees: 25.0 };
     sweep_along(section, &path, Vec3::Y, false, Faces::ALL)
+}
+
+/// The leaf of an open door about its hinge, which is at x = 0; it runs along +x and shows panels and levers
+/// on both faces: parts "door" and "door_furniture".
+pub(in super::super) fn door_leaf() -> Assembly {
+    let mut leaf = Assembly::new();
+    leaf.add("door", &beveled_box(Vec3::new(0.004, 0.008, -0.018), Vec3::new(0.892, 2.092, 0.018), 0.002));
+    for side in [0.0, 180.0_f32] {
+        let face = at(0.448, 0.0, 0.0) * turned(side, Vec3::ZERO);
+        for (y, h) in [(0.16, 0.56), (0.84, 0.62), (1.58, 0.38)] {
+            for x in [-0.375, 0.03] {
+                leaf.add_at(
+                    "door",
+                    &framed_panel(Vec2::new(0.345, h), 0.01, 0.012),
+                    &(face * at(x, y, 0.0165)),
+                );
+            }
+        }
+        let x = if side == 0.0 { 0.4 } else { -0.4 };
+        let lever = [[x, 1.05, 0.012], [x, 1.05, 0.065], [0.7 * x, 1.05, 0.065]].map(Vec3::from_array);
+        leaf.add_at("door_furniture", &pipe(&fillet(&lever, 0.02, 22.5), 0.009, 10), &face);
+    }
+    leaf
 }
 
 /// A door of six panels in its frame, 0.9 x 2.1 m, on the wall z = 0 with its middle at x = 0: parts

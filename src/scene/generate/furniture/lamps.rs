@@ -1,6 +1,6 @@
 //! Lamps. The emitting surface is a part of its own, so that the scene file says how bright it is.
 
-use super::builder::{Assembly, at, cylinder, disc, ellipsoid, lathe, ring, rod, spline};
+use super::builder::{Assembly, at, cylinder, disc, ellipsoid, lathe, profile_lathe, ring, rod, spline};
 use glam::{Affine3A, Quat, Vec2, Vec3};
 
 /// Upside down about x.
@@ -46,7 +46,43 @@ pub(in super::super) fn uplighter(light: &str, height: f32) -> Assembly {
     profile.extend(&outside);
     profile.extend(outside.iter().rev().map(|p| Vec2::new(p.x - 0.004, p.y)).filter(|p| p.y > -0.04));
     profile.push(Vec2::new(0.0, -0.045));
-    lamp.add_at("lamp_metal", &lathe(&profile, 28), &at(0.0, height, 0.0));
+    lamp.add_at("lamp_metal", &lathe(&profile, 22), &at(0.0, height, 0.0));
     lamp.add_at(light, &disc(0.1, 24), &at(0.0, height - 0.03, 0.0));
+    lamp
+}
+
+/// A lamp with a cloth shade (part "lamp_shade") open above and below around its bulb (part `light`): on a
+/// turned vase of about 0.3 m, or, with a `pole`, on a foot and that much higher.
+pub(in super::super) fn shaded(light: &str, pole: f32) -> Assembly {
+    let mut lamp = Assembly::new();
+    let base = if pole > 0.0 {
+        lamp.add(
+            "lamp_metal",
+            &lathe(&[[0.14, 0.0], [0.14, 0.012], [0.013, 0.03]].map(Vec2::from_array), 28),
+        );
+        lamp.add_at("lamp_metal", &cylinder(0.012, pole, 14), &at(0.0, 0.02, 0.0));
+        pole
+    } else {
+        let vase = [
+            [0.06, 0.0],
+            [0.062, 0.012],
+            [0.04, 0.03],
+            [0.075, 0.11],
+            [0.07, 0.17],
+            [0.022, 0.22],
+            [0.018, 0.26],
+        ];
+        let mut profile = vec![Vec2::ZERO];
+        profile.extend(spline(&vase.map(Vec2::from_array), 2));
+        profile.push(Vec2::new(0.0, 0.26));
+        lamp.add("vases", &lathe(&profile, 20));
+        0.25
+    };
+    let scale = if pole > 0.0 { 1.35 } else { 1.0 };
+    let shade = [[0.095, 0.245], [0.145, 0.0], [0.148, 0.0], [0.098, 0.245], [0.095, 0.245]];
+    let shade: Vec<Vec2> = shade.iter().take(4).map(|p| Vec2::from_array(*p) * scale).collect();
+    lamp.add_at("lamp_shade", &profile_lathe(&shade, 24), &at(0.0, base + 0.01, 0.0));
+    lamp.add_at("lamp_metal", &cylinder(0.006, 0.06, 8), &at(0.0, base - 0.005, 0.0));
+    lamp.add_at(light, &ellipsoid(Vec3::new(0.035, 0.045, 0.035), 14, 8), &at(0.0, base + 0.095, 0.0));
     lamp
 }

@@ -35,13 +35,13 @@ pub(in super::super) fn chair(wood: &str, cloth: &str) -> Assembly {
     let mut chair = Assembly::new();
     let seat = superellipsoid(Vec3::new(0.225, 0.016, 0.215), 0.35, 0.55, 24, 6);
     chair.add_at(wood, &seat, &at(0.0, 0.44, 0.0));
-    let cushion = superellipsoid(Vec3::new(0.195, 0.02, 0.185), 0.6, 0.5, 24, 8);
+    let cushion = superellipsoid(Vec3::new(0.195, 0.02, 0.185), 0.6, 0.5, 20, 6);
     chair.add_at(cloth, &cushion, &at(0.0, 0.472, 0.005));
     for side in [-1.0, 1.0] {
         let front = [Vec3::new(side * 0.195, 0.0, 0.185), Vec3::new(side * 0.165, 0.435, 0.15)];
         let rear = [Vec3::new(side * 0.185, 0.0, -0.215), Vec3::new(side * 0.155, 0.435, -0.16)];
         for [foot, top] in [front, rear] {
-            chair.add_at(wood, &turned_leg(foot.distance(top), 0.02, 10, 1), &standing_on(foot, top));
+            chair.add_at(wood, &turned_leg(foot.distance(top), 0.02, 8, 1), &standing_on(foot, top));
         }
         let at_height = |leg: [Vec3; 2], t: f32| leg[0].lerp(leg[1], t);
         chair.add(wood, &rod(at_height(front, 0.36), at_height(rear, 0.36), 0.0085, 8));
@@ -61,16 +61,16 @@ fn back(chair: &mut Assembly, wood: &str) {
         let length = from.distance(to);
         let profile = [[0.7, 0.0], [1.0, 0.3], [1.2, 0.45], [0.9, 0.6], [0.65, 1.0]];
         let points: Vec<Vec2> = profile.iter().map(|p| Vec2::new(p[0] * thick, p[1] * length)).collect();
-        chair.add_at(wood, &lathe(&spline(&points, 2), 8), &standing_on(from, to));
+        chair.add_at(wood, &lathe(&spline(&points, 1), 8), &standing_on(from, to));
     }
     // The rail: a board bent about the sitter, thicker in the middle, rounded at both ends.
     let line =
-        spline3(&[-0.235, -0.12, 0.0, 0.12, 0.235_f32].map(|x| Vec3::new(x, 0.885, -0.29 + 0.56 * x * x)), 5);
+        spline3(&[-0.235, -0.12, 0.0, 0.12, 0.235_f32].map(|x| Vec3::new(x, 0.885, -0.29 + 0.56 * x * x)), 4);
     let rings: Vec<Vec<Vec3>> = line
         .iter()
         .map(|&centre| {
             let ends = (1.0 - (centre.x / 0.236).powi(6)).max(0.0).sqrt().max(0.02);
-            let section = (0..12).map(|k| (std::f32::consts::TAU * k as f32 / 12.0).sin_cos());
+            let section = (0..10).map(|k| (std::f32::consts::TAU * k as f32 / 10.0).sin_cos());
             section.map(|(sin, cos)| centre + ends * Vec3::new(0.0, 0.045 * sin, -0.013 * cos)).collect()
         })
         .collect();
