@@ -5,7 +5,7 @@ use lightsplat::scene::generate::{Part, generate};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-const SCENES: [&str; 2] = ["kitchen", "knot"];
+const SCENES: [&str; 3] = ["apartment", "kitchen", "knot"];
 
 struct Described {
     generator: String,
@@ -74,6 +74,13 @@ fn kitchen_is_as_large_and_as_glossy_as_promised() {
     let (triangles, glossy) = measured("kitchen");
     assert!((triangles as f64 / 72_000.0 - 1.0).abs() < 0.05, "{triangles} triangles");
     assert!((glossy - 0.28).abs() < 0.03, "glossy share {glossy}");
+}
+
+#[test]
+fn apartment_is_as_large_and_as_glossy_as_promised() {
+    let (triangles, glossy) = measured("apartment");
+    assert!((triangles as f64 / 72_000.0 - 1.0).abs() < 0.05, "{triangles} triangles");
+    assert!((glossy - 0.62).abs() < 0.03, "glossy share {glossy}");
 }
 
 #[test]
