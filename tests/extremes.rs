@@ -1,0 +1,150 @@
+//! Whole pictures at the edges of what numbers can hold: scene sizes over twelve decades, scenes far from their
+//! origin, films of odd shapes, radiances twenty orders apart.
+
+mod common;
+
+use common::*;
+use glam::Vec3;
+use lightsplat::eye::Window;
+use lightsplat::image::Image;
+use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::{Control, Output, lightcuts, path};
+use lightsplat::scene::formats::{LoadOptions, load};
+use lightsplat::vpl::LightPassSettings;
+use lightsplat::world::World;
+use std::path::Path;
+
+fn by_path(world: &World, spp: u32) -> Output {
+    let settings = path::Settings { spp, ..path::Settings::default() };
+    path::render(world, &Window::whole(world.scene.resolution), &settings, &Control::new())
+}
+
+fn by_lightcuts(world: &World) -> Output {
+    let light = LightPassSettings { direct: 256, indirect: 2000, ..LightPassSettings::default() };
+    let settings = lightcuts::Settings { spp: 1, light, ..lightcuts::Settings::default() };
+    lightcuts::render(world, &Window::whole(world.scene.resolution), &settings, &Control::new())
+}
+
+fn mean(image: &Image) -> f32 {
+    image.pixels.iter().map(|p| luminance(*p)).sum::<f32>() / image.pixels.len() as f32
+}
+
+fn relative_rms(a: &Image, b: &Image) -> f32 {
+    let sum: f32 = a.pixels.iter().zip(&b.pixels).map(|(a, b)| (luminance(*a - *b)).powi(2)).sum();
+    (sum / a.pixels.len() as f32).sqrt() / mean(b)
+}
+
+/// A lit room with a ball in it, everything times `scale`.
+fn room_at(scale: f32) -> World {
+    let view = camera(Vec3::new(0.1, 0.2, 0.9) * scale, Vec3::new(0.0, -0.4, 0.0) * scale, 0.8);
+    let mut scene = scene(view, [24, 16]);
+    let wall = add_material(&mut scene, diffuse(Rgb::splat(0.6)));
+    for mesh in room(Vec3::splat(-scale), Vec3::splat(scale), wall) {
+        scene.meshes.push(mesh);
+    }
+    scene.meshes.push(sphere(Vec3::new(0.1, -0.6, -0.2) * scale, 0.4 * scale, 24, wall));
+    let lamp = quad(Vec3::new(-0.3, 0.98, -0.3) * scale, Vec3::X * 0.6 * scale, Vec3::Z * 0.6 * scale, wall);
+    scene.meshes.push(emitting(lamp, Rgb::splat(10.0)));
+    world(scene)
+}
+
+#[test]
+fn the_picture_does_not_depend_on_the_unit_of_length() {
+    let metres = room_at(1.0);
+    let (path, cuts) = (by_path(&metres, 64), by_lightcuts(&metres));
+    for scale in [1e-6, 1e-3, 1e3, 1e6] {
+        let world = room_at(scale);
+        let (scaled_path, scaled_cuts) = (by_path(&world, 64), by_lightcuts(&world));
+        assert_eq!(scaled_path.nonfinite + scaled_cuts.nonfinite, 0);
+        // Not a power of two: other roundings, now and then another path or cluster.
+        let error = relative_rms(&scaled_path.color, &path.color);
+        assert!(error < 0.05, "path at {scale}: {error}");
+        let error = relative_rms(&scaled_cuts.color, &cuts.color);
+        assert!(error < 0.05, "lightcuts at {scale}: {error}");
+    }
+}
+
+/// Writes a room as TOML whose every coordinate is moved by `offset`, and loads it.
+fn room_moved_by(offset: f64, folder: &Path) -> World {
+    let at = |x: f64, y: f64, z: f64| format!("[{:?}, {:?}, {:?}]", x + offset, y + offset, z + offset);
+    let wall = |turn: &str| {
+        format!(
+            "[[mesh]]\nshape = \"rectangle\"\nmaterial = \"wall\"\ntransform = [{{ translate = [0, 0, -1] }}, {turn}{{ translate = {} }}]\n",
+            at(0.0, 0.0, 0.0)
+        )
+    };
+    let turns = [
+        "".to_owned(),
+        "{ rotate = { axis = [0, 1, 0], angle = 90 } }, ".to_owned(),
+        "{ rotate = { axis = [0, 1, 0], angle = -90 } }, ".to_owned(),
+        "{ rotate = { axis = [1, 0, 0], angle = 90 } }, ".to_owned(),
+        "{ rotate = { axis = [1, 0, 0], angle = -90 } }, ".to_owned(),
+        "{ rotate = { axis = [0, 1, 0], angle = 180 } }, ".to_owned(),
+    ];
+    let mut text = format!(
+        "name = \"room\"\nresolution = [24, 16]\n[camera]\norigin = {}\ntarget = {}\nfov = 75.0\n\
+         [[material]]\nname = \"wall\"\nkind = \"diffuse\"\nreflectance = [0.6, 0.6, 0.6]\n\
+         [[light]]\nkind = \"point\"\nposition = {}\nintensity = [3.0, 3.0, 3.0]\n",
+        at(0.1, 0.2, 0.9),
+        at(0.0, -0.4, 0.0),
+        at(0.2, 0.5, 0.1)
+    );
+    for turn in &turns {
+        text += &wall(turn);
+    }
+    let file = folder.join(format!("room{offset}.toml"));
+    std::fs::write(&file, text).expect("the scene is written");
+    World::new(load(&file, &LoadOptions::default()).expect("the scene loads").scene, 2).expect("it builds")
+}
+
+#[test]
+fn a_scene_a_million_units_away_is_the_same_scene() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (near, far) = (room_moved_by(0.0, folder.path()), room_moved_by(1e6, folder.path()));
+    let reference = by_path(&near, 64);
+    assert!(mean(&reference.color) > 0.1);
+    let error = relative_rms(&by_path(&far, 64).color, &reference.color);
+    assert!(error < 0.01, "path: {error}");
+    let error = relative_rms(&by_lightcuts(&far).color, &by_lightcuts(&near).color);
+    assert!(error < 0.02, "lightcuts: {error}");
+}
+
+#[test]
+fn films_may_be_a_pixel_wide_or_very_long() {
+    let mut scene = room_at(1.0).scene;
+    for resolution in [[1, 1], [1, 37], [16_384, 1]] {
+        scene.resolution = resolution;
+        let world = world(scene.clone());
+        let output = by_path(&world, 1);
+        assert_eq!([output.color.width, output.color.height], resolution);
+        assert!(mean(&output.color) > 0.0);
+        if resolution[0] < 100 {
+            assert!(mean(&by_lightcuts(&world).color) > 0.0);
+        }
+    }
+}
+
+#[test]
+fn lights_twenty_orders_apart_share_a_scene() {
+    let mut scene = room_at(1.0).scene;
+    let material = scene.meshes[0].material;
+    let faint = quad(Vec3::new(-0.9, -0.9, -0.9), Vec3::X * 0.1, Vec3::Y * 0.1, material);
+    scene.meshes.push(emitting(faint, Rgb::splat(1e-10)));
+    let bright = quad(Vec3::new(0.5, 0.97, 0.5), Vec3::X * 0.2, Vec3::Z * 0.2, material);
+    scene.meshes.push(emitting(bright, Rgb::splat(1e10)));
+    let world = world(scene);
+    let (path, cuts) = (by_path(&world, 256), by_lightcuts(&world));
+    assert_eq!(path.nonfinite + cuts.nonfinite, 0);
+    let ratio = mean(&cuts.color) / mean(&path.color);
+    assert!((0.8..1.2).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn white_walls_in_a_closed_room_end() {
+    let mut scene = room_at(1.0).scene;
+    scene.materials[0] = diffuse(Rgb::ONE);
+    let world = world(scene);
+    let output = by_path(&world, 4);
+    assert!(output.complete && output.nonfinite == 0);
+    assert!(by_lightcuts(&world).nonfinite == 0);
+}
