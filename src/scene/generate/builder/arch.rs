@@ -23,6 +23,26 @@ pub fn rectangle(low: Vec2, high: Vec2) -> Vec<Vec2> {
     vec![low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)]
 }
 
+/// The outline of `lobes` overlapping circles of `lobe_radius` around the origin (trefoil, quatrefoil), their
+/// centres at `distance`, the first at `first_degrees`; counter-clockwise.
+pub fn foil(lobes: usize, distance: f32, lobe_radius: f32, first_degrees: f32, segments: usize) -> Vec<Vec2> {
+    let half_sector = 180.0 / lobes as f32;
+    // Neighbouring circles meet on the ray half way between their centres.
+    let (sin, cos) = half_sector.to_radians().sin_cos();
+    let across = (lobe_radius * lobe_radius - distance * distance * sin * sin).max(0.0).sqrt();
+    let cusp = Vec2::new(cos, sin) * (distance * cos + across) - Vec2::new(distance, 0.0);
+    let reach = cusp.to_angle().to_degrees();
+    let mut outline = Vec::with_capacity(lobes * segments);
+    for lobe in 0..lobes {
+        let turn = first_degrees + 2.0 * half_sector * lobe as f32;
+        let centre = distance * Vec2::from_angle(turn.to_radians());
+        let mut points = arc(centre, lobe_radius, turn - reach, turn + reach, segments);
+        points.pop();
+        outline.append(&mut points);
+    }
+    outline
+}
+
 /// A pointed arch of two circular arcs that spring vertically at (±half_span, 0) and meet at (0, rise);
 /// rise = half_span gives the round arch.
 #[derive(Clone, Copy, Debug)]

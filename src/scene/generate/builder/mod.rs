@@ -24,16 +24,16 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 
-pub use arch::{PointedArch, arc, circle, rectangle};
+pub use arch::{PointedArch, arc, circle, foil, rectangle};
 pub use assembly::Assembly;
 pub use extrude::{Faces, extrude, extrude_faces, upright};
 pub use loft::{disc, loft, rounded_box, rounded_rectangle, stacked, superellipsoid};
 pub use patch::{grid, parallelogram, patch};
 pub use path::{fillet, helix};
-pub use revolve::{cone, cylinder, ellipsoid, lathe, profile_lathe, ring, torus, tube};
+pub use revolve::{cone, cylinder, ellipsoid, lathe, lathe_sector, profile_lathe, ring, torus, tube};
 pub use rng::Rng;
 pub use shell::Shell;
-pub use solids::{beveled_box, block, frustum};
+pub use solids::{beveled_box, block, frustum, slab};
 pub use spline::{spline, spline3};
 pub use sweep::{Section, pipe, rod, sweep, sweep_along};
 

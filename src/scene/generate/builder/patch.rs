@@ -36,7 +36,7 @@ pub fn grid(rows: &[Vec<Vec3>], wrap_columns: bool, wrap_rows: bool, crease_degr
 }
 
 fn row_points(shell: &mut Shell, row: &[Vec3]) -> Vec<u32> {
-    let pole = row.iter().all(|p| p.distance_squared(row[0]) < 1e-14);
+    let pole = row.iter().all(|p| p.distance_squared(row[0]) < 1e-10);
     if pole {
         return vec![shell.point(row[0]); row.len()];
     }

@@ -11,7 +11,26 @@ pub fn lathe(profile: &[Vec2], segments: usize) -> Shell {
     turn(profile, segments, false)
 }
 
-/// The same for a closed profile that does not touch the axis (rings, rims), given counter-clockwise with
+/// The part of a lathe between two angles (degrees, from +x towards +z), open along both cuts: half shafts
+/// against a wall.
+pub fn lathe_sector(profile: &[Vec2], from_degrees: f32, to_degrees: f32, segments: usize) -> Shell {
+    let rows: Vec<Vec<Vec3>> = profile
+        .iter()
+        .map(|p| {
+            (0..=segments)
+                .map(|i| {
+                    let degrees = to_degrees + (from_degrees - to_degrees) * i as f32 / segments as f32;
+                    let (sin, cos) = degrees.to_radians().sin_cos();
+                    Vec3::new(p.x * cos, p.y, p.x * sin)
+                })
+                .collect()
+        })
+        .collect();
+    let step = (to_degrees - from_degrees).abs() / segments as f32;
+    grid(&rows, false, false, f32::max(40.0, step + 1.0))
+}
+
+/// Like [`lathe`] for a closed profile that does not touch the axis (rings, rims), given counter-clockwise with
 /// radius to the right and height upwards.
 pub fn profile_lathe(profile: &[Vec2], segments: usize) -> Shell {
     turn(profile, segments, true)

@@ -81,6 +81,19 @@ impl Shell {
         self
     }
 
+    /// The shell with its outside turned towards `point`, judged by the mean of its faces; for open sheets.
+    pub fn facing(self, point: Vec3) -> Self {
+        let towards: f64 = self
+            .triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|i| self.points[i as usize].as_dvec3());
+                (b - a).cross(c - a).dot(point.as_dvec3() - (a + b + c) / 3.0)
+            })
+            .sum();
+        if towards < 0.0 { self.flipped() } else { self }
+    }
+
     /// The shell with every point moved by `f`, for bending and tapering.
     pub fn mapped(mut self, f: impl Fn(Vec3) -> Vec3) -> Self {
         for point in &mut self.points {

@@ -1,6 +1,6 @@
 //! Boxes: plain, with bevelled edges, and tapering.
 
-use super::Shell;
+use super::{Shell, grid};
 use glam::{Vec2, Vec3};
 
 /// The box between `low` and `high`, flat shaded.
@@ -65,6 +65,19 @@ pub fn beveled_box(low: Vec3, high: Vec3, bevel: f32) -> Shell {
         let outward = bits.count_ones() % 2 == 1;
         flat_polygon(&mut shell, &if outward { triangle } else { [triangle[0], triangle[2], triangle[1]] });
     }
+    shell
+}
+
+/// A paving slab between two corners in plan (x, z): its top at y = 0 with bevelled edges, and sides down to
+/// `-depth`; without underside.
+pub fn slab(low: Vec2, high: Vec2, depth: f32, bevel: f32) -> Shell {
+    let ring = |inset: f32, y: f32| {
+        let (a, b) = (low + Vec2::splat(inset), high - Vec2::splat(inset));
+        [(a.x, b.y), (b.x, b.y), (b.x, a.y), (a.x, a.y)].map(|(x, z)| Vec3::new(x, y, z)).to_vec()
+    };
+    let mut shell = grid(&[ring(0.0, -depth), ring(bevel, 0.0)], true, false, 0.0);
+    let top = [4, 5, 6, 7];
+    shell.quad(top, top.map(|i: u32| Vec2::new(shell.points[i as usize].x, shell.points[i as usize].z)));
     shell
 }
 
