@@ -4,8 +4,10 @@
 mod apartment;
 pub mod builder;
 mod furniture;
+mod hall;
 mod kitchen;
 mod knot;
+mod nave;
 
 use glam::{Vec2, Vec3};
 
@@ -30,6 +32,8 @@ pub fn generate(name: &str) -> Option<Vec<Part>> {
         "apartment" => Some(apartment::parts()),
         "kitchen" => Some(kitchen::parts()),
         "knot" => Some(knot::parts()),
+        "hall" => Some(hall::parts()),
+        "nave" => Some(nave::parts()),
         _ => None,
     }
 }
