@@ -36,6 +36,19 @@ impl Window {
             && end(self.offset[1], self.height) <= self.film[1] as u64
     }
 
+    /// How many square tiles of `size` pixels cover the window.
+    pub fn tile_count(&self, size: u32) -> usize {
+        self.width.div_ceil(size) as usize * self.height.div_ceil(size) as usize
+    }
+
+    /// The pixels of tile `index` in rows, relative to the window; tiles go in rows too.
+    pub fn tile(&self, index: usize, size: u32) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let across = self.width.div_ceil(size).max(1) as usize;
+        let (left, top) = ((index % across) as u32 * size, (index / across) as u32 * size);
+        let (right, bottom) = ((left + size).min(self.width), (top + size).min(self.height));
+        (top..bottom).flat_map(move |y| (left..right).map(move |x| [x, y]))
+    }
+
     /// Film coordinates of a pixel of the window.
     #[inline]
     pub fn film_pixel(&self, [x, y]: [u32; 2]) -> [u32; 2] {
@@ -49,4 +62,21 @@ pub fn primary_ray(camera: &Camera, window: &Window, [x, y]: [u32; 2], jitter: V
     let direction = camera.direction([x as f32 + jitter.x, y as f32 + jitter.y], window.film);
     let cos = direction.dot(camera.forward);
     Ray { origin: camera.origin, t_near: camera.near / cos, direction, t_far: camera.far / cos }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_the_window_once() {
+        for [width, height] in [[1, 1], [16, 16], [17, 5], [33, 48], [1, 100]] {
+            let window = Window { width, height, ..Window::whole([100, 100]) };
+            let mut pixels: Vec<[u32; 2]> =
+                (0..window.tile_count(16)).flat_map(|i| window.tile(i, 16)).collect();
+            pixels.sort();
+            let expected: Vec<[u32; 2]> = (0..width).flat_map(|x| (0..height).map(move |y| [x, y])).collect();
+            assert_eq!(pixels, expected);
+        }
+    }
 }

@@ -8,6 +8,7 @@ use crate::lightcut::group::{GroupLightcut, LANES, Points};
 use crate::lightcut::{CutCounts, Lightcut, Receiver, Reflector};
 use crate::math::Rgb;
 use crate::sampling::{Sampler, hash};
+use glam::Vec2;
 
 /// Pixels along a tile's edge.
 pub const TILE: u32 = 16;
@@ -93,7 +94,8 @@ impl Tile {
                 }
                 // The film's own coordinates, so that a crop repeats the whole picture's pixels.
                 let mut sampler = Sampler::new(hash(hash(x, y), s.settings.seed), sample);
-                let jitter = sampler.next_2d();
+                // A single sample looks through the pixel's centre, which keeps edges straight.
+                let jitter = if spp > 1 { sampler.next_2d() } else { Vec2::splat(0.5) };
                 let ray = primary_ray(&s.world.scene.camera, s.window, [x, y], jitter);
                 let place = work.values.len();
                 let visit = |eye: EyeSample| {

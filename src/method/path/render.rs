@@ -55,8 +55,7 @@ struct Tile {
 /// Renders `window` of the scene's film.
 pub fn render(world: &World, window: &Window, settings: &Settings, control: &Control) -> Output {
     let mut stats = Stats::new();
-    let (across, down) = (window.width.div_ceil(TILE), window.height.div_ceil(TILE));
-    let mut tiles: Vec<Tile> = (0..across * down)
+    let mut tiles: Vec<Tile> = (0..window.tile_count(TILE))
         .map(|_| Tile { pixels: Vec::new(), samples: 0, counts: Counts::default(), nonfinite: 0 })
         .collect();
     let passes = settings.spp.div_ceil(PASS);
@@ -66,8 +65,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
             let end = ((pass + 1) * PASS).min(settings.spp);
             tiles.par_iter_mut().enumerate().for_each(|(i, tile)| {
                 if !control.is_cancelled() {
-                    let corner = [i as u32 % across * TILE, i as u32 / across * TILE];
-                    tile.render(world, window, settings, corner, end);
+                    tile.render(world, window, settings, i, end);
                     control.advance(1);
                 }
             });
@@ -77,9 +75,8 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let mut variance = Image::new(window.width, window.height);
     let (mut rays, mut shadow_rays, mut nonfinite, mut paths) = (0, 0, 0, 0);
     for (i, tile) in tiles.iter().enumerate() {
-        let corner = [i as u32 % across * TILE, i as u32 / across * TILE];
         let n = tile.samples as f32;
-        for (pixel, [x, y]) in tile.pixels.iter().zip(tile_pixels(window, corner)) {
+        for (pixel, [x, y]) in tile.pixels.iter().zip(window.tile(i, TILE)) {
             let at = (y * window.width + x) as usize;
             color.pixels[at] = pixel.mean;
             variance.pixels[at] = if n > 1.0 { pixel.squares / (n * (n - 1.0)) } else { Rgb::ZERO };
@@ -98,25 +95,19 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     Output { color, variance, extra: Vec::new(), stats, complete, nonfinite }
 }
 
-/// The pixels of the tile whose first pixel is `corner`, in rows, relative to the window.
-fn tile_pixels(window: &Window, corner: [u32; 2]) -> impl Iterator<Item = [u32; 2]> + use<> {
-    let (right, bottom) = ((corner[0] + TILE).min(window.width), (corner[1] + TILE).min(window.height));
-    (corner[1]..bottom).flat_map(move |y| (corner[0]..right).map(move |x| [x, y]))
-}
-
 impl Tile {
     /// Takes the samples up to `end` of every pixel.
-    fn render(&mut self, world: &World, window: &Window, settings: &Settings, corner: [u32; 2], end: u32) {
+    fn render(&mut self, world: &World, window: &Window, settings: &Settings, index: usize, end: u32) {
         let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
         let begin = self.samples;
-        let coordinates = tile_pixels(window, corner);
+        let coordinates = window.tile(index, TILE);
         if self.pixels.is_empty() {
             self.pixels = vec![Pixel::default(); coordinates.count()];
         }
         let mut batch = Batch::default();
         for first in (begin..end).step_by(BATCH as usize) {
             let samples = first..(first + BATCH).min(end);
-            for at in tile_pixels(window, corner) {
+            for at in window.tile(index, TILE) {
                 // The film's own coordinates, so that a crop repeats the whole picture's pixels.
                 let [x, y] = window.film_pixel(at);
                 let seed = hash(hash(x, y), settings.seed);
