@@ -13,9 +13,9 @@ pub(super) fn add(scene: &mut Assembly) {
         scene.place(&downlight("lamp_metal", "ceiling_light", 0.11), &at(x, HEIGHT, 2.35));
     }
     scene.place(&console(), &turned(180.0, Vec3::new(8.7, 0.0, 2.985)));
-    scene.place(&picture(Vec2::new(0.6, 0.45)), &turned(180.0, Vec3::new(9.0, 1.35, 3.0)));
-    scene.place(&picture(Vec2::new(0.5, 0.65)), &at(6.1, 1.25, 1.7));
-    scene.place(&picture(Vec2::new(0.5, 0.65)), &at(7.2, 1.25, 1.7));
+    scene.place(&picture(Vec2::new(0.6, 0.45), 2), &turned(180.0, Vec3::new(9.0, 1.35, 3.0)));
+    scene.place(&picture(Vec2::new(0.5, 0.65), 3), &at(6.1, 1.25, 1.7));
+    scene.place(&picture(Vec2::new(0.5, 0.65), 4), &at(7.2, 1.25, 1.7));
     // A row of hooks by the door.
     let board = beveled_box(Vec3::new(6.0, 1.6, 2.978), Vec3::new(6.42, 1.69, 3.0), 0.004);
     scene.add("wood", &board);

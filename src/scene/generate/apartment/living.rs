@@ -2,8 +2,8 @@
 
 use super::HEIGHT;
 use super::builder::{
-    Assembly, at, beveled_box, block, cone, cylinder, ellipsoid, lathe, parallelogram, rod, rounded_box,
-    spline, turned,
+    Assembly, Rng, at, beveled_box, block, cone, cylinder, ellipsoid, lathe, parallelogram, patch, rod,
+    rounded_box, spline, turned,
 };
 use super::furniture::{
     Vessel, bar_handle, bookcase, casing, chair, curtain, framed_panel, pendant, pile, potted_fern,
@@ -45,7 +45,7 @@ pub(super) fn add(scene: &mut Assembly) {
     scene.place(&shaded("lamp_light", 1.35), &at(3.72, 0.0, 0.4));
     scene.place(&potted_rubber_tree(1.55, 22, 8), &at(0.42, 0.0, 0.5));
     scene.place(&potted_fern(26, 4), &at(5.15, 0.0, 1.2));
-    scene.place(&picture(Vec2::new(1.3, 0.8)), &at(1.65, 1.3, 0.0));
+    scene.place(&picture(Vec2::new(1.3, 0.8), 1), &at(1.65, 1.3, 0.0));
     dining(scene);
     // Curtains to both sides of the window in the left wall, on a rail with turned ends.
     let mut drapes = Assembly::new();
@@ -160,22 +160,31 @@ fn dining(scene: &mut Assembly) {
     scene.place(&pendant("lamp_light", 0.85), &at(TABLE.x, HEIGHT, TABLE.z));
 }
 
-/// A framed picture on the wall z = 0, its lower left corner at the origin.
-pub(super) fn picture(size: Vec2) -> Assembly {
+/// A framed picture on the wall z = 0, its lower left corner at the origin: a landscape of sky, woods and
+/// field, different for every `seed`.
+pub(super) fn picture(size: Vec2, seed: u64) -> Assembly {
     let mut picture = Assembly::new();
+    let mut rng = Rng::new(seed);
     picture.add("frames", &casing(size, 0.045, true));
     let flat = |low: Vec2, high: Vec2, z: f32| {
         let (low, size) = (low.extend(z), high - low);
         parallelogram(low, Vec3::X * size.x, Vec3::Y * size.y, 1, 1)
     };
     picture.add("pages", &flat(Vec2::splat(-0.005), size + 0.005, 0.006));
-    // Three fields and a sun, for a landscape.
     let inner = |x: f32, y: f32| Vec2::splat(0.06) + (size - 0.12) * Vec2::new(x, y);
-    picture.add("print_blue", &flat(inner(0.0, 0.42), inner(1.0, 1.0), 0.008));
-    picture.add("print_green", &flat(inner(0.0, 0.2), inner(1.0, 0.42), 0.008));
-    picture.add("print_ochre", &flat(inner(0.0, 0.0), inner(1.0, 0.2), 0.008));
-    let sun = super::builder::disc(0.11 * size.y, 28);
-    let facing = super::builder::standing_on(inner(0.72, 0.7).extend(0.01), inner(0.72, 0.7).extend(1.0));
-    picture.add_at("print_ochre", &sun, &facing);
+    picture.add("print_blue", &flat(inner(0.0, 0.0), inner(1.0, 1.0), 0.008));
+    // Two ranges of hills, each in front of the one before.
+    for (part, base, z) in [("print_green", 0.45, 0.01), ("print_ochre", 0.2, 0.0115)] {
+        let (phase, waves, height) = (rng.range(0.0, 6.0), rng.range(2.0, 6.0), rng.range(0.05, 0.13));
+        let level = base + rng.jitter(0.08);
+        let hills = patch(24, 1, |u, v| {
+            let skyline = level + height * (waves * u + phase).sin() + 0.3 * height * (3.1 * waves * u).cos();
+            inner(u, v * skyline).extend(z)
+        });
+        picture.add(part, &hills);
+    }
+    let centre = inner(rng.range(0.2, 0.8), 0.8).extend(0.0095);
+    let sun = super::builder::disc(rng.range(0.05, 0.09) * size.min_element(), 24);
+    picture.add_at("pages", &sun, &super::builder::standing_on(centre, centre + Vec3::Z));
     picture
 }
