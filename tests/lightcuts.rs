@@ -4,13 +4,15 @@ mod common;
 
 use common::*;
 use glam::{Vec2, Vec3};
-use lightsplat::eye::Window;
+use lightsplat::eye::{Window, primary_ray};
 use lightsplat::image::Image;
 use lightsplat::light_tree::{Family, LightTrees};
+use lightsplat::lightcut::group::{GroupLightcut, Points};
 use lightsplat::lightcut::{CutSettings, IrradianceReceiver, Lightcut, Reflector, Transfer, gather_all};
 use lightsplat::math::{Frame, Rgb, luminance};
 use lightsplat::method::lightcuts::{Settings, render};
 use lightsplat::method::{Control, Output, path};
+use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::scene::{DeltaLight, Environment, Lobe, Material, Scene};
 use lightsplat::vpl::{LightPassSettings, Origin, light_pass};
 use lightsplat::world::World;
@@ -196,8 +198,7 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
         for y in (1..32).step_by(2) {
             for x in (1..32).step_by(2) {
                 let window = Window::whole([32, 32]);
-                let ray =
-                    lightsplat::eye::primary_ray(&world.scene.camera, &window, [x, y], Vec2::splat(0.5));
+                let ray = primary_ray(&world.scene.camera, &window, [x, y], Vec2::splat(0.5));
                 let Some(s) = world.intersect(&ray) else { panic!("the room is closed") };
                 let out = -ray.direction;
                 let receiver = Reflector::new(s.position, s.normal, &s.frame, world.bsdf(&s), out);
@@ -211,6 +212,59 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
         }
         let rms = (squares / n as f32).sqrt();
         assert!(n > 200 && rms <= 0.035, "{family:?}: relative RMS error {rms} over {n} points");
+    }
+}
+
+/// Relative errors, against the full sum over the same 20,000 VPLs, of single and shared cuts for blocks of eye
+/// samples all over the film.
+fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
+    let world = common::world(load(&path, &LoadOptions::default()).expect("the scene loads").scene);
+    let light = LightPassSettings { direct: 1000, indirect: 19_000, seed: 1 };
+    let lights = light_pass(&world, &light, u32::MAX, &Control::new());
+    let trees = LightTrees::build(&lights.sets, lights.spots, world.diagonal, family);
+    let transfer = Transfer::new(&trees.spots, world.diagonal);
+    let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
+    let (mut single, mut shared) = (Lightcut::new(), GroupLightcut::new());
+    let mut points = Points::new();
+    let (mut single_errors, mut shared_errors) = (Vec::new(), Vec::new());
+    let window = Window::whole([256, 256]);
+    for block in 0..64u32 {
+        let corner = [block % 8 * 32 + 14, block / 8 * 32 + 14];
+        let eye = (0..16u32).filter_map(|i| {
+            let pixel = [corner[0] + i % 4, corner[1] + i / 4];
+            let ray = primary_ray(&world.scene.camera, &window, pixel, Vec2::splat(0.5));
+            let s = world.intersect(&ray)?;
+            let bsdf = world.bsdf(&s);
+            let smooth = bsdf.has_smooth();
+            smooth.then(|| Reflector::new(s.position, s.normal, &s.frame, bsdf, -ray.direction))
+        });
+        points.set(eye);
+        let mut radiance = [Rgb::ZERO; 16];
+        shared.gather(&trees, &transfer, &world, &points, &settings, &mut radiance);
+        for (lane, radiance) in radiance.iter().enumerate().take(points.len()).step_by(5) {
+            let exact = luminance(gather_all(&trees, &transfer, &world, points.get(lane)));
+            if exact > 0.0 {
+                let alone = single.gather(&trees, &transfer, &world, points.get(lane), &settings);
+                single_errors.push(luminance(alone) / exact - 1.0);
+                shared_errors.push(luminance(*radiance) / exact - 1.0);
+            }
+        }
+    }
+    (single_errors, shared_errors)
+}
+
+#[test]
+fn cuts_of_real_scenes_are_within_their_error() {
+    let rms = |e: &[f32]| (e.iter().map(|e| e * e).sum::<f32>() / e.len() as f32).sqrt();
+    for scene in ["cornell.toml", "knot.toml"] {
+        for family in [Family::Divisive, Family::Agglomerative] {
+            let (single, shared) = errors_in(scene, family);
+            assert!(single.len() > 100, "{scene}: {} points", single.len());
+            println!("{scene} {family:?}: {} {}", rms(&single), rms(&shared));
+            assert!(rms(&single) <= 0.035, "{scene} {family:?}: single {}", rms(&single));
+            assert!(rms(&shared) <= 0.035, "{scene} {family:?}: shared {}", rms(&shared));
+        }
     }
 }
 

@@ -90,6 +90,20 @@ impl<'m> Reflector<'m> {
         &self.frame
     }
 
+    /// Frame whose z is the mirror direction of the eye's.
+    pub(super) fn mirror(&self) -> &Frame {
+        &self.mirror
+    }
+
+    /// No smaller than the response to any direction within `bound`.
+    #[inline]
+    pub(super) fn max_reflection(&self, bound: &DirectionBound) -> Rgb {
+        match &self.material {
+            Kind::Lambert(brdf) => *brdf * bound.cos_i_max.max(0.0),
+            Kind::General(bsdf) => bsdf.bound(self.wo, bound),
+        }
+    }
+
     /// Unit shading normal on the side of the eye.
     pub fn normal(&self) -> Vec3 {
         self.frame.normal
@@ -130,17 +144,14 @@ impl Receiver for Reflector<'_> {
         if cos_max <= 0.0 {
             return Rgb::ZERO;
         }
-        match &self.material {
-            Kind::Lambert(brdf) => *brdf * cos_max,
-            Kind::General(bsdf) => {
-                let bound = DirectionBound {
-                    cos_i_max: cos_max,
-                    cos_i_min: local.min_cos_z(),
-                    cos_mirror_max: offsets.turned(&self.mirror).max_cos_z(),
-                };
-                bsdf.bound(self.wo, &bound)
-            }
+        if let Kind::Lambert(brdf) = &self.material {
+            return *brdf * cos_max;
         }
+        self.max_reflection(&DirectionBound {
+            cos_i_max: cos_max,
+            cos_i_min: local.min_cos_z(),
+            cos_mirror_max: offsets.turned(&self.mirror).max_cos_z(),
+        })
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{LANES, Lanes};
 use crate::lightcut::Reflector;
 use crate::lightcut::receiver::Receiver;
-use crate::math::{LUMINANCE, Rgb};
+use crate::math::{Frame, LUMINANCE, Rgb};
 use glam::Vec3;
 
 /// Three numbers for each point.
@@ -26,6 +26,10 @@ pub struct Points<'m> {
     pub(super) frame: [Vec3Lanes; 3],
     /// The same, absolute values.
     pub(super) abs_frame: [Vec3Lanes; 3],
+    /// Frame about the mirror direction of the eye's.
+    pub(super) mirror: [Vec3Lanes; 3],
+    /// The same, absolute values.
+    pub(super) abs_mirror: [Vec3Lanes; 3],
     /// Lambert BRDF.
     pub(super) brdf: Vec3Lanes,
     /// The same, by what it weighs in the luminance.
@@ -45,6 +49,8 @@ impl<'m> Points<'m> {
             geometric_normal: ZERO,
             frame: [ZERO; 3],
             abs_frame: [ZERO; 3],
+            mirror: [ZERO; 3],
+            abs_mirror: [ZERO; 3],
             brdf: ZERO,
             brdf_luminance: ZERO,
         }
@@ -66,11 +72,8 @@ impl<'m> Points<'m> {
             self.reach = self.reach.max(r.position().abs().max_element());
             put(&mut self.position, lane, r.position());
             put(&mut self.geometric_normal, lane, r.geometric_normal());
-            let frame = r.frame();
-            for (i, axis) in [frame.tangent, frame.bitangent, frame.normal].into_iter().enumerate() {
-                put(&mut self.frame[i], lane, axis);
-                put(&mut self.abs_frame[i], lane, axis.abs());
-            }
+            put_frame(&mut self.frame, &mut self.abs_frame, lane, r.frame());
+            put_frame(&mut self.mirror, &mut self.abs_mirror, lane, r.mirror());
             let brdf = r.lambert_brdf().unwrap_or(Rgb::ZERO);
             put(&mut self.brdf, lane, brdf);
             put(&mut self.brdf_luminance, lane, brdf * LUMINANCE);
@@ -103,6 +106,13 @@ impl Default for Points<'_> {
 fn put(lanes: &mut Vec3Lanes, lane: usize, v: Vec3) {
     for (i, row) in lanes.iter_mut().enumerate() {
         row[lane] = v[i];
+    }
+}
+
+fn put_frame(axes: &mut [Vec3Lanes; 3], abs_axes: &mut [Vec3Lanes; 3], lane: usize, frame: &Frame) {
+    for (i, axis) in [frame.tangent, frame.bitangent, frame.normal].into_iter().enumerate() {
+        put(&mut axes[i], lane, axis);
+        put(&mut abs_axes[i], lane, axis.abs());
     }
 }
 

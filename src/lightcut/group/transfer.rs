@@ -6,6 +6,7 @@ use super::{LANES, Lanes, RgbLanes};
 use crate::embree::Rays16;
 use crate::light_tree::Node;
 use crate::lightcut::{Transfer, Unoccluded};
+use crate::material::DirectionBound;
 use crate::math::{Frame, Rgb, luminance};
 use crate::shadow;
 use crate::vpl::{Vpl, VplKind};
@@ -18,49 +19,47 @@ const ROUNDING: f32 = 8.0 * f32::EPSILON;
 impl Transfer<'_> {
     /// Upper bound of each point's luminance from a cluster of intensity `node.intensity`; 0 in lanes without a point.
     pub(super) fn bounds16(&self, points: &Points, node: &Node) -> Lanes {
+        let cluster = Cluster::new(points, node);
+        let (geometry, cos_x) = self.geometry16(&cluster, points, node);
         let mut bounds = [0.0; LANES];
-        if points.valid & !points.general != 0 {
-            self.lambert_bounds(points, node, &mut bounds);
+        let (i, w) = (node.intensity, &points.brdf_luminance);
+        for l in 0..LANES {
+            let reflected = i.x * w[0][l] + i.y * w[1][l] + i.z * w[2][l];
+            bounds[l] = reflected * (geometry[l] * cos_x[l]);
         }
-        if points.general != 0 || points.valid != u16::MAX {
-            for (lane, bound) in bounds.iter_mut().enumerate() {
-                if points.general >> lane & 1 != 0 {
-                    *bound = luminance(self.bound(points.get(lane), node) * node.intensity);
-                } else if points.valid >> lane & 1 == 0 {
-                    *bound = 0.0;
+        if points.general != 0 {
+            let (cos_min, cos_mirror) = cluster.lobe16(points);
+            for l in lanes_of(points.general) {
+                if geometry[l] * cos_x[l] > 0.0 {
+                    let bound = DirectionBound {
+                        cos_i_max: cos_x[l],
+                        cos_i_min: cos_min[l],
+                        cos_mirror_max: cos_mirror[l],
+                    };
+                    bounds[l] = luminance(points.get(l).max_reflection(&bound) * i) * geometry[l];
                 }
             }
+        }
+        for (l, bound) in bounds.iter_mut().enumerate() {
+            *bound = if points.valid >> l & 1 != 0 { *bound } else { 0.0 };
         }
         bounds
     }
 
-    fn lambert_bounds(&self, points: &Points, node: &Node, bounds: &mut Lanes) {
-        let local = node.kind() != VplKind::Directional;
-        let centre = 0.5 * (node.min + node.max);
-        let rounding = ROUNDING * (centre.abs().max_element() + if local { points.reach } else { 0.0 });
-        let half = 0.5 * (node.max - node.min) + rounding;
+    /// Bounds of everything but the material: emitter's cosine over squared distance, and receiver's cosine.
+    fn geometry16(&self, cluster: &Cluster, points: &Points, node: &Node) -> (Lanes, Lanes) {
+        let &Cluster { local, half, rounding, .. } = cluster;
         let oriented = local && node.cos_beta > -1.0;
         let emitter = Frame::from_normal(-node.axis);
         let axes = [emitter.tangent, emitter.bitangent, emitter.normal];
         let emitter_half = axes.map(|axis| axis.abs().dot(half) + rounding);
-        let at_receiver = if local { 1.0 } else { 0.0 };
-        let (i, x, f, a) = (node.intensity, &points.position, &points.frame, &points.abs_frame);
+        let (mut geometry, mut cos_x) = ([0.0; LANES], [0.0; LANES]);
         for l in 0..LANES {
-            let c = [
-                centre.x - x[0][l] * at_receiver,
-                centre.y - x[1][l] * at_receiver,
-                centre.z - x[2][l] * at_receiver,
-            ];
-            let along = |axis: &Vec3Lanes| c[0] * axis[0][l] + c[1] * axis[1][l] + c[2] * axis[2][l];
-            let extent =
-                |axis: &Vec3Lanes| half.x * axis[0][l] + half.y * axis[1][l] + half.z * axis[2][l] + rounding;
-            let z = along(&f[2]) + extent(&a[2]);
-            let cos_x = max_cos(along(&f[0]).abs(), extent(&a[0]), along(&f[1]).abs(), extent(&a[1]), z);
-
-            let c = Vec3::from_array(c);
-            let ez = c.dot(axes[2]) + emitter_half[2];
-            let (ex, ey) = (c.dot(axes[0]).abs(), c.dot(axes[1]).abs());
-            let cos_theta = max_cos(ex, emitter_half[0], ey, emitter_half[1], ez);
+            cos_x[l] = positive(cluster.max_cos(points, &points.frame, &points.abs_frame, l));
+            let c = cluster.offset(points, l);
+            let z = c.dot(axes[2]) + emitter_half[2];
+            let (x, y) = (c.dot(axes[0]).abs(), c.dot(axes[1]).abs());
+            let cos_theta = max_cos(x, emitter_half[0], y, emitter_half[1], z);
             let sin_theta = positive(1.0 - cos_theta * cos_theta).sqrt();
             let turned = cos_theta * node.cos_beta + sin_theta * node.sin_beta + 1e-6;
             let cos_y = if !oriented || cos_theta >= node.cos_beta { 1.0 } else { positive(turned).min(1.0) };
@@ -69,12 +68,9 @@ impl Transfer<'_> {
                 [positive(c.x.abs() - half.x), positive(c.y.abs() - half.y), positive(c.z.abs() - half.z)];
             let dist_sq = gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2];
             let dist_sq = if dist_sq > self.min_dist_sq { dist_sq } else { self.min_dist_sq };
-            let inv_dist_sq = if local { 1.0 / dist_sq } else { 1.0 };
-
-            let w = &points.brdf_luminance;
-            let reflected = i.x * w[0][l] + i.y * w[1][l] + i.z * w[2][l];
-            bounds[l] = reflected * (positive(cos_x) * cos_y * inv_dist_sq);
+            geometry[l] = if local { cos_y / dist_sq } else { 1.0 };
         }
+        (geometry, cos_x)
     }
 
     /// Each point's contribution from a VPL of unit intensity, if visible, and the lanes where it is not 0.
@@ -119,6 +115,67 @@ impl Transfer<'_> {
                 responses[c][l] = points.brdf[c][l] * geometry;
             }
         }
+    }
+}
+
+/// A cluster's box, widened by what rounding may lose in any lane.
+struct Cluster {
+    /// Whether the box is in space, not a box of directions.
+    local: bool,
+    centre: Vec3,
+    half: Vec3,
+    rounding: f32,
+}
+
+impl Cluster {
+    fn new(points: &Points, node: &Node) -> Cluster {
+        let local = node.kind() != VplKind::Directional;
+        let centre = 0.5 * (node.min + node.max);
+        let rounding = ROUNDING * (centre.abs().max_element() + if local { points.reach } else { 0.0 });
+        Cluster { local, centre, half: 0.5 * (node.max - node.min) + rounding, rounding }
+    }
+
+    /// Centre of the box as seen from a point.
+    #[inline(always)]
+    fn offset(&self, points: &Points, l: usize) -> Vec3 {
+        let origin = if self.local { 1.0 } else { 0.0 };
+        let x = &points.position;
+        self.centre - Vec3::new(x[0][l], x[1][l], x[2][l]) * origin
+    }
+
+    /// Centre and half extent along an axis of a point's own.
+    #[inline(always)]
+    fn along(&self, c: Vec3, axis: &Vec3Lanes, abs_axis: &Vec3Lanes, l: usize) -> (f32, f32) {
+        let centre = c.x * axis[0][l] + c.y * axis[1][l] + c.z * axis[2][l];
+        let half = self.half.x * abs_axis[0][l] + self.half.y * abs_axis[1][l] + self.half.z * abs_axis[2][l];
+        (centre, half + self.rounding)
+    }
+
+    /// Largest cosine to the z axis of a point's frame.
+    #[inline(always)]
+    fn max_cos(&self, points: &Points, axes: &[Vec3Lanes; 3], abs_axes: &[Vec3Lanes; 3], l: usize) -> f32 {
+        let c = self.offset(points, l);
+        let (x, half_x) = self.along(c, &axes[0], &abs_axes[0], l);
+        let (y, half_y) = self.along(c, &axes[1], &abs_axes[1], l);
+        let (z, half_z) = self.along(c, &axes[2], &abs_axes[2], l);
+        max_cos(x.abs(), half_x, y.abs(), half_y, z + half_z)
+    }
+
+    /// What a lobe's bound needs besides: least cosine to the normal, largest to the mirror direction.
+    fn lobe16(&self, points: &Points) -> (Lanes, Lanes) {
+        let (mut cos_min, mut cos_mirror) = ([0.0; LANES], [0.0; LANES]);
+        let (f, a) = (&points.frame, &points.abs_frame);
+        for l in 0..LANES {
+            let c = self.offset(points, l);
+            let (x, half_x) = self.along(c, &f[0], &a[0], l);
+            let (y, half_y) = self.along(c, &f[1], &a[1], l);
+            let (z, half_z) = self.along(c, &f[2], &a[2], l);
+            let (far_x, far_y, low) = (x.abs() + half_x, y.abs() + half_y, z - half_z);
+            let length = (far_x * far_x + far_y * far_y + low * low).sqrt();
+            cos_min[l] = if low > 0.0 { low / length } else { 0.0 };
+            cos_mirror[l] = self.max_cos(points, &points.mirror, &points.abs_mirror, l);
+        }
+        (cos_min, cos_mirror)
     }
 }
 
