@@ -28,10 +28,10 @@ pub fn build(parts: &mut Parts) {
     let mut rng = Rng::new(17);
     drums(parts, &mut rng);
     for (x, z, size, degrees) in [
-        (4.9, -4.9, 1.1, 8.0),
-        (6.3, -4.6, 0.9, -5.0),
-        (5.2, -6.5, 0.85, 15.0),
-        (-2.9, -5.4, 1.0, -12.0),
+        (4.5, -6.5, 1.1, 8.0),
+        (5.9, -5.9, 0.9, -5.0),
+        (4.1, -8.2, 0.85, 15.0),
+        (-1.9, -7.7, 1.0, -12.0),
         (4.9, -26.5, 1.2, 4.0),
         (6.4, -26.8, 1.0, -9.0),
         (5.6, -28.1, 1.1, 20.0),
@@ -40,12 +40,12 @@ pub fn build(parts: &mut Parts) {
         pallet(parts, &turned(degrees, Vec3::new(x, -0.005, z)));
         crate_box(&mut parts.timber, &place, Vec3::new(size, 0.8 * size, 0.9 * size));
     }
-    crate_box(&mut parts.timber, &turned(24.0, Vec3::new(4.95, 1.015, -4.9)), Vec3::new(0.7, 0.55, 0.6));
+    crate_box(&mut parts.timber, &turned(24.0, Vec3::new(4.55, 1.015, -6.5)), Vec3::new(0.7, 0.55, 0.6));
     for k in 0..6 {
         gas_cylinder(parts, &at(-9.0 + 0.3 * k as f32, -0.005, -0.75));
     }
     parts.steel.add(&rod(Vec3::new(-9.3, 1.0, -0.55), Vec3::new(-7.2, 1.0, -0.55), 0.02, 8));
-    cable_drum(parts, &turned(25.0, Vec3::new(4.3, 0.0, -9.6)));
+    cable_drum(parts, &turned(25.0, Vec3::new(4.9, 0.0, -10.6)));
     bench(parts, &at(6.6, 0.0, -1.9));
     bench(parts, &(at(-8.0, 0.0, -14.2) * turned(90.0, Vec3::ZERO)));
 }
@@ -87,7 +87,7 @@ fn drums(parts: &mut Parts, rng: &mut Rng) {
     for (x, z) in [(7.02, -7.5), (7.66, -7.5)] {
         parts.drums_rust.append(&drum, &turned(rng.range(0.0, 360.0), Vec3::new(x, 0.872, z)));
     }
-    let lying = turned(35.0, Vec3::new(-2.6, 0.298, -7.4)) * standing_on(Vec3::ZERO, Vec3::X);
+    let lying = turned(35.0, Vec3::new(-1.5, 0.298, -5.9)) * standing_on(Vec3::ZERO, Vec3::X);
     parts.drums_blue.append(&drum, &lying);
 }
 

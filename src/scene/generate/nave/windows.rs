@@ -62,7 +62,10 @@ fn tracery(window: &Window) -> super::super::builder::Shell {
 
 /// Appends the sky panel that closes a window, a little inside the wall's outer face.
 pub fn sky_behind(parts: &mut Parts, window: &Window, thickness: f32, local: &Affine3A) {
-    let outline = window.head.opening(Vec2::new(0.0, window.spring), window.sill - window.spring, 8);
+    // Its edge lies inside the wall, so that no gap is left where the curves are cut differently.
+    let hidden = 0.04;
+    let sill = window.sill - window.spring - hidden;
+    let outline = window.head.offset(hidden).opening(Vec2::new(0.0, window.spring), sill, 8);
     let faces = Faces { front: true, back: false, rim: false, reveals: false };
     let panel = extrude_faces(&outline, &[], thickness - 0.06, faces).facing(Vec3::NEG_Z);
     parts.sky.add_at(&panel.mapped(|p| Vec3::new(p.x, p.y, thickness - 0.06)), local);
