@@ -63,8 +63,8 @@ fn mean_cut(world: &World, trees: &LightTrees, epsilon: f32) -> (f64, f64) {
             let ray = primary_ray(&world.scene.camera, &window, [x, y], Vec2::splat(0.5));
             let mut sampler = Sampler::new(0, 0);
             trace(world, ray, u32::MAX, &mut sampler, &mut ChainCounts::default(), |eye| {
-                let (s, bsdf) = (&eye.surface, world.bsdf(&eye.surface));
-                let receiver = Reflector::new(s.position, s.normal, &s.frame, bsdf, eye.out);
+                let s = &eye.surface;
+                let receiver = Reflector::new(s.position, s.normal, &s.frame, eye.bsdf, eye.out);
                 cut.gather(trees, &transfer, world, &receiver, &settings);
             });
         }

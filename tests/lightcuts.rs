@@ -324,3 +324,23 @@ fn a_cancelled_picture_says_so() {
     assert!(!output.complete);
     assert_eq!(output.color.pixels.len(), 32 * 32);
 }
+
+#[test]
+fn polished_metal_is_followed_from_the_eye() {
+    let facets = |alpha| Lobe::Rough {
+        distribution: lightsplat::scene::Distribution::Ggx,
+        alpha,
+        fresnel: lightsplat::scene::Fresnel::One,
+        scale: lightsplat::scene::Reflectance::Constant(Rgb::splat(0.8)),
+    };
+    let ball = |alpha| Material { lobe: facets(alpha), ..diffuse(Rgb::ZERO) };
+    for alpha in [0.02, 0.1] {
+        let mut scene = lit_room(Some(ball(alpha))).scene;
+        scene.lights.push(DeltaLight::Point { position: Vec3::new(0.5, 0.5, 0.7), intensity: Rgb::ONE });
+        let world = world(scene);
+        let expected = mean(&reference(&world, 256).color);
+        let found = mean(&lightcuts(&world, &Settings { spp: 16, ..Settings::default() }).color);
+        let error = (found / expected - Rgb::ONE).abs().max_element();
+        assert!(error < 0.03, "α {alpha}: {found} against {expected}");
+    }
+}

@@ -5,8 +5,14 @@
 //!
 //! Both branches at glass are followed, so that the picture has no noise from choosing; a branch that carries
 //! little goes on by Russian roulette.
+//!
+//! Deviations: sharp rough lobes are followed as well, in one sampled direction a sample: virtual lights would show in
+//! them one by one, and what they reflect of each other is beyond virtual lights altogether. This brings noise,
+//! which falls with the samples a pixel. Point-like lights, which no direction finds, are added there by the lobe's value.
 
 use crate::embree::Ray;
+use crate::light::delta_irradiance;
+use crate::material::Bsdf;
 use crate::math::Rgb;
 use crate::sampling::Sampler;
 use crate::shadow;
@@ -21,9 +27,11 @@ const ROULETTE_THROUGHPUT: f32 = 0.05;
 
 /// A surface point that scatters light into a pixel.
 #[derive(Clone, Copy, Debug)]
-pub struct EyeSample {
+pub struct EyeSample<'w> {
     /// The surface.
     pub surface: Surface,
+    /// How it scatters; lobes that the chain follows itself are taken out.
+    pub bsdf: Bsdf<'w>,
     /// Unit vector back along the ray.
     pub out: Vec3,
     /// Share of the radiance leaving along `out` that reaches the eye.
@@ -37,6 +45,8 @@ pub struct EyeSample {
 pub struct ChainCounts {
     /// Closest-hit queries.
     pub rays: u64,
+    /// Occlusion queries.
+    pub shadow_rays: u64,
     /// Branches dropped because too many were pending; their light is missing.
     pub overflow: u64,
 }
@@ -50,13 +60,13 @@ struct Branch {
 
 /// Follows `ray` and calls `visit` for every surface with a smooth part; returns the radiance emitted into the ray
 /// by surfaces and the environment, directly or along specular chains of at most `max_depth` edges.
-pub fn trace(
-    world: &World,
+pub fn trace<'w>(
+    world: &'w World,
     ray: Ray,
     max_depth: u32,
     sampler: &mut Sampler,
     counts: &mut ChainCounts,
-    mut visit: impl FnMut(EyeSample),
+    mut visit: impl FnMut(EyeSample<'w>),
 ) -> Rgb {
     let mut emitted = Rgb::ZERO;
     let mut pending: [Option<Branch>; PENDING] = [const { None }; PENDING];
@@ -75,15 +85,25 @@ pub fn trace(
             continue;
         };
         emitted += branch.throughput * world.emitted(&surface, out);
-        let bsdf = world.bsdf(&surface);
+        let whole = world.bsdf(&surface);
+        let (bsdf, sharp) = match whole.split_sharp_lobe() {
+            Some((bsdf, sharp)) => (bsdf, Some(sharp)),
+            None => (whole, None),
+        };
         if bsdf.has_smooth() {
-            visit(EyeSample { surface, out, throughput: branch.throughput, depth: branch.depth });
+            let Branch { throughput, depth, .. } = branch;
+            visit(EyeSample { surface, bsdf, out, throughput, depth });
         }
-        if branch.depth >= max_depth || !bsdf.has_delta() {
+        if branch.depth >= max_depth || !(bsdf.has_delta() || sharp.is_some()) {
             continue;
         }
-        let lobes = bsdf.delta_lobes(surface.frame.to_local(out));
-        for lobe in [lobes.refraction, lobes.reflection].into_iter().flatten() {
+        let wo = surface.frame.to_local(out);
+        let lobes = bsdf.delta_lobes(wo);
+        let sampled = sharp.and_then(|sharp| {
+            emitted += branch.throughput * point_lights(world, &surface, &sharp, wo, counts);
+            sharp.sample(wo, sampler.next_1d(), sampler.next_2d())
+        });
+        for lobe in [lobes.refraction, lobes.reflection, sampled].into_iter().flatten() {
             let mut throughput = branch.throughput * lobe.weight;
             let eta_sq = branch.eta_sq * lobe.eta * lobe.eta;
             let carried = throughput.max_element() * eta_sq;
@@ -108,4 +128,27 @@ pub fn trace(
         }
     }
     emitted
+}
+
+/// Radiance that point, spot and directional lights leave along `wo` by a lobe that the chain follows.
+fn point_lights(world: &World, s: &Surface, lobe: &Bsdf, wo: Vec3, counts: &mut ChainCounts) -> Rgb {
+    let mut radiance = Rgb::ZERO;
+    for light in &world.emitters.deltas {
+        let (direction, distance, irradiance) = delta_irradiance(light, s.position);
+        let wi = s.frame.to_local(direction);
+        let value = lobe.eval(wo, wi) * irradiance * wi.z.abs();
+        if value == Rgb::ZERO || !value.is_finite() {
+            continue;
+        }
+        counts.shadow_rays += 1;
+        let free = if distance.is_finite() {
+            world.visible(s.position, s.normal, s.position + direction * distance, Vec3::ZERO)
+        } else {
+            world.escapes(s.position, s.normal, direction)
+        };
+        if free {
+            radiance += value;
+        }
+    }
+    radiance
 }

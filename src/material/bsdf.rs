@@ -3,7 +3,7 @@
 //! Units: `eval` is 1/sr, without the cosine; `pdf` is per solid angle.
 
 use super::fresnel;
-use super::model::{Base, DIFFUSE_LOBE_ALPHA, Model, Scattering};
+use super::model::{Base, DIFFUSE_LOBE_ALPHA, Model, SHARP_LOBE_ALPHA, Scattering};
 use crate::math::Rgb;
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -65,6 +65,18 @@ impl Bsdf<'_> {
     #[inline]
     pub fn has_delta(&self) -> bool {
         matches!(self.model.lobe, Scattering::Mirror(_) | Scattering::Glass(_))
+    }
+
+    /// Base and lobe apart, where the lobe is rough but so sharp ([`SHARP_LOBE_ALPHA`]) that light sampled along it
+    /// says more than a sum over virtual lights, each of which would show as a highlight.
+    #[inline]
+    pub fn split_sharp_lobe(&self) -> Option<(Self, Self)> {
+        match &self.model.lobe {
+            Scattering::Rough(facets, _) if facets.alpha <= SHARP_LOBE_ALPHA && self.scale != Rgb::ZERO => {
+                Some((Bsdf { scale: Rgb::ZERO, ..*self }, Bsdf { base: Rgb::ZERO, ..*self }))
+            }
+            _ => None,
+        }
     }
 
     /// The albedo, if the material is Lambertian and nothing else.

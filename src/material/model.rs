@@ -10,8 +10,12 @@ use glam::Vec2;
 use std::f32::consts::FRAC_1_PI;
 use std::sync::Arc;
 
-/// Lobes at least this rough count as diffuse where a surface becomes a virtual light.
-pub(super) const DIFFUSE_LOBE_ALPHA: f32 = 0.3;
+/// Lobes at least this rough count as diffuse where a surface becomes a virtual light: among polished metals most of
+/// the light would otherwise be lost, which is worse than its spreading too widely.
+pub(super) const DIFFUSE_LOBE_ALPHA: f32 = 0.05;
+
+/// Lobes up to this rough are followed from the eye like mirrors, by a sampled direction.
+pub(super) const SHARP_LOBE_ALPHA: f32 = 0.1;
 
 /// The scene's materials, ready to be looked up at points.
 #[derive(Clone, Debug)]

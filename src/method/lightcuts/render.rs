@@ -91,6 +91,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let mut color = Image::new(window.width, window.height);
     let mut cut_size = Image::new(window.width, window.height);
     let mut counts = CutCounts::default();
+    let mut chain_shadow_rays = 0;
     let (mut eye_rays, mut overflow, mut packets, mut nonfinite) = (0, 0, 0, 0);
     for (i, tile) in tiles.iter().enumerate().filter(|(_, tile)| tile.done) {
         for (k, [x, y]) in scenery.tile_area(corner(i)).pixels().enumerate() {
@@ -102,11 +103,13 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
         packets += tile.packets;
         eye_rays += tile.chains.rays;
         overflow += tile.chains.overflow;
+        chain_shadow_rays += tile.chains.shadow_rays;
         nonfinite += tile.nonfinite;
     }
     stats.count("Rays/shadow packets", packets);
     count(&mut stats, &counts);
     stats.count("Rays/closest hit", eye_rays + lights.photons.rays);
+    stats.count("Eye/shadow rays", chain_shadow_rays);
     stats.count("Eye/branches dropped", overflow);
     let complete = tiles.iter().all(|t| t.done);
     let extra = vec![("cut".to_owned(), cut_size)];

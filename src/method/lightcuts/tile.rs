@@ -98,12 +98,16 @@ impl Tile {
                 let jitter = if spp > 1 { sampler.next_2d() } else { Vec2::splat(0.5) };
                 let ray = primary_ray(&s.world.scene.camera, s.window, [x, y], jitter);
                 let place = work.values.len();
-                let visit = |eye: EyeSample| {
+                let visit = |eye: EyeSample<'w>| {
                     if eye.depth < s.max_depth {
                         let surface = &eye.surface;
-                        let bsdf = s.world.bsdf(surface);
-                        let reflector =
-                            Reflector::new(surface.position, surface.normal, &surface.frame, bsdf, eye.out);
+                        let reflector = Reflector::new(
+                            surface.position,
+                            surface.normal,
+                            &surface.frame,
+                            eye.bsdf,
+                            eye.out,
+                        );
                         work.samples.push(Lit { reflector, throughput: eye.throughput, place, done: false });
                     }
                 };
