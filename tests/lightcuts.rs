@@ -334,7 +334,7 @@ fn polished_metal_is_followed_from_the_eye() {
         scale: lightsplat::scene::Reflectance::Constant(Rgb::splat(0.8)),
     };
     let ball = |alpha| Material { lobe: facets(alpha), ..diffuse(Rgb::ZERO) };
-    for alpha in [0.02, 0.1] {
+    for alpha in [0.06, 0.1] {
         let mut scene = lit_room(Some(ball(alpha))).scene;
         scene.lights.push(DeltaLight::Point { position: Vec3::new(0.5, 0.5, 0.7), intensity: Rgb::ONE });
         let world = world(scene);
