@@ -269,6 +269,25 @@ fn cuts_of_real_scenes_are_within_their_error() {
 }
 
 #[test]
+fn a_room_of_any_size_looks_the_same() {
+    let light = LightPassSettings { direct: 512, indirect: 20_000, seed: 0 };
+    let settings = Settings { light, ..Settings::default() };
+    let at_scale = |s: f32| {
+        let mut scene = lit_room(Some(diffuse(Rgb::splat(0.5)))).scene;
+        scene.meshes.iter_mut().flat_map(|m| &mut m.positions).for_each(|p| *p *= s);
+        scene.camera.origin *= s;
+        lightcuts(&common::world(scene), &settings).color
+    };
+    let unit = at_scale(1.0);
+    for s in [1e-6, 1e-3, 1e3, 1e6] {
+        let image = at_scale(s);
+        let ratio = mean(&image) / mean(&unit);
+        assert!((ratio - Rgb::ONE).abs().max_element() < 0.005, "scale {s}: {ratio}");
+    }
+    assert_eq!(at_scale(1024.0), unit, "powers of two change nothing");
+}
+
+#[test]
 fn the_picture_is_the_same_for_any_number_of_threads() {
     let world = lit_room(Some(mirror()));
     let light = LightPassSettings { direct: 512, indirect: 30_000, seed: 0 };

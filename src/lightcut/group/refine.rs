@@ -164,9 +164,11 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
             let responses = self.representative_responses(root);
             let entry = self.entry(root, &responses, &[f32::MAX; LANES]);
             self.count(&entry);
-            let place = self.cut.entries.len();
             self.cut.entries.push(entry);
-            self.watch(place);
+        }
+        let inverse_totals = self.inverse_totals();
+        for place in 0..self.cut.entries.len() {
+            self.watch(place, &inverse_totals);
         }
         self.room = self.room.saturating_sub(self.cut.entries.len());
     }
@@ -181,7 +183,8 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
         loop {
             while let Some(&offender) = self.cut.offenders.peek() {
                 let place = offender as u32 as usize;
-                let offends = self.relative_bound(&self.cut.entries[place].bounds) > self.settings.epsilon;
+                let bounds = &self.cut.entries[place].bounds;
+                let offends = relative_bound(bounds, &self.inverse_totals()) > self.settings.epsilon;
                 if offends && self.room == 0 {
                     return;
                 }
@@ -210,51 +213,48 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
 
     /// Queues every cluster above its threshold; false if there is none.
     fn watch_offenders(&mut self) -> bool {
+        let inverse_totals = self.inverse_totals();
         let mut found = false;
         for place in 0..self.cut.entries.len() {
-            if self.relative_bound(&self.cut.entries[place].bounds) > self.settings.epsilon {
-                self.watch(place);
+            if relative_bound(&self.cut.entries[place].bounds, &inverse_totals) > self.settings.epsilon {
+                self.watch(place, &inverse_totals);
                 found = true;
             }
         }
         found
     }
 
-    /// Largest bound of any lane relative to the lane's total.
-    fn relative_bound(&self, bounds: &Lanes) -> f32 {
+    /// What bounds are multiplied with to be relative to each lane's total.
+    fn inverse_totals(&self) -> Lanes {
         let brightest = self.totals.iter().fold(0.0, |a, &b| if b > a { b } else { a });
         let floor = (DARKEST * brightest).max(f32::MIN_POSITIVE);
-        let mut largest = 0.0;
-        for l in 0..LANES {
-            let total = if self.totals[l] > floor { self.totals[l] } else { floor };
-            let relative = bounds[l] / total;
-            largest = if relative > largest { relative } else { largest };
-        }
-        largest
+        self.totals.map(|total| 1.0 / if total > floor { total } else { floor })
     }
 
     /// Replaces a cluster by its children. One of them shares the representative, so its responses are known.
     fn split(&mut self, place: usize) {
-        let parent = self.cut.entries[place];
+        let parent = &self.cut.entries[place];
         let node = &self.trees.nodes[parent.node as usize];
         let Some(left) = node.children() else { return };
         let shares_left = self.trees.nodes[left as usize].representative() == node.representative();
         let (heir, other) = if shares_left { (left, left + 1) } else { (left + 1, left) };
-        let responses = self.representative_responses(other);
         for l in 0..LANES {
             let rest = self.totals[l] - parent.counted[l];
             self.totals[l] = if rest > 0.0 { rest } else { 0.0 };
         }
         let rest = self.totals;
-        let heir = self.entry(heir, &parent.responses, &rest);
-        let other = self.entry(other, &responses, &rest);
+        let inherited = parent.responses;
+        let responses = self.representative_responses(other);
+        let heir = self.entry(heir, &inherited, &rest);
         self.count(&heir);
-        self.count(&other);
         self.cut.entries[place] = heir;
-        self.watch(place);
-        let place = self.cut.entries.len();
+        let other = self.entry(other, &responses, &rest);
+        self.count(&other);
+        let other_place = self.cut.entries.len();
         self.cut.entries.push(other);
-        self.watch(place);
+        let inverse_totals = self.inverse_totals();
+        self.watch(place, &inverse_totals);
+        self.watch(other_place, &inverse_totals);
     }
 
     fn entry(&mut self, node: u32, responses: &RgbLanes, rest: &Lanes) -> Entry {
@@ -299,10 +299,20 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
     }
 
     /// Queues the entry at `place` by its largest relative bound, unless it cannot be wrong.
-    fn watch(&mut self, place: usize) {
-        let key = self.relative_bound(&self.cut.entries[place].bounds);
+    fn watch(&mut self, place: usize, inverse_totals: &Lanes) {
+        let key = relative_bound(&self.cut.entries[place].bounds, inverse_totals);
         if key > 0.0 {
             self.cut.offenders.push(u64::from(key.to_bits()) << 32 | place as u64);
         }
     }
+}
+
+/// Largest bound of any lane relative to the lane's total.
+fn relative_bound(bounds: &Lanes, inverse_totals: &Lanes) -> f32 {
+    let mut largest = 0.0;
+    for (bound, inverse) in bounds.iter().zip(inverse_totals) {
+        let relative = bound * inverse;
+        largest = if relative > largest { relative } else { largest };
+    }
+    largest
 }
