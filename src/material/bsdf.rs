@@ -67,7 +67,7 @@ impl Bsdf<'_> {
         matches!(self.model.lobe, Scattering::Mirror(_) | Scattering::Glass(_))
     }
 
-    /// Base and lobe apart, where the lobe is rough but so sharp ([`SHARP_LOBE_ALPHA`]) that light sampled along it
+    /// Base and lobe apart, where the lobe is rough but so sharp (α ≤ 0.1) that light sampled along it
     /// says more than a sum over virtual lights, each of which would show as a highlight.
     #[inline]
     pub fn split_sharp_lobe(&self) -> Option<(Self, Self)> {
