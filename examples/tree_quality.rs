@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example tree_quality -- SCENE [VPLS ...]`
 //!
-//! Cuts are computed for eye samples on a coarse grid over the film, unclamped and uncapped at 1000 as in a picture.
+//! Cuts are computed one by one for eye samples on a coarse grid over the film, without a cap on their size.
 
 use glam::Vec2;
 use lightsplat::eye::{ChainCounts, Window, primary_ray, trace};
@@ -53,7 +53,7 @@ fn main() -> anyhow::Result<()> {
 /// Mean size of the cuts of eye samples spread over the film, and the shadow rays per CPU second.
 fn mean_cut(world: &World, trees: &LightTrees, epsilon: f32) -> (f64, f64) {
     let window = Window::whole(world.scene.resolution);
-    let settings = CutSettings { epsilon, ..CutSettings::default() };
+    let settings = CutSettings { epsilon, max_cut: usize::MAX, ..CutSettings::default() };
     let transfer = Transfer::new(&trees.spots, world.diagonal);
     let step = window.width.max(window.height).div_ceil(GRID) as usize;
     let mut cut = Lightcut::new();

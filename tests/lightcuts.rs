@@ -217,14 +217,14 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
 
 /// Relative errors, against the full sum over the same 20,000 VPLs, of single and shared cuts for blocks of eye
 /// samples all over the film.
-fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
+fn errors_in(scene: &str, family: Family, epsilon: f32) -> (Vec<f32>, Vec<f32>) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
     let world = common::world(load(&path, &LoadOptions::default()).expect("the scene loads").scene);
     let light = LightPassSettings { direct: 1000, indirect: 19_000, seed: 1 };
     let lights = light_pass(&world, &light, u32::MAX, &Control::new());
     let trees = LightTrees::build(&lights.sets, lights.spots, world.diagonal, family);
     let transfer = Transfer::new(&trees.spots, world.diagonal);
-    let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
+    let settings = CutSettings { clamp: None, max_cut: usize::MAX, epsilon };
     let (mut single, mut shared) = (Lightcut::new(), GroupLightcut::new());
     let mut points = Points::new();
     let (mut single_errors, mut shared_errors) = (Vec::new(), Vec::new());
@@ -257,9 +257,10 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
 #[test]
 fn cuts_of_real_scenes_are_within_their_error() {
     let rms = |e: &[f32]| (e.iter().map(|e| e * e).sum::<f32>() / e.len() as f32).sqrt();
-    for scene in ["cornell.toml", "knot.toml"] {
+    // The threshold is per cluster. In the nave most bright clusters are half hidden, so more of them err at once.
+    for (scene, epsilon) in [("cornell.toml", 0.02), ("knot.toml", 0.02), ("nave.toml", 0.01)] {
         for family in [Family::Divisive, Family::Agglomerative] {
-            let (single, shared) = errors_in(scene, family);
+            let (single, shared) = errors_in(scene, family, epsilon);
             assert!(single.len() > 100, "{scene}: {} points", single.len());
             println!("{scene} {family:?}: {} {}", rms(&single), rms(&shared));
             assert!(rms(&single) <= 0.035, "{scene} {family:?}: single {}", rms(&single));

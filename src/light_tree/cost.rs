@@ -2,7 +2,8 @@
 //!
 //! Paper: Walter et al., *Lightcuts: A Scalable Approach to Illumination*, 2005, section 3.1: I(α² + c²(1 - cos β)²).
 //! Deviations: while building, β is estimated from the box around the unit normals (a chord of length e
-//! spans a cone of sin β = e/2); the finished nodes carry exact cones.
+//! spans a cone of sin β = e/2); the finished nodes carry exact cones. The paper's c is kept, the scene's diagonal: a
+//! tenth of it gives up to a quarter smaller cuts, but their error grows as much (six scenes, against full sums).
 
 use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;

@@ -21,6 +21,14 @@ use cost::Record;
 pub use node::{MAX_VPLS, Node};
 
 /// How a tree is built.
+///
+/// Seconds of processor time to build (one thread's worth) and mean uncapped cuts at ε = 2 % / 1 %, by
+/// `examples/tree_quality`:
+///
+/// | | nave, 500k | nave, 1M | sibenik, 500k | sibenik, 1M |
+/// |---|--:|--:|--:|--:|
+/// | divisive | 0.65 s, 1058 / 1504 | 1.36 s, 1091 / 1549 | 0.64 s, 560 / 783 | 1.41 s, 570 / 798 |
+/// | agglomerative | 0.45 s, 1251 / 1701 | 1.01 s, 1335 / 1801 | 0.47 s, 673 / 902 | 0.91 s, 696 / 926 |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Family {
     /// Top-down, binned splits in position and normal.
