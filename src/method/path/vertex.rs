@@ -11,7 +11,7 @@ use crate::world::{Surface, World};
 use glam::{Vec2, Vec3};
 
 /// Edges of a path before Russian roulette may end it.
-const ROULETTE_DEPTH: u32 = 3;
+const ROULETTE_DEPTH: u32 = 2;
 
 /// A path on its way.
 #[derive(Clone, Copy, Debug)]
