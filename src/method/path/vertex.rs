@@ -1,6 +1,10 @@
 //! One vertex of a path: what it emits, what light reaches it directly, and where the path goes on.
 //!
 //! Paper: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapters 9 and 10.
+//!
+//! Deviations: a path survives Russian roulette with the square root of its throughput. The throughput itself ends
+//! paths between dark walls so often that the few that then meet the sun are fireflies; not to end paths
+//! before the fifth bounce costs more than it saves. Measured on six scenes, the root has the least variance × time.
 
 use crate::embree::Ray;
 use crate::light::EnvironmentSample;
@@ -143,7 +147,7 @@ impl Path {
         self.throughput *= sample.weight;
         self.eta_sq *= sample.eta * sample.eta;
         if depth >= ROULETTE_DEPTH {
-            let survival = (self.throughput.max_element() * self.eta_sq).min(0.95);
+            let survival = (self.throughput.max_element() * self.eta_sq).sqrt().min(0.95);
             // The comparison also ends paths whose throughput is not a number.
             if !(u_roulette.x < survival) {
                 return false;
