@@ -4,7 +4,7 @@
 //!
 //! Deviations: a path survives Russian roulette with the square root of its throughput. The throughput itself ends
 //! paths between dark walls so often that the few that then meet the sun are fireflies; not to end paths
-//! before the fifth bounce costs more than it saves. Measured on six scenes, the root has the least variance × time.
+//! before the fifth bounce costs more than it saves. Measured on the Cornell box, a glossy knot and a church, the root has the least variance × time.
 
 use crate::embree::Ray;
 use crate::light::EnvironmentSample;
