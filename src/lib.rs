@@ -1,4 +1,15 @@
-//! lightsplat: global illumination by lightcuts and radiance-cache splatting over Embree 4.
+//! lightsplat: global illumination by lightcuts, and a path-traced reference, over Embree 4.
+//!
+//! The pipeline, in the order of the data:
+//!
+//! - [`scene::formats`] reads a scene file, sanitises and recentres it; [`scene`] is what results;
+//! - [`world`] makes it ready: [`embree`] for rays, [`material`] for scattering, [`light`] for emitters;
+//! - [`vpl`] turns lights and photon paths into virtual point lights, [`light_tree`] clusters them;
+//! - [`eye`] follows each pixel through mirrors and glass to the surfaces that scatter light into it;
+//! - [`lightcut`] finds, for each of those, the coarsest clusters that keep the error bound;
+//! - [`shadow`] keeps surfaces from shadowing themselves, [`sampling`] gives every stage its numbers;
+//! - [`method`] holds the renderers that are compared; [`image`] writes and compares what they return;
+//! - [`cli`] is the command around it all, [`stats`] what it reports.
 
 #![deny(unsafe_code)]
 
