@@ -2,9 +2,10 @@
 //!
 //! Paper: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapters 9 and 10.
 //!
-//! Deviations: a path survives Russian roulette with the square root of its throughput. The throughput itself ends
-//! paths between dark walls so often that the few that then meet the sun are fireflies; not to end paths
-//! before the fifth bounce costs more than it saves. Measured on the Cornell box, a glossy knot and a church, the root has the least variance × time.
+//! Deviations: a path survives Russian roulette with the square root of its throughput. The throughput itself, from
+//! the second bounce on, ends paths between dark walls so often that the few that then meet the sun are fireflies.
+//! Against the throughput from the third bounce on, the root from the second takes 2 to 7 % less time in a Cornell
+//! box, a glossy knot and a church, at the same variance a sample (the knot: a tenth less).
 
 use crate::embree::Ray;
 use crate::light::EnvironmentSample;
@@ -14,7 +15,7 @@ use crate::shadow;
 use crate::world::{Surface, World};
 use glam::{Vec2, Vec3};
 
-/// Edges of a path before Russian roulette may end it.
+/// From this vertex on, counted from the eye, Russian roulette may end a path.
 const ROULETTE_DEPTH: u32 = 2;
 
 /// A path on its way.
