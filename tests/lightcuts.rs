@@ -224,7 +224,7 @@ fn errors_in(scene: &str, family: Family, epsilon: f32) -> (Vec<f32>, Vec<f32>) 
     let lights = light_pass(&world, &light, u32::MAX, &Control::new());
     let trees = LightTrees::build(&lights.sets, lights.spots, world.diagonal, family);
     let transfer = Transfer::new(&trees.spots, world.diagonal);
-    let settings = CutSettings { clamp: None, max_cut: usize::MAX, epsilon };
+    let settings = CutSettings { clamp: None, max_cut: usize::MAX, epsilon, only: None };
     let (mut single, mut shared) = (Lightcut::new(), GroupLightcut::new());
     let mut points = Points::new();
     let (mut single_errors, mut shared_errors) = (Vec::new(), Vec::new());

@@ -38,6 +38,8 @@ pub struct EyeSample<'w> {
     pub throughput: Rgb,
     /// Edges from the eye to the surface.
     pub depth: u32,
+    /// Their length in all.
+    pub distance: f32,
 }
 
 /// Rays traced by eye chains.
@@ -56,6 +58,8 @@ struct Branch {
     throughput: Rgb,
     eta_sq: f32,
     depth: u32,
+    /// Length of the chain up to the ray's origin.
+    distance: f32,
 }
 
 /// Follows `ray` and calls `visit` for every surface with a smooth part; returns the radiance emitted into the ray
@@ -71,7 +75,7 @@ pub fn trace<'w>(
     let mut emitted = Rgb::ZERO;
     let mut pending: [Option<Branch>; PENDING] = [const { None }; PENDING];
     let mut waiting = 0;
-    let mut current = Some(Branch { ray, throughput: Rgb::ONE, eta_sq: 1.0, depth: 1 });
+    let mut current = Some(Branch { ray, throughput: Rgb::ONE, eta_sq: 1.0, depth: 1, distance: 0.0 });
     while let Some(branch) = current.take().or_else(|| {
         waiting = usize::checked_sub(waiting, 1)?;
         pending[waiting].take()
@@ -84,6 +88,7 @@ pub fn trace<'w>(
             }
             continue;
         };
+        let distance = branch.distance + surface.t;
         emitted += branch.throughput * world.emitted(&surface, out);
         let whole = world.bsdf(&surface);
         let (bsdf, sharp) = match whole.split_sharp_lobe() {
@@ -92,7 +97,7 @@ pub fn trace<'w>(
         };
         if bsdf.has_smooth() {
             let Branch { throughput, depth, .. } = branch;
-            visit(EyeSample { surface, bsdf, out, throughput, depth });
+            visit(EyeSample { surface, bsdf, out, throughput, depth, distance });
         }
         if branch.depth >= max_depth || !(bsdf.has_delta() || sharp.is_some()) {
             continue;
@@ -116,7 +121,7 @@ pub fn trace<'w>(
             }
             let direction = surface.frame.to_world(lobe.wi);
             let ray = shadow::ray_from(surface.position, surface.normal, direction);
-            let next = Branch { ray, throughput, eta_sq, depth: branch.depth + 1 };
+            let next = Branch { ray, throughput, eta_sq, depth: branch.depth + 1, distance };
             if current.is_none() {
                 current = Some(next);
             } else if waiting < PENDING {

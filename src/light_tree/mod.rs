@@ -15,7 +15,7 @@ mod tests;
 mod topology;
 
 use crate::math::luminance;
-use crate::vpl::{SpotProfile, Vpl, VplSet};
+use crate::vpl::{Origin, SpotProfile, Vpl, VplSet};
 use cost::Record;
 
 pub use node::{MAX_VPLS, Node};
@@ -80,6 +80,12 @@ impl LightTrees {
         finish::finish(&topology, set, &mut self.nodes[first_node..], first_node as u32, first_vpl as u32);
         self.vpls.extend(topology.leaves.iter().map(|r| set.vpls[r.index() as usize]));
         self.roots.push(first_node as u32);
+    }
+
+    /// The roots of all trees, or of those for light of one origin.
+    pub fn roots_of(&self, only: Option<Origin>) -> impl Iterator<Item = u32> + '_ {
+        let wanted = move |&root: &u32| only.is_none_or(|o| self.nodes[root as usize].origin() == o);
+        self.roots.iter().copied().filter(wanted)
     }
 
     /// Numbers of nodes that are leaves, in order of their VPLs within each tree.

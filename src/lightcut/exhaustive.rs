@@ -18,7 +18,7 @@ pub fn gather_all<R: Receiver, V: Visibility>(
         let vpl = &trees.vpls[leaf.representative()];
         let contribution = leaf.intensity * transfer.unshadowed(receiver, vpl, leaf.kind());
         if contribution != Rgb::ZERO
-            && visibility.visible(receiver.position(), receiver.geometric_normal(), vpl, leaf.kind())
+            && visibility.visible(receiver.position(), receiver.geometric_normal(), vpl, leaf)
         {
             sum += contribution.as_dvec3();
         }

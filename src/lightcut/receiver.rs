@@ -16,6 +16,12 @@ pub trait Receiver {
     /// Unit geometric normal, for starting shadow rays; zero if the point lies on no surface.
     fn geometric_normal(&self) -> Vec3;
 
+    /// Luminance of what the receiver is known to gather from trees that are left out of the cut:
+    /// errors are judged against the whole.
+    fn known_luminance(&self) -> f32 {
+        0.0
+    }
+
     /// Weight of light from the unit direction `wi`.
     fn response(&self, wi: Vec3) -> Rgb;
 
@@ -34,6 +40,7 @@ pub struct Reflector<'m> {
     mirror: Frame,
     wo: Vec3,
     material: Kind<'m>,
+    known_luminance: f32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +72,27 @@ impl<'m> Reflector<'m> {
             None => Kind::General(bsdf),
         };
         let mirror = Frame::from_normal(frame.to_world(Vec3::new(-wo.x, -wo.y, wo.z)));
-        Reflector { position, geometric_normal, frame, mirror, wo, material }
+        Reflector { position, geometric_normal, frame, mirror, wo, material, known_luminance: 0.0 }
+    }
+
+    /// What collects irradiance on the side of the frame's z axis: a surface that reflects π times as much as is possible.
+    pub fn collector(position: Vec3, geometric_normal: Vec3, frame: &Frame) -> Reflector<'static> {
+        let material = Kind::Lambert(Rgb::ONE);
+        let known_luminance = 0.0;
+        Reflector {
+            position,
+            geometric_normal,
+            frame: *frame,
+            mirror: *frame,
+            wo: Vec3::Z,
+            material,
+            known_luminance,
+        }
+    }
+
+    /// The same, where light of this luminance is known to be reflected besides.
+    pub fn knowing(self, known_luminance: f32) -> Self {
+        Reflector { known_luminance, ..self }
     }
 
     /// BRDF, if the material is Lambertian and nothing else.
@@ -124,6 +151,11 @@ impl Receiver for Reflector<'_> {
     #[inline]
     fn geometric_normal(&self) -> Vec3 {
         self.geometric_normal
+    }
+
+    #[inline]
+    fn known_luminance(&self) -> f32 {
+        self.known_luminance
     }
 
     #[inline]

@@ -32,11 +32,13 @@ pub struct CutSettings {
     /// Largest share of the luminance that a single indirect VPL may contribute; `None` leaves weak
     /// singularities as they are.
     pub clamp: Option<f32>,
+    /// Whether only the trees of direct or of indirect light are cut.
+    pub only: Option<Origin>,
 }
 
 impl Default for CutSettings {
     fn default() -> CutSettings {
-        CutSettings { epsilon: 0.02, max_cut: 1000, clamp: Some(0.02) }
+        CutSettings { epsilon: 0.02, max_cut: 1000, clamp: Some(0.02), only: None }
     }
 }
 
@@ -89,6 +91,7 @@ pub struct Lightcut {
     /// Bound (as bits: non-negative floats sort as integers) above place in `entries`.
     offenders: BinaryHeap<u64>,
     batch: Vec<u32>,
+    limit: f32,
     /// What has been done so far.
     pub counts: CutCounts,
 }
@@ -102,6 +105,11 @@ impl Lightcut {
     /// The clusters of the last cut.
     pub fn entries(&self) -> &[CutEntry] {
         &self.entries
+    }
+
+    /// Luminance to which the indirect leaves of the last cut were clamped; infinite if none was.
+    pub fn limit(&self) -> f32 {
+        self.limit
     }
 
     /// What `receiver` gathers from all VPLs, to within the settings' error.
@@ -118,11 +126,12 @@ impl Lightcut {
         pass.refine();
         self.counts.cuts += 1;
         self.counts.clusters += self.entries.len() as u64;
-        self.sum(trees, settings.clamp)
+        self.sum(trees, settings.clamp, receiver.known_luminance())
     }
 
     /// Sums the cut anew, in one order and without the drift of the running total.
-    fn sum(&mut self, trees: &LightTrees, clamp: Option<f32>) -> Rgb {
+    fn sum(&mut self, trees: &LightTrees, clamp: Option<f32>, known: f32) -> Rgb {
+        self.limit = f32::INFINITY;
         let plain = |entries: &[CutEntry]| {
             entries.iter().fold(DVec3::ZERO, |sum, e| sum + e.contribution.as_dvec3()).as_vec3()
         };
@@ -146,15 +155,16 @@ impl Lightcut {
         };
         // Steps towards the luminance of which no leaf is more than a quarter; this one is frozen. A single
         // dominant leaf leaves a quarter of the excess each step; only four or more together converge slower.
-        let mut frozen = luminance(unclamped);
+        let mut frozen = luminance(unclamped) + known;
         for _ in 0..12 {
-            let next = luminance(limited(DOMINANT * frozen).0.as_vec3());
+            let next = luminance(limited(DOMINANT * frozen).0.as_vec3()) + known;
             if next > 0.99 * frozen {
                 break;
             }
             frozen = next;
         }
-        let (sum, clamped) = limited(clamp * frozen);
+        self.limit = clamp * frozen;
+        let (sum, clamped) = limited(self.limit);
         self.counts.clamped += clamped;
         sum.as_vec3()
     }
@@ -176,7 +186,8 @@ impl<R: Receiver, V: Visibility> Pass<'_, '_, R, V> {
     fn start(&mut self) {
         self.cut.entries.clear();
         self.cut.offenders.clear();
-        for &root in &self.trees.roots {
+        self.total = f64::from(self.receiver.known_luminance());
+        for root in self.trees.roots_of(self.settings.only) {
             let response = self.representative_response(root);
             let entry = self.entry(root, response, f64::MAX);
             self.total += f64::from(entry.counted);
@@ -252,7 +263,7 @@ impl<R: Receiver, V: Visibility> Pass<'_, '_, R, V> {
         }
         self.cut.counts.rays += 1;
         let (x, normal) = (self.receiver.position(), self.receiver.geometric_normal());
-        if self.visibility.visible(x, normal, vpl, node.kind()) { response } else { Rgb::ZERO }
+        if self.visibility.visible(x, normal, vpl, node) { response } else { Rgb::ZERO }
     }
 
     /// Queues the entry at `place` by its error bound, unless it cannot be wrong.

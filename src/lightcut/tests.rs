@@ -181,8 +181,8 @@ pub(super) struct Ball {
 }
 
 impl Visibility for Ball {
-    fn visible(&self, x: Vec3, _: Vec3, vpl: &Vpl, kind: VplKind) -> bool {
-        let (direction, t_max) = match kind {
+    fn visible(&self, x: Vec3, _: Vec3, vpl: &Vpl, node: &Node) -> bool {
+        let (direction, t_max) = match node.kind() {
             VplKind::Directional => (vpl.position, f32::INFINITY),
             _ => ((vpl.position - x).normalize_or_zero(), (vpl.position - x).length()),
         };
@@ -230,7 +230,8 @@ pub(super) fn rms(errors: &[f32]) -> f32 {
     (errors.iter().map(|e| e * e).sum::<f32>() / errors.len() as f32).sqrt()
 }
 
-pub(super) const EXACT: CutSettings = CutSettings { epsilon: 0.02, max_cut: usize::MAX, clamp: None };
+pub(super) const EXACT: CutSettings =
+    CutSettings { epsilon: 0.02, max_cut: usize::MAX, clamp: None, only: None };
 
 #[test]
 fn cuts_are_within_their_error_and_shrink_with_epsilon() {
@@ -262,7 +263,7 @@ fn with_no_tolerance_the_cut_is_the_full_sum() {
 #[test]
 fn the_cap_is_respected_and_counted() {
     let trees = LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive);
-    let settings = CutSettings { epsilon: 0.001, max_cut: 77, clamp: None };
+    let settings = CutSettings { epsilon: 0.001, max_cut: 77, clamp: None, only: None };
     let transfer = Transfer::new(&[], 1.7);
     let receiver = IrradianceReceiver {
         position: Vec3::splat(0.4),
@@ -272,7 +273,7 @@ fn the_cap_is_respected_and_counted() {
     let mut cut = Lightcut::new();
     cut.gather(&trees, &transfer, &Unoccluded, &receiver, &settings);
     assert_eq!((cut.entries().len(), cut.counts.capped), (77, 1));
-    let roomy = CutSettings { epsilon: 0.5, max_cut: 1000, clamp: None };
+    let roomy = CutSettings { epsilon: 0.5, max_cut: 1000, clamp: None, only: None };
     cut.gather(&trees, &transfer, &Unoccluded, &receiver, &roomy);
     assert_eq!(cut.counts.capped, 1, "a cut that converged is not counted as capped");
 }
@@ -340,7 +341,7 @@ fn a_weak_singularity_is_clamped_once_and_lights_are_not() {
     let x = Vec3::new(0.5, 0.5, 0.5);
     let trees_of =
         |set: &VplSet| LightTrees::build(std::slice::from_ref(set), Vec::new(), 1.7, Family::Divisive);
-    let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02) };
+    let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02), only: None };
     let without = luminance(irradiance(&trees_of(&set), 1.7, x, &settings));
     set.push(Vpl::oriented(x + Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
     let spike = luminance(irradiance(&trees_of(&set), 1.7, x, &CutSettings { clamp: None, ..settings }));

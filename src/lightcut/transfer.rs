@@ -78,8 +78,9 @@ impl<'a> Transfer<'a> {
 
 /// Whether a receiver sees a VPL.
 pub trait Visibility {
-    /// True if nothing lies between the surface point `x` with geometric normal `normal` and the VPL.
-    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, kind: VplKind) -> bool;
+    /// True if nothing lies between the surface point `x` with geometric normal `normal` and the VPL, which
+    /// represents `node`.
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool;
 }
 
 /// No surfaces at all: everything is visible.
@@ -88,7 +89,7 @@ pub struct Unoccluded;
 
 impl Visibility for Unoccluded {
     #[inline]
-    fn visible(&self, _: Vec3, _: Vec3, _: &Vpl, _: VplKind) -> bool {
+    fn visible(&self, _: Vec3, _: Vec3, _: &Vpl, _: &Node) -> bool {
         true
     }
 }

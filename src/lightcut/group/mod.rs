@@ -17,7 +17,7 @@ mod transfer;
 
 pub use points::Points;
 pub use refine::GroupLightcut;
-pub use transfer::GroupVisibility;
+pub use transfer::{GroupVisibility, shadow_rays};
 
 /// Points in a group.
 pub const LANES: usize = 16;

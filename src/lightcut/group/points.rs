@@ -30,6 +30,8 @@ pub struct Points<'m> {
     pub(super) mirror: [Vec3Lanes; 3],
     /// The same, absolute values.
     pub(super) abs_mirror: [Vec3Lanes; 3],
+    /// Luminance known from elsewhere.
+    pub(super) known: Lanes,
     /// Lambert BRDF.
     pub(super) brdf: Vec3Lanes,
     /// The same, by what it weighs in the luminance.
@@ -51,6 +53,7 @@ impl<'m> Points<'m> {
             abs_frame: [ZERO; 3],
             mirror: [ZERO; 3],
             abs_mirror: [ZERO; 3],
+            known: [0.0; LANES],
             brdf: ZERO,
             brdf_luminance: ZERO,
         }
@@ -74,6 +77,7 @@ impl<'m> Points<'m> {
             put(&mut self.geometric_normal, lane, r.geometric_normal());
             put_frame(&mut self.frame, &mut self.abs_frame, lane, r.frame());
             put_frame(&mut self.mirror, &mut self.abs_mirror, lane, r.mirror());
+            self.known[lane] = r.known_luminance();
             let brdf = r.lambert_brdf().unwrap_or(Rgb::ZERO);
             put(&mut self.brdf, lane, brdf);
             put(&mut self.brdf_luminance, lane, brdf * LUMINANCE);

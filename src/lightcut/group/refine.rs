@@ -36,6 +36,8 @@ pub struct GroupLightcut {
     entries: Vec<Entry>,
     /// Largest relative bound (as bits) above place in `entries`.
     offenders: BinaryHeap<u64>,
+    /// Luminance to which indirect leaves were clamped, by lane.
+    limits: Lanes,
     /// What has been done so far; a shared cut counts once for each of its points.
     pub counts: CutCounts,
     /// Packets of shadow rays.
@@ -51,6 +53,17 @@ impl GroupLightcut {
     /// Clusters in the last cut.
     pub fn size(&self) -> usize {
         self.entries.len()
+    }
+
+    /// The clusters of the last cut: node, and what a representative of unit intensity contributes to each lane,
+    /// visibility included.
+    pub fn entries(&self) -> impl Iterator<Item = (u32, &RgbLanes)> {
+        self.entries.iter().map(|e| (e.node, &e.responses))
+    }
+
+    /// Luminance to which a lane's indirect leaves were clamped in the last cut; infinite if none was.
+    pub fn limit(&self, lane: usize) -> f32 {
+        self.limits[lane]
     }
 
     /// Reflected radiance of each point, to within the settings' error or better.
@@ -69,7 +82,7 @@ impl GroupLightcut {
             visibility,
             points,
             settings,
-            totals: ZERO,
+            totals: points.known,
             room: settings.max_cut,
             cut: self,
         };
@@ -84,6 +97,7 @@ impl GroupLightcut {
     }
 
     fn sum(&mut self, trees: &LightTrees, points: &Points, clamp: Option<f32>, radiance: &mut [Rgb; LANES]) {
+        self.limits = [f32::INFINITY; LANES];
         let mut sums = [ZERO; 3];
         let mut brightest_leaf = ZERO;
         for e in &self.entries {
@@ -101,11 +115,14 @@ impl GroupLightcut {
         }
         for lane in lanes_of(points.valid) {
             let unclamped = Rgb::new(sums[0][lane], sums[1][lane], sums[2][lane]);
+            let known = points.known[lane];
             radiance[lane] = match clamp {
                 // Below this nothing is clamped: the frozen luminance is less than the unclamped one only if
                 // some leaf is a dominant part of it.
-                Some(clamp) if brightest_leaf[lane] > clamp.min(DOMINANT) * luminance(unclamped) => {
-                    self.clamped_sum(trees, lane, unclamped, clamp)
+                Some(clamp)
+                    if brightest_leaf[lane] > clamp.min(DOMINANT) * (luminance(unclamped) + known) =>
+                {
+                    self.clamped_sum(trees, lane, unclamped, known, clamp)
                 }
                 _ => unclamped,
             };
@@ -113,7 +130,14 @@ impl GroupLightcut {
     }
 
     /// One lane's sum with its weak singularities limited, as in the single-point cut.
-    fn clamped_sum(&mut self, trees: &LightTrees, lane: usize, unclamped: Rgb, clamp: f32) -> Rgb {
+    fn clamped_sum(
+        &mut self,
+        trees: &LightTrees,
+        lane: usize,
+        unclamped: Rgb,
+        known: f32,
+        clamp: f32,
+    ) -> Rgb {
         let limited = |limit: f32| {
             let mut clamped = 0;
             let sum = self.entries.iter().fold(DVec3::ZERO, |sum, e| {
@@ -128,15 +152,16 @@ impl GroupLightcut {
             });
             (sum.as_vec3(), clamped)
         };
-        let mut frozen = luminance(unclamped);
+        let mut frozen = luminance(unclamped) + known;
         for _ in 0..12 {
-            let next = luminance(limited(DOMINANT * frozen).0);
+            let next = luminance(limited(DOMINANT * frozen).0) + known;
             if next > 0.99 * frozen {
                 break;
             }
             frozen = next;
         }
-        let (sum, clamped) = limited(clamp * frozen);
+        self.limits[lane] = clamp * frozen;
+        let (sum, clamped) = limited(self.limits[lane]);
         self.counts.clamped += clamped;
         sum
     }
@@ -160,7 +185,7 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
     fn start(&mut self) {
         self.cut.entries.clear();
         self.cut.offenders.clear();
-        for &root in &self.trees.roots {
+        for root in self.trees.roots_of(self.settings.only) {
             let responses = self.representative_responses(root);
             let entry = self.entry(root, &responses, &[f32::MAX; LANES]);
             self.count(&entry);
@@ -203,7 +228,7 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
     }
 
     fn retotal(&mut self) {
-        self.totals = ZERO;
+        self.totals = self.points.known;
         for entry in &self.cut.entries {
             for (total, counted) in self.totals.iter_mut().zip(&entry.counted) {
                 *total += counted;
@@ -286,7 +311,7 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
         if lit != 0 {
             self.cut.counts.rays += u64::from(lit.count_ones());
             self.cut.packets += 1;
-            let seen = self.visibility.visible16(self.points, lit, vpl, node.kind());
+            let seen = self.visibility.visible16(self.points, lit, vpl, node);
             for row in &mut responses {
                 for (l, r) in row.iter_mut().enumerate() {
                     *r = if seen >> l & 1 != 0 { *r } else { 0.0 };

@@ -2,7 +2,7 @@
 
 use super::points::lanes_of;
 use super::*;
-use crate::light_tree::{Family, LightTrees};
+use crate::light_tree::{Family, LightTrees, Node};
 use crate::lightcut::tests::{
     Ball, EXACT, Numbers, SPOTS, all_materials, members, random_reflector, rms, room, three_kinds,
 };
@@ -16,8 +16,8 @@ use crate::vpl::{Vpl, VplKind};
 use glam::{Vec2, Vec3};
 
 impl GroupVisibility for Ball {
-    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, kind: VplKind) -> u16 {
-        let sees = |&lane: &usize| self.visible(points.get(lane).position(), Vec3::ZERO, vpl, kind);
+    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+        let sees = |&lane: &usize| self.visible(points.get(lane).position(), Vec3::ZERO, vpl, node);
         lanes_of(lanes).filter(sees).fold(0, |mask, lane| mask | 1 << lane)
     }
 }
@@ -131,7 +131,7 @@ fn one_lane_clamps_as_a_single_point_does() {
     let frame = crate::math::Frame::from_normal(Vec3::Y);
     let lambert = materials.at(&scene, MaterialId(0), Vec2::ZERO);
     let at = |p| Reflector::new(p, Vec3::Y, &frame, lambert, Vec3::Y);
-    let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02) };
+    let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02), only: None };
     let mut points = Points::new();
     points.set([at(x), at(x + Vec3::X * 0.02)]);
     let mut radiance = [Rgb::ZERO; LANES];
@@ -151,7 +151,7 @@ fn the_cap_holds_for_the_group() {
     let trees = LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive);
     let mut points = Points::new();
     points.set(neighbours(&materials, &scene, 1.0, 16, &mut Numbers(3)));
-    let settings = CutSettings { epsilon: 1e-4, max_cut: 77, clamp: None };
+    let settings = CutSettings { epsilon: 1e-4, max_cut: 77, clamp: None, only: None };
     let mut cut = GroupLightcut::new();
     let mut radiance = [Rgb::ZERO; LANES];
     cut.gather(&trees, &Transfer::new(&[], 1.7), &Unoccluded, &points, &settings, &mut radiance);
