@@ -13,7 +13,6 @@ mod bsdf;
 mod fresnel;
 mod microfacet;
 mod model;
-mod quadrature;
 mod sample;
 mod table;
 

@@ -7,8 +7,7 @@
 
 use super::fresnel;
 use super::microfacet::Microfacets;
-use super::quadrature::gauss_legendre;
-use crate::math::Rgb;
+use crate::math::{Rgb, gauss_legendre};
 use crate::scene::Fresnel;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -78,7 +77,7 @@ pub(super) struct RoughCoat {
 impl RoughCoat {
     pub fn new(facets: &Microfacets, eta: f32) -> RoughCoat {
         // Beyond the critical angle the integrand has a kink, hence more nodes towards the rarer side.
-        let (coarse, fine) = (gauss_legendre(32), gauss_legendre(128));
+        let (coarse, fine) = (rule(32), rule(128));
         let (outside_rule, inside_rule) = if eta > 1.0 { (&coarse, &fine) } else { (&fine, &coarse) };
         let transmittance = AngleTable::new(|wo| transmittance(facets, eta, wo, outside_rule));
         let mut max_transmittance = transmittance;
@@ -98,9 +97,14 @@ impl RoughCoat {
     }
 }
 
+/// Nodes and weights on [0, 1].
+fn rule(nodes: usize) -> Vec<(f32, f32)> {
+    gauss_legendre(nodes).iter().map(|&(x, weight)| (x as f32, weight as f32)).collect()
+}
+
 /// Albedo of a rough lobe by angle, before its scale.
 pub(super) fn lobe_albedo(facets: &Microfacets, fresnel: &Fresnel) -> AngleTable<Rgb> {
-    let rule = gauss_legendre(32);
+    let rule = rule(32);
     AngleTable::new(|wo| albedo(facets, fresnel, wo, &rule))
 }
 

@@ -1,8 +1,13 @@
-//! The small mathematics every stage shares: linear colour and orthonormal frames.
+//! The small mathematics every stage shares: linear colour, orthonormal frames, quadrature, and numbers
+//! side by side.
 
 mod frame;
+mod quadrature;
+mod real;
 
 pub use frame::Frame;
+pub use quadrature::gauss_legendre;
+pub use real::{F32x8, Real, WIDTH};
 
 /// Linear colour with sRGB (Rec. 709) primaries: radiance, irradiance, flux or reflectance as the name says.
 pub type Rgb = glam::Vec3;

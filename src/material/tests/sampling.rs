@@ -1,7 +1,7 @@
 //! Samples are distributed as the density says, and their weights are what the BSDF says.
 
 use super::*;
-use crate::material::quadrature::gauss_legendre;
+use crate::math::gauss_legendre;
 use std::f32::consts::{PI, TAU};
 
 const COS_BINS: usize = 10;
@@ -10,7 +10,7 @@ const INCLINATIONS: [f32; 4] = [0.0, 0.6, 1.2, 1.5];
 
 /// Probability of each bin of the upper hemisphere by quadrature of the density.
 fn expected(bsdf: &Bsdf, wo: Vec3) -> Vec<f64> {
-    let rule = gauss_legendre(40);
+    let rule: Vec<_> = gauss_legendre(40).iter().map(|&(x, w)| (x as f32, w as f32)).collect();
     let bin = |i: usize| {
         let (row, column) = (i / PHI_BINS, i % PHI_BINS);
         let mut sum = 0.0;

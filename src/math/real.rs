@@ -1,0 +1,137 @@
+//! Arithmetic that one formula can be written in once, and then run in single precision, in double precision, or
+//! in single precision for eight arguments side by side.
+
+use std::array::from_fn;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+/// A number, or several that go through the same steps.
+pub trait Real:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+{
+    /// A constant, rounded.
+    fn of(value: f64) -> Self;
+
+    /// Square root.
+    fn sqrt(self) -> Self;
+
+    /// The larger, and `other` where this is NaN.
+    fn max(self, other: Self) -> Self;
+}
+
+macro_rules! scalar {
+    ($($t:ty),*) => {$(
+        impl Real for $t {
+            #[inline(always)]
+            fn of(value: f64) -> $t {
+                value as $t
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> $t {
+                <$t>::sqrt(self)
+            }
+
+            #[inline(always)]
+            fn max(self, other: $t) -> $t {
+                <$t>::max(self, other)
+            }
+        }
+    )*};
+}
+scalar!(f32, f64);
+
+/// How many numbers go side by side in [`F32x8`].
+pub const WIDTH: usize = 8;
+
+/// Eight numbers in single precision; loops over them compile to vector code.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(32))]
+pub struct F32x8(pub [f32; WIDTH]);
+
+impl F32x8 {
+    /// Eight times nothing.
+    pub const ZERO: F32x8 = F32x8([0.0; WIDTH]);
+
+    /// The sum of all eight, always added in the same order.
+    #[inline]
+    pub fn sum(self) -> f32 {
+        let [a, b, c, d, e, f, g, h] = self.0;
+        ((a + e) + (c + g)) + ((b + f) + (d + h))
+    }
+}
+
+macro_rules! lanewise {
+    ($($operator:ident $function:ident $symbol:tt),*) => {$(
+        impl $operator for F32x8 {
+            type Output = F32x8;
+
+            #[inline(always)]
+            fn $function(self, other: F32x8) -> F32x8 {
+                F32x8(from_fn(|i| self.0[i] $symbol other.0[i]))
+            }
+        }
+    )*};
+}
+lanewise!(Add add +, Sub sub -, Mul mul *, Div div /);
+
+impl Neg for F32x8 {
+    type Output = F32x8;
+
+    #[inline(always)]
+    fn neg(self) -> F32x8 {
+        F32x8(self.0.map(|x| -x))
+    }
+}
+
+impl AddAssign for F32x8 {
+    #[inline(always)]
+    fn add_assign(&mut self, other: F32x8) {
+        *self = *self + other;
+    }
+}
+
+impl Real for F32x8 {
+    #[inline(always)]
+    fn of(value: f64) -> F32x8 {
+        F32x8([value as f32; WIDTH])
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> F32x8 {
+        F32x8(self.0.map(f32::sqrt))
+    }
+
+    #[inline(always)]
+    fn max(self, other: F32x8) -> F32x8 {
+        F32x8(from_fn(|i| self.0[i].max(other.0[i])))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn formula<T: Real>(a: T, b: T) -> T {
+        let mut sum = (a * b - a / b).max(T::of(0.25)).sqrt();
+        sum += -a + T::of(3.0);
+        sum
+    }
+
+    #[test]
+    fn every_lane_is_the_scalar_computation() {
+        let a: [f32; WIDTH] = from_fn(|i| 0.3 + i as f32);
+        let b: [f32; WIDTH] = from_fn(|i| 2.5 - 0.7 * i as f32);
+        let lanes = formula(F32x8(a), F32x8(b));
+        for i in 0..WIDTH {
+            assert_eq!(lanes.0[i], formula(a[i], b[i]));
+            assert!((f64::from(lanes.0[i]) - formula(f64::from(a[i]), f64::from(b[i]))).abs() < 1e-5);
+        }
+        assert_eq!(F32x8(from_fn(|i| i as f32)).sum(), 28.0);
+    }
+}
