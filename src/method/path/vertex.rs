@@ -127,8 +127,14 @@ impl Path {
         let normal = if wo.z < 0.0 { -surface.frame.normal } else { surface.frame.normal };
         let [u_light, u_direction, u_choices, u_roulette] = draws.numbers;
         if bsdf.has_smooth()
-            && let Some(light) =
-                world.emitters.sample_direct(&world.scene, surface.position, normal, u_choices.x, u_light)
+            && let Some(light) = world.emitters.sample_direct_with(
+                &world.scene,
+                surface.position,
+                normal,
+                u_choices.x,
+                u_light,
+                || draws.environment,
+            )
         {
             let wi = surface.frame.to_local(light.direction);
             let (value, pdf) = bsdf.eval_pdf(wo, wi);
