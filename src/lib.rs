@@ -7,7 +7,7 @@
 //! - [`vpl`] turns lights and photon paths into virtual point lights, [`light_tree`] clusters them;
 //! - [`eye`] follows each pixel through mirrors and glass to the surfaces that scatter light into it;
 //! - [`lightcut`] finds, for each of those, the coarsest clusters that keep the error bound;
-//! - [`hsh`] expands light and glossy reflection over the hemisphere;
+//! - [`gradient`] says how that light changes along the surface, [`hsh`] expands it over the hemisphere;
 //! - [`shadow`] keeps surfaces from shadowing themselves, [`sampling`] gives every stage its numbers;
 //! - [`method`] holds the renderers that are compared; [`image`] writes and compares what they return;
 //! - [`cli`] is the command around it all, [`stats`] what it reports.
@@ -17,6 +17,7 @@
 pub mod cli;
 pub mod embree;
 pub mod eye;
+pub mod gradient;
 pub mod hsh;
 pub mod image;
 pub mod light;

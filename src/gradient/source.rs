@@ -1,0 +1,152 @@
+//! The kinds of virtual lights as a receiver sees them.
+//!
+//! Units: per unit intensity (see [`crate::vpl`]), so the factor is 1/m² and its gradient 1/m³.
+
+use super::incidence::Incidence;
+use crate::math::{Frame, Real};
+use crate::vpl::{SpotProfile, Vpl, VplKind};
+use glam::Vec3;
+
+/// A virtual light in the receiver's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source<T> {
+    /// Radiates by the cosine to its normal.
+    Oriented {
+        /// From the receiver.
+        offset: [T; 3],
+        /// Unit length.
+        normal: [T; 3],
+    },
+    /// Radiates equally in all directions.
+    Omni {
+        /// From the receiver.
+        offset: [T; 3],
+    },
+    /// Infinitely far away.
+    Directional {
+        /// Unit direction to the light.
+        towards: [T; 3],
+    },
+}
+
+/// Direction, inverse distance and emitter's cosine of a light at a finite distance.
+struct Sight<T> {
+    omega: [T; 3],
+    inverse: T,
+    /// 1 for omni lights.
+    cos: T,
+    /// Derivative of `cos` by an offset of unit length, tangential part: the normal's, or 0.
+    normal: [T; 2],
+    /// Whether the distance is below the least that counts.
+    too_near: bool,
+}
+
+impl<T: Real + PartialOrd> Source<T> {
+    /// What arrives, with its first derivatives; `None` where nothing does: on the light itself, and behind it.
+    ///
+    /// Distances below `min_dist_sq` count as that, and then nothing changes with the receiver.
+    #[inline]
+    pub fn incidence(&self, min_dist_sq: T) -> Option<Incidence<T>> {
+        let zero = T::of(0.0);
+        let Source::Directional { towards } = *self else {
+            let Sight { omega, inverse, cos, normal, too_near } = self.sight(min_dist_sq)?;
+            if too_near {
+                let factor = cos / min_dist_sq;
+                return Some(Incidence { direction: omega, inv_dist: zero, factor, gradient: [zero; 2] });
+            }
+            // Falloff r⁻² and, for oriented lights, one power more from the cosine.
+            let power = if self.is_oriented() { T::of(3.0) } else { T::of(2.0) };
+            let square = inverse * inverse;
+            let slope = |axis: usize| square * inverse * (normal[axis] + power * cos * omega[axis]);
+            return Some(Incidence {
+                direction: omega,
+                inv_dist: inverse,
+                factor: cos * square,
+                gradient: [slope(0), slope(1)],
+            });
+        };
+        Some(Incidence { direction: towards, inv_dist: zero, factor: T::of(1.0), gradient: [zero; 2] })
+    }
+
+    /// Second derivatives uu, uv and vv of the irradiance.
+    #[inline]
+    pub fn irradiance_hessian(&self, min_dist_sq: T) -> [T; 3] {
+        let none = [T::of(0.0); 3];
+        let Some(Sight { omega: [x, y, z], inverse, cos, normal: [n_u, n_v], too_near }) =
+            self.sight(min_dist_sq)
+        else {
+            return none;
+        };
+        if too_near || !(z > T::of(0.0)) {
+            return none;
+        }
+        // Falloff of the irradiance over the constant height: 3 powers of the distance, and one from the cosine.
+        let (same, crossed) = if self.is_oriented() { (4.0, 24.0) } else { (3.0, 15.0) };
+        let (same, crossed, four) = (T::of(same), T::of(crossed) * cos, T::of(4.0));
+        let square = inverse * inverse;
+        let scale = square * square * z;
+        [
+            scale * (four * (n_u * x + n_u * x) + crossed * x * x - same * cos),
+            scale * (four * (n_u * y + n_v * x) + crossed * x * y),
+            scale * (four * (n_v * y + n_v * y) + crossed * y * y - same * cos),
+        ]
+    }
+
+    fn is_oriented(&self) -> bool {
+        matches!(self, Source::Oriented { .. })
+    }
+
+    #[inline]
+    fn sight(&self, min_dist_sq: T) -> Option<Sight<T>> {
+        let dot = |a: [T; 3], b: [T; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let zero = T::of(0.0);
+        let (offset, normal) = match *self {
+            Source::Oriented { offset, normal } => (offset, normal),
+            Source::Omni { offset } => (offset, [zero; 3]),
+            Source::Directional { .. } => return None,
+        };
+        let dist_sq = dot(offset, offset);
+        if !(dist_sq > zero) {
+            return None;
+        }
+        let inverse = T::of(1.0) / dist_sq.sqrt();
+        let omega = offset.map(|c| c * inverse);
+        let cos = if self.is_oriented() { -dot(normal, omega) } else { T::of(1.0) };
+        let too_near = dist_sq < min_dist_sq;
+        (cos > zero).then_some(Sight { omega, inverse, cos, normal: [normal[0], normal[1]], too_near })
+    }
+}
+
+impl Source<f32> {
+    /// A virtual light seen from `position` in `frame`, spot profiles left to [`Incidence::of_vpl`].
+    #[inline]
+    pub fn of_vpl(frame: &Frame, position: Vec3, vpl: &Vpl, kind: VplKind) -> Source<f32> {
+        let local = |v: Vec3| frame.to_local(v).to_array();
+        match kind {
+            VplKind::Oriented => {
+                Source::Oriented { offset: local(vpl.position - position), normal: local(vpl.normal()) }
+            }
+            VplKind::Omni => Source::Omni { offset: local(vpl.position - position) },
+            VplKind::Directional => Source::Directional { towards: local(vpl.position) },
+        }
+    }
+}
+
+impl Incidence<f32> {
+    /// What arrives from a virtual light at `position` in `frame`; spot profiles are looked up in `spots`.
+    #[inline]
+    pub fn of_vpl(
+        frame: &Frame,
+        position: Vec3,
+        vpl: &Vpl,
+        kind: VplKind,
+        spots: &[SpotProfile],
+        min_dist_sq: f32,
+    ) -> Option<Incidence<f32>> {
+        let incidence = Source::of_vpl(frame, position, vpl, kind).incidence(min_dist_sq)?;
+        match vpl.spot_profile() {
+            Some(profile) if kind == VplKind::Omni => incidence.through_spot(frame, &spots[profile]),
+            _ => Some(incidence),
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! The edge of a spot light's cone: its falloff by angle, and how that changes as the receiver moves.
+
+use super::incidence::Incidence;
+use crate::math::Frame;
+use crate::vpl::SpotProfile;
+use glam::Vec3;
+
+impl Incidence<f32> {
+    /// What of the light passes the profile; `None` outside the cone.
+    #[inline]
+    pub(super) fn through_spot(self, frame: &Frame, spot: &SpotProfile) -> Option<Incidence<f32>> {
+        let away = -Vec3::from(self.direction);
+        let axis = frame.to_local(spot.direction);
+        let share = spot.falloff(frame.to_world(away));
+        if share <= 0.0 {
+            return None;
+        }
+        if share >= 1.0 {
+            return Some(self);
+        }
+        // Between the cones: linear in the angle ψ, whose cosine is axis · away.
+        let cos = axis.dot(away);
+        let sin = (1.0 - cos * cos).max(1e-12).sqrt();
+        let per_cos = 1.0 / (sin * (spot.outer_angle - spot.inner_angle));
+        let slope = |axis_index: usize| -axis.dot(Vec3::from(self.turning(axis_index))) * per_cos;
+        Some(self.attenuated(share, [slope(0), slope(1)]))
+    }
+}
