@@ -110,7 +110,7 @@ impl<T: Real + PartialOrd> Source<T> {
             return None;
         }
         let inverse = T::of(1.0) / dist_sq.sqrt();
-        let omega = offset.map(|c| c * inverse);
+        let omega = [offset[0] * inverse, offset[1] * inverse, offset[2] * inverse];
         let cos = if self.is_oriented() { -dot(normal, omega) } else { T::of(1.0) };
         let too_near = dist_sq < min_dist_sq;
         (cos > zero).then_some(Sight { omega, inverse, cos, normal: [normal[0], normal[1]], too_near })

@@ -10,9 +10,15 @@
 //! Rendering*, EGSR 2004.
 //! Deviations: see [`for_each`]: no poles.
 
+mod accumulate;
 mod basis;
+mod kernel;
+mod radiance;
 
+pub use accumulate::Accumulator;
 pub use basis::{MAX_BANDS, MAX_FUNCTIONS, evaluate, for_each, index};
+pub use kernel::{Kernel, MAX_EVEN, Profile, even_index};
+pub use radiance::{Radiance, Reflected};
 
 #[cfg(test)]
 mod tests;

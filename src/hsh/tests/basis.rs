@@ -1,6 +1,6 @@
 //! The basis against what defines it: orthonormality, the formula in angles, finite differences.
 
-use super::*;
+use crate::hsh::*;
 use crate::math::{F32x8, Real, gauss_legendre};
 use std::array::from_fn;
 use std::f64::consts::TAU;

@@ -1,0 +1,72 @@
+//! What a surface seen from one direction does to the light from all others, as a series.
+
+use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
+use super::radiance::CHANNELS;
+use std::f32::consts::PI;
+
+/// Functions that are even in azimuth: orders m >= 0.
+pub const MAX_EVEN: usize = MAX_BANDS * (MAX_BANDS + 1) / 2;
+
+/// Number of the function of degree `l` and order `m`, 0 <= m <= l, among the even ones.
+#[inline]
+pub const fn even_index(l: usize, m: usize) -> usize {
+    l * (l + 1) / 2 + m
+}
+
+/// Coefficients of BRDF · cosine over the incoming directions, seen from azimuth 0: being symmetric about the plane of
+/// that azimuth, it has even functions only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Profile {
+    pub(super) bands: usize,
+    /// By channel and [`even_index`].
+    pub(super) coefficients: [[f32; MAX_EVEN]; CHANNELS],
+}
+
+impl Profile {
+    /// Bands in use; all coefficients beyond are 0.
+    pub fn bands(&self) -> usize {
+        self.bands
+    }
+
+    /// The kernel seen from the azimuth of `(x, y)`, which need not have unit length; at (0, 0) any azimuth will do.
+    #[inline]
+    pub fn towards(&self, x: f32, y: f32) -> Kernel {
+        let length = (x * x + y * y).sqrt();
+        let (cos, sin) = if length > 0.0 { (x / length, y / length) } else { (1.0, 0.0) };
+        let mut kernel = Kernel { coefficients: [[0.0; MAX_FUNCTIONS]; CHANNELS] };
+        let (mut cos_m, mut sin_m) = (1.0, 0.0);
+        for m in 0..self.bands {
+            for l in m..self.bands {
+                for c in 0..CHANNELS {
+                    let coefficient = self.coefficients[c][even_index(l, m)];
+                    kernel.coefficients[c][index(l, m as isize)] = coefficient * cos_m;
+                    if m > 0 {
+                        kernel.coefficients[c][index(l, -(m as isize))] = coefficient * sin_m;
+                    }
+                }
+            }
+            (cos_m, sin_m) = (cos * cos_m - sin * sin_m, sin * cos_m + cos * sin_m);
+        }
+        kernel
+    }
+}
+
+/// Coefficients of BRDF · cosine over the incoming directions, by channel; the scalar product with those of the radiance
+/// is what is reflected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kernel {
+    pub(super) coefficients: [[f32; MAX_FUNCTIONS]; CHANNELS],
+}
+
+impl Kernel {
+    /// The cosine alone, by which radiance becomes irradiance.
+    pub fn cosine(bands: usize) -> Kernel {
+        let mut row = [0.0; MAX_FUNCTIONS];
+        // cos θ = (1 + P_1(2 cos θ - 1)) / 2, and N is sqrt((2l + 1) / 2π)
+        row[index(0, 0)] = (PI / 2.0).sqrt();
+        if bands > 1 {
+            row[index(1, 0)] = (PI / 6.0).sqrt();
+        }
+        Kernel { coefficients: [row; CHANNELS] }
+    }
+}

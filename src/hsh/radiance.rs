@@ -1,0 +1,150 @@
+//! The light that arrives at a point, as a series, with its derivatives along the surface; and what a surface
+//! reflects of it.
+//!
+//! Units: radiance; its derivatives are per metre (or whatever unit the scene has).
+
+use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
+use super::kernel::Kernel;
+use crate::math::{F32x8, Rgb, WIDTH};
+
+/// Colour channels.
+pub(super) const CHANNELS: usize = 3;
+/// Value and two derivatives, each of every channel.
+pub(super) const BLOCKS: usize = 3 * CHANNELS;
+
+/// Radiance over the hemisphere, and its derivatives as the receiver moves along u and v.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Radiance {
+    bands: u8,
+    /// Coefficients of the value's red, green and blue, then of the derivatives' along u and along v; each block
+    /// padded with zeros so that it is a multiple of the vectors' width.
+    coefficients: Box<[f32]>,
+}
+
+/// What leaves a surface in one direction, and its derivatives as the receiver moves along u and v. Cut off as the
+/// series is, it may be negative.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reflected {
+    /// At the record.
+    pub value: Rgb,
+    /// By motion along u and v.
+    pub gradient: [Rgb; 2],
+}
+
+impl Reflected {
+    /// Extrapolated by motion along the tangents; what is negative there is clamped to 0.
+    #[inline]
+    pub fn at(&self, along_u: f32, along_v: f32) -> Rgb {
+        (self.value + self.gradient[0] * along_u + self.gradient[1] * along_v).max(Rgb::ZERO)
+    }
+}
+
+/// Floats of one block.
+#[inline]
+const fn stride(bands: usize) -> usize {
+    (bands * bands).next_multiple_of(WIDTH)
+}
+
+impl Radiance {
+    /// No light.
+    pub fn black(bands: usize) -> Radiance {
+        let bands = bands.clamp(1, MAX_BANDS);
+        Radiance { bands: bands as u8, coefficients: vec![0.0; BLOCKS * stride(bands)].into() }
+    }
+
+    /// How many bands the series has.
+    pub fn bands(&self) -> usize {
+        usize::from(self.bands)
+    }
+
+    /// Bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        size_of_val(&*self.coefficients)
+    }
+
+    #[inline]
+    pub(super) fn set(&mut self, block: usize, k: usize, coefficient: f32) {
+        self.coefficients[block * stride(self.bands()) + k] = coefficient;
+    }
+
+    #[inline]
+    fn get(&self, block: usize, k: usize) -> f32 {
+        self.coefficients[block * stride(self.bands()) + k]
+    }
+
+    /// Coefficient `k` of the radiance.
+    pub fn coefficient(&self, k: usize) -> Rgb {
+        self.part(0, k)
+    }
+
+    /// Coefficient `k` of the derivatives along u and v.
+    pub fn derivatives(&self, k: usize) -> [Rgb; 2] {
+        [self.part(1, k), self.part(2, k)]
+    }
+
+    fn part(&self, part: usize, k: usize) -> Rgb {
+        let [r, g, b] = std::array::from_fn(|c| self.get(part * CHANNELS + c, k));
+        Rgb::new(r, g, b)
+    }
+
+    /// What a surface reflects towards the direction its kernel was made for. Of kernel and radiance, the one with fewer
+    /// bands decides.
+    #[inline]
+    pub fn reflected(&self, kernel: &Kernel) -> Reflected {
+        let stride = stride(self.bands());
+        let mut sums = [Rgb::ZERO; 3];
+        for c in 0..CHANNELS {
+            let kernel = &kernel.coefficients[c][..stride];
+            for (part, sum) in sums.iter_mut().enumerate() {
+                let start = (part * CHANNELS + c) * stride;
+                sum[c] = dot(&self.coefficients[start..start + stride], kernel);
+            }
+        }
+        let [value, along_u, along_v] = sums;
+        Reflected { value, gradient: [along_u, along_v] }
+    }
+
+    /// The irradiance: exact, whatever else the bands leave out, from two bands on.
+    pub fn irradiance(&self) -> Reflected {
+        self.reflected(&Kernel::cosine(self.bands()))
+    }
+
+    /// The same light in a frame whose tangents are turned by `angle` about the normal, from u towards v.
+    pub fn turned(&self, angle: f32) -> Radiance {
+        let mut turned = self.clone();
+        for block in 0..BLOCKS {
+            for m in 1..self.bands() {
+                let (sin, cos) = (m as f32 * angle).sin_cos();
+                for l in m..self.bands() {
+                    let (even, odd) = (index(l, m as isize), index(l, -(m as isize)));
+                    let (c, s) = (self.get(block, even), self.get(block, odd));
+                    turned.set(block, even, cos * c + sin * s);
+                    turned.set(block, odd, cos * s - sin * c);
+                }
+            }
+        }
+        // The directions of motion turn too.
+        let (sin, cos) = angle.sin_cos();
+        for c in 0..CHANNELS {
+            for k in 0..self.bands() * self.bands() {
+                let (along_u, along_v) = (CHANNELS + c, 2 * CHANNELS + c);
+                let (u, v) = (turned.get(along_u, k), turned.get(along_v, k));
+                turned.set(along_u, k, cos * u + sin * v);
+                turned.set(along_v, k, cos * v - sin * u);
+            }
+        }
+        turned
+    }
+}
+
+/// Sum of products of two rows whose length is a multiple of the vectors' width.
+#[inline]
+fn dot(a: &[f32], b: &[f32]) -> f32 {
+    let mut sum = F32x8::ZERO;
+    for (a, b) in a.as_chunks::<WIDTH>().0.iter().zip(b.as_chunks::<WIDTH>().0) {
+        sum += F32x8(*a) * F32x8(*b);
+    }
+    sum.sum()
+}
+
+const _: () = assert!(stride(MAX_BANDS) == MAX_FUNCTIONS);
