@@ -6,7 +6,9 @@
 //! fans out lost some 1e-4 of its hits.
 
 use super::{ALL_GEOMETRY, Accel, Ray};
+use crate::math::Vec3x16;
 use embree4_sys as sys;
+use glam::Vec3;
 
 /// Sixteen rays, a lane each, as a structure of arrays.
 ///
@@ -55,7 +57,7 @@ impl Rays16 {
     ///
     /// # Panics
     /// If `lane` is 16 or more.
-    #[inline]
+    #[inline(always)]
     pub fn set(&mut self, lane: usize, ray: &Ray) {
         self.origin_x[lane] = ray.origin.x;
         self.origin_y[lane] = ray.origin.y;
@@ -65,6 +67,29 @@ impl Rays16 {
         self.direction_y[lane] = ray.direction.y;
         self.direction_z[lane] = ray.direction.z;
         self.t_far[lane] = ray.t_far;
+    }
+
+    /// The ray in a lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Ray {
+        Ray {
+            origin: Vec3::new(self.origin_x[lane], self.origin_y[lane], self.origin_z[lane]),
+            t_near: self.t_near[lane],
+            direction: Vec3::new(self.direction_x[lane], self.direction_y[lane], self.direction_z[lane]),
+            t_far: self.t_far[lane],
+        }
+    }
+
+    /// Origins of all lanes.
+    #[inline]
+    pub fn origins(&self) -> Vec3x16 {
+        Vec3x16 { x: self.origin_x, y: self.origin_y, z: self.origin_z }
+    }
+
+    /// Directions of all lanes.
+    #[inline]
+    pub fn directions(&self) -> Vec3x16 {
+        Vec3x16 { x: self.direction_x, y: self.direction_y, z: self.direction_z }
     }
 
     /// The lanes of `valid` as Embree takes them, without those whose segment does not exist.
@@ -141,6 +166,21 @@ pub struct Hits16 {
     pub geometry: [u32; 16],
     /// Indices of the triangles in their meshes.
     pub primitive: [u32; 16],
+}
+
+impl Hits16 {
+    /// Puts a copy of lane `from` into the lanes of `to`.
+    #[inline]
+    pub fn repeat(&mut self, from: usize, to: u16) {
+        for i in 0..16 {
+            let copied = (to >> i) & 1 != 0;
+            self.t[i] = if copied { self.t[from] } else { self.t[i] };
+            self.u[i] = if copied { self.u[from] } else { self.u[i] };
+            self.v[i] = if copied { self.v[from] } else { self.v[i] };
+            self.geometry[i] = if copied { self.geometry[from] } else { self.geometry[i] };
+            self.primitive[i] = if copied { self.primitive[from] } else { self.primitive[i] };
+        }
+    }
 }
 
 /// The traversal that a hint asks for.

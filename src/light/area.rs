@@ -3,7 +3,7 @@
 use super::distribution::Distribution;
 use crate::math::{Rgb, luminance};
 use crate::sampling::uniform_triangle;
-use crate::scene::{Emission, Mesh, Scene};
+use crate::scene::{Emission, Mesh, Scene, TextureId};
 use glam::{Vec2, Vec3};
 
 /// One mesh that emits.
@@ -22,7 +22,7 @@ pub struct AreaLight {
     /// Radius of that sphere.
     pub radius: f32,
     /// The front's normal where the mesh is flat and emits from one side: behind its plane it is invisible.
-    flat_normal: Option<Vec3>,
+    flat_normal: Vec3,
     triangles: Distribution,
     /// First corner, two edges and unit normal of each triangle.
     shapes: Vec<[Vec3; 4]>,
@@ -75,7 +75,7 @@ impl AreaLight {
             power,
             centre: 0.5 * (low + high),
             radius: 0.5 * (high - low).length(),
-            flat_normal: flat.then_some(first),
+            flat_normal: if flat { first } else { Vec3::ZERO },
             triangles,
             shapes: (0..mesh.triangles.len())
                 .map(|t| {
@@ -89,15 +89,29 @@ impl AreaLight {
     /// A point uniform over the area; density 1/area.
     #[inline]
     pub fn sample(&self, u: Vec2) -> AreaPoint {
-        let (triangle, rest) = self.triangles.sample(u.x);
-        let [corner, e1, e2, normal] = self.shapes[triangle];
-        let barycentric = uniform_triangle(Vec2::new(rest, u.y));
+        let (triangle, [corner, e1, e2, normal], u) = self.choose_triangle(u);
+        let barycentric = uniform_triangle(u);
         AreaPoint {
-            triangle: triangle as u32,
+            triangle,
             position: corner + e1 * barycentric.x + e2 * barycentric.y,
             normal,
             barycentric,
         }
+    }
+
+    /// A triangle in proportion to its area, its first corner, edges from there and unit normal, and the numbers
+    /// left to choose a point on it.
+    #[inline]
+    pub(super) fn choose_triangle(&self, u: Vec2) -> (u32, [Vec3; 4], Vec2) {
+        let (triangle, rest) = self.triangles.sample(u.x);
+        (triangle as u32, self.shapes[triangle], Vec2::new(rest, u.y))
+    }
+
+    /// Factor by texture on what the light emits at a point of a triangle.
+    #[inline]
+    pub(super) fn texture(&self, scene: &Scene, triangle: u32, barycentric: Vec2) -> Rgb {
+        let mesh = &scene.meshes[self.mesh as usize];
+        texture_factor(scene, mesh, self.emission.texture, triangle, barycentric)
     }
 
     /// Radiance leaving a point of the light towards the unit vector `out`.
@@ -106,16 +120,16 @@ impl AreaLight {
         emitted(scene, self.mesh, point.triangle, point.barycentric, point.normal, out)
     }
 
-    /// Rough irradiance at `x` on a surface facing the light, for choosing between lights only.
-    #[inline]
-    pub fn importance(&self, x: Vec3) -> f32 {
+    /// Rough irradiance at `x`, on a surface of normal `n` that could face the light, for choosing between lights
+    /// only; zero where no part of the light can shine on that side.
+    #[inline(always)]
+    pub(super) fn importance(&self, x: Vec3, n: Vec3) -> f32 {
         let to_light = self.centre - x;
-        if let Some(n) = self.flat_normal
-            && n.dot(to_light) >= self.radius
-        {
-            return 0.0;
-        }
-        self.power / to_light.length_squared().max(self.radius * self.radius).max(f32::MIN_POSITIVE)
+        let below = n.dot(to_light) <= -self.radius;
+        // The zero vector of a light that is not flat passes for a plane that nothing is behind.
+        let behind = self.flat_normal.dot(to_light) >= self.radius;
+        let dist_sq = to_light.length_squared().max(self.radius * self.radius).max(f32::MIN_POSITIVE);
+        if below | behind { 0.0 } else { self.power / dist_sq }
     }
 }
 
@@ -127,13 +141,19 @@ pub fn emitted(scene: &Scene, mesh: u32, triangle: u32, barycentric: Vec2, norma
     if !emission.two_sided && normal.dot(out) <= 0.0 {
         return Rgb::ZERO;
     }
-    match emission.texture {
-        None => emission.radiance,
-        Some(t) => {
-            let uv = mesh.uv(triangle as usize, barycentric);
-            emission.radiance * scene.textures[t.0 as usize].lookup(uv)
-        }
-    }
+    emission.radiance * texture_factor(scene, mesh, emission.texture, triangle, barycentric)
+}
+
+/// Factor by texture on what a mesh emits.
+#[inline]
+fn texture_factor(
+    scene: &Scene,
+    mesh: &Mesh,
+    texture: Option<TextureId>,
+    triangle: u32,
+    barycentric: Vec2,
+) -> Rgb {
+    texture.map_or(Rgb::ONE, |t| scene.textures[t.0 as usize].lookup(mesh.uv(triangle as usize, barycentric)))
 }
 
 fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {

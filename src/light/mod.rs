@@ -6,15 +6,17 @@
 mod area;
 mod distribution;
 mod environment;
+mod packet;
 mod select;
 
 pub use area::{AreaLight, AreaPoint, emitted, normal_and_area};
 pub use distribution::Distribution;
 pub use environment::{EnvironmentLight, EnvironmentSample};
+pub use packet::{DirectSamples16, for_fours};
 
-use crate::math::{Rgb, luminance};
+use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, luminance};
 use crate::scene::{DeltaLight, Scene};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use std::f32::consts::PI;
 
 /// Marks a mesh that is no light in [`Emitters::light_of_mesh`].
@@ -70,95 +72,71 @@ impl Emitters {
         self.areas.is_empty() && self.deltas.is_empty() && self.environment.is_none()
     }
 
-    /// Samples light arriving at `x`, on a surface whose reflecting side has normal `n`; `None` if the
-    /// chosen emitter sends nothing there. Visibility is not looked at.
+    /// Whether a mesh is a light.
     #[inline]
-    pub fn sample_direct(
-        &self,
-        scene: &Scene,
-        x: Vec3,
-        n: Vec3,
-        u_choice: f32,
-        u: Vec2,
-    ) -> Option<DirectSample> {
-        let environment = || self.environment.as_ref()?.sample(u);
-        self.sample_direct_with(scene, x, n, u_choice, u, environment)
+    pub fn is_light(&self, mesh: u32) -> bool {
+        self.light_of_mesh[mesh as usize] != NO_LIGHT
     }
 
-    /// [`Emitters::sample_direct`] with the environment's sample for `u` given by the caller, who may have
-    /// drawn many at once.
+    /// Densities with which [`Emitters::sample_direct`] at `x` draws points of the meshes `mesh` that lie at
+    /// `distance` and show their surfaces under `cos` (either sign); zero where a mesh is no light.
     #[inline]
-    pub fn sample_direct_with(
+    pub fn pdf_areas(
         &self,
-        scene: &Scene,
-        x: Vec3,
-        n: Vec3,
-        u_choice: f32,
-        u: Vec2,
-        environment: impl FnOnce() -> Option<EnvironmentSample>,
-    ) -> Option<DirectSample> {
-        let (index, choice) = self.selection.sample(self, x, n, u_choice)?;
-        if let Some(light) = self.areas.get(index) {
-            let point = light.sample(u);
-            let offset = point.position - x;
-            let dist_sq = offset.length_squared();
-            let distance = dist_sq.sqrt();
-            let direction = offset / distance;
-            let cos = point.normal.dot(direction).abs();
-            let pdf = choice * dist_sq / (light.area * cos);
-            let radiance = light.radiance(scene, &point, -direction);
-            let useful = pdf.is_finite() && pdf > 0.0 && radiance != Rgb::ZERO;
-            return useful.then_some(DirectSample {
-                direction,
-                distance,
-                normal: point.normal,
-                radiance,
-                pdf,
-                delta: false,
-            });
-        }
-        if let Some(light) = self.deltas.get(index - self.areas.len()) {
-            let (direction, distance, irradiance) = delta_irradiance(light, x);
-            let useful = irradiance != Rgb::ZERO && irradiance.is_finite();
-            return useful.then_some(DirectSample {
-                direction,
-                distance,
-                normal: Vec3::ZERO,
-                radiance: irradiance,
-                pdf: choice,
-                delta: true,
-            });
-        }
-        let s = environment()?;
-        Some(DirectSample {
-            direction: s.direction,
-            distance: f32::INFINITY,
-            normal: Vec3::ZERO,
-            radiance: s.radiance,
-            pdf: choice * s.pdf,
-            delta: false,
+        (x, n): (&Vec3x16, &Vec3x16),
+        mesh: &U32x16,
+        distance: &F32x16,
+        cos: &F32x16,
+    ) -> F32x16 {
+        let lights = mesh.map(|mesh| self.light_of_mesh[mesh as usize]);
+        let index = lights.map(|light| if light == NO_LIGHT { 0 } else { light });
+        let choice = self.selection.probability(self, (x, n), &index);
+        std::array::from_fn(|i| {
+            if lights[i] == NO_LIGHT {
+                return 0.0;
+            }
+            let pdf = distance[i] * distance[i] / (self.areas[lights[i] as usize].area * cos[i].abs());
+            if pdf.is_finite() { choice[i] * pdf } else { 0.0 }
         })
-    }
-
-    /// Density with which [`Emitters::sample_direct`] at `x` draws a point of mesh `mesh` that lies at
-    /// `distance` and shows its surface under `cos` (either sign); zero if the mesh is no light.
-    #[inline]
-    pub fn pdf_area(&self, x: Vec3, n: Vec3, mesh: u32, distance: f32, cos: f32) -> f32 {
-        let index = self.light_of_mesh[mesh as usize];
-        if index == NO_LIGHT {
-            return 0.0;
-        }
-        let light = &self.areas[index as usize];
-        let pdf = distance * distance / (light.area * cos.abs());
-        if pdf.is_finite() { self.selection.probability(self, x, n, index as usize) * pdf } else { 0.0 }
     }
 
     /// Probability with which [`Emitters::sample_direct`] at `x` chooses the environment.
     #[inline]
-    pub fn environment_choice(&self, x: Vec3, n: Vec3) -> f32 {
-        let index = self.areas.len() + self.deltas.len();
-        self.selection.probability(self, x, n, index)
+    pub fn environment_choice(&self, x: &Vec3x16, n: &Vec3x16) -> F32x16 {
+        let index = (self.areas.len() + self.deltas.len()) as u32;
+        self.selection.probability(self, (x, n), &[index; LANES])
     }
+}
+
+impl EnvironmentSample {
+    /// The sample as one of several emitters', chosen with probability `choice`.
+    #[inline]
+    fn direct(&self, choice: f32) -> DirectSample {
+        DirectSample {
+            direction: self.direction,
+            distance: f32::INFINITY,
+            normal: Vec3::ZERO,
+            radiance: self.radiance,
+            pdf: choice * self.pdf,
+            delta: false,
+        }
+    }
+}
+
+/// The light at `x` from a delta light chosen with probability `choice`.
+#[inline]
+fn sample_delta(light: &DeltaLight, x: Vec3, choice: f32) -> Option<DirectSample> {
+    let (direction, distance, irradiance) = delta_irradiance(light, x);
+    let useful = irradiance != Rgb::ZERO && irradiance.is_finite();
+    let normal = Vec3::ZERO;
+    useful.then_some(DirectSample {
+        direction,
+        distance,
+        normal,
+        radiance: irradiance,
+        pdf: choice,
+        delta: true,
+    })
 }
 
 /// Direction and distance to a delta light from `x`, and the irradiance it gives a surface facing it.

@@ -4,9 +4,8 @@
 //! no emitter is starved; with many it follows power alone.
 
 use super::{AreaLight, Distribution, Emitters, EnvironmentLight, delta_irradiance, delta_power};
-use crate::math::luminance;
+use crate::math::{F32x16, LANES, U32x16, Vec3x16, luminance};
 use crate::scene::DeltaLight;
-use glam::Vec3;
 use std::f32::consts::PI;
 
 /// Up to this many emitters are weighed one by one at every shaded point.
@@ -14,6 +13,9 @@ const WEIGHED: usize = 32;
 
 /// Share of the choice that ignores where the point is.
 const BY_POWER: f32 = 0.1;
+
+/// Points to be lit, and the normals of their reflecting sides.
+pub(super) type Points<'a> = (&'a Vec3x16, &'a Vec3x16);
 
 #[derive(Clone, Debug)]
 pub(super) struct Selection {
@@ -35,80 +37,102 @@ impl Selection {
         Selection { by_power: Distribution::new(areas.chain(deltas).chain(environment)) }
     }
 
-    /// An emitter and the probability of the choice.
+    /// An emitter for each lane and the probability of its choice; zero where no emitter can be chosen.
     #[inline]
-    pub fn sample(&self, e: &Emitters, x: Vec3, n: Vec3, u: f32) -> Option<(usize, f32)> {
+    pub fn sample(&self, e: &Emitters, at: Points, u: &F32x16) -> (U32x16, F32x16) {
+        let (mut chosen, mut choice) = ([0; LANES], [0.0; LANES]);
         let count = self.by_power.len();
         if self.by_power.is_empty() {
-            return None;
+            return (chosen, choice);
         }
         if count == 1 {
-            return Some((0, 1.0));
+            return (chosen, [1.0; LANES]);
         }
         if count > WEIGHED {
-            let (i, _) = self.by_power.sample(u);
-            return Some((i, self.by_power.probability(i)));
+            for i in 0..LANES {
+                let (index, _) = self.by_power.sample(u[i]);
+                chosen[i] = index as u32;
+                choice[i] = self.by_power.probability(index);
+            }
+            return (chosen, choice);
         }
-        let (weights, total) = self.weights(e, x, n);
-        if total <= 0.0 {
-            return None;
+        let (weights, total) = self.weights(e, at);
+        let mut left = [0.0; LANES];
+        for i in 0..LANES {
+            left[i] = u[i] * total[i];
         }
-        let mut left = u * total;
-        let mut chosen = None;
-        for (i, w) in weights[..count].iter().enumerate() {
-            if *w > 0.0 {
-                chosen = Some((i, w / total));
-                if left < *w {
-                    break;
-                }
-                left -= w;
+        // The last emitter of a lane that has weight is kept where rounding leaves something over.
+        let mut open = [1u32; LANES];
+        for (index, w) in (0u32..).zip(&weights[..count]) {
+            for i in 0..LANES {
+                let takes = (open[i] != 0) & (w[i] > 0.0);
+                chosen[i] = if takes { index } else { chosen[i] };
+                choice[i] = if takes { w[i] } else { choice[i] };
+                open[i] = u32::from((open[i] != 0) & !(takes & (left[i] < w[i])));
+                left[i] -= w[i];
             }
         }
-        chosen
+        for i in 0..LANES {
+            choice[i] = if total[i] > 0.0 { choice[i] / total[i] } else { 0.0 };
+        }
+        (chosen, choice)
     }
 
-    /// Probability of [`Selection::sample`] choosing emitter `index`.
+    /// Probability of [`Selection::sample`] choosing emitter `index[lane]` in each lane.
     #[inline]
-    pub fn probability(&self, e: &Emitters, x: Vec3, n: Vec3, index: usize) -> f32 {
+    pub fn probability(&self, e: &Emitters, at: Points, index: &U32x16) -> F32x16 {
         match self.by_power.len() {
-            1 => 1.0,
-            count if count > WEIGHED => self.by_power.probability(index),
+            1 => [1.0; LANES],
+            count if count > WEIGHED => index.map(|i| self.by_power.probability(i as usize)),
             _ => {
-                let (weights, total) = self.weights(e, x, n);
-                if total > 0.0 { weights[index] / total } else { 0.0 }
+                let (weights, total) = self.weights(e, at);
+                std::array::from_fn(|i| {
+                    if total[i] > 0.0 { weights[index[i] as usize][i] / total[i] } else { 0.0 }
+                })
             }
         }
     }
 
+    /// Weights of all emitters, and their sums.
     #[inline]
-    fn weights(&self, e: &Emitters, x: Vec3, n: Vec3) -> ([f32; WEIGHED], f32) {
-        let mut weights = [0.0; WEIGHED];
-        let mut local_total = 0.0;
-        for (w, a) in weights.iter_mut().zip(&e.areas) {
-            let below = n.dot(a.centre - x) <= -a.radius;
-            *w = if below { 0.0 } else { a.importance(x) };
+    fn weights(&self, e: &Emitters, (x, n): Points) -> ([F32x16; WEIGHED], F32x16) {
+        let mut weights = [[0.0; LANES]; WEIGHED];
+        for (w, light) in weights.iter_mut().zip(&e.areas) {
+            for i in 0..LANES {
+                w[i] = light.importance(x.get(i), n.get(i));
+            }
         }
         let rest = &mut weights[e.areas.len()..];
-        for (w, d) in rest.iter_mut().zip(&e.deltas) {
-            let (direction, _, irradiance) = delta_irradiance(d, x);
-            let w_raw = luminance(irradiance) * PI;
-            *w = if n.dot(direction) > 0.0 && w_raw.is_finite() { w_raw } else { 0.0 };
+        for (w, light) in rest.iter_mut().zip(&e.deltas) {
+            for i in 0..LANES {
+                let (direction, _, irradiance) = delta_irradiance(light, x.get(i));
+                let raw = luminance(irradiance) * PI;
+                w[i] = if n.get(i).dot(direction) > 0.0 && raw.is_finite() { raw } else { 0.0 };
+            }
         }
         if let Some(environment) = &e.environment {
-            rest[e.deltas.len()] = PI * PI * environment.mean_luminance();
+            rest[e.deltas.len()] = [PI * PI * environment.mean_luminance(); LANES];
         }
-        for w in &weights[..self.by_power.len()] {
-            local_total += w;
+        let weights_used = &mut weights[..self.by_power.len()];
+        let mut local_total = [0.0; LANES];
+        for w in weights_used.iter() {
+            for i in 0..LANES {
+                local_total[i] += w[i];
+            }
         }
-        if !(local_total > 0.0 && local_total.is_finite()) {
-            return (weights, 0.0);
+        let mut scale = [0.0; LANES];
+        for i in 0..LANES {
+            let usable = (local_total[i] > 0.0) & (local_total[i] < f32::INFINITY);
+            scale[i] = if usable { (1.0 - BY_POWER) / local_total[i] } else { 0.0 };
         }
-        // Emitters that cannot shine on this side stay at zero.
-        let mut total = 0.0;
-        for (i, w) in weights[..self.by_power.len()].iter_mut().enumerate() {
-            if *w > 0.0 {
-                *w = *w / local_total * (1.0 - BY_POWER) + BY_POWER * self.by_power.probability(i);
-                total += *w;
+        let mut total = [0.0; LANES];
+        for (index, w) in weights_used.iter_mut().enumerate() {
+            let by_power = BY_POWER * self.by_power.probability(index);
+            for i in 0..LANES {
+                // Emitters that cannot shine on this side stay at zero.
+                let shines = (w[i] > 0.0) & (scale[i] > 0.0);
+                w[i] = if shines { w[i] * scale[i] + by_power } else { 0.0 };
+                total[i] += w[i];
             }
         }
         (weights, total)

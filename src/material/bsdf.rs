@@ -48,7 +48,7 @@ impl Bsdf<'_> {
     #[inline]
     pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         let Some((wo, wi)) = self.on_front(wo, wi) else { return (Rgb::ZERO, 0.0) };
-        if let (Base::Lambert, Scattering::None) = (&self.model.base, &self.model.lobe) {
+        if self.is_lambert() {
             return (self.base, wi.z * FRAC_1_PI);
         }
         self.eval_pdf_layered(&self.outgoing(wo), wi)
@@ -79,13 +79,16 @@ impl Bsdf<'_> {
         }
     }
 
+    /// Whether the material is Lambertian and nothing else.
+    #[inline]
+    pub(super) fn is_lambert(&self) -> bool {
+        matches!((&self.model.base, &self.model.lobe), (Base::Lambert, Scattering::None))
+    }
+
     /// The albedo, if the material is Lambertian and nothing else.
     #[inline]
     pub fn lambert_albedo(&self) -> Option<Rgb> {
-        match (&self.model.base, &self.model.lobe) {
-            (Base::Lambert, Scattering::None) => Some(self.base * PI),
-            _ => None,
-        }
+        self.is_lambert().then(|| self.base * PI)
     }
 
     /// Whether the side away from the normal behaves as the front does.

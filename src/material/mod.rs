@@ -13,12 +13,14 @@ mod bsdf;
 mod fresnel;
 mod microfacet;
 mod model;
+mod packet;
 mod sample;
 mod table;
 
 pub use bound::DirectionBound;
 pub use bsdf::Bsdf;
 pub use model::Materials;
+pub use packet::{BsdfSamples16, Bsdfs16};
 pub use sample::{BsdfSample, DeltaLobes};
 
 #[cfg(test)]

@@ -85,10 +85,16 @@ impl Materials {
     /// The material at texture coordinates `uv`. `scene` must be the one the materials were made from.
     #[inline]
     pub fn at(&self, scene: &Scene, id: MaterialId, uv: Vec2) -> Bsdf<'_> {
+        self.at_coordinates(scene, id, || uv)
+    }
+
+    /// [`Materials::at`] texture coordinates that are only asked for where there is a texture.
+    #[inline]
+    pub fn at_coordinates(&self, scene: &Scene, id: MaterialId, uv: impl FnOnce() -> Vec2) -> Bsdf<'_> {
         let model = &self.models[id.0 as usize];
         let values = match model.constant {
             Some(values) => values,
-            None => model.textured(scene, uv),
+            None => model.textured(scene, uv()),
         };
         Bsdf { model, base: values.base, scale: values.scale, transmittance: values.transmittance }
     }

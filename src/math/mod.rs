@@ -2,10 +2,12 @@
 //! side by side.
 
 mod frame;
+mod lanes;
 mod quadrature;
 mod real;
 
 pub use frame::Frame;
+pub use lanes::{F32x16, LANES, U32x16, Vec2x16, Vec3x16, first_lanes, lanes_in, mask_of};
 pub use quadrature::gauss_legendre;
 pub use real::{F32x8, Real, WIDTH};
 

@@ -13,7 +13,7 @@ use glam::Vec2;
 /// Tell the dimensions of a pair, and pairs, apart: the digits of π, e and the golden ratio.
 const X_SEED: u32 = 0x6487_ed51;
 const Y_SEED: u32 = 0xb7e1_5162;
-const DIMENSION_STEP: u32 = 0x9e37_79b9;
+pub(super) const DIMENSION_STEP: u32 = 0x9e37_79b9;
 
 /// A well-mixed 32-bit hash of two words.
 #[inline]
@@ -29,7 +29,7 @@ pub fn hash(a: u32, b: u32) -> u32 {
 
 /// A cheaper hash of one word (Wellons' *lowbias32*), for seeds that the scramble will mix further.
 #[inline(always)]
-fn mix(mut x: u32) -> u32 {
+pub(super) fn mix(mut x: u32) -> u32 {
     x ^= x >> 16;
     x = x.wrapping_mul(0x7feb_352d);
     x ^= x >> 15;
@@ -113,31 +113,6 @@ impl Sampler {
         owen_sobol_2d(self.index, self.next_seed())
     }
 
-    /// What four calls of [`Sampler::next_2d`] return, computed side by side.
-    #[inline]
-    pub fn next_4x2d(&mut self) -> [Vec2; 4] {
-        // Step by step over all lanes, so that every step is one vector operation.
-        let mut dimensions = [0; 4];
-        for d in &mut dimensions {
-            self.dimension = self.dimension.wrapping_add(DIMENSION_STEP);
-            *d = self.dimension;
-        }
-        let seeds = dimensions.map(|d| mix(self.seed ^ d));
-        let reversed = self.index.reverse_bits();
-        let indices = seeds.map(|seed| scramble_reversed(reversed, seed)).map(u32::reverse_bits);
-        let x_seeds = seeds.map(|seed| mix(seed ^ X_SEED));
-        let y_seeds = seeds.map(|seed| mix(seed ^ Y_SEED));
-        let mut x = [0; 4];
-        let mut y = indices.map(sobol_second_reversed);
-        for lane in 0..4 {
-            x[lane] = scramble_reversed(indices[lane], x_seeds[lane]);
-            y[lane] = scramble_reversed(y[lane], y_seeds[lane]);
-        }
-        let x = x.map(u32::reverse_bits).map(unit);
-        let y = y.map(u32::reverse_bits).map(unit);
-        std::array::from_fn(|lane| Vec2::new(x[lane], y[lane]))
-    }
-
     #[inline]
     fn next_seed(&mut self) -> u32 {
         self.dimension = self.dimension.wrapping_add(DIMENSION_STEP);
@@ -186,15 +161,6 @@ mod tests {
         // Five standard errors of a uniform mean.
         let tolerance = 5.0 * (1.0f32 / 12.0).sqrt() / (n as f32).sqrt();
         assert!((mean - 0.5).abs().max_element() < tolerance, "{mean}");
-    }
-
-    #[test]
-    fn four_at_once_are_the_next_four() {
-        let mut one = Sampler::new(11, 12345);
-        let mut four = one;
-        let expected: [Vec2; 4] = std::array::from_fn(|_| one.next_2d());
-        assert_eq!(four.next_4x2d(), expected);
-        assert_eq!(four.next_1d(), one.next_1d());
     }
 
     #[test]

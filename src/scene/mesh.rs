@@ -42,6 +42,17 @@ impl Mesh {
         self.triangles[t].map(|i| self.positions[i as usize])
     }
 
+    /// The interpolated normal, not of unit length, at barycentric weights `b` of the last two of a triangle's
+    /// `vertices`; `None` where the mesh has no normals.
+    #[inline]
+    pub fn normal(&self, vertices: &[u32; 3], b: Vec2) -> Option<Vec3> {
+        if self.normals.is_empty() {
+            return None;
+        }
+        let [n0, n1, n2] = vertices.map(|i| self.normals[i as usize]);
+        Some(n0 * (1.0 - b.x - b.y) + n1 * b.x + n2 * b.y)
+    }
+
     /// Texture coordinates at barycentric weights `b` of corners 1 and 2 of triangle `t`;
     /// the weights themselves where the mesh has no coordinates.
     #[inline]

@@ -15,6 +15,7 @@
 //! the number of samples: an estimate on the safe side, since stratification makes the true one smaller.
 
 mod batch;
+mod packet;
 mod render;
 mod vertex;
 

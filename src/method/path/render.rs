@@ -1,11 +1,13 @@
 //! The picture: pixels in tiles, samples in passes.
 
 use super::batch::{Batch, Counts};
+use crate::embree::Rays16;
 use crate::eye::{Window, primary_ray};
 use crate::image::Image;
-use crate::math::Rgb;
+use crate::math::{LANES, Rgb};
 use crate::method::{Control, Output};
-use crate::sampling::{Sampler, hash};
+use crate::sampling::{Samplers16, hash};
+use crate::scene::Camera;
 use crate::stats::{Stage, Stats};
 use crate::world::World;
 use rayon::prelude::*;
@@ -107,16 +109,8 @@ impl Tile {
         let mut batch = Batch::default();
         for first in (begin..end).step_by(BATCH as usize) {
             let samples = first..(first + BATCH).min(end);
-            for at in window.tile(index, TILE) {
-                // The film's own coordinates, so that a crop repeats the whole picture's pixels.
-                let [x, y] = window.film_pixel(at);
-                let seed = hash(hash(x, y), settings.seed);
-                for sample in samples.clone() {
-                    let mut sampler = Sampler::new(seed, sample);
-                    let jitter = sampler.next_2d();
-                    batch.push(primary_ray(&world.scene.camera, window, [x, y], jitter), sampler);
-                }
-            }
+            let pixels = window.tile(index, TILE).flat_map(|at| samples.clone().map(move |s| (at, s)));
+            fill(&mut batch, pixels, &world.scene.camera, window, settings.seed);
             let mut values = batch.trace(world, max_depth, &mut self.counts);
             for pixel in &mut self.pixels {
                 for (sample, mut value) in samples.clone().zip(values.by_ref()) {
@@ -131,5 +125,37 @@ impl Tile {
             }
         }
         self.samples = end;
+    }
+}
+
+/// Starts a path for each pixel of the window and sample.
+fn fill(
+    batch: &mut Batch,
+    mut paths: impl Iterator<Item = ([u32; 2], u32)>,
+    camera: &Camera,
+    window: &Window,
+    seed: u32,
+) {
+    loop {
+        let (mut samplers, mut x, mut y) = (Samplers16::default(), [0; LANES], [0; LANES]);
+        let mut count = 0;
+        for (at, sample) in paths.by_ref().take(LANES) {
+            // The film's own coordinates, so that a crop repeats the whole picture's pixels.
+            [x[count], y[count]] = window.film_pixel(at);
+            samplers.index[count] = sample;
+            count += 1;
+        }
+        if count == 0 {
+            return;
+        }
+        for i in 0..LANES {
+            samplers.seed[i] = hash(hash(x[i], y[i]), seed);
+        }
+        let jitter = samplers.point(1);
+        let mut rays = Rays16::default();
+        for i in 0..LANES {
+            rays.set(i, &primary_ray(camera, window, [x[i], y[i]], jitter.get(i)));
+        }
+        batch.push(rays, samplers, count);
     }
 }

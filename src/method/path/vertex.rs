@@ -1,4 +1,4 @@
-//! One vertex of a path: what it emits, what light reaches it directly, and where the path goes on.
+//! Sixteen vertices of paths: what they emit, what light reaches them directly, and where the paths go on.
 //!
 //! Paper: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapters 9 and 10.
 //!
@@ -7,177 +7,144 @@
 //! Against the throughput from the third bounce on, the root from the second takes 2 to 7 % less time in a Cornell
 //! box, a glossy knot and a church, at the same variance a sample (the knot: a tenth less).
 
-use crate::embree::Ray;
-use crate::light::EnvironmentSample;
-use crate::math::Rgb;
-use crate::sampling::Sampler;
+use super::packet::Packet;
+use crate::embree::{Ray, Rays16};
+use crate::material::Bsdfs16;
+use crate::math::{F32x16, LANES, Rgb, Vec3x16, lanes_in, mask_of};
 use crate::shadow;
-use crate::world::{Surface, World};
-use glam::{Vec2, Vec3};
+use crate::world::{Surfaces16, World};
 
 /// From this vertex on, counted from the eye, Russian roulette may end a path.
 const ROULETTE_DEPTH: u32 = 2;
 
-/// A path on its way.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Path {
-    /// The edge to be traced.
-    pub ray: Ray,
-    /// Share of the radiance along the edge that reaches the eye.
-    throughput: Rgb,
-    /// Undoes the scaling of radiance inside dense media, for Russian roulette.
-    eta_sq: f32,
-    /// Where the edge starts.
-    position: Vec3,
-    /// Shading normal there, on the side the path arrived from.
-    normal: Vec3,
-    /// Density of the edge's direction; infinite where light sampling could not have chosen it.
-    pdf: f32,
-    sampler: Sampler,
-    /// Which of the batch's results the path adds to.
-    pub slot: u32,
-}
+/// Pairs of random numbers that come before the first vertex: the place in the pixel.
+const PAIRS_BEFORE: u32 = 1;
 
-/// What chance gives one vertex.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Draws {
-    /// For the light, for the direction, for the choices of emitter and lobe, for Russian roulette.
-    numbers: [Vec2; 4],
-    /// The environment's sample for the light's numbers, where there is an environment.
-    pub environment: Option<EnvironmentSample>,
-}
+/// Pairs of random numbers a vertex takes: for the light, for the direction, for the choices of emitter and lobe,
+/// for Russian roulette.
+const PAIRS_A_VERTEX: u32 = 4;
 
-impl Draws {
-    /// The light's numbers.
-    pub fn light(&self) -> Vec2 {
-        self.numbers[0]
-    }
-}
-
-/// Light that arrives if a segment is free.
-#[derive(Clone, Debug)]
-pub(super) struct DirectLight {
-    /// The segment.
-    pub segment: Ray,
-    /// Radiance at the eye.
-    pub radiance: Rgb,
-    /// Which of the batch's results it is for.
-    pub slot: u32,
-}
-
-impl Path {
-    /// A path along an eye ray.
-    pub fn new(ray: Ray, sampler: Sampler, slot: u32) -> Path {
-        Path {
-            ray,
-            throughput: Rgb::ONE,
-            eta_sq: 1.0,
-            position: ray.origin,
-            normal: Vec3::ZERO,
-            pdf: f32::INFINITY,
-            sampler,
-            slot,
+impl Packet {
+    /// Adds to `results` what the surfaces that the edges have met emit, in the lanes of `found`.
+    #[inline]
+    pub fn add_emitted(&self, world: &World, surfaces: &Surfaces16, found: u16, results: &mut [Rgb]) {
+        let lit = lanes_in(found).filter(|i| world.emitters.is_light(surfaces.mesh[*i]));
+        let lit = lit.fold(0u16, |mask, i| mask | 1 << i);
+        if lit == 0 {
+            return;
+        }
+        let directions = self.rays.directions();
+        let mut cos = [0.0; LANES];
+        for i in 0..LANES {
+            cos[i] = surfaces.normal.get(i).dot(directions.get(i));
+        }
+        let start = (&self.rays.origins(), &self.normal);
+        let light_pdf = world.emitters.pdf_areas(start, &surfaces.mesh, &surfaces.t, &cos);
+        for i in lanes_in(lit) {
+            let emitted = world.emitted(&surfaces.get(i), -directions.get(i));
+            let weight = self.weight_against(i, light_pdf[i]);
+            results[self.slot[i] as usize] += self.throughput.get(i) * emitted * weight;
         }
     }
 
-    /// The random numbers of the path's next vertex; the environment's sample is left out.
-    #[inline]
-    pub fn draw(&mut self) -> Draws {
-        Draws { numbers: self.sampler.next_4x2d(), environment: None }
-    }
-
-    /// Radiance at the eye from the environment, the edge having met nothing; `radiance` is the environment's
-    /// along the edge and `pdf` its density of sampling that direction.
-    #[inline]
-    pub fn escaped(&self, world: &World, (radiance, pdf): (Rgb, f32)) -> Rgb {
-        let weight =
-            self.weight_against(|| pdf * world.emitters.environment_choice(self.position, self.normal));
-        self.throughput * radiance * weight
-    }
-
-    /// Radiance at the eye from what the surface emits.
-    #[inline]
-    pub fn emitted(&self, world: &World, surface: &Surface) -> Rgb {
-        let out = -self.ray.direction;
-        let emitted = world.emitted(surface, out);
-        if emitted == Rgb::ZERO {
-            return Rgb::ZERO;
-        }
-        let weight = self.weight_against(|| {
-            let distance = (surface.position - self.position).length();
-            let cos = surface.normal.dot(out);
-            world.emitters.pdf_area(self.position, self.normal, surface.mesh, distance, cos)
-        });
-        self.throughput * emitted * weight
-    }
-
-    /// Samples light and the next direction at the surface that the edge, number `depth` of the path, has met.
-    /// Turns the path into its continuation and returns true, or returns false where it ends.
+    /// Samples light and the next directions at the surfaces that the edges, number `depth` of their paths, have
+    /// met in the lanes of `found`. Calls `arrives` with the segments that light would come along, its radiance at
+    /// the eye and the result it is for. Turns the paths into their continuations and returns those that go on.
     #[inline]
     pub fn scatter(
         &mut self,
         world: &World,
-        surface: &Surface,
+        surfaces: &Surfaces16,
         depth: u32,
-        draws: &Draws,
-        direct: &mut Vec<DirectLight>,
-    ) -> bool {
-        let bsdf = world.bsdf(surface);
-        let wo = surface.frame.to_local(-self.ray.direction);
-        let normal = if wo.z < 0.0 { -surface.frame.normal } else { surface.frame.normal };
-        let [u_light, u_direction, u_choices, u_roulette] = draws.numbers;
-        if bsdf.has_smooth()
-            && let Some(light) = world.emitters.sample_direct_with(
-                &world.scene,
-                surface.position,
-                normal,
-                u_choices.x,
-                u_light,
-                || draws.environment,
-            )
-        {
-            let wi = surface.frame.to_local(light.direction);
-            let (value, pdf) = bsdf.eval_pdf(wo, wi);
-            if value != Rgb::ZERO {
-                let weight = if light.delta { 1.0 } else { power_heuristic(light.pdf, pdf) };
-                let segment = if light.distance.is_finite() {
-                    let target = surface.position + light.direction * light.distance;
-                    shadow::segment(surface.position, surface.normal, target, light.normal)
-                } else {
-                    shadow::ray_from(surface.position, surface.normal, light.direction)
-                };
-                let radiance = self.throughput * value * light.radiance * (wi.z.abs() * weight / light.pdf);
-                direct.push(DirectLight { segment, radiance, slot: self.slot });
-            }
+        found: u16,
+        arrives: impl FnMut(&Ray, Rgb, u32),
+    ) -> u16 {
+        let pair = PAIRS_BEFORE + 1 + (depth - 1).wrapping_mul(PAIRS_A_VERTEX);
+        let mut wo = Vec3x16::default();
+        for i in 0..LANES {
+            let frame = surfaces.frame(i);
+            let local = frame.to_local(-self.rays.get(i).direction);
+            wo.set(i, local);
+            self.normal.set(i, if local.z < 0.0 { -frame.normal } else { frame.normal });
         }
-        let Some(sample) = bsdf.sample(wo, u_choices.y, u_direction) else { return false };
-        self.throughput *= sample.weight;
-        self.eta_sq *= sample.eta * sample.eta;
-        if depth >= ROULETTE_DEPTH {
-            let survival = (self.throughput.max_element() * self.eta_sq).sqrt().min(0.95);
+        let bsdfs = world.bsdfs(surfaces, wo);
+        let choices = self.samplers.point(pair + 2);
+        if bsdfs.smooth() & found != 0 {
+            self.light(world, surfaces, &bsdfs, pair, &choices.x, bsdfs.smooth() & found, arrives);
+        }
+        let samples = bsdfs.sample(&choices.y, &self.samplers.point(pair + 1), found);
+        let roulette = if depth >= ROULETTE_DEPTH { self.samplers.number(pair + 3) } else { [0.0; LANES] };
+        let mut survives = [0; LANES];
+        for i in 0..LANES {
+            let throughput = self.throughput.get(i) * samples.weight.get(i);
+            self.eta_sq[i] *= samples.eta[i] * samples.eta[i];
+            let survival = (throughput.max_element() * self.eta_sq[i]).sqrt().min(0.95);
+            let survival = if depth >= ROULETTE_DEPTH { survival } else { 1.0 };
             // The comparison also ends paths whose throughput is not a number.
-            if !(u_roulette.x < survival) {
-                return false;
-            }
-            self.throughput /= survival;
+            survives[i] = u32::from(roulette[i] < survival);
+            self.throughput.set(i, throughput / survival);
+            self.pdf[i] = samples.pdf[i];
         }
-        self.position = surface.position;
-        self.normal = normal;
-        self.pdf = if sample.delta { f32::INFINITY } else { sample.pdf };
-        let direction = surface.frame.to_world(sample.wi);
-        self.ray = shadow::ray_from(surface.position, surface.normal, direction);
-        true
+        for i in 0..LANES {
+            let direction = surfaces.frame(i).to_world(samples.wi.get(i));
+            self.rays.set(i, &shadow::ray_from(surfaces.position.get(i), surfaces.normal.get(i), direction));
+        }
+        found & samples.going_on() & mask_of(&survives)
     }
 
-    /// Weight of having met a light by chance, against light sampling of the given density.
+    /// Samples light in the lanes of `wanted`.
     #[inline]
-    fn weight_against(&self, light_pdf: impl FnOnce() -> f32) -> f32 {
-        if self.pdf == f32::INFINITY { 1.0 } else { power_heuristic(self.pdf, light_pdf()) }
+    #[allow(clippy::too_many_arguments)]
+    fn light(
+        &self,
+        world: &World,
+        surfaces: &Surfaces16,
+        bsdfs: &Bsdfs16,
+        pair: u32,
+        u_choice: &F32x16,
+        wanted: u16,
+        mut arrives: impl FnMut(&Ray, Rgb, u32),
+    ) {
+        let u_light = self.samplers.point(pair);
+        let at = (&surfaces.position, &self.normal);
+        let lights = world.emitters.sample_direct(&world.scene, at, u_choice, &u_light, wanted);
+        let mut wi = Vec3x16::default();
+        for i in 0..LANES {
+            wi.set(i, surfaces.frame(i).to_local(lights.direction.get(i)));
+        }
+        let wanted = wanted & lights.useful();
+        let (value, pdf) = bsdfs.eval_pdf(&wi, wanted);
+        let (mut radiance, mut segments, mut scattered) = (Vec3x16::default(), Rays16::default(), [0; LANES]);
+        for i in 0..LANES {
+            let weight = if lights.delta[i] != 0 { 1.0 } else { power_heuristic(lights.pdf[i], pdf[i]) };
+            let value = value.get(i);
+            let factor = wi.z[i].abs() * weight / lights.pdf[i];
+            radiance.set(i, self.throughput.get(i) * value * lights.radiance.get(i) * factor);
+            scattered[i] = u32::from((value.x != 0.0) | (value.y != 0.0) | (value.z != 0.0));
+        }
+        for i in 0..LANES {
+            let (position, normal) = (surfaces.position.get(i), surfaces.normal.get(i));
+            let (direction, distance) = (lights.direction.get(i), lights.distance[i]);
+            let near =
+                shadow::segment(position, normal, position + direction * distance, lights.normal.get(i));
+            let far = shadow::ray_from(position, normal, direction);
+            segments.set(i, &if distance < f32::INFINITY { near } else { far });
+        }
+        for i in lanes_in(wanted & mask_of(&scattered)) {
+            arrives(&segments.get(i), radiance.get(i), self.slot[i]);
+        }
+    }
+
+    /// Weight of a lane's having met a light by chance, against light sampling of the given density.
+    #[inline]
+    pub fn weight_against(&self, lane: usize, light_pdf: f32) -> f32 {
+        let pdf = self.pdf[lane];
+        if pdf == f32::INFINITY { 1.0 } else { power_heuristic(pdf, light_pdf) }
     }
 }
 
 /// Weight of a sample of density `a` against another technique of density `b` (Veach, β = 2).
-#[inline]
+#[inline(always)]
 fn power_heuristic(a: f32, b: f32) -> f32 {
     let ratio = b / a;
     1.0 / (1.0 + ratio * ratio)

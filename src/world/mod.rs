@@ -10,6 +10,12 @@ use crate::scene::Scene;
 use crate::shadow;
 use glam::{Vec2, Vec3};
 
+mod packet;
+mod triangle;
+
+pub use packet::Surfaces16;
+use triangle::Triangles;
+
 /// Everything a method needs to know of a scene.
 pub struct World {
     /// The scene as loaded.
@@ -22,6 +28,7 @@ pub struct World {
     pub emitters: Emitters,
     /// Diagonal of the bounds of all surfaces; 1 if there are none. Lengths that depend on scale derive from it.
     pub diagonal: f32,
+    triangles: Triangles,
 }
 
 /// A point on a surface, seen along a ray.
@@ -59,7 +66,8 @@ impl World {
         };
         let materials = Materials::new(&scene);
         let emitters = Emitters::new(&scene, diagonal);
-        Ok(World { scene, accel, materials, emitters, diagonal })
+        let triangles = Triangles::new(&scene);
+        Ok(World { scene, accel, materials, emitters, diagonal, triangles })
     }
 
     /// The nearest surface along a ray.
@@ -71,23 +79,17 @@ impl World {
     /// The surface at a hit.
     #[inline]
     pub fn surface(&self, hit: &Hit) -> Surface {
-        let mesh = &self.scene.meshes[hit.geometry as usize];
-        let [i, j, k] = mesh.triangles[hit.primitive as usize].map(|i| i as usize);
-        let (a, b, c) = (mesh.positions[i], mesh.positions[j], mesh.positions[k]);
-        let (e1, e2) = (b - a, c - a);
-        let normal = unit_normal(e1, e2);
-        let w = 1.0 - hit.u - hit.v;
-        let shading = if mesh.normals.is_empty() {
-            normal
-        } else {
-            let n = mesh.normals[i] * w + mesh.normals[j] * hit.u + mesh.normals[k] * hit.v;
-            n.try_normalize().unwrap_or(normal)
+        let triangle = self.triangles.get(hit.geometry, hit.primitive);
+        let barycentric = Vec2::new(hit.u, hit.v);
+        let shading = match self.scene.meshes[hit.geometry as usize].normal(&triangle.vertices, barycentric) {
+            Some(interpolated) => interpolated.try_normalize().unwrap_or(triangle.normal),
+            None => triangle.normal,
         };
         Surface {
-            position: a * w + b * hit.u + c * hit.v,
-            normal,
+            position: triangle.position(barycentric),
+            normal: triangle.normal,
             frame: Frame::from_normal(shading),
-            barycentric: Vec2::new(hit.u, hit.v),
+            barycentric,
             mesh: hit.geometry,
             triangle: hit.primitive,
             t: hit.t,
@@ -118,16 +120,4 @@ impl World {
     pub fn escapes(&self, a: Vec3, a_normal: Vec3, direction: Vec3) -> bool {
         !self.accel.occluded(&shadow::ray_from(a, a_normal, direction))
     }
-}
-
-/// Unit normal of a triangle from two edges, scaled first so that tiny triangles do not underflow.
-#[inline]
-fn unit_normal(e1: Vec3, e2: Vec3) -> Vec3 {
-    let cross = e1.cross(e2);
-    let length_sq = cross.length_squared();
-    if length_sq > 1e-30 && length_sq < 1e30 {
-        return cross / length_sq.sqrt();
-    }
-    let scale = e1.abs().max_element().max(e2.abs().max_element());
-    (e1 / scale).cross(e2 / scale).try_normalize().unwrap_or(Vec3::Z)
 }

@@ -1,0 +1,167 @@
+//! Next-event estimation for sixteen points at once.
+
+use super::{AreaLight, DirectSample, Emitters, sample_delta};
+use crate::math::{F32x16, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
+use crate::sampling::uniform_triangle;
+use crate::scene::Scene;
+use glam::Vec2;
+
+/// Light arriving at sixteen points; see [`super::DirectSample`] for the members.
+#[derive(Clone, Debug, Default)]
+pub struct DirectSamples16 {
+    /// Unit directions towards the light.
+    pub direction: Vec3x16,
+    /// Distances to the emitter's points; infinite for light from infinitely far.
+    pub distance: F32x16,
+    /// Geometric normals at those points; zero where there is no surface.
+    pub normal: Vec3x16,
+    /// Radiances, or irradiances for delta lights.
+    pub radiance: Vec3x16,
+    /// Densities per solid angle, or the probabilities of having chosen the delta light.
+    pub pdf: F32x16,
+    /// Not zero where the light is a delta light.
+    pub delta: U32x16,
+    /// Not zero where something arrives.
+    useful: U32x16,
+}
+
+/// A point on an emitting triangle in each lane; lanes of no area stand for other emitters.
+#[derive(Default)]
+struct Triangles16 {
+    corner: Vec3x16,
+    edges: [Vec3x16; 2],
+    normal: Vec3x16,
+    radiance: Vec3x16,
+    /// Area of the whole emitter.
+    area: F32x16,
+    two_sided: U32x16,
+    index: U32x16,
+    barycentric: Vec2x16,
+}
+
+impl DirectSamples16 {
+    /// Lanes where something arrives.
+    #[inline]
+    pub fn useful(&self) -> u16 {
+        mask_of(&self.useful)
+    }
+
+    /// Puts the sample of one lane.
+    fn set(&mut self, lane: usize, sample: Option<DirectSample>) {
+        self.useful[lane] = u32::from(sample.is_some());
+        if let Some(s) = sample {
+            self.direction.set(lane, s.direction);
+            self.distance[lane] = s.distance;
+            self.normal.set(lane, s.normal);
+            self.radiance.set(lane, s.radiance);
+            self.pdf[lane] = s.pdf;
+            self.delta[lane] = u32::from(s.delta);
+        }
+    }
+}
+
+impl Emitters {
+    /// Samples light arriving at the points `x`, on surfaces whose reflecting sides have normals `n`, in the
+    /// lanes of `wanted`. Visibility is not looked at.
+    #[inline]
+    pub fn sample_direct(
+        &self,
+        scene: &Scene,
+        (x, n): (&Vec3x16, &Vec3x16),
+        u_choice: &F32x16,
+        u: &Vec2x16,
+        wanted: u16,
+    ) -> DirectSamples16 {
+        let (chosen, choice) = self.selection.sample(self, (x, n), u_choice);
+        let mut triangles = Triangles16::default();
+        let (mut textured, mut rest) = (0u16, 0u16);
+        for lane in lanes_in(wanted).filter(|i| choice[*i] > 0.0) {
+            match self.areas.get(chosen[lane] as usize) {
+                Some(light) => {
+                    textured |= u16::from(light.emission.texture.is_some()) << lane;
+                    triangles.set(lane, light, u.get(lane));
+                }
+                None => rest |= 1 << lane,
+            }
+        }
+        let mut samples = triangles.sample(x, &choice);
+        for lane in lanes_in(textured) {
+            let light = &self.areas[chosen[lane] as usize];
+            let factor = light.texture(scene, triangles.index[lane], triangles.barycentric.get(lane));
+            let radiance = samples.radiance.get(lane) * factor;
+            samples.radiance.set(lane, radiance);
+            samples.useful[lane] &= u32::from(radiance != Rgb::ZERO);
+        }
+        let mut far = 0;
+        for lane in lanes_in(rest) {
+            match self.deltas.get(chosen[lane] as usize - self.areas.len()) {
+                Some(light) => samples.set(lane, sample_delta(light, x.get(lane), choice[lane])),
+                None => far |= 1 << lane,
+            }
+        }
+        if far != 0 {
+            self.sample_environment(u, &choice, far, &mut samples);
+        }
+        samples
+    }
+
+    fn sample_environment(&self, u: &Vec2x16, choice: &F32x16, wanted: u16, samples: &mut DirectSamples16) {
+        let Some(environment) = &self.environment else { return };
+        for_fours(wanted, |lanes, count| {
+            let drawn = environment.sample_many(&lanes.map(|lane| u.get(lane)));
+            for (lane, drawn) in lanes.into_iter().zip(drawn).take(count) {
+                samples.set(lane, drawn.map(|s| s.direct(choice[lane])));
+            }
+        });
+    }
+}
+
+impl Triangles16 {
+    #[inline]
+    fn set(&mut self, lane: usize, light: &AreaLight, u: Vec2) {
+        let (triangle, [corner, e1, e2, normal], u) = light.choose_triangle(u);
+        self.corner.set(lane, corner);
+        self.edges[0].set(lane, e1);
+        self.edges[1].set(lane, e2);
+        self.normal.set(lane, normal);
+        self.radiance.set(lane, light.emission.radiance);
+        self.area[lane] = light.area;
+        self.two_sided[lane] = u32::from(light.emission.two_sided);
+        self.index[lane] = triangle;
+        self.barycentric.set(lane, u);
+    }
+
+    /// Turns the numbers of the unit square in `barycentric` into weights, and samples the light from there.
+    #[inline]
+    fn sample(&mut self, x: &Vec3x16, choice: &F32x16) -> DirectSamples16 {
+        let mut s = DirectSamples16 { normal: self.normal, radiance: self.radiance, ..Default::default() };
+        for i in 0..LANES {
+            let b = uniform_triangle(self.barycentric.get(i));
+            self.barycentric.set(i, b);
+            let position = self.corner.get(i) + self.edges[0].get(i) * b.x + self.edges[1].get(i) * b.y;
+            let offset = position - x.get(i);
+            let dist_sq = offset.length_squared();
+            let distance = dist_sq.sqrt();
+            let direction = offset / distance;
+            let cos = -self.normal.get(i).dot(direction);
+            let pdf = choice[i] * dist_sq / (self.area[i] * cos.abs());
+            s.direction.set(i, direction);
+            s.distance[i] = distance;
+            s.pdf[i] = pdf;
+            let shines = (cos > 0.0) | (self.two_sided[i] != 0);
+            s.useful[i] = u32::from((pdf < f32::INFINITY) & (pdf > 0.0) & shines);
+        }
+        s
+    }
+}
+
+/// Calls `f` with the lanes of a mask, four at a time, and how many of the four are meant; the others repeat
+/// the first. Packets seldom need all their lanes, and four keep a processor's loads busy.
+#[inline]
+pub fn for_fours(mask: u16, mut f: impl FnMut([usize; 4], usize)) {
+    let mut lanes = lanes_in(mask);
+    while let Some(first) = lanes.next() {
+        let four = [Some(first), lanes.next(), lanes.next(), lanes.next()];
+        f(four.map(|lane| lane.unwrap_or(first)), four.iter().flatten().count());
+    }
+}

@@ -1,0 +1,116 @@
+//! Sixteen values at a time, as structures of arrays.
+//!
+//! A loop over all lanes whose body neither calls nor branches compiles to vector instructions, whatever scalar
+//! functions it was written with: so stages read their lanes with `get`, compute on [`Vec3`]s as usual, and
+//! write with `set`. What cannot be done so (look-ups, rare cases) goes lane by lane in a loop of its own.
+
+use glam::{Vec2, Vec3};
+
+/// Lanes of a packet, as many as Embree's largest.
+pub const LANES: usize = 16;
+
+/// A number in each lane.
+pub type F32x16 = [f32; LANES];
+
+/// An unsigned number in each lane.
+pub type U32x16 = [u32; LANES];
+
+/// A point of the plane in each lane.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub struct Vec2x16 {
+    /// First coordinates.
+    pub x: F32x16,
+    /// Second coordinates.
+    pub y: F32x16,
+}
+
+/// A vector or a colour in each lane.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub struct Vec3x16 {
+    /// First coordinates.
+    pub x: F32x16,
+    /// Second coordinates.
+    pub y: F32x16,
+    /// Third coordinates.
+    pub z: F32x16,
+}
+
+impl Vec2x16 {
+    /// The point in a lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Vec2 {
+        Vec2::new(self.x[lane], self.y[lane])
+    }
+
+    /// Puts a point into a lane.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, v: Vec2) {
+        self.x[lane] = v.x;
+        self.y[lane] = v.y;
+    }
+}
+
+impl Vec3x16 {
+    /// The vector in a lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.x[lane], self.y[lane], self.z[lane])
+    }
+
+    /// Puts a vector into a lane.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, v: Vec3) {
+        self.x[lane] = v.x;
+        self.y[lane] = v.y;
+        self.z[lane] = v.z;
+    }
+}
+
+/// Mask of the first `count` lanes, at most all.
+#[inline]
+pub fn first_lanes(count: usize) -> u16 {
+    ((1u32 << count.min(LANES)) - 1) as u16
+}
+
+/// Mask of the lanes where `flags` are not zero.
+#[inline]
+pub fn mask_of(flags: &U32x16) -> u16 {
+    let mut mask = 0;
+    for i in 0..LANES {
+        mask |= u32::from(flags[i] != 0) << i;
+    }
+    mask as u16
+}
+
+/// The lanes of a mask, in order.
+#[inline]
+pub fn lanes_in(mask: u16) -> impl Iterator<Item = usize> {
+    let mut left = mask;
+    std::iter::from_fn(move || {
+        (left != 0).then(|| {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            lane
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masks_and_lanes_agree() {
+        assert_eq!(
+            (first_lanes(0), first_lanes(3), first_lanes(16), first_lanes(20)),
+            (0, 7, 0xffff, 0xffff)
+        );
+        let mask = 0b1000_0100_0000_1001;
+        assert_eq!(lanes_in(mask).collect::<Vec<_>>(), [0, 3, 10, 15]);
+        let mut flags = [0; LANES];
+        lanes_in(mask).for_each(|lane| flags[lane] = 7);
+        assert_eq!(mask_of(&flags), mask);
+    }
+}

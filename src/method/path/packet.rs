@@ -1,0 +1,88 @@
+//! What travels: sixteen paths, and sixteen segments to lights, as structures of arrays.
+
+use super::batch::Counts;
+use crate::embree::{Ray, Rays16};
+use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, first_lanes};
+use crate::sampling::Samplers16;
+use crate::world::World;
+
+/// Sixteen paths on their way.
+#[derive(Clone, Debug)]
+pub(super) struct Packet {
+    /// The edges to be traced.
+    pub rays: Rays16,
+    /// Shares of the radiance along the edges that reach the eye.
+    pub throughput: Vec3x16,
+    /// Undoes the scaling of radiance inside dense media, for Russian roulette.
+    pub eta_sq: F32x16,
+    /// Shading normals where the edges start, on the sides the paths arrived from.
+    pub normal: Vec3x16,
+    /// Densities of the edges' directions; infinite where light sampling could not have chosen them.
+    pub pdf: F32x16,
+    /// Where the random numbers come from.
+    pub samplers: Samplers16,
+    /// Which of the batch's results each path adds to.
+    pub slot: U32x16,
+}
+
+/// Light that arrives where segments are free, gathered until a packet is full.
+#[derive(Default)]
+pub(super) struct Shadows {
+    rays: Rays16,
+    /// Radiances at the eye.
+    radiance: Vec3x16,
+    slot: U32x16,
+    count: usize,
+}
+
+impl Packet {
+    /// Paths along eye rays, with results from `slot` on.
+    pub fn new(rays: Rays16, samplers: Samplers16, slot: u32) -> Packet {
+        Packet {
+            rays,
+            throughput: Vec3x16 { x: [1.0; LANES], y: [1.0; LANES], z: [1.0; LANES] },
+            eta_sq: [1.0; LANES],
+            normal: Vec3x16::default(),
+            pdf: [f32::INFINITY; LANES],
+            samplers,
+            slot: std::array::from_fn(|i| slot + i as u32),
+        }
+    }
+
+    /// Puts a path of another packet into a lane.
+    #[inline]
+    pub fn copy_lane(&mut self, to: usize, packet: &Packet, from: usize) {
+        self.rays.set(to, &packet.rays.get(from));
+        self.throughput.set(to, packet.throughput.get(from));
+        self.eta_sq[to] = packet.eta_sq[from];
+        self.normal.set(to, packet.normal.get(from));
+        self.pdf[to] = packet.pdf[from];
+        self.samplers.seed[to] = packet.samplers.seed[from];
+        self.samplers.index[to] = packet.samplers.index[from];
+        self.slot[to] = packet.slot[from];
+    }
+}
+
+impl Shadows {
+    /// Adds a segment that brings `radiance` to result `slot` if it is free. Returns whether the packet is full
+    /// and must be traced before the next.
+    #[inline]
+    pub fn push(&mut self, segment: &Ray, radiance: Rgb, slot: u32) -> bool {
+        self.rays.set(self.count, segment);
+        self.radiance.set(self.count, radiance);
+        self.slot[self.count] = slot;
+        self.count += 1;
+        self.count == LANES
+    }
+
+    /// Traces the segments and adds the light of those that are free to `results`.
+    #[inline]
+    pub fn trace(&mut self, world: &World, coherent: bool, results: &mut [Rgb], counts: &mut Counts) {
+        counts.shadow_rays += self.count as u64;
+        let occluded = world.accel.occluded16(&self.rays, first_lanes(self.count), coherent);
+        for lane in (0..self.count).filter(|lane| (occluded >> lane) & 1 == 0) {
+            results[self.slot[lane] as usize] += self.radiance.get(lane);
+        }
+        self.count = 0;
+    }
+}

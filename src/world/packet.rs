@@ -1,0 +1,99 @@
+//! Sixteen surface points at once.
+
+use super::triangle::position;
+use super::{Surface, World};
+use crate::embree::Hits16;
+use crate::material::Bsdfs16;
+use crate::math::{F32x16, Frame, LANES, U32x16, Vec2x16, Vec3x16};
+
+/// What sixteen rays met; see [`Surface`] for the members.
+#[derive(Clone, Debug, Default)]
+pub struct Surfaces16 {
+    /// Positions.
+    pub position: Vec3x16,
+    /// Unit geometric normals.
+    pub normal: Vec3x16,
+    /// Tangents of the shading frames.
+    pub tangent: Vec3x16,
+    /// Bitangents of the shading frames.
+    pub bitangent: Vec3x16,
+    /// Normals of the shading frames.
+    pub shading_normal: Vec3x16,
+    /// Barycentric weights of corners 1 and 2.
+    pub barycentric: Vec2x16,
+    /// Mesh indices.
+    pub mesh: U32x16,
+    /// Triangles of those meshes.
+    pub triangle: U32x16,
+    /// Distances along the rays.
+    pub t: F32x16,
+}
+
+impl Surfaces16 {
+    /// The shading frame of a lane.
+    #[inline(always)]
+    pub fn frame(&self, lane: usize) -> Frame {
+        Frame {
+            tangent: self.tangent.get(lane),
+            bitangent: self.bitangent.get(lane),
+            normal: self.shading_normal.get(lane),
+        }
+    }
+
+    /// The surface of a lane.
+    #[inline]
+    pub fn get(&self, lane: usize) -> Surface {
+        Surface {
+            position: self.position.get(lane),
+            normal: self.normal.get(lane),
+            frame: self.frame(lane),
+            barycentric: self.barycentric.get(lane),
+            mesh: self.mesh[lane],
+            triangle: self.triangle[lane],
+            t: self.t[lane],
+        }
+    }
+}
+
+impl World {
+    /// The surfaces at sixteen hits, of which every lane must hold one.
+    #[inline]
+    pub fn surfaces(&self, hits: &Hits16) -> Surfaces16 {
+        let mut s =
+            Surfaces16 { mesh: hits.geometry, triangle: hits.primitive, t: hits.t, ..Default::default() };
+        s.barycentric = Vec2x16 { x: hits.u, y: hits.v };
+        let (mut corner, mut edges) = (Vec3x16::default(), [Vec3x16::default(); 2]);
+        for i in 0..LANES {
+            let triangle = self.triangles.get(s.mesh[i], s.triangle[i]);
+            corner.set(i, triangle.corner);
+            edges[0].set(i, triangle.edges[0]);
+            edges[1].set(i, triangle.edges[1]);
+            s.normal.set(i, triangle.normal);
+            let mesh = &self.scene.meshes[s.mesh[i] as usize];
+            let shading = mesh.normal(&triangle.vertices, s.barycentric.get(i)).unwrap_or(triangle.normal);
+            s.shading_normal.set(i, shading);
+        }
+        for i in 0..LANES {
+            let at = position(corner.get(i), [edges[0].get(i), edges[1].get(i)], s.barycentric.get(i));
+            s.position.set(i, at);
+        }
+        for i in 0..LANES {
+            let shading = s.shading_normal.get(i).try_normalize().unwrap_or(s.normal.get(i));
+            let frame = Frame::from_normal(shading);
+            s.tangent.set(i, frame.tangent);
+            s.bitangent.set(i, frame.bitangent);
+            s.shading_normal.set(i, frame.normal);
+        }
+        s
+    }
+
+    /// How the surfaces scatter, seen from `wo` in their shading frames, textures looked up.
+    #[inline]
+    pub fn bsdfs(&self, s: &Surfaces16, wo: Vec3x16) -> Bsdfs16<'_> {
+        Bsdfs16::new(wo, |i| {
+            let mesh = &self.scene.meshes[s.mesh[i] as usize];
+            let uv = || mesh.uv(s.triangle[i] as usize, s.barycentric.get(i));
+            self.materials.at_coordinates(&self.scene, mesh.material, uv)
+        })
+    }
+}
