@@ -5,8 +5,8 @@
 //! bilinear luminance itself. So the density follows what [`EnvironmentLight::radiance`] returns
 //! up to the variation of the sine over one row, and a sun one texel wide costs no variance.
 
-use super::distribution::{Bracket, Distribution};
-use crate::math::{Rgb, luminance};
+use super::distribution::Distribution;
+use crate::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
 use crate::sampling::uniform_sphere;
 use crate::scene::{Environment, EnvironmentMap};
 use glam::{Vec2, Vec3};
@@ -83,59 +83,65 @@ impl EnvironmentLight {
     /// Radiance arriving from the unit world direction `d`, and the density with which
     /// [`EnvironmentLight::sample`] draws it.
     pub fn radiance_pdf(&self, d: Vec3) -> (Rgb, f32) {
-        self.radiance_pdf_many(&[d])[0]
+        let lanes = Vec3x16 { x: [d.x; LANES], y: [d.y; LANES], z: [d.z; LANES] };
+        self.radiance_pdf16(&lanes, 1)[0]
     }
 
-    /// [`EnvironmentLight::radiance_pdf`] of several directions, which wait for memory together.
-    pub fn radiance_pdf_many<const N: usize>(&self, d: &[Vec3; N]) -> [(Rgb, f32); N] {
-        match &self.source {
-            Source::Constant(radiance) => [(*radiance, 0.25 * FRAC_1_PI); N],
-            Source::Map { map, rows, columns } => {
-                let places = d.map(|d| locate(map, d));
-                let cells = places.map(|p| rows.probability(p.row) * columns[p.row].probability(p.x));
-                let corners = places.map(|p| corners(map, p.x, p.row));
-                std::array::from_fn(|i| {
-                    let local = map.to_local * d[i];
-                    let sin_theta = (local.x * local.x + local.z * local.z).sqrt();
-                    let radiance = bilinear(corners[i], places[i].f);
-                    let pdf = cells[i] * density(corners[i], radiance) / cell_solid_angle(map, sin_theta);
-                    (radiance, pdf)
-                })
-            }
-        }
+    /// [`EnvironmentLight::radiance_pdf`] in the lanes of `wanted`, which wait for memory together: a large map lies
+    /// outside the caches, and one look-up after the other would take most of a render's time.
+    pub fn radiance_pdf16(&self, d: &Vec3x16, wanted: u16) -> [(Rgb, f32); LANES] {
+        let Source::Map { map, rows, columns } = &self.source else {
+            return [(self.radiance(Vec3::Z), 0.25 * FRAC_1_PI); LANES];
+        };
+        let places = each(wanted, |i| locate(map, d.get(i)));
+        let cells = each(wanted, |i| {
+            rows.probability(places[i].row) * columns[places[i].row].probability(places[i].x)
+        });
+        let corners = each(wanted, |i| corners(map, places[i].x, places[i].row));
+        each(wanted, |i| {
+            let local = map.to_local * d.get(i);
+            let sin_theta = (local.x * local.x + local.z * local.z).sqrt();
+            let radiance = bilinear(corners[i], places[i].f);
+            (radiance, cells[i] * density(corners[i], radiance) / cell_solid_angle(map, sin_theta))
+        })
     }
 
     /// A direction in proportion to luminance; `None` where the density vanishes.
     pub fn sample(&self, u: Vec2) -> Option<EnvironmentSample> {
-        self.sample_many(&[u])[0]
+        self.sample16(&Vec2x16 { x: [u.x; LANES], y: [u.y; LANES] }, 1)[0]
     }
 
-    /// [`EnvironmentLight::sample`] for several points of the unit square, which wait for memory together: a
-    /// large map lies outside the caches, and one look-up after the other would take most of a render's time.
-    pub fn sample_many<const N: usize>(&self, u: &[Vec2; N]) -> [Option<EnvironmentSample>; N] {
-        match &self.source {
-            Source::Constant(radiance) => u.map(|u| {
-                let pdf = 0.25 * FRAC_1_PI;
-                Some(EnvironmentSample { direction: uniform_sphere(u), radiance: *radiance, pdf })
-            }),
-            Source::Map { map, rows, columns } => {
-                let found = u.map(|u| rows.sample(u.y));
-                let lane = |f: &dyn Fn(usize) -> Bracket| std::array::from_fn::<Bracket, N, _>(f);
-                let brackets = lane(&|i| columns[found[i].0].bracket(u[i].x));
-                let brackets = lane(&|i| columns[found[i].0].halve(u[i].x, brackets[i]));
-                let places: [(usize, f32); N] =
-                    std::array::from_fn(|i| columns[found[i].0].search(u[i].x, brackets[i]));
-                let corners: [[Rgb; 4]; N] = std::array::from_fn(|i| corners(map, places[i].0, found[i].0));
-                std::array::from_fn(|i| {
-                    let (row, rest_y) = found[i];
-                    let (x, rest_x) = places[i];
-                    let f = sample_bilinear(corners[i].map(luminance), Vec2::new(rest_x, rest_y));
-                    let cell = rows.probability(row) * columns[row].probability(x);
-                    direction_in(map, row, x, f, corners[i], cell)
-                })
-            }
-        }
+    /// [`EnvironmentLight::sample`] in the lanes of `wanted`; `None` in the others. The lanes wait for memory together.
+    pub fn sample16(&self, u: &Vec2x16, wanted: u16) -> [Option<EnvironmentSample>; LANES] {
+        let Source::Map { map, rows, columns } = &self.source else {
+            let (radiance, pdf) = (self.radiance(Vec3::Z), 0.25 * FRAC_1_PI);
+            return each(wanted, |i| {
+                Some(EnvironmentSample { direction: uniform_sphere(u.get(i)), radiance, pdf })
+            });
+        };
+        let found = each(wanted, |i| rows.sample(u.y[i]));
+        let row = |i: usize| &columns[found[i].0];
+        let brackets = each(wanted, |i| row(i).bracket(u.x[i]));
+        let brackets = each(wanted, |i| row(i).halve(u.x[i], brackets[i]));
+        let places = each(wanted, |i| row(i).search(u.x[i], brackets[i]));
+        let corners = each(wanted, |i| corners(map, places[i].0, found[i].0));
+        each(wanted, |i| {
+            let ((y, rest_y), (x, rest_x)) = (found[i], places[i]);
+            let f = sample_bilinear(corners[i].map(luminance), Vec2::new(rest_x, rest_y));
+            let cell = rows.probability(y) * columns[y].probability(x);
+            direction_in(map, y, x, f, corners[i], cell)
+        })
     }
+}
+
+/// `f` of each lane in `wanted`.
+#[inline(always)]
+fn each<T: Copy + Default>(wanted: u16, mut f: impl FnMut(usize) -> T) -> [T; LANES] {
+    let mut values = [T::default(); LANES];
+    for lane in lanes_in(wanted) {
+        values[lane] = f(lane);
+    }
+    values
 }
 
 /// The sample at position `f` of a cell that is chosen with probability `cell`.
@@ -160,7 +166,7 @@ fn direction_in(
 }
 
 /// A cell of the map and the position in it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Place {
     x: usize,
     row: usize,

@@ -12,7 +12,7 @@ mod select;
 pub use area::{AreaLight, AreaPoint, emitted, normal_and_area};
 pub use distribution::Distribution;
 pub use environment::{EnvironmentLight, EnvironmentSample};
-pub use packet::{DirectSamples16, for_fours};
+pub use packet::DirectSamples16;
 
 use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, luminance};
 use crate::scene::{DeltaLight, Scene};

@@ -107,12 +107,10 @@ impl Emitters {
 
     fn sample_environment(&self, u: &Vec2x16, choice: &F32x16, wanted: u16, samples: &mut DirectSamples16) {
         let Some(environment) = &self.environment else { return };
-        for_fours(wanted, |lanes, count| {
-            let drawn = environment.sample_many(&lanes.map(|lane| u.get(lane)));
-            for (lane, drawn) in lanes.into_iter().zip(drawn).take(count) {
-                samples.set(lane, drawn.map(|s| s.direct(choice[lane])));
-            }
-        });
+        let drawn = environment.sample16(u, wanted);
+        for lane in lanes_in(wanted) {
+            samples.set(lane, drawn[lane].map(|s| s.direct(choice[lane])));
+        }
     }
 }
 
@@ -152,16 +150,5 @@ impl Triangles16 {
             s.useful[i] = u32::from((pdf < f32::INFINITY) & (pdf > 0.0) & shines);
         }
         s
-    }
-}
-
-/// Calls `f` with the lanes of a mask, four at a time, and how many of the four are meant; the others repeat
-/// the first. Packets seldom need all their lanes, and four keep a processor's loads busy.
-#[inline]
-pub fn for_fours(mask: u16, mut f: impl FnMut([usize; 4], usize)) {
-    let mut lanes = lanes_in(mask);
-    while let Some(first) = lanes.next() {
-        let four = [Some(first), lanes.next(), lanes.next(), lanes.next()];
-        f(four.map(|lane| lane.unwrap_or(first)), four.iter().flatten().count());
     }
 }

@@ -5,7 +5,6 @@
 
 use super::packet::{Packet, Shadows};
 use crate::embree::{Hits16, Rays16};
-use crate::light::for_fours;
 use crate::math::{LANES, Rgb, first_lanes, lanes_in};
 use crate::sampling::Samplers16;
 use crate::world::World;
@@ -99,13 +98,11 @@ impl Batch {
             return;
         }
         let choice = world.emitters.environment_choice(&packet.rays.origins(), &packet.normal);
-        let directions = packet.rays.directions();
-        for_fours(escaped, |lanes, count| {
-            let light = environment.radiance_pdf_many(&lanes.map(|lane| directions.get(lane)));
-            for (lane, (radiance, pdf)) in lanes.into_iter().zip(light).take(count) {
-                let weight = packet.weight_against(lane, pdf * choice[lane]);
-                self.radiance[packet.slot[lane] as usize] += packet.throughput.get(lane) * radiance * weight;
-            }
-        });
+        let light = environment.radiance_pdf16(&packet.rays.directions(), escaped);
+        for lane in lanes_in(escaped) {
+            let (radiance, pdf) = light[lane];
+            let weight = packet.weight_against(lane, pdf * choice[lane]);
+            self.radiance[packet.slot[lane] as usize] += packet.throughput.get(lane) * radiance * weight;
+        }
     }
 }
