@@ -1,10 +1,13 @@
-//! Nanoseconds per virtual light added to a record, and per lookup of what a record reflects:
-//! `cargo run --release --example hsh_speed`.
+//! Nanoseconds per virtual light added to a record, and per lookup of what a record reflects; what records of a scene's
+//! materials hold: `cargo run --release --example hsh_speed [SCENE]`.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use lightsplat::gradient::{Incidence, Source};
-use lightsplat::hsh::{Accumulator, Kernel, Reflected};
+use lightsplat::hsh::{Accumulator, Kernel, Reflected, SeriesSettings, Surfaces};
+use lightsplat::material::Materials;
 use lightsplat::math::Rgb;
+use lightsplat::scene::MaterialId;
+use lightsplat::scene::formats::{LoadOptions, load};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -43,6 +46,49 @@ fn main() {
         });
         let bytes = radiance.heap_bytes();
         println!("{bands:5}  {add:18.1}  {finish:6.0}  {reflected:14.1}  {bytes:5}");
+    }
+    match std::env::args().nth(1) {
+        Some(path) => of_scene(&path),
+        None => of_scene("scenes/knot.toml"),
+    }
+}
+
+fn of_scene(path: &str) {
+    let scene = match load(path.as_ref(), &LoadOptions::default()) {
+        Ok(loaded) => loaded.scene,
+        Err(error) => return eprintln!("{error}"),
+    };
+    let materials = Materials::new(&scene);
+    let start = Instant::now();
+    let surfaces = Surfaces::new(&scene, &materials, &SeriesSettings::default());
+    let seconds = start.elapsed().as_secs_f64();
+    println!(
+        "{path}: {} materials in {:.1} ms, {} bytes, tables of {:?} outgoing directions",
+        materials.count(),
+        seconds * 1e3,
+        surfaces.heap_bytes(),
+        surfaces.directions()
+    );
+    for (i, material) in scene.materials.iter().enumerate() {
+        let id = MaterialId(i as u32);
+        let bsdf = materials.average(&scene, id);
+        let cos = |i: usize| 0.05 + 0.9 * (i & 1023) as f32 / 1023.0;
+        let profile = time(100_000, || {
+            for i in 0..100_000 {
+                black_box(surfaces.profile(id, &bsdf, cos(i)));
+            }
+        });
+        let profile_there = surfaces.profile(id, &bsdf, 0.5);
+        let towards = time(100_000, || {
+            for i in 0..100_000 {
+                black_box(black_box(&profile_there).towards(cos(i), 0.3));
+            }
+        });
+        let (caching, error) = (surfaces.caching(id), 100.0 * surfaces.error(id));
+        let name = format!("{} (alpha {:?})", material.name, materials.at(&scene, id, Vec2::ZERO).alpha());
+        println!(
+            "{name:40} {caching:?}, error {error:.1} %, profile {profile:.0} ns, towards {towards:.0} ns"
+        );
     }
 }
 

@@ -5,11 +5,11 @@ use super::radiance::CHANNELS;
 use std::f32::consts::PI;
 
 /// Functions that are even in azimuth: orders m >= 0.
-pub const MAX_EVEN: usize = MAX_BANDS * (MAX_BANDS + 1) / 2;
+pub(super) const MAX_EVEN: usize = MAX_BANDS * (MAX_BANDS + 1) / 2;
 
 /// Number of the function of degree `l` and order `m`, 0 <= m <= l, among the even ones.
 #[inline]
-pub const fn even_index(l: usize, m: usize) -> usize {
+pub(super) const fn even_index(l: usize, m: usize) -> usize {
     l * (l + 1) / 2 + m
 }
 
@@ -18,8 +18,9 @@ pub const fn even_index(l: usize, m: usize) -> usize {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Profile {
     pub(super) bands: usize,
-    /// By channel and [`even_index`].
-    pub(super) coefficients: [[f32; MAX_EVEN]; CHANNELS],
+    /// By channel and function; the places of odd functions repeat the coefficients of their even partners, which is what
+    /// turning the kernel distributes over both.
+    pub(super) coefficients: [[f32; MAX_FUNCTIONS]; CHANNELS],
 }
 
 impl Profile {
@@ -33,22 +34,39 @@ impl Profile {
     pub fn towards(&self, x: f32, y: f32) -> Kernel {
         let length = (x * x + y * y).sqrt();
         let (cos, sin) = if length > 0.0 { (x / length, y / length) } else { (1.0, 0.0) };
-        let mut kernel = Kernel { coefficients: [[0.0; MAX_FUNCTIONS]; CHANNELS] };
+        // sin mφ from the highest order down, then cos mφ up, so that a degree's functions are a run around the middle.
+        const MIDDLE: usize = MAX_BANDS - 1;
+        let mut multiples = [1.0; 2 * MAX_BANDS - 1];
         let (mut cos_m, mut sin_m) = (1.0, 0.0);
-        for m in 0..self.bands {
-            for l in m..self.bands {
-                for c in 0..CHANNELS {
-                    let coefficient = self.coefficients[c][even_index(l, m)];
-                    kernel.coefficients[c][index(l, m as isize)] = coefficient * cos_m;
-                    if m > 0 {
-                        kernel.coefficients[c][index(l, -(m as isize))] = coefficient * sin_m;
-                    }
-                }
-            }
+        for m in 1..MAX_BANDS {
             (cos_m, sin_m) = (cos * cos_m - sin * sin_m, sin * cos_m + cos * sin_m);
+            (multiples[MIDDLE + m], multiples[MIDDLE - m]) = (cos_m, sin_m);
+        }
+        let mut turn = [0.0; MAX_FUNCTIONS];
+        for l in 0..MAX_BANDS {
+            turn[l * l..(l + 1) * (l + 1)].copy_from_slice(&multiples[MIDDLE - l..=MIDDLE + l]);
+        }
+        let mut kernel = Kernel { coefficients: self.coefficients };
+        for row in &mut kernel.coefficients {
+            for k in 0..MAX_FUNCTIONS {
+                row[k] *= turn[k];
+            }
         }
         kernel
     }
+}
+
+/// Coefficients of even functions, repeated in the places of their odd partners.
+pub(super) fn repeated(even: &[f64; MAX_EVEN]) -> [f32; MAX_FUNCTIONS] {
+    let mut all = [0.0; MAX_FUNCTIONS];
+    for l in 0..MAX_BANDS {
+        for m in 0..=l {
+            let coefficient = even[even_index(l, m)] as f32;
+            all[index(l, m as isize)] = coefficient;
+            all[index(l, -(m as isize))] = coefficient;
+        }
+    }
+    all
 }
 
 /// Coefficients of BRDF · cosine over the incoming directions, by channel; the scalar product with those of the radiance

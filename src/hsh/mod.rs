@@ -1,6 +1,10 @@
 //! Hemispherical harmonics (HSH): an orthonormal basis over the hemisphere above a surface, in which cache records
 //! of glossy surfaces keep the light that arrives.
 //!
+//! An [`Accumulator`] sums the light of a record into a [`Radiance`]. [`Surfaces`] holds what each material of a scene
+//! does to light: seen from one inclination it is a [`Profile`], from one direction a [`Kernel`], and
+//! [`Radiance::reflected`] is what the surface reflects there. Two bands hold the irradiance exactly.
+//!
 //! Functions are numbered k = l² + l + m: degree l (the band) from 0, order m from -l to l, negative orders
 //! being those with sin |m|φ. The first n² functions are the first n bands.
 //!
@@ -13,12 +17,16 @@
 mod accumulate;
 mod basis;
 mod kernel;
+mod lobe_table;
+mod projection;
 mod radiance;
+mod surfaces;
 
 pub use accumulate::Accumulator;
 pub use basis::{MAX_BANDS, MAX_FUNCTIONS, evaluate, for_each, index};
-pub use kernel::{Kernel, MAX_EVEN, Profile, even_index};
+pub use kernel::{Kernel, Profile};
 pub use radiance::{Radiance, Reflected};
+pub use surfaces::{Caching, SeriesSettings, Surfaces};
 
 #[cfg(test)]
 mod tests;

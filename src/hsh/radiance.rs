@@ -41,7 +41,7 @@ impl Reflected {
 
 /// Floats of one block.
 #[inline]
-const fn stride(bands: usize) -> usize {
+pub(super) const fn stride(bands: usize) -> usize {
     (bands * bands).next_multiple_of(WIDTH)
 }
 

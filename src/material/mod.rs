@@ -14,6 +14,7 @@ mod fresnel;
 mod microfacet;
 mod model;
 mod packet;
+mod parts;
 mod sample;
 mod table;
 
@@ -24,4 +25,4 @@ pub use packet::{BsdfSamples16, Bsdfs16};
 pub use sample::{BsdfSample, DeltaLobes};
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -20,7 +20,7 @@ pub(super) const SHARP_LOBE_ALPHA: f32 = 0.1;
 /// The scene's materials, ready to be looked up at points.
 #[derive(Clone, Debug)]
 pub struct Materials {
-    models: Vec<Model>,
+    pub(super) models: Vec<Model>,
 }
 
 /// One material.
@@ -40,7 +40,7 @@ pub(super) struct Model {
     base_factor: f32,
     internal_reflectance: f32,
     nonlinear: bool,
-    source: Reflectances<Reflectance>,
+    pub(super) source: Reflectances<Reflectance>,
     /// Where nothing is textured, what `at` returns.
     constant: Option<Reflectances<Rgb>>,
 }
@@ -67,7 +67,7 @@ pub(super) enum Base {
 }
 
 /// The lobe.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Scattering {
     None,
     Rough(Microfacets, Fresnel),
@@ -214,7 +214,7 @@ impl Model {
 
     /// BRDF of the base, less the coat's transmittances by angle.
     #[inline]
-    fn base_brdf(&self, albedo: Rgb) -> Rgb {
+    pub(super) fn base_brdf(&self, albedo: Rgb) -> Rgb {
         if self.internal_reflectance == 0.0 {
             return albedo * self.base_factor;
         }

@@ -14,7 +14,7 @@ use crate::scene::{
 use glam::{DVec3, Mat3, Vec2, Vec3};
 
 /// A scene of nothing but materials (and one 2x1 texture: red at u < 1/2, green beyond).
-fn scene(materials: Vec<Material>) -> Scene {
+pub(crate) fn scene(materials: Vec<Material>) -> Scene {
     Scene {
         name: String::new(),
         sources: Vec::new(),

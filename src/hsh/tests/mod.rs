@@ -1,6 +1,7 @@
 //! Tests of the module, by what they compare with.
 
 mod basis;
+mod projection;
 mod radiance;
 
 use glam::DVec3;

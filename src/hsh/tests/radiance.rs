@@ -165,9 +165,11 @@ fn turning_the_frame_turns_the_light() {
 #[test]
 fn a_kernel_may_be_turned_instead_of_the_light() {
     let mut random = Random(9);
-    let mut profile = Profile { bands: 7, coefficients: [[0.0; MAX_EVEN]; 3] };
-    for c in profile.coefficients.iter_mut().flat_map(|row| &mut row[..even_index(7, 0)]) {
-        *c = random.next() as f32 - 0.5;
+    let mut profile = Profile { bands: 7, coefficients: [[0.0; MAX_FUNCTIONS]; 3] };
+    for row in &mut profile.coefficients {
+        let mut even = [0.0; kernel::MAX_EVEN];
+        even[..kernel::even_index(7, 0)].fill_with(|| random.next() - 0.5);
+        *row = kernel::repeated(&even);
     }
     let lights = lights(60);
     for bands in [3, 7, 8] {

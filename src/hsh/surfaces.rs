@@ -1,0 +1,223 @@
+//! How each material's reflection is served: by irradiance, by a series, or not by cache records at all.
+//!
+//! The kernel of a surface is base + lobe. The base, a Lambertian under a coat perhaps, varies with the height of the
+//! light only, by the coat's transmittance; it takes one row of functions and hardly any error. Both parts are
+//! projected with reflectance 1: colour and texture are factors on either, looked up at the point.
+//!
+//! Deviations: the paper sets the number of bands by hand; here it is the least that keeps the error of the kernel.
+
+use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
+use super::kernel::{Profile, even_index};
+use super::lobe_table::LobeTable;
+use super::projection::{Projection, Quadrature, ZonalProjection};
+use super::radiance::CHANNELS;
+use crate::material::{Bsdf, Materials};
+use crate::scene::{MaterialId, Scene};
+use rayon::prelude::*;
+
+/// Outgoing inclinations, in degrees, over which the error of a kernel is averaged.
+const INCLINATIONS: [f64; 6] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0];
+
+/// How good series have to be. Errors are in the L2 norm over the incoming directions, relative to the whole kernel (base
+/// and lobe), averaged over outgoing inclinations up to 75°.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeriesSettings {
+    /// Sharper lobes are not expanded whatever the error.
+    pub min_alpha: f32,
+    /// Bands are added until the error is no larger than this.
+    pub error: f64,
+    /// Materials whose error is larger than this even at 8 bands get no records.
+    pub max_error: f64,
+    /// Largest error by interpolation between outgoing directions.
+    pub interpolation_error: f64,
+}
+
+impl Default for SeriesSettings {
+    fn default() -> SeriesSettings {
+        SeriesSettings { min_alpha: 0.25, error: 0.05, max_error: 0.12, interpolation_error: 0.002 }
+    }
+}
+
+/// What cache records of a material hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Caching {
+    /// Irradiance is enough: there is no rough lobe (or one so sharp that the eye follows it).
+    Irradiance,
+    /// A series of so many bands.
+    Series(u8),
+    /// Too glossy for records.
+    PerSample,
+}
+
+/// Series of what every material of a scene does to light.
+pub struct Surfaces {
+    materials: Vec<Surface>,
+    lobes: Vec<LobeTable>,
+}
+
+struct Surface {
+    caching: Caching,
+    /// See [`Surfaces::error`].
+    error: f64,
+    lobe: Option<usize>,
+    /// Transmittance of the coat times cosine: functions of order 0.
+    base: [f32; MAX_BANDS],
+}
+
+impl Surfaces {
+    /// Projects the materials of a scene. Materials whose lobes differ by a factor only share one table.
+    pub fn new(scene: &Scene, materials: &Materials, settings: &SeriesSettings) -> Surfaces {
+        let quadrature = Quadrature::standard();
+        let averages: Vec<Bsdf> =
+            (0..materials.count()).map(|i| materials.average(scene, MaterialId(i as u32))).collect();
+        // One of each kind of lobe, and for each material which.
+        let mut distinct: Vec<Bsdf> = Vec::new();
+        let mut kinds: Vec<Option<usize>> = Vec::with_capacity(averages.len());
+        for bsdf in &averages {
+            let lobe = bsdf.unit_lobe().filter(|_| has_lobe(bsdf));
+            kinds.push(lobe.map(|lobe| {
+                distinct.iter().position(|d| d.same_lobe(&lobe)).unwrap_or_else(|| {
+                    distinct.push(lobe);
+                    distinct.len() - 1
+                })
+            }));
+        }
+        let tests: Vec<Vec<Projection>> = distinct
+            .par_iter()
+            .map(|lobe| {
+                INCLINATIONS.par_iter().map(|d| quadrature.project(lobe, d.to_radians().cos())).collect()
+            })
+            .collect();
+        let mut surfaces: Vec<Surface> = averages
+            .iter()
+            .zip(&kinds)
+            .map(|(bsdf, kind)| Surface::new(bsdf, kind.map(|k| &tests[k][..]), *kind, &quadrature, settings))
+            .collect();
+        // Tables for those that are used, with as many bands as any of their materials needs.
+        let mut lobes = Vec::new();
+        for (kind, lobe) in distinct.iter().enumerate() {
+            let users = || surfaces.iter().filter(|s| s.lobe == Some(kind)).filter_map(|s| s.caching.bands());
+            let Some(bands) = users().max() else { continue };
+            lobes.push((kind, LobeTable::new(lobe, bands, settings.interpolation_error, &quadrature)));
+        }
+        for surface in &mut surfaces {
+            let kind = surface.lobe.filter(|_| surface.caching.bands().is_some());
+            surface.lobe = kind.and_then(|kind| lobes.iter().position(|(k, _)| *k == kind));
+        }
+        Surfaces { materials: surfaces, lobes: lobes.into_iter().map(|(_, table)| table).collect() }
+    }
+
+    /// What records of a material hold.
+    #[inline]
+    pub fn caching(&self, id: MaterialId) -> Caching {
+        self.materials[id.0 as usize].caching
+    }
+
+    /// Error of the material's kernel at the number of bands chosen (8 if there are to be no records), for its mean
+    /// reflectances; 0 for irradiance.
+    pub fn error(&self, id: MaterialId) -> f64 {
+        self.materials[id.0 as usize].error
+    }
+
+    /// Kernel of a material for outgoing directions at `cos_o` > 0 to the normal, at a point where it is `bsdf`. Where
+    /// [`Surfaces::caching`] is not a series it is that of the base alone.
+    #[inline]
+    pub fn profile(&self, id: MaterialId, bsdf: &Bsdf, cos_o: f32) -> Profile {
+        let surface = &self.materials[id.0 as usize];
+        let bands = surface.caching.bands().unwrap_or(MAX_BANDS);
+        let mut coefficients = match surface.lobe {
+            Some(lobe) => self.lobes[lobe].lookup(cos_o),
+            None => [[0.0; MAX_FUNCTIONS]; CHANNELS],
+        };
+        let (scale, base) = (bsdf.lobe_scale(), bsdf.base_brdf() * bsdf.base_transmittance(cos_o));
+        for (c, row) in coefficients.iter_mut().enumerate() {
+            for coefficient in row.iter_mut() {
+                *coefficient *= scale[c];
+            }
+            for l in 0..MAX_BANDS {
+                row[index(l, 0)] += base[c] * surface.base[l];
+            }
+            // The table may have more bands, for another material.
+            row[bands * bands..].fill(0.0);
+        }
+        Profile { bands, coefficients }
+    }
+
+    /// Tables of lobes and the outgoing directions in each.
+    pub fn directions(&self) -> Vec<usize> {
+        self.lobes.iter().map(LobeTable::directions).collect()
+    }
+
+    /// Bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        size_of_val(&*self.materials) + self.lobes.iter().map(LobeTable::heap_bytes).sum::<usize>()
+    }
+}
+
+impl Caching {
+    /// Bands of the series, if it is one.
+    pub fn bands(self) -> Option<usize> {
+        match self {
+            Caching::Series(bands) => Some(usize::from(bands)),
+            Caching::Irradiance | Caching::PerSample => None,
+        }
+    }
+}
+
+impl Surface {
+    fn new(
+        bsdf: &Bsdf,
+        tests: Option<&[Projection]>,
+        lobe: Option<usize>,
+        quadrature: &Quadrature,
+        settings: &SeriesSettings,
+    ) -> Surface {
+        let zonal = quadrature.project_zonal(|z| z * f64::from(bsdf.base_transmittance(z as f32)));
+        let base = zonal.coefficients.map(|c| c as f32);
+        let (caching, error) = match tests {
+            None => (Caching::Irradiance, 0.0),
+            Some(tests) => {
+                let error = |bands: usize| mean_error(bsdf, tests, &zonal, bands);
+                // Two bands hold the irradiance.
+                let enough =
+                    (2..=MAX_BANDS).find(|bands| error(*bands) <= settings.error).unwrap_or(MAX_BANDS);
+                let error = error(enough);
+                let fits = error <= settings.max_error && bsdf.alpha() >= Some(settings.min_alpha);
+                (if fits { Caching::Series(enough as u8) } else { Caching::PerSample }, error)
+            }
+        };
+        Surface { caching, error, lobe, base }
+    }
+}
+
+/// Whether the material has a lobe that the eye does not follow.
+fn has_lobe(bsdf: &Bsdf) -> bool {
+    bsdf.alpha().is_some() && bsdf.split_sharp_lobe().is_none() && bsdf.lobe_scale().max_element() > 0.0
+}
+
+/// Error of a kernel in its first `bands`.
+fn mean_error(bsdf: &Bsdf, tests: &[Projection], zonal: &ZonalProjection, bands: usize) -> f64 {
+    let errors = INCLINATIONS.iter().zip(tests).map(|(degrees, lobe)| {
+        let through = bsdf.base_transmittance(degrees.to_radians().cos() as f32);
+        let (mut left_out, mut whole) = (0.0, 0.0);
+        for c in 0..CHANNELS {
+            let base = f64::from(bsdf.base_brdf()[c] * through);
+            let scale = f64::from(bsdf.lobe_scale()[c]);
+            let row = &lobe.coefficients[c];
+            let common: f64 = (0..MAX_BANDS).map(|l| zonal.coefficients[l] * row[even_index(l, 0)]).sum();
+            let norm_sq =
+                base * base * zonal.norm_sq + 2.0 * base * scale * common + scale * scale * lobe.norm_sq[c];
+            let mut kept = 0.0;
+            for l in 0..bands {
+                for m in 0..=l {
+                    let zonal = if m == 0 { base * zonal.coefficients[l] } else { 0.0 };
+                    kept += (zonal + scale * row[even_index(l, m)]).powi(2);
+                }
+            }
+            left_out += (norm_sq - kept).max(0.0);
+            whole += norm_sq;
+        }
+        if whole > 0.0 { (left_out / whole).sqrt() } else { 0.0 }
+    });
+    errors.sum::<f64>() / INCLINATIONS.len() as f64
+}
