@@ -8,12 +8,14 @@
 //! - [`eye`] follows each pixel through mirrors and glass to the surfaces that scatter light into it;
 //! - [`lightcut`] finds, for each of those, the coarsest clusters that keep the error bound;
 //! - [`gradient`] says how that light changes along the surface, [`hsh`] expands it over the hemisphere;
+//! - [`cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their footprints;
 //! - [`shadow`] keeps surfaces from shadowing themselves, [`sampling`] gives every stage its numbers;
 //! - [`method`] holds the renderers that are compared; [`image`] writes and compares what they return;
 //! - [`cli`] is the command around it all, [`stats`] what it reports.
 
 #![deny(unsafe_code)]
 
+pub mod cache;
 pub mod cli;
 pub mod embree;
 pub mod eye;

@@ -1,5 +1,6 @@
 //! What can be typed. Every option is documented here and nowhere else: `--help` is made of it.
 
+use super::cache_args::CacheArgs;
 use super::exit;
 use crate::image::Exposure;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -80,9 +81,12 @@ pub struct RenderArgs {
     /// Options of one method.
     #[command(flatten)]
     pub lightcuts: LightcutArgs,
+    /// Options of the radiance cache.
+    #[command(flatten)]
+    pub cache: CacheArgs,
 }
 
-/// Options of `--method lightcuts`. The defaults are the method's own; a test holds the text to them.
+/// Options of `--method lightcuts` and `cache`. The defaults are the method's own; a test holds the text to them.
 #[derive(Clone, Debug, Default, Args, PartialEq)]
 #[command(next_help_heading = "Lightcuts")]
 pub struct LightcutArgs {
@@ -159,6 +163,8 @@ pub struct CompareArgs {
 pub enum MethodName {
     /// Unbiased path tracing: slow to converge, the reference; the default until there is a faster one as general
     Path,
+    /// The radiance cache: lightcuts at a few thousand points, splatted onto all pixels
+    Cache,
     /// Lightcuts per pixel: virtual point lights, clustered under an error bound
     Lightcuts,
 }
@@ -234,7 +240,7 @@ impl FromStr for Crop {
     }
 }
 
-fn parse_fraction(text: &str) -> Result<f32, String> {
+pub(super) fn parse_fraction(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(value) if (0.0..=1.0).contains(&value) => Ok(value),
         _ => Err("expected a number from 0 to 1".to_owned()),
@@ -244,7 +250,7 @@ fn parse_fraction(text: &str) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::{lightcuts, path};
+    use crate::method::{cache, lightcuts, path};
     use clap::CommandFactory;
 
     #[test]
@@ -277,6 +283,7 @@ mod tests {
     fn help_states_the_methods_own_defaults() {
         let path = path::Settings::default();
         let cuts = lightcuts::Settings::default();
+        let cached = cache::Settings::default().cache;
         let render = Cli::command().find_subcommand("render").unwrap().clone();
         let stated = |option: &str| {
             let argument = render.get_arguments().find(|a| a.get_long() == Some(option)).unwrap();
@@ -289,6 +296,12 @@ mod tests {
             ("vpls", cuts.light.indirect.to_string()),
             ("direct-vpls", cuts.light.direct.to_string()),
             ("clamp", cuts.cut.clamp.unwrap_or(0.0).to_string()),
+            ("record-epsilon", cached.cut.epsilon.to_string()),
+            ("mu", cached.mu.to_string()),
+            ("passes", cached.passes.to_string()),
+            ("threshold", cached.threshold.to_string()),
+            ("least-cell", cached.least_cell.to_string()),
+            ("accuracy", format!("{},{}", cached.layers[0].accuracy, cached.layers[1].accuracy)),
             ("tree", format!("{:?}", cuts.family).to_lowercase()),
         ];
         for (option, default) in expected {

@@ -1,10 +1,12 @@
 //! The method chosen, with its settings.
 
 use super::args::{LightcutArgs, MethodName, RenderArgs, TreeFamily};
+use super::cache_args::{CacheArgs, DirectBy, FootprintShape, Pair};
 use super::exit::Failure;
+use crate::cache::{DirectLight, Footprints};
 use crate::eye::Window;
 use crate::light_tree::Family;
-use crate::method::{Control, Output, lightcuts, path};
+use crate::method::{Control, Output, cache, lightcuts, path};
 use crate::world::World;
 use anyhow::anyhow;
 use serde_json::{Value, json};
@@ -14,6 +16,8 @@ use serde_json::{Value, json};
 pub enum Method {
     /// Path tracing.
     Path(path::Settings),
+    /// The radiance cache.
+    Cache(cache::Settings),
     /// Lightcuts per pixel.
     Lightcuts(lightcuts::Settings),
 }
@@ -23,12 +27,16 @@ impl Method {
     pub fn new(args: &RenderArgs) -> Result<Method, Failure> {
         match args.method {
             MethodName::Path if args.lightcuts != LightcutArgs::default() => Err(Failure::usage(anyhow!(
-                "--epsilon, --max-cut, --vpls, --direct-vpls, --clamp and --tree belong to --method lightcuts"
+                "--epsilon, --max-cut, --vpls, --direct-vpls, --clamp and --tree belong to --method cache and lightcuts"
             ))),
+            MethodName::Path | MethodName::Lightcuts if args.cache != CacheArgs::default() => {
+                Err(Failure::usage(anyhow!("the options under \"Radiance cache\" belong to --method cache")))
+            }
             MethodName::Path => {
                 let spp = args.spp.unwrap_or(path::Settings::default().spp);
                 Ok(Method::Path(path::Settings { spp, seed: args.seed, max_depth: args.max_depth }))
             }
+            MethodName::Cache => Ok(Method::Cache(cache_settings(args))),
             MethodName::Lightcuts => Ok(Method::Lightcuts(lightcuts_settings(args))),
         }
     }
@@ -37,6 +45,7 @@ impl Method {
     pub fn name(&self) -> &'static str {
         match self {
             Method::Path(_) => "path",
+            Method::Cache(_) => "cache",
             Method::Lightcuts(_) => "lightcuts",
         }
     }
@@ -45,6 +54,7 @@ impl Method {
     pub fn spp(&self) -> u32 {
         match self {
             Method::Path(settings) => settings.spp,
+            Method::Cache(settings) => settings.spp,
             Method::Lightcuts(settings) => settings.spp,
         }
     }
@@ -53,6 +63,7 @@ impl Method {
     pub fn seed(&self) -> u32 {
         match self {
             Method::Path(settings) => settings.seed,
+            Method::Cache(settings) => settings.seed,
             Method::Lightcuts(settings) => settings.seed,
         }
     }
@@ -61,7 +72,53 @@ impl Method {
     pub fn settings(&self) -> Value {
         match self {
             Method::Path(s) => json!({ "spp": s.spp, "seed": s.seed, "max_depth": s.max_depth }),
-            Method::Lightcuts(s) => json!({
+            Method::Cache(s) => cache_report(s),
+            Method::Lightcuts(s) => lightcuts_report(s),
+        }
+    }
+
+    /// Renders `window`.
+    pub fn render(&self, world: &World, window: &Window, control: &Control) -> Output {
+        match self {
+            Method::Path(settings) => path::render(world, window, settings, control),
+            Method::Cache(settings) => cache::render(world, window, settings, control),
+            Method::Lightcuts(settings) => lightcuts::render(world, window, settings, control),
+        }
+    }
+}
+
+fn cache_report(s: &cache::Settings) -> Value {
+    let c = &s.cache;
+    json!({
+        "spp": s.spp,
+        "seed": s.seed,
+        "max_depth": s.max_depth,
+        "epsilon": decimal(s.cut.epsilon),
+        "record_epsilon": decimal(c.cut.epsilon),
+        "max_cut": s.cut.max_cut,
+        "vpls": s.light.indirect,
+        "direct_vpls": s.light.direct,
+        "clamp": decimal(s.cut.clamp.unwrap_or(0.0)),
+        "tree": family_name(s.family),
+        "direct": match c.direct {
+            DirectLight::Records => "records",
+            DirectLight::PerSample => "samples",
+        },
+        "footprints": match c.footprints {
+            Footprints::Isotropic => "isotropic",
+            Footprints::Anisotropic => "anisotropic",
+        },
+        "accuracy": c.layers.map(|l| decimal(l.accuracy)),
+        "reach": c.layers.map(|l| l.reach.map(decimal)),
+        "mu": decimal(c.mu),
+        "passes": c.passes,
+        "threshold": decimal(c.threshold),
+        "least_cell": c.least_cell,
+    })
+}
+
+fn lightcuts_report(s: &lightcuts::Settings) -> Value {
+    json!({
                 "spp": s.spp,
                 "seed": s.seed,
                 "max_depth": s.max_depth,
@@ -70,26 +127,57 @@ impl Method {
                 "vpls": s.light.indirect,
                 "direct_vpls": s.light.direct,
                 "clamp": decimal(s.cut.clamp.unwrap_or(0.0)),
-                "tree": match s.family {
-                    Family::Divisive => "divisive",
-                    Family::Agglomerative => "agglomerative",
-                },
-            }),
-        }
-    }
+                "tree": family_name(s.family),
+    })
+}
 
-    /// Renders `window`.
-    pub fn render(&self, world: &World, window: &Window, control: &Control) -> Output {
-        match self {
-            Method::Path(settings) => path::render(world, window, settings, control),
-            Method::Lightcuts(settings) => lightcuts::render(world, window, settings, control),
-        }
+fn family_name(family: Family) -> &'static str {
+    match family {
+        Family::Divisive => "divisive",
+        Family::Agglomerative => "agglomerative",
     }
 }
 
 /// The value with the digits that were typed, not those of its nearest f32.
 fn decimal(value: f32) -> f64 {
     value.to_string().parse().unwrap_or(value as f64)
+}
+
+fn cache_settings(args: &RenderArgs) -> cache::Settings {
+    let typed = lightcuts_settings(args);
+    let mut settings = cache::Settings {
+        spp: typed.spp,
+        seed: args.seed,
+        max_depth: args.max_depth,
+        light: typed.light,
+        cut: typed.cut,
+        family: typed.family,
+        ..Default::default()
+    };
+    settings.cache.cut.clamp = typed.cut.clamp;
+    let cached = &args.cache;
+    let cache = &mut settings.cache;
+    cache.cut.epsilon = cached.record_epsilon.unwrap_or(cache.cut.epsilon);
+    cache.cut.max_cut = typed.cut.max_cut;
+    for (l, layer) in cache.layers.iter_mut().enumerate() {
+        layer.accuracy = cached.accuracy.map_or(layer.accuracy, |Pair(a)| a[l]);
+        layer.reach = cached.reach.map_or(layer.reach, |Pair(r)| r);
+    }
+    cache.footprints = match cached.footprints {
+        Some(FootprintShape::Isotropic) => Footprints::Isotropic,
+        Some(FootprintShape::Anisotropic) => Footprints::Anisotropic,
+        None => cache.footprints,
+    };
+    cache.direct = match cached.direct {
+        Some(DirectBy::Records) => DirectLight::Records,
+        Some(DirectBy::Samples) => DirectLight::PerSample,
+        None => cache.direct,
+    };
+    cache.mu = cached.mu.unwrap_or(cache.mu);
+    cache.passes = cached.passes.unwrap_or(cache.passes);
+    cache.threshold = cached.threshold.unwrap_or(cache.threshold);
+    cache.least_cell = cached.least_cell.unwrap_or(cache.least_cell);
+    settings
 }
 
 fn lightcuts_settings(args: &RenderArgs) -> lightcuts::Settings {

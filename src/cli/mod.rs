@@ -3,6 +3,7 @@
 //! stdout is data (statistics, reports), stderr is talk (progress, warnings, errors). Exit codes are in `exit`.
 
 mod args;
+mod cache_args;
 mod compare;
 mod exit;
 mod info;

@@ -131,9 +131,9 @@ impl<'m> Reflector<'m> {
         }
     }
 
-    /// Unit shading normal on the side of the eye.
-    pub fn normal(&self) -> Vec3 {
-        self.frame.normal
+    /// Position and unit shading normal on the side of the eye.
+    pub fn place(&self) -> (Vec3, Vec3) {
+        (self.position, self.frame.normal)
     }
 
     /// The same surface elsewhere.

@@ -73,6 +73,18 @@ pub struct CutCounts {
 }
 
 impl CutCounts {
+    /// What was done since the counts were `before`.
+    pub fn since(&self, before: &CutCounts) -> CutCounts {
+        CutCounts {
+            cuts: self.cuts - before.cuts,
+            clusters: self.clusters - before.clusters,
+            capped: self.capped - before.capped,
+            rays: self.rays - before.rays,
+            bounds: self.bounds - before.bounds,
+            clamped: self.clamped - before.clamped,
+        }
+    }
+
     /// Adds `other`.
     pub fn add(&mut self, other: &CutCounts) {
         self.cuts += other.cuts;

@@ -2,7 +2,6 @@
 //!
 //! Units: `eval` is 1/sr, without the cosine; `pdf` is per solid angle.
 
-use super::fresnel;
 use super::model::{Base, DIFFUSE_LOBE_ALPHA, Model, SHARP_LOBE_ALPHA, Scattering};
 use crate::math::Rgb;
 use glam::Vec3;
@@ -83,6 +82,21 @@ impl Bsdf<'_> {
     #[inline]
     pub(super) fn is_lambert(&self) -> bool {
         matches!((&self.model.base, &self.model.lobe), (Base::Lambert, Scattering::None))
+    }
+
+    /// Which coat lies on the base (see [`super::Materials::coat_transmittance`]); 0 for none.
+    #[inline]
+    pub fn coat(&self) -> u32 {
+        self.model.coat
+    }
+
+    /// Base and lobe apart, where both are smooth functions of direction: the BRDF of the base for light that has passed
+    /// the coat on its way in, seen from the cosine `cos_out`; and the rest, if it reflects anything.
+    #[inline]
+    pub fn split_base(&self, cos_out: f32) -> (Rgb, Option<Self>) {
+        let base = self.base * self.coat_transmittance(cos_out.abs());
+        let glossy = matches!(self.model.lobe, Scattering::Rough(..)) && self.scale != Rgb::ZERO;
+        (base, glossy.then_some(Bsdf { base: Rgb::ZERO, ..*self }))
     }
 
     /// The albedo, if the material is Lambertian and nothing else.
@@ -187,11 +201,7 @@ impl Bsdf<'_> {
     /// Share of the light at `cos` > 0 that passes the coat; 1 where there is none.
     #[inline]
     pub(super) fn coat_transmittance(&self, cos: f32) -> f32 {
-        match &self.model.base {
-            Base::None | Base::Lambert => 1.0,
-            Base::SmoothCoat(eta) => 1.0 - fresnel::dielectric(cos, *eta),
-            Base::RoughCoat(coat) => coat.transmittance.lookup(cos),
-        }
+        self.model.base.coat_transmittance(cos)
     }
 
     /// Share of the light from one direction that the base reflects, given the coat's transmittance for it.

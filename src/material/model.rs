@@ -21,6 +21,8 @@ pub(super) const SHARP_LOBE_ALPHA: f32 = 0.1;
 #[derive(Clone, Debug)]
 pub struct Materials {
     pub(super) models: Vec<Model>,
+    /// A base under each kind of coat; the first is bare.
+    coats: Vec<Base>,
 }
 
 /// One material.
@@ -28,6 +30,8 @@ pub struct Materials {
 pub(super) struct Model {
     pub two_sided: bool,
     pub base: Base,
+    /// Number of the coat on it; 0 for none.
+    pub coat: u32,
     pub lobe: Scattering,
     /// Cosine-weighted mean of the coat's transmittance; 1 without a coat.
     pub mean_transmittance: f32,
@@ -66,6 +70,28 @@ pub(super) enum Base {
     RoughCoat(Arc<RoughCoat>),
 }
 
+impl Base {
+    /// Share of the light at `cos` > 0 that passes the coat; 1 where there is none.
+    #[inline]
+    pub fn coat_transmittance(&self, cos: f32) -> f32 {
+        match self {
+            Base::None | Base::Lambert => 1.0,
+            Base::SmoothCoat(eta) => 1.0 - fresnel::dielectric(cos, *eta),
+            Base::RoughCoat(coat) => coat.transmittance.lookup(cos),
+        }
+    }
+
+    /// Whether the same light reaches the base.
+    fn same_coat(&self, other: &Base) -> bool {
+        match (self, other) {
+            (Base::SmoothCoat(a), Base::SmoothCoat(b)) => a == b,
+            (Base::RoughCoat(a), Base::RoughCoat(b)) => Arc::ptr_eq(a, b),
+            (Base::None | Base::Lambert, Base::None | Base::Lambert) => true,
+            _ => false,
+        }
+    }
+}
+
 /// The lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Scattering {
@@ -79,7 +105,22 @@ impl Materials {
     /// Prepares every material of the scene.
     pub fn new(scene: &Scene) -> Materials {
         let mut tables = Tables::default();
-        Materials { models: scene.materials.iter().map(|m| Model::new(m, &mut tables)).collect() }
+        let mut models: Vec<Model> = scene.materials.iter().map(|m| Model::new(m, &mut tables)).collect();
+        let mut coats = vec![Base::None];
+        for model in &mut models {
+            let known = coats.iter().position(|coat| coat.same_coat(&model.base));
+            model.coat = known.unwrap_or(coats.len()) as u32;
+            if known.is_none() {
+                coats.push(model.base.clone());
+            }
+        }
+        Materials { models, coats }
+    }
+
+    /// Share of the light at the cosine `cos` > 0 that passes the coat of the given number (see [`Bsdf::coat`]).
+    #[inline]
+    pub fn coat_transmittance(&self, coat: u32, cos: f32) -> f32 {
+        self.coats.get(coat as usize).map_or(1.0, |base| base.coat_transmittance(cos))
     }
 
     /// The material at texture coordinates `uv`. `scene` must be the one the materials were made from.
@@ -170,6 +211,7 @@ impl Model {
         let mut model = Model {
             two_sided: material.two_sided,
             base,
+            coat: 0,
             lobe,
             mean_transmittance,
             max_reflectance: match lobe {

@@ -1,5 +1,6 @@
 //! The renderers compared, one folder each; they share every stage they can.
 
+pub mod cache;
 pub mod control;
 pub mod lightcuts;
 pub mod output;

@@ -9,12 +9,14 @@
 //! Deviations: a lane's luminance counts as at least 1/256 of the brightest lane's where errors are judged, so
 //! that one point in the dark does not drive the cut of fifteen in the light to its cap.
 
+mod alike;
 mod points;
 mod refine;
 #[cfg(test)]
 mod tests;
 mod transfer;
 
+pub use alike::{LEAST_SHARED, alike, group_alike};
 pub use points::Points;
 pub use refine::GroupLightcut;
 pub use transfer::{GroupVisibility, shadow_rays};

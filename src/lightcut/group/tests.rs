@@ -34,7 +34,7 @@ fn neighbours<'m>(
     let lambert = materials.at(scene, MaterialId(0), Vec2::ZERO);
     (0..count)
         .map(|i| {
-            let normal = (first.normal() + numbers.direction() * 0.1).normalize();
+            let normal = (first.place().1 + numbers.direction() * 0.1).normalize();
             let out = (normal + numbers.direction() * 0.5).normalize();
             let bsdf = if i % 3 == 0 { first.bsdf().unwrap_or(lambert) } else { lambert };
             let frame = crate::math::Frame::from_normal(normal);

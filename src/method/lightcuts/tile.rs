@@ -4,8 +4,8 @@
 
 use super::render::Scenery;
 use crate::eye::{ChainCounts, EyeSample, primary_ray, trace};
-use crate::lightcut::group::{GroupLightcut, LANES, Points};
-use crate::lightcut::{CutCounts, Lightcut, Receiver, Reflector};
+use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Points, alike};
+use crate::lightcut::{CutCounts, Lightcut, Reflector};
 use crate::math::Rgb;
 use crate::sampling::{Sampler, hash};
 use glam::Vec2;
@@ -14,13 +14,6 @@ use glam::Vec2;
 pub const TILE: u32 = 16;
 /// Pixels along the edge of a block, within which eye samples may share a cut.
 pub const BLOCK: u32 = 4;
-
-/// Fewer points than this have cuts of their own.
-const LEAST_SHARED: usize = 4;
-/// Points share a cut if the cosine between their normals is at least this ...
-const LEAST_COSINE: f32 = 0.8;
-/// ... and their distance at most this fraction of the scene's diagonal.
-const LARGEST_DISTANCE: f32 = 0.02;
 
 /// A thread's buffers.
 #[derive(Default)]
@@ -148,7 +141,10 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
         work.members.clear();
         let seed = &work.samples[first].reflector;
         for (i, sample) in work.samples.iter().enumerate().skip(first) {
-            if !sample.done && work.members.len() < LANES && s.alike(seed, &sample.reflector) {
+            if !sample.done
+                && work.members.len() < LANES
+                && alike(s.world.diagonal, seed.place(), sample.reflector.place())
+            {
                 work.members.push(i);
             }
         }
@@ -175,13 +171,6 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
 }
 
 impl Scenery<'_> {
-    /// Whether two points are likely to have nearly the same cut.
-    fn alike(&self, a: &Reflector, b: &Reflector) -> bool {
-        let limit = LARGEST_DISTANCE * self.world.diagonal;
-        a.position().distance_squared(b.position()) <= limit * limit
-            && a.normal().dot(b.normal()) >= LEAST_COSINE
-    }
-
     /// The part of a tile inside the window, in film coordinates.
     pub fn tile_area(&self, corner: [u32; 2]) -> Area {
         let w = self.window;

@@ -1,0 +1,96 @@
+//! Footprints that disagree visibly are shrunk.
+//!
+//! Paper: Herzog et al. 2009, section 5.2: at each eye sample one contribution after the other is left out; where
+//! that changes the luminance visibly, the record's footprint is shrunk until it excludes the sample. The change is judged
+//! against the sum of both layers, so that each masks the other.
+//!
+//! Deviations: the record nearest to the sample keeps its place. Leaving it out changes most, yet it knows most.
+
+use super::layer::Layer;
+use crate::eye::EyeSamples;
+use crate::math::{Rgb, luminance};
+use rayon::prelude::*;
+
+/// A record whose light is seen to end or begin at a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seam {
+    /// Layer of the record.
+    pub layer: usize,
+    /// The record.
+    pub record: u32,
+    /// The eye sample.
+    pub sample: u32,
+}
+
+/// Finds the seams of all leaves marked in `changed`, in order.
+pub fn seams(samples: &EyeSamples, layers: &[Layer; 2], threshold: f32, changed: &[bool]) -> Vec<Seam> {
+    let by_leaf: Vec<Vec<Seam>> = (0..samples.index.leaves())
+        .into_par_iter()
+        .map_init(Vec::new, |contributions, leaf| {
+            let mut seams = Vec::new();
+            if changed[leaf] {
+                for sample in samples.index.leaf(leaf) {
+                    at_sample(samples, layers, threshold, leaf, sample, contributions, &mut seams);
+                }
+            }
+            seams
+        })
+        .collect();
+    by_leaf.concat()
+}
+
+fn at_sample(
+    samples: &EyeSamples,
+    layers: &[Layer; 2],
+    threshold: f32,
+    leaf: usize,
+    sample: usize,
+    contributions: &mut Vec<(u32, f32, Rgb)>,
+    seams: &mut Vec<Seam>,
+) {
+    let means = [0, 1].map(|l| layers[l].sums[sample].mean().unwrap_or(Rgb::ZERO));
+    let visible = threshold * luminance(means[0] + means[1]);
+    let point = &samples.points[sample];
+    for (l, layer) in layers.iter().enumerate() {
+        let sum = layer.sums[sample];
+        contributions.clear();
+        for &id in &layer.lists[leaf] {
+            if let Some((weight, irradiance)) = layer.records[id as usize].at(point) {
+                contributions.push((id, weight, irradiance));
+            }
+        }
+        let heaviest = contributions.iter().fold(0.0, |w: f32, c| w.max(c.1));
+        for &(id, weight, irradiance) in contributions.iter() {
+            if weight >= heaviest {
+                continue;
+            }
+            let without = (sum.irradiance - weight * irradiance) / (sum.weight - weight);
+            if luminance((without - means[l]).abs()) > visible {
+                seams.push(Seam { layer: l, record: id, sample: sample as u32 });
+            }
+        }
+    }
+}
+
+/// Shrinks the footprints of the records at `seams` and says in which leaves of each layer that changes something; the sums there
+/// must be formed anew.
+pub fn shrink(
+    samples: &EyeSamples,
+    layers: &mut [Layer; 2],
+    seams: &[Seam],
+    least_reach: [f32; 2],
+) -> Vec<bool> {
+    let mut changed = vec![false; samples.index.leaves()];
+    for seam in seams {
+        let record = &mut layers[seam.layer].records[seam.record as usize];
+        let point = &samples.points[seam.sample as usize];
+        if record.delta(point) >= 1.0 {
+            continue; // an earlier seam has excluded this sample
+        }
+        let reach = record.footprint.reach();
+        if record.exclude(point, least_reach[seam.layer] * point.spacing) {
+            samples.index.leaves_near(record.position, reach, |leaf| changed[leaf] = true);
+        }
+    }
+    changed
+}

@@ -1,0 +1,323 @@
+//! The records of one wave.
+//!
+//! Records that lie close together share a cut, as neighbouring pixels do: its shadow rays are coherent.
+//! A record that lacks one layer only cuts only that layer's trees, judged against what the other is known to give, so
+//! that each layer masks the other's errors (Herzog et al. 2009, section 6).
+
+use super::gather::{Gathered, Gatherer};
+use super::layer::Layer;
+use super::record::{Footprint, Record};
+use super::settings::{CacheSettings, Footprints};
+use super::wave::Pick;
+use crate::embree::Occluders16;
+use crate::eye::EyeSamples;
+use crate::light_tree::{LightTrees, Node};
+use crate::lightcut::group::{
+    GroupLightcut, GroupVisibility, LANES, LEAST_SHARED, Lanes, Points, group_alike, shadow_rays,
+};
+use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Transfer, Visibility};
+use crate::math::{Frame, Rgb, luminance};
+use crate::shadow;
+use crate::vpl::{Origin, Vpl, VplKind};
+use crate::world::World;
+use glam::{Mat3, Vec3};
+use rayon::prelude::*;
+use std::cell::RefCell;
+
+/// What computing records needs.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    /// The scene.
+    pub world: &'a World,
+    /// Its virtual lights.
+    pub trees: &'a LightTrees,
+    /// What reaches a point from them.
+    pub transfer: Transfer<'a>,
+    /// Settings.
+    pub settings: &'a CacheSettings,
+}
+
+/// Records of both layers at one eye sample.
+pub type Pair = [Option<Record>; 2];
+
+/// Which layer light of an origin belongs to.
+#[inline]
+pub fn layer_of(origin: Origin) -> usize {
+    match origin {
+        Origin::Direct => 0,
+        Origin::Indirect => 1,
+    }
+}
+
+impl Source<'_> {
+    /// Computes the records of a wave, in the order of the picks.
+    pub fn records(
+        &self,
+        samples: &EyeSamples,
+        layers: &[Layer; 2],
+        picks: &[Pick],
+    ) -> (Vec<(Pick, Pair)>, CutCounts) {
+        let tasks = self.tasks(samples, picks);
+        let done: Vec<(Vec<(Pick, Pair)>, CutCounts)> = tasks
+            .par_iter()
+            .map_init(Workspace::default, |work, task| {
+                let counts = work.counts();
+                let pairs = work.compute(self, samples, layers, task);
+                (task.iter().copied().zip(pairs).collect(), work.counts().since(&counts))
+            })
+            .collect();
+        let mut counts = CutCounts::default();
+        let mut records = Vec::with_capacity(picks.len());
+        for (pairs, used) in done {
+            counts.add(&used);
+            records.extend(pairs);
+        }
+        (records, counts)
+    }
+
+    /// Picks that share a cut: neighbours that lack the same layers.
+    fn tasks(&self, samples: &EyeSamples, picks: &[Pick]) -> Vec<Vec<Pick>> {
+        let place = |pick: &Pick| {
+            let point = &samples.points[pick.sample as usize];
+            (point.position, point.normal)
+        };
+        group_alike(picks.iter().copied(), self.world.diagonal, place, |a, b| a.lacks == b.lacks)
+    }
+
+    /// The record of one layer, or `None` where it would be of no use.
+    fn record(&self, samples: &EyeSamples, sample: u32, layer: usize, g: &Gathered) -> Option<Record> {
+        let point = &samples.points[sample as usize];
+        let luminance = luminance(g.irradiance);
+        if !(luminance.is_finite() && g.vector.is_finite() && g.gradient.is_finite()) {
+            return None;
+        }
+        let settings = &self.settings.layers[layer];
+        let radius = (settings.accuracy * g.distance())
+            .clamp(settings.reach[0] * point.spacing, settings.reach[1] * point.spacing);
+        let normal = point.normal;
+        let tangential = |v: Vec3| v - normal * normal.dot(v);
+        let gradient = Mat3::from_cols(
+            tangential(g.gradient.x_axis),
+            tangential(g.gradient.y_axis),
+            tangential(g.gradient.z_axis),
+        );
+        Some(Record {
+            position: point.position,
+            normal,
+            coat: point.coat,
+            footprint: self.footprint(normal, gradient * crate::math::LUMINANCE, luminance, radius),
+            vector: g.vector,
+            gradient,
+            luminance,
+        })
+    }
+
+    /// An ellipse of the area of a circle of `radius`, short along the gradient of the luminance.
+    fn footprint(&self, normal: Vec3, gradient: Vec3, luminance: f32, radius: f32) -> Footprint {
+        let change = radius * gradient.length() / luminance.max(f32::MIN_POSITIVE);
+        let (axis, g) = match gradient.try_normalize() {
+            Some(axis) if self.settings.footprints == Footprints::Anisotropic => {
+                let relative = change / self.settings.mu;
+                (axis, (1.0 / (1.0 + relative * relative)).max(0.3))
+            }
+            _ => (Frame::from_normal(normal).tangent, 1.0),
+        };
+        Footprint {
+            axes: [axis, normal.cross(axis)],
+            radii: [radius * g, radius / g],
+            inverse_normal_tolerance: 1.0 / self.settings.normal_tolerance,
+        }
+    }
+}
+
+/// A thread's buffers.
+#[derive(Default)]
+struct Workspace {
+    single: Lightcut,
+    group: GroupLightcut,
+    points: Points<'static>,
+}
+
+impl Workspace {
+    fn counts(&self) -> CutCounts {
+        let mut counts = self.single.counts;
+        counts.add(&self.group.counts);
+        counts
+    }
+
+    fn compute(&mut self, s: &Source, samples: &EyeSamples, layers: &[Layer; 2], task: &[Pick]) -> Vec<Pair> {
+        let collectors = task.iter().map(|pick| {
+            let i = pick.sample as usize;
+            let point = &samples.points[i];
+            let frame = Frame::from_normal(point.normal);
+            let known = [0, 1].map(|l| match layers[l].sums[i].mean() {
+                Some(irradiance) if !pick.lacks[l] => luminance(irradiance),
+                _ => 0.0,
+            });
+            Reflector::collector(point.position, samples.surfaces[i].geometric_normal, &frame)
+                .knowing(known[0] + known[1])
+        });
+        let only = match task[0].lacks {
+            [true, false] => Some(Origin::Direct),
+            [false, true] => Some(Origin::Indirect),
+            _ => None,
+        };
+        let cut = CutSettings { only, ..s.settings.cut };
+        let gathered = if task.len() < LEAST_SHARED {
+            collectors.zip(task).map(|(c, pick)| self.alone(s, samples, pick, &c, &cut)).collect()
+        } else {
+            self.points.set(collectors);
+            self.shared(s, samples, task, &cut)
+        };
+        let record = |(pick, gathered): (&Pick, [Gathered; 2])| {
+            [0, 1].map(|l| if pick.lacks[l] { s.record(samples, pick.sample, l, &gathered[l]) } else { None })
+        };
+        task.iter().zip(gathered).map(record).collect()
+    }
+
+    fn alone(
+        &mut self,
+        s: &Source,
+        samples: &EyeSamples,
+        pick: &Pick,
+        collector: &Reflector<'static>,
+        cut: &CutSettings,
+    ) -> [Gathered; 2] {
+        let rays = OccluderLog::new(s.world);
+        self.single.gather(s.trees, &s.transfer, &rays, collector, cut);
+        let log = rays.sorted();
+        let gatherer = s.gatherer(samples, pick.sample, collector);
+        let mut gathered = [Gathered::default(); 2];
+        for entry in self.single.entries() {
+            s.add(&mut gathered, &gatherer, entry.node, entry.response, self.single.limit(), (&log, 0));
+        }
+        gathered
+    }
+
+    fn shared(
+        &mut self,
+        s: &Source,
+        samples: &EyeSamples,
+        task: &[Pick],
+        cut: &CutSettings,
+    ) -> Vec<[Gathered; 2]> {
+        let rays = OccluderLog::new(s.world);
+        let mut irradiance = [Rgb::ZERO; LANES];
+        self.group.gather(s.trees, &s.transfer, &rays, &self.points, cut, &mut irradiance);
+        let log = rays.sorted();
+        let lane = |(lane, pick): (usize, &Pick)| {
+            let gatherer = s.gatherer(samples, pick.sample, self.points.get(lane));
+            let mut gathered = [Gathered::default(); 2];
+            for (node, responses) in self.group.entries() {
+                let response = Rgb::from_array(std::array::from_fn(|c| responses[c][lane]));
+                s.add(&mut gathered, &gatherer, node, response, self.group.limit(lane), (&log, lane));
+            }
+            gathered
+        };
+        task.iter().enumerate().map(lane).collect()
+    }
+}
+
+impl<'a> Source<'a> {
+    fn gatherer(&self, samples: &EyeSamples, sample: u32, collector: &Reflector<'static>) -> Gatherer<'a> {
+        let point = &samples.points[sample as usize];
+        Gatherer {
+            collector: *collector,
+            position: point.position,
+            normal: point.normal,
+            coat: point.coat,
+            materials: &self.world.materials,
+        }
+    }
+
+    #[inline]
+    fn add(
+        &self,
+        gathered: &mut [Gathered; 2],
+        g: &Gatherer,
+        node: u32,
+        response: Rgb,
+        limit: f32,
+        (log, lane): (&[(u32, Lanes)], usize),
+    ) {
+        let node = &self.trees.nodes[node as usize];
+        let vpl = &self.trees.vpls[node.representative()];
+        let layer = &mut gathered[layer_of(node.origin())];
+        if response == Rgb::ZERO {
+            let hidden = node.intensity * self.transfer.unshadowed(&g.collector, vpl, node.kind());
+            if hidden != Rgb::ZERO {
+                layer.hidden(luminance(hidden).min(limit), occluder_distance(log, node, lane));
+            }
+            return;
+        }
+        let contribution = node.intensity * response;
+        let y = luminance(contribution);
+        let clamped = y > limit && node.is_leaf() && node.origin() == Origin::Indirect;
+        let kept = if clamped { limit / y } else { 1.0 };
+        layer.add(g, &self.transfer, node, vpl, contribution, kept);
+    }
+}
+
+/// Visibility in the scene that notes how far away occluders are.
+struct OccluderLog<'w> {
+    world: &'w World,
+    /// Representative, and the distance to what hides it from each lane, or infinity.
+    log: RefCell<Vec<(u32, Lanes)>>,
+}
+
+impl<'w> OccluderLog<'w> {
+    fn new(world: &'w World) -> OccluderLog<'w> {
+        OccluderLog { world, log: RefCell::new(Vec::new()) }
+    }
+
+    /// What was noted, sorted by representative.
+    fn sorted(self) -> Vec<(u32, Lanes)> {
+        let mut log = self.log.into_inner();
+        log.sort_unstable_by_key(|entry| entry.0);
+        log
+    }
+}
+
+/// Distance to what hides a representative from a lane; infinite if nothing does.
+fn occluder_distance(log: &[(u32, Lanes)], node: &Node, lane: usize) -> f32 {
+    let found = log.binary_search_by_key(&(node.representative() as u32), |entry| entry.0);
+    found.map_or(f32::INFINITY, |i| log[i].1[lane])
+}
+
+impl Visibility for OccluderLog<'_> {
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
+        let ray = match node.kind() {
+            VplKind::Oriented => shadow::segment(x, normal, vpl.position, vpl.normal()),
+            VplKind::Omni => shadow::segment(x, normal, vpl.position, Vec3::ZERO),
+            VplKind::Directional => shadow::ray_from(x, normal, vpl.position),
+        };
+        match self.world.accel.occluder(&ray) {
+            Some(occluder) => {
+                let distance = occluder.t * ray.direction.length();
+                self.log.borrow_mut().push((node.representative() as u32, [distance; LANES]));
+                false
+            }
+            None => true,
+        }
+    }
+}
+
+impl GroupVisibility for OccluderLog<'_> {
+    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+        let rays = shadow_rays(points, lanes, vpl, node.kind());
+        let mut found = Occluders16::default();
+        let occluded = lanes & self.world.accel.occluders16(&rays, lanes, true, &mut found);
+        if occluded != 0 {
+            let mut distances = [f32::INFINITY; LANES];
+            for (lane, distance) in distances.iter_mut().enumerate() {
+                let direction =
+                    Vec3::new(rays.direction_x[lane], rays.direction_y[lane], rays.direction_z[lane]);
+                if occluded >> lane & 1 != 0 {
+                    *distance = found.t[lane] * direction.length();
+                }
+            }
+            self.log.borrow_mut().push((node.representative() as u32, distances));
+        }
+        lanes & !occluded
+    }
+}

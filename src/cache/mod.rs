@@ -1,0 +1,20 @@
+//! Stages 4 to 6: cache records, splatted onto the eye samples around them, and adapted until no seam is visible.
+//!
+//! Paper: Herzog et al. 2009, sections 5 (records and footprints), 6 (splatting), 8 of the method (adaptation).
+//!
+//! - [`record`]: what is stored at a point, and the footprint within which it is used;
+//! - [`gather`]: from a converged cut to irradiance, its gradient and the distance to what casts light and shadow;
+//! - [`compute`]: the records of one wave, neighbours sharing cuts;
+//! - [`layer`]: the records of direct or of indirect light, and their weighted sums at the eye samples;
+//! - [`wave`]: where records are needed next;
+//! - [`adapt`]: footprints that disagree visibly are shrunk.
+
+pub mod adapt;
+pub mod compute;
+pub mod gather;
+pub mod layer;
+pub mod record;
+pub mod settings;
+pub mod wave;
+
+pub use settings::{CacheSettings, DirectLight, Footprints, LayerSettings};

@@ -1,0 +1,76 @@
+//! What decides how many records there are, and how far each reaches.
+
+use crate::lightcut::CutSettings;
+
+/// How the shape of footprints is chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Footprints {
+    /// Circles: LCache1 of the paper.
+    Isotropic,
+    /// Ellipses, short along the gradient that the virtual lights have while their visibility is held: LCache2 of
+    /// the paper.
+    #[default]
+    Anisotropic,
+}
+
+/// How direct light is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DirectLight {
+    /// By records of their own layer, as in the paper.
+    Records,
+    /// By cuts of the eye samples' own through the trees of direct light, shared among neighbours.
+    #[default]
+    PerSample,
+}
+
+/// Settings of one layer of the cache.
+#[derive(Clone, Copy, Debug)]
+pub struct LayerSettings {
+    /// Radius of a footprint relative to the distance of what casts light and shadow; the paper's a.
+    pub accuracy: f32,
+    /// Least and largest radius of a footprint, in spacings of eye samples.
+    pub reach: [f32; 2],
+}
+
+/// Settings of the cache.
+#[derive(Clone, Copy, Debug)]
+pub struct CacheSettings {
+    /// When the cut of a record is good enough.
+    pub cut: CutSettings,
+    /// The layer of direct light, and that of indirect light.
+    pub layers: [LayerSettings; 2],
+    /// How direct light is found.
+    pub direct: DirectLight,
+    /// How the shape of footprints is chosen.
+    pub footprints: Footprints,
+    /// Relative change of luminance across a footprint at which it is halved along the gradient; the paper's μ.
+    pub mu: f32,
+    /// Root of 1 - cos of the angle between normals at which a footprint ends.
+    pub normal_tolerance: f32,
+    /// Most passes of adaptation.
+    pub passes: u32,
+    /// Smallest relative difference of luminance that is visible.
+    pub threshold: f32,
+    /// Cells of fewer eye samples than this get no record: their samples have cuts of their own, which
+    /// neighbours share.
+    pub least_cell: u32,
+}
+
+impl Default for CacheSettings {
+    fn default() -> CacheSettings {
+        CacheSettings {
+            cut: CutSettings { epsilon: 0.01, ..CutSettings::default() },
+            layers: [
+                LayerSettings { accuracy: 0.3, reach: [1.5, 20.0] },
+                LayerSettings { accuracy: 0.3, reach: [1.5, 40.0] },
+            ],
+            direct: DirectLight::default(),
+            footprints: Footprints::default(),
+            mu: 0.5,
+            normal_tolerance: 0.4,
+            passes: 1,
+            threshold: 0.02,
+            least_cell: 8,
+        }
+    }
+}

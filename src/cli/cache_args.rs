@@ -1,0 +1,85 @@
+//! Options of `--method cache`.
+
+use clap::{Args, ValueEnum};
+use std::str::FromStr;
+
+/// The defaults are the method's own; a test holds the text to them.
+#[derive(Clone, Debug, Default, Args, PartialEq)]
+#[command(next_help_heading = "Radiance cache")]
+pub struct CacheArgs {
+    /// Largest error bound of a cluster in a record's cut, relative to its luminance [default: 0.01]
+    #[arg(long, value_parser = super::args::parse_fraction)]
+    pub record_epsilon: Option<f32>,
+    /// Where direct light is found [default: samples]
+    #[arg(long, value_enum)]
+    pub direct: Option<DirectBy>,
+    /// Shape of footprints [default: anisotropic]
+    #[arg(long, value_enum)]
+    pub footprints: Option<FootprintShape>,
+    /// Radius of footprints relative to the distance of what casts light and shadow, for direct and
+    /// for indirect light [default: 0.3,0.3]
+    #[arg(long, value_name = "DIRECT,INDIRECT")]
+    pub accuracy: Option<Pair>,
+    /// Least and largest radius of footprints, in spacings of eye samples
+    #[arg(long, value_name = "LEAST,LARGEST")]
+    pub reach: Option<Pair>,
+    /// Relative change of luminance across a footprint that halves it along the gradient [default: 0.5]
+    #[arg(long)]
+    pub mu: Option<f32>,
+    /// Most passes that shrink footprints at visible seams [default: 1]
+    #[arg(long)]
+    pub passes: Option<u32>,
+    /// Smallest relative difference of luminance that counts as visible [default: 0.02]
+    #[arg(long, value_parser = super::args::parse_fraction)]
+    pub threshold: Option<f32>,
+    /// Cells of fewer eye samples get no record; their samples have cuts of their own [default: 8]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub least_cell: Option<u32>,
+}
+
+/// Ways of finding direct light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum DirectBy {
+    /// By a layer of records of its own
+    Records,
+    /// By cuts of the eye samples' own
+    Samples,
+}
+
+/// Shapes of footprints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FootprintShape {
+    /// Circles
+    Isotropic,
+    /// Ellipses, short along the gradient of the light
+    Anisotropic,
+}
+
+/// Two positive numbers, `A,B`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair(pub [f32; 2]);
+
+impl FromStr for Pair {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Pair, String> {
+        let numbers: Option<Vec<f32>> = text.split(',').map(|s| s.trim().parse().ok()).collect();
+        match numbers.as_deref() {
+            Some(&[a, b]) if a > 0.0 && b > 0.0 && a.is_finite() && b.is_finite() => Ok(Pair([a, b])),
+            _ => Err("expected two positive numbers like 0.3,0.5".to_owned()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_are_parsed_and_refused() {
+        assert_eq!("0.3, 2".parse(), Ok(Pair([0.3, 2.0])));
+        for bad in ["", "1", "1,2,3", "0,1", "-1,2", "nan,1", "a,b", "inf,1"] {
+            assert!(bad.parse::<Pair>().is_err(), "{bad}");
+        }
+    }
+}

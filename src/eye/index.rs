@@ -1,0 +1,193 @@
+//! A balanced kd-tree over eye samples: splatting asks it for the samples in a footprint, and sampling
+//! for cells that spread records evenly.
+//!
+//! Every node splits its samples in halves along the longest side of their box, so that node `i` of level `l` is the
+//! range of samples from `n·i / 2^l` to `n·(i + 1) / 2^l`: no pointers, and the order of the samples is the order in space.
+
+use glam::Vec3;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Most samples in a leaf.
+const LEAF: usize = 32;
+/// Smaller ranges are sorted by one thread.
+const PARALLEL: usize = 8192;
+
+/// A box, empty until something is added.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds {
+    /// Least coordinates.
+    pub min: Vec3,
+    /// Largest coordinates.
+    pub max: Vec3,
+}
+
+impl Bounds {
+    const EMPTY: Bounds = Bounds { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    fn union(self, other: Bounds) -> Bounds {
+        Bounds { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// Square of the distance from a point to the box.
+    #[inline]
+    pub fn distance_squared(&self, p: Vec3) -> f32 {
+        (self.min - p).max(p - self.max).max(Vec3::ZERO).length_squared()
+    }
+}
+
+/// The hierarchy; samples must be stored in its order.
+pub struct EyeIndex {
+    count: usize,
+    depth: u32,
+    /// Boxes of all nodes, level after level.
+    bounds: Vec<Bounds>,
+}
+
+impl EyeIndex {
+    /// The hierarchy over `positions`, and the order in which to store what they belong to.
+    pub fn build(positions: impl ExactSizeIterator<Item = Vec3>) -> (EyeIndex, Vec<u32>) {
+        let mut items: Vec<(Vec3, u32)> = positions.zip(0..).collect();
+        let count = items.len();
+        let mut depth = 0;
+        while count >> depth > LEAF {
+            depth += 1;
+        }
+        sort(&mut items, count, 0, 0, depth);
+        let mut index = EyeIndex { count, depth, bounds: vec![Bounds::EMPTY; 2 << depth] };
+        for leaf in 0..1usize << depth {
+            let box_of = |b: Bounds, item: &(Vec3, u32)| b.union(Bounds { min: item.0, max: item.0 });
+            index.bounds[(1 << depth) + leaf] =
+                items[index.range(depth, leaf)].iter().fold(Bounds::EMPTY, box_of);
+        }
+        for node in (1..1usize << depth).rev() {
+            index.bounds[node] = index.bounds[2 * node].union(index.bounds[2 * node + 1]);
+        }
+        (index, items.into_iter().map(|item| item.1).collect())
+    }
+
+    /// Level of the leaves; the root is level 0.
+    pub fn depth(&self) -> u32 {
+        self.depth
+    }
+
+    /// How many leaves.
+    pub fn leaves(&self) -> usize {
+        1 << self.depth
+    }
+
+    /// Samples of node `i` of a level. Levels below the leaves divide leaves in the same way, in storage order.
+    #[inline]
+    pub fn range(&self, level: u32, i: usize) -> Range<usize> {
+        range(self.count, level, i)
+    }
+
+    /// Samples of a leaf.
+    #[inline]
+    pub fn leaf(&self, leaf: usize) -> Range<usize> {
+        self.range(self.depth, leaf)
+    }
+
+    /// Calls `visit` with every leaf whose box comes within `radius` of `p`.
+    pub fn leaves_near(&self, p: Vec3, radius: f32, mut visit: impl FnMut(usize)) {
+        let radius_sq = radius * radius;
+        let mut stack = [0usize; 64];
+        let mut height = 0;
+        let mut node = 1;
+        loop {
+            if self.bounds[node].distance_squared(p) <= radius_sq {
+                if node < 1 << self.depth {
+                    stack[height] = 2 * node + 1;
+                    height += 1;
+                    node *= 2;
+                    continue;
+                }
+                visit(node - (1 << self.depth));
+            }
+            if height == 0 {
+                return;
+            }
+            height -= 1;
+            node = stack[height];
+        }
+    }
+}
+
+fn range(count: usize, level: u32, i: usize) -> Range<usize> {
+    let at = |i: usize| (count as u128 * i as u128 >> level) as usize;
+    at(i)..at(i + 1)
+}
+
+/// Sorts the items of node `i` of a level, whose range they are.
+fn sort(items: &mut [(Vec3, u32)], count: usize, level: u32, i: usize, depth: u32) {
+    if level == depth {
+        return;
+    }
+    let (min, max) = items
+        .iter()
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), item| (min.min(item.0), max.max(item.0)));
+    let size = max - min;
+    let axis = if size.x >= size.y && size.x >= size.z {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    };
+    let middle = range(count, level + 1, 2 * i + 1).start - range(count, level, i).start;
+    // By number where positions are equal, so that the order is one and the same on every run.
+    items.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
+    let (left, right) = items.split_at_mut(middle);
+    let mut halves = [(left, 2 * i), (right, 2 * i + 1)];
+    if count >> level > PARALLEL {
+        halves.par_iter_mut().for_each(|(half, i)| sort(half, count, level + 1, *i, depth));
+    } else {
+        halves.iter_mut().for_each(|(half, i)| sort(half, count, level + 1, *i, depth));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::owen_sobol_2d;
+
+    fn points(n: u32) -> Vec<Vec3> {
+        (0..n)
+            .map(|i| {
+                let (a, b) = (owen_sobol_2d(i, 1), owen_sobol_2d(i, 2));
+                Vec3::new(a.x, a.y * 3.0, b.x * 0.5)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn leaves_share_out_all_samples_and_queries_miss_none() {
+        for n in [0u32, 1, 2, 31, 32, 33, 1000, 20_000] {
+            let points = points(n);
+            let (index, order) = EyeIndex::build(points.iter().copied());
+            let mut sorted = order.clone();
+            sorted.sort();
+            assert!(sorted.into_iter().eq(0..n));
+            let covered: Vec<usize> = (0..index.leaves()).flat_map(|leaf| index.leaf(leaf)).collect();
+            assert!(covered.into_iter().eq(0..n as usize));
+            for (x, radius) in [(Vec3::ZERO, 0.3), (Vec3::splat(0.4), 0.1), (Vec3::new(0.5, 2.9, 0.1), 5.0)] {
+                let mut found = Vec::new();
+                index.leaves_near(x, radius, |leaf| {
+                    let inside = |&i: &usize| points[order[i] as usize].distance(x) <= radius;
+                    found.extend(index.leaf(leaf).filter(inside));
+                });
+                let expected = points.iter().filter(|p| p.distance(x) <= radius).count();
+                assert_eq!(found.len(), expected);
+            }
+        }
+    }
+
+    #[test]
+    fn coinciding_samples_are_no_trouble() {
+        let (index, order) = EyeIndex::build(vec![Vec3::ONE; 500].into_iter());
+        assert_eq!(order.len(), 500);
+        let mut found = 0;
+        index.leaves_near(Vec3::ONE, 0.0, |leaf| found += index.leaf(leaf).len());
+        assert_eq!(found, 500);
+    }
+}

@@ -1,0 +1,191 @@
+//! The eye pass as a whole: every eye sample of a window, found once and kept in an order in which
+//! neighbours in space are neighbours in memory.
+//!
+//! Paper: Herzog et al. 2009, section 4: eye samples are stored through specular chains and sorted by a kd-tree.
+//! Units: positions relative to the scene's centre, throughputs per pixel (they include 1/spp).
+
+use super::{ChainCounts, EyeIndex, EyeSample, Window, primary_ray, trace};
+use crate::image::Image;
+use crate::material::Bsdf;
+use crate::math::Rgb;
+use crate::method::Control;
+use crate::sampling::{Sampler, hash};
+use crate::world::World;
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+/// Pixels along the edge of the square that one task looks through.
+const TILE: u32 = 16;
+
+/// What splatting reads of an eye sample: half a cache line.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub struct EyePoint {
+    /// Where.
+    pub position: Vec3,
+    /// Root of the area that the pixel covers on the surface: the distance to the next sample, about.
+    pub spacing: f32,
+    /// Unit shading normal on the side of the eye.
+    pub normal: Vec3,
+    /// Which coat filters the light that the surface's base reflects; samples share records only within one.
+    pub coat: u32,
+}
+
+/// What is needed of an eye sample to light it.
+#[derive(Clone, Copy, Debug)]
+pub struct EyeSurface<'w> {
+    /// How it scatters; lobes that the chain follows itself are taken out.
+    pub bsdf: Bsdf<'w>,
+    /// Unit geometric normal.
+    pub geometric_normal: Vec3,
+    /// Unit vector back along the ray.
+    pub out: Vec3,
+    /// What the pixel's colour gains per radiance leaving along `out`.
+    pub throughput: Rgb,
+    /// Pixel of the window, in rows.
+    pub pixel: u32,
+}
+
+/// All eye samples of a window.
+pub struct EyeSamples<'w> {
+    /// Geometry, in the order of the index.
+    pub points: Vec<EyePoint>,
+    /// The rest, in the same order.
+    pub surfaces: Vec<EyeSurface<'w>>,
+    /// The hierarchy over `points`.
+    pub index: EyeIndex,
+    /// Light that reaches the eye from emitters, directly or along specular chains.
+    pub emitted: Image,
+    /// Rays traced.
+    pub chains: ChainCounts,
+    /// Radiances that were not finite and left out.
+    pub nonfinite: u64,
+    /// False if the pass was cancelled.
+    pub complete: bool,
+}
+
+#[derive(Default)]
+struct Found<'w> {
+    samples: Vec<(EyePoint, EyeSurface<'w>)>,
+    emitted: Vec<(u32, Rgb)>,
+    chains: ChainCounts,
+    nonfinite: u64,
+    done: bool,
+}
+
+/// How the window is looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct EyeSettings {
+    /// Eye samples a pixel.
+    pub spp: u32,
+    /// Another seed, other samples.
+    pub seed: u32,
+    /// Longest path in edges, the one to the light included.
+    pub max_depth: u32,
+}
+
+impl<'w> EyeSamples<'w> {
+    /// Looks through every pixel of `window`, a single sample through its centre.
+    pub fn look(
+        world: &'w World,
+        window: &Window,
+        settings: EyeSettings,
+        control: &Control,
+    ) -> EyeSamples<'w> {
+        let tiles: Vec<Found> = (0..window.tile_count(TILE))
+            .into_par_iter()
+            .map(|tile| {
+                let mut found = Found::default();
+                if !control.is_cancelled() {
+                    found.look(world, window, settings, tile);
+                    control.advance(1);
+                }
+                found
+            })
+            .collect();
+
+        let mut emitted = Image::new(window.width, window.height);
+        let mut chains = ChainCounts::default();
+        let mut nonfinite = 0;
+        let mut complete = true;
+        let mut samples = Vec::with_capacity(tiles.iter().map(|t| t.samples.len()).sum());
+        for tile in tiles {
+            samples.extend(tile.samples);
+            for (pixel, radiance) in tile.emitted {
+                emitted.pixels[pixel as usize] += radiance;
+            }
+            chains.rays += tile.chains.rays;
+            chains.shadow_rays += tile.chains.shadow_rays;
+            chains.overflow += tile.chains.overflow;
+            nonfinite += tile.nonfinite;
+            complete &= tile.done;
+        }
+        let (index, order) = EyeIndex::build(samples.iter().map(|s| s.0.position));
+        let points = order.par_iter().map(|&i| samples[i as usize].0).collect();
+        let surfaces = order.par_iter().map(|&i| samples[i as usize].1).collect();
+        EyeSamples { points, surfaces, index, emitted, chains, nonfinite, complete }
+    }
+
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether nothing is seen.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+}
+
+impl<'w> Found<'w> {
+    fn look(&mut self, world: &'w World, window: &Window, settings: EyeSettings, tile: usize) {
+        let spp = settings.spp.max(1);
+        let camera = &world.scene.camera;
+        // Angle between neighbouring samples, at the film's centre.
+        let angle = 2.0 * camera.tan_half_x / window.film[0] as f32 / (spp as f32).sqrt();
+        for pixel in window.tile(tile, TILE) {
+            let [x, y] = window.film_pixel(pixel);
+            let place = pixel[1] * window.width + pixel[0];
+            for sample in 0..spp {
+                let mut sampler = Sampler::new(hash(hash(x, y), settings.seed), sample);
+                let jitter = if spp > 1 { sampler.next_2d() } else { Vec2::splat(0.5) };
+                let ray = primary_ray(camera, window, [x, y], jitter);
+                let samples = &mut self.samples;
+                let visit = |eye: EyeSample<'w>| {
+                    if eye.depth < settings.max_depth {
+                        samples.extend(stored(&eye, angle, place, spp));
+                    }
+                };
+                let emitted =
+                    trace(world, ray, settings.max_depth, &mut sampler, &mut self.chains, visit) / spp as f32;
+                if !emitted.is_finite() {
+                    self.nonfinite += 1;
+                } else if emitted != Rgb::ZERO {
+                    self.emitted.push((place, emitted));
+                }
+            }
+        }
+        self.done = true;
+    }
+}
+
+/// The sample as it is kept, or `None` if it cannot be lit.
+fn stored<'w>(eye: &EyeSample<'w>, angle: f32, pixel: u32, spp: u32) -> Option<(EyePoint, EyeSurface<'w>)> {
+    let s = &eye.surface;
+    let front = s.frame.normal.dot(eye.out) > 0.0;
+    if !front && !eye.bsdf.two_sided() {
+        return None;
+    }
+    let normal = if front { s.frame.normal } else { -s.frame.normal };
+    // Foreshortening is limited, so that grazing samples do not claim whole floors.
+    let spacing = angle * eye.distance / normal.dot(eye.out).max(0.05).sqrt();
+    let point = EyePoint { position: s.position, spacing, normal, coat: eye.bsdf.coat() };
+    let surface = EyeSurface {
+        bsdf: eye.bsdf,
+        geometric_normal: s.normal,
+        out: eye.out,
+        throughput: eye.throughput / spp as f32,
+        pixel,
+    };
+    (point.position.is_finite() && spacing.is_finite()).then_some((point, surface))
+}

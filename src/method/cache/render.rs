@@ -1,0 +1,217 @@
+//! The picture: eye pass, light pass, trees, records in waves, adaptation, and the sum at each pixel.
+
+use super::own::{self, Job};
+use crate::cache::compute::Source;
+use crate::cache::layer::Layer;
+use crate::cache::wave::{Pick, lacking, pick};
+use crate::cache::{CacheSettings, DirectLight, adapt};
+use crate::eye::{EyeSamples, EyeSettings, Window};
+use crate::light_tree::{Family, LightTrees};
+use crate::lightcut::{CutCounts, CutSettings, Transfer};
+use crate::math::{Rgb, luminance};
+use crate::method::{Control, Output};
+use crate::stats::{Stage, Stats};
+use crate::vpl::{LightPassSettings, Origin, light_pass};
+use crate::world::World;
+
+/// Level of the coarsest cells.
+const FIRST_LEVEL: u32 = 5;
+
+/// What the user may set.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Eye samples a pixel.
+    pub spp: u32,
+    /// Another seed, other VPLs and eye samples. Overrides that of `light`.
+    pub seed: u32,
+    /// Longest path in edges; `None` for the scene's own limit.
+    pub max_depth: Option<u32>,
+    /// How many VPLs.
+    pub light: LightPassSettings,
+    /// How many records, and how good.
+    pub cache: CacheSettings,
+    /// When the cut of an eye sample is good enough.
+    pub cut: CutSettings,
+    /// How light trees are built.
+    pub family: Family,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings {
+            spp: 1,
+            seed: 0,
+            max_depth: None,
+            light: LightPassSettings::default(),
+            cache: CacheSettings::default(),
+            cut: CutSettings::default(),
+            family: Family::default(),
+        }
+    }
+}
+
+/// Renders `window` of the scene's film.
+pub fn render(world: &World, window: &Window, settings: &Settings, control: &Control) -> Output {
+    let mut stats = Stats::new();
+    let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
+    let spp = settings.spp.max(1);
+
+    let eye = EyeSettings { spp, seed: settings.seed, max_depth };
+    control.begin(Stage::EyePass, window.tile_count(16) as u64);
+    let samples = stats.time(Stage::EyePass, || EyeSamples::look(world, window, eye, control));
+
+    let light = LightPassSettings { seed: settings.seed, ..settings.light };
+    control.begin(Stage::LightPass, u64::from(light.indirect));
+    let lights = stats.time(Stage::LightPass, || light_pass(world, &light, max_depth, control));
+    stats.count("VPLs/total", lights.len() as u64);
+    stats.count("VPLs/photon paths", lights.photons.paths);
+    stats.count("Rays/closest hit", samples.chains.rays + lights.photons.rays);
+    stats.count("Eye/shadow rays", samples.chains.shadow_rays);
+    stats.count("Eye/branches dropped", samples.chains.overflow);
+
+    control.begin(Stage::Tree, 0);
+    let trees = stats
+        .time(Stage::Tree, || LightTrees::build(&lights.sets, lights.spots, world.diagonal, settings.family));
+    let transfer = Transfer::new(&trees.spots, world.diagonal);
+    let source = Source { world, trees: &trees, transfer, settings: &settings.cache };
+
+    let mut cache = Cache::new(&samples, settings.cache.direct);
+    control.begin(Stage::Records, samples.len() as u64);
+    cache.fill(&source, &samples, control, &mut stats);
+    for _ in 0..settings.cache.passes {
+        if control.is_cancelled() || !cache.adapt(&source, &samples, &mut stats) {
+            break;
+        }
+        cache.fill(&source, &samples, control, &mut stats);
+    }
+    cache.report(&mut stats);
+
+    let mut color = samples.emitted.clone();
+    let mut nonfinite = samples.nonfinite;
+    let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut color.pixels));
+    control.begin(Stage::Render, jobs.len() as u64);
+    let (lit, counts) = stats.time(Stage::Render, || own::light(&source, &samples, &jobs, &settings.cut));
+    for (sample, radiance) in lit {
+        let surface = &samples.surfaces[sample as usize];
+        if radiance.is_finite() {
+            color.pixels[surface.pixel as usize] += surface.throughput * radiance;
+        } else {
+            nonfinite += 1;
+        }
+    }
+    stats.count("Cache/samples with own cuts", jobs.len() as u64);
+    count(&mut stats, "Lightcut", &counts);
+    let complete = samples.complete && !control.is_cancelled();
+    Output { color, variance: None, extra: Vec::new(), stats, complete, nonfinite }
+}
+
+/// Both layers, and what else is known of each eye sample.
+struct Cache {
+    layers: [Layer; 2],
+    direct: DirectLight,
+    /// Samples that reflect light by a base, which records light.
+    wants: Vec<bool>,
+    /// Samples whose records disagree.
+    seams: Vec<u32>,
+    counts: CutCounts,
+}
+
+impl Cache {
+    fn new(samples: &EyeSamples, direct: DirectLight) -> Cache {
+        let wants = samples.surfaces.iter().map(|s| s.bsdf.split_base(1.0).0 != Rgb::ZERO).collect();
+        let layers = [Layer::new(samples), Layer::new(samples)];
+        Cache { layers, direct, wants, seams: Vec::new(), counts: CutCounts::default() }
+    }
+
+    /// Which layers a sample is to have.
+    fn wanted(&self, sample: usize) -> [bool; 2] {
+        [self.wants[sample] && self.direct == DirectLight::Records, self.wants[sample]]
+    }
+
+    /// Computes and splats records until every cell worth one is covered.
+    fn fill(&mut self, source: &Source, samples: &EyeSamples, control: &Control, stats: &mut Stats) {
+        let count = samples.len();
+        let mut level = FIRST_LEVEL;
+        while count >> level >= source.settings.least_cell.max(1) as usize {
+            for parity in 0..2 {
+                if control.is_cancelled() {
+                    return;
+                }
+                let picks: Vec<Pick> = stats
+                    .time(Stage::Splat, || pick(samples, &self.layers, |i| self.wanted(i), level, parity));
+                let (records, counts) =
+                    stats.time(Stage::Records, || source.records(samples, &self.layers, &picks));
+                self.counts.add(&counts);
+                stats.time(Stage::Splat, || {
+                    for (l, layer) in self.layers.iter_mut().enumerate() {
+                        let new = records.iter().filter_map(|(_, pair)| pair[l]).collect();
+                        layer.splat(samples, new);
+                    }
+                });
+            }
+            level += 1;
+        }
+    }
+
+    /// Shrinks footprints at visible seams; false if there are none.
+    fn adapt(&mut self, source: &Source, samples: &EyeSamples, stats: &mut Stats) -> bool {
+        stats.time(Stage::Splat, || {
+            let all = vec![true; samples.index.leaves()];
+            let seams = adapt::seams(samples, &self.layers, source.settings.threshold, &all);
+            let least = [0, 1].map(|l| source.settings.layers[l].reach[0]);
+            let changed = adapt::shrink(samples, &mut self.layers, &seams, least);
+            for layer in &mut self.layers {
+                layer.resplat(samples, &changed);
+            }
+            self.seams = seams.iter().map(|s| s.sample).collect();
+            self.seams.dedup();
+            changed.contains(&true)
+        })
+    }
+
+    fn report(&self, stats: &mut Stats) {
+        stats.count("Cache/records, direct", self.layers[0].records.len() as u64);
+        stats.count("Cache/records, indirect", self.layers[1].records.len() as u64);
+        stats.count("Cache/samples at seams", self.seams.len() as u64);
+        count(stats, "Records", &self.counts);
+    }
+
+    /// Adds what records give to the pixels; the rest is left to cuts.
+    fn resolve(&self, samples: &EyeSamples, pixels: &mut [Rgb]) -> Vec<Job> {
+        let mut jobs = Vec::new();
+        for (i, surface) in samples.surfaces.iter().enumerate() {
+            let sample = i as u32;
+            let (base, lobe) = surface.bsdf.split_base(surface.out.dot(samples.points[i].normal));
+            let mut known = 0.0;
+            if self.wants[i] {
+                if lacking(&self.layers, self.wanted(i), i) != [false; 2] {
+                    jobs.push(Job { sample, lobe_only: false, only: None, known });
+                    continue;
+                }
+                let mean = |l: usize| self.layers[l].sums[i].mean().unwrap_or(Rgb::ZERO);
+                let radiance = base * (mean(0) + mean(1));
+                known = luminance(radiance);
+                pixels[surface.pixel as usize] += surface.throughput * radiance;
+            }
+            let cached = self.direct == DirectLight::Records;
+            if !cached {
+                jobs.push(Job { sample, lobe_only: false, only: Some(Origin::Direct), known });
+            }
+            if lobe.is_some() {
+                let only = if cached { None } else { Some(Origin::Indirect) };
+                jobs.push(Job { sample, lobe_only: true, only, known });
+            }
+        }
+        jobs
+    }
+}
+
+fn count(stats: &mut Stats, group: &str, counts: &CutCounts) {
+    stats.count(&format!("{group}/shadow rays"), counts.rays);
+    stats.count(&format!("{group}/cuts"), counts.cuts);
+    stats.count(&format!("{group}/clusters"), counts.clusters);
+    stats.count(&format!("{group}/capped"), counts.capped);
+    stats.count(&format!("{group}/bounds"), counts.bounds);
+    stats.count(&format!("{group}/clamped VPLs"), counts.clamped);
+    stats.add(&format!("{group}/mean cut"), counts.clusters as f64 / counts.cuts.max(1) as f64);
+}
