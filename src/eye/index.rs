@@ -114,7 +114,7 @@ impl EyeIndex {
 }
 
 fn range(count: usize, level: u32, i: usize) -> Range<usize> {
-    let at = |i: usize| (count as u128 * i as u128 >> level) as usize;
+    let at = |i: usize| ((count as u128 * i as u128) >> level) as usize;
     at(i)..at(i + 1)
 }
 
