@@ -81,7 +81,7 @@ impl Source<'_> {
             let point = &samples.points[pick.sample as usize];
             (point.position, point.normal)
         };
-        group_alike(picks.iter().copied(), self.world.diagonal, place, |a, b| a.lacks == b.lacks)
+        group_alike(picks.iter().copied(), LANES, self.world.diagonal, place, |a, b| a.lacks == b.lacks)
     }
 
     /// The record of one layer, or `None` where it would be of no use.

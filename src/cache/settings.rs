@@ -51,6 +51,9 @@ pub struct CacheSettings {
     pub passes: u32,
     /// Smallest relative difference of luminance that is visible.
     pub threshold: f32,
+    /// Most eye samples without records that share a cut; more than 16 trace shadow rays only where the sixteen
+    /// that the cut is made for disagree.
+    pub patch: usize,
     /// Cells of fewer eye samples than this get no record: their samples have cuts of their own, which
     /// neighbours share.
     pub least_cell: u32,
@@ -70,6 +73,7 @@ impl Default for CacheSettings {
             normal_tolerance: 0.4,
             passes: 1,
             threshold: 0.02,
+            patch: 256,
             least_cell: 8,
         }
     }

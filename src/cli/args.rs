@@ -300,6 +300,7 @@ mod tests {
             ("mu", cached.mu.to_string()),
             ("passes", cached.passes.to_string()),
             ("threshold", cached.threshold.to_string()),
+            ("patch", cached.patch.to_string()),
             ("least-cell", cached.least_cell.to_string()),
             ("accuracy", format!("{},{}", cached.layers[0].accuracy, cached.layers[1].accuracy)),
             ("tree", format!("{:?}", cuts.family).to_lowercase()),

@@ -113,6 +113,7 @@ fn cache_report(s: &cache::Settings) -> Value {
         "mu": decimal(c.mu),
         "passes": c.passes,
         "threshold": decimal(c.threshold),
+        "patch": c.patch,
         "least_cell": c.least_cell,
     })
 }
@@ -176,6 +177,7 @@ fn cache_settings(args: &RenderArgs) -> cache::Settings {
     cache.mu = cached.mu.unwrap_or(cache.mu);
     cache.passes = cached.passes.unwrap_or(cache.passes);
     cache.threshold = cached.threshold.unwrap_or(cache.threshold);
+    cache.patch = cached.patch.map_or(cache.patch, |n| n as usize);
     cache.least_cell = cached.least_cell.unwrap_or(cache.least_cell);
     settings
 }

@@ -1,6 +1,5 @@
 //! Which points share a cut.
 
-use super::LANES;
 use glam::Vec3;
 
 /// Fewer points than this have cuts of their own.
@@ -10,7 +9,7 @@ const LEAST_COSINE: f32 = 0.8;
 /// ... and their distance at most this fraction of the scene's diagonal.
 const LARGEST_DISTANCE: f32 = 0.02;
 /// How many groups are open at once in [`group_alike`].
-const OPEN: usize = 4;
+const OPEN: usize = 8;
 
 /// Whether two points, each with its normal, are likely to have nearly the same cut.
 #[inline]
@@ -19,10 +18,11 @@ pub fn alike(diagonal: f32, (a, a_normal): (Vec3, Vec3), (b, b_normal): (Vec3, V
     a.distance_squared(b) <= limit * limit && a_normal.dot(b_normal) >= LEAST_COSINE
 }
 
-/// Groups of at most [`LANES`] items that are pairwise alike with their first, from a list in which neighbours in space are
+/// Groups of at most `most` items that are pairwise alike with their first, from a list in which neighbours in space are
 /// near each other; `same` excludes what must not be grouped for other reasons.
 pub fn group_alike<T: Copy>(
     items: impl IntoIterator<Item = T>,
+    most: usize,
     diagonal: f32,
     place: impl Fn(&T) -> (Vec3, Vec3),
     same: impl Fn(&T, &T) -> bool,
@@ -31,7 +31,7 @@ pub fn group_alike<T: Copy>(
     for item in items {
         let open = groups.len().saturating_sub(OPEN);
         let joins = |group: &&mut Vec<T>| {
-            group.len() < LANES && same(&group[0], &item) && alike(diagonal, place(&group[0]), place(&item))
+            group.len() < most && same(&group[0], &item) && alike(diagonal, place(&group[0]), place(&item))
         };
         match groups[open..].iter_mut().rev().find(joins) {
             Some(group) => group.push(item),

@@ -10,6 +10,7 @@
 //! that one point in the dark does not drive the cut of fifteen in the light to its cap.
 
 mod alike;
+mod lend;
 mod points;
 mod refine;
 #[cfg(test)]
@@ -17,6 +18,7 @@ mod tests;
 mod transfer;
 
 pub use alike::{LEAST_SHARED, alike, group_alike};
+pub use lend::LentCut;
 pub use points::Points;
 pub use refine::GroupLightcut;
 pub use transfer::{GroupVisibility, shadow_rays};

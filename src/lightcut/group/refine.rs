@@ -18,22 +18,22 @@ const ZERO: Lanes = [0.0; LANES];
 
 /// A cluster of the cut and what is known of it in each lane.
 #[derive(Clone, Copy)]
-struct Entry {
-    node: u32,
+pub(super) struct Entry {
+    pub node: u32,
     /// A leaf of the indirect trees: the only kind that is clamped.
-    weak: bool,
+    pub weak: bool,
     /// Contribution of a representative of unit intensity, with visibility.
-    responses: RgbLanes,
+    pub responses: RgbLanes,
     /// Error bounds, luminance; 0 for a leaf.
-    bounds: Lanes,
+    pub bounds: Lanes,
     /// Luminance with which the cluster counts in the running totals.
-    counted: Lanes,
+    pub counted: Lanes,
 }
 
 /// Computes shared cuts; one a thread, so that its buffers are allocated once.
 #[derive(Default)]
 pub struct GroupLightcut {
-    entries: Vec<Entry>,
+    pub(super) entries: Vec<Entry>,
     /// Largest relative bound (as bits) above place in `entries`.
     offenders: BinaryHeap<u64>,
     /// Luminance to which indirect leaves were clamped, by lane.
@@ -96,7 +96,13 @@ impl GroupLightcut {
         self.sum(trees, points, settings.clamp, radiance);
     }
 
-    fn sum(&mut self, trees: &LightTrees, points: &Points, clamp: Option<f32>, radiance: &mut [Rgb; LANES]) {
+    pub(super) fn sum(
+        &mut self,
+        trees: &LightTrees,
+        points: &Points,
+        clamp: Option<f32>,
+        radiance: &mut [Rgb; LANES],
+    ) {
         self.limits = [f32::INFINITY; LANES];
         let mut sums = [ZERO; 3];
         let mut brightest_leaf = ZERO;

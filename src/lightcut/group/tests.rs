@@ -157,3 +157,32 @@ fn the_cap_holds_for_the_group() {
     cut.gather(&trees, &Transfer::new(&[], 1.7), &Unoccluded, &points, &settings, &mut radiance);
     assert_eq!((cut.size(), cut.counts.capped, cut.counts.cuts), (77, 16, 16));
 }
+
+#[test]
+fn a_lent_cut_gives_its_makers_what_they_had() {
+    let mut numbers = Numbers(77);
+    let ball = Ball { centre: Vec3::new(0.5, 0.5, 0.6), radius: 0.15 };
+    let trees = LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive);
+    let transfer = Transfer::new(&trees.spots, 1.7);
+    let frame = crate::math::Frame::from_normal(Vec3::Z);
+    let at = |i: usize| Vec3::new(0.3 + 0.02 * (i % 8) as f32, 0.4 + 0.02 * (i / 8) as f32, 0.01);
+    let reflectors: Vec<Reflector> = (0..32).map(|i| Reflector::collector(at(i), Vec3::Z, &frame)).collect();
+    let (mut group, mut points, mut lent) = (GroupLightcut::new(), Points::new(), LentCut::default());
+    let (mut own, mut again) = ([Rgb::ZERO; LANES], [Rgb::ZERO; LANES]);
+    points.set(reflectors.iter().step_by(2).copied());
+    group.gather(&trees, &transfer, &ball, &points, &EXACT, &mut own);
+    lent.keep(&group, &trees, &transfer, &points);
+    let rays = group.counts.rays;
+    group.gather_lent(&lent, &trees, &transfer, &ball, &points, &EXACT, &mut again);
+    assert!(group.counts.rays - rays < rays / 2, "most clusters are agreed upon");
+    for (own, again) in own.iter().zip(again) {
+        assert!((*own - again).abs().max_element() < 1e-4 * own.max_element(), "{own} {again}");
+    }
+    // The points in between, against cuts of their own.
+    points.set(reflectors.iter().skip(1).step_by(2).copied());
+    group.gather_lent(&lent, &trees, &transfer, &ball, &points, &EXACT, &mut again);
+    group.gather(&trees, &transfer, &ball, &points, &EXACT, &mut own);
+    for (own, again) in own.iter().zip(again) {
+        assert!((*own - again).abs().max_element() < 0.04 * own.max_element(), "{own} {again}");
+    }
+}

@@ -1,8 +1,12 @@
-//! Eye samples with cuts of their own, shared among neighbours.
+//! Eye samples with cuts of their own, or nearly so.
+//!
+//! Samples close together, seen in the order of the index, form patches. Sixteen spread over each patch share a
+//! cut; it is lent to the others, which trace shadow rays only where the sixteen disagree (see
+//! [`LentCut`]). Patches of few samples have cuts of their own.
 
 use crate::cache::compute::Source;
 use crate::eye::EyeSamples;
-use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Points, group_alike};
+use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, LentCut, Points, group_alike};
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector};
 use crate::math::{Frame, Rgb};
 use crate::vpl::Origin;
@@ -21,7 +25,16 @@ pub struct Job {
     pub known: f32,
 }
 
-/// Radiance that each job's sample reflects, in the order of the jobs' groups.
+/// A thread's buffers.
+#[derive(Default)]
+struct Workspace<'w> {
+    single: Lightcut,
+    group: GroupLightcut,
+    lent: LentCut,
+    points: Points<'w>,
+}
+
+/// Radiance that each job's sample reflects, in a fixed order.
 pub fn light<'w>(
     source: &Source<'w>,
     samples: &EyeSamples<'w>,
@@ -33,30 +46,19 @@ pub fn light<'w>(
         (point.position, point.normal)
     };
     let same = |a: &Job, b: &Job| a.lobe_only == b.lobe_only && a.only == b.only;
-    let groups = group_alike(jobs.iter().copied(), source.world.diagonal, place, same);
-    let done: Vec<(Vec<(u32, Rgb)>, CutCounts)> = groups
+    let patches =
+        group_alike(jobs.iter().copied(), source.settings.patch, source.world.diagonal, place, same);
+    let done: Vec<(Vec<(u32, Rgb)>, CutCounts)> = patches
         .par_iter()
-        .map_init(
-            || (Lightcut::new(), GroupLightcut::new(), Points::new()),
-            |(single, group, points), jobs| {
-                let reflectors = jobs.iter().map(|job| reflector(samples, job));
-                let cut = CutSettings { only: jobs[0].only, ..*cut };
-                let mut radiance = [Rgb::ZERO; LANES];
-                (single.counts, group.counts) = Default::default();
-                if jobs.len() < LEAST_SHARED {
-                    for (radiance, reflector) in radiance.iter_mut().zip(reflectors) {
-                        *radiance =
-                            single.gather(source.trees, &source.transfer, source.world, &reflector, &cut);
-                    }
-                } else {
-                    points.set(reflectors);
-                    group.gather(source.trees, &source.transfer, source.world, points, &cut, &mut radiance);
-                }
-                let mut counts = single.counts;
-                counts.add(&group.counts);
-                (jobs.iter().map(|job| job.sample).zip(radiance).collect(), counts)
-            },
-        )
+        .map_init(Workspace::default, |work, jobs| {
+            (work.single.counts, work.group.counts) = Default::default();
+            let cut = CutSettings { only: jobs[0].only, ..*cut };
+            let mut lit = Vec::with_capacity(jobs.len());
+            work.light(source, samples, jobs, &cut, &mut lit);
+            let mut counts = work.single.counts;
+            counts.add(&work.group.counts);
+            (lit, counts)
+        })
         .collect();
     let mut counts = CutCounts::default();
     let mut lit = Vec::with_capacity(jobs.len());
@@ -65,6 +67,51 @@ pub fn light<'w>(
         counts.add(&used);
     }
     (lit, counts)
+}
+
+impl<'w> Workspace<'w> {
+    fn light(
+        &mut self,
+        s: &Source<'w>,
+        samples: &EyeSamples<'w>,
+        jobs: &[Job],
+        cut: &CutSettings,
+        lit: &mut Vec<(u32, Rgb)>,
+    ) {
+        if jobs.len() < LEAST_SHARED {
+            for job in jobs {
+                let reflector = reflector(samples, job);
+                lit.push((job.sample, self.single.gather(s.trees, &s.transfer, s.world, &reflector, cut)));
+            }
+            return;
+        }
+        // The makers of the cut: every so many, from the middle of each stretch.
+        let stride = jobs.len().div_ceil(LANES);
+        let makes = |i: usize| i % stride == stride / 2;
+        let chosen = |wanted: bool| (0..jobs.len()).filter(move |&i| makes(i) == wanted).map(|i| &jobs[i]);
+        let mut radiance = [Rgb::ZERO; LANES];
+        self.points.set(chosen(true).map(|job| reflector(samples, job)));
+        self.group.gather(s.trees, &s.transfer, s.world, &self.points, cut, &mut radiance);
+        lit.extend(chosen(true).map(|job| job.sample).zip(radiance));
+        if lit.len() == jobs.len() {
+            return;
+        }
+        self.lent.keep(&self.group, s.trees, &s.transfer, &self.points);
+        let others: Vec<&Job> = chosen(false).collect();
+        for jobs in others.chunks(LANES) {
+            self.points.set(jobs.iter().map(|job| reflector(samples, job)));
+            self.group.gather_lent(
+                &self.lent,
+                s.trees,
+                &s.transfer,
+                s.world,
+                &self.points,
+                cut,
+                &mut radiance,
+            );
+            lit.extend(jobs.iter().map(|job| job.sample).zip(radiance));
+        }
+    }
 }
 
 fn reflector<'w>(samples: &EyeSamples<'w>, job: &Job) -> Reflector<'w> {
