@@ -1,6 +1,6 @@
 //! Wavefront MTL: the classic materials an OBJ refers to, as the file states them.
 //!
-//! Why not `tobj`: a colour of two numbers makes its MTL reader panic.
+//! Why not `tobj`: a colour of one or two numbers makes its MTL reader panic (4.0.5), and its errors name no line.
 
 use super::obj::numbers;
 use crate::math::Rgb;
