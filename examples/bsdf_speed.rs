@@ -1,11 +1,9 @@
 //! Nanoseconds per BSDF call: `cargo run --release --example bsdf_speed`.
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use lightsplat::material::{DirectionBound, Materials};
 use lightsplat::math::Rgb;
-use lightsplat::scene::{
-    Camera, Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene,
-};
+use lightsplat::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -97,26 +95,5 @@ fn direction(bits: u32) -> Vec3 {
 }
 
 fn scene(materials: Vec<Material>) -> Scene {
-    Scene {
-        name: String::new(),
-        sources: Vec::new(),
-        camera: Camera {
-            origin: Vec3::ZERO,
-            forward: Vec3::Z,
-            right: Vec3::X,
-            up: Vec3::Y,
-            tan_half_x: 1.0,
-            near: 0.0,
-            far: f32::INFINITY,
-        },
-        camera_path: Vec::new(),
-        resolution: [1, 1],
-        max_depth: None,
-        meshes: Vec::new(),
-        materials,
-        textures: Vec::new(),
-        lights: Vec::new(),
-        environment: None,
-        centre: DVec3::ZERO,
-    }
+    Scene { materials, ..Scene::default() }
 }

@@ -8,29 +8,14 @@ mod sampling;
 use super::*;
 use crate::math::Rgb;
 use crate::scene::{
-    Camera, Coat, Distribution, Filter, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene, Texture,
-    TextureId, Wrap,
+    Coat, Distribution, Filter, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene, Texture, TextureId,
+    Wrap,
 };
-use glam::{DVec3, Mat3, Vec2, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 
 /// A scene of nothing but materials (and one 2x1 texture: red at u < 1/2, green beyond).
 pub(crate) fn scene(materials: Vec<Material>) -> Scene {
     Scene {
-        name: String::new(),
-        sources: Vec::new(),
-        camera: Camera {
-            origin: Vec3::ZERO,
-            forward: Vec3::Z,
-            right: Vec3::X,
-            up: Vec3::Y,
-            tan_half_x: 1.0,
-            near: 0.0,
-            far: f32::INFINITY,
-        },
-        camera_path: Vec::new(),
-        resolution: [1, 1],
-        max_depth: None,
-        meshes: Vec::new(),
         materials,
         textures: vec![Texture {
             name: String::new(),
@@ -41,9 +26,7 @@ pub(crate) fn scene(materials: Vec<Material>) -> Scene {
             wrap: Wrap::Repeat,
             to_uv: Mat3::IDENTITY,
         }],
-        lights: Vec::new(),
-        environment: None,
-        centre: DVec3::ZERO,
+        ..Scene::default()
     }
 }
 

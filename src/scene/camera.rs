@@ -21,6 +21,21 @@ pub struct Camera {
     pub far: f32,
 }
 
+/// At the centre, looking along -z with y up, a right angle wide.
+impl Default for Camera {
+    fn default() -> Camera {
+        Camera {
+            origin: Vec3::ZERO,
+            forward: -Vec3::Z,
+            right: Vec3::X,
+            up: Vec3::Y,
+            tan_half_x: 1.0,
+            near: 0.0,
+            far: f32::INFINITY,
+        }
+    }
+}
+
 impl Camera {
     /// Unit direction through film position `pixel` (in pixels, continuous) of a `resolution` film.
     ///

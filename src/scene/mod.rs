@@ -25,8 +25,8 @@ pub use mesh::{Emission, Mesh};
 pub use requirements::Requirements;
 pub use texture::{Filter, Texture, TextureId, Wrap};
 
-/// A scene, ready for the acceleration structure.
-#[derive(Clone, Debug)]
+/// A scene, ready for the acceleration structure. By default there is nothing in it.
+#[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// Name for reports and file metadata.
     pub name: String,

@@ -1,7 +1,7 @@
 //! Small scenes made in memory, shared by the behaviour tests.
 #![allow(dead_code, missing_docs)]
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use lightsplat::math::Rgb;
 use lightsplat::scene::{Camera, Emission, Fresnel, Lobe, Material, MaterialId, Mesh, Reflectance, Scene};
 use lightsplat::world::World;
@@ -14,20 +14,7 @@ pub fn camera(origin: Vec3, target: Vec3, tan_half_x: f32) -> Camera {
 }
 
 pub fn scene(camera: Camera, resolution: [u32; 2]) -> Scene {
-    Scene {
-        name: "test".into(),
-        sources: Vec::new(),
-        camera,
-        camera_path: Vec::new(),
-        resolution,
-        max_depth: None,
-        meshes: Vec::new(),
-        materials: Vec::new(),
-        textures: Vec::new(),
-        lights: Vec::new(),
-        environment: None,
-        centre: DVec3::ZERO,
-    }
+    Scene { name: "test".into(), camera, resolution, ..Scene::default() }
 }
 
 pub fn diffuse(reflectance: Rgb) -> Material {
