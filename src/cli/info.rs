@@ -3,7 +3,7 @@
 use super::args::InfoArgs;
 use super::exit::Failure;
 use super::{scene, talk};
-use crate::scene::formats::Loaded;
+use crate::scene::formats::{Loaded, SanitizeReport};
 use crate::scene::{Requirements, Scene};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -18,7 +18,7 @@ pub fn run(args: InfoArgs) -> Result<(), Failure> {
         facts["requires"] = json!(requires);
         talk::print(&format!("{facts}\n"))
     } else {
-        talk::print(&format!("{}\nrequires\n{requires}\n", to_text(&facts)))
+        talk::print(&format!("{}\nrequires\n{requires}\n", to_text(&facts, &loaded.repairs)))
     }
 }
 
@@ -45,10 +45,13 @@ fn facts(loaded: &Loaded) -> Value {
     })
 }
 
-fn to_text(facts: &Value) -> String {
+fn to_text(facts: &Value, repairs: &SanitizeReport) -> String {
     let mut text = String::new();
     for (key, value) in facts.as_object().into_iter().flatten() {
-        let shown = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let shown = match key.as_str() {
+            "repairs" => repairs.to_string(),
+            _ => value.as_str().map_or_else(|| value.to_string(), str::to_owned),
+        };
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{:<32}{shown}", key.replace('_', " "));
     }
