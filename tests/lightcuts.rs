@@ -8,7 +8,7 @@ use lightsplat::eye::{Window, primary_ray};
 use lightsplat::image::Image;
 use lightsplat::light_tree::{Family, LightTrees};
 use lightsplat::lightcut::group::{GroupLightcut, Points};
-use lightsplat::lightcut::{CutSettings, IrradianceReceiver, Lightcut, Reflector, Transfer, gather_all};
+use lightsplat::lightcut::{CutSettings, Lightcut, Reflector, Transfer, gather_all};
 use lightsplat::math::{Frame, Rgb, luminance};
 use lightsplat::method::lightcuts::{Settings, render};
 use lightsplat::method::{Control, Output, path};
@@ -60,11 +60,8 @@ fn vpls_of_a_furnace_give_the_irradiance_of_the_geometric_series() {
     let transfer = Transfer::new(&trees.spots, world.diagonal);
     let expected = PI * emitted / (Rgb::ONE - albedo);
     for normal in [Vec3::Y, -Vec3::X, Vec3::new(1.0, 1.0, 1.0).normalize()] {
-        let receiver = IrradianceReceiver {
-            position: Vec3::new(0.1, -0.2, 0.15),
-            geometric_normal: Vec3::ZERO,
-            frame: Frame::from_normal(normal),
-        };
+        let receiver =
+            Reflector::collector(Vec3::new(0.1, -0.2, 0.15), Vec3::ZERO, &Frame::from_normal(normal));
         let all = gather_all(&trees, &transfer, &world, &receiver);
         let error = (all / expected - Rgb::ONE).abs().max_element();
         assert!(error < 0.02, "all VPLs: {all} against {expected}");
@@ -217,14 +214,15 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
 
 /// Relative errors, against the full sum over the same 20,000 VPLs, of single and shared cuts for blocks of eye
 /// samples all over the film.
-fn errors_in(scene: &str, family: Family, epsilon: f32) -> (Vec<f32>, Vec<f32>) {
+fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
+    let path = path.with_extension("toml");
     let world = common::world(load(&path, &LoadOptions::default()).expect("the scene loads").scene);
     let light = LightPassSettings { direct: 1000, indirect: 19_000, seed: 1 };
     let lights = light_pass(&world, &light, u32::MAX, &Control::new());
     let trees = LightTrees::build(&lights.sets, lights.spots, world.diagonal, family);
     let transfer = Transfer::new(&trees.spots, world.diagonal);
-    let settings = CutSettings { clamp: None, max_cut: usize::MAX, epsilon, only: None };
+    let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
     let (mut single, mut shared) = (Lightcut::new(), GroupLightcut::new());
     let mut points = Points::new();
     let (mut single_errors, mut shared_errors) = (Vec::new(), Vec::new());
@@ -257,10 +255,9 @@ fn errors_in(scene: &str, family: Family, epsilon: f32) -> (Vec<f32>, Vec<f32>) 
 #[test]
 fn cuts_of_real_scenes_are_within_their_error() {
     let rms = |e: &[f32]| (e.iter().map(|e| e * e).sum::<f32>() / e.len() as f32).sqrt();
-    // The threshold is per cluster. In the nave most bright clusters are half hidden, so more of them err at once.
-    for (scene, epsilon) in [("cornell.toml", 0.02), ("knot.toml", 0.02), ("nave.toml", 0.01)] {
+    for scene in ["apartment", "cornell", "furnace", "hall", "kitchen", "knot", "nave"] {
         for family in [Family::Divisive, Family::Agglomerative] {
-            let (single, shared) = errors_in(scene, family, epsilon);
+            let (single, shared) = errors_in(scene, family);
             assert!(single.len() > 100, "{scene}: {} points", single.len());
             println!("{scene} {family:?}: {} {}", rms(&single), rms(&shared));
             assert!(rms(&single) <= 0.035, "{scene} {family:?}: single {}", rms(&single));

@@ -90,7 +90,7 @@ pub struct RenderArgs {
 #[derive(Clone, Debug, Default, Args, PartialEq)]
 #[command(next_help_heading = "Lightcuts")]
 pub struct LightcutArgs {
-    /// Largest error bound of a cluster, relative to the sample's luminance [default: 0.02]
+    /// Largest error to expect of a cluster, relative to the sample's luminance [default: 0.02]
     #[arg(long, value_parser = parse_fraction)]
     pub epsilon: Option<f32>,
     /// Most clusters in a cut [default: 1000]

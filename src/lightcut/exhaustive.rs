@@ -1,17 +1,17 @@
 //! The sum over all VPLs, one shadow ray each: what a lightcut approximates, and is tested against.
 
-use super::receiver::Receiver;
+use super::receiver::Reflector;
 use super::transfer::{Transfer, Visibility};
 use crate::light_tree::LightTrees;
 use crate::math::Rgb;
 use glam::DVec3;
 
 /// What `receiver` gathers from all VPLs. Time is proportional to their number; nothing is clamped.
-pub fn gather_all<R: Receiver, V: Visibility>(
+pub fn gather_all<V: Visibility>(
     trees: &LightTrees,
     transfer: &Transfer,
     visibility: &V,
-    receiver: &R,
+    receiver: &Reflector,
 ) -> Rgb {
     let mut sum = DVec3::ZERO;
     for leaf in trees.leaves() {

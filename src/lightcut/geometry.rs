@@ -33,6 +33,12 @@ impl OffsetBox {
         (self.centre.abs() - self.half).max(Vec3::ZERO).length_squared()
     }
 
+    /// The middle.
+    #[inline]
+    pub fn centre(&self) -> Vec3 {
+        self.centre
+    }
+
     /// The box around this one with the axes of `frame`.
     #[inline]
     pub fn turned(&self, frame: &Frame) -> OffsetBox {

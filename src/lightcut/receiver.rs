@@ -1,33 +1,13 @@
 //! What gathers light at a point: the function a lightcut integrates against, and its upper bound.
+//!
+//! The weight given to each direction decides what the cut's sum is: BRDF · cosine gives reflected radiance, the
+//! cosine alone irradiance.
 
 use super::geometry::OffsetBox;
 use crate::material::{Bsdf, DirectionBound};
 use crate::math::{Frame, Rgb};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
-
-/// A point that gathers light, with the weight it gives to each direction.
-///
-/// The weight decides what the cut's sum is: BRDF · cosine gives reflected radiance, the cosine alone irradiance.
-pub trait Receiver {
-    /// Where.
-    fn position(&self) -> Vec3;
-
-    /// Unit geometric normal, for starting shadow rays; zero if the point lies on no surface.
-    fn geometric_normal(&self) -> Vec3;
-
-    /// Luminance of what the receiver is known to gather from trees that are left out of the cut:
-    /// errors are judged against the whole.
-    fn known_luminance(&self) -> f32 {
-        0.0
-    }
-
-    /// Weight of light from the unit direction `wi`.
-    fn response(&self, wi: Vec3) -> Rgb;
-
-    /// No smaller, in any channel, than the weight of any direction in `offsets`.
-    fn max_response(&self, offsets: &OffsetBox) -> Rgb;
-}
 
 /// A point on a surface seen from a direction: the cut's sum is the radiance it reflects there.
 #[derive(Clone, Copy, Debug)]
@@ -140,26 +120,29 @@ impl<'m> Reflector<'m> {
     pub fn moved(self, position: Vec3) -> Self {
         Reflector { position, ..self }
     }
-}
 
-impl Receiver for Reflector<'_> {
+    /// Where it is.
     #[inline]
-    fn position(&self) -> Vec3 {
+    pub fn position(&self) -> Vec3 {
         self.position
     }
 
+    /// Unit geometric normal, for starting shadow rays; zero if the point lies on no surface.
     #[inline]
-    fn geometric_normal(&self) -> Vec3 {
+    pub fn geometric_normal(&self) -> Vec3 {
         self.geometric_normal
     }
 
+    /// Luminance of what the receiver is known to gather from trees that are left out of the cut:
+    /// errors are judged against the whole.
     #[inline]
-    fn known_luminance(&self) -> f32 {
+    pub fn known_luminance(&self) -> f32 {
         self.known_luminance
     }
 
+    /// Weight of light from the unit direction `wi`: BRDF times cosine.
     #[inline]
-    fn response(&self, wi: Vec3) -> Rgb {
+    pub fn response(&self, wi: Vec3) -> Rgb {
         match &self.material {
             Kind::Lambert(brdf) => *brdf * self.frame.normal.dot(wi).max(0.0),
             Kind::General(bsdf) => {
@@ -169,9 +152,9 @@ impl Receiver for Reflector<'_> {
         }
     }
 
+    /// No smaller, in any channel, than the weight of any direction in a box; `local` is the box in the shading frame.
     #[inline]
-    fn max_response(&self, offsets: &OffsetBox) -> Rgb {
-        let local = offsets.turned(&self.frame);
+    pub(super) fn max_response(&self, offsets: &OffsetBox, local: &OffsetBox) -> Rgb {
         let cos_max = local.max_cos_z();
         if cos_max <= 0.0 {
             return Rgb::ZERO;
@@ -184,38 +167,5 @@ impl Receiver for Reflector<'_> {
             cos_i_min: local.min_cos_z(),
             cos_mirror_max: offsets.turned(&self.mirror).max_cos_z(),
         })
-    }
-}
-
-/// A point that collects irradiance on the side of its normal.
-#[derive(Clone, Copy, Debug)]
-pub struct IrradianceReceiver {
-    /// Where.
-    pub position: Vec3,
-    /// Unit geometric normal.
-    pub geometric_normal: Vec3,
-    /// z is the normal that the cosine is measured to.
-    pub frame: Frame,
-}
-
-impl Receiver for IrradianceReceiver {
-    #[inline]
-    fn position(&self) -> Vec3 {
-        self.position
-    }
-
-    #[inline]
-    fn geometric_normal(&self) -> Vec3 {
-        self.geometric_normal
-    }
-
-    #[inline]
-    fn response(&self, wi: Vec3) -> Rgb {
-        Rgb::splat(self.frame.normal.dot(wi).max(0.0))
-    }
-
-    #[inline]
-    fn max_response(&self, offsets: &OffsetBox) -> Rgb {
-        Rgb::splat(offsets.turned(&self.frame).max_cos_z().max(0.0))
     }
 }

@@ -1,14 +1,15 @@
-//! The cut: start from the roots, split the cluster with the largest error bound until none is above the
+//! The cut: start from the roots, split the cluster with the largest error to expect until none is above the
 //! threshold.
 //!
 //! Paper: Walter et al., *Lightcuts*, 2005, section 3; Herzog et al. 2009, section 3 (one threshold for all
 //! trees, relative to their common total) and Eq. 13 (weak singularities).
-//! Deviations: up to [`BATCH`] offenders are split a round; a leaf's error is 0, so it never waits to be split;
+//! Deviations: the error of a cluster is not its upper bound but what is to be expected under that bound (see
+//! [`super::expected`]); up to [`BATCH`] offenders are split a round; a leaf's error is 0, so it never waits to be split;
 //! weak singularities are clamped once, when the cut is final, against a luminance in which no single indirect
 //! leaf counts for more than a quarter: a VPL close to the receiver would otherwise set its own limit,
 //! and hide the error of all others while the cut is refined.
 
-use super::receiver::Receiver;
+use super::receiver::Reflector;
 use super::transfer::{Transfer, Visibility};
 use crate::light_tree::LightTrees;
 use crate::math::{Rgb, luminance};
@@ -25,7 +26,7 @@ pub(super) const DOMINANT: f32 = 0.25;
 /// When a cut is good enough.
 #[derive(Clone, Copy, Debug)]
 pub struct CutSettings {
-    /// Largest error bound of one cluster, relative to the total's luminance.
+    /// Largest error to expect of one cluster (see [`super::expected`]), relative to the total's luminance.
     pub epsilon: f32,
     /// Most clusters in a cut.
     pub max_cut: usize,
@@ -100,7 +101,7 @@ impl CutCounts {
 #[derive(Default)]
 pub struct Lightcut {
     entries: Vec<CutEntry>,
-    /// Bound (as bits: non-negative floats sort as integers) above place in `entries`.
+    /// Expected error (as bits: non-negative floats sort as integers) above place in `entries`.
     offenders: BinaryHeap<u64>,
     batch: Vec<u32>,
     limit: f32,
@@ -125,12 +126,12 @@ impl Lightcut {
     }
 
     /// What `receiver` gathers from all VPLs, to within the settings' error.
-    pub fn gather<R: Receiver, V: Visibility>(
+    pub fn gather<V: Visibility>(
         &mut self,
         trees: &LightTrees,
         transfer: &Transfer,
         visibility: &V,
-        receiver: &R,
+        receiver: &Reflector,
         settings: &CutSettings,
     ) -> Rgb {
         let mut pass = Pass { trees, transfer, visibility, receiver, settings, total: 0.0, cut: self };
@@ -183,18 +184,18 @@ impl Lightcut {
 }
 
 /// One cut in the making.
-struct Pass<'a, 't, R, V> {
+struct Pass<'a, 't, 'm, V> {
     trees: &'a LightTrees,
     transfer: &'a Transfer<'t>,
     visibility: &'a V,
-    receiver: &'a R,
+    receiver: &'a Reflector<'m>,
     settings: &'a CutSettings,
     /// Luminance of the cut, as far as it counts.
     total: f64,
     cut: &'a mut Lightcut,
 }
 
-impl<R: Receiver, V: Visibility> Pass<'_, '_, R, V> {
+impl<V: Visibility> Pass<'_, '_, '_, V> {
     fn start(&mut self) {
         self.cut.entries.clear();
         self.cut.offenders.clear();
@@ -278,16 +279,17 @@ impl<R: Receiver, V: Visibility> Pass<'_, '_, R, V> {
         if self.visibility.visible(x, normal, vpl, node) { response } else { Rgb::ZERO }
     }
 
-    /// Queues the entry at `place` by its error bound, unless it cannot be wrong.
+    /// Queues the entry at `place` by the error to expect, unless it cannot be wrong.
     fn watch(&mut self, place: usize) {
         let node = &self.trees.nodes[self.cut.entries[place].node as usize];
         if node.is_leaf() {
             return;
         }
         self.cut.counts.bounds += 1;
-        let bound = luminance(self.transfer.bound(self.receiver, node) * node.intensity);
-        if bound > 0.0 {
-            self.cut.offenders.push(u64::from(bound.to_bits()) << 32 | place as u64);
+        let bound = self.transfer.bound(self.receiver, node);
+        let error = luminance(bound.most * node.intensity) * bound.share;
+        if error > 0.0 {
+            self.cut.offenders.push(u64::from(error.to_bits()) << 32 | place as u64);
         }
     }
 }

@@ -5,9 +5,9 @@ use crate::light_tree::{Family, LightTrees, Node};
 use crate::material::Materials;
 use crate::math::{Frame, Rgb, luminance};
 use crate::sampling::{hash, uniform_sphere};
-use crate::scene::{Camera, Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
+use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
 use crate::vpl::{Origin, SpotProfile, Vpl, VplKind, VplSet};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 /// A stream of numbers in [0, 1), not of samples.
 pub(super) struct Numbers(pub u32);
@@ -56,28 +56,7 @@ pub(super) fn all_materials() -> Scene {
     let mirror = |fresnel| Lobe::Mirror { fresnel, scale: constant(1.0, 1.0, 1.0) };
     add(true, grey, coat, mirror(Fresnel::Dielectric(1.5)));
     add(true, black, None, mirror(Fresnel::One));
-    Scene {
-        name: String::new(),
-        sources: Vec::new(),
-        camera: Camera {
-            origin: Vec3::ZERO,
-            forward: Vec3::Z,
-            right: Vec3::X,
-            up: Vec3::Y,
-            tan_half_x: 1.0,
-            near: 0.0,
-            far: f32::INFINITY,
-        },
-        camera_path: Vec::new(),
-        resolution: [1, 1],
-        max_depth: None,
-        meshes: Vec::new(),
-        materials,
-        textures: Vec::new(),
-        lights: Vec::new(),
-        environment: None,
-        centre: DVec3::ZERO,
-    }
+    Scene { materials, ..Scene::default() }
 }
 
 /// VPLs in a few groups of very different size, some flat as walls, some with all normals alike.
@@ -156,7 +135,7 @@ fn no_member_contributes_more_than_the_clusters_bound() {
                 if node.intensity == Rgb::ZERO {
                     continue; // the gaps behind roots
                 }
-                let bound = transfer.bound(&receiver, node);
+                let bound = transfer.bound(&receiver, node).most;
                 assert!(bound.is_finite() && bound.cmpge(Rgb::ZERO).all(), "{bound} of {node:?}");
                 let mut found = Vec::new();
                 members(&trees, id as u32, &mut found);
@@ -265,11 +244,7 @@ fn the_cap_is_respected_and_counted() {
     let trees = LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive);
     let settings = CutSettings { epsilon: 0.001, max_cut: 77, clamp: None, only: None };
     let transfer = Transfer::new(&[], 1.7);
-    let receiver = IrradianceReceiver {
-        position: Vec3::splat(0.4),
-        geometric_normal: Vec3::Y,
-        frame: Frame::from_normal(Vec3::Y),
-    };
+    let receiver = Reflector::collector(Vec3::splat(0.4), Vec3::Y, &Frame::from_normal(Vec3::Y));
     let mut cut = Lightcut::new();
     cut.gather(&trees, &transfer, &Unoccluded, &receiver, &settings);
     assert_eq!((cut.entries().len(), cut.counts.capped), (77, 1));
@@ -280,8 +255,7 @@ fn the_cap_is_respected_and_counted() {
 
 fn irradiance(trees: &LightTrees, diagonal: f32, position: Vec3, settings: &CutSettings) -> Rgb {
     let transfer = Transfer::new(&trees.spots, diagonal);
-    let receiver =
-        IrradianceReceiver { position, geometric_normal: Vec3::Y, frame: Frame::from_normal(Vec3::Y) };
+    let receiver = Reflector::collector(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
     Lightcut::new().gather(trees, &transfer, &Unoccluded, &receiver, settings)
 }
 

@@ -3,8 +3,9 @@
 //! Paper: Walter et al. 2005, section 3.2: bound = I · M⁺ · G⁺, visibility bounded by 1.
 //! Units: all per unit intensity, before visibility.
 
+use super::expected::{Outlook, expected_share};
 use super::geometry::{OffsetBox, max_cos_to_cone};
-use super::receiver::Receiver;
+use super::receiver::Reflector;
 use crate::light_tree::Node;
 use crate::math::{Frame, Rgb};
 use crate::vpl::{SpotProfile, Vpl, VplKind};
@@ -31,7 +32,7 @@ impl<'a> Transfer<'a> {
 
     /// Contribution of a VPL of unit intensity, if visible.
     #[inline]
-    pub fn unshadowed<R: Receiver>(&self, receiver: &R, vpl: &Vpl, kind: VplKind) -> Rgb {
+    pub fn unshadowed(&self, receiver: &Reflector, vpl: &Vpl, kind: VplKind) -> Rgb {
         if kind == VplKind::Directional {
             return receiver.response(vpl.position);
         }
@@ -54,26 +55,42 @@ impl<'a> Transfer<'a> {
         receiver.response(wi) * (emitted / dist_sq.max(self.min_dist_sq))
     }
 
-    /// No smaller, in any channel, than the contribution of any member of a cluster at unit intensity.
+    /// What is known of a cluster of unit intensity.
     #[inline]
-    pub fn bound<R: Receiver>(&self, receiver: &R, node: &Node) -> Rgb {
-        if node.kind() == VplKind::Directional {
-            return receiver.max_response(&OffsetBox::new(node.min, node.max));
-        }
-        let x = receiver.position();
+    pub fn bound(&self, receiver: &Reflector, node: &Node) -> Bound {
+        let directional = node.kind() == VplKind::Directional;
+        let x = if directional { Vec3::ZERO } else { receiver.position() };
         let offsets = OffsetBox::new(node.min - x, node.max - x);
-        let response = receiver.max_response(&offsets);
+        let local = offsets.turned(receiver.frame());
+        let response = receiver.max_response(&offsets, &local);
         if response == Rgb::ZERO {
-            return Rgb::ZERO;
+            return Bound { most: Rgb::ZERO, share: 0.0 };
         }
-        let emitted = if node.cos_beta <= -1.0 {
-            1.0
+        let centre_sq = offsets.centre().length_squared();
+        let near_sq = if directional { centre_sq } else { offsets.min_dist_sq().max(self.min_dist_sq) };
+        let (emitted, emitted_centre) = if node.cos_beta <= -1.0 || directional {
+            (1.0, centre_sq.sqrt())
         } else {
-            let cos_theta = offsets.turned(&Frame::from_normal(-node.axis)).max_cos_z();
-            max_cos_to_cone(cos_theta, node.cos_beta, node.sin_beta)
+            let turned = offsets.turned(&Frame::from_normal(-node.axis));
+            (max_cos_to_cone(turned.max_cos_z(), node.cos_beta, node.sin_beta), turned.centre().z)
         };
-        response * (emitted / offsets.min_dist_sq().max(self.min_dist_sq))
+        let share = expected_share(Outlook {
+            near_sq,
+            centre_sq,
+            at_centre: [local.centre().z, emitted_centre],
+            largest: [local.max_cos_z(), emitted],
+        });
+        Bound { most: if directional { response } else { response * (emitted / near_sq) }, share }
     }
+}
+
+/// Upper bound of a cluster of unit intensity, before visibility, and the error to expect.
+#[derive(Clone, Copy, Debug)]
+pub struct Bound {
+    /// No smaller, in any channel, than the contribution of any member.
+    pub most: Rgb,
+    /// Error to expect, relative to `most`: see [`super::expected`].
+    pub share: f32,
 }
 
 /// Whether a receiver sees a VPL.

@@ -94,7 +94,7 @@ impl GroupLightcut {
                 }
             }
             let weak = n.is_leaf() && n.origin() == Origin::Indirect;
-            self.entries.push(Entry { node, weak, responses, bounds: ZERO, counted: ZERO });
+            self.entries.push(Entry { node, weak, responses, errors: ZERO, counted: ZERO });
         }
         let count = points.len() as u64;
         self.counts.cuts += count;

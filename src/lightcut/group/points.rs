@@ -2,7 +2,6 @@
 
 use super::{LANES, Lanes};
 use crate::lightcut::Reflector;
-use crate::lightcut::receiver::Receiver;
 use crate::math::{Frame, LUMINANCE, Rgb};
 use glam::Vec3;
 

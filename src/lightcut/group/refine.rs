@@ -14,6 +14,9 @@ use std::collections::BinaryHeap;
 /// Least luminance of a lane where errors are judged, relative to the brightest lane's.
 const DARKEST: f32 = 1.0 / 256.0;
 
+/// The bits of an offender that say where it is.
+const PLACE: u64 = 0xffff_ffff;
+
 const ZERO: Lanes = [0.0; LANES];
 
 /// A cluster of the cut and what is known of it in each lane.
@@ -24,8 +27,8 @@ pub(super) struct Entry {
     pub weak: bool,
     /// Contribution of a representative of unit intensity, with visibility.
     pub responses: RgbLanes,
-    /// Error bounds, luminance; 0 for a leaf.
-    pub bounds: Lanes,
+    /// Errors to expect, luminance; 0 for a leaf.
+    pub errors: Lanes,
     /// Luminance with which the cluster counts in the running totals.
     pub counted: Lanes,
 }
@@ -34,7 +37,7 @@ pub(super) struct Entry {
 #[derive(Default)]
 pub struct GroupLightcut {
     pub(super) entries: Vec<Entry>,
-    /// Largest relative bound (as bits) above place in `entries`.
+    /// Upper half of the offence's bits (non-negative floats sort as integers) above place in `entries`.
     offenders: BinaryHeap<u64>,
     /// Luminance to which indirect leaves were clamped, by lane.
     limits: Lanes,
@@ -66,7 +69,7 @@ impl GroupLightcut {
         self.limits[lane]
     }
 
-    /// Reflected radiance of each point, to within the settings' error or better.
+    /// Reflected radiance of each point, on average to within the settings' error.
     pub fn gather<V: GroupVisibility>(
         &mut self,
         trees: &LightTrees,
@@ -83,6 +86,7 @@ impl GroupLightcut {
             points,
             settings,
             totals: points.known,
+            tolerance: points.len() as f64 * f64::from(settings.epsilon).powi(3),
             room: settings.max_cut,
             cut: self,
         };
@@ -182,6 +186,8 @@ struct Pass<'a, 't, 'm, V> {
     settings: &'a CutSettings,
     /// Luminance of the cut in each lane, as far as it counts.
     totals: Lanes,
+    /// Largest offence that is tolerated: each lane's error at ε.
+    tolerance: f64,
     /// Splits left before the cap.
     room: usize,
     cut: &'a mut GroupLightcut,
@@ -214,8 +220,8 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
         loop {
             while let Some(&offender) = self.cut.offenders.peek() {
                 let place = offender as u32 as usize;
-                let bounds = &self.cut.entries[place].bounds;
-                let offends = relative_bound(bounds, &self.inverse_totals()) > self.settings.epsilon;
+                let errors = &self.cut.entries[place].errors;
+                let offends = offence(errors, &self.inverse_totals()) > self.tolerance;
                 if offends && self.room == 0 {
                     return;
                 }
@@ -247,7 +253,7 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
         let inverse_totals = self.inverse_totals();
         let mut found = false;
         for place in 0..self.cut.entries.len() {
-            if relative_bound(&self.cut.entries[place].bounds, &inverse_totals) > self.settings.epsilon {
+            if offence(&self.cut.entries[place].errors, &inverse_totals) > self.tolerance {
                 self.watch(place, &inverse_totals);
                 found = true;
             }
@@ -255,9 +261,9 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
         found
     }
 
-    /// What bounds are multiplied with to be relative to each lane's total.
+    /// What errors are multiplied with to be relative to each lane's total.
     fn inverse_totals(&self) -> Lanes {
-        let brightest = self.totals.iter().fold(0.0, |a, &b| if b > a { b } else { a });
+        let brightest = halved(self.totals, |a, b| if b > a { b } else { a });
         let floor = (DARKEST * brightest).max(f32::MIN_POSITIVE);
         self.totals.map(|total| 1.0 / if total > floor { total } else { floor })
     }
@@ -299,13 +305,13 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
                 *c = if *c > limit && rest > 0.0 { limit } else { *c };
             }
         }
-        let bounds = if leaf {
+        let errors = if leaf {
             ZERO
         } else {
             self.cut.counts.bounds += self.points.len() as u64;
-            self.transfer.bounds16(self.points, n)
+            self.transfer.errors16(self.points, n)
         };
-        Entry { node, weak, responses: *responses, bounds, counted }
+        Entry { node, weak, responses: *responses, errors, counted }
     }
 
     /// Contribution of a node's representative at unit intensity, with visibility.
@@ -329,21 +335,35 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
         responses
     }
 
-    /// Queues the entry at `place` by its largest relative bound, unless it cannot be wrong.
+    /// Queues the entry at `place` by its offence, unless it cannot be wrong.
     fn watch(&mut self, place: usize, inverse_totals: &Lanes) {
-        let key = relative_bound(&self.cut.entries[place].bounds, inverse_totals);
+        let key = offence(&self.cut.entries[place].errors, inverse_totals);
         if key > 0.0 {
-            self.cut.offenders.push(u64::from(key.to_bits()) << 32 | place as u64);
+            self.cut.offenders.push(key.to_bits() & !PLACE | place as u64);
         }
     }
 }
 
-/// Largest bound of any lane relative to the lane's total.
-fn relative_bound(bounds: &Lanes, inverse_totals: &Lanes) -> f32 {
-    let mut largest = 0.0;
-    for (bound, inverse) in bounds.iter().zip(inverse_totals) {
-        let relative = bound * inverse;
-        largest = if relative > largest { relative } else { largest };
+/// Sum over the lanes of the cubes of errors relative to the lane's total. In double precision: where nothing
+/// lit has been found yet, errors are compared with next to nothing, and their order still counts.
+fn offence(errors: &Lanes, inverse_totals: &Lanes) -> f64 {
+    let mut cubes = [0.0; LANES];
+    for (cube, (error, inverse)) in cubes.iter_mut().zip(errors.iter().zip(inverse_totals)) {
+        let relative = f64::from(*error) * f64::from(*inverse);
+        *cube = relative * relative * relative;
     }
-    largest
+    halved(cubes, |a, b| a + b)
+}
+
+/// Folds lanes by halves, which vector code can do, and one after the other it could not.
+#[inline(always)]
+fn halved<T: Copy>(mut lanes: [T; LANES], f: impl Fn(T, T) -> T) -> T {
+    let mut half = LANES / 2;
+    while half > 0 {
+        for l in 0..half {
+            lanes[l] = f(lanes[l], lanes[l + half]);
+        }
+        half /= 2;
+    }
+    lanes[0]
 }

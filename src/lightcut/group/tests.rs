@@ -6,9 +6,7 @@ use crate::light_tree::{Family, LightTrees, Node};
 use crate::lightcut::tests::{
     Ball, EXACT, Numbers, SPOTS, all_materials, members, random_reflector, rms, room, three_kinds,
 };
-use crate::lightcut::{
-    CutSettings, Lightcut, Receiver, Reflector, Transfer, Unoccluded, Visibility, gather_all,
-};
+use crate::lightcut::{CutSettings, Lightcut, Reflector, Transfer, Unoccluded, Visibility, gather_all};
 use crate::material::Materials;
 use crate::math::{Rgb, luminance};
 use crate::scene::{MaterialId, Scene};
@@ -58,7 +56,7 @@ fn lanes_have_the_responses_of_single_points_and_bounds_above_them() {
         for count in [16, 1, 5] {
             points.set(neighbours(&materials, &scene, scale, count, &mut numbers));
             for (id, node) in trees.nodes.iter().enumerate().filter(|(_, n)| n.intensity != Rgb::ZERO) {
-                let bounds = transfer.bounds16(&points, node);
+                let (bounds, _) = transfer.bounds16(&points, node);
                 assert!(bounds[count..].iter().all(|b| *b == 0.0), "a lane without a point");
                 let mut found = Vec::new();
                 members(&trees, id as u32, &mut found);

@@ -5,6 +5,7 @@ use super::points::{Points, Vec3Lanes, lanes_of};
 use super::{LANES, Lanes, RgbLanes};
 use crate::embree::Rays16;
 use crate::light_tree::Node;
+use crate::lightcut::expected::{Outlook, expected_share};
 use crate::lightcut::{Transfer, Unoccluded};
 use crate::material::DirectionBound;
 use crate::math::{Frame, Rgb, luminance};
@@ -17,10 +18,17 @@ use glam::Vec3;
 const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
 impl Transfer<'_> {
-    /// Upper bound of each point's luminance from a cluster of intensity `node.intensity`; 0 in lanes without a point.
-    pub(super) fn bounds16(&self, points: &Points, node: &Node) -> Lanes {
+    /// Error to expect of each point's luminance from a cluster of intensity `node.intensity`; 0 in lanes without a point.
+    pub(super) fn errors16(&self, points: &Points, node: &Node) -> Lanes {
+        let (bounds, shares) = self.bounds16(points, node);
+        std::array::from_fn(|l| bounds[l] * shares[l])
+    }
+
+    /// Upper bound of each point's luminance, 0 in lanes without a point, and the error to expect relative to it.
+    #[inline]
+    pub(super) fn bounds16(&self, points: &Points, node: &Node) -> (Lanes, Lanes) {
         let cluster = Cluster::new(points, node);
-        let (geometry, cos_x) = self.geometry16(&cluster, points, node);
+        let Geometry { geometry, cos_x, shares } = self.geometry16(&cluster, points, node);
         let mut bounds = [0.0; LANES];
         let (i, w) = (node.intensity, &points.brdf_luminance);
         for l in 0..LANES {
@@ -43,21 +51,23 @@ impl Transfer<'_> {
         for (l, bound) in bounds.iter_mut().enumerate() {
             *bound = if points.valid >> l & 1 != 0 { *bound } else { 0.0 };
         }
-        bounds
+        (bounds, shares)
     }
 
-    /// Bounds of everything but the material: emitter's cosine over squared distance, and receiver's cosine.
-    fn geometry16(&self, cluster: &Cluster, points: &Points, node: &Node) -> (Lanes, Lanes) {
+    /// Bounds of everything but the material.
+    fn geometry16(&self, cluster: &Cluster, points: &Points, node: &Node) -> Geometry {
         let &Cluster { local, half, rounding, .. } = cluster;
         let oriented = local && node.cos_beta > -1.0;
         let emitter = Frame::from_normal(-node.axis);
         let axes = [emitter.tangent, emitter.bitangent, emitter.normal];
         let emitter_half = axes.map(|axis| axis.abs().dot(half) + rounding);
-        let (mut geometry, mut cos_x) = ([0.0; LANES], [0.0; LANES]);
+        let mut all = Geometry { geometry: [0.0; LANES], cos_x: [0.0; LANES], shares: [0.0; LANES] };
+        let normals = &points.frame[2];
         for l in 0..LANES {
-            cos_x[l] = positive(cluster.max_cos(points, &points.frame, &points.abs_frame, l));
+            let cos_x = positive(cluster.max_cos(points, &points.frame, &points.abs_frame, l));
             let c = cluster.offset(points, l);
-            let z = c.dot(axes[2]) + emitter_half[2];
+            let centre_z = c.dot(axes[2]);
+            let z = centre_z + emitter_half[2];
             let (x, y) = (c.dot(axes[0]).abs(), c.dot(axes[1]).abs());
             let cos_theta = max_cos(x, emitter_half[0], y, emitter_half[1], z);
             let sin_theta = positive(1.0 - cos_theta * cos_theta).sqrt();
@@ -68,9 +78,20 @@ impl Transfer<'_> {
                 [positive(c.x.abs() - half.x), positive(c.y.abs() - half.y), positive(c.z.abs() - half.z)];
             let dist_sq = gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2];
             let dist_sq = if dist_sq > self.min_dist_sq { dist_sq } else { self.min_dist_sq };
-            geometry[l] = if local { cos_y / dist_sq } else { 1.0 };
+            let centre_sq = c.length_squared();
+            all.shares[l] = expected_share(Outlook {
+                near_sq: if local { dist_sq } else { centre_sq },
+                centre_sq,
+                at_centre: [
+                    c.x * normals[0][l] + c.y * normals[1][l] + c.z * normals[2][l],
+                    if oriented { centre_z } else { centre_sq.sqrt() },
+                ],
+                largest: [cos_x, cos_y],
+            });
+            all.cos_x[l] = cos_x;
+            all.geometry[l] = if local { cos_y / dist_sq } else { 1.0 };
         }
-        (geometry, cos_x)
+        all
     }
 
     /// Each point's contribution from a VPL of unit intensity, if visible, and the lanes where it is not 0.
@@ -116,6 +137,16 @@ impl Transfer<'_> {
             }
         }
     }
+}
+
+/// A cluster's geometry term for each point.
+struct Geometry {
+    /// Bound of the emitter's cosine over squared distance.
+    geometry: Lanes,
+    /// Bound of the receiver's cosine.
+    cos_x: Lanes,
+    /// Error to expect relative to the bound.
+    shares: Lanes,
 }
 
 /// A cluster's box, widened by what rounding may lose in any lane.

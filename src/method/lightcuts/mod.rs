@@ -9,7 +9,7 @@
 //! | `max_depth` | the scene's | longest path in edges, counted from the eye |
 //! | `light.direct` | 4096 | VPLs on area lights, and directions of the environment |
 //! | `light.indirect` | 300 000 | VPLs where light is reflected |
-//! | `cut.epsilon` | 0.02 | largest error bound of a cluster, relative to the sample's luminance |
+//! | `cut.epsilon` | 0.02 | largest error to expect of a cluster, relative to the sample's luminance |
 //! | `cut.max_cut` | 1000 | most clusters in a cut |
 //! | `cut.clamp` | 0.02 | most that one indirect VPL may contribute, relative to the sample's luminance |
 //! | `share` | true | whether neighbouring eye samples share cuts, for speed |
