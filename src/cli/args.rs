@@ -37,9 +37,9 @@ pub struct RenderArgs {
     #[arg(short, long, value_name = "FILE.exr")]
     pub output: PathBuf,
     /// How to render
-    #[arg(long, value_enum, default_value_t = MethodName::Path)]
+    #[arg(long, value_enum, default_value_t = MethodName::Cache)]
     pub method: MethodName,
-    /// Samples a pixel [default: 64 for path, 1 for lightcuts]
+    /// Samples a pixel [default: 64 for path, 1 for cache and lightcuts]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub spp: Option<u32>,
     /// Threads to use [default: all processors]; the picture is the same for any number
@@ -161,7 +161,7 @@ pub struct CompareArgs {
 /// The methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum MethodName {
-    /// Unbiased path tracing: slow to converge, the reference; the default until there is a faster one as general
+    /// Unbiased path tracing: slow to converge, the reference
     Path,
     /// The radiance cache: lightcuts at a few thousand points, splatted onto all pixels
     Cache,
@@ -290,7 +290,7 @@ mod tests {
             argument.get_help().unwrap().to_string()
         };
         let expected = [
-            ("spp", format!("{} for path, {} for lightcuts", path.spp, cuts.spp)),
+            ("spp", format!("{} for path, {} for cache and lightcuts", path.spp, cuts.spp)),
             ("epsilon", cuts.cut.epsilon.to_string()),
             ("max-cut", cuts.cut.max_cut.to_string()),
             ("vpls", cuts.light.indirect.to_string()),

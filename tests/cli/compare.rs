@@ -34,8 +34,20 @@ fn the_measures_are_printed_as_text_and_json() {
 fn variances_come_from_files_or_from_the_pictures_own_layers() {
     let sandbox = Sandbox::new();
     for (name, seed) in [("a.exr", "1"), ("b.exr", "2")] {
-        let arguments =
-            ["render", "room.xml", "-o", name, "--spp", "64", "--resolution", "24x16", "--seed", seed];
+        let arguments = [
+            "render",
+            "room.xml",
+            "-o",
+            name,
+            "--method",
+            "path",
+            "--spp",
+            "64",
+            "--resolution",
+            "24x16",
+            "--seed",
+            seed,
+        ];
         sandbox.run(&arguments).expect(0);
     }
     let own = json(&sandbox, &["a.exr", "b.exr"]);

@@ -34,10 +34,11 @@ impl Sandbox {
         Finished::from(self.command(arguments).output().unwrap())
     }
 
-    /// Renders the room in `size` to `name`, fast.
+    /// Renders the room to `name`, fast; by path tracing unless `more` names a method.
     fn render(&self, name: &str, more: &[&str]) -> Finished {
         let base = ["render", "room.xml", "-o", name, "--spp", "4", "--resolution", "24x16"];
-        self.run(&[&base, more].concat())
+        let method: &[&str] = if more.contains(&"--method") { &[] } else { &["--method", "path"] };
+        self.run(&[&base, method, more].concat())
     }
 
     fn files(&self) -> Vec<String> {

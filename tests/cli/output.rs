@@ -65,7 +65,18 @@ fn a_crop_repeats_the_pixels_of_the_whole_picture_for_any_number_of_threads() {
 fn extreme_resolutions_are_rendered() {
     let sandbox = Sandbox::new();
     for resolution in ["1x1", "1x70", "70x1", "16384x2"] {
-        let arguments = ["render", "room.xml", "-o", "a.exr", "--spp", "1", "--resolution", resolution];
+        let arguments = [
+            "render",
+            "room.xml",
+            "-o",
+            "a.exr",
+            "--method",
+            "path",
+            "--spp",
+            "1",
+            "--resolution",
+            resolution,
+        ];
         sandbox.run(&arguments).expect(0);
         let image = ExrFile::read(&sandbox.path("a.exr")).unwrap().color().unwrap();
         assert_eq!(format!("{}x{}", image.width, image.height), resolution);
@@ -101,7 +112,7 @@ fn unwritable_outputs_end_with_4_before_rendering() {
     let sandbox = Sandbox::new();
     std::fs::create_dir(sandbox.path("folder.exr")).unwrap();
     // A render that would take hours: it must not have begun.
-    let long = ["render", "room.xml", "--spp", "4000000000", "-o"];
+    let long = ["render", "room.xml", "--method", "path", "--spp", "4000000000", "-o"];
     for output in ["none/a.exr", "folder.exr", "room.xml/a.exr"] {
         let stderr = sandbox.run(&[&long[..], &[output]].concat()).expect(4).stderr;
         assert!(stderr.contains(output), "{stderr}");
@@ -115,7 +126,7 @@ fn limited(sandbox: &Sandbox, on_signal: &str) -> Finished {
     let script = format!("{on_signal} ulimit -c 0; ulimit -f 8; exec \"$0\" \"$@\"");
     let output = Command::new("sh")
         .args(["-c", &script, env!("CARGO_BIN_EXE_lightsplat")])
-        .args(["render", "room.xml", "-o", "a.exr", "--spp", "2"])
+        .args(["render", "room.xml", "-o", "a.exr", "--method", "path", "--spp", "2"])
         .current_dir(sandbox.folder.path())
         .output()
         .unwrap();
