@@ -54,7 +54,7 @@ fn per_pixel(world: &World, like: &cache::Settings) -> Image {
 fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
     let world = lit_room();
     for (direct, limit) in [(DirectLight::PerSample, 0.02), (DirectLight::Records, 0.06)] {
-        for footprints in [Footprints::Isotropic, Footprints::Anisotropic] {
+        for footprints in [Footprints::Isotropic, Footprints::Anisotropic, Footprints::Occlusion] {
             let mut settings = settings(direct, footprints);
             if direct == DirectLight::Records {
                 // Penumbrae are steep: at the default accuracy they are what the other mode is for.
@@ -69,7 +69,7 @@ fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
 #[test]
 fn the_bits_do_not_depend_on_the_number_of_threads() {
     let world = lit_room();
-    let settings = settings(DirectLight::Records, Footprints::Anisotropic);
+    let settings = settings(DirectLight::Records, Footprints::Occlusion);
     let pictures = [1, 2, 4].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| render(&world, &settings).color.pixels)

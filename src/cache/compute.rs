@@ -8,6 +8,7 @@ use super::gather::{Gathered, Gatherer};
 use super::layer::Layer;
 use super::record::{Footprint, Record};
 use super::settings::{CacheSettings, Footprints};
+use super::sight::{Change, Sight};
 use super::wave::Pick;
 use crate::embree::Occluders16;
 use crate::eye::EyeSamples;
@@ -85,31 +86,67 @@ impl Source<'_> {
     }
 
     /// The record of one layer, or `None` where it would be of no use.
-    fn record(&self, samples: &EyeSamples, sample: u32, layer: usize, g: &Gathered) -> Option<Record> {
+    fn record(&self, samples: &EyeSamples, sample: u32, layer: usize, view: &View) -> Option<Record> {
+        let g = &view.gathered[layer];
         let point = &samples.points[sample as usize];
         let luminance = luminance(g.irradiance);
         if !(luminance.is_finite() && g.vector.is_finite() && g.gradient.is_finite()) {
             return None;
         }
         let settings = &self.settings.layers[layer];
-        let radius = (settings.accuracy * g.distance())
-            .clamp(settings.reach[0] * point.spacing, settings.reach[1] * point.spacing);
+        let reach = settings.reach.map(|r| r * point.spacing);
         let normal = point.normal;
         let tangential = |v: Vec3| v - normal * normal.dot(v);
-        let gradient = Mat3::from_cols(
+        let mut gradient = Mat3::from_cols(
             tangential(g.gradient.x_axis),
             tangential(g.gradient.y_axis),
             tangential(g.gradient.z_axis),
         );
+        let footprint = match &view.sight {
+            Some(sight) => {
+                let change = sight.change(layer);
+                gradient += change.gradient;
+                let furthest = settings.accuracy * sight.distance();
+                self.seeing(&change, luminance, settings.accuracy, furthest, reach)
+            }
+            None => {
+                let radius = (settings.accuracy * g.distance()).clamp(reach[0], reach[1]);
+                self.footprint(normal, gradient * crate::math::LUMINANCE, luminance, radius)
+            }
+        };
         Some(Record {
             position: point.position,
             normal,
             coat: point.coat,
-            footprint: self.footprint(normal, gradient * crate::math::LUMINANCE, luminance, radius),
+            footprint,
             vector: g.vector,
             gradient,
             luminance,
         })
+    }
+
+    /// An ellipse along whose axes second derivatives change the luminance by half the square of `accuracy`, relatively, no
+    /// longer than `furthest`, nor than twice its width.
+    fn seeing(
+        &self,
+        change: &Change,
+        luminance: f32,
+        accuracy: f32,
+        furthest: f32,
+        reach: [f32; 2],
+    ) -> Footprint {
+        let radius = |curvature: f32| {
+            let inverse_sq = curvature / (luminance.max(f32::MIN_POSITIVE) * accuracy * accuracy);
+            1.0 / (inverse_sq + 1.0 / (furthest * furthest)).sqrt()
+        };
+        let [short, long] = change.curvature.map(radius);
+        let short = short.clamp(reach[0], reach[1]);
+        let long = long.min(2.0 * short).clamp(short, reach[1]);
+        Footprint {
+            axes: change.axes,
+            radii: [short, long],
+            inverse_normal_tolerance: 1.0 / self.settings.normal_tolerance,
+        }
     }
 
     /// An ellipse of the area of a circle of `radius`, short along the gradient of the luminance.
@@ -169,8 +206,8 @@ impl Workspace {
             self.points.set(collectors);
             self.shared(s, samples, task, &cut)
         };
-        let record = |(pick, gathered): (&Pick, [Gathered; 2])| {
-            [0, 1].map(|l| if pick.lacks[l] { s.record(samples, pick.sample, l, &gathered[l]) } else { None })
+        let record = |(pick, view): (&Pick, View)| {
+            [0, 1].map(|l| if pick.lacks[l] { s.record(samples, pick.sample, l, &view) } else { None })
         };
         task.iter().zip(gathered).map(record).collect()
     }
@@ -182,43 +219,52 @@ impl Workspace {
         pick: &Pick,
         collector: &Reflector<'static>,
         cut: &CutSettings,
-    ) -> [Gathered; 2] {
+    ) -> View {
         let rays = OccluderLog::new(s.world);
         self.single.gather(s.trees, &s.transfer, &rays, collector, cut);
         let log = rays.sorted();
         let gatherer = s.gatherer(samples, pick.sample, collector);
-        let mut gathered = [Gathered::default(); 2];
+        let mut view = s.view(samples, pick.sample);
         for entry in self.single.entries() {
-            s.add(&mut gathered, &gatherer, entry.node, entry.response, self.single.limit(), (&log, 0));
+            s.add(&mut view, &gatherer, entry.node, entry.response, self.single.limit(), (&log, 0));
         }
-        gathered
+        view
     }
 
-    fn shared(
-        &mut self,
-        s: &Source,
-        samples: &EyeSamples,
-        task: &[Pick],
-        cut: &CutSettings,
-    ) -> Vec<[Gathered; 2]> {
+    fn shared(&mut self, s: &Source, samples: &EyeSamples, task: &[Pick], cut: &CutSettings) -> Vec<View> {
         let rays = OccluderLog::new(s.world);
         let mut irradiance = [Rgb::ZERO; LANES];
         self.group.gather(s.trees, &s.transfer, &rays, &self.points, cut, &mut irradiance);
         let log = rays.sorted();
         let lane = |(lane, pick): (usize, &Pick)| {
             let gatherer = s.gatherer(samples, pick.sample, self.points.get(lane));
-            let mut gathered = [Gathered::default(); 2];
+            let mut view = s.view(samples, pick.sample);
             for (node, responses) in self.group.entries() {
                 let response = Rgb::from_array(std::array::from_fn(|c| responses[c][lane]));
-                s.add(&mut gathered, &gatherer, node, response, self.group.limit(lane), (&log, lane));
+                s.add(&mut view, &gatherer, node, response, self.group.limit(lane), (&log, lane));
             }
-            gathered
+            view
         };
         task.iter().enumerate().map(lane).collect()
     }
 }
 
+/// What a record's point gathers, and what it sees, if footprints depend on that.
+struct View {
+    gathered: [Gathered; 2],
+    sight: Option<Box<Sight>>,
+}
+
 impl<'a> Source<'a> {
+    fn view(&self, samples: &EyeSamples, sample: u32) -> View {
+        let sight = (self.settings.footprints == Footprints::Occlusion).then(|| {
+            let point = &samples.points[sample as usize];
+            let geometric_normal = samples.surfaces[sample as usize].geometric_normal;
+            Box::new(Sight::new(self.world, point.position, geometric_normal, point.normal, sample))
+        });
+        View { gathered: Default::default(), sight }
+    }
+
     fn gatherer(&self, samples: &EyeSamples, sample: u32, collector: &Reflector<'static>) -> Gatherer<'a> {
         let point = &samples.points[sample as usize];
         Gatherer {
@@ -233,7 +279,7 @@ impl<'a> Source<'a> {
     #[inline]
     fn add(
         &self,
-        gathered: &mut [Gathered; 2],
+        view: &mut View,
         g: &Gatherer,
         node: u32,
         response: Rgb,
@@ -242,7 +288,8 @@ impl<'a> Source<'a> {
     ) {
         let node = &self.trees.nodes[node as usize];
         let vpl = &self.trees.vpls[node.representative()];
-        let layer = &mut gathered[layer_of(node.origin())];
+        let number = layer_of(node.origin());
+        let layer = &mut view.gathered[number];
         if response == Rgb::ZERO {
             let hidden = node.intensity * self.transfer.unshadowed(&g.collector, vpl, node.kind());
             if hidden != Rgb::ZERO {
@@ -254,7 +301,10 @@ impl<'a> Source<'a> {
         let y = luminance(contribution);
         let clamped = y > limit && node.is_leaf() && node.origin() == Origin::Indirect;
         let kept = if clamped { limit / y } else { 1.0 };
-        layer.add(g, &self.transfer, node, vpl, contribution, kept);
+        let passed = layer.add(g, &self.transfer, node, vpl, contribution, kept);
+        if let Some(sight) = &mut view.sight {
+            sight.add(number, &self.transfer, (node, vpl), contribution, passed, clamped);
+        }
     }
 }
 

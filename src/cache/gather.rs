@@ -67,7 +67,7 @@ pub struct Gatherer<'a> {
 
 impl Gathered {
     /// Adds a cluster of the cut: its representative gives the irradiance `contribution`, of which `kept` is left after
-    /// clamping (1: not clamped).
+    /// clamping (1: not clamped). Returns the irradiance added.
     #[inline]
     pub fn add(
         &mut self,
@@ -77,24 +77,24 @@ impl Gathered {
         vpl: &Vpl,
         contribution: Rgb,
         kept: f32,
-    ) {
+    ) -> Rgb {
         let kind = node.kind();
         if kind == VplKind::Directional {
             let cos = g.normal.dot(vpl.position);
             if cos <= 0.0 {
-                return;
+                return Rgb::ZERO;
             }
             let passed = contribution * self.filtered(g, cos);
             self.irradiance += passed;
             self.weight += luminance(passed);
             self.vector += outer(vpl.position / cos, passed);
-            return;
+            return passed;
         }
         let q = vpl.position - g.position;
         let dist_sq = q.length_squared();
         let height = g.normal.dot(q);
         if !(height > 0.0) {
-            return;
+            return Rgb::ZERO;
         }
         let distance = dist_sq.sqrt();
         let passed = contribution * (kept * self.filtered(g, height / distance));
@@ -105,7 +105,7 @@ impl Gathered {
         // Contribution = intensity · height · (the rest); the vector lacks the height.
         self.vector += outer(q / height, passed);
         if kept < 1.0 || dist_sq <= transfer.min_dist_sq {
-            return;
+            return passed;
         }
         let relative = match kind {
             VplKind::Oriented => {
@@ -117,6 +117,7 @@ impl Gathered {
             _ => 3.0 * q / dist_sq,
         };
         self.gradient += outer(relative, passed);
+        passed
     }
 
     /// Adds a light that is hidden by something at `distance`.

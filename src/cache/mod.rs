@@ -4,6 +4,7 @@
 //!
 //! - [`record`]: what is stored at a point, and the footprint within which it is used;
 //! - [`gather`]: from a converged cut to irradiance, its gradient and the distance to what casts light and shadow;
+//! - [`probe`], [`edges`], [`sight`]: what a record's point sees, and how the edges of occluders change its light as it moves;
 //! - [`compute`]: the records of one wave, neighbours sharing cuts;
 //! - [`layer`]: the records of direct or of indirect light, and their weighted sums at the eye samples;
 //! - [`wave`]: where records are needed next;
@@ -11,10 +12,13 @@
 
 pub mod adapt;
 pub mod compute;
+pub mod edges;
 pub mod gather;
 pub mod layer;
+pub mod probe;
 pub mod record;
 pub mod settings;
+pub mod sight;
 pub mod wave;
 
 pub use settings::{CacheSettings, DirectLight, Footprints, LayerSettings};

@@ -9,8 +9,10 @@ pub enum Footprints {
     Isotropic,
     /// Ellipses, short along the gradient that the virtual lights have while their visibility is held: LCache2 of
     /// the paper.
-    #[default]
     Anisotropic,
+    /// Ellipses by second derivatives, and gradients, that know of the edges of occluders, which probe rays find.
+    #[default]
+    Occlusion,
 }
 
 /// How direct light is found.

@@ -13,7 +13,7 @@ pub struct CacheArgs {
     /// Where direct light is found [default: samples]
     #[arg(long, value_enum)]
     pub direct: Option<DirectBy>,
-    /// Shape of footprints [default: anisotropic]
+    /// Shape of footprints [default: occlusion]
     #[arg(long, value_enum)]
     pub footprints: Option<FootprintShape>,
     /// Radius of footprints relative to the distance of what casts light and shadow, for direct and
@@ -56,6 +56,8 @@ pub enum FootprintShape {
     Isotropic,
     /// Ellipses, short along the gradient of the light
     Anisotropic,
+    /// Ellipses by second derivatives, gradients corrected at the edges of occluders
+    Occlusion,
 }
 
 /// Two positive numbers, `A,B`.

@@ -107,6 +107,7 @@ fn cache_report(s: &cache::Settings) -> Value {
         "footprints": match c.footprints {
             Footprints::Isotropic => "isotropic",
             Footprints::Anisotropic => "anisotropic",
+            Footprints::Occlusion => "occlusion",
         },
         "accuracy": c.layers.map(|l| decimal(l.accuracy)),
         "reach": c.layers.map(|l| l.reach.map(decimal)),
@@ -167,6 +168,7 @@ fn cache_settings(args: &RenderArgs) -> cache::Settings {
     cache.footprints = match cached.footprints {
         Some(FootprintShape::Isotropic) => Footprints::Isotropic,
         Some(FootprintShape::Anisotropic) => Footprints::Anisotropic,
+        Some(FootprintShape::Occlusion) => Footprints::Occlusion,
         None => cache.footprints,
     };
     cache.direct = match cached.direct {

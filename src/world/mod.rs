@@ -96,6 +96,12 @@ impl World {
         }
     }
 
+    /// Unit geometric normal of a triangle, on the front by winding.
+    #[inline]
+    pub fn geometric_normal(&self, mesh: u32, triangle: u32) -> Vec3 {
+        self.triangles.get(mesh, triangle).normal
+    }
+
     /// How the surface scatters, textures looked up.
     #[inline]
     pub fn bsdf(&self, s: &Surface) -> Bsdf<'_> {

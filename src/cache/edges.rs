@@ -1,0 +1,170 @@
+//! How irradiance changes where occluders hide and reveal what is behind them.
+//!
+//! As the receiver moves by δ, the edge of an occluder at distance z_c moves before its background at z_d by the angle
+//! (1/z_c - 1/z_d) δ, and a sliver of background appears or goes. Its radiance times its cosine is what gradients
+//! with visibility held leave out; the light of the occluder itself is among what they hold. Continuous
+//! surfaces, smooth or creased, have no such edges.
+//!
+//! Paper: Ward and Heckbert 1992 and Krivanek et al. 2005 for the integrals along cells' boundaries; Schwarzhaupt,
+//! Jensen and Jarosz, *Practical Hessian-Based Error Control for Irradiance Caching*, 2012, for the use of both derivatives.
+//!
+//! Deviations: radiance comes from the cut's clusters, spread over the cells whose surface they lie on, not from
+//! shading what the rays meet. Second derivatives are an upper estimate: the background's radiance is taken to change by all
+//! of itself within one cell.
+
+use super::probe::{CELLS, Probes, RINGS, SECTORS};
+use crate::math::{Rgb, luminance};
+use glam::{Vec2, Vec3};
+use std::f32::consts::{PI, TAU};
+
+/// Distance of a light from the plane of a cell's surface, relative to its distance from the receiver, at which the
+/// light is no longer taken to lie on that surface.
+const ON_SURFACE: f32 = 0.05;
+
+/// Share that even a cell of quite another surface keeps: something must take the light.
+const ELSEWHERE: f32 = 1e-4;
+
+/// Light seen in each cell.
+#[derive(Clone, Debug)]
+pub struct CellLight {
+    /// Irradiance from the cell.
+    irradiance: [Rgb; CELLS],
+}
+
+impl Default for CellLight {
+    fn default() -> CellLight {
+        CellLight { irradiance: [Rgb::ZERO; CELLS] }
+    }
+}
+
+/// Derivatives of the irradiance by the motion of occluders' edges.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EdgeDerivatives {
+    /// Gradient per channel, tangential, in the probes' frame.
+    pub gradient: [Vec2; 3],
+    /// Second derivatives uu, uv, vv of the luminance: an upper estimate.
+    pub hessian: [f32; 3],
+}
+
+impl CellLight {
+    /// Adds `irradiance` from a light at `offset` from the receiver in the probes' frame; `None` for light from
+    /// infinitely far along `direction`.
+    pub fn add(&mut self, probes: &Probes, direction: Vec3, offset: Option<Vec3>, irradiance: Rgb) {
+        let (ring, sector) = probes.coordinates(direction);
+        let (ring, sector) = (ring - 0.5, sector - 0.5);
+        let (j, k) = (ring.floor(), sector.floor());
+        let (along_j, along_k) = (ring - j, sector - k);
+        let mut cells = [0; 4];
+        let mut weights = [0.0; 4];
+        for i in 0..4 {
+            let (dj, dk) = (i >> 1, i & 1);
+            let row = (j as i32 + dj as i32).clamp(0, RINGS as i32 - 1) as usize;
+            let column = (k as i32 + dk as i32).rem_euclid(SECTORS as i32) as usize;
+            cells[i] = row * SECTORS + column;
+            let near =
+                if dj == 1 { along_j } else { 1.0 - along_j } * if dk == 1 { along_k } else { 1.0 - along_k };
+            weights[i] = near * (belonging(probes.plane[cells[i]], offset) + ELSEWHERE);
+        }
+        let sum: f32 = weights.iter().sum();
+        for (cell, weight) in cells.into_iter().zip(weights) {
+            self.irradiance[cell] += irradiance * (weight / sum);
+        }
+    }
+
+    /// What the edges between cells contribute.
+    pub fn edges(&self, probes: &Probes) -> EdgeDerivatives {
+        let mut sum = EdgeDerivatives::default();
+        let root = |share: usize| (share as f32 / RINGS as f32).sqrt();
+        let sector = TAU / SECTORS as f32;
+        // Chord over arc: the mean of a direction over a sector.
+        let chord = (0.5 * sector).sin() / (0.5 * sector);
+        for ring in 0..RINGS {
+            let (sin_in, sin_out) = (root(ring), root(ring + 1));
+            let cos_out = (1.0 - sin_out * sin_out).max(0.0).sqrt();
+            let sin_mid = ((ring as f32 + 0.5) / RINGS as f32).sqrt();
+            for k in 0..SECTORS {
+                let cell = ring * SECTORS + k;
+                // To the next sector: ∫cosθ dθ along the meridian.
+                let next = ring * SECTORS + (k + 1) % SECTORS;
+                let (sin_phi, cos_phi) = probes.azimuth(k as f32 + 1.0).sin_cos();
+                let across = Vec2::new(-sin_phi, cos_phi);
+                self.edge(probes, cell, next, across, sin_out - sin_in, sector * sin_mid, &mut sum);
+                // To the next ring: cosθ along the parallel, and cosθ for the tilt of the motion.
+                if ring + 1 < RINGS {
+                    let outer = cell + SECTORS;
+                    let (sin_phi, cos_phi) = probes.azimuth(k as f32 + 0.5).sin_cos();
+                    let length = cos_out * cos_out * sin_out * sector * chord;
+                    let width = ((ring as f32 + 1.5) / RINGS as f32).sqrt().asin() - sin_mid.asin();
+                    self.edge(probes, cell, outer, Vec2::new(cos_phi, sin_phi), length, width, &mut sum);
+                }
+            }
+        }
+        sum
+    }
+
+    /// The edge between cells `a` and `b`, `across` pointing from `a` to `b`.
+    #[inline]
+    #[allow(clippy::too_many_arguments)]
+    fn edge(
+        &self,
+        probes: &Probes,
+        a: usize,
+        b: usize,
+        across: Vec2,
+        length: f32,
+        width: f32,
+        sum: &mut EdgeDerivatives,
+    ) {
+        let parallax = parallax(probes, a, b);
+        if parallax == 0.0 {
+            return;
+        }
+        // Motion towards the background reveals more of it.
+        let (far, across) = if parallax > 0.0 { (b, across) } else { (a, -across) };
+        let radiance = self.irradiance[far] * (CELLS as f32 / PI);
+        let rate = parallax.abs() * length;
+        for c in 0..3 {
+            sum.gradient[c] += across * (radiance[c] * rate);
+        }
+        let second = luminance(radiance) * rate * parallax.abs() / width;
+        sum.hessian[0] += second * across.x * across.x;
+        sum.hessian[1] += second * across.x * across.y;
+        sum.hessian[2] += second * across.y * across.y;
+    }
+}
+
+/// 1/z of cell `a`'s surface less that of cell `b`'s at the boundary between them; 0 if the surfaces meet there.
+#[inline]
+fn parallax(probes: &Probes, a: usize, b: usize) -> f32 {
+    let (at_a, at_b) = (probes.direction[a], probes.direction[b]);
+    let between = probes.plane[a] - probes.plane[b];
+    // Each cell's surface against the other's plane, at both rays: if they cross on the way, the surfaces meet.
+    let (first, last) = (between.dot(at_a), between.dot(at_b));
+    let direct = probes.inverse[a] - probes.inverse[b];
+    if first * last <= 0.0 || first * direct < 0.0 {
+        return 0.0;
+    }
+    // Backgrounds are mostly flat; the plane of an occluder that curves away tells nothing about its edge.
+    let boundary = (at_a + at_b).normalize_or_zero();
+    if direct > 0.0 {
+        (probes.inverse[a] - probes.plane[b].dot(boundary)).clamp(0.0, probes.inverse[a])
+    } else {
+        -(probes.inverse[b] - probes.plane[a].dot(boundary)).clamp(0.0, probes.inverse[b])
+    }
+}
+
+/// Whether a light may lie on the surface of `plane` (see [`Probes::plane`]): 1 if it does.
+#[inline]
+fn belonging(plane: Vec3, offset: Option<Vec3>) -> f32 {
+    let Some(offset) = offset else {
+        return if plane == Vec3::ZERO { 1.0 } else { 0.0 };
+    };
+    if plane == Vec3::ZERO {
+        return 0.0;
+    }
+    // n·q/h - 1 is the distance from the plane in units of h; in units of the light's distance it lacks h/|q|.
+    let off = (plane.dot(offset) - 1.0) / (plane.length() * offset.length());
+    let relative = off * (1.0 / ON_SURFACE);
+    let fall = 1.0 / (1.0 + relative * relative);
+    fall * fall
+}

@@ -1,0 +1,103 @@
+//! What a point sees around it: the nearest surface in each cell of its hemisphere.
+//!
+//! Paper: Ward and Heckbert, *Irradiance Gradients*, 1992, for the division of the hemisphere: rings of equal share
+//! of a uniform sky's irradiance, cut into sectors.
+//!
+//! Deviations: one ray through the middle of each cell; the sectors of each point are turned by an angle of its own, so
+//! that what falls between rays differs from point to point.
+//!
+//! Units: directions in the point's frame; inverse distances in 1/m.
+
+use crate::embree::{Hits16, Rays16};
+use crate::math::Frame;
+use crate::sampling::hash;
+use crate::shadow;
+use crate::world::World;
+use glam::Vec3;
+use std::f32::consts::TAU;
+
+/// Rings from the normal to the horizon.
+pub const RINGS: usize = 8;
+/// Sectors of each ring: one packet of rays.
+pub const SECTORS: usize = 16;
+/// Cells of the hemisphere.
+pub const CELLS: usize = RINGS * SECTORS;
+
+/// What is seen in each cell; cell `ring · SECTORS + sector`.
+#[derive(Clone, Debug)]
+pub struct Probes {
+    /// z is the normal.
+    pub frame: Frame,
+    /// Azimuth, in sectors, at which sector 0 begins.
+    turn: f32,
+    /// Unit directions of the rays, in the frame.
+    pub direction: [Vec3; CELLS],
+    /// One over the distance to the surface; 0 where there is none.
+    pub inverse: [f32; CELLS],
+    /// The surface's plane as n/h, for a unit normal n in the frame and its distance h: the inverse distance in a direction is
+    /// the product with it. Zero where there is no surface.
+    pub plane: [Vec3; CELLS],
+}
+
+impl Probes {
+    /// Looks around from a surface point on the side of the frame's z axis. `seed` turns the sectors.
+    pub fn trace(world: &World, position: Vec3, geometric_normal: Vec3, frame: &Frame, seed: u32) -> Probes {
+        let turn = (hash(seed, 0x9b05) >> 8) as f32 * (1.0 / 16_777_216.0);
+        let mut probes = Probes {
+            frame: *frame,
+            turn,
+            direction: [Vec3::Z; CELLS],
+            inverse: [0.0; CELLS],
+            plane: [Vec3::ZERO; CELLS],
+        };
+        let azimuths: [(f32, f32); SECTORS] =
+            std::array::from_fn(|k| probes.azimuth(k as f32 + 0.5).sin_cos());
+        for ring in 0..RINGS {
+            let sin_sq = (ring as f32 + 0.5) / RINGS as f32;
+            let (sin, cos) = (sin_sq.sqrt(), (1.0 - sin_sq).sqrt());
+            let mut rays = Rays16::default();
+            for (k, (sin_phi, cos_phi)) in azimuths.into_iter().enumerate() {
+                let local = Vec3::new(sin * cos_phi, sin * sin_phi, cos);
+                probes.direction[ring * SECTORS + k] = local;
+                rays.set(k, &shadow::ray_from(position, geometric_normal, frame.to_world(local)));
+            }
+            let mut hits = Hits16::default();
+            let found = world.accel.closest_hit16(&rays, u16::MAX, false, &mut hits);
+            for k in (0..SECTORS).filter(|k| found >> k & 1 != 0) {
+                let normal = world.geometric_normal(hits.geometry[k], hits.primitive[k]);
+                probes.set(ring * SECTORS + k, hits.t[k], frame.to_local(normal));
+            }
+        }
+        probes
+    }
+
+    fn set(&mut self, cell: usize, distance: f32, normal: Vec3) {
+        let cos = normal.dot(self.direction[cell]);
+        let inverse = 1.0 / distance.max(f32::MIN_POSITIVE);
+        self.inverse[cell] = inverse;
+        // A surface seen edge-on is taken to face the ray.
+        self.plane[cell] =
+            if cos.abs() > 1e-3 { normal * (inverse / cos) } else { self.direction[cell] * inverse };
+    }
+
+    /// Azimuth of a sector coordinate.
+    #[inline]
+    pub fn azimuth(&self, sector: f32) -> f32 {
+        (sector + self.turn) * (TAU / SECTORS as f32)
+    }
+
+    /// Ring and sector coordinates of a unit direction in the frame; cell (j, k) is [j, j + 1) × [k, k + 1). Sectors
+    /// are not wrapped.
+    #[inline]
+    pub fn coordinates(&self, direction: Vec3) -> (f32, f32) {
+        let sin_sq = (1.0 - direction.z * direction.z).max(0.0);
+        let turns = direction.y.atan2(direction.x) * (1.0 / TAU);
+        (sin_sq * RINGS as f32, turns * SECTORS as f32 - self.turn)
+    }
+
+    /// Harmonic mean of the distances, each cell by its share of a uniform sky's irradiance; infinite if nothing is seen.
+    pub fn harmonic_mean(&self) -> f32 {
+        let sum: f32 = self.inverse.iter().sum();
+        if sum > 0.0 { CELLS as f32 / sum } else { f32::INFINITY }
+    }
+}
