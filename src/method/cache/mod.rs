@@ -1,6 +1,7 @@
 //! The radiance cache: records at a few thousand points, splatted onto all eye samples.
 //!
-//! Paper: Herzog et al. 2009; LCache1 with isotropic, LCache2 with anisotropic footprints.
+//! Paper: Herzog et al. 2009; LCache1 with isotropic, LCache2 with anisotropic footprints. Beyond it, and by default: footprints
+//! and gradients that know of the edges of occluders (`occlusion`).
 //!
 //! | setting | default | meaning |
 //! |---|---|---|
