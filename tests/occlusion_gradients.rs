@@ -11,7 +11,7 @@ use lightsplat::cache::wave::Pick;
 use lightsplat::cache::{CacheSettings, Footprints};
 use lightsplat::eye::{EyeSamples, EyeSettings, Window};
 use lightsplat::light_tree::{Family, LightTrees};
-use lightsplat::lightcut::{CutSettings, IrradianceReceiver, Transfer, gather_all};
+use lightsplat::lightcut::{CutSettings, Reflector, Transfer, gather_all};
 use lightsplat::math::{Frame, luminance};
 use lightsplat::method::Control;
 use lightsplat::vpl::{LightPassSettings, Origin, light_pass};
@@ -66,8 +66,7 @@ fn extrapolate(world: &World, footprints: Footprints) -> (f32, f32) {
     let (found, _) = source.records(&samples, &layers, &picks);
 
     let irradiance = |position: Vec3| {
-        let (geometric_normal, frame) = (Vec3::Y, Frame::from_normal(Vec3::Y));
-        let receiver = IrradianceReceiver { position, geometric_normal, frame };
+        let receiver = Reflector::collector(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
         luminance(gather_all(&trees, &transfer, world, &receiver))
     };
     let (mut error, mut agreement, mut square, mut count) = (0.0, 0.0, 0.0, 0.0);
