@@ -9,6 +9,8 @@ use lightsplat::eye::Window;
 use lightsplat::image::Image;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::{Control, Output, cache, lightcuts};
+use lightsplat::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
+use lightsplat::stats::Counter;
 use lightsplat::world::World;
 
 fn settings(direct: DirectLight, footprints: Footprints) -> cache::Settings {
@@ -25,6 +27,13 @@ fn render(world: &World, settings: &cache::Settings) -> Output {
     output
 }
 
+fn count(output: &Output, name: &str) -> Option<u64> {
+    match output.stats.get(name)? {
+        Counter::Count(n) => Some(n),
+        Counter::Sum(_) | Counter::Distribution(_) => None,
+    }
+}
+
 /// Root mean square difference of luminance relative to the mean luminance of `b`.
 fn rms(a: &Image, b: &Image) -> f32 {
     let n = a.pixels.len() as f32;
@@ -35,12 +44,32 @@ fn rms(a: &Image, b: &Image) -> f32 {
 
 /// Grey room lit by a square under its ceiling, with a ball in it.
 fn lit_room() -> World {
+    room_with_ball(|_, wall| [wall; 2])
+}
+
+/// The same with a floor of rough plastic and a ball of rough metal, which has no base.
+fn glossy_room() -> World {
+    room_with_ball(|scene, _| {
+        let rough = |fresnel, base, coat| {
+            let scale = Reflectance::Constant(Rgb::splat(0.9));
+            let lobe = Lobe::Rough { distribution: Distribution::Ggx, alpha: 0.5, fresnel, scale };
+            Material { lobe, coat, ..diffuse(Rgb::splat(base)) }
+        };
+        let plastic = rough(Fresnel::Dielectric(1.5), 0.4, Some(Coat { eta: 1.5, nonlinear: false }));
+        [plastic, rough(Fresnel::One, 0.0, None)].map(|material| add_material(scene, material))
+    })
+}
+
+/// The room; `materials` chooses those of floor and ball, given the walls'.
+fn room_with_ball(materials: impl FnOnce(&mut Scene, MaterialId) -> [MaterialId; 2]) -> World {
     let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [96, 96]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.6)));
+    let [floor, ball] = materials(&mut scene, wall);
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    scene.meshes[0].material = floor;
     let lamp = quad(Vec3::new(-0.3, 0.99, -0.3), Vec3::X * 0.6, Vec3::Z * 0.6, wall);
     scene.meshes.push(emitting(lamp, Rgb::new(10.0, 9.0, 8.0)));
-    scene.meshes.push(sphere(Vec3::new(0.2, -0.6, -0.2), 0.4, 32, wall));
+    scene.meshes.push(sphere(Vec3::new(0.2, -0.6, -0.2), 0.4, 32, ball));
     world(scene)
 }
 
@@ -67,14 +96,41 @@ fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
 }
 
 #[test]
+fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
+    let world = glossy_room();
+    for (direct, limit) in [(DirectLight::PerSample, 0.03), (DirectLight::Records, 0.08)] {
+        let mut settings = settings(direct, Footprints::Anisotropic);
+        settings.cache.layers[0] = LayerSettings { accuracy: 0.1, reach: [0.7, 5.0] };
+        let output = render(&world, &settings);
+        assert!(count(&output, "Cache/records with series").is_some_and(|n| n > 0));
+        // None for a lobe's sake: a sample has one cut at most, of its direct light.
+        let own = count(&output, "Cache/samples with own cuts");
+        assert!(own.is_some_and(|own| own <= 96 * 96), "{own:?}");
+        let exact = per_pixel(&world, &settings);
+        let error = rms(&output.color, &exact);
+        assert!(error < limit, "{direct:?}: {error}");
+        let mean = |image: &Image| image.pixels.iter().map(|p| luminance(*p)).sum::<f32>();
+        let bias = mean(&output.color) / mean(&exact);
+        assert!((bias - 1.0).abs() < 0.01, "{direct:?}: {bias}");
+    }
+}
+
+#[test]
+fn surfaces_without_lobes_make_no_series() {
+    let output = render(&lit_room(), &settings(DirectLight::PerSample, Footprints::Anisotropic));
+    assert_eq!(count(&output, "Cache/records with series"), None);
+}
+
+#[test]
 fn the_bits_do_not_depend_on_the_number_of_threads() {
-    let world = lit_room();
-    let settings = settings(DirectLight::Records, Footprints::Occlusion);
-    let pictures = [1, 2, 4].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| render(&world, &settings).color.pixels)
-    });
-    assert!(pictures[0] == pictures[1] && pictures[0] == pictures[2]);
+    for world in [lit_room(), glossy_room()] {
+        let settings = settings(DirectLight::Records, Footprints::Occlusion);
+        let pictures = [1, 2, 4].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| render(&world, &settings).color.pixels)
+        });
+        assert!(pictures[0] == pictures[1] && pictures[0] == pictures[2]);
+    }
 }
 
 #[test]
@@ -83,10 +139,7 @@ fn far_fewer_records_than_eye_samples_and_growing_slower() {
     let records = |spp| {
         let mut settings = settings(DirectLight::PerSample, Footprints::Anisotropic);
         settings.spp = spp;
-        match render(&world, &settings).stats.get("Cache/records, indirect") {
-            Some(lightsplat::stats::Counter::Count(n)) => n as f64,
-            other => panic!("{other:?}"),
-        }
+        count(&render(&world, &settings), "Cache/records, indirect").unwrap() as f64
     };
     let (one, sixteen) = (records(1), records(16));
     assert!(one < 0.2 * 96.0 * 96.0, "{one} records");

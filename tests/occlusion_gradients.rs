@@ -71,7 +71,7 @@ fn extrapolate(world: &World, footprints: Footprints) -> (f32, f32) {
     };
     let (mut error, mut agreement, mut square, mut count) = (0.0, 0.0, 0.0, 0.0);
     for record in found.iter().filter_map(|(_, pair)| pair[1].as_ref()) {
-        let Record { position, gradient, .. } = *record;
+        let Record { position, gradient, .. } = record.record;
         let here = irradiance(position);
         for step in [Vec3::X, Vec3::Z].map(|axis| axis * STEP) {
             let truth = [-step, step].map(|by| irradiance(position + by));

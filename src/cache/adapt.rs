@@ -1,12 +1,13 @@
 //! Footprints that disagree visibly are shrunk.
 //!
 //! Paper: Herzog et al. 2009, section 5.2: at each eye sample one contribution after the other is left out; where
-//! that changes the luminance visibly, the record's footprint is shrunk until it excludes the sample. The change is judged
-//! against the sum of both layers, so that each masks the other.
+//! that changes the luminance visibly, the record's footprint is shrunk until it excludes the sample. On glossy surfaces
+//! lit by series, luminance is that of what is reflected to the eye, elsewhere that of the irradiance. The change is judged against the sum of both layers, so that each masks the other.
 //!
 //! Deviations: the record nearest to the sample keeps its place. Leaving it out changes most, yet it knows most.
 
 use super::layer::Layer;
+use super::series::Glossy;
 use crate::eye::EyeSamples;
 use crate::math::{Rgb, luminance};
 use rayon::prelude::*;
@@ -23,14 +24,20 @@ pub struct Seam {
 }
 
 /// Finds the seams of all leaves marked in `changed`, in order.
-pub fn seams(samples: &EyeSamples, layers: &[Layer; 2], threshold: f32, changed: &[bool]) -> Vec<Seam> {
+pub fn seams(
+    samples: &EyeSamples,
+    layers: &[Layer; 2],
+    glossy: Option<&Glossy>,
+    threshold: f32,
+    changed: &[bool],
+) -> Vec<Seam> {
     let by_leaf: Vec<Vec<Seam>> = (0..samples.index.leaves())
         .into_par_iter()
-        .map_init(Vec::new, |contributions, leaf| {
+        .map_init(Default::default, |contributions, leaf| {
             let mut seams = Vec::new();
             if changed[leaf] {
                 for sample in samples.index.leaf(leaf) {
-                    at_sample(samples, layers, threshold, leaf, sample, contributions, &mut seams);
+                    at_sample(samples, layers, glossy, threshold, (leaf, sample), contributions, &mut seams);
                 }
             }
             seams
@@ -42,29 +49,40 @@ pub fn seams(samples: &EyeSamples, layers: &[Layer; 2], threshold: f32, changed:
 fn at_sample(
     samples: &EyeSamples,
     layers: &[Layer; 2],
+    glossy: Option<&Glossy>,
     threshold: f32,
-    leaf: usize,
-    sample: usize,
-    contributions: &mut Vec<(u32, f32, Rgb)>,
+    (leaf, sample): (usize, usize),
+    contributions: &mut [Vec<(u32, f32, Rgb)>; 2],
     seams: &mut Vec<Seam>,
 ) {
-    let means = [0, 1].map(|l| layers[l].sums[sample].mean().unwrap_or(Rgb::ZERO));
-    let visible = threshold * luminance(means[0] + means[1]);
     let point = &samples.points[sample];
-    for (l, layer) in layers.iter().enumerate() {
-        let sum = layer.sums[sample];
+    let mut seen = glossy.and_then(|glossy| glossy.seen(point, &samples.surfaces[sample]));
+    let mut sums = [(Rgb::ZERO, 0.0); 2];
+    for ((layer, contributions), (sum, weights)) in layers.iter().zip(&mut *contributions).zip(&mut sums) {
         contributions.clear();
         for &id in &layer.lists[leaf] {
-            if let Some((weight, irradiance)) = layer.records[id as usize].at(point) {
-                contributions.push((id, weight, irradiance));
+            let record = &layer.records[id as usize];
+            if let Some((weight, irradiance)) = record.at(point) {
+                let light = match &mut seen {
+                    Some(seen) => seen.radiance(record, layer.series(id), irradiance),
+                    None => irradiance,
+                };
+                contributions.push((id, weight, light));
+                *sum += weight * light;
+                *weights += weight;
             }
         }
+    }
+    let means = sums.map(|(sum, weights)| if weights > 0.0 { sum / weights } else { Rgb::ZERO });
+    let visible = threshold * luminance(means[0] + means[1]);
+    for (l, contributions) in contributions.iter().enumerate() {
+        let (sum, weights) = sums[l];
         let heaviest = contributions.iter().fold(0.0, |w: f32, c| w.max(c.1));
-        for &(id, weight, irradiance) in contributions.iter() {
+        for &(id, weight, light) in contributions {
             if weight >= heaviest {
                 continue;
             }
-            let without = (sum.irradiance - weight * irradiance) / (sum.weight - weight);
+            let without = (sum - weight * light) / (weights - weight);
             if luminance((without - means[l]).abs()) > visible {
                 seams.push(Seam { layer: l, record: id, sample: sample as u32 });
             }

@@ -7,11 +7,13 @@
 use super::gather::{Gathered, Gatherer};
 use super::layer::Layer;
 use super::record::{Footprint, Record};
+use super::series::SeriesGatherer;
 use super::settings::{CacheSettings, Footprints};
 use super::sight::{Change, Sight};
 use super::wave::Pick;
 use crate::embree::Occluders16;
 use crate::eye::EyeSamples;
+use crate::hsh::Radiance;
 use crate::light_tree::{LightTrees, Node};
 use crate::lightcut::group::{
     GroupLightcut, GroupVisibility, LANES, LEAST_SHARED, Lanes, Points, group_alike, shadow_rays,
@@ -38,8 +40,16 @@ pub struct Source<'a> {
     pub settings: &'a CacheSettings,
 }
 
+/// A record, and its light as a series where the surface needs it.
+pub struct Made {
+    /// The record.
+    pub record: Record,
+    /// Of the sample's bands.
+    pub series: Option<Radiance>,
+}
+
 /// Records of both layers at one eye sample.
-pub type Pair = [Option<Record>; 2];
+pub type Pair = [Option<Made>; 2];
 
 /// Which layer light of an origin belongs to.
 #[inline]
@@ -117,7 +127,7 @@ impl Source<'_> {
         Some(Record {
             position: point.position,
             normal,
-            coat: point.coat,
+            sharing: point.sharing,
             footprint,
             vector: g.vector,
             gradient,
@@ -173,6 +183,7 @@ struct Workspace {
     single: Lightcut,
     group: GroupLightcut,
     points: Points<'static>,
+    series: SeriesGatherer,
 }
 
 impl Workspace {
@@ -206,8 +217,12 @@ impl Workspace {
             self.points.set(collectors);
             self.shared(s, samples, task, &cut)
         };
-        let record = |(pick, view): (&Pick, View)| {
-            [0, 1].map(|l| if pick.lacks[l] { s.record(samples, pick.sample, l, &view) } else { None })
+        let record = |(pick, mut view): (&Pick, View)| {
+            [0, 1].map(|l| {
+                let record =
+                    if pick.lacks[l] { s.record(samples, pick.sample, l, &view)? } else { return None };
+                Some(Made { record, series: view.series[l].take() })
+            })
         };
         task.iter().zip(gathered).map(record).collect()
     }
@@ -225,9 +240,12 @@ impl Workspace {
         let log = rays.sorted();
         let gatherer = s.gatherer(samples, pick.sample, collector);
         let mut view = s.view(samples, pick.sample);
+        let series = &mut self.series;
+        series.begin(&samples.points[pick.sample as usize]);
         for entry in self.single.entries() {
-            s.add(&mut view, &gatherer, entry.node, entry.response, self.single.limit(), (&log, 0));
+            s.add((&mut view, series), &gatherer, entry.node, entry.response, self.single.limit(), (&log, 0));
         }
+        view.series = series.finish();
         view
     }
 
@@ -236,13 +254,16 @@ impl Workspace {
         let mut irradiance = [Rgb::ZERO; LANES];
         self.group.gather(s.trees, &s.transfer, &rays, &self.points, cut, &mut irradiance);
         let log = rays.sorted();
+        let series = &mut self.series;
         let lane = |(lane, pick): (usize, &Pick)| {
             let gatherer = s.gatherer(samples, pick.sample, self.points.get(lane));
             let mut view = s.view(samples, pick.sample);
+            series.begin(&samples.points[pick.sample as usize]);
             for (node, responses) in self.group.entries() {
                 let response = Rgb::from_array(std::array::from_fn(|c| responses[c][lane]));
-                s.add(&mut view, &gatherer, node, response, self.group.limit(lane), (&log, lane));
+                s.add((&mut view, series), &gatherer, node, response, self.group.limit(lane), (&log, lane));
             }
+            view.series = series.finish();
             view
         };
         task.iter().enumerate().map(lane).collect()
@@ -252,6 +273,8 @@ impl Workspace {
 /// What a record's point gathers, and what it sees, if footprints depend on that.
 struct View {
     gathered: [Gathered; 2],
+    /// Light as series, where the surface needs it so.
+    series: [Option<Radiance>; 2],
     sight: Option<Box<Sight>>,
 }
 
@@ -262,7 +285,7 @@ impl<'a> Source<'a> {
             let geometric_normal = samples.surfaces[sample as usize].geometric_normal;
             Box::new(Sight::new(self.world, point.position, geometric_normal, point.normal, sample))
         });
-        View { gathered: Default::default(), sight }
+        View { gathered: Default::default(), series: [None, None], sight }
     }
 
     fn gatherer(&self, samples: &EyeSamples, sample: u32, collector: &Reflector<'static>) -> Gatherer<'a> {
@@ -271,7 +294,7 @@ impl<'a> Source<'a> {
             collector: *collector,
             position: point.position,
             normal: point.normal,
-            coat: point.coat,
+            coat: point.sharing.coat(),
             materials: &self.world.materials,
         }
     }
@@ -279,7 +302,7 @@ impl<'a> Source<'a> {
     #[inline]
     fn add(
         &self,
-        view: &mut View,
+        (view, series): (&mut View, &mut SeriesGatherer),
         g: &Gatherer,
         node: u32,
         response: Rgb,
@@ -301,6 +324,7 @@ impl<'a> Source<'a> {
         let y = luminance(contribution);
         let clamped = y > limit && node.is_leaf() && node.origin() == Origin::Indirect;
         let kept = if clamped { limit / y } else { 1.0 };
+        series.add(number, &self.transfer, node, vpl, kept);
         let passed = layer.add(g, &self.transfer, node, vpl, contribution, kept);
         if let Some(sight) = &mut view.sight {
             sight.add(number, &self.transfer, (node, vpl), contribution, passed, clamped);

@@ -3,8 +3,10 @@
 //! Every leaf of the eye samples' index keeps the list of records that may reach it. Splatting works leaf by leaf, so
 //! that threads share nothing and sums are formed in the order of the records, however many threads there are.
 
+use super::compute::Made;
 use super::record::Record;
 use crate::eye::{EyeIndex, EyePoint, EyeSamples};
+use crate::hsh::Radiance;
 use crate::math::Rgb;
 use rayon::prelude::*;
 
@@ -29,6 +31,8 @@ impl Sum {
 pub struct Layer {
     /// All of them, in the order of their making.
     pub records: Vec<Record>,
+    /// Their light as series, which only records on glossy surfaces have; shorter than `records` if the last have none.
+    series: Vec<Option<Radiance>>,
     /// For each leaf, the records whose footprints may reach it.
     pub lists: Vec<Vec<u32>>,
     /// For each eye sample.
@@ -40,15 +44,33 @@ impl Layer {
     pub fn new(samples: &EyeSamples) -> Layer {
         Layer {
             records: Vec::new(),
+            series: Vec::new(),
             lists: vec![Vec::new(); samples.index.leaves()],
             sums: vec![Sum::default(); samples.len()],
         }
     }
 
+    /// The light of a record as a series.
+    #[inline]
+    pub fn series(&self, id: u32) -> Option<&Radiance> {
+        self.series.get(id as usize)?.as_ref()
+    }
+
+    /// How many records have series.
+    pub fn series_count(&self) -> usize {
+        self.series.iter().flatten().count()
+    }
+
     /// Adds records and splats them.
-    pub fn splat(&mut self, samples: &EyeSamples, new: Vec<Record>) {
+    pub fn splat(&mut self, samples: &EyeSamples, new: impl Iterator<Item = Made>) {
         let first = self.records.len() as u32;
-        self.records.extend(new);
+        for made in new {
+            if made.series.is_some() {
+                self.series.resize(self.records.len(), None);
+                self.series.push(made.series);
+            }
+            self.records.push(made.record);
+        }
         let reached: Vec<Vec<u32>> = self.records[first as usize..]
             .par_iter()
             .map(|record| {

@@ -6,6 +6,7 @@
 //! - [`gather`]: from a converged cut to irradiance, its gradient and the distance to what casts light and shadow;
 //! - [`probe`], [`edges`], [`sight`]: what a record's point sees, and how the edges of occluders change its light as it moves;
 //! - [`compute`]: the records of one wave, neighbours sharing cuts;
+//! - [`series`]: the same for glossy surfaces: radiance as a series, and what lobes reflect of it;
 //! - [`layer`]: the records of direct or of indirect light, and their weighted sums at the eye samples;
 //! - [`wave`]: where records are needed next;
 //! - [`adapt`]: footprints that disagree visibly are shrunk.
@@ -17,6 +18,7 @@ pub mod gather;
 pub mod layer;
 pub mod probe;
 pub mod record;
+pub mod series;
 pub mod settings;
 pub mod sight;
 pub mod wave;

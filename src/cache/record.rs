@@ -7,7 +7,7 @@
 //! clips a light, and which stands for the rotational gradient. The weight 1/δ - 1 (δ = 1 at the footprint's
 //! edge) is that of Eq. 11 less its value there, so that it does not jump.
 
-use crate::eye::EyePoint;
+use crate::eye::{EyePoint, Sharing};
 use crate::math::{Rgb, luminance};
 use glam::{Mat3, Vec3};
 
@@ -30,8 +30,8 @@ pub struct Record {
     pub position: Vec3,
     /// Unit shading normal.
     pub normal: Vec3,
-    /// Coat that the light has passed; see [`EyePoint::coat`].
-    pub coat: u32,
+    /// Samples that it can light.
+    pub sharing: Sharing,
     /// The footprint.
     pub footprint: Footprint,
     /// Per channel (column): the vector whose product with a unit normal is the irradiance on a surface of that normal.
@@ -77,7 +77,7 @@ impl Record {
         let offset = p.position - self.position;
         let cos = self.normal.dot(p.normal);
         let tilt = (1.0 - cos).max(0.0).sqrt() * self.footprint.inverse_normal_tolerance;
-        if !(tilt < 1.0) || p.coat != self.coat {
+        if !(tilt < 1.0) || !self.sharing.serves(p.sharing) {
             return f32::INFINITY;
         }
         let delta = self.footprint.scaled(offset, self.normal).length() + tilt;

@@ -1,5 +1,6 @@
 //! What decides how many records there are, and how far each reaches.
 
+use crate::hsh::SeriesSettings;
 use crate::lightcut::CutSettings;
 
 /// How the shape of footprints is chosen.
@@ -43,6 +44,8 @@ pub struct CacheSettings {
     pub layers: [LayerSettings; 2],
     /// How direct light is found.
     pub direct: DirectLight,
+    /// Which glossy surfaces records light, and how good series are.
+    pub series: SeriesSettings,
     /// How the shape of footprints is chosen.
     pub footprints: Footprints,
     /// Relative change of luminance across a footprint at which it is halved along the gradient; the paper's μ.
@@ -70,6 +73,7 @@ impl Default for CacheSettings {
                 LayerSettings { accuracy: 0.3, reach: [1.5, 40.0] },
             ],
             direct: DirectLight::default(),
+            series: SeriesSettings::default(),
             footprints: Footprints::default(),
             mu: 0.5,
             normal_tolerance: 0.4,

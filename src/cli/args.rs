@@ -298,6 +298,8 @@ mod tests {
             ("clamp", cuts.cut.clamp.unwrap_or(0.0).to_string()),
             ("record-epsilon", cached.cut.epsilon.to_string()),
             ("mu", cached.mu.to_string()),
+            ("series-alpha", cached.series.min_alpha.to_string()),
+            ("series-error", cached.series.max_error.to_string()),
             ("passes", cached.passes.to_string()),
             ("threshold", cached.threshold.to_string()),
             ("patch", cached.patch.to_string()),

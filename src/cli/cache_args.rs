@@ -23,6 +23,12 @@ pub struct CacheArgs {
     /// Least and largest radius of footprints, in spacings of eye samples
     #[arg(long, value_name = "LEAST,LARGEST")]
     pub reach: Option<Pair>,
+    /// Roughness α from which lobes are lit by records, 2 for none: sharper ones have cuts of their own [default: 0.25]
+    #[arg(long, value_name = "ALPHA")]
+    pub series_alpha: Option<f32>,
+    /// Largest error of a lobe's series for which it is lit by records, relative to the whole reflection [default: 0.12]
+    #[arg(long, value_name = "ERROR")]
+    pub series_error: Option<f64>,
     /// Relative change of luminance across a footprint that halves it along the gradient [default: 0.5]
     #[arg(long)]
     pub mu: Option<f32>,

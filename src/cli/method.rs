@@ -111,6 +111,8 @@ fn cache_report(s: &cache::Settings) -> Value {
         },
         "accuracy": c.layers.map(|l| decimal(l.accuracy)),
         "reach": c.layers.map(|l| l.reach.map(decimal)),
+        "series_alpha": decimal(c.series.min_alpha),
+        "series_error": c.series.max_error,
         "mu": decimal(c.mu),
         "passes": c.passes,
         "threshold": decimal(c.threshold),
@@ -176,6 +178,8 @@ fn cache_settings(args: &RenderArgs) -> cache::Settings {
         Some(DirectBy::Samples) => DirectLight::PerSample,
         None => cache.direct,
     };
+    cache.series.min_alpha = cached.series_alpha.unwrap_or(cache.series.min_alpha);
+    cache.series.max_error = cached.series_error.unwrap_or(cache.series.max_error);
     cache.mu = cached.mu.unwrap_or(cache.mu);
     cache.passes = cached.passes.unwrap_or(cache.passes);
     cache.threshold = cached.threshold.unwrap_or(cache.threshold);

@@ -3,9 +3,11 @@
 mod chain;
 mod index;
 mod samples;
+mod sharing;
 mod window;
 
 pub use chain::{ChainCounts, EyeSample, trace};
 pub use index::{Bounds, EyeIndex};
 pub use samples::{EyePoint, EyeSamples, EyeSettings, EyeSurface};
+pub use sharing::Sharing;
 pub use window::{Window, primary_ray};

@@ -4,12 +4,13 @@
 //! Paper: Herzog et al. 2009, section 4: eye samples are stored through specular chains and sorted by a kd-tree.
 //! Units: positions relative to the scene's centre, throughputs per pixel (they include 1/spp).
 
-use super::{ChainCounts, EyeIndex, EyeSample, Window, primary_ray, trace};
+use super::{ChainCounts, EyeIndex, EyeSample, Sharing, Window, primary_ray, trace};
 use crate::image::Image;
 use crate::material::Bsdf;
 use crate::math::Rgb;
 use crate::method::Control;
 use crate::sampling::{Sampler, hash};
+use crate::scene::MaterialId;
 use crate::world::World;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -27,8 +28,8 @@ pub struct EyePoint {
     pub spacing: f32,
     /// Unit shading normal on the side of the eye.
     pub normal: Vec3,
-    /// Which coat filters the light that the surface's base reflects; samples share records only within one.
-    pub coat: u32,
+    /// Which records can light it.
+    pub sharing: Sharing,
 }
 
 /// What is needed of an eye sample to light it.
@@ -36,6 +37,8 @@ pub struct EyePoint {
 pub struct EyeSurface<'w> {
     /// How it scatters; lobes that the chain follows itself are taken out.
     pub bsdf: Bsdf<'w>,
+    /// Of the mesh.
+    pub material: MaterialId,
     /// Unit geometric normal.
     pub geometric_normal: Vec3,
     /// Unit vector back along the ray.
@@ -153,7 +156,8 @@ impl<'w> Found<'w> {
                 let samples = &mut self.samples;
                 let visit = |eye: EyeSample<'w>| {
                     if eye.depth < settings.max_depth {
-                        samples.extend(stored(&eye, angle, place, spp));
+                        let material = world.scene.meshes[eye.surface.mesh as usize].material;
+                        samples.extend(stored(&eye, material, angle, place, spp));
                     }
                 };
                 let emitted =
@@ -170,7 +174,13 @@ impl<'w> Found<'w> {
 }
 
 /// The sample as it is kept, or `None` if it cannot be lit.
-fn stored<'w>(eye: &EyeSample<'w>, angle: f32, pixel: u32, spp: u32) -> Option<(EyePoint, EyeSurface<'w>)> {
+fn stored<'w>(
+    eye: &EyeSample<'w>,
+    material: MaterialId,
+    angle: f32,
+    pixel: u32,
+    spp: u32,
+) -> Option<(EyePoint, EyeSurface<'w>)> {
     let s = &eye.surface;
     let front = s.frame.normal.dot(eye.out) > 0.0;
     if !front && !eye.bsdf.two_sided() {
@@ -179,9 +189,10 @@ fn stored<'w>(eye: &EyeSample<'w>, angle: f32, pixel: u32, spp: u32) -> Option<(
     let normal = if front { s.frame.normal } else { -s.frame.normal };
     // Foreshortening is limited, so that grazing samples do not claim whole floors.
     let spacing = angle * eye.distance / normal.dot(eye.out).max(0.05).sqrt();
-    let point = EyePoint { position: s.position, spacing, normal, coat: eye.bsdf.coat() };
+    let point = EyePoint { position: s.position, spacing, normal, sharing: Sharing::new(eye.bsdf.coat(), 0) };
     let surface = EyeSurface {
         bsdf: eye.bsdf,
+        material,
         geometric_normal: s.normal,
         out: eye.out,
         throughput: eye.throughput / spp as f32,

@@ -2,6 +2,7 @@
 
 use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
 use super::radiance::CHANNELS;
+use crate::math::Rgb;
 use std::f32::consts::PI;
 
 /// Functions that are even in azimuth: orders m >= 0.
@@ -27,6 +28,12 @@ impl Profile {
     /// Bands in use; all coefficients beyond are 0.
     pub fn bands(&self) -> usize {
         self.bands
+    }
+
+    /// What is reflected of light that is the same from all directions, up to a constant factor.
+    #[inline]
+    pub fn strength(&self) -> Rgb {
+        Rgb::from_array(std::array::from_fn(|c| self.coefficients[c][0]))
     }
 
     /// The kernel seen from the azimuth of `(x, y)`, which need not have unit length; at (0, 0) any azimuth will do.

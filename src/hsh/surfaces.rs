@@ -113,6 +113,11 @@ impl Surfaces {
         self.materials[id.0 as usize].caching
     }
 
+    /// Whether any material is to have a series.
+    pub fn any_series(&self) -> bool {
+        self.materials.iter().any(|surface| surface.caching.bands().is_some())
+    }
+
     /// Error of the material's kernel at the number of bands chosen (8 if there are to be no records), for its mean
     /// reflectances; 0 for irradiance.
     pub fn error(&self, id: MaterialId) -> f64 {

@@ -3,9 +3,10 @@
 use super::own::{self, Job};
 use crate::cache::compute::Source;
 use crate::cache::layer::Layer;
+use crate::cache::series::Glossy;
 use crate::cache::wave::{Pick, lacking, pick};
 use crate::cache::{CacheSettings, DirectLight, adapt};
-use crate::eye::{EyeSamples, EyeSettings, Window};
+use crate::eye::{EyePoint, EyeSamples, EyeSettings, EyeSurface, Window};
 use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::{CutCounts, CutSettings, Transfer};
 use crate::math::{Rgb, luminance};
@@ -58,7 +59,8 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
 
     let eye = EyeSettings { spp, seed: settings.seed, max_depth };
     control.begin(Stage::EyePass, window.tile_count(16) as u64);
-    let samples = stats.time(Stage::EyePass, || EyeSamples::look(world, window, eye, control));
+    let mut samples = stats.time(Stage::EyePass, || EyeSamples::look(world, window, eye, control));
+    let glossy = stats.time(Stage::EyePass, || Glossy::find(world, &mut samples, &settings.cache.series));
 
     let light = LightPassSettings { seed: settings.seed, ..settings.light };
     control.begin(Stage::LightPass, u64::from(light.indirect));
@@ -75,7 +77,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let transfer = Transfer::new(&trees.spots, world.diagonal);
     let source = Source { world, trees: &trees, transfer, settings: &settings.cache };
 
-    let mut cache = Cache::new(&samples, settings.cache.direct);
+    let mut cache = Cache::new(&samples, glossy, settings.cache.direct);
     control.begin(Stage::Records, samples.len() as u64);
     cache.fill(&source, &samples, control, &mut stats);
     for _ in 0..settings.cache.passes {
@@ -108,8 +110,10 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
 /// Both layers, and what else is known of each eye sample.
 struct Cache {
     layers: [Layer; 2],
+    /// Surfaces whose lobes records light too.
+    glossy: Option<Glossy>,
     direct: DirectLight,
-    /// Samples that reflect light by a base, which records light.
+    /// Samples that records light: those with a base or a lobe broad enough.
     wants: Vec<bool>,
     /// Samples whose records disagree.
     seams: Vec<u32>,
@@ -117,10 +121,13 @@ struct Cache {
 }
 
 impl Cache {
-    fn new(samples: &EyeSamples, direct: DirectLight) -> Cache {
-        let wants = samples.surfaces.iter().map(|s| s.bsdf.split_base(1.0).0 != Rgb::ZERO).collect();
+    fn new(samples: &EyeSamples, glossy: Option<Glossy>, direct: DirectLight) -> Cache {
+        let lit = |(point, surface): (&EyePoint, &EyeSurface)| {
+            point.sharing.bands() > 0 || surface.bsdf.split_base(1.0).0 != Rgb::ZERO
+        };
+        let wants = samples.points.iter().zip(&samples.surfaces).map(lit).collect();
         let layers = [Layer::new(samples), Layer::new(samples)];
-        Cache { layers, direct, wants, seams: Vec::new(), counts: CutCounts::default() }
+        Cache { layers, glossy, direct, wants, seams: Vec::new(), counts: CutCounts::default() }
     }
 
     /// Which layers a sample is to have.
@@ -139,13 +146,12 @@ impl Cache {
                 }
                 let picks: Vec<Pick> = stats
                     .time(Stage::Splat, || pick(samples, &self.layers, |i| self.wanted(i), level, parity));
-                let (records, counts) =
+                let (mut records, counts) =
                     stats.time(Stage::Records, || source.records(samples, &self.layers, &picks));
                 self.counts.add(&counts);
                 stats.time(Stage::Splat, || {
                     for (l, layer) in self.layers.iter_mut().enumerate() {
-                        let new = records.iter().filter_map(|(_, pair)| pair[l]).collect();
-                        layer.splat(samples, new);
+                        layer.splat(samples, records.iter_mut().filter_map(|(_, pair)| pair[l].take()));
                     }
                 });
             }
@@ -157,7 +163,8 @@ impl Cache {
     fn adapt(&mut self, source: &Source, samples: &EyeSamples, stats: &mut Stats) -> bool {
         stats.time(Stage::Splat, || {
             let all = vec![true; samples.index.leaves()];
-            let seams = adapt::seams(samples, &self.layers, source.settings.threshold, &all);
+            let seams =
+                adapt::seams(samples, &self.layers, self.glossy.as_ref(), source.settings.threshold, &all);
             let least = [0, 1].map(|l| source.settings.layers[l].reach[0]);
             let changed = adapt::shrink(samples, &mut self.layers, &seams, least);
             for layer in &mut self.layers {
@@ -172,12 +179,17 @@ impl Cache {
     fn report(&self, stats: &mut Stats) {
         stats.count("Cache/records, direct", self.layers[0].records.len() as u64);
         stats.count("Cache/records, indirect", self.layers[1].records.len() as u64);
+        let series = self.layers.iter().map(Layer::series_count).sum::<usize>();
+        if self.glossy.is_some() {
+            stats.count("Cache/records with series", series as u64);
+        }
         stats.count("Cache/samples at seams", self.seams.len() as u64);
         count(stats, "Records", &self.counts);
     }
 
     /// Adds what records give to the pixels; the rest is left to cuts.
     fn resolve(&self, samples: &EyeSamples, pixels: &mut [Rgb]) -> Vec<Job> {
+        let lobes = self.glossy.as_ref().map(|glossy| glossy.lobes(samples, &self.layers));
         let mut jobs = Vec::new();
         for (i, surface) in samples.surfaces.iter().enumerate() {
             let sample = i as u32;
@@ -189,7 +201,8 @@ impl Cache {
                     continue;
                 }
                 let mean = |l: usize| self.layers[l].sums[i].mean().unwrap_or(Rgb::ZERO);
-                let radiance = base * (mean(0) + mean(1));
+                let reflected = lobes.as_ref().map_or(Rgb::ZERO, |lobes| lobes[i]);
+                let radiance = base * (mean(0) + mean(1)) + reflected;
                 known = luminance(radiance);
                 pixels[surface.pixel as usize] += surface.throughput * radiance;
             }
@@ -197,7 +210,7 @@ impl Cache {
             if !cached {
                 jobs.push(Job { sample, lobe_only: false, only: Some(Origin::Direct), known });
             }
-            if lobe.is_some() {
+            if lobe.is_some() && samples.points[i].sharing.bands() == 0 {
                 let only = if cached { None } else { Some(Origin::Indirect) };
                 jobs.push(Job { sample, lobe_only: true, only, known });
             }
