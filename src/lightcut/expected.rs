@@ -6,7 +6,7 @@
 //! error, √(b·U) needs a fifth fewer clusters than b. U itself would cost a look at every member, but the geometry
 //! term at the box's centre, kept from falling far below the bound's, serves almost as well:
 //!
-//! E = [`SCALE`] · b · min(1, [`SPREAD`] · √r), r = (d²min / d²centre) · ([`FLOOR`] + (1 - `FLOOR`) · cosines at the centre / largest)
+//! E = `SCALE` · b · min(1, `SPREAD` · √r), r = (d²min / d²centre) · (`FLOOR` + (1 - `FLOOR`) · cosines at the centre / largest)
 //!
 //! `SCALE` sets what ε means: that the relative RMS error of the whole, over points and draws of representatives, stays
 //! below 1.75 ε in every scene. (All points of a picture share their representatives, so one picture's figure scatters:
