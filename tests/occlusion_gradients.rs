@@ -47,7 +47,7 @@ fn extrapolate(world: &World, footprints: Footprints) -> (f32, f32) {
     let transfer = Transfer::new(&trees.spots, world.diagonal);
     let cut = CutSettings { epsilon: 0.002, max_cut: 20_000, clamp: None, ..CutSettings::default() };
     let cache = CacheSettings { cut, footprints, ..CacheSettings::default() };
-    let source = Source { world, trees: &trees, transfer, settings: &cache };
+    let source = Source { world, trees: &trees, transfer, settings: &cache, compensation: None };
 
     // Open floor: neither under the ball or the table nor within a step of a wall, where light varies by its own distance.
     let open = |p: Vec3| {

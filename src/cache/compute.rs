@@ -4,9 +4,10 @@
 //! A record that lacks one layer only cuts only that layer's trees, judged against what the other is known to give, so
 //! that each layer masks the other's errors (Herzog et al. 2009, section 6).
 
+use super::compensate::{Clamp, Compensation, Cutters};
 use super::gather::{Gathered, Gatherer};
 use super::layer::Layer;
-use super::record::{Footprint, Record};
+use super::record::{Facts, Footprint, Record};
 use super::series::SeriesGatherer;
 use super::settings::{CacheSettings, Footprints};
 use super::sight::{Change, Sight};
@@ -38,6 +39,8 @@ pub struct Source<'a> {
     pub transfer: Transfer<'a>,
     /// Settings.
     pub settings: &'a CacheSettings,
+    /// How clamped light is found again, if it is.
+    pub compensation: Option<Compensation>,
 }
 
 /// A record, and its light as a series where the surface needs it.
@@ -132,6 +135,7 @@ impl Source<'_> {
             vector: g.vector,
             gradient,
             luminance,
+            facts: Facts { sample, cut: g.cut, clamped: g.clamped, compensated: g.compensated },
         })
     }
 
@@ -211,12 +215,18 @@ impl Workspace {
             _ => None,
         };
         let cut = CutSettings { only, ..s.settings.cut };
-        let gathered = if task.len() < LEAST_SHARED {
+        let mut views: Vec<View> = if task.len() < LEAST_SHARED {
             collectors.zip(task).map(|(c, pick)| self.alone(s, samples, pick, &c, &cut)).collect()
         } else {
             self.points.set(collectors);
             self.shared(s, samples, task, &cut)
         };
+        if let Some(compensation) = s.compensation {
+            let cutters =
+                Cutters { single: &mut self.single, group: &mut self.group, points: &mut self.points };
+            let mut indirect: Vec<_> = views.iter_mut().map(|view| &mut view.gathered[1]).collect();
+            compensation.add(s, cutters, samples, task, &mut indirect);
+        }
         let record = |(pick, mut view): (&Pick, View)| {
             [0, 1].map(|l| {
                 let record =
@@ -224,7 +234,7 @@ impl Workspace {
                 Some(Made { record, series: view.series[l].take() })
             })
         };
-        task.iter().zip(gathered).map(record).collect()
+        task.iter().zip(views).map(record).collect()
     }
 
     fn alone(
@@ -239,11 +249,12 @@ impl Workspace {
         self.single.gather(s.trees, &s.transfer, &rays, collector, cut);
         let log = rays.sorted();
         let gatherer = s.gatherer(samples, pick.sample, collector);
-        let mut view = s.view(samples, pick.sample);
+        let clamp = s.clamp(self.single.limit());
+        let mut view = s.view(samples, pick.sample, self.single.entries().len(), clamp);
         let series = &mut self.series;
         series.begin(&samples.points[pick.sample as usize]);
         for entry in self.single.entries() {
-            s.add((&mut view, series), &gatherer, entry.node, entry.response, self.single.limit(), (&log, 0));
+            s.add((&mut view, series), &gatherer, entry.node, entry.response, clamp, (&log, 0));
         }
         view.series = series.finish();
         view
@@ -257,11 +268,12 @@ impl Workspace {
         let series = &mut self.series;
         let lane = |(lane, pick): (usize, &Pick)| {
             let gatherer = s.gatherer(samples, pick.sample, self.points.get(lane));
-            let mut view = s.view(samples, pick.sample);
+            let clamp = s.clamp(self.group.limit(lane));
+            let mut view = s.view(samples, pick.sample, self.group.size(), clamp);
             series.begin(&samples.points[pick.sample as usize]);
             for (node, responses) in self.group.entries() {
                 let response = Rgb::from_array(std::array::from_fn(|c| responses[c][lane]));
-                s.add((&mut view, series), &gatherer, node, response, self.group.limit(lane), (&log, lane));
+                s.add((&mut view, series), &gatherer, node, response, clamp, (&log, lane));
             }
             view.series = series.finish();
             view
@@ -279,13 +291,14 @@ struct View {
 }
 
 impl<'a> Source<'a> {
-    fn view(&self, samples: &EyeSamples, sample: u32) -> View {
+    fn view(&self, samples: &EyeSamples, sample: u32, cut: usize, clamp: Clamp) -> View {
         let sight = (self.settings.footprints == Footprints::Occlusion).then(|| {
             let point = &samples.points[sample as usize];
             let geometric_normal = samples.surfaces[sample as usize].geometric_normal;
             Box::new(Sight::new(self.world, point.position, geometric_normal, point.normal, sample))
         });
-        View { gathered: Default::default(), series: [None, None], sight }
+        let gathered = Gathered { cut: cut as u32, bound: clamp.bound(), ..Gathered::default() };
+        View { gathered: [gathered; 2], series: [None, None], sight }
     }
 
     fn gatherer(&self, samples: &EyeSamples, sample: u32, collector: &Reflector<'static>) -> Gatherer<'a> {
@@ -299,6 +312,11 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// How indirect leaves are clamped where none may give more than the luminance `limit`.
+    fn clamp(&self, limit: f32) -> Clamp {
+        self.compensation.map_or(Clamp::Luminance(limit), |c| c.clamp(limit))
+    }
+
     #[inline]
     fn add(
         &self,
@@ -306,28 +324,30 @@ impl<'a> Source<'a> {
         g: &Gatherer,
         node: u32,
         response: Rgb,
-        limit: f32,
+        clamp: Clamp,
         (log, lane): (&[(u32, Lanes)], usize),
     ) {
         let node = &self.trees.nodes[node as usize];
         let vpl = &self.trees.vpls[node.representative()];
         let number = layer_of(node.origin());
         let layer = &mut view.gathered[number];
+        let weak = node.is_leaf() && node.origin() == Origin::Indirect;
         if response == Rgb::ZERO {
-            let hidden = node.intensity * self.transfer.unshadowed(&g.collector, vpl, node.kind());
-            if hidden != Rgb::ZERO {
-                layer.hidden(luminance(hidden).min(limit), occluder_distance(log, node, lane));
+            let would_be = self.transfer.unshadowed(&g.collector, vpl, node.kind());
+            let hidden = luminance(node.intensity * would_be);
+            if hidden > 0.0 {
+                let kept = if weak { clamp.kept(hidden, would_be.x) } else { 1.0 };
+                layer.hidden(kept * hidden, occluder_distance(log, node, lane));
             }
             return;
         }
         let contribution = node.intensity * response;
-        let y = luminance(contribution);
-        let clamped = y > limit && node.is_leaf() && node.origin() == Origin::Indirect;
-        let kept = if clamped { limit / y } else { 1.0 };
+        // The collector's response is grey: it is the geometry term.
+        let kept = if weak { clamp.kept(luminance(contribution), response.x) } else { 1.0 };
         series.add(number, &self.transfer, node, vpl, kept);
         let passed = layer.add(g, &self.transfer, node, vpl, contribution, kept);
         if let Some(sight) = &mut view.sight {
-            sight.add(number, &self.transfer, (node, vpl), contribution, passed, clamped);
+            sight.add(number, &self.transfer, (node, vpl), contribution, passed, kept < 1.0);
         }
     }
 }

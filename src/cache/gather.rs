@@ -35,6 +35,14 @@ pub struct Gathered {
     pub nearness: f32,
     /// Least of those distances.
     pub least: f32,
+    /// Largest geometry term that a clamped light counts with; infinite if that is not how they are clamped.
+    pub bound: f32,
+    /// Clusters in the cut, of all layers.
+    pub cut: u32,
+    /// Luminance of the irradiance that clamping took away.
+    pub clamped: f32,
+    /// Luminance of the irradiance that short rays gave back.
+    pub compensated: f32,
 }
 
 impl Default for Gathered {
@@ -46,6 +54,10 @@ impl Default for Gathered {
             weight: 0.0,
             nearness: 0.0,
             least: f32::INFINITY,
+            bound: f32::INFINITY,
+            cut: 0,
+            clamped: 0.0,
+            compensated: 0.0,
         }
     }
 }
@@ -97,7 +109,9 @@ impl Gathered {
             return Rgb::ZERO;
         }
         let distance = dist_sq.sqrt();
-        let passed = contribution * (kept * self.filtered(g, height / distance));
+        let filtered = contribution * self.filtered(g, height / distance);
+        let passed = filtered * kept;
+        self.clamped += luminance(filtered - passed);
         self.irradiance += passed;
         self.weight += luminance(passed);
         self.nearness += luminance(passed) / distance;
@@ -118,6 +132,19 @@ impl Gathered {
         };
         self.gradient += outer(relative, passed);
         passed
+    }
+
+    /// Adds irradiance, already filtered, that short rays found at `distance`.
+    ///
+    /// Deviations: it is given the direction of the normal, lest a grazing ray weigh heavily where the normal differs, and no
+    /// gradient.
+    pub fn compensate(&mut self, normal: Vec3, irradiance: Rgb, distance: f32) {
+        let y = luminance(irradiance);
+        self.irradiance += irradiance;
+        self.vector += outer(normal, irradiance);
+        self.weight += y;
+        self.nearness += y / distance;
+        self.compensated += y;
     }
 
     /// Adds a light that is hidden by something at `distance`.

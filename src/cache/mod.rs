@@ -7,11 +7,13 @@
 //! - [`probe`], [`edges`], [`sight`]: what a record's point sees, and how the edges of occluders change its light as it moves;
 //! - [`compute`]: the records of one wave, neighbours sharing cuts;
 //! - [`series`]: the same for glossy surfaces: radiance as a series, and what lobes reflect of it;
+//! - [`compensate`]: what clamping near virtual lights took away, found by short rays;
 //! - [`layer`]: the records of direct or of indirect light, and their weighted sums at the eye samples;
 //! - [`wave`]: where records are needed next;
 //! - [`adapt`]: footprints that disagree visibly are shrunk.
 
 pub mod adapt;
+pub mod compensate;
 pub mod compute;
 pub mod edges;
 pub mod gather;

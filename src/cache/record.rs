@@ -40,6 +40,21 @@ pub struct Record {
     pub gradient: Mat3,
     /// Luminance of the irradiance at `normal`.
     pub luminance: f32,
+    /// How it came about.
+    pub facts: Facts,
+}
+
+/// What only statistics and inspection read of a record.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Facts {
+    /// The eye sample it was computed at.
+    pub sample: u32,
+    /// Clusters in its cut.
+    pub cut: u32,
+    /// Luminance of the irradiance that clamping took away.
+    pub clamped: f32,
+    /// Luminance of the irradiance that short rays gave back.
+    pub compensated: f32,
 }
 
 /// The ellipse within which a record is used.

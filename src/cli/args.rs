@@ -300,6 +300,7 @@ mod tests {
             ("mu", cached.mu.to_string()),
             ("series-alpha", cached.series.min_alpha.to_string()),
             ("series-error", cached.series.max_error.to_string()),
+            ("compensation", if cached.compensation { "on" } else { "off" }.to_owned()),
             ("passes", cached.passes.to_string()),
             ("threshold", cached.threshold.to_string()),
             ("patch", cached.patch.to_string()),

@@ -32,6 +32,12 @@ pub struct CacheArgs {
     /// Relative change of luminance across a footprint that halves it along the gradient [default: 0.5]
     #[arg(long)]
     pub mu: Option<f32>,
+    /// Whether short rays find again what clamping takes away in creases [default: off]
+    #[arg(long, value_enum)]
+    pub compensation: Option<Switch>,
+    /// Write what the cache did as further layers of the OpenEXR file, and as PNG files beside the picture
+    #[arg(long)]
+    pub inspect: bool,
     /// Most passes that shrink footprints at visible seams [default: 1]
     #[arg(long)]
     pub passes: Option<u32>,
@@ -53,6 +59,15 @@ pub enum DirectBy {
     Records,
     /// By cuts of the eye samples' own
     Samples,
+}
+
+/// On or off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Switch {
+    /// Do
+    On,
+    /// Do not
+    Off,
 }
 
 /// Shapes of footprints.

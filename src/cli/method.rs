@@ -1,7 +1,7 @@
 //! The method chosen, with its settings.
 
 use super::args::{LightcutArgs, MethodName, RenderArgs, TreeFamily};
-use super::cache_args::{CacheArgs, DirectBy, FootprintShape, Pair};
+use super::cache_args::{CacheArgs, DirectBy, FootprintShape, Pair, Switch};
 use super::exit::Failure;
 use crate::cache::{DirectLight, Footprints};
 use crate::eye::Window;
@@ -114,6 +114,7 @@ fn cache_report(s: &cache::Settings) -> Value {
         "series_alpha": decimal(c.series.min_alpha),
         "series_error": c.series.max_error,
         "mu": decimal(c.mu),
+        "compensation": if c.compensation { "on" } else { "off" },
         "passes": c.passes,
         "threshold": decimal(c.threshold),
         "patch": c.patch,
@@ -158,6 +159,7 @@ fn cache_settings(args: &RenderArgs) -> cache::Settings {
         family: typed.family,
         ..Default::default()
     };
+    settings.inspect = args.cache.inspect;
     settings.cache.cut.clamp = typed.cut.clamp;
     let cached = &args.cache;
     let cache = &mut settings.cache;
@@ -181,6 +183,7 @@ fn cache_settings(args: &RenderArgs) -> cache::Settings {
     cache.series.min_alpha = cached.series_alpha.unwrap_or(cache.series.min_alpha);
     cache.series.max_error = cached.series_error.unwrap_or(cache.series.max_error);
     cache.mu = cached.mu.unwrap_or(cache.mu);
+    cache.compensation = cached.compensation.map_or(cache.compensation, |typed| typed == Switch::On);
     cache.passes = cached.passes.unwrap_or(cache.passes);
     cache.threshold = cached.threshold.unwrap_or(cache.threshold);
     cache.patch = cached.patch.map_or(cache.patch, |n| n as usize);

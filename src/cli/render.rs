@@ -3,16 +3,18 @@
 use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
 use super::job::RenderJob;
+use super::method::Method;
 use super::{interrupt, progress, scene, talk};
 use crate::eye::Window;
 use crate::image::metrics::rel_mse_of_variance;
-use crate::image::{Film, Image, Metadata, write_exr, write_png};
+use crate::image::{Film, Image, Metadata, false_colour, write_exr, write_png, write_srgb8};
 use crate::method::{Control, Output};
 use crate::scene::formats::Loaded;
 use crate::stats::{Stage, Stats, Stopwatch, peak_resident_bytes};
 use crate::world::World;
 use anyhow::{Context, anyhow};
 use serde_json::json;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Runs the command.
@@ -161,7 +163,22 @@ fn write(job: &RenderJob, mut film: Film) -> Result<(), Failure> {
     write_exr(&job.output, &film).map_err(Failure::output)?;
     if let Some((path, factor)) = png {
         write_png(path, &film.color, factor).map_err(Failure::output)?;
+        if let Method::Cache(settings) = &job.method
+            && settings.inspect
+        {
+            write_layers(path, &film, factor)?;
+        }
     }
     talk::note(&said);
+    Ok(())
+}
+
+/// Writes every layer as a PNG file named after the picture's.
+fn write_layers(picture: &Path, film: &Film, factor: f32) -> Result<(), Failure> {
+    for (name, layer) in &film.layers {
+        let path = picture.with_extension(format!("{name}.png"));
+        let bytes = false_colour::show(name, layer, &film.color, factor);
+        write_srgb8(&path, [layer.width, layer.height], &bytes).map_err(Failure::output)?;
+    }
     Ok(())
 }

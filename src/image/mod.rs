@@ -10,6 +10,7 @@ mod exr_read;
 #[cfg(test)]
 mod exr_tests;
 mod exr_write;
+pub mod false_colour;
 mod film;
 pub mod heatmap;
 pub mod metrics;

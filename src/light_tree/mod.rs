@@ -88,6 +88,20 @@ impl LightTrees {
         self.roots.iter().copied().filter(wanted)
     }
 
+    /// Mean luminance of the intensities of one origin's VPLs; 0 if there are none.
+    pub fn mean_intensity(&self, origin: Origin) -> f32 {
+        let (mut sum, mut count) = (0.0, 0);
+        for (i, &root) in self.roots.iter().enumerate() {
+            let node = &self.nodes[root as usize];
+            if node.origin() == origin {
+                let end = self.roots.get(i + 1).map_or(self.nodes.len(), |&next| next as usize);
+                sum += f64::from(luminance(node.intensity));
+                count += (end - root as usize) / 2; // a tree of n leaves has room for 2n nodes
+            }
+        }
+        if count == 0 { 0.0 } else { (sum / count as f64) as f32 }
+    }
+
     /// Numbers of nodes that are leaves, in order of their VPLs within each tree.
     pub fn leaves(&self) -> impl Iterator<Item = &Node> {
         let mut stack: Vec<u32> = self.roots.iter().rev().copied().collect();

@@ -120,7 +120,7 @@ impl Lightcut {
         &self.entries
     }
 
-    /// Luminance to which the indirect leaves of the last cut were clamped; infinite if none was.
+    /// Luminance above which the indirect leaves of the last cut were clamped; infinite without clamping.
     pub fn limit(&self) -> f32 {
         self.limit
     }

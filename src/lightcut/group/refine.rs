@@ -64,7 +64,7 @@ impl GroupLightcut {
         self.entries.iter().map(|e| (e.node, &e.responses))
     }
 
-    /// Luminance to which a lane's indirect leaves were clamped in the last cut; infinite if none was.
+    /// Luminance above which a lane's indirect leaves were clamped in the last cut; infinite without clamping.
     pub fn limit(&self, lane: usize) -> f32 {
         self.limits[lane]
     }
@@ -134,7 +134,11 @@ impl GroupLightcut {
                 {
                     self.clamped_sum(trees, lane, unclamped, known, clamp)
                 }
-                _ => unclamped,
+                _ => {
+                    self.limits[lane] =
+                        clamp.map_or(f32::INFINITY, |clamp| clamp * (luminance(unclamped) + known));
+                    unclamped
+                }
             };
         }
     }

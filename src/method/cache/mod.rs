@@ -11,12 +11,15 @@
 //! | `light` | as `lightcuts` | how many VPLs |
 //! | `cache` | see [`crate::cache::CacheSettings`] | how many records, and how good |
 //! | `cut.epsilon` | 0.02 | error bound where eye samples have cuts of their own |
+//! | `inspect` | off | further images of what the cache did, see [`inspect`] |
 //! | `family` | divisive | how light trees are built |
 //!
 //! Eye samples have cuts of their own, shared among neighbours, where their reflection is too sharp for records, where a record
 //! would serve too few of them, and where records still disagree visibly after the last pass.
 
+pub mod inspect;
 mod own;
+mod picture;
 mod render;
 
 pub use render::{Settings, render};

@@ -40,7 +40,7 @@ pub fn light<'w>(
     samples: &EyeSamples<'w>,
     jobs: &[Job],
     cut: &CutSettings,
-) -> (Vec<(u32, Rgb)>, CutCounts) {
+) -> (Vec<(Job, Rgb)>, CutCounts) {
     let place = |job: &Job| {
         let point = &samples.points[job.sample as usize];
         (point.position, point.normal)
@@ -48,7 +48,7 @@ pub fn light<'w>(
     let same = |a: &Job, b: &Job| a.lobe_only == b.lobe_only && a.only == b.only;
     let patches =
         group_alike(jobs.iter().copied(), source.settings.patch, source.world.diagonal, place, same);
-    let done: Vec<(Vec<(u32, Rgb)>, CutCounts)> = patches
+    let done: Vec<(Vec<(Job, Rgb)>, CutCounts)> = patches
         .par_iter()
         .map_init(Workspace::default, |work, jobs| {
             (work.single.counts, work.group.counts) = Default::default();
@@ -76,12 +76,12 @@ impl<'w> Workspace<'w> {
         samples: &EyeSamples<'w>,
         jobs: &[Job],
         cut: &CutSettings,
-        lit: &mut Vec<(u32, Rgb)>,
+        lit: &mut Vec<(Job, Rgb)>,
     ) {
         if jobs.len() < LEAST_SHARED {
             for job in jobs {
                 let reflector = reflector(samples, job);
-                lit.push((job.sample, self.single.gather(s.trees, &s.transfer, s.world, &reflector, cut)));
+                lit.push((*job, self.single.gather(s.trees, &s.transfer, s.world, &reflector, cut)));
             }
             return;
         }
@@ -92,7 +92,7 @@ impl<'w> Workspace<'w> {
         let mut radiance = [Rgb::ZERO; LANES];
         self.points.set(chosen(true).map(|job| reflector(samples, job)));
         self.group.gather(s.trees, &s.transfer, s.world, &self.points, cut, &mut radiance);
-        lit.extend(chosen(true).map(|job| job.sample).zip(radiance));
+        lit.extend(chosen(true).copied().zip(radiance));
         if lit.len() == jobs.len() {
             return;
         }
@@ -109,7 +109,7 @@ impl<'w> Workspace<'w> {
                 cut,
                 &mut radiance,
             );
-            lit.extend(jobs.iter().map(|job| job.sample).zip(radiance));
+            lit.extend(jobs.iter().map(|job| **job).zip(radiance));
         }
     }
 }

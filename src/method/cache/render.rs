@@ -1,8 +1,13 @@
 //! The picture: eye pass, light pass, trees, records in waves, adaptation, and the sum at each pixel.
 
+use super::inspect;
 use super::own::{self, Job};
+use super::picture::Picture;
+use crate::cache::adapt::Seam;
+use crate::cache::compensate::Compensation;
 use crate::cache::compute::Source;
 use crate::cache::layer::Layer;
+use crate::cache::record::Record;
 use crate::cache::series::Glossy;
 use crate::cache::wave::{Pick, lacking, pick};
 use crate::cache::{CacheSettings, DirectLight, adapt};
@@ -35,6 +40,8 @@ pub struct Settings {
     pub cut: CutSettings,
     /// How light trees are built.
     pub family: Family,
+    /// Whether to return the images of [`super::inspect`] too.
+    pub inspect: bool,
 }
 
 impl Default for Settings {
@@ -47,6 +54,7 @@ impl Default for Settings {
             cache: CacheSettings::default(),
             cut: CutSettings::default(),
             family: Family::default(),
+            inspect: false,
         }
     }
 }
@@ -75,7 +83,8 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let trees = stats
         .time(Stage::Tree, || LightTrees::build(&lights.sets, lights.spots, world.diagonal, settings.family));
     let transfer = Transfer::new(&trees.spots, world.diagonal);
-    let source = Source { world, trees: &trees, transfer, settings: &settings.cache };
+    let compensation = settings.cache.compensation.then(|| Compensation::new(&trees));
+    let source = Source { world, trees: &trees, transfer, settings: &settings.cache, compensation };
 
     let mut cache = Cache::new(&samples, glossy, settings.cache.direct);
     control.begin(Stage::Records, samples.len() as u64);
@@ -88,23 +97,21 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     }
     cache.report(&mut stats);
 
-    let mut color = samples.emitted.clone();
-    let mut nonfinite = samples.nonfinite;
-    let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut color.pixels));
+    let mut picture = Picture::new(&samples, settings.inspect);
+    let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
     control.begin(Stage::Render, jobs.len() as u64);
     let (lit, counts) = stats.time(Stage::Render, || own::light(&source, &samples, &jobs, &settings.cut));
-    for (sample, radiance) in lit {
-        let surface = &samples.surfaces[sample as usize];
-        if radiance.is_finite() {
-            color.pixels[surface.pixel as usize] += surface.throughput * radiance;
-        } else {
-            nonfinite += 1;
-        }
+    for (job, radiance) in lit {
+        picture.add(&samples, job.sample as usize, job.only, radiance);
     }
     stats.count("Cache/samples with own cuts", jobs.len() as u64);
     count(&mut stats, "Lightcut", &counts);
     let complete = samples.complete && !control.is_cancelled();
-    Output { color, variance: None, extra: Vec::new(), stats, complete, nonfinite }
+    let (color, mut extra, nonfinite) = picture.finish();
+    if settings.inspect {
+        extra.extend(inspect::layers(&samples, &cache.layers, &cache.seams));
+    }
+    Output { color, variance: None, extra, stats, complete, nonfinite }
 }
 
 /// Both layers, and what else is known of each eye sample.
@@ -115,8 +122,8 @@ struct Cache {
     direct: DirectLight,
     /// Samples that records light: those with a base or a lobe broad enough.
     wants: Vec<bool>,
-    /// Samples whose records disagree.
-    seams: Vec<u32>,
+    /// Where records disagreed before each pass of adaptation.
+    seams: Vec<Vec<Seam>>,
     counts: CutCounts,
 }
 
@@ -170,8 +177,7 @@ impl Cache {
             for layer in &mut self.layers {
                 layer.resplat(samples, &changed);
             }
-            self.seams = seams.iter().map(|s| s.sample).collect();
-            self.seams.dedup();
+            self.seams.push(seams);
             changed.contains(&true)
         })
     }
@@ -183,12 +189,21 @@ impl Cache {
         if self.glossy.is_some() {
             stats.count("Cache/records with series", series as u64);
         }
-        stats.count("Cache/samples at seams", self.seams.len() as u64);
+        let mut seams: Vec<u32> = self.seams.last().into_iter().flatten().map(|s| s.sample).collect();
+        seams.dedup();
+        stats.count("Cache/samples at seams", seams.len() as u64);
         count(stats, "Records", &self.counts);
+        let sum = |f: &dyn Fn(&Record) -> f32| self.layers[1].records.iter().map(|r| f64::from(f(r))).sum();
+        let total: f64 = sum(&|r| r.luminance + r.facts.clamped - r.facts.compensated);
+        let clamped: f64 = sum(&|r| r.facts.clamped);
+        let compensated: f64 = sum(&|r| r.facts.compensated);
+        let percent = 100.0 / if total > 0.0 { total } else { 1.0 };
+        stats.add("Records/indirect light lost to clamping [%]", percent * clamped);
+        stats.add("Records/found again by short rays [%]", percent * compensated);
     }
 
     /// Adds what records give to the pixels; the rest is left to cuts.
-    fn resolve(&self, samples: &EyeSamples, pixels: &mut [Rgb]) -> Vec<Job> {
+    fn resolve(&self, samples: &EyeSamples, picture: &mut Picture) -> Vec<Job> {
         let lobes = self.glossy.as_ref().map(|glossy| glossy.lobes(samples, &self.layers));
         let mut jobs = Vec::new();
         for (i, surface) in samples.surfaces.iter().enumerate() {
@@ -202,9 +217,14 @@ impl Cache {
                 }
                 let mean = |l: usize| self.layers[l].sums[i].mean().unwrap_or(Rgb::ZERO);
                 let reflected = lobes.as_ref().map_or(Rgb::ZERO, |lobes| lobes[i]);
-                let radiance = base * (mean(0) + mean(1)) + reflected;
-                known = luminance(radiance);
-                pixels[surface.pixel as usize] += surface.throughput * radiance;
+                known = luminance(base * (mean(0) + mean(1)) + reflected);
+                if self.direct == DirectLight::Records {
+                    picture.add(samples, i, Some(Origin::Direct), base * mean(0));
+                    picture.add(samples, i, Some(Origin::Indirect), base * mean(1));
+                    picture.add(samples, i, None, reflected);
+                } else {
+                    picture.add(samples, i, Some(Origin::Indirect), base * mean(1) + reflected);
+                }
             }
             let cached = self.direct == DirectLight::Records;
             if !cached {

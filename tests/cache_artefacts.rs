@@ -1,0 +1,191 @@
+//! Where radiance caches are known to fail: light that leaks through thin walls and sheets, lost contact shadows,
+//! dark creases.
+
+mod common;
+
+use common::*;
+use glam::{Vec2, Vec3};
+use lightsplat::cache::Footprints;
+use lightsplat::eye::{Window, primary_ray};
+use lightsplat::image::Image;
+use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::{Control, Output, cache, lightcuts};
+use lightsplat::scene::MaterialId;
+use lightsplat::scene::formats::{LoadOptions, load};
+use lightsplat::world::{Surface, World};
+
+const SIZE: u32 = 128;
+
+/// A closed axis-aligned block, fronts outward.
+fn block(low: Vec3, high: Vec3, material: MaterialId) -> Vec<lightsplat::scene::Mesh> {
+    let mut faces = room(low, high, material);
+    faces.iter_mut().flat_map(|m| &mut m.triangles).for_each(|t| t.swap(1, 2));
+    faces
+}
+
+/// Half of the room, behind a thin wall that leaves a gap towards the eye, is lit by what the other half reflects. A block stands
+/// on the floor of the lit half, a sheet floats in either.
+fn divided_room() -> World {
+    let mut scene = scene(camera(Vec3::new(0.0, 0.3, 0.98), Vec3::new(0.0, -0.25, 0.0), 1.0), [SIZE, SIZE]);
+    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));
+    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    scene.meshes.extend(block(Vec3::new(-0.01, -1.0, -1.0), Vec3::new(0.01, 1.0, 0.4), wall));
+    scene.meshes.extend(block(Vec3::new(-0.7, -1.0, -0.6), Vec3::new(-0.4, -0.7, -0.3), wall));
+    for x in [-0.6, 0.3] {
+        scene.meshes.push(quad(Vec3::new(x, -0.2, -0.8), Vec3::X * 0.3, Vec3::new(0.0, -0.1, 0.4), wall));
+    }
+    let lamp = quad(Vec3::new(-0.7, 0.98, -0.3), Vec3::X * 0.4, Vec3::Z * 0.4, wall);
+    scene.meshes.push(emitting(lamp, Rgb::splat(20.0)));
+    world(scene)
+}
+
+fn settings(footprints: Footprints) -> cache::Settings {
+    let mut settings = cache::Settings::default();
+    settings.light.indirect = 30_000;
+    settings.cache.footprints = footprints;
+    // The reference clamps as the cache does without it.
+    settings.cache.compensation = false;
+    settings
+}
+
+fn render(world: &World, settings: &cache::Settings) -> Output {
+    let output = cache::render(world, &Window::whole(world.scene.resolution), settings, &Control::new());
+    assert!(output.complete && output.nonfinite == 0);
+    output
+}
+
+fn per_pixel(world: &World, like: &cache::Settings) -> Image {
+    let mut settings = lightcuts::Settings { light: like.light, ..lightcuts::Settings::default() };
+    settings.cut.epsilon = 0.005;
+    settings.cut.max_cut = 10_000;
+    lightcuts::render(world, &Window::whole(world.scene.resolution), &settings, &Control::new()).color
+}
+
+/// What each pixel's centre shows.
+fn seen(world: &World) -> Vec<Surface> {
+    let window = Window::whole([SIZE, SIZE]);
+    let look = |i: u32| {
+        let pixel = [i % SIZE, i / SIZE];
+        let ray = primary_ray(&world.scene.camera, &window, pixel, Vec2::splat(0.5));
+        world.intersect(&ray).expect("the room is closed")
+    };
+    (0..SIZE * SIZE).map(look).collect()
+}
+
+/// Differences of luminance relative to the reference, of the pixels that `wanted` picks.
+fn errors(test: &Image, reference: &Image, seen: &[Surface], wanted: impl Fn(&Surface) -> bool) -> Vec<f32> {
+    let pixels = test.pixels.iter().zip(&reference.pixels).zip(seen);
+    let wanted = pixels.filter(|(_, s)| wanted(s));
+    let errors: Vec<f32> = wanted.map(|((a, b), _)| luminance(*a) / luminance(*b) - 1.0).collect();
+    assert!(errors.len() > 50, "{} pixels", errors.len());
+    errors
+}
+
+fn mean(values: &[f32]) -> f32 {
+    values.iter().sum::<f32>() / values.len() as f32
+}
+
+fn quantile(values: &[f32], q: f32) -> f32 {
+    let mut sorted: Vec<f32> = values.iter().map(|v| v.abs()).collect();
+    sorted.sort_by(f32::total_cmp);
+    sorted[((sorted.len() - 1) as f32 * q) as usize]
+}
+
+/// Names of the regions that err by more than 2 % on average or 12 % in one pixel of twenty. What leaked from the lit half
+/// would be several times as bright as the dark one. The limits are a little above what was measured, not derived.
+fn bad_regions(footprints: Footprints) -> Vec<&'static str> {
+    let world = divided_room();
+    let seen = seen(&world);
+    let settings = settings(footprints);
+    let reference = per_pixel(&world, &settings);
+    let picture = render(&world, &settings).color;
+    let of = |wanted: &dyn Fn(&Surface) -> bool| errors(&picture, &reference, &seen, wanted);
+    let dark = |s: &Surface| s.position.x > 0.0 && s.position.z < 0.3;
+    let beside_block = |s: &Surface| {
+        let p = s.position;
+        p.y < -0.999 && (-0.8..-0.3).contains(&p.x) && (-0.7..-0.2).contains(&p.z)
+    };
+    let regions: [(&str, Vec<f32>); 5] = [
+        ("dark half", of(&dark)),
+        ("beside the wall", of(&|s| dark(s) && s.position.x < 0.12)),
+        ("around the block", of(&beside_block)),
+        ("sheets", of(&|s| (-0.31..-0.19).contains(&s.position.y) && s.normal.y.abs() > 0.5)),
+        ("everything", of(&|_| true)),
+    ];
+    let bad = regions.into_iter().filter(|(name, errors)| {
+        let (bias, most) = (mean(errors), quantile(errors, 0.95));
+        println!("{footprints:?} {name}: mean {bias}, 95 % within {most}");
+        !(bias.abs() < 0.02 && most < 0.12)
+    });
+    bad.map(|(name, _)| name).collect()
+}
+
+#[test]
+fn no_leaks_and_no_lost_contact_shadows() {
+    assert_eq!(bad_regions(Footprints::Anisotropic), [""; 0]);
+}
+
+#[test]
+fn circles_do_not_leak() {
+    let bad = bad_regions(Footprints::Isotropic);
+    assert!(bad.iter().all(|&region| region == "around the block"), "{bad:?}");
+}
+
+/// An open defect: circles blur the contact shadow of the block, by 3 % on average and up to 29 % in nineteen pixels of twenty.
+#[test]
+#[should_panic(expected = "around the block")]
+fn circles_keep_contact_shadows() {
+    let bad = bad_regions(Footprints::Isotropic);
+    assert!(bad.is_empty(), "{bad:?}");
+}
+
+/// Radiance everywhere is emitted / (1 - albedo), as much in creases as elsewhere.
+#[test]
+fn the_furnace_is_white_although_close_lights_are_clamped() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/furnace.toml");
+    let mut scene = load(&path, &LoadOptions::default()).expect("the scene loads").scene;
+    scene.resolution = [96, 96];
+    let world = world(scene);
+    let ratio = |compensation: bool| {
+        let mut settings = cache::Settings::default();
+        settings.light.indirect = 6000;
+        settings.cache.compensation = compensation;
+        let picture = render(&world, &settings).color;
+        picture.pixels.iter().copied().sum::<Rgb>() / (0.8 * picture.pixels.len() as f32)
+    };
+    let (with, without) = (ratio(true), ratio(false));
+    assert!((with - Rgb::ONE).abs().max_element() < 0.01, "{with}");
+    // At so few lights less than a hundredth is lost without, too; but much more than with it.
+    let error = |ratio: Rgb| (ratio - Rgb::ONE).abs().max_element();
+    assert!(error(with) < 0.6 * error(without), "{without} {with}");
+}
+
+#[test]
+fn inspection_changes_nothing_and_its_layers_add_up() {
+    let world = divided_room();
+    let mut settings = settings(Footprints::Anisotropic);
+    let plain = render(&world, &settings);
+    settings.inspect = true;
+    let inspected = render(&world, &settings);
+    assert!(plain.extra.is_empty() && plain.color == inspected.color);
+    let layer = |name: &str| {
+        let found = inspected.extra.iter().find(|(n, _)| n == name);
+        &found.unwrap_or_else(|| panic!("no layer {name}")).1
+    };
+    let window = Window::whole([SIZE, SIZE]);
+    for (i, whole) in inspected.color.pixels.iter().enumerate() {
+        let pixel = [i as u32 % SIZE, i as u32 / SIZE];
+        let ray = primary_ray(&world.scene.camera, &window, pixel, Vec2::splat(0.5));
+        let emitted = world.intersect(&ray).map_or(Rgb::ZERO, |s| world.emitted(&s, -ray.direction));
+        let parts = ["direct", "indirect", "both"].map(|name| layer(name).pixels[i]);
+        let sum = emitted + parts[0] + parts[1] + parts[2];
+        assert!((sum - *whole).abs().max_element() <= 1e-5 * whole.max_element(), "{sum} {whole}");
+    }
+    let placed: f32 = layer("records").pixels.iter().map(|p| p.y).sum();
+    match inspected.stats.get("Cache/records, indirect") {
+        Some(lightsplat::stats::Counter::Count(n)) => assert_eq!(placed as u64, n),
+        other => panic!("{other:?}"),
+    }
+    assert!(layer("footprint").pixels.iter().all(|p| p.x == 0.0 || p.x >= 1.0));
+    assert!(layer("weights").pixels.iter().any(|p| p.y > 0.0));
+}
