@@ -8,7 +8,7 @@
 //! Deviations: b comes from the mean intensity of all indirect virtual lights, so one that is much brighter than the mean may give
 //! more than the limit. Every record is compensated, also where no light of its cut happens to be clamped: the
 //! two parts complement each other on average only. All records use the same directions, in frames of their own,
-//! so that their errors are alike and not seen between them. Light is looked up at up to [`LOOKUPS`] of the points that rays meet,
+//! so that their errors are alike and not seen between them. Light is looked up at up to `LOOKUPS` of the points that rays meet,
 //! chosen in proportion to what they may give, and itself lacks what is clamped. Series
 //! (light that lobes reflect) are clamped alike and not compensated. Where a
 //! longest path is set, paths over these points may have an edge more.
