@@ -82,7 +82,7 @@ impl Default for CacheSettings {
             compensation: false,
             passes: 1,
             threshold: 0.02,
-            patch: 256,
+            patch: 64,
             least_cell: 8,
         }
     }

@@ -44,7 +44,7 @@ pub struct CacheArgs {
     /// Smallest relative difference of luminance that counts as visible [default: 0.02]
     #[arg(long, value_parser = super::args::parse_fraction)]
     pub threshold: Option<f32>,
-    /// Most eye samples without records that share a cut [default: 256]
+    /// Most eye samples without records that share a cut [default: 64]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub patch: Option<u32>,
     /// Cells of fewer eye samples get no record; their samples have cuts of their own [default: 8]
