@@ -5,28 +5,25 @@
 //! that each layer masks the other's errors (Herzog et al. 2009, section 6).
 
 use super::compensate::{Clamp, Compensation, Cutters};
+use super::footprint::Footprint;
 use super::gather::{Gathered, Gatherer};
 use super::layer::Layer;
-use super::record::{Facts, Footprint, Record};
+use super::occluders::{Hidden, OccluderLog};
+use super::record::{Facts, Record};
 use super::series::SeriesGatherer;
 use super::settings::{CacheSettings, Footprints};
-use super::sight::{Change, Sight};
+use super::sight::Sight;
 use super::wave::Pick;
-use crate::embree::Occluders16;
 use crate::eye::EyeSamples;
 use crate::hsh::Radiance;
-use crate::light_tree::{LightTrees, Node};
-use crate::lightcut::group::{
-    GroupLightcut, GroupVisibility, LANES, LEAST_SHARED, Lanes, Points, group_alike, shadow_rays,
-};
-use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Transfer, Visibility};
-use crate::math::{Frame, Rgb, luminance};
-use crate::shadow;
-use crate::vpl::{Origin, Vpl, VplKind};
+use crate::light_tree::LightTrees;
+use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Points, group_alike};
+use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Transfer};
+use crate::math::{Frame, LUMINANCE, Rgb, luminance};
+use crate::vpl::Origin;
 use crate::world::World;
 use glam::{Mat3, Vec3};
 use rayon::prelude::*;
-use std::cell::RefCell;
 
 /// What computing records needs.
 #[derive(Clone, Copy)]
@@ -120,11 +117,11 @@ impl Source<'_> {
                 let change = sight.change(layer);
                 gradient += change.gradient;
                 let furthest = settings.accuracy * sight.distance();
-                self.seeing(&change, luminance, settings.accuracy, furthest, reach)
+                Footprint::of_change(&change, luminance, settings.accuracy, furthest, reach, self.settings)
             }
             None => {
                 let radius = (settings.accuracy * g.distance()).clamp(reach[0], reach[1]);
-                self.footprint(normal, gradient * crate::math::LUMINANCE, luminance, radius)
+                Footprint::of_gradient(normal, gradient * LUMINANCE, luminance, radius, self.settings)
             }
         };
         Some(Record {
@@ -137,47 +134,6 @@ impl Source<'_> {
             luminance,
             facts: Facts { sample, cut: g.cut, clamped: g.clamped, compensated: g.compensated },
         })
-    }
-
-    /// An ellipse along whose axes second derivatives change the luminance by half the square of `accuracy`, relatively, no
-    /// longer than `furthest`, nor than twice its width.
-    fn seeing(
-        &self,
-        change: &Change,
-        luminance: f32,
-        accuracy: f32,
-        furthest: f32,
-        reach: [f32; 2],
-    ) -> Footprint {
-        let radius = |curvature: f32| {
-            let inverse_sq = curvature / (luminance.max(f32::MIN_POSITIVE) * accuracy * accuracy);
-            1.0 / (inverse_sq + 1.0 / (furthest * furthest)).sqrt()
-        };
-        let [short, long] = change.curvature.map(radius);
-        let short = short.clamp(reach[0], reach[1]);
-        let long = long.min(2.0 * short).clamp(short, reach[1]);
-        Footprint {
-            axes: change.axes,
-            radii: [short, long],
-            inverse_normal_tolerance: 1.0 / self.settings.normal_tolerance,
-        }
-    }
-
-    /// An ellipse of the area of a circle of `radius`, short along the gradient of the luminance.
-    fn footprint(&self, normal: Vec3, gradient: Vec3, luminance: f32, radius: f32) -> Footprint {
-        let change = radius * gradient.length() / luminance.max(f32::MIN_POSITIVE);
-        let (axis, g) = match gradient.try_normalize() {
-            Some(axis) if self.settings.footprints == Footprints::Anisotropic => {
-                let relative = change / self.settings.mu;
-                (axis, (1.0 / (1.0 + relative * relative)).max(0.3))
-            }
-            _ => (Frame::from_normal(normal).tangent, 1.0),
-        };
-        Footprint {
-            axes: [axis, normal.cross(axis)],
-            radii: [radius * g, radius / g],
-            inverse_normal_tolerance: 1.0 / self.settings.normal_tolerance,
-        }
     }
 }
 
@@ -245,26 +201,36 @@ impl Workspace {
         collector: &Reflector<'static>,
         cut: &CutSettings,
     ) -> View {
-        let rays = OccluderLog::new(s.world);
-        self.single.gather(s.trees, &s.transfer, &rays, collector, cut);
-        let log = rays.sorted();
+        let hidden = if s.needs_occluders() {
+            let rays = OccluderLog::new(s.world);
+            self.single.gather(s.trees, &s.transfer, &rays, collector, cut);
+            Some(rays.sorted())
+        } else {
+            self.single.gather(s.trees, &s.transfer, s.world, collector, cut);
+            None
+        };
         let gatherer = s.gatherer(samples, pick.sample, collector);
         let clamp = s.clamp(self.single.limit());
         let mut view = s.view(samples, pick.sample, self.single.entries().len(), clamp);
         let series = &mut self.series;
         series.begin(&samples.points[pick.sample as usize]);
         for entry in self.single.entries() {
-            s.add((&mut view, series), &gatherer, entry.node, entry.response, clamp, (&log, 0));
+            s.add((&mut view, series), &gatherer, entry.node, entry.response, clamp, (hidden.as_ref(), 0));
         }
         view.series = series.finish();
         view
     }
 
     fn shared(&mut self, s: &Source, samples: &EyeSamples, task: &[Pick], cut: &CutSettings) -> Vec<View> {
-        let rays = OccluderLog::new(s.world);
         let mut irradiance = [Rgb::ZERO; LANES];
-        self.group.gather(s.trees, &s.transfer, &rays, &self.points, cut, &mut irradiance);
-        let log = rays.sorted();
+        let hidden = if s.needs_occluders() {
+            let rays = OccluderLog::new(s.world);
+            self.group.gather(s.trees, &s.transfer, &rays, &self.points, cut, &mut irradiance);
+            Some(rays.sorted())
+        } else {
+            self.group.gather(s.trees, &s.transfer, s.world, &self.points, cut, &mut irradiance);
+            None
+        };
         let series = &mut self.series;
         let lane = |(lane, pick): (usize, &Pick)| {
             let gatherer = s.gatherer(samples, pick.sample, self.points.get(lane));
@@ -273,7 +239,7 @@ impl Workspace {
             series.begin(&samples.points[pick.sample as usize]);
             for (node, responses) in self.group.entries() {
                 let response = Rgb::from_array(std::array::from_fn(|c| responses[c][lane]));
-                s.add((&mut view, series), &gatherer, node, response, clamp, (&log, lane));
+                s.add((&mut view, series), &gatherer, node, response, clamp, (hidden.as_ref(), lane));
             }
             view.series = series.finish();
             view
@@ -291,8 +257,13 @@ struct View {
 }
 
 impl<'a> Source<'a> {
+    /// Whether footprints depend on how far away what hides lights is; what probe rays see replaces that.
+    fn needs_occluders(&self) -> bool {
+        self.settings.footprints != Footprints::Occlusion
+    }
+
     fn view(&self, samples: &EyeSamples, sample: u32, cut: usize, clamp: Clamp) -> View {
-        let sight = (self.settings.footprints == Footprints::Occlusion).then(|| {
+        let sight = (!self.needs_occluders()).then(|| {
             let point = &samples.points[sample as usize];
             let geometric_normal = samples.surfaces[sample as usize].geometric_normal;
             Box::new(Sight::new(self.world, point.position, geometric_normal, point.normal, sample))
@@ -325,7 +296,7 @@ impl<'a> Source<'a> {
         node: u32,
         response: Rgb,
         clamp: Clamp,
-        (log, lane): (&[(u32, Lanes)], usize),
+        (hidden, lane): (Option<&Hidden>, usize),
     ) {
         let node = &self.trees.nodes[node as usize];
         let vpl = &self.trees.vpls[node.representative()];
@@ -333,11 +304,12 @@ impl<'a> Source<'a> {
         let layer = &mut view.gathered[number];
         let weak = node.is_leaf() && node.origin() == Origin::Indirect;
         if response == Rgb::ZERO {
+            let Some(hidden) = hidden else { return };
             let would_be = self.transfer.unshadowed(&g.collector, vpl, node.kind());
-            let hidden = luminance(node.intensity * would_be);
-            if hidden > 0.0 {
-                let kept = if weak { clamp.kept(hidden, would_be.x) } else { 1.0 };
-                layer.hidden(kept * hidden, occluder_distance(log, node, lane));
+            let luminance = luminance(node.intensity * would_be);
+            if luminance > 0.0 {
+                let kept = if weak { clamp.kept(luminance, would_be.x) } else { 1.0 };
+                layer.hidden(kept * luminance, hidden.distance(node, lane));
             }
             return;
         }
@@ -349,69 +321,5 @@ impl<'a> Source<'a> {
         if let Some(sight) = &mut view.sight {
             sight.add(number, &self.transfer, (node, vpl), contribution, passed, kept < 1.0);
         }
-    }
-}
-
-/// Visibility in the scene that notes how far away occluders are.
-struct OccluderLog<'w> {
-    world: &'w World,
-    /// Representative, and the distance to what hides it from each lane, or infinity.
-    log: RefCell<Vec<(u32, Lanes)>>,
-}
-
-impl<'w> OccluderLog<'w> {
-    fn new(world: &'w World) -> OccluderLog<'w> {
-        OccluderLog { world, log: RefCell::new(Vec::new()) }
-    }
-
-    /// What was noted, sorted by representative.
-    fn sorted(self) -> Vec<(u32, Lanes)> {
-        let mut log = self.log.into_inner();
-        log.sort_unstable_by_key(|entry| entry.0);
-        log
-    }
-}
-
-/// Distance to what hides a representative from a lane; infinite if nothing does.
-fn occluder_distance(log: &[(u32, Lanes)], node: &Node, lane: usize) -> f32 {
-    let found = log.binary_search_by_key(&(node.representative() as u32), |entry| entry.0);
-    found.map_or(f32::INFINITY, |i| log[i].1[lane])
-}
-
-impl Visibility for OccluderLog<'_> {
-    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
-        let ray = match node.kind() {
-            VplKind::Oriented => shadow::segment(x, normal, vpl.position, vpl.normal()),
-            VplKind::Omni => shadow::segment(x, normal, vpl.position, Vec3::ZERO),
-            VplKind::Directional => shadow::ray_from(x, normal, vpl.position),
-        };
-        match self.world.accel.occluder(&ray) {
-            Some(occluder) => {
-                let distance = occluder.t * ray.direction.length();
-                self.log.borrow_mut().push((node.representative() as u32, [distance; LANES]));
-                false
-            }
-            None => true,
-        }
-    }
-}
-
-impl GroupVisibility for OccluderLog<'_> {
-    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
-        let rays = shadow_rays(points, lanes, vpl, node.kind());
-        let mut found = Occluders16::default();
-        let occluded = lanes & self.world.accel.occluders16(&rays, lanes, true, &mut found);
-        if occluded != 0 {
-            let mut distances = [f32::INFINITY; LANES];
-            for (lane, distance) in distances.iter_mut().enumerate() {
-                let direction =
-                    Vec3::new(rays.direction_x[lane], rays.direction_y[lane], rays.direction_z[lane]);
-                if occluded >> lane & 1 != 0 {
-                    *distance = found.t[lane] * direction.length();
-                }
-            }
-            self.log.borrow_mut().push((node.representative() as u32, distances));
-        }
-        lanes & !occluded
     }
 }

@@ -2,10 +2,10 @@
 //!
 //! Paper: Herzog et al. 2009, sections 5 (records and footprints), 6 (splatting), 8 of the method (adaptation).
 //!
-//! - [`record`]: what is stored at a point, and the footprint within which it is used;
+//! - [`record`]: what is stored at a point; [`footprint`]: the ellipse within which it is used;
 //! - [`gather`]: from a converged cut to irradiance, its gradient and the distance to what casts light and shadow;
 //! - [`probe`], [`edges`], [`sight`]: what a record's point sees, and how the edges of occluders change its light as it moves;
-//! - [`compute`]: the records of one wave, neighbours sharing cuts;
+//! - [`compute`]: the records of one wave, neighbours sharing cuts; [`occluders`]: how far away what hides lights is;
 //! - [`series`]: the same for glossy surfaces: radiance as a series, and what lobes reflect of it;
 //! - [`compensate`]: what clamping near virtual lights took away, found by short rays;
 //! - [`layer`]: the records of direct or of indirect light, and their weighted sums at the eye samples;
@@ -16,8 +16,10 @@ pub mod adapt;
 pub mod compensate;
 pub mod compute;
 pub mod edges;
+pub mod footprint;
 pub mod gather;
 pub mod layer;
+pub mod occluders;
 pub mod probe;
 pub mod record;
 pub mod series;

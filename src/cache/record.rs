@@ -7,6 +7,7 @@
 //! clips a light, and which stands for the rotational gradient. The weight 1/δ - 1 (δ = 1 at the footprint's
 //! edge) is that of Eq. 11 less its value there, so that it does not jump.
 
+use super::footprint::Footprint;
 use crate::eye::{EyePoint, Sharing};
 use crate::math::{Rgb, luminance};
 use glam::{Mat3, Vec3};
@@ -19,9 +20,6 @@ const EXTRAPOLATION: f32 = 3.0;
 
 /// Least δ, which limits the weight at the record itself.
 const LEAST_DELTA: f32 = 1e-3;
-
-/// How much shorter a footprint is along the normal.
-const NORMAL_SCALE: f32 = 5.0;
 
 /// Irradiance of one layer around a point.
 #[derive(Clone, Copy, Debug)]
@@ -55,34 +53,6 @@ pub struct Facts {
     pub clamped: f32,
     /// Luminance of the irradiance that short rays gave back.
     pub compensated: f32,
-}
-
-/// The ellipse within which a record is used.
-#[derive(Clone, Copy, Debug)]
-pub struct Footprint {
-    /// Unit tangent axes.
-    pub axes: [Vec3; 2],
-    /// Radius along each axis.
-    pub radii: [f32; 2],
-    /// Inverse of the root of 1 - cos of the angle at which the normals differ too much.
-    pub inverse_normal_tolerance: f32,
-}
-
-impl Footprint {
-    /// The largest radius.
-    pub fn reach(&self) -> f32 {
-        self.radii[0].max(self.radii[1])
-    }
-
-    /// Offset in units of the footprint's radii.
-    fn scaled(&self, offset: Vec3, normal: Vec3) -> Vec3 {
-        let [r0, r1] = self.radii;
-        Vec3::new(
-            offset.dot(self.axes[0]) / r0,
-            offset.dot(self.axes[1]) / r1,
-            offset.dot(normal) * NORMAL_SCALE / r0.min(r1),
-        )
-    }
 }
 
 impl Record {

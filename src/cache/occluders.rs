@@ -1,0 +1,85 @@
+//! How far away what hides virtual lights from records is.
+//!
+//! Paper: Herzog et al. 2009, section 5.1: occluders limit how far a record reaches, as visible lights do.
+//!
+//! Deviations: an occluder is whatever stopped the shadow ray, not the nearest.
+
+use crate::embree::Occluders16;
+use crate::light_tree::Node;
+use crate::lightcut::Visibility;
+use crate::lightcut::group::{GroupVisibility, LANES, Lanes, Points, shadow_rays};
+use crate::shadow;
+use crate::vpl::{Vpl, VplKind};
+use crate::world::World;
+use glam::Vec3;
+use std::cell::RefCell;
+
+/// Visibility in the scene that notes how far away occluders are.
+pub struct OccluderLog<'w> {
+    world: &'w World,
+    /// Representative, and the distance to what hides it from each lane, or infinity.
+    log: RefCell<Vec<(u32, Lanes)>>,
+}
+
+impl<'w> OccluderLog<'w> {
+    /// Nothing noted yet.
+    pub fn new(world: &'w World) -> OccluderLog<'w> {
+        OccluderLog { world, log: RefCell::new(Vec::new()) }
+    }
+
+    /// What was noted.
+    pub fn sorted(self) -> Hidden {
+        let mut log = self.log.into_inner();
+        log.sort_unstable_by_key(|entry| entry.0);
+        Hidden(log)
+    }
+}
+
+/// What hides lights of a cut, sorted by representative.
+pub struct Hidden(Vec<(u32, Lanes)>);
+
+impl Hidden {
+    /// Distance to what hides a representative from a lane; infinite if nothing does.
+    pub fn distance(&self, node: &Node, lane: usize) -> f32 {
+        let found = self.0.binary_search_by_key(&(node.representative() as u32), |entry| entry.0);
+        found.map_or(f32::INFINITY, |i| self.0[i].1[lane])
+    }
+}
+
+impl Visibility for OccluderLog<'_> {
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
+        let ray = match node.kind() {
+            VplKind::Oriented => shadow::segment(x, normal, vpl.position, vpl.normal()),
+            VplKind::Omni => shadow::segment(x, normal, vpl.position, Vec3::ZERO),
+            VplKind::Directional => shadow::ray_from(x, normal, vpl.position),
+        };
+        match self.world.accel.occluder(&ray) {
+            Some(occluder) => {
+                let distance = occluder.t * ray.direction.length();
+                self.log.borrow_mut().push((node.representative() as u32, [distance; LANES]));
+                false
+            }
+            None => true,
+        }
+    }
+}
+
+impl GroupVisibility for OccluderLog<'_> {
+    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+        let rays = shadow_rays(points, lanes, vpl, node.kind());
+        let mut found = Occluders16::default();
+        let occluded = lanes & self.world.accel.occluders16(&rays, lanes, true, &mut found);
+        if occluded != 0 {
+            let mut distances = [f32::INFINITY; LANES];
+            for (lane, distance) in distances.iter_mut().enumerate() {
+                let direction =
+                    Vec3::new(rays.direction_x[lane], rays.direction_y[lane], rays.direction_z[lane]);
+                if occluded >> lane & 1 != 0 {
+                    *distance = found.t[lane] * direction.length();
+                }
+            }
+            self.log.borrow_mut().push((node.representative() as u32, distances));
+        }
+        lanes & !occluded
+    }
+}
