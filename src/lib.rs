@@ -11,6 +11,7 @@
 //! - [`cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their footprints;
 //! - [`shadow`] keeps surfaces from shadowing themselves, [`sampling`] gives every stage its numbers;
 //! - [`method`] holds the renderers that are compared; [`image`] writes and compares what they return;
+//! - [`verify`] measures how wrong a picture is by path-tracing some of its pixels;
 //! - [`cli`] is the command around it all, [`stats`] what it reports.
 
 #![deny(unsafe_code)]
@@ -32,5 +33,6 @@ pub mod sampling;
 pub mod scene;
 pub mod shadow;
 pub mod stats;
+pub mod verify;
 pub mod vpl;
 pub mod world;

@@ -78,12 +78,40 @@ pub struct RenderArgs {
     /// Fail on anything in the scene that is not modelled, instead of warning
     #[arg(long)]
     pub strict: bool,
+    /// Measuring the error.
+    #[command(flatten)]
+    pub verify: VerifyArgs,
     /// Options of one method.
     #[command(flatten)]
     pub lightcuts: LightcutArgs,
     /// Options of the radiance cache.
     #[command(flatten)]
     pub cache: CacheArgs,
+}
+
+/// Options that measure the picture's error.
+#[derive(Clone, Debug, Default, Args, PartialEq)]
+#[command(next_help_heading = "Measured error")]
+pub struct VerifyArgs {
+    /// Path-trace about this many pixels and report the picture's error: bias, RMS and 95th percentile, each with
+    /// the interval that covers it in 95 of 100 cases
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..))]
+    pub verify: Option<u32>,
+    /// What the picture is held to be [default: what the method computes: pixels for path, else eye-samples]
+    #[arg(long, value_enum, requires = "verify")]
+    pub verify_against: Option<VerifyAgainst>,
+    /// Most paths a pixel [default: 4096]; how many pixels would need more to be known to 1 % is reported
+    #[arg(long, value_name = "SPP", requires = "verify", value_parser = clap::value_parser!(u32).range(64..))]
+    pub verify_samples: Option<u32>,
+}
+
+/// What a pixel's value is meant to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum VerifyAgainst {
+    /// The mean radiance over the pixel: an edge that few samples cannot resolve counts as error
+    Pixels,
+    /// The mean radiance through the picture's own eye samples: only wrong light counts as error
+    EyeSamples,
 }
 
 /// Options of `--method lightcuts` and `cache`. The defaults are the method's own; a test holds the text to them.
@@ -251,6 +279,7 @@ pub(super) fn parse_fraction(text: &str) -> Result<f32, String> {
 mod tests {
     use super::*;
     use crate::method::{cache, lightcuts, path};
+    use crate::verify;
     use clap::CommandFactory;
 
     #[test]
@@ -307,6 +336,7 @@ mod tests {
             ("least-cell", cached.least_cell.to_string()),
             ("accuracy", format!("{},{}", cached.layers[0].accuracy, cached.layers[1].accuracy)),
             ("tree", format!("{:?}", cuts.family).to_lowercase()),
+            ("verify-samples", verify::Settings::default().most_samples.to_string()),
         ];
         for (option, default) in expected {
             assert!(stated(option).contains(&format!("[default: {default}]")), "--{option}: {default}");

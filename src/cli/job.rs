@@ -3,9 +3,11 @@
 use super::args::{Crop, ProgressMode, RenderArgs, StatsFormat};
 use super::exit::Failure;
 use super::method::Method;
+use super::verify;
 use crate::eye::Window;
 use crate::image::{Exposure, atomic};
 use crate::scene::Scene;
+use crate::verify::Settings as VerifySettings;
 use anyhow::anyhow;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -26,6 +28,8 @@ pub struct RenderJob {
     pub png: Option<(PathBuf, Exposure)>,
     /// How.
     pub method: Method,
+    /// How to measure the picture's error, if wanted.
+    pub verify: Option<VerifySettings>,
     /// Number of threads.
     pub threads: usize,
     /// Film size instead of the scene's.
@@ -44,6 +48,7 @@ impl RenderJob {
     /// Checks what was typed, and that the results can be written where they are wanted.
     pub fn new(args: RenderArgs) -> Result<RenderJob, Failure> {
         let method = Method::new(&args)?;
+        let verify = verify::settings(&args.verify, &method, args.max_depth);
         named(&args.output, "exr", "--output")?;
         let png = match (args.no_png, args.png) {
             (true, _) => None,
@@ -63,6 +68,7 @@ impl RenderJob {
             output: args.output,
             png: png.map(|path| (path, args.exposure)),
             method,
+            verify,
             threads: args.threads.map_or_else(processors, |n| n as usize),
             resolution: args.resolution.map(|r| r.0),
             crop: args.crop,

@@ -4,7 +4,7 @@ use super::args::{LightcutArgs, MethodName, RenderArgs, TreeFamily};
 use super::cache_args::{CacheArgs, DirectBy, FootprintShape, Pair, Switch};
 use super::exit::Failure;
 use crate::cache::{DirectLight, Footprints};
-use crate::eye::Window;
+use crate::eye::{Look, Window};
 use crate::light_tree::Family;
 use crate::method::{Control, Output, cache, lightcuts, path};
 use crate::world::World;
@@ -65,6 +65,16 @@ impl Method {
             Method::Path(settings) => settings.seed,
             Method::Cache(settings) => settings.seed,
             Method::Lightcuts(settings) => settings.seed,
+        }
+    }
+
+    /// What the method takes a pixel's value to be.
+    pub fn look(&self) -> Look {
+        match self {
+            Method::Path(_) => Look::Pixels,
+            Method::Cache(_) | Method::Lightcuts(_) => {
+                Look::EyeSamples { spp: self.spp(), seed: self.seed() }
+            }
         }
     }
 

@@ -14,6 +14,7 @@ mod progress;
 mod render;
 mod scene;
 mod talk;
+mod verify;
 
 use args::{Cli, Command};
 use clap::Parser;

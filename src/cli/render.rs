@@ -4,13 +4,14 @@ use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
 use super::job::RenderJob;
 use super::method::Method;
-use super::{interrupt, progress, scene, talk};
+use super::{interrupt, progress, scene, talk, verify};
 use crate::eye::Window;
 use crate::image::metrics::rel_mse_of_variance;
 use crate::image::{Film, Image, Metadata, false_colour, write_exr, write_png, write_srgb8};
 use crate::method::{Control, Output};
 use crate::scene::formats::Loaded;
 use crate::stats::{Stage, Stats, Stopwatch, peak_resident_bytes};
+use crate::verify::verify as measure_error;
 use crate::world::World;
 use anyhow::{Context, anyhow};
 use serde_json::json;
@@ -31,7 +32,7 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
         .map_err(Failure::render)?;
 
     let (frame, mut stats) = pool.install(|| render(&job, &control))?;
-    let complete = frame.complete;
+    let Frame { complete, unverified, .. } = frame;
     if !complete && is_black(&frame.film.color) {
         return Err(Failure::interrupted(anyhow!("interrupted before the first pixel; nothing is written")));
     }
@@ -49,10 +50,13 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
         }
         None => {}
     }
-    if complete {
-        Ok(())
-    } else {
-        Err(Failure::interrupted(anyhow!("interrupted; {} is partial", job.output.display())))
+    let output = job.output.display();
+    match (complete, unverified) {
+        (true, false) => Ok(()),
+        (true, true) => {
+            Err(Failure::interrupted(anyhow!("interrupted; {output} is complete, its error not measured")))
+        }
+        (false, _) => Err(Failure::interrupted(anyhow!("interrupted; {output} is partial"))),
     }
 }
 
@@ -61,6 +65,8 @@ struct Frame {
     film: Film,
     facts: serde_json::Value,
     complete: bool,
+    /// Whether measuring the picture's error was interrupted.
+    unverified: bool,
 }
 
 fn render(job: &RenderJob, control: &Control) -> Result<(Frame, Stats), Failure> {
@@ -111,6 +117,16 @@ fn render(job: &RenderJob, control: &Control) -> Result<(Frame, Stats), Failure>
     if let Some(frame) = job.frame {
         metadata.set("frame", frame as f64);
     }
+    let verified = job.verify.filter(|_| complete).map(|settings| {
+        let measure = || measure_error(&world, &window, &film.color, &settings, control);
+        let found = stats.time(Stage::Verify, || progress::watched(job.progress, control, measure));
+        if let Some(found) = &found {
+            verify::report(found, &settings, &mut stats, &mut film.metadata);
+        }
+        found.map(|found| verify::to_json(&found, &settings))
+    });
+    let unverified = matches!(verified, Some(None));
+    let metadata = &film.metadata;
     let facts = json!({
         "scene": world.scene.name,
         "scene_hash": format!("{hash:016x}"),
@@ -123,10 +139,11 @@ fn render(job: &RenderJob, control: &Control) -> Result<(Frame, Stats), Failure>
         "nonfinite": nonfinite_samples + nonfinite_channels,
         "standard_error": metadata.number("standard_error"),
         "relative_mse_of_noise": metadata.number("relative_mse_of_noise"),
+        "verified": verified,
         "output": job.output,
         "png": job.png.as_ref().map(|(path, _)| path),
     });
-    Ok((Frame { film, facts, complete }, stats))
+    Ok((Frame { film, facts, complete, unverified }, stats))
 }
 
 fn film(output: Output, window: Window) -> Film {

@@ -2,12 +2,14 @@
 
 mod chain;
 mod index;
+mod look;
 mod samples;
 mod sharing;
 mod window;
 
 pub use chain::{ChainCounts, EyeSample, trace};
 pub use index::{Bounds, EyeIndex};
+pub use look::{Look, eye_sampler};
 pub use samples::{EyePoint, EyeSamples, EyeSettings, EyeSurface};
 pub use sharing::Sharing;
 pub use window::{Window, primary_ray};

@@ -4,15 +4,14 @@
 //! Paper: Herzog et al. 2009, section 4: eye samples are stored through specular chains and sorted by a kd-tree.
 //! Units: positions relative to the scene's centre, throughputs per pixel (they include 1/spp).
 
-use super::{ChainCounts, EyeIndex, EyeSample, Sharing, Window, primary_ray, trace};
+use super::{ChainCounts, EyeIndex, EyeSample, Sharing, Window, eye_sampler, primary_ray, trace};
 use crate::image::Image;
 use crate::material::Bsdf;
 use crate::math::Rgb;
 use crate::method::Control;
-use crate::sampling::{Sampler, hash};
 use crate::scene::MaterialId;
 use crate::world::World;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
 
 /// Pixels along the edge of the square that one task looks through.
@@ -147,12 +146,11 @@ impl<'w> Found<'w> {
         // Angle between neighbouring samples, at the film's centre.
         let angle = 2.0 * camera.tan_half_x / window.film[0] as f32 / (spp as f32).sqrt();
         for pixel in window.tile(tile, TILE) {
-            let [x, y] = window.film_pixel(pixel);
+            let film_pixel = window.film_pixel(pixel);
             let place = pixel[1] * window.width + pixel[0];
             for sample in 0..spp {
-                let mut sampler = Sampler::new(hash(hash(x, y), settings.seed), sample);
-                let jitter = if spp > 1 { sampler.next_2d() } else { Vec2::splat(0.5) };
-                let ray = primary_ray(camera, window, [x, y], jitter);
+                let (mut sampler, jitter) = eye_sampler(film_pixel, settings.seed, sample, spp);
+                let ray = primary_ray(camera, window, film_pixel, jitter);
                 let samples = &mut self.samples;
                 let visit = |eye: EyeSample<'w>| {
                     if eye.depth < settings.max_depth {

@@ -24,6 +24,8 @@ pub enum Stage {
     Splat,
     /// Everything per pixel in methods without records.
     Render,
+    /// Path-tracing pixels to measure the picture's error.
+    Verify,
     /// Encoding and writing the pictures.
     Write,
     /// The whole run, from the command to the last file.
@@ -32,7 +34,7 @@ pub enum Stage {
 
 impl Stage {
     /// All stages, in order.
-    pub const ALL: [Stage; 10] = [
+    pub const ALL: [Stage; 11] = [
         Stage::Load,
         Stage::Build,
         Stage::EyePass,
@@ -41,6 +43,7 @@ impl Stage {
         Stage::Records,
         Stage::Splat,
         Stage::Render,
+        Stage::Verify,
         Stage::Write,
         Stage::Total,
     ];
@@ -56,6 +59,7 @@ impl Stage {
             Stage::Records => "records",
             Stage::Splat => "splat",
             Stage::Render => "render",
+            Stage::Verify => "verify",
             Stage::Write => "write",
             Stage::Total => "total",
         }

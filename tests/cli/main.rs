@@ -4,6 +4,7 @@ mod compare;
 mod interrupt;
 mod output;
 mod usage;
+mod verify;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -3,12 +3,10 @@
 //! Blocks are aligned to the film and always computed whole, so a crop repeats the whole picture's pixels.
 
 use super::render::Scenery;
-use crate::eye::{ChainCounts, EyeSample, primary_ray, trace};
+use crate::eye::{ChainCounts, EyeSample, eye_sampler, primary_ray, trace};
 use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Points, alike};
 use crate::lightcut::{CutCounts, Lightcut, Reflector};
 use crate::math::Rgb;
-use crate::sampling::{Sampler, hash};
-use glam::Vec2;
 
 /// Pixels along a tile's edge.
 pub const TILE: u32 = 16;
@@ -85,10 +83,7 @@ impl Tile {
                     work.values.push(Rgb::ZERO);
                     continue;
                 }
-                // The film's own coordinates, so that a crop repeats the whole picture's pixels.
-                let mut sampler = Sampler::new(hash(hash(x, y), s.settings.seed), sample);
-                // A single sample looks through the pixel's centre, which keeps edges straight.
-                let jitter = if spp > 1 { sampler.next_2d() } else { Vec2::splat(0.5) };
+                let (mut sampler, jitter) = eye_sampler([x, y], s.settings.seed, sample, spp);
                 let ray = primary_ray(&s.world.scene.camera, s.window, [x, y], jitter);
                 let place = work.values.len();
                 let visit = |eye: EyeSample<'w>| {

@@ -16,7 +16,11 @@
 
 mod batch;
 mod packet;
+mod pixels;
 mod render;
+mod start;
 mod vertex;
 
+pub use batch::Counts;
+pub use pixels::{Wanted, pixel_means};
 pub use render::{Settings, render};

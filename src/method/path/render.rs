@@ -1,13 +1,11 @@
 //! The picture: pixels in tiles, samples in passes.
 
 use super::batch::{Batch, Counts};
-use crate::embree::Rays16;
-use crate::eye::{Window, primary_ray};
+use super::start::{Start, start};
+use crate::eye::{Look, Window};
 use crate::image::Image;
-use crate::math::{LANES, Rgb};
+use crate::math::Rgb;
 use crate::method::{Control, Output};
-use crate::sampling::{Samplers16, hash};
-use crate::scene::Camera;
 use crate::stats::{Stage, Stats};
 use crate::world::World;
 use rayon::prelude::*;
@@ -109,8 +107,11 @@ impl Tile {
         let mut batch = Batch::default();
         for first in (begin..end).step_by(BATCH as usize) {
             let samples = first..(first + BATCH).min(end);
-            let pixels = window.tile(index, TILE).flat_map(|at| samples.clone().map(move |s| (at, s)));
-            fill(&mut batch, pixels, &world.scene.camera, window, settings.seed);
+            // The film's own coordinates, so that a crop repeats the whole picture's pixels.
+            let paths = window.tile(index, TILE).map(|at| window.film_pixel(at)).flat_map(|pixel| {
+                samples.clone().map(move |sample| Start { pixel, sample, seed: settings.seed })
+            });
+            start(&mut batch, paths, world, window, Look::Pixels);
             let mut values = batch.trace(world, max_depth, &mut self.counts);
             for pixel in &mut self.pixels {
                 for (sample, mut value) in samples.clone().zip(values.by_ref()) {
@@ -125,37 +126,5 @@ impl Tile {
             }
         }
         self.samples = end;
-    }
-}
-
-/// Starts a path for each pixel of the window and sample.
-fn fill(
-    batch: &mut Batch,
-    mut paths: impl Iterator<Item = ([u32; 2], u32)>,
-    camera: &Camera,
-    window: &Window,
-    seed: u32,
-) {
-    loop {
-        let (mut samplers, mut x, mut y) = (Samplers16::default(), [0; LANES], [0; LANES]);
-        let mut count = 0;
-        for (at, sample) in paths.by_ref().take(LANES) {
-            // The film's own coordinates, so that a crop repeats the whole picture's pixels.
-            [x[count], y[count]] = window.film_pixel(at);
-            samplers.index[count] = sample;
-            count += 1;
-        }
-        if count == 0 {
-            return;
-        }
-        for i in 0..LANES {
-            samplers.seed[i] = hash(hash(x[i], y[i]), seed);
-        }
-        let jitter = samplers.point(1);
-        let mut rays = Rays16::default();
-        for i in 0..LANES {
-            rays.set(i, &primary_ray(camera, window, [x[i], y[i]], jitter.get(i)));
-        }
-        batch.push(rays, samplers, count);
     }
 }

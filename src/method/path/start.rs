@@ -1,0 +1,58 @@
+//! The first edges of paths: through which place of which pixel they go.
+
+use super::batch::Batch;
+use crate::embree::Rays16;
+use crate::eye::{Look, Window, eye_sampler, primary_ray};
+use crate::math::LANES;
+use crate::sampling::{Samplers16, hash};
+use crate::world::World;
+
+/// A path to start.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    /// Pixel of the film.
+    pub pixel: [u32; 2],
+    /// Number of the sample in its pixel.
+    pub sample: u32,
+    /// Another seed, other random numbers.
+    pub seed: u32,
+}
+
+/// Adds `paths` to the batch, in order. With [`Look::EyeSamples`] they take the eye samples' places in turn.
+pub(super) fn start(
+    batch: &mut Batch,
+    mut paths: impl Iterator<Item = Start>,
+    world: &World,
+    window: &Window,
+    look: Look,
+) {
+    loop {
+        let mut samplers = Samplers16::default();
+        let mut starts = [Start { pixel: [0; 2], sample: 0, seed: 0 }; LANES];
+        let mut count = 0;
+        for path in paths.by_ref().take(LANES) {
+            starts[count] = path;
+            count += 1;
+        }
+        if count == 0 {
+            return;
+        }
+        for (i, Start { pixel: [x, y], sample, seed }) in starts.into_iter().enumerate() {
+            samplers.seed[i] = hash(hash(x, y), seed);
+            samplers.index[i] = sample;
+        }
+        let anywhere = samplers.point(1);
+        let mut rays = Rays16::default();
+        for (i, path) in starts.into_iter().enumerate() {
+            let jitter = match look {
+                Look::Pixels => anywhere.get(i),
+                Look::EyeSamples { spp, seed } => {
+                    let spp = spp.max(1);
+                    eye_sampler(path.pixel, seed, path.sample % spp, spp).1
+                }
+            };
+            rays.set(i, &primary_ray(&world.scene.camera, window, path.pixel, jitter));
+        }
+        batch.push(rays, samplers, count);
+    }
+}

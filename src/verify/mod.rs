@@ -1,0 +1,99 @@
+//! How wrong a picture is, without a reference: some of its pixels are path-traced.
+//!
+//! | setting | default | meaning |
+//! |---|---|---|
+//! | `pixels` | - | about how many pixels are traced; all, if the picture has no more |
+//! | `look` | that of the method | what a pixel is held to be: the mean over its square, or through the picture's own eye samples |
+//! | `seed` | 0 | another seed, other pixels and paths |
+//! | `max_depth` | the scene's | longest path in edges |
+//! | `most_samples` | 4096 | most paths a pixel |
+//!
+//! A short pilot says how many paths each pixel takes until its standard error is 1 % of its radiance; they are then traced
+//! anew, so that what stopped them does not bias them. The error is reported with the interval that covers it in 95 of 100 cases; it holds
+//! the chance of which pixels were picked and the noise of their paths.
+//!
+//! It says what the path tracer knows: light that it hardly finds (small lights through glass) is missing from the
+//! truth or widens the interval.
+
+mod interval;
+mod measure;
+mod picks;
+mod trace;
+
+use crate::eye::{Look, Window};
+use crate::image::Image;
+use crate::method::Control;
+use crate::stats::Stage;
+use crate::world::World;
+use serde::Serialize;
+
+pub use interval::Estimate;
+
+/// What to verify.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// About how many pixels.
+    pub pixels: usize,
+    /// What their values are meant to be.
+    pub look: Look,
+    /// Another seed, other pixels and paths.
+    pub seed: u32,
+    /// Longest path in edges; `None` for the scene's own limit.
+    pub max_depth: Option<u32>,
+    /// Most paths a pixel.
+    pub most_samples: u32,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { pixels: 1000, look: Look::Pixels, seed: 0, max_depth: None, most_samples: 4096 }
+    }
+}
+
+/// The error of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Verified {
+    /// Mean of the picture over mean of the truth, minus 1.
+    pub relative_bias: Estimate,
+    /// Root of the mean over pixels and channels of `(t - r)² / (r² + 0.01 m²)`, r the truth and m its mean: the root of
+    /// [`crate::image::metrics::rel_mse`].
+    pub relative_rms: Estimate,
+    /// What the root of that, by pixel, is not above in 95 % of them.
+    pub relative_error_95: Estimate,
+    /// Root of the mean relative variance of the path-traced pixels. It is taken out of the figures above.
+    pub noise: f64,
+    /// Pixels traced.
+    pub pixels: usize,
+    /// Pixels that would have needed more paths than allowed to be known to 1 %.
+    pub pixels_at_cap: usize,
+    /// Paths traced.
+    pub paths: u64,
+    /// Radiances along them that were not finite and count as 0.
+    pub nonfinite: u64,
+}
+
+/// Measures the error of `image`, the picture of `window`; `None` if cancelled.
+pub fn verify(
+    world: &World,
+    window: &Window,
+    image: &Image,
+    settings: &Settings,
+    control: &Control,
+) -> Option<Verified> {
+    let picks = picks::choose(image, settings.pixels, settings.seed);
+    control.begin(Stage::Verify, 2 * picks.len() as u64);
+    let traced = trace::trace(world, window, image, &picks, settings, control)?;
+    let sum: f64 = image.pixels.iter().map(|p| p.as_dvec3().element_sum() / 3.0).sum();
+    let mean = sum / image.pixels.len().max(1) as f64;
+    let errors = measure::errors(&traced.pixels, mean, settings.seed);
+    Some(Verified {
+        relative_bias: errors.bias,
+        relative_rms: errors.rms,
+        relative_error_95: errors.percentile_95,
+        noise: errors.noise,
+        pixels: picks.len(),
+        pixels_at_cap: traced.at_cap,
+        paths: traced.paths,
+        nonfinite: traced.nonfinite,
+    })
+}

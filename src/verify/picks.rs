@@ -1,0 +1,153 @@
+//! Which pixels are verified.
+//!
+//! Every pixel may be picked, with a probability of which half is the same for all and half goes with the contrast
+//! to its neighbours: errors of caches and of aliasing gather in creases and at edges, and a plain random sample
+//! would see too few of the pixels that rule the root mean square. Weights undo the preference (Horvitz-Thompson).
+//! Picks are stratified: pixels are lined up along the Morton curve, and one is picked in each of equal shares of
+//! the probability.
+
+use crate::image::Image;
+use crate::sampling::{hash, owen_van_der_corput};
+
+/// A pixel to verify.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pick {
+    /// Place in the image's rows.
+    pub index: usize,
+    /// How many pixels it stands for.
+    pub weight: f64,
+}
+
+/// Share of the probability that goes with contrast.
+const BY_CONTRAST: f64 = 0.5;
+
+/// Luminances this share of the mean apart are no contrast.
+const CONTRAST_FLOOR: f64 = 0.1;
+
+/// About `count` picks in the order of the curve, every pixel once where there are no more.
+pub fn choose(image: &Image, count: usize, seed: u32) -> Vec<Pick> {
+    let mut order: Vec<usize> = (0..image.pixels.len()).collect();
+    order.sort_by_key(|&i| morton(i as u32 % image.width, i as u32 / image.width));
+    if count >= order.len() {
+        return order.into_iter().map(|index| Pick { index, weight: 1.0 }).collect();
+    }
+    let contrast = contrasts(image);
+    let total: f64 = contrast.iter().sum();
+    let share = if total > 0.0 { BY_CONTRAST } else { 0.0 };
+    let pixels = order.len() as f64;
+    let probability =
+        |i: usize| (1.0 - share) / pixels + if total > 0.0 { share * contrast[i] / total } else { 0.0 };
+
+    let mut picks: Vec<Pick> = Vec::with_capacity(count);
+    let next = |k: usize| (k as f64 + f64::from(owen_van_der_corput(k as u32, hash(seed, 1)))) / count as f64;
+    let (mut k, mut reached) = (0, 0.0);
+    for index in order {
+        let probability = probability(index);
+        reached += probability;
+        let mut times = 0;
+        while k < count && next(k) < reached {
+            times += 1;
+            k += 1;
+        }
+        if times > 0 {
+            picks.push(Pick { index, weight: f64::from(times) / (count as f64 * probability) });
+        }
+    }
+    picks
+}
+
+/// Largest relative difference between each pixel and its neighbours, 0 to 1.
+fn contrasts(image: &Image) -> Vec<f64> {
+    let value = |i: usize| f64::from(image.pixels[i].element_sum());
+    let mean = (0..image.pixels.len()).map(value).sum::<f64>() / image.pixels.len().max(1) as f64;
+    let floor = (CONTRAST_FLOOR * mean).max(f64::MIN_POSITIVE);
+    let (width, height) = (image.width as usize, image.height as usize);
+    let at = |i: usize| {
+        let (x, y, here) = (i % width, i / width, value(i));
+        let mut most: f64 = 0.0;
+        for v in y.saturating_sub(1)..(y + 2).min(height) {
+            for u in x.saturating_sub(1)..(x + 2).min(width) {
+                let there = value(v * width + u);
+                most = most.max((here - there).abs() / (here.abs() + there.abs() + floor));
+            }
+        }
+        if most.is_finite() { most } else { 1.0 }
+    };
+    (0..image.pixels.len()).map(at).collect()
+}
+
+/// Bits of both coordinates in turn.
+fn morton(x: u32, y: u32) -> u64 {
+    let spread = |v: u32| {
+        let mut v = u64::from(v);
+        for (shift, mask) in [
+            (16, 0x0000_ffff_0000_ffff),
+            (8, 0x00ff_00ff_00ff_00ff),
+            (4, 0x0f0f_0f0f_0f0f_0f0f),
+            (2, 0x3333_3333_3333_3333),
+            (1, 0x5555_5555_5555_5555),
+        ] {
+            v = (v | (v << shift)) & mask;
+        }
+        v
+    };
+    spread(x) | spread(y) << 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rgb;
+
+    /// A smooth ramp with a bright stripe.
+    fn image() -> Image {
+        let mut image = Image::new(60, 40);
+        for (i, pixel) in image.pixels.iter_mut().enumerate() {
+            let x = i % 60;
+            *pixel = Rgb::splat(if x == 33 { 5.0 } else { 1.0 + 0.01 * x as f32 });
+        }
+        image
+    }
+
+    #[test]
+    fn weights_undo_the_preference() {
+        let image = image();
+        let truth: f64 = image.pixels.iter().map(|p| f64::from(p.x)).sum();
+        let seeds = 200;
+        let (mut sum, mut pixels) = (0.0, 0.0);
+        for seed in 0..seeds {
+            for pick in choose(&image, 100, seed) {
+                sum += pick.weight * f64::from(image.pixels[pick.index].x);
+                pixels += pick.weight;
+            }
+        }
+        assert!((sum / truth / f64::from(seeds) - 1.0).abs() < 0.01, "{}", sum / truth / f64::from(seeds));
+        assert!((pixels / 2400.0 / f64::from(seeds) - 1.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn edges_are_preferred_and_pixels_picked_once() {
+        let picks = choose(&image(), 300, 7);
+        let edge = picks.iter().filter(|p| (32..=34).contains(&(p.index % 60))).count();
+        assert!(edge as f64 > 0.25 * picks.len() as f64, "{edge} of {}", picks.len());
+        let mut indices: Vec<usize> = picks.iter().map(|p| p.index).collect();
+        indices.sort();
+        indices.dedup();
+        assert_eq!(indices.len(), picks.len());
+    }
+
+    #[test]
+    fn small_and_black_images_are_no_trouble() {
+        assert_eq!(choose(&Image::new(3, 2), 6, 0).len(), 6);
+        assert_eq!(choose(&Image::new(3, 2), 100, 0).len(), 6);
+        let picks = choose(&Image::new(50, 50), 25, 0);
+        assert!((picks.iter().map(|p| p.weight).sum::<f64>() - 2500.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_curve_visits_quadrants_one_after_the_other() {
+        let order = [(0, 0), (1, 0), (0, 1), (1, 1), (2, 0)].map(|(x, y)| morton(x, y));
+        assert_eq!(order, [0, 1, 2, 3, 4]);
+        assert_eq!(morton(u32::MAX, u32::MAX), u64::MAX);
+    }
+}

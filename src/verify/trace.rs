@@ -1,0 +1,126 @@
+//! The truth at the pixels picked.
+
+use super::Settings;
+use super::measure::{MEANS, Measured};
+use super::picks::Pick;
+use crate::eye::{Look, Window};
+use crate::image::Image;
+use crate::method::Control;
+use crate::method::path::{Counts, Wanted, pixel_means};
+use crate::sampling::hash;
+use crate::world::World;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Paths for each of a pixel's means in the pilot.
+const PILOT: u32 = 4;
+
+/// Standard error at which a pixel is known well enough, relative to its radiance.
+const TARGET: f64 = 0.01;
+
+/// As in [`crate::image::metrics::rel_mse`], with the picture's mean: dark pixels are not known relative to themselves.
+const FLOOR: f64 = 0.01;
+
+/// Pixels of one task.
+const TASK: usize = 16;
+
+/// Keeps the paths apart from those of the picture, which may have the same seed.
+const SEED: u32 = 0x7e57_ab1e;
+
+/// Pixels and what tracing them took.
+pub struct Traced {
+    /// In the order of the picks.
+    pub pixels: Vec<Measured>,
+    /// Pixels given fewer paths than they needed.
+    pub at_cap: usize,
+    /// Paths.
+    pub paths: u64,
+    /// Radiances that were not finite.
+    pub nonfinite: u64,
+}
+
+/// Traces paths through the pixels picked; `None` if cancelled.
+pub fn trace(
+    world: &World,
+    window: &Window,
+    image: &Image,
+    picks: &[Pick],
+    settings: &Settings,
+    control: &Control,
+) -> Option<Traced> {
+    let spp = match settings.look {
+        Look::Pixels => 1,
+        Look::EyeSamples { spp, .. } => spp.max(1),
+    };
+    let most = (settings.most_samples / MEANS as u32).max(PILOT).next_multiple_of(spp);
+    let least = PILOT.next_multiple_of(spp);
+    let sum: DVec3 = image.pixels.iter().map(|p| p.as_dvec3()).sum();
+    let mean = sum.element_sum() / (3 * image.pixels.len().max(1)) as f64;
+    let floor = FLOOR * mean * mean;
+    let task = |picks: &[Pick]| {
+        let mut traced = Traced { pixels: Vec::new(), at_cap: 0, paths: 0, nonfinite: 0 };
+        let place = |pick: &Pick| {
+            let (column, row) = (pick.index as u32 % window.width, pick.index as u32 / window.width);
+            window.film_pixel([column, row])
+        };
+        let mut wanted: Vec<Wanted> =
+            picks.iter().map(|pick| Wanted { pixel: place(pick), samples: least }).collect();
+        let pilot = traced.measure(world, window, image, (picks, &wanted), settings, 0, control)?;
+        for (wanted, pixel) in wanted.iter_mut().zip(&pilot) {
+            let needed = f64::from(least) * pixel.relative_variance(floor) / (TARGET * TARGET);
+            traced.at_cap += usize::from(needed > f64::from(most));
+            wanted.samples = (needed.min(f64::from(most)) as u32).max(least).next_multiple_of(spp);
+        }
+        traced.pixels = traced.measure(world, window, image, (picks, &wanted), settings, 1, control)?;
+        Some(traced)
+    };
+    let parts: Vec<Option<Traced>> = picks.par_chunks(TASK).map(task).collect();
+    let mut all = Traced { pixels: Vec::with_capacity(picks.len()), at_cap: 0, paths: 0, nonfinite: 0 };
+    for part in parts {
+        let part = part?;
+        all.pixels.extend(part.pixels);
+        all.at_cap += part.at_cap;
+        all.paths += part.paths;
+        all.nonfinite += part.nonfinite;
+    }
+    Some(all)
+}
+
+impl Traced {
+    /// All means of some pixels. Another `round` gives independent ones.
+    #[allow(clippy::too_many_arguments)]
+    fn measure(
+        &mut self,
+        world: &World,
+        window: &Window,
+        image: &Image,
+        (picks, wanted): (&[Pick], &[Wanted]),
+        settings: &Settings,
+        round: u32,
+        control: &Control,
+    ) -> Option<Vec<Measured>> {
+        let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
+        let held = |pick: &Pick| Measured {
+            held: image.pixels[pick.index].as_dvec3(),
+            means: [DVec3::ZERO; MEANS],
+            weight: pick.weight,
+        };
+        let mut pixels: Vec<Measured> = picks.iter().map(held).collect();
+        let mut counts = Counts::default();
+        for k in 0..MEANS {
+            if control.is_cancelled() {
+                return None;
+            }
+            let seed = hash(hash(settings.seed, SEED), round * MEANS as u32 + k as u32);
+            let (means, nonfinite) =
+                pixel_means(world, window, settings.look, wanted, (seed, max_depth), &mut counts);
+            for (pixel, mean) in pixels.iter_mut().zip(means) {
+                pixel.means[k] = mean;
+            }
+            self.nonfinite += nonfinite;
+        }
+        self.paths += MEANS as u64 * wanted.iter().map(|w| u64::from(w.samples)).sum::<u64>();
+        control.advance(picks.len() as u64);
+        Some(pixels)
+    }
+}

@@ -1,0 +1,262 @@
+//! The error that `verify` measures against errors that are known.
+
+mod common;
+
+use common::*;
+use glam::{DVec3, Vec3};
+use lightsplat::eye::{Look, Window};
+use lightsplat::image::Image;
+use lightsplat::image::metrics::{rel_mse, rel_mse_of_variance, relative_error_map};
+use lightsplat::light_tree::Family;
+use lightsplat::math::Rgb;
+use lightsplat::method::path::{Counts, Wanted, pixel_means};
+use lightsplat::method::{Control, cache, lightcuts, path};
+use lightsplat::scene::Scene;
+use lightsplat::verify::{Estimate, Settings, Verified, verify};
+use lightsplat::world::World;
+use rayon::prelude::*;
+use std::path::Path;
+
+/// A closed room of albedo ρ whose walls all emit L: radiance L/(1-ρ) everywhere.
+fn furnace() -> (World, Rgb) {
+    let (albedo, emitted) = (Rgb::new(0.5, 0.3, 0.6), Rgb::new(1.0, 0.5, 2.0));
+    let mut scene = scene(camera(Vec3::new(0.3, 0.2, 0.8), Vec3::ZERO, 0.7), [40, 30]);
+    let wall = add_material(&mut scene, diffuse(albedo));
+    for mesh in room(Vec3::splat(-1.0), Vec3::ONE, wall) {
+        scene.meshes.push(emitting(mesh, emitted));
+    }
+    (world(scene), emitted / (Rgb::ONE - albedo))
+}
+
+/// A room with a lamp and a sphere: dark corners, a penumbra, an emitter in view.
+fn lit_room() -> World {
+    let mut scene = scene(camera(Vec3::new(0.1, 0.0, 0.95), Vec3::new(0.0, -0.1, 0.0), 0.8), [48, 36]);
+    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.4)));
+    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    scene.meshes.push(sphere(Vec3::new(0.2, -0.6, -0.3), 0.35, 24, wall));
+    let lamp = quad(Vec3::new(-0.3, 0.99, -0.5), Vec3::X * 0.6, Vec3::Z * 0.4, wall);
+    scene.meshes.push(emitting(lamp, Rgb::splat(9.0)));
+    world(scene)
+}
+
+fn whole(world: &World) -> Window {
+    Window::whole(world.scene.resolution)
+}
+
+fn check(world: &World, image: &Image, settings: &Settings) -> Verified {
+    verify(world, &whole(world), image, settings, &Control::new()).expect("nobody cancels")
+}
+
+#[test]
+fn a_right_picture_is_measured_as_right() {
+    let (world, radiance) = furnace();
+    let mut image = Image::new(40, 30);
+    image.pixels.fill(radiance);
+    let found = check(&world, &image, &Settings { pixels: 300, ..Settings::default() });
+    assert!(found.relative_bias.covers(0.0), "{found:?}");
+    assert!(found.relative_rms.low == 0.0 && found.relative_rms.high < 0.006, "{found:?}");
+    assert!(found.relative_error_95.low == 0.0 && found.relative_error_95.high < 0.02, "{found:?}");
+    assert!(found.noise <= 0.013 && found.nonfinite == 0, "{found:?}");
+}
+
+#[test]
+fn errors_put_into_a_right_picture_are_measured_within_their_intervals() {
+    let (world, radiance) = furnace();
+    // 3 % too bright everywhere, every twentieth pixel 30 % too dark.
+    let mut image = Image::new(40, 30);
+    let factor = |i: usize| if i % 20 == 7 { 0.7 } else { 1.03 };
+    image.pixels.iter_mut().enumerate().for_each(|(i, p)| *p = radiance * factor(i));
+    let mut truth = image.clone();
+    truth.pixels.fill(radiance);
+    for seed in 0..4 {
+        let found = check(&world, &image, &Settings { pixels: 400, seed, ..Settings::default() });
+        let bias = 0.95f64 * 0.03 - 0.05 * 0.3;
+        assert!(found.relative_bias.covers(bias) && width(found.relative_bias) < 0.02, "{found:?}");
+        let rms = rel_mse(&image, &truth, 0.0).sqrt();
+        assert!(found.relative_rms.covers(rms) && width(found.relative_rms) < 0.6 * rms, "{found:?}");
+        // From 3 % to 30 % at just that share of the pixels.
+        assert!((0.02..0.31).contains(&found.relative_error_95.value), "{found:?}");
+    }
+}
+
+fn width(estimate: Estimate) -> f64 {
+    estimate.high - estimate.low
+}
+
+#[test]
+fn a_path_traced_picture_has_the_error_that_its_own_variance_states() {
+    let world = lit_room();
+    let settings = path::Settings { spp: 64, ..path::Settings::default() };
+    let output = path::render(&world, &whole(&world), &settings, &Control::new());
+    let noise = rel_mse_of_variance(&output.variance.unwrap(), &output.color).sqrt();
+    let found = check(&world, &output.color, &Settings { pixels: 600, ..Settings::default() });
+    // The variance is stated on the safe side, since samples are stratified.
+    assert!(found.relative_rms.low < noise && found.relative_rms.high > 0.5 * noise, "{noise} {found:?}");
+    assert!(found.relative_bias.low < 0.0 && found.relative_bias.high > 0.0, "{found:?}");
+}
+
+#[test]
+fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
+    // Emitters in view, and nothing that reflects: a sample through the pixel's centre is exact there.
+    let mut scene = scene(camera(Vec3::ZERO, -Vec3::Z, 1.0), [40, 40]);
+    let black = add_material(&mut scene, diffuse(Rgb::ZERO));
+    for k in 0..5 {
+        let corner = Vec3::new(-0.93 + 0.4 * k as f32, -0.9, -1.0);
+        let slanted = Vec3::new(0.13, 1.8, 0.0);
+        scene.meshes.push(emitting(quad(corner, Vec3::X * 0.2, slanted, black), Rgb::ONE));
+    }
+    let world = world(scene);
+    let picture = lightcuts::render(&world, &whole(&world), &lightcuts::Settings::default(), &Control::new());
+    let at =
+        |look: Look| check(&world, &picture.color, &Settings { pixels: 700, look, ..Settings::default() });
+    let light = at(Look::EyeSamples { spp: 1, seed: 0 });
+    assert_eq!((light.relative_rms.high, light.relative_bias.value), (0.0, 0.0), "{light:?}");
+    let all = at(Look::Pixels);
+    let exact = path::Settings { spp: 4096, ..path::Settings::default() };
+    let exact = path::render(&world, &whole(&world), &exact, &Control::new()).color;
+    let rms = rel_mse(&picture.color, &exact, 0.0).sqrt();
+    assert!(rms > 0.1 && all.relative_rms.covers(rms), "{rms} {all:?}");
+
+    // Several eye samples at places of their own are found as well, and those of another seed are not theirs.
+    let four = lightcuts::Settings { spp: 4, seed: 3, ..Default::default() };
+    let picture = lightcuts::render(&world, &whole(&world), &four, &Control::new());
+    let at =
+        |look: Look| check(&world, &picture.color, &Settings { pixels: 700, look, ..Settings::default() });
+    assert!(at(Look::EyeSamples { spp: 4, seed: 3 }).relative_rms.high < 1e-6);
+    assert!(at(Look::EyeSamples { spp: 4, seed: 4 }).relative_rms.low > 0.02);
+}
+
+#[test]
+fn crops_threads_and_seeds() {
+    let world = lit_room();
+    let window = Window { offset: [10, 5], width: 20, height: 16, ..whole(&world) };
+    let settings = path::Settings { spp: 16, ..path::Settings::default() };
+    let image = path::render(&world, &window, &settings, &Control::new()).color;
+    let settings = Settings { pixels: 100, most_samples: 256, ..Settings::default() };
+    let run = |threads: usize, settings: &Settings| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| verify(&world, &window, &image, settings, &Control::new())).unwrap()
+    };
+    let one = run(1, &settings);
+    assert_eq!(one, run(3, &settings));
+    assert_ne!(one, run(1, &Settings { seed: 1, ..settings }));
+    // The crop's pixels are those of the whole film: their error is noise, not displacement.
+    assert!(one.relative_rms.value < 0.5 && one.pixels <= 100, "{one:?}");
+    let control = Control::new();
+    control.cancel();
+    assert_eq!(verify(&world, &window, &image, &settings, &control), None);
+}
+
+/// Reference through the places that `look` says: every pixel's mean and its variance.
+fn reference(world: &World, look: Look, spp: u32) -> (Image, Image) {
+    const MEANS: u32 = 16;
+    let window = whole(world);
+    let [width, height] = world.scene.resolution;
+    let (mut color, mut variance) = (Image::new(width, height), Image::new(width, height));
+    let rows: Vec<Vec<(DVec3, DVec3)>> = (0..height)
+        .into_par_iter()
+        .map(|y| {
+            let wanted: Vec<Wanted> =
+                (0..width).map(|x| Wanted { pixel: [x, y], samples: spp / MEANS }).collect();
+            let depth = world.scene.max_depth.unwrap_or(u32::MAX);
+            let mut means = vec![Vec::new(); width as usize];
+            for k in 0..MEANS {
+                let seed = (0x00c0_ffee + k, depth);
+                let (row, _) = pixel_means(world, &window, look, &wanted, seed, &mut Counts::default());
+                row.into_iter().zip(&mut means).for_each(|(mean, means)| means.push(mean));
+            }
+            let n = f64::from(MEANS);
+            let moments = |means: Vec<DVec3>| {
+                let mean = means.iter().sum::<DVec3>() / n;
+                (mean, means.iter().map(|m| (m - mean) * (m - mean)).sum::<DVec3>() / (n * (n - 1.0)))
+            };
+            means.into_iter().map(moments).collect()
+        })
+        .collect();
+    for (i, (mean, spread)) in rows.into_iter().flatten().enumerate() {
+        (color.pixels[i], variance.pixels[i]) = (mean.as_vec3(), spread.as_vec3());
+    }
+    (color, variance)
+}
+
+fn load(name: &str) -> World {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).with_extension("toml");
+    let mut scene: Scene =
+        lightsplat::scene::formats::load(&path, &Default::default()).expect("it loads").scene;
+    scene.resolution = [64, 64];
+    world(scene)
+}
+
+/// Ten pairs of scene and settings, each verified with four seeds. Prints the table.
+#[test]
+#[ignore = "minutes of path tracing; run with --release --ignored --nocapture"]
+fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
+    let control = Control::new();
+    let (mut covered, mut trials) = ([0; 3], 0);
+    for name in ["cornell", "knot", "nave", "kitchen", "apartment"] {
+        let world = load(name);
+        let window = whole(&world);
+        let eye = Look::EyeSamples { spp: 1, seed: 0 };
+        let cached = cache::Settings::default();
+        let mut few = cached;
+        (few.light.indirect, few.cache.layers[1].accuracy) = (20_000, 0.6);
+        let cuts = lightcuts::Settings { family: Family::default(), ..Default::default() };
+        let few_paths = path::Settings { spp: 64, ..Default::default() };
+        let pairs = match name {
+            "cornell" | "kitchen" => vec![
+                ("cache", cache::render(&world, &window, &cached, &control).color, eye),
+                ("cache, few VPLs", cache::render(&world, &window, &few, &control).color, eye),
+            ],
+            "knot" => vec![
+                ("cache", cache::render(&world, &window, &cached, &control).color, eye),
+                ("path, 64 spp", path::render(&world, &window, &few_paths, &control).color, Look::Pixels),
+            ],
+            "nave" => vec![
+                ("cache", cache::render(&world, &window, &cached, &control).color, eye),
+                ("cache, pixels", cache::render(&world, &window, &cached, &control).color, Look::Pixels),
+            ],
+            _ => vec![
+                ("lightcuts", lightcuts::render(&world, &window, &cuts, &control).color, eye),
+                ("path, 64 spp", path::render(&world, &window, &few_paths, &control).color, Look::Pixels),
+            ],
+        };
+        let mut references: Vec<(Look, Image, Image)> = Vec::new();
+        for (method, image, look) in pairs {
+            if !references.iter().any(|r| r.0 == look) {
+                let (color, variance) = reference(&world, look, 16384);
+                references.push((look, color, variance));
+            }
+            let (_, color, variance) = references.iter().find(|r| r.0 == look).unwrap();
+            let mean = |image: &Image| image.pixels.iter().map(|p| p.as_dvec3().element_sum()).sum::<f64>();
+            let noise = rel_mse_of_variance(variance, color);
+            let mut errors = relative_error_map(&image, color);
+            errors.sort_by(f32::total_cmp);
+            let truth = [
+                mean(&image) / mean(color) - 1.0,
+                (rel_mse(&image, color, 0.0) - noise).max(0.0).sqrt(),
+                f64::from(errors[errors.len() * 95 / 100]),
+            ];
+            for seed in 0..4 {
+                let found =
+                    check(&world, &image, &Settings { pixels: 500, look, seed, ..Settings::default() });
+                let estimates = [found.relative_bias, found.relative_rms, found.relative_error_95];
+                trials += 1;
+                print!(
+                    "{name:10} {method:16} {seed} reference ±{:.2} %, paths ±{:.2} %, {} at the cap |",
+                    100.0 * noise.sqrt(),
+                    100.0 * found.noise,
+                    found.pixels_at_cap
+                );
+                for (i, (truth, e)) in truth.into_iter().zip(estimates).enumerate() {
+                    covered[i] += u32::from(e.covers(truth));
+                    let mark = if e.covers(truth) { ' ' } else { '!' };
+                    let [value, low, high, truth] = [e.value, e.low, e.high, truth].map(|x| 100.0 * x);
+                    print!(" {truth:6.2} in {value:6.2} [{low:6.2}, {high:6.2}]{mark}|");
+                }
+                println!();
+            }
+        }
+    }
+    println!("covered of {trials}: bias {}, RMS {}, percentile {}", covered[0], covered[1], covered[2]);
+    assert!(covered.iter().all(|&c| c * 10 >= trials * 9), "{covered:?} of {trials}");
+}
