@@ -9,7 +9,7 @@
 //! - [`lightcut`] finds, for each of those, the coarsest clusters that keep the error bound;
 //! - [`gradient`] says how that light changes along the surface, [`hsh`] expands it over the hemisphere;
 //! - [`cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their footprints;
-//! - [`shadow`] keeps surfaces from shadowing themselves, [`sampling`] gives every stage its numbers;
+//! - [`shadow`] answers whether segments are free, by packets of rays, [`sampling`] gives every stage its numbers;
 //! - [`method`] holds the renderers that are compared; [`image`] writes and compares what they return;
 //! - [`verify`] measures how wrong a picture is by path-tracing some of its pixels;
 //! - [`cli`] is the command around it all, [`stats`] what it reports.

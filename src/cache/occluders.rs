@@ -7,16 +7,16 @@
 use crate::embree::Occluders16;
 use crate::light_tree::Node;
 use crate::lightcut::Visibility;
-use crate::lightcut::group::{GroupVisibility, LANES, Lanes, Points, shadow_rays};
-use crate::shadow;
-use crate::vpl::{Vpl, VplKind};
+use crate::lightcut::group::{GroupVisibility, LANES, Lanes, Points};
+use crate::shadow::{Engine, Packing, to_vpl};
+use crate::vpl::Vpl;
 use crate::world::World;
 use glam::Vec3;
 use std::cell::RefCell;
 
 /// Visibility in the scene that notes how far away occluders are.
 pub struct OccluderLog<'w> {
-    world: &'w World,
+    engine: Engine<'w>,
     /// Representative, and the distance to what hides it from each lane, or infinity.
     log: RefCell<Vec<(u32, Lanes)>>,
 }
@@ -24,7 +24,7 @@ pub struct OccluderLog<'w> {
 impl<'w> OccluderLog<'w> {
     /// Nothing noted yet.
     pub fn new(world: &'w World) -> OccluderLog<'w> {
-        OccluderLog { world, log: RefCell::new(Vec::new()) }
+        OccluderLog { engine: world.shadows(), log: RefCell::new(Vec::new()) }
     }
 
     /// What was noted.
@@ -48,15 +48,11 @@ impl Hidden {
 
 impl Visibility for OccluderLog<'_> {
     fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
-        let ray = match node.kind() {
-            VplKind::Oriented => shadow::segment(x, normal, vpl.position, vpl.normal()),
-            VplKind::Omni => shadow::segment(x, normal, vpl.position, Vec3::ZERO),
-            VplKind::Directional => shadow::ray_from(x, normal, vpl.position),
-        };
-        match self.world.accel.occluder(&ray) {
+        let (ray, key) = (to_vpl(x, normal, vpl, node.kind()), node.representative() as u32);
+        match self.engine.occluder(&ray, key) {
             Some(occluder) => {
                 let distance = occluder.t * ray.direction.length();
-                self.log.borrow_mut().push((node.representative() as u32, [distance; LANES]));
+                self.log.borrow_mut().push((key, [distance; LANES]));
                 false
             }
             None => true,
@@ -66,9 +62,9 @@ impl Visibility for OccluderLog<'_> {
 
 impl GroupVisibility for OccluderLog<'_> {
     fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
-        let rays = shadow_rays(points, lanes, vpl, node.kind());
+        let (rays, key) = (points.shadow_rays(vpl, node.kind()), node.representative() as u32);
         let mut found = Occluders16::default();
-        let occluded = lanes & self.world.accel.occluders16(&rays, lanes, true, &mut found);
+        let occluded = self.engine.occluders16(&rays, lanes, Packing::Neighbours, key, &mut found);
         if occluded != 0 {
             let mut distances = [f32::INFINITY; LANES];
             for (lane, distance) in distances.iter_mut().enumerate() {
@@ -78,7 +74,7 @@ impl GroupVisibility for OccluderLog<'_> {
                     *distance = found.t[lane] * direction.length();
                 }
             }
-            self.log.borrow_mut().push((node.representative() as u32, distances));
+            self.log.borrow_mut().push((key, distances));
         }
         lanes & !occluded
     }

@@ -1,6 +1,6 @@
 //! The acceleration structure over triangle meshes, and queries of one ray.
 
-use super::{ALL_GEOMETRY, Device, EmbreeError, Hit, Ray};
+use super::{ALL_GEOMETRY, Device, EmbreeError, Hit, Ray, Width};
 use embree4_sys as sys;
 use glam::Vec3;
 
@@ -18,13 +18,49 @@ pub struct TriangleMesh<'a> {
     pub mask: u32,
 }
 
+/// How much care Embree takes when it builds, and what it keeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BuildQuality {
+    /// Morton order: built fastest, traced slowest.
+    Low,
+    /// Binned surface-area heuristic. Without further flags it is the fastest that loses no hits worth counting
+    /// (occlusion differs from `Robust` in about one ray of a million).
+    #[default]
+    Medium,
+    /// With spatial splits.
+    High,
+    /// `Medium` in less memory.
+    Compact,
+    /// `Medium`, and traversal that rounds outwards.
+    Robust,
+}
+
+impl BuildQuality {
+    /// All, in the order of their declaration.
+    pub const ALL: [BuildQuality; 5] = [
+        BuildQuality::Low,
+        BuildQuality::Medium,
+        BuildQuality::High,
+        BuildQuality::Compact,
+        BuildQuality::Robust,
+    ];
+
+    fn to_embree(self) -> (sys::RTCBuildQuality, sys::RTCSceneFlags) {
+        match self {
+            BuildQuality::Low => (sys::RTC_BUILD_QUALITY_LOW, sys::RTC_SCENE_FLAG_NONE),
+            BuildQuality::Medium => (sys::RTC_BUILD_QUALITY_MEDIUM, sys::RTC_SCENE_FLAG_NONE),
+            BuildQuality::High => (sys::RTC_BUILD_QUALITY_HIGH, sys::RTC_SCENE_FLAG_NONE),
+            BuildQuality::Compact => (sys::RTC_BUILD_QUALITY_MEDIUM, sys::RTC_SCENE_FLAG_COMPACT),
+            BuildQuality::Robust => (sys::RTC_BUILD_QUALITY_MEDIUM, sys::RTC_SCENE_FLAG_ROBUST),
+        }
+    }
+}
+
 /// A built bounding volume hierarchy, ready for queries from any thread.
-///
-/// Built once with medium quality; MEDIUM without further flags is the fastest that loses no hits worth
-/// counting (occlusion differs from the robust mode in about one ray of a million).
 pub struct Accel {
     scene: sys::RTCScene,
     bounds: Option<(Vec3, Vec3)>,
+    widest: Width,
     device: Device,
 }
 
@@ -35,7 +71,7 @@ unsafe impl Send for Accel {}
 unsafe impl Sync for Accel {}
 
 impl Accel {
-    /// Builds with all threads of `device`. Ids in hits are indices into `meshes` and into the mesh's
+    /// Builds with all threads of `device`, at medium quality. Ids in hits are indices into `meshes` and into the mesh's
     /// `triangles`. Meshes without triangles keep their index and are never met. The vertices are
     /// copied, so `meshes` may go afterwards.
     ///
@@ -43,6 +79,18 @@ impl Accel {
     /// If a triangle names a missing vertex, or has a coordinate for which Embree would leave it out
     /// without a word, or if Embree fails (memory).
     pub fn build(device: &Device, meshes: &[TriangleMesh]) -> Result<Accel, EmbreeError> {
+        Accel::build_with(device, meshes, BuildQuality::default())
+    }
+
+    /// As [`Accel::build`], with a quality to choose.
+    ///
+    /// # Errors
+    /// As [`Accel::build`].
+    pub fn build_with(
+        device: &Device,
+        meshes: &[TriangleMesh],
+        quality: BuildQuality,
+    ) -> Result<Accel, EmbreeError> {
         if u32::try_from(meshes.len()).is_err() {
             return Err(EmbreeError::TooMany { what: "meshes", count: meshes.len() });
         }
@@ -53,16 +101,18 @@ impl Accel {
         let scene = unsafe { sys::rtcNewScene(device.handle()) };
         device.check("making a scene")?;
         // From here on dropping releases the scene.
-        let mut accel = Accel { scene, bounds: None, device: device.clone() };
+        let widest = if device.native_packets16() { Width::Sixteen } else { Width::Eight };
+        let mut accel = Accel { scene, bounds: None, widest, device: device.clone() };
+        let (quality, flags) = quality.to_embree();
         // SAFETY: the scene is live and not yet committed. The flag is what lets a query bring its own
         // filter; without it Embree ignores the filter silently.
         unsafe {
-            sys::rtcSetSceneBuildQuality(scene, sys::RTC_BUILD_QUALITY_MEDIUM);
-            sys::rtcSetSceneFlags(scene, sys::RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
+            sys::rtcSetSceneBuildQuality(scene, quality);
+            sys::rtcSetSceneFlags(scene, flags | sys::RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
         }
         for (id, mesh) in (0u32..).zip(meshes) {
             if !mesh.triangles.is_empty() {
-                accel.attach(id, mesh)?;
+                accel.attach(id, mesh, quality)?;
             }
         }
         // SAFETY: the scene is live; committing takes no pointers. Embree restores MXCSR afterwards.
@@ -72,7 +122,12 @@ impl Accel {
         Ok(accel)
     }
 
-    fn attach(&mut self, id: u32, mesh: &TriangleMesh) -> Result<(), EmbreeError> {
+    fn attach(
+        &mut self,
+        id: u32,
+        mesh: &TriangleMesh,
+        quality: sys::RTCBuildQuality,
+    ) -> Result<(), EmbreeError> {
         // SAFETY: the device is live.
         let geometry = unsafe { sys::rtcNewGeometry(self.device.handle(), sys::RTC_GEOMETRY_TYPE_TRIANGLE) };
         self.device.check("making a mesh")?;
@@ -83,7 +138,7 @@ impl Accel {
         // geometry whose buffers are missing is not attached.
         unsafe {
             if copied {
-                sys::rtcSetGeometryBuildQuality(geometry, sys::RTC_BUILD_QUALITY_MEDIUM);
+                sys::rtcSetGeometryBuildQuality(geometry, quality);
                 sys::rtcSetGeometryMask(geometry, mesh.mask);
                 sys::rtcCommitGeometry(geometry);
                 sys::rtcAttachGeometryByID(self.scene, geometry, id);
@@ -182,6 +237,12 @@ impl Accel {
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.bounds.is_none()
+    }
+
+    /// The widest packets that are traced as such and not by parts.
+    #[inline]
+    pub fn widest(&self) -> Width {
+        self.widest
     }
 
     /// The device that the structure was built with.

@@ -1,5 +1,5 @@
 //! The safe face of Embree 4: device, triangle scene, closest-hit and occlusion queries for one ray
-//! and for sixteen. With `vendor-bindings/`, the only place with unsafe code.
+//! and for packets. With `vendor-bindings/`, the only place with unsafe code.
 //!
 //! A [`Device`] is made once, an [`Accel`] once per scene; queries go to the `Accel` from any number of
 //! threads. What the queries guarantee, and what not:
@@ -38,10 +38,12 @@ mod packet;
 mod ray;
 #[cfg(test)]
 mod tests;
+mod width;
 
-pub use accel::{Accel, TriangleMesh};
+pub use accel::{Accel, BuildQuality, TriangleMesh};
 pub use device::{Device, Version};
 pub use error::EmbreeError;
 pub use occluder::{Occluder, Occluders16, Skip16, TriangleId};
 pub use packet::{Hits16, Rays16};
 pub use ray::{ALL_GEOMETRY, Hit, Ray};
+pub use width::{Prepared, Width};

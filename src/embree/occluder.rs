@@ -36,6 +36,14 @@ pub struct Occluder {
     pub primitive: u32,
 }
 
+impl Occluder {
+    /// Which triangle.
+    #[inline]
+    pub fn id(&self) -> TriangleId {
+        TriangleId { geometry: self.geometry, primitive: self.primitive }
+    }
+}
+
 /// The occluders of sixteen rays. Lanes that are not occluded are left as they were.
 #[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
@@ -73,6 +81,18 @@ impl Skip16 {
             self.geometry[end][lane] = id.geometry;
             self.primitive[end][lane] = id.primitive;
         }
+    }
+
+    /// Both triangles of a lane.
+    ///
+    /// # Panics
+    /// If `lane` is 16 or more.
+    #[inline]
+    pub fn get(&self, lane: usize) -> [TriangleId; 2] {
+        [0, 1].map(|end| TriangleId {
+            geometry: self.geometry[end][lane],
+            primitive: self.primitive[end][lane],
+        })
     }
 }
 

@@ -1,18 +1,38 @@
-//! Visibility in a real scene: one shadow ray a query.
+//! Visibility in a real scene: shadow rays of single points and of groups.
 
+use super::group::{GroupVisibility, Points};
 use super::transfer::Visibility;
 use crate::light_tree::Node;
-use crate::vpl::{Vpl, VplKind};
+use crate::shadow::{Engine, Packing, to_vpl};
+use crate::vpl::Vpl;
 use crate::world::World;
 use glam::Vec3;
+
+impl Visibility for Engine<'_> {
+    #[inline]
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
+        !self.occluded(&to_vpl(x, normal, vpl, node.kind()), node.representative() as u32)
+    }
+}
+
+impl GroupVisibility for Engine<'_> {
+    #[inline]
+    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+        let rays = points.shadow_rays(vpl, node.kind());
+        lanes & !self.occluded16(&rays, lanes, Packing::Neighbours, node.representative() as u32)
+    }
+}
 
 impl Visibility for World {
     #[inline]
     fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
-        match node.kind() {
-            VplKind::Oriented => World::visible(self, x, normal, vpl.position, vpl.normal()),
-            VplKind::Omni => World::visible(self, x, normal, vpl.position, Vec3::ZERO),
-            VplKind::Directional => self.escapes(x, normal, vpl.position),
-        }
+        Visibility::visible(&self.shadows(), x, normal, vpl, node)
+    }
+}
+
+impl GroupVisibility for World {
+    #[inline]
+    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+        self.shadows().visible16(points, lanes, vpl, node)
     }
 }

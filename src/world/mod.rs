@@ -2,7 +2,7 @@
 //!
 //! Units: positions relative to the scene's centre. A `World` is immutable and shared by all threads.
 
-use crate::embree::{Accel, Device, EmbreeError, Hit, Ray, TriangleMesh};
+use crate::embree::{Accel, Device, EmbreeError, Hit, Ray, TriangleId, TriangleMesh};
 use crate::light::{Emitters, emitted};
 use crate::material::{Bsdf, Materials};
 use crate::math::{Frame, Rgb};
@@ -100,6 +100,19 @@ impl World {
     #[inline]
     pub fn geometric_normal(&self, mesh: u32, triangle: u32) -> Vec3 {
         self.triangles.get(mesh, triangle).normal
+    }
+
+    /// Corner 0 of a triangle, and its edges from there to corners 1 and 2.
+    #[inline]
+    pub fn corner_and_edges(&self, id: TriangleId) -> (Vec3, [Vec3; 2]) {
+        let triangle = self.triangles.get(id.geometry, id.primitive);
+        (triangle.corner, triangle.edges)
+    }
+
+    /// Shadow rays without an occluder cache.
+    #[inline]
+    pub fn shadows(&self) -> shadow::Engine<'_> {
+        shadow::Engine::new(self)
     }
 
     /// How the surface scatters, textures looked up.

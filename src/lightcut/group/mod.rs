@@ -22,7 +22,7 @@ pub use alike::{LEAST_SHARED, alike, group_alike};
 pub use lend::LentCut;
 pub use points::Points;
 pub use refine::GroupLightcut;
-pub use transfer::{GroupVisibility, shadow_rays};
+pub use transfer::GroupVisibility;
 
 /// Points in a group.
 pub const LANES: usize = 16;

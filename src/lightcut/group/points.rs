@@ -1,8 +1,11 @@
 //! The points of a group, lane by lane.
 
 use super::{LANES, Lanes};
+use crate::embree::Rays16;
 use crate::lightcut::Reflector;
 use crate::math::{Frame, LUMINANCE, Rgb};
+use crate::shadow;
+use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;
 
 /// Three numbers for each point.
@@ -91,6 +94,12 @@ impl<'m> Points<'m> {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.reflectors.is_empty()
+    }
+
+    /// Rays to a virtual light, in all lanes.
+    #[inline]
+    pub fn shadow_rays(&self, vpl: &Vpl, kind: VplKind) -> Rays16 {
+        shadow::to_vpl16(&self.position, &self.geometric_normal, vpl, kind)
     }
 
     /// Point number `lane`.

@@ -3,15 +3,12 @@
 
 use super::points::{Points, Vec3Lanes, lanes_of};
 use super::{LANES, Lanes, RgbLanes};
-use crate::embree::Rays16;
 use crate::light_tree::Node;
 use crate::lightcut::expected::{Outlook, expected_share};
 use crate::lightcut::{Transfer, Unoccluded};
 use crate::material::DirectionBound;
 use crate::math::{Frame, Rgb, luminance};
-use crate::shadow;
 use crate::vpl::{Vpl, VplKind};
-use crate::world::World;
 use glam::Vec3;
 
 /// Widens boxes by more than the rounding of what is computed from them.
@@ -248,31 +245,6 @@ impl GroupVisibility for Unoccluded {
     fn visible16(&self, _: &Points, lanes: u16, _: &Vpl, _: &Node) -> u16 {
         lanes
     }
-}
-
-impl GroupVisibility for World {
-    #[inline]
-    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
-        let rays = shadow_rays(points, lanes, vpl, node.kind());
-        lanes & !self.accel.occluded16(&rays, lanes, true)
-    }
-}
-
-/// Shadow rays from the points in `lanes` to a VPL.
-pub fn shadow_rays(points: &Points, lanes: u16, vpl: &Vpl, kind: VplKind) -> Rays16 {
-    let mut rays = Rays16::default();
-    let end_normal = if kind == VplKind::Oriented { vpl.normal() } else { Vec3::ZERO };
-    for lane in lanes_of(lanes) {
-        let at = |v: &Vec3Lanes| Vec3::new(v[0][lane], v[1][lane], v[2][lane]);
-        let (x, normal) = (at(&points.position), at(&points.geometric_normal));
-        // Rays start at the receivers: a coherent packet that fans out from the light loses hits.
-        let ray = match kind {
-            VplKind::Directional => shadow::ray_from(x, normal, vpl.position),
-            _ => shadow::segment(x, normal, vpl.position, end_normal),
-        };
-        rays.set(lane, &ray);
-    }
-    rays
 }
 
 /// Luminance of each lane's colour times `intensity`.

@@ -16,7 +16,8 @@ const FUNCTIONS: &[&str] = &[
     "rtcSetNewGeometryBuffer",
     "rtcAttachGeometryByID",
     "rtcGetSceneBounds",
-    "rtc(Intersect|Occluded)(1|16)",
+    "rtcIntersect(1|16)",
+    "rtcOccluded(1|4|8|16)",
 ];
 /// Types that only casts mention: the views of a packet inside a filter, and the flags.
 const TYPES: &[&str] =

@@ -96,6 +96,40 @@ pub struct RTCRayHit {
     pub hit: RTCHit,
 }
 #[repr(C)]
+#[repr(align(16))]
+#[derive(Debug, Copy, Clone)]
+pub struct RTCRay4 {
+    pub org_x: [f32; 4usize],
+    pub org_y: [f32; 4usize],
+    pub org_z: [f32; 4usize],
+    pub tnear: [f32; 4usize],
+    pub dir_x: [f32; 4usize],
+    pub dir_y: [f32; 4usize],
+    pub dir_z: [f32; 4usize],
+    pub time: [f32; 4usize],
+    pub tfar: [f32; 4usize],
+    pub mask: [::core::ffi::c_uint; 4usize],
+    pub id: [::core::ffi::c_uint; 4usize],
+    pub flags: [::core::ffi::c_uint; 4usize],
+}
+#[repr(C)]
+#[repr(align(32))]
+#[derive(Debug, Copy, Clone)]
+pub struct RTCRay8 {
+    pub org_x: [f32; 8usize],
+    pub org_y: [f32; 8usize],
+    pub org_z: [f32; 8usize],
+    pub tnear: [f32; 8usize],
+    pub dir_x: [f32; 8usize],
+    pub dir_y: [f32; 8usize],
+    pub dir_z: [f32; 8usize],
+    pub time: [f32; 8usize],
+    pub tfar: [f32; 8usize],
+    pub mask: [::core::ffi::c_uint; 8usize],
+    pub id: [::core::ffi::c_uint; 8usize],
+    pub flags: [::core::ffi::c_uint; 8usize],
+}
+#[repr(C)]
 #[repr(align(64))]
 #[derive(Debug, Copy, Clone)]
 pub struct RTCRay16 {
@@ -447,6 +481,40 @@ const _: () = {
 };
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 const _: () = {
+    ["Size of RTCRay4"][::core::mem::size_of::<RTCRay4>() - 192usize];
+    ["Alignment of RTCRay4"][::core::mem::align_of::<RTCRay4>() - 16usize];
+    ["Offset of field: RTCRay4::org_x"][::core::mem::offset_of!(RTCRay4, org_x) - 0usize];
+    ["Offset of field: RTCRay4::org_y"][::core::mem::offset_of!(RTCRay4, org_y) - 16usize];
+    ["Offset of field: RTCRay4::org_z"][::core::mem::offset_of!(RTCRay4, org_z) - 32usize];
+    ["Offset of field: RTCRay4::tnear"][::core::mem::offset_of!(RTCRay4, tnear) - 48usize];
+    ["Offset of field: RTCRay4::dir_x"][::core::mem::offset_of!(RTCRay4, dir_x) - 64usize];
+    ["Offset of field: RTCRay4::dir_y"][::core::mem::offset_of!(RTCRay4, dir_y) - 80usize];
+    ["Offset of field: RTCRay4::dir_z"][::core::mem::offset_of!(RTCRay4, dir_z) - 96usize];
+    ["Offset of field: RTCRay4::time"][::core::mem::offset_of!(RTCRay4, time) - 112usize];
+    ["Offset of field: RTCRay4::tfar"][::core::mem::offset_of!(RTCRay4, tfar) - 128usize];
+    ["Offset of field: RTCRay4::mask"][::core::mem::offset_of!(RTCRay4, mask) - 144usize];
+    ["Offset of field: RTCRay4::id"][::core::mem::offset_of!(RTCRay4, id) - 160usize];
+    ["Offset of field: RTCRay4::flags"][::core::mem::offset_of!(RTCRay4, flags) - 176usize];
+};
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+const _: () = {
+    ["Size of RTCRay8"][::core::mem::size_of::<RTCRay8>() - 384usize];
+    ["Alignment of RTCRay8"][::core::mem::align_of::<RTCRay8>() - 32usize];
+    ["Offset of field: RTCRay8::org_x"][::core::mem::offset_of!(RTCRay8, org_x) - 0usize];
+    ["Offset of field: RTCRay8::org_y"][::core::mem::offset_of!(RTCRay8, org_y) - 32usize];
+    ["Offset of field: RTCRay8::org_z"][::core::mem::offset_of!(RTCRay8, org_z) - 64usize];
+    ["Offset of field: RTCRay8::tnear"][::core::mem::offset_of!(RTCRay8, tnear) - 96usize];
+    ["Offset of field: RTCRay8::dir_x"][::core::mem::offset_of!(RTCRay8, dir_x) - 128usize];
+    ["Offset of field: RTCRay8::dir_y"][::core::mem::offset_of!(RTCRay8, dir_y) - 160usize];
+    ["Offset of field: RTCRay8::dir_z"][::core::mem::offset_of!(RTCRay8, dir_z) - 192usize];
+    ["Offset of field: RTCRay8::time"][::core::mem::offset_of!(RTCRay8, time) - 224usize];
+    ["Offset of field: RTCRay8::tfar"][::core::mem::offset_of!(RTCRay8, tfar) - 256usize];
+    ["Offset of field: RTCRay8::mask"][::core::mem::offset_of!(RTCRay8, mask) - 288usize];
+    ["Offset of field: RTCRay8::id"][::core::mem::offset_of!(RTCRay8, id) - 320usize];
+    ["Offset of field: RTCRay8::flags"][::core::mem::offset_of!(RTCRay8, flags) - 352usize];
+};
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+const _: () = {
     ["Size of RTCRay16"][::core::mem::size_of::<RTCRay16>() - 768usize];
     ["Alignment of RTCRay16"][::core::mem::align_of::<RTCRay16>() - 64usize];
     ["Offset of field: RTCRay16::org_x"][::core::mem::offset_of!(RTCRay16, org_x) - 0usize];
@@ -626,6 +694,18 @@ unsafe extern "C" {
         args: *mut RTCIntersectArguments,
     );
     pub fn rtcOccluded1(scene: RTCScene, ray: *mut RTCRay, args: *mut RTCOccludedArguments);
+    pub fn rtcOccluded4(
+        valid: *const ::core::ffi::c_int,
+        scene: RTCScene,
+        ray: *mut RTCRay4,
+        args: *mut RTCOccludedArguments,
+    );
+    pub fn rtcOccluded8(
+        valid: *const ::core::ffi::c_int,
+        scene: RTCScene,
+        ray: *mut RTCRay8,
+        args: *mut RTCOccludedArguments,
+    );
     pub fn rtcOccluded16(
         valid: *const ::core::ffi::c_int,
         scene: RTCScene,

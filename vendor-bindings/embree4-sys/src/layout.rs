@@ -19,6 +19,8 @@ layout! {
     RTCRay: size 48, align 16, org_x at 0, tnear at 12, dir_x at 16, time at 28, tfar at 32, mask at 36, id at 40, flags at 44;
     RTCHit: size 48, align 16, Ng_x at 0, u at 12, v at 16, primID at 20, geomID at 24, instID at 28, instPrimID at 32;
     RTCRayHit: size 96, align 16, ray at 0, hit at 48;
+    RTCRay4: size 192, align 16, org_x at 0, tnear at 48, dir_x at 64, time at 112, tfar at 128, mask at 144, id at 160, flags at 176;
+    RTCRay8: size 384, align 32, org_x at 0, tnear at 96, dir_x at 128, time at 224, tfar at 256, mask at 288, id at 320, flags at 352;
     RTCRay16: size 768, align 64, org_x at 0, tnear at 192, dir_x at 256, time at 448, tfar at 512, mask at 576, id at 640, flags at 704;
     RTCHit16: size 576, align 64, Ng_x at 0, u at 192, v at 256, primID at 320, geomID at 384, instID at 448, instPrimID at 512;
     RTCRayHit16: size 1344, align 64, ray at 0, hit at 768;

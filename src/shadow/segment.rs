@@ -1,0 +1,34 @@
+//! Rays that keep a surface from shadowing itself.
+//!
+//! A ray that starts on a surface is moved off it along the geometric normal, to the side it leaves towards,
+//! by 8 units in the last place of the position's largest coordinate. The move scales with the rounding of
+//! the position itself, so it holds for any scene size or offset, where a constant would not.
+
+use crate::embree::Ray;
+use glam::Vec3;
+
+/// Offset in units of the last place of the largest coordinate.
+pub(super) const ULPS: f32 = 8.0;
+
+/// `position` moved off its surface towards the side of `direction`.
+#[inline]
+pub fn offset(position: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
+    let step = position.abs().max_element().max(f32::MIN_POSITIVE) * (ULPS * f32::EPSILON);
+    let side = if normal.dot(direction) < 0.0 { -step } else { step };
+    position + normal * side
+}
+
+/// The ray from a surface point in a direction, unbounded.
+#[inline]
+pub fn ray_from(position: Vec3, normal: Vec3, direction: Vec3) -> Ray {
+    Ray { origin: offset(position, normal, direction), t_near: 0.0, direction, t_far: f32::INFINITY }
+}
+
+/// The segment between two surface points, both ends moved off their surfaces; `t` runs from 0 to 1.
+#[inline]
+pub fn segment(a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> Ray {
+    let direction = b - a;
+    let origin = offset(a, a_normal, direction);
+    let target = offset(b, b_normal, -direction);
+    Ray { origin, t_near: 0.0, direction: target - origin, t_far: 1.0 }
+}
