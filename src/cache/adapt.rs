@@ -1,8 +1,9 @@
 //! Footprints that disagree visibly are shrunk.
 //!
 //! Paper: Herzog et al. 2009, section 5.2: at each eye sample one contribution after the other is left out; where
-//! that changes the luminance visibly, the record's footprint is shrunk until it excludes the sample. On glossy surfaces
-//! lit by series, luminance is that of what is reflected to the eye, elsewhere that of the irradiance. The change is judged against the sum of both layers, so that each masks the other.
+//! that changes the luminance visibly, the record's footprint is shrunk until it excludes the sample. On glossy
+//! surfaces lit by series, luminance is that of what is reflected to the eye, elsewhere that of the irradiance.
+//! The change is judged against the sum of both layers, so that each masks the other.
 //!
 //! Deviations: the record nearest to the sample keeps its place. Leaving it out changes most, yet it knows most.
 
@@ -23,22 +24,19 @@ pub struct Seam {
     pub sample: u32,
 }
 
-/// Finds the seams of all leaves marked in `changed`, in order.
+/// Finds all seams, leaf by leaf.
 pub fn seams(
     samples: &EyeSamples,
     layers: &[Layer; 2],
     glossy: Option<&Glossy>,
     threshold: f32,
-    changed: &[bool],
 ) -> Vec<Seam> {
     let by_leaf: Vec<Vec<Seam>> = (0..samples.index.leaves())
         .into_par_iter()
         .map_init(Default::default, |contributions, leaf| {
             let mut seams = Vec::new();
-            if changed[leaf] {
-                for sample in samples.index.leaf(leaf) {
-                    at_sample(samples, layers, glossy, threshold, (leaf, sample), contributions, &mut seams);
-                }
+            for sample in samples.index.leaf(leaf) {
+                at_sample(samples, layers, glossy, threshold, (leaf, sample), contributions, &mut seams);
             }
             seams
         })
@@ -90,8 +88,8 @@ fn at_sample(
     }
 }
 
-/// Shrinks the footprints of the records at `seams` and says in which leaves of each layer that changes something; the sums there
-/// must be formed anew.
+/// Shrinks the footprints of the records at `seams` and says in which leaves that changes something; the sums
+/// there must be formed anew.
 pub fn shrink(
     samples: &EyeSamples,
     layers: &mut [Layer; 2],

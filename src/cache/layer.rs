@@ -1,7 +1,7 @@
 //! One layer of the cache: records of direct or of indirect light, and what they give at the eye samples.
 //!
-//! Every leaf of the eye samples' index keeps the list of records that may reach it. Splatting works leaf by leaf, so
-//! that threads share nothing and sums are formed in the order of the records, however many threads there are.
+//! Every leaf of the eye samples' index keeps the list of records that may reach it. Splatting works leaf by leaf,
+//! so that threads share nothing and sums are formed in the order of the records, however many threads there are.
 
 use super::compute::Made;
 use super::record::Record;
@@ -31,7 +31,8 @@ impl Sum {
 pub struct Layer {
     /// All of them, in the order of their making.
     pub records: Vec<Record>,
-    /// Their light as series, which only records on glossy surfaces have; shorter than `records` if the last have none.
+    /// Their light as series, which only records on glossy surfaces have; shorter than `records` if the last have
+    /// none.
     series: Vec<Option<Radiance>>,
     /// For each leaf, the records whose footprints may reach it.
     pub lists: Vec<Vec<u32>>,
@@ -64,6 +65,7 @@ impl Layer {
     /// Adds records and splats them.
     pub fn splat(&mut self, samples: &EyeSamples, new: impl Iterator<Item = Made>) {
         let first = self.records.len() as u32;
+        let mut touched = vec![false; self.lists.len()];
         for made in new {
             if made.series.is_some() {
                 self.series.resize(self.records.len(), None);
@@ -84,11 +86,12 @@ impl Layer {
         for (id, leaves) in (first..).zip(reached) {
             for leaf in leaves {
                 self.lists[leaf as usize].push(id);
+                touched[leaf as usize] = true;
             }
         }
         let records = &self.records;
         let lists = &self.lists;
-        by_leaf(&mut self.sums, &samples.index).into_par_iter().for_each(|(leaf, sums)| {
+        by_leaf(&mut self.sums, &samples.index, &touched).into_par_iter().for_each(|(leaf, sums)| {
             let list = &lists[leaf];
             let new = &list[list.partition_point(|&id| id < first)..];
             add(records, new, &samples.points[samples.index.leaf(leaf)], sums);
@@ -98,22 +101,24 @@ impl Layer {
     /// Forms the sums of some leaves anew.
     pub fn resplat(&mut self, samples: &EyeSamples, changed: &[bool]) {
         let (records, lists) = (&self.records, &self.lists);
-        by_leaf(&mut self.sums, &samples.index).into_par_iter().filter(|(leaf, _)| changed[*leaf]).for_each(
-            |(leaf, sums)| {
-                sums.fill(Sum::default());
-                add(records, &lists[leaf], &samples.points[samples.index.leaf(leaf)], sums);
-            },
-        );
+        by_leaf(&mut self.sums, &samples.index, changed).into_par_iter().for_each(|(leaf, sums)| {
+            sums.fill(Sum::default());
+            add(records, &lists[leaf], &samples.points[samples.index.leaf(leaf)], sums);
+        });
     }
 }
 
-/// The sums of each leaf's samples.
-fn by_leaf<'a>(sums: &'a mut [Sum], index: &EyeIndex) -> Vec<(usize, &'a mut [Sum])> {
+/// The sums of the samples of each leaf that is marked.
+fn by_leaf<'a>(sums: &'a mut [Sum], index: &EyeIndex, marked: &[bool]) -> Vec<(usize, &'a mut [Sum])> {
     let mut rest = sums;
-    (0..index.leaves())
+    let mut start = 0;
+    let leaves = (0..index.leaves()).filter(|&leaf| marked[leaf]);
+    leaves
         .map(|leaf| {
-            let (own, others) = std::mem::take(&mut rest).split_at_mut(index.leaf(leaf).len());
-            rest = others;
+            let range = index.leaf(leaf);
+            let (_, from) = std::mem::take(&mut rest).split_at_mut(range.start - start);
+            let (own, others) = from.split_at_mut(range.len());
+            (rest, start) = (others, range.end);
             (leaf, own)
         })
         .collect()

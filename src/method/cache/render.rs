@@ -169,9 +169,8 @@ impl Cache {
     /// Shrinks footprints at visible seams; false if there are none.
     fn adapt(&mut self, source: &Source, samples: &EyeSamples, stats: &mut Stats) -> bool {
         stats.time(Stage::Splat, || {
-            let all = vec![true; samples.index.leaves()];
-            let seams =
-                adapt::seams(samples, &self.layers, self.glossy.as_ref(), source.settings.threshold, &all);
+            let threshold = source.settings.threshold;
+            let seams = adapt::seams(samples, &self.layers, self.glossy.as_ref(), threshold);
             let least = [0, 1].map(|l| source.settings.layers[l].reach[0]);
             let changed = adapt::shrink(samples, &mut self.layers, &seams, least);
             for layer in &mut self.layers {
