@@ -53,6 +53,15 @@ pub struct ChainCounts {
     pub overflow: u64,
 }
 
+impl ChainCounts {
+    /// Adds what others counted.
+    pub fn add(&mut self, other: &ChainCounts) {
+        self.rays += other.rays;
+        self.shadow_rays += other.shadow_rays;
+        self.overflow += other.overflow;
+    }
+}
+
 struct Branch {
     ray: Ray,
     throughput: Rgb,

@@ -116,9 +116,7 @@ impl<'w> EyeSamples<'w> {
             for (pixel, radiance) in tile.emitted {
                 emitted.pixels[pixel as usize] += radiance;
             }
-            chains.rays += tile.chains.rays;
-            chains.shadow_rays += tile.chains.shadow_rays;
-            chains.overflow += tile.chains.overflow;
+            chains.add(&tile.chains);
             nonfinite += tile.nonfinite;
             complete &= tile.done;
         }

@@ -2,7 +2,9 @@
 
 pub mod cache;
 pub mod control;
+mod counts;
 pub mod lightcuts;
+pub mod lights;
 pub mod output;
 pub mod path;
 

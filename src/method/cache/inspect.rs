@@ -12,7 +12,8 @@
 //! | `clamped` | share of that indirect record's light taken by clamping, share given back, 0 |
 //! | `seams.1`, `seams.2`, ... | eye samples at visible seams before each pass: direct, indirect, 0 |
 //!
-//! Where a pixel has several eye samples, the last in the order of the index stands for all but in sums and counts.
+//! Where a pixel has several eye samples, the last in the order of the index stands for all but in sums and
+//! counts.
 
 use crate::cache::adapt::Seam;
 use crate::cache::layer::Layer;

@@ -12,12 +12,13 @@ use crate::cache::series::Glossy;
 use crate::cache::wave::{Pick, lacking, pick};
 use crate::cache::{CacheSettings, DirectLight, adapt};
 use crate::eye::{EyePoint, EyeSamples, EyeSettings, EyeSurface, Window};
-use crate::light_tree::{Family, LightTrees};
-use crate::lightcut::{CutCounts, CutSettings, Transfer};
+use crate::light_tree::Family;
+use crate::lightcut::{CutCounts, CutSettings};
 use crate::math::{Rgb, luminance};
-use crate::method::{Control, Output};
+use crate::method::lights::Lights;
+use crate::method::{Control, Output, counts};
 use crate::stats::{Stage, Stats};
-use crate::vpl::{LightPassSettings, Origin, light_pass};
+use crate::vpl::{LightPassSettings, Origin};
 use crate::world::World;
 
 /// Level of the coarsest cells.
@@ -70,21 +71,13 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let mut samples = stats.time(Stage::EyePass, || EyeSamples::look(world, window, eye, control));
     let glossy = stats.time(Stage::EyePass, || Glossy::find(world, &mut samples, &settings.cache.series));
 
-    let light = LightPassSettings { seed: settings.seed, ..settings.light };
-    control.begin(Stage::LightPass, u64::from(light.indirect));
-    let lights = stats.time(Stage::LightPass, || light_pass(world, &light, max_depth, control));
-    stats.count("VPLs/total", lights.len() as u64);
-    stats.count("VPLs/photon paths", lights.photons.paths);
-    stats.count("Rays/closest hit", samples.chains.rays + lights.photons.rays);
-    stats.count("Eye/shadow rays", samples.chains.shadow_rays);
-    stats.count("Eye/branches dropped", samples.chains.overflow);
+    counts::eye(&mut stats, &samples.chains);
 
-    control.begin(Stage::Tree, 0);
-    let trees = stats
-        .time(Stage::Tree, || LightTrees::build(&lights.sets, lights.spots, world.diagonal, settings.family));
-    let transfer = Transfer::new(&trees.spots, world.diagonal);
-    let compensation = settings.cache.compensation.then(|| Compensation::new(&trees));
-    let source = Source { world, trees: &trees, transfer, settings: &settings.cache, compensation };
+    let light = LightPassSettings { seed: settings.seed, ..settings.light };
+    let lights = Lights::new(world, &light, settings.family, max_depth, control, &mut stats);
+    let (trees, transfer) = (&lights.trees, lights.transfer());
+    let compensation = settings.cache.compensation.then(|| Compensation::new(trees));
+    let source = Source { world, trees, transfer, settings: &settings.cache, compensation };
 
     let mut cache = Cache::new(&samples, glossy, settings.cache.direct);
     control.begin(Stage::Records, samples.len() as u64);
@@ -100,12 +93,12 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let mut picture = Picture::new(&samples, settings.inspect);
     let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
     control.begin(Stage::Render, jobs.len() as u64);
-    let (lit, counts) = stats.time(Stage::Render, || own::light(&source, &samples, &jobs, &settings.cut));
+    let (lit, used) = stats.time(Stage::Render, || own::light(&source, &samples, &jobs, &settings.cut));
     for (job, radiance) in lit {
         picture.add(&samples, job.sample as usize, job.only, radiance);
     }
     stats.count("Cache/samples with own cuts", jobs.len() as u64);
-    count(&mut stats, "Lightcut", &counts);
+    counts::cuts(&mut stats, "Lightcut", &used);
     let complete = samples.complete && !control.is_cancelled();
     let (color, mut extra, nonfinite) = picture.finish();
     if settings.inspect {
@@ -191,7 +184,7 @@ impl Cache {
         let mut seams: Vec<u32> = self.seams.last().into_iter().flatten().map(|s| s.sample).collect();
         seams.dedup();
         stats.count("Cache/samples at seams", seams.len() as u64);
-        count(stats, "Records", &self.counts);
+        counts::cuts(stats, "Records", &self.counts);
         let sum = |f: &dyn Fn(&Record) -> f32| self.layers[1].records.iter().map(|r| f64::from(f(r))).sum();
         let total: f64 = sum(&|r| r.luminance + r.facts.clamped - r.facts.compensated);
         let clamped: f64 = sum(&|r| r.facts.clamped);
@@ -236,14 +229,4 @@ impl Cache {
         }
         jobs
     }
-}
-
-fn count(stats: &mut Stats, group: &str, counts: &CutCounts) {
-    stats.count(&format!("{group}/shadow rays"), counts.rays);
-    stats.count(&format!("{group}/cuts"), counts.cuts);
-    stats.count(&format!("{group}/clusters"), counts.clusters);
-    stats.count(&format!("{group}/capped"), counts.capped);
-    stats.count(&format!("{group}/bounds"), counts.bounds);
-    stats.count(&format!("{group}/clamped VPLs"), counts.clamped);
-    stats.add(&format!("{group}/mean cut"), counts.clusters as f64 / counts.cuts.max(1) as f64);
 }

@@ -1,14 +1,15 @@
 //! The picture: light pass, trees, then pixels in tiles.
 
 use super::tile::{TILE, Tile, Workspace};
-use crate::eye::Window;
+use crate::eye::{ChainCounts, Window};
 use crate::image::Image;
 use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::{CutCounts, CutSettings, Transfer};
 use crate::math::Rgb;
-use crate::method::{Control, Output};
+use crate::method::lights::Lights;
+use crate::method::{Control, Output, counts};
 use crate::stats::{Stage, Stats};
-use crate::vpl::{LightPassSettings, light_pass};
+use crate::vpl::LightPassSettings;
 use crate::world::World;
 use rayon::prelude::*;
 
@@ -61,16 +62,9 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
 
     let light = LightPassSettings { seed: settings.seed, ..settings.light };
-    control.begin(Stage::LightPass, u64::from(light.indirect));
-    let lights = stats.time(Stage::LightPass, || light_pass(world, &light, max_depth, control));
-    stats.count("VPLs/total", lights.len() as u64);
-    stats.count("VPLs/photon paths", lights.photons.paths);
-
-    control.begin(Stage::Tree, 0);
-    let trees = stats
-        .time(Stage::Tree, || LightTrees::build(&lights.sets, lights.spots, world.diagonal, settings.family));
-    let transfer = Transfer::new(&trees.spots, world.diagonal);
-    let scenery = Scenery { world, window, settings, trees: &trees, transfer, max_depth };
+    let lights = Lights::new(world, &light, settings.family, max_depth, control, &mut stats);
+    let scenery =
+        Scenery { world, window, settings, trees: &lights.trees, transfer: lights.transfer(), max_depth };
 
     // Tiles are aligned to the film, not to the window.
     let first = window.offset.map(|o| o / TILE);
@@ -90,38 +84,24 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
 
     let mut color = Image::new(window.width, window.height);
     let mut cut_size = Image::new(window.width, window.height);
-    let mut counts = CutCounts::default();
-    let mut chain_shadow_rays = 0;
-    let (mut eye_rays, mut overflow, mut packets, mut nonfinite) = (0, 0, 0, 0);
+    let mut used = CutCounts::default();
+    let mut chains = ChainCounts::default();
+    let (mut packets, mut nonfinite) = (0, 0);
     for (i, tile) in tiles.iter().enumerate().filter(|(_, tile)| tile.done) {
         for (k, [x, y]) in scenery.tile_area(corner(i)).pixels().enumerate() {
             let at = ((y - window.offset[1]) * window.width + x - window.offset[0]) as usize;
             color.pixels[at] = tile.radiance[k];
             cut_size.pixels[at] = Rgb::splat(tile.cut_sizes[k]);
         }
-        counts.add(&tile.counts);
+        used.add(&tile.counts);
         packets += tile.packets;
-        eye_rays += tile.chains.rays;
-        overflow += tile.chains.overflow;
-        chain_shadow_rays += tile.chains.shadow_rays;
+        chains.add(&tile.chains);
         nonfinite += tile.nonfinite;
     }
     stats.count("Rays/shadow packets", packets);
-    count(&mut stats, &counts);
-    stats.count("Rays/closest hit", eye_rays + lights.photons.rays);
-    stats.count("Eye/shadow rays", chain_shadow_rays);
-    stats.count("Eye/branches dropped", overflow);
+    counts::cuts(&mut stats, "Lightcut", &used);
+    counts::eye(&mut stats, &chains);
     let complete = tiles.iter().all(|t| t.done);
     let extra = vec![("cut".to_owned(), cut_size)];
     Output { color, variance: None, extra, stats, complete, nonfinite }
-}
-
-fn count(stats: &mut Stats, counts: &CutCounts) {
-    stats.count("Rays/shadow", counts.rays);
-    stats.count("Lightcut/cuts", counts.cuts);
-    stats.count("Lightcut/clusters", counts.clusters);
-    stats.count("Lightcut/capped", counts.capped);
-    stats.count("Lightcut/bounds", counts.bounds);
-    stats.count("Lightcut/clamped VPLs", counts.clamped);
-    stats.add("Lightcut/mean cut", counts.clusters as f64 / counts.cuts.max(1) as f64);
 }

@@ -1,0 +1,23 @@
+//! What stages counted, by the names that methods share.
+
+use crate::eye::ChainCounts;
+use crate::lightcut::CutCounts;
+use crate::stats::Stats;
+
+/// Of eye rays and the specular chains behind them.
+pub fn eye(stats: &mut Stats, counts: &ChainCounts) {
+    stats.count("Rays/closest hit", counts.rays);
+    stats.count("Eye/shadow rays", counts.shadow_rays);
+    stats.count("Eye/branches dropped", counts.overflow);
+}
+
+/// Of lightcuts, in a group of counters.
+pub fn cuts(stats: &mut Stats, group: &str, counts: &CutCounts) {
+    stats.count(&format!("{group}/shadow rays"), counts.rays);
+    stats.count(&format!("{group}/cuts"), counts.cuts);
+    stats.count(&format!("{group}/clusters"), counts.clusters);
+    stats.count(&format!("{group}/capped"), counts.capped);
+    stats.count(&format!("{group}/bounds"), counts.bounds);
+    stats.count(&format!("{group}/clamped VPLs"), counts.clamped);
+    stats.add(&format!("{group}/mean cut"), counts.clusters as f64 / counts.cuts.max(1) as f64);
+}
