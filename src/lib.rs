@@ -1,4 +1,5 @@
-//! lightsplat: global illumination by radiance-cache splatting with lightcuts, and a path-traced reference, over Embree 4.
+//! lightsplat: global illumination by radiance-cache splatting with lightcuts, and a path-traced reference, over
+//! Embree 4.
 //!
 //! The pipeline, in the order of the data:
 //!
@@ -6,7 +7,7 @@
 //! - [`world`] makes it ready: [`embree`] for rays, [`material`] for scattering, [`light`] for emitters;
 //! - [`vpl`] turns lights and photon paths into virtual point lights, [`light_tree`] clusters them;
 //! - [`eye`] follows each pixel through mirrors and glass to the surfaces that scatter light into it;
-//! - [`lightcut`] finds, for each of those, the coarsest clusters that keep the error bound;
+//! - [`lightcut`] finds, for each of those, the coarsest clusters whose expected errors stay below what is asked;
 //! - [`gradient`] says how that light changes along the surface, [`hsh`] expands it over the hemisphere;
 //! - [`cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their footprints;
 //! - [`shadow`] answers whether segments are free, by packets of rays, [`sampling`] gives every stage its numbers;

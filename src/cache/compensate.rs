@@ -1,17 +1,17 @@
 //! Light that clamping takes from virtual lights close to a record, found again by short rays.
 //!
-//! Paper: Kollig and Keller, *Illumination in the Presence of Weak Singularities*, 2004; Herzog et al. 2009, section 6.3
-//! and Eq. 13. Virtual lights count with min(G, b) of their geometry term G = cosθ_x cosθ_y / r²; the rest, max(0, G - b),
-//! is integrated over directions instead: E = π/N Σ max(0, 1 - b/G) L over N directions distributed by the cosine.
-//! G exceeds b only where r < b^(-1/2), so rays end there and are cheap.
+//! Paper: Kollig and Keller, *Illumination in the Presence of Weak Singularities*, 2004; Herzog et al. 2009,
+//! section 6.3 and Eq. 13. Virtual lights count with min(G, b) of their geometry term G = cosθ_x cosθ_y / r²; the
+//! rest, max(0, G - b), is integrated over directions instead: E = π/N Σ max(0, 1 - b/G) L over N directions
+//! distributed by the cosine. G exceeds b only where r < b^(-1/2), so rays end there and are cheap.
 //!
-//! Deviations: b comes from the mean intensity of all indirect virtual lights, so one that is much brighter than the mean may give
-//! more than the limit. Every record is compensated, also where no light of its cut happens to be clamped: the
-//! two parts complement each other on average only. All records use the same directions, in frames of their own,
-//! so that their errors are alike and not seen between them. Light is looked up at up to `LOOKUPS` of the points that rays meet,
-//! chosen in proportion to what they may give, and itself lacks what is clamped. Series
-//! (light that lobes reflect) are clamped alike and not compensated. Where a
-//! longest path is set, paths over these points may have an edge more.
+//! Deviations: b comes from the mean intensity of all indirect virtual lights, so one that is much brighter than
+//! the mean may give more than the limit. Every record is compensated, also where no light of its cut happens to
+//! be clamped: the two parts complement each other on average only. All records use the same directions, in frames
+//! of their own, so that their errors are alike and not seen between them. Light is looked up at up to `LOOKUPS`
+//! of the points that rays meet, chosen in proportion to what they may give, and itself lacks what is clamped.
+//! Series (light that lobes reflect) are clamped alike and not compensated. Where a longest path is set, paths
+//! over these points may have an edge more.
 //!
 //! Units: b in 1/m².
 
@@ -126,7 +126,8 @@ impl Compensation {
         Clamp::Geometry(if self.mean_intensity > 0.0 { limit / self.mean_intensity } else { f32::INFINITY })
     }
 
-    /// Adds what virtual lights lack whose geometry terms were limited, to what the records of a task gather of indirect light.
+    /// Adds what virtual lights lack whose geometry terms were limited, to what the records of a task gather of
+    /// indirect light.
     pub fn add(
         &self,
         source: &Source,

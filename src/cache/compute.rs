@@ -1,8 +1,8 @@
 //! The records of one wave.
 //!
 //! Records that lie close together share a cut, as neighbouring pixels do: its shadow rays are coherent.
-//! A record that lacks one layer only cuts only that layer's trees, judged against what the other is known to give, so
-//! that each layer masks the other's errors (Herzog et al. 2009, section 6).
+//! A record that lacks one layer only cuts only that layer's trees, judged against what the other is known to
+//! give, so that each layer masks the other's errors (Herzog et al. 2009, section 6).
 
 use super::compensate::{Clamp, Compensation, Cutters};
 use super::footprint::Footprint;

@@ -1,24 +1,25 @@
 //! How irradiance changes where occluders hide and reveal what is behind them.
 //!
-//! As the receiver moves by δ, the edge of an occluder at distance z_c moves before its background at z_d by the angle
-//! (1/z_c - 1/z_d) δ, and a sliver of background appears or goes. Its radiance times its cosine is what gradients
-//! with visibility held leave out; the light of the occluder itself is among what they hold. Continuous
+//! As the receiver moves by δ, the edge of an occluder at distance z_c moves before its background at z_d by the
+//! angle (1/z_c - 1/z_d) δ, and a sliver of background appears or goes. Its radiance times its cosine is what
+//! gradients with visibility held leave out; the light of the occluder itself is among what they hold. Continuous
 //! surfaces, smooth or creased, have no such edges.
 //!
 //! Paper: Ward and Heckbert 1992 and Krivanek et al. 2005 for the integrals along cells' boundaries; Schwarzhaupt,
-//! Jensen and Jarosz, *Practical Hessian-Based Error Control for Irradiance Caching*, 2012, for the use of both derivatives.
+//! Jensen and Jarosz, *Practical Hessian-Based Error Control for Irradiance Caching*, 2012, for the use of both
+//! derivatives.
 //!
 //! Deviations: radiance comes from the cut's clusters, spread over the cells whose surface they lie on, not from
-//! shading what the rays meet. Second derivatives are an upper estimate: the background's radiance is taken to change by all
-//! of itself within one cell.
+//! shading what the rays meet. Second derivatives are an upper estimate: the background's radiance is taken to
+//! change by all of itself within one cell.
 
 use super::probe::{CELLS, Probes, RINGS, SECTORS};
 use crate::math::{Rgb, luminance};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// Distance of a light from the plane of a cell's surface, relative to its distance from the receiver, at which the
-/// light is no longer taken to lie on that surface.
+/// Distance of a light from the plane of a cell's surface, relative to its distance from the receiver, at which
+/// the light is no longer taken to lie on that surface.
 const ON_SURFACE: f32 = 0.05;
 
 /// Share that even a cell of quite another surface keeps: something must take the light.

@@ -1,7 +1,7 @@
 //! The footprint of a record: how large it is, and which way it is long.
 //!
-//! Paper: Herzog et al. 2009, section 5.1, Eqs. 11 and 12 (circles, and ellipses by gradients); Schwarzhaupt et al. 2012
-//! (ellipses by second derivatives that know of occlusion).
+//! Paper: Herzog et al. 2009, section 5.1, Eqs. 11 and 12 (circles, and ellipses by gradients); Schwarzhaupt et
+//! al. 2012 (ellipses by second derivatives that know of occlusion).
 //! Units: metres.
 //!
 //! Deviations: footprints by second derivatives are at most twice as long as wide, those by gradients about
@@ -28,7 +28,8 @@ pub struct Footprint {
 
 impl Footprint {
     /// An ellipse along whose axes second derivatives change the luminance by half the square of `accuracy`,
-    /// relatively; its half-axes are no longer than `furthest`, within `reach`, and the longer one at most twice the shorter.
+    /// relatively; its half-axes are no longer than `furthest`, within `reach`, and the longer one at most twice
+    /// the shorter.
     pub fn of_change(
         change: &Change,
         luminance: f32,

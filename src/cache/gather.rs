@@ -1,14 +1,14 @@
 //! From a converged cut to the contents of a record.
 //!
 //! Paper: Herzog et al. 2009, Eqs. 7 to 10 and section 5.1; Krivanek et al. 2005 for the gradient of one light.
-//! With q from the record to a virtual light of normal n_y and a = -n_y·q, an unoccluded light of unit intensity gives
-//! the irradiance vector a q/|q|⁴ and the tangential gradient (n·q)(n_y + 4 a q/|q|²)/|q|⁴; an omni light q/|q|³ and
-//! 3 (n·q) q/|q|⁵; a directional light its direction and no gradient.
+//! With q from the record to a virtual light of normal n_y and a = -n_y·q, an unoccluded light of unit intensity
+//! gives the irradiance vector a q/|q|⁴ and the tangential gradient (n·q)(n_y + 4 a q/|q|²)/|q|⁴; an omni light
+//! q/|q|³ and 3 (n·q) q/|q|⁵; a directional light its direction and no gradient.
 //!
 //! Deviations: a clamped light has no gradient, and lights nearer than the least distance neither. The falloff
 //! of a spot light's cone is taken as constant. The distance that sets the footprint is the paper's, the
-//! least to a visible light or an occluder, tempered by the harmonic mean of the same, weighted by what each light gives
-//! or would give; occluders are whatever stops a shadow ray, not the nearest.
+//! least to a visible light or an occluder, tempered by the harmonic mean of the same, weighted by what each light
+//! gives or would give; occluders are whatever stops a shadow ray, not the nearest.
 
 use crate::light_tree::Node;
 use crate::lightcut::{Reflector, Transfer};
@@ -78,8 +78,8 @@ pub struct Gatherer<'a> {
 }
 
 impl Gathered {
-    /// Adds a cluster of the cut: its representative gives the irradiance `contribution`, of which `kept` is left after
-    /// clamping (1: not clamped). Returns the irradiance added.
+    /// Adds a cluster of the cut: its representative gives the irradiance `contribution`, of which `kept` is left
+    /// after clamping (1: not clamped). Returns the irradiance added.
     #[inline]
     pub fn add(
         &mut self,
@@ -136,8 +136,8 @@ impl Gathered {
 
     /// Adds irradiance, already filtered, that short rays found at `distance`.
     ///
-    /// Deviations: it is given the direction of the normal, lest a grazing ray weigh heavily where the normal differs, and no
-    /// gradient.
+    /// Deviations: it is given the direction of the normal, lest a grazing ray weigh heavily where the normal
+    /// differs, and no gradient.
     pub fn compensate(&mut self, normal: Vec3, irradiance: Rgb, distance: f32) {
         let y = luminance(irradiance);
         self.irradiance += irradiance;
@@ -155,8 +155,8 @@ impl Gathered {
         self.least = self.least.min(distance);
     }
 
-    /// The distance that sets how far the record reaches: the harmonic mean over all lights, visible or not, though no
-    /// more than a multiple of the least.
+    /// The distance that sets how far the record reaches: the harmonic mean over all lights, visible or not,
+    /// though no more than a multiple of the least.
     pub fn distance(&self) -> f32 {
         let mean = if self.nearness > 0.0 { self.weight / self.nearness } else { f32::INFINITY };
         mean.min(NEAR_LIMIT * self.least)

@@ -4,8 +4,10 @@
 //!
 //! - [`record`]: what is stored at a point; [`footprint`]: the ellipse within which it is used;
 //! - [`gather`]: from a converged cut to irradiance, its gradient and the distance to what casts light and shadow;
-//! - [`probe`], [`edges`], [`sight`]: what a record's point sees, and how the edges of occluders change its light as it moves;
-//! - [`compute`]: the records of one wave, neighbours sharing cuts; [`occluders`]: how far away what hides lights is;
+//! - [`probe`], [`edges`], [`sight`]: what a record's point sees, and how the edges of occluders change its light
+//!   as it moves;
+//! - [`compute`]: the records of one wave, neighbours sharing cuts; [`occluders`]: how far away what hides lights
+//!   is;
 //! - [`series`]: the same for glossy surfaces: radiance as a series, and what lobes reflect of it;
 //! - [`compensate`]: what clamping near virtual lights took away, found by short rays;
 //! - [`layer`]: the records of direct or of indirect light, and their weighted sums at the eye samples;

@@ -1,10 +1,10 @@
 //! What a point sees around it: the nearest surface in each cell of its hemisphere.
 //!
-//! Paper: Ward and Heckbert, *Irradiance Gradients*, 1992, for the division of the hemisphere: rings of equal share
-//! of a uniform sky's irradiance, cut into sectors.
+//! Paper: Ward and Heckbert, *Irradiance Gradients*, 1992, for the division of the hemisphere: rings of equal
+//! share of a uniform sky's irradiance, cut into sectors.
 //!
-//! Deviations: one ray through the middle of each cell; the sectors of each point are turned by an angle of its own, so
-//! that what falls between rays differs from point to point.
+//! Deviations: one ray through the middle of each cell; the sectors of each point are turned by an angle of its
+//! own, so that what falls between rays differs from point to point.
 //!
 //! Units: directions in the point's frame; inverse distances in 1/m.
 
@@ -34,8 +34,8 @@ pub struct Probes {
     pub direction: [Vec3; CELLS],
     /// One over the distance to the surface; 0 where there is none.
     pub inverse: [f32; CELLS],
-    /// The surface's plane as n/h, for a unit normal n in the frame and its distance h: the inverse distance in a direction is
-    /// the product with it. Zero where there is no surface.
+    /// The surface's plane as n/h, for a unit normal n in the frame and its distance h: the inverse distance in a
+    /// direction is the product with it. Zero where there is no surface.
     pub plane: [Vec3; CELLS],
 }
 
@@ -86,8 +86,8 @@ impl Probes {
         (sector + self.turn) * (TAU / SECTORS as f32)
     }
 
-    /// Ring and sector coordinates of a unit direction in the frame; cell (j, k) is [j, j + 1) × [k, k + 1). Sectors
-    /// are not wrapped.
+    /// Ring and sector coordinates of a unit direction in the frame; cell (j, k) is [j, j + 1) × [k, k + 1).
+    /// Sectors are not wrapped.
     #[inline]
     pub fn coordinates(&self, direction: Vec3) -> (f32, f32) {
         let sin_sq = (1.0 - direction.z * direction.z).max(0.0);
@@ -95,7 +95,8 @@ impl Probes {
         (sin_sq * RINGS as f32, turns * SECTORS as f32 - self.turn)
     }
 
-    /// Harmonic mean of the distances, each cell by its share of a uniform sky's irradiance; infinite if nothing is seen.
+    /// Harmonic mean of the distances, each cell by its share of a uniform sky's irradiance; infinite if nothing
+    /// is seen.
     pub fn harmonic_mean(&self) -> f32 {
         let sum: f32 = self.inverse.iter().sum();
         if sum > 0.0 { CELLS as f32 / sum } else { f32::INFINITY }

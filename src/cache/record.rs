@@ -3,9 +3,9 @@
 //! Paper: Herzog et al. 2009, section 5, Eqs. 5, 6, 11 and 12.
 //! Units: irradiance in W/m², gradients in W/m³.
 //!
-//! Deviations: the irradiance is kept as a vector, whose product with a normal is exact for every normal until the horizon
-//! clips a light, and which stands for the rotational gradient. The weight 1/δ - 1 (δ = 1 at the footprint's
-//! edge) is that of Eq. 11 less its value there, so that it does not jump.
+//! Deviations: the irradiance is kept as a vector, whose product with a normal is exact for every normal until the
+//! horizon clips a light, and which stands for the rotational gradient. The weight 1/δ - 1 (δ = 1 at the
+//! footprint's edge) is that of Eq. 11 less its value there, so that it does not jump.
 
 use super::footprint::Footprint;
 use crate::eye::{EyePoint, Sharing};
@@ -32,7 +32,8 @@ pub struct Record {
     pub sharing: Sharing,
     /// The footprint.
     pub footprint: Footprint,
-    /// Per channel (column): the vector whose product with a unit normal is the irradiance on a surface of that normal.
+    /// Per channel (column): the vector whose product with a unit normal is the irradiance on a surface of that
+    /// normal.
     pub vector: Mat3,
     /// Per channel (column): translational gradient of the irradiance, in the tangent plane.
     pub gradient: Mat3,
@@ -56,7 +57,8 @@ pub struct Facts {
 }
 
 impl Record {
-    /// Distance δ of a point in units of the footprint: 1 at its edge; infinite where the record does not apply at all.
+    /// Distance δ of a point in units of the footprint: 1 at its edge; infinite where the record does not apply at
+    /// all.
     #[inline]
     pub fn delta(&self, p: &EyePoint) -> f32 {
         let offset = p.position - self.position;
@@ -85,8 +87,8 @@ impl Record {
         believed.then_some((weight, irradiance.max(Rgb::ZERO)))
     }
 
-    /// Shrinks the footprint so that it ends at `p`, along the axis that leaves it the larger area, though not below `least`.
-    /// True if it became smaller.
+    /// Shrinks the footprint so that it ends at `p`, along the axis that leaves it the larger area, though not
+    /// below `least`. True if it became smaller.
     pub fn exclude(&mut self, p: &EyePoint, least: f32) -> bool {
         let tilt =
             (1.0 - self.normal.dot(p.normal)).max(0.0).sqrt() * self.footprint.inverse_normal_tolerance;

@@ -1,10 +1,12 @@
-//! Light on glossy surfaces: records that hold radiance as a series beside irradiance, and what lobes reflect of it.
+//! Light on glossy surfaces: records that hold radiance as a series beside irradiance, and what lobes reflect of
+//! it.
 //!
 //! Paper: Herzog et al. 2009, sections 4 and 5.
-//! Deviations: the base of a material reflects irradiance, as it does where there is no lobe; only the lobe needs the
-//! series. The paper turns the light with the surface; here, where normals differ, light stays where it is and the
-//! lobe keeps pointing where it does: it is that of the record's normal seen from the direction which that normal mirrors
-//! to the sample's mirror direction, scaled to reflect as much of uniform light as the sample's own.
+//! Deviations: the base of a material reflects irradiance, as it does where there is no lobe; only the lobe needs
+//! the series. The paper turns the light with the surface; here, where normals differ, light stays where it is and
+//! the lobe keeps pointing where it does: it is that of the record's normal seen from the direction which that
+//! normal mirrors to the sample's mirror direction, scaled to reflect as much of uniform light as the sample's
+//! own.
 
 use super::layer::Layer;
 use super::record::Record;

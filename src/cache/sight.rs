@@ -1,8 +1,8 @@
 //! What a record's point sees: the surfaces around it, the light that comes from each, and how both move.
 //!
 //! Paper: Schwarzhaupt, Jensen and Jarosz 2012: footprints from second derivatives that know of occlusion.
-//! Deviations: the smooth part is exact for the virtual lights with visibility held; the edges' part is an upper estimate
-//! (see [`super::edges`]), so their absolute values are added.
+//! Deviations: the smooth part is exact for the virtual lights with visibility held; the edges' part is an upper
+//! estimate (see [`super::edges`]), so their absolute values are added.
 
 use super::edges::CellLight;
 use super::probe::Probes;
@@ -54,8 +54,8 @@ impl Sight {
         self.probes.harmonic_mean()
     }
 
-    /// Adds a visible cluster of the cut to a layer: `contribution` by its representative, `passed` of which is kept. A
-    /// clamped one (`held`) does not change with the receiver.
+    /// Adds a visible cluster of the cut to a layer: `contribution` by its representative, `passed` of which is
+    /// kept. A clamped one (`held`) does not change with the receiver.
     #[inline]
     pub fn add(
         &mut self,
@@ -105,7 +105,8 @@ impl Sight {
     }
 }
 
-/// Unit axis of the larger eigenvalue of a symmetric matrix uu, uv, vv, and both eigenvalues, the larger one first.
+/// Unit axis of the larger eigenvalue of a symmetric matrix uu, uv, vv, and both eigenvalues, the larger one
+/// first.
 fn eigen([uu, uv, vv]: [f32; 3]) -> (Vec2, [f32; 2]) {
     let (mean, half) = (0.5 * (uu + vv), 0.5 * (uu - vv));
     let radius = half.hypot(uv);

@@ -1,8 +1,8 @@
 //! Where records are needed next: uncovered eye samples, spread evenly over the surfaces seen.
 //!
-//! Paper: Herzog et al. 2009, section 6 (records are computed where no record contributes); the coarse beginning is the
-//! overture of Ward's irradiance caching. A wave takes at most one sample of each cell of one level of the eye
-//! samples' index, the one nearest to the middle of what is uncovered there.
+//! Paper: Herzog et al. 2009, section 6 (records are computed where no record contributes); the coarse beginning
+//! is the overture of Ward's irradiance caching. A wave takes at most one sample of each cell of one level of the
+//! eye samples' index, the one nearest to the middle of what is uncovered there.
 
 use super::layer::Layer;
 use crate::eye::EyeSamples;

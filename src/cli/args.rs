@@ -193,7 +193,7 @@ pub enum MethodName {
     Path,
     /// The radiance cache: lightcuts at a few thousand points, splatted onto all pixels
     Cache,
-    /// Lightcuts per pixel: virtual point lights, clustered under an error bound
+    /// Lightcuts per pixel: virtual point lights, clustered as far as the expected error allows
     Lightcuts,
 }
 
