@@ -7,6 +7,7 @@ use super::verify;
 use crate::eye::Window;
 use crate::image::{Exposure, atomic};
 use crate::scene::Scene;
+use crate::stats::available_bytes;
 use crate::verify::Settings as VerifySettings;
 use anyhow::anyhow;
 use std::ffi::OsStr;
@@ -95,6 +96,9 @@ impl RenderJob {
                 window.pixel_count()
             )));
         }
+        if let (Some(needed), Some(available)) = (self.method.expected_bytes(&window), available_bytes()) {
+            fits(needed, available)?;
+        }
         Ok(window)
     }
 
@@ -117,6 +121,18 @@ impl RenderJob {
         }
         Ok(())
     }
+}
+
+/// Refuses what would exhaust the memory.
+fn fits(needed: u64, available: u64) -> Result<(), Failure> {
+    if needed <= available {
+        return Ok(());
+    }
+    let [needed, available] = [needed, available].map(|bytes| bytes as f64 / f64::from(1 << 30));
+    Err(Failure::usage(anyhow!(
+        "the cache would keep about {needed:.1} GiB of eye samples, and {available:.1} GiB of memory are available: \
+         take a smaller --spp, render the film in parts with --crop, or use --method lightcuts"
+    )))
 }
 
 fn named(path: &Path, extension: &str, option: &str) -> Result<(), Failure> {

@@ -4,7 +4,7 @@ use super::args::{LightcutArgs, MethodName, RenderArgs, TreeFamily};
 use super::cache_args::{CacheArgs, DirectBy, FootprintShape, Pair, Switch};
 use super::exit::Failure;
 use crate::cache::{DirectLight, Footprints};
-use crate::eye::{Look, Window};
+use crate::eye::{EyeSamples, Look, Window};
 use crate::light_tree::Family;
 use crate::method::{Control, Output, cache, lightcuts, path};
 use crate::world::World;
@@ -65,6 +65,14 @@ impl Method {
             Method::Path(settings) => settings.seed,
             Method::Cache(settings) => settings.seed,
             Method::Lightcuts(settings) => settings.seed,
+        }
+    }
+
+    /// Memory that the method needs for `window` besides the scene, where that grows with the samples.
+    pub fn expected_bytes(&self, window: &Window) -> Option<u64> {
+        match self {
+            Method::Path(_) | Method::Lightcuts(_) => None,
+            Method::Cache(settings) => Some(EyeSamples::expected_bytes(window, settings.spp)),
         }
     }
 

@@ -126,6 +126,13 @@ impl<'w> EyeSamples<'w> {
         EyeSamples { points, surfaces, index, emitted, chains, nonfinite, complete }
     }
 
+    /// Memory in bytes that it takes to render `window` from eye samples kept all at once, if every ray meets one
+    /// surface: they themselves, and as measured half as much again for sorting and lighting them.
+    pub fn expected_bytes(window: &Window, spp: u32) -> u64 {
+        let each = 3 * (size_of::<EyePoint>() + size_of::<EyeSurface>()) / 2;
+        window.pixel_count().saturating_mul(u64::from(spp)).saturating_mul(each as u64)
+    }
+
     /// How many.
     pub fn len(&self) -> usize {
         self.points.len()

@@ -1,11 +1,20 @@
-//! How much memory the process has used.
+//! How much memory the process has used, and how much the machine has left.
 
 /// Largest resident set of this process so far, in bytes; `None` where the system does not tell.
 pub fn peak_resident_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    field(&std::fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
+}
+
+/// Memory that can be had without swapping, in bytes; `None` where the system does not tell.
+pub fn available_bytes() -> Option<u64> {
+    field(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
+}
+
+/// A line such as `VmHWM:   1024 kB`, in bytes.
+fn field(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kibibytes * 1024)
+    kibibytes.checked_mul(1024)
 }
 
 #[cfg(test)]
@@ -17,5 +26,18 @@ mod tests {
     fn the_peak_covers_what_was_touched() {
         let block = std::hint::black_box(vec![1u8; 64 << 20]);
         assert!(peak_resident_bytes().unwrap() >= block.len() as u64);
+    }
+
+    #[test]
+    fn fields_are_found_by_name_and_anything_else_is_unknown() {
+        let text = "MemTotal:  9 kB\nMemAvailable:   12 kB\nSwapFree: 7\n";
+        assert_eq!(field(text, "MemAvailable:"), Some(12 * 1024));
+        assert_eq!((field(text, "SwapFree:"), field(text, "Cached:")), (None, None));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn something_is_available() {
+        assert!(available_bytes().unwrap() > 0);
     }
 }

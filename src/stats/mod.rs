@@ -15,7 +15,7 @@ mod stage;
 use std::collections::BTreeMap;
 
 pub use counter::{Counter, Distribution};
-pub use memory::peak_resident_bytes;
+pub use memory::{available_bytes, peak_resident_bytes};
 pub use stage::{Stage, StageTime, Stopwatch};
 
 /// Counters by name and times by stage.

@@ -37,6 +37,18 @@ fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
     assert_eq!(sandbox.files(), ["room.xml"]);
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn more_eye_samples_than_memory_holds_are_refused_with_a_remedy() {
+    let sandbox = Sandbox::new();
+    let arguments = ["render", "room.xml", "-o", "a.exr", "--spp", "4000000000"];
+    let stderr = sandbox.run(&arguments).expect(2).stderr;
+    for remedy in ["GiB", "--spp", "--crop", "--method lightcuts"] {
+        assert!(stderr.contains(remedy), "{stderr}");
+    }
+    assert_eq!(sandbox.files(), ["room.xml"]);
+}
+
 #[test]
 fn scenes_that_are_missing_unknown_or_broken_end_with_3_and_name_the_file() {
     let sandbox = Sandbox::new();
