@@ -21,12 +21,6 @@ fn settings(direct: DirectLight, footprints: Footprints) -> cache::Settings {
     settings
 }
 
-fn render(world: &World, settings: &cache::Settings) -> Output {
-    let output = cache::render(world, &Window::whole(world.scene.resolution), settings, &Control::new());
-    assert!(output.complete && output.nonfinite == 0);
-    output
-}
-
 fn count(output: &Output, name: &str) -> Option<u64> {
     match output.stats.get(name)? {
         Counter::Count(n) => Some(n),
@@ -89,7 +83,7 @@ fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
                 // Penumbrae are steep: at the default accuracy they are what the other mode is for.
                 settings.cache.layers[0] = LayerSettings { accuracy: 0.1, reach: [0.7, 5.0] };
             }
-            let error = rms(&render(&world, &settings).color, &per_pixel(&world, &settings));
+            let error = rms(&cached(&world, &settings).color, &per_pixel(&world, &settings));
             assert!(error < limit, "{direct:?} {footprints:?}: {error}");
         }
     }
@@ -101,7 +95,7 @@ fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
     for (direct, limit) in [(DirectLight::PerSample, 0.03), (DirectLight::Records, 0.08)] {
         let mut settings = settings(direct, Footprints::Anisotropic);
         settings.cache.layers[0] = LayerSettings { accuracy: 0.1, reach: [0.7, 5.0] };
-        let output = render(&world, &settings);
+        let output = cached(&world, &settings);
         assert!(count(&output, "Cache/records with series").is_some_and(|n| n > 0));
         // None for a lobe's sake: a sample has one cut at most, of its direct light.
         let own = count(&output, "Cache/samples with own cuts");
@@ -117,7 +111,7 @@ fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
 
 #[test]
 fn surfaces_without_lobes_make_no_series() {
-    let output = render(&lit_room(), &settings(DirectLight::PerSample, Footprints::Anisotropic));
+    let output = cached(&lit_room(), &settings(DirectLight::PerSample, Footprints::Anisotropic));
     assert_eq!(count(&output, "Cache/records with series"), None);
 }
 
@@ -127,7 +121,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
         let settings = settings(DirectLight::Records, Footprints::Occlusion);
         let pictures = [1, 2, 4].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| render(&world, &settings).color.pixels)
+            pool.install(|| cached(&world, &settings).color.pixels)
         });
         assert!(pictures[0] == pictures[1] && pictures[0] == pictures[2]);
     }
@@ -139,7 +133,7 @@ fn far_fewer_records_than_eye_samples_and_growing_slower() {
     let records = |spp| {
         let mut settings = settings(DirectLight::PerSample, Footprints::Anisotropic);
         settings.spp = spp;
-        count(&render(&world, &settings), "Cache/records, indirect").unwrap() as f64
+        count(&cached(&world, &settings), "Cache/records, indirect").unwrap() as f64
     };
     let (one, sixteen) = (records(1), records(16));
     assert!(one < 0.2 * 96.0 * 96.0, "{one} records");

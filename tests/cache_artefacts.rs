@@ -9,7 +9,7 @@ use lightsplat::cache::Footprints;
 use lightsplat::eye::{Window, primary_ray};
 use lightsplat::image::Image;
 use lightsplat::math::{Rgb, luminance};
-use lightsplat::method::{Control, Output, cache, lightcuts};
+use lightsplat::method::{Control, cache, lightcuts};
 use lightsplat::scene::MaterialId;
 use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::world::{Surface, World};
@@ -46,12 +46,6 @@ fn settings(footprints: Footprints) -> cache::Settings {
     // The reference clamps as the cache does without it.
     settings.cache.compensation = false;
     settings
-}
-
-fn render(world: &World, settings: &cache::Settings) -> Output {
-    let output = cache::render(world, &Window::whole(world.scene.resolution), settings, &Control::new());
-    assert!(output.complete && output.nonfinite == 0);
-    output
 }
 
 fn per_pixel(world: &World, like: &cache::Settings) -> Image {
@@ -98,7 +92,7 @@ fn bad_regions(footprints: Footprints) -> Vec<&'static str> {
     let seen = seen(&world);
     let settings = settings(footprints);
     let reference = per_pixel(&world, &settings);
-    let picture = render(&world, &settings).color;
+    let picture = cached(&world, &settings).color;
     let of = |wanted: &dyn Fn(&Surface) -> bool| errors(&picture, &reference, &seen, wanted);
     let dark = |s: &Surface| s.position.x > 0.0 && s.position.z < 0.3;
     let beside_block = |s: &Surface| {
@@ -150,7 +144,7 @@ fn the_furnace_is_white_although_close_lights_are_clamped() {
         let mut settings = cache::Settings::default();
         settings.light.indirect = 6000;
         settings.cache.compensation = compensation;
-        let picture = render(&world, &settings).color;
+        let picture = cached(&world, &settings).color;
         picture.pixels.iter().copied().sum::<Rgb>() / (0.8 * picture.pixels.len() as f32)
     };
     let (with, without) = (ratio(true), ratio(false));
@@ -164,9 +158,9 @@ fn the_furnace_is_white_although_close_lights_are_clamped() {
 fn inspection_changes_nothing_and_its_layers_add_up() {
     let world = divided_room();
     let mut settings = settings(Footprints::Anisotropic);
-    let plain = render(&world, &settings);
+    let plain = cached(&world, &settings);
     settings.inspect = true;
-    let inspected = render(&world, &settings);
+    let inspected = cached(&world, &settings);
     assert!(plain.extra.is_empty() && plain.color == inspected.color);
     let layer = |name: &str| {
         let found = inspected.extra.iter().find(|(n, _)| n == name);

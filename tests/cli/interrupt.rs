@@ -9,18 +9,7 @@ use std::process::{Child, Command, Stdio};
 /// A render that would take very long, once its first pixels are done.
 fn begun(sandbox: &Sandbox) -> Child {
     let mut child = sandbox
-        .command(&[
-            "render",
-            "room.xml",
-            "-o",
-            "a.exr",
-            "--method",
-            "path",
-            "--spp",
-            "100000000",
-            "--progress",
-            "ndjson",
-        ])
+        .command(&Sandbox::path_tracing("100000000", &["--progress", "ndjson"]))
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();

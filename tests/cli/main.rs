@@ -42,6 +42,11 @@ impl Sandbox {
         self.run(&[&base, method, more].concat())
     }
 
+    /// Arguments that trace the room's paths to `a.exr`.
+    fn path_tracing<'a>(spp: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+        [&["render", "room.xml", "-o", "a.exr", "--method", "path", "--spp", spp], more].concat()
+    }
+
     fn files(&self) -> Vec<String> {
         let mut names: Vec<_> = std::fs::read_dir(self.folder.path())
             .unwrap()

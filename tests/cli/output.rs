@@ -65,19 +65,7 @@ fn a_crop_repeats_the_pixels_of_the_whole_picture_for_any_number_of_threads() {
 fn extreme_resolutions_are_rendered() {
     let sandbox = Sandbox::new();
     for resolution in ["1x1", "1x70", "70x1", "16384x2"] {
-        let arguments = [
-            "render",
-            "room.xml",
-            "-o",
-            "a.exr",
-            "--method",
-            "path",
-            "--spp",
-            "1",
-            "--resolution",
-            resolution,
-        ];
-        sandbox.run(&arguments).expect(0);
+        sandbox.run(&Sandbox::path_tracing("1", &["--resolution", resolution])).expect(0);
         let image = ExrFile::read(&sandbox.path("a.exr")).unwrap().color().unwrap();
         assert_eq!(format!("{}x{}", image.width, image.height), resolution);
     }

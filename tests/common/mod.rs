@@ -2,7 +2,9 @@
 #![allow(dead_code, missing_docs)]
 
 use glam::Vec3;
+use lightsplat::eye::Window;
 use lightsplat::math::Rgb;
+use lightsplat::method::{Control, Output, cache};
 use lightsplat::scene::{Camera, Emission, Fresnel, Lobe, Material, MaterialId, Mesh, Reflectance, Scene};
 use lightsplat::world::World;
 
@@ -104,4 +106,11 @@ pub fn sphere(centre: Vec3, radius: f32, n: u32, material: MaterialId) -> Mesh {
 
 pub fn world(scene: Scene) -> World {
     World::new(scene, 2).expect("the scene builds")
+}
+
+/// The picture by the cache, which must be whole.
+pub fn cached(world: &World, settings: &cache::Settings) -> Output {
+    let output = cache::render(world, &Window::whole(world.scene.resolution), settings, &Control::new());
+    assert!(output.complete && output.nonfinite == 0);
+    output
 }
