@@ -13,10 +13,11 @@
 //! - [`shadow`] answers whether segments are free, by packets of rays, [`sampling`] gives every stage its numbers;
 //! - [`method`] holds the renderers that are compared; [`image`] writes and compares what they return;
 //! - [`verify`] measures how wrong a picture is by path-tracing some of its pixels;
-//! - [`cli`] is the command around it all, [`stats`] what it reports.
+//! - [`mod@bench`] measures how fast the parts are; [`cli`] is the command around it all, [`stats`] what it reports.
 
 #![deny(unsafe_code)]
 
+pub mod bench;
 pub mod cache;
 pub mod cli;
 pub mod embree;

@@ -1,5 +1,6 @@
 //! What can be typed. Every option is documented here and nowhere else: `--help` is made of it.
 
+use super::bench_args::BenchArgs;
 use super::cache_args::CacheArgs;
 use super::exit;
 use crate::image::Exposure;
@@ -25,6 +26,8 @@ pub enum Command {
     Info(InfoArgs),
     /// Measure how far a picture is from a reference, and show where
     Compare(CompareArgs),
+    /// Measure how fast parts of the renderer are, ratios first
+    Bench(BenchArgs),
 }
 
 /// Options of `render`.

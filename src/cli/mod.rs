@@ -3,6 +3,8 @@
 //! stdout is data (statistics, reports), stderr is talk (progress, warnings, errors). Exit codes are in `exit`.
 
 mod args;
+mod bench;
+mod bench_args;
 mod cache_args;
 mod compare;
 mod exit;
@@ -38,6 +40,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Render(args) => render::run(*args),
         Command::Info(args) => info::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Bench(args) => bench::run(args),
     }));
     match outcome {
         Ok(Ok(())) => ExitCode::from(exit::SUCCESS),

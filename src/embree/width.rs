@@ -173,6 +173,16 @@ impl Prepared {
         })
     }
 
+    /// How many queries they make.
+    pub fn queries(&self) -> usize {
+        match &self.0 {
+            Form::One(rays) => rays.len(),
+            Form::Four(packets) => packets.len(),
+            Form::Eight(packets) => packets.len(),
+            Form::Sixteen(packets) => packets.len(),
+        }
+    }
+
     /// Traces them all; how many are occluded.
     pub fn occluded(&self, accel: &Accel, coherent: bool) -> u64 {
         if accel.is_empty() {

@@ -23,7 +23,7 @@ pub use node::{MAX_VPLS, Node};
 /// How a tree is built.
 ///
 /// Seconds of processor time to build (one thread's worth) and mean uncapped cuts at ε = 2 % / 1 %, by
-/// `examples/tree_quality`:
+/// `lightsplat bench trees SCENE`:
 ///
 /// | | nave, 500k | nave, 1M | sibenik, 500k | sibenik, 1M |
 /// |---|--:|--:|--:|--:|

@@ -1,5 +1,6 @@
 //! The command as a user or a script meets it: exit codes, files, streams, signals.
 
+mod bench;
 mod compare;
 mod interrupt;
 mod output;

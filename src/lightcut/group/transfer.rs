@@ -16,7 +16,7 @@ const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
 impl Transfer<'_> {
     /// Error to expect of each point's luminance from a cluster of intensity `node.intensity`; 0 in lanes without a point.
-    pub(super) fn errors16(&self, points: &Points, node: &Node) -> Lanes {
+    pub fn errors16(&self, points: &Points, node: &Node) -> Lanes {
         let (bounds, shares) = self.bounds16(points, node);
         std::array::from_fn(|l| bounds[l] * shares[l])
     }
@@ -92,13 +92,7 @@ impl Transfer<'_> {
     }
 
     /// Each point's contribution from a VPL of unit intensity, if visible, and the lanes where it is not 0.
-    pub(super) fn unshadowed16(
-        &self,
-        points: &Points,
-        vpl: &Vpl,
-        kind: VplKind,
-        responses: &mut RgbLanes,
-    ) -> u16 {
+    pub fn unshadowed16(&self, points: &Points, vpl: &Vpl, kind: VplKind, responses: &mut RgbLanes) -> u16 {
         let mut one_by_one = points.general;
         match kind {
             VplKind::Oriented => self.lambert_oriented(points, vpl.position, vpl.normal(), responses),

@@ -1,0 +1,103 @@
+//! Materials: look-ups, evaluations, samples and bounds a second.
+
+use super::measure::Case;
+use super::setting::Dice;
+use super::{Benchmark, Clock, Context, Table};
+use crate::material::{Bsdf, DirectionBound, Materials};
+use crate::math::Rgb;
+use crate::sampling::uniform_sphere;
+use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
+use glam::{Vec2, Vec3};
+use std::hint::black_box;
+
+pub(super) const BENCHMARK: Benchmark = Benchmark {
+    name: "bsdf",
+    about: "Evaluations, samples and bounds of every kind of material a second",
+    needs_scene: false,
+    run,
+};
+
+const DIRECTIONS: usize = 1024;
+
+fn run(context: &Context) -> Vec<Table> {
+    let scene = Scene { materials: kinds(), ..Scene::default() };
+    let materials = Materials::new(&scene);
+    let mut dice = Dice(6);
+    let mut part = || dice.below(1 << 24) as f32 / (1 << 24) as f32;
+    let directions: Vec<Vec3> = (0..DIRECTIONS)
+        .map(|_| {
+            let v = uniform_sphere(Vec2::new(part(), part()));
+            Vec3::new(v.x, v.y, v.z.abs().max(1e-3))
+        })
+        .collect();
+    let pair = |i: usize| (directions[i], directions[(i * 7 + 1) % DIRECTIONS]);
+    type Call = fn(&Bsdf, Vec3, Vec3);
+    let calls: [(&str, Call); 3] = [
+        ("evaluate", |bsdf, wo, wi| {
+            black_box(bsdf.eval_pdf(wo, wi));
+        }),
+        ("sample", |bsdf, wo, u| {
+            black_box(bsdf.sample(wo, u.z, Vec2::new(0.5 + 0.5 * u.x, 0.5 + 0.5 * u.y)));
+        }),
+        ("bound", |bsdf, wo, b| {
+            let bound = DirectionBound { cos_i_max: b.z, cos_i_min: 0.5 * b.z, cos_mirror_max: b.x };
+            black_box(bsdf.bound(wo, &bound));
+        }),
+    ];
+    let (scene, materials, pair) = (&scene, &materials, &pair);
+    let mut cases = Vec::new();
+    for (what, call) in calls {
+        let against = cases.len();
+        for (i, material) in scene.materials.iter().enumerate() {
+            let bsdf = materials.at(scene, MaterialId(i as u32), Vec2::ZERO);
+            cases.push(Case::new(&[what, &material.name], against, DIRECTIONS as f64, move || {
+                for i in 0..DIRECTIONS {
+                    let (wo, wi) = pair(i);
+                    call(&bsdf, wo, wi);
+                }
+            }));
+        }
+    }
+    vec![Table::measured(
+        ("Materials", "Ratio to a diffuse surface."),
+        (&["call", "material"], "M/s", &[]),
+        (Clock::Thread, &context.settings, 1e-6),
+        cases,
+    )]
+}
+
+/// One of each kind.
+fn kinds() -> Vec<Material> {
+    let constant = |v: f32| Reflectance::Constant(Rgb::splat(v));
+    let rough = |alpha, distribution, fresnel, scale| Lobe::Rough {
+        distribution,
+        alpha,
+        fresnel,
+        scale: constant(scale),
+    };
+    let coat = Some(Coat { eta: 1.5, nonlinear: false });
+    let dielectric = Fresnel::Dielectric(1.5);
+    let gold = Fresnel::Conductor { eta: Rgb::new(0.143, 0.375, 1.442), k: Rgb::new(3.983, 2.386, 1.603) };
+    let (ggx, beckmann) = (Distribution::Ggx, Distribution::Beckmann);
+    let glass = Lobe::Dielectric { eta: 1.5, reflectance: constant(1.0), transmittance: constant(1.0) };
+    let mirror = |fresnel| Lobe::Mirror { fresnel, scale: constant(1.0) };
+    [
+        ("diffuse", 0.5, None, Lobe::None),
+        ("glossy", 0.5, None, rough(0.3, ggx, Fresnel::One, 0.3)),
+        ("plastic", 0.5, coat, mirror(dielectric)),
+        ("rough plastic, GGX", 0.5, coat, rough(0.1, ggx, dielectric, 1.0)),
+        ("rough plastic, Beckmann", 0.5, coat, rough(0.1, beckmann, dielectric, 1.0)),
+        ("rough conductor, GGX", 0.0, None, rough(0.1, ggx, gold, 1.0)),
+        ("rough conductor, Beckmann", 0.0, None, rough(0.1, beckmann, gold, 1.0)),
+        ("conductor", 0.0, None, mirror(gold)),
+        ("glass", 0.0, None, glass),
+    ]
+    .map(|(name, diffuse, coat, lobe)| Material {
+        name: name.into(),
+        two_sided: true,
+        diffuse: constant(diffuse),
+        coat,
+        lobe,
+    })
+    .into()
+}

@@ -1,0 +1,102 @@
+//! Reports in the formats that can be asked for, one a file.
+
+mod csv;
+mod html;
+mod json;
+mod markdown;
+mod plot;
+mod terminal;
+
+use super::Report;
+
+pub use terminal::terminal;
+
+/// A file format.
+pub struct Format {
+    /// Name on the command line, behind `--export-`.
+    pub name: &'static str,
+    /// The text of such a file.
+    pub write: fn(&Report) -> String,
+}
+
+/// All of them.
+pub const FORMATS: [Format; 4] = [
+    Format { name: "json", write: json::json },
+    Format { name: "csv", write: csv::csv },
+    Format { name: "markdown", write: markdown::markdown },
+    Format { name: "html", write: html::html },
+];
+
+/// Headline of a report.
+fn headline(report: &Report) -> String {
+    match &report.scene {
+        Some(scene) => format!("{} on {scene}", report.benchmark),
+        None => report.benchmark.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::{Row, Spread, Table};
+
+    fn report() -> Report {
+        let row = |label: &str, ratio: f64| Row {
+            labels: vec![label.to_owned(), "a|b".to_owned()],
+            ratio: Spread { median: ratio, low: 0.9 * ratio, high: 1.1 * ratio },
+            rate: Spread { median: 2.0 * ratio, low: 1.9 * ratio, high: 2.1 * ratio },
+            samples: vec![1.0, 2.5],
+            figures: vec![Some(0.5), None],
+        };
+        Report {
+            benchmark: "rays".to_owned(),
+            scene: Some("<nave & aisle>".to_owned()),
+            facts: vec![("threads".to_owned(), "2".to_owned())],
+            tables: vec![Table {
+                title: "Widths".to_owned(),
+                about: "Ratio to \"one\".".to_owned(),
+                labels: vec!["width".to_owned(), "order".to_owned()],
+                unit: "Mrays/s".to_owned(),
+                figures: vec!["saved".to_owned(), "lost".to_owned()],
+                rows: vec![row("one", 1.0), row("six, teen", 2.0)],
+                warnings: vec!["one: 1 outliers".to_owned()],
+            }],
+        }
+    }
+
+    #[test]
+    fn csv_quotes_what_needs_it_and_has_a_line_a_case() {
+        let text = csv::csv(&report());
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len(), 3);
+        assert!(lines[0].starts_with("benchmark,scene,table,case,ratio,"), "{text}");
+        assert!(lines[2].starts_with("rays,<nave & aisle>,Widths,\"six, teen; a|b\",2,1.8,2.2,4,"), "{text}");
+        assert!(lines[2].ends_with(",saved=0.5"), "{text}");
+    }
+
+    #[test]
+    fn json_is_the_whole_report() {
+        let value: serde_json::Value = serde_json::from_str(&json::json(&report())).unwrap();
+        assert_eq!(value["tables"][0]["rows"][1]["ratio"]["median"], 2.0);
+        assert_eq!(value["tables"][0]["rows"][0]["samples"][1], 2.5);
+    }
+
+    #[test]
+    fn markdown_escapes_bars_and_terminal_aligns() {
+        let text = markdown::markdown(&report());
+        assert!(text.contains("| one | a\\|b | 1.00 | 0.90 .. 1.10 | 2.00 |"), "{text}");
+        let text = terminal(&report());
+        let column = |start: &str| text.lines().find(|l| l.contains(start)).and_then(|l| l.find("a|b"));
+        assert_eq!(column("one "), column("six, teen "), "{text}");
+        assert!(column("one ").is_some() && text.contains("warning: one: 1 outliers"));
+    }
+
+    #[test]
+    fn html_is_self_contained_and_escaped() {
+        let text = html::html(&report());
+        assert!(text.contains("&lt;nave &amp; aisle&gt;") && !text.contains("<nave"));
+        assert!(text.contains("<svg") && text.contains("</html>") && !text.contains("http"), "{text}");
+        let doubled = text.matches("class=\"bar\"").count();
+        assert_eq!(doubled, 2);
+    }
+}

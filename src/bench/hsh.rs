@@ -1,0 +1,62 @@
+//! Hemispherical harmonics: virtual lights added to a series a second, and look-ups of what it reflects.
+
+use super::measure::Case;
+use super::setting::Dice;
+use super::{Benchmark, Clock, Context, Table};
+use crate::gradient::{Incidence, Source};
+use crate::hsh::{Accumulator, Kernel, Reflected};
+use crate::math::Rgb;
+use glam::Vec3;
+use std::hint::black_box;
+
+pub(super) const BENCHMARK: Benchmark = Benchmark {
+    name: "hsh",
+    about: "Lights added to a series of hemispherical harmonics a second, and look-ups",
+    needs_scene: false,
+    run,
+};
+
+const LIGHTS: usize = 1000;
+
+fn run(context: &Context) -> Vec<Table> {
+    let mut dice = Dice(5);
+    let sources: Vec<Source<f32>> = (0..LIGHTS).map(|_| source(&mut dice)).collect();
+    let incidences: Vec<Incidence<f32>> = sources.iter().filter_map(|s| s.incidence(1e-9)).collect();
+    let (incidences, lights) = (&incidences, incidences.len() as f64);
+    let mut cases = vec![Case::new(&["geometry and gradient", ""], 0, LIGHTS as f64, || {
+        sources.iter().for_each(|s| {
+            black_box(s.incidence(1e-9));
+        });
+    })];
+    for bands in 1..=8 {
+        let mut accumulator = Accumulator::new(bands);
+        cases.push(Case::new(&["add a light", &bands.to_string()], 1, lights, move || {
+            incidences.iter().for_each(|i| accumulator.add(i, Rgb::ONE));
+            black_box(accumulator.finish());
+        }));
+    }
+    for bands in 1..=8 {
+        let mut accumulator = Accumulator::new(bands);
+        incidences.iter().for_each(|i| accumulator.add(i, Rgb::ONE));
+        let (radiance, kernel) = (accumulator.finish(), Kernel::cosine(bands));
+        cases.push(Case::new(&["look up", &bands.to_string()], 9, LIGHTS as f64, move || {
+            for _ in 0..LIGHTS {
+                black_box::<Reflected>(black_box(&radiance).reflected(black_box(&kernel)));
+            }
+        }));
+    }
+    vec![Table::measured(
+        ("Hemispherical harmonics", "Ratio to one band."),
+        (&["what", "bands"], "M/s", &[]),
+        (Clock::Thread, &context.settings, 1e-6),
+        cases,
+    )]
+}
+
+/// A patch somewhere above, facing the receiver more or less.
+fn source(dice: &mut Dice) -> Source<f32> {
+    let mut part = || dice.below(1 << 24) as f32 / (1 << 24) as f32;
+    let offset = Vec3::new(part() - 0.5, part() - 0.5, part());
+    let normal = (Vec3::new(part() - 0.5, part() - 0.5, part() - 0.5) - offset).normalize();
+    Source::Oriented { offset: offset.to_array(), normal: normal.to_array() }
+}

@@ -1,0 +1,223 @@
+//! Rates of cases measured in turns, so that whatever else the machine does falls on all of them alike.
+//!
+//! Every case is run once to warm up and to see how many runs make a sample. Then each round takes a sample of every
+//! case, every other round in reverse; a case's ratio is formed within the rounds.
+
+use super::{Row, Settings, Spread, Table};
+use rustix::time::{ClockId, clock_gettime};
+use std::fmt;
+
+/// What time is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// Processor time of the calling thread: for work on one thread.
+    Thread,
+    /// Processor time of all threads together: for what it costs.
+    Process,
+    /// Time that passes: for work on several threads, on a machine with nothing else to do.
+    Wall,
+}
+
+impl Clock {
+    fn seconds(self) -> f64 {
+        let time = clock_gettime(match self {
+            Clock::Thread => ClockId::ThreadCPUTime,
+            Clock::Process => ClockId::ProcessCPUTime,
+            Clock::Wall => ClockId::Monotonic,
+        });
+        time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
+    }
+
+    fn of(self, work: &mut dyn FnMut()) -> f64 {
+        let start = self.seconds();
+        work();
+        self.seconds() - start
+    }
+}
+
+/// Work to be timed.
+pub(super) struct Case<'a> {
+    /// What it is.
+    pub labels: Vec<String>,
+    /// Index of the case that its ratio is to; may be its own.
+    pub against: usize,
+    /// Units of work in a run.
+    pub units: f64,
+    /// Further figures.
+    pub figures: Vec<Option<f64>>,
+    /// A run.
+    pub work: Box<dyn FnMut() + 'a>,
+}
+
+impl<'a> Case<'a> {
+    /// A case without further figures.
+    pub fn new(labels: &[&str], against: usize, units: f64, work: impl FnMut() + 'a) -> Case<'a> {
+        Case {
+            labels: labels.iter().map(|l| (*l).to_owned()).collect(),
+            against,
+            units,
+            figures: Vec::new(),
+            work: Box::new(work),
+        }
+    }
+}
+
+/// What casts doubt on a figure.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Warning {
+    /// Some samples lie far from the rest.
+    Outliers {
+        /// Which case.
+        case: String,
+        /// How many samples.
+        count: usize,
+    },
+    /// The quartiles of the ratio are far apart.
+    Unsteady {
+        /// Which case.
+        case: String,
+        /// Their distance over the median.
+        spread: f64,
+    },
+    /// The work is too short for the clock.
+    Short {
+        /// Which case.
+        case: String,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Warning::Outliers { case, count } => {
+                write!(f, "{case}: {count} outliers; is something else running? More --repeats help")
+            }
+            Warning::Unsteady { case, spread } => write!(
+                f,
+                "{case}: the middle half of the ratios spreads over {:.0} %; try longer --seconds or a quieter machine",
+                100.0 * spread
+            ),
+            Warning::Short { case } => {
+                write!(f, "{case}: there is next to nothing to do; try a larger scene")
+            }
+        }
+    }
+}
+
+/// A sample this many times the median deviation from the median is an outlier.
+const OUTLYING: f64 = 10.0 * 1.4826;
+/// Ratios whose quartiles are further apart than this are unsteady.
+const UNSTEADY: f64 = 0.1;
+/// The shortest sample worth a figure, seconds.
+const SHORTEST: f64 = 1e-5;
+/// Most runs in a sample.
+const MOST_RUNS: f64 = 1e6;
+
+/// Measures cases in turns. Rates are in units of work a second times `scale`.
+pub(super) fn alternate(
+    cases: Vec<Case>,
+    clock: Clock,
+    settings: &Settings,
+    scale: f64,
+) -> (Vec<Row>, Vec<String>) {
+    let mut cases = cases;
+    let runs: Vec<usize> = cases
+        .iter_mut()
+        .map(|case| {
+            (case.work)();
+            let once = clock.of(&mut *case.work).max(1e-9);
+            (settings.seconds / once).clamp(1.0, MOST_RUNS) as usize
+        })
+        .collect();
+    let mut rates = vec![Vec::with_capacity(settings.repeats); cases.len()];
+    let mut short = vec![false; cases.len()];
+    for round in 0..settings.repeats {
+        for place in 0..cases.len() {
+            let i = if round % 2 == 0 { place } else { cases.len() - 1 - place };
+            let case = &mut cases[i];
+            let seconds = clock.of(&mut || (0..runs[i]).for_each(|_| (case.work)()));
+            short[i] |= seconds < SHORTEST;
+            rates[i].push(case.units * runs[i] as f64 / seconds.max(1e-9) * scale);
+        }
+    }
+    let mut warnings = Vec::new();
+    let rows: Vec<Row> = cases
+        .into_iter()
+        .enumerate()
+        .map(|(i, case)| {
+            let ratios: Vec<f64> = rates[i].iter().zip(&rates[case.against]).map(|(a, b)| a / b).collect();
+            let ratio = Spread::of(&ratios);
+            let name = case.labels.join(", ");
+            let outliers = outliers(&ratios);
+            if short[i] {
+                warnings.push(Warning::Short { case: name }.to_string());
+            } else if ratio.relative() > UNSTEADY {
+                warnings.push(Warning::Unsteady { case: name, spread: ratio.relative() }.to_string());
+            } else if outliers > 0 {
+                warnings.push(Warning::Outliers { case: name, count: outliers }.to_string());
+            }
+            let rate = Spread::of(&rates[i]);
+            Row { labels: case.labels, ratio, rate, samples: rates[i].clone(), figures: case.figures }
+        })
+        .collect();
+    (rows, warnings)
+}
+
+/// How many values lie far from the others. At least one per cent counts as the usual deviation.
+fn outliers(values: &[f64]) -> usize {
+    let median = Spread::of(values).median;
+    let deviations: Vec<f64> = values.iter().map(|v| (v - median).abs()).collect();
+    let usual = Spread::of(&deviations).median.max(1e-2 * median);
+    deviations.iter().filter(|&&d| d > OUTLYING * usual).count()
+}
+
+impl Table {
+    /// Measures `cases`.
+    pub(super) fn measured(
+        (title, about): (&str, &str),
+        (labels, unit, figures): (&[&str], &str, &[&str]),
+        (clock, settings, scale): (Clock, &Settings, f64),
+        cases: Vec<Case>,
+    ) -> Table {
+        let (rows, warnings) = alternate(cases, clock, settings, scale);
+        let owned = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect();
+        Table {
+            title: title.to_owned(),
+            about: about.to_owned(),
+            labels: owned(labels),
+            unit: unit.to_owned(),
+            figures: owned(figures),
+            rows,
+            warnings,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::RefCell;
+
+    #[test]
+    fn cases_take_turns_and_are_compared_within_rounds() {
+        let order = RefCell::new(Vec::new());
+        let case = |name: &'static str, against| {
+            let order = &order;
+            Case::new(&[name], against, 1.0, move || order.borrow_mut().push(name))
+        };
+        let settings = Settings { repeats: 3, seconds: 0.0, threads: 1 };
+        let (rows, _) = alternate(vec![case("a", 0), case("b", 0)], Clock::Wall, &settings, 1.0);
+        assert_eq!(order.borrow().concat(), "aabbabbaab");
+        assert_eq!((rows[0].ratio.median, rows[0].samples.len()), (1.0, 3));
+        let median = |i: usize| rows[0].samples[i] / rows[1].samples[i];
+        let expected = Spread::of(&[1.0 / median(0), 1.0 / median(1), 1.0 / median(2)]);
+        assert!((rows[1].ratio.median / expected.median - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_sample_far_from_the_rest_is_an_outlier() {
+        assert_eq!(outliers(&[1.0, 1.01, 0.99, 1.02, 3.0]), 1);
+        assert_eq!(outliers(&[1.0, 1.2, 0.8, 1.1, 0.9]), 0);
+        assert_eq!(outliers(&[1.0; 5]), 0);
+    }
+}

@@ -1,0 +1,126 @@
+//! What a benchmark found.
+
+use serde::Serialize;
+
+/// All tables of a benchmark.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Which benchmark.
+    pub benchmark: String,
+    /// The scene's name, if it was on one.
+    pub scene: Option<String>,
+    /// What else the figures depend on, by name.
+    pub facts: Vec<(String, String)>,
+    /// What was measured.
+    pub tables: Vec<Table>,
+}
+
+/// Cases measured against each other.
+#[derive(Clone, Debug, Serialize)]
+pub struct Table {
+    /// In a few words.
+    pub title: String,
+    /// What the rows are, and what the ratio is to.
+    pub about: String,
+    /// Names of the columns that tell rows apart.
+    pub labels: Vec<String>,
+    /// Unit of the rates.
+    pub unit: String,
+    /// Names of further figures.
+    pub figures: Vec<String>,
+    /// The cases.
+    pub rows: Vec<Row>,
+    /// What casts doubt on some of them.
+    pub warnings: Vec<String>,
+}
+
+/// A case.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// What it is.
+    pub labels: Vec<String>,
+    /// Rate over the rate of the case it is compared with, sample by sample.
+    pub ratio: Spread,
+    /// Units of work a second.
+    pub rate: Spread,
+    /// The rates of all samples, in their order.
+    pub samples: Vec<f64>,
+    /// Further figures; empty cells are none.
+    pub figures: Vec<Option<f64>>,
+}
+
+/// Median and quartiles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Spread {
+    /// Half the values are below.
+    pub median: f64,
+    /// A quarter is below.
+    pub low: f64,
+    /// A quarter is above.
+    pub high: f64,
+}
+
+impl Spread {
+    /// Of some values; all 0 of none.
+    pub fn of(values: &[f64]) -> Spread {
+        let mut sorted = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let at = |fraction: f64| {
+            let place = fraction * (sorted.len().max(1) - 1) as f64;
+            let (below, above) = (place.floor() as usize, place.ceil() as usize);
+            match (sorted.get(below), sorted.get(above)) {
+                (Some(a), Some(b)) => a + (b - a) * place.fract(),
+                _ => 0.0,
+            }
+        };
+        Spread { median: at(0.5), low: at(0.25), high: at(0.75) }
+    }
+
+    /// Distance of the quartiles over the median.
+    pub fn relative(&self) -> f64 {
+        if self.median > 0.0 { (self.high - self.low) / self.median } else { 0.0 }
+    }
+}
+
+impl Table {
+    /// Heads of the columns: labels, ratio and its quartiles, rate and its relative spread, further figures.
+    pub fn heads(&self) -> Vec<String> {
+        let fixed = ["ratio".to_owned(), "quartiles".to_owned(), self.unit.clone(), "spread".to_owned()];
+        self.labels.iter().chain(&fixed).chain(&self.figures).cloned().collect()
+    }
+
+    /// A row's cells under [`Table::heads`], for people.
+    pub fn cells(&self, row: &Row) -> Vec<String> {
+        let fixed = [
+            number(row.ratio.median),
+            format!("{} .. {}", number(row.ratio.low), number(row.ratio.high)),
+            number(row.rate.median),
+            format!("{:.1} %", 100.0 * row.rate.relative()),
+        ];
+        let figures = row.figures.iter().map(|f| f.map_or_else(String::new, number));
+        row.labels.iter().cloned().chain(fixed).chain(figures).collect()
+    }
+}
+
+/// Three digits at least, without an exponent.
+fn number(value: f64) -> String {
+    match value.abs() {
+        v if v == 0.0 || v >= 1000.0 => format!("{value:.0}"),
+        v if v >= 100.0 => format!("{value:.1}"),
+        v if v >= 0.1 => format!("{value:.2}"),
+        _ => format!("{value:.4}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quartiles_are_interpolated() {
+        assert_eq!(Spread::of(&[4.0, 1.0, 3.0, 2.0, 5.0]), Spread { median: 3.0, low: 2.0, high: 4.0 });
+        assert_eq!(Spread::of(&[2.0, 1.0]), Spread { median: 1.5, low: 1.25, high: 1.75 });
+        assert_eq!(Spread::of(&[]), Spread::default());
+        assert_eq!(Spread::of(&[7.0]).relative(), 0.0);
+    }
+}

@@ -1,0 +1,107 @@
+//! What benchmarks on a scene measure with: its eye samples, its virtual lights in their trees.
+
+use super::Context;
+use crate::eye::{EyeSamples, EyeSettings, Window};
+use crate::light_tree::{Family, LightTrees, Node};
+use crate::lightcut::group::{LANES, group_alike};
+use crate::lightcut::{Reflector, Transfer};
+use crate::math::Frame;
+use crate::method::Control;
+use crate::sampling::hash;
+use crate::vpl::{LightPass, LightPassSettings, light_pass};
+use crate::world::World;
+
+/// Neighbouring eye samples in a stretch.
+const STRETCH: usize = 64;
+/// Stretches, spread over the picture.
+const STRETCHES: usize = 6;
+/// One eye sample in so many gets a record, about.
+const RECORD_SPACING: usize = 24;
+
+/// A scene seen and lit.
+pub(super) struct Setting<'w> {
+    pub world: &'w World,
+    pub samples: EyeSamples<'w>,
+    pub trees: LightTrees,
+}
+
+impl<'w> Setting<'w> {
+    /// With the renderers' default settings. None if there is no scene.
+    pub fn new(context: &Context<'w>) -> Option<Setting<'w>> {
+        let world = context.world?;
+        let depth = world.scene.max_depth.unwrap_or(u32::MAX);
+        (context.say)("looking at the scene and lighting it");
+        let eye = EyeSettings { spp: 1, seed: 0, max_depth: depth };
+        let window = Window::whole(world.scene.resolution);
+        let samples = EyeSamples::look(world, &window, eye, &Control::new());
+        let LightPass { sets, spots, .. } =
+            light_pass(world, &LightPassSettings::default(), depth, &Control::new());
+        let trees = LightTrees::build(&sets, spots, world.diagonal, Family::default());
+        Some(Setting { world, samples, trees })
+    }
+
+    /// What reaches points from the lights.
+    pub fn transfer(&self) -> Transfer<'_> {
+        Transfer::new(&self.trees.spots, self.world.diagonal)
+    }
+
+    /// The surface at an eye sample, as lightcuts per pixel light it.
+    pub fn reflector(&self, sample: usize) -> Reflector<'w> {
+        let (point, surface) = (&self.samples.points[sample], &self.samples.surfaces[sample]);
+        let frame = Frame::from_normal(point.normal);
+        Reflector::new(point.position, surface.geometric_normal, &frame, surface.bsdf, surface.out)
+    }
+
+    /// The same as a record collects its light.
+    pub fn collector(&self, sample: usize) -> Reflector<'static> {
+        let (point, surface) = (&self.samples.points[sample], &self.samples.surfaces[sample]);
+        Reflector::collector(point.position, surface.geometric_normal, &Frame::from_normal(point.normal))
+    }
+
+    /// Stretches of eye samples that are neighbours in space, `spacing` apart in the order of their index.
+    fn stretches(&self, spacing: usize) -> Vec<Vec<usize>> {
+        let length = (STRETCH * spacing).min(self.samples.len());
+        let room = self.samples.len() - length;
+        (0..STRETCHES)
+            .map(|s| {
+                let first = room * s / (STRETCHES - 1);
+                (first..first + length).step_by(spacing).collect()
+            })
+            .collect()
+    }
+
+    /// Stretches as pixels are lit.
+    pub fn pixels(&self) -> Vec<Vec<usize>> {
+        self.stretches(1)
+    }
+
+    /// Stretches as records are computed.
+    pub fn records(&self) -> Vec<Vec<usize>> {
+        self.stretches(RECORD_SPACING)
+    }
+
+    /// A stretch as groups that share a cut.
+    pub fn groups(&self, stretch: &[usize]) -> Vec<Vec<usize>> {
+        let place = |&sample: &usize| {
+            let point = &self.samples.points[sample];
+            (point.position, point.normal)
+        };
+        group_alike(stretch.iter().copied(), LANES, self.world.diagonal, place, |_, _| true)
+    }
+
+    /// All single lights, neighbours in their tree next to each other.
+    pub fn leaves(&self) -> Vec<&Node> {
+        self.trees.leaves().collect()
+    }
+}
+
+/// The same numbers every time.
+pub(super) struct Dice(pub u32);
+
+impl Dice {
+    /// From 0 to `n` - 1; 0 if there is no such number.
+    pub fn below(&mut self, n: usize) -> usize {
+        self.0 += 1;
+        ((u64::from(hash(self.0, 0xbe7c)) * n as u64) >> 32) as usize
+    }
+}

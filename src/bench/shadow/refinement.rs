@@ -1,0 +1,59 @@
+//! What the shape of the refinement is worth: rays asked for a second, and time a point.
+
+use super::trace::{Trace, Traces};
+use super::{MRAYS, cached};
+use crate::bench::measure::Case;
+use crate::bench::setting::Setting;
+use crate::bench::{Clock, Settings, Table};
+use crate::embree::{Prepared, Width};
+use crate::shadow::{Engine, OccluderCacheSettings};
+use std::hint::black_box;
+
+pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
+    let world = setting.world;
+    let mut cases = Vec::new();
+    let mut rays_a_point = Vec::new();
+    for [alone, shared] in [&traces.pixels, &traces.records] {
+        if alone.rays() == 0 || shared.rays() == 0 {
+            continue;
+        }
+        let against = cases.len();
+        let prepared = Prepared::new(alone.packets().map(|p| (&p.rays, p.valid)), Width::One);
+        cases.push(Case::new(
+            &[alone.name, "single rays, bare loop"],
+            against,
+            alone.rays() as f64,
+            move || {
+                black_box(prepared.occluded(&world.accel, false));
+            },
+        ));
+        let cache = || Engine::with_cache(world, OccluderCacheSettings::default());
+        cases.push(through(alone, "engine with cache", cache(), against));
+        cases.push(through(shared, "engine", world.shadows(), against));
+        cases.push(through(shared, "engine with cache", cache(), against));
+        rays_a_point.extend([alone, alone, shared, shared].map(|t| t.rays() as f64 / t.points.max(1) as f64));
+    }
+    let against: Vec<usize> = cases.iter().map(|c| c.against).collect();
+    let mut table = Table::measured(
+        (
+            "Refinement",
+            "Rays that cuts ask for, in their order: cuts of single points, and cuts shared by up to sixteen neighbours. \
+             Ratio to single rays in the order of single points; time a point is relative to that, and counts that shared \
+             cuts ask for more.",
+        ),
+        (&["order", "traced"], "Mrays/s", &["rays a point", "time a point"]),
+        (Clock::Thread, settings, MRAYS),
+        cases,
+    );
+    for (i, row) in table.rows.iter_mut().enumerate() {
+        let more = rays_a_point[i] / rays_a_point[against[i]];
+        row.figures = vec![Some(rays_a_point[i]), Some(more / row.ratio.median)];
+    }
+    table
+}
+
+fn through<'a>(trace: &'a Trace, how: &str, engine: Engine<'a>, against: usize) -> Case<'a> {
+    Case::new(&[trace.name, how], against, trace.rays() as f64, move || {
+        black_box(cached::occluded(&engine, trace));
+    })
+}

@@ -1,0 +1,272 @@
+//! Segments as they are asked for, kept to be traced again.
+
+use crate::bench::setting::{Dice, Setting};
+use crate::embree::{Ray, Rays16};
+use crate::light_tree::Node;
+use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LEAST_SHARED, Points};
+use crate::lightcut::{CutSettings, Lightcut, Reflector, Visibility};
+use crate::math::{Rgb, lanes_in};
+use crate::shadow::{Packing, to_vpl};
+use crate::vpl::Vpl;
+use glam::Vec3;
+use std::cell::RefCell;
+
+/// Up to sixteen segments.
+#[derive(Clone)]
+pub struct Packet {
+    pub rays: Rays16,
+    pub valid: u16,
+    /// Which light each runs to.
+    pub keys: [u32; 16],
+}
+
+/// Segments in an order.
+pub struct Trace {
+    pub name: &'static str,
+    /// What those of a packet have in common.
+    pub packing: Packing,
+    /// By stretches of work in which a cache lives.
+    pub chunks: Vec<Vec<Packet>>,
+    /// Receivers that they were asked for.
+    pub points: usize,
+}
+
+impl Trace {
+    /// All packets in order.
+    pub fn packets(&self) -> impl Iterator<Item = &Packet> {
+        self.chunks.iter().flatten()
+    }
+
+    /// How many segments.
+    pub fn rays(&self) -> u64 {
+        self.packets().map(|p| u64::from(p.valid.count_ones())).sum()
+    }
+}
+
+/// One trace of each kind.
+pub struct Traces {
+    /// Packings of lights drawn at random.
+    pub drawn: [Trace; 3],
+    /// Order of a point's own refinement, and of a shared one: pixels.
+    pub pixels: [Trace; 2],
+    /// The same for records.
+    pub records: [Trace; 2],
+}
+
+impl Traces {
+    pub fn record(setting: &Setting) -> Traces {
+        let pixel = CutSettings::default();
+        let record = crate::cache::CacheSettings::default().cut;
+        let surface = |i: usize| setting.reflector(i);
+        let collector = |i: usize| setting.collector(i);
+        Traces {
+            drawn: [unrelated(setting), cluster(setting), neighbours(setting)],
+            pixels: refined(setting, ["pixels, alone", "pixels, shared"], &setting.pixels(), &pixel, surface),
+            records: refined(
+                setting,
+                ["records, alone", "records, shared"],
+                &setting.records(),
+                &record,
+                collector,
+            ),
+        }
+    }
+
+    pub fn all(&self) -> impl Iterator<Item = &Trace> {
+        self.drawn.iter().chain(&self.pixels).chain(&self.records)
+    }
+}
+
+/// Rays to lights one after the other, sixteen a packet.
+#[derive(Default)]
+struct Packer {
+    packets: Vec<Packet>,
+    last: Option<Packet>,
+}
+
+impl Packer {
+    fn push(&mut self, ray: &Ray, key: u32) {
+        let blank = || Packet { rays: Rays16::default(), valid: 0, keys: [0; 16] };
+        let packet = self.last.get_or_insert_with(blank);
+        let lane = packet.valid.count_ones() as usize;
+        packet.rays.set(lane, ray);
+        packet.keys[lane] = key;
+        packet.valid |= 1 << lane;
+        if packet.valid == u16::MAX {
+            self.flush();
+        }
+    }
+
+    fn flush(&mut self) {
+        self.packets.extend(self.last.take());
+    }
+}
+
+/// The ray to a light, if its light would be reflected.
+fn lit(setting: &Setting, reflector: &Reflector, leaf: &Node) -> Option<Ray> {
+    let vpl = &setting.trees.vpls[leaf.representative()];
+    let response = setting.transfer().unshadowed(reflector, vpl, leaf.kind());
+    let (x, normal) = (reflector.position(), reflector.geometric_normal());
+    (response != Rgb::ZERO).then(|| to_vpl(x, normal, vpl, leaf.kind()))
+}
+
+/// From each eye sample to lights that have nothing in common.
+fn unrelated(setting: &Setting) -> Trace {
+    let (leaves, mut dice) = (setting.leaves(), Dice(1));
+    drawn(setting, "unrelated lights", Packing::Unrelated, 16, |reflector, packer| {
+        for _ in 0..32 {
+            let Some(leaf) = leaves.get(dice.below(leaves.len())) else { return };
+            if let Some(ray) = lit(setting, reflector, leaf) {
+                packer.push(&ray, leaf.representative() as u32);
+            }
+        }
+    })
+}
+
+/// From each eye sample to sixteen lights that are neighbours in their tree.
+fn cluster(setting: &Setting) -> Trace {
+    let (leaves, mut dice) = (setting.leaves(), Dice(2));
+    drawn(setting, "a cluster's lights", Packing::Cluster, 16, |reflector, packer| {
+        let first = dice.below(leaves.len().saturating_sub(LANES));
+        for leaf in leaves.iter().skip(first).take(LANES) {
+            if let Some(ray) = lit(setting, reflector, leaf) {
+                packer.push(&ray, leaf.representative() as u32);
+            }
+        }
+        packer.flush();
+    })
+}
+
+fn drawn(
+    setting: &Setting,
+    name: &'static str,
+    packing: Packing,
+    times: usize,
+    mut draw: impl FnMut(&Reflector, &mut Packer),
+) -> Trace {
+    let stretches = setting.pixels();
+    let points = stretches.iter().map(Vec::len).sum();
+    let chunk = |stretch: Vec<usize>| {
+        let mut packer = Packer::default();
+        for sample in stretch {
+            let reflector = setting.reflector(sample);
+            (0..times).for_each(|_| draw(&reflector, &mut packer));
+        }
+        packer.flush();
+        packer.packets
+    };
+    Trace { name, packing, chunks: stretches.into_iter().map(chunk).collect(), points }
+}
+
+/// From groups of neighbouring eye samples to one light at a time.
+fn neighbours(setting: &Setting) -> Trace {
+    let (leaves, mut dice) = (setting.leaves(), Dice(3));
+    let mut points = 0;
+    let mut chunk = |stretch: Vec<usize>| {
+        let mut packets = Vec::new();
+        for group in setting.groups(&stretch) {
+            points += group.len();
+            let reflectors: Vec<Reflector> = group.iter().map(|&i| setting.reflector(i)).collect();
+            for _ in 0..256 {
+                let Some(leaf) = leaves.get(dice.below(leaves.len())) else { continue };
+                let mut packet =
+                    Packet { rays: Rays16::default(), valid: 0, keys: [leaf.representative() as u32; 16] };
+                for (lane, reflector) in reflectors.iter().enumerate() {
+                    if let Some(ray) = lit(setting, reflector, leaf) {
+                        packet.rays.set(lane, &ray);
+                        packet.valid |= 1 << lane;
+                    }
+                }
+                if packet.valid != 0 {
+                    packets.push(packet);
+                }
+            }
+        }
+        packets
+    };
+    let chunks = setting.pixels().into_iter().map(&mut chunk).collect();
+    Trace { name: "neighbours, one light", packing: Packing::Neighbours, chunks, points }
+}
+
+/// What cuts ask for: each point's own, and those that groups share.
+fn refined<'m>(
+    setting: &Setting,
+    names: [&'static str; 2],
+    stretches: &[Vec<usize>],
+    settings: &CutSettings,
+    reflector: impl Fn(usize) -> Reflector<'m>,
+) -> [Trace; 2] {
+    let (trees, transfer) = (&setting.trees, setting.transfer());
+    let (mut alone, mut shared) = (Vec::new(), Vec::new());
+    let (mut single, mut group, mut points) = (Lightcut::new(), GroupLightcut::new(), Points::new());
+    for stretch in stretches {
+        let recorder = Recorder::new(setting);
+        for &sample in stretch {
+            single.gather(trees, &transfer, &recorder, &reflector(sample), settings);
+        }
+        alone.push(recorder.packets());
+        let recorder = Recorder::new(setting);
+        for members in setting.groups(stretch) {
+            if members.len() < LEAST_SHARED {
+                for sample in members {
+                    single.gather(trees, &transfer, &recorder, &reflector(sample), settings);
+                }
+            } else {
+                points.set(members.iter().map(|&i| reflector(i)));
+                group.gather(trees, &transfer, &recorder, &points, settings, &mut [Rgb::ZERO; LANES]);
+            }
+            recorder.flush();
+        }
+        shared.push(recorder.packets());
+    }
+    let count = stretches.iter().map(Vec::len).sum();
+    let trace = |name, packing, chunks| Trace { name, packing, chunks, points: count };
+    [trace(names[0], Packing::Single, alone), trace(names[1], Packing::Neighbours, shared)]
+}
+
+/// Visibility in the scene that keeps what it is asked.
+struct Recorder<'a> {
+    setting: &'a Setting<'a>,
+    packer: RefCell<Packer>,
+}
+
+impl<'a> Recorder<'a> {
+    fn new(setting: &'a Setting<'a>) -> Recorder<'a> {
+        Recorder { setting, packer: RefCell::default() }
+    }
+
+    fn flush(&self) {
+        self.packer.borrow_mut().flush();
+    }
+
+    fn packets(self) -> Vec<Packet> {
+        let mut packer = self.packer.into_inner();
+        packer.flush();
+        packer.packets
+    }
+}
+
+impl Visibility for Recorder<'_> {
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
+        let ray = to_vpl(x, normal, vpl, node.kind());
+        self.packer.borrow_mut().push(&ray, node.representative() as u32);
+        !self.setting.world.accel.occluded(&ray)
+    }
+}
+
+impl GroupVisibility for Recorder<'_> {
+    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+        let rays = points.shadow_rays(vpl, node.kind());
+        let seen = lanes & !self.setting.world.accel.occluded16(&rays, lanes, true);
+        let packet = Packet { rays, valid: lanes, keys: [node.representative() as u32; 16] };
+        self.packer.borrow_mut().packets.push(packet);
+        seen
+    }
+}
+
+impl Packet {
+    /// Its rays and their lights.
+    pub fn singles(&self) -> impl Iterator<Item = (Ray, u32)> + '_ {
+        lanes_in(self.valid).map(|lane| (self.rays.get(lane), self.keys[lane]))
+    }
+}

@@ -1,0 +1,69 @@
+//! Options of `bench`.
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use std::path::PathBuf;
+
+/// The defaults are the benchmarks' own; a test holds the text to them.
+#[derive(Debug, Args)]
+#[command(after_help = super::bench::list())]
+pub struct BenchArgs {
+    /// What to measure
+    #[arg(value_parser = PossibleValuesParser::new(crate::bench::REGISTRY.iter().map(|b| b.name)), hide_possible_values = true)]
+    pub benchmark: String,
+    /// Scene: native (.toml) or Mitsuba (.xml); for those that need one
+    pub scene: Option<PathBuf>,
+    /// Threads where all are used [default: all processors]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub threads: Option<u32>,
+    /// Samples of every case, taken in turns [default: 7]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub repeats: Option<u32>,
+    /// How long a sample lasts at least, about [default: 0.05]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    pub seconds: Option<f64>,
+    /// Write everything, every sample included
+    #[arg(long, value_name = "FILE")]
+    pub export_json: Option<PathBuf>,
+    /// Write a line for every case
+    #[arg(long, value_name = "FILE")]
+    pub export_csv: Option<PathBuf>,
+    /// Write the tables
+    #[arg(long, value_name = "FILE")]
+    pub export_markdown: Option<PathBuf>,
+    /// Write a page with plots
+    #[arg(long, value_name = "FILE")]
+    pub export_html: Option<PathBuf>,
+}
+
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=3600.0).contains(&value) => Ok(value),
+        _ => Err("expected seconds from 0 to 3600".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::args::Cli;
+    use super::*;
+    use crate::bench::Settings;
+    use clap::CommandFactory;
+
+    #[test]
+    fn help_states_the_benchmarks_defaults_and_lists_them() {
+        let cli = Cli::command();
+        let bench = cli.find_subcommand("bench").unwrap();
+        let defaults = Settings::default();
+        for (option, default) in
+            [("repeats", defaults.repeats.to_string()), ("seconds", defaults.seconds.to_string())]
+        {
+            let argument = bench.get_arguments().find(|a| a.get_long() == Some(option)).unwrap();
+            let stated = argument.get_help().unwrap().to_string();
+            assert!(stated.contains(&format!("[default: {default}]")), "{stated}");
+        }
+        let listed = bench.get_after_help().unwrap().to_string();
+        assert!(crate::bench::REGISTRY.iter().all(|b| listed.contains(b.name)), "{listed}");
+        assert!(parse_seconds("-1").is_err() && parse_seconds("nan").is_err());
+    }
+}

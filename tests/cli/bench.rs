@@ -1,0 +1,55 @@
+//! Benchmarks run on any scene and leave what they are asked for; their figures are no test's business.
+
+use super::Sandbox;
+
+#[test]
+fn every_benchmark_runs_and_exports() {
+    let sandbox = Sandbox::new();
+    for (name, scene) in
+        [("shadow", Some("room.xml")), ("bounds", Some("room.xml")), ("bsdf", None), ("hsh", None)]
+    {
+        let mut arguments = vec!["bench", name];
+        arguments.extend(scene);
+        arguments.extend(["--repeats", "2", "--seconds", "0", "--threads", "2"]);
+        arguments.extend(["--export-json", "a.json", "--export-csv", "a.csv"]);
+        arguments.extend(["--export-markdown", "a.md", "--export-html", "a.html"]);
+        let stdout = sandbox.run(&arguments).expect(0).stdout;
+        let read = |file: &str| std::fs::read_to_string(sandbox.path(file)).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&read("a.json")).unwrap();
+        assert_eq!(report["benchmark"], name);
+        let rows = report["tables"].as_array().unwrap().iter().flat_map(|t| t["rows"].as_array().unwrap());
+        let mut cases = 0;
+        for row in rows {
+            assert_eq!(row["samples"].as_array().unwrap().len(), 2);
+            assert!(row["rate"]["median"].as_f64().unwrap() > 0.0, "{row}");
+            cases += 1;
+        }
+        assert!(cases > 3, "{stdout}");
+        assert_eq!(read("a.csv").lines().count(), cases + 1);
+        assert!(read("a.md").starts_with(&format!("# {name}")) && read("a.html").contains("<svg"));
+    }
+}
+
+#[test]
+fn the_cache_changes_no_answer_in_the_benchmark_either() {
+    let sandbox = Sandbox::new();
+    let arguments =
+        ["bench", "shadow", "room.xml", "--repeats", "1", "--seconds", "0", "--export-json", "a.json"];
+    sandbox.run(&arguments).expect(0);
+    let text = std::fs::read_to_string(sandbox.path("a.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let tables = report["tables"].as_array().unwrap();
+    let table = tables.iter().find(|t| t["figures"][1] == "answers changed").unwrap();
+    assert!(table["rows"].as_array().unwrap().iter().all(|row| row["figures"][1] == 0.0));
+}
+
+#[test]
+fn scenes_are_asked_for_where_they_are_needed_and_nowhere_else() {
+    let sandbox = Sandbox::new();
+    assert!(sandbox.run(&["bench", "shadow"]).expect(2).stderr.contains("scene"));
+    assert!(sandbox.run(&["bench", "bsdf", "room.xml"]).expect(2).stderr.contains("scene"));
+    sandbox.run(&["bench", "luck"]).expect(2);
+    sandbox.run(&["bench", "bsdf", "--repeats", "0"]).expect(2);
+    sandbox.run(&["bench", "bsdf", "--export-csv", "missing/a.csv"]).expect(4);
+    assert!(sandbox.run(&["bench", "--help"]).expect(0).stdout.contains("shadow SCENE"));
+}
