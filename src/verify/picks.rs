@@ -1,13 +1,13 @@
 //! Which pixels are verified.
 //!
-//! Every pixel may be picked, with a probability of which half is the same for all and half goes with the contrast
-//! to its neighbours: errors of caches and of aliasing gather in creases and at edges, and a plain random sample
-//! would see too few of the pixels that rule the root mean square. Weights undo the preference (Horvitz-Thompson).
-//! Picks are stratified: pixels are lined up along the Morton curve, and one is picked in each of equal shares of
-//! the probability.
+//! Every pixel may be picked, with a probability of which half is the same for all and half goes with how much it stands
+//! out among its neighbours: errors of caches and of aliasing gather in creases and at edges, and the square of
+//! noise in few bright pixels, so that a plain random sample would see too few of the pixels that rule the root mean square.
+//! Weights undo the preference (Horvitz-Thompson). Picks are systematic: pixels are lined up block by
+//! block along the Morton curve, in random order within blocks, and picked at equal steps of the probability.
 
 use crate::image::Image;
-use crate::sampling::{hash, owen_van_der_corput};
+use crate::sampling::hash;
 
 /// A pixel to verify.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,57 +21,82 @@ pub struct Pick {
 /// Share of the probability that goes with contrast.
 const BY_CONTRAST: f64 = 0.5;
 
-/// Luminances this share of the mean apart are no contrast.
+/// Radiances this share of the mean apart are no contrast.
 const CONTRAST_FLOOR: f64 = 0.1;
 
-/// About `count` picks in the order of the curve, every pixel once where there are no more.
+/// Pixels along the edge of a block, within which the order is random.
+const BLOCK: u32 = 8;
+
+/// `count` picks, every pixel once where there are no more.
 pub fn choose(image: &Image, count: usize, seed: u32) -> Vec<Pick> {
     let mut order: Vec<usize> = (0..image.pixels.len()).collect();
-    order.sort_by_key(|&i| morton(i as u32 % image.width, i as u32 / image.width));
+    let block = |i: usize| {
+        let (x, y) = (i as u32 % image.width, i as u32 / image.width);
+        morton(x / BLOCK, y / BLOCK)
+    };
+    order.sort_by_cached_key(|&i| (block(i), hash(i as u32, hash(seed, 1)), i));
     if count >= order.len() {
         return order.into_iter().map(|index| Pick { index, weight: 1.0 }).collect();
     }
-    let contrast = contrasts(image);
-    let total: f64 = contrast.iter().sum();
-    let share = if total > 0.0 { BY_CONTRAST } else { 0.0 };
-    let pixels = order.len() as f64;
-    let probability =
-        |i: usize| (1.0 - share) / pixels + if total > 0.0 { share * contrast[i] / total } else { 0.0 };
-
+    let inclusion = inclusion(image, count);
     let mut picks: Vec<Pick> = Vec::with_capacity(count);
-    let next = |k: usize| (k as f64 + f64::from(owen_van_der_corput(k as u32, hash(seed, 1)))) / count as f64;
-    let (mut k, mut reached) = (0, 0.0);
+    let mut next = (f64::from(hash(seed, 2)) + 0.5) / 4294967296.0;
+    let mut reached = 0.0;
     for index in order {
-        let probability = probability(index);
-        reached += probability;
-        let mut times = 0;
-        while k < count && next(k) < reached {
-            times += 1;
-            k += 1;
-        }
-        if times > 0 {
-            picks.push(Pick { index, weight: f64::from(times) / (count as f64 * probability) });
+        reached += inclusion[index];
+        if next < reached {
+            picks.push(Pick { index, weight: 1.0 / inclusion[index] });
+            next += 1.0;
         }
     }
     picks
 }
 
-/// Largest relative difference between each pixel and its neighbours, 0 to 1.
+/// Probability of each pixel to be picked; `count` in all.
+fn inclusion(image: &Image, count: usize) -> Vec<f64> {
+    let contrast = contrasts(image);
+    let total: f64 = contrast.iter().sum();
+    let even = 1.0 / contrast.len() as f64;
+    let share = if total > 0.0 { BY_CONTRAST } else { 0.0 };
+    let by_contrast = |c: f64| if total > 0.0 { share * c / total } else { 0.0 };
+    let mut inclusion: Vec<f64> =
+        contrast.into_iter().map(|c| count as f64 * ((1.0 - share) * even + by_contrast(c))).collect();
+    // What some have beyond certainty goes to the others, until none has.
+    loop {
+        let certain = inclusion.iter().filter(|&&p| p >= 1.0).count() as f64;
+        let rest: f64 = inclusion.iter().filter(|&&p| p < 1.0).sum();
+        let factor = (count as f64 - certain) / rest;
+        if !(factor > 1.0 + 1e-9) {
+            inclusion.iter_mut().for_each(|p| *p = p.min(1.0));
+            return inclusion;
+        }
+        inclusion.iter_mut().for_each(|p| *p = if *p >= 1.0 { 1.0 } else { *p * factor });
+    }
+}
+
+/// How much each pixel stands out: its relative difference from the median around it, and at most 1 more for the largest
+/// difference from a neighbour.
 fn contrasts(image: &Image) -> Vec<f64> {
     let value = |i: usize| f64::from(image.pixels[i].element_sum());
     let mean = (0..image.pixels.len()).map(value).sum::<f64>() / image.pixels.len().max(1) as f64;
     let floor = (CONTRAST_FLOOR * mean).max(f64::MIN_POSITIVE);
     let (width, height) = (image.width as usize, image.height as usize);
+    let mut around = Vec::with_capacity(9);
     let at = |i: usize| {
         let (x, y, here) = (i % width, i / width, value(i));
         let mut most: f64 = 0.0;
+        around.clear();
         for v in y.saturating_sub(1)..(y + 2).min(height) {
             for u in x.saturating_sub(1)..(x + 2).min(width) {
                 let there = value(v * width + u);
                 most = most.max((here - there).abs() / (here.abs() + there.abs() + floor));
+                around.push(there);
             }
         }
-        if most.is_finite() { most } else { 1.0 }
+        around.sort_by(f64::total_cmp);
+        let median = around[around.len() / 2];
+        let outlier = (here - median).abs() / (median.abs() + floor);
+        if outlier.is_finite() { most + outlier } else { 1.0 }
     };
     (0..image.pixels.len()).map(at).collect()
 }
@@ -134,6 +159,16 @@ mod tests {
         indices.sort();
         indices.dedup();
         assert_eq!(indices.len(), picks.len());
+    }
+
+    #[test]
+    fn outliers_are_not_missed() {
+        let mut image = image();
+        image.pixels[700] = Rgb::splat(200.0);
+        for seed in 0..20 {
+            let picks = choose(&image, 100, seed);
+            assert!(picks.contains(&Pick { index: 700, weight: 1.0 }) && picks.len() == 100);
+        }
     }
 
     #[test]
