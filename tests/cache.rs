@@ -17,6 +17,9 @@ fn settings(direct: DirectLight, footprints: Footprints) -> cache::Settings {
     let mut settings = cache::Settings::default();
     settings.light.indirect = 20_000;
     settings.cache.direct = direct;
+    // Records wherever they can be, which small pictures would leave to cuts.
+    settings.cache.least_cell = 8;
+    settings.cache.layers[1].accuracy = 0.3;
     settings.cache.footprints = footprints;
     settings
 }

@@ -43,6 +43,9 @@ fn settings(footprints: Footprints) -> cache::Settings {
     let mut settings = cache::Settings::default();
     settings.light.indirect = 30_000;
     settings.cache.footprints = footprints;
+    // Records wherever they can be, which small pictures would leave to cuts.
+    settings.cache.least_cell = 8;
+    settings.cache.layers[1].accuracy = 0.3;
     // The reference clamps as the cache does without it.
     settings.cache.compensation = false;
     settings

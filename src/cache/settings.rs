@@ -61,7 +61,8 @@ pub struct CacheSettings {
     /// Most eye samples without records that share a cut; more than 16 trace shadow rays only where the sixteen
     /// that the cut is made for disagree.
     pub patch: usize,
-    /// Cells of fewer eye samples than this get no record: their samples have cuts of their own, which
+    /// Cells of fewer eye samples than this get no record: a record costs as much as the lent cuts of some hundred
+    /// samples. Their samples have cuts of their own, which
     /// neighbours share.
     pub least_cell: u32,
 }
@@ -72,7 +73,7 @@ impl Default for CacheSettings {
             cut: CutSettings { epsilon: 0.01, ..CutSettings::default() },
             layers: [
                 LayerSettings { accuracy: 0.3, reach: [1.5, 20.0] },
-                LayerSettings { accuracy: 0.3, reach: [1.5, 40.0] },
+                LayerSettings { accuracy: 0.2, reach: [1.5, 40.0] },
             ],
             direct: DirectLight::default(),
             series: SeriesSettings::default(),
@@ -83,7 +84,7 @@ impl Default for CacheSettings {
             passes: 1,
             threshold: 0.02,
             patch: 64,
-            least_cell: 8,
+            least_cell: 256,
         }
     }
 }

@@ -17,7 +17,7 @@ pub struct CacheArgs {
     #[arg(long, value_enum)]
     pub footprints: Option<FootprintShape>,
     /// Radius of footprints relative to the distance of what casts light and shadow, for direct and
-    /// for indirect light [default: 0.3,0.3]
+    /// for indirect light [default: 0.3,0.2]
     #[arg(long, value_name = "DIRECT,INDIRECT")]
     pub accuracy: Option<Pair>,
     /// Least and largest radius of footprints, in spacings of eye samples
@@ -47,7 +47,7 @@ pub struct CacheArgs {
     /// Most eye samples without records that share a cut [default: 64]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub patch: Option<u32>,
-    /// Cells of fewer eye samples get no record; their samples have cuts of their own [default: 8]
+    /// Cells of fewer eye samples get no record; their samples have cuts of their own [default: 256]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub least_cell: Option<u32>,
 }

@@ -72,6 +72,8 @@ impl GroupLightcut {
     ) {
         const ZERO: Lanes = [0.0; LANES];
         self.entries.clear();
+        // What is never clamped needs no second look.
+        let mut strong = [ZERO; 3];
         for &(node, seen) in &cut.clusters {
             if seen == Seen::ByNone {
                 continue;
@@ -93,12 +95,19 @@ impl GroupLightcut {
                     }
                 }
             }
-            let weak = n.is_leaf() && n.origin() == Origin::Indirect;
-            self.entries.push(Entry { node, weak, responses, errors: ZERO, counted: ZERO });
+            if n.is_leaf() && n.origin() == Origin::Indirect {
+                self.entries.push(Entry { node, weak: true, responses, errors: ZERO, counted: ZERO });
+                continue;
+            }
+            for (c, sum) in strong.iter_mut().enumerate() {
+                for (s, r) in sum.iter_mut().zip(&responses[c]) {
+                    *s += n.intensity[c] * r;
+                }
+            }
         }
         let count = points.len() as u64;
         self.counts.cuts += count;
         self.counts.clusters += count * cut.size() as u64;
-        self.sum(trees, points, settings.clamp, radiance);
+        self.sum(trees, points, settings.clamp, &strong, radiance);
     }
 }

@@ -8,7 +8,6 @@ use crate::lightcut::refine::DOMINANT;
 use crate::lightcut::{CutCounts, CutSettings, Transfer};
 use crate::math::{Rgb, luminance};
 use crate::vpl::Origin;
-use glam::DVec3;
 use std::collections::BinaryHeap;
 
 /// Least luminance of a lane where errors are judged, relative to the brightest lane's.
@@ -97,18 +96,20 @@ impl GroupLightcut {
         self.counts.cuts += count;
         self.counts.clusters += count * self.entries.len() as u64;
         self.counts.capped += count * u64::from(capped);
-        self.sum(trees, points, settings.clamp, radiance);
+        self.sum(trees, points, settings.clamp, &[ZERO; 3], radiance);
     }
 
+    /// The lanes' radiance: that of the entries, and `strong` besides, which is not clamped.
     pub(super) fn sum(
         &mut self,
         trees: &LightTrees,
         points: &Points,
         clamp: Option<f32>,
+        strong: &RgbLanes,
         radiance: &mut [Rgb; LANES],
     ) {
         self.limits = [f32::INFINITY; LANES];
-        let mut sums = [ZERO; 3];
+        let mut sums = *strong;
         let mut brightest_leaf = ZERO;
         for e in &self.entries {
             let i = trees.nodes[e.node as usize].intensity;
@@ -132,7 +133,8 @@ impl GroupLightcut {
                 Some(clamp)
                     if brightest_leaf[lane] > clamp.min(DOMINANT) * (luminance(unclamped) + known) =>
                 {
-                    self.clamped_sum(trees, lane, unclamped, known, clamp)
+                    let strong = Rgb::new(strong[0][lane], strong[1][lane], strong[2][lane]);
+                    self.clamped_sum(trees, lane, strong, unclamped, known, clamp)
                 }
                 _ => {
                     self.limits[lane] =
@@ -148,13 +150,14 @@ impl GroupLightcut {
         &mut self,
         trees: &LightTrees,
         lane: usize,
+        strong: Rgb,
         unclamped: Rgb,
         known: f32,
         clamp: f32,
     ) -> Rgb {
         let limited = |limit: f32| {
             let mut clamped = 0;
-            let sum = self.entries.iter().fold(DVec3::ZERO, |sum, e| {
+            let sum = self.entries.iter().fold(strong.as_dvec3(), |sum, e| {
                 let i = trees.nodes[e.node as usize].intensity;
                 let mut contribution = i * Rgb::from_array(std::array::from_fn(|c| e.responses[c][lane]));
                 let y = luminance(contribution);
