@@ -145,6 +145,8 @@ fn the_furnace_is_white_although_close_lights_are_clamped() {
     let world = world(scene);
     let ratio = |compensation: bool| {
         let mut settings = cache::Settings::default();
+        // Only records are compensated.
+        settings.cache.least_cell = 8;
         settings.light.indirect = 6000;
         settings.cache.compensation = compensation;
         let picture = cached(&world, &settings).color;
