@@ -12,12 +12,13 @@ mod emission;
 mod indirect;
 mod octahedral;
 mod pass;
+mod photons;
 
 use crate::math::{Rgb, luminance};
 use glam::Vec3;
 
-pub use indirect::PhotonCounts;
 pub use pass::{LightPass, LightPassSettings, light_pass};
+pub use photons::{Photon, PhotonCounts, PhotonSettings, trace_photons};
 
 /// How a VPL radiates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,8 @@
 //! The light pass: all VPLs of a scene.
 
 use super::direct::direct_vpls;
-use super::indirect::{PhotonCounts, indirect_vpls};
+use super::indirect::indirect_vpls;
+use super::photons::PhotonCounts;
 use super::{SpotProfile, VplSet};
 use crate::method::Control;
 use crate::world::World;

@@ -1,0 +1,188 @@
+//! Photon paths from the emitters, and what they leave at every hit that reflects diffusely.
+//!
+//! Papers: Jensen, *Global Illumination using Photon Maps*, 1996; Keller, *Instant Radiosity*, 1997.
+//! Deviations: paths end by Russian roulette on the luminance they would lose, which keeps photons alike in
+//! power; with interpolated normals, flux is corrected as importance demands (Veach 1997, section 5.3).
+//!
+//! Paths run in chunks of fixed size and are kept in order, so the photons are the same for any number of threads.
+//! Units: flux in watts, to be divided by the number of paths.
+
+use super::emission::PhotonSource;
+use crate::math::{Rgb, luminance};
+use crate::method::Control;
+use crate::sampling::{Sampler, hash};
+use crate::shadow;
+use crate::world::World;
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Paths traced by one task.
+const CHUNK: u32 = 1024;
+/// Chunks in the first wave, from which the yield of the others is guessed.
+const FIRST_WAVE: u32 = 16;
+/// No more paths are shot for each photon wanted; reached where most light misses the scene.
+const PATHS_PER_PHOTON: u32 = 32;
+/// Edges after which a path is given up: only a closed scene of mirrors gets there.
+const MAX_EDGES: u32 = 256;
+/// Most a path's survival is worth, so that it ends even where nothing absorbs.
+const MAX_SURVIVAL: f32 = 0.98;
+/// Largest correction for the difference between shading and geometric normal; a grazing photon would
+/// otherwise leave a VPL brighter than all others together.
+const MAX_CORRECTION: f32 = 8.0;
+
+/// What tracing photons took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PhotonCounts {
+    /// Paths shot, by which flux is divided.
+    pub paths: u64,
+    /// Closest-hit queries.
+    pub rays: u64,
+}
+
+/// Light that meets a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Photon {
+    /// Where.
+    pub position: Vec3,
+    /// Unit geometric normal on the side it arrives at.
+    pub normal: Vec3,
+    /// Unit vector back along its path.
+    pub towards_light: Vec3,
+    /// Flux, to be divided by the paths shot.
+    pub flux: Rgb,
+    /// Share of it that is reflected diffusely; not 0.
+    pub albedo: Rgb,
+}
+
+/// What is wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct PhotonSettings {
+    /// Photons, about (whole chunks of paths, so a few more), or fewer where light is hard to catch.
+    pub photons: u32,
+    /// Most edges of a path.
+    pub max_edges: u32,
+    /// Another seed, other paths.
+    pub seed: u32,
+}
+
+/// Photons of one chunk.
+struct Chunk<T> {
+    kept: Vec<T>,
+    rays: u64,
+}
+
+/// Traces photons and returns what `keep` makes of each, in order.
+pub fn trace_photons<T: Send>(
+    world: &World,
+    settings: &PhotonSettings,
+    control: &Control,
+    keep: impl Fn(&Photon) -> T + Sync,
+) -> (Vec<T>, PhotonCounts) {
+    let mut counts = PhotonCounts::default();
+    let max_edges = settings.max_edges.min(MAX_EDGES);
+    let wanted = settings.photons as usize;
+    let source = match PhotonSource::new(world) {
+        Some(source) if wanted > 0 && max_edges > 0 => source,
+        _ => return (Vec::new(), counts),
+    };
+    let seed = hash(settings.seed, 0x1d1d);
+    let chunks_limit = (settings.photons.saturating_mul(PATHS_PER_PHOTON) / CHUNK).max(FIRST_WAVE);
+    let mut photons: Vec<T> = Vec::with_capacity(wanted + wanted / 8);
+    let mut chunks = 0;
+    while photons.len() < wanted && chunks < chunks_limit && !control.is_cancelled() {
+        let wave = next_wave(chunks, photons.len(), wanted).min(chunks_limit - chunks);
+        let traced: Vec<Chunk<T>> = (chunks..chunks + wave)
+            .into_par_iter()
+            .map(|chunk| trace_chunk(world, &source, chunk, seed, max_edges, &keep))
+            .collect();
+        for chunk in traced {
+            counts.rays += chunk.rays;
+            // Chunks beyond the one that fills the quota are dropped, so that waves leave no trace.
+            if photons.len() < wanted {
+                chunks += 1;
+                control.advance(chunk.kept.len() as u64);
+                photons.extend(chunk.kept);
+            }
+        }
+    }
+    counts.paths = u64::from(chunks) * u64::from(CHUNK);
+    (photons, counts)
+}
+
+/// Chunks to trace next: as many as the yield so far suggests, a tenth fewer, so that little is thrown away.
+fn next_wave(chunks: u32, found: usize, wanted: usize) -> u32 {
+    if chunks == 0 {
+        return FIRST_WAVE;
+    }
+    let yield_per_chunk = found as f64 / f64::from(chunks);
+    let missing = (wanted - found) as f64;
+    let guess = if yield_per_chunk > 0.0 { 0.9 * missing / yield_per_chunk } else { f64::from(chunks) };
+    (guess as u32).clamp(4, 4096)
+}
+
+fn trace_chunk<T>(
+    world: &World,
+    source: &PhotonSource,
+    chunk: u32,
+    seed: u32,
+    max_edges: u32,
+    keep: &impl Fn(&Photon) -> T,
+) -> Chunk<T> {
+    let mut kept = Vec::new();
+    let mut rays = 0;
+    for path in chunk * CHUNK..(chunk + 1) * CHUNK {
+        let sampler = &mut Sampler::new(seed, path);
+        rays += trace_path(world, source, sampler, max_edges, &mut |photon| kept.push(keep(photon)));
+    }
+    Chunk { kept, rays }
+}
+
+/// Follows a path; returns the rays traced.
+fn trace_path(
+    world: &World,
+    source: &PhotonSource,
+    sampler: &mut Sampler,
+    max_edges: u32,
+    met: &mut impl FnMut(&Photon),
+) -> u64 {
+    let Some((mut ray, mut flux)) = source.sample(sampler) else { return 0 };
+    for edge in 1..=max_edges {
+        let rays = u64::from(edge);
+        let Some(surface) = world.intersect(&ray) else { return rays };
+        let towards_light = -ray.direction;
+        let wi = surface.frame.to_local(towards_light);
+        let cos_g = surface.normal.dot(towards_light);
+        if wi.z * cos_g <= 0.0 {
+            return rays; // the two normals disagree on which side this is
+        }
+        let correction = (wi.z / cos_g).min(MAX_CORRECTION);
+        let bsdf = world.bsdf(&surface);
+        let albedo = bsdf.diffuse_albedo(wi);
+        if albedo != Rgb::ZERO {
+            let normal: Vec3 = if cos_g > 0.0 { surface.normal } else { -surface.normal };
+            let (position, flux) = (surface.position, flux * correction);
+            met(&Photon { position, normal, towards_light, flux, albedo });
+        }
+        if edge == max_edges {
+            return rays;
+        }
+        let (u_lobe, u_direction, u_survival) = (sampler.next_1d(), sampler.next_2d(), sampler.next_1d());
+        let Some(s) = bsdf.sample(wi, u_lobe, u_direction) else { return rays };
+        let direction = surface.frame.to_world(s.wi);
+        let out_g = surface.normal.dot(direction);
+        if out_g * s.wi.z <= 0.0 {
+            return rays;
+        }
+        let back = (out_g / s.wi.z).min(MAX_CORRECTION);
+        // Delta lobes turn the whole pencil of rays, normals and all.
+        let corrected = if s.delta { 1.0 } else { correction * back };
+        let next = flux * s.weight * (s.eta * s.eta * corrected);
+        let survival = (luminance(next) / luminance(flux)).min(MAX_SURVIVAL);
+        if !next.is_finite() || u_survival >= survival {
+            return rays;
+        }
+        flux = next / survival;
+        ray = shadow::ray_from(surface.position, surface.normal, direction);
+    }
+    u64::from(max_edges)
+}
