@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use glam::Vec3;
-use lightsplat::cache::compute::Source;
+use lightsplat::cache::compute::{RecordSource, Source};
 use lightsplat::cache::layer::Layer;
 use lightsplat::cache::record::Record;
 use lightsplat::cache::wave::Pick;

@@ -60,9 +60,26 @@ pub fn layer_of(origin: Origin) -> usize {
     }
 }
 
-impl Source<'_> {
-    /// Computes the records of a wave, in the order of the picks.
-    pub fn records(
+/// Where records come from.
+pub trait RecordSource: Sync {
+    /// Settings of the cache.
+    fn settings(&self) -> &CacheSettings;
+
+    /// Computes the records of a wave, always in the same order.
+    fn records(
+        &self,
+        samples: &EyeSamples,
+        layers: &[Layer; 2],
+        picks: &[Pick],
+    ) -> (Vec<(Pick, Pair)>, CutCounts);
+}
+
+impl RecordSource for Source<'_> {
+    fn settings(&self) -> &CacheSettings {
+        self.settings
+    }
+
+    fn records(
         &self,
         samples: &EyeSamples,
         layers: &[Layer; 2],
@@ -85,7 +102,9 @@ impl Source<'_> {
         }
         (records, counts)
     }
+}
 
+impl Source<'_> {
     /// Picks that share a cut: neighbours that lack the same layers.
     fn tasks(&self, samples: &EyeSamples, picks: &[Pick]) -> Vec<Vec<Pick>> {
         let place = |pick: &Pick| {

@@ -17,9 +17,10 @@
 //! Eye samples have cuts of their own, shared among neighbours, where their reflection is too sharp for records,
 //! where a record would serve too few of them, and where records still disagree visibly after the last pass.
 
+pub(super) mod filled;
 pub mod inspect;
-mod own;
-mod picture;
+pub(super) mod own;
+pub(super) mod picture;
 mod render;
 
 pub use render::{Settings, render};

@@ -1,28 +1,21 @@
-//! The picture: eye pass, light pass, trees, records in waves, adaptation, and the sum at each pixel.
+//! The picture: eye pass, light pass, trees, the cache, and what it leaves to cuts.
 
+use super::filled::Cache;
 use super::inspect;
-use super::own::{self, Job};
+use super::own;
 use super::picture::Picture;
-use crate::cache::adapt::Seam;
+use crate::cache::CacheSettings;
 use crate::cache::compensate::Compensation;
 use crate::cache::compute::Source;
-use crate::cache::layer::Layer;
-use crate::cache::record::Record;
 use crate::cache::series::Glossy;
-use crate::cache::wave::{Pick, lacking, pick};
-use crate::cache::{CacheSettings, DirectLight, adapt};
-use crate::eye::{EyePoint, EyeSamples, EyeSettings, EyeSurface, Window};
+use crate::eye::{EyeSamples, EyeSettings, Window};
 use crate::light_tree::Family;
-use crate::lightcut::{CutCounts, CutSettings};
-use crate::math::{Rgb, luminance};
+use crate::lightcut::CutSettings;
 use crate::method::lights::Lights;
 use crate::method::{Control, Output, counts};
 use crate::stats::{Stage, Stats};
-use crate::vpl::{LightPassSettings, Origin};
+use crate::vpl::LightPassSettings;
 use crate::world::World;
-
-/// Level of the coarsest cells.
-const FIRST_LEVEL: u32 = 5;
 
 /// What the user may set.
 #[derive(Clone, Copy, Debug)]
@@ -79,16 +72,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let compensation = settings.cache.compensation.then(|| Compensation::new(trees));
     let source = Source { world, trees, transfer, settings: &settings.cache, compensation };
 
-    let mut cache = Cache::new(&samples, glossy, settings.cache.direct);
-    control.begin(Stage::Records, samples.len() as u64);
-    cache.fill(&source, &samples, control, &mut stats);
-    for _ in 0..settings.cache.passes {
-        if control.is_cancelled() || !cache.adapt(&source, &samples, &mut stats) {
-            break;
-        }
-        cache.fill(&source, &samples, control, &mut stats);
-    }
-    cache.report(&mut stats);
+    let cache = Cache::complete(&source, &samples, glossy, control, &mut stats);
 
     let mut picture = Picture::new(&samples, settings.inspect);
     let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
@@ -105,128 +89,4 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
         extra.extend(inspect::layers(&samples, &cache.layers, &cache.seams));
     }
     Output { color, variance: None, extra, stats, complete, nonfinite }
-}
-
-/// Both layers, and what else is known of each eye sample.
-struct Cache {
-    layers: [Layer; 2],
-    /// Surfaces whose lobes records light too.
-    glossy: Option<Glossy>,
-    direct: DirectLight,
-    /// Samples that records light: those with a base or a lobe broad enough.
-    wants: Vec<bool>,
-    /// Where records disagreed before each pass of adaptation.
-    seams: Vec<Vec<Seam>>,
-    counts: CutCounts,
-}
-
-impl Cache {
-    fn new(samples: &EyeSamples, glossy: Option<Glossy>, direct: DirectLight) -> Cache {
-        let lit = |(point, surface): (&EyePoint, &EyeSurface)| {
-            point.sharing.bands() > 0 || surface.bsdf.split_base(1.0).0 != Rgb::ZERO
-        };
-        let wants = samples.points.iter().zip(&samples.surfaces).map(lit).collect();
-        let layers = [Layer::new(samples), Layer::new(samples)];
-        Cache { layers, glossy, direct, wants, seams: Vec::new(), counts: CutCounts::default() }
-    }
-
-    /// Which layers a sample is to have.
-    fn wanted(&self, sample: usize) -> [bool; 2] {
-        [self.wants[sample] && self.direct == DirectLight::Records, self.wants[sample]]
-    }
-
-    /// Computes and splats records until every cell worth one is covered.
-    fn fill(&mut self, source: &Source, samples: &EyeSamples, control: &Control, stats: &mut Stats) {
-        let count = samples.len();
-        let mut level = FIRST_LEVEL;
-        while count >> level >= source.settings.least_cell.max(1) as usize {
-            for parity in 0..2 {
-                if control.is_cancelled() {
-                    return;
-                }
-                let picks: Vec<Pick> = stats
-                    .time(Stage::Splat, || pick(samples, &self.layers, |i| self.wanted(i), level, parity));
-                let (mut records, counts) =
-                    stats.time(Stage::Records, || source.records(samples, &self.layers, &picks));
-                self.counts.add(&counts);
-                stats.time(Stage::Splat, || {
-                    for (l, layer) in self.layers.iter_mut().enumerate() {
-                        layer.splat(samples, records.iter_mut().filter_map(|(_, pair)| pair[l].take()));
-                    }
-                });
-            }
-            level += 1;
-        }
-    }
-
-    /// Shrinks footprints at visible seams; false if there are none.
-    fn adapt(&mut self, source: &Source, samples: &EyeSamples, stats: &mut Stats) -> bool {
-        stats.time(Stage::Splat, || {
-            let threshold = source.settings.threshold;
-            let seams = adapt::seams(samples, &self.layers, self.glossy.as_ref(), threshold);
-            let least = [0, 1].map(|l| source.settings.layers[l].reach[0]);
-            let changed = adapt::shrink(samples, &mut self.layers, &seams, least);
-            for layer in &mut self.layers {
-                layer.resplat(samples, &changed);
-            }
-            self.seams.push(seams);
-            changed.contains(&true)
-        })
-    }
-
-    fn report(&self, stats: &mut Stats) {
-        stats.count("Cache/records, direct", self.layers[0].records.len() as u64);
-        stats.count("Cache/records, indirect", self.layers[1].records.len() as u64);
-        let series = self.layers.iter().map(Layer::series_count).sum::<usize>();
-        if self.glossy.is_some() {
-            stats.count("Cache/records with series", series as u64);
-        }
-        let mut seams: Vec<u32> = self.seams.last().into_iter().flatten().map(|s| s.sample).collect();
-        seams.dedup();
-        stats.count("Cache/samples at seams", seams.len() as u64);
-        counts::cuts(stats, "Records", &self.counts);
-        let sum = |f: &dyn Fn(&Record) -> f32| self.layers[1].records.iter().map(|r| f64::from(f(r))).sum();
-        let total: f64 = sum(&|r| r.luminance + r.facts.clamped - r.facts.compensated);
-        let clamped: f64 = sum(&|r| r.facts.clamped);
-        let compensated: f64 = sum(&|r| r.facts.compensated);
-        let percent = 100.0 / if total > 0.0 { total } else { 1.0 };
-        stats.add("Records/indirect light lost to clamping [%]", percent * clamped);
-        stats.add("Records/found again by short rays [%]", percent * compensated);
-    }
-
-    /// Adds what records give to the pixels; the rest is left to cuts.
-    fn resolve(&self, samples: &EyeSamples, picture: &mut Picture) -> Vec<Job> {
-        let lobes = self.glossy.as_ref().map(|glossy| glossy.lobes(samples, &self.layers));
-        let mut jobs = Vec::new();
-        for (i, surface) in samples.surfaces.iter().enumerate() {
-            let sample = i as u32;
-            let (base, lobe) = surface.bsdf.split_base(surface.out.dot(samples.points[i].normal));
-            let mut known = 0.0;
-            if self.wants[i] {
-                if lacking(&self.layers, self.wanted(i), i) != [false; 2] {
-                    jobs.push(Job { sample, lobe_only: false, only: None, known });
-                    continue;
-                }
-                let mean = |l: usize| self.layers[l].sums[i].mean().unwrap_or(Rgb::ZERO);
-                let reflected = lobes.as_ref().map_or(Rgb::ZERO, |lobes| lobes[i]);
-                known = luminance(base * (mean(0) + mean(1)) + reflected);
-                if self.direct == DirectLight::Records {
-                    picture.add(samples, i, Some(Origin::Direct), base * mean(0));
-                    picture.add(samples, i, Some(Origin::Indirect), base * mean(1));
-                    picture.add(samples, i, None, reflected);
-                } else {
-                    picture.add(samples, i, Some(Origin::Indirect), base * mean(1) + reflected);
-                }
-            }
-            let cached = self.direct == DirectLight::Records;
-            if !cached {
-                jobs.push(Job { sample, lobe_only: false, only: Some(Origin::Direct), known });
-            }
-            if lobe.is_some() && samples.points[i].sharing.bands() == 0 {
-                let only = if cached { None } else { Some(Origin::Indirect) };
-                jobs.push(Job { sample, lobe_only: true, only, known });
-            }
-        }
-        jobs
-    }
 }
