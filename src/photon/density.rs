@@ -1,0 +1,144 @@
+//! Irradiance from the density of photons.
+//!
+//! Papers: Jensen 1996 (the k nearest photons, on the area of a disc); Christensen 1999 (at photons, in advance);
+//! Silverman, *Density Estimation*, 1986 (Epanechnikov's kernel).
+//!
+//! The disc lies on the surface: distances along its normal count more, photons that arrived on surfaces turned
+//! elsewhere, or from behind, not at all. Only the part of the disc that is surface counts, and only photons there
+//! (see [`super::disc`]).
+//!
+//! Estimates are not at the photons that they count, but at others (sites). At a photon there is certainly one; and the fewer photons
+//! chance has put into a place, the further each one's estimate reaches: either way the mean over the surface would be off by about 1/k.
+//!
+//! Deviations: on curved surfaces the disc stays flat.
+//! Units: W/m².
+
+use super::disc::{self, Disc};
+use super::map::{PhotonMap, Site};
+use crate::math::Rgb;
+use crate::vpl::Photon;
+use crate::world::World;
+use glam::Vec3;
+use rayon::prelude::*;
+use std::f32::consts::PI;
+
+/// Largest radius of a disc, as a fraction of the scene's diagonal: where photons are rarer, it is dark.
+const LARGEST_RADIUS: f32 = 0.05;
+
+/// How much more distances along the normal count.
+const NORMAL_SCALE: f32 = 3.0;
+
+/// Least cosine between the normals of surfaces that are taken for one.
+pub const LEAST_COS: f32 = 0.7;
+
+/// Least part of a disc that is taken to be surface.
+const LEAST_SHARE: f32 = 0.15;
+
+/// Irradiance at a point of a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimate {
+    /// Where.
+    pub position: Vec3,
+    /// Unit normal.
+    pub normal: Vec3,
+    /// Irradiance.
+    pub irradiance: Rgb,
+    /// Radius of the disc it is the mean over.
+    pub radius: f32,
+}
+
+/// Square of the distance between points of a surface, larger off its plane.
+#[inline]
+pub fn surface_distance_sq(offset: Vec3, normal: Vec3) -> f32 {
+    let height = offset.dot(normal) * NORMAL_SCALE;
+    offset.length_squared() + height * height
+}
+
+/// Estimates at the sites of the map, in their order, and the rays traced.
+pub fn estimates(world: &World, map: &PhotonMap, nearest: usize) -> (Vec<Estimate>, u64) {
+    let by_leaf: Vec<Vec<Estimate>> = (0..map.site_index.leaves())
+        .into_par_iter()
+        .map_init(Vec::new, |near, leaf| leaf_estimates(world, map, nearest, leaf, near))
+        .collect();
+    let all = by_leaf.concat();
+    let rays = all.len() as u64 * disc::RAYS;
+    (all, rays)
+}
+
+/// Estimates at the sites of a leaf, which share the search for photons around.
+fn leaf_estimates(
+    world: &World,
+    map: &PhotonMap,
+    nearest: usize,
+    leaf: usize,
+    near: &mut Vec<u32>,
+) -> Vec<Estimate> {
+    let (photons, sites) = (&map.photons, &map.sites[map.site_index.leaf(leaf)]);
+    let count = sites.len() as f32;
+    let centre = sites.iter().map(|s| s.position).sum::<Vec3>() / count.max(1.0);
+    let extent = sites.iter().map(|s| s.position.distance(centre)).fold(0.0, f32::max);
+    let largest = LARGEST_RADIUS * world.diagonal;
+    // Around so many sites there are in proportion more photons.
+    let around = count * photons.len() as f32 / map.sites.len().max(1) as f32;
+    let guess = 1.5 * extent * (nearest as f32 / around.max(1.0)).sqrt();
+    let mut radius = guess.clamp(1e-4 * largest, largest);
+    let mut found: Vec<Option<Estimate>> = vec![None; sites.len()];
+    let mut distances = Vec::new();
+    while found.iter().any(Option::is_none) {
+        near.clear();
+        map.index.leaves_near(centre, extent + radius, |leaf| {
+            near.extend(map.index.leaf(leaf).map(|i| i as u32));
+        });
+        for (found, site) in found.iter_mut().zip(sites).filter(|(found, _)| found.is_none()) {
+            distances.clear();
+            let distance =
+                |&j: &u32| distance_sq(site, &photons[j as usize], radius * radius).map(|d| (d, j));
+            distances.extend(near.iter().filter_map(distance));
+            if distances.len() >= nearest || radius >= largest {
+                *found = Some(estimate(world, photons, site, nearest, radius, &mut distances));
+            }
+        }
+        radius = (2.0 * radius).min(largest);
+    }
+    found.into_iter().flatten().collect()
+}
+
+/// Square of the distance of a photon that counts at a site, if it is within the radius.
+#[inline]
+fn distance_sq(at: &Site, other: &Photon, radius_sq: f32) -> Option<f32> {
+    let distance = surface_distance_sq(other.position - at.position, at.normal);
+    let same = other.normal.dot(at.normal) >= LEAST_COS && other.towards_light.dot(at.normal) > 0.0;
+    (distance < radius_sq && same).then_some(distance)
+}
+
+fn estimate(
+    world: &World,
+    photons: &[Photon],
+    at: &Site,
+    nearest: usize,
+    radius: f32,
+    distances: &mut [(f32, u32)],
+) -> Estimate {
+    let order = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+    // The k-th photon ends the disc and is not in it.
+    let (inside, radius_sq) = match nearest.checked_sub(1).filter(|&k| k < distances.len()) {
+        Some(k) => {
+            let (inside, last, _) = distances.select_nth_unstable_by(k, order);
+            (inside, last.0)
+        }
+        None => (distances, radius * radius),
+    };
+    let radius = radius_sq.sqrt();
+    let mut irradiance = Rgb::ZERO;
+    if radius > 0.0 {
+        inside.sort_unstable_by(order);
+        let disc = Disc::look(world, (at.position, at.normal), radius);
+        let kernel = |&(d, j): &(f32, u32)| photons[j as usize].flux * (1.0 - d / radius_sq);
+        let sum: Rgb = match disc.share < 1.0 {
+            true => inside.iter().filter(|(_, j)| disc.sees(world, &photons[*j as usize])).map(kernel).sum(),
+            false => inside.iter().map(kernel).sum(),
+        };
+        irradiance = sum * (2.0 / (PI * radius_sq * disc.share.max(LEAST_SHARE)));
+    }
+    Estimate { position: at.position, normal: at.normal, irradiance, radius }
+}

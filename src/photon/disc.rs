@@ -1,0 +1,71 @@
+//! Which part of a disc on a surface is surface.
+//!
+//! Near edges and corners part of the disc is beyond the surface, where no photon can be. Rays from a point low above its middle find
+//! out which part, and whether a photon on it can be seen from there: if not, it may lie in the next room, whose floor goes
+//! on under the wall.
+
+use crate::embree::{Hits16, Ray, Rays16};
+use crate::math::{Frame, LANES, lanes_in};
+use crate::sampling::owen_sobol_2d;
+use crate::shadow;
+use crate::vpl::Photon;
+use crate::world::World;
+use glam::Vec3;
+use std::f32::consts::TAU;
+
+/// Height of the eye over the disc, in radii.
+const HEIGHT: f32 = 0.3;
+
+/// What of the disc is hit may be this far off its plane, in radii.
+const FLATNESS: f32 = 0.2;
+
+/// Least cosine between normals of the disc and of what is hit.
+const LEAST_COS: f32 = 0.7;
+
+/// Seed of the places on the disc.
+const SEED: u32 = 0xd15c;
+
+/// Rays that look at a disc.
+pub const RAYS: u64 = LANES as u64 + 1;
+
+/// A disc on a surface, seen from above its middle.
+pub struct Disc {
+    eye: Vec3,
+    /// Which part of it is surface, weighted by the kernel.
+    pub share: f32,
+}
+
+impl Disc {
+    /// Looks at a disc around `position`.
+    pub fn look(world: &World, (position, normal): (Vec3, Vec3), radius: f32) -> Disc {
+        let frame = Frame::from_normal(normal);
+        let up = shadow::ray_from(position, normal, normal);
+        let free = world.accel.closest_hit(&Ray { t_far: 2.0 * HEIGHT * radius, ..up });
+        let height = free.map_or(HEIGHT * radius, |hit| 0.5 * hit.t);
+        let eye = position + normal * height;
+        let mut rays = Rays16::default();
+        for lane in 0..LANES {
+            let u = owen_sobol_2d(lane as u32, SEED);
+            // The kernel's share within ρ is 2ρ² - ρ⁴.
+            let (sin, cos) = (TAU * u.x).sin_cos();
+            let rho = (1.0 - (1.0 - u.y).sqrt()).max(0.0).sqrt() * radius;
+            let target = position + frame.tangent * (rho * cos) + frame.bitangent * (rho * sin);
+            rays.set(lane, &Ray { origin: eye, t_near: 0.0, direction: target - eye, t_far: 1.5 });
+        }
+        let mut hits = Hits16::default();
+        let met = world.accel.closest_hit16(&rays, u16::MAX, true, &mut hits);
+        let on_disc = lanes_in(met).filter(|&lane| {
+            let ray = rays.get(lane);
+            let off = (eye + ray.direction * hits.t[lane] - position).dot(normal);
+            let normal_there = world.geometric_normal(hits.geometry[lane], hits.primitive[lane]);
+            off.abs() <= FLATNESS * radius && normal_there.dot(normal).abs() >= LEAST_COS
+        });
+        Disc { eye, share: on_disc.count() as f32 / LANES as f32 }
+    }
+
+    /// Whether a photon can be seen from above.
+    pub fn sees(&self, world: &World, photon: &Photon) -> bool {
+        let segment = shadow::segment(photon.position, photon.normal, self.eye, Vec3::ZERO);
+        !world.accel.occluded(&segment)
+    }
+}

@@ -1,0 +1,73 @@
+//! The photons of a scene.
+//!
+//! Every hit that reflects diffusely keeps one, the first included: what direct light a surface reflects is indirect
+//! light where it arrives. Direct light itself is found elsewhere.
+//!
+//! Units: flux in watts.
+
+use crate::eye::EyeIndex;
+use crate::math::Rgb;
+use crate::method::Control;
+use crate::sampling::hash;
+use crate::vpl::{Photon, PhotonCounts, PhotonSettings, trace_photons};
+use crate::world::World;
+use glam::Vec3;
+
+/// Photons for each site.
+const PHOTONS_PER_SITE: u32 = 4;
+
+/// Where irradiance is estimated: where a photon of another set arrived, so that sites are dense where photons are, and
+/// independent of them.
+#[derive(Clone, Copy, Debug)]
+pub struct Site {
+    /// Where.
+    pub position: Vec3,
+    /// Unit geometric normal.
+    pub normal: Vec3,
+}
+
+/// Photons in the order of an index over their positions, and sites likewise.
+pub struct PhotonMap {
+    /// The photons; their flux has been divided by the paths shot.
+    pub photons: Vec<Photon>,
+    /// The hierarchy over them.
+    pub index: EyeIndex,
+    /// Where irradiance is to be estimated.
+    pub sites: Vec<Site>,
+    /// The hierarchy over those.
+    pub site_index: EyeIndex,
+    /// What tracing took.
+    pub counts: PhotonCounts,
+}
+
+impl PhotonMap {
+    /// Traces the photons.
+    pub fn new(world: &World, settings: &PhotonSettings, control: &Control) -> PhotonMap {
+        let (mut photons, mut counts) = trace_photons(world, settings, control, |photon| *photon);
+        let share = 1.0 / counts.paths.max(1) as f32;
+        for photon in &mut photons {
+            photon.flux = (photon.flux * share).max(Rgb::ZERO);
+        }
+        photons.retain(|photon| photon.position.is_finite() && photon.flux.is_finite());
+        let (index, photons) = indexed(&photons, |photon| photon.position);
+
+        let other = PhotonSettings {
+            photons: settings.photons.div_ceil(PHOTONS_PER_SITE),
+            seed: hash(settings.seed, 0x517e),
+            ..*settings
+        };
+        let site = |photon: &Photon| Site { position: photon.position, normal: photon.normal };
+        let (mut sites, more) = trace_photons(world, &other, control, site);
+        sites.retain(|site| site.position.is_finite());
+        let (site_index, sites) = indexed(&sites, |site| site.position);
+        counts.paths += more.paths;
+        counts.rays += more.rays;
+        PhotonMap { photons, index, sites, site_index, counts }
+    }
+}
+
+/// A hierarchy over places, and what is there in its order.
+fn indexed<T: Copy>(items: &[T], position: impl Fn(&T) -> Vec3) -> (EyeIndex, Vec<T>) {
+    let (index, order) = EyeIndex::build(items.iter().map(position));
+    (index, order.iter().map(|&i| items[i as usize]).collect())
+}
