@@ -31,6 +31,7 @@ pub mod lightcut;
 pub mod material;
 pub mod math;
 pub mod method;
+pub mod photon;
 pub mod sampling;
 pub mod scene;
 pub mod shadow;

@@ -57,6 +57,19 @@ impl SeriesGatherer {
         }
     }
 
+    /// Where the record is, if it is to have series.
+    pub fn place(&self) -> Option<&(Frame, Vec3)> {
+        self.place.as_ref()
+    }
+
+    /// Adds light to a layer, in the frame of the place.
+    #[inline]
+    pub fn add_incidence(&mut self, layer: usize, incidence: &Incidence<f32>, intensity: Rgb) {
+        if self.place.is_some() {
+            self.sums[layer].add(incidence, intensity);
+        }
+    }
+
     /// Ends the record: the light of each layer as a series, if it is wanted so.
     pub fn finish(&mut self) -> [Option<Radiance>; 2] {
         let mut sums = self.sums.iter_mut();

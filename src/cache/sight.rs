@@ -14,6 +14,9 @@ use crate::vpl::{Vpl, VplKind};
 use crate::world::World;
 use glam::{Mat3, Vec2, Vec3};
 
+/// Least cosine at which a patch is taken to be seen: its share of the hemisphere does not vanish with it.
+const LEAST_PATCH_COS: f32 = 0.2;
+
 /// Surfaces seen from a point, and the light of both layers that they send.
 #[derive(Clone, Debug)]
 pub struct Sight {
@@ -84,6 +87,25 @@ impl Sight {
         let source = Source::of_vpl(frame, self.position, vpl, kind);
         for (sum, h) in layer.held.iter_mut().zip(source.irradiance_hessian(transfer.min_dist_sq)) {
             *sum += scale * h;
+        }
+    }
+
+    /// Adds to a layer the irradiance that a patch of surface gives, seen at `offset` in the frame of the normal;
+    /// `patch_normal` is of unit length and in that frame too.
+    #[inline]
+    pub fn add_patch(&mut self, layer: usize, offset: Vec3, patch_normal: Vec3, irradiance: Rgb) {
+        let distance_sq = offset.length_squared();
+        let direction = offset.normalize_or(Vec3::Z);
+        let layer = &mut self.layers[layer];
+        layer.cells.add(&self.probes, direction, Some(offset), irradiance);
+        let cosines = direction.z * (-direction.dot(patch_normal)).max(LEAST_PATCH_COS);
+        if !(cosines > 0.0) {
+            return;
+        }
+        let intensity = luminance(irradiance) * distance_sq / cosines;
+        let source = Source::Oriented { offset: offset.to_array(), normal: patch_normal.to_array() };
+        for (sum, h) in layer.held.iter_mut().zip(source.irradiance_hessian(0.0)) {
+            *sum += intensity * h;
         }
     }
 

@@ -90,6 +90,9 @@ pub struct RenderArgs {
     /// Options of the radiance cache.
     #[command(flatten)]
     pub cache: CacheArgs,
+    /// Options of the photon map.
+    #[command(flatten)]
+    pub photon: PhotonArgs,
 }
 
 /// Options that measure the picture's error.
@@ -140,6 +143,24 @@ pub struct LightcutArgs {
     /// How light trees are built [default: divisive]
     #[arg(long, value_enum)]
     pub tree: Option<TreeFamily>,
+}
+
+/// Options of `--method photon-cache` alone.
+#[derive(Clone, Debug, Default, Args, PartialEq)]
+#[command(next_help_heading = "Photon map")]
+pub struct PhotonArgs {
+    /// Photons on diffuse surfaces, about [default: 300000]
+    #[arg(long)]
+    pub photons: Option<u32>,
+    /// Photons in an estimate of irradiance [default: 64]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(2..))]
+    pub nearest: Option<u32>,
+    /// Rays of a record's final gathering, about [default: 2000]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(16..=1_000_000))]
+    pub gather_rays: Option<u32>,
+    /// Rays of a sample that records do not serve [default: 64]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub sample_rays: Option<u32>,
 }
 
 /// The builders of light trees.
@@ -196,6 +217,8 @@ pub enum MethodName {
     Path,
     /// The radiance cache: lightcuts at a few thousand points, splatted onto all pixels
     Cache,
+    /// The same cache, its indirect light by final gathering over a photon map, for comparison
+    PhotonCache,
     /// Lightcuts per pixel: virtual point lights, clustered as far as the expected error allows
     Lightcuts,
 }
@@ -281,7 +304,7 @@ pub(super) fn parse_fraction(text: &str) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::{cache, lightcuts, path};
+    use crate::method::{cache, lightcuts, path, photon_cache};
     use crate::verify;
     use clap::CommandFactory;
 
@@ -316,6 +339,7 @@ mod tests {
         let path = path::Settings::default();
         let cuts = lightcuts::Settings::default();
         let cached = cache::Settings::default().cache;
+        let photon = photon_cache::Settings::default();
         let render = Cli::command().find_subcommand("render").unwrap().clone();
         let stated = |option: &str| {
             let argument = render.get_arguments().find(|a| a.get_long() == Some(option)).unwrap();
@@ -339,6 +363,10 @@ mod tests {
             ("least-cell", cached.least_cell.to_string()),
             ("accuracy", format!("{},{}", cached.layers[0].accuracy, cached.layers[1].accuracy)),
             ("tree", format!("{:?}", cuts.family).to_lowercase()),
+            ("photons", photon.photons.to_string()),
+            ("nearest", photon.nearest.to_string()),
+            ("gather-rays", photon.rays.to_string()),
+            ("sample-rays", photon.own_rays.to_string()),
             ("verify-samples", verify::Settings::default().most_samples.to_string()),
         ];
         for (option, default) in expected {

@@ -1,12 +1,12 @@
 //! The method chosen, with its settings.
 
-use super::args::{LightcutArgs, MethodName, RenderArgs, TreeFamily};
+use super::args::{LightcutArgs, MethodName, PhotonArgs, RenderArgs, TreeFamily};
 use super::cache_args::{CacheArgs, DirectBy, FootprintShape, Pair, Switch};
 use super::exit::Failure;
-use crate::cache::{DirectLight, Footprints};
+use crate::cache::{CacheSettings, DirectLight, Footprints};
 use crate::eye::{EyeSamples, Look, Window};
 use crate::light_tree::Family;
-use crate::method::{Control, Output, cache, lightcuts, path};
+use crate::method::{Control, Output, cache, lightcuts, path, photon_cache};
 use crate::world::World;
 use anyhow::anyhow;
 use serde_json::{Value, json};
@@ -18,6 +18,8 @@ pub enum Method {
     Path(path::Settings),
     /// The radiance cache.
     Cache(cache::Settings),
+    /// The same cache over a photon map.
+    PhotonCache(photon_cache::Settings),
     /// Lightcuts per pixel.
     Lightcuts(lightcuts::Settings),
 }
@@ -30,8 +32,27 @@ impl Method {
                 "--epsilon, --max-cut, --vpls, --direct-vpls, --clamp and --tree belong to --method cache and lightcuts"
             ))),
             MethodName::Path | MethodName::Lightcuts if args.cache != CacheArgs::default() => {
-                Err(Failure::usage(anyhow!("the options under \"Radiance cache\" belong to --method cache")))
+                Err(Failure::usage(anyhow!(
+                    "the options under \"Radiance cache\" belong to --method cache and photon-cache"
+                )))
             }
+            MethodName::Path | MethodName::Lightcuts | MethodName::Cache
+                if args.photon != PhotonArgs::default() =>
+            {
+                Err(Failure::usage(anyhow!(
+                    "the options under \"Photon map\" belong to --method photon-cache"
+                )))
+            }
+            MethodName::PhotonCache
+                if args.lightcuts.vpls.is_some()
+                    || args.lightcuts.clamp.is_some()
+                    || args.cache.compensation.is_some() =>
+            {
+                Err(Failure::usage(anyhow!(
+                    "--vpls, --clamp and --compensation are for indirect virtual lights, of which --method photon-cache has none; see --photons"
+                )))
+            }
+            MethodName::PhotonCache => Ok(Method::PhotonCache(photon_settings(args))),
             MethodName::Path => {
                 let spp = args.spp.unwrap_or(path::Settings::default().spp);
                 Ok(Method::Path(path::Settings { spp, seed: args.seed, max_depth: args.max_depth }))
@@ -46,6 +67,7 @@ impl Method {
         match self {
             Method::Path(_) => "path",
             Method::Cache(_) => "cache",
+            Method::PhotonCache(_) => "photon-cache",
             Method::Lightcuts(_) => "lightcuts",
         }
     }
@@ -55,6 +77,7 @@ impl Method {
         match self {
             Method::Path(settings) => settings.spp,
             Method::Cache(settings) => settings.spp,
+            Method::PhotonCache(settings) => settings.spp,
             Method::Lightcuts(settings) => settings.spp,
         }
     }
@@ -64,6 +87,7 @@ impl Method {
         match self {
             Method::Path(settings) => settings.seed,
             Method::Cache(settings) => settings.seed,
+            Method::PhotonCache(settings) => settings.seed,
             Method::Lightcuts(settings) => settings.seed,
         }
     }
@@ -72,7 +96,7 @@ impl Method {
     pub fn expected_bytes(&self, window: &Window) -> Option<u64> {
         match self {
             Method::Path(_) | Method::Lightcuts(_) => None,
-            Method::Cache(settings) => Some(EyeSamples::expected_bytes(window, settings.spp)),
+            Method::Cache(_) | Method::PhotonCache(_) => Some(EyeSamples::expected_bytes(window, self.spp())),
         }
     }
 
@@ -80,7 +104,7 @@ impl Method {
     pub fn look(&self) -> Look {
         match self {
             Method::Path(_) => Look::Pixels,
-            Method::Cache(_) | Method::Lightcuts(_) => {
+            Method::Cache(_) | Method::PhotonCache(_) | Method::Lightcuts(_) => {
                 Look::EyeSamples { spp: self.spp(), seed: self.seed() }
             }
         }
@@ -91,6 +115,7 @@ impl Method {
         match self {
             Method::Path(s) => json!({ "spp": s.spp, "seed": s.seed, "max_depth": s.max_depth }),
             Method::Cache(s) => cache_report(s),
+            Method::PhotonCache(s) => photon_report(s),
             Method::Lightcuts(s) => lightcuts_report(s),
         }
     }
@@ -100,24 +125,56 @@ impl Method {
         match self {
             Method::Path(settings) => path::render(world, window, settings, control),
             Method::Cache(settings) => cache::render(world, window, settings, control),
+            Method::PhotonCache(settings) => photon_cache::render(world, window, settings, control),
             Method::Lightcuts(settings) => lightcuts::render(world, window, settings, control),
         }
     }
 }
 
 fn cache_report(s: &cache::Settings) -> Value {
-    let c = &s.cache;
-    json!({
+    let own = json!({
         "spp": s.spp,
         "seed": s.seed,
         "max_depth": s.max_depth,
         "epsilon": decimal(s.cut.epsilon),
-        "record_epsilon": decimal(c.cut.epsilon),
         "max_cut": s.cut.max_cut,
         "vpls": s.light.indirect,
         "direct_vpls": s.light.direct,
         "clamp": decimal(s.cut.clamp.unwrap_or(0.0)),
         "tree": family_name(s.family),
+        "compensation": if s.cache.compensation { "on" } else { "off" },
+    });
+    joined(own, records_report(&s.cache))
+}
+
+fn photon_report(s: &photon_cache::Settings) -> Value {
+    let own = json!({
+        "spp": s.spp,
+        "seed": s.seed,
+        "max_depth": s.max_depth,
+        "epsilon": decimal(s.cut.epsilon),
+        "max_cut": s.cut.max_cut,
+        "direct_vpls": s.direct_vpls,
+        "tree": family_name(s.family),
+        "photons": s.photons,
+        "nearest": s.nearest,
+        "gather_rays": s.rays,
+        "sample_rays": s.own_rays,
+    });
+    joined(own, records_report(&s.cache))
+}
+
+/// Members of both objects.
+fn joined(mut a: Value, b: Value) -> Value {
+    if let (Some(a), Value::Object(b)) = (a.as_object_mut(), b) {
+        a.extend(b);
+    }
+    a
+}
+
+fn records_report(c: &CacheSettings) -> Value {
+    json!({
+        "record_epsilon": decimal(c.cut.epsilon),
         "direct": match c.direct {
             DirectLight::Records => "records",
             DirectLight::PerSample => "samples",
@@ -132,7 +189,6 @@ fn cache_report(s: &cache::Settings) -> Value {
         "series_alpha": decimal(c.series.min_alpha),
         "series_error": c.series.max_error,
         "mu": decimal(c.mu),
-        "compensation": if c.compensation { "on" } else { "off" },
         "passes": c.passes,
         "threshold": decimal(c.threshold),
         "patch": c.patch,
@@ -179,10 +235,35 @@ fn cache_settings(args: &RenderArgs) -> cache::Settings {
     };
     settings.inspect = args.cache.inspect;
     settings.cache.cut.clamp = typed.cut.clamp;
-    let cached = &args.cache;
-    let cache = &mut settings.cache;
+    settings.cache.cut.max_cut = typed.cut.max_cut;
+    records_settings(&args.cache, &mut settings.cache);
+    settings
+}
+
+fn photon_settings(args: &RenderArgs) -> photon_cache::Settings {
+    let typed = lightcuts_settings(args);
+    let mut settings = photon_cache::Settings {
+        spp: typed.spp,
+        seed: args.seed,
+        max_depth: args.max_depth,
+        direct_vpls: typed.light.direct,
+        cut: typed.cut,
+        family: typed.family,
+        inspect: args.cache.inspect,
+        ..Default::default()
+    };
+    settings.photons = args.photon.photons.unwrap_or(settings.photons);
+    settings.nearest = args.photon.nearest.map_or(settings.nearest, |n| n as usize);
+    settings.rays = args.photon.gather_rays.unwrap_or(settings.rays);
+    settings.own_rays = args.photon.sample_rays.unwrap_or(settings.own_rays);
+    settings.cache.cut.max_cut = typed.cut.max_cut;
+    records_settings(&args.cache, &mut settings.cache);
+    settings
+}
+
+/// What is typed about records, whatever they are computed from.
+fn records_settings(cached: &CacheArgs, cache: &mut CacheSettings) {
     cache.cut.epsilon = cached.record_epsilon.unwrap_or(cache.cut.epsilon);
-    cache.cut.max_cut = typed.cut.max_cut;
     for (l, layer) in cache.layers.iter_mut().enumerate() {
         layer.accuracy = cached.accuracy.map_or(layer.accuracy, |Pair(a)| a[l]);
         layer.reach = cached.reach.map_or(layer.reach, |Pair(r)| r);
@@ -206,7 +287,6 @@ fn cache_settings(args: &RenderArgs) -> cache::Settings {
     cache.threshold = cached.threshold.unwrap_or(cache.threshold);
     cache.patch = cached.patch.map_or(cache.patch, |n| n as usize);
     cache.least_cell = cached.least_cell.unwrap_or(cache.least_cell);
-    settings
 }
 
 fn lightcuts_settings(args: &RenderArgs) -> lightcuts::Settings {

@@ -7,6 +7,7 @@ pub mod lightcuts;
 pub mod lights;
 pub mod output;
 pub mod path;
+pub mod photon_cache;
 
 pub use control::{Control, Progress};
 pub use output::Output;

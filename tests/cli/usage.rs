@@ -29,6 +29,11 @@ fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
     render(&["--crop", "1,2,3"]);
     assert!(render(&["--vpls", "9"]).contains("lightcuts"));
     render(&["--method", "lightcuts", "--epsilon", "2"]);
+    assert!(render(&["--method", "cache", "--photons", "9"]).contains("photon-cache"));
+    assert!(render(&["--method", "photon-cache", "--vpls", "9"]).contains("--photons"));
+    for wrong in [["--nearest", "1"], ["--gather-rays", "3"], ["--sample-rays", "0"], ["--photons", "-5"]] {
+        render(&["--method", "photon-cache", wrong[0], wrong[1]]);
+    }
     render(&["--no-png", "--png", "b.png"]);
     assert!(render(&["--crop", "20,0,5,5"]).contains("24x16"));
     assert!(render(&["--frame", "0"]).contains("0 frames"));

@@ -1,0 +1,178 @@
+//! The picture: eye pass, photons, trees of direct light, the cache, and what it leaves to single samples.
+
+use crate::cache::CacheSettings;
+use crate::cache::compute::Source;
+use crate::cache::series::Glossy;
+use crate::eye::{EyeSamples, EyeSettings, Window};
+use crate::light_tree::Family;
+use crate::lightcut::CutSettings;
+use crate::math::Rgb;
+use crate::method::cache::filled::Cache;
+use crate::method::cache::inspect;
+use crate::method::cache::own::{self, Job};
+use crate::method::cache::picture::Picture;
+use crate::method::lights::Lights;
+use crate::method::{Control, Output, counts};
+use crate::photon::density::estimates;
+use crate::photon::own::reflected;
+use crate::photon::radiance::{GatherCounts, IndirectLight};
+use crate::photon::records::PhotonSource;
+use crate::photon::strata::Strata;
+use crate::photon::{IrradianceMap, PhotonMap};
+use crate::stats::{Stage, Stats};
+use crate::vpl::{LightPassSettings, Origin, PhotonSettings};
+use crate::world::World;
+use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
+
+/// What the user may set.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Eye samples a pixel.
+    pub spp: u32,
+    /// Another seed, other photons and eye samples.
+    pub seed: u32,
+    /// Longest path in edges; `None` for the scene's own limit.
+    pub max_depth: Option<u32>,
+    /// Photons on diffuse surfaces, about.
+    pub photons: u32,
+    /// Photons in an estimate of irradiance: its bias grows with it, its variance falls.
+    pub nearest: usize,
+    /// Rays of a record's final gathering, about.
+    pub rays: u32,
+    /// Rays of a sample that records do not serve.
+    pub own_rays: u32,
+    /// Virtual lights that stand for area lights and the environment, about.
+    pub direct_vpls: u32,
+    /// How many records, and how far each reaches.
+    pub cache: CacheSettings,
+    /// When the cut of an eye sample is good enough.
+    pub cut: CutSettings,
+    /// How light trees are built.
+    pub family: Family,
+    /// Whether to return the images of [`inspect`] too.
+    pub inspect: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings {
+            spp: 1,
+            seed: 0,
+            max_depth: None,
+            photons: 300_000,
+            nearest: 64,
+            rays: 2000,
+            own_rays: 64,
+            direct_vpls: LightPassSettings::default().direct,
+            cache: CacheSettings { least_cell: 32, ..CacheSettings::default() },
+            cut: CutSettings::default(),
+            family: Family::default(),
+            inspect: false,
+        }
+    }
+}
+
+/// Renders `window` of the scene's film.
+pub fn render(world: &World, window: &Window, settings: &Settings, control: &Control) -> Output {
+    let mut stats = Stats::new();
+    let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
+
+    let eye = EyeSettings { spp: settings.spp.max(1), seed: settings.seed, max_depth };
+    control.begin(Stage::EyePass, window.tile_count(16) as u64);
+    let mut samples = stats.time(Stage::EyePass, || EyeSamples::look(world, window, eye, control));
+    let glossy = stats.time(Stage::EyePass, || Glossy::find(world, &mut samples, &settings.cache.series));
+    counts::eye(&mut stats, &samples.chains);
+
+    let direct = LightPassSettings { direct: settings.direct_vpls, indirect: 0, seed: settings.seed };
+    let lights = Lights::new(world, &direct, settings.family, max_depth, control, &mut stats);
+    let (trees, transfer) = (&lights.trees, lights.transfer());
+    let direct = Source { world, trees, transfer, settings: &settings.cache, compensation: None };
+
+    let map = irradiance(world, settings, max_depth, control, &mut stats);
+    let source = PhotonSource {
+        direct,
+        light: IndirectLight { world, map: &map },
+        strata: Strata::new(settings.rays),
+        seed: settings.seed,
+        counts: Mutex::default(),
+    };
+    let cache = Cache::complete(&source, &samples, glossy, control, &mut stats);
+
+    let mut picture = Picture::new(&samples, settings.inspect);
+    let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
+    control.begin(Stage::Render, jobs.len() as u64);
+    let direct_jobs: Vec<Job> = jobs
+        .iter()
+        .filter(|job| job.only != Some(Origin::Indirect))
+        .map(|job| Job { only: Some(Origin::Direct), ..*job })
+        .collect();
+    let (lit, used) =
+        stats.time(Stage::Render, || own::light(&source.direct, &samples, &direct_jobs, &settings.cut));
+    counts::cuts(&mut stats, "Lightcut", &used);
+    let indirect_jobs: Vec<&Job> = jobs.iter().filter(|job| job.only != Some(Origin::Direct)).collect();
+    let gathered = stats.time(Stage::Render, || own_gathers(&source, &samples, &indirect_jobs, settings));
+    let mut rays = *source.counts.lock().unwrap_or_else(PoisonError::into_inner);
+    for (job, radiance) in lit {
+        picture.add(&samples, job.sample as usize, job.only, radiance);
+    }
+    for (job, (radiance, used)) in indirect_jobs.iter().zip(gathered) {
+        picture.add(&samples, job.sample as usize, Some(Origin::Indirect), radiance);
+        rays.add(&used);
+    }
+    stats.count("Cache/samples with own cuts", direct_jobs.len() as u64);
+    stats.count("Cache/samples with own gatherings", indirect_jobs.len() as u64);
+    stats.count("Gathering/rays of records", rays.record_rays);
+    stats.count("Gathering/rays of samples", rays.own_rays);
+    stats.count("Gathering/rays followed", rays.followed);
+    let complete = samples.complete && !control.is_cancelled();
+    let (color, mut extra, nonfinite) = picture.finish();
+    if settings.inspect {
+        extra.extend(inspect::layers(&samples, &cache.layers, &cache.seams));
+    }
+    Output { color, variance: None, extra, stats, complete, nonfinite }
+}
+
+/// Traces the photons and estimates irradiance from them.
+fn irradiance(
+    world: &World,
+    settings: &Settings,
+    max_depth: u32,
+    control: &Control,
+    stats: &mut Stats,
+) -> IrradianceMap {
+    // One edge is the eye's, one that of the gathering.
+    let max_edges = max_depth.saturating_sub(2);
+    let wanted = PhotonSettings { photons: settings.photons, max_edges, seed: settings.seed };
+    control.begin(Stage::LightPass, u64::from(settings.photons));
+    let photons = stats.time(Stage::LightPass, || PhotonMap::new(world, &wanted, control));
+    stats.count("Photons/total", photons.photons.len() as u64);
+    stats.count("Photons/paths", photons.counts.paths);
+    stats.count("Rays/closest hit", photons.counts.rays);
+    control.begin(Stage::Tree, 0);
+    let (map, rays) = stats.time(Stage::Tree, || {
+        let (estimates, rays) = estimates(world, &photons, settings.nearest);
+        (IrradianceMap::new(&estimates, photons.site_index), rays)
+    });
+    stats.count("Photons/estimates of irradiance", map.len() as u64);
+    stats.count("Rays/closest hit", rays);
+    map
+}
+
+/// Indirect light at samples that records do not serve.
+fn own_gathers(
+    source: &PhotonSource,
+    samples: &EyeSamples,
+    jobs: &[&Job],
+    settings: &Settings,
+) -> Vec<(Rgb, GatherCounts)> {
+    jobs.par_iter()
+        .map(|job| {
+            let mut counts = GatherCounts::default();
+            let of = (job.sample, job.lobe_only);
+            let radiance =
+                reflected(&source.light, samples, of, (settings.own_rays, settings.seed), &mut counts);
+            (radiance, counts)
+        })
+        .collect()
+}

@@ -1,0 +1,79 @@
+//! A final gathering: rays into all strata of a point's hemisphere.
+//!
+//! Papers: Ward and Heckbert 1992; Krivanek et al. 2005.
+//! Rays of sixteen neighbouring strata start at one point and are traced as a coherent packet.
+
+use super::radiance::{GatherCounts, IndirectLight, Seen};
+use super::strata::{BLOCK, Met, Strata};
+use crate::embree::Rays16;
+use crate::eye::EyePoint;
+use crate::math::{Frame, Rgb};
+use crate::sampling::hash;
+use crate::shadow;
+use glam::{Mat3, Vec2, Vec3};
+
+/// What arrives at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Gathered {
+    /// Irradiance.
+    pub irradiance: Rgb,
+    /// Irradiance vector by channel, in the world.
+    pub vector: Mat3,
+    /// Gradient of the irradiance by channel, in the tangent plane.
+    pub gradient: Mat3,
+    /// Harmonic mean distance of what is seen; infinite if nothing is.
+    pub distance: f32,
+}
+
+/// Gathers at a point, keeping in `met` what the rays have met.
+pub fn gather(
+    light: &IndirectLight,
+    strata: &Strata,
+    point: &EyePoint,
+    (geometric_normal, seed, most_near): (Vec3, u32, f32),
+    met: &mut Met,
+    counts: &mut GatherCounts,
+) -> Gathered {
+    met.clear(strata.len());
+    let frame = Frame::from_normal(point.normal);
+    let coat = point.sharing.coat();
+    for first_ring in (0..strata.rings).step_by(BLOCK) {
+        for first_sector in (0..strata.sectors).step_by(BLOCK) {
+            let mut rays = Rays16::default();
+            let stratum = |lane: usize| (first_ring + lane / BLOCK, first_sector + lane % BLOCK);
+            let block_seed = hash(strata.place(first_ring, first_sector) as u32, seed);
+            for lane in 0..BLOCK * BLOCK {
+                let (ring, sector) = stratum(lane);
+                let bits = hash(lane as u32, block_seed);
+                let u = Vec2::new((bits >> 16) as f32, (bits & 0xffff) as f32) * (1.0 / 65536.0);
+                let local = strata.direction(ring, sector, u);
+                met.direction[strata.place(ring, sector)] = local;
+                let direction = frame.to_world(local);
+                rays.set(lane, &shadow::ray_from(point.position, geometric_normal, direction));
+            }
+            let found = light.along16(&rays, u16::MAX, true, block_seed, counts);
+            for (lane, Seen { radiance, distance, normal }) in found.into_iter().enumerate() {
+                let (ring, sector) = stratum(lane);
+                let place = strata.place(ring, sector);
+                let passed = match coat {
+                    0 => 1.0,
+                    coat => light.world.materials.coat_transmittance(coat, met.direction[place].z),
+                };
+                met.radiance[place] = if radiance.is_finite() { radiance * passed } else { Rgb::ZERO };
+                met.nearness[place] = 1.0 / distance;
+                met.normal[place] = frame.to_local(normal);
+            }
+        }
+    }
+    counts.record_rays += strata.len() as u64;
+    let vector = strata.vector(met);
+    let gradient = strata.gradient(met, most_near);
+    let to_world = Mat3::from_cols(frame.tangent, frame.bitangent, frame.normal);
+    let mean_nearness = met.nearness.iter().sum::<f32>() / strata.len() as f32;
+    Gathered {
+        irradiance: Rgb::new(vector.x_axis.z, vector.y_axis.z, vector.z_axis.z),
+        vector: to_world * vector,
+        gradient: to_world * gradient,
+        distance: 1.0 / mean_nearness,
+    }
+}

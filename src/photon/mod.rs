@@ -1,0 +1,23 @@
+//! Photon mapping: light that photons left on surfaces, gathered over the hemisphere.
+//!
+//! Papers: Jensen, *Global Illumination using Photon Maps*, 1996; Christensen, *Faster Photon Map Global Illumination*,
+//! 1999; Ward and Heckbert, *Irradiance Gradients*, 1992; Krivanek et al., *Radiance Caching*, 2005.
+//!
+//! - [`map`]: the photons, in an order in which neighbours in space are neighbours in memory;
+//! - [`density`]: irradiance from the photons around a place; [`disc`]: which part of the disc around it is surface;
+//! - [`irradiance`]: the same looked up anywhere;
+//! - [`strata`]: the directions of a final gathering; [`hemisphere`]: what they meet, and how that changes nearby;
+//! - [`records`]: records of indirect light for the cache; [`own`]: light at single samples.
+
+pub mod density;
+pub mod disc;
+pub mod hemisphere;
+pub mod irradiance;
+pub mod map;
+pub mod own;
+pub mod radiance;
+pub mod records;
+pub mod strata;
+
+pub use irradiance::IrradianceMap;
+pub use map::PhotonMap;

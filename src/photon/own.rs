@@ -1,0 +1,47 @@
+//! Indirect light at single eye samples, where records do not serve: rays drawn from what reflects.
+
+use super::radiance::{GatherCounts, IndirectLight};
+use crate::embree::Rays16;
+use crate::eye::EyeSamples;
+use crate::material::Bsdf;
+use crate::math::{Frame, LANES, Rgb, first_lanes};
+use crate::sampling::{Sampler, hash};
+use crate::shadow;
+
+/// Indirect radiance that a sample reflects to the eye, or its lobe on the base alone, by about `count` rays.
+pub fn reflected(
+    light: &IndirectLight,
+    samples: &EyeSamples,
+    (sample, lobe_only): (u32, bool),
+    (count, seed): (u32, u32),
+    counts: &mut GatherCounts,
+) -> Rgb {
+    let (point, surface) = (&samples.points[sample as usize], &samples.surfaces[sample as usize]);
+    let lobe = if lobe_only { surface.bsdf.split_base(1.0).1 } else { None };
+    let bsdf: Bsdf = lobe.unwrap_or(surface.bsdf);
+    let frame = Frame::from_normal(point.normal);
+    let wo = frame.to_local(surface.out);
+    let seed = hash(sample, seed);
+    let packets = count.div_ceil(LANES as u32).max(1);
+    let mut sum = Rgb::ZERO;
+    for packet in 0..packets {
+        let mut rays = Rays16::default();
+        let mut weights = [Rgb::ZERO; LANES];
+        let mut used = 0;
+        for i in 0..LANES as u32 {
+            let mut sampler = Sampler::new(seed, packet * LANES as u32 + i);
+            let Some(s) = bsdf.sample(wo, sampler.next_1d(), sampler.next_2d()) else { continue };
+            if s.delta || s.weight == Rgb::ZERO {
+                continue;
+            }
+            let direction = frame.to_world(s.wi);
+            rays.set(used, &shadow::ray_from(point.position, surface.geometric_normal, direction));
+            weights[used] = s.weight;
+            used += 1;
+        }
+        counts.own_rays += used as u64;
+        let found = light.along16(&rays, first_lanes(used), false, hash(packet, seed), counts);
+        sum += found.iter().zip(weights).map(|(seen, weight)| seen.radiance * weight).sum::<Rgb>();
+    }
+    sum / (packets * LANES as u32) as f32
+}

@@ -1,0 +1,135 @@
+//! Indirect light along rays of a final gathering.
+//!
+//! Where a ray ends, the surface reflects the irradiance of the map. Mirrors, glass and sharp lobes are followed to what
+//! shows in them; what emits is direct light and counts for nothing.
+//!
+//! Units: radiance, and distance to the first surface.
+
+use super::irradiance::IrradianceMap;
+use crate::embree::{Hit, Hits16, Rays16};
+use crate::math::{LANES, Rgb, lanes_in};
+use crate::sampling::Sampler;
+use crate::shadow;
+use crate::world::{Surface, World};
+use glam::Vec3;
+use std::f32::consts::FRAC_1_PI;
+
+/// Most surfaces a ray is followed through.
+const MOST_EDGES: u32 = 8;
+
+/// What gathering took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GatherCounts {
+    /// Rays from records.
+    pub record_rays: u64,
+    /// Rays from single samples.
+    pub own_rays: u64,
+    /// Rays from mirrors, glass and sharp lobes that those met.
+    pub followed: u64,
+}
+
+impl GatherCounts {
+    /// Adds those of another part of the work.
+    pub fn add(&mut self, other: &GatherCounts) {
+        self.record_rays += other.record_rays;
+        self.own_rays += other.own_rays;
+        self.followed += other.followed;
+    }
+}
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// Indirect light that comes back along the ray.
+    pub radiance: Rgb,
+    /// To the first surface; infinite if there is none.
+    pub distance: f32,
+    /// Its unit geometric normal on the side of the ray; zero if there is none.
+    pub normal: Vec3,
+}
+
+/// The indirect light of a scene.
+#[derive(Clone, Copy)]
+pub struct IndirectLight<'w> {
+    /// The scene.
+    pub world: &'w World,
+    /// Irradiance on its surfaces.
+    pub map: &'w IrradianceMap,
+}
+
+impl IndirectLight<'_> {
+    /// Radiance along the rays of `valid` lanes, and the distances to what they meet (infinite: nothing). `seed` chooses among
+    /// what is followed.
+    pub fn along16(
+        &self,
+        rays: &Rays16,
+        valid: u16,
+        coherent: bool,
+        seed: u32,
+        counts: &mut GatherCounts,
+    ) -> [Seen; LANES] {
+        let nothing = Seen { radiance: Rgb::ZERO, distance: f32::INFINITY, normal: Vec3::ZERO };
+        let mut found = [nothing; LANES];
+        let mut hits = Hits16::default();
+        let met = self.world.accel.closest_hit16(rays, valid, coherent, &mut hits);
+        for lane in lanes_in(met) {
+            let hit = Hit {
+                t: hits.t[lane],
+                u: hits.u[lane],
+                v: hits.v[lane],
+                geometry: hits.geometry[lane],
+                primitive: hits.primitive[lane],
+            };
+            let surface = self.world.surface(&hit);
+            let direction = rays.get(lane).direction;
+            let mut sampler = Sampler::new(seed, lane as u32);
+            let normal = facing(&surface, direction);
+            let radiance = self.from(surface, direction, &mut sampler, counts);
+            found[lane] = Seen { radiance, distance: hit.t, normal };
+        }
+        found
+    }
+
+    /// Radiance that a surface sends back along `direction`.
+    #[inline]
+    fn from(
+        &self,
+        surface: Surface,
+        direction: Vec3,
+        sampler: &mut Sampler,
+        counts: &mut GatherCounts,
+    ) -> Rgb {
+        let (mut surface, mut direction) = (surface, direction);
+        let (mut radiance, mut throughput) = (Rgb::ZERO, Rgb::ONE);
+        for _ in 0..MOST_EDGES {
+            let bsdf = self.world.bsdf(&surface);
+            let out = surface.frame.to_local(-direction);
+            let albedo = bsdf.diffuse_albedo(out);
+            if albedo != Rgb::ZERO {
+                let found = self.map.at(surface.position, facing(&surface, direction));
+                let irradiance = found.map_or(Rgb::ZERO, |(irradiance, _)| irradiance);
+                radiance += throughput * albedo * irradiance * FRAC_1_PI;
+            }
+            let sharp = bsdf.split_sharp_lobe();
+            if sharp.is_none() && !bsdf.has_delta() {
+                break;
+            }
+            let followed = sharp.map_or(bsdf, |(_, sharp)| sharp);
+            let sample = followed.sample(out, sampler.next_1d(), sampler.next_2d());
+            let Some(s) = sample.filter(|s| s.delta || sharp.is_some()) else { break };
+            throughput *= s.weight;
+            direction = surface.frame.to_world(s.wi);
+            counts.followed += 1;
+            let ray = shadow::ray_from(surface.position, surface.normal, direction);
+            let Some(next) = self.world.intersect(&ray) else { break };
+            surface = next;
+        }
+        radiance
+    }
+}
+
+/// The geometric normal on the side that a ray along `direction` meets.
+#[inline]
+fn facing(surface: &Surface, direction: Vec3) -> Vec3 {
+    if surface.normal.dot(direction) < 0.0 { surface.normal } else { -surface.normal }
+}

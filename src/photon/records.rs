@@ -1,0 +1,162 @@
+//! Records of indirect light by final gathering; those of direct light by cuts.
+//!
+//! Papers: Jensen 1996; Krivanek et al. 2005; Herzog et al. 2009, section 7 (the method they call PM).
+//! Deviations: for the series of glossy surfaces, what a stratum shows is a patch of surface that stays where it is as the point moves
+//! (as the virtual lights of `cache` do), so these gradients do not know of the edges of occluders.
+
+use super::hemisphere::{Gathered, gather};
+use super::radiance::{GatherCounts, IndirectLight};
+use super::strata::{Met, Strata};
+use crate::cache::compute::{Made, Pair, RecordSource, Source};
+use crate::cache::footprint::Footprint;
+use crate::cache::layer::Layer;
+use crate::cache::record::{Facts, Record};
+use crate::cache::series::SeriesGatherer;
+use crate::cache::sight::Sight;
+use crate::cache::wave::Pick;
+use crate::cache::{CacheSettings, Footprints};
+use crate::eye::{EyePoint, EyeSamples};
+use crate::gradient::Incidence;
+use crate::lightcut::CutCounts;
+use crate::math::{LUMINANCE, luminance};
+use crate::sampling::hash;
+use glam::Vec3;
+use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
+
+/// Least cosine, at the point and at patches that it sees, by which is divided.
+const LEAST_COS: f32 = 0.05;
+
+/// What computing records needs.
+pub struct PhotonSource<'w> {
+    /// Direct light, by cuts.
+    pub direct: Source<'w>,
+    /// Indirect light.
+    pub light: IndirectLight<'w>,
+    /// Directions of a gathering.
+    pub strata: Strata,
+    /// Another seed, other directions within their strata.
+    pub seed: u32,
+    /// What gathering took so far.
+    pub counts: Mutex<GatherCounts>,
+}
+
+/// A thread's buffers.
+#[derive(Default)]
+struct Workspace {
+    met: Met,
+    series: SeriesGatherer,
+}
+
+impl RecordSource for PhotonSource<'_> {
+    fn settings(&self) -> &CacheSettings {
+        self.direct.settings
+    }
+
+    fn records(
+        &self,
+        samples: &EyeSamples,
+        layers: &[Layer; 2],
+        picks: &[Pick],
+    ) -> (Vec<(Pick, Pair)>, CutCounts) {
+        let direct: Vec<Pick> = picks
+            .iter()
+            .filter(|pick| pick.lacks[0])
+            .map(|pick| Pick { lacks: [true, false], ..*pick })
+            .collect();
+        let (mut records, counts) = self.direct.records(samples, layers, &direct);
+        let indirect: Vec<(Pick, Pair, GatherCounts)> = picks
+            .par_iter()
+            .filter(|pick| pick.lacks[1])
+            .map_init(Workspace::default, |work, pick| {
+                let mut counts = GatherCounts::default();
+                let made = self.indirect(work, samples, pick.sample, &mut counts);
+                (*pick, [None, made], counts)
+            })
+            .collect();
+        let mut gathered = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
+        for (pick, pair, used) in indirect {
+            gathered.add(&used);
+            records.push((pick, pair));
+        }
+        (records, counts)
+    }
+}
+
+impl PhotonSource<'_> {
+    fn indirect(
+        &self,
+        work: &mut Workspace,
+        samples: &EyeSamples,
+        sample: u32,
+        counts: &mut GatherCounts,
+    ) -> Option<Made> {
+        let point = &samples.points[sample as usize];
+        let settings = self.settings();
+        let layer = &settings.layers[1];
+        let reach = layer.reach.map(|r| r * point.spacing);
+        let geometric_normal = samples.surfaces[sample as usize].geometric_normal;
+        let how = (geometric_normal, hash(sample, self.seed), 1.0 / reach[0].max(f32::MIN_POSITIVE));
+        let g = gather(&self.light, &self.strata, point, how, &mut work.met, counts);
+        let luminance = luminance(g.irradiance);
+        if !(luminance.is_finite() && g.vector.is_finite() && g.gradient.is_finite()) {
+            return None;
+        }
+        let footprint = if settings.footprints == Footprints::Occlusion {
+            let change = self.sight(point, geometric_normal, sample, &work.met).change(1);
+            let furthest = layer.accuracy * g.distance;
+            Footprint::of_change(&change, luminance, layer.accuracy, furthest, reach, settings)
+        } else {
+            let radius = (layer.accuracy * g.distance).clamp(reach[0], reach[1]);
+            Footprint::of_gradient(point.normal, g.gradient * LUMINANCE, luminance, radius, settings)
+        };
+        let Gathered { vector, gradient, .. } = g;
+        let facts = Facts { sample, cut: self.strata.len() as u32, ..Facts::default() };
+        let (position, normal, sharing) = (point.position, point.normal, point.sharing);
+        let record = Record { position, normal, sharing, footprint, vector, gradient, luminance, facts };
+        work.series(&self.strata, point, how.2);
+        let [_, series] = work.series.finish();
+        Some(Made { record, series })
+    }
+}
+
+impl PhotonSource<'_> {
+    /// What the point sees, with the light met. Its gradient stays that of the strata, which knows of occluders' edges.
+    fn sight(&self, point: &EyePoint, geometric_normal: Vec3, seed: u32, met: &Met) -> Sight {
+        let mut sight = Sight::new(self.light.world, point.position, geometric_normal, point.normal, seed);
+        let measure = self.strata.measure();
+        for (i, &nearness) in met.nearness.iter().enumerate() {
+            if nearness > 0.0 {
+                sight.add_patch(1, met.direction[i] / nearness, met.normal[i], met.radiance[i] * measure);
+            }
+        }
+        sight
+    }
+}
+
+impl Workspace {
+    /// Adds what was met to the series, if the point is to have one.
+    fn series(&mut self, strata: &Strata, point: &EyePoint, most_near: f32) {
+        self.series.begin(point);
+        if self.series.place().is_none() {
+            return;
+        }
+        let met = &self.met;
+        for (i, direction) in met.direction.iter().enumerate() {
+            let solid_angle = strata.measure() / direction.z.max(LEAST_COS);
+            let incidence = patch(*direction, met.nearness[i].min(most_near), met.normal[i], solid_angle);
+            self.series.add_incidence(1, &incidence, met.radiance[i]);
+        }
+    }
+}
+
+/// Light of unit radiance from a patch of surface seen under a solid angle: how both change as the point moves.
+fn patch(direction: Vec3, nearness: f32, normal: Vec3, solid_angle: f32) -> Incidence<f32> {
+    let cos = -direction.dot(normal);
+    let slope = match nearness > 0.0 {
+        true => (direction * 3.0 + normal / cos.max(LEAST_COS)) * (nearness * solid_angle),
+        false => Vec3::ZERO,
+    };
+    let gradient = [slope.x, slope.y];
+    Incidence { direction: direction.to_array(), inv_dist: nearness, factor: solid_angle, gradient }
+}

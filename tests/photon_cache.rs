@@ -1,0 +1,114 @@
+//! Photon mapping with radiance caching against path tracing, and its invariants.
+
+mod common;
+
+use common::*;
+use glam::Vec3;
+use lightsplat::eye::Window;
+use lightsplat::image::Image;
+use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::photon_cache::{Settings, render};
+use lightsplat::method::{Control, path};
+use lightsplat::scene::formats::{LoadOptions, load};
+use lightsplat::stats::Counter;
+use lightsplat::world::World;
+
+const SIZE: u32 = 64;
+
+fn small() -> Settings {
+    Settings { photons: 30_000, rays: 500, own_rays: 64, ..Settings::default() }
+}
+
+fn picture(world: &World, settings: &Settings) -> Image {
+    let output = render(world, &Window::whole(world.scene.resolution), settings, &Control::new());
+    assert!(output.complete && output.nonfinite == 0);
+    output.color
+}
+
+/// A room with a box on its floor.
+fn boxed_room() -> World {
+    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [SIZE; 2]);
+    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.6)));
+    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    for mut side in room(Vec3::new(-0.6, -1.0, -0.5), Vec3::new(0.0, -0.4, 0.1), wall) {
+        side.triangles.iter_mut().for_each(|t| t.reverse());
+        scene.meshes.push(side);
+    }
+    let lamp = quad(Vec3::new(-0.1, 0.99, -0.3), Vec3::X * 0.6, Vec3::Z * 0.6, wall);
+    scene.meshes.push(emitting(lamp, Rgb::new(10.0, 9.0, 8.0)));
+    world(scene)
+}
+
+/// Luminance of blocks of 4 x 4 pixels, whose edges both methods resolve alike.
+fn blocks(image: &Image) -> Vec<f64> {
+    let n = SIZE as usize / 4;
+    let block = |i: usize| {
+        let pixel = |j: usize| (i / n * 4 + j / 4) * SIZE as usize + i % n * 4 + j % 4;
+        (0..16).map(|j| f64::from(luminance(image.pixels[pixel(j)]))).sum::<f64>() / 16.0
+    };
+    (0..n * n).map(block).collect()
+}
+
+#[test]
+fn it_converges_to_the_path_tracer_as_photons_and_rays_grow() {
+    let world = boxed_room();
+    let window = Window::whole(world.scene.resolution);
+    let paths = path::Settings { spp: 1024, ..path::Settings::default() };
+    let reference = blocks(&path::render(&world, &window, &paths, &Control::new()).color);
+    let mean = reference.iter().sum::<f64>() / reference.len() as f64;
+    let errors = [(3_000, 100), (100_000, 2000)].map(|(photons, rays)| {
+        let found = blocks(&picture(&world, &Settings { photons, rays, spp: 4, ..small() }));
+        let bias = found.iter().sum::<f64>() / reference.len() as f64 / mean - 1.0;
+        let squares = found.iter().zip(&reference).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+        ((squares / reference.len() as f64).sqrt() / mean, bias)
+    });
+    let [(coarse, _), (fine, bias)] = errors;
+    assert!(bias.abs() < 0.01 && fine < 0.02 && fine < 0.5 * coarse, "{errors:?}");
+}
+
+/// Radiance everywhere is emitted / (1 - albedo).
+#[test]
+fn the_furnace_is_white() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/furnace.toml");
+    let mut scene = load(&path, &LoadOptions::default()).expect("the scene loads").scene;
+    scene.resolution = [SIZE, SIZE];
+    let picture = picture(&world(scene), &Settings { photons: 100_000, ..small() });
+    let ratios: Vec<Rgb> = picture.pixels.iter().map(|p| *p / 0.8).collect();
+    let mean = ratios.iter().copied().sum::<Rgb>() / ratios.len() as f32;
+    assert!((mean - Rgb::ONE).abs().max_element() < 0.01, "{mean}");
+    let mut errors: Vec<f32> = ratios.iter().map(|r| (*r - Rgb::ONE).abs().max_element()).collect();
+    errors.sort_by(f32::total_cmp);
+    let large = errors[errors.len() * 99 / 100];
+    assert!(large < 0.1, "{large}");
+}
+
+#[test]
+fn the_bits_do_not_depend_on_the_number_of_threads() {
+    let world = boxed_room();
+    let pictures = [1, 2, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| picture(&world, &small()).pixels)
+    });
+    assert!(pictures[0] == pictures[1] && pictures[0] == pictures[2]);
+}
+
+#[test]
+fn scenes_without_light_or_without_surfaces_are_black() {
+    let mut dark = boxed_room().scene;
+    dark.meshes.iter_mut().for_each(|mesh| mesh.emission = None);
+    let mut empty = dark.clone();
+    empty.meshes.clear();
+    for scene in [dark, empty] {
+        assert!(picture(&world(scene), &small()).pixels.iter().all(|p| *p == Rgb::ZERO));
+    }
+}
+
+#[test]
+fn what_it_took_is_counted() {
+    let world = boxed_room();
+    let output = render(&world, &Window::whole(world.scene.resolution), &small(), &Control::new());
+    for name in ["Photons/total", "Cache/records, indirect", "Gathering/rays of records"] {
+        let Some(Counter::Count(n)) = output.stats.get(name) else { panic!("no {name}") };
+        assert!(n > 0, "{name}");
+    }
+}
