@@ -2,7 +2,7 @@
 
 use super::measure::Case;
 use super::setting::{Dice, Setting};
-use super::{Benchmark, Clock, Context, Table};
+use super::{Benchmark, Clock, Context, Kind, Table};
 use crate::light_tree::Node;
 use crate::lightcut::Reflector;
 use crate::lightcut::group::{LANES, Points};
@@ -12,8 +12,7 @@ use std::hint::black_box;
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "bounds",
     about: "Cluster bounds a second, point by point and for sixteen points at once",
-    needs_scene: true,
-    run,
+    kind: Kind::Parts { needs_scene: true, run },
 };
 
 /// Clusters drawn for each group.

@@ -2,7 +2,7 @@
 
 use super::measure::Case;
 use super::setting::Dice;
-use super::{Benchmark, Clock, Context, Table};
+use super::{Benchmark, Clock, Context, Kind, Table};
 use crate::material::{Bsdf, DirectionBound, Materials};
 use crate::math::Rgb;
 use crate::sampling::uniform_sphere;
@@ -13,8 +13,7 @@ use std::hint::black_box;
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "bsdf",
     about: "Evaluations, samples and bounds of every kind of material a second",
-    needs_scene: false,
-    run,
+    kind: Kind::Parts { needs_scene: false, run },
 };
 
 const DIRECTIONS: usize = 1024;

@@ -2,7 +2,7 @@
 
 use super::measure::Case;
 use super::setting::Dice;
-use super::{Benchmark, Clock, Context, Table};
+use super::{Benchmark, Clock, Context, Kind, Table};
 use crate::gradient::{Incidence, Source};
 use crate::hsh::{Accumulator, Kernel, Reflected};
 use crate::math::Rgb;
@@ -12,8 +12,7 @@ use std::hint::black_box;
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "hsh",
     about: "Lights added to a series of hemispherical harmonics a second, and look-ups",
-    needs_scene: false,
-    run,
+    kind: Kind::Parts { needs_scene: false, run },
 };
 
 const LIGHTS: usize = 1000;

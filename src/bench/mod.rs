@@ -1,8 +1,9 @@
-//! `lightsplat bench`: how fast parts of the renderer are, on whatever scene the user brings.
+//! `lightsplat bench`: how fast parts of the renderer are, and what whole pictures cost and are worth.
 //!
-//! A benchmark is an entry of [`REGISTRY`]: it measures cases against each other (`measure`) and returns a [`Report`] of
-//! tables whose first figure is a ratio, for ratios hold from one machine to the next better than rates do.
-//! [`export`] writes reports, one format a file. Nothing here decides how a picture is made.
+//! A benchmark is an entry of [`REGISTRY`]. Those of parts measure cases against each other (`measure`) and return a
+//! [`Report`] of tables whose first figure is a ratio, for ratios hold from one machine to the next better than rates
+//! do; [`export`] writes reports, one format a file. Studies ([`study`]) render whole pictures, keep them, judge
+//! them against references and write a page. Nothing here decides how a picture is made.
 
 mod bounds;
 mod bsdf;
@@ -12,12 +13,16 @@ mod measure;
 mod report;
 mod setting;
 mod shadow;
+pub mod study;
+mod table1;
 mod trees;
 
 pub use measure::{Clock, Warning};
 pub use report::{Report, Row, Spread, Table};
 
 use crate::world::World;
+use std::path::PathBuf;
+use study::{Document, Study, StudyError};
 
 /// A benchmark that can be asked for by name.
 pub struct Benchmark {
@@ -25,14 +30,39 @@ pub struct Benchmark {
     pub name: &'static str,
     /// What it measures, in a line.
     pub about: &'static str,
-    /// Whether it measures on a scene.
-    pub needs_scene: bool,
-    run: fn(&Context) -> Vec<Table>,
+    /// What it works on.
+    pub kind: Kind,
+}
+
+/// What a benchmark works on.
+pub enum Kind {
+    /// Parts of the renderer.
+    Parts {
+        /// Whether it measures on a scene.
+        needs_scene: bool,
+        /// Measures.
+        run: fn(&Context) -> Vec<Table>,
+    },
+    /// Whole pictures.
+    Study {
+        /// Names of the scenes that are studied if the user names none; if there are none, the user has to.
+        scenes: &'static [&'static str],
+        /// Width and height of the pictures unless the user wants others.
+        pixels: [u32; 2],
+        /// Studies scene files.
+        run: fn(&Study, &[PathBuf]) -> Result<Document, StudyError>,
+    },
 }
 
 /// All benchmarks.
-pub const REGISTRY: [Benchmark; 5] =
-    [shadow::BENCHMARK, bounds::BENCHMARK, trees::BENCHMARK, bsdf::BENCHMARK, hsh::BENCHMARK];
+pub const REGISTRY: [Benchmark; 6] = [
+    table1::BENCHMARK,
+    shadow::BENCHMARK,
+    bounds::BENCHMARK,
+    trees::BENCHMARK,
+    bsdf::BENCHMARK,
+    hsh::BENCHMARK,
+];
 
 /// How to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,9 +97,18 @@ impl Benchmark {
         REGISTRY.iter().find(|b| b.name == name)
     }
 
-    /// Measures.
-    pub fn run(&self, context: &Context) -> Report {
-        let tables = (self.run)(context);
+    /// What it measures on, in the usage.
+    pub fn operand(&self) -> &'static str {
+        match self.kind {
+            Kind::Parts { needs_scene: false, .. } => "",
+            Kind::Parts { needs_scene: true, .. } => " SCENE",
+            Kind::Study { scenes: [], .. } => " SCENE...",
+            Kind::Study { .. } => " [SCENE...]",
+        }
+    }
+
+    /// The report of what measuring found.
+    pub fn report(&self, context: &Context, tables: Vec<Table>) -> Report {
         let mut facts = vec![
             ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
             ("threads".to_owned(), context.settings.threads.to_string()),

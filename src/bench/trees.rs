@@ -2,7 +2,7 @@
 
 use super::measure::Case;
 use super::setting::Setting;
-use super::{Benchmark, Clock, Context, Table};
+use super::{Benchmark, Clock, Context, Kind, Table};
 use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::{CutSettings, Lightcut, Transfer};
 use crate::method::Control;
@@ -12,8 +12,7 @@ use std::hint::black_box;
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "trees",
     about: "Light trees built a second, and the cuts through them",
-    needs_scene: true,
-    run,
+    kind: Kind::Parts { needs_scene: true, run },
 };
 
 /// Indirect virtual lights.

@@ -1,10 +1,10 @@
-//! `lightsplat bench`: measures, prints a table, writes the report where it is wanted.
+//! `lightsplat bench`: measures, prints a table, writes the report where it is wanted. Studies are run by `study`.
 
-use super::bench_args::BenchArgs;
+use super::bench_args::{BenchArgs, StudyArgs};
 use super::exit::Failure;
-use super::{scene, talk};
+use super::{scene, study, talk};
 use crate::bench::export::{FORMATS, terminal};
-use crate::bench::{Benchmark, Context, REGISTRY, Settings};
+use crate::bench::{Benchmark, Context, Kind, REGISTRY, Settings};
 use crate::image::{ImageError, atomic};
 use crate::world::World;
 use anyhow::{Context as _, anyhow};
@@ -13,10 +13,7 @@ use std::path::Path;
 
 /// What `--help` lists.
 pub fn list() -> String {
-    let line = |b: &Benchmark| {
-        let scene = if b.needs_scene { " SCENE" } else { "" };
-        format!("  {:<14}{}\n", format!("{}{scene}", b.name), b.about)
-    };
+    let line = |b: &Benchmark| format!("  {:<18}{}\n", format!("{}{}", b.name, b.operand()), b.about);
     format!("Benchmarks:\n{}", REGISTRY.iter().map(line).collect::<String>())
 }
 
@@ -25,9 +22,24 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
     let Some(benchmark) = Benchmark::named(&args.benchmark) else {
         return Err(Failure::usage(anyhow!("there is no benchmark {}", args.benchmark)));
     };
-    if benchmark.needs_scene != args.scene.is_some() {
-        let remedy = if benchmark.needs_scene { "name a scene behind it" } else { "leave the scene out" };
-        return Err(Failure::usage(anyhow!("bench {}: {remedy}", benchmark.name)));
+    let name = benchmark.name;
+    let (needs_scene, measure) = match benchmark.kind {
+        Kind::Study { .. } => return study::run(benchmark, args),
+        Kind::Parts { needs_scene, run } => (needs_scene, run),
+    };
+    let remedy = match (needs_scene, args.scenes.len()) {
+        (true, 1) | (false, 0) => None,
+        (true, 0) => Some("name a scene behind it"),
+        (true, _) => Some("name one scene only"),
+        (false, _) => Some("leave the scene out"),
+    };
+    if let Some(remedy) = remedy {
+        return Err(Failure::usage(anyhow!("bench {name}: {remedy}")));
+    }
+    if args.study != StudyArgs::default() {
+        return Err(Failure::usage(anyhow!(
+            "bench {name}: the options under \"Studies\" would have no effect"
+        )));
     }
     let exports = [&args.export_json, &args.export_csv, &args.export_markdown, &args.export_html];
     for path in exports.into_iter().flatten() {
@@ -40,12 +52,8 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
         repeats: args.repeats.map_or(defaults.repeats, |n| n as usize),
         seconds: args.seconds.unwrap_or(defaults.seconds),
     };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(settings.threads)
-        .build()
-        .with_context(|| format!("cannot start {} threads; try fewer with --threads", settings.threads))
-        .map_err(Failure::render)?;
-    let world = match &args.scene {
+    let pool = pool(settings.threads)?;
+    let world = match args.scenes.first() {
         None => None,
         Some(path) => {
             let loaded = scene::read(path, false)?;
@@ -55,7 +63,8 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
         }
     };
     let report = pool.install(|| {
-        benchmark.run(&Context { world: world.as_ref(), settings, say: &|what| talk::note(what) })
+        let context = Context { world: world.as_ref(), settings, say: &|what| talk::note(what) };
+        benchmark.report(&context, measure(&context))
     });
     talk::print(&terminal(&report))?;
     for (format, path) in FORMATS.iter().zip(exports) {
@@ -66,7 +75,16 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
+/// Threads to work on.
+pub fn pool(threads: usize) -> Result<rayon::ThreadPool, Failure> {
+    let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    built
+        .with_context(|| format!("cannot start {threads} threads; try fewer with --threads"))
+        .map_err(Failure::render)
+}
+
+/// Writes text to a file, whole or not at all.
+pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
     atomic::write_atomically(path, |file| file.write_all(text.as_bytes()))
         .map_err(|source| ImageError::Write { path: path.to_owned(), source })
         .map_err(Failure::output)?;

@@ -1,5 +1,6 @@
 //! Options of `bench`.
 
+use super::args::Resolution;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
@@ -11,12 +12,13 @@ pub struct BenchArgs {
     /// What to measure
     #[arg(value_parser = PossibleValuesParser::new(crate::bench::REGISTRY.iter().map(|b| b.name)), hide_possible_values = true)]
     pub benchmark: String,
-    /// Scene: native (.toml) or Mitsuba (.xml); for those that need one
-    pub scene: Option<PathBuf>,
+    /// Scenes: native (.toml) or Mitsuba (.xml); for those that need them. Studies also take names of scenes in --scenes
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
     /// Threads where all are used [default: all processors]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
-    /// Samples of every case, taken in turns [default: 7]
+    /// Samples of every case, taken in turns; runs of every picture, of which the fastest counts [default: 7; studies: 1]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub repeats: Option<u32>,
     /// How long a sample lasts at least, about [default: 0.05]
@@ -34,12 +36,37 @@ pub struct BenchArgs {
     /// Write a page with plots
     #[arg(long, value_name = "FILE")]
     pub export_html: Option<PathBuf>,
+    /// Options of studies.
+    #[command(flatten)]
+    pub study: StudyArgs,
+}
+
+/// Options of benchmarks that render whole pictures.
+#[derive(Clone, Debug, Default, Args, PartialEq)]
+#[command(next_help_heading = "Studies")]
+pub struct StudyArgs {
+    /// Folder for the page, the table and all that is rendered; what is in it already is not rendered again
+    /// [default: out/NAME]
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+    /// Folder of the scenes that are given by name [default: scenes]
+    #[arg(long = "scenes", value_name = "FOLDER")]
+    pub scene_folder: Option<PathBuf>,
+    /// Width and height of pictures [default: the study's]
+    #[arg(long, value_name = "WxH")]
+    pub resolution: Option<Resolution>,
+    /// Paths a pixel of references, half of them in each of two independent pictures [default: 1024]
+    #[arg(long, value_name = "SPP", value_parser = clap::value_parser!(u32).range(2..))]
+    pub reference_spp: Option<u32>,
+    /// Seconds after which references get no more paths [default: 1800]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    pub reference_seconds: Option<f64>,
 }
 
 fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(value) if (0.0..=3600.0).contains(&value) => Ok(value),
-        _ => Err("expected seconds from 0 to 3600".to_owned()),
+        Ok(value) if (0.0..=1e6).contains(&value) => Ok(value),
+        _ => Err("expected seconds from 0 to 1000000".to_owned()),
     }
 }
 
@@ -48,6 +75,7 @@ mod tests {
     use super::super::args::Cli;
     use super::*;
     use crate::bench::Settings;
+    use crate::bench::study::ReferenceSettings;
     use clap::CommandFactory;
 
     #[test]
@@ -55,9 +83,13 @@ mod tests {
         let cli = Cli::command();
         let bench = cli.find_subcommand("bench").unwrap();
         let defaults = Settings::default();
-        for (option, default) in
-            [("repeats", defaults.repeats.to_string()), ("seconds", defaults.seconds.to_string())]
-        {
+        let reference = ReferenceSettings::default();
+        for (option, default) in [
+            ("repeats", format!("{}; studies: 1", defaults.repeats)),
+            ("seconds", defaults.seconds.to_string()),
+            ("reference-spp", reference.spp.to_string()),
+            ("reference-seconds", reference.seconds.to_string()),
+        ] {
             let argument = bench.get_arguments().find(|a| a.get_long() == Some(option)).unwrap();
             let stated = argument.get_help().unwrap().to_string();
             assert!(stated.contains(&format!("[default: {default}]")), "{stated}");

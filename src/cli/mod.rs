@@ -11,10 +11,11 @@ mod exit;
 mod info;
 mod interrupt;
 mod job;
-mod method;
+pub(crate) mod method;
 mod progress;
 mod render;
 mod scene;
+mod study;
 mod talk;
 mod verify;
 

@@ -18,14 +18,8 @@ pub struct Panel {
 ///
 /// All three must have the same size.
 pub fn heatmap(test: &Image, reference: &Image, error: &[f32], exposure_factor: f32) -> Panel {
-    let lut = metrics::magma();
-    // `as` saturates and turns NaN into 0, so the index is always within the 256 colours.
-    let colour = |&e: &f32| lut[((e * 255.0 + 0.5) as usize).min(lut.len() - 1)];
-    let shown = [
-        tone::to_srgb8(test, exposure_factor),
-        tone::to_srgb8(reference, exposure_factor),
-        error.iter().flat_map(colour).collect(),
-    ];
+    let shown =
+        [tone::to_srgb8(test, exposure_factor), tone::to_srgb8(reference, exposure_factor), colours(error)];
     let (width, height) = (reference.width, reference.height);
     if width > 2 * height {
         return Panel { width, height: 3 * height, bytes: shown.concat() };
@@ -36,6 +30,13 @@ pub fn heatmap(test: &Image, reference: &Image, error: &[f32], exposure_factor: 
         shown.iter().for_each(|panel| bytes.extend_from_slice(&panel[y * row..(y + 1) * row]));
     }
     Panel { width: 3 * width, height, bytes }
+}
+
+/// Errors from 0 to 1 (larger ones clipped) in magma colours: three bytes a pixel.
+pub fn colours(error: &[f32]) -> Vec<u8> {
+    let lut = metrics::magma();
+    // `as` saturates and turns NaN into 0, so the index is always within the 256 colours.
+    error.iter().flat_map(|&e| lut[((e * 255.0 + 0.5) as usize).min(lut.len() - 1)]).collect()
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ mod terminal;
 
 use super::Report;
 
+pub(super) use html::escaped;
 pub use terminal::terminal;
 
 /// A file format.

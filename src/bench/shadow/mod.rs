@@ -13,14 +13,13 @@ mod trace;
 mod widths;
 
 use super::setting::Setting;
-use super::{Benchmark, Context, Table};
+use super::{Benchmark, Context, Kind, Table};
 use trace::Traces;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "shadow",
     about: "Shadow rays a second, by packet width, packing, build quality, cache and order",
-    needs_scene: true,
-    run,
+    kind: Kind::Parts { needs_scene: true, run },
 };
 
 /// Millions of rays a second.

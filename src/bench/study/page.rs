@@ -1,0 +1,160 @@
+//! Parts of pages that need nothing else: pictures within the page, tables.
+
+use crate::bench::export::escaped;
+use crate::image::{Image, heatmap, tone};
+use ::image::codecs::jpeg::JpegEncoder;
+use ::image::codecs::png::PngEncoder;
+use ::image::{ExtendedColorType, ImageEncoder};
+
+/// How pages look.
+pub const STYLE: &str = "body{font:15px system-ui,sans-serif;max-width:80em;margin:2em auto;padding:0 1em;color:#222}\
+table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:1em 0;font-size:13px}\
+th,td{padding:.15em .6em;text-align:right;border-bottom:1px solid #ddd}td:first-child,th:first-child{text-align:left}\
+.wide{overflow-x:auto}figure{display:inline-block;margin:.4em .6em .4em 0;vertical-align:top}\
+figcaption{font-size:13px;max-width:22em}img{display:block}.zoom{image-rendering:pixelated;width:200px;height:200px}\
+svg{max-width:100%;height:auto}svg text{font:12px system-ui,sans-serif;fill:#222}.minor{color:#888}\
+.axis{stroke:#888;fill:none}.grid{stroke:#e5e5e5;fill:none}.warning{color:#a40}";
+
+/// A whole page.
+pub fn page(title: &str, body: &str) -> String {
+    let title = escaped(title);
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{title}</title>\n\
+         <style>{STYLE}</style></head>\n<body>\n<h1>{title}</h1>\n{body}</body>\n</html>\n"
+    )
+}
+
+/// A table; `minor` says which rows are grey.
+pub fn table(heads: &[String], rows: &[Vec<String>], minor: impl Fn(usize) -> bool) -> String {
+    let cells = |cells: &[String], tag: &str| -> String {
+        cells.iter().map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell))).collect()
+    };
+    let mut text = format!("<div class=\"wide\"><table>\n<tr>{}</tr>\n", cells(heads, "th"));
+    for (i, row) in rows.iter().enumerate() {
+        let class = if minor(i) { " class=\"minor\"" } else { "" };
+        text += &format!("<tr{class}>{}</tr>\n", cells(row, "td"));
+    }
+    text + "</table></div>\n"
+}
+
+/// A picture with a caption; with a second picture, holding the pointer over it shows that.
+pub fn figure(source: &str, beneath: Option<&str>, caption: &str, class: &str) -> String {
+    let swap = beneath.map_or_else(String::new, |_| {
+        " onmouseenter=\"this.dataset.own=this.src;this.src=document.getElementById(this.dataset.other).src\" \
+         onmouseleave=\"this.src=this.dataset.own\""
+            .to_owned()
+    });
+    let other = beneath.map_or_else(String::new, |id| format!(" data-other=\"{id}\""));
+    format!(
+        "<figure><img class=\"{class}\" src=\"{source}\"{other}{swap} alt=\"\"><figcaption>{}</figcaption></figure>\n",
+        escaped(caption)
+    )
+}
+
+/// A picture on the screen as the address of an image; JPEG, for pages of many.
+pub fn shown(image: &Image, exposure: f32) -> String {
+    jpeg(&tone::to_srgb8(image, exposure), image.width, image.height)
+}
+
+/// Errors from 0 to 1 in magma colours, as the address of an image.
+pub fn heat(error: &[f32], image: &Image) -> String {
+    jpeg(&heatmap::colours(error), image.width, image.height)
+}
+
+fn jpeg(bytes: &[u8], width: u32, height: u32) -> String {
+    let mut file = Vec::new();
+    // Writing to memory fails only for sizes beyond what JPEG knows, which show as nothing.
+    let _ = JpegEncoder::new_with_quality(&mut file, 92).write_image(
+        bytes,
+        width,
+        height,
+        ExtendedColorType::Rgb8,
+    );
+    format!("data:image/jpeg;base64,{}", base64(&file))
+}
+
+/// Part of a picture, pixel by pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// First column and row.
+    pub at: [u32; 2],
+    /// Columns and rows.
+    pub side: u32,
+}
+
+/// That part of a picture as the address of an image, without loss.
+pub fn zoom(image: &Image, exposure: f32, part: Part) -> String {
+    let rows = (part.at[1]..part.at[1] + part.side).flat_map(|y| {
+        let first = (y * image.width + part.at[0]) as usize;
+        &image.pixels[first..first + part.side as usize]
+    });
+    let cut = Image { width: part.side, height: part.side, pixels: rows.copied().collect() };
+    let mut file = Vec::new();
+    let bytes = tone::to_srgb8(&cut, exposure);
+    let _ = PngEncoder::new(&mut file).write_image(&bytes, part.side, part.side, ExtendedColorType::Rgb8);
+    format!("data:image/png;base64,{}", base64(&file))
+}
+
+/// The `count` square parts with the largest mean error that do not overlap, a sixth of the shorter side wide.
+pub fn worst(error: &[f32], width: u32, height: u32, count: usize) -> Vec<Part> {
+    let side = (width.min(height) / 6).max(1);
+    let mut parts: Vec<(f64, Part)> = Vec::new();
+    // Half a part's side apart.
+    let step = (side / 2).max(1) as usize;
+    for y in (0..=height - side).step_by(step) {
+        for x in (0..=width - side).step_by(step) {
+            let rows = (y..y + side).flat_map(|row| {
+                let first = (row * width + x) as usize;
+                &error[first..first + side as usize]
+            });
+            parts.push((rows.map(|&e| f64::from(e)).sum(), Part { at: [x, y], side }));
+        }
+    }
+    parts.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut chosen: Vec<Part> = Vec::new();
+    for (_, part) in parts {
+        let apart = |c: &Part| (0..2).any(|axis| c.at[axis].abs_diff(part.at[axis]) >= side);
+        if chosen.len() < count && chosen.iter().all(apart) {
+            chosen.push(part);
+        }
+    }
+    chosen
+}
+
+/// RFC 4648.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let word = (0..3).fold(0u32, |word, i| word << 8 | u32::from(chunk.get(i).copied().unwrap_or(0)));
+        for i in 0..4 {
+            let letter = LETTERS[(word >> (18 - 6 * i) & 63) as usize] as char;
+            text.push(if i <= chunk.len() { letter } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_is_that_of_the_standard() {
+        let pairs = [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")];
+        pairs.iter().for_each(|(plain, coded)| assert_eq!(base64(plain.as_bytes()), *coded));
+    }
+
+    #[test]
+    fn the_worst_parts_lie_where_the_errors_are_and_apart() {
+        let mut error = vec![0.0; 36 * 24];
+        error[10 * 36 + 30] = 1.0;
+        error[20 * 36 + 2] = 0.5;
+        let parts = worst(&error, 36, 24, 2);
+        let holds = |p: &Part, x: u32, y: u32| {
+            (p.at[0]..p.at[0] + 4).contains(&x) && (p.at[1]..p.at[1] + 4).contains(&y)
+        };
+        assert!(holds(&parts[0], 30, 10) && holds(&parts[1], 2, 20), "{parts:?}");
+        assert_eq!(worst(&[0.0; 2], 2, 1, 9).len(), 2);
+    }
+}

@@ -1,0 +1,210 @@
+//! Converged references: path-traced in two independent halves, in rounds that are kept as they come.
+//!
+//! Half the halves' difference estimates the noise of their mean, pixel by pixel; and as the halves' errors are
+//! independent, a picture's mean square error against the truth is the mean of the product of its differences
+//! from either, without the reference's noise in it.
+
+use super::store::Kept;
+use super::{Study, StudyError, Subject};
+use crate::image::metrics::{flip_map, psnr, rel_mse_of_variance};
+use crate::image::{Image, tone};
+use crate::math::Rgb;
+use crate::method::path;
+use crate::stats::Stopwatch;
+use serde::Serialize;
+use serde_json::json;
+
+/// Most samples a pixel that each half takes in a round.
+const ROUND: u32 = 64;
+
+/// When a reference is good enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReferenceSettings {
+    /// Samples a pixel, both halves together.
+    pub spp: u32,
+    /// No round begins after this many elapsed seconds, those of earlier runs included.
+    pub seconds: f64,
+}
+
+impl Default for ReferenceSettings {
+    fn default() -> ReferenceSettings {
+        ReferenceSettings { spp: 1024, seconds: 1800.0 }
+    }
+}
+
+/// A reference.
+pub struct Reference {
+    /// The mean of its halves.
+    pub mean: Image,
+    /// Independent of each other, of equal numbers of samples.
+    pub halves: [Image; 2],
+    /// How good it is.
+    pub noise: Noise,
+    /// What brings it to the screen.
+    pub exposure: f32,
+}
+
+/// What is known about a reference's own error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Noise {
+    /// Samples a pixel, both halves together.
+    pub spp: u32,
+    /// Processor seconds that they took.
+    pub cpu_seconds: f64,
+    /// Standard error of a pixel's mean over the mean of the picture, root mean square over pixels and channels.
+    pub standard_error: f64,
+    /// The part of a picture's relMSE that is the reference's noise.
+    pub rel_mse: f64,
+    /// PSNR that the truth would have against the reference, dB.
+    pub psnr: Option<f64>,
+    /// FLIP between the halves, whose difference is twice the noise of their mean.
+    pub flip_of_halves: f64,
+}
+
+/// Renders what is missing of the subject's reference.
+pub(super) fn reference(study: &Study, subject: &Subject) -> Result<Reference, StudyError> {
+    let name = format!("{}, reference", subject.name);
+    let key = json!({
+        "scene": format!("{:016x}", subject.hash),
+        "film": study.resolution,
+        "version": env!("CARGO_PKG_VERSION"),
+        "method": "path",
+    });
+    let mut progress = match study.store.load(&name, &key, &["a", "b"]) {
+        Some(kept) => Progress::resume(kept),
+        None => None,
+    }
+    .unwrap_or_else(|| Progress::new(study.resolution));
+    while progress.each * 2 < study.reference.spp
+        && (progress.rounds == 0 || progress.seconds < study.reference.seconds)
+    {
+        let spp = (study.reference.spp.div_ceil(2) - progress.each).min(ROUND);
+        progress.round(study, subject, spp)?;
+        study.store.save(&name, &key, &progress.kept())?;
+        (study.say)(&format!("{name}: {} samples a pixel, {:.0} s", progress.each * 2, progress.seconds));
+    }
+    Ok(progress.finish())
+}
+
+struct Progress {
+    halves: [Image; 2],
+    /// Samples a pixel of each half.
+    each: u32,
+    rounds: u32,
+    seconds: f64,
+    cpu_seconds: f64,
+}
+
+impl Progress {
+    fn new([width, height]: [u32; 2]) -> Progress {
+        let blank = || Image::new(width, height);
+        Progress { halves: [blank(), blank()], each: 0, rounds: 0, seconds: 0.0, cpu_seconds: 0.0 }
+    }
+
+    fn resume(kept: Kept) -> Option<Progress> {
+        let number = |name: &str| kept.facts[name].as_f64();
+        let (each, rounds) = (number("each")? as u32, number("rounds")? as u32);
+        let (seconds, cpu_seconds) = (number("seconds")?, number("cpu_seconds")?);
+        let halves: Vec<Image> = kept.layers.into_iter().map(|(_, image)| image).collect();
+        Some(Progress { halves: halves.try_into().ok()?, each, rounds, seconds, cpu_seconds })
+    }
+
+    fn round(&mut self, study: &Study, subject: &Subject, spp: u32) -> Result<(), StudyError> {
+        let watch = Stopwatch::start();
+        let mut more = Vec::with_capacity(2);
+        for half in 0..2 {
+            // Seed 0 is the default of all methods, which nothing should share with its reference.
+            let settings = path::Settings { spp, seed: 1 + 2 * self.rounds + half, max_depth: None };
+            let output = path::render(&subject.world, &subject.window, &settings, study.control);
+            if !output.complete {
+                return Err(StudyError::Interrupted);
+            }
+            more.push(output.color);
+        }
+        let share = spp as f32 / (self.each + spp) as f32;
+        for (half, more) in self.halves.iter_mut().zip(&mut more) {
+            more.remove_nonfinite();
+            half.pixels.iter_mut().zip(&more.pixels).for_each(|(mean, more)| *mean += (more - *mean) * share);
+        }
+        let time = watch.elapsed();
+        self.each += spp;
+        self.rounds += 1;
+        self.seconds += time.wall_seconds;
+        self.cpu_seconds += time.cpu_seconds;
+        Ok(())
+    }
+
+    fn kept(&self) -> Kept {
+        let [a, b] = self.halves.clone();
+        Kept {
+            color: mean(&self.halves),
+            layers: vec![("a".to_owned(), a), ("b".to_owned(), b)],
+            facts: json!({
+                "each": self.each,
+                "rounds": self.rounds,
+                "seconds": self.seconds,
+                "cpu_seconds": self.cpu_seconds,
+            }),
+        }
+    }
+
+    fn finish(self) -> Reference {
+        let mean = mean(&self.halves);
+        let exposure = tone::auto_factor(&mean);
+        let noise = Noise::of(&mean, &self.halves, exposure, self.each * 2, self.cpu_seconds);
+        Reference { mean, halves: self.halves, noise, exposure }
+    }
+}
+
+impl Noise {
+    fn of(mean: &Image, halves: &[Image; 2], exposure: f32, spp: u32, cpu_seconds: f64) -> Noise {
+        let [a, b] = halves;
+        let variance = Image {
+            pixels: a.pixels.iter().zip(&b.pixels).map(|(a, b)| (a - b) * (a - b) * 0.25).collect(),
+            ..*mean
+        };
+        let average = |image: &Image| {
+            let sum: f64 = image.pixels.iter().map(|p| p.as_dvec3().element_sum() / 3.0).sum();
+            sum / image.pixels.len().max(1) as f64
+        };
+        let flips = flip_map(a, b, exposure);
+        Noise {
+            spp,
+            cpu_seconds,
+            standard_error: average(&variance).sqrt() / average(mean).max(f64::MIN_POSITIVE),
+            rel_mse: rel_mse_of_variance(&variance, mean),
+            // The halves' difference has four times the square of the mean's error.
+            psnr: psnr(a, b, exposure).map(|db| db + 20.0 * 2f64.log10()),
+            flip_of_halves: flips.iter().map(|&e| f64::from(e)).sum::<f64>() / flips.len().max(1) as f64,
+        }
+    }
+}
+
+fn mean([a, b]: &[Image; 2]) -> Image {
+    let pixels: Vec<Rgb> = a.pixels.iter().zip(&b.pixels).map(|(a, b)| (a + b) * 0.5).collect();
+    Image { width: a.width, height: a.height, pixels }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::hash;
+
+    /// Halves of a known standard deviation around 1: the noise of their mean is what it must be.
+    #[test]
+    fn noise_is_that_of_the_mean() {
+        let deviation = 0.02f32;
+        let uniform = |i: usize, seed: u32| hash(i as u32, seed) as f32 / u32::MAX as f32 - 0.5;
+        let half = |seed: u32| {
+            let mut image = Image::new(64, 64);
+            let pixels = image.pixels.iter_mut().enumerate();
+            pixels.for_each(|(i, p)| *p = Rgb::splat(1.0 + deviation * 12f32.sqrt() * uniform(i, seed)));
+            image
+        };
+        let halves = [half(1), half(2)];
+        let noise = Noise::of(&mean(&halves), &halves, 0.5, 8, 1.0);
+        let expected = f64::from(deviation) / 2f64.sqrt();
+        assert!((noise.standard_error / expected - 1.0).abs() < 0.05, "{noise:?}");
+        assert!((noise.rel_mse / (expected * expected / 1.01) - 1.0).abs() < 0.1, "{noise:?}");
+    }
+}

@@ -1,0 +1,100 @@
+//! The table as a page with plots and pictures.
+
+use super::entries::Family;
+use super::markdown::{about, claims};
+use super::row::HEADS;
+use super::{SceneTable, Table1};
+use crate::bench::export::escaped;
+use crate::bench::study::page::{figure, heat, page, shown, table, worst, zoom};
+use crate::bench::study::scatter::{Series, scatter};
+use crate::image::metrics::flip_map;
+
+/// Parts of the picture that are shown pixel by pixel.
+const ZOOMS: usize = 3;
+
+/// The page.
+pub fn html(table1: &Table1) -> String {
+    let facts: Vec<String> = table1.facts.iter().map(|(name, value)| format!("{name} {value}")).collect();
+    let mut body = format!("<p>{}</p>\n", escaped(&facts.join(", ")));
+    body += "<p>Times are processor seconds over all threads. N_c: records; direct %: share of them that hold direct \
+             light; anisotropy: long over short radius of footprints, direct / indirect; a: their radius over the \
+             distance of what casts light and shadow; cut: clusters; T_light: light pass and trees; T_f: records and \
+             cuts of eye samples' own; T_cache: splatting and adaptation; total: all that and the eye pass. PSNR and \
+             FLIP are against the reference as it is, relMSE is without its noise; brightness below 1 is mostly what \
+             clamping takes away. \"To LC\": against lightcuts per pixel on the same eye samples and virtual lights. \
+             \"At equal FLIP\": time of lightcuts of the same FLIP against the reference, interpolated between their \
+             grey rows; &gt; and &lt; where no grey row is as good or as bad.</p>\n<h2>Beside the paper</h2>\n";
+    let heads = ["", "paper"].into_iter().map(str::to_owned);
+    let heads: Vec<String> = heads.chain(table1.scenes.iter().map(|s| s.scene.clone())).collect();
+    body += &table(&heads, &claims(table1), |_| false);
+    body += "<p>The paper's ratios are of times with the light pass, over its own scenes.</p>\n";
+    for (i, scene) in table1.scenes.iter().enumerate() {
+        body += &section(scene, i);
+    }
+    page("Table 1", &body)
+}
+
+fn section(scene: &SceneTable, number: usize) -> String {
+    let mut text = format!("<h2>{}</h2>\n<p>{}</p>\n", escaped(&scene.scene), escaped(&about(scene)));
+    let rows: Vec<Vec<String>> = scene.rows.iter().map(|row| row.cells()).collect();
+    text += &table(&HEADS.map(str::to_owned), &rows, |i| !scene.rows[i].main);
+    text += &scatter(
+        "processor seconds",
+        "FLIP against the reference",
+        &curves(scene, |r| r.against_reference.flip),
+    );
+    let error = |row: &super::Row| row.against_reference.rel_mse;
+    text += &scatter("processor seconds", "relMSE without the reference's noise", &curves(scene, error));
+    text + &pictures(scene, number)
+}
+
+/// Lightcuts as a curve, the rest as points.
+fn curves(scene: &SceneTable, error: impl Fn(&super::Row) -> f64) -> Vec<Series> {
+    let point = |row: &super::Row| (row.total, error(row), row.label.clone());
+    let of = |family| scene.rows.iter().filter(move |row| row.family == family);
+    let mut lightcuts: Vec<_> = of(Family::Lightcuts).map(point).collect();
+    lightcuts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    vec![
+        Series { name: "lightcuts".to_owned(), colour: "#a40", joined: true, points: lightcuts },
+        Series {
+            name: String::new(),
+            colour: "#4a7fb5",
+            joined: false,
+            points: of(Family::Cache).map(point).collect(),
+        },
+    ]
+}
+
+/// Every method's picture, its FLIP, and parts of it; the reference's parts show under the pointer.
+fn pictures(scene: &SceneTable, number: usize) -> String {
+    let pictures = &scene.pictures;
+    let (reference, exposure) = (&pictures.reference, pictures.exposure);
+    let flips: Vec<_> = pictures.rows.iter().map(|image| flip_map(image, reference, exposure)).collect();
+    let main: Vec<usize> = (0..scene.rows.len()).filter(|&i| scene.rows[i].main).collect();
+    let parts =
+        main.first().map_or_else(Vec::new, |&i| worst(&flips[i], reference.width, reference.height, ZOOMS));
+    let id = |what: &str| format!("s{number}-{what}");
+    let named = |figure: String, id: &str| figure.replacen("<img ", &format!("<img id=\"{id}\" "), 1);
+    let mut text =
+        "<h3>Pictures</h3>\n<p>Each with its FLIP against the reference, and the parts where the cache's \
+                    is largest. Hold the pointer over a picture to see the reference.</p>\n<div>"
+            .to_owned();
+    text += &named(figure(&shown(reference, exposure), None, "reference", ""), &id("whole"));
+    for (k, part) in parts.iter().enumerate() {
+        let zoomed = figure(&zoom(reference, exposure, *part), None, "", "zoom");
+        text += &named(zoomed, &id(&k.to_string()));
+    }
+    text += "</div>\n";
+    for i in main {
+        let (row, image) = (&scene.rows[i], &pictures.rows[i]);
+        let caption = format!("{}: {:.2} s, FLIP {:.4}", row.label, row.total, row.against_reference.flip);
+        text += "<div>";
+        text += &figure(&shown(image, exposure), Some(&id("whole")), &caption, "");
+        text += &figure(&heat(&flips[i], image), None, "FLIP, 0 to 1", "");
+        for (k, part) in parts.iter().enumerate() {
+            text += &figure(&zoom(image, exposure, *part), Some(&id(&k.to_string())), "", "zoom");
+        }
+        text += "</div>\n";
+    }
+    text
+}

@@ -1,0 +1,145 @@
+//! A method's figures on a scene.
+
+use super::Speed;
+use super::entries::{Entry, Family};
+use crate::bench::study::{Errors, Run, figure, optional, seconds};
+use crate::stats::Stage;
+use serde::Serialize;
+use serde_json::Value;
+
+/// A row of the table.
+#[derive(Serialize)]
+pub struct Row {
+    /// What it is.
+    pub label: String,
+    /// The paper's name for it.
+    pub paper: Option<&'static str>,
+    /// Whether it is a method compared, not a point on a curve.
+    pub main: bool,
+    #[serde(skip)]
+    pub family: Family,
+    /// The method's settings.
+    pub settings: Value,
+    /// Records, direct and indirect.
+    pub records: Option<[f64; 2]>,
+    /// Long over short radius, direct and indirect.
+    pub anisotropy: [Option<f64>; 2],
+    /// Radius over distance, direct and indirect.
+    pub accuracy: [Option<f64>; 2],
+    /// Clusters in a cut.
+    pub cut: Option<f64>,
+    /// Processor seconds: eye pass, light pass and trees, records and cuts, splatting.
+    pub eye: f64,
+    pub light: f64,
+    pub f: f64,
+    /// None where there are no records.
+    pub cache: Option<f64>,
+    pub total: f64,
+    /// Elapsed seconds.
+    pub elapsed: f64,
+    /// Time of lightcuts per pixel over this one's.
+    pub speed: f64,
+    /// The same at equal FLIP against the reference.
+    pub speed_at_equal_flip: Option<Speed>,
+    pub against_reference: Errors,
+    /// None for lightcuts themselves.
+    pub against_lightcuts: Option<Errors>,
+}
+
+/// Heads of the columns of [`Row::cells`].
+pub const HEADS: [&str; 21] = [
+    "method",
+    "paper's",
+    "N_c",
+    "direct %",
+    "anisotropy",
+    "a",
+    "cut",
+    "T_light",
+    "T_f",
+    "T_cache",
+    "total",
+    "elapsed",
+    "PSNR",
+    "relMSE",
+    "FLIP",
+    "brightness",
+    "PSNR to LC",
+    "relMSE to LC",
+    "FLIP to LC",
+    "speed to LC",
+    "at equal FLIP",
+];
+
+impl Row {
+    /// Of a picture.
+    pub fn new(entry: &Entry, run: &Run, against_reference: Errors) -> Row {
+        let records = |layer: &str| run.counter("Cache", &format!("records, {layer}"));
+        let records = records("direct").zip(records("indirect")).map(|(d, i)| [d, i]);
+        let mean = |what: &str| ["direct", "indirect"].map(|l| run.counter("Cache", &format!("{what}, {l}")));
+        let group = if records.is_some() { "Records" } else { "Lightcut" };
+        let [eye, light, f, cache] = [
+            &[Stage::EyePass][..],
+            &[Stage::LightPass, Stage::Tree],
+            &[Stage::Records, Stage::Render],
+            &[Stage::Splat],
+        ]
+        .map(|stages| run.seconds(stages));
+        Row {
+            label: entry.candidate.label.clone(),
+            paper: entry.paper,
+            main: entry.main,
+            family: entry.family,
+            settings: entry.candidate.method.settings(),
+            records,
+            anisotropy: mean("anisotropy"),
+            accuracy: mean("accuracy"),
+            cut: run.counter(group, "mean cut"),
+            eye,
+            light,
+            f,
+            cache: records.map(|_| cache),
+            total: run.seconds(&Stage::ALL),
+            elapsed: run.elapsed(),
+            speed: 1.0,
+            speed_at_equal_flip: None,
+            against_reference,
+            against_lightcuts: None,
+        }
+    }
+
+    /// What stands under [`HEADS`].
+    pub fn cells(&self) -> Vec<String> {
+        let total = self.records.map(|[d, i]| d + i);
+        let share = self.records.map(|[d, i]| 100.0 * d / (d + i).max(1.0));
+        let pair = |[a, b]: [Option<f64>; 2]| match (a, b) {
+            (None, None) => "-".to_owned(),
+            _ => format!("{} / {}", optional(a), optional(b)),
+        };
+        let errors = &self.against_reference;
+        let others = self.against_lightcuts.as_ref();
+        vec![
+            self.label.clone(),
+            self.paper.unwrap_or("").to_owned(),
+            total.map_or("-".to_owned(), |n| format!("{n:.0}")),
+            share.map_or("-".to_owned(), |n| format!("{n:.0}")),
+            pair(self.anisotropy),
+            pair(self.accuracy),
+            optional(self.cut),
+            seconds(self.light),
+            seconds(self.f),
+            self.cache.map_or("-".to_owned(), seconds),
+            seconds(self.total),
+            seconds(self.elapsed),
+            optional(errors.psnr),
+            figure(errors.rel_mse),
+            figure(errors.flip),
+            figure(errors.brightness),
+            optional(others.and_then(|e| e.psnr)),
+            optional(others.map(|e| e.rel_mse)),
+            optional(others.map(|e| e.flip)),
+            format!("{:.2}", self.speed),
+            self.speed_at_equal_flip.map_or("-".to_owned(), |s| s.to_string()),
+        ]
+    }
+}

@@ -1,0 +1,71 @@
+//! Benchmarks that render whole pictures: runs them, prints their table, writes their files into one folder.
+
+use super::bench::{pool, write};
+use super::bench_args::BenchArgs;
+use super::exit::Failure;
+use super::{interrupt, talk};
+use crate::bench::study::{Plan, ReferenceSettings, Study, StudyError, file_of};
+use crate::bench::{Benchmark, Kind};
+use crate::method::Control;
+use anyhow::{Context as _, anyhow};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Runs the study.
+pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
+    let name = benchmark.name;
+    let Kind::Study { scenes, pixels, run } = benchmark.kind else {
+        return Err(Failure::usage(anyhow!("{name} is no study")));
+    };
+    let exports = [&args.export_json, &args.export_csv, &args.export_markdown, &args.export_html];
+    if exports.into_iter().any(Option::is_some) || args.seconds.is_some() {
+        return Err(Failure::usage(anyhow!(
+            "bench {name} writes JSON, Markdown and HTML into --output FOLDER, and has no --seconds"
+        )));
+    }
+    let files = scene_files(&args, scenes);
+    if files.is_empty() {
+        return Err(Failure::usage(anyhow!("bench {name}: name a scene behind it")));
+    }
+    let control = Arc::new(Control::new());
+    interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
+    let processors = || std::thread::available_parallelism().map_or(1, |n| n.get());
+    let defaults = ReferenceSettings::default();
+    let folder = args.study.output.unwrap_or_else(|| Path::new("out").join(name));
+    let plan = Plan {
+        folder: folder.clone(),
+        threads: args.threads.map_or_else(processors, |n| n as usize),
+        repeats: args.repeats.map_or(1, |n| n as usize),
+        resolution: args.study.resolution.map_or(pixels, |r| r.0),
+        reference: ReferenceSettings {
+            spp: args.study.reference_spp.unwrap_or(defaults.spp),
+            seconds: args.study.reference_seconds.unwrap_or(defaults.seconds),
+        },
+    };
+    let pool = pool(plan.threads)?;
+    let study = Study::new(plan, &control, &|what| talk::note(what)).map_err(failure)?;
+    let document = pool.install(|| run(&study, &files)).map_err(failure)?;
+    talk::print(&document.markdown)?;
+    let file = |extension: &str| folder.join(name).with_extension(extension);
+    write(&file("json"), &format!("{:#}\n", document.json))?;
+    write(&file("md"), &document.markdown)?;
+    write(&file("html"), &document.html)
+}
+
+/// What is typed, else the study's own scenes.
+fn scene_files(args: &BenchArgs, scenes: &[&str]) -> Vec<PathBuf> {
+    let folder = args.study.scene_folder.as_deref().unwrap_or(Path::new("scenes"));
+    if args.scenes.is_empty() {
+        return scenes.iter().map(|name| file_of(Path::new(name), folder)).collect();
+    }
+    args.scenes.iter().map(|scene| file_of(scene, folder)).collect()
+}
+
+fn failure(error: StudyError) -> Failure {
+    match error {
+        StudyError::Scene(_) | StudyError::Compare(_) => Failure::input(error),
+        StudyError::Build { .. } => Failure::render(error),
+        StudyError::Folder { .. } | StudyError::Write(_) => Failure::output(error),
+        StudyError::Interrupted => Failure::interrupted(error),
+    }
+}

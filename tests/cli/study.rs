@@ -1,0 +1,78 @@
+//! Studies render what they lack, keep it, and write the same results in three formats.
+
+use super::Sandbox;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
+
+/// Lines of talk that say that a picture was rendered.
+fn rendered(stderr: &str) -> Vec<&str> {
+    stderr.lines().filter(|line| line.ends_with(" s")).collect()
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+#[test]
+fn the_table_covers_all_methods_and_renders_nothing_twice() {
+    let sandbox = Sandbox::new();
+    let run = |more: &[&str]| {
+        let base = ["bench", "table1", "room.xml", "knot", "--scenes", SCENES, "-o", "study"];
+        let size = ["--resolution", "64x64", "--threads", "2"];
+        sandbox.run(&[&base, &size[..], more].concat()).expect(0)
+    };
+    let first = run(&["--reference-spp", "8"]);
+    let table = json(&sandbox.path("study/table1.json"));
+    let scenes = table["scenes"].as_array().unwrap();
+    assert_eq!(scenes.len(), 2);
+    let mut pictures = 0;
+    for scene in scenes {
+        assert_eq!(scene["reference"]["spp"], 8);
+        assert!(scene["reference"]["standard_error"].as_f64().unwrap() > 0.0);
+        let rows = scene["rows"].as_array().unwrap();
+        for label in ["cache", "cache, anisotropic", "cache, isotropic", "lightcuts"] {
+            let row = rows.iter().find(|row| row["label"] == label).unwrap();
+            assert!(row["total"].as_f64().unwrap() > 0.0 && row["main"] == true, "{row}");
+            // Few paths and few samples, but the same scene: of the same brightness.
+            let brightness = row["against_reference"]["brightness"].as_f64().unwrap();
+            assert!((0.7..1.3).contains(&brightness), "{row}");
+            let flip = row["against_lightcuts"]["flip"].as_f64();
+            assert!(flip.is_none_or(|flip| flip < 0.1) && flip.is_none() == (label == "lightcuts"), "{row}");
+        }
+        pictures += rows.len() + 1;
+    }
+    assert_eq!(rendered(&first.stderr).len(), pictures, "{}", first.stderr);
+    let html = fs::read_to_string(sandbox.path("study/table1.html")).unwrap();
+    assert!(html.contains("<svg") && html.contains("data:image/png") && !html.contains("http"));
+    assert_eq!(fs::read_to_string(sandbox.path("study/table1.md")).unwrap(), first.stdout);
+
+    let again = run(&["--reference-spp", "8"]);
+    assert_eq!(rendered(&again.stderr), [""; 0]);
+    assert_eq!(again.stdout, first.stdout);
+
+    // What is lost is rendered again, and references grow by what they lack.
+    let folder = sandbox.path("study/pictures");
+    let lost = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let lost = lost.filter(|path| path.to_str().unwrap().contains("knot--cache--isotropic"));
+    lost.for_each(|path| fs::remove_file(path).unwrap());
+    let more = run(&["--reference-spp", "16"]);
+    let lines = rendered(&more.stderr);
+    assert_eq!(lines.len(), 3, "{lines:?}");
+    assert!(
+        lines[1..].iter().all(|line| line.contains("knot")) && lines[2].contains("isotropic"),
+        "{lines:?}"
+    );
+    assert_eq!(json(&sandbox.path("study/table1.json"))["scenes"][1]["reference"]["spp"], 16);
+}
+
+#[test]
+fn what_has_no_effect_or_is_not_there_is_refused() {
+    let sandbox = Sandbox::new();
+    assert!(sandbox.run(&["bench", "table1", "--export-csv", "a.csv"]).expect(2).stderr.contains("--output"));
+    assert!(sandbox.run(&["bench", "bsdf", "--reference-spp", "8"]).expect(2).stderr.contains("Studies"));
+    assert!(sandbox.run(&["bench", "table1", "nowhere"]).expect(3).stderr.contains("scenes/nowhere.toml"));
+    sandbox.run(&["bench", "table1", "-o", "room.xml/below"]).expect(4);
+}
