@@ -183,11 +183,9 @@ impl Accel {
     /// As [`Accel::closest_hit`], among meshes whose mask has a bit of `mask`.
     #[inline]
     pub fn closest_hit_masked(&self, ray: &Ray, mask: u32) -> Option<Hit> {
-        if self.is_empty() || !ray.is_traceable() {
-            return None;
-        }
+        let ray = ray.to_embree(mask).filter(|_| !self.is_empty())?;
         let mut rayhit = sys::RTCRayHit {
-            ray: ray.to_embree(mask),
+            ray,
             hit: sys::RTCHit {
                 Ng_x: 0.0,
                 Ng_y: 0.0,
@@ -222,10 +220,7 @@ impl Accel {
     /// As [`Accel::occluded`], among meshes whose mask has a bit of `mask`.
     #[inline]
     pub fn occluded_masked(&self, ray: &Ray, mask: u32) -> bool {
-        if self.is_empty() || !ray.is_traceable() {
-            return false;
-        }
-        let mut shadow_ray = ray.to_embree(mask);
+        let Some(mut shadow_ray) = ray.to_embree(mask).filter(|_| !self.is_empty()) else { return false };
         // SAFETY: as for `rtcIntersect1` above.
         unsafe { sys::rtcOccluded1(self.scene, &mut shadow_ray, std::ptr::null_mut()) };
         // Embree sets tfar so, and a traceable ray has not come with it: t_near <= t_far and -inf would

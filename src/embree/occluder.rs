@@ -155,13 +155,10 @@ impl Accel {
     /// triangles in `skip`.
     #[inline]
     pub fn occluder_except(&self, ray: &Ray, skip: [TriangleId; 2], mask: u32) -> Option<Occluder> {
-        if self.is_empty() || !ray.is_traceable() {
-            return None;
-        }
+        let mut shadow_ray = ray.to_embree(mask).filter(|_| !self.is_empty())?;
         let found = Occluder { t: 0.0, geometry: u32::MAX, primitive: u32::MAX };
         let mut query = Query { context: CONTEXT, record: Record1 { skip, found } };
         let mut arguments = query.arguments(false, record_occluder);
-        let mut shadow_ray = ray.to_embree(mask);
         // SAFETY: the scene is committed; ray, arguments and the query they point to are ours, outlive
         // the call and have the library's layout; the filter fits the query's record.
         unsafe { sys::rtcOccluded1(self.scene(), &mut shadow_ray, &mut arguments) };

@@ -146,9 +146,13 @@ impl Lanes {
     }
 
     /// Bit mask of the lanes that are valid and for which `f` holds.
-    #[inline]
+    #[inline(always)]
     pub(super) fn mask_where(&self, f: impl Fn(usize) -> bool) -> u16 {
-        (0..16).fold(0, |mask, i| mask | (u16::from((self.0[i] != 0) & f(i)) << i))
+        let mut bits = [0; 16];
+        for (i, bit) in bits.iter_mut().enumerate() {
+            *bit = if f(i) { self.0[i] & (1 << i) } else { 0 };
+        }
+        bits.into_iter().fold(0, |mask, bit| mask | bit) as u16
     }
 }
 

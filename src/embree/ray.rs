@@ -1,7 +1,7 @@
 //! One ray and what it meets.
 
 use embree4_sys as sys;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// Ray mask that meets geometry of any mask but zero.
 pub const ALL_GEOMETRY: u32 = u32::MAX;
@@ -38,31 +38,21 @@ impl Ray {
         self.origin + t * self.direction
     }
 
-    /// Whether the segment exists; if not, it meets nothing and Embree is not asked.
-    #[inline]
-    pub(super) fn is_traceable(&self) -> bool {
-        self.origin.is_finite()
-            && self.direction.is_finite()
-            && self.direction != Vec3::ZERO
-            && self.t_near <= self.t_far
-    }
-
-    #[inline]
-    pub(super) fn to_embree(self, mask: u32) -> sys::RTCRay {
-        sys::RTCRay {
-            org_x: self.origin.x,
-            org_y: self.origin.y,
-            org_z: self.origin.z,
-            tnear: self.t_near,
-            dir_x: self.direction.x,
-            dir_y: self.direction.y,
-            dir_z: self.direction.z,
-            time: 0.0,
-            tfar: self.t_far,
-            mask,
-            id: 0,
-            flags: 0,
-        }
+    /// The ray as Embree takes it; none if its segment does not exist: then it meets nothing and Embree is not asked.
+    ///
+    /// Written by whole vectors, for Embree reads it so: from single words it would have to wait until they
+    /// reach the cache.
+    #[inline(always)]
+    pub(super) fn to_embree(self, mask: u32) -> Option<sys::RTCRay> {
+        let origin = self.origin.extend(self.t_near);
+        let direction = self.direction.extend(0.0); // time
+        let end = Vec4::new(self.t_far, f32::from_bits(mask), 0.0, 0.0); // mask, id, flags
+        let is_finite = origin.abs().cmplt(Vec4::INFINITY) & direction.abs().cmplt(Vec4::INFINITY);
+        let is_traceable = is_finite.all() & direction.cmpne(Vec4::ZERO).any() & (self.t_near <= self.t_far);
+        // SAFETY: both are 48 bytes of plain numbers in the same order: origin, t_near, direction, time, t_far,
+        // mask, id, flags.
+        is_traceable
+            .then(|| unsafe { std::mem::transmute::<[Vec4; 3], sys::RTCRay>([origin, direction, end]) })
     }
 }
 

@@ -82,11 +82,11 @@ macro_rules! packet {
             ) -> u16 {
                 // SAFETY: by contract; the packet has its type's alignment, which is what Embree asks for.
                 unsafe { sys::$query(lanes, scene, &mut self, arguments) };
-                let mut occluded = 0;
-                for (i, t_far) in self.tfar.iter().enumerate() {
-                    occluded |= u32::from(*t_far == f32::NEG_INFINITY) << i;
+                let mut bits = [0u32; $width];
+                for (i, bit) in bits.iter_mut().enumerate() {
+                    *bit = if self.tfar[i] == f32::NEG_INFINITY { 1 << i } else { 0 };
                 }
-                occluded as u16
+                bits.into_iter().fold(0, |mask, bit| mask | bit) as u16
             }
         }
     };
@@ -163,7 +163,7 @@ impl Prepared {
                 packets
                     .flat_map(|(rays, valid)| {
                         let valid = rays.lanes(valid).mask_where(|_| true);
-                        crate::math::lanes_in(valid).map(|i| rays.get(i).to_embree(rays.mask[i]))
+                        crate::math::lanes_in(valid).filter_map(|i| rays.get(i).to_embree(rays.mask[i]))
                     })
                     .collect(),
             ),

@@ -1,10 +1,11 @@
 //! The occluder cache: share of rays saved, and what is gained.
 
 use super::MRAYS;
-use super::trace::{Trace, Traces};
+use super::trace::{Packet, Trace, Traces};
 use crate::bench::measure::Case;
 use crate::bench::setting::Setting;
 use crate::bench::{Clock, Settings, Table};
+use crate::math::lanes_in;
 use crate::shadow::{Engine, OccluderCacheSettings, Packing};
 use std::hint::black_box;
 
@@ -47,17 +48,23 @@ fn case<'a>(name: &str, engine: Engine<'a>, trace: &'a Trace, against: usize, wi
 
 /// How many rays are occluded, asked for one by one or by packets as the trace has them.
 pub fn occluded(engine: &Engine, trace: &Trace) -> u64 {
+    occluded_by([engine, engine], trace)
+}
+
+/// The same with an engine for single rays and one for packets.
+pub fn occluded_by([singly, together]: [&Engine; 2], trace: &Trace) -> u64 {
     let mut occluded = 0;
     for chunk in &trace.chunks {
-        engine.begin_chunk();
-        for packet in chunk {
-            occluded += if trace.packing == Packing::Neighbours {
-                u64::from(
-                    engine.occluded16(&packet.rays, packet.valid, trace.packing, packet.keys[0]).count_ones(),
-                )
+        singly.begin_chunk();
+        together.begin_chunk();
+        for Packet { packing, rays, valid, keys } in chunk {
+            if *packing == Packing::Neighbours {
+                occluded += u64::from(together.occluded16(rays, *valid, *packing, keys[0]).count_ones());
             } else {
-                packet.singles().map(|(ray, key)| u64::from(engine.occluded(&ray, key))).sum()
-            };
+                for lane in lanes_in(*valid) {
+                    occluded += u64::from(singly.occluded(&rays.get(lane), keys[lane]));
+                }
+            }
         }
     }
     occluded

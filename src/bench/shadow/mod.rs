@@ -8,6 +8,7 @@ mod cached;
 mod engine;
 mod quality;
 mod refinement;
+mod spread;
 mod threads;
 mod trace;
 mod widths;
@@ -35,6 +36,8 @@ fn run(context: &Context) -> Vec<Table> {
     tables.push(refinement::table(&setting, &traces, settings));
     say("packings and widths");
     tables.push(widths::table(&setting, &traces, settings));
+    say("packets by size and spread");
+    tables.push(spread::table(&setting, &traces, settings));
     say("engine against bare loops");
     tables.push(engine::table(&setting, &traces, settings));
     say("occluder cache");

@@ -1,7 +1,7 @@
 //! Build qualities: what a better hierarchy costs and gains.
 
 use super::MRAYS;
-use super::trace::Traces;
+use super::trace::{Traces, count};
 use crate::bench::measure::Case;
 use crate::bench::setting::Setting;
 use crate::bench::{Clock, Settings, Table};
@@ -46,15 +46,15 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
                         .fold(0, |mask, i| mask | 1 << i)
                 }
             };
-            trace.packets().map(query).collect()
+            trace.bundles().map(query).collect()
         };
         let Some((_, reference, _)) = built.first() else { break };
         let reference = occluded(reference);
         for (quality, accel, seconds) in &built {
             let differ: u32 = occluded(accel).iter().zip(&reference).map(|(a, b)| (a ^ b).count_ones()).sum();
-            let per_million = 1e6 * f64::from(differ) / trace.rays().max(1) as f64;
+            let per_million = 1e6 * f64::from(differ) / count(trace.bundles()).max(1) as f64;
             let labels = [trace.name, &format!("{quality:?}").to_lowercase()];
-            let mut case = Case::new(&labels, against, trace.rays() as f64, move || {
+            let mut case = Case::new(&labels, against, count(trace.bundles()) as f64, move || {
                 black_box(occluded(accel));
             });
             case.figures = vec![Some(*seconds), Some(per_million)];

@@ -1,18 +1,18 @@
 //! What the shape of the refinement is worth: rays asked for a second, and time a point.
 
-use super::trace::{Trace, Traces};
+use super::trace::{Trace, Traces, count};
 use super::{MRAYS, cached};
 use crate::bench::measure::Case;
 use crate::bench::setting::Setting;
 use crate::bench::{Clock, Settings, Table};
 use crate::embree::{Prepared, Width};
-use crate::shadow::{Engine, OccluderCacheSettings};
+use crate::shadow::{Engine, OccluderCacheSettings, Packing};
 use std::hint::black_box;
 
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     let world = setting.world;
     let mut cases = Vec::new();
-    let mut rays_a_point = Vec::new();
+    let mut facts = Vec::new();
     for [alone, shared] in [&traces.pixels, &traces.records] {
         if alone.rays() == 0 || shared.rays() == 0 {
             continue;
@@ -28,10 +28,16 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
             },
         ));
         let cache = || Engine::with_cache(world, OccluderCacheSettings::default());
-        cases.push(through(alone, "engine with cache", cache(), against));
-        cases.push(through(shared, "engine", world.shadows(), against));
-        cases.push(through(shared, "engine with cache", cache(), against));
-        rays_a_point.extend([alone, alone, shared, shared].map(|t| t.rays() as f64 / t.points.max(1) as f64));
+        let plain = || world.shadows();
+        cases.push(through(alone, "engine with cache", [cache(), plain()], against));
+        cases.push(through(shared, "engine", [plain(), plain()], against));
+        cases.push(through(shared, "cache for single rays", [cache(), plain()], against));
+        cases.push(through(shared, "cache for packets too", [cache(), cache()], against));
+        let of = |t: &Trace| {
+            let singles = count(t.packets().filter(|p| p.packing == Packing::Single));
+            [t.rays() as f64 / t.points.max(1) as f64, 100.0 * singles as f64 / t.rays() as f64]
+        };
+        facts.extend([alone, alone, shared, shared, shared].map(of));
     }
     let against: Vec<usize> = cases.iter().map(|c| c.against).collect();
     let mut table = Table::measured(
@@ -41,19 +47,21 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
              Ratio to single rays in the order of single points; time a point is relative to that, and counts that shared \
              cuts ask for more.",
         ),
-        (&["order", "traced"], "Mrays/s", &["rays a point", "time a point"]),
+        (&["order", "traced"], "Mrays/s", &["time a point", "rays a point", "single %"]),
         (Clock::Thread, settings, MRAYS),
         cases,
     );
     for (i, row) in table.rows.iter_mut().enumerate() {
-        let more = rays_a_point[i] / rays_a_point[against[i]];
-        row.figures = vec![Some(rays_a_point[i]), Some(more / row.ratio.median)];
+        let [rays, singles] = facts[i];
+        let more = rays / facts[against[i]][0];
+        row.figures = vec![Some(more / row.ratio.median), Some(rays), Some(singles)];
     }
     table
 }
 
-fn through<'a>(trace: &'a Trace, how: &str, engine: Engine<'a>, against: usize) -> Case<'a> {
+fn through<'a>(trace: &'a Trace, how: &str, engines: [Engine<'a>; 2], against: usize) -> Case<'a> {
     Case::new(&[trace.name, how], against, trace.rays() as f64, move || {
-        black_box(cached::occluded(&engine, trace));
+        let [singly, together] = &engines;
+        black_box(cached::occluded_by([singly, together], trace));
     })
 }

@@ -17,10 +17,12 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     let mut cases = Vec::new();
     for trace in traces.pixels.iter().filter(|t| t.rays() > 0) {
         let packets: Vec<&Packet> = trace.packets().collect();
-        let packing = if trace.packing == Packing::Neighbours { trace.packing } else { Packing::Unrelated };
         let part = move |packets: &[&Packet]| -> u64 {
             let engine = world.shadows();
-            let one = |p: &&Packet| engine.occluded16(&p.rays, p.valid, packing, 0).count_ones();
+            let one = |p: &&Packet| {
+                let packing = if p.packing == Packing::Single { Packing::Unrelated } else { p.packing };
+                engine.occluded16(&p.rays, p.valid, packing, 0).count_ones()
+            };
             packets.iter().map(|p| u64::from(one(p))).sum()
         };
         let (against, rays) = (cases.len(), trace.rays() as f64);

@@ -14,6 +14,8 @@ use std::cell::RefCell;
 /// Up to sixteen segments.
 #[derive(Clone)]
 pub struct Packet {
+    /// What they have in common.
+    pub packing: Packing,
     pub rays: Rays16,
     pub valid: u16,
     /// Which light each runs to.
@@ -23,7 +25,7 @@ pub struct Packet {
 /// Segments in an order.
 pub struct Trace {
     pub name: &'static str,
-    /// What those of a packet have in common.
+    /// What those of most packets have in common.
     pub packing: Packing,
     /// By stretches of work in which a cache lives.
     pub chunks: Vec<Vec<Packet>>,
@@ -37,10 +39,20 @@ impl Trace {
         self.chunks.iter().flatten()
     }
 
+    /// The packets of the trace's own packing: a shared cut's, without the rays of points that share with nobody.
+    pub fn bundles(&self) -> impl Iterator<Item = &Packet> {
+        self.packets().filter(|p| p.packing == self.packing)
+    }
+
     /// How many segments.
     pub fn rays(&self) -> u64 {
-        self.packets().map(|p| u64::from(p.valid.count_ones())).sum()
+        count(self.packets())
     }
+}
+
+/// How many segments packets hold.
+pub fn count<'a>(packets: impl IntoIterator<Item = &'a Packet>) -> u64 {
+    packets.into_iter().map(|p| u64::from(p.valid.count_ones())).sum()
 }
 
 /// One trace of each kind.
@@ -78,15 +90,20 @@ impl Traces {
 }
 
 /// Rays to lights one after the other, sixteen a packet.
-#[derive(Default)]
 struct Packer {
+    packing: Packing,
     packets: Vec<Packet>,
     last: Option<Packet>,
 }
 
 impl Packer {
+    fn new(packing: Packing) -> Packer {
+        Packer { packing, packets: Vec::new(), last: None }
+    }
+
     fn push(&mut self, ray: &Ray, key: u32) {
-        let blank = || Packet { rays: Rays16::default(), valid: 0, keys: [0; 16] };
+        let packing = self.packing;
+        let blank = || Packet { packing, rays: Rays16::default(), valid: 0, keys: [0; 16] };
         let packet = self.last.get_or_insert_with(blank);
         let lane = packet.valid.count_ones() as usize;
         packet.rays.set(lane, ray);
@@ -147,7 +164,7 @@ fn drawn(
     let stretches = setting.pixels();
     let points = stretches.iter().map(Vec::len).sum();
     let chunk = |stretch: Vec<usize>| {
-        let mut packer = Packer::default();
+        let mut packer = Packer::new(packing);
         for sample in stretch {
             let reflector = setting.reflector(sample);
             (0..times).for_each(|_| draw(&reflector, &mut packer));
@@ -169,8 +186,9 @@ fn neighbours(setting: &Setting) -> Trace {
             let reflectors: Vec<Reflector> = group.iter().map(|&i| setting.reflector(i)).collect();
             for _ in 0..256 {
                 let Some(leaf) = leaves.get(dice.below(leaves.len())) else { continue };
-                let mut packet =
-                    Packet { rays: Rays16::default(), valid: 0, keys: [leaf.representative() as u32; 16] };
+                let key = leaf.representative() as u32;
+                let packing = Packing::Neighbours;
+                let mut packet = Packet { packing, rays: Rays16::default(), valid: 0, keys: [key; 16] };
                 for (lane, reflector) in reflectors.iter().enumerate() {
                     if let Some(ray) = lit(setting, reflector, leaf) {
                         packet.rays.set(lane, &ray);
@@ -232,7 +250,7 @@ struct Recorder<'a> {
 
 impl<'a> Recorder<'a> {
     fn new(setting: &'a Setting<'a>) -> Recorder<'a> {
-        Recorder { setting, packer: RefCell::default() }
+        Recorder { setting, packer: RefCell::new(Packer::new(Packing::Single)) }
     }
 
     fn flush(&self) {
@@ -258,7 +276,8 @@ impl GroupVisibility for Recorder<'_> {
     fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
         let rays = points.shadow_rays(vpl, node.kind());
         let seen = lanes & !self.setting.world.accel.occluded16(&rays, lanes, true);
-        let packet = Packet { rays, valid: lanes, keys: [node.representative() as u32; 16] };
+        let key = node.representative() as u32;
+        let packet = Packet { packing: Packing::Neighbours, rays, valid: lanes, keys: [key; 16] };
         self.packer.borrow_mut().packets.push(packet);
         seen
     }

@@ -1,7 +1,7 @@
 //! Packings, widths and the coherent flag, by bare loops.
 
 use super::MRAYS;
-use super::trace::Traces;
+use super::trace::{Traces, count};
 use crate::bench::measure::Case;
 use crate::bench::setting::Setting;
 use crate::bench::{Clock, Settings, Table};
@@ -11,11 +11,11 @@ use std::hint::black_box;
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     let accel = &setting.world.accel;
     let mut cases = Vec::new();
-    for trace in traces.all().filter(|t| t.rays() > 0) {
+    for trace in traces.all().filter(|t| count(t.bundles()) > 0) {
         let against = cases.len();
-        let rays = trace.rays() as f64;
+        let rays = count(trace.bundles()) as f64;
         for width in Width::ALL {
-            let packets = || trace.packets().map(|p| (&p.rays, p.valid));
+            let packets = || trace.bundles().map(|p| (&p.rays, p.valid));
             for coherent in [false, true] {
                 if width == Width::One && coherent {
                     continue;

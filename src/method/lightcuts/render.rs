@@ -8,6 +8,7 @@ use crate::lightcut::{CutCounts, CutSettings, Transfer};
 use crate::math::Rgb;
 use crate::method::lights::Lights;
 use crate::method::{Control, Output, counts};
+use crate::shadow::Counts;
 use crate::stats::{Stage, Stats};
 use crate::vpl::LightPassSettings;
 use crate::world::World;
@@ -74,12 +75,15 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let mut tiles: Vec<Tile> = (0..across * down).map(|_| Tile::default()).collect();
     control.begin(Stage::Render, tiles.len() as u64);
     stats.time(Stage::Render, || {
-        tiles.par_iter_mut().enumerate().for_each_init(Workspace::default, |work, (i, tile)| {
-            if !control.is_cancelled() {
-                tile.render(&scenery, corner(i), work);
-                control.advance(1);
-            }
-        });
+        tiles.par_iter_mut().enumerate().for_each_init(
+            || Workspace::new(world),
+            |work, (i, tile)| {
+                if !control.is_cancelled() {
+                    tile.render(&scenery, corner(i), work);
+                    control.advance(1);
+                }
+            },
+        );
     });
 
     let mut color = Image::new(window.width, window.height);
@@ -87,6 +91,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let mut used = CutCounts::default();
     let mut chains = ChainCounts::default();
     let (mut packets, mut nonfinite) = (0, 0);
+    let mut shadows = Counts::default();
     for (i, tile) in tiles.iter().enumerate().filter(|(_, tile)| tile.done) {
         for (k, [x, y]) in scenery.tile_area(corner(i)).pixels().enumerate() {
             let at = ((y - window.offset[1]) * window.width + x - window.offset[0]) as usize;
@@ -95,10 +100,12 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
         }
         used.add(&tile.counts);
         packets += tile.packets;
+        shadows.add(&tile.shadows);
         chains.add(&tile.chains);
         nonfinite += tile.nonfinite;
     }
     stats.count("Rays/shadow packets", packets);
+    shadows.report(&mut stats);
     counts::cuts(&mut stats, "Lightcut", &used);
     counts::eye(&mut stats, &chains);
     let complete = tiles.iter().all(|t| t.done);

@@ -7,6 +7,8 @@ use crate::eye::{ChainCounts, EyeSample, eye_sampler, primary_ray, trace};
 use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Points, alike};
 use crate::lightcut::{CutCounts, Lightcut, Reflector};
 use crate::math::Rgb;
+use crate::shadow::{Counts, Engine, OccluderCacheSettings};
+use crate::world::World;
 
 /// Pixels along a tile's edge.
 pub const TILE: u32 = 16;
@@ -14,15 +16,32 @@ pub const TILE: u32 = 16;
 pub const BLOCK: u32 = 4;
 
 /// A thread's buffers.
-#[derive(Default)]
 pub struct Workspace<'w> {
     single: Lightcut,
+    /// Shadow rays of single points, past an occluder cache that lives for a tile.
+    shadows: Engine<'w>,
     group: GroupLightcut,
     points: Points<'w>,
     samples: Vec<Lit<'w>>,
     members: Vec<usize>,
     values: Vec<Rgb>,
     cut_sizes: Vec<f32>,
+}
+
+impl<'w> Workspace<'w> {
+    /// For any number of tiles.
+    pub fn new(world: &'w World) -> Workspace<'w> {
+        Workspace {
+            single: Lightcut::new(),
+            shadows: Engine::with_cache(world, OccluderCacheSettings::default()),
+            group: GroupLightcut::new(),
+            points: Points::new(),
+            samples: Vec::new(),
+            members: Vec::new(),
+            values: Vec::new(),
+            cut_sizes: Vec::new(),
+        }
+    }
 }
 
 /// An eye sample waiting for light.
@@ -41,6 +60,7 @@ pub struct Tile {
     pub cut_sizes: Vec<f32>,
     pub counts: CutCounts,
     pub packets: u64,
+    pub shadows: Counts,
     pub chains: ChainCounts,
     pub nonfinite: u64,
     pub done: bool,
@@ -52,6 +72,7 @@ impl Tile {
         work.single.counts = CutCounts::default();
         work.group.counts = CutCounts::default();
         work.group.packets = 0;
+        work.shadows.begin_chunk();
         let area = s.tile_area(corner);
         let size = (area.width * area.height) as usize;
         self.radiance = vec![Rgb::ZERO; size];
@@ -70,6 +91,7 @@ impl Tile {
         self.counts.add(&work.single.counts);
         self.counts.add(&work.group.counts);
         self.packets = work.group.packets;
+        self.shadows = work.shadows.take_counts();
         self.done = true;
     }
 
@@ -148,7 +170,8 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
             let sample = &mut work.samples[first];
             sample.done = true;
             let before = work.single.counts.clusters;
-            let radiance = work.single.gather(s.trees, &s.transfer, s.world, &sample.reflector, cut);
+            let reflector = &sample.reflector;
+            let radiance = work.single.gather(s.trees, &s.transfer, &work.shadows, reflector, cut);
             work.values[sample.place] += sample.throughput * radiance;
             work.cut_sizes[sample.place] += (work.single.counts.clusters - before) as f32;
             continue;
