@@ -10,13 +10,12 @@ use crate::method::Control;
 use crate::sampling::hash;
 use crate::vpl::{LightPass, LightPassSettings, light_pass};
 use crate::world::World;
+use std::ops::Range;
 
 /// Neighbouring eye samples in a stretch.
 const STRETCH: usize = 64;
 /// Stretches, spread over the picture.
 const STRETCHES: usize = 6;
-/// One eye sample in so many gets a record, about.
-const RECORD_SPACING: usize = 24;
 
 /// A scene seen and lit.
 pub(super) struct Setting<'w> {
@@ -58,26 +57,16 @@ impl<'w> Setting<'w> {
         Reflector::collector(point.position, surface.geometric_normal, &Frame::from_normal(point.normal))
     }
 
-    /// Stretches of eye samples that are neighbours in space, `spacing` apart in the order of their index.
-    fn stretches(&self, spacing: usize) -> Vec<Vec<usize>> {
-        let length = (STRETCH * spacing).min(self.samples.len());
-        let room = self.samples.len() - length;
-        (0..STRETCHES)
-            .map(|s| {
-                let first = room * s / (STRETCHES - 1);
-                (first..first + length).step_by(spacing).collect()
-            })
-            .collect()
+    /// Stretches of `n` items in a row.
+    pub fn spread(&self, n: usize) -> Vec<Range<usize>> {
+        let length = STRETCH.min(n);
+        let first = |s| (n - length) * s / (STRETCHES - 1);
+        (0..STRETCHES).map(|s| first(s)..first(s) + length).collect()
     }
 
-    /// Stretches as pixels are lit.
+    /// Stretches of eye samples that are neighbours in space, as pixels are lit.
     pub fn pixels(&self) -> Vec<Vec<usize>> {
-        self.stretches(1)
-    }
-
-    /// Stretches as records are computed.
-    pub fn records(&self) -> Vec<Vec<usize>> {
-        self.stretches(RECORD_SPACING)
+        self.spread(self.samples.len()).into_iter().map(Iterator::collect).collect()
     }
 
     /// A stretch as groups that share a cut.

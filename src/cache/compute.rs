@@ -17,9 +17,10 @@ use super::wave::Pick;
 use crate::eye::EyeSamples;
 use crate::hsh::Radiance;
 use crate::light_tree::LightTrees;
-use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Points, group_alike};
+use crate::lightcut::group::{GroupLightcut, LANES, Points, group_alike};
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Transfer};
 use crate::math::{Frame, LUMINANCE, Rgb, luminance};
+use crate::shadow::Engine;
 use crate::vpl::Origin;
 use crate::world::World;
 use glam::{Mat3, Vec3};
@@ -88,11 +89,15 @@ impl RecordSource for Source<'_> {
         let tasks = self.tasks(samples, picks);
         let done: Vec<(Vec<(Pick, Pair)>, CutCounts)> = tasks
             .par_iter()
-            .map_init(Workspace::default, |work, task| {
-                let counts = work.counts();
-                let pairs = work.compute(self, samples, layers, task);
-                (task.iter().copied().zip(pairs).collect(), work.counts().since(&counts))
-            })
+            .map_init(
+                || Workspace::new(self),
+                |work, task| {
+                    work.shadows.begin_chunk();
+                    let counts = work.counts();
+                    let pairs = work.compute(self, samples, layers, task);
+                    (task.iter().copied().zip(pairs).collect(), work.counts().since(&counts))
+                },
+            )
             .collect();
         let mut counts = CutCounts::default();
         let mut records = Vec::with_capacity(picks.len());
@@ -106,7 +111,7 @@ impl RecordSource for Source<'_> {
 
 impl Source<'_> {
     /// Picks that share a cut: neighbours that lack the same layers.
-    fn tasks(&self, samples: &EyeSamples, picks: &[Pick]) -> Vec<Vec<Pick>> {
+    pub fn tasks(&self, samples: &EyeSamples, picks: &[Pick]) -> Vec<Vec<Pick>> {
         let place = |pick: &Pick| {
             let point = &samples.points[pick.sample as usize];
             (point.position, point.normal)
@@ -157,15 +162,25 @@ impl Source<'_> {
 }
 
 /// A thread's buffers.
-#[derive(Default)]
-struct Workspace {
+struct Workspace<'w> {
+    shadows: Engine<'w>,
     single: Lightcut,
     group: GroupLightcut,
     points: Points<'static>,
     series: SeriesGatherer,
 }
 
-impl Workspace {
+impl<'w> Workspace<'w> {
+    fn new(s: &Source<'w>) -> Workspace<'w> {
+        Workspace {
+            shadows: s.settings.engine(s.world),
+            single: Lightcut::new(),
+            group: GroupLightcut::new(),
+            points: Points::new(),
+            series: SeriesGatherer::default(),
+        }
+    }
+
     fn counts(&self) -> CutCounts {
         let mut counts = self.single.counts;
         counts.add(&self.group.counts);
@@ -190,7 +205,7 @@ impl Workspace {
             _ => None,
         };
         let cut = CutSettings { only, ..s.settings.cut };
-        let mut views: Vec<View> = if task.len() < LEAST_SHARED {
+        let mut views: Vec<View> = if !s.settings.shares(task.len()) {
             collectors.zip(task).map(|(c, pick)| self.alone(s, samples, pick, &c, &cut)).collect()
         } else {
             self.points.set(collectors);
@@ -225,7 +240,7 @@ impl Workspace {
             self.single.gather(s.trees, &s.transfer, &rays, collector, cut);
             Some(rays.sorted())
         } else {
-            self.single.gather(s.trees, &s.transfer, s.world, collector, cut);
+            self.single.gather(s.trees, &s.transfer, &self.shadows, collector, cut);
             None
         };
         let gatherer = s.gatherer(samples, pick.sample, collector);
@@ -247,7 +262,7 @@ impl Workspace {
             self.group.gather(s.trees, &s.transfer, &rays, &self.points, cut, &mut irradiance);
             Some(rays.sorted())
         } else {
-            self.group.gather(s.trees, &s.transfer, s.world, &self.points, cut, &mut irradiance);
+            self.group.gather(s.trees, &s.transfer, &self.shadows, &self.points, cut, &mut irradiance);
             None
         };
         let series = &mut self.series;

@@ -2,6 +2,9 @@
 
 use crate::hsh::SeriesSettings;
 use crate::lightcut::CutSettings;
+use crate::lightcut::group::LEAST_SHARED;
+use crate::shadow::{Engine, ShadowSettings};
+use crate::world::World;
 
 /// How the shape of footprints is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,10 +64,26 @@ pub struct CacheSettings {
     /// Most eye samples without records that share a cut; more than 16 trace shadow rays only where the sixteen
     /// that the cut is made for disagree.
     pub patch: usize,
+    /// Whether neighbours share cuts; if not, records and samples all have their own, whatever `patch` says.
+    pub share: bool,
+    /// Which shadow rays of cuts ask an occluder cache.
+    pub shadows: ShadowSettings,
     /// Cells of fewer eye samples than this get no record: a record costs as much as the lent cuts of some hundred
     /// samples. Their samples have cuts of their own, which
     /// neighbours share.
     pub least_cell: u32,
+}
+
+impl CacheSettings {
+    /// Whether so many neighbours share a cut.
+    pub fn shares(&self, points: usize) -> bool {
+        self.share && points >= LEAST_SHARED
+    }
+
+    /// A thread's shadow rays. An occluder cache of theirs is to be emptied before every group of neighbours.
+    pub fn engine<'w>(&self, world: &'w World) -> Engine<'w> {
+        Engine::with(world, self.shadows.cached(self.share), self.shadows.cache)
+    }
 }
 
 impl Default for CacheSettings {
@@ -84,6 +103,8 @@ impl Default for CacheSettings {
             passes: 1,
             threshold: 0.02,
             patch: 64,
+            share: true,
+            shadows: ShadowSettings::default(),
             least_cell: 256,
         }
     }

@@ -1,7 +1,7 @@
 //! What can be typed. Every option is documented here and nowhere else: `--help` is made of it.
 
 use super::bench_args::BenchArgs;
-use super::cache_args::CacheArgs;
+use super::cache_args::{CacheArgs, Switch};
 use super::exit;
 use crate::image::Exposure;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -143,6 +143,36 @@ pub struct LightcutArgs {
     /// How light trees are built [default: divisive]
     #[arg(long, value_enum)]
     pub tree: Option<TreeFamily>,
+    /// Whether neighbours share cuts, for speed [default: on]
+    #[arg(long, value_enum)]
+    pub share: Option<Switch>,
+    /// Shadow rays that ask a cache of occluders first, for speed [default: single where nothing is shared, else off]
+    #[arg(long, value_enum)]
+    pub occluder_cache: Option<OccluderCache>,
+    /// Slots of that cache, rounded up to a power of two [default: 4096]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    pub occluder_slots: Option<u32>,
+    /// Occluders in a slot: 1, 2, 4 or 8 [default: 4]
+    #[arg(long, value_parser = parse_ways)]
+    pub occluder_ways: Option<u32>,
+}
+
+/// Which shadow rays ask the cache of occluders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum OccluderCache {
+    /// None
+    Off,
+    /// Those of points with cuts of their own
+    Single,
+    /// Those and packets
+    All,
+}
+
+fn parse_ways(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(ways @ (1 | 2 | 4 | 8)) => Ok(ways),
+        _ => Err("expected 1, 2, 4 or 8".to_owned()),
+    }
 }
 
 /// Options of `--method photon-cache` alone.
@@ -362,6 +392,9 @@ mod tests {
             ("patch", cached.patch.to_string()),
             ("least-cell", cached.least_cell.to_string()),
             ("accuracy", format!("{},{}", cached.layers[0].accuracy, cached.layers[1].accuracy)),
+            ("share", if cuts.share && cached.share { "on" } else { "off" }.to_owned()),
+            ("occluder-slots", cuts.shadows.cache.slots.to_string()),
+            ("occluder-ways", cuts.shadows.cache.ways.to_string()),
             ("tree", format!("{:?}", cuts.family).to_lowercase()),
             ("photons", photon.photons.to_string()),
             ("nearest", photon.nearest.to_string()),

@@ -1,12 +1,13 @@
 //! The method chosen, with its settings.
 
-use super::args::{LightcutArgs, MethodName, PhotonArgs, RenderArgs, TreeFamily};
+use super::args::{LightcutArgs, MethodName, OccluderCache, PhotonArgs, RenderArgs, TreeFamily};
 use super::cache_args::{CacheArgs, DirectBy, FootprintShape, Pair, Switch};
 use super::exit::Failure;
 use crate::cache::{CacheSettings, DirectLight, Footprints};
 use crate::eye::{EyeSamples, Look, Window};
 use crate::light_tree::Family;
 use crate::method::{Control, Output, cache, lightcuts, path, photon_cache};
+use crate::shadow::{Cached, ShadowSettings};
 use crate::world::World;
 use anyhow::anyhow;
 use serde_json::{Value, json};
@@ -29,7 +30,7 @@ impl Method {
     pub fn new(args: &RenderArgs) -> Result<Method, Failure> {
         match args.method {
             MethodName::Path if args.lightcuts != LightcutArgs::default() => Err(Failure::usage(anyhow!(
-                "--epsilon, --max-cut, --vpls, --direct-vpls, --clamp and --tree belong to --method cache and lightcuts"
+                "the options under \"Lightcuts\" belong to --method cache and lightcuts"
             ))),
             MethodName::Path | MethodName::Lightcuts if args.cache != CacheArgs::default() => {
                 Err(Failure::usage(anyhow!(
@@ -142,7 +143,7 @@ fn cache_report(s: &cache::Settings) -> Value {
         "direct_vpls": s.light.direct,
         "clamp": decimal(s.cut.clamp.unwrap_or(0.0)),
         "tree": family_name(s.family),
-        "compensation": if s.cache.compensation { "on" } else { "off" },
+        "compensation": switch(s.cache.compensation),
     });
     joined(own, records_report(&s.cache))
 }
@@ -192,6 +193,8 @@ fn records_report(c: &CacheSettings) -> Value {
         "passes": c.passes,
         "threshold": decimal(c.threshold),
         "patch": c.patch,
+        "share": switch(c.share),
+        "occluder_cache": occluders(&c.shadows, c.share),
         "least_cell": c.least_cell,
     })
 }
@@ -207,7 +210,24 @@ fn lightcuts_report(s: &lightcuts::Settings) -> Value {
                 "direct_vpls": s.light.direct,
                 "clamp": decimal(s.cut.clamp.unwrap_or(0.0)),
                 "tree": family_name(s.family),
+                "share": switch(s.share),
+                "occluder_cache": occluders(&s.shadows, s.share),
     })
+}
+
+fn switch(on: bool) -> &'static str {
+    if on { "on" } else { "off" }
+}
+
+/// Which rays ask, and with what size.
+fn occluders(shadows: &ShadowSettings, share: bool) -> Value {
+    let size = shadows.cache;
+    let rays = match shadows.cached(share) {
+        Cached::Nothing => return json!("off"),
+        Cached::Single => "single",
+        Cached::All => "all",
+    };
+    json!({ "rays": rays, "slots": size.slots, "ways": size.ways })
 }
 
 fn family_name(family: Family) -> &'static str {
@@ -236,6 +256,7 @@ fn cache_settings(args: &RenderArgs) -> cache::Settings {
     settings.inspect = args.cache.inspect;
     settings.cache.cut.clamp = typed.cut.clamp;
     settings.cache.cut.max_cut = typed.cut.max_cut;
+    (settings.cache.share, settings.cache.shadows) = (typed.share, typed.shadows);
     records_settings(&args.cache, &mut settings.cache);
     settings
 }
@@ -257,6 +278,7 @@ fn photon_settings(args: &RenderArgs) -> photon_cache::Settings {
     settings.rays = args.photon.gather_rays.unwrap_or(settings.rays);
     settings.own_rays = args.photon.sample_rays.unwrap_or(settings.own_rays);
     settings.cache.cut.max_cut = typed.cut.max_cut;
+    (settings.cache.share, settings.cache.shadows) = (typed.share, typed.shadows);
     records_settings(&args.cache, &mut settings.cache);
     settings
 }
@@ -301,6 +323,15 @@ fn lightcuts_settings(args: &RenderArgs) -> lightcuts::Settings {
     if let Some(share) = typed.clamp {
         settings.cut.clamp = (share > 0.0).then_some(share);
     }
+    settings.share = typed.share.map_or(settings.share, |typed| typed == Switch::On);
+    let shadows = &mut settings.shadows;
+    shadows.cached = typed.occluder_cache.map(|typed| match typed {
+        OccluderCache::Off => Cached::Nothing,
+        OccluderCache::Single => Cached::Single,
+        OccluderCache::All => Cached::All,
+    });
+    shadows.cache.slots = typed.occluder_slots.map_or(shadows.cache.slots, |n| n as usize);
+    shadows.cache.ways = typed.occluder_ways.map_or(shadows.cache.ways, |n| n as usize);
     settings.family = match typed.tree {
         Some(TreeFamily::Divisive) => Family::Divisive,
         Some(TreeFamily::Agglomerative) => Family::Agglomerative,

@@ -133,7 +133,7 @@ impl Rays16 {
 }
 
 /// Each ray carries its lane, which a filter needs where Embree splits the packet into single rays.
-const LANE_IDS: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+pub(super) const LANE_IDS: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// Embree's mask of lanes.
 #[repr(C, align(64))]

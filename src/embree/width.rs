@@ -3,7 +3,7 @@
 //! [`Accel::occluded_by`] is what a renderer calls. [`Prepared`] is the yardstick to judge it by: rays laid out as the
 //! library takes them, copied (a query writes to them) and traced, with nothing around it.
 
-use super::packet::{Lanes, query_flags};
+use super::packet::{LANE_IDS, Lanes, query_flags};
 use super::{Accel, Rays16};
 use embree4_sys as sys;
 
@@ -56,7 +56,13 @@ macro_rules! packet {
         impl Packet for sys::$packet {
             #[inline(always)]
             fn of(rays: &Rays16, first: usize) -> Self {
-                let row = |row: &[f32; 16]| std::array::from_fn(|i| row[first + i]);
+                // Whole vectors, for Embree reads them so.
+                fn part<T: Copy + Default>(row: &[T; 16], first: usize) -> [T; $width] {
+                    let mut part = [T::default(); $width];
+                    part.copy_from_slice(&row[first..first + $width]);
+                    part
+                }
+                let row = |row: &[f32; 16]| part(row, first);
                 sys::$packet {
                     org_x: row(&rays.origin_x),
                     org_y: row(&rays.origin_y),
@@ -67,8 +73,8 @@ macro_rules! packet {
                     dir_z: row(&rays.direction_z),
                     time: [0.0; $width],
                     tfar: row(&rays.t_far),
-                    mask: std::array::from_fn(|i| rays.mask[first + i]),
-                    id: std::array::from_fn(|i| (first + i) as u32),
+                    mask: part(&rays.mask, first),
+                    id: part(&LANE_IDS, first),
                     flags: [0; $width],
                 }
             }

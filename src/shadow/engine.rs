@@ -4,7 +4,7 @@
 
 use super::cache::{OccluderCache, OccluderCacheSettings};
 use super::counts::{Counters, Counts};
-use super::{Batch, Packing};
+use super::{Batch, Cached, Packing};
 use crate::embree::{ALL_GEOMETRY, Occluder, Occluders16, Ray, Rays16, TriangleId, Width};
 use crate::math::{first_lanes, lanes_in};
 use crate::world::World;
@@ -17,6 +17,8 @@ pub struct Engine<'w> {
     world: &'w World,
     width: Width,
     cache: Option<RefCell<OccluderCache>>,
+    /// Whether packets ask the cache too.
+    packets_cached: bool,
     counters: Counters,
 }
 
@@ -24,12 +26,19 @@ impl<'w> Engine<'w> {
     /// Without an occluder cache.
     #[inline]
     pub fn new(world: &'w World) -> Engine<'w> {
-        Engine { world, width: world.accel.widest(), cache: None, counters: Counters::default() }
+        let width = world.accel.widest();
+        Engine { world, width, cache: None, packets_cached: false, counters: Counters::default() }
     }
 
     /// With an occluder cache, asked for single rays and for packets alike.
     pub fn with_cache(world: &'w World, settings: OccluderCacheSettings) -> Engine<'w> {
-        Engine { cache: Some(RefCell::new(OccluderCache::new(settings))), ..Engine::new(world) }
+        Engine::with(world, Cached::All, settings)
+    }
+
+    /// With an occluder cache for some queries or none.
+    pub fn with(world: &'w World, cached: Cached, settings: OccluderCacheSettings) -> Engine<'w> {
+        let cache = (cached != Cached::Nothing).then(|| RefCell::new(OccluderCache::new(settings)));
+        Engine { cache, packets_cached: cached == Cached::All, ..Engine::new(world) }
     }
 
     /// With packets of another width than the processor's.
@@ -86,6 +95,12 @@ impl<'w> Engine<'w> {
         (found, false)
     }
 
+    /// The cache, if rays packed so ask it.
+    #[inline]
+    fn cache_of(&self, packing: Packing) -> Option<&RefCell<OccluderCache>> {
+        self.cache.as_ref().filter(|_| self.packets_cached || packing == Packing::Single)
+    }
+
     #[inline]
     fn keep(&self, cache: &mut OccluderCache, key: u32, id: TriangleId) {
         let (corner, edges) = self.world.corner_and_edges(id);
@@ -96,7 +111,7 @@ impl<'w> Engine<'w> {
     /// [`Packing::Neighbours`], towards others like it.
     #[inline]
     pub fn occluded16(&self, rays: &Rays16, valid: u16, packing: Packing, key: u32) -> u16 {
-        if self.cache.is_some() {
+        if self.cache_of(packing).is_some() {
             return self.occluders16(rays, valid, packing, key, &mut Occluders16::default());
         }
         let width = if packing.packed() { self.width } else { Width::One };
@@ -116,8 +131,9 @@ impl<'w> Engine<'w> {
         found: &mut Occluders16,
     ) -> u16 {
         let accel = &self.world.accel;
+        let cache = self.cache_of(packing);
         let mut known = 0;
-        if let Some(cache) = &self.cache {
+        if let Some(cache) = cache {
             known = cache.borrow().occluders16(key, rays, valid, |lane, occluder| put(found, lane, occluder));
         }
         let left = valid & !known;
@@ -126,7 +142,7 @@ impl<'w> Engine<'w> {
         } else {
             one_by_one(left, found, |lane| accel.occluder(&rays.get(lane)))
         };
-        if let (Some(cache), Some(lane)) = (&self.cache, lanes_in(new).next()) {
+        if let (Some(cache), Some(lane)) = (cache, lanes_in(new).next()) {
             self.keep(&mut cache.borrow_mut(), key, id_of(found, lane));
         }
         self.counters.count(packing, valid.count_ones(), (known | new).count_ones(), known.count_ones());
@@ -137,8 +153,9 @@ impl<'w> Engine<'w> {
     pub fn trace(&self, batch: &Batch, found: &mut Occluders16) -> u16 {
         let accel = &self.world.accel;
         let valid = first_lanes(batch.count);
+        let cache = self.cache_of(batch.packing);
         let mut known = 0;
-        if let Some(cache) = &self.cache {
+        if let Some(cache) = cache {
             let cache = cache.borrow();
             known = one_by_one(valid, found, |lane| {
                 cache.occluder(batch.keys[lane], &batch.rays.get(lane), batch.skip.get(lane))
@@ -152,7 +169,7 @@ impl<'w> Engine<'w> {
                 accel.occluder_except(&batch.rays.get(lane), batch.skip.get(lane), ALL_GEOMETRY)
             })
         };
-        if let Some(cache) = &self.cache {
+        if let Some(cache) = cache {
             let mut cache = cache.borrow_mut();
             for lane in lanes_in(new) {
                 self.keep(&mut cache, batch.keys[lane], id_of(found, lane));

@@ -11,6 +11,7 @@ mod engine;
 mod light;
 mod packing;
 mod segment;
+mod settings;
 #[cfg(test)]
 mod tests;
 
@@ -21,3 +22,4 @@ pub use engine::Engine;
 pub use light::{to_vpl, to_vpl16};
 pub use packing::Packing;
 pub use segment::{offset, ray_from, segment};
+pub use settings::{Cached, ShadowSettings};

@@ -14,7 +14,7 @@ const SIZES: [(usize, usize); 6] = [(1024, 1), (4096, 1), (4096, 2), (4096, 4), 
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     let world = setting.world;
     let mut cases = Vec::new();
-    for trace in traces.pixels.iter().chain(&traces.records).filter(|t| t.rays() > 0) {
+    for trace in traces.refined.iter().flatten().filter(|t| t.rays() > 0) {
         let against = cases.len();
         let without = occluded(&world.shadows(), trace);
         let add = |name: &str, engine| case(name, engine, trace, against, without);

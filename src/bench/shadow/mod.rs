@@ -6,6 +6,8 @@
 
 mod cached;
 mod engine;
+mod inside;
+mod orders;
 mod quality;
 mod refinement;
 mod spread;
@@ -15,6 +17,8 @@ mod widths;
 
 use super::setting::Setting;
 use super::{Benchmark, Context, Kind, Table};
+use crate::cache::CacheSettings;
+use orders::Orders;
 use trace::Traces;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
@@ -28,10 +32,14 @@ const MRAYS: f64 = 1e-6;
 
 fn run(context: &Context) -> Vec<Table> {
     let Some(setting) = Setting::new(context) else { return Vec::new() };
-    let traces = Traces::record(&setting);
+    let cache = CacheSettings::default();
+    let orders = Orders::new(&setting, &cache);
+    let traces = Traces::record(&setting, &orders);
     let say = context.say;
     let settings = &context.settings;
     let mut tables = Vec::new();
+    say("inside the refinement");
+    tables.push(inside::table(setting.world, &orders, &traces, settings));
     say("refinement");
     tables.push(refinement::table(&setting, &traces, settings));
     say("packings and widths");

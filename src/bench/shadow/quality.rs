@@ -34,7 +34,7 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
         }
     }
     let mut cases = Vec::new();
-    for (trace, coherent) in [(&traces.pixels[0], false), (&traces.pixels[1], true)] {
+    for (trace, coherent) in [(&traces.pixels()[0], false), (&traces.pixels()[1], true)] {
         let against = cases.len();
         let occluded = move |accel: &Accel| -> Vec<u16> {
             let query = |p: &super::trace::Packet| {

@@ -13,7 +13,7 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     let world = setting.world;
     let mut cases = Vec::new();
     let mut facts = Vec::new();
-    for [alone, shared] in [&traces.pixels, &traces.records] {
+    for [alone, shared] in &traces.refined {
         if alone.rays() == 0 || shared.rays() == 0 {
             continue;
         }

@@ -19,7 +19,7 @@ const LEAST: u64 = 1000;
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     let accel = &setting.world.accel;
     let mut cases = Vec::new();
-    for trace in [&traces.pixels[1], &traces.records[1]] {
+    for [_, trace] in &traces.refined {
         for (l, &lanes) in LANES.iter().enumerate() {
             for (s, &spread) in SPREADS.iter().enumerate() {
                 let fewest = if l == 0 { 0 } else { LANES[l - 1] };

@@ -15,7 +15,7 @@ const SHARE: usize = 64;
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     let world = setting.world;
     let mut cases = Vec::new();
-    for trace in traces.pixels.iter().filter(|t| t.rays() > 0) {
+    for trace in traces.pixels().iter().filter(|t| t.rays() > 0) {
         let packets: Vec<&Packet> = trace.packets().collect();
         let part = move |packets: &[&Packet]| -> u64 {
             let engine = world.shadows();

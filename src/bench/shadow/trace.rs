@@ -1,10 +1,11 @@
 //! Segments as they are asked for, kept to be traced again.
 
+use super::orders::{Order, Orders};
 use crate::bench::setting::{Dice, Setting};
 use crate::embree::{Ray, Rays16};
 use crate::light_tree::Node;
-use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LEAST_SHARED, Points};
-use crate::lightcut::{CutSettings, Lightcut, Reflector, Visibility};
+use crate::lightcut::group::{GroupVisibility, LANES, Points};
+use crate::lightcut::{Reflector, Visibility};
 use crate::math::{Rgb, lanes_in};
 use crate::shadow::{Packing, to_vpl};
 use crate::vpl::Vpl;
@@ -29,6 +30,8 @@ pub struct Trace {
     pub packing: Packing,
     /// By stretches of work in which a cache lives.
     pub chunks: Vec<Vec<Packet>>,
+    /// What each query of a refinement was answered, by the same stretches.
+    pub answers: Vec<Vec<u16>>,
     /// Receivers that they were asked for.
     pub points: usize,
 }
@@ -59,33 +62,25 @@ pub fn count<'a>(packets: impl IntoIterator<Item = &'a Packet>) -> u64 {
 pub struct Traces {
     /// Packings of lights drawn at random.
     pub drawn: [Trace; 3],
-    /// Order of a point's own refinement, and of a shared one: pixels.
-    pub pixels: [Trace; 2],
-    /// The same for records.
-    pub records: [Trace; 2],
+    /// Order of a point's own refinement, and of a shared one, of each of [`Order::ALL`].
+    pub refined: [[Trace; 2]; 3],
 }
 
 impl Traces {
-    pub fn record(setting: &Setting) -> Traces {
-        let pixel = CutSettings::default();
-        let record = crate::cache::CacheSettings::default().cut;
-        let surface = |i: usize| setting.reflector(i);
-        let collector = |i: usize| setting.collector(i);
+    pub fn record(setting: &Setting, orders: &Orders) -> Traces {
         Traces {
             drawn: [unrelated(setting), cluster(setting), neighbours(setting)],
-            pixels: refined(setting, ["pixels, alone", "pixels, shared"], &setting.pixels(), &pixel, surface),
-            records: refined(
-                setting,
-                ["records, alone", "records, shared"],
-                &setting.records(),
-                &record,
-                collector,
-            ),
+            refined: Order::ALL.map(|order| refined(setting, orders, order)),
         }
     }
 
     pub fn all(&self) -> impl Iterator<Item = &Trace> {
-        self.drawn.iter().chain(&self.pixels).chain(&self.records)
+        self.drawn.iter().chain(self.refined.iter().flatten())
+    }
+
+    /// Those of lightcuts per pixel.
+    pub fn pixels(&self) -> &[Trace; 2] {
+        &self.refined[0]
     }
 }
 
@@ -172,7 +167,8 @@ fn drawn(
         packer.flush();
         packer.packets
     };
-    Trace { name, packing, chunks: stretches.into_iter().map(chunk).collect(), points }
+    let chunks = stretches.into_iter().map(chunk).collect();
+    Trace { name, packing, chunks, answers: Vec::new(), points }
 }
 
 /// From groups of neighbouring eye samples to one light at a time.
@@ -203,64 +199,47 @@ fn neighbours(setting: &Setting) -> Trace {
         packets
     };
     let chunks = setting.pixels().into_iter().map(&mut chunk).collect();
-    Trace { name: "neighbours, one light", packing: Packing::Neighbours, chunks, points }
+    Trace { name: "neighbours, one light", packing: Packing::Neighbours, chunks, answers: Vec::new(), points }
 }
 
 /// What cuts ask for: each point's own, and those that groups share.
-fn refined<'m>(
-    setting: &Setting,
-    names: [&'static str; 2],
-    stretches: &[Vec<usize>],
-    settings: &CutSettings,
-    reflector: impl Fn(usize) -> Reflector<'m>,
-) -> [Trace; 2] {
-    let (trees, transfer) = (&setting.trees, setting.transfer());
-    let (mut alone, mut shared) = (Vec::new(), Vec::new());
-    let (mut single, mut group, mut points) = (Lightcut::new(), GroupLightcut::new(), Points::new());
-    for stretch in stretches {
-        let recorder = Recorder::new(setting);
-        for &sample in stretch {
-            single.gather(trees, &transfer, &recorder, &reflector(sample), settings);
+fn refined(setting: &Setting, orders: &Orders, order: Order) -> [Trace; 2] {
+    [false, true].map(|shared| {
+        let (mut chunks, mut answers) = (Vec::new(), Vec::new());
+        for chunk in 0..orders.chunks() {
+            let recorder = Recorder::new(setting);
+            orders.light(order, chunk, shared, &recorder);
+            let (packets, answered) = recorder.finish();
+            chunks.push(packets);
+            answers.push(answered);
         }
-        alone.push(recorder.packets());
-        let recorder = Recorder::new(setting);
-        for members in setting.groups(stretch) {
-            if members.len() < LEAST_SHARED {
-                for sample in members {
-                    single.gather(trees, &transfer, &recorder, &reflector(sample), settings);
-                }
-            } else {
-                points.set(members.iter().map(|&i| reflector(i)));
-                group.gather(trees, &transfer, &recorder, &points, settings, &mut [Rgb::ZERO; LANES]);
-            }
-            recorder.flush();
+        Trace {
+            name: order.names()[usize::from(shared)],
+            packing: if shared { Packing::Neighbours } else { Packing::Single },
+            chunks,
+            answers,
+            points: orders.points(order),
         }
-        shared.push(recorder.packets());
-    }
-    let count = stretches.iter().map(Vec::len).sum();
-    let trace = |name, packing, chunks| Trace { name, packing, chunks, points: count };
-    [trace(names[0], Packing::Single, alone), trace(names[1], Packing::Neighbours, shared)]
+    })
 }
 
 /// Visibility in the scene that keeps what it is asked.
 struct Recorder<'a> {
     setting: &'a Setting<'a>,
     packer: RefCell<Packer>,
+    answers: RefCell<Vec<u16>>,
 }
 
 impl<'a> Recorder<'a> {
     fn new(setting: &'a Setting<'a>) -> Recorder<'a> {
-        Recorder { setting, packer: RefCell::new(Packer::new(Packing::Single)) }
+        let packer = RefCell::new(Packer::new(Packing::Single));
+        Recorder { setting, packer, answers: RefCell::default() }
     }
 
-    fn flush(&self) {
-        self.packer.borrow_mut().flush();
-    }
-
-    fn packets(self) -> Vec<Packet> {
+    fn finish(self) -> (Vec<Packet>, Vec<u16>) {
         let mut packer = self.packer.into_inner();
         packer.flush();
-        packer.packets
+        (packer.packets, self.answers.into_inner())
     }
 }
 
@@ -268,7 +247,9 @@ impl Visibility for Recorder<'_> {
     fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
         let ray = to_vpl(x, normal, vpl, node.kind());
         self.packer.borrow_mut().push(&ray, node.representative() as u32);
-        !self.setting.world.accel.occluded(&ray)
+        let seen = !self.setting.world.accel.occluded(&ray);
+        self.answers.borrow_mut().push(u16::from(seen));
+        seen
     }
 }
 
@@ -278,7 +259,10 @@ impl GroupVisibility for Recorder<'_> {
         let seen = lanes & !self.setting.world.accel.occluded16(&rays, lanes, true);
         let key = node.representative() as u32;
         let packet = Packet { packing: Packing::Neighbours, rays, valid: lanes, keys: [key; 16] };
-        self.packer.borrow_mut().packets.push(packet);
+        let mut packer = self.packer.borrow_mut();
+        packer.flush();
+        packer.packets.push(packet);
+        self.answers.borrow_mut().push(seen);
         seen
     }
 }

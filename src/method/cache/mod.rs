@@ -19,7 +19,7 @@
 
 pub(super) mod filled;
 pub mod inspect;
-pub(super) mod own;
+pub(crate) mod own;
 pub(super) mod picture;
 mod render;
 

@@ -6,8 +6,8 @@
 
 use crate::cache::compute::Source;
 use crate::eye::EyeSamples;
-use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, LentCut, Points, group_alike};
-use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector};
+use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LentCut, Points, group_alike};
+use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Visibility};
 use crate::math::{Frame, Rgb};
 use crate::vpl::Origin;
 use rayon::prelude::*;
@@ -25,9 +25,9 @@ pub struct Job {
     pub known: f32,
 }
 
-/// A thread's buffers.
+/// What a thread makes cuts with.
 #[derive(Default)]
-struct Workspace<'w> {
+pub struct Cutters<'w> {
     single: Lightcut,
     group: GroupLightcut,
     lent: LentCut,
@@ -41,24 +41,21 @@ pub fn light<'w>(
     jobs: &[Job],
     cut: &CutSettings,
 ) -> (Vec<(Job, Rgb)>, CutCounts) {
-    let place = |job: &Job| {
-        let point = &samples.points[job.sample as usize];
-        (point.position, point.normal)
-    };
-    let same = |a: &Job, b: &Job| a.lobe_only == b.lobe_only && a.only == b.only;
-    let patches =
-        group_alike(jobs.iter().copied(), source.settings.patch, source.world.diagonal, place, same);
-    let done: Vec<(Vec<(Job, Rgb)>, CutCounts)> = patches
+    let done: Vec<(Vec<(Job, Rgb)>, CutCounts)> = patches(source, samples, jobs)
         .par_iter()
-        .map_init(Workspace::default, |work, jobs| {
-            (work.single.counts, work.group.counts) = Default::default();
-            let cut = CutSettings { only: jobs[0].only, ..*cut };
-            let mut lit = Vec::with_capacity(jobs.len());
-            work.light(source, samples, jobs, &cut, &mut lit);
-            let mut counts = work.single.counts;
-            counts.add(&work.group.counts);
-            (lit, counts)
-        })
+        .map_init(
+            || (source.settings.engine(source.world), Cutters::default()),
+            |(shadows, work), jobs| {
+                shadows.begin_chunk();
+                (work.single.counts, work.group.counts) = Default::default();
+                let cut = CutSettings { only: jobs[0].only, ..*cut };
+                let mut lit = Vec::with_capacity(jobs.len());
+                work.light(source, shadows, samples, jobs, &cut, &mut lit);
+                let mut counts = work.single.counts;
+                counts.add(&work.group.counts);
+                (lit, counts)
+            },
+        )
         .collect();
     let mut counts = CutCounts::default();
     let mut lit = Vec::with_capacity(jobs.len());
@@ -69,19 +66,31 @@ pub fn light<'w>(
     (lit, counts)
 }
 
-impl<'w> Workspace<'w> {
-    fn light(
+/// Jobs that are lit together.
+pub fn patches(source: &Source, samples: &EyeSamples, jobs: &[Job]) -> Vec<Vec<Job>> {
+    let place = |job: &Job| {
+        let point = &samples.points[job.sample as usize];
+        (point.position, point.normal)
+    };
+    let same = |a: &Job, b: &Job| a.lobe_only == b.lobe_only && a.only == b.only;
+    group_alike(jobs.iter().copied(), source.settings.patch, source.world.diagonal, place, same)
+}
+
+impl<'w> Cutters<'w> {
+    /// Lights a patch.
+    pub fn light<V: Visibility + GroupVisibility>(
         &mut self,
-        s: &Source<'w>,
+        s: &Source<'_>,
+        rays: &V,
         samples: &EyeSamples<'w>,
         jobs: &[Job],
         cut: &CutSettings,
         lit: &mut Vec<(Job, Rgb)>,
     ) {
-        if jobs.len() < LEAST_SHARED {
+        if !s.settings.shares(jobs.len()) {
             for job in jobs {
                 let reflector = reflector(samples, job);
-                lit.push((*job, self.single.gather(s.trees, &s.transfer, s.world, &reflector, cut)));
+                lit.push((*job, self.single.gather(s.trees, &s.transfer, rays, &reflector, cut)));
             }
             return;
         }
@@ -91,7 +100,7 @@ impl<'w> Workspace<'w> {
         let chosen = |wanted: bool| (0..jobs.len()).filter(move |&i| makes(i) == wanted).map(|i| &jobs[i]);
         let mut radiance = [Rgb::ZERO; LANES];
         self.points.set(chosen(true).map(|job| reflector(samples, job)));
-        self.group.gather(s.trees, &s.transfer, s.world, &self.points, cut, &mut radiance);
+        self.group.gather(s.trees, &s.transfer, rays, &self.points, cut, &mut radiance);
         lit.extend(chosen(true).copied().zip(radiance));
         if lit.len() == jobs.len() {
             return;
@@ -100,15 +109,7 @@ impl<'w> Workspace<'w> {
         let others: Vec<&Job> = chosen(false).collect();
         for jobs in others.chunks(LANES) {
             self.points.set(jobs.iter().map(|job| reflector(samples, job)));
-            self.group.gather_lent(
-                &self.lent,
-                s.trees,
-                &s.transfer,
-                s.world,
-                &self.points,
-                cut,
-                &mut radiance,
-            );
+            self.group.gather_lent(&self.lent, s.trees, &s.transfer, rays, &self.points, cut, &mut radiance);
             lit.extend(jobs.iter().map(|job| **job).zip(radiance));
         }
     }

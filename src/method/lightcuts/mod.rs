@@ -13,6 +13,7 @@
 //! | `cut.max_cut` | 1000 | most clusters in a cut |
 //! | `cut.clamp` | 0.02 | most that one indirect VPL may contribute, relative to the sample's luminance |
 //! | `share` | true | whether neighbouring eye samples share cuts, for speed |
+//! | `shadows` | cached where not `share` | which shadow rays ask an occluder cache, and its size |
 //! | `family` | divisive | how light trees are built |
 //!
 //! Use it where a picture without noise is wanted and a small, smooth error is not in the way. Not for caustics on

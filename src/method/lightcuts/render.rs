@@ -8,7 +8,7 @@ use crate::lightcut::{CutCounts, CutSettings, Transfer};
 use crate::math::Rgb;
 use crate::method::lights::Lights;
 use crate::method::{Control, Output, counts};
-use crate::shadow::Counts;
+use crate::shadow::{Counts, ShadowSettings};
 use crate::stats::{Stage, Stats};
 use crate::vpl::LightPassSettings;
 use crate::world::World;
@@ -31,6 +31,8 @@ pub struct Settings {
     pub family: Family,
     /// Whether neighbouring eye samples share cuts.
     pub share: bool,
+    /// Which shadow rays ask an occluder cache.
+    pub shadows: ShadowSettings,
 }
 
 impl Default for Settings {
@@ -43,6 +45,7 @@ impl Default for Settings {
             cut: CutSettings::default(),
             family: Family::default(),
             share: true,
+            shadows: ShadowSettings::default(),
         }
     }
 }
@@ -76,7 +79,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     control.begin(Stage::Render, tiles.len() as u64);
     stats.time(Stage::Render, || {
         tiles.par_iter_mut().enumerate().for_each_init(
-            || Workspace::new(world),
+            || Workspace::new(world, settings),
             |work, (i, tile)| {
                 if !control.is_cancelled() {
                     tile.render(&scenery, corner(i), work);

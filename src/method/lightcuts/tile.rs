@@ -2,12 +2,12 @@
 //!
 //! Blocks are aligned to the film and always computed whole, so a crop repeats the whole picture's pixels.
 
-use super::render::Scenery;
+use super::render::{Scenery, Settings};
 use crate::eye::{ChainCounts, EyeSample, eye_sampler, primary_ray, trace};
 use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Points, alike};
 use crate::lightcut::{CutCounts, Lightcut, Reflector};
 use crate::math::Rgb;
-use crate::shadow::{Counts, Engine, OccluderCacheSettings};
+use crate::shadow::{Counts, Engine};
 use crate::world::World;
 
 /// Pixels along a tile's edge.
@@ -18,7 +18,7 @@ pub const BLOCK: u32 = 4;
 /// A thread's buffers.
 pub struct Workspace<'w> {
     single: Lightcut,
-    /// Shadow rays of single points, past an occluder cache that lives for a tile.
+    /// Shadow rays; an occluder cache lives for a tile.
     shadows: Engine<'w>,
     group: GroupLightcut,
     points: Points<'w>,
@@ -30,10 +30,11 @@ pub struct Workspace<'w> {
 
 impl<'w> Workspace<'w> {
     /// For any number of tiles.
-    pub fn new(world: &'w World) -> Workspace<'w> {
+    pub fn new(world: &'w World, settings: &Settings) -> Workspace<'w> {
+        let shadows = settings.shadows;
         Workspace {
             single: Lightcut::new(),
-            shadows: Engine::with_cache(world, OccluderCacheSettings::default()),
+            shadows: Engine::with(world, shadows.cached(settings.share), shadows.cache),
             group: GroupLightcut::new(),
             points: Points::new(),
             samples: Vec::new(),
@@ -178,7 +179,7 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
         }
         work.points.set(work.members.iter().map(|&i| work.samples[i].reflector));
         let mut radiance = [Rgb::ZERO; LANES];
-        work.group.gather(s.trees, &s.transfer, s.world, &work.points, cut, &mut radiance);
+        work.group.gather(s.trees, &s.transfer, &work.shadows, &work.points, cut, &mut radiance);
         for (&i, radiance) in work.members.iter().zip(radiance) {
             let sample = &mut work.samples[i];
             sample.done = true;

@@ -1,0 +1,153 @@
+//! The refinements that methods run, over stretches of a scene's eye samples, with whatever visibility.
+//!
+//! Lightcuts per pixel; the cache's eye samples, lit by direct light, whose neighbours are lent cuts; and its records, of
+//! indirect light. All in the order of the method, each point by itself or neighbours together.
+//!
+//! Records are those of the first wave of the finest level, as if there were no coarser ones: its records lie as close as
+//! any.
+
+use crate::bench::setting::Setting;
+use crate::cache::CacheSettings;
+use crate::cache::compute::Source;
+use crate::cache::layer::Layer;
+use crate::cache::wave::{Pick, pick};
+use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LEAST_SHARED, Points};
+use crate::lightcut::{CutSettings, Lightcut, Reflector, Visibility};
+use crate::math::{Rgb, luminance};
+use crate::method::cache::own::{Cutters, Job, patches};
+use crate::vpl::Origin;
+
+/// Which points are lit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// Pixels, by lightcuts.
+    Pixels,
+    /// Eye samples of the cache, by direct light.
+    Samples,
+    /// Records of the cache, by indirect light.
+    Records,
+}
+
+impl Order {
+    /// All.
+    pub const ALL: [Order; 3] = [Order::Pixels, Order::Samples, Order::Records];
+
+    /// Names with cuts of single points, and with shared ones.
+    pub fn names(self) -> [&'static str; 2] {
+        match self {
+            Order::Pixels => ["pixels, alone", "pixels, shared"],
+            Order::Samples => ["samples, alone", "samples, shared"],
+            Order::Records => ["records, alone", "records, shared"],
+        }
+    }
+}
+
+/// All orders of a scene.
+pub struct Orders<'s> {
+    setting: &'s Setting<'s>,
+    cache: &'s CacheSettings,
+    stretches: Vec<Vec<usize>>,
+    jobs: Vec<Vec<Job>>,
+    picks: Vec<Vec<Pick>>,
+}
+
+impl<'s> Orders<'s> {
+    pub fn new(setting: &'s Setting<'s>, cache: &'s CacheSettings) -> Orders<'s> {
+        let stretches = setting.pixels();
+        let mut single = Lightcut::new();
+        let mut jobs = Vec::new();
+        for stretch in &stretches {
+            let job = |&sample: &usize| {
+                // What a record is to have found already.
+                let cut = CutSettings { only: Some(Origin::Indirect), ..CutSettings::default() };
+                let (transfer, reflector) = (setting.transfer(), setting.reflector(sample));
+                let indirect = single.gather(&setting.trees, &transfer, setting.world, &reflector, &cut);
+                let only = Some(Origin::Direct);
+                Job { sample: sample as u32, lobe_only: false, only, known: luminance(indirect) }
+            };
+            jobs.push(stretch.iter().map(job).collect());
+        }
+        let samples = &setting.samples;
+        let least = cache.least_cell.max(1) as usize;
+        let level = (samples.len() / least).checked_ilog2().unwrap_or(0);
+        let layers = [Layer::new(samples), Layer::new(samples)];
+        let picks = pick(samples, &layers, |_| [false, true], level, 0);
+        let picks = setting.spread(picks.len()).into_iter().map(|s| s.map(|i| picks[i]).collect());
+        Orders { setting, cache, stretches, jobs, picks: picks.collect() }
+    }
+
+    /// How many stretches.
+    pub fn chunks(&self) -> usize {
+        self.stretches.len()
+    }
+
+    /// How many points there are to be lit.
+    pub fn points(&self, order: Order) -> usize {
+        match order {
+            Order::Pixels | Order::Samples => self.stretches.iter().map(Vec::len).sum(),
+            Order::Records => self.picks.iter().map(Vec::len).sum(),
+        }
+    }
+
+    /// Lights the points of a stretch. Returns the sum of what they reflect.
+    pub fn light<V>(&self, order: Order, chunk: usize, shared: bool, rays: &V) -> Rgb
+    where
+        V: Visibility + GroupVisibility,
+    {
+        let setting = self.setting;
+        match order {
+            Order::Pixels => {
+                let groups = setting.groups(&self.stretches[chunk]);
+                let surface = |&sample: &usize| setting.reflector(sample);
+                self.cut(&groups, surface, shared, &CutSettings::default(), rays)
+            }
+            Order::Records => {
+                let cut = CutSettings { only: Some(Origin::Indirect), ..self.cache.cut };
+                let groups = self.source().tasks(&setting.samples, &self.picks[chunk]);
+                self.cut(&groups, |pick| setting.collector(pick.sample as usize), shared, &cut, rays)
+            }
+            Order::Samples => {
+                let settings = CacheSettings { share: shared, ..*self.cache };
+                let source = Source { settings: &settings, ..self.source() };
+                let cut = CutSettings { only: Some(Origin::Direct), ..CutSettings::default() };
+                let (mut cutters, mut lit) = (Cutters::default(), Vec::new());
+                for patch in patches(&source, &setting.samples, &self.jobs[chunk]) {
+                    cutters.light(&source, rays, &setting.samples, &patch, &cut, &mut lit);
+                }
+                lit.into_iter().fold(Rgb::ZERO, |sum, (_, radiance)| sum + radiance)
+            }
+        }
+    }
+
+    fn source(&self) -> Source<'_> {
+        let Setting { world, trees, .. } = self.setting;
+        let transfer = self.setting.transfer();
+        Source { world, trees, transfer, settings: self.cache, compensation: None }
+    }
+
+    fn cut<'m, T, V: Visibility + GroupVisibility>(
+        &self,
+        groups: &[Vec<T>],
+        reflector: impl Fn(&T) -> Reflector<'m>,
+        shared: bool,
+        cut: &CutSettings,
+        rays: &V,
+    ) -> Rgb {
+        let (trees, transfer) = (&self.setting.trees, self.setting.transfer());
+        let (mut single, mut group, mut points) = (Lightcut::new(), GroupLightcut::new(), Points::new());
+        let mut sum = Rgb::ZERO;
+        for members in groups {
+            if !shared || members.len() < LEAST_SHARED {
+                for point in members {
+                    sum += single.gather(trees, &transfer, rays, &reflector(point), cut);
+                }
+            } else {
+                let mut radiance = [Rgb::ZERO; LANES];
+                points.set(members.iter().map(&reflector));
+                group.gather(trees, &transfer, rays, &points, cut, &mut radiance);
+                sum = radiance.into_iter().fold(sum, |sum, r| sum + r);
+            }
+        }
+        sum
+    }
+}
