@@ -172,8 +172,9 @@ struct Workspace<'w> {
 
 impl<'w> Workspace<'w> {
     fn new(s: &Source<'w>) -> Workspace<'w> {
+        let shadows = s.settings.shadows;
         Workspace {
-            shadows: s.settings.engine(s.world),
+            shadows: Engine::with(s.world, shadows.for_records(), shadows.cache),
             single: Lightcut::new(),
             group: GroupLightcut::new(),
             points: Points::new(),

@@ -3,8 +3,7 @@
 use crate::hsh::SeriesSettings;
 use crate::lightcut::CutSettings;
 use crate::lightcut::group::LEAST_SHARED;
-use crate::shadow::{Engine, ShadowSettings};
-use crate::world::World;
+use crate::shadow::ShadowSettings;
 
 /// How the shape of footprints is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,7 +65,7 @@ pub struct CacheSettings {
     pub patch: usize,
     /// Whether neighbours share cuts; if not, records and samples all have their own, whatever `patch` says.
     pub share: bool,
-    /// Which shadow rays of cuts ask an occluder cache.
+    /// Which shadow rays of cuts ask an occluder cache. It is emptied before every group of neighbours.
     pub shadows: ShadowSettings,
     /// Cells of fewer eye samples than this get no record: a record costs as much as the lent cuts of some hundred
     /// samples. Their samples have cuts of their own, which
@@ -78,11 +77,6 @@ impl CacheSettings {
     /// Whether so many neighbours share a cut.
     pub fn shares(&self, points: usize) -> bool {
         self.share && points >= LEAST_SHARED
-    }
-
-    /// A thread's shadow rays. An occluder cache of theirs is to be emptied before every group of neighbours.
-    pub fn engine<'w>(&self, world: &'w World) -> Engine<'w> {
-        Engine::with(world, self.shadows.cached(self.share), self.shadows.cache)
     }
 }
 

@@ -146,7 +146,8 @@ pub struct LightcutArgs {
     /// Whether neighbours share cuts, for speed [default: on]
     #[arg(long, value_enum)]
     pub share: Option<Switch>,
-    /// Shadow rays that ask a cache of occluders first, for speed [default: single where nothing is shared, else off]
+    /// Shadow rays that ask a cache of occluders first, for speed [default: single for samples if
+    /// cuts are not shared, else off]
     #[arg(long, value_enum)]
     pub occluder_cache: Option<OccluderCache>,
     /// Slots of that cache, rounded up to a power of two [default: 4096]

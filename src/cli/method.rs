@@ -222,7 +222,7 @@ fn switch(on: bool) -> &'static str {
 /// Which rays ask, and with what size.
 fn occluders(shadows: &ShadowSettings, share: bool) -> Value {
     let size = shadows.cache;
-    let rays = match shadows.cached(share) {
+    let rays = match shadows.for_samples(share) {
         Cached::Nothing => return json!("off"),
         Cached::Single => "single",
         Cached::All => "all",

@@ -23,12 +23,16 @@ pub struct ShadowSettings {
 }
 
 impl ShadowSettings {
-    /// What asks the cache where neighbouring points share cuts, or do not.
+    /// What asks the cache for eye samples, which share cuts with their neighbours, or do not.
     ///
-    /// As `lightsplat bench shadow` has it: it pays for rays of points that all have cuts of their own, and the more the
-    /// closer the points lie. Where points share cuts, packets gain less than the cache costs, and the few single rays
-    /// in between have nobody to learn from.
-    pub fn cached(&self, shared: bool) -> Cached {
+    /// As `lightsplat bench shadow` has it: the cache pays for samples that all have cuts of their own. Where they share
+    /// cuts, packets gain no more than the cache costs, and the few single rays in between have nobody to learn from.
+    pub fn for_samples(&self, shared: bool) -> Cached {
         self.cached.unwrap_or(if shared { Cached::Nothing } else { Cached::Single })
+    }
+
+    /// What asks the cache for records: they lie too far apart to have occluders in common.
+    pub fn for_records(&self) -> Cached {
+        self.cached.unwrap_or(Cached::Nothing)
     }
 }

@@ -9,6 +9,7 @@ use crate::eye::EyeSamples;
 use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LentCut, Points, group_alike};
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Visibility};
 use crate::math::{Frame, Rgb};
+use crate::shadow::Engine;
 use crate::vpl::Origin;
 use rayon::prelude::*;
 
@@ -41,10 +42,12 @@ pub fn light<'w>(
     jobs: &[Job],
     cut: &CutSettings,
 ) -> (Vec<(Job, Rgb)>, CutCounts) {
+    let (settings, size) = (source.settings, source.settings.shadows.cache);
+    let cached = settings.shadows.for_samples(settings.share);
     let done: Vec<(Vec<(Job, Rgb)>, CutCounts)> = patches(source, samples, jobs)
         .par_iter()
         .map_init(
-            || (source.settings.engine(source.world), Cutters::default()),
+            || (Engine::with(source.world, cached, size), Cutters::default()),
             |(shadows, work), jobs| {
                 shadows.begin_chunk();
                 (work.single.counts, work.group.counts) = Default::default();

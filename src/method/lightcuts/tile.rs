@@ -34,7 +34,7 @@ impl<'w> Workspace<'w> {
         let shadows = settings.shadows;
         Workspace {
             single: Lightcut::new(),
-            shadows: Engine::with(world, shadows.cached(settings.share), shadows.cache),
+            shadows: Engine::with(world, shadows.for_samples(settings.share), shadows.cache),
             group: GroupLightcut::new(),
             points: Points::new(),
             samples: Vec::new(),

@@ -1,0 +1,97 @@
+//! The occluder cache changes how long a picture takes, and no pixel of it.
+
+mod common;
+
+use common::*;
+use glam::Vec3;
+use lightsplat::math::Rgb;
+use lightsplat::method::{Control, Output, cache, lightcuts};
+use lightsplat::shadow::{Cached, OccluderCacheSettings, ShadowSettings};
+use lightsplat::stats::Counter;
+use lightsplat::vpl::LightPassSettings;
+use lightsplat::world::World;
+
+const LIGHT: LightPassSettings = LightPassSettings { direct: 512, indirect: 10_000, seed: 0 };
+
+/// Off, for single rays, for all; small ones too, in which lights displace each other.
+fn uses() -> Vec<ShadowSettings> {
+    let with = |cached, slots, ways| ShadowSettings {
+        cached: Some(cached),
+        cache: OccluderCacheSettings { slots, ways },
+    };
+    vec![with(Cached::Nothing, 1, 1), with(Cached::Single, 4096, 4), with(Cached::All, 64, 2)]
+}
+
+/// A hall of columns under a lamp.
+fn hall() -> World {
+    let mut scene = scene(camera(Vec3::new(-0.9, 0.2, 0.9), Vec3::ZERO, 0.8), [48, 40]);
+    let grey = add_material(&mut scene, diffuse(Rgb::splat(0.6)));
+    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, grey));
+    let lamp = quad(Vec3::new(-0.2, 0.99, -0.8), Vec3::X * 0.4, Vec3::Z * 1.6, grey);
+    scene.meshes.push(emitting(lamp, Rgb::splat(8.0)));
+    for [x, z] in [[-0.4, -0.4], [0.4, -0.4], [-0.4, 0.4], [0.4, 0.4]] {
+        scene.meshes.extend(room(Vec3::new(x - 0.1, -1.0, z - 0.1), Vec3::new(x + 0.1, 0.7, z + 0.1), grey));
+    }
+    world(scene)
+}
+
+fn on_threads<T: Send>(threads: usize, render: impl Fn() -> T + Sync + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(render)
+}
+
+fn saved(output: &Output) -> u64 {
+    let of = |packing: &str| match output.stats.get(&format!("Shadow/{packing}: saved by the cache")) {
+        Some(Counter::Count(n)) => n,
+        _ => 0,
+    };
+    of("single") + of("neighbours")
+}
+
+#[test]
+fn lightcuts_give_the_same_bits_with_it_and_without_on_any_number_of_threads() {
+    let world = hall();
+    let window = lightsplat::eye::Window::whole(world.scene.resolution);
+    for share in [true, false] {
+        let mut first: Option<Output> = None;
+        for shadows in uses() {
+            let settings = lightcuts::Settings { light: LIGHT, share, shadows, ..Default::default() };
+            let render = || lightcuts::render(&world, &window, &settings, &Control::new());
+            let [one, three] = [1, 3].map(|threads| on_threads(threads, render));
+            assert!(one.color == three.color && one.stats.counters().eq(three.stats.counters()));
+            // Where cuts are shared, few rays are single.
+            let asks =
+                shadows.cached == Some(Cached::All) || (!share && shadows.cached == Some(Cached::Single));
+            assert!(!asks || saved(&one) > 10_000, "share {share}: {shadows:?} saved {}", saved(&one));
+            assert!(shadows.cached != Some(Cached::Nothing) || saved(&one) == 0);
+            let first = first.get_or_insert(one);
+            assert!(first.color == three.color, "share {share}: {shadows:?}");
+        }
+    }
+}
+
+#[test]
+fn the_radiance_cache_gives_the_same_bits_with_it_and_without_on_any_number_of_threads() {
+    let world = hall();
+    for share in [true, false] {
+        let mut first = None;
+        for shadows in uses() {
+            let mut settings = cache::Settings { light: LIGHT, ..Default::default() };
+            settings.cache.least_cell = 8;
+            (settings.cache.share, settings.cache.shadows) = (share, shadows);
+            let [one, three] = [1, 3].map(|threads| on_threads(threads, || cached(&world, &settings)));
+            assert!(one.color == three.color && one.stats.counters().eq(three.stats.counters()));
+            let first = first.get_or_insert(one);
+            assert!(first.color == three.color, "share {share}: {shadows:?}");
+        }
+    }
+}
+
+#[test]
+fn it_is_asked_only_where_it_pays_unless_told_otherwise() {
+    let by_default = ShadowSettings::default();
+    assert_eq!(by_default.for_samples(true), Cached::Nothing);
+    assert_eq!(by_default.for_samples(false), Cached::Single);
+    assert_eq!(by_default.for_records(), Cached::Nothing);
+    let told = ShadowSettings { cached: Some(Cached::All), ..by_default };
+    assert_eq!([told.for_samples(true), told.for_samples(false), told.for_records()], [Cached::All; 3]);
+}
