@@ -30,7 +30,8 @@ fn the_settings_of_lightcuts_reach_the_method_and_the_file() {
     let sandbox = Sandbox::new();
     let options =
         ["--epsilon", "0.3", "--max-cut", "7", "--vpls", "300", "--direct-vpls", "256", "--clamp", "0"];
-    let coarse = [&["--method", "lightcuts", "--tree", "agglomerative"], &options[..]].concat();
+    let shadows = ["--share", "off", "--occluder-slots", "256", "--occluder-ways", "2"];
+    let coarse = [&["--method", "lightcuts", "--tree", "agglomerative"], &options[..], &shadows].concat();
     sandbox.render("a.exr", &coarse).expect(0);
     let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
     assert_eq!(file.metadata().text("method"), Some("lightcuts"));
@@ -38,11 +39,16 @@ fn the_settings_of_lightcuts_reach_the_method_and_the_file() {
         serde_json::from_str(file.metadata().text("settings").unwrap()).unwrap();
     let expected = serde_json::json!({
         "spp": 4, "seed": 0, "max_depth": null, "epsilon": 0.3, "max_cut": 7, "vpls": 300, "direct_vpls": 256,
-        "clamp": 0.0, "tree": "agglomerative",
+        "clamp": 0.0, "tree": "agglomerative", "share": "off",
+        "occluder_cache": { "rays": "single", "slots": 256, "ways": 2 },
     });
     assert_eq!(settings, expected);
     sandbox.render("b.exr", &[&coarse[..], &["--threads", "3"]].concat()).expect(0);
     assert_eq!(read_exr(&sandbox.path("b.exr")).unwrap(), file.color().unwrap());
+    sandbox.render("c.exr", &[&coarse[..], &["--occluder-cache", "all"]].concat()).expect(0);
+    assert_eq!(read_exr(&sandbox.path("c.exr")).unwrap(), file.color().unwrap());
+    let refused = sandbox.render("d.exr", &["--method", "lightcuts", "--occluder-ways", "3"]).expect(2);
+    assert!(refused.stderr.contains("1, 2, 4 or 8"), "{}", refused.stderr);
 }
 
 #[test]
