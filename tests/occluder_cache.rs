@@ -1,4 +1,4 @@
-//! The occluder cache changes how long a picture takes, and no pixel of it.
+//! The occluder cache changes how long a picture takes, and here no pixel of it.
 
 mod common;
 

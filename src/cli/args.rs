@@ -165,7 +165,7 @@ pub enum OccluderCache {
     Off,
     /// Those of points with cuts of their own
     Single,
-    /// Those and packets
+    /// Those and packets: then a ray of many million may be answered otherwise
     All,
 }
 

@@ -2,7 +2,8 @@
 //!
 //! [`segment()`], [`ray_from`] and [`to_vpl`] make rays, [`Packing`] says what shares a packet and how it is traced,
 //! [`Engine`] traces, counts, and may ask an [`OccluderCache`] first. The cache changes how long an answer takes
-//! and which occluder is named, never whether there is one.
+//! and which occluder is named, never whether a single ray has one. Packets flagged coherent keep to that in tests with
+//! random segments, but not to the last ray in whole pictures (see [`Cached::All`]).
 
 mod batch;
 mod cache;

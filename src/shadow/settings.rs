@@ -9,11 +9,13 @@ pub enum Cached {
     Nothing,
     /// Rays of single points.
     Single,
-    /// Those, and packets.
+    /// Those, and packets. Embree's answers in coherent packets depend, for a ray in some ten million, on which other rays
+    /// are traced with it: without those that the cache answers, one in 23 million was no longer found occluded.
     All,
 }
 
-/// How a method uses the occluder cache. It changes the time that a picture takes, and nothing in the picture.
+/// How a method uses the occluder cache. Asked for single rays it changes the time that a picture takes, and nothing in
+/// the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ShadowSettings {
     /// What asks the cache; `None` for what is fastest.
