@@ -15,6 +15,7 @@ mod setting;
 mod shadow;
 pub mod study;
 mod table1;
+mod trade;
 mod trees;
 
 pub use measure::{Clock, Warning};
@@ -55,8 +56,9 @@ pub enum Kind {
 }
 
 /// All benchmarks.
-pub const REGISTRY: [Benchmark; 6] = [
+pub const REGISTRY: [Benchmark; 7] = [
     table1::BENCHMARK,
+    trade::BENCHMARK,
     shadow::BENCHMARK,
     bounds::BENCHMARK,
     trees::BENCHMARK,

@@ -136,15 +136,16 @@ impl Source<'_> {
             tangential(g.gradient.y_axis),
             tangential(g.gradient.z_axis),
         );
+        let distance = view.sight.as_ref().map_or_else(|| g.distance(), |sight| sight.distance());
         let footprint = match &view.sight {
             Some(sight) => {
                 let change = sight.change(layer);
                 gradient += change.gradient;
-                let furthest = settings.accuracy * sight.distance();
+                let furthest = settings.accuracy * distance;
                 Footprint::of_change(&change, luminance, settings.accuracy, furthest, reach, self.settings)
             }
             None => {
-                let radius = (settings.accuracy * g.distance()).clamp(reach[0], reach[1]);
+                let radius = (settings.accuracy * distance).clamp(reach[0], reach[1]);
                 Footprint::of_gradient(normal, gradient * LUMINANCE, luminance, radius, self.settings)
             }
         };
@@ -156,7 +157,7 @@ impl Source<'_> {
             vector: g.vector,
             gradient,
             luminance,
-            facts: Facts { sample, cut: g.cut, clamped: g.clamped, compensated: g.compensated },
+            facts: Facts { sample, cut: g.cut, distance, clamped: g.clamped, compensated: g.compensated },
         })
     }
 }

@@ -48,8 +48,10 @@ pub struct Record {
 pub struct Facts {
     /// The eye sample it was computed at.
     pub sample: u32,
-    /// Clusters in its cut.
+    /// Clusters in its cut, or rays of its gathering.
     pub cut: u32,
+    /// Distance of what casts light and shadow.
+    pub distance: f32,
     /// Luminance of the irradiance that clamping took away.
     pub clamped: f32,
     /// Luminance of the irradiance that short rays gave back.

@@ -61,6 +61,12 @@ pub struct StudyArgs {
     /// Seconds after which references get no more paths [default: 1800]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     pub reference_seconds: Option<f64>,
+    /// Points of the designed sample over all settings, for `trade` [default: 32]
+    #[arg(long, value_name = "N")]
+    pub samples: Option<u32>,
+    /// Vary only this setting in `trade`, once for each; a wrong name lists them
+    #[arg(long = "knob", value_name = "NAME")]
+    pub knobs: Vec<String>,
 }
 
 fn parse_seconds(text: &str) -> Result<f64, String> {
@@ -75,7 +81,7 @@ mod tests {
     use super::super::args::Cli;
     use super::*;
     use crate::bench::Settings;
-    use crate::bench::study::ReferenceSettings;
+    use crate::bench::study::{ReferenceSettings, SAMPLES};
     use clap::CommandFactory;
 
     #[test]
@@ -89,6 +95,7 @@ mod tests {
             ("seconds", defaults.seconds.to_string()),
             ("reference-spp", reference.spp.to_string()),
             ("reference-seconds", reference.seconds.to_string()),
+            ("samples", SAMPLES.to_string()),
         ] {
             let argument = bench.get_arguments().find(|a| a.get_long() == Some(option)).unwrap();
             let stated = argument.get_help().unwrap().to_string();

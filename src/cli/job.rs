@@ -2,10 +2,11 @@
 
 use super::args::{Crop, ProgressMode, RenderArgs, StatsFormat};
 use super::exit::Failure;
-use super::method::Method;
+use super::method::method;
 use super::verify;
 use crate::eye::Window;
 use crate::image::{Exposure, atomic};
+use crate::method::Method;
 use crate::scene::Scene;
 use crate::stats::available_bytes;
 use crate::verify::Settings as VerifySettings;
@@ -48,7 +49,7 @@ pub struct RenderJob {
 impl RenderJob {
     /// Checks what was typed, and that the results can be written where they are wanted.
     pub fn new(args: RenderArgs) -> Result<RenderJob, Failure> {
-        let method = Method::new(&args)?;
+        let method = method(&args)?;
         let verify = verify::settings(&args.verify, &method, args.max_depth);
         named(&args.output, "exr", "--output")?;
         let png = match (args.no_png, args.png) {

@@ -11,7 +11,7 @@ mod exit;
 mod info;
 mod interrupt;
 mod job;
-pub(crate) mod method;
+mod method;
 mod progress;
 mod render;
 mod scene;

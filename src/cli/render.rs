@@ -3,12 +3,11 @@
 use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
 use super::job::RenderJob;
-use super::method::Method;
 use super::{interrupt, progress, scene, talk, verify};
 use crate::eye::Window;
 use crate::image::metrics::rel_mse_of_variance;
 use crate::image::{Film, Image, Metadata, false_colour, write_exr, write_png, write_srgb8};
-use crate::method::{Control, Output};
+use crate::method::{Control, Method, Output};
 use crate::scene::formats::Loaded;
 use crate::stats::{Stage, Stats, Stopwatch, peak_resident_bytes};
 use crate::verify::verify as measure_error;

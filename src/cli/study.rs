@@ -4,7 +4,7 @@ use super::bench::{pool, write};
 use super::bench_args::BenchArgs;
 use super::exit::Failure;
 use super::{interrupt, talk};
-use crate::bench::study::{Plan, ReferenceSettings, Study, StudyError, file_of};
+use crate::bench::study::{Plan, ReferenceSettings, SAMPLES, Study, StudyError, file_of};
 use crate::bench::{Benchmark, Kind};
 use crate::method::Control;
 use anyhow::{Context as _, anyhow};
@@ -41,6 +41,8 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
             spp: args.study.reference_spp.unwrap_or(defaults.spp),
             seconds: args.study.reference_seconds.unwrap_or(defaults.seconds),
         },
+        samples: args.study.samples.unwrap_or(SAMPLES),
+        knobs: args.study.knobs,
     };
     let pool = pool(plan.threads)?;
     let study = Study::new(plan, &control, &|what| talk::note(what)).map_err(failure)?;
@@ -64,6 +66,7 @@ fn scene_files(args: &BenchArgs, scenes: &[&str]) -> Vec<PathBuf> {
 fn failure(error: StudyError) -> Failure {
     match error {
         StudyError::Scene(_) | StudyError::Compare(_) => Failure::input(error),
+        StudyError::Knob { .. } => Failure::usage(error),
         StudyError::Build { .. } => Failure::render(error),
         StudyError::Folder { .. } | StudyError::Write(_) => Failure::output(error),
         StudyError::Interrupted => Failure::interrupted(error),

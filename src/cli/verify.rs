@@ -1,9 +1,9 @@
 //! `render --verify`: the picture's measured error, in the statistics and in the file.
 
 use super::args::{VerifyAgainst, VerifyArgs};
-use super::method::Method;
 use crate::eye::Look;
 use crate::image::Metadata;
+use crate::method::Method;
 use crate::stats::Stats;
 use crate::verify::{Settings, Verified};
 

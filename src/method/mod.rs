@@ -1,6 +1,7 @@
 //! The renderers compared, one folder each; they share every stage they can.
 
 pub mod cache;
+mod chosen;
 pub mod control;
 mod counts;
 pub mod lightcuts;
@@ -9,5 +10,6 @@ pub mod output;
 pub mod path;
 pub mod photon_cache;
 
+pub use chosen::Method;
 pub use control::{Control, Progress};
 pub use output::Output;

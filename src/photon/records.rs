@@ -111,7 +111,7 @@ impl PhotonSource<'_> {
             Footprint::of_gradient(point.normal, g.gradient * LUMINANCE, luminance, radius, settings)
         };
         let Gathered { vector, gradient, .. } = g;
-        let facts = Facts { sample, cut: self.strata.len() as u32, ..Facts::default() };
+        let facts = Facts { sample, cut: self.strata.len() as u32, distance: g.distance, ..Facts::default() };
         let (position, normal, sharing) = (point.position, point.normal, point.sharing);
         let record = Record { position, normal, sharing, footprint, vector, gradient, luminance, facts };
         work.series(&self.strata, point, how.2);

@@ -33,7 +33,7 @@ fn the_table_covers_all_methods_and_renders_nothing_twice() {
         assert_eq!(scene["reference"]["spp"], 8);
         assert!(scene["reference"]["standard_error"].as_f64().unwrap() > 0.0);
         let rows = scene["rows"].as_array().unwrap();
-        for label in ["cache", "cache, anisotropic", "cache, isotropic", "lightcuts"] {
+        for label in ["cache", "cache, anisotropic", "cache, isotropic", "photon-cache", "lightcuts"] {
             let row = rows.iter().find(|row| row["label"] == label).unwrap();
             assert!(row["total"].as_f64().unwrap() > 0.0 && row["main"] == true, "{row}");
             // Few paths and few samples, but the same scene: of the same brightness.
@@ -42,7 +42,8 @@ fn the_table_covers_all_methods_and_renders_nothing_twice() {
             let flip = row["against_lightcuts"]["flip"].as_f64();
             assert!(flip.is_none_or(|flip| flip < 0.1) && flip.is_none() == (label == "lightcuts"), "{row}");
         }
-        pictures += rows.len() + 1;
+        // With two references.
+        pictures += rows.len() + 2;
     }
     assert_eq!(rendered(&first.stderr).len(), pictures, "{}", first.stderr);
     let html = fs::read_to_string(sandbox.path("study/table1.html")).unwrap();
@@ -56,16 +57,54 @@ fn the_table_covers_all_methods_and_renders_nothing_twice() {
     // What is lost is rendered again, and references grow by what they lack.
     let folder = sandbox.path("study/pictures");
     let lost = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let lost = lost.filter(|path| path.to_str().unwrap().contains("knot--cache--isotropic"));
+    let lost = lost.filter(|path| path.to_str().unwrap().contains("knot--photon-cache"));
     lost.for_each(|path| fs::remove_file(path).unwrap());
     let more = run(&["--reference-spp", "16"]);
     let lines = rendered(&more.stderr);
-    assert_eq!(lines.len(), 3, "{lines:?}");
-    assert!(
-        lines[1..].iter().all(|line| line.contains("knot")) && lines[2].contains("isotropic"),
-        "{lines:?}"
-    );
+    let count = |what: &str| lines.iter().filter(|line| line.contains(what)).count();
+    assert_eq!((count("reference"), count("photon-cache"), lines.len()), (4, 4, 8), "{lines:?}");
     assert_eq!(json(&sandbox.path("study/table1.json"))["scenes"][1]["reference"]["spp"], 16);
+}
+
+#[test]
+fn the_trade_sweeps_knobs_and_finds_the_front() {
+    let sandbox = Sandbox::new();
+    let base = ["bench", "trade", "room.xml", "-o", "study", "--knob", "epsilon", "--knob", "spp"];
+    let size = ["--resolution", "48x32", "--reference-spp", "16", "--samples", "4", "--threads", "2"];
+    let run = || sandbox.run(&[&base[..], &size].concat()).expect(0);
+    let first = run();
+    let trade = json(&sandbox.path("study/trade.json"));
+    let scene = &trade["scenes"][0];
+    let points = scene["points"].as_array().unwrap();
+    let sweeps = scene["sweeps"].as_array().unwrap();
+    assert_eq!(
+        sweeps.iter().map(|s| s["knob"].as_str().unwrap()).collect::<Vec<_>>(),
+        ["--epsilon", "--spp"]
+    );
+    for sweep in sweeps {
+        let levels = sweep["levels"].as_array().unwrap();
+        assert!(levels.len() > 2, "{sweep}");
+        for level in levels {
+            let point = &points[level[1].as_u64().unwrap() as usize];
+            assert!(point["label"].as_str().unwrap().ends_with(level[0].as_str().unwrap()), "{point}");
+            assert_eq!(point["light"].is_null(), sweep["knob"] == "--spp", "{point}");
+        }
+    }
+    let sorted = |sort: &str| points.iter().filter(|point| point["sort"] == sort).count();
+    assert_eq!((sorted("default"), sorted("sample"), sorted("other")), (1, 4, 2));
+    let figures = |point: &Value| [point["seconds"].as_f64().unwrap(), point["flip"].as_f64().unwrap()];
+    let front: Vec<&Value> = points.iter().filter(|point| point["on_flip_front"] == true).collect();
+    assert!(!front.is_empty());
+    for point in points.iter().filter(|point| point["sort"] != "other") {
+        let [seconds, flip] = figures(point);
+        assert!(front.iter().all(|p| !(figures(p)[0] > seconds && figures(p)[1] > flip)), "{point}");
+    }
+    let html = fs::read_to_string(sandbox.path("study/trade.html")).unwrap();
+    assert!(html.matches("<svg").count() == 5 && !html.contains("http"));
+
+    let again = run();
+    assert_eq!((rendered(&again.stderr), again.stdout), (vec![], first.stdout));
+    assert!(sandbox.run(&[&base[..], &["--knob", "luck"]].concat()).expect(2).stderr.contains("patch"));
 }
 
 #[test]

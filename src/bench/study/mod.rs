@@ -41,6 +41,10 @@ pub struct Study<'a> {
     pub resolution: [u32; 2],
     /// How good references are to be.
     pub reference: ReferenceSettings,
+    /// Points of a designed sample, where there is one.
+    pub samples: u32,
+    /// Names of the settings that are varied, where any are; if there are none, all.
+    pub knobs: Vec<String>,
     /// Stops the study between pictures and within them.
     pub control: &'a Control,
     /// Called with what is being done.
@@ -70,7 +74,14 @@ pub struct Plan {
     pub resolution: [u32; 2],
     /// See [`Study`].
     pub reference: ReferenceSettings,
+    /// See [`Study`].
+    pub samples: u32,
+    /// See [`Study`].
+    pub knobs: Vec<String>,
 }
+
+/// Points of a designed sample, unless the user wants others.
+pub const SAMPLES: u32 = 32;
 
 /// Why a study ended early. What had been rendered until then is kept.
 #[derive(Debug, thiserror::Error)]
@@ -100,6 +111,14 @@ pub enum StudyError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A setting to vary that does not exist.
+    #[error("there is no knob {name}; there are: {known}")]
+    Knob {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
     /// It was cancelled.
     #[error("interrupted; what is rendered is kept, the same command goes on from there")]
     Interrupted,
@@ -112,9 +131,9 @@ impl<'a> Study<'a> {
         control: &'a Control,
         say: &'a (dyn Fn(&str) + Sync),
     ) -> Result<Study<'a>, StudyError> {
-        let Plan { folder, threads, repeats, resolution, reference } = plan;
+        let Plan { folder, threads, repeats, resolution, reference, samples, knobs } = plan;
         let store = Store::open(&folder)?;
-        Ok(Study { threads, repeats, resolution, reference, control, say, store })
+        Ok(Study { threads, repeats, resolution, reference, samples, knobs, control, say, store })
     }
 
     /// Loads a scene.

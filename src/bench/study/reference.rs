@@ -1,4 +1,4 @@
-//! Converged references: path-traced in two independent halves, in rounds that are kept as they come.
+//! Converged references, of pixels or of the places of eye samples: path-traced in two independent halves, in rounds that are kept as they come.
 //!
 //! Half the halves' difference estimates the noise of their mean, pixel by pixel; and as the halves' errors are
 //! independent, a picture's mean square error against the truth is the mean of the product of its differences
@@ -6,6 +6,7 @@
 
 use super::store::Kept;
 use super::{Study, StudyError, Subject};
+use crate::eye::Look;
 use crate::image::metrics::{flip_map, psnr, rel_mse_of_variance};
 use crate::image::{Image, tone};
 use crate::math::Rgb;
@@ -62,13 +63,18 @@ pub struct Noise {
 }
 
 /// Renders what is missing of the subject's reference.
-pub(super) fn reference(study: &Study, subject: &Subject) -> Result<Reference, StudyError> {
-    let name = format!("{}, reference", subject.name);
+pub(super) fn reference(study: &Study, subject: &Subject, look: Look) -> Result<Reference, StudyError> {
+    let (of, cycle) = match look {
+        Look::Pixels => ("", 1),
+        Look::EyeSamples { spp, .. } => (" of eye samples", spp.max(1)),
+    };
+    let name = format!("{}, reference{of}", subject.name);
     let key = json!({
         "scene": format!("{:016x}", subject.hash),
         "film": study.resolution,
         "version": env!("CARGO_PKG_VERSION"),
         "method": "path",
+        "look": format!("{look:?}"),
     });
     let mut progress = match study.store.load(&name, &key, &["a", "b"]) {
         Some(kept) => Progress::resume(kept),
@@ -79,7 +85,8 @@ pub(super) fn reference(study: &Study, subject: &Subject) -> Result<Reference, S
         && (progress.rounds == 0 || progress.seconds < study.reference.seconds)
     {
         let spp = (study.reference.spp.div_ceil(2) - progress.each).min(ROUND);
-        progress.round(study, subject, spp)?;
+        // Each place equally often.
+        progress.round(study, subject, look, spp.next_multiple_of(cycle))?;
         study.store.save(&name, &key, &progress.kept())?;
         (study.say)(&format!("{name}: {} samples a pixel, {:.0} s", progress.each * 2, progress.seconds));
     }
@@ -109,12 +116,12 @@ impl Progress {
         Some(Progress { halves: halves.try_into().ok()?, each, rounds, seconds, cpu_seconds })
     }
 
-    fn round(&mut self, study: &Study, subject: &Subject, spp: u32) -> Result<(), StudyError> {
+    fn round(&mut self, study: &Study, subject: &Subject, look: Look, spp: u32) -> Result<(), StudyError> {
         let watch = Stopwatch::start();
         let mut more = Vec::with_capacity(2);
         for half in 0..2 {
             // Seed 0 is the default of all methods, which nothing should share with its reference.
-            let settings = path::Settings { spp, seed: 1 + 2 * self.rounds + half, max_depth: None };
+            let settings = path::Settings { spp, seed: 1 + 2 * self.rounds + half, max_depth: None, look };
             let output = path::render(&subject.world, &subject.window, &settings, study.control);
             if !output.complete {
                 return Err(StudyError::Interrupted);

@@ -3,8 +3,9 @@
 use super::reference::{Reference, reference};
 use super::store::{Kept, program};
 use super::{Study, StudyError, Subject};
-use crate::cli::method::Method;
+use crate::eye::Look;
 use crate::image::Image;
+use crate::method::Method;
 use crate::stats::Stage;
 use serde_json::{Value, json};
 
@@ -28,8 +29,8 @@ pub struct Run {
 
 impl Study<'_> {
     /// The subject's reference, as far as the settings ask.
-    pub fn reference(&self, subject: &Subject) -> Result<Reference, StudyError> {
-        reference(self, subject)
+    pub fn reference(&self, subject: &Subject, look: Look) -> Result<Reference, StudyError> {
+        reference(self, subject, look)
     }
 
     /// Renders, unless this program has already done so.
@@ -43,9 +44,12 @@ impl Study<'_> {
             "threads": self.threads,
             "repeats": self.repeats,
             "method": method.name(),
-            "settings": method.settings(),
+            // All settings, those without a name on the command line too.
+            "settings": format!("{method:?}"),
         });
-        if let Some(kept) = self.store.load(&name, &key, &[]) {
+        // Whatever it is called here.
+        let file = format!("{}, {}", subject.name, method.name());
+        if let Some(kept) = self.store.load(&file, &key, &[]) {
             return Ok(Run { color: kept.color, stats: kept.facts });
         }
         let mut best: Option<Run> = None;
@@ -64,7 +68,7 @@ impl Study<'_> {
         let Some(run) = best else { return Err(StudyError::Interrupted) };
         (self.say)(&format!("{name}: {:.2} s", run.seconds(&Stage::ALL)));
         let kept = Kept { color: run.color.clone(), layers: Vec::new(), facts: run.stats.clone() };
-        self.store.save(&name, &key, &kept)?;
+        self.store.save(&file, &key, &kept)?;
         Ok(run)
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::bench::study::Candidate;
 use crate::cache::{DirectLight, Footprints};
-use crate::cli::method::Method;
-use crate::method::{cache, lightcuts};
+use crate::eye::Look;
+use crate::method::{Method, cache, lightcuts, photon_cache};
 
 /// A method's name over several settings, which make a curve of error against time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +12,13 @@ pub enum Family {
     Cache,
     /// Lightcuts per pixel.
     Lightcuts,
+    /// Records of final gathering over a photon map.
+    PhotonCache,
 }
+
+/// Families that others are compared with, by the label of their own row.
+pub const OPPONENTS: [(Family, &str); 2] =
+    [(Family::Lightcuts, "lightcuts"), (Family::PhotonCache, "photon-cache")];
 
 /// A row of the table.
 pub struct Entry {
@@ -27,9 +33,17 @@ pub struct Entry {
 }
 
 /// Errors of lightcuts per pixel that make its curve, relative to the default.
-const COARSER: [f32; 4] = [0.5, 2.0, 4.0, 8.0];
+const CURVE: [f32; 4] = [0.5, 2.0, 4.0, 8.0];
+/// Rays of photon-cache that make its curve, relative to the default.
+const RAYS: [f32; 3] = [0.25, 0.5, 2.0];
 
-/// All rows. Lightcuts per pixel take the eye samples, virtual lights and cuts of the cache.
+/// Where the eye samples of all rows are.
+pub fn look() -> Look {
+    let cache::Settings { spp, seed, .. } = cache::Settings::default();
+    Look::EyeSamples { spp, seed }
+}
+
+/// All rows. Other methods take the eye samples of the cache, lightcuts per pixel its virtual lights and cuts too.
 pub fn entries() -> Vec<Entry> {
     let default = cache::Settings::default();
     let shaped = |footprints| {
@@ -47,6 +61,12 @@ pub fn entries() -> Vec<Entry> {
         family: default.family,
         ..lightcuts::Settings::default()
     };
+    let photons = photon_cache::Settings {
+        spp: default.spp,
+        seed: default.seed,
+        max_depth: default.max_depth,
+        ..photon_cache::Settings::default()
+    };
     let entry = |label: &str, paper, family, method| Entry {
         candidate: Candidate { label: label.to_owned(), method },
         family,
@@ -57,14 +77,22 @@ pub fn entries() -> Vec<Entry> {
         entry("cache", None, Family::Cache, Method::Cache(default)),
         entry("cache, anisotropic", Some("LCache2"), Family::Cache, shaped(Footprints::Anisotropic)),
         entry("cache, isotropic", Some("LCache1"), Family::Cache, shaped(Footprints::Isotropic)),
+        entry("photon-cache", Some("PM"), Family::PhotonCache, Method::PhotonCache(photons)),
         entry("lightcuts", Some("LC"), Family::Lightcuts, Method::Lightcuts(cuts)),
     ];
-    for factor in COARSER {
+    for factor in CURVE {
         let mut settings = cuts;
         settings.cut.epsilon *= factor;
         let label = format!("lightcuts, ε {} %", 100.0 * settings.cut.epsilon);
         let method = Method::Lightcuts(settings);
         entries.push(Entry { main: false, paper: None, ..entry(&label, None, Family::Lightcuts, method) });
+    }
+    for factor in RAYS {
+        let mut settings = photons;
+        settings.rays = (settings.rays as f32 * factor).round() as u32;
+        let label = format!("photon-cache, {} rays", settings.rays);
+        let method = Method::PhotonCache(settings);
+        entries.push(Entry { main: false, paper: None, ..entry(&label, None, Family::PhotonCache, method) });
     }
     entries
 }

@@ -1,6 +1,6 @@
 //! The table as a page with plots and pictures.
 
-use super::entries::Family;
+use super::entries::{Family, OPPONENTS};
 use super::markdown::{about, claims};
 use super::row::HEADS;
 use super::{SceneTable, Table1};
@@ -22,12 +22,14 @@ pub fn html(table1: &Table1) -> String {
              cuts of eye samples' own; T_cache: splatting and adaptation; total: all that and the eye pass. PSNR and \
              FLIP are against the reference as it is, relMSE is without its noise; brightness below 1 is mostly what \
              clamping takes away. \"To LC\": against lightcuts per pixel on the same eye samples and virtual lights. \
-             \"At equal FLIP\": time of lightcuts of the same FLIP against the reference, interpolated between their \
-             grey rows; &gt; and &lt; where no grey row is as good or as bad.</p>\n<h2>Beside the paper</h2>\n";
+             \"Light\": against the reference of the eye samples alone, in which only wrong light counts. \"Speed\": time of \
+             lightcuts (LC) or photon-cache (PM) over the row's; \"at equal FLIP\" and \"at equal light\": the same for as \
+             large a FLIP, or relMSE of light, interpolated between the other's rows; &gt; and &lt; where none is as \
+             good or as bad.</p>\n<h2>Beside the paper</h2>\n";
     let heads = ["", "paper"].into_iter().map(str::to_owned);
     let heads: Vec<String> = heads.chain(table1.scenes.iter().map(|s| s.scene.clone())).collect();
     body += &table(&heads, &claims(table1), |_| false);
-    body += "<p>The paper's ratios are of times with the light pass, over its own scenes.</p>\n";
+    body += "<p>Ratios of times with the light pass; in brackets at equal FLIP / at equal error of light. The paper's are the least and largest over its own scenes.</p>\n";
     for (i, scene) in table1.scenes.iter().enumerate() {
         body += &section(scene, i);
     }
@@ -43,26 +45,31 @@ fn section(scene: &SceneTable, number: usize) -> String {
         "FLIP against the reference",
         &curves(scene, |r| r.against_reference.flip),
     );
-    let error = |row: &super::Row| row.against_reference.rel_mse;
-    text += &scatter("processor seconds", "relMSE without the reference's noise", &curves(scene, error));
+    text +=
+        &scatter("processor seconds", "relMSE of light, without noise", &curves(scene, |r| r.light.rel_mse));
     text + &pictures(scene, number)
 }
 
-/// Lightcuts as a curve, the rest as points.
+/// Other methods as curves, the cache's settings as points.
 fn curves(scene: &SceneTable, error: impl Fn(&super::Row) -> f64) -> Vec<Series> {
-    let point = |row: &super::Row| (row.total, error(row), row.label.clone());
-    let of = |family| scene.rows.iter().filter(move |row| row.family == family);
-    let mut lightcuts: Vec<_> = of(Family::Lightcuts).map(point).collect();
-    lightcuts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    vec![
-        Series { name: "lightcuts".to_owned(), colour: "#a40", joined: true, points: lightcuts },
-        Series {
-            name: String::new(),
-            colour: "#4a7fb5",
-            joined: false,
-            points: of(Family::Cache).map(point).collect(),
-        },
-    ]
+    let of = |family| {
+        let rows = scene.rows.iter().filter(move |row| row.family == family);
+        let mut points: Vec<_> = rows.map(|row| (row.total, error(row), row.label.clone())).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points
+    };
+    let mut series: Vec<Series> = OPPONENTS
+        .into_iter()
+        .zip(["#a40", "#693"])
+        .map(|((family, name), colour)| Series {
+            name: name.to_owned(),
+            colour,
+            joined: true,
+            points: of(family),
+        })
+        .collect();
+    series.push(Series { name: String::new(), colour: "#4a7fb5", joined: false, points: of(Family::Cache) });
+    series
 }
 
 /// Every method's picture, its FLIP, and parts of it; the reference's parts show under the pointer.

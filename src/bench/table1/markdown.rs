@@ -2,7 +2,7 @@
 
 use super::paper::{CLAIMS, SAVED_BY_ANISOTROPY};
 use super::row::HEADS;
-use super::{SceneTable, Table1};
+use super::{SceneTable, Speed, Table1};
 use crate::bench::study::{figure, optional};
 
 /// A section a scene, then the paper's claims.
@@ -16,7 +16,8 @@ pub fn markdown(table: &Table1) -> String {
         text += &line(rules.collect());
         scene.rows.iter().for_each(|row| text += &line(row.cells()));
     }
-    text += "\n## Beside the paper\n\n";
+    text +=
+        "\n## Beside the paper\n\nRatios of times; in brackets at equal FLIP / at equal error of light.\n\n";
     let heads: Vec<String> = ["", "paper"].into_iter().map(str::to_owned).collect();
     let scenes = table.scenes.iter().map(|scene| scene.scene.clone());
     text += &line(heads.into_iter().chain(scenes).collect());
@@ -33,7 +34,8 @@ pub fn about(scene: &SceneTable) -> String {
     format!(
         "{} triangles. Reference: {} paths a pixel, {:.0} s; its own standard error is {:.2} % of the mean radiance, \
          a relMSE of {} (taken off the relMSE below, which may so fall below 0) and a PSNR of {} dB; FLIP between its \
-         halves, which differ by twice its noise, is {}.",
+         halves, which differ by twice its noise, is {}. Reference of the eye samples (\"light\"): {} paths, a relMSE \
+         of {}.",
         scene.triangles,
         noise.spp,
         noise.cpu_seconds,
@@ -41,6 +43,8 @@ pub fn about(scene: &SceneTable) -> String {
         figure(noise.rel_mse),
         optional(noise.psnr),
         figure(noise.flip_of_halves),
+        scene.light_reference.spp,
+        figure(scene.light_reference.rel_mse),
     )
 }
 
@@ -48,9 +52,18 @@ pub fn about(scene: &SceneTable) -> String {
 pub fn claims(table: &Table1) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     for claim in &CLAIMS {
-        let ours = |scene: &SceneTable| match claim.of.map(|label| scene.row(label)) {
-            [Some(ours), Some(other)] => format!("{:.2}", other.total / ours.total.max(f64::MIN_POSITIVE)),
-            _ => "-".to_owned(),
+        let [ours, other] = claim.of;
+        let ours = |scene: &SceneTable| {
+            let versus =
+                scene.row(ours).and_then(|row| row.versus.iter().flatten().find(|v| v.method == other));
+            versus.map_or_else(
+                || "-".to_owned(),
+                |v| {
+                    let text = |speed: Option<Speed>| speed.map_or("-".to_owned(), |s| s.to_string());
+                    let equal = [text(v.at_equal_flip), text(v.at_equal_light)].join(" / ");
+                    format!("{:.2} ({equal})", v.speed)
+                },
+            )
         };
         let [least, most] = claim.range;
         rows.push(row(table, claim.what, format!("{least} to {most}"), ours));

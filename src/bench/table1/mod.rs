@@ -14,8 +14,9 @@
 //! | total | all of that and the eye pass |
 //!
 //! Deviations: the paper's ΣT leaves out T_light, our total does not. All errors are against a path-traced reference of
-//! the same scene, and against lightcuts per pixel on the same eye samples and virtual lights: what the first
-//! has more than the second is what few eye samples a pixel cannot resolve, and what clamping takes away.
+//! the same scene: of its pixels, and of the places of the eye samples alone, in which only wrong light counts, not what
+//! few eye samples a pixel cannot resolve; and against lightcuts per pixel on the same eye samples and virtual
+//! lights, where clamping does not show either.
 
 mod entries;
 mod equal;
@@ -26,10 +27,11 @@ mod row;
 
 use super::study::{Document, Errors, Noise, Reference, Run, Study, StudyError};
 use super::{Benchmark, Kind};
+use crate::eye::Look;
 use crate::image::Image;
-use entries::{Entry, Family, entries};
+use entries::{Entry, Family, OPPONENTS, entries, look};
 use equal::{Speed, speed};
-use row::Row;
+use row::{Row, Versus};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -56,6 +58,8 @@ struct SceneTable {
     triangles: usize,
     /// Its reference's own error.
     reference: Noise,
+    /// That of the reference of eye samples.
+    light_reference: Noise,
     /// The methods compared, then the points on their curves.
     rows: Vec<Row>,
     #[serde(skip)]
@@ -74,7 +78,8 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
     let mut table = Table1 { facts: study.facts(), scenes: Vec::new() };
     for path in scenes {
         let subject = study.subject(path)?;
-        let reference = study.reference(&subject)?;
+        let reference = study.reference(&subject, Look::Pixels)?;
+        let light = study.reference(&subject, look())?;
         let entries = entries();
         let runs: Vec<Run> =
             entries.iter().map(|entry| study.run(&subject, &entry.candidate)).collect::<Result<_, _>>()?;
@@ -82,7 +87,8 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
             scene: subject.name.clone(),
             triangles: subject.triangles,
             reference: reference.noise,
-            rows: rows(&entries, &runs, &reference)?,
+            light_reference: light.noise,
+            rows: rows(&entries, &runs, &reference, &light)?,
             pictures: Pictures {
                 exposure: reference.exposure,
                 reference: reference.mean,
@@ -97,33 +103,41 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
     })
 }
 
-fn rows(entries: &[Entry], runs: &[Run], reference: &Reference) -> Result<Vec<Row>, StudyError> {
+fn rows(
+    entries: &[Entry],
+    runs: &[Run],
+    reference: &Reference,
+    light: &Reference,
+) -> Result<Vec<Row>, StudyError> {
     let mut rows = Vec::with_capacity(runs.len());
     let lightcuts = entries.iter().position(|entry| entry.main && entry.family == Family::Lightcuts);
     for (i, (entry, run)) in entries.iter().zip(runs).enumerate() {
-        let mut row = Row::new(entry, run, Errors::against(&run.color, reference)?);
+        let errors = [Errors::against(&run.color, reference)?, Errors::against(&run.color, light)?];
+        let mut row = Row::new(entry, run, errors);
         if let Some(lightcuts) = lightcuts.filter(|&l| l != i) {
             row.against_lightcuts = Some(Errors::between(&run.color, &runs[lightcuts].color)?);
         }
         rows.push(row);
     }
-    for i in 0..rows.len() {
-        let other = |family| {
-            let of = |row: &&Row| row.family == family && rows[i].family != family;
-            rows.iter().filter(of).map(|row| (row.total, row.against_reference.flip)).collect::<Vec<_>>()
-        };
-        let own = (rows[i].total, rows[i].against_reference.flip);
-        let lightcuts = speed(own, &other(Family::Lightcuts));
-        rows[i].speed_at_equal_flip = lightcuts;
-        if let Some(l) = lightcuts_total(&rows) {
-            rows[i].speed = l / rows[i].total.max(f64::MIN_POSITIVE);
-        }
-    }
+    let versus: Vec<_> = rows.iter().map(|row| OPPONENTS.map(|other| versus(row, &rows, other))).collect();
+    rows.iter_mut().zip(versus).for_each(|(row, versus)| row.versus = versus);
     Ok(rows)
 }
 
-fn lightcuts_total(rows: &[Row]) -> Option<f64> {
-    rows.iter().find(|row| row.main && row.family == Family::Lightcuts).map(|row| row.total)
+/// Against another family: its own row, and the curve of all its rows.
+fn versus(row: &Row, rows: &[Row], (family, label): (Family, &str)) -> Option<Versus> {
+    let own = rows.iter().find(|other| other.label == label)?;
+    let at_equal = |error: fn(&Row) -> f64| {
+        let others = rows.iter().filter(|other| other.family == family);
+        let others: Vec<_> = others.map(|other| (other.total, error(other))).collect();
+        speed((row.total, error(row)), &others).filter(|_| row.family != family)
+    };
+    Some(Versus {
+        method: label.to_owned(),
+        speed: own.total / row.total.max(f64::MIN_POSITIVE),
+        at_equal_flip: at_equal(|row| row.against_reference.flip),
+        at_equal_light: at_equal(|row| row.light.rel_mse),
+    })
 }
 
 impl SceneTable {

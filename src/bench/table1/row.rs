@@ -1,7 +1,7 @@
 //! A method's figures on a scene.
 
 use super::Speed;
-use super::entries::{Entry, Family};
+use super::entries::{Entry, Family, OPPONENTS};
 use crate::bench::study::{Errors, Run, figure, optional, seconds};
 use crate::stats::Stage;
 use serde::Serialize;
@@ -26,28 +26,41 @@ pub struct Row {
     pub anisotropy: [Option<f64>; 2],
     /// Radius over distance, direct and indirect.
     pub accuracy: [Option<f64>; 2],
-    /// Clusters in a cut.
+    /// Clusters in a cut of indirect records, or rays of their gathering; in cuts of pixels without records.
     pub cut: Option<f64>,
     /// Processor seconds: eye pass, light pass and trees, records and cuts, splatting.
     pub eye: f64,
-    pub light: f64,
+    pub light_pass: f64,
     pub f: f64,
     /// None where there are no records.
     pub cache: Option<f64>,
     pub total: f64,
     /// Elapsed seconds.
     pub elapsed: f64,
-    /// Time of lightcuts per pixel over this one's.
-    pub speed: f64,
-    /// The same at equal FLIP against the reference.
-    pub speed_at_equal_flip: Option<Speed>,
+    /// Speed against other methods.
+    pub versus: [Option<Versus>; OPPONENTS.len()],
     pub against_reference: Errors,
+    /// Against the reference of the eye samples.
+    pub light: Errors,
     /// None for lightcuts themselves.
     pub against_lightcuts: Option<Errors>,
 }
 
+/// Another method's time over this one's.
+#[derive(Clone, Serialize)]
+pub struct Versus {
+    /// The label of the other's row.
+    pub method: String,
+    /// As they are.
+    pub speed: f64,
+    /// At equal FLIP against the reference.
+    pub at_equal_flip: Option<Speed>,
+    /// At equal relMSE against the reference of the eye samples.
+    pub at_equal_light: Option<Speed>,
+}
+
 /// Heads of the columns of [`Row::cells`].
-pub const HEADS: [&str; 21] = [
+pub const HEADS: [&str; 27] = [
     "method",
     "paper's",
     "N_c",
@@ -64,20 +77,25 @@ pub const HEADS: [&str; 21] = [
     "relMSE",
     "FLIP",
     "brightness",
+    "light relMSE",
+    "light FLIP",
     "PSNR to LC",
     "relMSE to LC",
     "FLIP to LC",
     "speed to LC",
     "at equal FLIP",
+    "at equal light",
+    "speed to PM",
+    "at equal FLIP",
+    "at equal light",
 ];
 
 impl Row {
     /// Of a picture.
-    pub fn new(entry: &Entry, run: &Run, against_reference: Errors) -> Row {
+    pub fn new(entry: &Entry, run: &Run, [against_reference, light_errors]: [Errors; 2]) -> Row {
         let records = |layer: &str| run.counter("Cache", &format!("records, {layer}"));
         let records = records("direct").zip(records("indirect")).map(|(d, i)| [d, i]);
         let mean = |what: &str| ["direct", "indirect"].map(|l| run.counter("Cache", &format!("{what}, {l}")));
-        let group = if records.is_some() { "Records" } else { "Lightcut" };
         let [eye, light, f, cache] = [
             &[Stage::EyePass][..],
             &[Stage::LightPass, Stage::Tree],
@@ -94,16 +112,19 @@ impl Row {
             records,
             anisotropy: mean("anisotropy"),
             accuracy: mean("accuracy"),
-            cut: run.counter(group, "mean cut"),
+            cut: match records {
+                Some(_) => run.counter("Cache", "cut or rays, indirect"),
+                None => run.counter("Lightcut", "mean cut"),
+            },
             eye,
-            light,
+            light_pass: light,
             f,
             cache: records.map(|_| cache),
             total: run.seconds(&Stage::ALL),
             elapsed: run.elapsed(),
-            speed: 1.0,
-            speed_at_equal_flip: None,
+            versus: [const { None }; OPPONENTS.len()],
             against_reference,
+            light: light_errors,
             against_lightcuts: None,
         }
     }
@@ -118,7 +139,14 @@ impl Row {
         };
         let errors = &self.against_reference;
         let others = self.against_lightcuts.as_ref();
-        vec![
+        let versus = self.versus.iter().flat_map(|versus| match versus {
+            Some(v) => {
+                let text = |speed: &Option<Speed>| speed.map_or("-".to_owned(), |s| s.to_string());
+                [format!("{:.2}", v.speed), text(&v.at_equal_flip), text(&v.at_equal_light)]
+            }
+            None => ["-", "-", "-"].map(str::to_owned),
+        });
+        let cells = vec![
             self.label.clone(),
             self.paper.unwrap_or("").to_owned(),
             total.map_or("-".to_owned(), |n| format!("{n:.0}")),
@@ -126,7 +154,7 @@ impl Row {
             pair(self.anisotropy),
             pair(self.accuracy),
             optional(self.cut),
-            seconds(self.light),
+            seconds(self.light_pass),
             seconds(self.f),
             self.cache.map_or("-".to_owned(), seconds),
             seconds(self.total),
@@ -135,11 +163,12 @@ impl Row {
             figure(errors.rel_mse),
             figure(errors.flip),
             figure(errors.brightness),
+            figure(self.light.rel_mse),
+            figure(self.light.flip),
             optional(others.and_then(|e| e.psnr)),
             optional(others.map(|e| e.rel_mse)),
             optional(others.map(|e| e.flip)),
-            format!("{:.2}", self.speed),
-            self.speed_at_equal_flip.map_or("-".to_owned(), |s| s.to_string()),
-        ]
+        ];
+        cells.into_iter().chain(versus).collect()
     }
 }

@@ -126,6 +126,9 @@ impl Cache {
         seams.dedup();
         stats.count("Cache/samples at seams", seams.len() as u64);
         counts::cuts(stats, "Records", &self.counts);
+        for (layer, name) in self.layers.iter().zip(["direct", "indirect"]) {
+            shapes(&layer.records, name, stats);
+        }
         let sum = |f: &dyn Fn(&Record) -> f32| self.layers[1].records.iter().map(|r| f64::from(f(r))).sum();
         let total: f64 = sum(&|r| r.luminance + r.facts.clamped - r.facts.compensated);
         let clamped: f64 = sum(&|r| r.facts.clamped);
@@ -170,4 +173,21 @@ impl Cache {
         }
         jobs
     }
+}
+
+/// Means over a layer's records: clusters or rays, anisotropy, and radius (of the circle of the same area) over the
+/// distance of what casts light and shadow.
+fn shapes(records: &[Record], layer: &str, stats: &mut Stats) {
+    let mut mean = |what: &str, of: &dyn Fn(&Record) -> f32| {
+        let values = records.iter().map(|r| f64::from(of(r))).filter(|value| value.is_finite());
+        let (sum, count) = values.fold((0.0, 0u64), |(sum, count), value| (sum + value, count + 1));
+        if count > 0 {
+            stats.add(&format!("Cache/{what}, {layer}"), sum / count as f64);
+        }
+    };
+    mean("cut or rays", &|r| r.facts.cut as f32);
+    mean("anisotropy", &|r| {
+        r.footprint.radii[0].max(r.footprint.radii[1]) / r.footprint.radii[0].min(r.footprint.radii[1])
+    });
+    mean("accuracy", &|r| (r.footprint.radii[0] * r.footprint.radii[1]).sqrt() / r.facts.distance);
 }

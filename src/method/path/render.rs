@@ -29,11 +29,13 @@ pub struct Settings {
     pub seed: u32,
     /// Longest path in edges; `None` for the scene's own limit.
     pub max_depth: Option<u32>,
+    /// What a pixel is taken to be.
+    pub look: Look,
 }
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { spp: 64, seed: 0, max_depth: None }
+        Settings { spp: 64, seed: 0, max_depth: None, look: Look::Pixels }
     }
 }
 
@@ -111,7 +113,7 @@ impl Tile {
             let paths = window.tile(index, TILE).map(|at| window.film_pixel(at)).flat_map(|pixel| {
                 samples.clone().map(move |sample| Start { pixel, sample, seed: settings.seed })
             });
-            start(&mut batch, paths, world, window, Look::Pixels);
+            start(&mut batch, paths, world, window, settings.look);
             let mut values = batch.trace(world, max_depth, &mut self.counts);
             for pixel in &mut self.pixels {
                 for (sample, mut value) in samples.clone().zip(values.by_ref()) {

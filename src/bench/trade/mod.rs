@@ -1,0 +1,333 @@
+//! What each setting of the cache buys: error against time, one setting at a time and by a designed sample.
+//!
+//! Every knob is swept alone around the defaults; then all are varied together by an Owen-scrambled Sobol design,
+//! whose projection on any one knob is stratified. Three errors are told apart:
+//!
+//! - from the limit: against lightcuts of a quarter of the error on the same virtual lights, which is what records and
+//!   cuts add;
+//! - of light: against a reference path-traced through the picture's own eye samples, which adds what virtual lights
+//!   and their clamping get wrong;
+//! - FLIP: against a reference of whole pixels, which adds what few eye samples a pixel cannot resolve.
+//!
+//! Not swept, for they are no settings of the cache: probe rays, build quality, robust traversal.
+
+mod front;
+mod html;
+mod knobs;
+mod markdown;
+mod verdict;
+
+use super::study::{Candidate, Document, Errors, Noise, Reference, Run, Study, StudyError, Subject};
+use super::{Benchmark, Kind};
+use crate::eye::Look;
+use crate::method::cache::Settings;
+use crate::method::{Method, lightcuts, photon_cache};
+use crate::sampling::Sampler;
+use crate::stats::Stage;
+use front::{Effect, effect, front};
+use knobs::{JudgedBy, Knob, knobs};
+use serde::Serialize;
+use serde_json::Value;
+use std::path::PathBuf;
+use verdict::{Course, ERROR_TOLERANCE, TIME_TOLERANCE, course, verdict};
+
+pub(super) const BENCHMARK: Benchmark = Benchmark {
+    name: "trade",
+    about: "What each setting of the cache buys: error against time, and the Pareto front",
+    kind: Kind::Study { scenes: &[], pixels: [256, 256], run },
+};
+
+/// All that was found out.
+#[derive(Serialize)]
+struct Trade {
+    facts: Vec<(String, String)>,
+    scenes: Vec<SceneTrade>,
+}
+
+/// A scene's part.
+#[derive(Serialize)]
+struct SceneTrade {
+    scene: String,
+    /// Of the reference of pixels.
+    reference: Noise,
+    /// Of that of eye samples.
+    light_reference: Noise,
+    points: Vec<Point>,
+    sweeps: Vec<Sweep>,
+    effects: Vec<KnobEffect>,
+}
+
+/// A picture.
+#[derive(Serialize)]
+struct Point {
+    label: String,
+    /// Which sort of point it is.
+    sort: Sort,
+    settings: Value,
+    /// Processor seconds.
+    seconds: f64,
+    /// What differs from the defaults.
+    turned: String,
+    /// Relative RMSE from the limit, where the eye samples are the same.
+    limit: Option<f64>,
+    /// Relative RMSE of light, likewise.
+    light: Option<f64>,
+    /// FLIP against the reference of pixels.
+    flip: f64,
+    /// Whether no other point of the cache is faster and no worse.
+    on_limit_front: bool,
+    on_light_front: bool,
+    on_flip_front: bool,
+}
+
+/// Why a picture was rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Sort {
+    /// The cache's defaults.
+    Default,
+    /// One knob turned.
+    Sweep,
+    /// Of the designed sample.
+    Sample,
+    /// Another method.
+    Other,
+}
+
+/// A knob turned.
+#[derive(Serialize)]
+struct Sweep {
+    knob: &'static str,
+    /// Level and its point.
+    levels: Vec<(String, usize)>,
+    /// Courses of error and time from coarse to fine.
+    error: Course,
+    time: Course,
+    verdict: &'static str,
+    /// Which error.
+    judged_by: JudgedBy,
+}
+
+/// A knob's effect in the designed sample, on the error of light.
+#[derive(Serialize)]
+struct KnobEffect {
+    knob: &'static str,
+    error: Option<Effect>,
+    time: Option<Effect>,
+}
+
+/// Seed of the designed sample.
+const DESIGN: u32 = 1;
+
+fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
+    // Before anything is rendered.
+    chosen(&study.knobs)?;
+    let mut trade = Trade { facts: study.facts(), scenes: Vec::new() };
+    for path in scenes {
+        let subject = study.subject(path)?;
+        trade.scenes.push(scene(study, &subject)?);
+    }
+    Ok(Document {
+        json: serde_json::json!(trade),
+        markdown: markdown::markdown(&trade),
+        html: html::html(&trade),
+    })
+}
+
+/// Renders points and judges them.
+struct Judge<'a> {
+    study: &'a Study<'a>,
+    subject: &'a Subject,
+    reference: Reference,
+    light: Reference,
+    limit: Run,
+    points: Vec<Point>,
+}
+
+fn scene(study: &Study, subject: &Subject) -> Result<SceneTrade, StudyError> {
+    let Settings { spp, seed, .. } = Settings::default();
+    let mut judge = Judge {
+        study,
+        subject,
+        reference: study.reference(subject, Look::Pixels)?,
+        light: study.reference(subject, Look::EyeSamples { spp, seed })?,
+        limit: study.run(subject, &limit())?,
+        points: Vec::new(),
+    };
+    judge.point("cache", "", Sort::Default, Method::Cache(Settings::default()), true)?;
+    for (label, method) in others() {
+        judge.point(label, "", Sort::Other, method, true)?;
+    }
+    let knobs = chosen(&study.knobs)?;
+    let sweeps: Vec<Sweep> = knobs.iter().map(|knob| judge.sweep(knob)).collect::<Result<_, _>>()?;
+    let effects = judge.sample(&knobs)?;
+    let Judge { reference, light, mut points, .. } = judge;
+    mark_fronts(&mut points);
+    Ok(SceneTrade {
+        scene: subject.name.clone(),
+        reference: reference.noise,
+        light_reference: light.noise,
+        points,
+        sweeps,
+        effects,
+    })
+}
+
+/// What cuts and records of the default's virtual lights come to as they are made better.
+fn limit() -> Candidate {
+    let Settings { spp, seed, light, cut, family, .. } = Settings::default();
+    let mut settings = lightcuts::Settings { spp, seed, light, cut, family, ..Default::default() };
+    settings.cut.epsilon *= 0.25;
+    settings.cut.max_cut *= 16;
+    Candidate { label: "limit".to_owned(), method: Method::Lightcuts(settings) }
+}
+
+/// The knobs named, or all.
+fn chosen(names: &[String]) -> Result<Vec<Knob>, StudyError> {
+    let all = knobs();
+    let plain = |knob: &Knob| knob.name.trim_start_matches('-').to_owned();
+    let known: Vec<String> = all.iter().map(plain).collect();
+    if let Some(name) = names.iter().find(|name| !known.contains(name)) {
+        return Err(StudyError::Knob { name: name.clone(), known: known.join("; ") });
+    }
+    Ok(all.into_iter().filter(|knob| names.is_empty() || names.contains(&plain(knob))).collect())
+}
+
+/// The other methods at their defaults, on the cache's eye samples.
+fn others() -> [(&'static str, Method); 2] {
+    let Settings { spp, seed, light, cut, family, .. } = Settings::default();
+    let cuts = lightcuts::Settings { spp, seed, light, cut, family, ..Default::default() };
+    let photons = photon_cache::Settings { spp, seed, ..Default::default() };
+    [("lightcuts", Method::Lightcuts(cuts)), ("photon-cache", Method::PhotonCache(photons))]
+}
+
+impl Judge<'_> {
+    /// Renders a point; its index.
+    fn point(
+        &mut self,
+        label: &str,
+        turned: &str,
+        sort: Sort,
+        method: Method,
+        same_samples: bool,
+    ) -> Result<usize, StudyError> {
+        let run = self.study.run(self.subject, &Candidate { label: label.to_owned(), method })?;
+        let (mut light, mut limit) = (None, None);
+        if same_samples {
+            light = Some(Errors::against(&run.color, &self.light)?.rel_rmse());
+            limit = Some(Errors::between(&run.color, &self.limit.color)?.rel_rmse());
+        }
+        self.points.push(Point {
+            label: label.to_owned(),
+            sort,
+            settings: method.settings(),
+            seconds: run.seconds(&Stage::ALL),
+            turned: turned.to_owned(),
+            limit,
+            light,
+            flip: Errors::against(&run.color, &self.reference)?.flip,
+            on_limit_front: false,
+            on_light_front: false,
+            on_flip_front: false,
+        });
+        Ok(self.points.len() - 1)
+    }
+
+    fn sweep(&mut self, knob: &Knob) -> Result<Sweep, StudyError> {
+        let mut levels = Vec::with_capacity(knob.levels.len());
+        for level in &knob.levels {
+            let mut settings = Settings::default();
+            (knob.with)(&mut settings);
+            level.apply(&mut settings);
+            let label = format!("{} {}", knob.name, level.text);
+            let point = self.point(
+                &label,
+                &label,
+                Sort::Sweep,
+                Method::Cache(settings),
+                knob.judged_by != JudgedBy::Flip,
+            )?;
+            levels.push((level.text.clone(), point));
+        }
+        let names: Vec<String> = levels.iter().map(|(text, _)| text.clone()).collect();
+        let of = |figure: &dyn Fn(&Point) -> f64| -> Vec<f64> {
+            levels.iter().map(|&(_, point)| figure(&self.points[point])).collect()
+        };
+        let error = course(&of(&|p| p.error(knob.judged_by)), &names, ERROR_TOLERANCE);
+        let time = course(&of(&|p| p.seconds), &names, TIME_TOLERANCE);
+        let verdict = verdict(&error, &time);
+        Ok(Sweep { knob: knob.name, levels, error, time, verdict, judged_by: knob.judged_by })
+    }
+
+    /// Turns all knobs together that leave the eye samples alone.
+    fn sample(&mut self, knobs: &[Knob]) -> Result<Vec<KnobEffect>, StudyError> {
+        let knobs: Vec<&Knob> = knobs.iter().filter(|knob| knob.judged_by != JudgedBy::Flip).collect();
+        let mut places = vec![Vec::new(); knobs.len()];
+        let (mut errors, mut times) = (Vec::new(), Vec::new());
+        for index in 0..self.study.samples {
+            let mut sampler = Sampler::new(DESIGN, index);
+            let mut settings = Settings::default();
+            let mut turned = Vec::new();
+            for (knob, places) in knobs.iter().zip(&mut places) {
+                let count = knob.levels.len();
+                let level = ((f64::from(sampler.next_1d()) * count as f64) as usize).min(count - 1);
+                knob.levels[level].apply(&mut settings);
+                if knob.default_level() != Some(level) {
+                    turned.push(format!("{} {}", knob.name, knob.levels[level].text));
+                }
+                places.push(level as f64 / (count - 1).max(1) as f64);
+            }
+            let label = format!("sample {index}");
+            let point =
+                self.point(&label, &turned.join("; "), Sort::Sample, Method::Cache(settings), true)?;
+            errors.push(self.points[point].light.unwrap_or(0.0));
+            times.push(self.points[point].seconds);
+        }
+        let of = |(knob, places): (&&Knob, &Vec<f64>)| KnobEffect {
+            knob: knob.name,
+            error: effect(places, &errors),
+            time: effect(places, &times),
+        };
+        Ok(knobs.iter().zip(&places).map(of).collect())
+    }
+}
+
+/// Among the cache's own points.
+fn mark_fronts(points: &mut [Point]) {
+    let own: Vec<usize> = (0..points.len()).filter(|&i| points[i].sort != Sort::Other).collect();
+    let flips: Vec<_> = own.iter().map(|&i| (points[i].seconds, points[i].flip)).collect();
+    for (&i, on) in own.iter().zip(front(&flips)) {
+        points[i].on_flip_front = on;
+    }
+    let limited: Vec<usize> = own.iter().copied().filter(|&i| points[i].limit.is_some()).collect();
+    let limits: Vec<_> =
+        limited.iter().map(|&i| (points[i].seconds, points[i].error(JudgedBy::Limit))).collect();
+    for (&i, on) in limited.iter().zip(front(&limits)) {
+        points[i].on_limit_front = on;
+    }
+    let lit: Vec<usize> = own.into_iter().filter(|&i| points[i].light.is_some()).collect();
+    let lights: Vec<_> = lit.iter().map(|&i| (points[i].seconds, points[i].light.unwrap_or(0.0))).collect();
+    for (&i, on) in lit.iter().zip(front(&lights)) {
+        points[i].on_light_front = on;
+    }
+}
+
+impl SceneTrade {
+    /// Points on a front, fastest first.
+    fn front(&self, on: fn(&Point) -> bool) -> Vec<&Point> {
+        let mut points: Vec<&Point> = self.points.iter().filter(|point| on(point)).collect();
+        points.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        points
+    }
+}
+
+impl Point {
+    /// One of its errors; 0 where it has none of that sort.
+    fn error(&self, judged_by: JudgedBy) -> f64 {
+        match judged_by {
+            JudgedBy::Limit => self.limit.unwrap_or(0.0),
+            JudgedBy::Light => self.light.unwrap_or(0.0),
+            JudgedBy::Flip => self.flip,
+        }
+    }
+}
