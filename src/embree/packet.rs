@@ -5,7 +5,7 @@
 //! the speed. Coherent packets should start at the receivers: a packet that starts at the light and
 //! fans out lost some 1e-4 of its hits.
 
-use super::{ALL_GEOMETRY, Accel, Ray};
+use super::{ALL_GEOMETRY, Accel, Hit, Ray};
 use crate::math::Vec3x16;
 use embree4_sys as sys;
 use glam::Vec3;
@@ -173,6 +173,18 @@ pub struct Hits16 {
 }
 
 impl Hits16 {
+    /// The hit in a lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Hit {
+        Hit {
+            t: self.t[lane],
+            u: self.u[lane],
+            v: self.v[lane],
+            geometry: self.geometry[lane],
+            primitive: self.primitive[lane],
+        }
+    }
+
     /// Puts a copy of lane `from` into the lanes of `to`.
     #[inline]
     pub fn repeat(&mut self, from: usize, to: u16) {

@@ -45,21 +45,24 @@ impl IrradianceMap {
     #[inline]
     pub fn at(&self, point: Vec3, normal: Vec3) -> Option<(Rgb, f32)> {
         let mut best = None;
-        let [x, y, z] = &self.position;
-        let [nx, ny, nz] = &self.normal;
+        let (position, normals) = (&self.position, &self.normal);
         self.index.leaves_nearest(point, f32::INFINITY, |leaf, mut nearest| {
             let range = self.index.leaf(leaf);
-            let first = range.start;
+            let (first, count) = (range.start, range.len().min(MOST_IN_LEAF));
+            let part = first..first + count;
             // Slices of one length, so that the loop becomes vector code.
-            let [x, y, z, nx, ny, nz] = [x, y, z, nx, ny, nz].map(|values| &values[range.clone()]);
+            let (x, y, z) =
+                (&position[0][part.clone()], &position[1][part.clone()], &position[2][part.clone()]);
+            let (nx, ny, nz) =
+                (&normals[0][part.clone()], &normals[1][part.clone()], &normals[2][part.clone()]);
             let mut distances = [f32::INFINITY; MOST_IN_LEAF];
-            for (i, distance) in distances.iter_mut().enumerate().take(x.len()) {
+            for i in 0..count {
                 let offset = Vec3::new(x[i] - point.x, y[i] - point.y, z[i] - point.z);
                 let cos = nx[i] * normal.x + ny[i] * normal.y + nz[i] * normal.z;
                 let d = surface_distance_sq(offset, normal);
-                *distance = if cos >= LEAST_COS { d } else { f32::INFINITY };
+                distances[i] = if cos >= LEAST_COS { d } else { f32::INFINITY };
             }
-            for (i, &distance) in distances.iter().enumerate().take(x.len()) {
+            for (i, &distance) in distances[..count].iter().enumerate() {
                 if distance < nearest {
                     nearest = distance;
                     best = Some((first + i, distance));

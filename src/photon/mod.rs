@@ -7,6 +7,7 @@
 //! - [`density`]: irradiance from the photons around a place; [`disc`]: which part of the disc around it is surface;
 //! - [`irradiance`]: the same looked up anywhere;
 //! - [`strata`]: the directions of a final gathering; [`hemisphere`]: what they meet, and how that changes nearby;
+//! - [`radiance`]: light along a ray; [`near`]: from surfaces nearer than the map resolves;
 //! - [`records`]: records of indirect light for the cache; [`own`]: light at single samples.
 
 pub mod density;
@@ -14,6 +15,7 @@ pub mod disc;
 pub mod hemisphere;
 pub mod irradiance;
 pub mod map;
+pub mod near;
 pub mod own;
 pub mod radiance;
 pub mod records;

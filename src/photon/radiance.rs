@@ -1,12 +1,14 @@
 //! Indirect light along rays of a final gathering.
 //!
-//! Where a ray ends, the surface reflects the irradiance of the map. Mirrors, glass and sharp lobes are followed to what
-//! shows in them; what emits is direct light and counts for nothing.
+//! Where a ray ends, the surface reflects the irradiance of the map, unless it is nearer than the map resolves (see
+//! [`super::near`]). Mirrors, glass and sharp lobes are followed to what shows in them; what emits is direct light and
+//! counts for nothing.
 //!
 //! Units: radiance, and distance to the first surface.
 
 use super::irradiance::IrradianceMap;
-use crate::embree::{Hit, Hits16, Rays16};
+use super::near::Near;
+use crate::embree::{Hits16, Rays16};
 use crate::math::{LANES, Rgb, lanes_in};
 use crate::sampling::Sampler;
 use crate::shadow;
@@ -26,6 +28,8 @@ pub struct GatherCounts {
     pub own_rays: u64,
     /// Rays from mirrors, glass and sharp lobes that those met.
     pub followed: u64,
+    /// Surfaces too near for the map.
+    pub near: u64,
 }
 
 impl GatherCounts {
@@ -34,6 +38,7 @@ impl GatherCounts {
         self.record_rays += other.record_rays;
         self.own_rays += other.own_rays;
         self.followed += other.followed;
+        self.near += other.near;
     }
 }
 
@@ -72,43 +77,50 @@ impl IndirectLight<'_> {
         let mut found = [nothing; LANES];
         let mut hits = Hits16::default();
         let met = self.world.accel.closest_hit16(rays, valid, coherent, &mut hits);
+        let mut radiance = [Rgb::ZERO; LANES];
+        let mut near = Near::default();
         for lane in lanes_in(met) {
-            let hit = Hit {
-                t: hits.t[lane],
-                u: hits.u[lane],
-                v: hits.v[lane],
-                geometry: hits.geometry[lane],
-                primitive: hits.primitive[lane],
-            };
+            let hit = hits.get(lane);
             let surface = self.world.surface(&hit);
             let direction = rays.get(lane).direction;
             let mut sampler = Sampler::new(seed, lane as u32);
-            let normal = facing(&surface, direction);
-            let radiance = self.from(surface, direction, &mut sampler, counts);
-            found[lane] = Seen { radiance, distance: hit.t, normal };
+            let (sent, albedo) = self.sent(&surface, direction, hit.t, &mut sampler, counts);
+            radiance[lane] = sent;
+            if albedo != Rgb::ZERO {
+                near.set(lane, &surface, direction, albedo);
+            }
+            found[lane] = Seen { distance: hit.t, normal: facing(&surface, direction), ..nothing };
+        }
+        self.follow(near, seed, &mut radiance, counts);
+        for (seen, radiance) in found.iter_mut().zip(radiance) {
+            seen.radiance = radiance;
         }
         found
     }
 
-    /// Radiance that a surface sends back along `direction`.
+    /// Radiance that a surface sends back along `direction`, by which it was met at `distance`; and the albedo by which it
+    /// reflects besides, if it is too near for the map, else 0.
     #[inline]
-    fn from(
+    pub(super) fn sent(
         &self,
-        surface: Surface,
-        direction: Vec3,
+        first: &Surface,
+        mut direction: Vec3,
+        distance: f32,
         sampler: &mut Sampler,
         counts: &mut GatherCounts,
-    ) -> Rgb {
-        let (mut surface, mut direction) = (surface, direction);
-        let (mut radiance, mut throughput) = (Rgb::ZERO, Rgb::ONE);
-        for _ in 0..MOST_EDGES {
+    ) -> (Rgb, Rgb) {
+        let (mut radiance, mut throughput, mut near) = (Rgb::ZERO, Rgb::ONE, Rgb::ZERO);
+        let mut surface = *first;
+        for edge in 0..MOST_EDGES {
             let bsdf = self.world.bsdf(&surface);
             let out = surface.frame.to_local(-direction);
             let albedo = bsdf.diffuse_albedo(out);
             if albedo != Rgb::ZERO {
-                let found = self.map.at(surface.position, facing(&surface, direction));
-                let irradiance = found.map_or(Rgb::ZERO, |(irradiance, _)| irradiance);
-                radiance += throughput * albedo * irradiance * FRAC_1_PI;
+                match self.map.at(surface.position, facing(&surface, direction)) {
+                    Some((_, radius)) if edge == 0 && distance < radius => near = albedo,
+                    Some((irradiance, _)) => radiance += throughput * albedo * irradiance * FRAC_1_PI,
+                    None => {}
+                }
             }
             let sharp = bsdf.split_sharp_lobe();
             if sharp.is_none() && !bsdf.has_delta() {
@@ -124,7 +136,7 @@ impl IndirectLight<'_> {
             let Some(next) = self.world.intersect(&ray) else { break };
             surface = next;
         }
-        radiance
+        (radiance, near)
     }
 }
 

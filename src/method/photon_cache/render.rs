@@ -125,6 +125,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     stats.count("Gathering/rays of records", rays.record_rays);
     stats.count("Gathering/rays of samples", rays.own_rays);
     stats.count("Gathering/rays followed", rays.followed);
+    stats.count("Gathering/near surfaces", rays.near);
     let complete = samples.complete && !control.is_cancelled();
     let (color, mut extra, nonfinite) = picture.finish();
     if settings.inspect {

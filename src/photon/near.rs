@@ -1,0 +1,167 @@
+//! What surfaces reflect that are nearer than the photon map resolves.
+//!
+//! Its irradiance is the mean over a disc. Seen from far the blur is lost among that of all the hemisphere; seen from
+//! nearer than the disc is wide, it is not: light leaks under things and creases are dark. There, paths go on instead by another edge,
+//! with light sampled at their vertices, until they reach a surface far enough away.
+//!
+//! Papers: Jensen 1996 (importance of near hits); Christensen 1999; Veach 1997 (the two ways to find light, weighted).
+
+use super::radiance::{GatherCounts, IndirectLight};
+use crate::embree::{Hits16, Rays16};
+use crate::math::{F32x16, Frame, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in};
+use crate::sampling::{Sampler, cosine_hemisphere, hash};
+use crate::shadow;
+use crate::world::Surface;
+use glam::Vec3;
+use std::f32::consts::FRAC_1_PI;
+
+/// Most edges added; what is nearer still after so many is taken from the map.
+const MOST_EDGES: u32 = 4;
+
+/// Surfaces near to where their light goes.
+#[derive(Default)]
+pub struct Near {
+    /// Lanes in use.
+    pub lanes: u16,
+    position: Vec3x16,
+    /// Unit shading normals on the side that reflects.
+    normal: Vec3x16,
+    /// Unit geometric normals on that side.
+    geometric: Vec3x16,
+    /// What becomes of the irradiance's mean radiance on its way.
+    throughput: Vec3x16,
+}
+
+impl Near {
+    /// Adds a surface met along `direction`; `throughput` has its albedo.
+    pub fn set(&mut self, lane: usize, surface: &Surface, direction: Vec3, throughput: Rgb) {
+        let facing = |n: Vec3| if n.dot(direction) < 0.0 { n } else { -n };
+        self.lanes |= 1 << lane;
+        self.position.set(lane, surface.position);
+        self.normal.set(lane, facing(surface.frame.normal));
+        self.geometric.set(lane, facing(surface.normal));
+        self.throughput.set(lane, throughput);
+    }
+}
+
+impl IndirectLight<'_> {
+    /// Adds to `radiance` what the near surfaces reflect.
+    pub fn follow(&self, mut near: Near, seed: u32, radiance: &mut [Rgb; LANES], counts: &mut GatherCounts) {
+        for edge in 1..=MOST_EDGES {
+            if near.lanes == 0 {
+                return;
+            }
+            let seed = hash(edge, seed);
+            let mut samplers: [Sampler; LANES] = std::array::from_fn(|lane| Sampler::new(seed, lane as u32));
+            counts.near += u64::from(near.lanes.count_ones());
+            self.lit(&near, &mut samplers, radiance);
+            near = self.next(&near, edge == MOST_EDGES, &mut samplers, radiance, counts);
+        }
+    }
+
+    /// Adds the direct light found by sampling emitters.
+    fn lit(&self, near: &Near, samplers: &mut [Sampler; LANES], radiance: &mut [Rgb; LANES]) {
+        let world = self.world;
+        let (mut choice, mut u) = (F32x16::default(), Vec2x16::default());
+        for lane in lanes_in(near.lanes) {
+            choice[lane] = samplers[lane].next_1d();
+            u.set(lane, samplers[lane].next_2d());
+        }
+        let at = (&near.position, &near.normal);
+        let lights = world.emitters.sample_direct(&world.scene, at, &choice, &u, near.lanes);
+        for lane in lanes_in(near.lanes & lights.useful()) {
+            let (direction, distance) = (lights.direction.get(lane), lights.distance[lane]);
+            let (position, geometric) = (near.position.get(lane), near.geometric.get(lane));
+            let cos = near.normal.get(lane).dot(direction);
+            if !(cos > 0.0 && geometric.dot(direction) > 0.0) {
+                continue;
+            }
+            let far = shadow::ray_from(position, geometric, direction);
+            let ray = match distance < f32::INFINITY {
+                true => shadow::segment(
+                    position,
+                    geometric,
+                    position + direction * distance,
+                    lights.normal.get(lane),
+                ),
+                false => far,
+            };
+            let weight =
+                if lights.delta[lane] != 0 { 1.0 } else { heuristic(lights.pdf[lane], cos * FRAC_1_PI) };
+            let share = cos * FRAC_1_PI * weight / lights.pdf[lane];
+            let arriving = near.throughput.get(lane) * lights.radiance.get(lane) * share;
+            if arriving.is_finite() && !world.accel.occluded(&ray) {
+                radiance[lane] += arriving;
+            }
+        }
+    }
+
+    /// Follows a ray from each: adds the light that it meets, and returns what is near again.
+    fn next(
+        &self,
+        near: &Near,
+        last: bool,
+        samplers: &mut [Sampler; LANES],
+        radiance: &mut [Rgb; LANES],
+        counts: &mut GatherCounts,
+    ) -> Near {
+        let world = self.world;
+        let (mut rays, mut above, mut pdf) = (Rays16::default(), 0, F32x16::default());
+        for lane in lanes_in(near.lanes) {
+            let local = cosine_hemisphere(samplers[lane].next_2d());
+            let direction = Frame::from_normal(near.normal.get(lane)).to_world(local);
+            let geometric = near.geometric.get(lane);
+            rays.set(lane, &shadow::ray_from(near.position.get(lane), geometric, direction));
+            pdf[lane] = local.z * FRAC_1_PI;
+            above |= u16::from(geometric.dot(direction) > 0.0) << lane;
+        }
+        let mut hits = Hits16::default();
+        let met = world.accel.closest_hit16(&rays, above, false, &mut hits);
+        self.sky(near, &rays, &pdf, above & !met, radiance);
+        let mut again = Near::default();
+        for lane in lanes_in(met) {
+            let surface = world.surface(&hits.get(lane));
+            let (direction, throughput) = (rays.get(lane).direction, near.throughput.get(lane));
+            if world.emitters.is_light(surface.mesh) {
+                let emitted = world.emitted(&surface, -direction);
+                let other = self.density(near, &surface, direction, lane);
+                radiance[lane] += throughput * emitted * heuristic(pdf[lane], other);
+            }
+            let resolved = if last { f32::INFINITY } else { hits.t[lane] };
+            let (sent, albedo) = self.sent(&surface, direction, resolved, &mut samplers[lane], counts);
+            radiance[lane] += throughput * sent;
+            if albedo != Rgb::ZERO {
+                again.set(lane, &surface, direction, throughput * albedo);
+            }
+        }
+        again
+    }
+
+    /// Adds the environment's light along rays that have met nothing.
+    fn sky(&self, near: &Near, rays: &Rays16, pdf: &F32x16, lanes: u16, radiance: &mut [Rgb; LANES]) {
+        let emitters = &self.world.emitters;
+        let Some(environment) = emitters.environment.as_ref().filter(|_| lanes != 0) else { return };
+        let choice = emitters.environment_choice(&near.position, &near.normal);
+        let found = environment.radiance_pdf16(&rays.directions(), lanes);
+        for lane in lanes_in(lanes) {
+            let (light, other) = found[lane];
+            let weight = heuristic(pdf[lane], other * choice[lane]);
+            radiance[lane] += near.throughput.get(lane) * light * weight;
+        }
+    }
+
+    /// Density with which sampling emitters from a lane would have found a place of an emitter.
+    fn density(&self, near: &Near, surface: &Surface, direction: Vec3, lane: usize) -> f32 {
+        let (mut mesh, mut distance, mut cos) = (U32x16::default(), F32x16::default(), F32x16::default());
+        (mesh[lane], distance[lane], cos[lane]) = (surface.mesh, surface.t, surface.normal.dot(direction));
+        let at = (&near.position, &near.normal);
+        self.world.emitters.pdf_areas(at, &mesh, &distance, &cos)[lane]
+    }
+}
+
+/// Weight of a sample of density `a` against another technique of density `b` (Veach, β = 2).
+#[inline]
+fn heuristic(a: f32, b: f32) -> f32 {
+    let ratio = b / a;
+    1.0 / (1.0 + ratio * ratio)
+}
