@@ -183,8 +183,8 @@ pub struct PhotonArgs {
     /// Photons on diffuse surfaces, about [default: 300000]
     #[arg(long)]
     pub photons: Option<u32>,
-    /// Photons in an estimate of irradiance [default: 64]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(2..))]
+    /// Photons in an estimate of irradiance, at least 16 [default: 64]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(16..))]
     pub nearest: Option<u32>,
     /// Rays of a record's final gathering, about [default: 2000]
     #[arg(long, value_parser = clap::value_parser!(u32).range(16..=1_000_000))]

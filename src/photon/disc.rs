@@ -6,7 +6,7 @@
 
 use crate::embree::{Hits16, Ray, Rays16};
 use crate::math::{Frame, LANES, lanes_in};
-use crate::sampling::owen_sobol_2d;
+use crate::sampling::{hash, owen_sobol_2d};
 use crate::shadow;
 use crate::vpl::Photon;
 use crate::world::World;
@@ -44,8 +44,10 @@ impl Disc {
         let height = free.map_or(HEIGHT * radius, |hit| 0.5 * hit.t);
         let eye = position + normal * height;
         let mut rays = Rays16::default();
+        // Other places on every disc: what one set of them gets wrong would be wrong along a whole edge.
+        let seed = position.to_array().iter().fold(SEED, |seed, x| hash(x.to_bits(), seed));
         for lane in 0..LANES {
-            let u = owen_sobol_2d(lane as u32, SEED);
+            let u = owen_sobol_2d(lane as u32, seed);
             // The kernel's share within ρ is 2ρ² - ρ⁴.
             let (sin, cos) = (TAU * u.x).sin_cos();
             let rho = (1.0 - (1.0 - u.y).sqrt()).max(0.0).sqrt() * radius;

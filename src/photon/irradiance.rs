@@ -77,8 +77,8 @@ impl IrradianceMap {
 }
 
 /// How far from its place an estimate is used, in radii of its disc. Were there as much light further on, photons would have
-/// left an estimate nearer by.
-const REACH: f32 = 2.0;
+/// left a site nearer by: of k photons in a disc, none but for e^(-k/4) of places.
+const REACH: f32 = 1.0;
 
 /// Leaves of the index hold no more.
 const MOST_IN_LEAF: usize = 32;
