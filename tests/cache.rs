@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use glam::Vec3;
-use lightsplat::cache::{DirectLight, Footprints, LayerSettings};
+use lightsplat::cache::{Footprints, FoundBy, LayerSettings};
 use lightsplat::eye::Window;
 use lightsplat::image::Image;
 use lightsplat::math::{Rgb, luminance};
@@ -13,7 +13,7 @@ use lightsplat::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId,
 use lightsplat::stats::Counter;
 use lightsplat::world::World;
 
-fn settings(direct: DirectLight, footprints: Footprints) -> cache::Settings {
+fn settings(direct: FoundBy, footprints: Footprints) -> cache::Settings {
     let mut settings = cache::Settings::default();
     settings.light.indirect = 20_000;
     settings.cache.direct = direct;
@@ -79,10 +79,10 @@ fn per_pixel(world: &World, like: &cache::Settings) -> Image {
 #[test]
 fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
     let world = lit_room();
-    for (direct, limit) in [(DirectLight::PerSample, 0.02), (DirectLight::Records, 0.06)] {
+    for (direct, limit) in [(FoundBy::Samples, 0.02), (FoundBy::Records, 0.06)] {
         for footprints in [Footprints::Isotropic, Footprints::Anisotropic, Footprints::Occlusion] {
             let mut settings = settings(direct, footprints);
-            if direct == DirectLight::Records {
+            if direct == FoundBy::Records {
                 // Penumbrae are steep: at the default accuracy they are what the other mode is for.
                 settings.cache.layers[0] = LayerSettings { accuracy: 0.1, reach: [0.7, 5.0] };
             }
@@ -95,7 +95,7 @@ fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
 #[test]
 fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
     let world = glossy_room();
-    for (direct, limit) in [(DirectLight::PerSample, 0.03), (DirectLight::Records, 0.08)] {
+    for (direct, limit) in [(FoundBy::Samples, 0.03), (FoundBy::Records, 0.08)] {
         let mut settings = settings(direct, Footprints::Anisotropic);
         settings.cache.layers[0] = LayerSettings { accuracy: 0.1, reach: [0.7, 5.0] };
         let output = cached(&world, &settings);
@@ -114,14 +114,14 @@ fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
 
 #[test]
 fn surfaces_without_lobes_make_no_series() {
-    let output = cached(&lit_room(), &settings(DirectLight::PerSample, Footprints::Anisotropic));
+    let output = cached(&lit_room(), &settings(FoundBy::Samples, Footprints::Anisotropic));
     assert_eq!(count(&output, "Cache/records with series"), None);
 }
 
 #[test]
 fn the_bits_do_not_depend_on_the_number_of_threads() {
     for world in [lit_room(), glossy_room()] {
-        let settings = settings(DirectLight::Records, Footprints::Occlusion);
+        let settings = settings(FoundBy::Records, Footprints::Occlusion);
         let pictures = [1, 2, 4].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| cached(&world, &settings).color.pixels)
@@ -134,7 +134,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
 fn far_fewer_records_than_eye_samples_and_growing_slower() {
     let world = lit_room();
     let records = |spp| {
-        let mut settings = settings(DirectLight::PerSample, Footprints::Anisotropic);
+        let mut settings = settings(FoundBy::Samples, Footprints::Anisotropic);
         settings.spp = spp;
         count(&cached(&world, &settings), "Cache/records, indirect").unwrap() as f64
     };

@@ -29,4 +29,4 @@ pub mod settings;
 pub mod sight;
 pub mod wave;
 
-pub use settings::{CacheSettings, DirectLight, Footprints, LayerSettings};
+pub use settings::{CacheSettings, Footprints, FoundBy, LayerSettings};

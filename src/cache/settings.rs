@@ -5,6 +5,9 @@ use crate::lightcut::CutSettings;
 use crate::lightcut::group::LEAST_SHARED;
 use crate::shadow::ShadowSettings;
 
+/// Patches of fewer samples than this would have too few that borrow.
+const LEAST_PATCH: usize = 64;
+
 /// How the shape of footprints is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Footprints {
@@ -18,14 +21,14 @@ pub enum Footprints {
     Occlusion,
 }
 
-/// How direct light is found.
+/// How the light of a layer is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DirectLight {
-    /// By records of their own layer, as in the paper.
+pub enum FoundBy {
+    /// By records, as in the paper.
     Records,
-    /// By cuts of the eye samples' own through the trees of direct light, shared among neighbours.
+    /// By cuts that neighbouring eye samples share and lend each other.
     #[default]
-    PerSample,
+    Samples,
 }
 
 /// Settings of one layer of the cache.
@@ -45,7 +48,9 @@ pub struct CacheSettings {
     /// The layer of direct light, and that of indirect light.
     pub layers: [LayerSettings; 2],
     /// How direct light is found.
-    pub direct: DirectLight,
+    pub direct: FoundBy,
+    /// How indirect light is found.
+    pub indirect: FoundBy,
     /// Which glossy surfaces records light, and how good series are.
     pub series: SeriesSettings,
     /// How the shape of footprints is chosen.
@@ -60,10 +65,10 @@ pub struct CacheSettings {
     pub passes: u32,
     /// Smallest relative difference of luminance that is visible.
     pub threshold: f32,
-    /// Most eye samples without records that share a cut; more than 16 trace shadow rays only where the sixteen
-    /// that the cut is made for disagree.
-    pub patch: usize,
-    /// Whether neighbours share cuts; if not, records and samples all have their own, whatever `patch` says.
+    /// About how many patches the eye samples without records form, of which sixteen each share a cut that is lent to
+    /// the others. The cost of cuts is in proportion to it, whatever the resolution.
+    pub patches: u32,
+    /// Whether neighbours share cuts; if not, records and samples all have their own, whatever `patches` says.
     pub share: bool,
     /// Which shadow rays of cuts ask an occluder cache. It is emptied before every group of neighbours.
     pub shadows: ShadowSettings,
@@ -74,6 +79,16 @@ pub struct CacheSettings {
 }
 
 impl CacheSettings {
+    /// Most of so many samples in a patch.
+    pub fn patch(&self, samples: usize) -> usize {
+        (samples / self.patches.max(1) as usize).max(LEAST_PATCH)
+    }
+
+    /// How the light of a layer is found.
+    pub fn found(&self, layer: usize) -> FoundBy {
+        [self.direct, self.indirect][layer]
+    }
+
     /// Whether so many neighbours share a cut.
     pub fn shares(&self, points: usize) -> bool {
         self.share && points >= LEAST_SHARED
@@ -88,7 +103,8 @@ impl Default for CacheSettings {
                 LayerSettings { accuracy: 0.3, reach: [1.5, 20.0] },
                 LayerSettings { accuracy: 0.2, reach: [1.5, 40.0] },
             ],
-            direct: DirectLight::default(),
+            direct: FoundBy::default(),
+            indirect: FoundBy::default(),
             series: SeriesSettings::default(),
             footprints: Footprints::default(),
             mu: 0.5,
@@ -96,7 +112,7 @@ impl Default for CacheSettings {
             compensation: false,
             passes: 1,
             threshold: 0.02,
-            patch: 64,
+            patches: 4096,
             share: true,
             shadows: ShadowSettings::default(),
             least_cell: 256,

@@ -42,7 +42,7 @@ pub struct RenderArgs {
     /// How to render
     #[arg(long, value_enum, default_value_t = MethodName::Cache)]
     pub method: MethodName,
-    /// Samples a pixel [default: 64 for path, 1 for cache and lightcuts]
+    /// Samples a pixel [default: 64 for path, 4 for all others]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub spp: Option<u32>,
     /// Threads to use [default: all processors]; the picture is the same for any number
@@ -127,7 +127,7 @@ pub struct LightcutArgs {
     /// Largest error to expect of a cluster, relative to the sample's luminance [default: 0.02]
     #[arg(long, value_parser = parse_fraction)]
     pub epsilon: Option<f32>,
-    /// Most clusters in a cut [default: 1000]
+    /// Most clusters in a cut [default: 5000]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub max_cut: Option<u32>,
     /// Virtual point lights where light is reflected, about; 0: direct light only [default: 300000]
@@ -335,6 +335,7 @@ pub(super) fn parse_fraction(text: &str) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cache::FoundBy;
     use crate::method::{cache, lightcuts, path, photon_cache};
     use crate::verify;
     use clap::CommandFactory;
@@ -376,8 +377,9 @@ mod tests {
             let argument = render.get_arguments().find(|a| a.get_long() == Some(option)).unwrap();
             argument.get_help().unwrap().to_string()
         };
+        let found = |by| if by == FoundBy::Records { "records" } else { "samples" }.to_owned();
         let expected = [
-            ("spp", format!("{} for path, {} for cache and lightcuts", path.spp, cuts.spp)),
+            ("spp", format!("{} for path, {} for all others", path.spp, cuts.spp)),
             ("epsilon", cuts.cut.epsilon.to_string()),
             ("max-cut", cuts.cut.max_cut.to_string()),
             ("vpls", cuts.light.indirect.to_string()),
@@ -387,10 +389,12 @@ mod tests {
             ("mu", cached.mu.to_string()),
             ("series-alpha", cached.series.min_alpha.to_string()),
             ("series-error", cached.series.max_error.to_string()),
+            ("direct", found(cached.direct)),
+            ("indirect", found(cached.indirect)),
             ("compensation", if cached.compensation { "on" } else { "off" }.to_owned()),
             ("passes", cached.passes.to_string()),
             ("threshold", cached.threshold.to_string()),
-            ("patch", cached.patch.to_string()),
+            ("patches", cached.patches.to_string()),
             ("least-cell", cached.least_cell.to_string()),
             ("accuracy", format!("{},{}", cached.layers[0].accuracy, cached.layers[1].accuracy)),
             ("share", if cuts.share && cached.share { "on" } else { "off" }.to_owned()),

@@ -12,7 +12,10 @@ pub struct CacheArgs {
     pub record_epsilon: Option<f32>,
     /// Where direct light is found [default: samples]
     #[arg(long, value_enum)]
-    pub direct: Option<DirectBy>,
+    pub direct: Option<LightBy>,
+    /// Where indirect light is found [default: samples]
+    #[arg(long, value_enum)]
+    pub indirect: Option<LightBy>,
     /// Shape of footprints [default: occlusion]
     #[arg(long, value_enum)]
     pub footprints: Option<FootprintShape>,
@@ -44,20 +47,21 @@ pub struct CacheArgs {
     /// Smallest relative difference of luminance that counts as visible [default: 0.02]
     #[arg(long, value_parser = super::args::parse_fraction)]
     pub threshold: Option<f32>,
-    /// Most eye samples without records that share a cut [default: 64]
+    /// Patches of eye samples without records, about: sixteen of each share a cut, which is lent to the
+    /// others [default: 4096]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
-    pub patch: Option<u32>,
+    pub patches: Option<u32>,
     /// Cells of fewer eye samples get no record; their samples have cuts of their own [default: 256]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub least_cell: Option<u32>,
 }
 
-/// Ways of finding direct light.
+/// Ways of finding light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum DirectBy {
-    /// By a layer of records of its own
+pub enum LightBy {
+    /// By a layer of records, splatted onto the eye samples
     Records,
-    /// By cuts of the eye samples' own
+    /// By cuts that neighbouring eye samples share and lend each other
     Samples,
 }
 

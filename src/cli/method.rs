@@ -1,9 +1,9 @@
 //! From what was typed to a method with its settings.
 
 use super::args::{LightcutArgs, MethodName, OccluderCache, PhotonArgs, RenderArgs, TreeFamily};
-use super::cache_args::{CacheArgs, DirectBy, FootprintShape, Pair, Switch};
+use super::cache_args::{CacheArgs, FootprintShape, LightBy, Pair, Switch};
 use super::exit::Failure;
-use crate::cache::{CacheSettings, DirectLight, Footprints};
+use crate::cache::{CacheSettings, Footprints, FoundBy};
 use crate::light_tree::Family;
 use crate::method::{Method, cache, lightcuts, path, photon_cache};
 use crate::shadow::Cached;
@@ -28,10 +28,11 @@ pub fn method(args: &RenderArgs) -> Result<Method, Failure> {
         MethodName::PhotonCache
             if args.lightcuts.vpls.is_some()
                 || args.lightcuts.clamp.is_some()
-                || args.cache.compensation.is_some() =>
+                || args.cache.compensation.is_some()
+                || args.cache.indirect.is_some() =>
         {
             Err(Failure::usage(anyhow!(
-                "--vpls, --clamp and --compensation are for indirect virtual lights, of which --method photon-cache has none; see --photons"
+                "--vpls, --clamp, --compensation and --indirect are for indirect virtual lights, of which --method photon-cache has none; see --photons"
             )))
         }
         MethodName::PhotonCache => Ok(Method::PhotonCache(photon_settings(args))),
@@ -103,18 +104,20 @@ fn records_settings(cached: &CacheArgs, cache: &mut CacheSettings) {
         Some(FootprintShape::Occlusion) => Footprints::Occlusion,
         None => cache.footprints,
     };
-    cache.direct = match cached.direct {
-        Some(DirectBy::Records) => DirectLight::Records,
-        Some(DirectBy::Samples) => DirectLight::PerSample,
-        None => cache.direct,
+    let found = |typed: Option<LightBy>, default| match typed {
+        Some(LightBy::Records) => FoundBy::Records,
+        Some(LightBy::Samples) => FoundBy::Samples,
+        None => default,
     };
+    cache.direct = found(cached.direct, cache.direct);
+    cache.indirect = found(cached.indirect, cache.indirect);
     cache.series.min_alpha = cached.series_alpha.unwrap_or(cache.series.min_alpha);
     cache.series.max_error = cached.series_error.unwrap_or(cache.series.max_error);
     cache.mu = cached.mu.unwrap_or(cache.mu);
     cache.compensation = cached.compensation.map_or(cache.compensation, |typed| typed == Switch::On);
     cache.passes = cached.passes.unwrap_or(cache.passes);
     cache.threshold = cached.threshold.unwrap_or(cache.threshold);
-    cache.patch = cached.patch.map_or(cache.patch, |n| n as usize);
+    cache.patches = cached.patches.unwrap_or(cache.patches);
     cache.least_cell = cached.least_cell.unwrap_or(cache.least_cell);
 }
 

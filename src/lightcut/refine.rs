@@ -39,7 +39,7 @@ pub struct CutSettings {
 
 impl Default for CutSettings {
     fn default() -> CutSettings {
-        CutSettings { epsilon: 0.02, max_cut: 1000, clamp: Some(0.02), only: None }
+        CutSettings { epsilon: 0.02, max_cut: 5000, clamp: Some(0.02), only: None }
     }
 }
 

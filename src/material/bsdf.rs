@@ -200,7 +200,7 @@ impl Bsdf<'_> {
 
     /// Share of the light at `cos` > 0 that passes the coat; 1 where there is none.
     #[inline]
-    pub(super) fn coat_transmittance(&self, cos: f32) -> f32 {
+    pub fn coat_transmittance(&self, cos: f32) -> f32 {
         self.model.base.coat_transmittance(cos)
     }
 

@@ -1,7 +1,7 @@
 //! Any of the methods, with its settings.
 
 use super::{Control, Output, cache, lightcuts, path, photon_cache};
-use crate::cache::{CacheSettings, DirectLight, Footprints};
+use crate::cache::{CacheSettings, Footprints, FoundBy};
 use crate::eye::{EyeSamples, Look, Window};
 use crate::light_tree::Family;
 use crate::shadow::{Cached, ShadowSettings};
@@ -135,10 +135,8 @@ fn joined(mut a: Value, b: Value) -> Value {
 fn records_report(c: &CacheSettings) -> Value {
     json!({
         "record_epsilon": decimal(c.cut.epsilon),
-        "direct": match c.direct {
-            DirectLight::Records => "records",
-            DirectLight::PerSample => "samples",
-        },
+        "direct": found_by(c.direct),
+        "indirect": found_by(c.indirect),
         "footprints": match c.footprints {
             Footprints::Isotropic => "isotropic",
             Footprints::Anisotropic => "anisotropic",
@@ -151,11 +149,18 @@ fn records_report(c: &CacheSettings) -> Value {
         "mu": decimal(c.mu),
         "passes": c.passes,
         "threshold": decimal(c.threshold),
-        "patch": c.patch,
+        "patches": c.patches,
         "share": switch(c.share),
         "occluder_cache": occluders(&c.shadows, c.share),
         "least_cell": c.least_cell,
     })
+}
+
+fn found_by(found: FoundBy) -> &'static str {
+    match found {
+        FoundBy::Records => "records",
+        FoundBy::Samples => "samples",
+    }
 }
 
 fn lightcuts_report(s: &lightcuts::Settings) -> Value {

@@ -1,7 +1,7 @@
 //! What the table compares. Settings are the methods' own defaults but for what is said here.
 
 use crate::bench::study::Candidate;
-use crate::cache::{DirectLight, Footprints};
+use crate::cache::{Footprints, FoundBy};
 use crate::eye::Look;
 use crate::method::{Method, cache, lightcuts, photon_cache};
 
@@ -49,7 +49,8 @@ pub fn entries() -> Vec<Entry> {
     let shaped = |footprints| {
         let mut settings = default;
         settings.cache.footprints = footprints;
-        settings.cache.direct = DirectLight::Records;
+        settings.cache.direct = FoundBy::Records;
+        settings.cache.indirect = FoundBy::Records;
         Method::Cache(settings)
     };
     let cuts = lightcuts::Settings {

@@ -2,7 +2,7 @@
 //!
 //! Coarse is what should be faster, fine what should be better; where a setting has no such order the text says so.
 
-use crate::cache::{DirectLight, Footprints};
+use crate::cache::{Footprints, FoundBy};
 use crate::light_tree::Family;
 use crate::method::cache::Settings;
 use serde::Serialize;
@@ -124,6 +124,11 @@ const DOWN: [f64; 5] = [4.0, 2.0, 1.0, 0.5, 0.25];
 /// From a quarter of the default up.
 const UP: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 
+/// What asks for records of indirect light: their knobs have no effect otherwise.
+fn records(settings: &mut Settings) {
+    settings.cache.indirect = FoundBy::Records;
+}
+
 /// All of them.
 pub fn knobs() -> Vec<Knob> {
     let clamp = |s: &Settings| f64::from(s.cut.clamp.unwrap_or(1.0));
@@ -134,7 +139,8 @@ pub fn knobs() -> Vec<Knob> {
             &DOWN,
             |s| s.cache.cut.epsilon.into(),
             |s, v| s.cache.cut.epsilon = v as f32,
-        ),
+        )
+        .with(records),
         Knob::scaled(
             "--max-cut",
             &UP,
@@ -167,6 +173,7 @@ pub fn knobs() -> Vec<Knob> {
             "--compensation",
             &[("off", |s| s.cache.compensation = false), ("on", |s| s.cache.compensation = true)],
         )
+        .with(records)
         .judged_by(JudgedBy::Light),
         Knob::scaled(
             "--accuracy, direct",
@@ -174,25 +181,28 @@ pub fn knobs() -> Vec<Knob> {
             |s| s.cache.layers[0].accuracy.into(),
             |s, v| s.cache.layers[0].accuracy = v as f32,
         )
-        .with(|s| s.cache.direct = DirectLight::Records),
+        .with(|s| s.cache.direct = FoundBy::Records),
         Knob::scaled(
             "--accuracy, indirect",
             &DOWN,
             |s| s.cache.layers[1].accuracy.into(),
             |s, v| s.cache.layers[1].accuracy = v as f32,
-        ),
+        )
+        .with(records),
         Knob::scaled(
             "--reach, least, indirect",
             &DOWN,
             |s| s.cache.layers[1].reach[0].into(),
             |s, v| s.cache.layers[1].reach[0] = (v as f32).min(s.cache.layers[1].reach[1]),
-        ),
+        )
+        .with(records),
         Knob::scaled(
             "--reach, largest, indirect",
             &DOWN,
             |s| s.cache.layers[1].reach[1].into(),
             |s, v| s.cache.layers[1].reach[1] = (v as f32).max(s.cache.layers[1].reach[0]),
-        ),
+        )
+        .with(records),
         Knob::choice(
             "--footprints",
             &[
@@ -200,14 +210,26 @@ pub fn knobs() -> Vec<Knob> {
                 ("anisotropic", |s| s.cache.footprints = Footprints::Anisotropic),
                 ("occlusion", |s| s.cache.footprints = Footprints::Occlusion),
             ],
+        )
+        .with(records),
+        Knob::scaled("--mu (no order)", &DOWN, |s| s.cache.mu.into(), |s, v| s.cache.mu = v as f32).with(
+            |s| {
+                records(s);
+                s.cache.footprints = Footprints::Anisotropic;
+            },
         ),
-        Knob::scaled("--mu (no order)", &DOWN, |s| s.cache.mu.into(), |s, v| s.cache.mu = v as f32)
-            .with(|s| s.cache.footprints = Footprints::Anisotropic),
         Knob::choice(
             "--direct",
             &[
-                ("records", |s| s.cache.direct = DirectLight::Records),
-                ("samples", |s| s.cache.direct = DirectLight::PerSample),
+                ("records", |s| s.cache.direct = FoundBy::Records),
+                ("samples", |s| s.cache.direct = FoundBy::Samples),
+            ],
+        ),
+        Knob::choice(
+            "--indirect",
+            &[
+                ("records", |s| s.cache.indirect = FoundBy::Records),
+                ("samples", |s| s.cache.indirect = FoundBy::Samples),
             ],
         ),
         Knob::of(
@@ -215,26 +237,31 @@ pub fn knobs() -> Vec<Knob> {
             &[0.15, 0.2, 0.25, 0.35, 0.5, 2.0],
             |s| s.cache.series.min_alpha.into(),
             |s, v| s.cache.series.min_alpha = v as f32,
-        ),
+        )
+        .with(records),
         Knob::scaled(
             "--series-error",
             &DOWN,
             |s| s.cache.series.max_error,
             |s, v| s.cache.series.max_error = v,
-        ),
-        Knob::scaled("error of bands", &DOWN, |s| s.cache.series.error, |s, v| s.cache.series.error = v),
+        )
+        .with(records),
+        Knob::scaled("error of bands", &DOWN, |s| s.cache.series.error, |s, v| s.cache.series.error = v)
+            .with(records),
         Knob::of(
             "--passes",
             &[0.0, 1.0, 2.0, 5.0],
             |s| s.cache.passes.into(),
             |s, v| s.cache.passes = v as u32,
-        ),
-        Knob::scaled("--threshold", &DOWN, |s| s.cache.threshold.into(), |s, v| s.cache.threshold = v as f32),
+        )
+        .with(records),
+        Knob::scaled("--threshold", &DOWN, |s| s.cache.threshold.into(), |s, v| s.cache.threshold = v as f32)
+            .with(records),
         Knob::scaled(
-            "--patch",
-            &DOWN,
-            |s| s.cache.patch as f64,
-            |s, v| s.cache.patch = v.round().max(1.0) as usize,
+            "--patches",
+            &UP,
+            |s| s.cache.patches.into(),
+            |s, v| s.cache.patches = v.round().max(1.0) as u32,
         ),
         Knob::choice("--share", &[("on", |s| s.cache.share = true), ("off", |s| s.cache.share = false)]),
         Knob::scaled(
@@ -242,13 +269,15 @@ pub fn knobs() -> Vec<Knob> {
             &UP,
             |s| s.cache.least_cell.into(),
             |s, v| s.cache.least_cell = v.round().max(1.0) as u32,
-        ),
+        )
+        .with(records),
         Knob::scaled(
             "tolerance of normals",
             &[2.0, 1.0, 0.5],
             |s| s.cache.normal_tolerance.into(),
             |s, v| s.cache.normal_tolerance = v as f32,
-        ),
+        )
+        .with(records),
         Knob::choice(
             "--tree",
             &[

@@ -36,7 +36,9 @@ pub struct Points<'m> {
     pub(super) known: Lanes,
     /// Lambert BRDF.
     pub(super) brdf: Vec3Lanes,
-    /// The same, by what it weighs in the luminance.
+    /// BRDF of the base, for light that has passed the coat on its way in.
+    pub(super) base: Vec3Lanes,
+    /// Lambert BRDF by what it weighs in the luminance.
     pub(super) brdf_luminance: Vec3Lanes,
 }
 
@@ -57,6 +59,7 @@ impl<'m> Points<'m> {
             abs_mirror: [ZERO; 3],
             known: [0.0; LANES],
             brdf: ZERO,
+            base: ZERO,
             brdf_luminance: ZERO,
         }
     }
@@ -82,6 +85,7 @@ impl<'m> Points<'m> {
             self.known[lane] = r.known_luminance();
             let brdf = r.lambert_brdf().unwrap_or(Rgb::ZERO);
             put(&mut self.brdf, lane, brdf);
+            put(&mut self.base, lane, r.base_brdf());
             put(&mut self.brdf_luminance, lane, brdf * LUMINANCE);
         }
     }

@@ -157,7 +157,7 @@ fn the_cap_holds_for_the_group() {
 }
 
 #[test]
-fn a_lent_cut_gives_its_makers_what_they_had() {
+fn a_lent_cut_gives_points_nearly_what_cuts_of_their_own_would() {
     let mut numbers = Numbers(77);
     let ball = Ball { centre: Vec3::new(0.5, 0.5, 0.6), radius: 0.15 };
     let trees = LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive);
@@ -169,18 +169,70 @@ fn a_lent_cut_gives_its_makers_what_they_had() {
     let (mut own, mut again) = ([Rgb::ZERO; LANES], [Rgb::ZERO; LANES]);
     points.set(reflectors.iter().step_by(2).copied());
     group.gather(&trees, &transfer, &ball, &points, &EXACT, &mut own);
-    lent.keep(&group, &trees, &transfer, &points);
+    lent.keep(&group, &trees, &transfer, &points, &own, EXACT.epsilon);
     let rays = group.counts.rays;
-    group.gather_lent(&lent, &trees, &transfer, &ball, &points, &EXACT, &mut again);
+    group.gather_lent(&lent, &trees, &transfer, &ball, &points, &EXACT, 0.5, &mut again);
     assert!(group.counts.rays - rays < rays / 2, "most clusters are agreed upon");
     for (own, again) in own.iter().zip(again) {
-        assert!((*own - again).abs().max_element() < 1e-4 * own.max_element(), "{own} {again}");
+        assert!((*own - again).abs().max_element() < 0.04 * own.max_element(), "{own} {again}");
     }
     // The points in between, against cuts of their own.
     points.set(reflectors.iter().skip(1).step_by(2).copied());
-    group.gather_lent(&lent, &trees, &transfer, &ball, &points, &EXACT, &mut again);
+    group.gather_lent(&lent, &trees, &transfer, &ball, &points, &EXACT, 0.5, &mut again);
     group.gather(&trees, &transfer, &ball, &points, &EXACT, &mut own);
     for (own, again) in own.iter().zip(again) {
         assert!((*own - again).abs().max_element() < 0.04 * own.max_element(), "{own} {again}");
     }
+}
+
+#[test]
+fn what_a_lent_cut_leaves_to_chance_is_right_on_average() {
+    // Half in the shadow of a ball: the makers disagree about many small clusters.
+    let mut numbers = Numbers(78);
+    let ball = Ball { centre: Vec3::new(0.5, 0.5, 0.25), radius: 0.15 };
+    let trees = LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive);
+    let transfer = Transfer::new(&trees.spots, 1.7);
+    let frame = crate::math::Frame::from_normal(Vec3::Z);
+    let at = |i: usize| Vec3::new(0.3 + 0.02 * (i % 8) as f32, 0.4 + 0.02 * (i / 8) as f32, 0.01);
+    let reflectors: Vec<Reflector> = (0..64).map(|i| Reflector::collector(at(i), Vec3::Z, &frame)).collect();
+    let (mut group, mut points, mut lent) = (GroupLightcut::new(), Points::new(), LentCut::default());
+    let mut radiance = [Rgb::ZERO; LANES];
+    points.set(reflectors.iter().skip(1).step_by(4).copied());
+    group.gather(&trees, &transfer, &ball, &points, &EXACT, &mut radiance);
+    lent.keep(&group, &trees, &transfer, &points, &radiance, EXACT.epsilon);
+    let nodes: Vec<u32> = group.entries().map(|(node, _)| node).collect();
+    points.set(reflectors.iter().skip(3).step_by(4).copied());
+    // The same clusters, each with a shadow ray.
+    let exact: Vec<f32> = (0..LANES)
+        .map(|lane| {
+            let given = |&node: &u32| {
+                let n = &trees.nodes[node as usize];
+                let vpl = &trees.vpls[n.representative()];
+                let x = points.get(lane).position();
+                let seen = ball.visible(x, Vec3::ZERO, vpl, n);
+                let response = transfer.unshadowed(points.get(lane), vpl, n.kind());
+                if seen { luminance(n.intensity * response) } else { 0.0 }
+            };
+            nodes.iter().map(given).sum()
+        })
+        .collect();
+    let starts = 256;
+    let (mut means, mut squares) = ([0.0f32; LANES], 0.0);
+    let rays = group.counts.rays;
+    for start in 0..starts {
+        let start = (start as f32 + 0.5) / starts as f32;
+        group.gather_lent(&lent, &trees, &transfer, &ball, &points, &EXACT, start, &mut radiance);
+        for lane in 0..LANES {
+            let error = luminance(radiance[lane]) / exact[lane] - 1.0;
+            means[lane] += error / starts as f32;
+            squares += error * error / (starts * LANES) as f32;
+        }
+    }
+    let per_cut = (group.counts.rays - rays) / starts as u64;
+    assert!(per_cut < (nodes.len() * LANES / 4) as u64, "{per_cut} rays for {} clusters", nodes.len());
+    // What chance leaves of a patch half in shadow is a few times ε; on average, a tenth of it.
+    assert!(squares.sqrt() < 0.06 && squares.sqrt() > 0.001, "{}", squares.sqrt());
+    // Odd lanes lie beyond the last makers, at the mercy of what no maker sees.
+    let among: Vec<f32> = means.into_iter().step_by(2).collect();
+    assert!(rms(&among) < 0.003, "{means:?}");
 }

@@ -112,6 +112,37 @@ impl Transfer<'_> {
         lit & points.valid
     }
 
+    /// Irradiance vector at each point from a VPL of unit intensity, if visible; 0 where it is below the horizon.
+    pub(super) fn incidence16(&self, points: &Points, vpl: &Vpl, kind: VplKind) -> Vec3Lanes {
+        let mut vector = [[0.0; LANES]; 3];
+        let n = &points.frame[2];
+        for l in 0..LANES {
+            let x = Vec3::from_array(std::array::from_fn(|c| points.position[c][l]));
+            let offset = if kind == VplKind::Directional { vpl.position } else { vpl.position - x };
+            let dist_sq = offset.length_squared();
+            let limited = if dist_sq > self.min_dist_sq { dist_sq } else { self.min_dist_sq };
+            let unit = if dist_sq > 0.0 { 1.0 / dist_sq } else { 0.0 };
+            let scale = match kind {
+                VplKind::Directional => 1.0,
+                VplKind::Oriented => positive(-offset.dot(vpl.normal())) * unit / limited,
+                VplKind::Omni => unit.sqrt() / limited,
+            };
+            let above = offset.x * n[0][l] + offset.y * n[1][l] + offset.z * n[2][l] > 0.0;
+            let scale = if above { scale } else { 0.0 };
+            for c in 0..3 {
+                vector[c][l] = offset[c] * scale;
+            }
+        }
+        if let (VplKind::Omni, Some(profile)) = (kind, vpl.spot_profile()) {
+            for l in lanes_of(points.valid) {
+                let offset = vpl.position - points.get(l).position();
+                let falloff = self.spots[profile].falloff(-offset.normalize_or_zero());
+                vector.iter_mut().for_each(|row| row[l] *= falloff);
+            }
+        }
+        vector
+    }
+
     fn lambert_oriented(&self, points: &Points, y: Vec3, normal: Vec3, responses: &mut RgbLanes) {
         let (x, n) = (&points.position, &points.frame[2]);
         for l in 0..LANES {

@@ -8,13 +8,16 @@ use crate::cache::layer::Layer;
 use crate::cache::record::Record;
 use crate::cache::series::Glossy;
 use crate::cache::wave::{Pick, lacking, pick};
-use crate::cache::{CacheSettings, DirectLight, adapt};
+use crate::cache::{CacheSettings, FoundBy, adapt};
 use crate::eye::{EyePoint, EyeSamples, EyeSurface};
 use crate::lightcut::CutCounts;
 use crate::math::{Rgb, luminance};
 use crate::method::{Control, counts};
 use crate::stats::{Stage, Stats};
 use crate::vpl::Origin;
+
+/// What each layer holds.
+const LAYERS: [Origin; 2] = [Origin::Direct, Origin::Indirect];
 
 /// Level of the coarsest cells.
 const FIRST_LEVEL: u32 = 5;
@@ -25,7 +28,8 @@ pub struct Cache {
     pub layers: [Layer; 2],
     /// Surfaces whose lobes records light too.
     glossy: Option<Glossy>,
-    direct: DirectLight,
+    /// How direct and indirect light is found.
+    found: [FoundBy; 2],
     /// Samples that records light: those with a base or a lobe broad enough.
     wants: Vec<bool>,
     /// Where records disagreed before each pass of adaptation.
@@ -43,7 +47,10 @@ impl Cache {
         stats: &mut Stats,
     ) -> Cache {
         let settings = source.settings();
-        let mut cache = Cache::new(samples, glossy, settings.direct);
+        let mut cache = Cache::new(samples, glossy, [settings.found(0), settings.found(1)]);
+        if cache.found == [FoundBy::Samples; 2] {
+            return cache;
+        }
         control.begin(Stage::Records, samples.len() as u64);
         cache.fill(source, samples, control, stats);
         for _ in 0..settings.passes {
@@ -56,18 +63,18 @@ impl Cache {
         cache
     }
 
-    fn new(samples: &EyeSamples, glossy: Option<Glossy>, direct: DirectLight) -> Cache {
+    fn new(samples: &EyeSamples, glossy: Option<Glossy>, found: [FoundBy; 2]) -> Cache {
         let lit = |(point, surface): (&EyePoint, &EyeSurface)| {
             point.sharing.bands() > 0 || surface.bsdf.split_base(1.0).0 != Rgb::ZERO
         };
         let wants = samples.points.iter().zip(&samples.surfaces).map(lit).collect();
         let layers = [Layer::new(samples), Layer::new(samples)];
-        Cache { layers, glossy, direct, wants, seams: Vec::new(), counts: CutCounts::default() }
+        Cache { layers, glossy, found, wants, seams: Vec::new(), counts: CutCounts::default() }
     }
 
     /// Which layers a sample is to have.
     fn wanted(&self, sample: usize) -> [bool; 2] {
-        [self.wants[sample] && self.direct == DirectLight::Records, self.wants[sample]]
+        self.found.map(|found| self.wants[sample] && found == FoundBy::Records)
     }
 
     /// Computes and splats records until every cell worth one is covered.
@@ -142,6 +149,12 @@ impl Cache {
     pub fn resolve(&self, samples: &EyeSamples, picture: &mut Picture) -> Vec<Job> {
         let lobes = self.glossy.as_ref().map(|glossy| glossy.lobes(samples, &self.layers));
         let mut jobs = Vec::new();
+        // The only layer that records light, and the only one that they leave.
+        let (recorded, left) = match self.found {
+            [FoundBy::Records, FoundBy::Samples] => (Some(Origin::Direct), Some(Origin::Indirect)),
+            [FoundBy::Samples, FoundBy::Records] => (Some(Origin::Indirect), Some(Origin::Direct)),
+            _ => (None, None),
+        };
         for (i, surface) in samples.surfaces.iter().enumerate() {
             let sample = i as u32;
             let (base, lobe) = surface.bsdf.split_base(surface.out.dot(samples.points[i].normal));
@@ -154,21 +167,19 @@ impl Cache {
                 let mean = |l: usize| self.layers[l].sums[i].mean().unwrap_or(Rgb::ZERO);
                 let reflected = lobes.as_ref().map_or(Rgb::ZERO, |lobes| lobes[i]);
                 known = luminance(base * (mean(0) + mean(1)) + reflected);
-                if self.direct == DirectLight::Records {
-                    picture.add(samples, i, Some(Origin::Direct), base * mean(0));
-                    picture.add(samples, i, Some(Origin::Indirect), base * mean(1));
-                    picture.add(samples, i, None, reflected);
-                } else {
-                    picture.add(samples, i, Some(Origin::Indirect), base * mean(1) + reflected);
+                for (l, origin) in LAYERS.into_iter().enumerate() {
+                    picture.add(samples, i, Some(origin), base * mean(l));
                 }
+                picture.add(samples, i, recorded, reflected);
             }
-            let cached = self.direct == DirectLight::Records;
-            if !cached {
-                jobs.push(Job { sample, lobe_only: false, only: Some(Origin::Direct), known });
+            if self.found.contains(&FoundBy::Samples) {
+                jobs.push(Job { sample, lobe_only: false, only: left, known });
             }
-            if lobe.is_some() && samples.points[i].sharing.bands() == 0 {
-                let only = if cached { None } else { Some(Origin::Indirect) };
-                jobs.push(Job { sample, lobe_only: true, only, known });
+            if self.found.contains(&FoundBy::Records)
+                && lobe.is_some()
+                && samples.points[i].sharing.bands() == 0
+            {
+                jobs.push(Job { sample, lobe_only: true, only: recorded, known });
             }
         }
         jobs

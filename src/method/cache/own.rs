@@ -9,9 +9,13 @@ use crate::eye::EyeSamples;
 use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LentCut, Points, group_alike};
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Visibility};
 use crate::math::{Frame, Rgb};
+use crate::sampling::hash;
 use crate::shadow::Engine;
 use crate::vpl::Origin;
 use rayon::prelude::*;
+
+/// Steps of this, modulo 1, stay far from each other.
+const GOLDEN: f32 = 0.618_034;
 
 /// What of an eye sample is to be lit by a cut.
 #[derive(Clone, Copy, Debug)]
@@ -75,8 +79,16 @@ pub fn patches(source: &Source, samples: &EyeSamples, jobs: &[Job]) -> Vec<Vec<J
         let point = &samples.points[job.sample as usize];
         (point.position, point.normal)
     };
-    let same = |a: &Job, b: &Job| a.lobe_only == b.lobe_only && a.only == b.only;
-    group_alike(jobs.iter().copied(), source.settings.patch, source.world.diagonal, place, same)
+    let bsdf = |job: &Job| &samples.surfaces[job.sample as usize].bsdf;
+    let same =
+        |a: &Job, b: &Job| a.lobe_only == b.lobe_only && a.only == b.only && bsdf(a).same_lobe(bsdf(b));
+    group_alike(
+        jobs.iter().copied(),
+        source.settings.patch(samples.len()),
+        source.world.diagonal,
+        place,
+        same,
+    )
 }
 
 impl<'w> Cutters<'w> {
@@ -108,12 +120,25 @@ impl<'w> Cutters<'w> {
         if lit.len() == jobs.len() {
             return;
         }
-        self.lent.keep(&self.group, s.trees, &s.transfer, &self.points);
+        self.lent.keep(&self.group, s.trees, &s.transfer, &self.points, &radiance, cut.epsilon);
         let others: Vec<&Job> = chosen(false).collect();
-        for jobs in others.chunks(LANES) {
-            self.points.set(jobs.iter().map(|job| reflector(samples, job)));
-            self.group.gather_lent(&self.lent, s.trees, &s.transfer, rays, &self.points, cut, &mut radiance);
-            lit.extend(jobs.iter().map(|job| **job).zip(radiance));
+        let first = hash(jobs[0].sample, 0) as f32 * (1.0 / 4_294_967_296.0);
+        let chunks = others.len().div_ceil(LANES);
+        for chunk in 0..chunks {
+            let jobs = || others.iter().skip(chunk).step_by(chunks);
+            let start = (first + chunk as f32 * GOLDEN).fract();
+            self.points.set(jobs().map(|job| reflector(samples, job)));
+            self.group.gather_lent(
+                &self.lent,
+                s.trees,
+                &s.transfer,
+                rays,
+                &self.points,
+                cut,
+                start,
+                &mut radiance,
+            );
+            lit.extend(jobs().map(|job| **job).zip(radiance));
         }
     }
 }

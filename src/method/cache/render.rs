@@ -4,10 +4,10 @@ use super::filled::Cache;
 use super::inspect;
 use super::own;
 use super::picture::Picture;
-use crate::cache::CacheSettings;
 use crate::cache::compensate::Compensation;
 use crate::cache::compute::Source;
 use crate::cache::series::Glossy;
+use crate::cache::{CacheSettings, FoundBy};
 use crate::eye::{EyeSamples, EyeSettings, Window};
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
@@ -41,7 +41,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Settings {
         Settings {
-            spp: 1,
+            spp: 4,
             seed: 0,
             max_depth: None,
             light: LightPassSettings::default(),
@@ -62,7 +62,10 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let eye = EyeSettings { spp, seed: settings.seed, max_depth };
     control.begin(Stage::EyePass, window.tile_count(16) as u64);
     let mut samples = stats.time(Stage::EyePass, || EyeSamples::look(world, window, eye, control));
-    let glossy = stats.time(Stage::EyePass, || Glossy::find(world, &mut samples, &settings.cache.series));
+    let recorded = (0..2).any(|layer| settings.cache.found(layer) == FoundBy::Records);
+    let glossy = stats.time(Stage::EyePass, || {
+        recorded.then(|| Glossy::find(world, &mut samples, &settings.cache.series)).flatten()
+    });
 
     counts::eye(&mut stats, &samples.chains);
 

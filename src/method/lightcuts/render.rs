@@ -38,7 +38,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Settings {
         Settings {
-            spp: 1,
+            spp: 4,
             seed: 0,
             max_depth: None,
             light: LightPassSettings::default(),

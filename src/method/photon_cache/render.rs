@@ -1,8 +1,8 @@
 //! The picture: eye pass, photons, trees of direct light, the cache, and what it leaves to single samples.
 
-use crate::cache::CacheSettings;
 use crate::cache::compute::Source;
 use crate::cache::series::Glossy;
+use crate::cache::{CacheSettings, FoundBy};
 use crate::eye::{EyeSamples, EyeSettings, Window};
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
@@ -57,7 +57,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Settings {
         Settings {
-            spp: 1,
+            spp: 4,
             seed: 0,
             max_depth: None,
             photons: 300_000,
@@ -65,7 +65,7 @@ impl Default for Settings {
             rays: 2000,
             own_rays: 64,
             direct_vpls: LightPassSettings::default().direct,
-            cache: CacheSettings { least_cell: 32, ..CacheSettings::default() },
+            cache: CacheSettings { indirect: FoundBy::Records, least_cell: 32, ..CacheSettings::default() },
             cut: CutSettings::default(),
             family: Family::default(),
             inspect: false,

@@ -1,0 +1,286 @@
+//! Linear functions of position, fitted to what the makers of a cut get from its clusters.
+//!
+//! A cluster of unit intensity gives each maker an irradiance vector (0 if it is not seen), and its lobe, if it has one,
+//! reflects something of it. To both, functions of the position on the patch's tangent plane are fitted by
+//! least squares; the sum over the clusters, weighted by their intensities, serves all points of the patch, each
+//! with its own normal and base.
+
+use super::super::points::{Points, Vec3Lanes, lanes_of};
+use super::{LANES, Lanes, RgbLanes};
+use crate::light_tree::Node;
+use crate::lightcut::Transfer;
+use crate::math::{Frame, LUMINANCE, Rgb, luminance};
+use crate::vpl::{Vpl, VplKind};
+use glam::Vec3;
+
+/// Fewer makers than this are not fitted.
+const LEAST_MAKERS: u32 = 8;
+/// Extent of the makers along an axis, relative to their largest, below which nothing is fitted along it.
+const LEAST_EXTENT: f32 = 1e-3;
+
+/// Orthonormal functions of position over the makers: constant, and linear in the tangent plane.
+#[derive(Clone, Copy)]
+struct Basis {
+    centre: Vec3,
+    /// The constant function's value.
+    constant: f32,
+    /// Largest squared distance of a maker from the centre.
+    radius_sq: f32,
+    axes: [Vec3; 2],
+    /// Least and largest value of the linear functions at the makers.
+    ranges: [[f32; 2]; 2],
+    at_makers: [Lanes; 3],
+}
+
+/// What is fitted to one cluster of unit intensity: coefficients of the three functions.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Share {
+    /// Irradiance vector.
+    vector: [Vec3; 3],
+    /// What the lobe reflects.
+    lobe: [Rgb; 3],
+}
+
+/// What a cluster of unit intensity gives to each maker.
+pub(super) struct Given {
+    vector: Vec3Lanes,
+    lobe: RgbLanes,
+}
+
+/// The fit to a cut.
+#[derive(Default)]
+pub(super) struct Fit {
+    basis: Option<Basis>,
+    /// Mean BRDF of the makers' bases.
+    base: Rgb,
+    /// Coefficients of the irradiance vectors, by function and channel.
+    vectors: [[Vec3; 3]; 3],
+    /// Coefficients of what the lobe reflects, by function.
+    lobe: [Rgb; 3],
+}
+
+/// Values of the functions, by lane.
+pub(super) type At = [Lanes; 3];
+
+impl Fit {
+    /// Starts afresh for these makers.
+    pub fn begin(&mut self, makers: &Points) {
+        *self = Fit { basis: Basis::new(makers), ..Fit::default() };
+        let count = makers.len().max(1) as f32;
+        self.base = (0..makers.len()).map(|l| makers.get(l).base_brdf()).sum::<Rgb>() / count;
+    }
+
+    /// The fit to a cluster that `seen` of the makers see, and what it was fitted to; `None` if there are too few makers
+    /// or the cluster is too near.
+    pub fn share(
+        &self,
+        transfer: &Transfer,
+        makers: &Points,
+        node: &Node,
+        vpl: &Vpl,
+        seen: u16,
+        responses: &RgbLanes,
+    ) -> Option<(Share, Given)> {
+        let near = |basis: &Basis| {
+            let at = |l: usize| makers.get(l).position().distance_squared(vpl.position);
+            node.kind() != VplKind::Directional
+                && (0..makers.len()).map(at).fold(f32::INFINITY, f32::min) < basis.radius_sq
+        };
+        let basis = self.basis.as_ref().filter(|basis| !near(basis))?;
+        let mut vector = transfer.incidence16(makers, vpl, node.kind());
+        for row in &mut vector {
+            for (l, v) in row.iter_mut().enumerate() {
+                *v = if seen >> l & 1 != 0 { *v } else { 0.0 };
+            }
+        }
+        let mut lobe = [[0.0; LANES]; 3];
+        for l in lanes_of(makers.general & seen) {
+            let reflector = makers.get(l);
+            let incident = Vec3::new(vector[0][l], vector[1][l], vector[2][l]);
+            let passed = incident * reflector.coat_transmittance(incident);
+            let reflected = reflector.base_brdf() * reflector.place().1.dot(passed);
+            for c in 0..3 {
+                vector[c][l] = passed[c];
+                lobe[c][l] = responses[c][l] - reflected[c];
+            }
+        }
+        let mut share = Share::default();
+        for (f, function) in basis.at_makers.iter().enumerate() {
+            share.vector[f] = Vec3::from_array(std::array::from_fn(|axis| dot(function, &vector[axis])));
+            if makers.general != 0 {
+                share.lobe[f] = Rgb::from_array(std::array::from_fn(|c| dot(function, &lobe[c])));
+            }
+        }
+        Some((share, Given { vector, lobe }))
+    }
+
+    /// Root mean square of the luminance that the fit to `given` lacks or has too much at the makers, times
+    /// `inverse_totals`.
+    pub fn error(&self, makers: &Points, node: &Node, given: &Given, inverse_totals: &Lanes) -> f32 {
+        let Some(basis) = &self.basis else { return f32::INFINITY };
+        let (v, r, n) = (&given.vector, &given.lobe, &makers.frame[2]);
+        let reflected = luminance(node.intensity * self.base);
+        let base =
+            std::array::from_fn(|l| reflected * (v[0][l] * n[0][l] + v[1][l] * n[1][l] + v[2][l] * n[2][l]));
+        let mut squares = basis.squared_error(&base, inverse_totals);
+        if makers.general != 0 {
+            let w = node.intensity * LUMINANCE;
+            let lobe = std::array::from_fn(|l| w.x * r[0][l] + w.y * r[1][l] + w.z * r[2][l]);
+            squares += basis.squared_error(&lobe, inverse_totals);
+        }
+        // Three degrees of freedom are spent.
+        (squares / (makers.len() as f32 - 3.0)).sqrt()
+    }
+
+    /// Adds what was fitted to a cluster.
+    pub fn add(&mut self, node: &Node, share: &Share) {
+        for f in 0..3 {
+            for (c, vector) in self.vectors[f].iter_mut().enumerate() {
+                *vector += node.intensity[c] * share.vector[f];
+            }
+            self.lobe[f] += node.intensity * share.lobe[f];
+        }
+    }
+
+    /// The functions at some points.
+    pub fn at(&self, points: &Points) -> At {
+        let mut at = [[0.0; LANES]; 3];
+        let Some(basis) = &self.basis else { return at };
+        for l in 0..LANES {
+            let x = Vec3::from_array(std::array::from_fn(|c| points.position[c][l]));
+            let offset = x - basis.centre;
+            at[0][l] = basis.constant;
+            // Nothing is extrapolated.
+            for (f, axis) in basis.axes.iter().enumerate() {
+                let [least, most] = basis.ranges[f];
+                at[f + 1][l] = offset.dot(*axis).clamp(least, most);
+            }
+        }
+        at
+    }
+
+    /// What each point reflects of the sum.
+    pub fn reflected(&self, points: &Points, at: &At) -> RgbLanes {
+        let mut radiance = [[0.0; LANES]; 3];
+        for l in lanes_of(points.valid) {
+            let reflector = points.get(l);
+            let normal = reflector.place().1;
+            let mut reflected = Rgb::ZERO;
+            for f in 0..3 {
+                let irradiance = Rgb::from_array(self.vectors[f].map(|vector| vector.dot(normal)));
+                reflected += at[f][l] * irradiance;
+            }
+            reflected *= reflector.base_brdf();
+            if points.general >> l & 1 != 0 {
+                reflected += (0..3).map(|f| self.lobe[f] * at[f][l]).sum::<Rgb>();
+            }
+            for c in 0..3 {
+                radiance[c][l] = reflected[c];
+            }
+        }
+        radiance
+    }
+}
+
+impl Share {
+    /// What each point reflects of it.
+    pub fn reflected(&self, points: &Points, at: &At) -> RgbLanes {
+        let mut radiance = [[0.0; LANES]; 3];
+        let n = &points.frame[2];
+        for l in 0..LANES {
+            let mut irradiance = 0.0;
+            for (v, at) in self.vector.iter().zip(at) {
+                irradiance += at[l] * (v.x * n[0][l] + v.y * n[1][l] + v.z * n[2][l]);
+            }
+            for c in 0..3 {
+                radiance[c][l] = points.base[c][l] * irradiance;
+            }
+        }
+        if points.general != 0 {
+            for l in lanes_of(points.general) {
+                let reflected: Rgb = self.lobe.iter().zip(at).map(|(lobe, at)| *lobe * at[l]).sum();
+                for c in 0..3 {
+                    radiance[c][l] += reflected[c];
+                }
+            }
+        }
+        radiance
+    }
+}
+
+impl Basis {
+    fn new(makers: &Points) -> Option<Basis> {
+        let count = makers.len() as f32;
+        if makers.valid.count_ones() < LEAST_MAKERS {
+            return None;
+        }
+        let at = |l: usize| makers.get(l).position();
+        let centre = (0..makers.len()).map(at).sum::<Vec3>() / count;
+        let normal: Vec3 = (0..makers.len()).map(|l| makers.get(l).place().1).sum();
+        let frame = Frame::from_normal(normal.normalize_or(Vec3::Z));
+        let along = |axis: Vec3| {
+            let mut lanes = [0.0; LANES];
+            lanes_of(makers.valid).for_each(|l| lanes[l] = (at(l) - centre).dot(axis));
+            lanes
+        };
+        let constant = 1.0 / count.sqrt();
+        let mut one = [0.0; LANES];
+        lanes_of(makers.valid).for_each(|l| one[l] = constant);
+        let (u, v) = (along(frame.tangent), along(frame.bitangent));
+        let (uu, uv, vv) = (dot(&u, &u), dot(&u, &v), dot(&v, &v));
+        // The longer axis first, so that what is left of the other is well conditioned.
+        let (first, second, longer) = if uu >= vv {
+            (frame.tangent, frame.bitangent, uu)
+        } else {
+            (frame.bitangent, frame.tangent, vv)
+        };
+        if !(longer > 0.0) {
+            return None;
+        }
+        let second = second - first * (uv / longer);
+        let rest = along(second);
+        let shorter = dot(&rest, &rest);
+        let wide = shorter > LEAST_EXTENT * LEAST_EXTENT * longer;
+        let second = if wide { second / shorter.sqrt() } else { Vec3::ZERO };
+        let axes = [first / longer.sqrt(), second];
+        let functions = axes.map(along);
+        let ranges = functions.map(|f| {
+            let least = f.into_iter().fold(f32::INFINITY, f32::min);
+            [least, f.into_iter().fold(f32::NEG_INFINITY, f32::max)]
+        });
+        let radius_sq = (0..makers.len()).map(|l| at(l).distance_squared(centre)).fold(0.0, f32::max);
+        Some(Basis {
+            centre,
+            constant,
+            radius_sq,
+            axes,
+            ranges,
+            at_makers: [one, functions[0], functions[1]],
+        })
+    }
+
+    /// Sum of the squares of what the fit of `values` leaves, relative to `inverse_totals`.
+    fn squared_error(&self, values: &Lanes, inverse_totals: &Lanes) -> f32 {
+        let k = self.at_makers.each_ref().map(|f| dot(f, values));
+        let [one, u, v] = &self.at_makers;
+        let mut squares = [0.0; LANES];
+        for l in 0..LANES {
+            // The functions are 0 in lanes without a maker, and so are the values.
+            let left = (values[l] - k[0] * one[l] - k[1] * u[l] - k[2] * v[l]) * inverse_totals[l];
+            squares[l] = left * left;
+        }
+        squares.iter().sum()
+    }
+}
+
+fn dot(a: &Lanes, b: &Lanes) -> f32 {
+    let mut products: Lanes = std::array::from_fn(|l| a[l] * b[l]);
+    let mut half = LANES / 2;
+    while half > 0 {
+        for l in 0..half {
+            products[l] += products[l + half];
+        }
+        half /= 2;
+    }
+    products[0]
+}

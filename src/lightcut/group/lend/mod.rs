@@ -1,0 +1,261 @@
+//! A shared cut lent to the points in between.
+//!
+//! Where the sixteen points of a group are spread over a patch of surface, points among them have nearly the same cut,
+//! and what all sixteen see, or none of them, they most likely see too, or do not. So the cut is not refined again.
+//! Each of its clusters is treated in one of three ways. Where its light is a smooth function of position at the
+//! makers of the cut, it is interpolated (see [`fit`]). Where it is large and not smooth, it is evaluated at every
+//! point, with a shadow ray unless the makers agree. What is left, mostly small clusters that some makers see and some
+//! do not, is interpolated too, and the error corrected at random: a cluster is evaluated with a probability in
+//! proportion to its error, and the error found divided by the probability, so that the radiance is right on average.
+//!
+//! Deviations: this is not part of any paper's lightcuts. It misses what is hidden by, or seen through, something that
+//! none of the makers is aware of.
+
+mod fit;
+
+use super::points::{Points, lanes_of};
+use super::refine::{Entry, GroupLightcut};
+use super::transfer::{GroupVisibility, luminances};
+use super::{LANES, Lanes, RgbLanes};
+use crate::light_tree::LightTrees;
+use crate::lightcut::{CutSettings, Transfer};
+use crate::math::{Rgb, luminance};
+use crate::vpl::Origin;
+use fit::{Fit, Share};
+
+/// Least luminance of a maker where errors are judged, relative to the brightest.
+const DARKEST: f32 = 1.0 / 16.0;
+
+/// Largest correction of a point by one cluster drawn, relative to the luminance: an unlikely cluster that is much
+/// brighter at the point than at any maker would be a firefly.
+const LARGEST_CORRECTION: f32 = 0.5;
+
+/// A cluster this many times as bright at a point as at any maker needs a shadow ray even if all makers see it.
+const BRIGHTER: f32 = 2.0;
+
+/// A cluster that makers disagree about is drawn with certainty if its error, relative to the luminance, is this
+/// many times ε ...
+const CHANCE: f32 = 0.4;
+/// ... where the error counts as at least this share of what the cluster gives.
+const DOUBT: f32 = 0.2;
+/// A cluster that all makers see is interpolated if its error, relative to what it gives, is at most this many times ε
+/// over the root of what it gives, relative to the luminance: the larger the cluster, the less is tolerated.
+const SMOOTH: f32 = 0.3;
+
+/// A cluster that is evaluated at every point.
+#[derive(Clone, Copy, Debug)]
+struct Certain {
+    node: u32,
+    /// Luminance above which a point needs a shadow ray: 0 if the makers disagree about whether the cluster is seen.
+    sure: f32,
+}
+
+/// A cluster that is evaluated by chance.
+#[derive(Clone, Copy, Debug)]
+struct Drawn {
+    node: u32,
+    probability: f32,
+    /// What is interpolated of it.
+    share: Share,
+}
+
+/// A cut and what its makers saw.
+#[derive(Default)]
+pub struct LentCut {
+    certain: Vec<Certain>,
+    drawn: Vec<Drawn>,
+    fit: Fit,
+    /// Mean luminance of the makers.
+    brightness: f32,
+    size: usize,
+}
+
+impl LentCut {
+    /// Keeps the last cut of `group`, made for `points`, which reflect `radiance`; `epsilon` is the error that is
+    /// tolerated, relative to it.
+    pub fn keep(
+        &mut self,
+        group: &GroupLightcut,
+        trees: &LightTrees,
+        transfer: &Transfer,
+        points: &Points,
+        radiance: &[Rgb; LANES],
+        epsilon: f32,
+    ) {
+        let (tau, kappa, rho) = (CHANCE * epsilon, SMOOTH * epsilon, DOUBT);
+        let inverse_totals = inverse_totals(points, radiance);
+        self.fit.begin(points);
+        self.certain.clear();
+        self.drawn.clear();
+        self.size = group.size();
+        self.brightness =
+            lanes_of(points.valid).map(|l| points.known[l] + luminance(radiance[l])).sum::<f32>()
+                / points.len().max(1) as f32;
+        let mut unshadowed = [[0.0; LANES]; 3];
+        for (node, responses) in group.entries() {
+            let n = &trees.nodes[node as usize];
+            let vpl = &trees.vpls[n.representative()];
+            let lit = transfer.unshadowed16(points, vpl, n.kind(), &mut unshadowed);
+            let reached = |&l: &usize| responses[0][l] + responses[1][l] + responses[2][l] > 0.0;
+            let seen = lanes_of(lit).filter(reached).fold(0u16, |mask, lane| mask | 1 << lane);
+            // If only a few of the makers are lit at all, little is known.
+            let known = lit.count_ones() * 2 >= points.valid.count_ones();
+            if known && seen == 0 {
+                continue;
+            }
+            let doubtful = seen != lit || !known;
+            let y = luminances(n.intensity, &unshadowed);
+            let weak = n.is_leaf() && n.origin() == Origin::Indirect;
+            let clamped = weak && lanes_of(lit).any(|l| y[l] > 0.5 * group.limit(l));
+            let share =
+                if clamped { None } else { self.fit.share(transfer, points, n, vpl, seen, responses) };
+            // What is much brighter than at any maker is none of their business.
+            let brightest = lanes_of(lit).map(|l| y[l]).fold(0.0, f32::max);
+            let certain = Certain { node, sure: if doubtful { 0.0 } else { BRIGHTER * brightest } };
+            let Some((share, sums)) = share else {
+                self.certain.push(certain);
+                continue;
+            };
+            let share_of_luminance: f32 =
+                lanes_of(lit).map(|l| y[l] * inverse_totals[l]).sum::<f32>() / points.len() as f32;
+            let error = self.fit.error(points, n, &sums, &inverse_totals);
+            if !doubtful {
+                if error * error <= kappa * kappa * share_of_luminance {
+                    self.fit.add(n, &share);
+                } else {
+                    self.certain.push(certain);
+                }
+                continue;
+            }
+            let probability = error.max(rho * share_of_luminance) / tau;
+            if probability >= 1.0 {
+                self.certain.push(certain);
+            } else {
+                self.fit.add(n, &share);
+                self.drawn.push(Drawn { node, probability, share });
+            }
+        }
+        // Neighbours in the tree are drawn in turn, so that what is drawn is spread over the lights.
+        self.drawn.sort_unstable_by_key(|d| d.node);
+    }
+
+    /// Luminance of one correction at most: half of what is known of a point or its makers.
+    fn limits(&self, known: &RgbLanes) -> Lanes {
+        luminances(Rgb::ONE, known).map(|y| LARGEST_CORRECTION * y.max(self.brightness))
+    }
+
+    /// How many clusters.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+}
+
+/// Inverse of the luminance of each maker, as far as errors are judged by it.
+fn inverse_totals(points: &Points, radiance: &[Rgb; LANES]) -> Lanes {
+    let totals: Lanes = std::array::from_fn(|l| points.known[l] + luminance(radiance[l]));
+    let brightest = lanes_of(points.valid).map(|l| totals[l]).fold(f32::MIN_POSITIVE, f32::max);
+    totals.map(|total| 1.0 / total.max(DARKEST * brightest))
+}
+
+impl GroupLightcut {
+    /// Reflected radiance of points among those that `cut` was made for; `start` (in [0, 1)) decides on what is left
+    /// to chance.
+    #[allow(clippy::too_many_arguments)]
+    pub fn gather_lent<V: GroupVisibility>(
+        &mut self,
+        cut: &LentCut,
+        trees: &LightTrees,
+        transfer: &Transfer,
+        visibility: &V,
+        points: &Points,
+        settings: &CutSettings,
+        start: f32,
+        radiance: &mut [Rgb; LANES],
+    ) {
+        const ZERO: Lanes = [0.0; LANES];
+        self.entries.clear();
+        let at = cut.fit.at(points);
+        // What is never clamped needs no second look.
+        let mut strong = cut.fit.reflected(points, &at);
+        for &Certain { node, sure } in &cut.certain {
+            let n = &trees.nodes[node as usize];
+            let Some(responses) = self.responses(trees, transfer, visibility, points, node, sure) else {
+                continue;
+            };
+            if n.is_leaf() && n.origin() == Origin::Indirect {
+                self.entries.push(Entry { node, weak: true, responses, errors: ZERO, counted: ZERO });
+            } else {
+                add(&mut strong, n.intensity, &responses);
+            }
+        }
+        let limits = cut.limits(&strong);
+        let mut ticket = start;
+        for Drawn { node, probability, share } in &cut.drawn {
+            ticket += probability;
+            if ticket < 1.0 {
+                continue;
+            }
+            ticket -= 1.0;
+            let mut error = share.reflected(points, &at);
+            error.iter_mut().flatten().for_each(|e| *e = -*e);
+            if let Some(responses) = self.responses(trees, transfer, visibility, points, *node, 0.0) {
+                add(&mut error, Rgb::ONE, &responses);
+            }
+            let scale = trees.nodes[*node as usize].intensity / *probability;
+            let y = luminances(scale, &error);
+            for row in &mut error {
+                for l in 0..LANES {
+                    row[l] *= if y[l].abs() > limits[l] { limits[l] / y[l].abs() } else { 1.0 };
+                }
+            }
+            add(&mut strong, scale, &error);
+        }
+        let count = points.len() as u64;
+        self.counts.cuts += count;
+        self.counts.clusters += count * cut.size() as u64;
+        self.sum(trees, points, settings.clamp, &strong, radiance);
+        for radiance in radiance.iter_mut() {
+            *radiance = radiance.max(Rgb::ZERO);
+        }
+    }
+
+    /// What a cluster of unit intensity gives to each point, with a shadow ray where it is brighter than `sure`.
+    fn responses<V: GroupVisibility>(
+        &mut self,
+        trees: &LightTrees,
+        transfer: &Transfer,
+        visibility: &V,
+        points: &Points,
+        node: u32,
+        sure: f32,
+    ) -> Option<RgbLanes> {
+        let n = &trees.nodes[node as usize];
+        let vpl = &trees.vpls[n.representative()];
+        let mut responses = [[0.0; LANES]; 3];
+        let lit = transfer.unshadowed16(points, vpl, n.kind(), &mut responses);
+        if lit == 0 {
+            return None;
+        }
+        let y = luminances(n.intensity, &responses);
+        let doubtful = (0..LANES).fold(0, |mask, l| mask | u16::from(y[l] > sure) << l) & lit;
+        if doubtful != 0 {
+            self.counts.rays += u64::from(doubtful.count_ones());
+            self.packets += 1;
+            let seen = visibility.visible16(points, doubtful, vpl, n) | !doubtful;
+            for row in &mut responses {
+                for (l, r) in row.iter_mut().enumerate() {
+                    *r = if seen >> l & 1 != 0 { *r } else { 0.0 };
+                }
+            }
+        }
+        Some(responses)
+    }
+}
+
+fn add(sums: &mut RgbLanes, intensity: Rgb, responses: &RgbLanes) {
+    for (c, sum) in sums.iter_mut().enumerate() {
+        for (s, r) in sum.iter_mut().zip(&responses[c]) {
+            *s += intensity[c] * r;
+        }
+    }
+}
