@@ -16,7 +16,9 @@ use lightsplat::world::World;
 fn settings(direct: FoundBy, footprints: Footprints) -> cache::Settings {
     let mut settings = cache::Settings::default();
     settings.light.indirect = 20_000;
+    settings.spp = 1;
     settings.cache.direct = direct;
+    settings.cache.indirect = FoundBy::Records;
     // Records wherever they can be, which small pictures would leave to cuts.
     settings.cache.least_cell = 8;
     settings.cache.layers[1].accuracy = 0.3;
@@ -71,7 +73,8 @@ fn room_with_ball(materials: impl FnOnce(&mut Scene, MaterialId) -> [MaterialId;
 }
 
 fn per_pixel(world: &World, like: &cache::Settings) -> Image {
-    let mut settings = lightcuts::Settings { light: like.light, ..lightcuts::Settings::default() };
+    let mut settings =
+        lightcuts::Settings { light: like.light, spp: like.spp, ..lightcuts::Settings::default() };
     settings.cut.epsilon = 0.005;
     lightcuts::render(world, &Window::whole(world.scene.resolution), &settings, &Control::new()).color
 }
@@ -113,6 +116,42 @@ fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
 }
 
 #[test]
+fn lent_cuts_agree_with_lightcuts_per_pixel() {
+    for world in [lit_room(), glossy_room()] {
+        let mut settings = settings(FoundBy::Samples, Footprints::Occlusion);
+        settings.spp = 4;
+        settings.cache.indirect = FoundBy::Samples;
+        settings.cut.epsilon = 0.01;
+        let output = cached(&world, &settings);
+        let (records, own) = ("Cache/records, indirect", "Cache/samples with own cuts");
+        assert_eq!(count(&output, records).unwrap_or(0), 0);
+        assert!(count(&output, own).is_some_and(|own| own > 3 * 96 * 96));
+        let exact = per_pixel(&world, &settings);
+        let error = rms(&output.color, &exact);
+        assert!(error < 0.02, "{error}");
+        let mean = |image: &Image| image.pixels.iter().map(|p| luminance(*p)).sum::<f32>();
+        let bias = mean(&output.color) / mean(&exact);
+        assert!((bias - 1.0).abs() < 0.003, "{bias}");
+    }
+}
+
+#[test]
+fn layers_by_records_and_by_samples_add_up_in_every_combination() {
+    let world = glossy_room();
+    let mut first = None;
+    for direct in [FoundBy::Samples, FoundBy::Records] {
+        for indirect in [FoundBy::Samples, FoundBy::Records] {
+            let mut settings = settings(direct, Footprints::Anisotropic);
+            settings.cache.indirect = indirect;
+            settings.cache.layers[0] = LayerSettings { accuracy: 0.1, reach: [0.7, 5.0] };
+            let picture = cached(&world, &settings).color;
+            let error = rms(&picture, first.get_or_insert_with(|| per_pixel(&world, &settings)));
+            assert!(error < 0.08, "{direct:?} {indirect:?}: {error}");
+        }
+    }
+}
+
+#[test]
 fn surfaces_without_lobes_make_no_series() {
     let output = cached(&lit_room(), &settings(FoundBy::Samples, Footprints::Anisotropic));
     assert_eq!(count(&output, "Cache/records with series"), None);
@@ -120,8 +159,10 @@ fn surfaces_without_lobes_make_no_series() {
 
 #[test]
 fn the_bits_do_not_depend_on_the_number_of_threads() {
-    for world in [lit_room(), glossy_room()] {
-        let settings = settings(FoundBy::Records, Footprints::Occlusion);
+    let records = settings(FoundBy::Records, Footprints::Occlusion);
+    let mut lent = records;
+    (lent.cache.direct, lent.cache.indirect) = (FoundBy::Samples, FoundBy::Samples);
+    for (world, settings) in [(lit_room(), records), (glossy_room(), records), (glossy_room(), lent)] {
         let pictures = [1, 2, 4].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| cached(&world, &settings).color.pixels)

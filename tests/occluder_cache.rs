@@ -4,6 +4,7 @@ mod common;
 
 use common::*;
 use glam::Vec3;
+use lightsplat::cache::FoundBy;
 use lightsplat::math::Rgb;
 use lightsplat::method::{Control, Output, cache, lightcuts};
 use lightsplat::shadow::{Cached, OccluderCacheSettings, ShadowSettings};
@@ -76,6 +77,8 @@ fn the_radiance_cache_gives_the_same_bits_with_it_and_without_on_any_number_of_t
         let mut first = None;
         for shadows in uses() {
             let mut settings = cache::Settings { light: LIGHT, ..Default::default() };
+            settings.spp = 1;
+            settings.cache.indirect = FoundBy::Records;
             settings.cache.least_cell = 8;
             (settings.cache.share, settings.cache.shadows) = (share, shadows);
             let [one, three] = [1, 3].map(|threads| on_threads(threads, || cached(&world, &settings)));

@@ -106,7 +106,8 @@ fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
         scene.meshes.push(emitting(quad(corner, Vec3::X * 0.2, slanted, black), Rgb::ONE));
     }
     let world = world(scene);
-    let picture = lightcuts::render(&world, &whole(&world), &lightcuts::Settings::default(), &Control::new());
+    let one = lightcuts::Settings { spp: 1, ..Default::default() };
+    let picture = lightcuts::render(&world, &whole(&world), &one, &Control::new());
     let at =
         |look: Look| check(&world, &picture.color, &Settings { pixels: 700, look, ..Settings::default() });
     let light = at(Look::EyeSamples { spp: 1, seed: 0 });
@@ -196,10 +197,10 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
     for name in ["cornell", "knot", "nave", "kitchen", "apartment"] {
         let world = load(name);
         let window = whole(&world);
-        let eye = Look::EyeSamples { spp: 1, seed: 0 };
         let cached = cache::Settings::default();
+        let eye = Look::EyeSamples { spp: cached.spp, seed: cached.seed };
         let mut few = cached;
-        (few.light.indirect, few.cache.layers[1].accuracy) = (20_000, 0.6);
+        (few.light.indirect, few.cut.epsilon) = (20_000, 0.04);
         let cuts = lightcuts::Settings { family: Family::default(), ..Default::default() };
         let few_paths = path::Settings { spp: 64, ..Default::default() };
         let pairs = match name {

@@ -56,6 +56,20 @@ pub struct CacheArgs {
     pub least_cell: Option<u32>,
 }
 
+impl CacheArgs {
+    /// Whether something is typed about records though none are asked for.
+    pub fn without_records(&self) -> bool {
+        let about_light = CacheArgs {
+            direct: self.direct,
+            indirect: self.indirect,
+            patches: self.patches,
+            inspect: self.inspect,
+            ..CacheArgs::default()
+        };
+        ![self.direct, self.indirect].contains(&Some(LightBy::Records)) && *self != about_light
+    }
+}
+
 /// Ways of finding light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LightBy {

@@ -25,6 +25,9 @@ pub fn method(args: &RenderArgs) -> Result<Method, Failure> {
         {
             Err(Failure::usage(anyhow!("the options under \"Photon map\" belong to --method photon-cache")))
         }
+        MethodName::Cache if args.cache.without_records() => Err(Failure::usage(anyhow!(
+            "--record-epsilon, --footprints, --accuracy, --reach, --series-alpha, --series-error, --mu, --compensation, --passes, --threshold and --least-cell are for records: add --indirect records"
+        ))),
         MethodName::PhotonCache
             if args.lightcuts.vpls.is_some()
                 || args.lightcuts.clamp.is_some()

@@ -1,11 +1,16 @@
-//! The radiance cache: records at a few thousand points, splatted onto all eye samples.
+//! The radiance cache: incident light found at some thousand places, and what the eye samples between them make of it.
 //!
-//! Paper: Herzog et al. 2009; LCache1 with isotropic, LCache2 with anisotropic footprints. Beyond it, and by
-//! default: footprints and gradients that know of the edges of occluders (`occlusion`).
+//! Paper: Herzog et al. 2009, records splatted onto all eye samples; LCache1 with isotropic, LCache2 with anisotropic
+//! footprints. Beyond it: footprints and gradients that know of the edges of occluders (`occlusion`).
+//!
+//! Deviations: by default neither layer has records. Cuts shared by sixteen places of a patch, and lent to the
+//! eye samples among them (see [`crate::lightcut::group::LentCut`]), took as long and erred less, most of all where
+//! shadows are fine: the patch's cut is its record, a linear fit its gradient, and rays correct it where the sixteen
+//! disagree.
 //!
 //! | setting | default | meaning |
 //! |---|---|---|
-//! | `spp` | 1 | eye samples a pixel |
+//! | `spp` | 4 | eye samples a pixel |
 //! | `seed` | 0 | another seed, other VPLs and other eye samples |
 //! | `max_depth` | the scene's | longest path in edges, counted from the eye |
 //! | `light` | as `lightcuts` | how many VPLs |
@@ -14,7 +19,7 @@
 //! | `inspect` | off | further images of what the cache did, see [`inspect`] |
 //! | `family` | divisive | how light trees are built |
 //!
-//! Eye samples have cuts of their own, shared among neighbours, where their reflection is too sharp for records,
+//! With records, eye samples have lent cuts where their reflection is too sharp for records,
 //! where a record would serve too few of them, and where records still disagree visibly after the last pass.
 
 pub(super) mod filled;

@@ -1,8 +1,8 @@
 //! Eye samples with cuts of their own, or nearly so.
 //!
 //! Samples close together, seen in the order of the index, form patches. Sixteen spread over each patch share a
-//! cut; it is lent to the others, which trace shadow rays only where the sixteen disagree (see
-//! [`LentCut`]). Patches of few samples have cuts of their own.
+//! cut; it is lent to the others, which trace shadow rays where the sixteen disagree (see [`LentCut`]). The
+//! others are taken in packets spread over the patch, so that neighbours leave different clusters to chance. Patches of few samples have cuts of their own.
 
 use crate::cache::compute::Source;
 use crate::eye::EyeSamples;
