@@ -42,7 +42,9 @@ pub fn report(found: &Verified, settings: &Settings, stats: &mut Stats, metadata
     stats.count("Verify/pixels", found.pixels as u64);
     stats.count("Verify/pixels at the cap", found.pixels_at_cap as u64);
     stats.count("Verify/paths", found.paths);
+    stats.count("Verify/95 % hidden by noise (1: yes)", u64::from(!found.error_95_resolved));
     metadata.set("verified_against", against(settings.look));
+    metadata.set("verified_error_95_resolved", if found.error_95_resolved { "true" } else { "false" });
     metadata.set("verified_noise", found.noise);
     metadata.set("verified_pixels", found.pixels as f64);
     metadata.set("verified_pixels_at_cap", found.pixels_at_cap as f64);

@@ -12,6 +12,9 @@
 //! anew, so that what stopped them does not bias them. The error is reported with the interval that covers it in 95 of 100 cases; it holds
 //! the chance of which pixels were picked and the noise of their paths.
 //!
+//! Pictures that differ in how they were computed, but not in what a pixel is meant to be, can be held to one [`Truth`]. Those that were
+//! chosen because they did well by it need another, of another seed.
+//!
 //! It says what the path tracer knows: light that it hardly finds (small lights through glass) is missing from the
 //! truth or widens the interval.
 
@@ -28,6 +31,8 @@ use crate::world::World;
 use serde::Serialize;
 
 pub use interval::Estimate;
+use picks::Pick;
+use trace::Traced;
 
 /// What to verify.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +65,9 @@ pub struct Verified {
     pub relative_rms: Estimate,
     /// What the root of that, by pixel, is not above in 95 % of them.
     pub relative_error_95: Estimate,
+    /// Whether errors rule that figure; if not, the noise of the paths does, and its interval starts at 0 and ends where the
+    /// figure would be if all that is seen were error.
+    pub error_95_resolved: bool,
     /// Root of the mean relative variance of the path-traced pixels. It is taken out of the figures above.
     pub noise: f64,
     /// Pixels traced.
@@ -72,6 +80,52 @@ pub struct Verified {
     pub nonfinite: u64,
 }
 
+/// What some pixels of a window should hold.
+pub struct Truth {
+    picks: Vec<Pick>,
+    traced: Traced,
+    seed: u32,
+}
+
+impl Truth {
+    /// Traces pixels of `window`, those preferred that stand out in `image`, a picture of it; `None` if cancelled.
+    pub fn trace(
+        world: &World,
+        window: &Window,
+        image: &Image,
+        settings: &Settings,
+        control: &Control,
+    ) -> Option<Truth> {
+        let picks = picks::choose(image, settings.pixels, settings.seed);
+        control.begin(Stage::Verify, 2 * picks.len() as u64);
+        let traced = trace::trace(world, window, image, &picks, settings, control)?;
+        Some(Truth { picks, traced, seed: settings.seed })
+    }
+
+    /// The error of `image`, a picture of the same window.
+    pub fn judge(&self, image: &Image) -> Verified {
+        let traced = &self.traced;
+        let mut pixels = traced.pixels.clone();
+        for (pixel, pick) in pixels.iter_mut().zip(&self.picks) {
+            pixel.held = image.pixels[pick.index].as_dvec3();
+        }
+        let sum: f64 = image.pixels.iter().map(|p| p.as_dvec3().element_sum() / 3.0).sum();
+        let mean = sum / image.pixels.len().max(1) as f64;
+        let errors = measure::errors(&pixels, mean, self.seed);
+        Verified {
+            relative_bias: errors.bias,
+            relative_rms: errors.rms,
+            relative_error_95: errors.percentile_95,
+            error_95_resolved: errors.percentile_resolved,
+            noise: errors.noise,
+            pixels: self.picks.len(),
+            pixels_at_cap: traced.at_cap,
+            paths: traced.paths,
+            nonfinite: traced.nonfinite,
+        }
+    }
+}
+
 /// Measures the error of `image`, the picture of `window`; `None` if cancelled.
 pub fn verify(
     world: &World,
@@ -80,20 +134,5 @@ pub fn verify(
     settings: &Settings,
     control: &Control,
 ) -> Option<Verified> {
-    let picks = picks::choose(image, settings.pixels, settings.seed);
-    control.begin(Stage::Verify, 2 * picks.len() as u64);
-    let traced = trace::trace(world, window, image, &picks, settings, control)?;
-    let sum: f64 = image.pixels.iter().map(|p| p.as_dvec3().element_sum() / 3.0).sum();
-    let mean = sum / image.pixels.len().max(1) as f64;
-    let errors = measure::errors(&traced.pixels, mean, settings.seed);
-    Some(Verified {
-        relative_bias: errors.bias,
-        relative_rms: errors.rms,
-        relative_error_95: errors.percentile_95,
-        noise: errors.noise,
-        pixels: picks.len(),
-        pixels_at_cap: traced.at_cap,
-        paths: traced.paths,
-        nonfinite: traced.nonfinite,
-    })
+    Some(Truth::trace(world, window, image, settings, control)?.judge(image))
 }
