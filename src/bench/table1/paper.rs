@@ -1,7 +1,7 @@
 //! What the paper reports, to stand beside ours.
 //!
-//! Paper: Herzog et al. 2009, Table 1. Its rows are not copied here: its scenes are others than ours, and its
-//! processor of another time. What can be set against ours are its ratios, times with the light pass.
+//! Paper: Herzog et al. 2009, Table 1. Of the table, only the ratios of times with the light pass were to be had when
+//! this was written; its rows, on scenes other than ours, are missing.
 
 /// A claim of the paper's.
 pub struct Claim {
