@@ -83,6 +83,9 @@ fn the_radiance_cache_gives_the_same_bits_with_it_and_without_on_any_number_of_t
             (settings.cache.share, settings.cache.shadows) = (share, shadows);
             let [one, three] = [1, 3].map(|threads| on_threads(threads, || cached(&world, &settings)));
             assert!(one.color == three.color && one.stats.counters().eq(three.stats.counters()));
+            let asks =
+                shadows.cached == Some(Cached::All) || (!share && shadows.cached == Some(Cached::Single));
+            assert!(!asks || saved(&one) > 1000, "share {share}: {shadows:?} saved {}", saved(&one));
             let first = first.get_or_insert(one);
             assert!(first.color == three.color, "share {share}: {shadows:?}");
         }

@@ -10,7 +10,7 @@ use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LentCut, Poi
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Visibility};
 use crate::math::{Frame, Rgb};
 use crate::sampling::hash;
-use crate::shadow::Engine;
+use crate::shadow::{Counts, Engine};
 use crate::vpl::Origin;
 use rayon::prelude::*;
 
@@ -39,16 +39,22 @@ pub struct Cutters<'w> {
     points: Points<'w>,
 }
 
-/// Radiance that each job's sample reflects, in a fixed order.
-pub fn light<'w>(
-    source: &Source<'w>,
-    samples: &EyeSamples<'w>,
-    jobs: &[Job],
-    cut: &CutSettings,
-) -> (Vec<(Job, Rgb)>, CutCounts) {
+/// What jobs came to.
+#[derive(Default)]
+pub struct Lit {
+    /// Radiance that each job's sample reflects, in a fixed order.
+    pub radiance: Vec<(Job, Rgb)>,
+    /// Of the cuts.
+    pub cuts: CutCounts,
+    /// Of their shadow rays.
+    pub shadows: Counts,
+}
+
+/// Lights all jobs.
+pub fn light<'w>(source: &Source<'w>, samples: &EyeSamples<'w>, jobs: &[Job], cut: &CutSettings) -> Lit {
     let (settings, size) = (source.settings, source.settings.shadows.cache);
     let cached = settings.shadows.for_samples(settings.share);
-    let done: Vec<(Vec<(Job, Rgb)>, CutCounts)> = patches(source, samples, jobs)
+    let done: Vec<Lit> = patches(source, samples, jobs)
         .par_iter()
         .map_init(
             || (Engine::with(source.world, cached, size), Cutters::default()),
@@ -58,19 +64,19 @@ pub fn light<'w>(
                 let cut = CutSettings { only: jobs[0].only, ..*cut };
                 let mut lit = Vec::with_capacity(jobs.len());
                 work.light(source, shadows, samples, jobs, &cut, &mut lit);
-                let mut counts = work.single.counts;
-                counts.add(&work.group.counts);
-                (lit, counts)
+                let mut cuts = work.single.counts;
+                cuts.add(&work.group.counts);
+                Lit { radiance: lit, cuts, shadows: shadows.take_counts() }
             },
         )
         .collect();
-    let mut counts = CutCounts::default();
-    let mut lit = Vec::with_capacity(jobs.len());
-    for (radiance, used) in done {
-        lit.extend(radiance);
-        counts.add(&used);
+    let mut all = Lit { radiance: Vec::with_capacity(jobs.len()), ..Lit::default() };
+    for lit in done {
+        all.radiance.extend(lit.radiance);
+        all.cuts.add(&lit.cuts);
+        all.shadows.add(&lit.shadows);
     }
-    (lit, counts)
+    all
 }
 
 /// Jobs that are lit together.

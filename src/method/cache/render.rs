@@ -80,12 +80,13 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let mut picture = Picture::new(&samples, settings.inspect);
     let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
     control.begin(Stage::Render, jobs.len() as u64);
-    let (lit, used) = stats.time(Stage::Render, || own::light(&source, &samples, &jobs, &settings.cut));
-    for (job, radiance) in lit {
+    let lit = stats.time(Stage::Render, || own::light(&source, &samples, &jobs, &settings.cut));
+    for (job, radiance) in lit.radiance {
         picture.add(&samples, job.sample as usize, job.only, radiance);
     }
     stats.count("Cache/samples with own cuts", jobs.len() as u64);
-    counts::cuts(&mut stats, "Lightcut", &used);
+    counts::cuts(&mut stats, "Lightcut", &lit.cuts);
+    lit.shadows.report(&mut stats);
     let complete = samples.complete && !control.is_cancelled();
     let (color, mut extra, nonfinite) = picture.finish();
     if settings.inspect {

@@ -107,13 +107,13 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
         .filter(|job| job.only != Some(Origin::Indirect))
         .map(|job| Job { only: Some(Origin::Direct), ..*job })
         .collect();
-    let (lit, used) =
-        stats.time(Stage::Render, || own::light(&source.direct, &samples, &direct_jobs, &settings.cut));
-    counts::cuts(&mut stats, "Lightcut", &used);
+    let lit = stats.time(Stage::Render, || own::light(&source.direct, &samples, &direct_jobs, &settings.cut));
+    counts::cuts(&mut stats, "Lightcut", &lit.cuts);
+    lit.shadows.report(&mut stats);
     let indirect_jobs: Vec<&Job> = jobs.iter().filter(|job| job.only != Some(Origin::Direct)).collect();
     let gathered = stats.time(Stage::Render, || own_gathers(&source, &samples, &indirect_jobs, settings));
     let mut rays = *source.counts.lock().unwrap_or_else(PoisonError::into_inner);
-    for (job, radiance) in lit {
+    for (job, radiance) in lit.radiance {
         picture.add(&samples, job.sample as usize, job.only, radiance);
     }
     for (job, (radiance, used)) in indirect_jobs.iter().zip(gathered) {
