@@ -12,7 +12,7 @@
 //! - [`cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their footprints;
 //! - [`shadow`] answers whether segments are free, by packets of rays, [`sampling`] gives every stage its numbers;
 //! - [`method`] holds the renderers that are compared; [`image`] writes and compares what they return;
-//! - [`verify`] measures how wrong a picture is by path-tracing some of its pixels;
+//! - [`verify`] measures how wrong a picture is by path-tracing some of its pixels, [`plan`] chooses settings for a time or an error;
 //! - [`mod@bench`] measures how fast the parts are; [`cli`] is the command around it all, [`stats`] what it reports.
 
 #![deny(unsafe_code)]
@@ -32,6 +32,7 @@ pub mod material;
 pub mod math;
 pub mod method;
 pub mod photon;
+pub mod plan;
 pub mod sampling;
 pub mod scene;
 pub mod shadow;

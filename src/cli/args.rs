@@ -3,8 +3,9 @@
 use super::bench_args::BenchArgs;
 use super::cache_args::{CacheArgs, Switch};
 use super::exit;
+use super::plan_args::PlanArgs;
 use crate::image::Exposure;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -81,6 +82,9 @@ pub struct RenderArgs {
     /// Fail on anything in the scene that is not modelled, instead of warning
     #[arg(long)]
     pub strict: bool,
+    /// What is wanted instead of how.
+    #[command(flatten)]
+    pub plan: PlanArgs,
     /// Measuring the error.
     #[command(flatten)]
     pub verify: VerifyArgs,
@@ -97,17 +101,20 @@ pub struct RenderArgs {
 
 /// Options that measure the picture's error.
 #[derive(Clone, Debug, Default, Args, PartialEq)]
-#[command(next_help_heading = "Measured error")]
+#[command(
+    next_help_heading = "Measured error",
+    group(ArgGroup::new("measured").args(["verify", "error"]).multiple(true))
+)]
 pub struct VerifyArgs {
     /// Path-trace about this many pixels and report the picture's error: bias, RMS and 95th percentile, each with
     /// the interval that covers it in 95 of 100 cases
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..))]
     pub verify: Option<u32>,
     /// What the picture is held to be [default: what the method computes: pixels for path, else eye-samples]
-    #[arg(long, value_enum, requires = "verify")]
+    #[arg(long, value_enum, requires = "measured")]
     pub verify_against: Option<VerifyAgainst>,
     /// Most paths a pixel [default: 4096]; how many pixels would need more to be known to 1 % is reported
-    #[arg(long, value_name = "SPP", requires = "verify", value_parser = clap::value_parser!(u32).range(64..))]
+    #[arg(long, value_name = "SPP", requires = "measured", value_parser = clap::value_parser!(u32).range(64..))]
     pub verify_samples: Option<u32>,
 }
 

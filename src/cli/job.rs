@@ -3,6 +3,7 @@
 use super::args::{Crop, ProgressMode, RenderArgs, StatsFormat};
 use super::exit::Failure;
 use super::method::method;
+use super::plan::{Wish, wish};
 use super::verify;
 use crate::eye::Window;
 use crate::image::{Exposure, atomic};
@@ -30,6 +31,8 @@ pub struct RenderJob {
     pub png: Option<(PathBuf, Exposure)>,
     /// How.
     pub method: Method,
+    /// What the settings are to be planned for.
+    pub wish: Option<Wish>,
     /// How to measure the picture's error, if wanted.
     pub verify: Option<VerifySettings>,
     /// Number of threads.
@@ -50,7 +53,8 @@ impl RenderJob {
     /// Checks what was typed, and that the results can be written where they are wanted.
     pub fn new(args: RenderArgs) -> Result<RenderJob, Failure> {
         let method = method(&args)?;
-        let verify = verify::settings(&args.verify, &method, args.max_depth);
+        let verify = verify::settings(&args.verify, &method, args.max_depth, args.plan.error.is_some());
+        let wish = wish(&args, &method)?;
         named(&args.output, "exr", "--output")?;
         let png = match (args.no_png, args.png) {
             (true, _) => None,
@@ -70,6 +74,7 @@ impl RenderJob {
             output: args.output,
             png: png.map(|path| (path, args.exposure)),
             method,
+            wish,
             verify,
             threads: args.threads.map_or_else(processors, |n| n as usize),
             resolution: args.resolution.map(|r| r.0),

@@ -12,6 +12,8 @@ mod info;
 mod interrupt;
 mod job;
 mod method;
+mod plan;
+mod plan_args;
 mod progress;
 mod render;
 mod scene;

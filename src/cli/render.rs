@@ -3,7 +3,7 @@
 use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
 use super::job::RenderJob;
-use super::{interrupt, progress, scene, talk, verify};
+use super::{interrupt, plan, progress, scene, talk, verify};
 use crate::eye::Window;
 use crate::image::metrics::rel_mse_of_variance;
 use crate::image::{Film, Image, Metadata, false_colour, write_exr, write_png, write_srgb8};
@@ -30,13 +30,19 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
         .with_context(|| format!("cannot start {} threads; try fewer with --threads", job.threads))
         .map_err(Failure::render)?;
 
-    let (frame, mut stats) = pool.install(|| render(&job, &control))?;
+    let (mut frame, mut stats) = pool.install(|| render(&job, &control, &total))?;
     let Frame { complete, unverified, .. } = frame;
     if !complete && is_black(&frame.film.color) {
         return Err(Failure::interrupted(anyhow!("interrupted before the first pixel; nothing is written")));
     }
     stats.time(Stage::Write, || write(&job, frame.film))?;
     stats.add_time(Stage::Total, total.elapsed());
+    if frame.facts["plan"]["asked_seconds"].is_number() {
+        let seconds = |stage| stats.stage(stage).map_or(0.0, |t| t.wall_seconds);
+        let got = seconds(Stage::Total) - seconds(Stage::Verify);
+        frame.facts["plan"]["got_seconds"] = got.into();
+        stats.add("Plan/time got, without --verify [s]", got);
+    }
     if let Some(bytes) = peak_resident_bytes() {
         stats.count("Memory/peak resident [MiB]", bytes >> 20);
     }
@@ -68,7 +74,7 @@ struct Frame {
     unverified: bool,
 }
 
-fn render(job: &RenderJob, control: &Control) -> Result<(Frame, Stats), Failure> {
+fn render(job: &RenderJob, control: &Control, run: &Stopwatch) -> Result<(Frame, Stats), Failure> {
     let interrupted = || Failure::interrupted(anyhow!("interrupted before rendering; nothing is written"));
     let mut stats = Stats::new();
     let loaded = stats.time(Stage::Load, || scene::read(&job.scene, job.strict))?;
@@ -85,9 +91,8 @@ fn render(job: &RenderJob, control: &Control) -> Result<(Frame, Stats), Failure>
     if control.is_cancelled() {
         return Err(interrupted());
     }
-    let watch = Stopwatch::start();
-    let output = progress::watched(job.progress, control, || job.method.render(&world, &window, control));
-    let render_seconds = watch.elapsed().wall_seconds;
+    let made = plan::make(job, &world, &window, control, run, &mut stats)?;
+    let plan::Made { method, output, seconds, verified: mut found, by_error, report } = made;
     stats.merge(&output.stats);
 
     let complete = output.complete;
@@ -105,20 +110,26 @@ fn render(job: &RenderJob, control: &Control) -> Result<(Frame, Stats), Failure>
     metadata.set("version", env!("CARGO_PKG_VERSION"));
     metadata.set("scene", world.scene.name.as_str());
     metadata.set("scene_hash", format!("{hash:016x}"));
-    metadata.set("method", job.method.name());
-    metadata.set("settings", job.method.settings().to_string());
-    metadata.set("spp", job.method.spp() as f64);
-    metadata.set("seed", job.method.seed() as f64);
+    metadata.set("method", method.name());
+    metadata.set("settings", method.settings().to_string());
+    metadata.set("spp", method.spp() as f64);
+    metadata.set("seed", method.seed() as f64);
     metadata.set("partial", if complete { "false" } else { "true" });
-    metadata.set("render_seconds", render_seconds);
+    metadata.set("render_seconds", seconds);
     metadata.set("threads", job.threads as f64);
     metadata.set("nonfinite", (nonfinite_samples + nonfinite_channels) as f64);
     if let Some(frame) = job.frame {
         metadata.set("frame", frame as f64);
     }
-    let verified = job.verify.filter(|_| complete).map(|settings| {
+    plan::store(&report, run.elapsed().wall_seconds, metadata);
+    let settings = job.verify.filter(|_| complete).map(|settings| settings.of(&method));
+    let verified = settings.map(|settings| {
         let measure = || measure_error(&world, &window, &film.color, &settings, control);
-        let found = stats.time(Stage::Verify, || progress::watched(job.progress, control, measure));
+        let found = if by_error {
+            found.take()
+        } else {
+            stats.time(Stage::Verify, || progress::watched(job.progress, control, measure))
+        };
         if let Some(found) = &found {
             verify::report(found, &settings, &mut stats, &mut film.metadata);
         }
@@ -130,8 +141,8 @@ fn render(job: &RenderJob, control: &Control) -> Result<(Frame, Stats), Failure>
         "scene": world.scene.name,
         "scene_hash": format!("{hash:016x}"),
         "scene_warnings": warnings.len(),
-        "method": job.method.name(),
-        "settings": job.method.settings(),
+        "method": method.name(),
+        "settings": method.settings(),
         "threads": job.threads,
         "window": { "film": window.film, "offset": window.offset, "size": [window.width, window.height] },
         "complete": complete,
@@ -139,6 +150,7 @@ fn render(job: &RenderJob, control: &Control) -> Result<(Frame, Stats), Failure>
         "standard_error": metadata.number("standard_error"),
         "relative_mse_of_noise": metadata.number("relative_mse_of_noise"),
         "verified": verified,
+        "plan": report,
         "output": job.output,
         "png": job.png.as_ref().map(|(path, _)| path),
     });

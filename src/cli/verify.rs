@@ -7,11 +7,19 @@ use crate::method::Method;
 use crate::stats::Stats;
 use crate::verify::{Settings, Verified};
 
-/// What to verify, if that was asked for.
-pub fn settings(args: &VerifyArgs, method: &Method, max_depth: Option<u32>) -> Option<Settings> {
+/// What to verify, if that was asked for; `always`, as where settings are planned by it, whether or not.
+pub fn settings(
+    args: &VerifyArgs,
+    method: &Method,
+    max_depth: Option<u32>,
+    always: bool,
+) -> Option<Settings> {
     let defaults = Settings::default();
+    if args.verify.is_none() && !always {
+        return None;
+    }
     Some(Settings {
-        pixels: args.verify? as usize,
+        pixels: args.verify.map_or(defaults.pixels, |n| n as usize),
         look: match args.verify_against {
             None => method.look(),
             Some(VerifyAgainst::Pixels) => Look::Pixels,

@@ -12,6 +12,8 @@ pub enum Stage {
     Load,
     /// Building the acceleration structure and the tables of materials and lights.
     Build,
+    /// What settings are planned by: renders that are not kept, and the measuring of their errors.
+    Plan,
     /// Eye rays and specular chains, where they are a pass of their own.
     EyePass,
     /// Photon paths: lights become virtual point lights.
@@ -34,9 +36,10 @@ pub enum Stage {
 
 impl Stage {
     /// All stages, in order.
-    pub const ALL: [Stage; 11] = [
+    pub const ALL: [Stage; 12] = [
         Stage::Load,
         Stage::Build,
+        Stage::Plan,
         Stage::EyePass,
         Stage::LightPass,
         Stage::Tree,
@@ -53,6 +56,7 @@ impl Stage {
         match self {
             Stage::Load => "load",
             Stage::Build => "build",
+            Stage::Plan => "plan",
             Stage::EyePass => "eye pass",
             Stage::LightPass => "light pass",
             Stage::Tree => "tree",

@@ -25,7 +25,7 @@ mod trace;
 
 use crate::eye::{Look, Window};
 use crate::image::Image;
-use crate::method::Control;
+use crate::method::{Control, Method};
 use crate::stats::Stage;
 use crate::world::World;
 use serde::Serialize;
@@ -47,6 +47,18 @@ pub struct Settings {
     pub max_depth: Option<u32>,
     /// Most paths a pixel.
     pub most_samples: u32,
+}
+
+impl Settings {
+    /// The same for a picture of `method`, whose own eye samples may be others than those that were planned with.
+    pub fn of(self, method: &Method) -> Settings {
+        match self.look {
+            Look::Pixels => self,
+            Look::EyeSamples { .. } => {
+                Settings { look: Look::EyeSamples { spp: method.spp(), seed: method.seed() }, ..self }
+            }
+        }
+    }
 }
 
 impl Default for Settings {

@@ -4,6 +4,7 @@ mod bench;
 mod compare;
 mod interrupt;
 mod output;
+mod plan;
 mod study;
 mod usage;
 mod verify;

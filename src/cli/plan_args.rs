@@ -1,0 +1,57 @@
+//! Options of `render` that say what is wanted instead of how.
+
+use clap::Args;
+
+/// Options that plan the settings.
+#[derive(Clone, Debug, Default, Args, PartialEq)]
+#[command(next_help_heading = "Planned settings")]
+pub struct PlanArgs {
+    /// Plan the settings so that the whole run, from start to written files, takes about this long (10s, 500ms, 2m); only
+    /// --verify comes on top. Settings that are typed are held. They depend on the machine; the run says which they are
+    #[arg(long, value_name = "TIME", value_parser = parse_time, conflicts_with = "error")]
+    pub time: Option<f64>,
+    /// Find the cheapest settings whose measured relative RMS error is this or less (like 2%), known in 95 of 100 cases;
+    /// settings that are typed are held. --verify says how many pixels are measured [default: 1000]
+    #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
+    pub error: Option<f64>,
+}
+
+/// Seconds.
+fn parse_time(text: &str) -> Result<f64, String> {
+    let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("h", 3600.0), ("", 1.0)];
+    let seconds = units.iter().find_map(|&(unit, factor)| {
+        let number: f64 = text.strip_suffix(unit)?.trim().parse().ok()?;
+        Some(number * factor)
+    });
+    match seconds {
+        Some(seconds) if seconds > 0.0 && seconds <= 1e7 => Ok(seconds),
+        _ => Err("expected a time like 10s, 500ms or 2m".to_owned()),
+    }
+}
+
+/// A fraction.
+fn parse_percent(text: &str) -> Result<f64, String> {
+    match text.strip_suffix('%').and_then(|number| number.trim().parse::<f64>().ok()) {
+        Some(percent) if percent > 0.0 && percent <= 1000.0 => Ok(percent / 100.0),
+        _ => Err("expected a percentage above 0 like 2%".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_and_percentages_are_parsed_and_refused() {
+        for (text, seconds) in [("10s", 10.0), ("2.5", 2.5), ("500ms", 0.5), ("2 m", 120.0), ("1h", 3600.0)] {
+            assert!((parse_time(text).unwrap() - seconds).abs() < 1e-12, "{text}");
+        }
+        for bad in ["", "s", "0s", "-1s", "nan", "inf", "10x", "1e9"] {
+            assert!(parse_time(bad).is_err(), "{bad}");
+        }
+        assert_eq!(parse_percent("2%"), Ok(0.02));
+        for bad in ["", "2", "%", "0%", "-2%", "nan%", "inf%"] {
+            assert!(parse_percent(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! What a render costs, by a few renders that were smaller or cheaper.
+//!
+//! The light pass and its trees take time with the virtual lights, whatever the film. All else takes time with the eye samples:
+//! each one `c · e^(β (h - h₀)) · (n / n₀)^-γ` seconds at height h of the ladder and n samples in all. β is how finer
+//! settings cost, γ how samples get cheaper where they are denser, as neighbours share more.
+
+/// Seconds a sample per height: before two heights are known, and the range in which it is believed.
+const BETA: (f64, [f64; 2]) = (0.35, [0.05, 1.4]);
+/// The exponent of density: the same.
+const GAMMA: (f64, [f64; 2]) = (0.35, [0.0, 0.8]);
+/// Heights and logarithms of densities closer than this say nothing of exponents.
+const LEAST_APART: f64 = 0.5;
+
+/// A render that was timed. Times are wall-clock seconds.
+#[derive(Clone, Copy, Debug)]
+pub struct Timed {
+    /// Its height on the ladder.
+    pub height: f64,
+    /// Eye samples.
+    pub samples: f64,
+    /// Virtual lights asked for.
+    pub vpls: f64,
+    /// Of the light pass and its trees.
+    pub light: f64,
+    /// Of all else.
+    pub rest: f64,
+}
+
+/// The model: see the head.
+#[derive(Clone, Copy, Debug)]
+pub struct Cost {
+    last: Timed,
+    beta: f64,
+    gamma: f64,
+}
+
+impl Cost {
+    /// From renders, of which the last is the most like what is to come; `None` if there are none.
+    pub fn fit(timed: &[Timed]) -> Option<Cost> {
+        let last = *timed.last()?;
+        let by_sample = |t: &Timed| (t.rest / t.samples).max(f64::MIN_POSITIVE).ln();
+        let mut gamma = GAMMA.0;
+        // Two of one height, as different in size as there are.
+        let pairs = timed.iter().enumerate().flat_map(|(i, a)| timed[i + 1..].iter().map(move |b| (a, b)));
+        let density = |(a, b): &(&Timed, &Timed)| (b.samples / a.samples).ln().abs();
+        let sizes = pairs.clone().filter(|(a, b)| a.height == b.height && a.samples != b.samples);
+        if let Some((a, b)) = sizes.max_by(|x, y| density(x).total_cmp(&density(y)))
+            && density(&(a, b)) >= LEAST_APART
+        {
+            let slope = (by_sample(a) - by_sample(b)) / (b.samples / a.samples).ln();
+            gamma = slope.clamp(GAMMA.1[0], GAMMA.1[1]);
+        }
+        let mut beta = BETA.0;
+        let heights = pairs.filter(|(a, b)| (a.height - b.height).abs() >= LEAST_APART);
+        // The latest pair: its second is the last, and its first the largest before it.
+        if let Some((a, b)) = heights.last() {
+            let alike = by_sample(b) - by_sample(a) + gamma * (b.samples / a.samples).ln();
+            beta = (alike / (b.height - a.height)).clamp(BETA.1[0], BETA.1[1]);
+        }
+        Some(Cost { last, beta, gamma })
+    }
+
+    /// Seconds of a render of so many samples and virtual lights at `height`.
+    pub fn seconds(&self, height: f64, samples: f64, vpls: f64) -> f64 {
+        let last = &self.last;
+        let light = if last.vpls > 0.0 { last.light * vpls / last.vpls } else { last.light };
+        let fewer = (samples / last.samples).powf(-self.gamma);
+        light + samples * last.rest / last.samples * (self.beta * (height - last.height)).exp() * fewer
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A machine on which the model is exact.
+    fn timed(height: f64, samples: f64, vpls: f64) -> Timed {
+        let each = 1e-5 * (0.6 * height).exp() * samples.powf(-0.2);
+        Timed { height, samples, vpls, light: 3e-6 * vpls, rest: each * samples }
+    }
+
+    #[test]
+    fn exact_costs_are_predicted_from_three_renders() {
+        let cost =
+            Cost::fit(&[timed(0.0, 4e3, 2e4), timed(0.0, 1.6e4, 2e4), timed(2.5, 1.6e4, 1e5)]).unwrap();
+        for (height, samples, vpls) in [(0.0, 2.6e5, 2e4), (2.5, 1e6, 1e5), (6.0, 1e6, 2e6)] {
+            let expected = timed(height, samples, vpls);
+            let found = cost.seconds(height, samples, vpls);
+            assert!((found / (expected.light + expected.rest) - 1.0).abs() < 1e-9, "{height} {found}");
+        }
+    }
+
+    #[test]
+    fn one_render_makes_a_model_and_none_does_not() {
+        assert!(Cost::fit(&[]).is_none());
+        let one = Cost::fit(&[timed(1.0, 4e3, 2e4)]).unwrap();
+        let expected = timed(1.0, 4e3, 2e4);
+        assert!((one.seconds(1.0, 4e3, 2e4) - expected.light - expected.rest).abs() < 1e-12);
+        assert!(one.seconds(2.0, 4e3, 2e4) > one.seconds(1.0, 4e3, 2e4));
+        assert!(one.seconds(1.0, 8e3, 2e4) > one.seconds(1.0, 4e3, 2e4));
+    }
+
+    #[test]
+    fn renders_too_fast_to_time_are_no_trouble() {
+        let nothing = Timed { height: 0.0, samples: 1.0, vpls: 0.0, light: 0.0, rest: 0.0 };
+        let cost = Cost::fit(&[nothing, Timed { height: 3.0, samples: 9.0, ..nothing }]).unwrap();
+        assert!(cost.seconds(6.0, 1e6, 1e6).is_finite());
+    }
+}

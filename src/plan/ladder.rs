@@ -1,0 +1,232 @@
+//! The ladder: settings from cheap to exact, one number for all of them.
+//!
+//! A rung holds factors on the method's own settings, and heights between rungs interpolate them
+//! geometrically, so that a plan need not jump. Every step halves ε, which cuts cost by its root,
+//! and the virtual lights follow: a cut as fine as ε asks is no use in a tree whose leaves are coarser.
+
+use crate::eye::{EyeSamples, Window};
+use crate::method::Method;
+use crate::stats::available_bytes;
+
+/// Factors on a method's settings.
+#[derive(Clone, Copy)]
+struct Rung {
+    /// On the largest errors of clusters, of samples and of records.
+    epsilon: f64,
+    /// On the cap of cuts.
+    max_cut: f64,
+    /// On the number of indirect virtual lights.
+    vpls: f64,
+    /// On the most samples that share a cut.
+    patch: f64,
+    /// On samples a pixel.
+    spp: f64,
+    /// On samples a pixel by path tracing, which has no other setting.
+    paths: f64,
+}
+
+/// From cheap to exact. [`BASE`] is the method as it is.
+#[rustfmt::skip]
+const LADDER: [Rung; 7] = [
+    Rung { epsilon: 8.0,   max_cut: 0.25, vpls: 0.0625, patch: 4.0,  spp: 0.25, paths: 0.015625 },
+    Rung { epsilon: 4.0,   max_cut: 0.5,  vpls: 0.125,  patch: 2.0,  spp: 0.25, paths: 0.0625 },
+    Rung { epsilon: 2.0,   max_cut: 0.7,  vpls: 0.4,    patch: 1.0,  spp: 0.5,  paths: 0.25 },
+    Rung { epsilon: 1.0,   max_cut: 1.0,  vpls: 1.0,    patch: 1.0,  spp: 1.0,  paths: 1.0 },
+    Rung { epsilon: 0.5,   max_cut: 2.0,  vpls: 2.0,    patch: 0.5,  spp: 1.0,  paths: 4.0 },
+    Rung { epsilon: 0.25,  max_cut: 4.0,  vpls: 4.0,    patch: 0.25, spp: 2.0,  paths: 16.0 },
+    Rung { epsilon: 0.125, max_cut: 8.0,  vpls: 8.0,    patch: 0.25, spp: 4.0,  paths: 64.0 },
+];
+
+/// The rung at which nothing changes.
+const BASE: usize = 3;
+
+/// Fewer samples than this in a patch save nothing: so many make a cut together.
+const LEAST_PATCH: usize = 16;
+
+/// Settings that a plan leaves alone.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Held {
+    /// Samples a pixel.
+    pub spp: bool,
+    /// Largest error of clusters.
+    pub epsilon: bool,
+    /// The same in records.
+    pub record_epsilon: bool,
+    /// The cap of cuts.
+    pub max_cut: bool,
+    /// Indirect virtual lights.
+    pub vpls: bool,
+    /// Samples that share a cut.
+    pub patch: bool,
+}
+
+/// A method's settings by height.
+#[derive(Clone, Copy, Debug)]
+pub struct Ladder {
+    base: Method,
+    /// What is held.
+    pub held: Held,
+    most_spp: u32,
+}
+
+impl Ladder {
+    /// Around the settings of `base`; `None` for a method of which no ladder is known. Eye samples of `window` that are
+    /// kept never need more than the memory that is there.
+    pub fn new(base: Method, held: Held, window: &Window) -> Option<Ladder> {
+        let most_spp = match (&base, available_bytes()) {
+            (Method::PhotonCache(_), _) => return None,
+            (Method::Cache(_), Some(bytes)) => {
+                let fits = |spp: u32| EyeSamples::expected_bytes(window, spp) <= bytes;
+                (0..16)
+                    .map(|k| base.spp().saturating_mul(1 << k))
+                    .take_while(|&spp| fits(spp))
+                    .last()
+                    .unwrap_or(1)
+            }
+            _ => u32::MAX,
+        };
+        Some(Ladder { base, held, most_spp })
+    }
+
+    /// The height of the last rung; the first has 0.
+    pub fn top(&self) -> f64 {
+        (LADDER.len() - 1) as f64
+    }
+
+    /// The height at which the method is as it was given.
+    pub fn base(&self) -> f64 {
+        BASE as f64
+    }
+
+    /// The method with the settings at `height`.
+    pub fn at(&self, height: f64) -> Method {
+        let held = self.held;
+        let by = |typed: bool, of: fn(&Rung) -> f64| if typed { 1.0 } else { factor(height, of) };
+        let epsilon = |base: f32, typed: bool| short(f64::from(base) * by(typed, |r| r.epsilon), typed, base);
+        let whole = |base: u32, typed: bool, of: fn(&Rung) -> f64| match by(typed, of) {
+            1.0 => base,
+            // Two digits or three say enough; what is typed again is shorter.
+            factor => rounded(f64::from(base) * factor),
+        };
+        let spp = |base: u32, of: fn(&Rung) -> f64| match held.spp {
+            true => base,
+            false => ((f64::from(base) * factor(height, of)).round() as u32).clamp(1, self.most_spp),
+        };
+        let cap = |base: usize| whole(base.min(u32::MAX as usize) as u32, held.max_cut, |r| r.max_cut).max(1);
+        let mut method = self.base;
+        match &mut method {
+            Method::Path(s) => s.spp = spp(s.spp, |r| r.paths),
+            Method::Lightcuts(s) => {
+                s.spp = spp(s.spp, |r| r.spp);
+                s.cut.epsilon = epsilon(s.cut.epsilon, held.epsilon);
+                s.cut.max_cut = cap(s.cut.max_cut) as usize;
+                s.light.indirect = whole(s.light.indirect, held.vpls, |r| r.vpls);
+            }
+            Method::Cache(s) => {
+                s.spp = spp(s.spp, |r| r.spp);
+                s.cut.epsilon = epsilon(s.cut.epsilon, held.epsilon);
+                s.cache.cut.epsilon = epsilon(s.cache.cut.epsilon, held.record_epsilon);
+                s.cut.max_cut = cap(s.cut.max_cut) as usize;
+                s.cache.cut.max_cut = s.cut.max_cut;
+                s.light.indirect = whole(s.light.indirect, held.vpls, |r| r.vpls);
+                if !held.patch {
+                    let most = s.cache.patch as f64 * factor(height, |r| r.patch);
+                    s.cache.patch = (most.round() as usize).max(s.cache.patch.min(LEAST_PATCH));
+                }
+            }
+            Method::PhotonCache(_) => {}
+        }
+        method
+    }
+}
+
+/// Options that give the settings of `method` that a ladder moves.
+pub fn options(method: &Method) -> String {
+    let spp = format!("--spp {}", method.spp());
+    let cuts = |epsilon: f32, max_cut: usize, vpls: u32| {
+        format!("{spp} --epsilon {epsilon} --max-cut {max_cut} --vpls {vpls}")
+    };
+    match method {
+        Method::Path(_) | Method::PhotonCache(_) => spp,
+        Method::Lightcuts(s) => cuts(s.cut.epsilon, s.cut.max_cut, s.light.indirect),
+        Method::Cache(s) => {
+            let common = cuts(s.cut.epsilon, s.cut.max_cut, s.light.indirect);
+            format!("{common} --record-epsilon {} --patch {}", s.cache.cut.epsilon, s.cache.patch)
+        }
+    }
+}
+
+/// A factor at `height`, which is kept between the first rung and the last.
+fn factor(height: f64, of: fn(&Rung) -> f64) -> f64 {
+    let height = height.clamp(0.0, (LADDER.len() - 1) as f64);
+    let below = (height as usize).min(LADDER.len() - 2);
+    let (a, b) = (of(&LADDER[below]), of(&LADDER[below + 1]));
+    let part = height - below as f64;
+    // Exact on the rungs, where logarithms would round.
+    if part == 0.0 { a } else { a * (b / a).powf(part) }
+}
+
+/// A fraction of three digits, which reads back as the same number; `base` itself where it is held.
+fn short(value: f64, held: bool, base: f32) -> f32 {
+    if held {
+        return base;
+    }
+    format!("{:.2e}", value.min(1.0)).parse().unwrap_or(base)
+}
+
+fn rounded(value: f64) -> u32 {
+    let value: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    value.round().min(f64::from(u32::MAX)) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::{cache, lightcuts, path, photon_cache};
+
+    fn ladder(base: Method, held: Held) -> Ladder {
+        Ladder { base, held, most_spp: u32::MAX }
+    }
+
+    #[test]
+    fn the_base_is_the_method_itself_and_cost_rises_with_height() {
+        let methods = [
+            Method::Cache(cache::Settings::default()),
+            Method::Lightcuts(lightcuts::Settings::default()),
+            Method::Path(path::Settings::default()),
+        ];
+        for base in methods {
+            let ladder = ladder(base, Held::default());
+            assert_eq!(ladder.at(ladder.base()).settings(), base.settings());
+            let mut before: Option<Method> = None;
+            for k in 0..=24 {
+                let now = ladder.at(f64::from(k) * 0.25);
+                let numbers = |m: &Method| {
+                    let settings = m.settings();
+                    ["spp", "max_cut", "vpls"].map(|key| settings[key].as_f64().unwrap_or(0.0))
+                };
+                let epsilon = |m: &Method| m.settings()["epsilon"].as_f64().unwrap_or(0.0);
+                if let Some(before) = before {
+                    assert!(numbers(&before).iter().zip(numbers(&now)).all(|(a, b)| *a <= b), "{k} {now:?}");
+                    assert!(epsilon(&before) >= epsilon(&now), "{k} {now:?}");
+                }
+                before = Some(now);
+            }
+            assert_ne!(ladder.at(0.0).settings(), ladder.at(ladder.top()).settings());
+        }
+        let other = Method::PhotonCache(photon_cache::Settings::default());
+        assert!(Ladder::new(other, Held::default(), &Window::whole([4, 4])).is_none());
+    }
+
+    #[test]
+    fn what_is_typed_stays_and_numbers_read_back() {
+        let base = Method::Cache(cache::Settings::default());
+        let all =
+            Held { spp: true, epsilon: true, record_epsilon: true, max_cut: true, vpls: true, patch: true };
+        assert_eq!(ladder(base, all).at(0.7).settings(), base.settings());
+        let Method::Cache(found) = ladder(base, Held::default()).at(1.37) else { panic!() };
+        let text = options(&Method::Cache(found));
+        assert!(text.contains(&format!("--epsilon {} ", found.cut.epsilon)) && text.len() < 120, "{text}");
+        assert_eq!(found.cut.epsilon.to_string().parse(), Ok(found.cut.epsilon));
+    }
+}

@@ -1,0 +1,88 @@
+//! `render --time` and `--error`: what was asked, planned and got; and pictures that can be repeated.
+
+use super::{Sandbox, read};
+use lightsplat::image::ExrFile;
+
+/// `--resolution` and the like, without the settings that plans choose.
+fn render(sandbox: &Sandbox, name: &str, more: &[&str]) -> super::Finished {
+    sandbox.run(&[&["render", "room.xml", "-o", name, "--resolution", "24x16", "--no-png"], more].concat())
+}
+
+fn plan(run: &super::Finished) -> serde_json::Value {
+    let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+    report["run"]["plan"].clone()
+}
+
+#[test]
+fn a_time_is_planned_told_and_repeated_by_its_settings() {
+    let sandbox = Sandbox::new();
+    for method in ["cache", "lightcuts", "path"] {
+        let options = ["--method", method, "--time", "300ms", "--seed", "3", "--stats", "json"];
+        let run = render(&sandbox, "a.exr", &options).expect(0);
+        let plan = plan(&run);
+        assert_eq!(plan["asked_seconds"], 0.3);
+        for key in ["planned_seconds", "got_seconds"] {
+            assert!(plan[key].as_f64().unwrap() > 0.0, "{key} {plan}");
+        }
+        let settings = plan["options"].as_str().unwrap();
+        assert!(run.stderr.contains(settings), "{}", run.stderr);
+        let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
+        assert_eq!(file.metadata().text("plan_options"), Some(settings));
+        assert!(file.metadata().number("plan_got_seconds_before_writing").unwrap() > 0.0);
+
+        let mut again = vec!["--method", method, "--seed", "3"];
+        again.extend(settings.split(' '));
+        render(&sandbox, "b.exr", &again).expect(0);
+        let b = ExrFile::read(&sandbox.path("b.exr")).unwrap();
+        let images = [file, b].map(|file| file.color().unwrap());
+        assert_eq!(images[0].pixels, images[1].pixels, "{settings}");
+    }
+}
+
+#[test]
+fn an_error_is_met_and_the_same_for_any_number_of_threads() {
+    let sandbox = Sandbox::new();
+    let wanted = ["--error", "20%", "--verify", "100", "--verify-samples", "1024", "--stats", "json"];
+    let files = ["1", "3"].map(|threads| {
+        let run = render(&sandbox, "a.exr", &[&wanted[..], &["--threads", threads]].concat()).expect(0);
+        let plan = plan(&run);
+        assert_eq!((&plan["asked_error"], &plan["met"]), (&0.2.into(), &true.into()), "{plan}");
+        assert!(plan["got_error"]["high"].as_f64().unwrap() <= 0.2, "{plan}");
+        let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
+        assert!(file.metadata().number("verified_rms_high").unwrap() <= 0.2);
+        assert_eq!(file.metadata().number("plan_got_error"), plan["got_error"]["value"].as_f64());
+        (file.color().unwrap(), plan)
+    });
+    assert_eq!((&files[0].0.pixels, &files[0].1), (&files[1].0.pixels, &files[1].1));
+}
+
+#[test]
+fn an_error_out_of_reach_is_not_claimed_and_typed_settings_are_held() {
+    let sandbox = Sandbox::new();
+    let held =
+        ["--vpls", "20", "--epsilon", "0.5", "--record-epsilon", "0.5", "--max-cut", "3", "--patch", "16"];
+    let wanted = ["--error", "0.001%", "--verify", "50", "--verify-samples", "64", "--stats", "json"];
+    let run = render(&sandbox, "a.exr", &[&held[..], &wanted].concat()).expect(0);
+    let plan = plan(&run);
+    assert_eq!(plan["met"], false);
+    assert!(run.stderr.contains("not known to be 0.001 % or less"), "{}", run.stderr);
+    for pair in held.chunks(2) {
+        assert!(plan["options"].as_str().unwrap().contains(&pair.join(" ")), "{plan}");
+    }
+    assert!(read(&sandbox.path("a.exr")).len() > 1000);
+}
+
+#[test]
+fn wishes_that_make_no_sense_are_refused() {
+    let sandbox = Sandbox::new();
+    for wrong in [
+        &["--time", "soon"][..],
+        &["--time", "0s"],
+        &["--error", "2"],
+        &["--time", "2s", "--error", "2%"],
+        &["--time", "2s", "--method", "photon-cache"],
+    ] {
+        render(&sandbox, "a.exr", wrong).expect(2);
+    }
+    assert_eq!(sandbox.files(), ["room.xml"]);
+}
