@@ -51,9 +51,9 @@ impl Cost {
             gamma = slope.clamp(GAMMA.1[0], GAMMA.1[1]);
         }
         let mut beta = BETA.0;
-        let heights = pairs.filter(|(a, b)| (a.height - b.height).abs() >= LEAST_APART);
+        let mut heights = pairs.filter(|(a, b)| (a.height - b.height).abs() >= LEAST_APART);
         // The latest pair: its second is the last, and its first the largest before it.
-        if let Some((a, b)) = heights.last() {
+        if let Some((a, b)) = heights.next_back() {
             let alike = by_sample(b) - by_sample(a) + gamma * (b.samples / a.samples).ln();
             beta = (alike / (b.height - a.height)).clamp(BETA.1[0], BETA.1[1]);
         }
