@@ -50,7 +50,7 @@ pub fn wish(args: &RenderArgs, method: &Method) -> Result<Option<Wish>, Failure>
         record_epsilon: args.cache.record_epsilon.is_some(),
         max_cut: args.lightcuts.max_cut.is_some(),
         vpls: args.lightcuts.vpls.is_some(),
-        patch: args.cache.patch.is_some(),
+        patches: args.cache.patches.is_some(),
     };
     Ok(Some(Wish { wanted, held }))
 }

@@ -17,8 +17,8 @@ struct Rung {
     max_cut: f64,
     /// On the number of indirect virtual lights.
     vpls: f64,
-    /// On the most samples that share a cut.
-    patch: f64,
+    /// On the patches whose cuts are lent.
+    patches: f64,
     /// On samples a pixel.
     spp: f64,
     /// On samples a pixel by path tracing, which has no other setting.
@@ -28,20 +28,17 @@ struct Rung {
 /// From cheap to exact. [`BASE`] is the method as it is.
 #[rustfmt::skip]
 const LADDER: [Rung; 7] = [
-    Rung { epsilon: 8.0,   max_cut: 0.25, vpls: 0.0625, patch: 4.0,  spp: 0.25, paths: 0.015625 },
-    Rung { epsilon: 4.0,   max_cut: 0.5,  vpls: 0.125,  patch: 2.0,  spp: 0.25, paths: 0.0625 },
-    Rung { epsilon: 2.0,   max_cut: 0.7,  vpls: 0.4,    patch: 1.0,  spp: 0.5,  paths: 0.25 },
-    Rung { epsilon: 1.0,   max_cut: 1.0,  vpls: 1.0,    patch: 1.0,  spp: 1.0,  paths: 1.0 },
-    Rung { epsilon: 0.5,   max_cut: 2.0,  vpls: 2.0,    patch: 0.5,  spp: 1.0,  paths: 4.0 },
-    Rung { epsilon: 0.25,  max_cut: 4.0,  vpls: 4.0,    patch: 0.25, spp: 2.0,  paths: 16.0 },
-    Rung { epsilon: 0.125, max_cut: 8.0,  vpls: 8.0,    patch: 0.25, spp: 4.0,  paths: 64.0 },
+    Rung { epsilon: 8.0,   max_cut: 0.25, vpls: 0.0625, patches: 0.25,  spp: 0.25, paths: 0.015625 },
+    Rung { epsilon: 4.0,   max_cut: 0.5,  vpls: 0.125,  patches: 0.5,  spp: 0.25, paths: 0.0625 },
+    Rung { epsilon: 2.0,   max_cut: 0.7,  vpls: 0.4,    patches: 0.7,  spp: 0.5,  paths: 0.25 },
+    Rung { epsilon: 1.0,   max_cut: 1.0,  vpls: 1.0,    patches: 1.0,  spp: 1.0,  paths: 1.0 },
+    Rung { epsilon: 0.5,   max_cut: 2.0,  vpls: 2.0,    patches: 2.0,  spp: 1.0,  paths: 4.0 },
+    Rung { epsilon: 0.25,  max_cut: 4.0,  vpls: 4.0,    patches: 4.0, spp: 2.0,  paths: 16.0 },
+    Rung { epsilon: 0.125, max_cut: 8.0,  vpls: 8.0,    patches: 8.0, spp: 4.0,  paths: 64.0 },
 ];
 
 /// The rung at which nothing changes.
 const BASE: usize = 3;
-
-/// Fewer samples than this in a patch save nothing: so many make a cut together.
-const LEAST_PATCH: usize = 16;
 
 /// Settings that a plan leaves alone.
 #[derive(Clone, Copy, Debug, Default)]
@@ -56,8 +53,8 @@ pub struct Held {
     pub max_cut: bool,
     /// Indirect virtual lights.
     pub vpls: bool,
-    /// Samples that share a cut.
-    pub patch: bool,
+    /// Patches whose cuts are lent.
+    pub patches: bool,
 }
 
 /// A method's settings by height.
@@ -129,10 +126,7 @@ impl Ladder {
                 s.cut.max_cut = cap(s.cut.max_cut) as usize;
                 s.cache.cut.max_cut = s.cut.max_cut;
                 s.light.indirect = whole(s.light.indirect, held.vpls, |r| r.vpls);
-                if !held.patch {
-                    let most = s.cache.patch as f64 * factor(height, |r| r.patch);
-                    s.cache.patch = (most.round() as usize).max(s.cache.patch.min(LEAST_PATCH));
-                }
+                s.cache.patches = whole(s.cache.patches, held.patches, |r| r.patches).max(1);
             }
             Method::PhotonCache(_) => {}
         }
@@ -151,7 +145,7 @@ pub fn options(method: &Method) -> String {
         Method::Lightcuts(s) => cuts(s.cut.epsilon, s.cut.max_cut, s.light.indirect),
         Method::Cache(s) => {
             let common = cuts(s.cut.epsilon, s.cut.max_cut, s.light.indirect);
-            format!("{common} --record-epsilon {} --patch {}", s.cache.cut.epsilon, s.cache.patch)
+            format!("{common} --record-epsilon {} --patches {}", s.cache.cut.epsilon, s.cache.patches)
         }
     }
 }
@@ -222,7 +216,7 @@ mod tests {
     fn what_is_typed_stays_and_numbers_read_back() {
         let base = Method::Cache(cache::Settings::default());
         let all =
-            Held { spp: true, epsilon: true, record_epsilon: true, max_cut: true, vpls: true, patch: true };
+            Held { spp: true, epsilon: true, record_epsilon: true, max_cut: true, vpls: true, patches: true };
         assert_eq!(ladder(base, all).at(0.7).settings(), base.settings());
         let Method::Cache(found) = ladder(base, Held::default()).at(1.37) else { panic!() };
         let text = options(&Method::Cache(found));

@@ -60,7 +60,7 @@ fn an_error_is_met_and_the_same_for_any_number_of_threads() {
 fn an_error_out_of_reach_is_not_claimed_and_typed_settings_are_held() {
     let sandbox = Sandbox::new();
     let held =
-        ["--vpls", "20", "--epsilon", "0.5", "--record-epsilon", "0.5", "--max-cut", "3", "--patch", "16"];
+        ["--vpls", "20", "--epsilon", "0.5", "--record-epsilon", "0.5", "--max-cut", "3", "--patches", "16"];
     let wanted = ["--error", "0.001%", "--verify", "50", "--verify-samples", "64", "--stats", "json"];
     let run = render(&sandbox, "a.exr", &[&held[..], &wanted].concat()).expect(0);
     let plan = plan(&run);
