@@ -89,7 +89,9 @@ pub fn for_error(
         let verified = truth.as_ref().filter(|_| output.complete).map(|truth| truth.judge(&output.color));
         let met = verified.is_some_and(|v| v.relative_rms.high <= asked.error);
         let over = verified.is_some_and(|v| v.relative_rms.value > asked.error);
-        let last = met || verified.is_none() || step >= top || renders > u64::from(RAISES);
+        // Paths too noisy to tell: better settings would not show.
+        let hidden = verified.is_some_and(|v| v.noise > asked.error) && !over;
+        let last = met || hidden || verified.is_none() || step >= top || renders > u64::from(RAISES);
         if last || control.is_cancelled() {
             let renders = [small, renders];
             let options = options(&method);
