@@ -2,8 +2,7 @@
 
 use super::args::{Crop, ProgressMode, RenderArgs, StatsFormat};
 use super::exit::Failure;
-use super::method::method;
-use super::plan::{Wish, wish};
+use super::plan::{Wish, method, wish};
 use super::verify;
 use crate::eye::Window;
 use crate::image::{Exposure, atomic};
@@ -51,8 +50,8 @@ pub struct RenderJob {
 
 impl RenderJob {
     /// Checks what was typed, and that the results can be written where they are wanted.
-    pub fn new(args: RenderArgs) -> Result<RenderJob, Failure> {
-        let method = method(&args)?;
+    pub fn new(mut args: RenderArgs) -> Result<RenderJob, Failure> {
+        let method = method(&mut args)?;
         let verify = verify::settings(&args.verify, &method, args.max_depth, args.plan.error.is_some());
         let wish = wish(&args, &method)?;
         named(&args.output, "exr", "--output")?;

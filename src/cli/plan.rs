@@ -1,18 +1,26 @@
 //! `render --time` and `--error`: the picture by planned settings, and what was asked, planned and got.
 
-use super::args::RenderArgs;
+use super::args::{MethodName, RenderArgs};
 use super::exit::Failure;
 use super::job::RenderJob;
+use super::plan_args::Quality;
 use super::{progress, talk};
 use crate::eye::Window;
 use crate::image::Metadata;
 use crate::method::{Control, Method, Output};
 use crate::plan::{self, Held, Ladder};
-use crate::stats::{Stage, StageTime, Stats, Stopwatch};
-use crate::verify::Verified;
+use crate::stats::{Stage, Stats, Stopwatch};
+use crate::verify::{Settings as VerifySettings, Verified};
 use crate::world::World;
 use anyhow::anyhow;
 use serde_json::{Value, json};
+
+/// Paths a pixel of a reference.
+const REFERENCE_SPP: u32 = 1024;
+/// Most paths a pixel where its error is measured, unless typed.
+const MOST_SAMPLES: u32 = 1 << 16;
+/// A plan this much beyond the time asked is out of reach, and not merely off.
+const LATE: f64 = 1.1;
 
 /// What the user wants.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +38,8 @@ pub struct Wish {
     pub wanted: Wanted,
     /// What was typed.
     pub held: Held,
+    /// Most paths at a pixel whose error is measured.
+    pub most_samples: u32,
 }
 
 /// From what was typed.
@@ -44,15 +54,32 @@ pub fn wish(args: &RenderArgs, method: &Method) -> Result<Option<Wish>, Failure>
             "--time and --error plan settings of --method cache, lightcuts and path"
         )));
     }
-    let held = Held {
+    let most_samples = args.verify.verify_samples.unwrap_or(MOST_SAMPLES);
+    Ok(Some(Wish { wanted, held: held(args), most_samples }))
+}
+
+/// The method with its settings: those typed, and for the rest the defaults or what a quality stands for.
+pub fn method(args: &mut RenderArgs) -> Result<Method, Failure> {
+    if args.plan.quality == Some(Quality::Reference) {
+        args.method = MethodName::Path;
+        args.spp.get_or_insert(REFERENCE_SPP);
+    }
+    let base = super::method::method(args)?;
+    let height = args.plan.quality.and_then(Quality::height);
+    let ladder = height.zip(Ladder::new(base, held(args)));
+    Ok(ladder.map_or(base, |(height, ladder)| ladder.at(height)))
+}
+
+/// What was typed.
+fn held(args: &RenderArgs) -> Held {
+    Held {
         spp: args.spp.is_some(),
         epsilon: args.lightcuts.epsilon.is_some(),
         record_epsilon: args.cache.record_epsilon.is_some(),
         max_cut: args.lightcuts.max_cut.is_some(),
         vpls: args.lightcuts.vpls.is_some(),
         patches: args.cache.patches.is_some(),
-    };
-    Ok(Some(Wish { wanted, held }))
+    }
 }
 
 /// A picture and how it came about.
@@ -63,10 +90,8 @@ pub struct Made {
     pub output: Output,
     /// Seconds that it took to render.
     pub seconds: f64,
-    /// Its error, where settings were planned by it.
-    pub verified: Option<Verified>,
-    /// Whether they were, measured or not.
-    pub by_error: bool,
+    /// Its error, unless measuring was cancelled, and how it was measured: where settings were planned by it.
+    pub measured: Option<(VerifySettings, Option<Verified>)>,
     /// What was asked, planned and got, for programs; nothing if nothing was asked.
     pub report: Value,
 }
@@ -84,21 +109,24 @@ pub fn make(
         let watch = Stopwatch::start();
         let output = progress::watched(job.progress, control, || method.render(world, window, control));
         let seconds = watch.elapsed().wall_seconds;
-        Made { method, output, seconds, verified: None, by_error: false, report }
+        Made { method, output, seconds, measured: None, report }
     };
     let Some(wish) = job.wish else { return Ok(plain(job.method, Value::Null)) };
-    let Some(ladder) = Ladder::new(job.method, wish.held, window) else {
+    let Some(ladder) = Ladder::new(job.method, wish.held) else {
         return Ok(plain(job.method, Value::Null));
     };
+    let ladder = ladder.within(window);
     let interrupted = || Failure::interrupted(anyhow!("interrupted while planning; nothing is written"));
     match wish.wanted {
         Wanted::Time(asked) => {
             let left = || asked - run.elapsed().wall_seconds;
             let search = || plan::for_time(world, window, &ladder, left, control);
-            let found = stats.time(Stage::Plan, || progress::watched(job.progress, control, search));
-            let found = found.ok_or_else(interrupted)?;
+            let watch = Stopwatch::start();
+            let found = progress::watched(job.progress, control, search).ok_or_else(interrupted)?;
+            let spent = found.spent();
+            stats.add_time(Stage::Plan, watch.elapsed().without(spent));
             let planned = run.elapsed().wall_seconds + found.render_seconds;
-            if planned > asked {
+            if planned > asked * LATE {
                 talk::warning(&format!(
                     "{asked} s are too short: the cheapest settings are planned to take {planned:.2} s"
                 ));
@@ -106,29 +134,28 @@ pub fn make(
             talk::note(&format!("planned for {asked} s on this machine, this time: {}", found.options));
             stats.add("Plan/time asked [s]", asked);
             stats.add("Plan/time planned, without writing [s]", planned);
-            stats.count("Plan/small renders", found.pilots);
+            stats.count("Plan/in time (1: yes)", u64::from(planned <= asked * LATE));
+            stats.count("Plan/small renders and trials", found.pilots);
             let report = json!({
                 "asked_seconds": asked,
                 "planned_seconds": planned,
-                "height": found.height,
+                "in_reach": planned <= asked * LATE,
                 "options": found.options,
             });
-            Ok(plain(found.method, report))
+            let method = found.method;
+            let watch = Stopwatch::start();
+            let output = progress::watched(job.progress, control, || found.render(world, window, control));
+            let seconds = spent.wall_seconds + watch.elapsed().wall_seconds;
+            Ok(Made { method, output, seconds, measured: None, report })
         }
         Wanted::Error(error) => {
             let measure = job.verify.unwrap_or_default();
-            let asked = plan::Asked { error, measure };
+            let asked = plan::Asked { error, measure, most_samples: wish.most_samples };
             let search = || plan::for_error(world, window, &ladder, &asked, control);
             let watch = Stopwatch::start();
             let found = progress::watched(job.progress, control, search).ok_or_else(interrupted)?;
             let all = watch.elapsed();
-            stats.add_time(
-                Stage::Plan,
-                StageTime {
-                    wall_seconds: all.wall_seconds - found.time.wall_seconds,
-                    cpu_seconds: all.cpu_seconds - found.time.cpu_seconds,
-                },
-            );
+            stats.add_time(Stage::Plan, all.without(found.time));
             tell(error, &found);
             stats.add("Plan/error asked [%]", 100.0 * error);
             stats.add("Plan/error planned [%]", 100.0 * found.expected);
@@ -141,12 +168,11 @@ pub fn make(
                 "planned_error": found.expected,
                 "got_error": got,
                 "met": found.met,
-                "height": found.height,
                 "options": found.options,
             });
-            let (method, output, verified) = (found.method, found.output, found.verified);
-            let seconds = found.time.wall_seconds;
-            Ok(Made { method, output, seconds, verified, by_error: true, report })
+            let measured = Some((found.measure.of(&found.method), found.verified));
+            let (method, output, seconds) = (found.method, found.output, found.time.wall_seconds);
+            Ok(Made { method, output, seconds, measured, report })
         }
     }
 }

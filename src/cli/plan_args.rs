@@ -1,11 +1,40 @@
 //! Options of `render` that say what is wanted instead of how.
 
-use clap::Args;
+use crate::plan::{DRAFT, FINAL, PREVIEW};
+use clap::{Args, ValueEnum};
+
+/// Named settings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Quality {
+    /// To see whether the scene is right
+    Draft,
+    /// To judge the light
+    Preview,
+    /// The defaults
+    Final,
+    /// Path tracing, to hold other pictures to
+    Reference,
+}
+
+impl Quality {
+    /// Where its settings stand on the ladder, if they do.
+    pub fn height(self) -> Option<f64> {
+        match self {
+            Quality::Draft => Some(DRAFT),
+            Quality::Preview => Some(PREVIEW),
+            Quality::Final => Some(FINAL),
+            Quality::Reference => None,
+        }
+    }
+}
 
 /// Options that plan the settings.
 #[derive(Clone, Debug, Default, Args, PartialEq)]
 #[command(next_help_heading = "Planned settings")]
 pub struct PlanArgs {
+    /// Settings by name; those that are typed are held
+    #[arg(long, value_enum, conflicts_with_all = ["method", "time", "error"])]
+    pub quality: Option<Quality>,
     /// Plan the settings so that the whole run, from start to written files, takes about this long (10s, 500ms, 2m); only
     /// --verify comes on top. Settings that are typed are held. They depend on the machine; the run says which they are
     #[arg(long, value_name = "TIME", value_parser = parse_time, conflicts_with = "error")]

@@ -92,7 +92,7 @@ fn render(job: &RenderJob, control: &Control, run: &Stopwatch) -> Result<(Frame,
         return Err(interrupted());
     }
     let made = plan::make(job, &world, &window, control, run, &mut stats)?;
-    let plan::Made { method, output, seconds, verified: mut found, by_error, report } = made;
+    let plan::Made { method, output, seconds, measured, report } = made;
     stats.merge(&output.stats);
 
     let complete = output.complete;
@@ -122,18 +122,16 @@ fn render(job: &RenderJob, control: &Control, run: &Stopwatch) -> Result<(Frame,
         metadata.set("frame", frame as f64);
     }
     plan::store(&report, run.elapsed().wall_seconds, metadata);
-    let settings = job.verify.filter(|_| complete).map(|settings| settings.of(&method));
-    let verified = settings.map(|settings| {
+    let measured = measured.filter(|_| complete).or_else(|| {
+        let settings = job.verify.filter(|_| complete)?.of(&method);
         let measure = || measure_error(&world, &window, &film.color, &settings, control);
-        let found = if by_error {
-            found.take()
-        } else {
-            stats.time(Stage::Verify, || progress::watched(job.progress, control, measure))
-        };
-        if let Some(found) = &found {
-            verify::report(found, &settings, &mut stats, &mut film.metadata);
-        }
-        found.map(|found| verify::to_json(&found, &settings))
+        let search = || progress::watched(job.progress, control, measure);
+        Some((settings, stats.time(Stage::Verify, search)))
+    });
+    let verified = measured.map(|(settings, found)| {
+        let found = found?;
+        verify::report(&found, &settings, &mut stats, &mut film.metadata);
+        Some(verify::to_json(&found, &settings))
     });
     let unverified = matches!(verified, Some(None));
     let metadata = &film.metadata;

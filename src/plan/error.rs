@@ -4,12 +4,14 @@
 //! to the same traced paths. The film is then rendered with them and its error measured at other pixels by other paths; while
 //! that is not known to be low enough, the settings are raised, a bounded number of times.
 //!
-//! A picture meets the error if the upper end of the interval does: what is not known is not met. The steps are held to one
-//! set of paths, so that a picture met after several has had as many chances.
+//! A picture meets the error if the upper end of the interval does and the noise of the paths is below it too: what is not known
+//! is not met. Paths that are too noisy to tell are traced anew, four times as many where a pixel had as many as it may. The
+//! steps are held to one set of paths, so that a picture met after several has had as many chances.
 
-use super::ladder::{Ladder, options};
+use super::ladder::{FINAL, Ladder, options};
 use super::smaller;
 use crate::eye::{Look, Window};
+use crate::image::Image;
 use crate::method::{Control, Method, Output};
 use crate::sampling::hash;
 use crate::stats::{StageTime, Stopwatch};
@@ -36,6 +38,8 @@ pub struct Asked {
     pub error: f64,
     /// How it is measured.
     pub measure: Settings,
+    /// Most paths a pixel, where those are too noisy to tell.
+    pub most_samples: u32,
 }
 
 /// A picture and its error.
@@ -44,8 +48,6 @@ pub struct Found {
     pub method: Method,
     /// The settings as options.
     pub options: String,
-    /// Their height on the ladder.
-    pub height: f64,
     /// What the search expected of them.
     pub expected: f64,
     /// The picture.
@@ -56,6 +58,8 @@ pub struct Found {
     pub verified: Option<Verified>,
     /// Whether the error is known to be as low as asked.
     pub met: bool,
+    /// How it was measured in the end.
+    pub measure: Settings,
     /// Pictures rendered on the small film, and of the whole.
     pub renders: [u64; 2],
 }
@@ -76,6 +80,7 @@ pub fn for_error(
     let (mut step, expected, small) = search(world, window, &ladder, asked, control)?;
 
     let mut truth: Option<Truth> = None;
+    let mut measure = asked.measure;
     let mut renders = 0;
     loop {
         let method = ladder.at(height(step));
@@ -83,31 +88,47 @@ pub fn for_error(
         let output = method.render(world, window, control);
         let time = watch.elapsed();
         renders += 1;
-        if output.complete && truth.is_none() {
-            truth = Truth::trace(world, window, &output.color, &asked.measure, control);
-        }
-        let verified = truth.as_ref().filter(|_| output.complete).map(|truth| truth.judge(&output.color));
-        let met = verified.is_some_and(|v| v.relative_rms.high <= asked.error);
+        let verified = if output.complete {
+            judge(world, window, &output.color, asked, &mut measure, &mut truth, control)
+        } else {
+            None
+        };
+        let met = verified.is_some_and(|v| v.relative_rms.high <= asked.error && v.noise <= asked.error);
         let over = verified.is_some_and(|v| v.relative_rms.value > asked.error);
-        // Paths too noisy to tell: better settings would not show.
+        // Better settings would not show.
         let hidden = verified.is_some_and(|v| v.noise > asked.error) && !over;
         let last = met || hidden || verified.is_none() || step >= top || renders > u64::from(RAISES);
         if last || control.is_cancelled() {
-            let renders = [small, renders];
-            let options = options(&method);
-            return Some(Found {
-                method,
-                options,
-                height: height(step),
-                expected,
-                output,
-                time,
-                verified,
-                met,
-                renders,
-            });
+            let (options, renders) = (options(&method), [small, renders]);
+            return Some(Found { method, options, expected, output, time, verified, met, measure, renders });
         }
         step = (step + if over { 2 } else { 1 }).min(top);
+    }
+}
+
+/// The error of a picture by `truth`, which is traced as `measure` says where there is none, and anew where it cannot tell;
+/// `None` if cancelled.
+fn judge(
+    world: &World,
+    window: &Window,
+    image: &Image,
+    asked: &Asked,
+    measure: &mut Settings,
+    truth: &mut Option<Truth>,
+    control: &Control,
+) -> Option<Verified> {
+    loop {
+        if truth.is_none() {
+            *truth = Some(Truth::trace(world, window, image, measure, control)?);
+        }
+        let verified = truth.as_ref()?.judge(image);
+        let told = verified.noise <= asked.error || verified.relative_rms.low > asked.error;
+        let more = measure.most_samples.saturating_mul(4).min(asked.most_samples);
+        if told || more <= measure.most_samples {
+            return Some(verified);
+        }
+        measure.most_samples = more;
+        *truth = None;
     }
 }
 
@@ -141,7 +162,7 @@ fn search(
     };
     let top = (STEPS * ladder.top()) as usize;
     let (mut low, mut high, mut expected) = (0, top, None);
-    let mut middle = (STEPS * ladder.base()) as usize;
+    let mut middle = (STEPS * FINAL) as usize;
     while low < high {
         let found = error(middle)?;
         if found <= AIM * asked.error {

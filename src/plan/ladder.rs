@@ -1,6 +1,6 @@
 //! The ladder: settings from cheap to exact, one number for all of them.
 //!
-//! A rung holds factors on the method's own settings, and heights between rungs interpolate them
+//! A rung holds factors on the method's defaults, and heights between rungs interpolate them
 //! geometrically, so that a plan need not jump. Every step halves ε, which cuts cost by its root,
 //! and the virtual lights follow: a cut as fine as ε asks is no use in a tree whose leaves are coarser.
 
@@ -25,20 +25,25 @@ struct Rung {
     paths: f64,
 }
 
-/// From cheap to exact. [`BASE`] is the method as it is.
+/// From cheap to exact: near the Pareto front of error against time of the knot, nave and kitchen at 512 x 512.
 #[rustfmt::skip]
-const LADDER: [Rung; 7] = [
-    Rung { epsilon: 8.0,   max_cut: 0.25, vpls: 0.0625, patches: 0.25,  spp: 0.25, paths: 0.015625 },
-    Rung { epsilon: 4.0,   max_cut: 0.5,  vpls: 0.125,  patches: 0.5,  spp: 0.25, paths: 0.0625 },
-    Rung { epsilon: 2.0,   max_cut: 0.7,  vpls: 0.4,    patches: 0.7,  spp: 0.5,  paths: 0.25 },
-    Rung { epsilon: 1.0,   max_cut: 1.0,  vpls: 1.0,    patches: 1.0,  spp: 1.0,  paths: 1.0 },
-    Rung { epsilon: 0.5,   max_cut: 2.0,  vpls: 2.0,    patches: 2.0,  spp: 1.0,  paths: 4.0 },
-    Rung { epsilon: 0.25,  max_cut: 4.0,  vpls: 4.0,    patches: 4.0, spp: 2.0,  paths: 16.0 },
-    Rung { epsilon: 0.125, max_cut: 8.0,  vpls: 8.0,    patches: 8.0, spp: 4.0,  paths: 64.0 },
+const LADDER: [Rung; 8] = [
+    Rung { epsilon: 32.0, max_cut: 0.06, vpls: 0.033, patches: 0.0625, spp: 0.25, paths: 0.015625 },
+    Rung { epsilon: 16.0, max_cut: 0.25, vpls: 0.25,  patches: 0.125,  spp: 0.5,  paths: 0.0625 },
+    Rung { epsilon: 8.0,  max_cut: 0.5,  vpls: 0.5,   patches: 0.25,   spp: 1.0,  paths: 0.25 },
+    Rung { epsilon: 4.0,  max_cut: 1.0,  vpls: 1.0,   patches: 0.25,   spp: 1.0,  paths: 1.0 },
+    Rung { epsilon: 2.0,  max_cut: 1.0,  vpls: 2.0,   patches: 0.25,   spp: 1.0,  paths: 4.0 },
+    Rung { epsilon: 1.0,  max_cut: 2.0,  vpls: 4.0,   patches: 0.5,    spp: 2.0,  paths: 16.0 },
+    Rung { epsilon: 0.5,  max_cut: 4.0,  vpls: 8.0,   patches: 1.0,    spp: 4.0,  paths: 64.0 },
+    Rung { epsilon: 0.25, max_cut: 8.0,  vpls: 16.0,  patches: 2.0,    spp: 8.0,  paths: 256.0 },
 ];
 
-/// The rung at which nothing changes.
-const BASE: usize = 3;
+/// Heights that have names: a draft ...
+pub const DRAFT: f64 = 0.0;
+/// ... a preview ...
+pub const PREVIEW: f64 = 2.0;
+/// ... and what a picture is worth, where a search begins.
+pub const FINAL: f64 = 4.0;
 
 /// Settings that a plan leaves alone.
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,22 +72,20 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// Around the settings of `base`; `None` for a method of which no ladder is known. Eye samples of `window` that are
-    /// kept never need more than the memory that is there.
-    pub fn new(base: Method, held: Held, window: &Window) -> Option<Ladder> {
-        let most_spp = match (&base, available_bytes()) {
-            (Method::PhotonCache(_), _) => return None,
-            (Method::Cache(_), Some(bytes)) => {
-                let fits = |spp: u32| EyeSamples::expected_bytes(window, spp) <= bytes;
-                (0..16)
-                    .map(|k| base.spp().saturating_mul(1 << k))
-                    .take_while(|&spp| fits(spp))
-                    .last()
-                    .unwrap_or(1)
-            }
-            _ => u32::MAX,
-        };
-        Some(Ladder { base, held, most_spp })
+    /// Around the settings of `base`; `None` for a method of which no ladder is known.
+    pub fn new(base: Method, held: Held) -> Option<Ladder> {
+        let known = !matches!(base, Method::PhotonCache(_));
+        known.then_some(Ladder { base, held, most_spp: u32::MAX })
+    }
+
+    /// Of no more samples of `window` than fit into the memory that is there.
+    pub fn within(mut self, window: &Window) -> Ladder {
+        if let (Method::Cache(_), Some(bytes)) = (&self.base, available_bytes()) {
+            let doubled = (0..16).map(|k| self.base.spp().saturating_mul(1 << k));
+            let fits = doubled.take_while(|&spp| EyeSamples::expected_bytes(window, spp) <= bytes);
+            self.most_spp = fits.last().unwrap_or(1);
+        }
+        self
     }
 
     /// The height of the last rung; the first has 0.
@@ -90,43 +93,48 @@ impl Ladder {
         (LADDER.len() - 1) as f64
     }
 
-    /// The height at which the method is as it was given.
-    pub fn base(&self) -> f64 {
-        BASE as f64
-    }
-
     /// The method with the settings at `height`.
     pub fn at(&self, height: f64) -> Method {
+        self.between(height, height)
+    }
+
+    /// The same, cuts as fine as at `fine` and the numbers of samples, virtual lights and patches as at `coarse`.
+    pub fn between(&self, coarse: f64, fine: f64) -> Method {
         let held = self.held;
-        let by = |typed: bool, of: fn(&Rung) -> f64| if typed { 1.0 } else { factor(height, of) };
-        let epsilon = |base: f32, typed: bool| short(f64::from(base) * by(typed, |r| r.epsilon), typed, base);
-        let whole = |base: u32, typed: bool, of: fn(&Rung) -> f64| match by(typed, of) {
-            1.0 => base,
+        let epsilon = |base: f32, typed: bool| match typed {
+            true => base,
+            false => short(f64::from(base) * factor(fine, |r| r.epsilon), base),
+        };
+        let whole = |base: u32, typed: bool, height: f64, of: fn(&Rung) -> f64| match factor(height, of) {
+            factor if typed || factor == 1.0 => base,
             // Two digits or three say enough; what is typed again is shorter.
             factor => rounded(f64::from(base) * factor),
         };
         let spp = |base: u32, of: fn(&Rung) -> f64| match held.spp {
             true => base,
-            false => ((f64::from(base) * factor(height, of)).round() as u32).clamp(1, self.most_spp),
+            false => ((f64::from(base) * factor(coarse, of)).round() as u32).clamp(1, self.most_spp),
         };
-        let cap = |base: usize| whole(base.min(u32::MAX as usize) as u32, held.max_cut, |r| r.max_cut).max(1);
+        let cap = |base: usize| {
+            whole(base.min(u32::MAX as usize) as u32, held.max_cut, fine, |r| r.max_cut).max(1) as usize
+        };
+        let vpls = |base: u32| whole(base, held.vpls, coarse, |r| r.vpls);
         let mut method = self.base;
         match &mut method {
             Method::Path(s) => s.spp = spp(s.spp, |r| r.paths),
             Method::Lightcuts(s) => {
                 s.spp = spp(s.spp, |r| r.spp);
                 s.cut.epsilon = epsilon(s.cut.epsilon, held.epsilon);
-                s.cut.max_cut = cap(s.cut.max_cut) as usize;
-                s.light.indirect = whole(s.light.indirect, held.vpls, |r| r.vpls);
+                s.cut.max_cut = cap(s.cut.max_cut);
+                s.light.indirect = vpls(s.light.indirect);
             }
             Method::Cache(s) => {
                 s.spp = spp(s.spp, |r| r.spp);
                 s.cut.epsilon = epsilon(s.cut.epsilon, held.epsilon);
                 s.cache.cut.epsilon = epsilon(s.cache.cut.epsilon, held.record_epsilon);
-                s.cut.max_cut = cap(s.cut.max_cut) as usize;
+                s.cut.max_cut = cap(s.cut.max_cut);
                 s.cache.cut.max_cut = s.cut.max_cut;
-                s.light.indirect = whole(s.light.indirect, held.vpls, |r| r.vpls);
-                s.cache.patches = whole(s.cache.patches, held.patches, |r| r.patches).max(1);
+                s.light.indirect = vpls(s.light.indirect);
+                s.cache.patches = whole(s.cache.patches, held.patches, coarse, |r| r.patches).max(1);
             }
             Method::PhotonCache(_) => {}
         }
@@ -145,7 +153,8 @@ pub fn options(method: &Method) -> String {
         Method::Lightcuts(s) => cuts(s.cut.epsilon, s.cut.max_cut, s.light.indirect),
         Method::Cache(s) => {
             let common = cuts(s.cut.epsilon, s.cut.max_cut, s.light.indirect);
-            format!("{common} --record-epsilon {} --patches {}", s.cache.cut.epsilon, s.cache.patches)
+            let all = format!("{common} --patches {}", s.cache.patches);
+            if s.lights_by_cuts() { all } else { format!("{all} --record-epsilon {}", s.cache.cut.epsilon) }
         }
     }
 }
@@ -160,11 +169,8 @@ fn factor(height: f64, of: fn(&Rung) -> f64) -> f64 {
     if part == 0.0 { a } else { a * (b / a).powf(part) }
 }
 
-/// A fraction of three digits, which reads back as the same number; `base` itself where it is held.
-fn short(value: f64, held: bool, base: f32) -> f32 {
-    if held {
-        return base;
-    }
+/// A fraction of three digits, which reads back as the same number.
+fn short(value: f64, base: f32) -> f32 {
     format!("{:.2e}", value.min(1.0)).parse().unwrap_or(base)
 }
 
@@ -179,11 +185,11 @@ mod tests {
     use crate::method::{cache, lightcuts, path, photon_cache};
 
     fn ladder(base: Method, held: Held) -> Ladder {
-        Ladder { base, held, most_spp: u32::MAX }
+        Ladder::new(base, held).unwrap()
     }
 
     #[test]
-    fn the_base_is_the_method_itself_and_cost_rises_with_height() {
+    fn settings_get_finer_with_height() {
         let methods = [
             Method::Cache(cache::Settings::default()),
             Method::Lightcuts(lightcuts::Settings::default()),
@@ -191,9 +197,8 @@ mod tests {
         ];
         for base in methods {
             let ladder = ladder(base, Held::default());
-            assert_eq!(ladder.at(ladder.base()).settings(), base.settings());
             let mut before: Option<Method> = None;
-            for k in 0..=24 {
+            for k in 0..=28 {
                 let now = ladder.at(f64::from(k) * 0.25);
                 let numbers = |m: &Method| {
                     let settings = m.settings();
@@ -209,7 +214,7 @@ mod tests {
             assert_ne!(ladder.at(0.0).settings(), ladder.at(ladder.top()).settings());
         }
         let other = Method::PhotonCache(photon_cache::Settings::default());
-        assert!(Ladder::new(other, Held::default(), &Window::whole([4, 4])).is_none());
+        assert!(Ladder::new(other, Held::default()).is_none());
     }
 
     #[test]
@@ -221,6 +226,8 @@ mod tests {
         let Method::Cache(found) = ladder(base, Held::default()).at(1.37) else { panic!() };
         let text = options(&Method::Cache(found));
         assert!(text.contains(&format!("--epsilon {} ", found.cut.epsilon)) && text.len() < 120, "{text}");
+        // Refused where there are no records.
+        assert!(!text.contains("--record-epsilon"), "{text}");
         assert_eq!(found.cut.epsilon.to_string().parse(), Ok(found.cut.epsilon));
     }
 }

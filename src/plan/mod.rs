@@ -2,7 +2,7 @@
 //!
 //! | | asked | planned | got |
 //! |---|---|---|---|
-//! | [`for_time`] | seconds of the whole run | from a few small renders of the same film and a model of cost | the wall clock |
+//! | [`for_time`] | seconds of the whole run | from a few small renders of the same film and a model of cost, then on the picture itself | the wall clock |
 //! | [`for_error`] | relative RMS error | by small renders held to traced paths | measured on the picture itself, settings raised until it is met |
 //!
 //! Both move along one [`Ladder`] of settings. What the user has typed is held.
@@ -15,11 +15,12 @@ mod cost;
 mod error;
 mod ladder;
 mod time;
+mod tune;
 
 use crate::eye::Window;
 
 pub use error::{Asked, Found, for_error};
-pub use ladder::{Held, Ladder, options};
+pub use ladder::{DRAFT, FINAL, Held, Ladder, PREVIEW, options};
 pub use time::{Planned, for_time};
 
 /// The same view on a film `scale` times smaller along each side.

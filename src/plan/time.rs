@@ -1,53 +1,142 @@
 //! Settings for a time.
 //!
-//! Three small renders of the film, a cheap one at two sizes and one near the settings that those suggest, fit the model of
-//! [`super::cost`]; the highest settings that it says fit are taken. The renders get a share of the time themselves.
+//! Two or three small renders of the film, cheap ones at two sizes and one near the settings that those suggest, fit the model of
+//! [`super::cost`]; the highest settings that it says fit are taken. Where the cache lights by cuts, that only says how many samples and
+//! virtual lights there are; once they are there, how fine cuts are is tuned by lighting some patches of the picture
+//! itself ([`super::tune`]). All of it counts towards the time.
 //!
-//! The model is as good as the machine is steady: if other work takes the processors meanwhile, the run is late.
+//! The plan is as good as the machine is steady: if other work takes the processors later on, the run is late.
 
 use super::cost::{Cost, Timed};
 use super::ladder::{Ladder, options};
 use super::smaller;
+use super::tune::{SLOPE, tune};
 use crate::eye::Window;
-use crate::method::{Control, Method};
-use crate::stats::{Stage, Stopwatch};
+use crate::method::cache::Prepared;
+use crate::method::{Control, Method, Output};
+use crate::stats::{Stage, StageTime, Stopwatch};
 use crate::world::World;
 
 /// Share of what is left of the time that the last small render may take.
-const PILOT_SHARE: f64 = 0.12;
-/// Share kept back for what the model does not know: writing, and being wrong.
-const RESERVE: f64 = 0.08;
+const PILOT_SHARE: f64 = 0.08;
+/// Share that a trial may take of the time that lighting is thought to take.
+const TRIAL_SHARE: f64 = 0.04;
+/// A plan that takes this much longer than there is time is not the best that can be done.
+const LATE: f64 = 1.1;
+/// Share kept back for what the model does not know.
+const RESERVE: f64 = 0.03;
+/// Seconds to encode and write a pixel, and add up what it is made of.
+const WRITE: f64 = 5e-7;
 /// How much smaller the first two renders are, along each side.
 const SCALES: [u32; 2] = [16, 8];
+/// Fewer pixels than this do not tell what others take.
+const LEAST_PIXELS: u64 = 1000;
 /// Steps between rungs that are looked at.
 const STEPS: u32 = 16;
 
 /// Settings and what they are thought to take.
-#[derive(Clone, Debug)]
-pub struct Planned {
+pub struct Planned<'w> {
     /// The method with its settings.
     pub method: Method,
     /// The settings as options.
     pub options: String,
-    /// Their height on the ladder.
-    pub height: f64,
-    /// Seconds of the render itself.
+    /// Seconds until the picture is there.
     pub render_seconds: f64,
-    /// Small renders made.
+    /// Small renders made, and trials of the picture itself.
     pub pilots: u64,
+    /// What is there of the picture, and what it took.
+    prepared: Option<(Prepared<'w>, StageTime)>,
+}
+
+impl Planned<'_> {
+    /// What has gone into the picture already.
+    pub fn spent(&self) -> StageTime {
+        self.prepared.as_ref().map_or(StageTime::default(), |(_, time)| *time)
+    }
+
+    /// Renders `window`, as planned for, or what is missing.
+    pub fn render(self, world: &World, window: &Window, control: &Control) -> Output {
+        match (self.prepared, &self.method) {
+            (Some((prepared, _)), Method::Cache(settings)) => prepared.light(settings, control),
+            (_, method) => method.render(world, window, control),
+        }
+    }
 }
 
 /// Plans a render of `window` that ends when `left()` seconds, as of its call, have passed; `None` if cancelled.
-pub fn for_time(
-    world: &World,
+pub fn for_time<'w>(
+    world: &'w World,
     window: &Window,
     ladder: &Ladder,
     left: impl Fn() -> f64,
     control: &Control,
-) -> Option<Planned> {
+) -> Option<Planned<'w>> {
+    let usable = || left() * (1.0 - RESERVE) - WRITE * window.pixel_count() as f64;
+    let (cost, mut pilots) = small_renders(world, window, ladder, &usable, control)?;
+    let mut coarse = highest(&cost, ladder, window, usable());
+    loop {
+        let method = ladder.at(coarse);
+        let render_seconds = whole(&cost, ladder, window, coarse);
+        let planned = Planned { method, options: options(&method), render_seconds, pilots, prepared: None };
+        match method {
+            Method::Cache(settings) if settings.lights_by_cuts() => {}
+            _ => return Some(planned),
+        }
+        let tuned = tuned(world, window, ladder, coarse, planned, &usable, control)?;
+        // Seldom: too many samples or lights for the time, however rough the cuts. There are fewer further down.
+        let over = tuned.render_seconds / usable().max(f64::MIN_POSITIVE);
+        if over < LATE || coarse == 0.0 {
+            return Some(tuned);
+        }
+        coarse = (coarse - over.ln() / SLOPE.0).max(0.0);
+        pilots = tuned.pilots;
+    }
+}
+
+/// The plan with cuts as fine as trials say, on eye samples and virtual lights as at `coarse`.
+fn tuned<'w>(
+    world: &'w World,
+    window: &Window,
+    ladder: &Ladder,
+    coarse: f64,
+    planned: Planned<'w>,
+    usable: &impl Fn() -> f64,
+    control: &Control,
+) -> Option<Planned<'w>> {
+    let Method::Cache(settings) = &planned.method else { return Some(planned) };
+    let watch = Stopwatch::start();
+    let there = Prepared::new(world, window, settings, control);
+    let spent = watch.elapsed();
+    if control.is_cancelled() {
+        return None;
+    }
+    let lighting = (planned.render_seconds - spent.wall_seconds).max(0.0);
+    let every = (lighting / (TRIAL_SHARE * usable()).max(1e-9)).ceil().clamp(1.0, 64.0) as usize;
+    let try_at = |fine: f64| match ladder.between(coarse, fine) {
+        Method::Cache(settings) => there.lighting_seconds(&settings, every),
+        _ => None,
+    };
+    let tuned = tune(coarse, ladder.top(), usable, try_at)?;
+    let method = ladder.between(coarse, tuned.height);
+    Some(Planned {
+        method,
+        options: options(&method),
+        render_seconds: tuned.seconds,
+        pilots: planned.pilots + tuned.trials,
+        prepared: Some((there, spent)),
+    })
+}
+
+/// A model of cost, and how many small renders it comes from.
+fn small_renders(
+    world: &World,
+    window: &Window,
+    ladder: &Ladder,
+    usable: &impl Fn() -> f64,
+    control: &Control,
+) -> Option<(Cost, u64)> {
     let mut timed = Vec::new();
-    let mut time = |height: f64, scale: u32| -> Option<Cost> {
-        let small = smaller(window, scale);
+    let mut time = |height: f64, small: Window| -> Option<Cost> {
         let method = ladder.at(height);
         let watch = Stopwatch::start();
         let output = method.render(world, &small, control);
@@ -61,27 +150,28 @@ pub fn for_time(
         timed.push(Timed { height, samples, vpls, light, rest: (all - light).max(0.0) });
         Cost::fit(&timed)
     };
-    let mut cost = time(0.0, SCALES[0])?;
+    let small = |scale: u32| {
+        let scales = (1..=scale).rev();
+        let big = |&scale: &u32| smaller(window, scale).pixel_count() >= LEAST_PIXELS;
+        smaller(window, scales.into_iter().find(big).unwrap_or(1))
+    };
+    let mut cost = time(0.0, small(SCALES[0]))?;
     let mut pilots = 1;
-    let mut allowed = PILOT_SHARE * left();
-    if whole(&cost, ladder, &smaller(window, SCALES[1]), 0.0) < allowed {
-        cost = time(0.0, SCALES[1])?;
+    let second = small(SCALES[1]);
+    if whole(&cost, ladder, &second, 0.0) < PILOT_SHARE * usable() {
+        cost = time(0.0, second)?;
         pilots += 1;
     }
     // As near to the settings wanted as the time for this render lets, smaller first, then cheaper.
-    allowed = PILOT_SHARE * left();
-    let wanted = highest(&cost, ladder, window, left() * (1.0 - PILOT_SHARE - RESERVE));
-    let small = |scale: u32| smaller(window, scale);
+    let allowed = PILOT_SHARE * usable();
+    let wanted = highest(&cost, ladder, window, usable() - allowed);
     let scale = [4, 6, 8].into_iter().find(|&s| whole(&cost, ladder, &small(s), wanted) < allowed);
-    let near = scale.map_or_else(|| highest(&cost, ladder, &small(8), allowed), |_| wanted);
+    let near = scale.map_or_else(|| highest(&cost, ladder, &second, allowed), |_| wanted);
     if near > 0.0 {
-        cost = time(near, scale.unwrap_or(8))?;
+        cost = time(near, small(scale.unwrap_or(SCALES[1])))?;
         pilots += 1;
     }
-    let height = highest(&cost, ladder, window, left() * (1.0 - RESERVE));
-    let method = ladder.at(height);
-    let render_seconds = whole(&cost, ladder, window, height);
-    Some(Planned { method, options: options(&method), height, render_seconds, pilots })
+    Some((cost, pilots))
 }
 
 /// The highest settings that take no longer than `seconds`; the lowest if none do.

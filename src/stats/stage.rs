@@ -88,6 +88,16 @@ pub struct StageTime {
     pub cpu_seconds: f64,
 }
 
+impl StageTime {
+    /// What is left besides `part`.
+    pub fn without(self, part: StageTime) -> StageTime {
+        StageTime {
+            wall_seconds: self.wall_seconds - part.wall_seconds,
+            cpu_seconds: self.cpu_seconds - part.cpu_seconds,
+        }
+    }
+}
+
 impl AddAssign for StageTime {
     fn add_assign(&mut self, other: StageTime) {
         self.wall_seconds += other.wall_seconds;

@@ -59,8 +59,7 @@ fn an_error_is_met_and_the_same_for_any_number_of_threads() {
 #[test]
 fn an_error_out_of_reach_is_not_claimed_and_typed_settings_are_held() {
     let sandbox = Sandbox::new();
-    let held =
-        ["--vpls", "20", "--epsilon", "0.5", "--record-epsilon", "0.5", "--max-cut", "3", "--patches", "16"];
+    let held = ["--vpls", "20", "--epsilon", "0.5", "--max-cut", "3", "--patches", "16"];
     let wanted = ["--error", "0.001%", "--verify", "50", "--verify-samples", "64", "--stats", "json"];
     let run = render(&sandbox, "a.exr", &[&held[..], &wanted].concat()).expect(0);
     let plan = plan(&run);
@@ -73,6 +72,25 @@ fn an_error_out_of_reach_is_not_claimed_and_typed_settings_are_held() {
 }
 
 #[test]
+fn qualities_are_settings_from_rough_to_fine_and_typed_ones_are_held() {
+    let sandbox = Sandbox::new();
+    let settings = |options: &[&str]| {
+        let run = render(&sandbox, "a.exr", &[options, &["--stats", "json"]].concat()).expect(0);
+        let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+        (report["run"]["method"].clone(), report["run"]["settings"].clone())
+    };
+    let found = ["draft", "preview", "final"].map(|name| settings(&["--quality", name, "--vpls", "500"]));
+    for (method, settings) in &found {
+        assert_eq!((method, &settings["vpls"]), (&"cache".into(), &500.into()));
+    }
+    let of = |key: &str| [0, 1, 2].map(|k| found[k].1[key].as_f64().unwrap());
+    assert!(of("epsilon").is_sorted_by(|a, b| a > b), "{:?}", of("epsilon"));
+    assert!(of("spp").is_sorted() && of("spp")[0] < of("spp")[2], "{:?}", of("spp"));
+    let (method, typed) = settings(&["--quality", "reference", "--spp", "3"]);
+    assert_eq!((method, &typed["spp"]), ("path".into(), &3.into()));
+}
+
+#[test]
 fn wishes_that_make_no_sense_are_refused() {
     let sandbox = Sandbox::new();
     for wrong in [
@@ -81,6 +99,9 @@ fn wishes_that_make_no_sense_are_refused() {
         &["--error", "2"],
         &["--time", "2s", "--error", "2%"],
         &["--time", "2s", "--method", "photon-cache"],
+        &["--quality", "best"],
+        &["--quality", "draft", "--time", "2s"],
+        &["--quality", "draft", "--method", "path"],
     ] {
         render(&sandbox, "a.exr", wrong).expect(2);
     }

@@ -63,7 +63,8 @@ impl Cache {
         cache
     }
 
-    fn new(samples: &EyeSamples, glossy: Option<Glossy>, found: [FoundBy; 2]) -> Cache {
+    /// A cache without records yet.
+    pub fn new(samples: &EyeSamples, glossy: Option<Glossy>, found: [FoundBy; 2]) -> Cache {
         let lit = |(point, surface): (&EyePoint, &EyeSurface)| {
             point.sharing.bands() > 0 || surface.bsdf.split_base(1.0).0 != Rgb::ZERO
         };

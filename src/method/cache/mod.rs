@@ -28,4 +28,4 @@ pub(crate) mod own;
 pub(super) mod picture;
 mod render;
 
-pub use render::{Settings, render};
+pub use render::{Prepared, Settings, render};

@@ -52,9 +52,19 @@ pub struct Lit {
 
 /// Lights all jobs.
 pub fn light<'w>(source: &Source<'w>, samples: &EyeSamples<'w>, jobs: &[Job], cut: &CutSettings) -> Lit {
+    light_patches(source, samples, &patches(source, samples, jobs), cut)
+}
+
+/// Lights patches, each of jobs that are lit together.
+pub fn light_patches<'w>(
+    source: &Source<'w>,
+    samples: &EyeSamples<'w>,
+    patches: &[Vec<Job>],
+    cut: &CutSettings,
+) -> Lit {
     let (settings, size) = (source.settings, source.settings.shadows.cache);
     let cached = settings.shadows.for_samples(settings.share);
-    let done: Vec<Lit> = patches(source, samples, jobs)
+    let done: Vec<Lit> = patches
         .par_iter()
         .map_init(
             || (Engine::with(source.world, cached, size), Cutters::default()),
@@ -70,7 +80,7 @@ pub fn light<'w>(source: &Source<'w>, samples: &EyeSamples<'w>, jobs: &[Job], cu
             },
         )
         .collect();
-    let mut all = Lit { radiance: Vec::with_capacity(jobs.len()), ..Lit::default() };
+    let mut all = Lit { radiance: Vec::new(), ..Lit::default() };
     for lit in done {
         all.radiance.extend(lit.radiance);
         all.cuts.add(&lit.cuts);

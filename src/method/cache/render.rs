@@ -1,8 +1,10 @@
 //! The picture: eye pass, light pass, trees, the cache, and what it leaves to cuts.
+//!
+//! What is seen and what shines is [`Prepared`] first and lit after, so that a plan can try how long lighting takes.
 
 use super::filled::Cache;
 use super::inspect;
-use super::own;
+use super::own::{self, Job};
 use super::picture::Picture;
 use crate::cache::compensate::Compensation;
 use crate::cache::compute::Source;
@@ -13,9 +15,12 @@ use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::lights::Lights;
 use crate::method::{Control, Output, counts};
-use crate::stats::{Stage, Stats};
+use crate::stats::{Stage, Stats, Stopwatch};
 use crate::vpl::LightPassSettings;
 use crate::world::World;
+
+/// Fewer patches than this do not tell how long others take.
+const LEAST_TRIED: usize = 64;
 
 /// What the user may set.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +43,13 @@ pub struct Settings {
     pub inspect: bool,
 }
 
+impl Settings {
+    /// Whether all light is found by cuts, none by records.
+    pub fn lights_by_cuts(&self) -> bool {
+        (0..2).all(|layer| self.cache.found(layer) == FoundBy::Samples)
+    }
+}
+
 impl Default for Settings {
     fn default() -> Settings {
         Settings {
@@ -55,42 +67,94 @@ impl Default for Settings {
 
 /// Renders `window` of the scene's film.
 pub fn render(world: &World, window: &Window, settings: &Settings, control: &Control) -> Output {
-    let mut stats = Stats::new();
-    let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
-    let spp = settings.spp.max(1);
+    Prepared::new(world, window, settings, control).light(settings, control)
+}
 
-    let eye = EyeSettings { spp, seed: settings.seed, max_depth };
-    control.begin(Stage::EyePass, window.tile_count(16) as u64);
-    let mut samples = stats.time(Stage::EyePass, || EyeSamples::look(world, window, eye, control));
-    let recorded = (0..2).any(|layer| settings.cache.found(layer) == FoundBy::Records);
-    let glossy = stats.time(Stage::EyePass, || {
-        recorded.then(|| Glossy::find(world, &mut samples, &settings.cache.series)).flatten()
-    });
+/// Eye samples and virtual lights: all that the picture needs but lighting.
+pub struct Prepared<'w> {
+    world: &'w World,
+    samples: EyeSamples<'w>,
+    glossy: Option<Glossy>,
+    lights: Lights,
+    stats: Stats,
+}
 
-    counts::eye(&mut stats, &samples.chains);
+impl<'w> Prepared<'w> {
+    /// By the settings that say how many, and whether surfaces need series.
+    pub fn new(world: &'w World, window: &Window, settings: &Settings, control: &Control) -> Prepared<'w> {
+        let mut stats = Stats::new();
+        let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
+        let spp = settings.spp.max(1);
 
-    let light = LightPassSettings { seed: settings.seed, ..settings.light };
-    let lights = Lights::new(world, &light, settings.family, max_depth, control, &mut stats);
+        let eye = EyeSettings { spp, seed: settings.seed, max_depth };
+        control.begin(Stage::EyePass, window.tile_count(16) as u64);
+        let mut samples = stats.time(Stage::EyePass, || EyeSamples::look(world, window, eye, control));
+        let glossy = stats.time(Stage::EyePass, || {
+            (!settings.lights_by_cuts())
+                .then(|| Glossy::find(world, &mut samples, &settings.cache.series))
+                .flatten()
+        });
+
+        counts::eye(&mut stats, &samples.chains);
+
+        let light = LightPassSettings { seed: settings.seed, ..settings.light };
+        let lights = Lights::new(world, &light, settings.family, max_depth, control, &mut stats);
+        Prepared { world, samples, glossy, lights, stats }
+    }
+
+    /// Seconds that lighting by cuts would take, tried on one patch in `every`, or on more where those would be few;
+    /// `None` where records light too.
+    pub fn lighting_seconds(&self, settings: &Settings, every: usize) -> Option<f64> {
+        if !settings.lights_by_cuts() {
+            return None;
+        }
+        let samples = &self.samples;
+        let source = source(self.world, &self.lights, settings);
+        let watch = Stopwatch::start();
+        let cache = Cache::new(samples, None, [FoundBy::Samples; 2]);
+        let jobs = cache.resolve(samples, &mut Picture::new(samples, false));
+        let patches = own::patches(&source, samples, &jobs);
+        let once = watch.elapsed().wall_seconds;
+        let every = every.min(patches.len() / LEAST_TRIED).max(1);
+        let some: Vec<Vec<Job>> = patches.iter().skip(every / 2).step_by(every).cloned().collect();
+        let watch = Stopwatch::start();
+        own::light_patches(&source, samples, &some, &settings.cut);
+        let share = samples_of(&patches) / samples_of(&some).max(1.0);
+        Some(once + watch.elapsed().wall_seconds * share)
+    }
+
+    /// The picture.
+    pub fn light(self, settings: &Settings, control: &Control) -> Output {
+        let Prepared { world, samples, glossy, lights, mut stats } = self;
+        let source = source(world, &lights, settings);
+
+        let cache = Cache::complete(&source, &samples, glossy, control, &mut stats);
+
+        let mut picture = Picture::new(&samples, settings.inspect);
+        let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
+        control.begin(Stage::Render, jobs.len() as u64);
+        let lit = stats.time(Stage::Render, || own::light(&source, &samples, &jobs, &settings.cut));
+        for (job, radiance) in lit.radiance {
+            picture.add(&samples, job.sample as usize, job.only, radiance);
+        }
+        stats.count("Cache/samples with own cuts", jobs.len() as u64);
+        counts::cuts(&mut stats, "Lightcut", &lit.cuts);
+        lit.shadows.report(&mut stats);
+        let complete = samples.complete && !control.is_cancelled();
+        let (color, mut extra, nonfinite) = picture.finish();
+        if settings.inspect {
+            extra.extend(inspect::layers(&samples, &cache.layers, &cache.seams));
+        }
+        Output { color, variance: None, extra, stats, complete, nonfinite }
+    }
+}
+
+fn source<'a>(world: &'a World, lights: &'a Lights, settings: &'a Settings) -> Source<'a> {
     let (trees, transfer) = (&lights.trees, lights.transfer());
     let compensation = settings.cache.compensation.then(|| Compensation::new(trees));
-    let source = Source { world, trees, transfer, settings: &settings.cache, compensation };
+    Source { world, trees, transfer, settings: &settings.cache, compensation }
+}
 
-    let cache = Cache::complete(&source, &samples, glossy, control, &mut stats);
-
-    let mut picture = Picture::new(&samples, settings.inspect);
-    let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
-    control.begin(Stage::Render, jobs.len() as u64);
-    let lit = stats.time(Stage::Render, || own::light(&source, &samples, &jobs, &settings.cut));
-    for (job, radiance) in lit.radiance {
-        picture.add(&samples, job.sample as usize, job.only, radiance);
-    }
-    stats.count("Cache/samples with own cuts", jobs.len() as u64);
-    counts::cuts(&mut stats, "Lightcut", &lit.cuts);
-    lit.shadows.report(&mut stats);
-    let complete = samples.complete && !control.is_cancelled();
-    let (color, mut extra, nonfinite) = picture.finish();
-    if settings.inspect {
-        extra.extend(inspect::layers(&samples, &cache.layers, &cache.seams));
-    }
-    Output { color, variance: None, extra, stats, complete, nonfinite }
+fn samples_of(patches: &[Vec<Job>]) -> f64 {
+    patches.iter().map(Vec::len).sum::<usize>() as f64
 }
