@@ -50,8 +50,8 @@ pub struct RenderJob {
 
 impl RenderJob {
     /// Checks what was typed, and that the results can be written where they are wanted.
-    pub fn new(mut args: RenderArgs) -> Result<RenderJob, Failure> {
-        let method = method(&mut args)?;
+    pub fn new(args: RenderArgs) -> Result<RenderJob, Failure> {
+        let method = method(&args)?;
         let verify = verify::settings(&args.verify, &method, args.max_depth, args.plan.error.is_some());
         let wish = wish(&args, &method)?;
         named(&args.output, "exr", "--output")?;

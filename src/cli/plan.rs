@@ -1,9 +1,8 @@
 //! `render --time` and `--error`: the picture by planned settings, and what was asked, planned and got.
 
-use super::args::{MethodName, RenderArgs};
+use super::args::RenderArgs;
 use super::exit::Failure;
 use super::job::RenderJob;
-use super::plan_args::Quality;
 use super::{progress, talk};
 use crate::eye::Window;
 use crate::image::Metadata;
@@ -15,8 +14,6 @@ use crate::world::World;
 use anyhow::anyhow;
 use serde_json::{Value, json};
 
-/// Paths a pixel of a reference.
-const REFERENCE_SPP: u32 = 1024;
 /// Most paths a pixel where its error is measured, unless typed.
 const MOST_SAMPLES: u32 = 1 << 16;
 /// A plan this much beyond the time asked is out of reach, and not merely off.
@@ -59,15 +56,10 @@ pub fn wish(args: &RenderArgs, method: &Method) -> Result<Option<Wish>, Failure>
 }
 
 /// The method with its settings: those typed, and for the rest the defaults or what a quality stands for.
-pub fn method(args: &mut RenderArgs) -> Result<Method, Failure> {
-    if args.plan.quality == Some(Quality::Reference) {
-        args.method = MethodName::Path;
-        args.spp.get_or_insert(REFERENCE_SPP);
-    }
+pub fn method(args: &RenderArgs) -> Result<Method, Failure> {
     let base = super::method::method(args)?;
-    let height = args.plan.quality.and_then(Quality::height);
-    let ladder = height.zip(Ladder::new(base, held(args)));
-    Ok(ladder.map_or(base, |(height, ladder)| ladder.at(height)))
+    let named = args.plan.quality.zip(Ladder::new(base, held(args)));
+    Ok(named.map_or(base, |(quality, ladder)| ladder.at(quality.height())))
 }
 
 /// What was typed.

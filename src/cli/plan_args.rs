@@ -1,6 +1,6 @@
 //! Options of `render` that say what is wanted instead of how.
 
-use crate::plan::{DRAFT, FINAL, PREVIEW};
+use crate::plan::{DRAFT, FINAL, PREVIEW, REFERENCE};
 use clap::{Args, ValueEnum};
 
 /// Named settings.
@@ -10,20 +10,20 @@ pub enum Quality {
     Draft,
     /// To judge the light
     Preview,
-    /// The defaults
+    /// To keep
     Final,
-    /// Path tracing, to hold other pictures to
+    /// To hold others to
     Reference,
 }
 
 impl Quality {
-    /// Where its settings stand on the ladder, if they do.
-    pub fn height(self) -> Option<f64> {
+    /// Where its settings stand on the ladder.
+    pub fn height(self) -> f64 {
         match self {
-            Quality::Draft => Some(DRAFT),
-            Quality::Preview => Some(PREVIEW),
-            Quality::Final => Some(FINAL),
-            Quality::Reference => None,
+            Quality::Draft => DRAFT,
+            Quality::Preview => PREVIEW,
+            Quality::Final => FINAL,
+            Quality::Reference => REFERENCE,
         }
     }
 }

@@ -20,7 +20,7 @@ mod tune;
 use crate::eye::Window;
 
 pub use error::{Asked, Found, for_error};
-pub use ladder::{DRAFT, FINAL, Held, Ladder, PREVIEW, options};
+pub use ladder::{DRAFT, FINAL, Held, Ladder, PREVIEW, REFERENCE, options};
 pub use time::{Planned, for_time};
 
 /// The same view on a film `scale` times smaller along each side.

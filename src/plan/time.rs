@@ -1,16 +1,16 @@
 //! Settings for a time.
 //!
-//! Two or three small renders of the film, cheap ones at two sizes and one near the settings that those suggest, fit the model of
-//! [`super::cost`]; the highest settings that it says fit are taken. Where the cache lights by cuts, that only says how many samples and
-//! virtual lights there are; once they are there, how fine cuts are is tuned by lighting some patches of the picture
-//! itself ([`super::tune`]). All of it counts towards the time.
+//! Small renders of the film, cheap ones at two sizes and one near the settings that those suggest, fit the model of
+//! [`super::cost`]; the highest settings that it says fit are taken. Where the cache lights by cuts, the cheap ones only suggest how
+//! many samples and virtual lights there are; once they are there, how fine cuts are is tuned by lighting some patches of the
+//! picture itself ([`super::tune`]). All of it counts towards the time.
 //!
 //! The plan is as good as the machine is steady: if other work takes the processors later on, the run is late.
 
 use super::cost::{Cost, Timed};
 use super::ladder::{Ladder, options};
 use super::smaller;
-use super::tune::{SLOPE, tune};
+use super::tune::tune;
 use crate::eye::Window;
 use crate::method::cache::Prepared;
 use crate::method::{Control, Method, Output};
@@ -23,8 +23,12 @@ const PILOT_SHARE: f64 = 0.08;
 const TRIAL_SHARE: f64 = 0.04;
 /// A plan that takes this much longer than there is time is not the best that can be done.
 const LATE: f64 = 1.1;
+/// Rungs by which half the way from samples and lights to cuts may be off.
+const CLOSE: f64 = 0.5;
+/// Most times that samples and lights are chosen.
+const ROUNDS: u32 = 3;
 /// Share kept back for what the model does not know.
-const RESERVE: f64 = 0.03;
+const RESERVE: f64 = 0.02;
 /// Seconds to encode and write a pixel, and add up what it is made of.
 const WRITE: f64 = 5e-7;
 /// How much smaller the first two renders are, along each side.
@@ -72,66 +76,75 @@ pub fn for_time<'w>(
     control: &Control,
 ) -> Option<Planned<'w>> {
     let usable = || left() * (1.0 - RESERVE) - WRITE * window.pixel_count() as f64;
-    let (cost, mut pilots) = small_renders(world, window, ladder, &usable, control)?;
-    let mut coarse = highest(&cost, ladder, window, usable());
-    loop {
-        let method = ladder.at(coarse);
-        let render_seconds = whole(&cost, ladder, window, coarse);
-        let planned = Planned { method, options: options(&method), render_seconds, pilots, prepared: None };
-        match method {
-            Method::Cache(settings) if settings.lights_by_cuts() => {}
-            _ => return Some(planned),
-        }
-        let tuned = tuned(world, window, ladder, coarse, planned, &usable, control)?;
-        // Seldom: too many samples or lights for the time, however rough the cuts. There are fewer further down.
-        let over = tuned.render_seconds / usable().max(f64::MIN_POSITIVE);
-        if over < LATE || coarse == 0.0 {
-            return Some(tuned);
-        }
-        coarse = (coarse - over.ln() / SLOPE.0).max(0.0);
-        pilots = tuned.pilots;
+    let tunable = |method: &Method| matches!(method, Method::Cache(s) if s.lights_by_cuts());
+    let tunes = tunable(&ladder.at(0.0));
+    let (cost, pilots) = small_renders(world, window, ladder, tunes, &usable, control)?;
+    let coarse = highest(&cost, ladder, window, usable());
+    let seconds = whole(&cost, ladder, window, coarse);
+    if tunes {
+        return tuned(world, window, ladder, (coarse, seconds), pilots, &usable, control);
     }
+    let method = ladder.at(coarse);
+    let options = options(&method);
+    Some(Planned { method, options, render_seconds: seconds, pilots, prepared: None })
 }
 
-/// The plan with cuts as fine as trials say, on eye samples and virtual lights as at `coarse`.
+/// Plans cuts as fine as trials say, on eye samples and virtual lights that are about as fine. `guess` is where to begin and what that may
+/// take.
 fn tuned<'w>(
     world: &'w World,
     window: &Window,
     ladder: &Ladder,
-    coarse: f64,
-    planned: Planned<'w>,
+    guess: (f64, f64),
+    mut pilots: u64,
     usable: &impl Fn() -> f64,
     control: &Control,
 ) -> Option<Planned<'w>> {
-    let Method::Cache(settings) = &planned.method else { return Some(planned) };
-    let watch = Stopwatch::start();
-    let there = Prepared::new(world, window, settings, control);
-    let spent = watch.elapsed();
-    if control.is_cancelled() {
-        return None;
+    let (mut coarse, mut seconds) = guess;
+    // Of all trials. Their processor time is steady where other work makes the clock's jump.
+    let mut tried = StageTime::default();
+    for round in 1.. {
+        let method = ladder.at(coarse);
+        let Method::Cache(settings) = &method else { return None };
+        let watch = Stopwatch::start();
+        let there = Prepared::new(world, window, settings, control);
+        let spent = watch.elapsed();
+        if control.is_cancelled() {
+            return None;
+        }
+        let lighting = (seconds - spent.wall_seconds).max(0.0);
+        let every = (lighting / (TRIAL_SHARE * usable()).max(1e-9)).ceil().clamp(1.0, 64.0) as usize;
+        let try_at = |fine: f64| match ladder.between(coarse, fine) {
+            Method::Cache(settings) => {
+                let time = there.lighting_time(&settings, every)?;
+                tried += time;
+                Some(time.cpu_seconds * tried.wall_seconds / tried.cpu_seconds.max(f64::MIN_POSITIVE))
+            }
+            _ => None,
+        };
+        let tuned = tune(coarse, ladder.top(), usable, try_at)?;
+        let method = ladder.between(coarse, tuned.height);
+        pilots += tuned.trials;
+        // Samples and lights that do not go with how fine cuts can be are given up, twice at most.
+        let late = tuned.seconds > LATE * usable();
+        let next = if late { 0.0 } else { 0.5 * (coarse + tuned.height) };
+        let same = options(&ladder.between(next, tuned.height)) == options(&method);
+        if (!late && (next - coarse).abs() < CLOSE) || same || round == ROUNDS {
+            let options = options(&method);
+            let prepared = Some((there, spent));
+            return Some(Planned { method, options, render_seconds: tuned.seconds, pilots, prepared });
+        }
+        (coarse, seconds) = (next, usable());
     }
-    let lighting = (planned.render_seconds - spent.wall_seconds).max(0.0);
-    let every = (lighting / (TRIAL_SHARE * usable()).max(1e-9)).ceil().clamp(1.0, 64.0) as usize;
-    let try_at = |fine: f64| match ladder.between(coarse, fine) {
-        Method::Cache(settings) => there.lighting_seconds(&settings, every),
-        _ => None,
-    };
-    let tuned = tune(coarse, ladder.top(), usable, try_at)?;
-    let method = ladder.between(coarse, tuned.height);
-    Some(Planned {
-        method,
-        options: options(&method),
-        render_seconds: tuned.seconds,
-        pilots: planned.pilots + tuned.trials,
-        prepared: Some((there, spent)),
-    })
+    None
 }
 
-/// A model of cost, and how many small renders it comes from.
+/// A model of cost, from the first small renders or from all, and how many there were.
 fn small_renders(
     world: &World,
     window: &Window,
     ladder: &Ladder,
+    only_rough: bool,
     usable: &impl Fn() -> f64,
     control: &Control,
 ) -> Option<(Cost, u64)> {
@@ -161,6 +174,9 @@ fn small_renders(
     if whole(&cost, ladder, &second, 0.0) < PILOT_SHARE * usable() {
         cost = time(0.0, second)?;
         pilots += 1;
+    }
+    if only_rough {
+        return Some((cost, pilots));
     }
     // As near to the settings wanted as the time for this render lets, smaller first, then cheaper.
     let allowed = PILOT_SHARE * usable();

@@ -4,7 +4,7 @@
 //! line through what is known says that the time wanted lies, so that the last ones lie close to it.
 
 /// Slope of the logarithm of time, a rung, before two heights are known, and the range in which it is believed.
-pub const SLOPE: (f64, [f64; 2]) = (0.35, [0.1, 1.2]);
+const SLOPE: (f64, [f64; 2]) = (0.35, [0.1, 1.2]);
 /// Most trials.
 const TRIALS: usize = 4;
 /// A trial as near as this, relatively, is near enough.

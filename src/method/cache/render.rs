@@ -15,7 +15,7 @@ use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::lights::Lights;
 use crate::method::{Control, Output, counts};
-use crate::stats::{Stage, Stats, Stopwatch};
+use crate::stats::{Stage, StageTime, Stats, Stopwatch};
 use crate::vpl::LightPassSettings;
 use crate::world::World;
 
@@ -102,9 +102,9 @@ impl<'w> Prepared<'w> {
         Prepared { world, samples, glossy, lights, stats }
     }
 
-    /// Seconds that lighting by cuts would take, tried on one patch in `every`, or on more where those would be few;
+    /// What lighting by cuts would take, tried on one patch in `every`, or on more where those would be few;
     /// `None` where records light too.
-    pub fn lighting_seconds(&self, settings: &Settings, every: usize) -> Option<f64> {
+    pub fn lighting_time(&self, settings: &Settings, every: usize) -> Option<StageTime> {
         if !settings.lights_by_cuts() {
             return None;
         }
@@ -114,13 +114,15 @@ impl<'w> Prepared<'w> {
         let cache = Cache::new(samples, None, [FoundBy::Samples; 2]);
         let jobs = cache.resolve(samples, &mut Picture::new(samples, false));
         let patches = own::patches(&source, samples, &jobs);
-        let once = watch.elapsed().wall_seconds;
+        let mut time = watch.elapsed();
         let every = every.min(patches.len() / LEAST_TRIED).max(1);
         let some: Vec<Vec<Job>> = patches.iter().skip(every / 2).step_by(every).cloned().collect();
         let watch = Stopwatch::start();
         own::light_patches(&source, samples, &some, &settings.cut);
         let share = samples_of(&patches) / samples_of(&some).max(1.0);
-        Some(once + watch.elapsed().wall_seconds * share)
+        let StageTime { wall_seconds, cpu_seconds } = watch.elapsed();
+        time += StageTime { wall_seconds: wall_seconds * share, cpu_seconds: cpu_seconds * share };
+        Some(time)
     }
 
     /// The picture.
