@@ -20,7 +20,9 @@ use crate::world::World;
 /// Share of what is left of the time that the last small render may take.
 const PILOT_SHARE: f64 = 0.08;
 /// Share that a trial may take of the time that lighting is thought to take.
-const TRIAL_SHARE: f64 = 0.04;
+const TRIAL_SHARE: f64 = 0.03;
+/// Most trials of how fine cuts are, once samples and lights go with them.
+const TRIALS: usize = 3;
 /// A plan that takes this much longer than there is time is not the best that can be done.
 const LATE: f64 = 1.1;
 /// Rungs by which half the way from samples and lights to cuts may be off.
@@ -114,7 +116,7 @@ fn tuned<'w>(
         }
         let lighting = (seconds - spent.wall_seconds).max(0.0);
         let every = (lighting / (TRIAL_SHARE * usable()).max(1e-9)).ceil().clamp(1.0, 64.0) as usize;
-        let try_at = |fine: f64| match ladder.between(coarse, fine) {
+        let mut try_at = |fine: f64| match ladder.between(coarse, fine) {
             Method::Cache(settings) => {
                 let time = there.lighting_time(&settings, every)?;
                 tried += time;
@@ -122,19 +124,22 @@ fn tuned<'w>(
             }
             _ => None,
         };
-        let tuned = tune(coarse, ladder.top(), usable, try_at)?;
-        let method = ladder.between(coarse, tuned.height);
-        pilots += tuned.trials;
-        // Samples and lights that do not go with how fine cuts can be are given up, twice at most.
-        let late = tuned.seconds > LATE * usable();
-        let next = if late { 0.0 } else { 0.5 * (coarse + tuned.height) };
-        let same = options(&ladder.between(next, tuned.height)) == options(&method);
-        if (!late && (next - coarse).abs() < CLOSE) || same || round == ROUNDS {
-            let options = options(&method);
-            let prepared = Some((there, spent));
-            return Some(Planned { method, options, render_seconds: tuned.seconds, pilots, prepared });
+        let first = tune(coarse, ladder.top(), 1, usable, &mut try_at)?;
+        // Samples and lights that do not go with how fine cuts can be are given up.
+        let late = first.seconds > LATE * usable();
+        let next = if late { 0.0 } else { 0.5 * (coarse + first.height) };
+        let same = options(&ladder.between(next, coarse)) == options(&ladder.at(coarse));
+        let off = late || (next - coarse).abs() > CLOSE;
+        pilots += first.trials;
+        if off && !same && round < ROUNDS {
+            (coarse, seconds) = (next, usable());
+            continue;
         }
-        (coarse, seconds) = (next, usable());
+        let tuned = tune(first.height, ladder.top(), TRIALS, usable, &mut try_at)?;
+        let method = ladder.between(coarse, tuned.height);
+        let (options, prepared) = (options(&method), Some((there, spent)));
+        pilots += tuned.trials;
+        return Some(Planned { method, options, render_seconds: tuned.seconds, pilots, prepared });
     }
     None
 }

@@ -5,8 +5,6 @@
 
 /// Slope of the logarithm of time, a rung, before two heights are known, and the range in which it is believed.
 const SLOPE: (f64, [f64; 2]) = (0.35, [0.1, 1.2]);
-/// Most trials.
-const TRIALS: usize = 4;
 /// A trial as near as this, relatively, is near enough.
 const NEAR: f64 = 0.06;
 
@@ -21,15 +19,16 @@ pub struct Tuned {
     pub trials: u64,
 }
 
-/// The height up to `top` that takes as long as `wanted()` says, which is asked after every trial; `try_at` gives the seconds that a
-/// height takes, or `None` where nothing can be said. `start` is tried first.
+/// The height up to `top` that takes as long as `wanted()` says, which is asked after every trial, of which there are `most` at most;
+/// `try_at` gives the seconds that a height takes, or `None` where nothing can be said. `start` is tried first.
 pub fn tune(
     start: f64,
     top: f64,
+    most: usize,
     wanted: impl Fn() -> f64,
     mut try_at: impl FnMut(f64) -> Option<f64>,
 ) -> Option<Tuned> {
-    let mut known: Vec<(f64, f64)> = Vec::with_capacity(TRIALS);
+    let mut known: Vec<(f64, f64)> = Vec::with_capacity(most);
     let mut height = start.clamp(0.0, top);
     loop {
         known.push((height, try_at(height)?.max(f64::MIN_POSITIVE).ln()));
@@ -37,7 +36,7 @@ pub fn tune(
         let off = known[known.len() - 1].1 - goal;
         let (next, seconds) = along(&known, goal, top);
         // Where nothing is higher or lower, there is nothing to try.
-        if off.abs() < NEAR || known.len() == TRIALS || (next - height).abs() < 1e-9 {
+        if off.abs() < NEAR || known.len() >= most || (next - height).abs() < 1e-9 {
             return Some(Tuned { height: next, seconds, trials: known.len() as u64 });
         }
         height = next;
@@ -72,7 +71,7 @@ mod tests {
                 let goal = curve(fixed, slope, wanted_height);
                 for start in [0.0, 2.5, 6.0] {
                     let found =
-                        tune(start, 6.0, || goal, |height| Some(curve(fixed, slope, height))).unwrap();
+                        tune(start, 6.0, 4, || goal, |height| Some(curve(fixed, slope, height))).unwrap();
                     let got = curve(fixed, slope, found.height);
                     assert!((got / goal - 1.0).abs() < 0.05, "{fixed} {slope} {start}: {got} for {goal}");
                     assert!((found.seconds / got - 1.0).abs() < 0.05, "{found:?} takes {got}");
@@ -88,17 +87,17 @@ mod tests {
             left.set(left.get() - 0.1);
             Some(curve(0.0, 0.5, height))
         };
-        let found = tune(6.0, 6.0, || left.get(), try_at).unwrap();
+        let found = tune(6.0, 6.0, 4, || left.get(), try_at).unwrap();
         assert!((curve(0.0, 0.5, found.height) / left.get() - 1.0).abs() < 0.05, "{found:?}");
     }
 
     #[test]
     fn times_out_of_reach_end_at_the_ends_and_say_so() {
-        let short = tune(3.0, 6.0, || 0.01, |height| Some(curve(0.1, 0.5, height))).unwrap();
+        let short = tune(3.0, 6.0, 4, || 0.01, |height| Some(curve(0.1, 0.5, height))).unwrap();
         assert!(short.height == 0.0 && short.seconds > 0.2, "{short:?}");
-        let long = tune(3.0, 6.0, || 100.0, |height| Some(curve(0.1, 0.5, height))).unwrap();
+        let long = tune(3.0, 6.0, 4, || 100.0, |height| Some(curve(0.1, 0.5, height))).unwrap();
         assert!(long.height == 6.0 && long.seconds < 10.0, "{long:?}");
-        assert_eq!(tune(3.0, 6.0, || 1.0, |_| None), None);
-        assert!(tune(3.0, 6.0, || -1.0, |_| Some(0.0)).unwrap().seconds.is_finite());
+        assert_eq!(tune(3.0, 6.0, 4, || 1.0, |_| None), None);
+        assert!(tune(3.0, 6.0, 4, || -1.0, |_| Some(0.0)).unwrap().seconds.is_finite());
     }
 }

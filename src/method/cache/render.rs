@@ -20,7 +20,7 @@ use crate::vpl::LightPassSettings;
 use crate::world::World;
 
 /// Fewer patches than this do not tell how long others take.
-const LEAST_TRIED: usize = 64;
+const LEAST_TRIED: usize = 32;
 
 /// What the user may set.
 #[derive(Clone, Copy, Debug)]
