@@ -25,6 +25,8 @@ const TRIAL_SHARE: f64 = 0.03;
 const TRIALS: usize = 3;
 /// A plan that takes this much longer than there is time is not the best that can be done.
 const LATE: f64 = 1.1;
+/// Factor on the height of samples and lights where they are too many for any cuts.
+const LESS: f64 = 0.3;
 /// Rungs by which half the way from samples and lights to cuts may be off.
 const CLOSE: f64 = 0.5;
 /// Most times that samples and lights are chosen.
@@ -127,7 +129,7 @@ fn tuned<'w>(
         let first = tune(coarse, ladder.top(), 1, usable, &mut try_at)?;
         // Samples and lights that do not go with how fine cuts can be are given up.
         let late = first.seconds > LATE * usable();
-        let next = if late { 0.0 } else { 0.5 * (coarse + first.height) };
+        let next = if late { LESS * coarse } else { 0.5 * (coarse + first.height) };
         let same = options(&ladder.between(next, coarse)) == options(&ladder.at(coarse));
         let off = late || (next - coarse).abs() > CLOSE;
         pilots += first.trials;
