@@ -175,7 +175,7 @@ fn tell(asked: f64, found: &plan::Found) {
     let [value, low, high] = [rms.value, rms.low, rms.high].map(|x| 100.0 * x);
     talk::warning(&format!(
         "the error is not known to be {} % or less: {value:.2} % ({low:.2} to {high:.2}); \
-         more --verify or --verify-samples tell more",
+         more --verify or --verify-samples may tell more",
         100.0 * asked
     ));
 }
