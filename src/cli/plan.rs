@@ -152,8 +152,7 @@ pub fn make(
             stats.add("Plan/error asked [%]", 100.0 * error);
             stats.add("Plan/error planned [%]", 100.0 * found.expected);
             stats.count("Plan/error met (1: yes)", u64::from(found.met));
-            stats.count("Plan/small renders", found.renders[0]);
-            stats.count("Plan/renders", found.renders[1]);
+            stats.count("Plan/renders", found.renders);
             let got = found.verified.map(|v| v.relative_rms);
             let report = json!({
                 "asked_error": error,

@@ -1,15 +1,14 @@
 //! Settings for an error.
 //!
-//! On a small film a search by halves finds the cheapest settings whose measured error is low enough, all pictures held
-//! to the same traced paths. The film is then rendered with them and its error measured at other pixels by other paths; while
+//! A search that begins with cheap pictures finds the cheapest settings whose measured error is low enough, all pictures held
+//! to the same traced paths. The error of the picture found is then measured at other pixels by other paths; while
 //! that is not known to be low enough, the settings are raised, a bounded number of times.
 //!
 //! A picture meets the error if the upper end of the interval does and the noise of the paths is below it too: what is not known
 //! is not met. Paths that are too noisy to tell are traced anew, four times as many where a pixel had as many as it may. The
 //! steps are held to one set of paths, so that a picture met after several has had as many chances.
 
-use super::ladder::{FINAL, Ladder, options};
-use super::smaller;
+use super::ladder::{Ladder, options};
 use crate::eye::{Look, Window};
 use crate::image::Image;
 use crate::method::{Control, Method, Output};
@@ -18,16 +17,24 @@ use crate::stats::{StageTime, Stopwatch};
 use crate::verify::{Settings, Truth, Verified};
 use crate::world::World;
 
-/// Most pixels of the small film.
-const SMALL: u64 = 128 * 128;
-/// Pixels of it that are traced, of those that the picture gets.
+/// Pixels that are traced for the search, of those that the picture gets.
 const SHARE: f64 = 0.4;
 /// How far below the error asked for the search aims: about as much as the interval reaches above its estimate.
 const AIM: f64 = 0.85;
 /// Steps between rungs.
 const STEPS: f64 = 2.0;
-/// Most times that the settings are raised once the film is rendered.
-const RAISES: u32 = 4;
+/// Where the search begins: cheap pictures cost it little.
+const START: usize = 4;
+/// By how much the logarithm of the error falls with a step, about.
+const FALL: f64 = 0.15;
+/// Most steps, besides one, that the search goes up or down by that: seven rungs cost twenty times as much.
+const LEAP: f64 = 3.0;
+/// What is wrong is not how fine settings are if this many steps leave this share of the error.
+const STALL: usize = 4;
+/// See [`STALL`].
+const STILL: f64 = 0.93;
+/// Most times that the settings are raised once the search is over.
+const RAISES: u64 = 4;
 /// Keeps the pixels and paths of the search apart.
 const SEED: u32 = 0x5ea7_c4ed;
 
@@ -60,8 +67,8 @@ pub struct Found {
     pub met: bool,
     /// How it was measured in the end.
     pub measure: Settings,
-    /// Pictures rendered on the small film, and of the whole.
-    pub renders: [u64; 2],
+    /// Pictures rendered.
+    pub renders: u64,
 }
 
 /// Renders `window` as cheaply as meets what is asked; `None` if cancelled before that film was begun.
@@ -76,18 +83,14 @@ pub fn for_error(
     // Errors of the light at the picture's own samples do not go away by taking more of them.
     ladder.held.spp |= matches!(asked.measure.look, Look::EyeSamples { .. });
     let top = (STEPS * ladder.top()) as usize;
-    let height = |step: usize| step as f64 / STEPS;
-    let (mut step, expected, small) = search(world, window, &ladder, asked, control)?;
+    let Searched { mut step, error: expected, mut output, mut time, renders: searched } =
+        search(world, window, &ladder, asked, control)?;
 
     let mut truth: Option<Truth> = None;
     let mut measure = asked.measure;
-    let mut renders = 0;
+    let mut raises = 0;
     loop {
-        let method = ladder.at(height(step));
-        let watch = Stopwatch::start();
-        let output = method.render(world, window, control);
-        let time = watch.elapsed();
-        renders += 1;
+        let method = ladder.at(step as f64 / STEPS);
         let verified = if output.complete {
             judge(world, window, &output.color, asked, &mut measure, &mut truth, control)
         } else {
@@ -97,12 +100,16 @@ pub fn for_error(
         let over = verified.is_some_and(|v| v.relative_rms.value > asked.error);
         // Better settings would not show.
         let hidden = verified.is_some_and(|v| v.noise > asked.error) && !over;
-        let last = met || hidden || verified.is_none() || step >= top || renders > u64::from(RAISES);
+        let last = met || hidden || verified.is_none() || step >= top || raises >= RAISES;
         if last || control.is_cancelled() {
-            let (options, renders) = (options(&method), [small, renders]);
+            let (options, renders) = (options(&method), searched + raises);
             return Some(Found { method, options, expected, output, time, verified, met, measure, renders });
         }
         step = (step + if over { 2 } else { 1 }).min(top);
+        let watch = Stopwatch::start();
+        output = ladder.at(step as f64 / STEPS).render(world, window, control);
+        time = watch.elapsed();
+        raises += 1;
     }
 }
 
@@ -132,49 +139,65 @@ fn judge(
     }
 }
 
-/// The lowest step that seems to do, the error it has on the small film, and how many pictures that took.
+/// What a search came to.
+struct Searched {
+    step: usize,
+    /// The error by the paths of the search.
+    error: f64,
+    output: Output,
+    time: StageTime,
+    renders: u64,
+}
+
+/// The lowest step that seems to do; where none is found, the last that was tried.
 fn search(
     world: &World,
     window: &Window,
     ladder: &Ladder,
     asked: &Asked,
     control: &Control,
-) -> Option<(usize, f64, u64)> {
-    let scale = (1..).find(|&s| smaller(window, s).pixel_count() <= SMALL).unwrap_or(1);
-    let small = smaller(window, scale);
+) -> Option<Searched> {
     let measure = Settings {
         pixels: ((SHARE * asked.measure.pixels as f64) as usize).max(16),
         seed: hash(asked.measure.seed, SEED),
         ..asked.measure
     };
+    let goal = AIM * asked.error;
+    let top = (STEPS * ladder.top()) as usize;
     let mut truth: Option<Truth> = None;
-    let mut renders = 0;
-    let mut error = |step: usize| -> Option<f64> {
-        let output = ladder.at(step as f64 / STEPS).render(world, &small, control);
+    let (mut met, mut failed): (Option<Searched>, Vec<(usize, f64)>) = (None, Vec::new());
+    let mut step = START;
+    for renders in 1.. {
+        let watch = Stopwatch::start();
+        let output = ladder.at(step as f64 / STEPS).render(world, window, control);
+        let time = watch.elapsed();
         if !output.complete {
             return None;
         }
-        renders += 1;
         if truth.is_none() {
-            truth = Some(Truth::trace(world, &small, &output.color, &measure, control)?);
+            truth = Some(Truth::trace(world, window, &output.color, &measure, control)?);
         }
-        Some(truth.as_ref()?.judge(&output.color).relative_rms.value)
-    };
-    let top = (STEPS * ladder.top()) as usize;
-    let (mut low, mut high, mut expected) = (0, top, None);
-    let mut middle = (STEPS * FINAL) as usize;
-    while low < high {
-        let found = error(middle)?;
-        if found <= AIM * asked.error {
-            (high, expected) = (middle, Some(found));
+        let error = truth.as_ref()?.judge(&output.color).relative_rms.value;
+        let tried = Searched { step, error, output, time, renders };
+        // Steps by which the error is likely to be off.
+        let off = ((error / goal).ln().abs() / FALL).min(LEAP) as usize;
+        if error <= goal {
+            step = step.saturating_sub(off.max(1));
+            met = Some(tried);
         } else {
-            low = middle + 1;
+            let stalls = failed.iter().any(|&(below, e)| below + STALL <= step && error > STILL * e);
+            if met.is_none() && (stalls || step >= top) {
+                return Some(tried);
+            }
+            failed.push((step, error));
+            step += off + 1;
         }
-        middle = (low + high) / 2;
+        let lowest = failed.iter().map(|&(step, _)| step + 1).max().unwrap_or(0);
+        step = match &met {
+            Some(found) if lowest >= found.step => return met.map(|found| Searched { renders, ..found }),
+            Some(found) => step.clamp(lowest, found.step - 1),
+            None => step.min(top),
+        };
     }
-    let expected = match expected {
-        Some(expected) => expected,
-        None => error(top)?,
-    };
-    Some((high, expected, renders))
+    None
 }

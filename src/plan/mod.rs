@@ -3,7 +3,7 @@
 //! | | asked | planned | got |
 //! |---|---|---|---|
 //! | [`for_time`] | seconds of the whole run | from a few small renders of the same film and a model of cost, then on the picture itself | the wall clock |
-//! | [`for_error`] | relative RMS error | by small renders held to traced paths | measured on the picture itself, settings raised until it is met |
+//! | [`for_error`] | relative RMS error | by renders from cheap to dear held to traced paths | measured on the picture itself, settings raised until it is met |
 //!
 //! Both move along one [`Ladder`] of settings. What the user has typed is held.
 //!
