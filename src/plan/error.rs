@@ -17,8 +17,6 @@ use crate::stats::{StageTime, Stopwatch};
 use crate::verify::{Settings, Truth, Verified};
 use crate::world::World;
 
-/// Pixels that are traced for the search, of those that the picture gets.
-const SHARE: f64 = 0.4;
 /// How far below the error asked for the search aims: about as much as the interval reaches above its estimate.
 const AIM: f64 = 0.85;
 /// Steps between rungs.
@@ -157,11 +155,7 @@ fn search(
     asked: &Asked,
     control: &Control,
 ) -> Option<Searched> {
-    let measure = Settings {
-        pixels: ((SHARE * asked.measure.pixels as f64) as usize).max(16),
-        seed: hash(asked.measure.seed, SEED),
-        ..asked.measure
-    };
+    let measure = Settings { seed: hash(asked.measure.seed, SEED), ..asked.measure };
     let goal = AIM * asked.error;
     let top = (STEPS * ladder.top()) as usize;
     let mut truth: Option<Truth> = None;
