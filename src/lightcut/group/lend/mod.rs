@@ -97,6 +97,11 @@ impl LentCut {
             let vpl = &trees.vpls[n.representative()];
             let lit = transfer.unshadowed16(points, vpl, n.kind(), &mut unshadowed);
             let reached = |&l: &usize| responses[0][l] + responses[1][l] + responses[2][l] > 0.0;
+            if lit == 0 {
+                // Below every maker's horizon, which says nothing about how much of it rises above another point's.
+                self.certain.push(Certain { node, sure: 0.0 });
+                continue;
+            }
             let seen = lanes_of(lit).filter(reached).fold(0u16, |mask, lane| mask | 1 << lane);
             // If only a few of the makers are lit at all, little is known.
             let known = lit.count_ones() * 2 >= points.valid.count_ones();
