@@ -101,12 +101,11 @@ impl<'m> Reflector<'m> {
         }
     }
 
-    /// The material, where it is more than Lambertian.
-    #[cfg(test)]
-    pub(super) fn bsdf(&self) -> Option<Bsdf<'m>> {
+    /// The material, where it is more than Lambertian, and the direction it is seen from, in the shading frame.
+    pub(super) fn bsdf(&self) -> Option<(Bsdf<'m>, Vec3)> {
         match self.material {
             Kind::Lambert(_) => None,
-            Kind::General(bsdf) => Some(bsdf),
+            Kind::General(bsdf) => Some((bsdf, self.wo)),
         }
     }
 

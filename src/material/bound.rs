@@ -29,6 +29,11 @@ pub struct DirectionBound {
 /// Rounding of a cosine or of a product of two, in the caller and here. It matters for α below 0.01.
 const SLACK: f32 = 5e-7;
 
+impl DirectionBound {
+    /// Covers the rounding of the reflectance and of D at the tip of a narrow lobe.
+    pub(super) const WIDER: f32 = 1.000_01;
+}
+
 impl Bsdf<'_> {
     /// An upper bound, per channel, of `eval(wo, wi)` · cos θ_i over all `wi` within `bound`.
     ///
@@ -57,18 +62,17 @@ impl Bsdf<'_> {
         let density = facets.max_density(min_facet_sin_sq(cos_o, cos_min, cos_max, bound.cos_mirror_max));
         let masked = density * facets.v1(cos_o) * 0.5 * facets.max_g1(cos_max);
         let cos_d = min_facet_cos(cos_o, cos_min, bound.cos_mirror_max);
-        // The factor covers the rounding of the reflectance and of D at the tip of a narrow lobe.
         let reflectance = match &self.model.max_reflectance {
             Some(table) => table.floor(cos_d),
             None => fresnel.reflectance(cos_d),
         };
-        base + self.scale * reflectance * (masked * 1.000_01)
+        base + self.scale * reflectance * (masked * DirectionBound::WIDER)
     }
 }
 
 /// The least squared sine of the facet normal's inclination.
-#[inline]
-fn min_facet_sin_sq(cos_o: f32, cos_i_min: f32, cos_i_max: f32, cos_mirror: f32) -> f32 {
+#[inline(always)]
+pub(super) fn min_facet_sin_sq(cos_o: f32, cos_i_min: f32, cos_i_max: f32, cos_mirror: f32) -> f32 {
     let at = |cos_i: f32| {
         // 1 - cos² θ_h, the numerator arranged so that nothing large cancels. Where cos_i and cos_mirror
         // exclude each other this may be anything; the bound below then decides.
@@ -82,8 +86,8 @@ fn min_facet_sin_sq(cos_o: f32, cos_i_min: f32, cos_i_max: f32, cos_mirror: f32)
 }
 
 /// The least cosine between `wo` and the facet normal.
-#[inline]
-fn min_facet_cos(cos_o: f32, cos_i_min: f32, cos_mirror: f32) -> f32 {
+#[inline(always)]
+pub(super) fn min_facet_cos(cos_o: f32, cos_i_min: f32, cos_mirror: f32) -> f32 {
     let product = cos_o * cos_i_min;
     let sin_product = ((1.0 - cos_o * cos_o) * (1.0 - cos_i_min * cos_i_min)).max(0.0).sqrt();
     let cos_between = (2.0 * product - cos_mirror).max(product - sin_product);

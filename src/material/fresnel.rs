@@ -4,7 +4,7 @@
 //! reflectance of particulate materials*, 1973, and d'Eon and Irving, *A Quantized-Diffusion Model for
 //! Rendering Translucent Materials*, 2011.
 
-use crate::math::Rgb;
+use crate::math::{F32x16, LANES, Rgb, Vec3x16};
 use crate::scene::Fresnel;
 
 /// What a smooth dielectric interface does to a ray.
@@ -95,6 +95,31 @@ impl Fresnel {
             Fresnel::One => Rgb::ONE,
             Fresnel::Dielectric(eta) => Rgb::splat(dielectric(cos_i.max(0.0), eta)),
             Fresnel::Conductor { eta, k } => conductor(cos_i, eta, k),
+        }
+    }
+
+    /// [`Fresnel::reflectance`] in all lanes.
+    #[inline]
+    pub(super) fn reflectance16(&self, cos_i: &F32x16) -> Vec3x16 {
+        match *self {
+            Fresnel::One => Vec3x16 { x: [1.0; LANES], y: [1.0; LANES], z: [1.0; LANES] },
+            Fresnel::Dielectric(eta) => {
+                let mut r = [0.0; LANES];
+                for l in 0..LANES {
+                    r[l] = dielectric(if cos_i[l] > 0.0 { cos_i[l] } else { 0.0 }, eta);
+                }
+                Vec3x16 { x: r, y: r, z: r }
+            }
+            Fresnel::Conductor { eta, k } => {
+                let channel = |eta: f32, k: f32| {
+                    let mut r = [0.0; LANES];
+                    for l in 0..LANES {
+                        r[l] = conductor_channel(cos_i[l].clamp(0.0, 1.0), eta, k);
+                    }
+                    r
+                };
+                Vec3x16 { x: channel(eta.x, k.x), y: channel(eta.y, k.y), z: channel(eta.z, k.z) }
+            }
         }
     }
 

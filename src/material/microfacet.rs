@@ -11,7 +11,7 @@
 //! density uses the exact function, because visible normals are distributed by that one; the sample's weight
 //! makes up for the difference (up to 0.35 %).
 
-use crate::math::Rgb;
+use crate::math::{F32x16, LANES, Rgb};
 use crate::sampling::uniform_disk;
 use crate::scene::Distribution;
 use glam::{Vec2, Vec3};
@@ -75,6 +75,26 @@ impl Microfacets {
         };
         let sin_sq = sin_sq.max(peak).min(1.0);
         self.density_from(sin_sq, 1.0 - sin_sq)
+    }
+
+    /// [`Microfacets::density_from`] in all lanes.
+    #[inline]
+    pub fn density16(&self, sin_sq: &F32x16, cos_sq: &F32x16) -> F32x16 {
+        let mut density = [0.0; LANES];
+        for l in 0..LANES {
+            density[l] = self.density_from(sin_sq[l], cos_sq[l]);
+        }
+        density
+    }
+
+    /// [`Microfacets::max_density`] in all lanes.
+    #[inline]
+    pub fn max_density16(&self, sin_sq: &F32x16) -> F32x16 {
+        let mut density = [0.0; LANES];
+        for l in 0..LANES {
+            density[l] = self.max_density(sin_sq[l]);
+        }
+        density
     }
 
     /// G1 / (2 cos θ) of the BSDF for a direction at `cos` > 0.

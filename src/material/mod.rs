@@ -8,6 +8,7 @@
 //! All directions are in the local shading frame (z = shading normal), point away from the surface and have
 //! unit length: `wo` towards the eye (or wherever the path came from), `wi` towards the light.
 
+mod alike16;
 mod bound;
 mod bsdf;
 mod fresnel;
@@ -18,6 +19,7 @@ mod parts;
 mod sample;
 mod table;
 
+pub use alike16::{AlikeBsdfs16, DirectionBounds16};
 pub use bound::DirectionBound;
 pub use bsdf::Bsdf;
 pub use model::Materials;

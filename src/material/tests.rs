@@ -1,6 +1,7 @@
 //! Properties of every kind of material, and what the tests share.
 
 mod agreement;
+mod alike;
 mod bounds;
 mod energy;
 mod sampling;

@@ -3,6 +3,7 @@
 use super::{LANES, Lanes};
 use crate::embree::Rays16;
 use crate::lightcut::Reflector;
+use crate::material::AlikeBsdfs16;
 use crate::math::{Frame, LUMINANCE, Rgb};
 use crate::shadow;
 use crate::vpl::{Vpl, VplKind};
@@ -18,8 +19,10 @@ pub struct Points<'m> {
     reflectors: Vec<Reflector<'m>>,
     /// Lanes that hold a point.
     pub(super) valid: u16,
-    /// Lanes whose material is not just Lambert: their responses and bounds are computed one by one.
+    /// Lanes whose material is not just Lambert.
     pub(super) general: u16,
+    /// Their materials, if they are alike: else their responses and bounds are computed one by one.
+    pub(super) glossy: Option<AlikeBsdfs16<'m>>,
     pub(super) position: Vec3Lanes,
     /// Largest coordinate of any position.
     pub(super) reach: f32,
@@ -50,6 +53,7 @@ impl<'m> Points<'m> {
             reflectors: Vec::with_capacity(LANES),
             valid: 0,
             general: 0,
+            glossy: None,
             position: ZERO,
             reach: 0.0,
             geometric_normal: ZERO,
@@ -88,6 +92,9 @@ impl<'m> Points<'m> {
             put(&mut self.base, lane, r.base_brdf());
             put(&mut self.brdf_luminance, lane, brdf * LUMINANCE);
         }
+        let bsdf = |lane: usize| self.reflectors.get(lane).and_then(Reflector::bsdf);
+        let any = lanes_of(self.general).next().and_then(bsdf);
+        self.glossy = any.and_then(|any| AlikeBsdfs16::new(|lane| bsdf(lane).unwrap_or(any)));
     }
 
     /// How many points.

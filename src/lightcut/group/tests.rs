@@ -30,11 +30,18 @@ fn neighbours<'m>(
 ) -> Vec<Reflector<'m>> {
     let first = random_reflector(materials, scene, scale, numbers);
     let lambert = materials.at(scene, MaterialId(0), Vec2::ZERO);
+    // In half of the groups two materials that are not alike.
+    let another = random_reflector(materials, scene, scale, numbers).bsdf().filter(|_| numbers.next() < 0.5);
+    let other = another.map_or(lambert, |(bsdf, _)| bsdf);
     (0..count)
         .map(|i| {
             let normal = (first.place().1 + numbers.direction() * 0.1).normalize();
             let out = (normal + numbers.direction() * 0.5).normalize();
-            let bsdf = if i % 3 == 0 { first.bsdf().unwrap_or(lambert) } else { lambert };
+            let bsdf = match (i % 3, first.bsdf()) {
+                (0, Some((bsdf, _))) => bsdf,
+                (1, _) => other,
+                _ => lambert,
+            };
             let frame = crate::math::Frame::from_normal(normal);
             let position = first.position() + numbers.direction() * 0.01 * scale;
             Reflector::new(position, normal, &frame, bsdf, out)

@@ -6,8 +6,8 @@ use super::{LANES, Lanes, RgbLanes};
 use crate::light_tree::Node;
 use crate::lightcut::expected::{Outlook, expected_share};
 use crate::lightcut::{Transfer, Unoccluded};
-use crate::material::DirectionBound;
-use crate::math::{Frame, Rgb, luminance};
+use crate::material::{AlikeBsdfs16, DirectionBound, DirectionBounds16};
+use crate::math::{Frame, LUMINANCE, Rgb, Vec3x16, luminance};
 use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;
 
@@ -32,7 +32,15 @@ impl Transfer<'_> {
             let reflected = i.x * w[0][l] + i.y * w[1][l] + i.z * w[2][l];
             bounds[l] = reflected * (geometry[l] * cos_x[l]);
         }
-        if points.general != 0 {
+        if let Some(glossy) = &points.glossy {
+            let (cos_i_min, cos_mirror_max) = cluster.lobe16(points);
+            let most = glossy.bound(&DirectionBounds16 { cos_i_max: cos_x, cos_i_min, cos_mirror_max });
+            let w = i * LUMINANCE;
+            for l in 0..LANES {
+                let reflected = (w.x * most.x[l] + w.y * most.y[l] + w.z * most.z[l]) * geometry[l];
+                bounds[l] = if points.general >> l & 1 != 0 { reflected } else { bounds[l] };
+            }
+        } else if points.general != 0 {
             let (cos_min, cos_mirror) = cluster.lobe16(points);
             for l in lanes_of(points.general) {
                 if geometry[l] * cos_x[l] > 0.0 {
@@ -99,6 +107,10 @@ impl Transfer<'_> {
             VplKind::Directional => lambert_directional(points, vpl.position, responses),
             VplKind::Omni => one_by_one = points.valid,
         }
+        if let (Some(glossy), false) = (&points.glossy, kind == VplKind::Omni) {
+            self.respond(glossy, points, vpl, kind, responses);
+            one_by_one = 0;
+        }
         for lane in lanes_of(one_by_one) {
             let response = self.unshadowed(points.get(lane), vpl, kind);
             for c in 0..3 {
@@ -110,6 +122,37 @@ impl Transfer<'_> {
             lit |= u16::from(responses[0][l] + responses[1][l] + responses[2][l] > 0.0) << l;
         }
         lit & points.valid
+    }
+
+    /// What alike materials reflect from a VPL that is no spot, in the lanes where they are.
+    fn respond(
+        &self,
+        glossy: &AlikeBsdfs16,
+        points: &Points,
+        vpl: &Vpl,
+        kind: VplKind,
+        responses: &mut RgbLanes,
+    ) {
+        let (mut wi, mut emitted) = (Vec3x16::default(), [1.0; LANES]);
+        let frame = &points.frame;
+        let (distant, normal) = (kind == VplKind::Directional, vpl.normal());
+        for l in 0..LANES {
+            let x = Vec3::new(points.position[0][l], points.position[1][l], points.position[2][l]);
+            let offset = if distant { vpl.position } else { vpl.position - x };
+            let dist_sq = offset.length_squared();
+            let towards = offset * if dist_sq > 0.0 { 1.0 / dist_sq.sqrt() } else { 0.0 };
+            let limited = if dist_sq > self.min_dist_sq { dist_sq } else { self.min_dist_sq };
+            let local = |f: &Vec3Lanes| f[0][l] * towards.x + f[1][l] * towards.y + f[2][l] * towards.z;
+            wi.set(l, Vec3::new(local(&frame[0]), local(&frame[1]), local(&frame[2])));
+            emitted[l] = if distant { 1.0 } else { positive(-normal.dot(towards)) / limited };
+        }
+        let response = glossy.response(&wi);
+        for l in 0..LANES {
+            let general = points.general >> l & 1 != 0;
+            for (c, row) in [&response.x, &response.y, &response.z].into_iter().enumerate() {
+                responses[c][l] = if general { row[l] * emitted[l] } else { responses[c][l] };
+            }
+        }
     }
 
     /// Irradiance vector at each point from a VPL of unit intensity, if visible; 0 where it is below the horizon.

@@ -94,14 +94,15 @@ impl Fit {
             }
         }
         let mut lobe = [[0.0; LANES]; 3];
-        for l in lanes_of(makers.general & seen) {
-            let reflector = makers.get(l);
-            let incident = Vec3::new(vector[0][l], vector[1][l], vector[2][l]);
-            let passed = incident * reflector.coat_transmittance(incident);
-            let reflected = reflector.base_brdf() * reflector.place().1.dot(passed);
+        if makers.general & seen != 0 {
+            pass_coat(makers, &mut vector);
+            let n = &makers.frame[2];
+            let general: Lanes = std::array::from_fn(|l| f32::from((makers.general & seen) >> l & 1));
             for c in 0..3 {
-                vector[c][l] = passed[c];
-                lobe[c][l] = responses[c][l] - reflected[c];
+                for l in 0..LANES {
+                    let cos = vector[0][l] * n[0][l] + vector[1][l] * n[1][l] + vector[2][l] * n[2][l];
+                    lobe[c][l] = (responses[c][l] - makers.base[c][l] * cos) * general[l];
+                }
             }
         }
         let mut share = Share::default();
@@ -179,6 +180,31 @@ impl Fit {
             }
         }
         radiance
+    }
+}
+
+/// Takes from irradiance vectors what coats reflect.
+fn pass_coat(points: &Points, vector: &mut Vec3Lanes) {
+    let n = &points.frame[2];
+    let passes: Lanes = match &points.glossy {
+        Some(glossy) => {
+            let mut cos = [0.0; LANES];
+            for l in 0..LANES {
+                let v = Vec3::new(vector[0][l], vector[1][l], vector[2][l]);
+                let length = v.length();
+                let along = v.x * n[0][l] + v.y * n[1][l] + v.z * n[2][l];
+                cos[l] = if length > 0.0 { along / length } else { 1.0 };
+            }
+            let passes = glossy.coat_transmittance(&cos);
+            std::array::from_fn(|l| if points.general >> l & 1 != 0 { passes[l] } else { 1.0 })
+        }
+        None => std::array::from_fn(|l| {
+            let v = Vec3::new(vector[0][l], vector[1][l], vector[2][l]);
+            if points.general >> l & 1 != 0 { points.get(l).coat_transmittance(v) } else { 1.0 }
+        }),
+    };
+    for row in vector {
+        row.iter_mut().zip(&passes).for_each(|(v, passes)| *v *= passes);
     }
 }
 
