@@ -3,7 +3,7 @@
 use super::Context;
 use crate::eye::{EyeSamples, EyeSettings, Window};
 use crate::light_tree::{Family, LightTrees, Node};
-use crate::lightcut::group::{LANES, group_alike};
+use crate::lightcut::group::{LANES, Likeness, group_alike};
 use crate::lightcut::{Reflector, Transfer};
 use crate::math::Frame;
 use crate::method::Control;
@@ -75,7 +75,7 @@ impl<'w> Setting<'w> {
             let point = &self.samples.points[sample];
             (point.position, point.normal)
         };
-        group_alike(stretch.iter().copied(), LANES, self.world.diagonal, place, |_, _| true)
+        group_alike(Likeness::CLOSE, stretch.iter().copied(), LANES, self.world.diagonal, place, |_, _| true)
     }
 
     /// All single lights, neighbours in their tree next to each other.

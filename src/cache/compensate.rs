@@ -21,7 +21,7 @@ use super::wave::Pick;
 use crate::embree::{Hit, Hits16, Ray, Rays16};
 use crate::eye::EyeSamples;
 use crate::light_tree::LightTrees;
-use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Points, group_alike};
+use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Likeness, Points, group_alike};
 use crate::lightcut::{CutSettings, Lightcut, Reflector};
 use crate::math::{Frame, Rgb, lanes_in, luminance};
 use crate::sampling::{cosine_hemisphere, owen_sobol_2d};
@@ -146,7 +146,7 @@ impl Compensation {
         // What records met on one wall, then what they met on another: neighbours look up light side by side.
         lookups.sort_by_key(|lookup| (lookup.near.surface.mesh, lookup.record));
         let place = |lookup: &Lookup| (lookup.near.surface.position, lookup.near.normal);
-        for group in group_alike(lookups, LANES, source.world.diagonal, place, |_, _| true) {
+        for group in group_alike(Likeness::CLOSE, lookups, LANES, source.world.diagonal, place, |_, _| true) {
             let irradiance = cutters.irradiance(source, &group);
             for (lookup, irradiance) in group.iter().zip(irradiance) {
                 let found = lookup.factor * irradiance;

@@ -17,7 +17,7 @@ use super::wave::Pick;
 use crate::eye::EyeSamples;
 use crate::hsh::Radiance;
 use crate::light_tree::LightTrees;
-use crate::lightcut::group::{GroupLightcut, LANES, Points, group_alike};
+use crate::lightcut::group::{GroupLightcut, LANES, Likeness, Points, group_alike};
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Transfer};
 use crate::math::{Frame, LUMINANCE, Rgb, luminance};
 use crate::shadow::Engine;
@@ -116,7 +116,9 @@ impl Source<'_> {
             let point = &samples.points[pick.sample as usize];
             (point.position, point.normal)
         };
-        group_alike(picks.iter().copied(), LANES, self.world.diagonal, place, |a, b| a.lacks == b.lacks)
+        group_alike(Likeness::CLOSE, picks.iter().copied(), LANES, self.world.diagonal, place, |a, b| {
+            a.lacks == b.lacks
+        })
     }
 
     /// The record of one layer, or `None` where it would be of no use.

@@ -6,7 +6,7 @@ use crate::lightcut::group::LEAST_SHARED;
 use crate::shadow::ShadowSettings;
 
 /// Patches of fewer samples than this would have too few that borrow.
-const LEAST_PATCH: usize = 64;
+pub const LEAST_PATCH: usize = 64;
 
 /// How the shape of footprints is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

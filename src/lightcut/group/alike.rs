@@ -4,23 +4,36 @@ use glam::Vec3;
 
 /// Fewer points than this have cuts of their own.
 pub const LEAST_SHARED: usize = 4;
-/// Points share a cut if the cosine between their normals is at least this ...
-const LEAST_COSINE: f32 = 0.8;
-/// ... and their distance at most this fraction of the scene's diagonal.
-const LARGEST_DISTANCE: f32 = 0.02;
-/// How many groups are open at once in [`group_alike`].
-const OPEN: usize = 8;
 
-/// Whether two points, each with its normal, are likely to have nearly the same cut.
-#[inline]
-pub fn alike(diagonal: f32, (a, a_normal): (Vec3, Vec3), (b, b_normal): (Vec3, Vec3)) -> bool {
-    let limit = LARGEST_DISTANCE * diagonal;
-    a.distance_squared(b) <= limit * limit && a_normal.dot(b_normal) >= LEAST_COSINE
+/// What points have in common that share a cut.
+#[derive(Clone, Copy, Debug)]
+pub struct Likeness {
+    /// Least cosine between their normals.
+    cosine: f32,
+    /// Largest distance, relative to the scene's diagonal.
+    distance: f32,
+    /// How many groups are open at once in [`group_alike`].
+    open: usize,
 }
 
-/// Groups of at most `most` items that are pairwise alike with their first, from a list in which neighbours in space are
+impl Likeness {
+    /// They are likely to have nearly the same cut.
+    pub const CLOSE: Likeness = Likeness { cosine: 0.8, distance: 0.02, open: 8 };
+    /// Their cut is larger than that of each, but not by as much as they are many.
+    pub const REMOTE: Likeness = Likeness { cosine: 0.5, distance: 0.05, open: 64 };
+
+    /// Whether it holds between two points, each with its normal.
+    #[inline]
+    pub fn holds(self, diagonal: f32, (a, a_normal): (Vec3, Vec3), (b, b_normal): (Vec3, Vec3)) -> bool {
+        let limit = self.distance * diagonal;
+        a.distance_squared(b) <= limit * limit && a_normal.dot(b_normal) >= self.cosine
+    }
+}
+
+/// Groups of at most `most` items that are alike with their first, from a list in which neighbours in space are
 /// near each other; `same` excludes what must not be grouped for other reasons.
 pub fn group_alike<T: Copy>(
+    likeness: Likeness,
     items: impl IntoIterator<Item = T>,
     most: usize,
     diagonal: f32,
@@ -29,9 +42,11 @@ pub fn group_alike<T: Copy>(
 ) -> Vec<Vec<T>> {
     let mut groups: Vec<Vec<T>> = Vec::new();
     for item in items {
-        let open = groups.len().saturating_sub(OPEN);
+        let open = groups.len().saturating_sub(likeness.open);
         let joins = |group: &&mut Vec<T>| {
-            group.len() < most && same(&group[0], &item) && alike(diagonal, place(&group[0]), place(&item))
+            group.len() < most
+                && same(&group[0], &item)
+                && likeness.holds(diagonal, place(&group[0]), place(&item))
         };
         match groups[open..].iter_mut().rev().find(joins) {
             Some(group) => group.push(item),

@@ -18,7 +18,7 @@ mod refine;
 mod tests;
 mod transfer;
 
-pub use alike::{LEAST_SHARED, alike, group_alike};
+pub use alike::{LEAST_SHARED, Likeness, group_alike};
 pub use lend::LentCut;
 pub use points::Points;
 pub use refine::GroupLightcut;

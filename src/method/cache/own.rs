@@ -5,8 +5,9 @@
 //! others are taken in packets spread over the patch, so that neighbours leave different clusters to chance. Patches of few samples have cuts of their own.
 
 use crate::cache::compute::Source;
+use crate::cache::settings::LEAST_PATCH;
 use crate::eye::EyeSamples;
-use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LentCut, Points, group_alike};
+use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LentCut, Likeness, Points, group_alike};
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Visibility};
 use crate::math::{Frame, Rgb};
 use crate::sampling::hash;
@@ -98,13 +99,15 @@ pub fn patches(source: &Source, samples: &EyeSamples, jobs: &[Job]) -> Vec<Vec<J
     let bsdf = |job: &Job| &samples.surfaces[job.sample as usize].bsdf;
     let same =
         |a: &Job, b: &Job| a.lobe_only == b.lobe_only && a.only == b.only && bsdf(a).same_lobe(bsdf(b));
-    group_alike(
-        jobs.iter().copied(),
-        source.settings.patch(samples.len()),
-        source.world.diagonal,
-        place,
-        same,
-    )
+    let diagonal = source.world.diagonal;
+    let most = source.settings.patch(samples.len());
+    let patches = group_alike(Likeness::CLOSE, jobs.iter().copied(), most, diagonal, place, same);
+    // A cut costs nearly as much for few points as for sixteen: remnants make do with less likeness.
+    let (mut patches, remnants): (Vec<_>, Vec<_>) =
+        patches.into_iter().partition(|patch| patch.len() >= LEAST_PATCH);
+    let remnants = remnants.into_iter().flatten();
+    patches.extend(group_alike(Likeness::REMOTE, remnants, LEAST_PATCH, diagonal, place, same));
+    patches
 }
 
 impl<'w> Cutters<'w> {

@@ -4,7 +4,7 @@
 
 use super::render::{Scenery, Settings};
 use crate::eye::{ChainCounts, EyeSample, eye_sampler, primary_ray, trace};
-use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Points, alike};
+use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Likeness, Points};
 use crate::lightcut::{CutCounts, Lightcut, Reflector};
 use crate::math::Rgb;
 use crate::shadow::{Counts, Engine};
@@ -161,7 +161,7 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
         for (i, sample) in work.samples.iter().enumerate().skip(first) {
             if !sample.done
                 && work.members.len() < LANES
-                && alike(s.world.diagonal, seed.place(), sample.reflector.place())
+                && Likeness::CLOSE.holds(s.world.diagonal, seed.place(), sample.reflector.place())
             {
                 work.members.push(i);
             }
