@@ -30,7 +30,8 @@ const DARKEST: f32 = 1.0 / 16.0;
 /// brighter at the point than at any maker would be a firefly.
 const LARGEST_CORRECTION: f32 = 0.5;
 
-/// A cluster this many times as bright at a point as at any maker needs a shadow ray even if all makers see it.
+/// A cluster this many times as bright at a point as at any maker needs a shadow ray even if all makers see it, and is
+/// split if it gives more than ε of the radiance: the makers were too far from it to know what it would look like.
 const BRIGHTER: f32 = 2.0;
 
 /// A cluster that makers disagree about is drawn with certainty if its error, relative to the luminance, is this
@@ -48,6 +49,8 @@ struct Certain {
     node: u32,
     /// Luminance above which a point needs a shadow ray: 0 if the makers disagree about whether the cluster is seen.
     sure: f32,
+    /// Luminance above which it is split.
+    whole: f32,
 }
 
 /// A cluster that is evaluated by chance.
@@ -67,6 +70,8 @@ pub struct LentCut {
     fit: Fit,
     /// Mean luminance of the makers.
     brightness: f32,
+    /// Luminance that a part of a cluster that was split must have to be split in turn.
+    least_split: f32,
     size: usize,
 }
 
@@ -91,6 +96,8 @@ impl LentCut {
         self.brightness =
             lanes_of(points.valid).map(|l| points.known[l] + luminance(radiance[l])).sum::<f32>()
                 / points.len().max(1) as f32;
+        let least_split = epsilon * self.brightness;
+        self.least_split = least_split;
         let mut unshadowed = [[0.0; LANES]; 3];
         for (node, responses) in group.entries() {
             let n = &trees.nodes[node as usize];
@@ -99,7 +106,7 @@ impl LentCut {
             let reached = |&l: &usize| responses[0][l] + responses[1][l] + responses[2][l] > 0.0;
             if lit == 0 {
                 // Below every maker's horizon, which says nothing about how much of it rises above another point's.
-                self.certain.push(Certain { node, sure: 0.0 });
+                self.certain.push(Certain { node, sure: 0.0, whole: least_split });
                 continue;
             }
             let seen = lanes_of(lit).filter(reached).fold(0u16, |mask, lane| mask | 1 << lane);
@@ -115,8 +122,9 @@ impl LentCut {
             let share =
                 if clamped { None } else { self.fit.share(transfer, points, n, vpl, seen, responses) };
             // What is much brighter than at any maker is none of their business.
-            let brightest = lanes_of(lit).map(|l| y[l]).fold(0.0, f32::max);
-            let certain = Certain { node, sure: if doubtful { 0.0 } else { BRIGHTER * brightest } };
+            let brighter = BRIGHTER * lanes_of(lit).map(|l| y[l]).fold(0.0, f32::max);
+            let sure = if doubtful { 0.0 } else { brighter };
+            let certain = Certain { node, sure, whole: brighter.max(least_split) };
             let Some((share, sums)) = share else {
                 self.certain.push(certain);
                 continue;
@@ -182,15 +190,24 @@ impl GroupLightcut {
         let at = cut.fit.at(points);
         // What is never clamped needs no second look.
         let mut strong = cut.fit.reflected(points, &at);
-        for &Certain { node, sure } in &cut.certain {
-            let n = &trees.nodes[node as usize];
-            let Some(responses) = self.responses(trees, transfer, visibility, points, node, sure) else {
-                continue;
-            };
-            if n.is_leaf() && n.origin() == Origin::Indirect {
-                self.entries.push(Entry { node, weak: true, responses, errors: ZERO, counted: ZERO });
-            } else {
-                add(&mut strong, n.intensity, &responses);
+        let mut parts: Vec<Certain> = Vec::new();
+        for &whole in &cut.certain {
+            parts.push(whole);
+            while let Some(Certain { node, sure, whole }) = parts.pop() {
+                let n = &trees.nodes[node as usize];
+                let Some(responses) = self.responses(trees, transfer, visibility, points, node, sure) else {
+                    continue;
+                };
+                match n.children() {
+                    None if n.origin() == Origin::Indirect => {
+                        self.entries.push(Entry { node, weak: true, responses, errors: ZERO, counted: ZERO });
+                    }
+                    Some(left) if luminances(n.intensity, &responses).iter().any(|&y| y > whole) => {
+                        let part = |node| Certain { node, sure: 0.0, whole: cut.least_split };
+                        parts.extend([part(left), part(left + 1)]);
+                    }
+                    _ => add(&mut strong, n.intensity, &responses),
+                }
             }
         }
         let limits = cut.limits(&strong);
