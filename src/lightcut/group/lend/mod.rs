@@ -3,13 +3,13 @@
 //! Where the sixteen points of a group are spread over a patch of surface, points among them have nearly the same cut,
 //! and what all sixteen see, or none of them, they most likely see too, or do not. So the cut is not refined again.
 //! Each of its clusters is treated in one of three ways. Where its light is a smooth function of position at the
-//! makers of the cut, it is interpolated (see [`fit`]). Where it is large and not smooth, it is evaluated at every
-//! point, with a shadow ray unless the makers agree. What is left, mostly small clusters that some makers see and some
+//! makers of the cut, it is interpolated (see [`fit`]). Where it is large, or not smooth, it is evaluated at every
+//! point, with a shadow ray unless it is small and the makers agree. What is left, mostly small clusters that some makers see and some
 //! do not, is interpolated too, and the error corrected at random: a cluster is evaluated with a probability in
 //! proportion to its error, and the error found divided by the probability, so that the radiance is right on average.
 //!
-//! Deviations: this is not part of any paper's lightcuts. It misses what is hidden by, or seen through, something that
-//! none of the makers is aware of.
+//! Deviations: this is not part of any paper's lightcuts. It misses what small clusters light through a gap, and
+//! what keeps their light away, if none of the makers is aware of it.
 
 mod fit;
 
@@ -34,6 +34,9 @@ const LARGEST_CORRECTION: f32 = 0.5;
 /// split if it gives more than ε of the radiance: the makers were too far from it to know what it would look like.
 const BRIGHTER: f32 = 2.0;
 
+/// A cluster that gives more than this many times ε of the radiance is never taken for seen unless it is: the shadow of
+/// something small is the more visible the more it takes.
+const LARGE: f32 = 0.35;
 /// A cluster that makers disagree about is drawn with certainty if its error, relative to the luminance, is this
 /// many times ε ...
 const CHANCE: f32 = 0.4;
@@ -115,12 +118,15 @@ impl LentCut {
             if known && seen == 0 {
                 continue;
             }
-            let doubtful = seen != lit || !known;
             let y = luminances(n.intensity, &unshadowed);
+            let share_of_luminance: f32 =
+                lanes_of(lit).map(|l| y[l] * inverse_totals[l]).sum::<f32>() / points.len() as f32;
+            let large = share_of_luminance > LARGE * epsilon;
+            let doubtful = seen != lit || !known || large;
             let weak = n.is_leaf() && n.origin() == Origin::Indirect;
-            let clamped = weak && lanes_of(lit).any(|l| y[l] > 0.5 * group.limit(l));
+            let singular = large || weak && lanes_of(lit).any(|l| y[l] > 0.5 * group.limit(l));
             let share =
-                if clamped { None } else { self.fit.share(transfer, points, n, vpl, seen, responses) };
+                if singular { None } else { self.fit.share(transfer, points, n, vpl, seen, responses) };
             // What is much brighter than at any maker is none of their business.
             let brighter = BRIGHTER * lanes_of(lit).map(|l| y[l]).fold(0.0, f32::max);
             let sure = if doubtful { 0.0 } else { brighter };
@@ -129,8 +135,6 @@ impl LentCut {
                 self.certain.push(certain);
                 continue;
             };
-            let share_of_luminance: f32 =
-                lanes_of(lit).map(|l| y[l] * inverse_totals[l]).sum::<f32>() / points.len() as f32;
             let error = self.fit.error(points, n, &sums, &inverse_totals);
             if !doubtful {
                 if error * error <= kappa * kappa * share_of_luminance {
