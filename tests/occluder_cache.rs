@@ -1,4 +1,4 @@
-//! The occluder cache changes how long a picture takes, and here no pixel of it.
+//! The occluder cache changes how long a picture takes, and no pixel of it.
 
 mod common;
 
@@ -7,20 +7,20 @@ use glam::Vec3;
 use lightsplat::cache::FoundBy;
 use lightsplat::math::Rgb;
 use lightsplat::method::{Control, Output, cache, lightcuts};
-use lightsplat::shadow::{Cached, OccluderCacheSettings, ShadowSettings};
+use lightsplat::shadow::{OccluderCacheSettings, ShadowSettings};
 use lightsplat::stats::Counter;
 use lightsplat::vpl::LightPassSettings;
 use lightsplat::world::World;
 
 const LIGHT: LightPassSettings = LightPassSettings { direct: 512, indirect: 10_000, seed: 0 };
 
-/// Off, for single rays, for all; small ones too, in which lights displace each other.
+/// Off and on; a small one too, in which lights displace each other.
 fn uses() -> Vec<ShadowSettings> {
     let with = |cached, slots, ways| ShadowSettings {
         cached: Some(cached),
         cache: OccluderCacheSettings { slots, ways },
     };
-    vec![with(Cached::Nothing, 1, 1), with(Cached::Single, 4096, 4), with(Cached::All, 64, 2)]
+    vec![with(false, 1, 1), with(true, 4096, 4), with(true, 64, 2)]
 }
 
 /// A hall of columns under a lamp.
@@ -41,11 +41,10 @@ fn on_threads<T: Send>(threads: usize, render: impl Fn() -> T + Sync + Send) -> 
 }
 
 fn saved(output: &Output) -> u64 {
-    let of = |packing: &str| match output.stats.get(&format!("Shadow/{packing}: saved by the cache")) {
+    match output.stats.get("Shadow/single: saved by the cache") {
         Some(Counter::Count(n)) => n,
         _ => 0,
-    };
-    of("single") + of("neighbours")
+    }
 }
 
 #[test]
@@ -60,10 +59,9 @@ fn lightcuts_give_the_same_bits_with_it_and_without_on_any_number_of_threads() {
             let [one, three] = [1, 3].map(|threads| on_threads(threads, render));
             assert!(one.color == three.color && one.stats.counters().eq(three.stats.counters()));
             // Where cuts are shared, few rays are single.
-            let asks =
-                shadows.cached == Some(Cached::All) || (!share && shadows.cached == Some(Cached::Single));
+            let asks = !share && shadows.cached == Some(true);
             assert!(!asks || saved(&one) > 10_000, "share {share}: {shadows:?} saved {}", saved(&one));
-            assert!(shadows.cached != Some(Cached::Nothing) || saved(&one) == 0);
+            assert!(shadows.cached == Some(true) || saved(&one) == 0);
             let first = first.get_or_insert(one);
             assert!(first.color == three.color, "share {share}: {shadows:?}");
         }
@@ -83,8 +81,7 @@ fn the_radiance_cache_gives_the_same_bits_with_it_and_without_on_any_number_of_t
             (settings.cache.share, settings.cache.shadows) = (share, shadows);
             let [one, three] = [1, 3].map(|threads| on_threads(threads, || cached(&world, &settings)));
             assert!(one.color == three.color && one.stats.counters().eq(three.stats.counters()));
-            let asks =
-                shadows.cached == Some(Cached::All) || (!share && shadows.cached == Some(Cached::Single));
+            let asks = !share && shadows.cached == Some(true);
             assert!(!asks || saved(&one) > 1000, "share {share}: {shadows:?} saved {}", saved(&one));
             let first = first.get_or_insert(one);
             assert!(first.color == three.color, "share {share}: {shadows:?}");
@@ -95,9 +92,8 @@ fn the_radiance_cache_gives_the_same_bits_with_it_and_without_on_any_number_of_t
 #[test]
 fn it_is_asked_only_where_it_pays_unless_told_otherwise() {
     let by_default = ShadowSettings::default();
-    assert_eq!(by_default.for_samples(true), Cached::Nothing);
-    assert_eq!(by_default.for_samples(false), Cached::Single);
-    assert_eq!(by_default.for_records(), Cached::Nothing);
-    let told = ShadowSettings { cached: Some(Cached::All), ..by_default };
-    assert_eq!([told.for_samples(true), told.for_samples(false), told.for_records()], [Cached::All; 3]);
+    assert_eq!([true, false].map(|share| by_default.for_samples(share)), [false, true]);
+    assert!(!by_default.for_records());
+    let told = ShadowSettings { cached: Some(true), ..by_default };
+    assert!(told.for_samples(true) && told.for_samples(false) && told.for_records());
 }

@@ -157,7 +157,7 @@ impl Source<'_> {
             sharing: point.sharing,
             footprint,
             vector: g.vector,
-            gradient,
+            gradient: if self.settings.gradients { gradient } else { Mat3::ZERO },
             luminance,
             facts: Facts { sample, cut: g.cut, distance, clamped: g.clamped, compensated: g.compensated },
         })
@@ -225,7 +225,10 @@ impl<'w> Workspace<'w> {
             [0, 1].map(|l| {
                 let record =
                     if pick.lacks[l] { s.record(samples, pick.sample, l, &view)? } else { return None };
-                Some(Made { record, series: view.series[l].take() })
+                let series = view.series[l].take();
+                let series =
+                    if s.settings.gradients { series } else { series.map(Radiance::without_gradients) };
+                Some(Made { record, series })
             })
         };
         task.iter().zip(views).map(record).collect()

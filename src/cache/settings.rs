@@ -55,6 +55,8 @@ pub struct CacheSettings {
     pub series: SeriesSettings,
     /// How the shape of footprints is chosen.
     pub footprints: Footprints,
+    /// Whether the light of records is extrapolated by their gradients, which shape the footprints in any case.
+    pub gradients: bool,
     /// Relative change of luminance across a footprint at which it is halved along the gradient; the paper's μ.
     pub mu: f32,
     /// Root of 1 - cos of the angle between normals at which a footprint ends.
@@ -107,6 +109,7 @@ impl Default for CacheSettings {
             indirect: FoundBy::default(),
             series: SeriesSettings::default(),
             footprints: Footprints::default(),
+            gradients: true,
             mu: 0.5,
             normal_tolerance: 0.4,
             compensation: false,

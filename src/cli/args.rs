@@ -153,27 +153,16 @@ pub struct LightcutArgs {
     /// Whether neighbours share cuts, for speed [default: on]
     #[arg(long, value_enum)]
     pub share: Option<Switch>,
-    /// Shadow rays that ask a cache of occluders first, for speed [default: single for samples if
-    /// cuts are not shared, else off]
+    /// Whether shadow rays of points with cuts of their own ask a cache of occluders first, for speed
+    /// [default: on for samples if cuts are not shared, else off]
     #[arg(long, value_enum)]
-    pub occluder_cache: Option<OccluderCache>,
+    pub occluder_cache: Option<Switch>,
     /// Slots of that cache, rounded up to a power of two [default: 4096]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub occluder_slots: Option<u32>,
     /// Occluders in a slot: 1, 2, 4 or 8 [default: 4]
     #[arg(long, value_parser = parse_ways)]
     pub occluder_ways: Option<u32>,
-}
-
-/// Which shadow rays ask the cache of occluders.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum OccluderCache {
-    /// None
-    Off,
-    /// Those of points with cuts of their own
-    Single,
-    /// Those and packets: then a ray of many million may be answered otherwise
-    All,
 }
 
 fn parse_ways(text: &str) -> Result<u32, String> {
@@ -393,6 +382,7 @@ mod tests {
             ("direct-vpls", cuts.light.direct.to_string()),
             ("clamp", cuts.cut.clamp.unwrap_or(0.0).to_string()),
             ("record-epsilon", cached.cut.epsilon.to_string()),
+            ("gradients", if cached.gradients { "on" } else { "off" }.to_owned()),
             ("mu", cached.mu.to_string()),
             ("series-alpha", cached.series.min_alpha.to_string()),
             ("series-error", cached.series.max_error.to_string()),

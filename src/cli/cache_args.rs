@@ -32,6 +32,9 @@ pub struct CacheArgs {
     /// Largest error of a lobe's series for which it is lit by records, relative to the whole reflection [default: 0.12]
     #[arg(long, value_name = "ERROR")]
     pub series_error: Option<f64>,
+    /// Whether the light of records is extrapolated by their gradients, for comparison [default: on]
+    #[arg(long, value_enum)]
+    pub gradients: Option<Switch>,
     /// Relative change of luminance across a footprint that halves it along the gradient [default: 0.5]
     #[arg(long)]
     pub mu: Option<f32>,

@@ -1,12 +1,11 @@
 //! From what was typed to a method with its settings.
 
-use super::args::{LightcutArgs, MethodName, OccluderCache, PhotonArgs, RenderArgs, TreeFamily};
+use super::args::{LightcutArgs, MethodName, PhotonArgs, RenderArgs, TreeFamily};
 use super::cache_args::{CacheArgs, FootprintShape, LightBy, Pair, Switch};
 use super::exit::Failure;
 use crate::cache::{CacheSettings, Footprints, FoundBy};
 use crate::light_tree::Family;
 use crate::method::{Method, cache, lightcuts, path, photon_cache};
-use crate::shadow::Cached;
 use anyhow::anyhow;
 
 /// From what was typed. An option of another method is an error: it would have no effect.
@@ -26,7 +25,7 @@ pub fn method(args: &RenderArgs) -> Result<Method, Failure> {
             Err(Failure::usage(anyhow!("the options under \"Photon map\" belong to --method photon-cache")))
         }
         MethodName::Cache if args.cache.without_records() => Err(Failure::usage(anyhow!(
-            "--record-epsilon, --footprints, --accuracy, --reach, --series-alpha, --series-error, --mu, --compensation, --passes, --threshold and --least-cell are for records: add --indirect records"
+            "--record-epsilon, --footprints, --accuracy, --reach, --series-alpha, --series-error, --gradients, --mu, --compensation, --passes, --threshold and --least-cell are for records: add --indirect records"
         ))),
         MethodName::PhotonCache
             if args.lightcuts.vpls.is_some()
@@ -116,6 +115,7 @@ fn records_settings(cached: &CacheArgs, cache: &mut CacheSettings) {
     cache.indirect = found(cached.indirect, cache.indirect);
     cache.series.min_alpha = cached.series_alpha.unwrap_or(cache.series.min_alpha);
     cache.series.max_error = cached.series_error.unwrap_or(cache.series.max_error);
+    cache.gradients = cached.gradients.map_or(cache.gradients, |typed| typed == Switch::On);
     cache.mu = cached.mu.unwrap_or(cache.mu);
     cache.compensation = cached.compensation.map_or(cache.compensation, |typed| typed == Switch::On);
     cache.passes = cached.passes.unwrap_or(cache.passes);
@@ -138,11 +138,7 @@ fn lightcuts_settings(args: &RenderArgs) -> lightcuts::Settings {
     }
     settings.share = typed.share.map_or(settings.share, |typed| typed == Switch::On);
     let shadows = &mut settings.shadows;
-    shadows.cached = typed.occluder_cache.map(|typed| match typed {
-        OccluderCache::Off => Cached::Nothing,
-        OccluderCache::Single => Cached::Single,
-        OccluderCache::All => Cached::All,
-    });
+    shadows.cached = typed.occluder_cache.map(|typed| typed == Switch::On);
     shadows.cache.slots = typed.occluder_slots.map_or(shadows.cache.slots, |n| n as usize);
     shadows.cache.ways = typed.occluder_ways.map_or(shadows.cache.ways, |n| n as usize);
     settings.family = match typed.tree {

@@ -62,6 +62,13 @@ impl Radiance {
         size_of_val(&*self.coefficients)
     }
 
+    /// The same light, taken not to change along the surface.
+    pub fn without_gradients(mut self) -> Radiance {
+        let values = CHANNELS * stride(self.bands());
+        self.coefficients[values..].fill(0.0);
+        self
+    }
+
     #[inline]
     pub(super) fn set(&mut self, block: usize, k: usize, coefficient: f32) {
         self.coefficients[block * stride(self.bands()) + k] = coefficient;

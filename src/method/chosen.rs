@@ -4,7 +4,7 @@ use super::{Control, Output, cache, lightcuts, path, photon_cache};
 use crate::cache::{CacheSettings, Footprints, FoundBy};
 use crate::eye::{EyeSamples, Look, Window};
 use crate::light_tree::Family;
-use crate::shadow::{Cached, ShadowSettings};
+use crate::shadow::ShadowSettings;
 use crate::world::World;
 use serde_json::{Value, json};
 
@@ -146,6 +146,7 @@ fn records_report(c: &CacheSettings) -> Value {
         "reach": c.layers.map(|l| l.reach.map(decimal)),
         "series_alpha": decimal(c.series.min_alpha),
         "series_error": c.series.max_error,
+        "gradients": switch(c.gradients),
         "mu": decimal(c.mu),
         "passes": c.passes,
         "threshold": decimal(c.threshold),
@@ -183,15 +184,13 @@ fn switch(on: bool) -> &'static str {
     if on { "on" } else { "off" }
 }
 
-/// Which rays ask, and with what size.
+/// The size of the occluder cache, if it is asked.
 fn occluders(shadows: &ShadowSettings, share: bool) -> Value {
     let size = shadows.cache;
-    let rays = match shadows.for_samples(share) {
-        Cached::Nothing => return json!("off"),
-        Cached::Single => "single",
-        Cached::All => "all",
-    };
-    json!({ "rays": rays, "slots": size.slots, "ways": size.ways })
+    match shadows.for_samples(share) {
+        true => json!({ "slots": size.slots, "ways": size.ways }),
+        false => json!("off"),
+    }
 }
 
 fn family_name(family: Family) -> &'static str {

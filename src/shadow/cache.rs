@@ -7,7 +7,7 @@
 //! **The cache changes no answer.** It says "occluded" only where a ray passes a triangle's edges and the segment's ends
 //! at more than [`MARGIN`] roundings of the coordinates involved, and the plane at more than that angle: nothing that Embree
 //! rounds otherwise can then matter. All other rays are traced. (That coherent packets without the rays answered here may
-//! find something else for the rest is Embree's doing, see [`super::Cached::All`].)
+//! find something else for the rest is Embree's doing, see [`super::ShadowSettings`].)
 //!
 //! What the cache holds depends on what was asked before. So that results do not depend on threads, whoever uses one
 //! forgets it ([`OccluderCache::forget`]) at boundaries of the work that do not depend on threads either.

@@ -4,7 +4,7 @@
 
 use super::cache::{OccluderCache, OccluderCacheSettings};
 use super::counts::{Counters, Counts};
-use super::{Batch, Cached, Packing};
+use super::{Batch, Packing};
 use crate::embree::{ALL_GEOMETRY, Occluder, Occluders16, Ray, Rays16, TriangleId, Width};
 use crate::math::{first_lanes, lanes_in};
 use crate::world::World;
@@ -32,13 +32,13 @@ impl<'w> Engine<'w> {
 
     /// With an occluder cache, asked for single rays and for packets alike.
     pub fn with_cache(world: &'w World, settings: OccluderCacheSettings) -> Engine<'w> {
-        Engine::with(world, Cached::All, settings)
+        Engine { packets_cached: true, ..Engine::with(world, true, settings) }
     }
 
-    /// With an occluder cache for some queries or none.
-    pub fn with(world: &'w World, cached: Cached, settings: OccluderCacheSettings) -> Engine<'w> {
-        let cache = (cached != Cached::Nothing).then(|| RefCell::new(OccluderCache::new(settings)));
-        Engine { cache, packets_cached: cached == Cached::All, ..Engine::new(world) }
+    /// With an occluder cache for single rays, if they are to be `cached`.
+    pub fn with(world: &'w World, cached: bool, settings: OccluderCacheSettings) -> Engine<'w> {
+        let cache = cached.then(|| RefCell::new(OccluderCache::new(settings)));
+        Engine { cache, ..Engine::new(world) }
     }
 
     /// With packets of another width than the processor's.

@@ -2,8 +2,7 @@
 //!
 //! [`segment()`], [`ray_from`] and [`to_vpl`] make rays, [`Packing`] says what shares a packet and how it is traced,
 //! [`Engine`] traces, counts, and may ask an [`OccluderCache`] first. The cache changes how long an answer takes
-//! and which occluder is named, never whether a single ray has one. Packets flagged coherent keep to that in tests with
-//! random segments, but not to the last ray in whole pictures (see [`Cached::All`]).
+//! and which occluder is named, never whether there is one.
 
 mod batch;
 mod cache;
@@ -23,4 +22,4 @@ pub use engine::Engine;
 pub use light::{to_vpl, to_vpl16};
 pub use packing::Packing;
 pub use segment::{offset, ray_from, segment};
-pub use settings::{Cached, ShadowSettings};
+pub use settings::ShadowSettings;

@@ -11,7 +11,7 @@ use crate::bench::{Clock, Settings, Table};
 use crate::light_tree::Node;
 use crate::lightcut::Visibility;
 use crate::lightcut::group::{GroupVisibility, Points};
-use crate::shadow::{Cached, Engine, OccluderCacheSettings};
+use crate::shadow::{Engine, OccluderCacheSettings};
 use crate::vpl::Vpl;
 use crate::world::World;
 use glam::Vec3;
@@ -19,11 +19,11 @@ use std::cell::Cell;
 use std::hint::black_box;
 
 /// How each order is run; the last three against the first of their kind of cuts.
-const RUNS: [(bool, &str, Option<Cached>); 5] = [
-    (false, "single rays", Some(Cached::Nothing)),
-    (false, "with occluder cache", Some(Cached::Single)),
+const RUNS: [(bool, &str, Option<bool>); 5] = [
+    (false, "single rays", Some(false)),
+    (false, "with occluder cache", Some(true)),
     (false, "answers known", None),
-    (true, "engine", Some(Cached::Nothing)),
+    (true, "engine", Some(false)),
     (true, "answers known", None),
 ];
 
