@@ -128,10 +128,9 @@ impl<'w> Cutters<'w> {
             }
             return;
         }
-        // The makers of the cut: every so many, from the middle of each stretch.
-        let stride = jobs.len().div_ceil(LANES);
-        let makes = |i: usize| i % stride == stride / 2;
-        let chosen = |wanted: bool| (0..jobs.len()).filter(move |&i| makes(i) == wanted).map(|i| &jobs[i]);
+        let makes = makers(samples, jobs);
+        let chosen =
+            |wanted| jobs.iter().zip(&makes).filter(move |(_, makes)| **makes == wanted).map(|(j, _)| j);
         let mut radiance = [Rgb::ZERO; LANES];
         self.points.set(chosen(true).map(|job| reflector(samples, job)));
         self.group.gather(s.trees, &s.transfer, rays, &self.points, cut, &mut radiance);
@@ -160,6 +159,26 @@ impl<'w> Cutters<'w> {
             lit.extend(jobs().map(|job| **job).zip(radiance));
         }
     }
+}
+
+/// Which jobs of a patch make its cut: the outermost, so that light is never extrapolated, and every so many others,
+/// from the middle of each stretch.
+fn makers(samples: &EyeSamples, jobs: &[Job]) -> Vec<bool> {
+    if jobs.len() <= LANES {
+        return vec![true; jobs.len()];
+    }
+    let point = |job: &Job| &samples.points[job.sample as usize];
+    let frame = Frame::from_normal(point(&jobs[0]).normal);
+    let mut makes = vec![false; jobs.len()];
+    let axes = [frame.tangent, -frame.tangent, frame.bitangent, -frame.bitangent];
+    for axis in axes {
+        let along = |i: &usize| point(&jobs[*i]).position.dot(axis);
+        let outermost = (0..jobs.len()).max_by(|a, b| along(a).total_cmp(&along(b)));
+        outermost.into_iter().for_each(|i| makes[i] = true);
+    }
+    let stride = jobs.len().div_ceil(LANES - axes.len());
+    makes.iter_mut().skip(stride / 2).step_by(stride).for_each(|makes| *makes = true);
+    makes
 }
 
 fn reflector<'w>(samples: &EyeSamples<'w>, job: &Job) -> Reflector<'w> {
