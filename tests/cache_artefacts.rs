@@ -145,6 +145,43 @@ fn circles_keep_contact_shadows() {
     assert!(bad.is_empty(), "{bad:?}");
 }
 
+/// On a floor without a shadow on it, the error hardly changes from pixel to pixel: no rings at the edges of footprints, no
+/// seams between patches. The limits are a little above what was measured.
+#[test]
+fn smooth_light_stays_smooth() {
+    let mut scene = scene(camera(Vec3::new(0.0, 0.2, 0.98), Vec3::new(0.0, -0.8, -0.2), 0.8), [SIZE, SIZE]);
+    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));
+    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    let lamp = quad(Vec3::new(-0.7, 0.98, -0.3), Vec3::X * 0.4, Vec3::Z * 0.4, wall);
+    scene.meshes.push(emitting(lamp, Rgb::splat(20.0)));
+    let world = world(scene);
+    let seen = seen(&world);
+    let mut by = settings(Footprints::Isotropic);
+    let reference = per_pixel(&world, &by);
+    for (direct, indirect, footprints) in [
+        (FoundBy::Samples, FoundBy::Samples, Footprints::Isotropic),
+        (FoundBy::Samples, FoundBy::Records, Footprints::Isotropic),
+        (FoundBy::Records, FoundBy::Records, Footprints::Isotropic),
+        (FoundBy::Records, FoundBy::Records, Footprints::Anisotropic),
+        (FoundBy::Records, FoundBy::Records, Footprints::Occlusion),
+    ] {
+        (by.cache.direct, by.cache.indirect, by.cache.footprints) = (direct, indirect, footprints);
+        let picture = cached(&world, &by).color;
+        let ratio = |i: usize| luminance(picture.pixels[i]) / luminance(reference.pixels[i]);
+        // In the creases clamping differs too.
+        let open = |i: usize| seen[i].position.x.abs().max(seen[i].position.z.abs()) < 0.9;
+        let floor = |i: usize| seen[i].normal.y > 0.5 && open(i);
+        let right_of = (0..seen.len() - 1).filter(|i| (i + 1) % SIZE as usize != 0).map(|i| (i, i + 1));
+        let below = (0..seen.len() - SIZE as usize).map(|i| (i, i + SIZE as usize));
+        let pairs = right_of.chain(below).filter(|&(i, j)| floor(i) && floor(j));
+        let jumps: Vec<f32> = pairs.map(|(i, j)| ratio(i) - ratio(j)).collect();
+        assert!(jumps.len() > 1000, "{}", jumps.len());
+        let (usual, most) = (quantile(&jumps, 0.99), quantile(&jumps, 1.0));
+        println!("{direct:?} {indirect:?} {footprints:?}: {usual} {most}");
+        assert!(usual < 0.02 && most < 0.05, "{direct:?} {indirect:?} {footprints:?}: {usual} {most}");
+    }
+}
+
 /// Radiance everywhere is emitted / (1 - albedo), as much in creases as elsewhere.
 #[test]
 fn the_furnace_is_white_although_close_lights_are_clamped() {
