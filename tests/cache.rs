@@ -10,8 +10,9 @@ use lightsplat::image::Image;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::{Control, Output, cache, lightcuts};
 use lightsplat::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
-use lightsplat::stats::Counter;
+use lightsplat::stats::{Counter, Stage};
 use lightsplat::world::World;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 fn settings(direct: FoundBy, footprints: Footprints) -> cache::Settings {
     let mut settings = cache::Settings::default();
@@ -39,6 +40,30 @@ fn rms(a: &Image, b: &Image) -> f32 {
     let mean = b.pixels.iter().map(|p| luminance(*p)).sum::<f32>() / n;
     let squares = a.pixels.iter().zip(&b.pixels).map(|(a, b)| luminance(*a - *b).powi(2));
     (squares.sum::<f32>() / n).sqrt() / mean
+}
+
+#[test]
+fn cancelling_ends_the_lighting_before_all_is_lit() {
+    let world = lit_room();
+    let settings = cache::Settings { spp: 64, ..cache::Settings::default() };
+    let (control, done) = (Control::new(), AtomicBool::new(false));
+    let output = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !done.load(Ordering::Relaxed) {
+                match control.progress() {
+                    Some(p) if p.stage == Stage::Render && p.done > 0 => return control.cancel(),
+                    _ => std::thread::yield_now(),
+                }
+            }
+        });
+        let output = cache::render(&world, &Window::whole(world.scene.resolution), &settings, &control);
+        done.store(true, Ordering::Relaxed);
+        output
+    });
+    assert!(!output.complete);
+    let [lit, all] =
+        ["Lightcut/cuts", "Cache/samples with own cuts"].map(|name| count(&output, name).unwrap());
+    assert!(lit > 0 && lit < all / 2, "{lit} of {all}");
 }
 
 /// Grey room lit by a square under its ceiling, with a ball in it.

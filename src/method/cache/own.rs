@@ -10,6 +10,7 @@ use crate::eye::EyeSamples;
 use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LentCut, Likeness, Points, group_alike};
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Visibility};
 use crate::math::{Frame, Rgb};
+use crate::method::Control;
 use crate::sampling::hash;
 use crate::shadow::{Counts, Engine};
 use crate::vpl::Origin;
@@ -51,17 +52,24 @@ pub struct Lit {
     pub shadows: Counts,
 }
 
-/// Lights all jobs.
-pub fn light<'w>(source: &Source<'w>, samples: &EyeSamples<'w>, jobs: &[Job], cut: &CutSettings) -> Lit {
-    light_patches(source, samples, &patches(source, samples, jobs), cut)
+/// Lights all jobs, unless cancelled.
+pub fn light<'w>(
+    source: &Source<'w>,
+    samples: &EyeSamples<'w>,
+    jobs: &[Job],
+    cut: &CutSettings,
+    control: &Control,
+) -> Lit {
+    light_patches(source, samples, &patches(source, samples, jobs), cut, control)
 }
 
-/// Lights patches, each of jobs that are lit together.
+/// Lights patches, each of jobs that are lit together; none any more once cancelled.
 pub fn light_patches<'w>(
     source: &Source<'w>,
     samples: &EyeSamples<'w>,
     patches: &[Vec<Job>],
     cut: &CutSettings,
+    control: &Control,
 ) -> Lit {
     let (settings, size) = (source.settings, source.settings.shadows.cache);
     let cached = settings.shadows.for_samples(settings.share);
@@ -70,6 +78,9 @@ pub fn light_patches<'w>(
         .map_init(
             || (Engine::with(source.world, cached, size), Cutters::default()),
             |(shadows, work), jobs| {
+                if control.is_cancelled() {
+                    return Lit::default();
+                }
                 shadows.begin_chunk();
                 (work.single.counts, work.group.counts) = Default::default();
                 let cut = CutSettings { only: jobs[0].only, ..*cut };
@@ -77,6 +88,7 @@ pub fn light_patches<'w>(
                 work.light(source, shadows, samples, jobs, &cut, &mut lit);
                 let mut cuts = work.single.counts;
                 cuts.add(&work.group.counts);
+                control.advance(jobs.len() as u64);
                 Lit { radiance: lit, cuts, shadows: shadows.take_counts() }
             },
         )

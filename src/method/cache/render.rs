@@ -118,7 +118,7 @@ impl<'w> Prepared<'w> {
         let every = every.min(patches.len() / LEAST_TRIED).max(1);
         let some: Vec<Vec<Job>> = patches.iter().skip(every / 2).step_by(every).cloned().collect();
         let watch = Stopwatch::start();
-        own::light_patches(&source, samples, &some, &settings.cut);
+        own::light_patches(&source, samples, &some, &settings.cut, &Control::new());
         let share = samples_of(&patches) / samples_of(&some).max(1.0);
         let StageTime { wall_seconds, cpu_seconds } = watch.elapsed();
         time += StageTime { wall_seconds: wall_seconds * share, cpu_seconds: cpu_seconds * share };
@@ -135,7 +135,7 @@ impl<'w> Prepared<'w> {
         let mut picture = Picture::new(&samples, settings.inspect);
         let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
         control.begin(Stage::Render, jobs.len() as u64);
-        let lit = stats.time(Stage::Render, || own::light(&source, &samples, &jobs, &settings.cut));
+        let lit = stats.time(Stage::Render, || own::light(&source, &samples, &jobs, &settings.cut, control));
         for (job, radiance) in lit.radiance {
             picture.add(&samples, job.sample as usize, job.only, radiance);
         }

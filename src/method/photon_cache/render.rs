@@ -107,11 +107,13 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
         .filter(|job| job.only != Some(Origin::Indirect))
         .map(|job| Job { only: Some(Origin::Direct), ..*job })
         .collect();
-    let lit = stats.time(Stage::Render, || own::light(&source.direct, &samples, &direct_jobs, &settings.cut));
+    let lit = stats
+        .time(Stage::Render, || own::light(&source.direct, &samples, &direct_jobs, &settings.cut, control));
     counts::cuts(&mut stats, "Lightcut", &lit.cuts);
     lit.shadows.report(&mut stats);
     let indirect_jobs: Vec<&Job> = jobs.iter().filter(|job| job.only != Some(Origin::Direct)).collect();
-    let gathered = stats.time(Stage::Render, || own_gathers(&source, &samples, &indirect_jobs, settings));
+    let gathered =
+        stats.time(Stage::Render, || own_gathers(&source, &samples, &indirect_jobs, settings, control));
     let mut rays = *source.counts.lock().unwrap_or_else(PoisonError::into_inner);
     for (job, radiance) in lit.radiance {
         picture.add(&samples, job.sample as usize, job.only, radiance);
@@ -166,10 +168,14 @@ fn own_gathers(
     samples: &EyeSamples,
     jobs: &[&Job],
     settings: &Settings,
+    control: &Control,
 ) -> Vec<(Rgb, GatherCounts)> {
     jobs.par_iter()
         .map(|job| {
             let mut counts = GatherCounts::default();
+            if control.is_cancelled() {
+                return (Rgb::ZERO, counts);
+            }
             let of = (job.sample, job.lobe_only);
             let radiance =
                 reflected(&source.light, samples, of, (settings.own_rays, settings.seed), &mut counts);
