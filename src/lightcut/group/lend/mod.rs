@@ -4,9 +4,10 @@
 //! and what all sixteen see, or none of them, they most likely see too, or do not. So the cut is not refined again.
 //! Each of its clusters is treated in one of three ways. Where its light is a smooth function of position at the
 //! makers of the cut, it is interpolated (see [`fit`]). Where it is large, or not smooth, it is evaluated at every
-//! point, with a shadow ray unless it is small and the makers agree. What is left, mostly small clusters that some makers see and some
-//! do not, is interpolated too, and the error corrected at random: a cluster is evaluated with a probability in
-//! proportion to its error, and the error found divided by the probability, so that the radiance is right on average.
+//! point, with a shadow ray unless it is small and the makers agree. What is left, mostly small clusters that some
+//! makers see and some do not, is interpolated too, and the error corrected at random: a cluster is evaluated with a
+//! probability in proportion to its error, and the error found divided by the probability, so that the radiance is
+//! right on average.
 //!
 //! Deviations: this is not part of any paper's lightcuts. It misses what small clusters light through a gap, and
 //! what keeps their light away, if none of the makers is aware of it.
@@ -90,7 +91,7 @@ impl LentCut {
         radiance: &[Rgb; LANES],
         epsilon: f32,
     ) {
-        let (tau, kappa, rho) = (CHANCE * epsilon, SMOOTH * epsilon, DOUBT);
+        let (certain_from, smooth_to) = (CHANCE * epsilon, SMOOTH * epsilon);
         let inverse_totals = inverse_totals(points, radiance);
         self.fit.begin(points);
         self.certain.clear();
@@ -137,14 +138,14 @@ impl LentCut {
             };
             let error = self.fit.error(points, n, &sums, &inverse_totals);
             if !doubtful {
-                if error * error <= kappa * kappa * share_of_luminance {
+                if error * error <= smooth_to * smooth_to * share_of_luminance {
                     self.fit.add(n, &share);
                 } else {
                     self.certain.push(certain);
                 }
                 continue;
             }
-            let probability = error.max(rho * share_of_luminance) / tau;
+            let probability = error.max(DOUBT * share_of_luminance) / certain_from;
             if probability >= 1.0 {
                 self.certain.push(certain);
             } else {
