@@ -55,7 +55,9 @@ fn a_right_picture_is_measured_as_right() {
     let found = check(&world, &image, &Settings { pixels: 300, ..Settings::default() });
     assert!(found.relative_bias.covers(0.0), "{found:?}");
     assert!(found.relative_rms.low == 0.0 && found.relative_rms.high < 0.006, "{found:?}");
-    assert!(found.relative_error_95.low == 0.0 && found.relative_error_95.high < 0.03, "{found:?}");
+    // Hidden by noise, and no more than if all of that were error: 1.96 times its deviation, more by the interval.
+    assert!(!found.error_95_resolved && found.relative_error_95.low == 0.0, "{found:?}");
+    assert!(found.relative_error_95.high < 2.5 * found.noise, "{found:?}");
     assert!(found.noise <= 0.013 && found.nonfinite == 0, "{found:?}");
 }
 

@@ -7,7 +7,7 @@ use super::{progress, talk};
 use crate::eye::Window;
 use crate::image::Metadata;
 use crate::method::{Control, Method, Output};
-use crate::plan::{self, Held, Ladder};
+use crate::plan::{self, Held, LATE, Ladder};
 use crate::stats::{Stage, Stats, Stopwatch};
 use crate::verify::{Settings as VerifySettings, Verified};
 use crate::world::World;
@@ -16,8 +16,6 @@ use serde_json::{Value, json};
 
 /// Most paths a pixel where its error is measured, unless typed.
 const MOST_SAMPLES: u32 = 1 << 16;
-/// A plan this much beyond the time asked is out of reach, and not merely off.
-const LATE: f64 = 1.1;
 
 /// What the user wants.
 #[derive(Clone, Copy, Debug)]
@@ -103,10 +101,8 @@ pub fn make(
         let seconds = watch.elapsed().wall_seconds;
         Made { method, output, seconds, measured: None, report }
     };
-    let Some(wish) = job.wish else { return Ok(plain(job.method, Value::Null)) };
-    let Some(ladder) = Ladder::new(job.method, wish.held) else {
-        return Ok(plain(job.method, Value::Null));
-    };
+    let wish = job.wish.and_then(|wish| Some((wish, Ladder::new(job.method, wish.held)?)));
+    let Some((wish, ladder)) = wish else { return Ok(plain(job.method, Value::Null)) };
     let ladder = ladder.within(window);
     let interrupted = || Failure::interrupted(anyhow!("interrupted while planning; nothing is written"));
     match wish.wanted {

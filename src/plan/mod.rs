@@ -21,7 +21,7 @@ use crate::eye::Window;
 
 pub use error::{Asked, Found, for_error};
 pub use ladder::{DRAFT, FINAL, Held, Ladder, PREVIEW, REFERENCE, options};
-pub use time::{Planned, for_time};
+pub use time::{LATE, Planned, for_time};
 
 /// The same view on a film `scale` times smaller along each side.
 fn smaller(window: &Window, scale: u32) -> Window {

@@ -24,7 +24,7 @@ const TRIAL_SHARE: f64 = 0.03;
 /// Most trials of how fine cuts are, once samples and lights go with them.
 const TRIALS: usize = 3;
 /// A plan that takes this much longer than there is time is not the best that can be done.
-const LATE: f64 = 1.1;
+pub const LATE: f64 = 1.1;
 /// Factor on the height of samples and lights where they are too many for any cuts.
 const LESS: f64 = 0.3;
 /// Rungs by which half the way from samples and lights to cuts may be off.

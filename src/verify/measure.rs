@@ -267,7 +267,9 @@ mod tests {
     fn percentiles_lose_the_noise() {
         let noisy = pixels(4000, 0.01, |_| 0.0);
         let found = errors(&noisy, mean(&noisy), 2);
-        assert!(found.percentile_95.low == 0.0 && found.percentile_95.high < 0.022, "{found:?}");
+        // Unknown, and no larger than if all the noise were error: 1.96 times its deviation, and a tenth for the interval.
+        assert!(!found.percentile_resolved && found.percentile_95.low == 0.0, "{found:?}");
+        assert!(found.percentile_95.high < 1.1 * 1.96 * 0.01, "{found:?}");
         assert!(found.rms.low == 0.0 && found.rms.high < 0.003 && found.bias.covers(0.0), "{found:?}");
         // Errors spread evenly between -10 % and 10 %: 95 % of them are below 9.5 %, a little less by the floor.
         let spread = |i: u32| 0.2 * uniform(i, 77) - 0.1;

@@ -101,17 +101,17 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
 
     let mut picture = Picture::new(&samples, settings.inspect);
     let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
-    control.begin(Stage::Render, jobs.len() as u64);
     let direct_jobs: Vec<Job> = jobs
         .iter()
         .filter(|job| job.only != Some(Origin::Indirect))
         .map(|job| Job { only: Some(Origin::Direct), ..*job })
         .collect();
+    let indirect_jobs: Vec<&Job> = jobs.iter().filter(|job| job.only != Some(Origin::Direct)).collect();
+    control.begin(Stage::Render, (direct_jobs.len() + indirect_jobs.len()) as u64);
     let lit = stats
         .time(Stage::Render, || own::light(&source.direct, &samples, &direct_jobs, &settings.cut, control));
     counts::cuts(&mut stats, "Lightcut", &lit.cuts);
     lit.shadows.report(&mut stats);
-    let indirect_jobs: Vec<&Job> = jobs.iter().filter(|job| job.only != Some(Origin::Direct)).collect();
     let gathered =
         stats.time(Stage::Render, || own_gathers(&source, &samples, &indirect_jobs, settings, control));
     let mut rays = *source.counts.lock().unwrap_or_else(PoisonError::into_inner);
@@ -179,6 +179,7 @@ fn own_gathers(
             let of = (job.sample, job.lobe_only);
             let radiance =
                 reflected(&source.light, samples, of, (settings.own_rays, settings.seed), &mut counts);
+            control.advance(1);
             (radiance, counts)
         })
         .collect()

@@ -163,24 +163,30 @@ impl Fit {
     /// What each point reflects of the sum.
     pub fn reflected(&self, points: &Points, at: &At) -> RgbLanes {
         let mut radiance = [[0.0; LANES]; 3];
-        for l in lanes_of(points.valid) {
-            let reflector = points.get(l);
-            let normal = reflector.place().1;
-            let mut reflected = Rgb::ZERO;
-            for f in 0..3 {
-                let irradiance = Rgb::from_array(self.vectors[f].map(|vector| vector.dot(normal)));
-                reflected += at[f][l] * irradiance;
-            }
-            reflected *= reflector.base_brdf();
-            if points.general >> l & 1 != 0 {
-                reflected += (0..3).map(|f| self.lobe[f] * at[f][l]).sum::<Rgb>();
-            }
-            for c in 0..3 {
-                radiance[c][l] = reflected[c];
+        for (c, row) in radiance.iter_mut().enumerate() {
+            let irradiance = irradiance(points, at, self.vectors.map(|vectors| vectors[c]));
+            for l in 0..LANES {
+                let lobe =
+                    at[0][l] * self.lobe[0][c] + at[1][l] * self.lobe[1][c] + at[2][l] * self.lobe[2][c];
+                let lobe = if points.general >> l & 1 != 0 { lobe } else { 0.0 };
+                row[l] = points.base[c][l] * irradiance[l] + lobe;
             }
         }
         radiance
     }
+}
+
+/// Irradiance at each point from the coefficients of one irradiance vector.
+#[inline]
+fn irradiance(points: &Points, at: &At, vectors: [Vec3; 3]) -> Lanes {
+    let n = &points.frame[2];
+    let mut irradiance = [0.0; LANES];
+    for (v, at) in vectors.iter().zip(at) {
+        for l in 0..LANES {
+            irradiance[l] += at[l] * (v.x * n[0][l] + v.y * n[1][l] + v.z * n[2][l]);
+        }
+    }
+    irradiance
 }
 
 /// Takes from irradiance vectors what coats reflect.
@@ -212,14 +218,10 @@ impl Share {
     /// What each point reflects of it.
     pub fn reflected(&self, points: &Points, at: &At) -> RgbLanes {
         let mut radiance = [[0.0; LANES]; 3];
-        let n = &points.frame[2];
-        for l in 0..LANES {
-            let mut irradiance = 0.0;
-            for (v, at) in self.vector.iter().zip(at) {
-                irradiance += at[l] * (v.x * n[0][l] + v.y * n[1][l] + v.z * n[2][l]);
-            }
-            for c in 0..3 {
-                radiance[c][l] = points.base[c][l] * irradiance;
+        let irradiance = irradiance(points, at, self.vector);
+        for (c, row) in radiance.iter_mut().enumerate() {
+            for l in 0..LANES {
+                row[l] = points.base[c][l] * irradiance[l];
             }
         }
         if points.general != 0 {

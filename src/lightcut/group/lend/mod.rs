@@ -74,8 +74,6 @@ pub struct LentCut {
     fit: Fit,
     /// Mean luminance of the makers.
     brightness: f32,
-    /// Luminance that a part of a cluster that was split must have to be split in turn.
-    least_split: f32,
     size: usize,
 }
 
@@ -101,7 +99,6 @@ impl LentCut {
             lanes_of(points.valid).map(|l| points.known[l] + luminance(radiance[l])).sum::<f32>()
                 / points.len().max(1) as f32;
         let least_split = epsilon * self.brightness;
-        self.least_split = least_split;
         let mut unshadowed = [[0.0; LANES]; 3];
         for (node, responses) in group.entries() {
             let n = &trees.nodes[node as usize];
@@ -195,6 +192,7 @@ impl GroupLightcut {
         let at = cut.fit.at(points);
         // What is never clamped needs no second look.
         let mut strong = cut.fit.reflected(points, &at);
+        let least_split = settings.epsilon * cut.brightness;
         let mut parts: Vec<Certain> = Vec::new();
         for &whole in &cut.certain {
             parts.push(whole);
@@ -208,7 +206,7 @@ impl GroupLightcut {
                         self.entries.push(Entry { node, weak: true, responses, errors: ZERO, counted: ZERO });
                     }
                     Some(left) if luminances(n.intensity, &responses).iter().any(|&y| y > whole) => {
-                        let part = |node| Certain { node, sure: 0.0, whole: cut.least_split };
+                        let part = |node| Certain { node, sure: 0.0, whole: least_split };
                         parts.extend([part(left), part(left + 1)]);
                     }
                     _ => add(&mut strong, n.intensity, &responses),
