@@ -136,17 +136,19 @@ mod tests {
     fn pictures_are_found_by_their_whole_key_and_damaged_ones_are_missing() {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(folder.path()).unwrap();
+        // Of these, parsers that are not exact read some as their neighbours.
+        let numbers: Vec<f64> = (1..100).map(|n| f64::from(n).sqrt() / 7.0).collect();
         let mut color = Image::new(3, 2);
         color.pixels[4] = Rgb::new(1.0, 0.5, 7.25);
         let kept = Kept {
             color: color.clone(),
             layers: vec![("a".to_owned(), color.clone())],
-            facts: json!({ "n": 3 }),
+            facts: json!({ "n": numbers }),
         };
         let key = json!({ "scene": 1, "method": "cache" });
         store.save("knot, cache", &key, &kept).unwrap();
         let found = store.load("knot, cache", &key, &["a"]).unwrap();
-        assert_eq!((&found.color, &found.layers[0].1, &found.facts["n"]), (&color, &color, &json!(3)));
+        assert_eq!((&found.color, &found.layers[0].1, &found.facts["n"]), (&color, &color, &json!(numbers)));
         assert!(store.load("knot, cache", &json!({ "scene": 2, "method": "cache" }), &[]).is_none());
         assert!(store.load("knot, cache", &key, &["b"]).is_none());
 
