@@ -8,6 +8,7 @@
 //! - [`vpl`] turns lights and photon paths into virtual point lights, [`light_tree`] clusters them;
 //! - [`eye`] follows each pixel through mirrors and glass to the surfaces that scatter light into it;
 //! - [`lightcut`] finds, for each of those, the coarsest clusters whose expected errors stay below what is asked;
+//! - [`compensation`] finds again by short rays what clamping takes from light close by;
 //! - [`gradient`] says how that light changes along the surface, [`hsh`] expands it over the hemisphere;
 //! - [`cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their footprints;
 //! - [`shadow`] answers whether segments are free, by packets of rays, [`sampling`] gives every stage its numbers;
@@ -20,6 +21,7 @@
 pub mod bench;
 pub mod cache;
 pub mod cli;
+pub mod compensation;
 pub mod embree;
 pub mod eye;
 pub mod gradient;

@@ -18,6 +18,8 @@ fn settings(direct: FoundBy, footprints: Footprints) -> cache::Settings {
     let mut settings = cache::Settings::default();
     settings.light.indirect = 20_000;
     settings.spp = 1;
+    // What it adds is noisier than what is compared here; it has tests of its own.
+    settings.compensation = false;
     settings.cache.direct = direct;
     settings.cache.indirect = FoundBy::Records;
     // Records wherever they can be, which small pictures would leave to cuts.
@@ -101,6 +103,7 @@ fn per_pixel(world: &World, like: &cache::Settings) -> Image {
     let mut settings =
         lightcuts::Settings { light: like.light, spp: like.spp, ..lightcuts::Settings::default() };
     settings.cut.epsilon = 0.005;
+    settings.compensation = like.compensation;
     lightcuts::render(world, &Window::whole(world.scene.resolution), &settings, &Control::new()).color
 }
 

@@ -1,37 +1,23 @@
-//! Light that clamping takes from virtual lights close to a record, found again by short rays.
+//! What records lack of the light of virtual lights close to them (see [`crate::compensation`]).
 //!
-//! Paper: Kollig and Keller, *Illumination in the Presence of Weak Singularities*, 2004; Herzog et al. 2009,
-//! section 6.3 and Eq. 13. Virtual lights count with min(G, b) of their geometry term G = cosθ_x cosθ_y / r²; the
-//! rest, max(0, G - b), is integrated over directions instead: E = π/N Σ max(0, 1 - b/G) L over N directions
-//! distributed by the cosine. G exceeds b only where r < b^(-1/2), so rays end there and are cheap.
-//!
-//! Deviations: b comes from the mean intensity of all indirect virtual lights, so one that is much brighter than
-//! the mean may give more than the limit. Every record is compensated, also where no light of its cut happens to
-//! be clamped: the two parts complement each other on average only. All records use the same directions, in frames
-//! of their own, so that their errors are alike and not seen between them. Light is looked up at up to `LOOKUPS`
-//! of the points that rays meet, chosen in proportion to what they may give, and itself lacks what is clamped.
-//! Series (light that lobes reflect) are clamped alike and not compensated. Where a longest path is set, paths
-//! over these points may have an edge more.
+//! Deviations: light is looked up at up to `LOOKUPS` of the points that a record's rays meet, chosen in proportion to
+//! what they may give, and itself lacks what is clamped. Series (light that lobes reflect) are clamped alike and not
+//! compensated.
 //!
 //! Units: b in 1/m².
 
 use super::compute::Source;
 use super::gather::Gathered;
 use super::wave::Pick;
-use crate::embree::{Hit, Hits16, Ray, Rays16};
+use crate::compensation::Compensation;
+use crate::compensation::near::{self, Clamped, Near};
 use crate::eye::EyeSamples;
-use crate::light_tree::LightTrees;
 use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Likeness, Points, group_alike};
 use crate::lightcut::{CutSettings, Lightcut, Reflector};
-use crate::math::{Frame, Rgb, lanes_in, luminance};
-use crate::sampling::{cosine_hemisphere, owen_sobol_2d};
-use crate::shadow;
-use crate::vpl::Origin;
-use crate::world::{Surface, World};
-use glam::Vec3;
+use crate::math::{Frame, Rgb, luminance};
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// Rays from each record; a multiple of sixteen.
+/// Rays from each record.
 const RAYS: u32 = 32;
 
 /// Most lightcuts at points that rays of one record meet.
@@ -45,9 +31,6 @@ const EPSILON: f32 = 0.1;
 
 /// Most clusters in those lightcuts, as a fraction of a record's.
 const CUT_FRACTION: usize = 8;
-
-/// Seed of the directions.
-const SEED: u32 = 0x5eed;
 
 /// How the contribution of an indirect virtual light is limited.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,23 +61,6 @@ impl Clamp {
     }
 }
 
-/// What is common to the compensation of all records.
-#[derive(Clone, Copy, Debug)]
-pub struct Compensation {
-    mean_intensity: f32,
-}
-
-/// A point that a ray met, and what light from it would weigh.
-#[derive(Clone, Copy)]
-struct Near {
-    surface: Surface,
-    distance: f32,
-    /// Unit shading normal on the side of the record.
-    normal: Vec3,
-    /// Radiance towards the record for an irradiance of 1, times the weight.
-    weight: Rgb,
-}
-
 /// A point chosen to look up its light.
 #[derive(Clone, Copy)]
 struct Lookup {
@@ -115,88 +81,56 @@ pub struct Cutters<'a> {
     pub points: &'a mut Points<'static>,
 }
 
-impl Compensation {
-    /// For all records lit by `trees`.
-    pub fn new(trees: &LightTrees) -> Compensation {
-        Compensation { mean_intensity: trees.mean_intensity(Origin::Indirect) }
-    }
+/// How indirect leaves are clamped where none may give more than the luminance `limit`.
+pub fn clamp(compensation: &Option<Compensation>, limit: f32) -> Clamp {
+    compensation.as_ref().map_or(Clamp::Luminance(limit), |c| Clamp::Geometry(c.bound(limit)))
+}
 
-    /// The bound of the geometry term that keeps a light of mean intensity below the luminance `limit`.
-    pub fn clamp(&self, limit: f32) -> Clamp {
-        Clamp::Geometry(if self.mean_intensity > 0.0 { limit / self.mean_intensity } else { f32::INFINITY })
-    }
-
-    /// Adds what virtual lights lack whose geometry terms were limited, to what the records of a task gather of
-    /// indirect light.
-    pub fn add(
-        &self,
-        source: &Source,
-        mut cutters: Cutters,
-        samples: &EyeSamples,
-        task: &[Pick],
-        gathered: &mut [&mut Gathered],
-    ) {
-        let mut lookups = Vec::new();
-        for (record, (pick, gathered)) in task.iter().zip(gathered.iter()).enumerate() {
-            let bound = gathered.bound;
-            if pick.lacks[1] && bound > 0.0 && bound.is_finite() {
-                choose(&self.near(source, samples, pick.sample, bound), record, &mut lookups);
-            }
+/// Adds what virtual lights lack whose geometry terms were limited, to what the records of a task gather of
+/// indirect light.
+pub fn add(
+    source: &Source,
+    mut cutters: Cutters,
+    samples: &EyeSamples,
+    task: &[Pick],
+    gathered: &mut [&mut Gathered],
+) {
+    let world = source.world;
+    let clamped = |(pick, gathered): (&Pick, &&mut Gathered)| {
+        let i = pick.sample as usize;
+        let point = &samples.points[i];
+        Clamped {
+            position: point.position,
+            geometric_normal: samples.surfaces[i].geometric_normal,
+            frame: Frame::from_normal(point.normal),
+            bound: if pick.lacks[1] { gathered.bound } else { f32::INFINITY },
         }
-        // What records met on one wall, then what they met on another: neighbours look up light side by side.
-        lookups.sort_by_key(|lookup| (lookup.near.surface.mesh, lookup.record));
-        let place = |lookup: &Lookup| (lookup.near.surface.position, lookup.near.normal);
-        for group in group_alike(Likeness::CLOSE, lookups, LANES, source.world.diagonal, place, |_, _| true) {
-            let irradiance = cutters.irradiance(source, &group);
-            for (lookup, irradiance) in group.iter().zip(irradiance) {
-                let found = lookup.factor * irradiance;
-                if found.is_finite() {
-                    let normal = samples.points[task[lookup.record].sample as usize].normal;
-                    gathered[lookup.record].compensate(normal, found, lookup.near.distance);
-                }
-            }
-        }
-    }
-
-    /// What rays from the record meet where the geometry term exceeds `bound`.
-    fn near(&self, source: &Source, samples: &EyeSamples, sample: u32, bound: f32) -> Vec<Near> {
-        let world = source.world;
-        let point = &samples.points[sample as usize];
-        let geometric_normal = samples.surfaces[sample as usize].geometric_normal;
-        let frame = Frame::from_normal(point.normal);
-        let t_far = bound.sqrt().recip();
-        let filtered = |cos: f32| match point.sharing.coat() {
+    };
+    let points: Vec<Clamped> = task.iter().zip(gathered.iter()).map(clamped).collect();
+    let mut met = vec![Vec::new(); points.len()];
+    near::trace(world, &points, RAYS, |record, near| {
+        let passed = match samples.points[task[record].sample as usize].sharing.coat() {
             0 => 1.0,
-            coat => world.materials.coat_transmittance(coat, cos),
+            coat => world.materials.coat_transmittance(coat, near.cos),
         };
-        let mut near = Vec::new();
-        for packet in 0..RAYS / 16 {
-            let mut rays = Rays16::default();
-            let mut locals = [Vec3::Z; 16];
-            for (lane, local) in locals.iter_mut().enumerate() {
-                *local = cosine_hemisphere(owen_sobol_2d(packet * 16 + lane as u32, SEED));
-                let direction = frame.to_world(*local);
-                rays.set(
-                    lane,
-                    &Ray { t_far, ..shadow::ray_from(point.position, geometric_normal, direction) },
-                );
-            }
-            let mut hits = Hits16::default();
-            let met = world.accel.closest_hit16(&rays, u16::MAX, true, &mut hits);
-            for lane in lanes_in(met) {
-                let hit = Hit {
-                    t: hits.t[lane],
-                    u: hits.u[lane],
-                    v: hits.v[lane],
-                    geometry: hits.geometry[lane],
-                    primitive: hits.primitive[lane],
-                };
-                let cos = locals[lane].z;
-                let found = weighed(world, &hit, frame.to_world(locals[lane]), cos, bound);
-                near.extend(found.map(|n| Near { weight: n.weight * filtered(cos), ..n }));
+        met[record].push(Near { weight: near.weight * passed, ..near });
+    });
+    let mut lookups = Vec::new();
+    for (record, met) in met.iter().enumerate() {
+        choose(met, record, &mut lookups);
+    }
+    // What records met on one wall, then what they met on another: neighbours look up light side by side.
+    lookups.sort_by_key(|lookup| (lookup.near.surface.mesh, lookup.record));
+    let place = |lookup: &Lookup| (lookup.near.surface.position, lookup.near.normal);
+    for group in group_alike(Likeness::CLOSE, lookups, LANES, world.diagonal, place, |_, _| true) {
+        let irradiance = cutters.irradiance(source, &group);
+        for (lookup, irradiance) in group.iter().zip(irradiance) {
+            let found = lookup.factor * irradiance;
+            if found.is_finite() {
+                let normal = samples.points[task[lookup.record].sample as usize].normal;
+                gathered[lookup.record].compensate(normal, found, lookup.near.distance);
             }
         }
-        near
     }
 }
 
@@ -249,21 +183,4 @@ impl Cutters<'_> {
         }
         irradiance
     }
-}
-
-/// The point hit, unless it weighs nothing.
-fn weighed(world: &World, hit: &Hit, direction: Vec3, cos: f32, bound: f32) -> Option<Near> {
-    let surface = world.surface(hit);
-    let out = surface.frame.to_local(-direction);
-    let distance = hit.t;
-    // Virtual lights radiate by the cosine to the geometric normal.
-    let geometry = cos * surface.normal.dot(direction).abs() / (distance * distance);
-    if !(geometry > bound) {
-        return None;
-    }
-    let weight = world.bsdf(&surface).diffuse_albedo(out) * ((1.0 - bound / geometry) * FRAC_1_PI);
-    let towards = surface.frame.normal.dot(direction) < 0.0;
-    let normal = if towards { surface.frame.normal } else { -surface.frame.normal };
-    let near = Near { surface, distance, normal, weight };
-    (luminance(weight) > 0.0 && weight.is_finite()).then_some(near)
 }

@@ -4,7 +4,7 @@
 //! A record that lacks one layer only cuts only that layer's trees, judged against what the other is known to
 //! give, so that each layer masks the other's errors (Herzog et al. 2009, section 6).
 
-use super::compensate::{Clamp, Compensation, Cutters};
+use super::compensate::{self, Clamp, Cutters};
 use super::footprint::Footprint;
 use super::gather::{Gathered, Gatherer};
 use super::layer::Layer;
@@ -14,6 +14,7 @@ use super::series::SeriesGatherer;
 use super::settings::{CacheSettings, Footprints};
 use super::sight::Sight;
 use super::wave::Pick;
+use crate::compensation::Compensation;
 use crate::eye::EyeSamples;
 use crate::hsh::Radiance;
 use crate::light_tree::LightTrees;
@@ -38,7 +39,7 @@ pub struct Source<'a> {
     /// Settings.
     pub settings: &'a CacheSettings,
     /// How clamped light is found again, if it is.
-    pub compensation: Option<Compensation>,
+    pub compensation: Option<Compensation<'a>>,
 }
 
 /// A record, and its light as a series where the surface needs it.
@@ -93,9 +94,9 @@ impl RecordSource for Source<'_> {
                 || Workspace::new(self),
                 |work, task| {
                     work.shadows.begin_chunk();
-                    let counts = work.counts();
+                    (work.single.counts, work.group.counts) = Default::default();
                     let pairs = work.compute(self, samples, layers, task);
-                    (task.iter().copied().zip(pairs).collect(), work.counts().since(&counts))
+                    (task.iter().copied().zip(pairs).collect(), work.counts())
                 },
             )
             .collect();
@@ -215,11 +216,11 @@ impl<'w> Workspace<'w> {
             self.points.set(collectors);
             self.shared(s, samples, task, &cut)
         };
-        if let Some(compensation) = s.compensation {
+        if s.compensation.is_some() {
             let cutters =
                 Cutters { single: &mut self.single, group: &mut self.group, points: &mut self.points };
             let mut indirect: Vec<_> = views.iter_mut().map(|view| &mut view.gathered[1]).collect();
-            compensation.add(s, cutters, samples, task, &mut indirect);
+            compensate::add(s, cutters, samples, task, &mut indirect);
         }
         let record = |(pick, mut view): (&Pick, View)| {
             [0, 1].map(|l| {
@@ -251,7 +252,7 @@ impl<'w> Workspace<'w> {
             None
         };
         let gatherer = s.gatherer(samples, pick.sample, collector);
-        let clamp = s.clamp(self.single.limit());
+        let clamp = compensate::clamp(&s.compensation, self.single.limit());
         let mut view = s.view(samples, pick.sample, self.single.entries().len(), clamp);
         let series = &mut self.series;
         series.begin(&samples.points[pick.sample as usize]);
@@ -275,7 +276,7 @@ impl<'w> Workspace<'w> {
         let series = &mut self.series;
         let lane = |(lane, pick): (usize, &Pick)| {
             let gatherer = s.gatherer(samples, pick.sample, self.points.get(lane));
-            let clamp = s.clamp(self.group.limit(lane));
+            let clamp = compensate::clamp(&s.compensation, self.group.limit(lane));
             let mut view = s.view(samples, pick.sample, self.group.size(), clamp);
             series.begin(&samples.points[pick.sample as usize]);
             for (node, responses) in self.group.entries() {
@@ -322,11 +323,6 @@ impl<'a> Source<'a> {
             coat: point.sharing.coat(),
             materials: &self.world.materials,
         }
-    }
-
-    /// How indirect leaves are clamped where none may give more than the luminance `limit`.
-    fn clamp(&self, limit: f32) -> Clamp {
-        self.compensation.map_or(Clamp::Luminance(limit), |c| c.clamp(limit))
     }
 
     #[inline]

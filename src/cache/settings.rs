@@ -61,8 +61,6 @@ pub struct CacheSettings {
     pub mu: f32,
     /// Root of 1 - cos of the angle between normals at which a footprint ends.
     pub normal_tolerance: f32,
-    /// Whether light lost by clamping weak singularities is found again by short rays from the records.
-    pub compensation: bool,
     /// Most passes of adaptation.
     pub passes: u32,
     /// Smallest relative difference of luminance that is visible.
@@ -112,7 +110,6 @@ impl Default for CacheSettings {
             gradients: true,
             mu: 0.5,
             normal_tolerance: 0.4,
-            compensation: false,
             passes: 1,
             threshold: 0.02,
             patches: 4096,

@@ -147,6 +147,9 @@ pub struct LightcutArgs {
     /// clamp [default: 0.02]
     #[arg(long, value_parser = parse_fraction)]
     pub clamp: Option<f32>,
+    /// Whether short rays find again what clamping takes away, in creases most of all [default: on]
+    #[arg(long, value_enum)]
+    pub compensation: Option<Switch>,
     /// How light trees are built [default: divisive]
     #[arg(long, value_enum)]
     pub tree: Option<TreeFamily>,
@@ -388,7 +391,7 @@ mod tests {
             ("series-error", cached.series.max_error.to_string()),
             ("direct", found(cached.direct)),
             ("indirect", found(cached.indirect)),
-            ("compensation", if cached.compensation { "on" } else { "off" }.to_owned()),
+            ("compensation", if cuts.compensation { "on" } else { "off" }.to_owned()),
             ("passes", cached.passes.to_string()),
             ("threshold", cached.threshold.to_string()),
             ("patches", cached.patches.to_string()),

@@ -38,9 +38,6 @@ pub struct CacheArgs {
     /// Relative change of luminance across a footprint that halves it along the gradient [default: 0.5]
     #[arg(long)]
     pub mu: Option<f32>,
-    /// Whether short rays find again what clamping takes away in creases [default: off]
-    #[arg(long, value_enum)]
-    pub compensation: Option<Switch>,
     /// Write what the cache did as further layers of the OpenEXR file, and as PNG files beside the picture
     #[arg(long)]
     pub inspect: bool,

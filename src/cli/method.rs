@@ -25,12 +25,12 @@ pub fn method(args: &RenderArgs) -> Result<Method, Failure> {
             Err(Failure::usage(anyhow!("the options under \"Photon map\" belong to --method photon-cache")))
         }
         MethodName::Cache if args.cache.without_records() => Err(Failure::usage(anyhow!(
-            "--record-epsilon, --footprints, --accuracy, --reach, --series-alpha, --series-error, --gradients, --mu, --compensation, --passes, --threshold and --least-cell are for records: add --indirect records"
+            "--record-epsilon, --footprints, --accuracy, --reach, --series-alpha, --series-error, --gradients, --mu, --passes, --threshold and --least-cell are for records: add --indirect records"
         ))),
         MethodName::PhotonCache
             if args.lightcuts.vpls.is_some()
                 || args.lightcuts.clamp.is_some()
-                || args.cache.compensation.is_some()
+                || args.lightcuts.compensation.is_some()
                 || args.cache.indirect.is_some() =>
         {
             Err(Failure::usage(anyhow!(
@@ -60,6 +60,7 @@ fn cache_settings(args: &RenderArgs) -> cache::Settings {
         max_depth: args.max_depth,
         light: typed.light,
         cut: typed.cut,
+        compensation: typed.compensation,
         family: typed.family,
         ..Default::default()
     };
@@ -117,7 +118,6 @@ fn records_settings(cached: &CacheArgs, cache: &mut CacheSettings) {
     cache.series.max_error = cached.series_error.unwrap_or(cache.series.max_error);
     cache.gradients = cached.gradients.map_or(cache.gradients, |typed| typed == Switch::On);
     cache.mu = cached.mu.unwrap_or(cache.mu);
-    cache.compensation = cached.compensation.map_or(cache.compensation, |typed| typed == Switch::On);
     cache.passes = cached.passes.unwrap_or(cache.passes);
     cache.threshold = cached.threshold.unwrap_or(cache.threshold);
     cache.patches = cached.patches.unwrap_or(cache.patches);
@@ -136,6 +136,7 @@ fn lightcuts_settings(args: &RenderArgs) -> lightcuts::Settings {
     if let Some(share) = typed.clamp {
         settings.cut.clamp = (share > 0.0).then_some(share);
     }
+    settings.compensation = typed.compensation.map_or(settings.compensation, |typed| typed == Switch::On);
     settings.share = typed.share.map_or(settings.share, |typed| typed == Switch::On);
     let shadows = &mut settings.shadows;
     shadows.cached = typed.occluder_cache.map(|typed| typed == Switch::On);

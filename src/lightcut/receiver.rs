@@ -84,7 +84,7 @@ impl<'m> Reflector<'m> {
     }
 
     /// BRDF of the base, for light that has passed the coat on its way in.
-    pub(super) fn base_brdf(&self) -> Rgb {
+    pub fn base_brdf(&self) -> Rgb {
         match &self.material {
             Kind::Lambert(brdf) => *brdf,
             Kind::General(bsdf) => bsdf.split_base(self.wo.z).0,
@@ -92,7 +92,7 @@ impl<'m> Reflector<'m> {
     }
 
     /// What the coat lets through of light from the direction of `incident`, which need not be of unit length.
-    pub(super) fn coat_transmittance(&self, incident: Vec3) -> f32 {
+    pub fn coat_transmittance(&self, incident: Vec3) -> f32 {
         match &self.material {
             Kind::General(bsdf) if bsdf.coat() != 0 => {
                 bsdf.coat_transmittance(self.frame.normal.dot(incident.normalize_or_zero()).clamp(0.0, 1.0))
@@ -110,7 +110,7 @@ impl<'m> Reflector<'m> {
     }
 
     /// Shading frame, z on the side of the eye.
-    pub(super) fn frame(&self) -> &Frame {
+    pub fn frame(&self) -> &Frame {
         &self.frame
     }
 

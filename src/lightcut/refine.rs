@@ -57,7 +57,7 @@ pub struct CutEntry {
 }
 
 /// What was done, over any number of cuts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CutCounts {
     /// Cuts computed.
     pub cuts: u64,
@@ -71,21 +71,13 @@ pub struct CutCounts {
     pub bounds: u64,
     /// Leaves whose contribution was clamped.
     pub clamped: u64,
+    /// Luminance of all cuts' sums before clamping.
+    pub luminance: f64,
+    /// What clamping took away of it.
+    pub lost: f64,
 }
 
 impl CutCounts {
-    /// What was done since the counts were `before`.
-    pub fn since(&self, before: &CutCounts) -> CutCounts {
-        CutCounts {
-            cuts: self.cuts - before.cuts,
-            clusters: self.clusters - before.clusters,
-            capped: self.capped - before.capped,
-            rays: self.rays - before.rays,
-            bounds: self.bounds - before.bounds,
-            clamped: self.clamped - before.clamped,
-        }
-    }
-
     /// Adds `other`.
     pub fn add(&mut self, other: &CutCounts) {
         self.cuts += other.cuts;
@@ -94,6 +86,8 @@ impl CutCounts {
         self.rays += other.rays;
         self.bounds += other.bounds;
         self.clamped += other.clamped;
+        self.luminance += other.luminance;
+        self.lost += other.lost;
     }
 }
 
@@ -148,8 +142,9 @@ impl Lightcut {
         let plain = |entries: &[CutEntry]| {
             entries.iter().fold(DVec3::ZERO, |sum, e| sum + e.contribution.as_dvec3()).as_vec3()
         };
-        let Some(clamp) = clamp else { return plain(&self.entries) };
         let unclamped = plain(&self.entries);
+        self.counts.luminance += f64::from(luminance(unclamped));
+        let Some(clamp) = clamp else { return unclamped };
         let is_weak = |e: &CutEntry, limit: f32| {
             luminance(e.contribution) > limit && {
                 let node = &trees.nodes[e.node as usize];
@@ -178,8 +173,10 @@ impl Lightcut {
         }
         self.limit = clamp * frozen;
         let (sum, clamped) = limited(self.limit);
+        let sum = sum.as_vec3();
         self.counts.clamped += clamped;
-        sum.as_vec3()
+        self.counts.lost += f64::from(luminance(unclamped) - luminance(sum));
+        sum
     }
 }
 

@@ -102,7 +102,7 @@ fn cache_report(s: &cache::Settings) -> Value {
         "direct_vpls": s.light.direct,
         "clamp": decimal(s.cut.clamp.unwrap_or(0.0)),
         "tree": family_name(s.family),
-        "compensation": switch(s.cache.compensation),
+        "compensation": switch(s.compensation),
     });
     joined(own, records_report(&s.cache))
 }
@@ -175,6 +175,7 @@ fn lightcuts_report(s: &lightcuts::Settings) -> Value {
                 "direct_vpls": s.light.direct,
                 "clamp": decimal(s.cut.clamp.unwrap_or(0.0)),
                 "tree": family_name(s.family),
+                "compensation": switch(s.compensation),
                 "share": switch(s.share),
                 "occluder_cache": occluders(&s.shadows, s.share),
     })

@@ -1,5 +1,6 @@
 //! What stages counted, by the names that methods share.
 
+use crate::compensation::samples::NearCounts;
 use crate::eye::ChainCounts;
 use crate::lightcut::CutCounts;
 use crate::stats::Stats;
@@ -20,4 +21,15 @@ pub fn cuts(stats: &mut Stats, group: &str, counts: &CutCounts) {
     stats.count(&format!("{group}/bounds"), counts.bounds);
     stats.count(&format!("{group}/clamped VPLs"), counts.clamped);
     stats.add(&format!("{group}/mean cut"), counts.clusters as f64 / counts.cuts.max(1) as f64);
+}
+
+/// Of what clamping takes from eye samples with such cuts, and short rays find again.
+pub fn clamping(stats: &mut Stats, cuts: &CutCounts, near: Option<&NearCounts>) {
+    let percent = 100.0 / if cuts.luminance > 0.0 { cuts.luminance } else { 1.0 };
+    stats.add("Lightcut/light lost to clamping [%]", percent * cuts.lost);
+    if let Some(near) = near {
+        stats.add("Lightcut/light found again by short rays [%]", percent * near.found);
+        stats.count("Compensation/short rays", near.rays);
+        self::cuts(stats, "Compensation", &near.cuts);
+    }
 }

@@ -39,7 +39,7 @@ fn the_settings_of_lightcuts_reach_the_method_and_the_file() {
         serde_json::from_str(file.metadata().text("settings").unwrap()).unwrap();
     let expected = serde_json::json!({
         "spp": 4, "seed": 0, "max_depth": null, "epsilon": 0.3, "max_cut": 7, "vpls": 300, "direct_vpls": 256,
-        "clamp": 0.0, "tree": "agglomerative", "share": "off",
+        "clamp": 0.0, "compensation": "on", "tree": "agglomerative", "share": "off",
         "occluder_cache": { "slots": 256, "ways": 2 },
     });
     assert_eq!(settings, expected);

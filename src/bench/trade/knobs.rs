@@ -171,9 +171,8 @@ pub fn knobs() -> Vec<Knob> {
         .judged_by(JudgedBy::Light),
         Knob::choice(
             "--compensation",
-            &[("off", |s| s.cache.compensation = false), ("on", |s| s.cache.compensation = true)],
+            &[("off", |s| s.compensation = false), ("on", |s| s.compensation = true)],
         )
-        .with(records)
         .judged_by(JudgedBy::Light),
         Knob::scaled(
             "--accuracy, direct",

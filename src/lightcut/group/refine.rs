@@ -68,6 +68,11 @@ impl GroupLightcut {
         self.limits[lane]
     }
 
+    /// The same of all lanes.
+    pub fn limits(&self) -> &[f32; LANES] {
+        &self.limits
+    }
+
     /// Reflected radiance of each point, on average to within the settings' error.
     pub fn gather<V: GroupVisibility>(
         &mut self,
@@ -127,6 +132,7 @@ impl GroupLightcut {
         for lane in lanes_of(points.valid) {
             let unclamped = Rgb::new(sums[0][lane], sums[1][lane], sums[2][lane]);
             let known = points.known[lane];
+            self.counts.luminance += f64::from(luminance(unclamped));
             radiance[lane] = match clamp {
                 // Below this nothing is clamped: the frozen luminance is less than the unclamped one only if
                 // some leaf is a dominant part of it.
@@ -180,6 +186,7 @@ impl GroupLightcut {
         self.limits[lane] = clamp * frozen;
         let (sum, clamped) = limited(self.limits[lane]);
         self.counts.clamped += clamped;
+        self.counts.lost += f64::from(luminance(unclamped) - luminance(sum));
         sum
     }
 }

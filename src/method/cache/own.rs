@@ -6,6 +6,8 @@
 
 use crate::cache::compute::Source;
 use crate::cache::settings::LEAST_PATCH;
+use crate::compensation::Compensation;
+use crate::compensation::samples::{NearCounts, NearLight};
 use crate::eye::EyeSamples;
 use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LentCut, Likeness, Points, group_alike};
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Visibility};
@@ -39,6 +41,7 @@ pub struct Cutters<'w> {
     group: GroupLightcut,
     lent: LentCut,
     points: Points<'w>,
+    near: NearLight,
 }
 
 /// What jobs came to.
@@ -50,6 +53,8 @@ pub struct Lit {
     pub cuts: CutCounts,
     /// Of their shadow rays.
     pub shadows: Counts,
+    /// Of what clamping took and was found again.
+    pub near: NearCounts,
 }
 
 /// Lights all jobs, unless cancelled.
@@ -89,7 +94,8 @@ pub fn light_patches<'w>(
                 let mut cuts = work.single.counts;
                 cuts.add(&work.group.counts);
                 control.advance(jobs.len() as u64);
-                Lit { radiance: lit, cuts, shadows: shadows.take_counts() }
+                let (shadows, near) = (shadows.take_counts(), work.near.take_counts());
+                Lit { radiance: lit, cuts, shadows, near }
             },
         )
         .collect();
@@ -98,6 +104,7 @@ pub fn light_patches<'w>(
         all.radiance.extend(lit.radiance);
         all.cuts.add(&lit.cuts);
         all.shadows.add(&lit.shadows);
+        all.near.add(&lit.near);
     }
     all
 }
@@ -133,11 +140,10 @@ impl<'w> Cutters<'w> {
         cut: &CutSettings,
         lit: &mut Vec<(Job, Rgb)>,
     ) {
+        // Only indirect virtual lights are clamped.
+        let compensation = s.compensation.as_ref().filter(|_| cut.only != Some(Origin::Direct));
         if !s.settings.shares(jobs.len()) {
-            for job in jobs {
-                let reflector = reflector(samples, job);
-                lit.push((*job, self.single.gather(s.trees, &s.transfer, rays, &reflector, cut)));
-            }
+            jobs.chunks(LANES).for_each(|jobs| self.alone(s, rays, samples, jobs, cut, compensation, lit));
             return;
         }
         let makes = makers(samples, jobs);
@@ -146,6 +152,9 @@ impl<'w> Cutters<'w> {
         let mut radiance = [Rgb::ZERO; LANES];
         self.points.set(chosen(true).map(|job| reflector(samples, job)));
         self.group.gather(s.trees, &s.transfer, rays, &self.points, cut, &mut radiance);
+        if let Some(c) = compensation {
+            self.near.begin(c, &self.points, self.group.limits(), &mut radiance);
+        }
         lit.extend(chosen(true).copied().zip(radiance));
         if lit.len() == jobs.len() {
             return;
@@ -168,8 +177,37 @@ impl<'w> Cutters<'w> {
                 start,
                 &mut radiance,
             );
+            if let Some(c) = compensation {
+                self.near.add(c, &self.points, self.group.limits(), &mut radiance);
+            }
             lit.extend(jobs().map(|job| **job).zip(radiance));
         }
+    }
+}
+
+impl<'w> Cutters<'w> {
+    /// Lights up to sixteen samples, each with a cut of its own.
+    #[allow(clippy::too_many_arguments)]
+    fn alone<V: Visibility>(
+        &mut self,
+        s: &Source<'_>,
+        rays: &V,
+        samples: &EyeSamples<'w>,
+        jobs: &[Job],
+        cut: &CutSettings,
+        compensation: Option<&Compensation>,
+        lit: &mut Vec<(Job, Rgb)>,
+    ) {
+        let (mut radiance, mut limits) = ([Rgb::ZERO; LANES], [f32::INFINITY; LANES]);
+        for ((job, radiance), limit) in jobs.iter().zip(&mut radiance).zip(&mut limits) {
+            *radiance = self.single.gather(s.trees, &s.transfer, rays, &reflector(samples, job), cut);
+            *limit = self.single.limit();
+        }
+        if let Some(c) = compensation {
+            self.points.set(jobs.iter().map(|job| reflector(samples, job)));
+            self.near.begin(c, &self.points, &limits, &mut radiance);
+        }
+        lit.extend(jobs.iter().copied().zip(radiance));
     }
 }
 

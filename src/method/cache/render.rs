@@ -6,10 +6,10 @@ use super::filled::Cache;
 use super::inspect;
 use super::own::{self, Job};
 use super::picture::Picture;
-use crate::cache::compensate::Compensation;
 use crate::cache::compute::Source;
 use crate::cache::series::Glossy;
 use crate::cache::{CacheSettings, FoundBy};
+use crate::compensation::Compensation;
 use crate::eye::{EyeSamples, EyeSettings, Window};
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
@@ -37,6 +37,8 @@ pub struct Settings {
     pub cache: CacheSettings,
     /// When the cut of an eye sample is good enough.
     pub cut: CutSettings,
+    /// Whether short rays find again what clamping takes away.
+    pub compensation: bool,
     /// How light trees are built.
     pub family: Family,
     /// Whether to return the images of [`super::inspect`] too.
@@ -59,6 +61,7 @@ impl Default for Settings {
             light: LightPassSettings::default(),
             cache: CacheSettings::default(),
             cut: CutSettings::default(),
+            compensation: true,
             family: Family::default(),
             inspect: false,
         }
@@ -141,6 +144,9 @@ impl<'w> Prepared<'w> {
         }
         stats.count("Cache/samples with own cuts", jobs.len() as u64);
         counts::cuts(&mut stats, "Lightcut", &lit.cuts);
+        if settings.cache.found(1) == FoundBy::Samples {
+            counts::clamping(&mut stats, &lit.cuts, source.compensation.is_some().then_some(&lit.near));
+        }
         lit.shadows.report(&mut stats);
         let complete = samples.complete && !control.is_cancelled();
         let (color, mut extra, nonfinite) = picture.finish();
@@ -153,7 +159,7 @@ impl<'w> Prepared<'w> {
 
 fn source<'a>(world: &'a World, lights: &'a Lights, settings: &'a Settings) -> Source<'a> {
     let (trees, transfer) = (&lights.trees, lights.transfer());
-    let compensation = settings.cache.compensation.then(|| Compensation::new(trees));
+    let compensation = settings.compensation.then(|| Compensation::new(world, trees, transfer));
     Source { world, trees, transfer, settings: &settings.cache, compensation }
 }
 

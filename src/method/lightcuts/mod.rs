@@ -12,6 +12,7 @@
 //! | `cut.epsilon` | 0.02 | largest error to expect of a cluster, relative to the sample's luminance |
 //! | `cut.max_cut` | 1000 | most clusters in a cut |
 //! | `cut.clamp` | 0.02 | most that one indirect VPL may contribute, relative to the sample's luminance |
+//! | `compensation` | on | whether short rays find again what clamping takes away |
 //! | `share` | true | whether neighbouring eye samples share cuts, for speed |
 //! | `shadows` | cached where not `share` | which shadow rays ask an occluder cache, and its size |
 //! | `family` | divisive | how light trees are built |

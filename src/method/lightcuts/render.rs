@@ -1,6 +1,8 @@
 //! The picture: light pass, trees, then pixels in tiles.
 
 use super::tile::{TILE, Tile, Workspace};
+use crate::compensation::Compensation;
+use crate::compensation::samples::NearCounts;
 use crate::eye::{ChainCounts, Window};
 use crate::image::Image;
 use crate::light_tree::{Family, LightTrees};
@@ -27,6 +29,8 @@ pub struct Settings {
     pub light: LightPassSettings,
     /// When a cut is good enough.
     pub cut: CutSettings,
+    /// Whether short rays find again what clamping takes away.
+    pub compensation: bool,
     /// How light trees are built.
     pub family: Family,
     /// Whether neighbouring eye samples share cuts.
@@ -43,6 +47,7 @@ impl Default for Settings {
             max_depth: None,
             light: LightPassSettings::default(),
             cut: CutSettings::default(),
+            compensation: true,
             family: Family::default(),
             share: true,
             shadows: ShadowSettings::default(),
@@ -57,6 +62,7 @@ pub(super) struct Scenery<'a> {
     pub settings: &'a Settings,
     pub trees: &'a LightTrees,
     pub transfer: Transfer<'a>,
+    pub compensation: Option<Compensation<'a>>,
     pub max_depth: u32,
 }
 
@@ -67,8 +73,9 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
 
     let light = LightPassSettings { seed: settings.seed, ..settings.light };
     let lights = Lights::new(world, &light, settings.family, max_depth, control, &mut stats);
-    let scenery =
-        Scenery { world, window, settings, trees: &lights.trees, transfer: lights.transfer(), max_depth };
+    let (trees, transfer) = (&lights.trees, lights.transfer());
+    let compensation = settings.compensation.then(|| Compensation::new(world, trees, transfer));
+    let scenery = Scenery { world, window, settings, trees, transfer, compensation, max_depth };
 
     // Tiles are aligned to the film, not to the window.
     let first = window.offset.map(|o| o / TILE);
@@ -92,6 +99,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let mut color = Image::new(window.width, window.height);
     let mut cut_size = Image::new(window.width, window.height);
     let mut used = CutCounts::default();
+    let mut near = NearCounts::default();
     let mut chains = ChainCounts::default();
     let (mut packets, mut nonfinite) = (0, 0);
     let mut shadows = Counts::default();
@@ -102,6 +110,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
             cut_size.pixels[at] = Rgb::splat(tile.cut_sizes[k]);
         }
         used.add(&tile.counts);
+        near.add(&tile.near);
         packets += tile.packets;
         shadows.add(&tile.shadows);
         chains.add(&tile.chains);
@@ -110,6 +119,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     stats.count("Rays/shadow packets", packets);
     shadows.report(&mut stats);
     counts::cuts(&mut stats, "Lightcut", &used);
+    counts::clamping(&mut stats, &used, scenery.compensation.is_some().then_some(&near));
     counts::eye(&mut stats, &chains);
     let complete = tiles.iter().all(|t| t.done);
     let extra = vec![("cut".to_owned(), cut_size)];

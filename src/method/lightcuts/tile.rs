@@ -3,6 +3,7 @@
 //! Blocks are aligned to the film and always computed whole, so a crop repeats the whole picture's pixels.
 
 use super::render::{Scenery, Settings};
+use crate::compensation::samples::{NearCounts, NearLight};
 use crate::eye::{ChainCounts, EyeSample, eye_sampler, primary_ray, trace};
 use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Likeness, Points};
 use crate::lightcut::{CutCounts, Lightcut, Reflector};
@@ -22,6 +23,7 @@ pub struct Workspace<'w> {
     shadows: Engine<'w>,
     group: GroupLightcut,
     points: Points<'w>,
+    near: NearLight,
     samples: Vec<Lit<'w>>,
     members: Vec<usize>,
     values: Vec<Rgb>,
@@ -37,6 +39,7 @@ impl<'w> Workspace<'w> {
             shadows: Engine::with(world, shadows.for_samples(settings.share), shadows.cache),
             group: GroupLightcut::new(),
             points: Points::new(),
+            near: NearLight::default(),
             samples: Vec::new(),
             members: Vec::new(),
             values: Vec::new(),
@@ -62,6 +65,7 @@ pub struct Tile {
     pub counts: CutCounts,
     pub packets: u64,
     pub shadows: Counts,
+    pub near: NearCounts,
     pub chains: ChainCounts,
     pub nonfinite: u64,
     pub done: bool,
@@ -93,6 +97,7 @@ impl Tile {
         self.counts.add(&work.group.counts);
         self.packets = work.group.packets;
         self.shadows = work.shadows.take_counts();
+        self.near = work.near.take_counts();
         self.done = true;
     }
 
@@ -172,14 +177,23 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
             sample.done = true;
             let before = work.single.counts.clusters;
             let reflector = &sample.reflector;
-            let radiance = work.single.gather(s.trees, &s.transfer, &work.shadows, reflector, cut);
-            work.values[sample.place] += sample.throughput * radiance;
+            let mut radiance = [Rgb::ZERO; LANES];
+            radiance[0] = work.single.gather(s.trees, &s.transfer, &work.shadows, reflector, cut);
+            if let Some(c) = &s.compensation {
+                work.points.set([*reflector]);
+                let limits = [work.single.limit(); LANES];
+                work.near.begin(c, &work.points, &limits, &mut radiance);
+            }
+            work.values[sample.place] += sample.throughput * radiance[0];
             work.cut_sizes[sample.place] += (work.single.counts.clusters - before) as f32;
             continue;
         }
         work.points.set(work.members.iter().map(|&i| work.samples[i].reflector));
         let mut radiance = [Rgb::ZERO; LANES];
         work.group.gather(s.trees, &s.transfer, &work.shadows, &work.points, cut, &mut radiance);
+        if let Some(c) = &s.compensation {
+            work.near.begin(c, &work.points, work.group.limits(), &mut radiance);
+        }
         for (&i, radiance) in work.members.iter().zip(radiance) {
             let sample = &mut work.samples[i];
             sample.done = true;

@@ -1,0 +1,49 @@
+//! Light that clamping takes from virtual lights close to a point, found again by short rays.
+//!
+//! Paper: Kollig and Keller, *Illumination in the Presence of Weak Singularities*, 2004; Herzog et al. 2009,
+//! section 6.3 and Eq. 13. Virtual lights count with min(G, b) of their geometry term G = cosθ_x cosθ_y / r²; the
+//! rest, max(0, G - b), is integrated over directions instead: E = π/N Σ max(0, 1 - b/G) L over N directions
+//! distributed by the cosine. G exceeds b only where r < b^(-1/2), so rays end there and are cheap.
+//!
+//! [`near`] traces such rays, [`samples`] finds with them what eye samples lack, and
+//! [`crate::cache::compensate`] what records do.
+//!
+//! Deviations: b comes from the mean intensity of all indirect virtual lights, so one that is much brighter than
+//! the mean may give more than the limit. Every point is compensated, also where no light of its cut happens to
+//! be clamped: the two parts complement each other on average only. All points use the same directions, in frames
+//! of their own, so that their errors are alike and not seen between them. Where a longest path is set, paths over
+//! what rays meet may have an edge more.
+//!
+//! Units: b in 1/m².
+
+pub mod near;
+pub mod samples;
+
+use crate::light_tree::LightTrees;
+use crate::lightcut::Transfer;
+use crate::vpl::Origin;
+use crate::world::World;
+
+/// What is common to all points.
+#[derive(Clone, Copy)]
+pub struct Compensation<'a> {
+    /// The scene.
+    pub world: &'a World,
+    /// Its virtual lights.
+    pub trees: &'a LightTrees,
+    /// What reaches a point from them.
+    pub transfer: Transfer<'a>,
+    mean_intensity: f32,
+}
+
+impl<'a> Compensation<'a> {
+    /// For all points lit by `trees`.
+    pub fn new(world: &'a World, trees: &'a LightTrees, transfer: Transfer<'a>) -> Compensation<'a> {
+        Compensation { world, trees, transfer, mean_intensity: trees.mean_intensity(Origin::Indirect) }
+    }
+
+    /// The bound of the geometry term that keeps the irradiance from a light of mean intensity below `limit`.
+    pub fn bound(&self, limit: f32) -> f32 {
+        if self.mean_intensity > 0.0 { limit / self.mean_intensity } else { f32::INFINITY }
+    }
+}

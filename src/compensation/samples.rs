@@ -1,0 +1,201 @@
+//! What eye samples lack of the light of virtual lights close to them.
+//!
+//! Samples of a patch that may lack something trace short rays each. The irradiance of what these meet is looked up
+//! at a few places only, met by the rays of those of the patch that made its cut, and interpolated.
+//!
+//! Deviations: only what bases reflect is compensated, not lobes. Cuts limit the luminance that a virtual light
+//! gives, not its geometry term: the same for lights of mean intensity.
+
+use super::Compensation;
+use super::near::{self, Clamped, Near};
+use crate::lightcut::group::{GroupLightcut, LANES, Points};
+use crate::lightcut::{CutCounts, CutSettings, Reflector};
+use crate::math::{Frame, Rgb, luminance};
+use glam::Vec3;
+use std::f32::consts::PI;
+
+/// Rays from each sample.
+const RAYS: u32 = 16;
+
+/// Irradiance relative to that of what is near, below which it does not matter.
+const NEGLIGIBLE: f32 = 0.01;
+
+/// Error of the lightcuts that look up light, relative to the light of the samples.
+const EPSILON: f32 = 0.3;
+
+/// Most clusters in them.
+const MAX_CUT: usize = 600;
+
+/// How they are clamped: much less, since their places are spread and each counts for little.
+const CLAMP: f32 = 0.2;
+
+/// Weight of places that face away, relative to those that face alike.
+const ASIDE: f32 = 1e-3;
+
+/// Finds what the samples of one patch after the other lack; one a thread.
+#[derive(Default)]
+pub struct NearLight {
+    /// Where light was looked up, and its irradiance; none where nothing is near.
+    places: Vec<Place>,
+    met: Vec<(usize, Near)>,
+    group: GroupLightcut,
+    points: Points<'static>,
+    counts: NearCounts,
+}
+
+/// What was done to find light again.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NearCounts {
+    /// Short rays.
+    pub rays: u64,
+    /// Cuts that looked up light.
+    pub cuts: CutCounts,
+    /// Luminance added to the radiance of samples, summed.
+    pub found: f64,
+}
+
+impl NearCounts {
+    /// Adds `other`.
+    pub fn add(&mut self, other: &NearCounts) {
+        self.rays += other.rays;
+        self.cuts.add(&other.cuts);
+        self.found += other.found;
+    }
+}
+
+struct Place {
+    position: Vec3,
+    geometric_normal: Vec3,
+    normal: Vec3,
+    irradiance: Rgb,
+}
+
+impl NearLight {
+    /// Begins a patch with those `points` that made its cut, of which indirect leaves were limited to the luminances
+    /// `limits`, and adds what their `radiance` lacks.
+    pub fn begin(
+        &mut self,
+        c: &Compensation,
+        points: &Points,
+        limits: &[f32; LANES],
+        radiance: &mut [Rgb; LANES],
+    ) {
+        self.places.clear();
+        self.trace(c, points, limits);
+        let mut weights = [0.0; LANES];
+        for (lane, near) in &self.met {
+            weights[*lane] += luminance(near.weight) * (PI / RAYS as f32);
+        }
+        if weights.iter().all(|&weight| weight < NEGLIGIBLE) {
+            return;
+        }
+        self.look_up(c, irradiance(points, radiance));
+        self.add_met(c, points, radiance);
+    }
+
+    /// Adds what the `radiance` of further points of the patch lacks.
+    pub fn add(
+        &mut self,
+        c: &Compensation,
+        points: &Points,
+        limits: &[f32; LANES],
+        radiance: &mut [Rgb; LANES],
+    ) {
+        if !self.places.is_empty() {
+            self.trace(c, points, limits);
+            self.add_met(c, points, radiance);
+        }
+    }
+
+    /// What was done since this was last asked.
+    pub fn take_counts(&mut self) -> NearCounts {
+        let cuts = std::mem::take(&mut self.group.counts);
+        NearCounts { cuts, ..std::mem::take(&mut self.counts) }
+    }
+
+    fn trace(&mut self, c: &Compensation, points: &Points, limits: &[f32; LANES]) {
+        let clamped: Vec<Clamped> = (0..points.len())
+            .map(|lane| {
+                let r = points.get(lane);
+                let base = luminance(r.base_brdf());
+                let bound = if base > 0.0 { c.bound(limits[lane] / base) } else { f32::INFINITY };
+                let (position, normal) = r.place();
+                let frame = Frame::from_normal(normal);
+                Clamped { position, geometric_normal: r.geometric_normal(), frame, bound }
+            })
+            .collect();
+        self.met.clear();
+        self.counts.rays += near::trace(c.world, &clamped, RAYS, |lane, near| self.met.push((lane, near)));
+    }
+
+    /// Irradiance at some of what was met, in proportion to what it weighs. It is added to points that have the
+    /// irradiance `known`, so it need not be known better than that.
+    fn look_up(&mut self, c: &Compensation, known: f32) {
+        // Evenly spaced along the sum of the weights, one surface after the other.
+        let mut order: Vec<u32> = (0..self.met.len() as u32).collect();
+        order.sort_by_key(|&i| (self.met[i as usize].1.surface.mesh, self.met[i as usize].0));
+        let total: f32 = self.met.iter().map(|(_, near)| luminance(near.weight)).sum();
+        let share = total / LANES as f32;
+        let (mut reached, mut next) = (0.0, 0.5 * share);
+        for i in order {
+            let near = &self.met[i as usize].1;
+            reached += luminance(near.weight);
+            if next < reached {
+                let (surface, normal) = (&near.surface, near.normal);
+                let (position, geometric_normal) = (surface.position, surface.normal);
+                self.places.push(Place { position, geometric_normal, normal, irradiance: Rgb::ZERO });
+            }
+            while next < reached {
+                next += share;
+            }
+        }
+        let collector = |p: &Place| {
+            Reflector::collector(p.position, p.geometric_normal, &Frame::from_normal(p.normal)).knowing(known)
+        };
+        self.points.set(self.places.iter().map(collector));
+        let mut irradiance = [Rgb::ZERO; LANES];
+        let settings =
+            CutSettings { epsilon: EPSILON, max_cut: MAX_CUT, clamp: Some(CLAMP), ..CutSettings::default() };
+        self.group.gather(c.trees, &c.transfer, c.world, &self.points, &settings, &mut irradiance);
+        for (place, irradiance) in self.places.iter_mut().zip(irradiance) {
+            place.irradiance = if irradiance.is_finite() { irradiance } else { Rgb::ZERO };
+        }
+    }
+
+    fn add_met(&mut self, c: &Compensation, points: &Points, radiance: &mut [Rgb; LANES]) {
+        let least = 1e-6 * c.world.diagonal;
+        for (lane, near) in &self.met {
+            let r = points.get(*lane);
+            let passed = r.coat_transmittance(near.surface.position - r.position());
+            let irradiance = interpolated(&self.places, near, least * least);
+            let found = r.base_brdf() * near.weight * irradiance * (passed * PI / RAYS as f32);
+            if found.is_finite() {
+                radiance[*lane] += found;
+                self.counts.found += f64::from(luminance(found));
+            }
+        }
+    }
+}
+
+/// Mean luminance of the irradiance that would reflect this radiance from the base alone.
+fn irradiance(points: &Points, radiance: &[Rgb; LANES]) -> f32 {
+    let known = |lane: usize| {
+        let base = luminance(points.get(lane).base_brdf());
+        (base > 0.0).then(|| luminance(radiance[lane]) / base)
+    };
+    let (sum, count) = (0..points.len()).filter_map(known).fold((0.0, 0), |(sum, n), e| (sum + e, n + 1));
+    sum / count.max(1) as f32
+}
+
+/// Mean irradiance of the places, mostly of those close by that face alike.
+fn interpolated(places: &[Place], near: &Near, least_sq: f32) -> Rgb {
+    let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
+    for place in places {
+        let facing = place.normal.dot(near.normal).max(0.0);
+        let weight =
+            (ASIDE + facing * facing) / (place.position.distance_squared(near.surface.position) + least_sq);
+        sum += place.irradiance * weight;
+        weights += weight;
+    }
+    sum / weights
+}

@@ -1,0 +1,98 @@
+//! Light that clamping takes away and short rays find again.
+
+mod common;
+
+use common::*;
+use glam::{Vec2, Vec3};
+use lightsplat::cache::FoundBy;
+use lightsplat::eye::{Window, primary_ray};
+use lightsplat::image::Image;
+use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::{Control, Output, cache, lightcuts, path};
+use lightsplat::scene::formats::{LoadOptions, load};
+use lightsplat::stats::Counter;
+use lightsplat::world::World;
+
+const SIZE: u32 = 96;
+
+/// Settings of the ways to find indirect light, with compensation or without.
+fn outputs(world: &World, vpls: u32, compensation: bool) -> Vec<(&'static str, Output)> {
+    let mut settings = cache::Settings { compensation, ..Default::default() };
+    settings.light.indirect = vpls;
+    settings.cache.least_cell = 8;
+    let lent = cached(world, &settings);
+    settings.cache.indirect = FoundBy::Records;
+    let records = cached(world, &settings);
+    settings.cache.indirect = FoundBy::Samples;
+    settings.cache.share = false;
+    let alone = cached(world, &settings);
+    let mut settings = lightcuts::Settings { compensation, ..Default::default() };
+    settings.light.indirect = vpls;
+    let window = Window::whole(world.scene.resolution);
+    let cuts = lightcuts::render(world, &window, &settings, &Control::new());
+    vec![("lent", lent), ("records", records), ("alone", alone), ("lightcuts", cuts)]
+}
+
+/// Radiance everywhere is emitted / (1 - albedo), as much in creases as elsewhere.
+#[test]
+fn the_furnace_is_white_although_close_lights_are_clamped() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/furnace.toml");
+    let mut scene = load(&path, &LoadOptions::default()).expect("the scene loads").scene;
+    scene.resolution = [SIZE, SIZE];
+    let world = world(scene);
+    let error = |output: &Output| {
+        let pixels = &output.color.pixels;
+        let mean = pixels.iter().copied().sum::<Rgb>() / (0.8 * pixels.len() as f32);
+        (mean - Rgb::ONE).abs().max_element()
+    };
+    for ((name, with), (_, without)) in
+        outputs(&world, 10_000, true).iter().zip(&outputs(&world, 10_000, false))
+    {
+        let (with, without) = (error(with), error(without));
+        println!("{name}: {with}, without {without}");
+        assert!(with < 0.01, "{name}: {with}, without {without}");
+    }
+}
+
+/// What lies along the creases of a room, against paths.
+#[test]
+fn creases_are_as_bright_as_paths_make_them() {
+    let mut scene = scene(camera(Vec3::new(0.0, 0.2, 0.98), Vec3::new(0.0, -0.8, -0.2), 0.8), [SIZE, SIZE]);
+    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));
+    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    let lamp = quad(Vec3::new(-0.7, 0.98, -0.3), Vec3::X * 0.4, Vec3::Z * 0.4, wall);
+    scene.meshes.push(emitting(lamp, Rgb::splat(20.0)));
+    let world = world(scene);
+    let window = Window::whole([SIZE, SIZE]);
+    let in_crease = |i: u32| {
+        let ray = primary_ray(&world.scene.camera, &window, [i % SIZE, i / SIZE], Vec2::splat(0.5));
+        let p = world.intersect(&ray).expect("the room is closed").position.abs();
+        p.min_element().max(p.x.min(p.z)).max(p.y.min(p.x.max(p.z))) > 0.95
+    };
+    let crease: Vec<bool> = (0..SIZE * SIZE).map(in_crease).collect();
+    let count = crease.iter().filter(|crease| **crease).count();
+    assert!(count > 300, "{count}");
+    let of = |image: &Image| {
+        let pixels = image.pixels.iter().zip(&crease).filter(|(_, crease)| **crease);
+        pixels.map(|(p, _)| luminance(*p)).sum::<f32>() / count as f32
+    };
+    // Few virtual lights: much is clamped.
+    let paths = path::Settings { spp: 256, ..Default::default() };
+    let truth = of(&path::render(&world, &window, &paths, &Control::new()).color);
+    for ((name, with), (_, without)) in outputs(&world, 3000, true).iter().zip(&outputs(&world, 3000, false))
+    {
+        let (ratio, lacking) = (of(&with.color) / truth, of(&without.color) / truth);
+        println!("{name}: {ratio}, without {lacking}");
+        assert!((ratio - 1.0).abs() < 0.03 && lacking < 0.9, "{name}: {ratio}, without {lacking}");
+        if *name != "records" {
+            let percent =
+                |output: &Output, what: &str| match output.stats.get(&format!("Lightcut/{what} [%]")) {
+                    Some(Counter::Sum(value)) => value,
+                    other => panic!("{what}: {other:?}"),
+                };
+            let (lost, found) =
+                (percent(with, "light lost to clamping"), percent(with, "light found again by short rays"));
+            assert!(lost > 1.0 && (found / lost - 1.0).abs() < 0.3, "{name}: {lost} % lost, {found} % found");
+        }
+    }
+}
