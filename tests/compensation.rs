@@ -50,7 +50,7 @@ fn the_furnace_is_white_although_close_lights_are_clamped() {
     {
         let (with, without) = (error(with), error(without));
         println!("{name}: {with}, without {without}");
-        assert!(with < 0.01, "{name}: {with}, without {without}");
+        assert!(with < 0.01 && with < without, "{name}: {with}, without {without}");
     }
 }
 
@@ -95,4 +95,34 @@ fn creases_are_as_bright_as_paths_make_them() {
             assert!(lost > 1.0 && (found / lost - 1.0).abs() < 0.3, "{name}: {lost} % lost, {found} % found");
         }
     }
+}
+
+/// What lies so close to a lamp that one virtual light would outshine all others, against paths.
+#[test]
+fn surfaces_beside_lamps_are_as_bright_as_paths_make_them() {
+    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.3), Vec3::new(0.0, 0.0, -0.9), 1.0), [SIZE, SIZE]);
+    let wall = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    // A window that meets four walls.
+    let window = quad(Vec3::new(-1.0, -1.0, -0.99), Vec3::X * 2.0, Vec3::Y * 2.0, wall);
+    scene.meshes.push(emitting(window, Rgb::ONE));
+    let world = world(scene);
+    let window = Window::whole([SIZE, SIZE]);
+    let paths = path::Settings { spp: 64, ..Default::default() }; // noise: .02
+    let truth = path::render(&world, &window, &paths, &Control::new()).color;
+    let brightest = |image: &Image| image.pixels.iter().map(|p| p.max_element()).fold(0.0, f32::max);
+    let error = |compensation: bool| {
+        let mut settings = cache::Settings { compensation, ..Default::default() };
+        settings.light.direct = 256;
+        settings.light.indirect = 10_000;
+        let picture = cached(&world, &settings).color;
+        let squares = picture.pixels.iter().zip(&truth.pixels).map(|(a, b)| luminance(*a - *b).powi(2));
+        ((squares.sum::<f32>() / truth.pixels.len() as f32).sqrt(), brightest(&picture))
+    };
+    let ((with, most), (without, _)) = (error(true), error(false));
+    println!("{with}, without {without}; brightest {most}");
+    assert!(
+        with < 0.02 && with < 0.25 * without && most < 1.5,
+        "{with}, without {without}; brightest {most}"
+    );
 }

@@ -86,33 +86,40 @@ pub fn clamp(compensation: &Option<Compensation>, limit: f32) -> Clamp {
     compensation.as_ref().map_or(Clamp::Luminance(limit), |c| Clamp::Geometry(c.bound(limit)))
 }
 
-/// Adds what virtual lights lack whose geometry terms were limited, to what the records of a task gather of
-/// indirect light.
+/// Adds what virtual lights lack that were limited, to what the records of a task gather of direct and of indirect light.
 pub fn add(
+    c: &Compensation,
     source: &Source,
     mut cutters: Cutters,
     samples: &EyeSamples,
     task: &[Pick],
-    gathered: &mut [&mut Gathered],
+    gathered: &mut [&mut [Gathered; 2]],
 ) {
     let world = source.world;
-    let clamped = |(pick, gathered): (&Pick, &&mut Gathered)| {
+    let clamped = |(pick, gathered): (&Pick, &&mut [Gathered; 2])| {
         let i = pick.sample as usize;
         let point = &samples.points[i];
         Clamped {
             position: point.position,
             geometric_normal: samples.surfaces[i].geometric_normal,
             frame: Frame::from_normal(point.normal),
-            bound: if pick.lacks[1] { gathered.bound } else { f32::INFINITY },
+            bound: if pick.lacks[1] { gathered[1].bound } else { f32::INFINITY },
+            direct: pick.lacks[0],
         }
     };
     let points: Vec<Clamped> = task.iter().zip(gathered.iter()).map(clamped).collect();
     let mut met = vec![Vec::new(); points.len()];
-    near::trace(world, &points, RAYS, |record, near| {
+    near::trace(c, &points, RAYS, |record, near| {
         let passed = match samples.points[task[record].sample as usize].sharing.coat() {
             0 => 1.0,
             coat => world.materials.coat_transmittance(coat, near.cos),
         };
+        let pick = &task[record];
+        let emitted = near.emitted * (passed * PI / RAYS as f32);
+        if emitted.is_finite() && emitted != Rgb::ZERO {
+            let normal = samples.points[pick.sample as usize].normal;
+            gathered[record][0].compensate(normal, emitted, near.distance);
+        }
         met[record].push(Near { weight: near.weight * passed, ..near });
     });
     let mut lookups = Vec::new();
@@ -128,7 +135,7 @@ pub fn add(
             let found = lookup.factor * irradiance;
             if found.is_finite() {
                 let normal = samples.points[task[lookup.record].sample as usize].normal;
-                gathered[lookup.record].compensate(normal, found, lookup.near.distance);
+                gathered[lookup.record][1].compensate(normal, found, lookup.near.distance);
             }
         }
     }

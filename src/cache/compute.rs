@@ -216,11 +216,11 @@ impl<'w> Workspace<'w> {
             self.points.set(collectors);
             self.shared(s, samples, task, &cut)
         };
-        if s.compensation.is_some() {
+        if let Some(c) = &s.compensation {
             let cutters =
                 Cutters { single: &mut self.single, group: &mut self.group, points: &mut self.points };
-            let mut indirect: Vec<_> = views.iter_mut().map(|view| &mut view.gathered[1]).collect();
-            compensate::add(s, cutters, samples, task, &mut indirect);
+            let mut gathered: Vec<_> = views.iter_mut().map(|view| &mut view.gathered).collect();
+            compensate::add(c, s, cutters, samples, task, &mut gathered);
         }
         let record = |(pick, mut view): (&Pick, View)| {
             [0, 1].map(|l| {

@@ -118,7 +118,7 @@ impl Gathered {
         self.least = self.least.min(distance);
         // Contribution = intensity · height · (the rest); the vector lacks the height.
         self.vector += outer(q / height, passed);
-        if kept < 1.0 || dist_sq <= transfer.min_dist_sq {
+        if kept < 1.0 || dist_sq <= transfer.near_sq(vpl, kind) {
             return passed;
         }
         let relative = match kind {

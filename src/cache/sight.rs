@@ -85,7 +85,7 @@ impl Sight {
         let y = luminance(contribution);
         let scale = luminance(node.intensity) * luminance(passed) / y.max(f32::MIN_POSITIVE);
         let source = Source::of_vpl(frame, self.position, vpl, kind);
-        for (sum, h) in layer.held.iter_mut().zip(source.irradiance_hessian(transfer.min_dist_sq)) {
+        for (sum, h) in layer.held.iter_mut().zip(source.irradiance_hessian(transfer.near_sq(vpl, kind))) {
             *sum += scale * h;
         }
     }

@@ -8,7 +8,11 @@
 //! [`near`] traces such rays, [`samples`] finds with them what eye samples lack, and
 //! [`crate::cache::compensate`] what records do.
 //!
-//! Deviations: b comes from the mean intensity of all indirect virtual lights, so one that is much brighter than
+//!
+//! Virtual lights on area lights count with cosθ_x cosθ_y / max(r², A), A the area that they stand for (to within a
+//! factor of 2, see [`crate::vpl::size_of_area`]); rays that meet the light at r find max(0, 1 - r²/A) of its radiance.
+//!
+//! Deviations: light of the second kind is not in the paper, which limits no direct light. b comes from the mean intensity of all indirect virtual lights, so one that is much brighter than
 //! the mean may give more than the limit. Every point is compensated, also where no light of its cut happens to
 //! be clamped: the two parts complement each other on average only. All points use the same directions, in frames
 //! of their own, so that their errors are alike and not seen between them. Where a longest path is set, paths over
@@ -34,12 +38,24 @@ pub struct Compensation<'a> {
     /// What reaches a point from them.
     pub transfer: Transfer<'a>,
     mean_intensity: f32,
+    /// Squared distance from surfaces that shine, by mesh, below which their virtual lights give less; 0 for others.
+    near_sq: &'a [f32],
+    /// The largest of these.
+    furthest_sq: f32,
 }
 
 impl<'a> Compensation<'a> {
-    /// For all points lit by `trees`.
-    pub fn new(world: &'a World, trees: &'a LightTrees, transfer: Transfer<'a>) -> Compensation<'a> {
-        Compensation { world, trees, transfer, mean_intensity: trees.mean_intensity(Origin::Indirect) }
+    /// For all points lit by `trees`. `near_sq` is the squared distance from each mesh that shines below which its virtual
+    /// lights give less than they should, and 0 for others.
+    pub fn new(
+        world: &'a World,
+        trees: &'a LightTrees,
+        transfer: Transfer<'a>,
+        near_sq: &'a [f32],
+    ) -> Compensation<'a> {
+        let furthest_sq = near_sq.iter().copied().fold(0.0, f32::max);
+        let mean_intensity = trees.mean_intensity(Origin::Indirect);
+        Compensation { world, trees, transfer, mean_intensity, near_sq, furthest_sq }
     }
 
     /// The bound of the geometry term that keeps the irradiance from a light of mean intensity below `limit`.

@@ -11,6 +11,7 @@ use super::near::{self, Clamped, Near};
 use crate::lightcut::group::{GroupLightcut, LANES, Points};
 use crate::lightcut::{CutCounts, CutSettings, Reflector};
 use crate::math::{Frame, Rgb, luminance};
+use crate::vpl::Origin;
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -26,8 +27,8 @@ const EPSILON: f32 = 0.3;
 /// Most clusters in them.
 const MAX_CUT: usize = 600;
 
-/// How they are clamped: much less, since their places are spread and each counts for little.
-const CLAMP: f32 = 0.2;
+/// How they are clamped: less, since light lost here is lost.
+const CLAMP: f32 = 0.05;
 
 /// Weight of places that face away, relative to those that face alike.
 const ASIDE: f32 = 1e-3;
@@ -35,8 +36,11 @@ const ASIDE: f32 = 1e-3;
 /// Finds what the samples of one patch after the other lack; one a thread.
 #[derive(Default)]
 pub struct NearLight {
-    /// Where light was looked up, and its irradiance; none where nothing is near.
+    /// Where light was looked up, and its irradiance.
     places: Vec<Place>,
+    /// Whether anything is near.
+    lacks: bool,
+    only: Option<Origin>,
     met: Vec<(usize, Near)>,
     group: GroupLightcut,
     points: Points<'static>,
@@ -50,7 +54,7 @@ pub struct NearCounts {
     pub rays: u64,
     /// Cuts that looked up light.
     pub cuts: CutCounts,
-    /// Luminance added to the radiance of samples, summed.
+    /// Luminance of reflected light that was added to the radiance of samples, summed.
     pub found: f64,
 }
 
@@ -71,26 +75,29 @@ struct Place {
 }
 
 impl NearLight {
-    /// Begins a patch with those `points` that made its cut, of which indirect leaves were limited to the luminances
-    /// `limits`, and adds what their `radiance` lacks.
+    /// Begins a patch with those `points` that made its cut, of light of one origin if `only` says so. Indirect leaves were
+    /// limited to the luminances `limits`. Adds what their `radiance` lacks.
     pub fn begin(
         &mut self,
         c: &Compensation,
+        only: Option<Origin>,
         points: &Points,
         limits: &[f32; LANES],
         radiance: &mut [Rgb; LANES],
     ) {
+        self.only = only;
         self.places.clear();
         self.trace(c, points, limits);
-        let mut weights = [0.0; LANES];
+        let known = irradiance(points, radiance);
+        let mut lacking = [0.0; LANES];
         for (lane, near) in &self.met {
-            weights[*lane] += luminance(near.weight) * (PI / RAYS as f32);
+            lacking[*lane] += (known * luminance(near.weight) + luminance(near.emitted)) * (PI / RAYS as f32);
         }
-        if weights.iter().all(|&weight| weight < NEGLIGIBLE) {
-            return;
+        self.lacks = lacking.iter().any(|&lacking| lacking > NEGLIGIBLE * known);
+        if self.lacks {
+            self.look_up(c, known);
+            self.add_met(c, points, radiance);
         }
-        self.look_up(c, irradiance(points, radiance));
-        self.add_met(c, points, radiance);
     }
 
     /// Adds what the `radiance` of further points of the patch lacks.
@@ -101,7 +108,7 @@ impl NearLight {
         limits: &[f32; LANES],
         radiance: &mut [Rgb; LANES],
     ) {
-        if !self.places.is_empty() {
+        if self.lacks {
             self.trace(c, points, limits);
             self.add_met(c, points, radiance);
         }
@@ -114,18 +121,22 @@ impl NearLight {
     }
 
     fn trace(&mut self, c: &Compensation, points: &Points, limits: &[f32; LANES]) {
+        let [direct, indirect] =
+            [Origin::Direct, Origin::Indirect].map(|origin| self.only.is_none_or(|only| only == origin));
         let clamped: Vec<Clamped> = (0..points.len())
             .map(|lane| {
                 let r = points.get(lane);
                 let base = luminance(r.base_brdf());
-                let bound = if base > 0.0 { c.bound(limits[lane] / base) } else { f32::INFINITY };
+                let bound = if indirect && base > 0.0 { c.bound(limits[lane] / base) } else { f32::INFINITY };
                 let (position, normal) = r.place();
                 let frame = Frame::from_normal(normal);
-                Clamped { position, geometric_normal: r.geometric_normal(), frame, bound }
+                let geometric_normal = r.geometric_normal();
+                Clamped { position, geometric_normal, frame, bound, direct: direct && base > 0.0 }
             })
             .collect();
         self.met.clear();
-        self.counts.rays += near::trace(c.world, &clamped, RAYS, |lane, near| self.met.push((lane, near)));
+        let met = &mut self.met;
+        self.counts.rays += near::trace(c, &clamped, RAYS, |lane, near| met.push((lane, near)));
     }
 
     /// Irradiance at some of what was met, in proportion to what it weighs. It is added to points that have the
@@ -135,6 +146,9 @@ impl NearLight {
         let mut order: Vec<u32> = (0..self.met.len() as u32).collect();
         order.sort_by_key(|&i| (self.met[i as usize].1.surface.mesh, self.met[i as usize].0));
         let total: f32 = self.met.iter().map(|(_, near)| luminance(near.weight)).sum();
+        if !(total > 0.0) {
+            return;
+        }
         let share = total / LANES as f32;
         let (mut reached, mut next) = (0.0, 0.5 * share);
         for i in order {
@@ -167,11 +181,12 @@ impl NearLight {
         for (lane, near) in &self.met {
             let r = points.get(*lane);
             let passed = r.coat_transmittance(near.surface.position - r.position());
-            let irradiance = interpolated(&self.places, near, least * least);
-            let found = r.base_brdf() * near.weight * irradiance * (passed * PI / RAYS as f32);
+            let reflected = near.weight * interpolated(&self.places, near, least * least);
+            let factor = r.base_brdf() * (passed * PI / RAYS as f32);
+            let found = factor * (reflected + near.emitted);
             if found.is_finite() {
                 radiance[*lane] += found;
-                self.counts.found += f64::from(luminance(found));
+                self.counts.found += f64::from(luminance(factor * reflected));
             }
         }
     }
@@ -197,5 +212,5 @@ fn interpolated(places: &[Place], near: &Near, least_sq: f32) -> Rgb {
         sum += place.irradiance * weight;
         weights += weight;
     }
-    sum / weights
+    if weights > 0.0 { sum / weights } else { Rgb::ZERO }
 }

@@ -21,4 +21,4 @@ pub use exhaustive::gather_all;
 pub use geometry::{OffsetBox, max_cos_to_cone};
 pub use receiver::Reflector;
 pub use refine::{CutCounts, CutEntry, CutSettings, Lightcut};
-pub use transfer::{Bound, MIN_DISTANCE, Transfer, Unoccluded, Visibility};
+pub use transfer::{Bound, Transfer, Unoccluded, Visibility};

@@ -8,11 +8,8 @@ use super::geometry::{OffsetBox, max_cos_to_cone};
 use super::receiver::Reflector;
 use crate::light_tree::Node;
 use crate::math::{Frame, Rgb};
-use crate::vpl::{SpotProfile, Vpl, VplKind};
+use crate::vpl::{SpotProfile, Vpl, VplKind, least_dist_sq, near_sq_of_size};
 use glam::Vec3;
-
-/// Distances below this fraction of the scene's diagonal count as this: it keeps a VPL on the receiver finite.
-pub const MIN_DISTANCE: f32 = 1e-5;
 
 /// What the transfer from all VPLs of a scene has in common.
 #[derive(Clone, Copy, Debug)]
@@ -21,13 +18,24 @@ pub struct Transfer<'a> {
     pub spots: &'a [SpotProfile],
     /// Least squared distance that the geometry term divides by.
     pub min_dist_sq: f32,
+    /// Whether VPLs on area lights divide by no less than the area that they stand for: what lies closer sees more of
+    /// the light than one point can stand for, and short rays find it (see [`crate::compensation`]).
+    pub patches: bool,
 }
 
 impl<'a> Transfer<'a> {
     /// For a scene of the given diagonal.
     pub fn new(spots: &'a [SpotProfile], diagonal: f32) -> Transfer<'a> {
-        let min_distance = (diagonal * MIN_DISTANCE).max(1e-18);
-        Transfer { spots, min_dist_sq: min_distance * min_distance }
+        Transfer { spots, min_dist_sq: least_dist_sq(diagonal), patches: false }
+    }
+
+    /// Least squared distance that the geometry term of a VPL divides by.
+    #[inline]
+    pub fn near_sq(&self, vpl: &Vpl, kind: VplKind) -> f32 {
+        match kind {
+            VplKind::Oriented if self.patches => near_sq_of_size(vpl.size(), self.min_dist_sq),
+            _ => self.min_dist_sq,
+        }
     }
 
     /// Contribution of a VPL of unit intensity, if visible.
@@ -52,7 +60,7 @@ impl<'a> Transfer<'a> {
         if emitted <= 0.0 {
             return Rgb::ZERO;
         }
-        receiver.response(wi) * (emitted / dist_sq.max(self.min_dist_sq))
+        receiver.response(wi) * (emitted / dist_sq.max(self.near_sq(vpl, kind)))
     }
 
     /// What is known of a cluster of unit intensity.

@@ -1,16 +1,19 @@
 //! The stages that methods over virtual lights share: the light pass and its trees.
 
 use super::Control;
+use crate::compensation::Compensation;
 use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::Transfer;
 use crate::stats::{Stage, Stats};
-use crate::vpl::{LightPassSettings, light_pass};
+use crate::vpl::{LightPassSettings, least_dist_sq, light_pass, near_sq_of_size};
 use crate::world::World;
 
 /// A scene's virtual lights.
 pub struct Lights {
     /// The trees over them.
     pub trees: LightTrees,
+    /// Squared distance below which a point cannot stand for the patch around it, by mesh; 0 where none shines.
+    near_sq: Vec<f32>,
     diagonal: f32,
 }
 
@@ -32,11 +35,19 @@ impl Lights {
 
         control.begin(Stage::Tree, 0);
         let build = || LightTrees::build(&found.sets, found.spots, world.diagonal, family);
-        Lights { trees: stats.time(Stage::Tree, build), diagonal: world.diagonal }
+        let trees = stats.time(Stage::Tree, build);
+        let least_sq = least_dist_sq(world.diagonal);
+        let near_sq = |&size: &u32| if size > 0 { near_sq_of_size(size, least_sq) } else { 0.0 };
+        Lights { trees, near_sq: found.sizes.iter().map(near_sq).collect(), diagonal: world.diagonal }
     }
 
-    /// What reaches a point from them.
-    pub fn transfer(&self) -> Transfer<'_> {
-        Transfer::new(&self.trees.spots, self.diagonal)
+    /// What reaches a point from them; `compensated` where short rays find what is lacking close to lights.
+    pub fn transfer(&self, compensated: bool) -> Transfer<'_> {
+        Transfer { patches: compensated, ..Transfer::new(&self.trees.spots, self.diagonal) }
+    }
+
+    /// What finds it.
+    pub fn compensation<'a>(&'a self, world: &'a World) -> Compensation<'a> {
+        Compensation::new(world, &self.trees, self.transfer(true), &self.near_sq)
     }
 }

@@ -1,7 +1,7 @@
 //! VPLs where light is emitted: stratified points on area lights, exact leaves for point, spot and directional
 //! lights, and luminance-stratified directions for the environment in a set of their own.
 
-use super::{LightPassSettings, Origin, SpotProfile, Vpl, VplKind, VplSet};
+use super::{LightPassSettings, Origin, SpotProfile, Vpl, VplKind, VplSet, size_of_area};
 use crate::light::{AreaLight, EnvironmentLight};
 use crate::sampling::{hash, owen_sobol_2d};
 use crate::scene::DeltaLight;
@@ -10,15 +10,34 @@ use crate::world::World;
 /// No area light is represented by fewer points a side: penumbrae would show bands.
 const MIN_PER_LIGHT: u32 = 256;
 
-/// The direct sets, empty ones included, and the profiles of the spot lights.
-pub fn direct_vpls(world: &World, settings: &LightPassSettings) -> (Vec<VplSet>, Vec<SpotProfile>) {
+/// What is emitted.
+pub struct DirectVpls {
+    /// The sets, empty ones included.
+    pub sets: Vec<VplSet>,
+    /// Profiles of the spot lights.
+    pub spots: Vec<SpotProfile>,
+    /// Size of the patches that the VPLs on each mesh stand for; 0 where it does not shine.
+    pub sizes: Vec<u32>,
+}
+
+/// VPLs where light is emitted.
+pub fn direct_vpls(world: &World, settings: &LightPassSettings) -> DirectVpls {
     let emitters = &world.emitters;
     let mut oriented = VplSet::new(VplKind::Oriented, Origin::Direct);
     let total_power: f64 = emitters.areas.iter().map(|a| f64::from(a.power)).sum();
+    let mut sizes = vec![0; world.scene.meshes.len()];
     for (i, light) in emitters.areas.iter().enumerate() {
         let share = f64::from(light.power) / total_power;
         let count = ((share * f64::from(settings.direct)).ceil() as u32).max(MIN_PER_LIGHT);
-        add_area_light(world, light, count, hash(settings.seed, 0x0a1e_a000 ^ i as u32), &mut oriented);
+        let size = size_of_area(light.area / count as f32, world.diagonal);
+        sizes[light.mesh as usize] = size;
+        add_area_light(
+            world,
+            light,
+            [count, size],
+            hash(settings.seed, 0x0a1e_a000 ^ i as u32),
+            &mut oriented,
+        );
     }
     let mut omni = VplSet::new(VplKind::Omni, Origin::Direct);
     let mut directional = VplSet::new(VplKind::Directional, Origin::Direct);
@@ -39,17 +58,17 @@ pub fn direct_vpls(world: &World, settings: &LightPassSettings) -> (Vec<VplSet>,
     if let Some(light) = &emitters.environment {
         add_environment(light, settings.direct.max(1), hash(settings.seed, 0x0e57), &mut environment);
     }
-    (vec![oriented, omni, directional, environment], spots)
+    DirectVpls { sets: vec![oriented, omni, directional, environment], spots, sizes }
 }
 
-fn add_area_light(world: &World, light: &AreaLight, count: u32, seed: u32, set: &mut VplSet) {
+fn add_area_light(world: &World, light: &AreaLight, [count, size]: [u32; 2], seed: u32, set: &mut VplSet) {
     let area = light.area / count as f32;
     for i in 0..count {
         let point = light.sample(owen_sobol_2d(i, seed));
         let radiance = light.radiance(&world.scene, &point, point.normal);
-        set.push(Vpl::oriented(point.position, point.normal), radiance * area);
+        set.push(Vpl::patch(point.position, point.normal, size), radiance * area);
         if light.emission.two_sided {
-            set.push(Vpl::oriented(point.position, -point.normal), radiance * area);
+            set.push(Vpl::patch(point.position, -point.normal, size), radiance * area);
         }
     }
 }

@@ -46,7 +46,7 @@ pub enum Origin {
 pub struct Vpl {
     /// Position, or for [`VplKind::Directional`] the unit direction towards the light.
     pub position: Vec3,
-    /// Oriented: normal, octahedral, 16 bits a coordinate. Omni: index of the spot profile + 1, or 0.
+    /// Oriented: size in the upper four bits, normal in the others. Omni: index of the spot profile + 1, or 0.
     word: u32,
 }
 
@@ -61,9 +61,16 @@ impl Vpl {
         Vpl { position, word: profile + 1 }
     }
 
-    /// A VPL that radiates by the cosine to the unit vector `normal` (kept to within 7e-5 rad).
+    /// A VPL that radiates by the cosine to the unit vector `normal` (kept to within 3e-4 rad).
     pub fn oriented(position: Vec3, normal: Vec3) -> Vpl {
         Vpl { position, word: octahedral::encode(normal) }
+    }
+
+    /// The same, standing for a patch of the given size (see [`size_of_area`]).
+    pub fn patch(position: Vec3, normal: Vec3, size: u32) -> Vpl {
+        let mut vpl = Vpl::oriented(position, normal);
+        vpl.word |= size.min(LARGEST_SIZE) << SIZE_SHIFT;
+        vpl
     }
 
     /// A VPL infinitely far in the unit direction `towards`.
@@ -77,11 +84,42 @@ impl Vpl {
         octahedral::decode(self.word)
     }
 
+    /// Size of the patch that an oriented VPL stands for; 0 if it is a point.
+    #[inline]
+    pub fn size(&self) -> u32 {
+        self.word >> SIZE_SHIFT
+    }
+
     /// Which spot profile restricts an omni VPL.
     #[inline]
     pub fn spot_profile(&self) -> Option<usize> {
         (self.word as usize).checked_sub(1)
     }
+}
+
+/// Distances below this fraction of the scene's diagonal count as this: it keeps a VPL on the receiver finite.
+pub const MIN_DISTANCE: f32 = 1e-5;
+
+/// The square of that distance.
+pub fn least_dist_sq(diagonal: f32) -> f32 {
+    let distance = (diagonal * MIN_DISTANCE).max(1e-18);
+    distance * distance
+}
+
+const SIZE_SHIFT: u32 = 28;
+const LARGEST_SIZE: u32 = 15;
+
+/// The size of a patch of the given area, in powers of four times the least squared distance.
+pub fn size_of_area(area: f32, diagonal: f32) -> u32 {
+    let steps = 0.5 * (area / least_dist_sq(diagonal)).log2();
+    // Not a number and what is too small become 0.
+    steps.round().clamp(0.0, LARGEST_SIZE as f32) as u32
+}
+
+/// Squared distance from which on a patch of that size may be taken for a point.
+#[inline]
+pub fn near_sq_of_size(size: u32, least_dist_sq: f32) -> f32 {
+    least_dist_sq * f32::from_bits((127 + 2 * size) << 23)
 }
 
 /// Angular profile of a spot light: 1 within `inner_angle`, falling linearly in angle to 0 at `outer_angle`.

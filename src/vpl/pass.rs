@@ -1,6 +1,6 @@
 //! The light pass: all VPLs of a scene.
 
-use super::direct::direct_vpls;
+use super::direct::{DirectVpls, direct_vpls};
 use super::indirect::indirect_vpls;
 use super::photons::PhotonCounts;
 use super::{SpotProfile, VplSet};
@@ -31,6 +31,8 @@ pub struct LightPass {
     pub sets: Vec<VplSet>,
     /// Profiles that spot lights among the omni VPLs refer to.
     pub spots: Vec<SpotProfile>,
+    /// Size of the patches that direct VPLs on each mesh stand for (see [`super::size_of_area`]).
+    pub sizes: Vec<u32>,
     /// What photon tracing took.
     pub photons: PhotonCounts,
 }
@@ -55,8 +57,8 @@ pub fn light_pass(
     max_depth: u32,
     control: &Control,
 ) -> LightPass {
-    let (mut sets, spots) = direct_vpls(world, settings);
+    let DirectVpls { mut sets, spots, sizes } = direct_vpls(world, settings);
     let (indirect, photons) = indirect_vpls(world, settings, max_depth, control);
     sets.push(indirect);
-    LightPass { sets, spots, photons }
+    LightPass { sets, spots, sizes, photons }
 }

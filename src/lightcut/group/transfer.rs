@@ -103,7 +103,7 @@ impl Transfer<'_> {
     pub fn unshadowed16(&self, points: &Points, vpl: &Vpl, kind: VplKind, responses: &mut RgbLanes) -> u16 {
         let mut one_by_one = points.general;
         match kind {
-            VplKind::Oriented => self.lambert_oriented(points, vpl.position, vpl.normal(), responses),
+            VplKind::Oriented => self.lambert_oriented(points, vpl, responses),
             VplKind::Directional => lambert_directional(points, vpl.position, responses),
             VplKind::Omni => one_by_one = points.valid,
         }
@@ -136,12 +136,13 @@ impl Transfer<'_> {
         let (mut wi, mut emitted) = (Vec3x16::default(), [1.0; LANES]);
         let frame = &points.frame;
         let (distant, normal) = (kind == VplKind::Directional, vpl.normal());
+        let near_sq = self.near_sq(vpl, kind);
         for l in 0..LANES {
             let x = Vec3::new(points.position[0][l], points.position[1][l], points.position[2][l]);
             let offset = if distant { vpl.position } else { vpl.position - x };
             let dist_sq = offset.length_squared();
             let towards = offset * if dist_sq > 0.0 { 1.0 / dist_sq.sqrt() } else { 0.0 };
-            let limited = if dist_sq > self.min_dist_sq { dist_sq } else { self.min_dist_sq };
+            let limited = if dist_sq > near_sq { dist_sq } else { near_sq };
             let local = |f: &Vec3Lanes| f[0][l] * towards.x + f[1][l] * towards.y + f[2][l] * towards.z;
             wi.set(l, Vec3::new(local(&frame[0]), local(&frame[1]), local(&frame[2])));
             emitted[l] = if distant { 1.0 } else { positive(-normal.dot(towards)) / limited };
@@ -159,11 +160,12 @@ impl Transfer<'_> {
     pub(super) fn incidence16(&self, points: &Points, vpl: &Vpl, kind: VplKind) -> Vec3Lanes {
         let mut vector = [[0.0; LANES]; 3];
         let n = &points.frame[2];
+        let near_sq = self.near_sq(vpl, kind);
         for l in 0..LANES {
             let x = Vec3::from_array(std::array::from_fn(|c| points.position[c][l]));
             let offset = if kind == VplKind::Directional { vpl.position } else { vpl.position - x };
             let dist_sq = offset.length_squared();
-            let limited = if dist_sq > self.min_dist_sq { dist_sq } else { self.min_dist_sq };
+            let limited = if dist_sq > near_sq { dist_sq } else { near_sq };
             let unit = if dist_sq > 0.0 { 1.0 / dist_sq } else { 0.0 };
             let scale = match kind {
                 VplKind::Directional => 1.0,
@@ -186,14 +188,16 @@ impl Transfer<'_> {
         vector
     }
 
-    fn lambert_oriented(&self, points: &Points, y: Vec3, normal: Vec3, responses: &mut RgbLanes) {
+    fn lambert_oriented(&self, points: &Points, vpl: &Vpl, responses: &mut RgbLanes) {
+        let (y, normal) = (vpl.position, vpl.normal());
+        let near_sq = self.near_sq(vpl, VplKind::Oriented);
         let (x, n) = (&points.position, &points.frame[2]);
         for l in 0..LANES {
             let (dx, dy, dz) = (y.x - x[0][l], y.y - x[1][l], y.z - x[2][l]);
             let dist_sq = dx * dx + dy * dy + dz * dz;
             let at_x = positive(dx * n[0][l] + dy * n[1][l] + dz * n[2][l]);
             let at_y = positive(-(dx * normal.x + dy * normal.y + dz * normal.z));
-            let limited = if dist_sq > self.min_dist_sq { dist_sq } else { self.min_dist_sq };
+            let limited = if dist_sq > near_sq { dist_sq } else { near_sq };
             // Cosines still lack one distance each.
             let unit = if dist_sq > 0.0 { 1.0 / dist_sq } else { 0.0 };
             let geometry = at_x * at_y * unit / limited;

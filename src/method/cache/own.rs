@@ -140,8 +140,7 @@ impl<'w> Cutters<'w> {
         cut: &CutSettings,
         lit: &mut Vec<(Job, Rgb)>,
     ) {
-        // Only indirect virtual lights are clamped.
-        let compensation = s.compensation.as_ref().filter(|_| cut.only != Some(Origin::Direct));
+        let compensation = s.compensation.as_ref();
         if !s.settings.shares(jobs.len()) {
             jobs.chunks(LANES).for_each(|jobs| self.alone(s, rays, samples, jobs, cut, compensation, lit));
             return;
@@ -153,7 +152,7 @@ impl<'w> Cutters<'w> {
         self.points.set(chosen(true).map(|job| reflector(samples, job)));
         self.group.gather(s.trees, &s.transfer, rays, &self.points, cut, &mut radiance);
         if let Some(c) = compensation {
-            self.near.begin(c, &self.points, self.group.limits(), &mut radiance);
+            self.near.begin(c, cut.only, &self.points, self.group.limits(), &mut radiance);
         }
         lit.extend(chosen(true).copied().zip(radiance));
         if lit.len() == jobs.len() {
@@ -205,7 +204,7 @@ impl<'w> Cutters<'w> {
         }
         if let Some(c) = compensation {
             self.points.set(jobs.iter().map(|job| reflector(samples, job)));
-            self.near.begin(c, &self.points, &limits, &mut radiance);
+            self.near.begin(c, cut.only, &self.points, &limits, &mut radiance);
         }
         lit.extend(jobs.iter().copied().zip(radiance));
     }

@@ -9,7 +9,6 @@ use super::picture::Picture;
 use crate::cache::compute::Source;
 use crate::cache::series::Glossy;
 use crate::cache::{CacheSettings, FoundBy};
-use crate::compensation::Compensation;
 use crate::eye::{EyeSamples, EyeSettings, Window};
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
@@ -158,8 +157,8 @@ impl<'w> Prepared<'w> {
 }
 
 fn source<'a>(world: &'a World, lights: &'a Lights, settings: &'a Settings) -> Source<'a> {
-    let (trees, transfer) = (&lights.trees, lights.transfer());
-    let compensation = settings.compensation.then(|| Compensation::new(world, trees, transfer));
+    let (trees, transfer) = (&lights.trees, lights.transfer(settings.compensation));
+    let compensation = settings.compensation.then(|| lights.compensation(world));
     Source { world, trees, transfer, settings: &settings.cache, compensation }
 }
 

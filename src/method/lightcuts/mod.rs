@@ -19,7 +19,7 @@
 //!
 //! Use it where a picture without noise is wanted and a small, smooth error is not in the way. Not for caustics on
 //! what the eye sees: light that reaches a visible surface through glass or by a mirror is missing there (what
-//! that surface reflects onto others is not), and clamping darkens creases.
+//! that surface reflects onto others is not).
 
 mod render;
 mod tile;

@@ -73,8 +73,8 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
 
     let light = LightPassSettings { seed: settings.seed, ..settings.light };
     let lights = Lights::new(world, &light, settings.family, max_depth, control, &mut stats);
-    let (trees, transfer) = (&lights.trees, lights.transfer());
-    let compensation = settings.compensation.then(|| Compensation::new(world, trees, transfer));
+    let (trees, transfer) = (&lights.trees, lights.transfer(settings.compensation));
+    let compensation = settings.compensation.then(|| lights.compensation(world));
     let scenery = Scenery { world, window, settings, trees, transfer, compensation, max_depth };
 
     // Tiles are aligned to the film, not to the window.

@@ -182,7 +182,7 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
             if let Some(c) = &s.compensation {
                 work.points.set([*reflector]);
                 let limits = [work.single.limit(); LANES];
-                work.near.begin(c, &work.points, &limits, &mut radiance);
+                work.near.begin(c, cut.only, &work.points, &limits, &mut radiance);
             }
             work.values[sample.place] += sample.throughput * radiance[0];
             work.cut_sizes[sample.place] += (work.single.counts.clusters - before) as f32;
@@ -192,7 +192,7 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
         let mut radiance = [Rgb::ZERO; LANES];
         work.group.gather(s.trees, &s.transfer, &work.shadows, &work.points, cut, &mut radiance);
         if let Some(c) = &s.compensation {
-            work.near.begin(c, &work.points, work.group.limits(), &mut radiance);
+            work.near.begin(c, cut.only, &work.points, work.group.limits(), &mut radiance);
         }
         for (&i, radiance) in work.members.iter().zip(radiance) {
             let sample = &mut work.samples[i];
