@@ -13,8 +13,9 @@ use std::collections::BinaryHeap;
 /// Least luminance of a lane where errors are judged, relative to the brightest lane's.
 const DARKEST: f32 = 1.0 / 256.0;
 
-/// The bits of an offender that say where it is.
-const PLACE: u64 = 0xffff_ffff;
+/// Largest relative error that is told from larger ones; sixteen of its cubes are still finite. No lane counts as
+/// darker than the largest error of a whole tree over this, so that errors have an order before anything lit is found.
+const LARGEST: f32 = 1e12;
 
 const ZERO: Lanes = [0.0; LANES];
 
@@ -36,7 +37,7 @@ pub(super) struct Entry {
 #[derive(Default)]
 pub struct GroupLightcut {
     pub(super) entries: Vec<Entry>,
-    /// Upper half of the offence's bits (non-negative floats sort as integers) above place in `entries`.
+    /// Offence (as bits: non-negative floats sort as integers) above place in `entries`.
     offenders: BinaryHeap<u64>,
     /// Luminance to which indirect leaves were clamped, by lane.
     limits: Lanes,
@@ -90,7 +91,8 @@ impl GroupLightcut {
             points,
             settings,
             totals: points.known,
-            tolerance: points.len() as f64 * f64::from(settings.epsilon).powi(3),
+            tolerance: points.len() as f32 * settings.epsilon.powi(3),
+            least_total: f32::MIN_POSITIVE,
             room: settings.max_cut,
             cut: self,
         };
@@ -201,7 +203,9 @@ struct Pass<'a, 't, 'm, V> {
     /// Luminance of the cut in each lane, as far as it counts.
     totals: Lanes,
     /// Largest offence that is tolerated: each lane's error at ε.
-    tolerance: f64,
+    tolerance: f32,
+    /// No lane counts as darker.
+    least_total: f32,
     /// Splits left before the cap.
     room: usize,
     cut: &'a mut GroupLightcut,
@@ -217,6 +221,9 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
             self.count(&entry);
             self.cut.entries.push(entry);
         }
+        let errors = self.cut.entries.iter().flat_map(|entry| entry.errors);
+        let largest = errors.fold(0.0, |a, b| if b > a { b } else { a });
+        self.least_total = (largest / LARGEST).max(f32::MIN_POSITIVE);
         let inverse_totals = self.inverse_totals();
         for place in 0..self.cut.entries.len() {
             self.watch(place, &inverse_totals);
@@ -278,7 +285,7 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
     /// What errors are multiplied with to be relative to each lane's total.
     fn inverse_totals(&self) -> Lanes {
         let brightest = halved(self.totals, |a, b| if b > a { b } else { a });
-        let floor = (DARKEST * brightest).max(f32::MIN_POSITIVE);
+        let floor = (DARKEST * brightest).max(self.least_total);
         self.totals.map(|total| 1.0 / if total > floor { total } else { floor })
     }
 
@@ -353,18 +360,18 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
     fn watch(&mut self, place: usize, inverse_totals: &Lanes) {
         let key = offence(&self.cut.entries[place].errors, inverse_totals);
         if key > 0.0 {
-            self.cut.offenders.push(key.to_bits() & !PLACE | place as u64);
+            self.cut.offenders.push(u64::from(key.to_bits()) << 32 | place as u64);
         }
     }
 }
 
-/// Sum over the lanes of the cubes of errors relative to the lane's total. In double precision: where nothing
-/// lit has been found yet, errors are compared with next to nothing, and their order still counts.
-fn offence(errors: &Lanes, inverse_totals: &Lanes) -> f64 {
+/// Sum over the lanes of the cubes of errors relative to the lane's total, which count as no more than `LARGEST`.
+fn offence(errors: &Lanes, inverse_totals: &Lanes) -> f32 {
     let mut cubes = [0.0; LANES];
-    for (cube, (error, inverse)) in cubes.iter_mut().zip(errors.iter().zip(inverse_totals)) {
-        let relative = f64::from(*error) * f64::from(*inverse);
-        *cube = relative * relative * relative;
+    for l in 0..LANES {
+        let relative = errors[l] * inverse_totals[l];
+        let relative = if relative < LARGEST { relative } else { LARGEST };
+        cubes[l] = relative * relative * relative;
     }
     halved(cubes, |a, b| a + b)
 }
