@@ -53,7 +53,7 @@ fn density_is_the_irradiance_inside_at_edges_at_walls_and_at_corners() {
         let (found, _) = estimates(&world, &photons, nearest);
         let floor: Vec<&Estimate> = found.iter().filter(|e| e.normal.y > 0.9).collect();
         let radius = floor.iter().map(|e| e.radius).sum::<f32>() / floor.len() as f32;
-        let lit = IrradianceMap::new(&found, photons.site_index);
+        let lit = IrradianceMap::new(&found, &photons.site_index);
         for (name, low, high, tolerance) in [
             ("inside", Vec2::new(0.2, -0.8), Vec2::new(0.8, 0.8), 0.02),
             ("edge", Vec2::new(0.2, 1.0 - radius), Vec2::new(0.8, 1.0), 0.05),
@@ -103,7 +103,7 @@ fn gathering_agrees_with_plain_sampling() {
     let world = room_with_shelf();
     let photons = map(&world, 30_000);
     let (found, _) = estimates(&world, &photons, 50);
-    let map = IrradianceMap::new(&found, photons.site_index);
+    let map = IrradianceMap::new(&found, &photons.site_index);
     let light = IndirectLight { world: &world, map: &map };
     let mut counts = GatherCounts::default();
     for position in [Vec3::new(0.4, -1.0, 0.1), Vec3::new(-0.6, -1.0, 0.0), Vec3::new(-0.5, -1.0, 0.8)] {

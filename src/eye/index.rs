@@ -111,34 +111,6 @@ impl EyeIndex {
             node = stack[height];
         }
     }
-
-    /// Calls `visit` with the leaves whose boxes come within a radius of `p`, near ones first as a rule. It is
-    /// given the leaf and the radius squared, and returns what that has shrunk to.
-    #[inline]
-    pub fn leaves_nearest(&self, p: Vec3, mut radius_sq: f32, mut visit: impl FnMut(usize, f32) -> f32) {
-        let mut stack = [(0usize, 0.0f32); 64];
-        let mut height = 0;
-        let mut next = (1, self.bounds[1].distance_squared(p));
-        loop {
-            let (mut node, mut distance_sq) = next;
-            while distance_sq <= radius_sq {
-                if node >= 1 << self.depth {
-                    radius_sq = visit(node - (1 << self.depth), radius_sq);
-                    break;
-                }
-                let [a, b] = [2 * node, 2 * node + 1].map(|i| (i, self.bounds[i].distance_squared(p)));
-                let (near, far) = if a.1 <= b.1 { (a, b) } else { (b, a) };
-                stack[height] = far;
-                height += 1;
-                (node, distance_sq) = near;
-            }
-            if height == 0 {
-                return;
-            }
-            height -= 1;
-            next = stack[height];
-        }
-    }
 }
 
 fn range(count: usize, level: u32, i: usize) -> Range<usize> {
@@ -206,27 +178,6 @@ mod tests {
                 });
                 let expected = points.iter().filter(|p| p.distance(x) <= radius).count();
                 assert_eq!(found.len(), expected);
-            }
-        }
-    }
-
-    #[test]
-    fn the_nearest_is_found_among_all() {
-        for n in [1u32, 40, 5000] {
-            let points = points(n);
-            let (index, order) = EyeIndex::build(points.iter().copied());
-            for x in [Vec3::ZERO, Vec3::new(0.3, 2.0, 0.2), Vec3::splat(9.0)] {
-                let (mut nearest, mut visits) = (f32::INFINITY, 0);
-                index.leaves_nearest(x, f32::INFINITY, |leaf, _| {
-                    visits += 1;
-                    for i in index.leaf(leaf) {
-                        nearest = nearest.min(points[order[i] as usize].distance_squared(x));
-                    }
-                    nearest
-                });
-                let expected = points.iter().map(|p| p.distance_squared(x)).fold(f32::INFINITY, f32::min);
-                assert_eq!(nearest, expected);
-                assert!(visits < 12, "{visits}");
             }
         }
     }

@@ -3,30 +3,46 @@
 //! Paper: Christensen 1999: one look-up at each hit of a final gathering, instead of an estimate.
 
 use super::density::{Estimate, LEAST_COS, surface_distance_sq};
+use super::nearest::NearestIndex;
 use crate::eye::EyeIndex;
-use crate::math::Rgb;
+use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, lanes_in, mask_of};
 use glam::Vec3;
 
-/// Estimates in the order of an index over them, as structures of arrays.
+/// Packets of estimates in a leaf: those of the index hold no more.
+const PACKETS: usize = 2;
+
+/// Places and unit normals of a leaf's estimates, as structures of arrays; normals are zero where there is none.
+#[derive(Clone, Debug, Default)]
+struct Leaf {
+    position: [Vec3x16; PACKETS],
+    normal: [Vec3x16; PACKETS],
+    /// Of its first estimate.
+    first: u32,
+}
+
+/// Estimates in the order of an index over them.
 pub struct IrradianceMap {
-    position: [Vec<f32>; 3],
-    normal: [Vec<f32>; 3],
-    irradiance: Vec<Rgb>,
-    /// Radii of the discs they are means over.
-    radius: Vec<f32>,
-    index: EyeIndex,
+    leaves: Vec<Leaf>,
+    index: NearestIndex,
+    /// Each with the radius of the disc it is the mean over.
+    irradiance: Vec<(Rgb, f32)>,
+    /// Square of how far the furthest-reaching reaches.
+    reach_sq: f32,
 }
 
 impl IrradianceMap {
     /// Of estimates in the order of the index.
-    pub fn new(estimates: &[Estimate], index: EyeIndex) -> IrradianceMap {
-        let of = |value: &dyn Fn(&Estimate) -> f32| estimates.iter().map(value).collect();
+    pub fn new(estimates: &[Estimate], index: &EyeIndex) -> IrradianceMap {
+        let leaves = (0..index.leaves())
+            .map(|leaf| Leaf::new(estimates, index.leaf(leaf).start, index.leaf(leaf).len()));
+        let positions: Vec<Vec3> = estimates.iter().map(|e| e.position).collect();
+        let furthest = REACH * estimates.iter().map(|e| e.radius).fold(0.0, f32::max);
         IrradianceMap {
-            position: [of(&|e| e.position.x), of(&|e| e.position.y), of(&|e| e.position.z)],
-            normal: [of(&|e| e.normal.x), of(&|e| e.normal.y), of(&|e| e.normal.z)],
-            irradiance: estimates.iter().map(|e| e.irradiance).collect(),
-            radius: of(&|e| e.radius),
-            index,
+            leaves: leaves.collect(),
+            index: NearestIndex::new(index, &positions),
+            irradiance: estimates.iter().map(|e| (e.irradiance, e.radius)).collect(),
+            // That the furthest-reaching counts at its very end.
+            reach_sq: (furthest * furthest).next_up(),
         }
     }
 
@@ -41,47 +57,59 @@ impl IrradianceMap {
     }
 
     /// Irradiance at a point of a surface with unit normal `normal`, and the radius of the disc it is the mean
-    /// over; `None` where the nearest estimate on a surface like it does not reach: so few photons came by that it is dark.
+    /// over; none where no light reaches, so that no photon is near.
     #[inline]
     pub fn at(&self, point: Vec3, normal: Vec3) -> Option<(Rgb, f32)> {
         let mut best = None;
-        let (position, normals) = (&self.position, &self.normal);
-        self.index.leaves_nearest(point, f32::INFINITY, |leaf, mut nearest| {
-            let range = self.index.leaf(leaf);
-            let (first, count) = (range.start, range.len().min(MOST_IN_LEAF));
-            let part = first..first + count;
-            // Slices of one length, so that the loop becomes vector code.
-            let (x, y, z) =
-                (&position[0][part.clone()], &position[1][part.clone()], &position[2][part.clone()]);
-            let (nx, ny, nz) =
-                (&normals[0][part.clone()], &normals[1][part.clone()], &normals[2][part.clone()]);
-            let mut distances = [f32::INFINITY; MOST_IN_LEAF];
-            for i in 0..count {
-                let offset = Vec3::new(x[i] - point.x, y[i] - point.y, z[i] - point.z);
-                let cos = nx[i] * normal.x + ny[i] * normal.y + nz[i] * normal.z;
-                let d = surface_distance_sq(offset, normal);
-                distances[i] = if cos >= LEAST_COS { d } else { f32::INFINITY };
-            }
-            for (i, &distance) in distances[..count].iter().enumerate() {
-                if distance < nearest {
-                    nearest = distance;
-                    best = Some((first + i, distance));
+        self.index.leaves(point, self.reach_sq, |leaf, mut nearest| {
+            let leaf = &self.leaves[leaf];
+            for packet in 0..PACKETS {
+                let distances = distances_sq(&leaf.position[packet], &leaf.normal[packet], point, normal);
+                let mut nearer: U32x16 = [0; LANES];
+                for i in 0..LANES {
+                    nearer[i] = u32::from(distances[i] < nearest);
+                }
+                for i in lanes_in(mask_of(&nearer)) {
+                    if distances[i] < nearest {
+                        nearest = distances[i];
+                        best = Some((leaf.first as usize + packet * LANES + i, nearest));
+                    }
                 }
             }
             nearest
         });
         let (i, distance_sq) = best?;
-        let reach = REACH * self.radius[i];
-        (distance_sq <= reach * reach).then_some((self.irradiance[i], self.radius[i]))
+        let (irradiance, radius) = self.irradiance[i];
+        let reach = REACH * radius;
+        (distance_sq <= reach * reach).then_some((irradiance, radius))
     }
+}
+
+impl Leaf {
+    fn new(estimates: &[Estimate], first: usize, count: usize) -> Leaf {
+        let mut leaf = Leaf { first: first as u32, ..Leaf::default() };
+        for (i, e) in estimates[first..].iter().take(count.min(PACKETS * LANES)).enumerate() {
+            leaf.position[i / LANES].set(i % LANES, e.position);
+            leaf.normal[i / LANES].set(i % LANES, e.normal);
+        }
+        leaf
+    }
+}
+
+/// Squares of the distances to sixteen estimates; infinite to those on surfaces turned elsewhere.
+#[inline(always)]
+fn distances_sq(positions: &Vec3x16, normals: &Vec3x16, point: Vec3, normal: Vec3) -> F32x16 {
+    let mut distances = [f32::INFINITY; LANES];
+    for i in 0..LANES {
+        let d = surface_distance_sq(positions.get(i) - point, normal);
+        distances[i] = if normals.get(i).dot(normal) >= LEAST_COS { d } else { f32::INFINITY };
+    }
+    distances
 }
 
 /// How far from its place an estimate is used, in radii of its disc. Were there as much light further on, photons would have
 /// left a site nearer by: of k photons in a disc, none but for e^(-k/4) of places.
 const REACH: f32 = 1.0;
-
-/// Leaves of the index hold no more.
-const MOST_IN_LEAF: usize = 32;
 
 #[cfg(test)]
 mod tests {
@@ -103,7 +131,7 @@ mod tests {
         let estimates: Vec<Estimate> = (0..3000).map(estimate).collect();
         let (index, order) = EyeIndex::build(estimates.iter().map(|e| e.position));
         let estimates: Vec<Estimate> = order.iter().map(|&i| estimates[i as usize]).collect();
-        let map = IrradianceMap::new(&estimates, index);
+        let map = IrradianceMap::new(&estimates, &index);
         for (point, normal, near) in [
             (Vec3::new(0.01, 0.5, 0.0), Vec3::Z, true),
             (Vec3::new(0.01, 0.5, 0.0), Vec3::NEG_Z, true),
@@ -118,6 +146,6 @@ mod tests {
             assert_eq!(map.at(point, normal), expected);
         }
         assert_eq!(map.at(Vec3::ZERO, Vec3::NEG_Y), None);
-        assert_eq!(IrradianceMap::new(&[], EyeIndex::build([].into_iter()).0).at(Vec3::ZERO, Vec3::Z), None);
+        assert_eq!(IrradianceMap::new(&[], &EyeIndex::build([].into_iter()).0).at(Vec3::ZERO, Vec3::Z), None);
     }
 }

@@ -5,7 +5,7 @@
 //!
 //! - [`map`]: the photons, in an order in which neighbours in space are neighbours in memory;
 //! - [`density`]: irradiance from the photons around a place; [`disc`]: which part of the disc around it is surface;
-//! - [`irradiance`]: the same looked up anywhere;
+//! - [`irradiance`]: the same looked up anywhere, by [`nearest`];
 //! - [`strata`]: the directions of a final gathering; [`hemisphere`]: what they meet, and how that changes nearby;
 //! - [`radiance`]: light along a ray; [`near`]: from surfaces nearer than the map resolves;
 //! - [`records`]: records of indirect light for the cache; [`own`]: light at single samples.
@@ -16,6 +16,7 @@ pub mod hemisphere;
 pub mod irradiance;
 pub mod map;
 pub mod near;
+pub mod nearest;
 pub mod own;
 pub mod radiance;
 pub mod records;

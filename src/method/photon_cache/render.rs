@@ -161,7 +161,7 @@ fn irradiance(
     control.begin(Stage::Tree, 0);
     let (map, rays) = stats.time(Stage::Tree, || {
         let (estimates, rays) = estimates(world, &photons, settings.nearest);
-        (IrradianceMap::new(&estimates, photons.site_index), rays)
+        (IrradianceMap::new(&estimates, &photons.site_index), rays)
     });
     stats.count("Photons/estimates of irradiance", map.len() as u64);
     stats.count("Rays/closest hit", rays);

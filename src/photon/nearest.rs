@@ -1,0 +1,162 @@
+//! The nearest of many points, by a hierarchy of boxes of which sixteen are tested at once.
+//!
+//! Paper: Wald, Benthin and Boulos, *Getting Rid of Packets*, 2008 (sixteen children a node, for rays).
+//! Every fourth level of an [`EyeIndex`], from its leaves up: what a query waits for is one node after the other, and there are three or
+//! four instead of twelve to sixteen.
+
+use crate::eye::EyeIndex;
+use crate::math::{F32x16, LANES, U32x16, lanes_in, mask_of};
+use glam::Vec3;
+
+/// Levels of the index that one node spans: sixteen children.
+const BITS: u32 = LANES.trailing_zeros();
+
+/// Nodes put off: fifteen a level, of which there are eight for 2³² leaves.
+const STACK: usize = 15 * 8;
+
+/// Boxes of sixteen children; those that do not exist are infinitely far from everything.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+struct Node {
+    min: [F32x16; 3],
+    max: [F32x16; 3],
+}
+
+impl Node {
+    const EMPTY: Node = Node { min: [[f32::INFINITY; LANES]; 3], max: [[f32::NEG_INFINITY; LANES]; 3] };
+
+    /// Squares of the distances from a point to the boxes.
+    #[inline(always)]
+    fn distances_sq(&self, p: [f32; 3]) -> F32x16 {
+        let mut sum = [0.0; LANES];
+        for ((min, max), p) in self.min.iter().zip(&self.max).zip(p) {
+            for i in 0..LANES {
+                let below = min[i] - p;
+                let above = p - max[i];
+                let out = if below > above { below } else { above };
+                let out = if out > 0.0 { out } else { 0.0 };
+                sum[i] += out * out;
+            }
+        }
+        sum
+    }
+}
+
+/// The hierarchy.
+pub struct NearestIndex {
+    /// Level after level from the root, which has 2^first children.
+    nodes: Vec<Node>,
+    /// Where each level begins in `nodes`.
+    levels: Vec<usize>,
+}
+
+impl NearestIndex {
+    /// Over the leaves of an index, whose points are at `positions`.
+    pub fn new(index: &EyeIndex, positions: &[Vec3]) -> NearestIndex {
+        let first = match index.depth() % BITS {
+            0 if index.depth() > 0 => BITS,
+            rest => rest,
+        };
+        let (mut nodes, mut levels) = (Vec::new(), Vec::new());
+        for level in (first..=index.depth()).step_by(BITS as usize) {
+            levels.push(nodes.len());
+            nodes.resize(nodes.len() + (1usize << level).div_ceil(LANES), Node::EMPTY);
+            let added = &mut nodes[levels[levels.len() - 1]..];
+            for child in 0..1usize << level {
+                let (node, lane) = (&mut added[child / LANES], child % LANES);
+                for p in &positions[index.range(level, child)] {
+                    for (axis, &x) in p.as_ref().iter().enumerate() {
+                        node.min[axis][lane] = node.min[axis][lane].min(x);
+                        node.max[axis][lane] = node.max[axis][lane].max(x);
+                    }
+                }
+            }
+        }
+        NearestIndex { nodes, levels }
+    }
+
+    /// Calls `visit` with the leaves whose boxes come within a radius of `p`, the nearest first and then near ones as a rule.
+    /// It is given the leaf and the radius squared, and returns what that has shrunk to.
+    #[inline]
+    pub fn leaves(&self, p: Vec3, mut radius_sq: f32, mut visit: impl FnMut(usize, f32) -> f32) {
+        let p = p.to_array();
+        let mut stack = [(0.0f32, 0u32, 0u32); STACK];
+        let mut height = 0;
+        let mut next = (0, 0);
+        loop {
+            let (level, node) = next;
+            match self.levels.get(level as usize) {
+                None => radius_sq = visit(node as usize, radius_sq),
+                Some(first) => {
+                    let distances = self.nodes[first + node as usize].distances_sq(p);
+                    let mut inside: U32x16 = [0; LANES];
+                    for i in 0..LANES {
+                        inside[i] = u32::from(distances[i] < radius_sq);
+                    }
+                    let mut nearest = (f32::INFINITY, 0, 0);
+                    for lane in lanes_in(mask_of(&inside)) {
+                        let child = (distances[lane], level + 1, LANES as u32 * node + lane as u32);
+                        let later =
+                            if child.0 < nearest.0 { std::mem::replace(&mut nearest, child) } else { child };
+                        if later.0 < f32::INFINITY {
+                            stack[height] = later;
+                            height += 1;
+                        }
+                    }
+                    if nearest.0 < radius_sq {
+                        next = (nearest.1, nearest.2);
+                        continue;
+                    }
+                }
+            }
+            next = loop {
+                if height == 0 {
+                    return;
+                }
+                height -= 1;
+                let (distance_sq, level, node) = stack[height];
+                if distance_sq < radius_sq {
+                    break (level, node);
+                }
+            };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::owen_sobol_2d;
+
+    #[test]
+    fn the_nearest_is_found_among_all_in_few_leaves() {
+        for n in [0u32, 1, 40, 100, 600, 5000, 70_000] {
+            let at = |i: u32| owen_sobol_2d(i, 1).extend(owen_sobol_2d(i, 2).x);
+            let (index, order) = EyeIndex::build((0..n).map(at).collect::<Vec<_>>().into_iter());
+            let points: Vec<Vec3> = order.iter().map(|&i| at(i)).collect();
+            let nearest_index = NearestIndex::new(&index, &points);
+            for x in [
+                Vec3::ZERO,
+                Vec3::new(0.3, 0.9, 0.2),
+                Vec3::splat(9.0),
+                points.first().map_or(Vec3::ONE, |p| *p),
+            ] {
+                let distances = || points.iter().map(|p| p.distance_squared(x));
+                let expected = distances().fold(f32::INFINITY, f32::min);
+                for radius_sq in [f32::INFINITY, 1.01 * expected + 1e-30, 0.5 * expected] {
+                    let (mut nearest, mut visits) = (radius_sq, 0);
+                    nearest_index.leaves(x, radius_sq, |leaf, radius_sq| {
+                        assert_eq!(radius_sq, nearest);
+                        visits += 1;
+                        for i in index.leaf(leaf) {
+                            nearest = nearest.min(points[i].distance_squared(x));
+                        }
+                        nearest
+                    });
+                    assert_eq!(nearest, expected.min(radius_sq), "{n} points, {x}");
+                    assert!(visits < 16, "{visits} of {} leaves", index.leaves());
+                }
+            }
+        }
+    }
+}
