@@ -15,12 +15,13 @@
 
 use super::disc::{self, Disc};
 use super::map::{PhotonMap, Site};
-use crate::math::Rgb;
+use crate::math::{LANES, Rgb, Vec3x16, lanes_in, mask_of};
 use crate::vpl::Photon;
 use crate::world::World;
 use glam::Vec3;
 use rayon::prelude::*;
 use std::f32::consts::PI;
+use std::ops::Range;
 
 /// Largest radius of a disc, as a fraction of the scene's diagonal: where photons are rarer, it is dark.
 const LARGEST_RADIUS: f32 = 0.05;
@@ -58,7 +59,7 @@ pub fn surface_distance_sq(offset: Vec3, normal: Vec3) -> f32 {
 pub fn estimates(world: &World, map: &PhotonMap, nearest: usize) -> (Vec<Estimate>, u64) {
     let by_leaf: Vec<Vec<Estimate>> = (0..map.site_index.leaves())
         .into_par_iter()
-        .map_init(Vec::new, |near, leaf| leaf_estimates(world, map, nearest, leaf, near))
+        .map_init(Candidates::default, |near, leaf| leaf_estimates(world, map, nearest, leaf, near))
         .collect();
     let all = by_leaf.concat();
     let rays = all.len() as u64 * disc::RAYS;
@@ -71,7 +72,7 @@ fn leaf_estimates(
     map: &PhotonMap,
     nearest: usize,
     leaf: usize,
-    near: &mut Vec<u32>,
+    near: &mut Candidates,
 ) -> Vec<Estimate> {
     let (photons, sites) = (&map.photons, &map.sites[map.site_index.leaf(leaf)]);
     let count = sites.len() as f32;
@@ -87,13 +88,11 @@ fn leaf_estimates(
     while found.iter().any(Option::is_none) {
         near.clear();
         map.index.leaves_near(centre, extent + radius, |leaf| {
-            near.extend(map.index.leaf(leaf).map(|i| i as u32));
+            near.extend(photons, map.index.leaf(leaf));
         });
         for (found, site) in found.iter_mut().zip(sites).filter(|(found, _)| found.is_none()) {
             distances.clear();
-            let distance =
-                |&j: &u32| distance_sq(site, &photons[j as usize], radius * radius).map(|d| (d, j));
-            distances.extend(near.iter().filter_map(distance));
+            near.within(site, radius * radius, &mut distances);
             if distances.len() >= nearest || radius >= largest {
                 *found = Some(estimate(world, photons, site, nearest, radius, &mut distances));
             }
@@ -103,12 +102,54 @@ fn leaf_estimates(
     found.into_iter().flatten().collect()
 }
 
-/// Square of the distance of a photon that counts at a site, if it is within the radius.
-#[inline]
-fn distance_sq(at: &Site, other: &Photon, radius_sq: f32) -> Option<f32> {
-    let distance = surface_distance_sq(other.position - at.position, at.normal);
-    let same = other.normal.dot(at.normal) >= LEAST_COS && other.towards_light.dot(at.normal) > 0.0;
-    (distance < radius_sq && same).then_some(distance)
+/// Photons that may be near sites, sixteen together.
+#[derive(Default)]
+struct Candidates {
+    /// Which photons; the last packet may be part empty.
+    photon: Vec<u32>,
+    position: Vec<Vec3x16>,
+    normal: Vec<Vec3x16>,
+    towards_light: Vec<Vec3x16>,
+}
+
+impl Candidates {
+    fn clear(&mut self) {
+        self.photon.clear();
+        for packets in [&mut self.position, &mut self.normal, &mut self.towards_light] {
+            packets.clear();
+        }
+    }
+
+    fn extend(&mut self, photons: &[Photon], range: Range<usize>) {
+        for i in range {
+            let (packet, lane) = (self.photon.len() / LANES, self.photon.len() % LANES);
+            if lane == 0 {
+                for packets in [&mut self.position, &mut self.normal, &mut self.towards_light] {
+                    packets.push(Vec3x16::default());
+                }
+            }
+            self.photon.push(i as u32);
+            self.position[packet].set(lane, photons[i].position);
+            self.normal[packet].set(lane, photons[i].normal);
+            self.towards_light[packet].set(lane, photons[i].towards_light);
+        }
+    }
+
+    /// Adds those that count at a site and are within the radius, with the squares of their distances.
+    fn within(&self, at: &Site, radius_sq: f32, distances: &mut Vec<(f32, u32)>) {
+        let Site { position, normal } = *at;
+        for (packet, photons) in self.photon.chunks(LANES).enumerate() {
+            let (p, n, l) = (&self.position[packet], &self.normal[packet], &self.towards_light[packet]);
+            let (mut distance, mut counts) = ([0.0; LANES], [0; LANES]);
+            for i in 0..LANES {
+                let d = surface_distance_sq(p.get(i) - position, normal);
+                // The normals of lanes without a photon are zero.
+                let same = (n.get(i).dot(normal) >= LEAST_COS) & (l.get(i).dot(normal) > 0.0);
+                (distance[i], counts[i]) = (d, u32::from(same & (d < radius_sq)));
+            }
+            distances.extend(lanes_in(mask_of(&counts)).map(|i| (distance[i], photons[i])));
+        }
+    }
 }
 
 fn estimate(
