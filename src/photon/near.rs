@@ -6,6 +6,7 @@
 //!
 //! Papers: Jensen 1996 (importance of near hits); Christensen 1999; Veach 1997 (the two ways to find light, weighted).
 
+use super::density::LEAST_COS;
 use super::radiance::{GatherCounts, IndirectLight};
 use crate::embree::{Hits16, Rays16};
 use crate::math::{F32x16, Frame, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in};
@@ -17,6 +18,9 @@ use std::f32::consts::FRAC_1_PI;
 
 /// Most edges added; what is nearer still after so many is taken from the map.
 const MOST_EDGES: u32 = 4;
+
+/// Most near surfaces that share what is found on one of them.
+const SHARED: usize = 4;
 
 /// Surfaces near to where their light goes.
 #[derive(Default)]
@@ -45,6 +49,45 @@ impl Near {
 }
 
 impl IndirectLight<'_> {
+    /// Adds to `radiance` what the near surfaces reflect that rays of neighbouring strata have met: of up to [`SHARED`] on
+    /// surfaces turned alike one is followed, drawn by chance, and its irradiance lent to the others.
+    pub fn follow_shared(
+        &self,
+        near: Near,
+        seed: u32,
+        radiance: &mut [Rgb; LANES],
+        counts: &mut GatherCounts,
+    ) {
+        if near.lanes == 0 {
+            return;
+        }
+        let (mut lender, mut chosen) = ([0; LANES], 0u16);
+        let mut left = near.lanes;
+        while left != 0 {
+            let normal = near.geometric.get(left.trailing_zeros() as usize);
+            let alike = |lane: &usize| near.geometric.get(*lane).dot(normal) >= LEAST_COS;
+            let group = || lanes_in(left).filter(alike).take(SHARED);
+            let of = group().count().max(1);
+            let drawn = hash(u32::from(left), seed) as usize % of;
+            let follows = group().nth(drawn).unwrap_or(left.trailing_zeros() as usize);
+            chosen |= 1 << follows;
+            // The first is always one of them, were its normal not a number.
+            let mut taken = left & left.wrapping_neg();
+            for lane in group() {
+                taken |= 1 << lane;
+            }
+            lanes_in(taken).for_each(|lane| lender[lane] = follows);
+            left &= !taken;
+        }
+        let mut lent = [Rgb::ZERO; LANES];
+        let (lanes, albedo) = (near.lanes, near.throughput);
+        let white = Vec3x16 { x: [1.0; LANES], y: [1.0; LANES], z: [1.0; LANES] };
+        self.follow(Near { lanes: chosen, throughput: white, ..near }, seed, &mut lent, counts);
+        for lane in lanes_in(lanes) {
+            radiance[lane] += albedo.get(lane) * lent[lender[lane]];
+        }
+    }
+
     /// Adds to `radiance` what the near surfaces reflect.
     pub fn follow(&self, mut near: Near, seed: u32, radiance: &mut [Rgb; LANES], counts: &mut GatherCounts) {
         for edge in 1..=MOST_EDGES {

@@ -64,7 +64,7 @@ pub struct IndirectLight<'w> {
 
 impl IndirectLight<'_> {
     /// Radiance along the rays of `valid` lanes, and the distances to what they meet (infinite: nothing). `seed` chooses among
-    /// what is followed.
+    /// what is followed. `coherent` rays are those of neighbouring strata.
     pub fn along16(
         &self,
         rays: &Rays16,
@@ -91,7 +91,10 @@ impl IndirectLight<'_> {
             }
             found[lane] = Seen { distance: hit.t, normal: facing(&surface, direction), ..nothing };
         }
-        self.follow(near, seed, &mut radiance, counts);
+        match coherent {
+            true => self.follow_shared(near, seed, &mut radiance, counts),
+            false => self.follow(near, seed, &mut radiance, counts),
+        }
         for (seen, radiance) in found.iter_mut().zip(radiance) {
             seen.radiance = radiance;
         }
