@@ -49,7 +49,7 @@ impl Near {
 }
 
 impl IndirectLight<'_> {
-    /// Adds to `radiance` what the near surfaces reflect that rays of neighbouring strata have met: of up to [`SHARED`] on
+    /// Adds to `radiance` what the near surfaces reflect that rays of neighbouring strata have met: of up to four on
     /// surfaces turned alike one is followed, drawn by chance, and its irradiance lent to the others.
     pub fn follow_shared(
         &self,
