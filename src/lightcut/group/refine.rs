@@ -139,7 +139,8 @@ impl GroupLightcut {
                 // Below this nothing is clamped: the frozen luminance is less than the unclamped one only if
                 // some leaf is a dominant part of it.
                 Some(clamp)
-                    if brightest_leaf[lane] > clamp.min(DOMINANT) * (luminance(unclamped) + known) =>
+                    if luminance(unclamped) + known > 0.0
+                        && brightest_leaf[lane] > clamp.min(DOMINANT) * (luminance(unclamped) + known) =>
                 {
                     let strong = Rgb::new(strong[0][lane], strong[1][lane], strong[2][lane]);
                     self.clamped_sum(trees, lane, strong, unclamped, known, clamp)
@@ -180,7 +181,8 @@ impl GroupLightcut {
         let mut frozen = luminance(unclamped) + known;
         for _ in 0..12 {
             let next = luminance(limited(DOMINANT * frozen).0) + known;
-            if next > 0.99 * frozen {
+            // Errors corrected at random may leave less than nothing besides the leaves.
+            if next > 0.99 * frozen || next <= 0.0 {
                 break;
             }
             frozen = next;

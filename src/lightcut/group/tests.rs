@@ -131,6 +131,8 @@ fn one_lane_clamps_as_a_single_point_does() {
     let mut set = room(2000, &mut Numbers(4));
     let x = Vec3::splat(0.5);
     set.push(Vpl::oriented(x + Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
+    // Below the horizon.
+    set.push(Vpl::oriented(x - Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
     let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive);
     let transfer = Transfer::new(&[], 1.7);
     let frame = crate::math::Frame::from_normal(Vec3::Y);
@@ -146,6 +148,13 @@ fn one_lane_clamps_as_a_single_point_does() {
     for (lane, radiance) in radiance.iter().enumerate().take(2) {
         let single = Lightcut::new().gather(&trees, &transfer, &Unoccluded, points.get(lane), &settings);
         assert!((luminance(*radiance) / luminance(single) - 1.0).abs() < 0.01, "{radiance} {single}");
+    }
+    // What random corrections leave besides the leaves may be anything.
+    let whole = luminance(radiance[0]);
+    for share in (0..200).map(|n| 0.01 * n as f32) {
+        let strong = [[-share * whole; LANES]; 3];
+        cut.sum(&trees, &points, settings.clamp, &strong, &mut radiance);
+        assert!(radiance.iter().all(|r| r.is_finite()), "{share}: {radiance:?}");
     }
 }
 
