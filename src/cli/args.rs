@@ -179,13 +179,13 @@ fn parse_ways(text: &str) -> Result<u32, String> {
 #[derive(Clone, Debug, Default, Args, PartialEq)]
 #[command(next_help_heading = "Photon map")]
 pub struct PhotonArgs {
-    /// Photons on diffuse surfaces, about [default: 300000]
+    /// Photons on diffuse surfaces, about [default: 600000]
     #[arg(long)]
     pub photons: Option<u32>,
     /// Photons in an estimate of irradiance, at least 16 [default: 64]
     #[arg(long, value_parser = clap::value_parser!(u32).range(16..))]
     pub nearest: Option<u32>,
-    /// Rays of a record's final gathering, about [default: 2000]
+    /// Rays of a record's final gathering, about [default: 1000]
     #[arg(long, value_parser = clap::value_parser!(u32).range(16..=1_000_000))]
     pub gather_rays: Option<u32>,
     /// Rays of a sample that records do not serve [default: 64]
@@ -395,7 +395,7 @@ mod tests {
             ("passes", cached.passes.to_string()),
             ("threshold", cached.threshold.to_string()),
             ("patches", cached.patches.to_string()),
-            ("least-cell", cached.least_cell.to_string()),
+            ("least-cell", format!("{}, {} for photon-cache", cached.least_cell, photon.cache.least_cell)),
             ("accuracy", format!("{},{}", cached.layers[0].accuracy, cached.layers[1].accuracy)),
             ("share", if cuts.share && cached.share { "on" } else { "off" }.to_owned()),
             ("occluder-slots", cuts.shadows.cache.slots.to_string()),

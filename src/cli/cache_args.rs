@@ -51,7 +51,8 @@ pub struct CacheArgs {
     /// others [default: 4096]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub patches: Option<u32>,
-    /// Cells of fewer eye samples get no record; their samples have cuts of their own [default: 256]
+    /// Cells of fewer eye samples get no record; their samples have cuts or gatherings of their own
+    /// [default: 256, 16 for photon-cache]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub least_cell: Option<u32>,
 }
