@@ -185,7 +185,7 @@ pub struct PhotonArgs {
     /// Photons in an estimate of irradiance, at least 16 [default: 64]
     #[arg(long, value_parser = clap::value_parser!(u32).range(16..))]
     pub nearest: Option<u32>,
-    /// Rays of a record's final gathering, about [default: 1000]
+    /// Rays of a record's final gathering, about [default: 2000]
     #[arg(long, value_parser = clap::value_parser!(u32).range(16..=1_000_000))]
     pub gather_rays: Option<u32>,
     /// Rays of a sample that records do not serve [default: 64]

@@ -52,7 +52,7 @@ pub struct CacheArgs {
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub patches: Option<u32>,
     /// Cells of fewer eye samples get no record; their samples have cuts or gatherings of their own
-    /// [default: 256, 16 for photon-cache]
+    /// [default: 256, 32 for photon-cache]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub least_cell: Option<u32>,
 }
