@@ -8,6 +8,7 @@
 
 use super::Compensation;
 use super::near::{self, Clamped, Near};
+use crate::light_tree::LightTrees;
 use crate::lightcut::group::{GroupLightcut, LANES, Points};
 use crate::lightcut::{CutCounts, CutSettings, Reflector};
 use crate::math::{Frame, Rgb, luminance};
@@ -167,11 +168,11 @@ impl NearLight {
             Reflector::collector(p.position, p.geometric_normal, &Frame::from_normal(p.normal)).knowing(known)
         };
         self.points.set(self.places.iter().map(collector));
-        let mut irradiance = [Rgb::ZERO; LANES];
         let settings =
             CutSettings { epsilon: EPSILON, max_cut: MAX_CUT, clamp: Some(CLAMP), ..CutSettings::default() };
-        self.group.gather(c.trees, &c.transfer, c.world, &self.points, &settings, &mut irradiance);
-        for (place, irradiance) in self.places.iter_mut().zip(irradiance) {
+        self.group.gather(c.trees, &c.transfer, c.world, &self.points, &settings, &mut [Rgb::ZERO; LANES]);
+        for (lane, place) in self.places.iter_mut().enumerate() {
+            let irradiance = limited(c.trees, &self.group, lane, known);
             place.irradiance = if irradiance.is_finite() { irradiance } else { Rgb::ZERO };
         }
     }
@@ -190,6 +191,34 @@ impl NearLight {
             }
         }
     }
+}
+
+/// Irradiance of a place by the last cut of `group`, of which no indirect cluster may give more than ε of the light that it
+/// is added to: so coarse a cut leaves clusters whose representative happens to be next to the place.
+fn limited(trees: &LightTrees, group: &GroupLightcut, lane: usize, known: f32) -> Rgb {
+    let sum = |limit: f32| {
+        let given = group.entries().map(|(node, responses)| {
+            let node = &trees.nodes[node as usize];
+            let given = node.intensity * Rgb::from_array(responses.each_ref().map(|row| row[lane]));
+            let most = match node.origin() {
+                Origin::Direct => f32::INFINITY,
+                Origin::Indirect if node.is_leaf() => group.limit(lane).min(limit),
+                Origin::Indirect => limit,
+            };
+            let y = luminance(given);
+            if y > most { given * (most / y) } else { given }
+        });
+        given.sum::<Rgb>()
+    };
+    let mut irradiance = sum(f32::INFINITY);
+    for _ in 0..8 {
+        let total = luminance(irradiance) + known;
+        irradiance = sum(EPSILON * total);
+        if luminance(irradiance) + known > 0.99 * total {
+            break;
+        }
+    }
+    irradiance
 }
 
 /// Mean luminance of the irradiance that would reflect this radiance from the base alone.
