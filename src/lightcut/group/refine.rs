@@ -332,7 +332,13 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
             ZERO
         } else {
             self.cut.counts.bounds += self.points.len() as u64;
-            self.transfer.errors16(self.points, n)
+            let mut errors = self.transfer.errors16(self.points, n);
+            let least = self.settings.epsilon / DOMINANT;
+            for l in 0..LANES {
+                let doubt = least * counted[l];
+                errors[l] = if doubt > errors[l] { doubt } else { errors[l] };
+            }
+            errors
         };
         Entry { node, weak, responses: *responses, errors, counted }
     }
