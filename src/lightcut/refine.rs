@@ -4,7 +4,8 @@
 //! Paper: Walter et al., *Lightcuts*, 2005, section 3; Herzog et al. 2009, section 3 (one threshold for all
 //! trees, relative to their common total) and Eq. 13 (weak singularities).
 //! Deviations: the error of a cluster is not its upper bound but what is to be expected under that bound (see
-//! [`super::expected`]); up to [`BATCH`] offenders are split a round; a leaf's error is 0, so it never waits to be split;
+//! [`super::expected`]), but a cluster that gives more than a quarter of the total is split whatever is to be expected
+//! of it; up to [`BATCH`] offenders are split a round; a leaf's error is 0, so it never waits to be split;
 //! weak singularities are clamped once, when the cut is final, against a luminance in which no single indirect
 //! leaf counts for more than a quarter: a VPL close to the receiver would otherwise set its own limit,
 //! and hide the error of all others while the cut is refined.
@@ -284,7 +285,10 @@ impl<V: Visibility> Pass<'_, '_, '_, V> {
         }
         self.cut.counts.bounds += 1;
         let bound = self.transfer.bound(self.receiver, node);
-        let error = luminance(bound.most * node.intensity) * bound.share;
+        // A representative next to the receiver passes its nearness on to the whole cluster: one that gives more than
+        // a quarter of the total is split, whatever is to be expected.
+        let doubt = self.settings.epsilon / DOMINANT * self.cut.entries[place].counted;
+        let error = (luminance(bound.most * node.intensity) * bound.share).max(doubt);
         if error > 0.0 {
             self.cut.offenders.push(u64::from(error.to_bits()) << 32 | place as u64);
         }

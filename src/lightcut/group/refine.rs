@@ -333,6 +333,7 @@ impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
         } else {
             self.cut.counts.bounds += self.points.len() as u64;
             let mut errors = self.transfer.errors16(self.points, n);
+            // As in the single-point cut: more than a quarter of the total offends, whatever is to be expected.
             let least = self.settings.epsilon / DOMINANT;
             for l in 0..LANES {
                 let doubt = least * counted[l];
