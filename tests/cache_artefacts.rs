@@ -25,16 +25,13 @@ fn block(low: Vec3, high: Vec3, material: MaterialId) -> Vec<lightsplat::scene::
 /// Half of the room, behind a thin wall that leaves a gap towards the eye, is lit by what the other half reflects. A block stands
 /// on the floor of the lit half, a sheet floats in either.
 fn divided_room() -> World {
-    let mut scene = scene(camera(Vec3::new(0.0, 0.3, 0.98), Vec3::new(0.0, -0.25, 0.0), 1.0), [SIZE, SIZE]);
-    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));
-    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    let (mut scene, wall) =
+        lit_room(camera(Vec3::new(0.0, 0.3, 0.98), Vec3::new(0.0, -0.25, 0.0), 1.0), SIZE);
     scene.meshes.extend(block(Vec3::new(-0.01, -1.0, -1.0), Vec3::new(0.01, 1.0, 0.4), wall));
     scene.meshes.extend(block(Vec3::new(-0.7, -1.0, -0.6), Vec3::new(-0.4, -0.7, -0.3), wall));
     for x in [-0.6, 0.3] {
         scene.meshes.push(quad(Vec3::new(x, -0.2, -0.8), Vec3::X * 0.3, Vec3::new(0.0, -0.1, 0.4), wall));
     }
-    let lamp = quad(Vec3::new(-0.7, 0.98, -0.3), Vec3::X * 0.4, Vec3::Z * 0.4, wall);
-    scene.meshes.push(emitting(lamp, Rgb::splat(20.0)));
     world(scene)
 }
 

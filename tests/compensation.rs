@@ -57,11 +57,7 @@ fn the_furnace_is_white_although_close_lights_are_clamped() {
 /// What lies along the creases of a room, against paths.
 #[test]
 fn creases_are_as_bright_as_paths_make_them() {
-    let mut scene = scene(camera(Vec3::new(0.0, 0.2, 0.98), Vec3::new(0.0, -0.8, -0.2), 0.8), [SIZE, SIZE]);
-    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));
-    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
-    let lamp = quad(Vec3::new(-0.7, 0.98, -0.3), Vec3::X * 0.4, Vec3::Z * 0.4, wall);
-    scene.meshes.push(emitting(lamp, Rgb::splat(20.0)));
+    let (scene, _) = lit_room(camera(Vec3::new(0.0, 0.2, 0.98), Vec3::new(0.0, -0.8, -0.2), 0.8), SIZE);
     let world = world(scene);
     let window = Window::whole([SIZE, SIZE]);
     let in_crease = |i: u32| {

@@ -4,7 +4,9 @@ use super::{Control, Output, cache, lightcuts, path, photon_cache};
 use crate::cache::{CacheSettings, Footprints, FoundBy};
 use crate::eye::{EyeSamples, Look, Window};
 use crate::light_tree::Family;
+use crate::lightcut::CutSettings;
 use crate::shadow::ShadowSettings;
+use crate::vpl::LightPassSettings;
 use crate::world::World;
 use serde_json::{Value, json};
 
@@ -92,44 +94,59 @@ impl Method {
 }
 
 fn cache_report(s: &cache::Settings) -> Value {
-    let own = json!({
-        "spp": s.spp,
-        "seed": s.seed,
-        "max_depth": s.max_depth,
-        "epsilon": decimal(s.cut.epsilon),
-        "max_cut": s.cut.max_cut,
-        "vpls": s.light.indirect,
-        "direct_vpls": s.light.direct,
-        "clamp": decimal(s.cut.clamp.unwrap_or(0.0)),
-        "tree": family_name(s.family),
-        "compensation": switch(s.compensation),
-    });
-    joined(own, records_report(&s.cache))
+    let own = vpls_report(&s.light, &s.cut, s.compensation);
+    joined([cuts_report(s.spp, s.seed, s.max_depth, &s.cut, s.family), own, records_report(&s.cache)])
 }
 
 fn photon_report(s: &photon_cache::Settings) -> Value {
     let own = json!({
-        "spp": s.spp,
-        "seed": s.seed,
-        "max_depth": s.max_depth,
-        "epsilon": decimal(s.cut.epsilon),
-        "max_cut": s.cut.max_cut,
         "direct_vpls": s.direct_vpls,
-        "tree": family_name(s.family),
         "photons": s.photons,
         "nearest": s.nearest,
         "gather_rays": s.rays,
         "sample_rays": s.own_rays,
     });
-    joined(own, records_report(&s.cache))
+    joined([cuts_report(s.spp, s.seed, s.max_depth, &s.cut, s.family), own, records_report(&s.cache)])
 }
 
-/// Members of both objects.
-fn joined(mut a: Value, b: Value) -> Value {
-    if let (Some(a), Value::Object(b)) = (a.as_object_mut(), b) {
-        a.extend(b);
-    }
-    a
+fn lightcuts_report(s: &lightcuts::Settings) -> Value {
+    let own = json!({ "share": switch(s.share), "occluder_cache": occluders(&s.shadows, s.share) });
+    let vpls = vpls_report(&s.light, &s.cut, s.compensation);
+    joined([cuts_report(s.spp, s.seed, s.max_depth, &s.cut, s.family), vpls, own])
+}
+
+/// What all methods have that cut light trees.
+fn cuts_report(spp: u32, seed: u32, max_depth: Option<u32>, cut: &CutSettings, family: Family) -> Value {
+    json!({
+        "spp": spp,
+        "seed": seed,
+        "max_depth": max_depth,
+        "epsilon": decimal(cut.epsilon),
+        "max_cut": cut.max_cut,
+        "tree": match family {
+            Family::Divisive => "divisive",
+            Family::Agglomerative => "agglomerative",
+        },
+    })
+}
+
+/// What those have whose indirect light comes from virtual lights.
+fn vpls_report(light: &LightPassSettings, cut: &CutSettings, compensation: bool) -> Value {
+    json!({
+        "vpls": light.indirect,
+        "direct_vpls": light.direct,
+        "clamp": decimal(cut.clamp.unwrap_or(0.0)),
+        "compensation": switch(compensation),
+    })
+}
+
+/// Members of all objects.
+fn joined(objects: [Value; 3]) -> Value {
+    objects
+        .into_iter()
+        .filter_map(|object| if let Value::Object(o) = object { Some(o) } else { None })
+        .flatten()
+        .collect()
 }
 
 fn records_report(c: &CacheSettings) -> Value {
@@ -164,23 +181,6 @@ fn found_by(found: FoundBy) -> &'static str {
     }
 }
 
-fn lightcuts_report(s: &lightcuts::Settings) -> Value {
-    json!({
-                "spp": s.spp,
-                "seed": s.seed,
-                "max_depth": s.max_depth,
-                "epsilon": decimal(s.cut.epsilon),
-                "max_cut": s.cut.max_cut,
-                "vpls": s.light.indirect,
-                "direct_vpls": s.light.direct,
-                "clamp": decimal(s.cut.clamp.unwrap_or(0.0)),
-                "tree": family_name(s.family),
-                "compensation": switch(s.compensation),
-                "share": switch(s.share),
-                "occluder_cache": occluders(&s.shadows, s.share),
-    })
-}
-
 fn switch(on: bool) -> &'static str {
     if on { "on" } else { "off" }
 }
@@ -191,13 +191,6 @@ fn occluders(shadows: &ShadowSettings, share: bool) -> Value {
     match shadows.for_samples(share) {
         true => json!({ "slots": size.slots, "ways": size.ways }),
         false => json!("off"),
-    }
-}
-
-fn family_name(family: Family) -> &'static str {
-    match family {
-        Family::Divisive => "divisive",
-        Family::Agglomerative => "agglomerative",
     }
 }
 

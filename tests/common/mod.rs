@@ -73,6 +73,16 @@ pub fn room(low: Vec3, high: Vec3, material: MaterialId) -> Vec<Mesh> {
     ]
 }
 
+/// A square room from -1 to 1 with a lamp below its ceiling, square pixels.
+pub fn lit_room(camera: Camera, size: u32) -> (Scene, MaterialId) {
+    let mut scene = scene(camera, [size, size]);
+    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));
+    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    let lamp = quad(Vec3::new(-0.7, 0.98, -0.3), Vec3::X * 0.4, Vec3::Z * 0.4, wall);
+    scene.meshes.push(emitting(lamp, Rgb::splat(20.0)));
+    (scene, wall)
+}
+
 pub fn emitting(mut mesh: Mesh, radiance: Rgb) -> Mesh {
     mesh.emission = Some(Emission { radiance, texture: None, two_sided: false });
     mesh

@@ -33,18 +33,8 @@ use store::Store;
 
 /// What a study is given.
 pub struct Study<'a> {
-    /// Threads that render.
-    pub threads: usize,
-    /// How often a picture is rendered; the run that took the least processor time counts.
-    pub repeats: usize,
-    /// Width and height of the pictures.
-    pub resolution: [u32; 2],
-    /// How good references are to be.
-    pub reference: ReferenceSettings,
-    /// Points of a designed sample, where there is one.
-    pub samples: u32,
-    /// Names of the settings that are varied, where any are; if there are none, all.
-    pub knobs: Vec<String>,
+    /// What was chosen.
+    pub plan: Plan,
     /// Stops the study between pictures and within them.
     pub control: &'a Control,
     /// Called with what is being done.
@@ -66,17 +56,17 @@ pub struct Document {
 pub struct Plan {
     /// Where results are kept.
     pub folder: PathBuf,
-    /// See [`Study`].
+    /// Threads that render.
     pub threads: usize,
-    /// See [`Study`].
+    /// How often a picture is rendered; the run that took the least processor time counts.
     pub repeats: usize,
-    /// See [`Study`].
+    /// Width and height of the pictures.
     pub resolution: [u32; 2],
-    /// See [`Study`].
+    /// How good references are to be.
     pub reference: ReferenceSettings,
-    /// See [`Study`].
+    /// Points of a designed sample, where there is one.
     pub samples: u32,
-    /// See [`Study`].
+    /// Names of the settings that are varied, where any are; if there are none, all.
     pub knobs: Vec<String>,
 }
 
@@ -131,9 +121,8 @@ impl<'a> Study<'a> {
         control: &'a Control,
         say: &'a (dyn Fn(&str) + Sync),
     ) -> Result<Study<'a>, StudyError> {
-        let Plan { folder, threads, repeats, resolution, reference, samples, knobs } = plan;
-        let store = Store::open(&folder)?;
-        Ok(Study { threads, repeats, resolution, reference, samples, knobs, control, say, store })
+        let store = Store::open(&plan.folder)?;
+        Ok(Study { plan, control, say, store })
     }
 
     /// Loads a scene.
@@ -143,13 +132,13 @@ impl<'a> Study<'a> {
 
     /// What the figures depend on, by name.
     pub fn facts(&self) -> Vec<(String, String)> {
-        let [width, height] = self.resolution;
+        let [width, height] = self.plan.resolution;
         vec![
             ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
             ("program".to_owned(), program()),
             ("pixels".to_owned(), format!("{width}x{height}")),
-            ("threads".to_owned(), self.threads.to_string()),
-            ("runs a picture".to_owned(), self.repeats.to_string()),
+            ("threads".to_owned(), self.plan.threads.to_string()),
+            ("runs a picture".to_owned(), self.plan.repeats.to_string()),
         ]
     }
 }

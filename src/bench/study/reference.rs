@@ -71,7 +71,7 @@ pub(super) fn reference(study: &Study, subject: &Subject, look: Look) -> Result<
     let name = format!("{}, reference{of}", subject.name);
     let key = json!({
         "scene": format!("{:016x}", subject.hash),
-        "film": study.resolution,
+        "film": study.plan.resolution,
         "version": env!("CARGO_PKG_VERSION"),
         "method": "path",
         "look": format!("{look:?}"),
@@ -80,11 +80,11 @@ pub(super) fn reference(study: &Study, subject: &Subject, look: Look) -> Result<
         Some(kept) => Progress::resume(kept),
         None => None,
     }
-    .unwrap_or_else(|| Progress::new(study.resolution));
-    while progress.each * 2 < study.reference.spp
-        && (progress.rounds == 0 || progress.seconds < study.reference.seconds)
+    .unwrap_or_else(|| Progress::new(study.plan.resolution));
+    while progress.each * 2 < study.plan.reference.spp
+        && (progress.rounds == 0 || progress.seconds < study.plan.reference.seconds)
     {
-        let spp = (study.reference.spp.div_ceil(2) - progress.each).min(ROUND);
+        let spp = (study.plan.reference.spp.div_ceil(2) - progress.each).min(ROUND);
         // Each place equally often.
         progress.round(study, subject, look, spp.next_multiple_of(cycle))?;
         study.store.save(&name, &key, &progress.kept())?;
@@ -156,10 +156,17 @@ impl Progress {
     }
 
     fn finish(self) -> Reference {
-        let mean = mean(&self.halves);
+        Reference::of_halves(self.halves, self.each * 2, self.cpu_seconds)
+    }
+}
+
+impl Reference {
+    /// Of independent halves, both together of `spp` samples a pixel.
+    pub(super) fn of_halves(halves: [Image; 2], spp: u32, cpu_seconds: f64) -> Reference {
+        let mean = mean(&halves);
         let exposure = tone::auto_factor(&mean);
-        let noise = Noise::of(&mean, &self.halves, exposure, self.each * 2, self.cpu_seconds);
-        Reference { mean, halves: self.halves, noise, exposure }
+        let noise = Noise::of(&mean, &halves, exposure, spp, cpu_seconds);
+        Reference { mean, halves, noise, exposure }
     }
 }
 

@@ -39,10 +39,10 @@ impl Study<'_> {
         let name = format!("{}, {}", subject.name, candidate.label);
         let key = json!({
             "scene": format!("{:016x}", subject.hash),
-            "film": self.resolution,
+            "film": self.plan.resolution,
             "program": program(),
-            "threads": self.threads,
-            "repeats": self.repeats,
+            "threads": self.plan.threads,
+            "repeats": self.plan.repeats,
             "method": method.name(),
             // All settings, those without a name on the command line too.
             "settings": format!("{method:?}"),
@@ -53,7 +53,7 @@ impl Study<'_> {
             return Ok(Run { color: kept.color, stats: kept.facts });
         }
         let mut best: Option<Run> = None;
-        for _ in 0..self.repeats.max(1) {
+        for _ in 0..self.plan.repeats.max(1) {
             let output = method.render(&subject.world, &subject.window, self.control);
             if !output.complete {
                 return Err(StudyError::Interrupted);

@@ -38,9 +38,9 @@ impl Subject {
         let hash = hash_debug(&scene);
         scene.sources = sources;
         let triangles = scene.meshes.iter().map(|m| m.triangles.len()).sum();
-        let world = World::new(scene, study.threads)
+        let world = World::new(scene, study.plan.threads)
             .map_err(|source| StudyError::Build { path: path.to_owned(), source })?;
-        let window = Window::whole(study.resolution);
+        let window = Window::whole(study.plan.resolution);
         Ok(Subject { name: world.scene.name.clone(), hash, triangles, world, window })
     }
 }

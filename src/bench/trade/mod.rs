@@ -121,7 +121,7 @@ const DESIGN: u32 = 1;
 
 fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
     // Before anything is rendered.
-    chosen(&study.knobs)?;
+    chosen(&study.plan.knobs)?;
     let mut trade = Trade { facts: study.facts(), scenes: Vec::new() };
     for path in scenes {
         let subject = study.subject(path)?;
@@ -158,7 +158,7 @@ fn scene(study: &Study, subject: &Subject) -> Result<SceneTrade, StudyError> {
     for (label, method) in others() {
         judge.point(label, "", Sort::Other, method, true)?;
     }
-    let knobs = chosen(&study.knobs)?;
+    let knobs = chosen(&study.plan.knobs)?;
     let sweeps: Vec<Sweep> = knobs.iter().map(|knob| judge.sweep(knob)).collect::<Result<_, _>>()?;
     let effects = judge.sample(&knobs)?;
     let Judge { reference, light, mut points, .. } = judge;
@@ -264,7 +264,7 @@ impl Judge<'_> {
         let knobs: Vec<&Knob> = knobs.iter().filter(|knob| knob.judged_by != JudgedBy::Flip).collect();
         let mut places = vec![Vec::new(); knobs.len()];
         let (mut errors, mut times) = (Vec::new(), Vec::new());
-        for index in 0..self.study.samples {
+        for index in 0..self.study.plan.samples {
             let mut sampler = Sampler::new(DESIGN, index);
             let mut settings = Settings::default();
             let mut turned = Vec::new();
