@@ -33,7 +33,7 @@ pub fn about(scene: &SceneTable) -> String {
     let noise = &scene.reference;
     format!(
         "{} triangles. Reference: {} paths a pixel, {:.0} s; its own standard error is {:.2} % of the mean radiance, \
-         a relMSE of {} (taken off the relMSE below, which may so fall below 0, and which leaves out the noisiest pixel in 200) and a PSNR of {} dB; FLIP between its \
+         a relMSE of {} (taken off the relMSE below, which may so fall below 0, and which leaves out the worst pixel of a thousand) and a PSNR of {} dB; FLIP between its \
          halves, which differ by twice its noise, is {}. Reference of the eye samples (\"light\"): {} paths, a relMSE \
          of {}.",
         scene.triangles,

@@ -43,7 +43,7 @@ pub fn about(scene: &SceneTrade) -> String {
     format!(
         "From the limit: relative RMSE against lightcuts of a quarter of the error on the same virtual lights, what cuts and \
          records add. Light error: relative RMSE against {} paths through each pixel's eye samples, whose own noise, {} of relMSE, is \
-         taken off, the noisiest pixel in 200 left out; it holds what virtual lights and their clamping get wrong. FLIP: against {} paths over each pixel, whose halves differ by {}.",
+         taken off, and without the worst pixel of a thousand; it holds what virtual lights and their clamping get wrong. FLIP: against {} paths over each pixel, whose halves differ by {}.",
         light.spp,
         figure(light.rel_mse),
         pixels.spp,
