@@ -10,8 +10,10 @@ use crate::method::{Method, cache, lightcuts, photon_cache};
 pub enum Family {
     /// The radiance cache.
     Cache,
-    /// Lightcuts per pixel.
+    /// Lightcuts per pixel, which neighbours share.
     Lightcuts,
+    /// Lightcuts per pixel as in the paper: every sample has one of its own.
+    Unshared,
     /// Records of final gathering over a photon map.
     PhotonCache,
 }
@@ -62,6 +64,7 @@ pub fn entries() -> Vec<Entry> {
         family: default.family,
         ..lightcuts::Settings::default()
     };
+    let unshared = lightcuts::Settings { share: false, ..cuts };
     let photons = photon_cache::Settings {
         spp: default.spp,
         seed: default.seed,
@@ -79,7 +82,8 @@ pub fn entries() -> Vec<Entry> {
         entry("cache, anisotropic", Some("LCache2"), Family::Cache, shaped(Footprints::Anisotropic)),
         entry("cache, isotropic", Some("LCache1"), Family::Cache, shaped(Footprints::Isotropic)),
         entry("photon-cache", Some("PM"), Family::PhotonCache, Method::PhotonCache(photons)),
-        entry("lightcuts", Some("LC"), Family::Lightcuts, Method::Lightcuts(cuts)),
+        entry("lightcuts", None, Family::Lightcuts, Method::Lightcuts(cuts)),
+        entry("lightcuts, unshared", Some("LC"), Family::Unshared, Method::Lightcuts(unshared)),
     ];
     for factor in CURVE {
         let mut settings = cuts;

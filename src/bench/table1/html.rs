@@ -68,6 +68,7 @@ fn curves(scene: &SceneTable, error: impl Fn(&super::Row) -> f64) -> Vec<Series>
         })
         .collect();
     series.push(Series { name: String::new(), colour: "#4a7fb5", joined: false, points: of(Family::Cache) });
+    series.push(Series { name: String::new(), colour: "#a40", joined: false, points: of(Family::Unshared) });
     series
 }
 

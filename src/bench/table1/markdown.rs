@@ -54,19 +54,18 @@ pub fn claims(table: &Table1) -> Vec<Vec<String>> {
     for claim in &CLAIMS {
         let [ours, other] = claim.of;
         let ours = |scene: &SceneTable| {
-            let versus =
-                scene.row(ours).and_then(|row| row.versus.iter().flatten().find(|v| v.method == other));
-            versus.map_or_else(
-                || "-".to_owned(),
-                |v| {
+            let (Some(row), Some(other)) = (scene.row(ours), scene.row(other)) else { return "-".to_owned() };
+            let speed = other.total / row.total.max(f64::MIN_POSITIVE);
+            match row.versus.iter().flatten().find(|v| v.method == other.label) {
+                Some(v) => {
                     let text = |speed: Option<Speed>| speed.map_or("-".to_owned(), |s| s.to_string());
-                    let equal = [text(v.at_equal_flip), text(v.at_equal_light)].join(" / ");
-                    format!("{:.2} ({equal})", v.speed)
-                },
-            )
+                    format!("{speed:.2} ({} / {})", text(v.at_equal_flip), text(v.at_equal_light))
+                }
+                None => format!("{speed:.2}"),
+            }
         };
-        let [least, most] = claim.range;
-        rows.push(row(table, claim.what, format!("{least} to {most}"), ours));
+        let paper = claim.range.map_or("-".to_owned(), |[least, most]| format!("{least} to {most}"));
+        rows.push(row(table, claim.what, paper, ours));
     }
     let [least, most] = SAVED_BY_ANISOTROPY.map(|share| 100.0 * share);
     let saved = |scene: &SceneTable| {
