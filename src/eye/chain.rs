@@ -8,10 +8,10 @@
 //!
 //! Deviations: sharp rough lobes are followed as well, in one sampled direction a sample: virtual lights would show in
 //! them one by one, and what they reflect of each other is beyond virtual lights altogether. This brings noise,
-//! which falls with the samples a pixel. Point-like lights, which no direction finds, are added there by the lobe's value.
+//! which falls with the samples a pixel. What emitters give to the lobe is sampled from them as well (`sharp`).
 
+use super::sharp::{self, Start};
 use crate::embree::Ray;
-use crate::light::delta_irradiance;
 use crate::material::Bsdf;
 use crate::math::Rgb;
 use crate::sampling::Sampler;
@@ -69,6 +69,8 @@ struct Branch {
     depth: u32,
     /// Length of the chain up to the ray's origin.
     distance: f32,
+    /// Where a sharp lobe sampled the ray.
+    start: Option<Start>,
 }
 
 /// Follows `ray` and calls `visit` for every surface with a smooth part; returns the radiance emitted into the ray
@@ -84,7 +86,8 @@ pub fn trace<'w>(
     let mut emitted = Rgb::ZERO;
     let mut pending: [Option<Branch>; PENDING] = [const { None }; PENDING];
     let mut waiting = 0;
-    let mut current = Some(Branch { ray, throughput: Rgb::ONE, eta_sq: 1.0, depth: 1, distance: 0.0 });
+    let mut current =
+        Some(Branch { ray, throughput: Rgb::ONE, eta_sq: 1.0, depth: 1, distance: 0.0, start: None });
     while let Some(branch) = current.take().or_else(|| {
         waiting = usize::checked_sub(waiting, 1)?;
         pending[waiting].take()
@@ -93,12 +96,24 @@ pub fn trace<'w>(
         let out = -branch.ray.direction;
         let Some(surface) = world.intersect(&branch.ray) else {
             if let Some(environment) = &world.emitters.environment {
-                emitted += branch.throughput * environment.radiance(branch.ray.direction);
+                let direction = branch.ray.direction;
+                let radiance = match branch.start {
+                    Some(start) => {
+                        let (radiance, pdf) = environment.radiance_pdf(direction);
+                        radiance * start.weight_of_environment(world, pdf)
+                    }
+                    None => environment.radiance(direction),
+                };
+                emitted += branch.throughput * radiance;
             }
             continue;
         };
         let distance = branch.distance + surface.t;
-        emitted += branch.throughput * world.emitted(&surface, out);
+        let light = world.emitted(&surface, out);
+        if light != Rgb::ZERO {
+            let weight = |start: Start| start.weight_of_area(world, &surface, branch.ray.direction);
+            emitted += branch.throughput * light * branch.start.map_or(1.0, weight);
+        }
         let whole = world.bsdf(&surface);
         let (bsdf, sharp) = match whole.split_sharp_lobe() {
             Some((bsdf, sharp)) => (bsdf, Some(sharp)),
@@ -114,7 +129,7 @@ pub fn trace<'w>(
         let wo = surface.frame.to_local(out);
         let lobes = bsdf.delta_lobes(wo);
         let sampled = sharp.and_then(|sharp| {
-            emitted += branch.throughput * point_lights(world, &surface, &sharp, wo, counts);
+            emitted += branch.throughput * sharp::reflected(world, &surface, &sharp, wo, sampler, counts);
             sharp.sample(wo, sampler.next_1d(), sampler.next_2d())
         });
         for lobe in [lobes.refraction, lobes.reflection, sampled].into_iter().flatten() {
@@ -130,7 +145,8 @@ pub fn trace<'w>(
             }
             let direction = surface.frame.to_world(lobe.wi);
             let ray = shadow::ray_from(surface.position, surface.normal, direction);
-            let next = Branch { ray, throughput, eta_sq, depth: branch.depth + 1, distance };
+            let start = (!lobe.delta).then(|| Start::new(&surface, wo, lobe.pdf));
+            let next = Branch { ray, throughput, eta_sq, depth: branch.depth + 1, distance, start };
             if current.is_none() {
                 current = Some(next);
             } else if waiting < PENDING {
@@ -142,27 +158,4 @@ pub fn trace<'w>(
         }
     }
     emitted
-}
-
-/// Radiance that point, spot and directional lights leave along `wo` by a lobe that the chain follows.
-fn point_lights(world: &World, s: &Surface, lobe: &Bsdf, wo: Vec3, counts: &mut ChainCounts) -> Rgb {
-    let mut radiance = Rgb::ZERO;
-    for light in &world.emitters.deltas {
-        let (direction, distance, irradiance) = delta_irradiance(light, s.position);
-        let wi = s.frame.to_local(direction);
-        let value = lobe.eval(wo, wi) * irradiance * wi.z.abs();
-        if value == Rgb::ZERO || !value.is_finite() {
-            continue;
-        }
-        counts.shadow_rays += 1;
-        let free = if distance.is_finite() {
-            world.visible(s.position, s.normal, s.position + direction * distance, Vec3::ZERO)
-        } else {
-            world.escapes(s.position, s.normal, direction)
-        };
-        if free {
-            radiance += value;
-        }
-    }
-    radiance
 }

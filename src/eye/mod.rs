@@ -5,6 +5,7 @@ mod index;
 mod look;
 mod samples;
 mod sharing;
+mod sharp;
 mod window;
 
 pub use chain::{ChainCounts, EyeSample, trace};

@@ -11,6 +11,7 @@ use super::packet::Packet;
 use crate::embree::{Ray, Rays16};
 use crate::material::Bsdfs16;
 use crate::math::{F32x16, LANES, Rgb, Vec3x16, lanes_in, mask_of};
+use crate::sampling::power_heuristic;
 use crate::shadow;
 use crate::world::{Surfaces16, World};
 
@@ -141,11 +142,4 @@ impl Packet {
         let pdf = self.pdf[lane];
         if pdf == f32::INFINITY { 1.0 } else { power_heuristic(pdf, light_pdf) }
     }
-}
-
-/// Weight of a sample of density `a` against another technique of density `b` (Veach, β = 2).
-#[inline(always)]
-fn power_heuristic(a: f32, b: f32) -> f32 {
-    let ratio = b / a;
-    1.0 / (1.0 + ratio * ratio)
 }

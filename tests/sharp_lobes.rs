@@ -1,0 +1,75 @@
+//! What sharp lobes reflect of emitters that their sampled directions hardly ever find.
+
+mod common;
+
+use common::*;
+use glam::Vec3;
+use lightsplat::eye::Window;
+use lightsplat::image::Image;
+use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::{Control, lightcuts, path};
+use lightsplat::scene::{Distribution, Environment, Fresnel, Lobe, Material, Reflectance, Scene};
+
+const SIZE: u32 = 48;
+
+/// A rough mirror below two lamps, one small and one that fills much of the lobe, half hidden by a sheet.
+fn below_lamps() -> Scene {
+    let mut scene = scene(camera(Vec3::new(0.0, 1.0, 1.5), Vec3::ZERO, 0.4), [SIZE, SIZE]);
+    let lobe = Lobe::Rough {
+        distribution: Distribution::Ggx,
+        alpha: 0.1,
+        fresnel: Fresnel::One,
+        scale: Reflectance::Constant(Rgb::new(0.9, 0.7, 0.5)),
+    };
+    let rough = add_material(&mut scene, Material { lobe, ..diffuse(Rgb::ZERO) });
+    let black = add_material(&mut scene, diffuse(Rgb::ZERO));
+    scene.meshes.push(quad(Vec3::new(-9.0, 0.0, -9.0), Vec3::Z * 18.0, Vec3::X * 18.0, rough));
+    scene.meshes.push(quad(Vec3::new(-0.4, 1.1, -1.4), Vec3::X * 0.6, Vec3::Y * 0.3, black));
+    let small = quad(Vec3::new(0.3, 1.3, -1.5), Vec3::Y * 0.05, Vec3::X * 0.05, black);
+    scene.meshes.push(emitting(small, Rgb::splat(200.0)));
+    let large = quad(Vec3::new(-1.5, 1.3, -2.0), Vec3::X * 1.5, Vec3::Y * 1.2, black);
+    scene.meshes.push(emitting(large, Rgb::splat(1.0)));
+    scene
+}
+
+fn of_paths(scene: &Scene, spp: u32) -> Image {
+    let settings = path::Settings { spp, ..Default::default() };
+    path::render(&world(scene.clone()), &Window::whole([SIZE, SIZE]), &settings, &Control::new()).color
+}
+
+fn of_cuts(scene: &Scene) -> Image {
+    let settings = lightcuts::Settings { spp: 4, ..Default::default() };
+    lightcuts::render(&world(scene.clone()), &Window::whole([SIZE, SIZE]), &settings, &Control::new()).color
+}
+
+/// Mean luminance over that of the reference, and root mean square difference over that mean.
+fn errors(test: &Image, reference: &Image) -> (f32, f32) {
+    let mean =
+        |image: &Image| image.pixels.iter().map(|p| luminance(*p)).sum::<f32>() / image.pixels.len() as f32;
+    let squares =
+        test.pixels.iter().zip(&reference.pixels).map(|(a, b)| luminance(*a - *b).powi(2)).sum::<f32>();
+    (mean(test) / mean(reference), (squares / test.pixels.len() as f32).sqrt() / mean(reference))
+}
+
+/// As bright as by paths, and of at most `most` times the noise of as many of them.
+fn assert_as_by_paths(scene: &Scene, most: f32) {
+    let reference = of_paths(scene, 1024);
+    let (ratio, rms) = errors(&of_cuts(scene), &reference);
+    let (_, noise) = errors(&of_paths(scene, 4), &reference);
+    println!("{ratio} {rms}, paths {noise}");
+    assert!((ratio - 1.0).abs() < 0.02 && rms < most * noise, "{ratio} {rms}, paths {noise}");
+}
+
+#[test]
+fn lamps_show_in_sharp_lobes_as_paths_see_them() {
+    assert_as_by_paths(&below_lamps(), 0.75);
+}
+
+#[test]
+fn the_environment_shows_in_sharp_lobes_as_paths_see_it() {
+    let mut scene = below_lamps();
+    scene.meshes.truncate(2);
+    scene.environment = Some(Environment::Constant(Rgb::ONE));
+    // Nothing beats the lobe's own directions under an even sky; points sampled on it add noise in the lobe's tail.
+    assert_as_by_paths(&scene, 1.5);
+}
