@@ -10,7 +10,7 @@
 //! them one by one, and what they reflect of each other is beyond virtual lights altogether. This brings noise,
 //! which falls with the samples a pixel. What emitters give to the lobe is sampled from them as well (`sharp`).
 
-use super::sharp::{self, Start};
+use super::sharp::{Sharp, Start};
 use crate::embree::Ray;
 use crate::material::Bsdf;
 use crate::math::Rgb;
@@ -129,7 +129,8 @@ pub fn trace<'w>(
         let wo = surface.frame.to_local(out);
         let lobes = bsdf.delta_lobes(wo);
         let sampled = sharp.and_then(|sharp| {
-            emitted += branch.throughput * sharp::reflected(world, &surface, &sharp, wo, sampler, counts);
+            emitted += branch.throughput
+                * Sharp { world, surface: &surface, lobe: &sharp, wo }.reflected(sampler, counts);
             sharp.sample(wo, sampler.next_1d(), sampler.next_2d())
         });
         for lobe in [lobes.refraction, lobes.reflection, sampled].into_iter().flatten() {

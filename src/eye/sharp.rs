@@ -24,40 +24,51 @@ const STEPS: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
 /// Where a direction was sampled by a lobe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Start {
+    place: Place,
+    /// The lobe's density of the direction by solid angle.
+    pdf: f32,
+}
+
+/// A point to be lit.
+#[derive(Clone, Copy, Debug)]
+struct Place {
     position: Vec3,
     /// Of the side that reflects.
     normal: Vec3,
-    /// The lobe's density of the direction by solid angle.
-    pdf: f32,
+}
+
+impl Place {
+    /// On `surface`, seen along `wo` in its shading frame.
+    fn new(surface: &Surface, wo: Vec3) -> Place {
+        let normal = surface.frame.normal;
+        Place { position: surface.position, normal: if wo.z < 0.0 { -normal } else { normal } }
+    }
+
+    /// In all lanes.
+    fn splat(&self) -> (Vec3x16, Vec3x16) {
+        let lanes = |v: Vec3| Vec3x16 { x: [v.x; LANES], y: [v.y; LANES], z: [v.z; LANES] };
+        (lanes(self.position), lanes(self.normal))
+    }
 }
 
 impl Start {
     /// At `surface`, seen along `wo` in its shading frame.
     pub fn new(surface: &Surface, wo: Vec3, pdf: f32) -> Start {
-        let normal = surface.frame.normal;
-        Start { position: surface.position, normal: if wo.z < 0.0 { -normal } else { normal }, pdf }
-    }
-
-    fn splat(&self) -> (Vec3x16, Vec3x16) {
-        let lanes = |v: Vec3| Vec3x16 { x: [v.x; LANES], y: [v.y; LANES], z: [v.z; LANES] };
-        (lanes(self.position), lanes(self.normal))
+        Start { place: Place::new(surface, wo), pdf }
     }
 
     /// Weight of what the met surface emits, which points sampled on emitters find as well.
     pub fn weight_of_area(&self, world: &World, met: &Surface, direction: Vec3) -> f32 {
-        if !world.emitters.is_light(met.mesh) {
-            return 1.0;
-        }
-        let (x, n) = self.splat();
+        let (x, n) = self.place.splat();
         let cos = met.normal.dot(direction);
-        let distance = met.position.distance(self.position);
+        let distance = met.position.distance(self.place.position);
         let pdf = world.emitters.pdf_areas((&x, &n), &[met.mesh; LANES], &[distance; LANES], &[cos; LANES]);
         self.weight(pdf[0])
     }
 
     /// Weight of the environment's radiance, whose density by solid angle is `pdf` once it is chosen.
     pub fn weight_of_environment(&self, world: &World, pdf: f32) -> f32 {
-        let (x, n) = self.splat();
+        let (x, n) = self.place.splat();
         self.weight(pdf * world.emitters.environment_choice(&x, &n)[0])
     }
 
@@ -66,91 +77,83 @@ impl Start {
     }
 }
 
-/// Radiance that emitters leave along `wo` by a lobe that the chain follows: all of that of point, spot and directional lights,
-/// the others' as weighed against the lobe's own samples.
-pub(super) fn reflected(
-    world: &World,
-    s: &Surface,
-    lobe: &Bsdf,
-    wo: Vec3,
-    sampler: &mut Sampler,
-    counts: &mut ChainCounts,
-) -> Rgb {
-    point_lights(world, s, lobe, wo, counts) + area_lights(world, s, lobe, wo, sampler, counts)
+/// A lobe that the chain follows, on a surface seen along `wo` in its shading frame.
+pub(super) struct Sharp<'a> {
+    pub world: &'a World,
+    pub surface: &'a Surface,
+    pub lobe: &'a Bsdf<'a>,
+    pub wo: Vec3,
 }
 
-fn point_lights(world: &World, s: &Surface, lobe: &Bsdf, wo: Vec3, counts: &mut ChainCounts) -> Rgb {
-    let mut radiance = Rgb::ZERO;
-    for light in &world.emitters.deltas {
-        let (direction, distance, irradiance) = delta_irradiance(light, s.position);
-        let wi = s.frame.to_local(direction);
-        let value = lobe.eval(wo, wi) * irradiance * wi.z.abs();
-        if value == Rgb::ZERO || !value.is_finite() {
-            continue;
-        }
-        if is_free(world, s, direction, distance, Vec3::ZERO, counts) {
-            radiance += value;
-        }
+impl Sharp<'_> {
+    /// Radiance that emitters leave along `wo`: all of that of point, spot and directional lights, the others' as weighed
+    /// against the lobe's own samples.
+    pub fn reflected(&self, sampler: &mut Sampler, counts: &mut ChainCounts) -> Rgb {
+        self.point_lights(counts) + self.area_lights(sampler, counts)
     }
-    radiance
-}
 
-fn area_lights(
-    world: &World,
-    s: &Surface,
-    lobe: &Bsdf,
-    wo: Vec3,
-    sampler: &mut Sampler,
-    counts: &mut ChainCounts,
-) -> Rgb {
-    let emitters = &world.emitters;
-    if emitters.areas.is_empty() && emitters.environment.is_none() {
-        return Rgb::ZERO;
-    }
-    let (first, place, draw) = (sampler.next_1d(), sampler.next_2d(), sampler.next_1d());
-    let (mut choices, mut places) = ([0.0; LANES], Vec2x16::default());
-    for i in 0..LANES {
-        choices[i] = (first + i as f32 / CANDIDATES).fract();
-        places.set(i, (place + i as f32 * STEPS).fract());
-    }
-    let (x, n) = Start::new(s, wo, 0.0).splat();
-    let lights = emitters.sample_direct(&world.scene, (&x, &n), &choices, &places, u16::MAX);
-    let (mut values, mut sum) = ([Rgb::ZERO; LANES], 0.0);
-    for i in lanes_in(lights.useful()).filter(|i| lights.delta[*i] == 0) {
-        let wi = s.frame.to_local(lights.direction.get(i));
-        let (value, pdf) = lobe.eval_pdf(wo, wi);
-        let density = CANDIDATES * lights.pdf[i];
-        let value = value * lights.radiance.get(i) * (wi.z.abs() * power_heuristic(density, pdf) / density);
-        if value.is_finite() {
-            values[i] = value;
-            sum += luminance(value);
+    fn point_lights(&self, counts: &mut ChainCounts) -> Rgb {
+        let mut radiance = Rgb::ZERO;
+        for light in &self.world.emitters.deltas {
+            let (direction, distance, irradiance) = delta_irradiance(light, self.surface.position);
+            let wi = self.surface.frame.to_local(direction);
+            let value = self.lobe.eval(self.wo, wi) * irradiance * wi.z.abs();
+            if value == Rgb::ZERO || !value.is_finite() {
+                continue;
+            }
+            if self.is_free(direction, distance, Vec3::ZERO, counts) {
+                radiance += value;
+            }
         }
+        radiance
     }
-    let mut left = draw * sum;
-    for i in (0..LANES).filter(|i| luminance(values[*i]) > 0.0) {
-        let share = luminance(values[i]);
-        left -= share;
-        if left < 0.0 {
-            let (direction, distance) = (lights.direction.get(i), lights.distance[i]);
-            let free = is_free(world, s, direction, distance, lights.normal.get(i), counts);
-            return if free { values[i] * (sum / share) } else { Rgb::ZERO };
-        }
-    }
-    Rgb::ZERO
-}
 
-fn is_free(
-    world: &World,
-    s: &Surface,
-    direction: Vec3,
-    distance: f32,
-    normal: Vec3,
-    counts: &mut ChainCounts,
-) -> bool {
-    counts.shadow_rays += 1;
-    if distance.is_finite() {
-        world.visible(s.position, s.normal, s.position + direction * distance, normal)
-    } else {
-        world.escapes(s.position, s.normal, direction)
+    fn area_lights(&self, sampler: &mut Sampler, counts: &mut ChainCounts) -> Rgb {
+        let emitters = &self.world.emitters;
+        if emitters.areas.is_empty() && emitters.environment.is_none() {
+            return Rgb::ZERO;
+        }
+        let (first, place, draw) = (sampler.next_1d(), sampler.next_2d(), sampler.next_1d());
+        let (mut choices, mut places) = ([0.0; LANES], Vec2x16::default());
+        for i in 0..LANES {
+            choices[i] = (first + i as f32 / CANDIDATES).fract();
+            places.set(i, (place + i as f32 * STEPS).fract());
+        }
+        let (x, n) = Place::new(self.surface, self.wo).splat();
+        let lights = emitters.sample_direct(&self.world.scene, (&x, &n), &choices, &places, u16::MAX);
+        let (mut values, mut sum) = ([Rgb::ZERO; LANES], 0.0);
+        for i in lanes_in(lights.useful()).filter(|i| lights.delta[*i] == 0) {
+            let wi = self.surface.frame.to_local(lights.direction.get(i));
+            let (value, pdf) = self.lobe.eval_pdf(self.wo, wi);
+            let density = CANDIDATES * lights.pdf[i];
+            let weight = power_heuristic(density, pdf);
+            let value = value * lights.radiance.get(i) * (wi.z.abs() * weight / density);
+            if value.is_finite() {
+                values[i] = value;
+                sum += luminance(value);
+            }
+        }
+        let mut left = draw * sum;
+        for i in (0..LANES).filter(|i| luminance(values[*i]) > 0.0) {
+            let share = luminance(values[i]);
+            left -= share;
+            if left < 0.0 {
+                let (direction, distance) = (lights.direction.get(i), lights.distance[i]);
+                let free = self.is_free(direction, distance, lights.normal.get(i), counts);
+                return if free { values[i] * (sum / share) } else { Rgb::ZERO };
+            }
+        }
+        Rgb::ZERO
+    }
+
+    /// Whether nothing is in the way to an emitter, whose surface, if it has one, has the given normal.
+    fn is_free(&self, direction: Vec3, distance: f32, normal: Vec3, counts: &mut ChainCounts) -> bool {
+        counts.shadow_rays += 1;
+        let Surface { position, normal: own, .. } = *self.surface;
+        if distance.is_finite() {
+            self.world.visible(position, own, position + direction * distance, normal)
+        } else {
+            self.world.escapes(position, own, direction)
+        }
     }
 }

@@ -20,7 +20,9 @@ pub fn html(table1: &Table1) -> String {
              light; anisotropy: long over short radius of footprints, direct / indirect; a: their radius over the \
              distance of what casts light and shadow; cut: clusters; T_light: light pass and trees; T_f: records and \
              cuts of eye samples' own; T_cache: splatting and adaptation; total: all that and the eye pass. PSNR and \
-             FLIP are against the reference as it is, relMSE is without its noise and without the worst pixel of a thousand; brightness below 1 is mostly what clamping takes away. \"To LC\": against lightcuts per pixel on the same eye samples and virtual lights. \
+             FLIP are against the reference as it is, relMSE is without its noise and without the worst pixel of a \
+             thousand; brightness below 1 is mostly what clamping takes away. \"To LC\": against lightcuts per pixel on \
+             the same eye samples and virtual lights. \
              \"Light\": against the reference of the eye samples alone, in which only wrong light counts. \"Speed\": time of \
              lightcuts (LC) or photon-cache (PM) over the row's; \"at equal FLIP\" and \"at equal light\": the same for as \
              large a FLIP, or relMSE of light, interpolated between the other's rows; &gt; and &lt; where none is as \

@@ -5,7 +5,7 @@
 //!
 //! | setting | default | meaning |
 //! |---|---|---|
-//! | `spp` | 1 | eye samples a pixel |
+//! | `spp` | 4 | eye samples a pixel |
 //! | `seed` | 0 | another seed, other photons and other eye samples |
 //! | `max_depth` | the scene's | longest path in edges, counted from the eye |
 //! | `photons` | 600000 | photons on diffuse surfaces |
