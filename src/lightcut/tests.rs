@@ -230,6 +230,45 @@ fn cuts_are_within_their_error_and_shrink_with_epsilon() {
     }
 }
 
+/// Points a millimetre to a decimetre above the floor of a room of VPLs, some of which are that near.
+pub(super) fn points_near_vpls(numbers: &mut Numbers, count: usize) -> Vec<Reflector<'static>> {
+    let frame = Frame::from_normal(Vec3::Y);
+    let at = |numbers: &mut Numbers| {
+        let p = numbers.vec3() * 0.9 + 0.05;
+        Reflector::collector(p.with_y(0.1f32.powf(1.0 + 2.0 * p.y)), Vec3::Y, &frame)
+    };
+    (0..count).map(|_| at(numbers)).collect()
+}
+
+/// A room whose floor is covered by lamps, a hand's breadth above it and shining down.
+pub(super) fn low_lamps(numbers: &mut Numbers) -> LightTrees {
+    let mut set = room(3000, numbers);
+    for _ in 0..300 {
+        let position = numbers.vec3().with_y(0.05 + 0.05 * numbers.next());
+        set.push(Vpl::oriented(position, -Vec3::Y), numbers.vec3());
+    }
+    LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive)
+}
+
+#[test]
+fn no_cluster_gives_more_than_a_quarter_however_coarse_the_cut() {
+    let mut numbers = Numbers(8);
+    let trees = low_lamps(&mut numbers);
+    let transfer = Transfer::new(&[], 1.7);
+    let mut cut = Lightcut::new();
+    let mut clusters = 0;
+    for receiver in points_near_vpls(&mut numbers, 300) {
+        let settings = CutSettings { epsilon: 0.5, ..EXACT };
+        let total = luminance(cut.gather(&trees, &transfer, &Unoccluded, &receiver, &settings));
+        for entry in cut.entries().iter().filter(|e| !trees.nodes[e.node as usize].is_leaf()) {
+            let share = luminance(entry.contribution) / total;
+            assert!(share <= 1.001 * refine::DOMINANT, "{share} of {total} at {}", receiver.position());
+            clusters += 1;
+        }
+    }
+    assert!(clusters > 3000, "a cut so coarse is made of clusters: {clusters}");
+}
+
 #[test]
 fn with_no_tolerance_the_cut_is_the_full_sum() {
     let mut numbers = Numbers(5);

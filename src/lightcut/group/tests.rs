@@ -4,7 +4,8 @@ use super::points::lanes_of;
 use super::*;
 use crate::light_tree::{Family, LightTrees, Node};
 use crate::lightcut::tests::{
-    Ball, EXACT, Numbers, SPOTS, all_materials, members, random_reflector, rms, room, three_kinds,
+    Ball, EXACT, Numbers, SPOTS, all_materials, low_lamps, members, points_near_vpls, random_reflector, rms,
+    room, three_kinds,
 };
 use crate::lightcut::{CutSettings, Lightcut, Reflector, Transfer, Unoccluded, Visibility, gather_all};
 use crate::material::Materials;
@@ -122,6 +123,31 @@ fn shared_cuts_are_within_the_error_of_single_ones() {
     assert!(medium.len() > 200);
     assert!(rms(&medium) <= 0.035, "{}", rms(&medium));
     assert!(rms(&fine) < rms(&medium), "{} {}", rms(&fine), rms(&medium));
+}
+
+#[test]
+fn no_cluster_gives_the_lanes_more_than_a_quarter_however_coarse_the_cut() {
+    let mut numbers = Numbers(8);
+    let trees = low_lamps(&mut numbers);
+    let transfer = Transfer::new(&[], 1.7);
+    let (mut cut, mut points) = (GroupLightcut::new(), Points::new());
+    let settings = CutSettings { epsilon: 0.5, ..EXACT };
+    for _ in 0..40 {
+        points.set(points_near_vpls(&mut numbers, LANES));
+        let mut radiance = [Rgb::ZERO; LANES];
+        cut.gather(&trees, &transfer, &Unoccluded, &points, &settings, &mut radiance);
+        let brightest = radiance.iter().map(|&r| luminance(r)).fold(0.0, f32::max);
+        for (node, responses) in cut.entries().filter(|e| !trees.nodes[e.0 as usize].is_leaf()) {
+            let share = |lane: usize| {
+                let response = Rgb::from_array(std::array::from_fn(|c| responses[c][lane]));
+                let given = luminance(trees.nodes[node as usize].intensity * response);
+                given / luminance(radiance[lane]).max(brightest / 256.0)
+            };
+            let cubes: f32 = (0..LANES).map(|lane| share(lane).powi(3)).sum();
+            let share = (cubes / LANES as f32).cbrt();
+            assert!(share <= 1.001 * crate::lightcut::refine::DOMINANT, "{share}");
+        }
+    }
 }
 
 #[test]
