@@ -13,9 +13,12 @@ pub fn front(points: &[(f64, f64)]) -> Vec<bool> {
 pub struct Effect {
     /// The factor.
     pub factor: f64,
-    /// The same, one standard error less and one more.
+    /// What covers it in 95 of 100 cases.
     pub range: [f64; 2],
 }
+
+/// Fewest points that say how far off an effect may be.
+const FEWEST: usize = 6;
 
 /// Least squares of the logarithm of `values` over `places`, a knob's levels from 0 to 1. None of too few points,
 /// or if the knob stands still.
@@ -27,18 +30,55 @@ pub fn effect(places: &[f64], values: &[f64]) -> Option<Effect> {
     let (x, y) = (mean(|p| p.0), mean(|p| p.1));
     let xx: f64 = points.iter().map(|p| (p.0 - x).powi(2)).sum();
     let xy: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
-    if points.len() < 3 || xx <= 0.0 {
+    if points.len() < FEWEST || xx <= 0.0 {
         return None;
     }
     let slope = xy / xx;
     let rest: f64 = points.iter().map(|p| (p.1 - y - slope * (p.0 - x)).powi(2)).sum();
-    let error = (rest / (n - 2.0) / xx).sqrt();
+    let error = student_975(n - 2.0) * (rest / (n - 2.0) / xx).sqrt();
     Some(Effect { factor: slope.exp(), range: [(slope - error).exp(), (slope + error).exp()] })
+}
+
+/// The 97.5 % quantile of Student's distribution for at least four degrees of freedom, to .5 %.
+///
+/// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5.
+fn student_975(freedom: f64) -> f64 {
+    let z: f64 = 1.959963984540054;
+    let [z3, z5, z7] = [3, 5, 7].map(|n| z.powi(n));
+    let first = (z3 + z) / 4.0;
+    let second = (5.0 * z5 + 16.0 * z3 + 3.0 * z) / 96.0;
+    let third = (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / 384.0;
+    z + (first + (second + third / freedom) / freedom) / freedom
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sampling::hash;
+
+    #[test]
+    fn quantiles_are_those_of_the_tables() {
+        for (freedom, expected) in [(4.0, 2.776), (10.0, 2.228), (30.0, 2.042), (1e6, 1.960)] {
+            assert!((student_975(freedom) / expected - 1.0).abs() < 0.005, "{freedom}");
+        }
+    }
+
+    #[test]
+    fn knobs_without_effect_are_found_to_have_one_in_five_of_a_hundred_cases() {
+        let uniform = |a: u32, b: u32| f64::from(hash(a, b)) / 4294967296.0;
+        for points in [6, 24] {
+            let trials = 2000;
+            let claimed = (0..trials).filter(|&trial| {
+                let places: Vec<f64> = (0..points).map(|i| uniform(i, 2 * trial)).collect();
+                // Sums of four uniform numbers are nearly normal.
+                let noise = |i: u32| (0..4).map(|k| uniform(4 * i + k, 2 * trial + 1)).sum::<f64>();
+                let values: Vec<f64> = (0..points).map(|i| noise(i).exp()).collect();
+                effect(&places, &values).is_some_and(|e| e.range[0] > 1.0 || e.range[1] < 1.0)
+            });
+            let share = claimed.count() as f64 / f64::from(trials);
+            assert!((0.035..0.065).contains(&share), "{points}: {share}");
+        }
+    }
 
     #[test]
     fn the_front_holds_what_nothing_beats() {
@@ -48,9 +88,10 @@ mod tests {
 
     #[test]
     fn an_effect_is_the_factor_over_the_knobs_range() {
-        let places = [0.0, 0.5, 1.0, 0.25];
+        let places = [0.0, 0.5, 1.0, 0.25, 0.75, 0.1];
         let found = effect(&places, &places.map(|p: f64| 3.0 * 16f64.powf(p))).unwrap();
         assert!((found.factor - 16.0).abs() < 1e-9 && (found.range[1] - 16.0).abs() < 1e-6, "{found:?}");
-        assert_eq!(effect(&[0.5; 4], &[1.0, 2.0, 3.0, 4.0]), None);
+        assert_eq!(effect(&[0.5; 6], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]), None);
+        assert_eq!(effect(&places[1..], &[1.0, 2.0, 3.0, 4.0, 5.0]), None, "too few");
     }
 }

@@ -1,7 +1,7 @@
 //! The trade as a page: both fronts, and a plot a knob.
 
 use super::markdown::{
-    EFFECT_HEADS, FRONT_HEADS, SWEEP_HEADS, about, effects, front, judged_by, legend, sweeps,
+    EFFECT_HEADS, FRONT_HEADS, SWEEP_HEADS, TOGETHER, about, effects, front, judged_by, legend, sweeps,
 };
 use super::{Point, SceneTrade, Sort, Sweep, Trade};
 use crate::bench::export::escaped;
@@ -35,8 +35,7 @@ fn section(scene: &SceneTrade) -> String {
     for sweep in &scene.sweeps {
         text += &plot(scene, sweep);
     }
-    text += "<h3>All knobs together</h3>\n<p>By what factor error and time change from a knob's coarsest to its finest \
-             level (the error is that of light) while all others vary by a designed sample, and one standard error to either side.</p>\n";
+    text += &format!("<h3>All knobs together</h3>\n<p>{}</p>\n", escaped(TOGETHER));
     text + &rows(&EFFECT_HEADS, effects(scene))
 }
 

@@ -14,6 +14,11 @@ pub const FRONT_HEADS: [&str; 6] =
 /// Heads of [`effects`].
 pub const EFFECT_HEADS: [&str; 3] = ["knob", "error, fine over coarse", "time, fine over coarse"];
 
+/// What [`effects`] says.
+pub const TOGETHER: &str = "By what factor error and time change from a knob's coarsest to its finest level (the error is that \
+     of light) while all others vary by a designed sample; in brackets what covers that factor in 95 of 100 cases. The line from \
+     level to level is straight in logarithms, what bends counts as noise.";
+
 /// A section a scene.
 pub fn markdown(trade: &Trade) -> String {
     let facts: Vec<String> = trade.facts.iter().map(|(name, value)| format!("{name} {value}")).collect();
@@ -31,7 +36,7 @@ pub fn markdown(trade: &Trade) -> String {
         text += &table(&FRONT_HEADS, &front(&scene.front(|p| p.on_light_front)));
         text += "\n### Pareto front of FLIP\n\n";
         text += &table(&FRONT_HEADS, &front(&scene.front(|p| p.on_flip_front)));
-        text += "\n### All knobs together\n\n";
+        text += &format!("\n### All knobs together\n\n{TOGETHER}\n\n");
         text += &table(&EFFECT_HEADS, &effects(scene));
     }
     text
