@@ -57,16 +57,16 @@ fn vpls_of_a_furnace_give_the_irradiance_of_the_geometric_series() {
     let settings = LightPassSettings { direct: 6000, indirect: 40_000, seed: 3 };
     let lights = light_pass(&world, &settings, u32::MAX, &Control::new());
     let trees = LightTrees::build(&lights.sets, lights.spots, world.diagonal, Family::Divisive);
-    let transfer = Transfer::new(&trees.spots, world.diagonal);
+    let transfer = Transfer::new(&trees, world.diagonal);
     let expected = PI * emitted / (Rgb::ONE - albedo);
     for normal in [Vec3::Y, -Vec3::X, Vec3::new(1.0, 1.0, 1.0).normalize()] {
         let receiver =
             Reflector::collector(Vec3::new(0.1, -0.2, 0.15), Vec3::ZERO, &Frame::from_normal(normal));
-        let all = gather_all(&trees, &transfer, &world, &receiver);
+        let all = gather_all(&transfer, &world, &receiver);
         let error = (all / expected - Rgb::ONE).abs().max_element();
         assert!(error < 0.02, "all VPLs: {all} against {expected}");
         let cut = CutSettings { clamp: None, ..CutSettings::default() };
-        let approximate = Lightcut::new().gather(&trees, &transfer, &world, &receiver, &cut);
+        let approximate = Lightcut::new().gather(&transfer, &world, &receiver, &cut);
         let error = (luminance(approximate) / luminance(expected) - 1.0).abs();
         assert!(error < 0.06, "cut: {approximate} against {expected}");
     }
@@ -188,7 +188,7 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
     let lights = light_pass(&world, &settings, u32::MAX, &Control::new());
     for family in [Family::Divisive, Family::Agglomerative] {
         let trees = LightTrees::build(&lights.sets, lights.spots.clone(), world.diagonal, family);
-        let transfer = Transfer::new(&trees.spots, world.diagonal);
+        let transfer = Transfer::new(&trees, world.diagonal);
         let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
         let mut cut = Lightcut::new();
         let (mut squares, mut n) = (0.0, 0);
@@ -199,9 +199,9 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
                 let Some(s) = world.intersect(&ray) else { panic!("the room is closed") };
                 let out = -ray.direction;
                 let receiver = Reflector::new(s.position, s.normal, &s.frame, world.bsdf(&s), out);
-                let exact = luminance(gather_all(&trees, &transfer, &world, &receiver));
+                let exact = luminance(gather_all(&transfer, &world, &receiver));
                 if exact > 0.0 {
-                    let estimate = luminance(cut.gather(&trees, &transfer, &world, &receiver, &settings));
+                    let estimate = luminance(cut.gather(&transfer, &world, &receiver, &settings));
                     squares += (estimate / exact - 1.0).powi(2);
                     n += 1;
                 }
@@ -230,7 +230,7 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
         let light = LightPassSettings { direct: 1000, indirect: 19_000, seed };
         let lights = light_pass(&world, &light, u32::MAX, &Control::new());
         let trees = LightTrees::build(&lights.sets, lights.spots, world.diagonal, family);
-        let transfer = Transfer::new(&trees.spots, world.diagonal);
+        let transfer = Transfer::new(&trees, world.diagonal);
         let shift = [seed % 4 * 16, seed / 4 * 32];
         for block in 0..16 {
             let corner = [block % 4 * 64 + shift[0] + 6, block / 4 * 64 + shift[1] + 14];
@@ -244,11 +244,11 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
             });
             points.set(eye);
             let mut radiance = [Rgb::ZERO; 16];
-            shared.gather(&trees, &transfer, &world, &points, &settings, &mut radiance);
+            shared.gather(&transfer, &world, &points, &settings, &mut radiance);
             for (lane, radiance) in radiance.iter().enumerate().take(points.len()).step_by(9) {
-                let exact = luminance(gather_all(&trees, &transfer, &world, points.get(lane)));
+                let exact = luminance(gather_all(&transfer, &world, points.get(lane)));
                 if exact > 0.0 {
-                    let alone = single.gather(&trees, &transfer, &world, points.get(lane), &settings);
+                    let alone = single.gather(&transfer, &world, points.get(lane), &settings);
                     single_errors.push(luminance(alone) / exact - 1.0);
                     shared_errors.push(luminance(*radiance) / exact - 1.0);
                 }

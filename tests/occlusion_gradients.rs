@@ -44,10 +44,10 @@ fn extrapolate(world: &World, footprints: Footprints) -> (f32, f32) {
     let mut pass = light_pass(world, &light, 8, &Control::new());
     pass.sets.retain(|set| set.origin == Origin::Indirect);
     let trees = LightTrees::build(&pass.sets, pass.spots, world.diagonal, Family::Divisive);
-    let transfer = Transfer::new(&trees.spots, world.diagonal);
+    let transfer = Transfer::new(&trees, world.diagonal);
     let cut = CutSettings { epsilon: 0.002, max_cut: 20_000, clamp: None, ..CutSettings::default() };
     let cache = CacheSettings { cut, footprints, ..CacheSettings::default() };
-    let source = Source { world, trees: &trees, transfer, settings: &cache, compensation: None };
+    let source = Source { world, transfer, settings: &cache, compensation: None };
 
     // Open floor: neither under the ball or the table nor within a step of a wall, where light varies by its own distance.
     let open = |p: Vec3| {
@@ -67,7 +67,7 @@ fn extrapolate(world: &World, footprints: Footprints) -> (f32, f32) {
 
     let irradiance = |position: Vec3| {
         let receiver = Reflector::collector(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
-        luminance(gather_all(&trees, &transfer, world, &receiver))
+        luminance(gather_all(&transfer, world, &receiver))
     };
     let (mut error, mut agreement, mut square, mut count) = (0.0, 0.0, 0.0, 0.0);
     for record in found.iter().filter_map(|(_, pair)| pair[1].as_ref()) {

@@ -41,7 +41,7 @@ impl<'w> Setting<'w> {
 
     /// What reaches points from the lights.
     pub fn transfer(&self) -> Transfer<'_> {
-        Transfer::new(&self.trees.spots, self.world.diagonal)
+        Transfer::new(&self.trees, self.world.diagonal)
     }
 
     /// The surface at an eye sample, as lightcuts per pixel light it.

@@ -178,15 +178,15 @@ impl Cutters<'_> {
             let s = &lookup.near.surface;
             Reflector::collector(s.position, s.normal, &Frame::from_normal(lookup.near.normal))
         });
-        let (trees, transfer, world) = (source.trees, &source.transfer, source.world);
+        let (transfer, world) = (&source.transfer, source.world);
         let mut irradiance = [Rgb::ZERO; LANES];
         if group.len() < LEAST_SHARED {
             for (irradiance, collector) in irradiance.iter_mut().zip(collectors) {
-                *irradiance = self.single.gather(trees, transfer, world, &collector, &settings);
+                *irradiance = self.single.gather(transfer, world, &collector, &settings);
             }
         } else {
             self.points.set(collectors);
-            self.group.gather(trees, transfer, world, self.points, &settings, &mut irradiance);
+            self.group.gather(transfer, world, self.points, &settings, &mut irradiance);
         }
         irradiance
     }

@@ -17,7 +17,6 @@ use super::wave::Pick;
 use crate::compensation::Compensation;
 use crate::eye::EyeSamples;
 use crate::hsh::Radiance;
-use crate::light_tree::LightTrees;
 use crate::lightcut::group::{GroupLightcut, LANES, Likeness, Points, group_alike};
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Transfer};
 use crate::math::{Frame, LUMINANCE, Rgb, luminance};
@@ -32,9 +31,7 @@ use rayon::prelude::*;
 pub struct Source<'a> {
     /// The scene.
     pub world: &'a World,
-    /// Its virtual lights.
-    pub trees: &'a LightTrees,
-    /// What reaches a point from them.
+    /// What reaches a point from its virtual lights.
     pub transfer: Transfer<'a>,
     /// Settings.
     pub settings: &'a CacheSettings,
@@ -245,10 +242,10 @@ impl<'w> Workspace<'w> {
     ) -> View {
         let hidden = if s.needs_occluders() {
             let rays = OccluderLog::new(s.world);
-            self.single.gather(s.trees, &s.transfer, &rays, collector, cut);
+            self.single.gather(&s.transfer, &rays, collector, cut);
             Some(rays.sorted())
         } else {
-            self.single.gather(s.trees, &s.transfer, &self.shadows, collector, cut);
+            self.single.gather(&s.transfer, &self.shadows, collector, cut);
             None
         };
         let gatherer = s.gatherer(samples, pick.sample, collector);
@@ -267,10 +264,10 @@ impl<'w> Workspace<'w> {
         let mut irradiance = [Rgb::ZERO; LANES];
         let hidden = if s.needs_occluders() {
             let rays = OccluderLog::new(s.world);
-            self.group.gather(s.trees, &s.transfer, &rays, &self.points, cut, &mut irradiance);
+            self.group.gather(&s.transfer, &rays, &self.points, cut, &mut irradiance);
             Some(rays.sorted())
         } else {
-            self.group.gather(s.trees, &s.transfer, &self.shadows, &self.points, cut, &mut irradiance);
+            self.group.gather(&s.transfer, &self.shadows, &self.points, cut, &mut irradiance);
             None
         };
         let series = &mut self.series;
@@ -335,8 +332,8 @@ impl<'a> Source<'a> {
         clamp: Clamp,
         (hidden, lane): (Option<&Hidden>, usize),
     ) {
-        let node = &self.trees.nodes[node as usize];
-        let vpl = &self.trees.vpls[node.representative()];
+        let node = &self.transfer.trees.nodes[node as usize];
+        let vpl = &self.transfer.trees.vpls[node.representative()];
         let number = layer_of(node.origin());
         let layer = &mut view.gathered[number];
         let weak = node.is_leaf() && node.origin() == Origin::Indirect;

@@ -47,6 +47,17 @@ pub struct EdgeDerivatives {
     pub hessian: [f32; 3],
 }
 
+/// Between two cells.
+struct Edge {
+    cells: [usize; 2],
+    /// From the first cell to the second.
+    across: Vec2,
+    /// Integral of the cosine along it.
+    length: f32,
+    /// Angle between the cells' centres.
+    width: f32,
+}
+
 impl CellLight {
     /// Adds `irradiance` from a light at `offset` from the receiver in the probes' frame; `None` for light from
     /// infinitely far along `direction`.
@@ -89,33 +100,25 @@ impl CellLight {
                 let next = ring * SECTORS + (k + 1) % SECTORS;
                 let (sin_phi, cos_phi) = probes.azimuth(k as f32 + 1.0).sin_cos();
                 let across = Vec2::new(-sin_phi, cos_phi);
-                self.edge(probes, cell, next, across, sin_out - sin_in, sector * sin_mid, &mut sum);
+                let (length, width) = (sin_out - sin_in, sector * sin_mid);
+                self.add_edge(probes, &Edge { cells: [cell, next], across, length, width }, &mut sum);
                 // To the next ring: cosθ along the parallel, and cosθ for the tilt of the motion.
                 if ring + 1 < RINGS {
                     let outer = cell + SECTORS;
-                    let (sin_phi, cos_phi) = probes.azimuth(k as f32 + 0.5).sin_cos();
+                    let across = Vec2::from_angle(probes.azimuth(k as f32 + 0.5));
                     let length = cos_out * cos_out * sin_out * sector * chord;
                     let width = ((ring as f32 + 1.5) / RINGS as f32).sqrt().asin() - sin_mid.asin();
-                    self.edge(probes, cell, outer, Vec2::new(cos_phi, sin_phi), length, width, &mut sum);
+                    self.add_edge(probes, &Edge { cells: [cell, outer], across, length, width }, &mut sum);
                 }
             }
         }
         sum
     }
 
-    /// The edge between cells `a` and `b`, `across` pointing from `a` to `b`.
+    /// Adds what an edge contributes.
     #[inline]
-    #[allow(clippy::too_many_arguments)]
-    fn edge(
-        &self,
-        probes: &Probes,
-        a: usize,
-        b: usize,
-        across: Vec2,
-        length: f32,
-        width: f32,
-        sum: &mut EdgeDerivatives,
-    ) {
+    fn add_edge(&self, probes: &Probes, edge: &Edge, sum: &mut EdgeDerivatives) {
+        let &Edge { cells: [a, b], across, length, width } = edge;
         let parallax = parallax(probes, a, b);
         if parallax == 0.0 {
             return;

@@ -50,8 +50,14 @@ impl SeriesGatherer {
     pub fn add(&mut self, layer: usize, transfer: &Transfer, node: &Node, vpl: &Vpl, kept: f32) {
         let Some((frame, position)) = &self.place else { return };
         let kind = node.kind();
-        let found =
-            Incidence::of_vpl(frame, *position, vpl, kind, transfer.spots, transfer.near_sq(vpl, kind));
+        let found = Incidence::of_vpl(
+            frame,
+            *position,
+            vpl,
+            kind,
+            &transfer.trees.spots,
+            transfer.near_sq(vpl, kind),
+        );
         if let Some(incidence) = found {
             let incidence = if kept < 1.0 { incidence.held(kept) } else { incidence };
             self.sums[layer].add(&incidence, node.intensity);

@@ -23,7 +23,6 @@
 pub mod near;
 pub mod samples;
 
-use crate::light_tree::LightTrees;
 use crate::lightcut::Transfer;
 use crate::vpl::Origin;
 use crate::world::World;
@@ -33,9 +32,7 @@ use crate::world::World;
 pub struct Compensation<'a> {
     /// The scene.
     pub world: &'a World,
-    /// Its virtual lights.
-    pub trees: &'a LightTrees,
-    /// What reaches a point from them.
+    /// What reaches a point from its virtual lights.
     pub transfer: Transfer<'a>,
     mean_intensity: f32,
     /// Squared distance from surfaces that shine, by mesh, below which their virtual lights give less; 0 for others.
@@ -45,17 +42,12 @@ pub struct Compensation<'a> {
 }
 
 impl<'a> Compensation<'a> {
-    /// For all points lit by `trees`. `near_sq` is the squared distance from each mesh that shines below which its virtual
+    /// For all points lit through `transfer`. `near_sq` is the squared distance from each mesh that shines below which its virtual
     /// lights give less than they should, and 0 for others.
-    pub fn new(
-        world: &'a World,
-        trees: &'a LightTrees,
-        transfer: Transfer<'a>,
-        near_sq: &'a [f32],
-    ) -> Compensation<'a> {
+    pub fn new(world: &'a World, transfer: Transfer<'a>, near_sq: &'a [f32]) -> Compensation<'a> {
         let furthest_sq = near_sq.iter().copied().fold(0.0, f32::max);
-        let mean_intensity = trees.mean_intensity(Origin::Indirect);
-        Compensation { world, trees, transfer, mean_intensity, near_sq, furthest_sq }
+        let mean_intensity = transfer.trees.mean_intensity(Origin::Indirect);
+        Compensation { world, transfer, mean_intensity, near_sq, furthest_sq }
     }
 
     /// The bound of the geometry term that keeps the irradiance from a light of mean intensity below `limit`.

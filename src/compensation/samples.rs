@@ -170,9 +170,9 @@ impl NearLight {
         self.points.set(self.places.iter().map(collector));
         let settings =
             CutSettings { epsilon: EPSILON, max_cut: MAX_CUT, clamp: Some(CLAMP), ..CutSettings::default() };
-        self.group.gather(c.trees, &c.transfer, c.world, &self.points, &settings, &mut [Rgb::ZERO; LANES]);
+        self.group.gather(&c.transfer, c.world, &self.points, &settings, &mut [Rgb::ZERO; LANES]);
         for (lane, place) in self.places.iter_mut().enumerate() {
-            let irradiance = limited(c.trees, &self.group, lane, known);
+            let irradiance = limited(c.transfer.trees, &self.group, lane, known);
             place.irradiance = if irradiance.is_finite() { irradiance } else { Rgb::ZERO };
         }
     }

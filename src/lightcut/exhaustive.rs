@@ -2,20 +2,14 @@
 
 use super::receiver::Reflector;
 use super::transfer::{Transfer, Visibility};
-use crate::light_tree::LightTrees;
 use crate::math::Rgb;
 use glam::DVec3;
 
 /// What `receiver` gathers from all VPLs. Time is proportional to their number; nothing is clamped.
-pub fn gather_all<V: Visibility>(
-    trees: &LightTrees,
-    transfer: &Transfer,
-    visibility: &V,
-    receiver: &Reflector,
-) -> Rgb {
+pub fn gather_all<V: Visibility>(transfer: &Transfer, visibility: &V, receiver: &Reflector) -> Rgb {
     let mut sum = DVec3::ZERO;
-    for leaf in trees.leaves() {
-        let vpl = &trees.vpls[leaf.representative()];
+    for leaf in transfer.trees.leaves() {
+        let vpl = &transfer.trees.vpls[leaf.representative()];
         let contribution = leaf.intensity * transfer.unshadowed(receiver, vpl, leaf.kind());
         if contribution != Rgb::ZERO
             && visibility.visible(receiver.position(), receiver.geometric_normal(), vpl, leaf)

@@ -123,18 +123,18 @@ impl Lightcut {
     /// What `receiver` gathers from all VPLs, to within the settings' error.
     pub fn gather<V: Visibility>(
         &mut self,
-        trees: &LightTrees,
         transfer: &Transfer,
         visibility: &V,
         receiver: &Reflector,
         settings: &CutSettings,
     ) -> Rgb {
-        let mut pass = Pass { trees, transfer, visibility, receiver, settings, total: 0.0, cut: self };
+        let mut pass =
+            Pass { trees: transfer.trees, transfer, visibility, receiver, settings, total: 0.0, cut: self };
         pass.start();
         pass.refine();
         self.counts.cuts += 1;
         self.counts.clusters += self.entries.len() as u64;
-        self.sum(trees, settings.clamp, receiver.known_luminance())
+        self.sum(transfer.trees, settings.clamp, receiver.known_luminance())
     }
 
     /// Sums the cut anew, in one order and without the drift of the running total.

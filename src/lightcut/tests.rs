@@ -122,7 +122,7 @@ fn no_member_contributes_more_than_the_clusters_bound() {
         let diagonal = scale * 2.0;
         let trees =
             LightTrees::build(&three_kinds(60, scale, &mut numbers), SPOTS.to_vec(), diagonal, family);
-        let transfer = Transfer::new(&trees.spots, diagonal);
+        let transfer = Transfer::new(&trees, diagonal);
         for _ in 0..25 {
             let mut receiver = random_reflector(&materials, &scene, scale, &mut numbers);
             if numbers.next() < 0.2 {
@@ -189,16 +189,16 @@ pub(super) fn room(n: usize, numbers: &mut Numbers) -> VplSet {
 fn relative_errors(trees: &LightTrees, settings: &CutSettings, rays: &impl Visibility) -> (Vec<f32>, f64) {
     let scene = all_materials();
     let materials = Materials::new(&scene);
-    let transfer = Transfer::new(&trees.spots, 3f32.sqrt());
+    let transfer = Transfer::new(&trees, 3f32.sqrt());
     let mut cut = Lightcut::new();
     let mut errors = Vec::new();
     let mut numbers = Numbers(9);
     while errors.len() < 300 {
         let receiver = random_reflector(&materials, &scene, 1.0, &mut numbers);
         let receiver = receiver.moved(receiver.position() * 0.9 + 0.05);
-        let exact = luminance(gather_all(trees, &transfer, rays, &receiver));
+        let exact = luminance(gather_all(&transfer, rays, &receiver));
         if exact > 0.0 {
-            let estimate = luminance(cut.gather(trees, &transfer, rays, &receiver, settings));
+            let estimate = luminance(cut.gather(&transfer, rays, &receiver, settings));
             errors.push((estimate - exact) / exact);
         }
     }
@@ -254,12 +254,12 @@ pub(super) fn low_lamps(numbers: &mut Numbers) -> LightTrees {
 fn no_cluster_gives_more_than_a_quarter_however_coarse_the_cut() {
     let mut numbers = Numbers(8);
     let trees = low_lamps(&mut numbers);
-    let transfer = Transfer::new(&[], 1.7);
+    let transfer = Transfer::new(&trees, 1.7);
     let mut cut = Lightcut::new();
     let mut clusters = 0;
     for receiver in points_near_vpls(&mut numbers, 300) {
         let settings = CutSettings { epsilon: 0.5, ..EXACT };
-        let total = luminance(cut.gather(&trees, &transfer, &Unoccluded, &receiver, &settings));
+        let total = luminance(cut.gather(&transfer, &Unoccluded, &receiver, &settings));
         for entry in cut.entries().iter().filter(|e| !trees.nodes[e.node as usize].is_leaf()) {
             let share = luminance(entry.contribution) / total;
             assert!(share <= 1.001 * refine::DOMINANT, "{share} of {total} at {}", receiver.position());
@@ -282,20 +282,20 @@ fn with_no_tolerance_the_cut_is_the_full_sum() {
 fn the_cap_is_respected_and_counted() {
     let trees = LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive);
     let settings = CutSettings { epsilon: 0.001, max_cut: 77, clamp: None, only: None };
-    let transfer = Transfer::new(&[], 1.7);
+    let transfer = Transfer::new(&trees, 1.7);
     let receiver = Reflector::collector(Vec3::splat(0.4), Vec3::Y, &Frame::from_normal(Vec3::Y));
     let mut cut = Lightcut::new();
-    cut.gather(&trees, &transfer, &Unoccluded, &receiver, &settings);
+    cut.gather(&transfer, &Unoccluded, &receiver, &settings);
     assert_eq!((cut.entries().len(), cut.counts.capped), (77, 1));
     let roomy = CutSettings { epsilon: 0.5, max_cut: 1000, clamp: None, only: None };
-    cut.gather(&trees, &transfer, &Unoccluded, &receiver, &roomy);
+    cut.gather(&transfer, &Unoccluded, &receiver, &roomy);
     assert_eq!(cut.counts.capped, 1, "a cut that converged is not counted as capped");
 }
 
 fn irradiance(trees: &LightTrees, diagonal: f32, position: Vec3, settings: &CutSettings) -> Rgb {
-    let transfer = Transfer::new(&trees.spots, diagonal);
+    let transfer = Transfer::new(&trees, diagonal);
     let receiver = Reflector::collector(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
-    Lightcut::new().gather(trees, &transfer, &Unoccluded, &receiver, settings)
+    Lightcut::new().gather(&transfer, &Unoccluded, &receiver, settings)
 }
 
 #[test]

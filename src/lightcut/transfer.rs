@@ -6,16 +6,16 @@
 use super::expected::{Outlook, expected_share};
 use super::geometry::{OffsetBox, max_cos_to_cone};
 use super::receiver::Reflector;
-use crate::light_tree::Node;
+use crate::light_tree::{LightTrees, Node};
 use crate::math::{Frame, Rgb};
-use crate::vpl::{SpotProfile, Vpl, VplKind, least_dist_sq, near_sq_of_size};
+use crate::vpl::{Vpl, VplKind, least_dist_sq, near_sq_of_size};
 use glam::Vec3;
 
 /// What the transfer from all VPLs of a scene has in common.
 #[derive(Clone, Copy, Debug)]
 pub struct Transfer<'a> {
-    /// Profiles that omni VPLs refer to.
-    pub spots: &'a [SpotProfile],
+    /// All VPLs and their clusters.
+    pub trees: &'a LightTrees,
     /// Least squared distance that the geometry term divides by.
     pub min_dist_sq: f32,
     /// Whether VPLs on area lights divide by no less than the area that they stand for: what lies closer sees more of
@@ -24,9 +24,9 @@ pub struct Transfer<'a> {
 }
 
 impl<'a> Transfer<'a> {
-    /// For a scene of the given diagonal.
-    pub fn new(spots: &'a [SpotProfile], diagonal: f32) -> Transfer<'a> {
-        Transfer { spots, min_dist_sq: least_dist_sq(diagonal), patches: false }
+    /// From the VPLs of `trees` in a scene of the given diagonal.
+    pub fn new(trees: &'a LightTrees, diagonal: f32) -> Transfer<'a> {
+        Transfer { trees, min_dist_sq: least_dist_sq(diagonal), patches: false }
     }
 
     /// Least squared distance that the geometry term of a VPL divides by.
@@ -54,7 +54,7 @@ impl<'a> Transfer<'a> {
             VplKind::Oriented => -vpl.normal().dot(wi),
             _ => match vpl.spot_profile() {
                 None => 1.0,
-                Some(profile) => self.spots[profile].falloff(-wi),
+                Some(profile) => self.trees.spots[profile].falloff(-wi),
             },
         };
         if emitted <= 0.0 {

@@ -43,11 +43,11 @@ impl Lights {
 
     /// What reaches a point from them; `compensated` where short rays find what is lacking close to lights.
     pub fn transfer(&self, compensated: bool) -> Transfer<'_> {
-        Transfer { patches: compensated, ..Transfer::new(&self.trees.spots, self.diagonal) }
+        Transfer { patches: compensated, ..Transfer::new(&self.trees, self.diagonal) }
     }
 
     /// What finds it.
     pub fn compensation<'a>(&'a self, world: &'a World) -> Compensation<'a> {
-        Compensation::new(world, &self.trees, self.transfer(true), &self.near_sq)
+        Compensation::new(world, self.transfer(true), &self.near_sq)
     }
 }

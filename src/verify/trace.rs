@@ -57,6 +57,7 @@ pub fn trace(
     let sum: DVec3 = image.pixels.iter().map(|p| p.as_dvec3()).sum();
     let mean = sum.element_sum() / (3 * image.pixels.len().max(1)) as f64;
     let floor = FLOOR * mean * mean;
+    let tracing = Tracing { world, window, image, settings, control };
     let task = |picks: &[Pick]| {
         let mut traced = Traced { pixels: Vec::new(), at_cap: 0, paths: 0, nonfinite: 0 };
         let place = |pick: &Pick| {
@@ -65,13 +66,13 @@ pub fn trace(
         };
         let mut wanted: Vec<Wanted> =
             picks.iter().map(|pick| Wanted { pixel: place(pick), samples: least }).collect();
-        let pilot = traced.measure(world, window, image, (picks, &wanted), settings, 0, control)?;
+        let pilot = tracing.measure(picks, &wanted, 0, &mut traced)?;
         for (wanted, pixel) in wanted.iter_mut().zip(&pilot) {
             let needed = f64::from(least) * pixel.relative_variance(floor) / (TARGET * TARGET);
             traced.at_cap += usize::from(needed > f64::from(most));
             wanted.samples = (needed.min(f64::from(most)) as u32).max(least).next_multiple_of(spp);
         }
-        traced.pixels = traced.measure(world, window, image, (picks, &wanted), settings, 1, control)?;
+        traced.pixels = tracing.measure(picks, &wanted, 1, &mut traced)?;
         Some(traced)
     };
     let parts: Vec<Option<Traced>> = picks.par_chunks(TASK).map(task).collect();
@@ -86,29 +87,35 @@ pub fn trace(
     Some(all)
 }
 
-impl Traced {
+/// What is the same for all pixels.
+struct Tracing<'a> {
+    world: &'a World,
+    window: &'a Window,
+    image: &'a Image,
+    settings: &'a Settings,
+    control: &'a Control,
+}
+
+impl Tracing<'_> {
     /// All means of some pixels. Another `round` gives independent ones.
-    #[allow(clippy::too_many_arguments)]
     fn measure(
-        &mut self,
-        world: &World,
-        window: &Window,
-        image: &Image,
-        (picks, wanted): (&[Pick], &[Wanted]),
-        settings: &Settings,
+        &self,
+        picks: &[Pick],
+        wanted: &[Wanted],
         round: u32,
-        control: &Control,
+        traced: &mut Traced,
     ) -> Option<Vec<Measured>> {
+        let Tracing { world, window, settings, .. } = *self;
         let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
         let held = |pick: &Pick| Measured {
-            held: image.pixels[pick.index].as_dvec3(),
+            held: self.image.pixels[pick.index].as_dvec3(),
             means: [DVec3::ZERO; MEANS],
             weight: pick.weight,
         };
         let mut pixels: Vec<Measured> = picks.iter().map(held).collect();
         let mut counts = Counts::default();
         for k in 0..MEANS {
-            if control.is_cancelled() {
+            if self.control.is_cancelled() {
                 return None;
             }
             let seed = hash(hash(settings.seed, SEED), round * MEANS as u32 + k as u32);
@@ -117,10 +124,10 @@ impl Traced {
             for (pixel, mean) in pixels.iter_mut().zip(means) {
                 pixel.means[k] = mean;
             }
-            self.nonfinite += nonfinite;
+            traced.nonfinite += nonfinite;
         }
-        self.paths += MEANS as u64 * wanted.iter().map(|w| u64::from(w.samples)).sum::<u64>();
-        control.advance(picks.len() as u64);
+        traced.paths += MEANS as u64 * wanted.iter().map(|w| u64::from(w.samples)).sum::<u64>();
+        self.control.advance(picks.len() as u64);
         Some(pixels)
     }
 }

@@ -61,7 +61,7 @@ impl<'s> Orders<'s> {
                 // What a record is to have found already.
                 let cut = CutSettings { only: Some(Origin::Indirect), ..CutSettings::default() };
                 let (transfer, reflector) = (setting.transfer(), setting.reflector(sample));
-                let indirect = single.gather(&setting.trees, &transfer, setting.world, &reflector, &cut);
+                let indirect = single.gather(&transfer, setting.world, &reflector, &cut);
                 let only = Some(Origin::Direct);
                 Job { sample: sample as u32, lobe_only: false, only, known: luminance(indirect) }
             };
@@ -120,9 +120,8 @@ impl<'s> Orders<'s> {
     }
 
     fn source(&self) -> Source<'_> {
-        let Setting { world, trees, .. } = self.setting;
-        let transfer = self.setting.transfer();
-        Source { world, trees, transfer, settings: self.cache, compensation: None }
+        let (world, transfer) = (self.setting.world, self.setting.transfer());
+        Source { world, transfer, settings: self.cache, compensation: None }
     }
 
     fn cut<'m, T, V: Visibility + GroupVisibility>(
@@ -133,18 +132,18 @@ impl<'s> Orders<'s> {
         cut: &CutSettings,
         rays: &V,
     ) -> Rgb {
-        let (trees, transfer) = (&self.setting.trees, self.setting.transfer());
+        let transfer = self.setting.transfer();
         let (mut single, mut group, mut points) = (Lightcut::new(), GroupLightcut::new(), Points::new());
         let mut sum = Rgb::ZERO;
         for members in groups {
             if !shared || members.len() < LEAST_SHARED {
                 for point in members {
-                    sum += single.gather(trees, &transfer, rays, &reflector(point), cut);
+                    sum += single.gather(&transfer, rays, &reflector(point), cut);
                 }
             } else {
                 let mut radiance = [Rgb::ZERO; LANES];
                 points.set(members.iter().map(&reflector));
-                group.gather(trees, &transfer, rays, &points, cut, &mut radiance);
+                group.gather(&transfer, rays, &points, cut, &mut radiance);
                 sum = radiance.into_iter().fold(sum, |sum, r| sum + r);
             }
         }

@@ -77,7 +77,6 @@ impl GroupLightcut {
     /// Reflected radiance of each point, on average to within the settings' error.
     pub fn gather<V: GroupVisibility>(
         &mut self,
-        trees: &LightTrees,
         transfer: &Transfer,
         visibility: &V,
         points: &Points,
@@ -85,7 +84,7 @@ impl GroupLightcut {
         radiance: &mut [Rgb; LANES],
     ) {
         let mut pass = Pass {
-            trees,
+            trees: transfer.trees,
             transfer,
             visibility,
             points,
@@ -103,7 +102,7 @@ impl GroupLightcut {
         self.counts.cuts += count;
         self.counts.clusters += count * self.entries.len() as u64;
         self.counts.capped += count * u64::from(capped);
-        self.sum(trees, points, settings.clamp, &[ZERO; 3], radiance);
+        self.sum(transfer.trees, points, settings.clamp, &[ZERO; 3], radiance);
     }
 
     /// The lanes' radiance: that of the entries, and `strong` besides, which is not clamped.

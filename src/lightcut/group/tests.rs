@@ -60,7 +60,7 @@ fn lanes_have_the_responses_of_single_points_and_bounds_above_them() {
         let scale = [1e-6, 1.0, 1e6][round as usize % 3];
         let sets = three_kinds(60, scale, &mut numbers);
         let trees = LightTrees::build(&sets, SPOTS.to_vec(), 2.0 * scale, Family::Divisive);
-        let transfer = Transfer::new(&trees.spots, 2.0 * scale);
+        let transfer = Transfer::new(&trees, 2.0 * scale);
         for count in [16, 1, 5] {
             points.set(neighbours(&materials, &scene, scale, count, &mut numbers));
             for (id, node) in trees.nodes.iter().enumerate().filter(|(_, n)| n.intensity != Rgb::ZERO) {
@@ -99,16 +99,16 @@ fn errors(settings: &CutSettings) -> Vec<f32> {
     let materials = Materials::new(&scene);
     let ball = Ball { centre: Vec3::splat(0.5), radius: 0.25 };
     let trees = LightTrees::build(&[room(20_000, &mut Numbers(1))], Vec::new(), 1.73, Family::Divisive);
-    let transfer = Transfer::new(&trees.spots, 1.73);
+    let transfer = Transfer::new(&trees, 1.73);
     let (mut cut, mut points) = (GroupLightcut::new(), Points::new());
     let mut numbers = Numbers(77);
     let mut errors = Vec::new();
     for _ in 0..30 {
         points.set(neighbours(&materials, &scene, 1.0, 16, &mut numbers));
         let mut radiance = [Rgb::ZERO; LANES];
-        cut.gather(&trees, &transfer, &ball, &points, settings, &mut radiance);
+        cut.gather(&transfer, &ball, &points, settings, &mut radiance);
         for (lane, radiance) in radiance.iter().enumerate() {
-            let exact = luminance(gather_all(&trees, &transfer, &ball, points.get(lane)));
+            let exact = luminance(gather_all(&transfer, &ball, points.get(lane)));
             if exact > 0.0 {
                 errors.push(luminance(*radiance) / exact - 1.0);
             }
@@ -129,13 +129,13 @@ fn shared_cuts_are_within_the_error_of_single_ones() {
 fn no_cluster_gives_the_lanes_more_than_a_quarter_however_coarse_the_cut() {
     let mut numbers = Numbers(8);
     let trees = low_lamps(&mut numbers);
-    let transfer = Transfer::new(&[], 1.7);
+    let transfer = Transfer::new(&trees, 1.7);
     let (mut cut, mut points) = (GroupLightcut::new(), Points::new());
     let settings = CutSettings { epsilon: 0.5, ..EXACT };
     for _ in 0..40 {
         points.set(points_near_vpls(&mut numbers, LANES));
         let mut radiance = [Rgb::ZERO; LANES];
-        cut.gather(&trees, &transfer, &Unoccluded, &points, &settings, &mut radiance);
+        cut.gather(&transfer, &Unoccluded, &points, &settings, &mut radiance);
         let brightest = radiance.iter().map(|&r| luminance(r)).fold(0.0, f32::max);
         for (node, responses) in cut.entries().filter(|e| !trees.nodes[e.0 as usize].is_leaf()) {
             let share = |lane: usize| {
@@ -160,7 +160,7 @@ fn one_lane_clamps_as_a_single_point_does() {
     // Below the horizon.
     set.push(Vpl::oriented(x - Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
     let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive);
-    let transfer = Transfer::new(&[], 1.7);
+    let transfer = Transfer::new(&trees, 1.7);
     let frame = crate::math::Frame::from_normal(Vec3::Y);
     let lambert = materials.at(&scene, MaterialId(0), Vec2::ZERO);
     let at = |p| Reflector::new(p, Vec3::Y, &frame, lambert, Vec3::Y);
@@ -169,10 +169,10 @@ fn one_lane_clamps_as_a_single_point_does() {
     points.set([at(x), at(x + Vec3::X * 0.02)]);
     let mut radiance = [Rgb::ZERO; LANES];
     let mut cut = GroupLightcut::new();
-    cut.gather(&trees, &transfer, &Unoccluded, &points, &settings, &mut radiance);
+    cut.gather(&transfer, &Unoccluded, &points, &settings, &mut radiance);
     assert!(cut.counts.clamped > 0);
     for (lane, radiance) in radiance.iter().enumerate().take(2) {
-        let single = Lightcut::new().gather(&trees, &transfer, &Unoccluded, points.get(lane), &settings);
+        let single = Lightcut::new().gather(&transfer, &Unoccluded, points.get(lane), &settings);
         assert!((luminance(*radiance) / luminance(single) - 1.0).abs() < 0.01, "{radiance} {single}");
     }
     // What random corrections leave besides the leaves may be anything.
@@ -194,7 +194,7 @@ fn the_cap_holds_for_the_group() {
     let settings = CutSettings { epsilon: 1e-4, max_cut: 77, clamp: None, only: None };
     let mut cut = GroupLightcut::new();
     let mut radiance = [Rgb::ZERO; LANES];
-    cut.gather(&trees, &Transfer::new(&[], 1.7), &Unoccluded, &points, &settings, &mut radiance);
+    cut.gather(&Transfer::new(&trees, 1.7), &Unoccluded, &points, &settings, &mut radiance);
     assert_eq!((cut.size(), cut.counts.capped, cut.counts.cuts), (77, 16, 16));
 }
 
@@ -203,25 +203,25 @@ fn a_lent_cut_gives_points_nearly_what_cuts_of_their_own_would() {
     let mut numbers = Numbers(77);
     let ball = Ball { centre: Vec3::new(0.5, 0.5, 0.6), radius: 0.15 };
     let trees = LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive);
-    let transfer = Transfer::new(&trees.spots, 1.7);
+    let transfer = Transfer::new(&trees, 1.7);
     let frame = crate::math::Frame::from_normal(Vec3::Z);
     let at = |i: usize| Vec3::new(0.3 + 0.02 * (i % 8) as f32, 0.4 + 0.02 * (i / 8) as f32, 0.01);
     let reflectors: Vec<Reflector> = (0..32).map(|i| Reflector::collector(at(i), Vec3::Z, &frame)).collect();
     let (mut group, mut points, mut lent) = (GroupLightcut::new(), Points::new(), LentCut::default());
     let (mut own, mut again) = ([Rgb::ZERO; LANES], [Rgb::ZERO; LANES]);
     points.set(reflectors.iter().step_by(2).copied());
-    group.gather(&trees, &transfer, &ball, &points, &EXACT, &mut own);
-    lent.keep(&group, &trees, &transfer, &points, &own, EXACT.epsilon);
+    group.gather(&transfer, &ball, &points, &EXACT, &mut own);
+    lent.keep(&group, &transfer, &points, &own, &EXACT);
     let rays = group.counts.rays;
-    group.gather_lent(&lent, &trees, &transfer, &ball, &points, &EXACT, 0.5, &mut again);
+    group.gather_lent(&lent, &transfer, &ball, &points, 0.5, &mut again);
     assert!(group.counts.rays - rays < rays / 2, "most clusters are agreed upon");
     for (own, again) in own.iter().zip(again) {
         assert!((*own - again).abs().max_element() < 0.04 * own.max_element(), "{own} {again}");
     }
     // The points in between, against cuts of their own.
     points.set(reflectors.iter().skip(1).step_by(2).copied());
-    group.gather_lent(&lent, &trees, &transfer, &ball, &points, &EXACT, 0.5, &mut again);
-    group.gather(&trees, &transfer, &ball, &points, &EXACT, &mut own);
+    group.gather_lent(&lent, &transfer, &ball, &points, 0.5, &mut again);
+    group.gather(&transfer, &ball, &points, &EXACT, &mut own);
     for (own, again) in own.iter().zip(again) {
         assert!((*own - again).abs().max_element() < 0.04 * own.max_element(), "{own} {again}");
     }
@@ -233,15 +233,15 @@ fn what_a_lent_cut_leaves_to_chance_is_right_on_average() {
     let mut numbers = Numbers(78);
     let ball = Ball { centre: Vec3::new(0.5, 0.5, 0.25), radius: 0.15 };
     let trees = LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive);
-    let transfer = Transfer::new(&trees.spots, 1.7);
+    let transfer = Transfer::new(&trees, 1.7);
     let frame = crate::math::Frame::from_normal(Vec3::Z);
     let at = |i: usize| Vec3::new(0.3 + 0.02 * (i % 8) as f32, 0.4 + 0.02 * (i / 8) as f32, 0.01);
     let reflectors: Vec<Reflector> = (0..64).map(|i| Reflector::collector(at(i), Vec3::Z, &frame)).collect();
     let (mut group, mut points, mut lent) = (GroupLightcut::new(), Points::new(), LentCut::default());
     let mut radiance = [Rgb::ZERO; LANES];
     points.set(reflectors.iter().skip(1).step_by(4).copied());
-    group.gather(&trees, &transfer, &ball, &points, &EXACT, &mut radiance);
-    lent.keep(&group, &trees, &transfer, &points, &radiance, EXACT.epsilon);
+    group.gather(&transfer, &ball, &points, &EXACT, &mut radiance);
+    lent.keep(&group, &transfer, &points, &radiance, &EXACT);
     let nodes: Vec<u32> = group.entries().map(|(node, _)| node).collect();
     points.set(reflectors.iter().skip(3).step_by(4).copied());
     // The same clusters, each with a shadow ray.
@@ -263,7 +263,7 @@ fn what_a_lent_cut_leaves_to_chance_is_right_on_average() {
     let rays = group.counts.rays;
     for start in 0..starts {
         let start = (start as f32 + 0.5) / starts as f32;
-        group.gather_lent(&lent, &trees, &transfer, &ball, &points, &EXACT, start, &mut radiance);
+        group.gather_lent(&lent, &transfer, &ball, &points, start, &mut radiance);
         for lane in 0..LANES {
             let error = luminance(radiance[lane]) / exact[lane] - 1.0;
             means[lane] += error / starts as f32;

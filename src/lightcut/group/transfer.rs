@@ -181,7 +181,7 @@ impl Transfer<'_> {
         if let (VplKind::Omni, Some(profile)) = (kind, vpl.spot_profile()) {
             for l in lanes_of(points.valid) {
                 let offset = vpl.position - points.get(l).position();
-                let falloff = self.spots[profile].falloff(-offset.normalize_or_zero());
+                let falloff = self.trees.spots[profile].falloff(-offset.normalize_or_zero());
                 vector.iter_mut().for_each(|row| row[l] *= falloff);
             }
         }

@@ -6,7 +6,6 @@
 
 use crate::cache::compute::Source;
 use crate::cache::settings::LEAST_PATCH;
-use crate::compensation::Compensation;
 use crate::compensation::samples::{NearCounts, NearLight};
 use crate::eye::EyeSamples;
 use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LentCut, Likeness, Points, group_alike};
@@ -142,7 +141,7 @@ impl<'w> Cutters<'w> {
     ) {
         let compensation = s.compensation.as_ref();
         if !s.settings.shares(jobs.len()) {
-            jobs.chunks(LANES).for_each(|jobs| self.alone(s, rays, samples, jobs, cut, compensation, lit));
+            jobs.chunks(LANES).for_each(|jobs| self.alone(s, rays, samples, jobs, cut, lit));
             return;
         }
         let makes = makers(samples, jobs);
@@ -150,7 +149,7 @@ impl<'w> Cutters<'w> {
             |wanted| jobs.iter().zip(&makes).filter(move |(_, makes)| **makes == wanted).map(|(j, _)| j);
         let mut radiance = [Rgb::ZERO; LANES];
         self.points.set(chosen(true).map(|job| reflector(samples, job)));
-        self.group.gather(s.trees, &s.transfer, rays, &self.points, cut, &mut radiance);
+        self.group.gather(&s.transfer, rays, &self.points, cut, &mut radiance);
         if let Some(c) = compensation {
             self.near.begin(c, cut.only, &self.points, self.group.limits(), &mut radiance);
         }
@@ -158,7 +157,7 @@ impl<'w> Cutters<'w> {
         if lit.len() == jobs.len() {
             return;
         }
-        self.lent.keep(&self.group, s.trees, &s.transfer, &self.points, &radiance, cut.epsilon);
+        self.lent.keep(&self.group, &s.transfer, &self.points, &radiance, cut);
         let others: Vec<&Job> = chosen(false).collect();
         let first = hash(jobs[0].sample, 0) as f32 * (1.0 / 4_294_967_296.0);
         let chunks = others.len().div_ceil(LANES);
@@ -166,16 +165,7 @@ impl<'w> Cutters<'w> {
             let jobs = || others.iter().skip(chunk).step_by(chunks);
             let start = (first + chunk as f32 * GOLDEN).fract();
             self.points.set(jobs().map(|job| reflector(samples, job)));
-            self.group.gather_lent(
-                &self.lent,
-                s.trees,
-                &s.transfer,
-                rays,
-                &self.points,
-                cut,
-                start,
-                &mut radiance,
-            );
+            self.group.gather_lent(&self.lent, &s.transfer, rays, &self.points, start, &mut radiance);
             if let Some(c) = compensation {
                 self.near.add(c, &self.points, self.group.limits(), &mut radiance);
             }
@@ -186,7 +176,6 @@ impl<'w> Cutters<'w> {
 
 impl<'w> Cutters<'w> {
     /// Lights up to sixteen samples, each with a cut of its own.
-    #[allow(clippy::too_many_arguments)]
     fn alone<V: Visibility>(
         &mut self,
         s: &Source<'_>,
@@ -194,15 +183,14 @@ impl<'w> Cutters<'w> {
         samples: &EyeSamples<'w>,
         jobs: &[Job],
         cut: &CutSettings,
-        compensation: Option<&Compensation>,
         lit: &mut Vec<(Job, Rgb)>,
     ) {
         let (mut radiance, mut limits) = ([Rgb::ZERO; LANES], [f32::INFINITY; LANES]);
         for ((job, radiance), limit) in jobs.iter().zip(&mut radiance).zip(&mut limits) {
-            *radiance = self.single.gather(s.trees, &s.transfer, rays, &reflector(samples, job), cut);
+            *radiance = self.single.gather(&s.transfer, rays, &reflector(samples, job), cut);
             *limit = self.single.limit();
         }
-        if let Some(c) = compensation {
+        if let Some(c) = &s.compensation {
             self.points.set(jobs.iter().map(|job| reflector(samples, job)));
             self.near.begin(c, cut.only, &self.points, &limits, &mut radiance);
         }

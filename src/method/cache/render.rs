@@ -157,9 +157,9 @@ impl<'w> Prepared<'w> {
 }
 
 fn source<'a>(world: &'a World, lights: &'a Lights, settings: &'a Settings) -> Source<'a> {
-    let (trees, transfer) = (&lights.trees, lights.transfer(settings.compensation));
+    let transfer = lights.transfer(settings.compensation);
     let compensation = settings.compensation.then(|| lights.compensation(world));
-    Source { world, trees, transfer, settings: &settings.cache, compensation }
+    Source { world, transfer, settings: &settings.cache, compensation }
 }
 
 fn samples_of(patches: &[Vec<Job>]) -> f64 {

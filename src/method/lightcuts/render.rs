@@ -5,7 +5,7 @@ use crate::compensation::Compensation;
 use crate::compensation::samples::NearCounts;
 use crate::eye::{ChainCounts, Window};
 use crate::image::Image;
-use crate::light_tree::{Family, LightTrees};
+use crate::light_tree::Family;
 use crate::lightcut::{CutCounts, CutSettings, Transfer};
 use crate::math::Rgb;
 use crate::method::lights::Lights;
@@ -60,7 +60,6 @@ pub(super) struct Scenery<'a> {
     pub world: &'a World,
     pub window: &'a Window,
     pub settings: &'a Settings,
-    pub trees: &'a LightTrees,
     pub transfer: Transfer<'a>,
     pub compensation: Option<Compensation<'a>>,
     pub max_depth: u32,
@@ -73,9 +72,9 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
 
     let light = LightPassSettings { seed: settings.seed, ..settings.light };
     let lights = Lights::new(world, &light, settings.family, max_depth, control, &mut stats);
-    let (trees, transfer) = (&lights.trees, lights.transfer(settings.compensation));
+    let transfer = lights.transfer(settings.compensation);
     let compensation = settings.compensation.then(|| lights.compensation(world));
-    let scenery = Scenery { world, window, settings, trees, transfer, compensation, max_depth };
+    let scenery = Scenery { world, window, settings, transfer, compensation, max_depth };
 
     // Tiles are aligned to the film, not to the window.
     let first = window.offset.map(|o| o / TILE);

@@ -178,7 +178,7 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
             let before = work.single.counts.clusters;
             let reflector = &sample.reflector;
             let mut radiance = [Rgb::ZERO; LANES];
-            radiance[0] = work.single.gather(s.trees, &s.transfer, &work.shadows, reflector, cut);
+            radiance[0] = work.single.gather(&s.transfer, &work.shadows, reflector, cut);
             if let Some(c) = &s.compensation {
                 work.points.set([*reflector]);
                 let limits = [work.single.limit(); LANES];
@@ -190,7 +190,7 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
         }
         work.points.set(work.members.iter().map(|&i| work.samples[i].reflector));
         let mut radiance = [Rgb::ZERO; LANES];
-        work.group.gather(s.trees, &s.transfer, &work.shadows, &work.points, cut, &mut radiance);
+        work.group.gather(&s.transfer, &work.shadows, &work.points, cut, &mut radiance);
         if let Some(c) = &s.compensation {
             work.near.begin(c, cut.only, &work.points, work.group.limits(), &mut radiance);
         }

@@ -10,7 +10,7 @@
 use super::packet::Packet;
 use crate::embree::{Ray, Rays16};
 use crate::material::Bsdfs16;
-use crate::math::{F32x16, LANES, Rgb, Vec3x16, lanes_in, mask_of};
+use crate::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, mask_of};
 use crate::sampling::power_heuristic;
 use crate::shadow;
 use crate::world::{Surfaces16, World};
@@ -71,7 +71,8 @@ impl Packet {
         let bsdfs = world.bsdfs(surfaces, wo);
         let choices = self.samplers.point(pair + 2);
         if bsdfs.smooth() & found != 0 {
-            self.light(world, surfaces, &bsdfs, pair, &choices.x, bsdfs.smooth() & found, arrives);
+            let numbers = (&choices.x, &self.samplers.point(pair));
+            self.light(world, surfaces, &bsdfs, numbers, bsdfs.smooth() & found, arrives);
         }
         let samples = bsdfs.sample(&choices.y, &self.samplers.point(pair + 1), found);
         let roulette = if depth >= ROULETTE_DEPTH { self.samplers.number(pair + 3) } else { [0.0; LANES] };
@@ -93,22 +94,19 @@ impl Packet {
         found & samples.going_on() & mask_of(&survives)
     }
 
-    /// Samples light in the lanes of `wanted`.
+    /// Samples light in the lanes of `wanted`: which emitter, and where on it.
     #[inline]
-    #[allow(clippy::too_many_arguments)]
     fn light(
         &self,
         world: &World,
         surfaces: &Surfaces16,
         bsdfs: &Bsdfs16,
-        pair: u32,
-        u_choice: &F32x16,
+        (u_choice, u_light): (&F32x16, &Vec2x16),
         wanted: u16,
         mut arrives: impl FnMut(&Ray, Rgb, u32),
     ) {
-        let u_light = self.samplers.point(pair);
         let at = (&surfaces.position, &self.normal);
-        let lights = world.emitters.sample_direct(&world.scene, at, u_choice, &u_light, wanted);
+        let lights = world.emitters.sample_direct(&world.scene, at, u_choice, u_light, wanted);
         let mut wi = Vec3x16::default();
         for i in 0..LANES {
             wi.set(i, surfaces.frame(i).to_local(lights.direction.get(i)));

@@ -86,11 +86,9 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
 
     let direct = LightPassSettings { direct: settings.direct_vpls, indirect: 0, seed: settings.seed };
     let lights = Lights::new(world, &direct, settings.family, max_depth, control, &mut stats);
-    let (trees, transfer) = (&lights.trees, lights.transfer(true));
     let direct = Source {
         world,
-        trees,
-        transfer,
+        transfer: lights.transfer(true),
         settings: &settings.cache,
         compensation: Some(lights.compensation(world)),
     };

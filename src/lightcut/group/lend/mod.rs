@@ -18,7 +18,6 @@ use super::points::{Points, lanes_of};
 use super::refine::{Entry, GroupLightcut};
 use super::transfer::{GroupVisibility, luminances};
 use super::{LANES, Lanes, RgbLanes};
-use crate::light_tree::LightTrees;
 use crate::lightcut::{CutSettings, Transfer};
 use crate::math::{Rgb, luminance};
 use crate::vpl::Origin;
@@ -72,37 +71,40 @@ pub struct LentCut {
     certain: Vec<Certain>,
     drawn: Vec<Drawn>,
     fit: Fit,
+    /// Tolerated error and clamp of the cut that was kept.
+    epsilon: f32,
+    clamp: Option<f32>,
     /// Mean luminance of the makers.
     brightness: f32,
     size: usize,
 }
 
 impl LentCut {
-    /// Keeps the last cut of `group`, made for `points`, which reflect `radiance`; `epsilon` is the error that is
-    /// tolerated, relative to it.
+    /// Keeps the last cut of `group`, made for `points`, which reflect `radiance`, by `settings`.
     pub fn keep(
         &mut self,
         group: &GroupLightcut,
-        trees: &LightTrees,
         transfer: &Transfer,
         points: &Points,
         radiance: &[Rgb; LANES],
-        epsilon: f32,
+        settings: &CutSettings,
     ) {
+        let epsilon = settings.epsilon;
         let (certain_from, smooth_to) = (CHANCE * epsilon, SMOOTH * epsilon);
         let inverse_totals = inverse_totals(points, radiance);
         self.fit.begin(points);
         self.certain.clear();
         self.drawn.clear();
         self.size = group.size();
+        (self.epsilon, self.clamp) = (epsilon, settings.clamp);
         self.brightness =
             lanes_of(points.valid).map(|l| points.known[l] + luminance(radiance[l])).sum::<f32>()
                 / points.len().max(1) as f32;
         let least_split = epsilon * self.brightness;
         let mut unshadowed = [[0.0; LANES]; 3];
         for (node, responses) in group.entries() {
-            let n = &trees.nodes[node as usize];
-            let vpl = &trees.vpls[n.representative()];
+            let n = &transfer.trees.nodes[node as usize];
+            let vpl = &transfer.trees.vpls[n.representative()];
             let lit = transfer.unshadowed16(points, vpl, n.kind(), &mut unshadowed);
             let reached = |&l: &usize| responses[0][l] + responses[1][l] + responses[2][l] > 0.0;
             if lit == 0 {
@@ -175,30 +177,28 @@ fn inverse_totals(points: &Points, radiance: &[Rgb; LANES]) -> Lanes {
 impl GroupLightcut {
     /// Reflected radiance of points among those that `cut` was made for; `start` (in [0, 1)) decides on what is left
     /// to chance.
-    #[allow(clippy::too_many_arguments)]
     pub fn gather_lent<V: GroupVisibility>(
         &mut self,
         cut: &LentCut,
-        trees: &LightTrees,
         transfer: &Transfer,
         visibility: &V,
         points: &Points,
-        settings: &CutSettings,
         start: f32,
         radiance: &mut [Rgb; LANES],
     ) {
         const ZERO: Lanes = [0.0; LANES];
+        let trees = transfer.trees;
         self.entries.clear();
         let at = cut.fit.at(points);
         // What is never clamped needs no second look.
         let mut strong = cut.fit.reflected(points, &at);
-        let least_split = settings.epsilon * cut.brightness;
+        let least_split = cut.epsilon * cut.brightness;
         let mut parts: Vec<Certain> = Vec::new();
         for &whole in &cut.certain {
             parts.push(whole);
             while let Some(Certain { node, sure, whole }) = parts.pop() {
                 let n = &trees.nodes[node as usize];
-                let Some(responses) = self.responses(trees, transfer, visibility, points, node, sure) else {
+                let Some(responses) = self.responses(transfer, visibility, points, node, sure) else {
                     continue;
                 };
                 match n.children() {
@@ -223,7 +223,7 @@ impl GroupLightcut {
             ticket -= 1.0;
             let mut error = share.reflected(points, &at);
             error.iter_mut().flatten().for_each(|e| *e = -*e);
-            if let Some(responses) = self.responses(trees, transfer, visibility, points, *node, 0.0) {
+            if let Some(responses) = self.responses(transfer, visibility, points, *node, 0.0) {
                 add(&mut error, Rgb::ONE, &responses);
             }
             let scale = trees.nodes[*node as usize].intensity / *probability;
@@ -238,7 +238,7 @@ impl GroupLightcut {
         let count = points.len() as u64;
         self.counts.cuts += count;
         self.counts.clusters += count * cut.size() as u64;
-        self.sum(trees, points, settings.clamp, &strong, radiance);
+        self.sum(trees, points, cut.clamp, &strong, radiance);
         for radiance in radiance.iter_mut() {
             *radiance = radiance.max(Rgb::ZERO);
         }
@@ -247,15 +247,14 @@ impl GroupLightcut {
     /// What a cluster of unit intensity gives to each point, with a shadow ray where it is brighter than `sure`.
     fn responses<V: GroupVisibility>(
         &mut self,
-        trees: &LightTrees,
         transfer: &Transfer,
         visibility: &V,
         points: &Points,
         node: u32,
         sure: f32,
     ) -> Option<RgbLanes> {
-        let n = &trees.nodes[node as usize];
-        let vpl = &trees.vpls[n.representative()];
+        let n = &transfer.trees.nodes[node as usize];
+        let vpl = &transfer.trees.vpls[n.representative()];
         let mut responses = [[0.0; LANES]; 3];
         let lit = transfer.unshadowed16(points, vpl, n.kind(), &mut responses);
         if lit == 0 {
