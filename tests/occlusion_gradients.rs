@@ -37,7 +37,7 @@ fn furnished_room() -> World {
 
 /// Irradiance of the room's indirect light at points of its floor, extrapolated by `STEP` in four directions:
 /// mean relative error, and the scalar product of estimated and true gradients, relative to the square of the true ones.
-fn extrapolate(world: &World, footprints: Footprints) -> (f32, f32) {
+fn extrapolate(world: &World, footprints: Footprints, probe_rays: u32) -> (f32, f32) {
     let settings = EyeSettings { spp: 1, seed: 0, max_depth: 8 };
     let samples = EyeSamples::look(world, &Window::whole(world.scene.resolution), settings, &Control::new());
     let light = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
@@ -46,7 +46,7 @@ fn extrapolate(world: &World, footprints: Footprints) -> (f32, f32) {
     let trees = LightTrees::build(&pass.sets, pass.spots, world.diagonal, Family::Divisive);
     let transfer = Transfer::new(&trees, world.diagonal);
     let cut = CutSettings { epsilon: 0.002, max_cut: 20_000, clamp: None, ..CutSettings::default() };
-    let cache = CacheSettings { cut, footprints, ..CacheSettings::default() };
+    let cache = CacheSettings { cut, footprints, probe_rays, ..CacheSettings::default() };
     let source = Source { world, transfer, settings: &cache, compensation: None };
 
     // Open floor: neither under the ball or the table nor within a step of a wall, where light varies by its own distance.
@@ -89,11 +89,14 @@ fn extrapolate(world: &World, footprints: Footprints) -> (f32, f32) {
 #[test]
 fn edges_of_occluders_complete_the_gradient() {
     let world = furnished_room();
-    let (held_error, held_agreement) = extrapolate(&world, Footprints::Anisotropic);
-    let (error, agreement) = extrapolate(&world, Footprints::Occlusion);
+    let (held_error, held_agreement) = extrapolate(&world, Footprints::Anisotropic, 128);
+    let (error, agreement) = extrapolate(&world, Footprints::Occlusion, 128);
     println!(
         "visibility held: error {held_error}, agreement {held_agreement}; with edges: {error}, {agreement}"
     );
     assert!(error < 0.75 * held_error, "{error} against {held_error}");
     assert!((agreement - 1.0).abs() < 0.3, "{agreement}; with visibility held {held_agreement}");
+    let of_rays = [16, 64, 256, 1024].map(|rays| extrapolate(&world, Footprints::Occlusion, rays));
+    println!("by 16, 64, 256 and 1024 probe rays: {of_rays:?}");
+    assert!(of_rays[3].0 < 0.9 * of_rays[0].0, "{of_rays:?}");
 }

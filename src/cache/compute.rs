@@ -305,7 +305,8 @@ impl<'a> Source<'a> {
         let sight = (!self.needs_occluders()).then(|| {
             let point = &samples.points[sample as usize];
             let geometric_normal = samples.surfaces[sample as usize].geometric_normal;
-            Box::new(Sight::new(self.world, point.position, geometric_normal, point.normal, sample))
+            let (at, rays) = ((point.position, geometric_normal), self.settings.probe_rays);
+            Box::new(Sight::new(self.world, at, point.normal, rays, sample))
         });
         let gathered = Gathered { cut: cut as u32, bound: clamp.bound(), ..Gathered::default() };
         View { gathered: [gathered; 2], series: [None, None], sight }

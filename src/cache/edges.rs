@@ -13,7 +13,7 @@
 //! shading what the rays meet. Second derivatives are an upper estimate: the background's radiance is taken to
 //! change by all of itself within one cell.
 
-use super::probe::{CELLS, Probes, RINGS, SECTORS};
+use super::probe::{Probes, SECTORS};
 use crate::math::{Rgb, luminance};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
@@ -29,13 +29,7 @@ const ELSEWHERE: f32 = 1e-4;
 #[derive(Clone, Debug)]
 pub struct CellLight {
     /// Irradiance from the cell.
-    irradiance: [Rgb; CELLS],
-}
-
-impl Default for CellLight {
-    fn default() -> CellLight {
-        CellLight { irradiance: [Rgb::ZERO; CELLS] }
-    }
+    irradiance: Vec<Rgb>,
 }
 
 /// Derivatives of the irradiance by the motion of occluders' edges.
@@ -59,6 +53,11 @@ struct Edge {
 }
 
 impl CellLight {
+    /// No light in any cell of `probes`.
+    pub fn new(probes: &Probes) -> CellLight {
+        CellLight { irradiance: vec![Rgb::ZERO; probes.cells()] }
+    }
+
     /// Adds `irradiance` from a light at `offset` from the receiver in the probes' frame; `None` for light from
     /// infinitely far along `direction`.
     pub fn add(&mut self, probes: &Probes, direction: Vec3, offset: Option<Vec3>, irradiance: Rgb) {
@@ -70,7 +69,7 @@ impl CellLight {
         let mut weights = [0.0; 4];
         for i in 0..4 {
             let (dj, dk) = (i >> 1, i & 1);
-            let row = (j as i32 + dj as i32).clamp(0, RINGS as i32 - 1) as usize;
+            let row = (j as i32 + dj as i32).clamp(0, probes.rings as i32 - 1) as usize;
             let column = (k as i32 + dk as i32).rem_euclid(SECTORS as i32) as usize;
             cells[i] = row * SECTORS + column;
             let near =
@@ -86,14 +85,15 @@ impl CellLight {
     /// What the edges between cells contribute.
     pub fn edges(&self, probes: &Probes) -> EdgeDerivatives {
         let mut sum = EdgeDerivatives::default();
-        let root = |share: usize| (share as f32 / RINGS as f32).sqrt();
+        let rings = probes.rings as f32;
+        let root = |share: usize| (share as f32 / rings).sqrt();
         let sector = TAU / SECTORS as f32;
         // Chord over arc: the mean of a direction over a sector.
         let chord = (0.5 * sector).sin() / (0.5 * sector);
-        for ring in 0..RINGS {
+        for ring in 0..probes.rings {
             let (sin_in, sin_out) = (root(ring), root(ring + 1));
             let cos_out = (1.0 - sin_out * sin_out).max(0.0).sqrt();
-            let sin_mid = ((ring as f32 + 0.5) / RINGS as f32).sqrt();
+            let sin_mid = ((ring as f32 + 0.5) / rings).sqrt();
             for k in 0..SECTORS {
                 let cell = ring * SECTORS + k;
                 // To the next sector: ∫cosθ dθ along the meridian.
@@ -103,11 +103,11 @@ impl CellLight {
                 let (length, width) = (sin_out - sin_in, sector * sin_mid);
                 self.add_edge(probes, &Edge { cells: [cell, next], across, length, width }, &mut sum);
                 // To the next ring: cosθ along the parallel, and cosθ for the tilt of the motion.
-                if ring + 1 < RINGS {
+                if ring + 1 < probes.rings {
                     let outer = cell + SECTORS;
                     let across = Vec2::from_angle(probes.azimuth(k as f32 + 0.5));
                     let length = cos_out * cos_out * sin_out * sector * chord;
-                    let width = ((ring as f32 + 1.5) / RINGS as f32).sqrt().asin() - sin_mid.asin();
+                    let width = ((ring as f32 + 1.5) / rings).sqrt().asin() - sin_mid.asin();
                     self.add_edge(probes, &Edge { cells: [cell, outer], across, length, width }, &mut sum);
                 }
             }
@@ -125,7 +125,7 @@ impl CellLight {
         }
         // Motion towards the background reveals more of it.
         let (far, across) = if parallax > 0.0 { (b, across) } else { (a, -across) };
-        let radiance = self.irradiance[far] * (CELLS as f32 / PI);
+        let radiance = self.irradiance[far] * (probes.cells() as f32 / PI);
         let rate = parallax.abs() * length;
         for c in 0..3 {
             sum.gradient[c] += across * (radiance[c] * rate);

@@ -16,44 +16,53 @@ use crate::world::World;
 use glam::Vec3;
 use std::f32::consts::TAU;
 
-/// Rings from the normal to the horizon.
-pub const RINGS: usize = 8;
 /// Sectors of each ring: one packet of rays.
 pub const SECTORS: usize = 16;
-/// Cells of the hemisphere.
-pub const CELLS: usize = RINGS * SECTORS;
+/// Most rings from the normal to the horizon.
+const MOST_RINGS: u32 = 256;
 
 /// What is seen in each cell; cell `ring · SECTORS + sector`.
 #[derive(Clone, Debug)]
 pub struct Probes {
     /// z is the normal.
     pub frame: Frame,
+    /// Rings from the normal to the horizon.
+    pub rings: usize,
     /// Azimuth, in sectors, at which sector 0 begins.
     turn: f32,
     /// Unit directions of the rays, in the frame.
-    pub direction: [Vec3; CELLS],
+    pub direction: Vec<Vec3>,
     /// One over the distance to the surface; 0 where there is none.
-    pub inverse: [f32; CELLS],
+    pub inverse: Vec<f32>,
     /// The surface's plane as n/h, for a unit normal n in the frame and its distance h: the inverse distance in a
     /// direction is the product with it. Zero where there is no surface.
-    pub plane: [Vec3; CELLS],
+    pub plane: Vec<Vec3>,
 }
 
 impl Probes {
-    /// Looks around from a surface point on the side of the frame's z axis. `seed` turns the sectors.
-    pub fn trace(world: &World, position: Vec3, geometric_normal: Vec3, frame: &Frame, seed: u32) -> Probes {
+    /// Looks around from a surface point on the side of the frame's z axis, by `rays` in whole rings. `seed` turns the sectors.
+    pub fn trace(
+        world: &World,
+        (position, geometric_normal): (Vec3, Vec3),
+        frame: &Frame,
+        rays: u32,
+        seed: u32,
+    ) -> Probes {
+        let rings = rays.div_ceil(SECTORS as u32).clamp(1, MOST_RINGS) as usize;
+        let cells = rings * SECTORS;
         let turn = (hash(seed, 0x9b05) >> 8) as f32 * (1.0 / 16_777_216.0);
         let mut probes = Probes {
             frame: *frame,
+            rings,
             turn,
-            direction: [Vec3::Z; CELLS],
-            inverse: [0.0; CELLS],
-            plane: [Vec3::ZERO; CELLS],
+            direction: vec![Vec3::Z; cells],
+            inverse: vec![0.0; cells],
+            plane: vec![Vec3::ZERO; cells],
         };
         let azimuths: [(f32, f32); SECTORS] =
             std::array::from_fn(|k| probes.azimuth(k as f32 + 0.5).sin_cos());
-        for ring in 0..RINGS {
-            let sin_sq = (ring as f32 + 0.5) / RINGS as f32;
+        for ring in 0..rings {
+            let sin_sq = (ring as f32 + 0.5) / rings as f32;
             let (sin, cos) = (sin_sq.sqrt(), (1.0 - sin_sq).sqrt());
             let mut rays = Rays16::default();
             for (k, (sin_phi, cos_phi)) in azimuths.into_iter().enumerate() {
@@ -92,13 +101,18 @@ impl Probes {
     pub fn coordinates(&self, direction: Vec3) -> (f32, f32) {
         let sin_sq = (1.0 - direction.z * direction.z).max(0.0);
         let turns = direction.y.atan2(direction.x) * (1.0 / TAU);
-        (sin_sq * RINGS as f32, turns * SECTORS as f32 - self.turn)
+        (sin_sq * self.rings as f32, turns * SECTORS as f32 - self.turn)
+    }
+
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.inverse.len()
     }
 
     /// Harmonic mean of the distances, each cell by its share of a uniform sky's irradiance; infinite if nothing
     /// is seen.
     pub fn harmonic_mean(&self) -> f32 {
         let sum: f32 = self.inverse.iter().sum();
-        if sum > 0.0 { CELLS as f32 / sum } else { f32::INFINITY }
+        if sum > 0.0 { self.cells() as f32 / sum } else { f32::INFINITY }
     }
 }

@@ -55,6 +55,8 @@ pub struct CacheSettings {
     pub series: SeriesSettings,
     /// How the shape of footprints is chosen.
     pub footprints: Footprints,
+    /// Rays that find the edges of occluders around a record, in whole rings of sixteen.
+    pub probe_rays: u32,
     /// Whether the light of records is extrapolated by their gradients, which shape the footprints in any case.
     pub gradients: bool,
     /// Relative change of luminance across a footprint at which it is halved along the gradient; the paper's μ.
@@ -107,6 +109,7 @@ impl Default for CacheSettings {
             indirect: FoundBy::default(),
             series: SeriesSettings::default(),
             footprints: Footprints::default(),
+            probe_rays: 128,
             gradients: true,
             mu: 0.5,
             normal_tolerance: 0.4,

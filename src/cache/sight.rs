@@ -26,7 +26,7 @@ pub struct Sight {
 }
 
 /// Light of one layer.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct SeenLight {
     cells: CellLight,
     /// Second derivatives uu, uv, vv of the luminance while visibility is held.
@@ -45,11 +45,19 @@ pub struct Change {
 }
 
 impl Sight {
-    /// Looks around from a point.
-    pub fn new(world: &World, position: Vec3, geometric_normal: Vec3, normal: Vec3, seed: u32) -> Sight {
+    /// Looks around by `rays` from a point at a position on a surface of the given geometric normal. `seed` turns them.
+    pub fn new(
+        world: &World,
+        (position, geometric_normal): (Vec3, Vec3),
+        normal: Vec3,
+        rays: u32,
+        seed: u32,
+    ) -> Sight {
         let frame = Frame::from_normal(normal);
-        let probes = Probes::trace(world, position, geometric_normal, &frame, seed);
-        Sight { position, probes, layers: Default::default() }
+        let probes = Probes::trace(world, (position, geometric_normal), &frame, rays, seed);
+        let dark = || SeenLight { cells: CellLight::new(&probes), held: [0.0; 3] };
+        let layers = [dark(), dark()];
+        Sight { position, probes, layers }
     }
 
     /// Harmonic mean distance of what is seen.

@@ -386,6 +386,7 @@ mod tests {
             ("clamp", cuts.cut.clamp.unwrap_or(0.0).to_string()),
             ("record-epsilon", cached.cut.epsilon.to_string()),
             ("gradients", if cached.gradients { "on" } else { "off" }.to_owned()),
+            ("probe-rays", cached.probe_rays.to_string()),
             ("mu", cached.mu.to_string()),
             ("series-alpha", cached.series.min_alpha.to_string()),
             ("series-error", cached.series.max_error.to_string()),

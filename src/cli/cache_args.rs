@@ -19,6 +19,9 @@ pub struct CacheArgs {
     /// Shape of footprints [default: occlusion]
     #[arg(long, value_enum)]
     pub footprints: Option<FootprintShape>,
+    /// Rays that find the edges of occluders around a record, in rings of sixteen [default: 128]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub probe_rays: Option<u32>,
     /// Radius of footprints relative to the distance of what casts light and shadow, for direct and
     /// for indirect light [default: 0.3,0.2]
     #[arg(long, value_name = "DIRECT,INDIRECT")]

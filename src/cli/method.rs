@@ -25,7 +25,7 @@ pub fn method(args: &RenderArgs) -> Result<Method, Failure> {
             Err(Failure::usage(anyhow!("the options under \"Photon map\" belong to --method photon-cache")))
         }
         MethodName::Cache if args.cache.without_records() => Err(Failure::usage(anyhow!(
-            "--record-epsilon, --footprints, --accuracy, --reach, --series-alpha, --series-error, --gradients, --mu, --passes, --threshold and --least-cell are for records: add --indirect records"
+            "--record-epsilon, --footprints, --probe-rays, --accuracy, --reach, --series-alpha, --series-error, --gradients, --mu, --passes, --threshold and --least-cell are for records: add --indirect records"
         ))),
         MethodName::PhotonCache
             if args.lightcuts.vpls.is_some()
@@ -107,6 +107,7 @@ fn records_settings(cached: &CacheArgs, cache: &mut CacheSettings) {
         Some(FootprintShape::Occlusion) => Footprints::Occlusion,
         None => cache.footprints,
     };
+    cache.probe_rays = cached.probe_rays.unwrap_or(cache.probe_rays);
     let found = |typed: Option<LightBy>, default| match typed {
         Some(LightBy::Records) => FoundBy::Records,
         Some(LightBy::Samples) => FoundBy::Samples,

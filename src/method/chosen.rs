@@ -159,6 +159,7 @@ fn records_report(c: &CacheSettings) -> Value {
             Footprints::Anisotropic => "anisotropic",
             Footprints::Occlusion => "occlusion",
         },
+        "probe_rays": c.probe_rays,
         "accuracy": c.layers.map(|l| decimal(l.accuracy)),
         "reach": c.layers.map(|l| l.reach.map(decimal)),
         "series_alpha": decimal(c.series.min_alpha),

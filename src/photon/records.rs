@@ -123,7 +123,8 @@ impl PhotonSource<'_> {
 impl PhotonSource<'_> {
     /// What the point sees, with the light met. Its gradient stays that of the strata, which knows of occluders' edges.
     fn sight(&self, point: &EyePoint, geometric_normal: Vec3, seed: u32, met: &Met) -> Sight {
-        let mut sight = Sight::new(self.light.world, point.position, geometric_normal, point.normal, seed);
+        let (at, rays) = ((point.position, geometric_normal), self.settings().probe_rays);
+        let mut sight = Sight::new(self.light.world, at, point.normal, rays, seed);
         let measure = self.strata.measure();
         for (i, &nearness) in met.nearness.iter().enumerate() {
             if nearness > 0.0 {

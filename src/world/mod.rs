@@ -2,7 +2,9 @@
 //!
 //! Units: positions relative to the scene's centre. A `World` is immutable and shared by all threads.
 
-use crate::embree::{Accel, Device, EmbreeError, Hit, Ray, TriangleId, TriangleMesh};
+use crate::embree::{
+    ALL_GEOMETRY, Accel, BuildQuality, Device, EmbreeError, Hit, Ray, TriangleId, TriangleMesh,
+};
 use crate::light::{Emitters, emitted};
 use crate::material::{Bsdf, Materials};
 use crate::math::{Frame, Rgb};
@@ -31,6 +33,13 @@ pub struct World {
     triangles: Triangles,
 }
 
+/// What is built into an acceleration structure.
+pub fn triangle_meshes(scene: &Scene) -> Vec<TriangleMesh<'_>> {
+    let meshes = scene.meshes.iter();
+    let data = meshes.map(|m| (&m.positions, &m.triangles));
+    data.map(|(positions, triangles)| TriangleMesh { positions, triangles, mask: ALL_GEOMETRY }).collect()
+}
+
 /// A point on a surface, seen along a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
@@ -54,12 +63,7 @@ impl World {
     /// Builds what rendering needs; `threads` is Embree's number for the build.
     pub fn new(scene: Scene, threads: usize) -> Result<World, EmbreeError> {
         let device = Device::new(threads)?;
-        let meshes: Vec<TriangleMesh> = scene
-            .meshes
-            .iter()
-            .map(|m| TriangleMesh { positions: &m.positions, triangles: &m.triangles, mask: u32::MAX })
-            .collect();
-        let accel = Accel::build(&device, &meshes)?;
+        let accel = Accel::build(&device, &triangle_meshes(&scene))?;
         let diagonal = match accel.bounds() {
             Some((low, high)) if high != low => (high - low).length(),
             _ => 1.0,
@@ -68,6 +72,12 @@ impl World {
         let emitters = Emitters::new(&scene, diagonal);
         let triangles = Triangles::new(&scene);
         Ok(World { scene, accel, materials, emitters, diagonal, triangles })
+    }
+
+    /// Builds the acceleration structure anew, with other care.
+    pub fn rebuild(&mut self, quality: BuildQuality) -> Result<(), EmbreeError> {
+        self.accel = Accel::build_with(self.accel.device(), &triangle_meshes(&self.scene), quality)?;
+        Ok(())
     }
 
     /// The nearest surface along a ray.

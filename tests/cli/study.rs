@@ -69,7 +69,8 @@ fn the_table_covers_all_methods_and_renders_nothing_twice() {
 #[test]
 fn the_trade_sweeps_knobs_and_finds_the_front() {
     let sandbox = Sandbox::new();
-    let base = ["bench", "trade", "room.xml", "-o", "study", "--knob", "epsilon", "--knob", "spp"];
+    let knobs = ["--knob", "epsilon", "--knob", "spp", "--knob", "build quality"];
+    let base = [&["bench", "trade", "room.xml", "-o", "study"][..], &knobs].concat();
     let size = ["--resolution", "48x32", "--reference-spp", "16", "--samples", "4", "--threads", "2"];
     let run = || sandbox.run(&[&base[..], &size].concat()).expect(0);
     let first = run();
@@ -79,7 +80,7 @@ fn the_trade_sweeps_knobs_and_finds_the_front() {
     let sweeps = scene["sweeps"].as_array().unwrap();
     assert_eq!(
         sweeps.iter().map(|s| s["knob"].as_str().unwrap()).collect::<Vec<_>>(),
-        ["--epsilon", "--spp"]
+        ["--epsilon", "--spp", "build quality"]
     );
     for sweep in sweeps {
         let levels = sweep["levels"].as_array().unwrap();
@@ -90,6 +91,12 @@ fn the_trade_sweeps_knobs_and_finds_the_front() {
             assert_eq!(point["light"].is_null(), sweep["knob"] == "--spp", "{point}");
         }
     }
+    let of_builds: Vec<&Value> =
+        points.iter().filter(|p| p["label"].as_str().unwrap().contains("build")).collect();
+    assert!(
+        of_builds.len() == 3 && of_builds.iter().all(|p| p["limit"].as_f64() < Some(0.2)),
+        "{of_builds:?}"
+    );
     let sorted = |sort: &str| points.iter().filter(|point| point["sort"] == sort).count();
     assert_eq!((sorted("default"), sorted("sample"), sorted("other")), (1, 4, 2));
     let figures = |point: &Value| [point["seconds"].as_f64().unwrap(), point["flip"].as_f64().unwrap()];
@@ -100,7 +107,7 @@ fn the_trade_sweeps_knobs_and_finds_the_front() {
         assert!(front.iter().all(|p| !(figures(p)[0] > seconds && figures(p)[1] > flip)), "{point}");
     }
     let html = fs::read_to_string(sandbox.path("study/trade.html")).unwrap();
-    assert!(html.matches("<svg").count() == 5 && !html.contains("http"));
+    assert!(html.matches("<svg").count() == 6 && !html.contains("http"));
 
     let again = run();
     assert_eq!((rendered(&again.stderr), again.stdout), (vec![], first.stdout));

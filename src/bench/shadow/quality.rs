@@ -5,19 +5,14 @@ use super::trace::{Traces, count};
 use crate::bench::measure::Case;
 use crate::bench::setting::Setting;
 use crate::bench::{Clock, Settings, Table};
-use crate::embree::{ALL_GEOMETRY, Accel, BuildQuality, TriangleMesh};
+use crate::embree::{Accel, BuildQuality};
 use crate::math::lanes_in;
 use crate::stats::Stopwatch;
+use crate::world::triangle_meshes;
 use std::hint::black_box;
 
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
-    let meshes: Vec<TriangleMesh> = setting
-        .world
-        .scene
-        .meshes
-        .iter()
-        .map(|m| TriangleMesh { positions: &m.positions, triangles: &m.triangles, mask: ALL_GEOMETRY })
-        .collect();
+    let meshes = triangle_meshes(&setting.world.scene);
     let mut warnings = Vec::new();
     let mut built = Vec::new();
     for quality in [

@@ -3,10 +3,11 @@
 use super::reference::{Reference, reference};
 use super::store::{Kept, program};
 use super::{Study, StudyError, Subject};
+use crate::embree::BuildQuality;
 use crate::eye::Look;
 use crate::image::Image;
 use crate::method::Method;
-use crate::stats::Stage;
+use crate::stats::{Stage, Stopwatch};
 use serde_json::{Value, json};
 
 /// What may be rendered.
@@ -27,6 +28,12 @@ pub struct Run {
     stats: Value,
 }
 
+/// Where a picture is kept, and what it depends on.
+struct Place {
+    file: String,
+    key: Value,
+}
+
 impl Study<'_> {
     /// The subject's reference, as far as the settings ask.
     pub fn reference(&self, subject: &Subject, look: Look) -> Result<Reference, StudyError> {
@@ -35,26 +42,68 @@ impl Study<'_> {
 
     /// Renders, unless this program has already done so.
     pub fn run(&self, subject: &Subject, candidate: &Candidate) -> Result<Run, StudyError> {
+        let place = self.place(subject, candidate, None);
+        match self.kept(&place) {
+            Some(run) => Ok(run),
+            None => self.keep(&place, self.render(subject, candidate)?),
+        }
+    }
+
+    /// The same over an acceleration structure built for it, which counts in its time.
+    pub fn run_over(
+        &self,
+        quality: BuildQuality,
+        subject: &mut Subject,
+        candidate: &Candidate,
+    ) -> Result<Run, StudyError> {
+        let place = self.place(subject, candidate, Some(quality));
+        if let Some(run) = self.kept(&place) {
+            return Ok(run);
+        }
+        let watch = Stopwatch::start();
+        subject.rebuild(quality)?;
+        let built = watch.elapsed();
+        let run = self.render(subject, candidate);
+        subject.rebuild(BuildQuality::default())?;
+        let mut run = run?;
+        run.stats["times"][Stage::Build.key()] = json!(built);
+        self.keep(&place, run)
+    }
+
+    /// Where it is kept; that whose time holds a build by itself.
+    fn place(&self, subject: &Subject, candidate: &Candidate, built: Option<BuildQuality>) -> Place {
         let method = &candidate.method;
-        let name = format!("{}, {}", subject.name, candidate.label);
         let key = json!({
             "scene": format!("{:016x}", subject.hash),
             "film": self.plan.resolution,
             "program": program(),
             "threads": self.plan.threads,
+            "build": built.map(|quality| format!("{quality:?}")),
             "repeats": self.plan.repeats,
             "method": method.name(),
             // All settings, those without a name on the command line too.
             "settings": format!("{method:?}"),
         });
         // Whatever it is called here.
-        let file = format!("{}, {}", subject.name, method.name());
-        if let Some(kept) = self.store.load(&file, &key, &[]) {
-            return Ok(Run { color: kept.color, stats: kept.facts });
-        }
+        Place { file: format!("{}, {}", subject.name, method.name()), key }
+    }
+
+    fn kept(&self, place: &Place) -> Option<Run> {
+        let kept = self.store.load(&place.file, &place.key, &[])?;
+        Some(Run { color: kept.color, stats: kept.facts })
+    }
+
+    fn keep(&self, place: &Place, run: Run) -> Result<Run, StudyError> {
+        let kept = Kept { color: run.color.clone(), layers: Vec::new(), facts: run.stats.clone() };
+        self.store.save(&place.file, &place.key, &kept)?;
+        Ok(run)
+    }
+
+    /// The fastest of as many runs as are planned.
+    fn render(&self, subject: &Subject, candidate: &Candidate) -> Result<Run, StudyError> {
         let mut best: Option<Run> = None;
         for _ in 0..self.plan.repeats.max(1) {
-            let output = method.render(&subject.world, &subject.window, self.control);
+            let output = candidate.method.render(&subject.world, &subject.window, self.control);
             if !output.complete {
                 return Err(StudyError::Interrupted);
             }
@@ -66,9 +115,7 @@ impl Study<'_> {
         }
         // At least one was rendered.
         let Some(run) = best else { return Err(StudyError::Interrupted) };
-        (self.say)(&format!("{name}: {:.2} s", run.seconds(&Stage::ALL)));
-        let kept = Kept { color: run.color.clone(), layers: Vec::new(), facts: run.stats.clone() };
-        self.store.save(&file, &key, &kept)?;
+        (self.say)(&format!("{}, {}: {:.2} s", subject.name, candidate.label, run.seconds(&Stage::ALL)));
         Ok(run)
     }
 }

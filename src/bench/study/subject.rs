@@ -2,6 +2,7 @@
 
 use super::store::hash_debug;
 use super::{Study, StudyError};
+use crate::embree::BuildQuality;
 use crate::eye::Window;
 use crate::scene::formats::{Level, LoadOptions, load};
 use crate::world::World;
@@ -19,9 +20,15 @@ pub struct Subject {
     pub world: World,
     /// The whole film.
     pub window: Window,
+    path: PathBuf,
 }
 
 impl Subject {
+    /// Builds its acceleration structure anew.
+    pub(super) fn rebuild(&mut self, quality: BuildQuality) -> Result<(), StudyError> {
+        self.world.rebuild(quality).map_err(|source| StudyError::Build { path: self.path.clone(), source })
+    }
+
     /// Loads it.
     pub(super) fn load(path: &Path, study: &Study) -> Result<Subject, StudyError> {
         let loaded = load(path, &LoadOptions::default())?;
@@ -41,7 +48,7 @@ impl Subject {
         let world = World::new(scene, study.plan.threads)
             .map_err(|source| StudyError::Build { path: path.to_owned(), source })?;
         let window = Window::whole(study.plan.resolution);
-        Ok(Subject { name: world.scene.name.clone(), hash, triangles, world, window })
+        Ok(Subject { name: world.scene.name.clone(), hash, triangles, world, window, path: path.to_owned() })
     }
 }
 

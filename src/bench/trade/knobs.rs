@@ -211,6 +211,13 @@ pub fn knobs() -> Vec<Knob> {
             ],
         )
         .with(records),
+        Knob::scaled(
+            "--probe-rays",
+            &UP,
+            |s| s.cache.probe_rays.into(),
+            |s, v| s.cache.probe_rays = v.round().max(1.0) as u32,
+        )
+        .with(records),
         Knob::scaled("--mu (no order)", &DOWN, |s| s.cache.mu.into(), |s, v| s.cache.mu = v as f32).with(
             |s| {
                 records(s);

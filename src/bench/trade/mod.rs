@@ -9,8 +9,9 @@
 //!   and their clamping get wrong;
 //! - FLIP: against a reference of whole pixels, which adds what few eye samples a pixel cannot resolve.
 //!
-//! Not swept, for they are no settings of the cache: probe rays, build quality, robust traversal.
+//! How the acceleration structure is built is varied alone, not in the designed sample.
 
+mod builds;
 mod front;
 mod html;
 mod knobs;
@@ -24,6 +25,7 @@ use crate::method::cache::Settings;
 use crate::method::{Method, lightcuts, photon_cache};
 use crate::sampling::Sampler;
 use crate::stats::Stage;
+use builds::{BUILDS, Builds};
 use front::{Effect, effect, front};
 use knobs::{JudgedBy, Knob, knobs};
 use serde::Serialize;
@@ -125,7 +127,7 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
     let mut trade = Trade { facts: study.facts(), scenes: Vec::new() };
     for path in scenes {
         let subject = study.subject(path)?;
-        trade.scenes.push(scene(study, &subject)?);
+        trade.scenes.push(scene(study, subject)?);
     }
     Ok(Document {
         json: serde_json::json!(trade),
@@ -137,34 +139,37 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
 /// Renders points and judges them.
 struct Judge<'a> {
     study: &'a Study<'a>,
-    subject: &'a Subject,
+    subject: Subject,
     reference: Reference,
     light: Reference,
     limit: Run,
     points: Vec<Point>,
 }
 
-fn scene(study: &Study, subject: &Subject) -> Result<SceneTrade, StudyError> {
+fn scene(study: &Study, subject: Subject) -> Result<SceneTrade, StudyError> {
     let Settings { spp, seed, .. } = Settings::default();
     let mut judge = Judge {
         study,
+        reference: study.reference(&subject, Look::Pixels)?,
+        light: study.reference(&subject, Look::EyeSamples { spp, seed })?,
+        limit: study.run(&subject, &limit())?,
         subject,
-        reference: study.reference(subject, Look::Pixels)?,
-        light: study.reference(subject, Look::EyeSamples { spp, seed })?,
-        limit: study.run(subject, &limit())?,
         points: Vec::new(),
     };
     judge.point("cache", "", Sort::Default, Method::Cache(Settings::default()), true)?;
     for (label, method) in others() {
         judge.point(label, "", Sort::Other, method, true)?;
     }
-    let knobs = chosen(&study.plan.knobs)?;
-    let sweeps: Vec<Sweep> = knobs.iter().map(|knob| judge.sweep(knob)).collect::<Result<_, _>>()?;
+    let (knobs, builds) = chosen(&study.plan.knobs)?;
+    let mut sweeps: Vec<Sweep> = knobs.iter().map(|knob| judge.sweep(knob)).collect::<Result<_, _>>()?;
+    for builds in builds {
+        sweeps.push(judge.sweep_builds(builds)?);
+    }
     let effects = judge.sample(&knobs)?;
-    let Judge { reference, light, mut points, .. } = judge;
+    let Judge { subject, reference, light, mut points, .. } = judge;
     mark_fronts(&mut points);
     Ok(SceneTrade {
-        scene: subject.name.clone(),
+        scene: subject.name,
         reference: reference.noise,
         light_reference: light.noise,
         points,
@@ -182,15 +187,20 @@ fn limit() -> Candidate {
     Candidate { label: "limit".to_owned(), method: Method::Lightcuts(settings) }
 }
 
-/// The knobs named, or all.
-fn chosen(names: &[String]) -> Result<Vec<Knob>, StudyError> {
-    let all = knobs();
-    let plain = |knob: &Knob| knob.name.trim_start_matches('-').to_owned();
-    let known: Vec<String> = all.iter().map(plain).collect();
-    if let Some(name) = names.iter().find(|name| !known.contains(name)) {
+/// The knobs and builds named, or all.
+fn chosen(names: &[String]) -> Result<(Vec<Knob>, Vec<&'static Builds>), StudyError> {
+    let mut knobs = knobs();
+    let mut builds: Vec<&Builds> = BUILDS.iter().collect();
+    let plain = |name: &'static str| name.trim_start_matches('-');
+    let known: Vec<&str> =
+        knobs.iter().map(|k| plain(k.name)).chain(builds.iter().map(|b| plain(b.name))).collect();
+    if let Some(name) = names.iter().find(|name| !known.contains(&name.as_str())) {
         return Err(StudyError::Knob { name: name.clone(), known: known.join("; ") });
     }
-    Ok(all.into_iter().filter(|knob| names.is_empty() || names.contains(&plain(knob))).collect())
+    let wanted = |name: &'static str| names.is_empty() || names.iter().any(|n| n == plain(name));
+    knobs.retain(|knob| wanted(knob.name));
+    builds.retain(|builds| wanted(builds.name));
+    Ok((knobs, builds))
 }
 
 /// The other methods at their defaults, on the cache's eye samples.
@@ -211,16 +221,29 @@ impl Judge<'_> {
         method: Method,
         same_samples: bool,
     ) -> Result<usize, StudyError> {
-        let run = self.study.run(self.subject, &Candidate { label: label.to_owned(), method })?;
+        let candidate = Candidate { label: label.to_owned(), method };
+        let run = self.study.run(&self.subject, &candidate)?;
+        self.judge(&candidate, turned, sort, &run, same_samples)
+    }
+
+    /// Judges a picture; the index of its point.
+    fn judge(
+        &mut self,
+        candidate: &Candidate,
+        turned: &str,
+        sort: Sort,
+        run: &Run,
+        same_samples: bool,
+    ) -> Result<usize, StudyError> {
         let (mut light, mut limit) = (None, None);
         if same_samples {
             light = Some(Errors::against(&run.color, &self.light)?.rel_rmse());
             limit = Some(Errors::between(&run.color, &self.limit.color)?.rel_rmse());
         }
         self.points.push(Point {
-            label: label.to_owned(),
+            label: candidate.label.clone(),
             sort,
-            settings: method.settings(),
+            settings: candidate.method.settings(),
             seconds: run.seconds(&Stage::ALL),
             turned: turned.to_owned(),
             limit,
@@ -249,14 +272,19 @@ impl Judge<'_> {
             )?;
             levels.push((level.text.clone(), point));
         }
+        Ok(self.judged(knob.name, levels, knob.judged_by))
+    }
+
+    /// Judges points from coarse to fine.
+    fn judged(&self, knob: &'static str, levels: Vec<(String, usize)>, judged_by: JudgedBy) -> Sweep {
         let names: Vec<String> = levels.iter().map(|(text, _)| text.clone()).collect();
         let of = |figure: &dyn Fn(&Point) -> f64| -> Vec<f64> {
             levels.iter().map(|&(_, point)| figure(&self.points[point])).collect()
         };
-        let error = course(&of(&|p| p.error(knob.judged_by)), &names, ERROR_TOLERANCE);
+        let error = course(&of(&|p| p.error(judged_by)), &names, ERROR_TOLERANCE);
         let time = course(&of(&|p| p.seconds), &names, TIME_TOLERANCE);
         let verdict = verdict(&error, &time);
-        Ok(Sweep { knob: knob.name, levels, error, time, verdict, judged_by: knob.judged_by })
+        Sweep { knob, levels, error, time, verdict, judged_by }
     }
 
     /// Turns all knobs together that leave the eye samples alone.

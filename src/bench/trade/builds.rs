@@ -1,0 +1,42 @@
+//! How the acceleration structure is built, which is no setting of a method: the default picture, rendered over each.
+
+use super::knobs::JudgedBy;
+use super::{Candidate, Judge, Sort, StudyError, Sweep};
+use crate::embree::BuildQuality;
+use crate::method::Method;
+use crate::method::cache::Settings;
+
+/// A choice between builds.
+pub struct Builds {
+    /// What it is called.
+    pub name: &'static str,
+    /// From coarse to fine.
+    levels: &'static [(&'static str, BuildQuality)],
+}
+
+/// All of them.
+pub const BUILDS: [Builds; 2] = [
+    Builds {
+        name: "build quality",
+        levels: &[("low", BuildQuality::Low), ("medium", BuildQuality::Medium), ("high", BuildQuality::High)],
+    },
+    Builds {
+        name: "robust traversal",
+        levels: &[("off", BuildQuality::Medium), ("on", BuildQuality::Robust)],
+    },
+];
+
+impl Judge<'_> {
+    /// Renders the default over every build; times hold the build.
+    pub fn sweep_builds(&mut self, builds: &Builds) -> Result<Sweep, StudyError> {
+        let mut levels = Vec::with_capacity(builds.levels.len());
+        for &(text, quality) in builds.levels {
+            let label = format!("{} {text}", builds.name);
+            let candidate = Candidate { label, method: Method::Cache(Settings::default()) };
+            let run = self.study.run_over(quality, &mut self.subject, &candidate)?;
+            let point = self.judge(&candidate, &candidate.label, Sort::Sweep, &run, true)?;
+            levels.push((text.to_owned(), point));
+        }
+        Ok(self.judged(builds.name, levels, JudgedBy::Limit))
+    }
+}
