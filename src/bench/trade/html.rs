@@ -1,7 +1,7 @@
 //! The trade as a page: both fronts, and a plot a knob.
 
 use super::markdown::{
-    EFFECT_HEADS, FRONT_HEADS, SWEEP_HEADS, TOGETHER, about, effects, front, judged_by, legend, sweeps,
+    EFFECT_HEADS, FRONT_HEADS, NAMED, SWEEP_HEADS, TOGETHER, about, effects, front, judged_by, legend, sweeps,
 };
 use super::{Point, SceneTrade, Sort, Sweep, Trade};
 use crate::bench::export::escaped;
@@ -21,6 +21,8 @@ pub fn html(trade: &Trade) -> String {
 
 fn section(scene: &SceneTrade) -> String {
     let mut text = format!("<h2>{}</h2>\n<p>{}</p>\n", escaped(&scene.scene), escaped(&about(scene)));
+    text += &format!("<h3>{NAMED}</h3>\n");
+    text += &rows(&FRONT_HEADS, front(&scene.named()));
     text += "<h3>Error from the limit against time</h3>\n";
     text += &scatter(SECONDS, "error from the limit", &cloud(scene, |p| p.limit, |p| p.on_limit_front));
     text += &rows(&FRONT_HEADS, front(&scene.front(|p| p.on_limit_front)));
@@ -49,7 +51,7 @@ fn rows(heads: &[&str], rows: Vec<Vec<String>>) -> String {
 /// All points by their sort, the front joined.
 fn cloud(scene: &SceneTrade, error: fn(&Point) -> Option<f64>, on: fn(&Point) -> bool) -> Vec<Series> {
     let place = |point: &Point| {
-        let turned = if point.sort == Sort::Sweep { "" } else { &*point.turned };
+        let turned = if matches!(point.sort, Sort::Sweep | Sort::Quality) { "" } else { &*point.turned };
         (point.seconds, error(point).unwrap_or(0.0), format!("{} {turned}", point.label))
     };
     let of = |name: &str, colour, sort| Series {
@@ -64,6 +66,7 @@ fn cloud(scene: &SceneTrade, error: fn(&Point) -> Option<f64>, on: fn(&Point) ->
         of("designed sample", "#bbb", Sort::Sample),
         of("one knob turned", "#4a7fb5", Sort::Sweep),
         Series { name: "front".to_owned(), colour: "#693", joined: true, points: joined },
+        of("--quality", "#939", Sort::Quality),
         of("default", "#d00", Sort::Default),
         Series { name: String::new(), ..of("", "#a40", Sort::Other) },
     ]

@@ -2,7 +2,7 @@
 
 use super::knobs::JudgedBy;
 use super::verdict::{ERROR_TOLERANCE, TIME_TOLERANCE};
-use super::{Effect, Point, SceneTrade, Sort, Trade};
+use super::{Effect, Point, SceneTrade, Trade};
 use crate::bench::study::{figure, optional, seconds};
 
 /// Heads of [`sweeps`].
@@ -13,6 +13,9 @@ pub const FRONT_HEADS: [&str; 6] =
     ["seconds", "from the limit", "light error", "FLIP", "point", "settings besides the defaults"];
 /// Heads of [`effects`].
 pub const EFFECT_HEADS: [&str; 3] = ["knob", "error, fine over coarse", "time, fine over coarse"];
+
+/// What [`SceneTrade::named`] are.
+pub const NAMED: &str = "The default, the qualities, and other methods";
 
 /// What [`effects`] says.
 pub const TOGETHER: &str = "By what factor error and time change from a knob's coarsest to its finest level (the error is that \
@@ -26,10 +29,8 @@ pub fn markdown(trade: &Trade) -> String {
     for scene in &trade.scenes {
         text += &format!("\n## {}\n\n{}\n\n{}\n\n", scene.scene, about(scene), legend());
         text += &table(&SWEEP_HEADS, &sweeps(scene));
-        text += "\n### Other methods, and the default\n\n";
-        let rows: Vec<_> =
-            scene.points.iter().filter(|p| matches!(p.sort, Sort::Default | Sort::Other)).collect();
-        text += &table(&FRONT_HEADS, &front(&rows));
+        text += &format!("\n### {NAMED}\n\n");
+        text += &table(&FRONT_HEADS, &front(&scene.named()));
         text += "\n### Pareto front of the error from the limit\n\n";
         text += &table(&FRONT_HEADS, &front(&scene.front(|p| p.on_limit_front)));
         text += "\n### Pareto front of light error\n\n";

@@ -9,13 +9,14 @@
 //!   and their clamping get wrong;
 //! - FLIP: against a reference of whole pixels, which adds what few eye samples a pixel cannot resolve.
 //!
-//! How the acceleration structure is built is varied alone, not in the designed sample.
+//! The settings of `--quality` are beside them. How the acceleration structure is built is varied alone, not in the designed sample.
 
 mod builds;
 mod front;
 mod html;
 mod knobs;
 mod markdown;
+mod sweep;
 mod verdict;
 
 use super::study::{Candidate, Document, Errors, Noise, Reference, Run, Study, StudyError, Subject};
@@ -23,15 +24,15 @@ use super::{Benchmark, Kind};
 use crate::eye::Look;
 use crate::method::cache::Settings;
 use crate::method::{Method, lightcuts, photon_cache};
-use crate::sampling::Sampler;
+use crate::plan::{DRAFT, FINAL, Held, Ladder, PREVIEW, REFERENCE, options};
 use crate::stats::Stage;
 use builds::{BUILDS, Builds};
-use front::{Effect, effect, front};
+use front::{Effect, front};
 use knobs::{JudgedBy, Knob, knobs};
 use serde::Serialize;
 use serde_json::Value;
 use std::path::PathBuf;
-use verdict::{Course, ERROR_TOLERANCE, TIME_TOLERANCE, course, verdict};
+use verdict::Course;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "trade",
@@ -88,6 +89,8 @@ struct Point {
 enum Sort {
     /// The cache's defaults.
     Default,
+    /// What `--quality` gives.
+    Quality,
     /// One knob turned.
     Sweep,
     /// Of the designed sample.
@@ -117,9 +120,6 @@ struct KnobEffect {
     error: Option<Effect>,
     time: Option<Effect>,
 }
-
-/// Seed of the designed sample.
-const DESIGN: u32 = 1;
 
 fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
     // Before anything is rendered.
@@ -160,6 +160,9 @@ fn scene(study: &Study, subject: Subject) -> Result<SceneTrade, StudyError> {
     for (label, method) in others() {
         judge.point(label, "", Sort::Other, method, true)?;
     }
+    for (name, method) in qualities() {
+        judge.point(name, &options(&method), Sort::Quality, method, method.spp() == spp)?;
+    }
     let (knobs, builds) = chosen(&study.plan.knobs)?;
     let mut sweeps: Vec<Sweep> = knobs.iter().map(|knob| judge.sweep(knob)).collect::<Result<_, _>>()?;
     for builds in builds {
@@ -185,6 +188,13 @@ fn limit() -> Candidate {
     settings.cut.epsilon *= 0.25;
     settings.cut.max_cut *= 16;
     Candidate { label: "limit".to_owned(), method: Method::Lightcuts(settings) }
+}
+
+/// The cache at the heights of the ladder that have names.
+fn qualities() -> Vec<(&'static str, Method)> {
+    let ladder = Ladder::new(Method::Cache(Settings::default()), Held::default());
+    let named = [("draft", DRAFT), ("preview", PREVIEW), ("final", FINAL), ("reference", REFERENCE)];
+    ladder.iter().flat_map(|ladder| named.map(|(name, height)| (name, ladder.at(height)))).collect()
 }
 
 /// The knobs and builds named, or all.
@@ -255,69 +265,6 @@ impl Judge<'_> {
         });
         Ok(self.points.len() - 1)
     }
-
-    fn sweep(&mut self, knob: &Knob) -> Result<Sweep, StudyError> {
-        let mut levels = Vec::with_capacity(knob.levels.len());
-        for level in &knob.levels {
-            let mut settings = Settings::default();
-            (knob.with)(&mut settings);
-            level.apply(&mut settings);
-            let label = format!("{} {}", knob.name, level.text);
-            let point = self.point(
-                &label,
-                &label,
-                Sort::Sweep,
-                Method::Cache(settings),
-                knob.judged_by != JudgedBy::Flip,
-            )?;
-            levels.push((level.text.clone(), point));
-        }
-        Ok(self.judged(knob.name, levels, knob.judged_by))
-    }
-
-    /// Judges points from coarse to fine.
-    fn judged(&self, knob: &'static str, levels: Vec<(String, usize)>, judged_by: JudgedBy) -> Sweep {
-        let names: Vec<String> = levels.iter().map(|(text, _)| text.clone()).collect();
-        let of = |figure: &dyn Fn(&Point) -> f64| -> Vec<f64> {
-            levels.iter().map(|&(_, point)| figure(&self.points[point])).collect()
-        };
-        let error = course(&of(&|p| p.error(judged_by)), &names, ERROR_TOLERANCE);
-        let time = course(&of(&|p| p.seconds), &names, TIME_TOLERANCE);
-        let verdict = verdict(&error, &time);
-        Sweep { knob, levels, error, time, verdict, judged_by }
-    }
-
-    /// Turns all knobs together that leave the eye samples alone.
-    fn sample(&mut self, knobs: &[Knob]) -> Result<Vec<KnobEffect>, StudyError> {
-        let knobs: Vec<&Knob> = knobs.iter().filter(|knob| knob.judged_by != JudgedBy::Flip).collect();
-        let mut places = vec![Vec::new(); knobs.len()];
-        let (mut errors, mut times) = (Vec::new(), Vec::new());
-        for index in 0..self.study.plan.samples {
-            let mut sampler = Sampler::new(DESIGN, index);
-            let mut settings = Settings::default();
-            let mut turned = Vec::new();
-            for (knob, places) in knobs.iter().zip(&mut places) {
-                let count = knob.levels.len();
-                let level = ((f64::from(sampler.next_1d()) * count as f64) as usize).min(count - 1);
-                knob.levels[level].apply(&mut settings);
-                if knob.default_level() != Some(level) {
-                    turned.push(format!("{} {}", knob.name, knob.levels[level].text));
-                }
-                places.push(level as f64 / (count - 1).max(1) as f64);
-            }
-            let label = format!("sample {index}");
-            let point =
-                self.point(&label, &turned.join("; "), Sort::Sample, Method::Cache(settings), true)?;
-            errors.push(self.points[point].light.unwrap_or(0.0));
-            times.push(self.points[point].seconds);
-        }
-        let of = |(knob, places): (&&Knob, &Vec<f64>)| KnobEffect {
-            knob: knob.name,
-            error: effect(places, &errors),
-            time: effect(places, &times),
-        };
-        Ok(knobs.iter().zip(&places).map(of).collect())
-    }
 }
 
 /// Among the cache's own points.
@@ -341,6 +288,12 @@ fn mark_fronts(points: &mut [Point]) {
 }
 
 impl SceneTrade {
+    /// Points that are not there to find the front.
+    fn named(&self) -> Vec<&Point> {
+        let found = |point: &&Point| !matches!(point.sort, Sort::Sweep | Sort::Sample);
+        self.points.iter().filter(found).collect()
+    }
+
     /// Points on a front, fastest first.
     fn front(&self, on: fn(&Point) -> bool) -> Vec<&Point> {
         let mut points: Vec<&Point> = self.points.iter().filter(|point| on(point)).collect();

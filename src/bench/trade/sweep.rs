@@ -1,0 +1,78 @@
+//! Knobs turned one by one, and all together.
+
+use super::front::effect;
+use super::knobs::{JudgedBy, Knob};
+use super::verdict::{ERROR_TOLERANCE, TIME_TOLERANCE, course, verdict};
+use super::{Judge, KnobEffect, Point, Sort, StudyError, Sweep};
+use crate::method::Method;
+use crate::method::cache::Settings;
+use crate::sampling::Sampler;
+
+/// Seed of the designed sample.
+const DESIGN: u32 = 1;
+
+impl Judge<'_> {
+    /// Turns a knob alone.
+    pub fn sweep(&mut self, knob: &Knob) -> Result<Sweep, StudyError> {
+        let mut levels = Vec::with_capacity(knob.levels.len());
+        for level in &knob.levels {
+            let mut settings = Settings::default();
+            (knob.with)(&mut settings);
+            level.apply(&mut settings);
+            let label = format!("{} {}", knob.name, level.text);
+            let point = self.point(
+                &label,
+                &label,
+                Sort::Sweep,
+                Method::Cache(settings),
+                knob.judged_by != JudgedBy::Flip,
+            )?;
+            levels.push((level.text.clone(), point));
+        }
+        Ok(self.judged(knob.name, levels, knob.judged_by))
+    }
+
+    /// Judges points from coarse to fine.
+    pub fn judged(&self, knob: &'static str, levels: Vec<(String, usize)>, judged_by: JudgedBy) -> Sweep {
+        let names: Vec<String> = levels.iter().map(|(text, _)| text.clone()).collect();
+        let of = |figure: &dyn Fn(&Point) -> f64| -> Vec<f64> {
+            levels.iter().map(|&(_, point)| figure(&self.points[point])).collect()
+        };
+        let error = course(&of(&|p| p.error(judged_by)), &names, ERROR_TOLERANCE);
+        let time = course(&of(&|p| p.seconds), &names, TIME_TOLERANCE);
+        let verdict = verdict(&error, &time);
+        Sweep { knob, levels, error, time, verdict, judged_by }
+    }
+
+    /// Turns all knobs together that leave the eye samples alone.
+    pub fn sample(&mut self, knobs: &[Knob]) -> Result<Vec<KnobEffect>, StudyError> {
+        let knobs: Vec<&Knob> = knobs.iter().filter(|knob| knob.judged_by != JudgedBy::Flip).collect();
+        let mut places = vec![Vec::new(); knobs.len()];
+        let (mut errors, mut times) = (Vec::new(), Vec::new());
+        for index in 0..self.study.plan.samples {
+            let mut sampler = Sampler::new(DESIGN, index);
+            let mut settings = Settings::default();
+            let mut turned = Vec::new();
+            for (knob, places) in knobs.iter().zip(&mut places) {
+                let count = knob.levels.len();
+                let level = ((f64::from(sampler.next_1d()) * count as f64) as usize).min(count - 1);
+                knob.levels[level].apply(&mut settings);
+                if knob.default_level() != Some(level) {
+                    turned.push(format!("{} {}", knob.name, knob.levels[level].text));
+                }
+                places.push(level as f64 / (count - 1).max(1) as f64);
+            }
+            let label = format!("sample {index}");
+            let point =
+                self.point(&label, &turned.join("; "), Sort::Sample, Method::Cache(settings), true)?;
+            errors.push(self.points[point].light.unwrap_or(0.0));
+            times.push(self.points[point].seconds);
+        }
+        let of = |(knob, places): (&&Knob, &Vec<f64>)| KnobEffect {
+            knob: knob.name,
+            error: effect(places, &errors),
+            time: effect(places, &times),
+        };
+        Ok(knobs.iter().zip(&places).map(of).collect())
+    }
+}
