@@ -58,7 +58,7 @@ fn run(context: &Context) -> Vec<Table> {
 /// Mean size of the cuts of eye samples spread over the picture.
 fn mean_cut(setting: &Setting, trees: &LightTrees, epsilon: f32) -> f64 {
     let settings = CutSettings { epsilon, max_cut: usize::MAX, ..CutSettings::default() };
-    let transfer = Transfer::new(&trees, setting.world.diagonal);
+    let transfer = Transfer::new(trees, setting.world.diagonal);
     let mut cut = Lightcut::new();
     for sample in (0..setting.samples.len()).step_by(setting.samples.len().div_ceil(CUTS).max(1)) {
         cut.gather(&transfer, setting.world, &setting.reflector(sample), &settings);

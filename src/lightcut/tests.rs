@@ -189,7 +189,7 @@ pub(super) fn room(n: usize, numbers: &mut Numbers) -> VplSet {
 fn relative_errors(trees: &LightTrees, settings: &CutSettings, rays: &impl Visibility) -> (Vec<f32>, f64) {
     let scene = all_materials();
     let materials = Materials::new(&scene);
-    let transfer = Transfer::new(&trees, 3f32.sqrt());
+    let transfer = Transfer::new(trees, 3f32.sqrt());
     let mut cut = Lightcut::new();
     let mut errors = Vec::new();
     let mut numbers = Numbers(9);
@@ -293,7 +293,7 @@ fn the_cap_is_respected_and_counted() {
 }
 
 fn irradiance(trees: &LightTrees, diagonal: f32, position: Vec3, settings: &CutSettings) -> Rgb {
-    let transfer = Transfer::new(&trees, diagonal);
+    let transfer = Transfer::new(trees, diagonal);
     let receiver = Reflector::collector(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
     Lightcut::new().gather(&transfer, &Unoccluded, &receiver, settings)
 }
