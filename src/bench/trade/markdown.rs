@@ -20,7 +20,8 @@ pub const NAMED: &str = "The default, the qualities, and other methods";
 /// What [`effects`] says.
 pub const TOGETHER: &str = "By what factor error and time change from a knob's coarsest to its finest level (the error is that \
      of light) while all others vary by a designed sample; in brackets what covers that factor in 95 of 100 cases. The line from \
-     level to level is straight in logarithms, what bends counts as noise.";
+     level to level is straight in logarithms, what bends counts as noise. Of fewer samples than knobs, what is one \
+     knob's may be taken for another's.";
 
 /// A section a scene.
 pub fn markdown(trade: &Trade) -> String {
