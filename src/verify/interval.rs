@@ -10,7 +10,7 @@ use serde::Serialize;
 const RESAMPLES: u32 = 2000;
 
 /// Standard normal quantile of 97.5 %.
-const NORMAL_975: f64 = 1.959963984540054;
+pub const NORMAL_975: f64 = 1.959963984540054;
 
 /// An estimate and the interval that covers the truth in 95 of 100 cases.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -30,7 +30,7 @@ use crate::stats::Stage;
 use crate::world::World;
 use serde::Serialize;
 
-pub use interval::Estimate;
+pub use interval::{Estimate, NORMAL_975};
 use picks::Pick;
 use trace::Traced;
 

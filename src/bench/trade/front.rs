@@ -1,5 +1,6 @@
 //! The Pareto front, and what a designed sample says of each knob.
 
+use crate::verify::NORMAL_975;
 use serde::Serialize;
 
 /// Which points no other point beats in both figures.
@@ -43,7 +44,7 @@ pub fn effect(places: &[f64], values: &[f64]) -> Option<Effect> {
 ///
 /// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5.
 fn student_975(freedom: f64) -> f64 {
-    let z: f64 = 1.959963984540054;
+    let z = NORMAL_975;
     let [z3, z5, z7] = [3, 5, 7].map(|n| z.powi(n));
     let first = (z3 + z) / 4.0;
     let second = (5.0 * z5 + 16.0 * z3 + 3.0 * z) / 96.0;
