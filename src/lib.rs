@@ -12,7 +12,7 @@
 //! - [`gradient`] says how that light changes along the surface, [`hsh`] expands it over the hemisphere;
 //! - [`cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their footprints;
 //! - [`shadow`] answers whether segments are free, by packets of rays, [`sampling`] gives every stage its numbers;
-//! - [`method`] holds the renderers that are compared; [`image`] writes and compares what they return;
+//! - [`method`] holds the renderers that are compared; [`film`] writes and compares what they return;
 //! - [`verify`] measures how wrong a picture is by path-tracing some of its pixels, [`plan`] chooses settings for a time or an error;
 //! - [`mod@bench`] measures how fast the parts are; [`cli`] is the command around it all, [`stats`] what it reports.
 
@@ -24,9 +24,9 @@ pub mod cli;
 pub mod compensation;
 pub mod embree;
 pub mod eye;
+pub mod film;
 pub mod gradient;
 pub mod hsh;
-pub mod image;
 pub mod light;
 pub mod light_tree;
 pub mod lightcut;
@@ -35,6 +35,7 @@ pub mod math;
 pub mod method;
 pub mod photon;
 pub mod plan;
+pub mod progress;
 pub mod sampling;
 pub mod scene;
 pub mod shadow;

@@ -6,10 +6,12 @@ mod common;
 use common::*;
 use glam::{Vec2, Vec3};
 use lightsplat::cache::{Footprints, FoundBy};
-use lightsplat::eye::{Window, primary_ray};
-use lightsplat::image::Image;
+use lightsplat::eye::primary_ray;
+use lightsplat::film::Image;
+use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
-use lightsplat::method::{Control, cache, lightcuts};
+use lightsplat::method::{cache, lightcuts};
+use lightsplat::progress::Control;
 use lightsplat::scene::MaterialId;
 use lightsplat::world::{Surface, World};
 

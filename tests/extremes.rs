@@ -5,10 +5,11 @@ mod common;
 
 use common::*;
 use glam::Vec3;
-use lightsplat::eye::Window;
-use lightsplat::image::Image;
+use lightsplat::film::Image;
+use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
-use lightsplat::method::{Control, Output, lightcuts, path};
+use lightsplat::method::{Output, lightcuts, path};
+use lightsplat::progress::Control;
 use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::vpl::LightPassSettings;
 use lightsplat::world::World;

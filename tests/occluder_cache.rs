@@ -6,7 +6,8 @@ use common::*;
 use glam::Vec3;
 use lightsplat::cache::FoundBy;
 use lightsplat::math::Rgb;
-use lightsplat::method::{Control, Output, cache, lightcuts};
+use lightsplat::method::{Output, cache, lightcuts};
+use lightsplat::progress::Control;
 use lightsplat::shadow::{OccluderCacheSettings, ShadowSettings};
 use lightsplat::stats::Counter;
 use lightsplat::vpl::LightPassSettings;
@@ -50,7 +51,7 @@ fn saved(output: &Output) -> u64 {
 #[test]
 fn lightcuts_give_the_same_bits_with_it_and_without_on_any_number_of_threads() {
     let world = hall();
-    let window = lightsplat::eye::Window::whole(world.scene.resolution);
+    let window = lightsplat::film::Window::whole(world.scene.resolution);
     for share in [true, false] {
         let mut first: Option<Output> = None;
         for shadows in uses() {

@@ -9,11 +9,12 @@ use lightsplat::cache::layer::Layer;
 use lightsplat::cache::record::Record;
 use lightsplat::cache::wave::Pick;
 use lightsplat::cache::{CacheSettings, Footprints};
-use lightsplat::eye::{EyeSamples, EyeSettings, Window};
+use lightsplat::eye::{EyeSamples, EyeSettings};
+use lightsplat::film::Window;
 use lightsplat::light_tree::{Family, LightTrees};
 use lightsplat::lightcut::{CutSettings, Reflector, Transfer, gather_all};
 use lightsplat::math::{Frame, luminance};
-use lightsplat::method::Control;
+use lightsplat::progress::Control;
 use lightsplat::vpl::{LightPassSettings, Origin, light_pass};
 use lightsplat::world::World;
 

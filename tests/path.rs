@@ -4,11 +4,12 @@ mod common;
 
 use common::*;
 use glam::Vec3;
-use lightsplat::eye::Window;
-use lightsplat::image::Image;
+use lightsplat::film::Image;
+use lightsplat::film::Window;
 use lightsplat::math::Rgb;
+use lightsplat::method::Output;
 use lightsplat::method::path::{Settings, render};
-use lightsplat::method::{Control, Output};
+use lightsplat::progress::Control;
 use lightsplat::scene::{DeltaLight, Environment, Scene};
 use lightsplat::world::World;
 

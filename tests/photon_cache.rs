@@ -4,11 +4,12 @@ mod common;
 
 use common::*;
 use glam::Vec3;
-use lightsplat::eye::Window;
-use lightsplat::image::Image;
+use lightsplat::film::Image;
+use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::path;
 use lightsplat::method::photon_cache::{Settings, render};
-use lightsplat::method::{Control, path};
+use lightsplat::progress::Control;
 use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::stats::Counter;
 use lightsplat::world::World;

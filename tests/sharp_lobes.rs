@@ -4,10 +4,11 @@ mod common;
 
 use common::*;
 use glam::Vec3;
-use lightsplat::eye::Window;
-use lightsplat::image::Image;
+use lightsplat::film::Image;
+use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
-use lightsplat::method::{Control, lightcuts, path};
+use lightsplat::method::{lightcuts, path};
+use lightsplat::progress::Control;
 use lightsplat::scene::{Distribution, Environment, Fresnel, Lobe, Material, Reflectance, Scene};
 
 const SIZE: u32 = 48;

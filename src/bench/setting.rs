@@ -1,12 +1,13 @@
 //! What benchmarks on a scene measure with: its eye samples, its virtual lights in their trees.
 
 use super::Context;
-use crate::eye::{EyeSamples, EyeSettings, Window};
+use crate::eye::{EyeSamples, EyeSettings};
+use crate::film::Window;
 use crate::light_tree::{Family, LightTrees, Node};
 use crate::lightcut::group::{LANES, Likeness, group_alike};
 use crate::lightcut::{Reflector, Transfer};
 use crate::math::Frame;
-use crate::method::Control;
+use crate::progress::Control;
 use crate::sampling::hash;
 use crate::vpl::{LightPass, LightPassSettings, light_pass};
 use crate::world::World;

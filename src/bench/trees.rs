@@ -5,7 +5,7 @@ use super::setting::Setting;
 use super::{Benchmark, Clock, Context, Kind, Table};
 use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::{CutSettings, Lightcut, Transfer};
-use crate::method::Control;
+use crate::progress::Control;
 use crate::vpl::{LightPass, LightPassSettings, light_pass};
 use std::hint::black_box;
 

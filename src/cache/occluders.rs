@@ -8,7 +8,8 @@ use crate::embree::Occluders16;
 use crate::light_tree::Node;
 use crate::lightcut::Visibility;
 use crate::lightcut::group::{GroupVisibility, LANES, Lanes, Points};
-use crate::shadow::{Engine, Packing, to_vpl};
+use crate::lightcut::to_vpl;
+use crate::shadow::{Engine, Packing};
 use crate::vpl::Vpl;
 use crate::world::World;
 use glam::Vec3;
@@ -24,7 +25,7 @@ pub struct OccluderLog<'w> {
 impl<'w> OccluderLog<'w> {
     /// Nothing noted yet.
     pub fn new(world: &'w World) -> OccluderLog<'w> {
-        OccluderLog { engine: world.shadows(), log: RefCell::new(Vec::new()) }
+        OccluderLog { engine: Engine::new(world), log: RefCell::new(Vec::new()) }
     }
 
     /// What was noted.

@@ -4,7 +4,7 @@ use super::bench_args::BenchArgs;
 use super::cache_args::{CacheArgs, Switch};
 use super::exit;
 use super::plan_args::PlanArgs;
-use crate::image::Exposure;
+use crate::film::Exposure;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;

@@ -5,7 +5,7 @@ use super::exit::Failure;
 use super::{scene, study, talk};
 use crate::bench::export::{FORMATS, terminal};
 use crate::bench::{Benchmark, Context, Kind, REGISTRY, Settings};
-use crate::image::{ImageError, atomic};
+use crate::film::{ImageError, atomic};
 use crate::world::World;
 use anyhow::{Context as _, anyhow};
 use std::io::Write;

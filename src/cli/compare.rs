@@ -3,8 +3,8 @@
 use super::args::{CompareArgs, HeatmapError};
 use super::exit::Failure;
 use super::talk;
-use crate::image::metrics::{self, Comparison, Variances, ZTest};
-use crate::image::{ExrFile, Image, ImageError, atomic, heatmap, write_srgb8};
+use crate::film::metrics::{self, Comparison, Variances, ZTest};
+use crate::film::{ExrFile, Image, ImageError, atomic, heatmap, write_srgb8};
 use std::fmt::Write;
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 
 use super::exit;
 use super::talk;
-use crate::method::Control;
+use crate::progress::Control;
 use std::sync::Arc;
 
 /// Cancels `control` when a signal comes. To be called once in a process.

@@ -2,7 +2,7 @@
 
 use super::args::ProgressMode;
 use super::talk;
-use crate::method::{Control, Progress};
+use crate::progress::{Control, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use std::io::IsTerminal;

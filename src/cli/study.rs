@@ -6,7 +6,7 @@ use super::exit::Failure;
 use super::{interrupt, talk};
 use crate::bench::study::{Plan, ReferenceSettings, SAMPLES, Study, StudyError, file_of};
 use crate::bench::{Benchmark, Kind};
-use crate::method::Control;
+use crate::progress::Control;
 use anyhow::{Context as _, anyhow};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

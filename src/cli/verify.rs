@@ -2,7 +2,7 @@
 
 use super::args::{VerifyAgainst, VerifyArgs};
 use crate::eye::Look;
-use crate::image::Metadata;
+use crate::film::Metadata;
 use crate::method::Method;
 use crate::stats::Stats;
 use crate::verify::{Settings, Verified};

@@ -6,11 +6,9 @@ mod look;
 mod samples;
 mod sharing;
 mod sharp;
-mod window;
 
 pub use chain::{ChainCounts, EyeSample, trace};
 pub use index::{Bounds, EyeIndex};
-pub use look::{Look, eye_sampler};
+pub use look::{Look, eye_sampler, primary_ray};
 pub use samples::{EyePoint, EyeSamples, EyeSettings, EyeSurface};
 pub use sharing::Sharing;
-pub use window::{Window, primary_ray};

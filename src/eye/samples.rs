@@ -4,11 +4,11 @@
 //! Paper: Herzog et al. 2009, section 4: eye samples are stored through specular chains and sorted by a kd-tree.
 //! Units: positions relative to the scene's centre, throughputs per pixel (they include 1/spp).
 
-use super::{ChainCounts, EyeIndex, EyeSample, Sharing, Window, eye_sampler, primary_ray, trace};
-use crate::image::Image;
+use super::{ChainCounts, EyeIndex, EyeSample, Sharing, eye_sampler, primary_ray, trace};
+use crate::film::{Image, Window};
 use crate::material::Bsdf;
 use crate::math::Rgb;
-use crate::method::Control;
+use crate::progress::Control;
 use crate::scene::MaterialId;
 use crate::world::World;
 use glam::Vec3;

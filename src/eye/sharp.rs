@@ -12,6 +12,7 @@ use crate::light::delta_irradiance;
 use crate::material::Bsdf;
 use crate::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
 use crate::sampling::{Sampler, power_heuristic};
+use crate::shadow;
 use crate::world::{Surface, World};
 use glam::{Vec2, Vec3};
 
@@ -151,9 +152,9 @@ impl Sharp<'_> {
         counts.shadow_rays += 1;
         let Surface { position, normal: own, .. } = *self.surface;
         if distance.is_finite() {
-            self.world.visible(position, own, position + direction * distance, normal)
+            shadow::visible(self.world, position, own, position + direction * distance, normal)
         } else {
-            self.world.escapes(position, own, direction)
+            shadow::escapes(self.world, position, own, direction)
         }
     }
 }

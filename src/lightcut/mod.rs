@@ -11,6 +11,7 @@ mod geometry;
 pub mod group;
 mod receiver;
 mod refine;
+mod shadow_rays;
 mod transfer;
 mod visibility;
 
@@ -21,4 +22,5 @@ pub use exhaustive::gather_all;
 pub use geometry::{OffsetBox, max_cos_to_cone};
 pub use receiver::Reflector;
 pub use refine::{CutCounts, CutEntry, CutSettings, Lightcut};
+pub use shadow_rays::{to_vpl, to_vpl16};
 pub use transfer::{Bound, Transfer, Unoccluded, Visibility};

@@ -1,9 +1,10 @@
 //! Visibility in a real scene: shadow rays of single points and of groups.
 
 use super::group::{GroupVisibility, Points};
+use super::shadow_rays::to_vpl;
 use super::transfer::Visibility;
 use crate::light_tree::Node;
-use crate::shadow::{Engine, Packing, to_vpl};
+use crate::shadow::{Engine, Packing};
 use crate::vpl::Vpl;
 use crate::world::World;
 use glam::Vec3;
@@ -26,13 +27,13 @@ impl GroupVisibility for Engine<'_> {
 impl Visibility for World {
     #[inline]
     fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
-        Visibility::visible(&self.shadows(), x, normal, vpl, node)
+        Visibility::visible(&Engine::new(self), x, normal, vpl, node)
     }
 }
 
 impl GroupVisibility for World {
     #[inline]
     fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
-        self.shadows().visible16(points, lanes, vpl, node)
+        Engine::new(self).visible16(points, lanes, vpl, node)
     }
 }

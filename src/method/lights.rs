@@ -1,9 +1,9 @@
 //! The stages that methods over virtual lights share: the light pass and its trees.
 
-use super::Control;
 use crate::compensation::Compensation;
 use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::Transfer;
+use crate::progress::Control;
 use crate::stats::{Stage, Stats};
 use crate::vpl::{LightPassSettings, least_dist_sq, light_pass, near_sq_of_size};
 use crate::world::World;

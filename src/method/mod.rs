@@ -2,7 +2,6 @@
 
 pub mod cache;
 mod chosen;
-pub mod control;
 mod counts;
 pub mod lightcuts;
 pub mod lights;
@@ -11,5 +10,4 @@ pub mod path;
 pub mod photon_cache;
 
 pub use chosen::Method;
-pub use control::{Control, Progress};
 pub use output::Output;

@@ -1,6 +1,6 @@
 //! What every method returns.
 
-use crate::image::Image;
+use crate::film::Image;
 use crate::stats::Stats;
 
 /// The result of rendering one frame. All images have the size of the rendered window.

@@ -7,7 +7,7 @@
 
 use crate::eye::EyeIndex;
 use crate::math::Rgb;
-use crate::method::Control;
+use crate::progress::Control;
 use crate::sampling::hash;
 use crate::vpl::{Photon, PhotonCounts, PhotonSettings, trace_photons};
 use crate::world::World;

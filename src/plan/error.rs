@@ -9,9 +9,11 @@
 //! steps are held to one set of paths, so that a picture met after several has had as many chances.
 
 use super::ladder::{Ladder, options};
-use crate::eye::{Look, Window};
-use crate::image::Image;
-use crate::method::{Control, Method, Output};
+use crate::eye::Look;
+use crate::film::Image;
+use crate::film::Window;
+use crate::method::{Method, Output};
+use crate::progress::Control;
 use crate::sampling::hash;
 use crate::stats::{StageTime, Stopwatch};
 use crate::verify::{Settings, Truth, Verified};

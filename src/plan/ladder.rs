@@ -4,7 +4,8 @@
 //! geometrically, so that a plan need not jump. Every step halves ε, which cuts cost by its root,
 //! and the virtual lights follow: a cut as fine as ε asks is no use in a tree whose leaves are coarser.
 
-use crate::eye::{EyeSamples, Window};
+use crate::eye::EyeSamples;
+use crate::film::Window;
 use crate::method::Method;
 use crate::stats::available_bytes;
 

@@ -17,7 +17,7 @@ mod ladder;
 mod time;
 mod tune;
 
-use crate::eye::Window;
+use crate::film::Window;
 
 pub use error::{Asked, Found, for_error};
 pub use ladder::{DRAFT, FINAL, Held, Ladder, PREVIEW, REFERENCE, options};

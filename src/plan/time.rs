@@ -11,9 +11,10 @@ use super::cost::{Cost, Timed};
 use super::ladder::{Ladder, options};
 use super::smaller;
 use super::tune::tune;
-use crate::eye::Window;
+use crate::film::Window;
 use crate::method::cache::Prepared;
-use crate::method::{Control, Method, Output};
+use crate::method::{Method, Output};
+use crate::progress::Control;
 use crate::stats::{Stage, StageTime, Stopwatch};
 use crate::world::World;
 

@@ -1,6 +1,6 @@
 //! Shadow rays: segments that keep off their ends, packets of them, and the engine that answers whether they are free.
 //!
-//! [`segment()`], [`ray_from`] and [`to_vpl`] make rays, [`Packing`] says what shares a packet and how it is traced,
+//! [`segment()`] and [`ray_from`] make rays, [`Packing`] says what shares a packet and how it is traced,
 //! [`Engine`] traces, counts, and may ask an [`OccluderCache`] first. The cache changes how long an answer takes
 //! and which occluder is named, never whether there is one.
 
@@ -8,7 +8,6 @@ mod batch;
 mod cache;
 mod counts;
 mod engine;
-mod light;
 mod packing;
 mod segment;
 mod settings;
@@ -19,7 +18,7 @@ pub use batch::{Batch, End};
 pub use cache::{OccluderCache, OccluderCacheSettings};
 pub use counts::{Counts, Tally};
 pub use engine::Engine;
-pub use light::{to_vpl, to_vpl16};
 pub use packing::Packing;
-pub use segment::{offset, ray_from, segment};
+pub(crate) use segment::ULPS;
+pub use segment::{escapes, offset, ray_from, segment, visible};
 pub use settings::ShadowSettings;

@@ -5,10 +5,11 @@
 //! the position itself, so it holds for any scene size or offset, where a constant would not.
 
 use crate::embree::Ray;
+use crate::world::World;
 use glam::Vec3;
 
 /// Offset in units of the last place of the largest coordinate.
-pub(super) const ULPS: f32 = 8.0;
+pub(crate) const ULPS: f32 = 8.0;
 
 /// `position` moved off its surface towards the side of `direction`.
 #[inline]
@@ -31,4 +32,16 @@ pub fn segment(a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> Ray {
     let origin = offset(a, a_normal, direction);
     let target = offset(b, b_normal, -direction);
     Ray { origin, t_near: 0.0, direction: target - origin, t_far: 1.0 }
+}
+
+/// Whether the segment between two surface points is free. A zero normal marks a point that lies on no surface.
+#[inline]
+pub fn visible(world: &World, a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> bool {
+    !world.accel.occluded(&segment(a, a_normal, b, b_normal))
+}
+
+/// Whether a ray from a surface point meets nothing.
+#[inline]
+pub fn escapes(world: &World, position: Vec3, normal: Vec3, direction: Vec3) -> bool {
+    !world.accel.occluded(&ray_from(position, normal, direction))
 }

@@ -5,10 +5,8 @@ use crate::embree::{Occluders16, Ray, Rays16, TriangleId, Width};
 use crate::math::Rgb;
 use crate::sampling::hash;
 use crate::scene::{Material, MaterialId, Mesh, Reflectance, Scene};
-use crate::vpl::{Vpl, VplKind};
 use crate::world::World;
 use glam::Vec3;
-use proptest::prelude::*;
 use rayon::prelude::*;
 use std::f32::consts::{PI, TAU};
 
@@ -200,7 +198,7 @@ fn packets_of_any_width_with_and_without_the_cache_agree() {
             }
         }
         for width in Width::ALL {
-            let engine = world.shadows().with_width(width);
+            let engine = Engine::new(&world).with_width(width);
             assert_eq!(engine.occluded16(&rays, valid, Packing::Neighbours, key), expected, "{width:?}");
             assert_eq!(engine.take_counts().total().rays, u64::from(valid.count_ones()));
         }
@@ -233,7 +231,7 @@ fn the_triangles_that_segments_end_on_are_skipped_whoever_is_asked() {
         let mut found = Occluders16::default();
         let plain = cached.trace(&free, &mut found);
         let with_skips = cached.trace(&batch, &mut found);
-        assert_eq!(with_skips, world.shadows().trace(&batch, &mut Occluders16::default()));
+        assert_eq!(with_skips, Engine::new(&world).trace(&batch, &mut Occluders16::default()));
         assert_eq!(with_skips & !plain, 0);
         for lane in crate::math::lanes_in(with_skips) {
             let id = TriangleId { geometry: found.geometry[lane], primitive: found.primitive[lane] };
@@ -244,34 +242,4 @@ fn the_triangles_that_segments_end_on_are_skipped_whoever_is_asked() {
         freed += (plain & !with_skips).count_ones();
     }
     assert!(blocked > 1000 && freed > 1000, "{blocked} {freed}");
-}
-
-fn bits(ray: &Ray) -> [u32; 8] {
-    let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin.to_array(), ray.direction.to_array());
-    [ox, oy, oz, ray.t_near, dx, dy, dz, ray.t_far].map(f32::to_bits)
-}
-
-proptest! {
-    #[test]
-    fn sixteen_rays_to_a_light_are_those_of_each_point(seed in any::<u32>(), exponent in -20i32..20) {
-        let mut numbers = Numbers(0, seed);
-        let scale = 2f32.powi(exponent);
-        let place: Vec<(Vec3, Vec3)> = (0..16)
-            .map(|_| (scale * numbers.point(), numbers.of(&[1.0, 1.0, 0.0]) * numbers.point().normalize()))
-            .collect();
-        let lanes = |f: &dyn Fn(usize) -> Vec3| [0, 1, 2].map(|axis| std::array::from_fn(|l| f(l)[axis]));
-        let (x, n) = (lanes(&|l| place[l].0), lanes(&|l| place[l].1));
-        let towards = numbers.point().normalize();
-        for (vpl, kind) in [
-            (Vpl::oriented(scale * numbers.point(), towards), VplKind::Oriented),
-            (Vpl::omni(scale * numbers.point()), VplKind::Omni),
-            (Vpl::omni(place[3].0), VplKind::Omni),
-            (Vpl::directional(towards), VplKind::Directional),
-        ] {
-            let rays = to_vpl16(&x, &n, &vpl, kind);
-            for (lane, (x, n)) in place.iter().enumerate() {
-                prop_assert_eq!(bits(&rays.get(lane)), bits(&to_vpl(*x, *n, &vpl, kind)));
-            }
-        }
-    }
 }

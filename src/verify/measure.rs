@@ -1,7 +1,7 @@
 //! The picture's error from noisy values of some of its pixels.
 //!
 //! A pixel's truth is known from K independent means of path-traced radiance. The relative square error of a channel,
-//! `(t - r)² / (r² + 0.01 m²)` as [`crate::image::metrics::rel_mse`] has it, is too large on average when r is noisy, by the noise's
+//! `(t - r)² / (r² + 0.01 m²)` as [`crate::film::metrics::rel_mse`] has it, is too large on average when r is noisy, by the noise's
 //! variance and by what the quotient does to it. The jackknife over the K means takes both away to first order,
 //! and where the denominator does not matter entirely.
 //!
@@ -29,7 +29,7 @@ const PERCENTILE: f64 = 0.95;
 /// Largest part of the percentile's square that may be noise for the line to none to be trusted.
 const RESOLVED: f64 = 0.5;
 
-/// As in [`crate::image::metrics::rel_mse`]: the share of the squared mean that keeps dark pixels from ruling.
+/// As in [`crate::film::metrics::rel_mse`]: the share of the squared mean that keeps dark pixels from ruling.
 const FLOOR: f64 = 0.01;
 
 /// A pixel whose error is measured.

@@ -23,9 +23,11 @@ mod measure;
 mod picks;
 mod trace;
 
-use crate::eye::{Look, Window};
-use crate::image::Image;
-use crate::method::{Control, Method};
+use crate::eye::Look;
+use crate::film::Image;
+use crate::film::Window;
+use crate::method::Method;
+use crate::progress::Control;
 use crate::stats::Stage;
 use crate::world::World;
 use serde::Serialize;
@@ -73,7 +75,7 @@ pub struct Verified {
     /// Mean of the picture over mean of the truth, minus 1.
     pub relative_bias: Estimate,
     /// Root of the mean over pixels and channels of `(t - r)² / (r² + 0.01 m²)`, r the truth and m its mean: the root of
-    /// [`crate::image::metrics::rel_mse`].
+    /// [`crate::film::metrics::rel_mse`].
     pub relative_rms: Estimate,
     /// What the root of that, by pixel, is not above in 95 % of them.
     pub relative_error_95: Estimate,

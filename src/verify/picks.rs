@@ -6,7 +6,7 @@
 //! Weights undo the preference (Horvitz-Thompson). Picks are systematic: pixels are lined up block by
 //! block along the Morton curve, in random order within blocks, and picked at equal steps of the probability.
 
-use crate::image::Image;
+use crate::film::Image;
 use crate::sampling::hash;
 
 /// A pixel to verify.

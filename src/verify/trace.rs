@@ -3,10 +3,11 @@
 use super::Settings;
 use super::measure::{MEANS, Measured};
 use super::picks::Pick;
-use crate::eye::{Look, Window};
-use crate::image::Image;
-use crate::method::Control;
+use crate::eye::Look;
+use crate::film::Image;
+use crate::film::Window;
 use crate::method::path::{Counts, Wanted, pixel_means};
+use crate::progress::Control;
 use crate::sampling::hash;
 use crate::world::World;
 use glam::DVec3;
@@ -18,7 +19,7 @@ const PILOT: u32 = 4;
 /// Standard error at which a pixel is known well enough, relative to its radiance.
 const TARGET: f64 = 0.01;
 
-/// As in [`crate::image::metrics::rel_mse`], with the picture's mean: dark pixels are not known relative to themselves.
+/// As in [`crate::film::metrics::rel_mse`], with the picture's mean: dark pixels are not known relative to themselves.
 const FLOOR: f64 = 0.01;
 
 /// Pixels of one task.

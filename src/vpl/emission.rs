@@ -3,13 +3,14 @@
 //! Units: flux is in watts by channel, for a single path; divide by the paths shot.
 
 use crate::embree::Ray;
+use crate::light::spot_falloff;
 use crate::light::{Distribution, delta_power};
+use crate::math::Frame;
 use crate::math::Rgb;
 use crate::sampling::{Sampler, cosine_hemisphere, uniform_disk, uniform_sphere};
 use crate::scene::DeltaLight;
 use crate::shadow;
 use crate::world::World;
-use crate::{light::spot_falloff, math::Frame};
 use glam::Vec3;
 use std::f32::consts::{PI, TAU};
 

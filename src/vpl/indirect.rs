@@ -5,7 +5,7 @@
 
 use super::photons::{PhotonCounts, PhotonSettings, trace_photons};
 use super::{LightPassSettings, Origin, Vpl, VplKind, VplSet};
-use crate::method::Control;
+use crate::progress::Control;
 use crate::world::World;
 use std::f32::consts::FRAC_1_PI;
 

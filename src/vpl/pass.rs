@@ -4,7 +4,7 @@ use super::direct::{DirectVpls, direct_vpls};
 use super::indirect::indirect_vpls;
 use super::photons::PhotonCounts;
 use super::{SpotProfile, VplSet};
-use crate::method::Control;
+use crate::progress::Control;
 use crate::world::World;
 
 /// How many VPLs to make.

@@ -9,7 +9,7 @@
 
 use super::emission::PhotonSource;
 use crate::math::{Rgb, luminance};
-use crate::method::Control;
+use crate::progress::Control;
 use crate::sampling::{Sampler, hash};
 use crate::shadow;
 use crate::world::World;

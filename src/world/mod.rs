@@ -9,7 +9,6 @@ use crate::light::{Emitters, emitted};
 use crate::material::{Bsdf, Materials};
 use crate::math::{Frame, Rgb};
 use crate::scene::Scene;
-use crate::shadow;
 use glam::{Vec2, Vec3};
 
 mod packet;
@@ -119,12 +118,6 @@ impl World {
         (triangle.corner, triangle.edges)
     }
 
-    /// Shadow rays without an occluder cache.
-    #[inline]
-    pub fn shadows(&self) -> shadow::Engine<'_> {
-        shadow::Engine::new(self)
-    }
-
     /// How the surface scatters, textures looked up.
     #[inline]
     pub fn bsdf(&self, s: &Surface) -> Bsdf<'_> {
@@ -136,17 +129,5 @@ impl World {
     #[inline]
     pub fn emitted(&self, s: &Surface, out: Vec3) -> Rgb {
         emitted(&self.scene, s.mesh, s.triangle, s.barycentric, s.normal, out)
-    }
-
-    /// Whether the segment between two surface points is free. A zero normal marks a point that lies on no surface.
-    #[inline]
-    pub fn visible(&self, a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> bool {
-        !self.accel.occluded(&shadow::segment(a, a_normal, b, b_normal))
-    }
-
-    /// Whether nothing is met from a surface point on in a direction.
-    #[inline]
-    pub fn escapes(&self, a: Vec3, a_normal: Vec3, direction: Vec3) -> bool {
-        !self.accel.occluded(&shadow::ray_from(a, a_normal, direction))
     }
 }

@@ -1,7 +1,7 @@
 //! `compare` from the outside.
 
 use super::Sandbox;
-use lightsplat::image::{Film, Image, write_exr};
+use lightsplat::film::{Film, Image, write_exr};
 use lightsplat::math::Rgb;
 
 fn picture(sandbox: &Sandbox, name: &str, size: [u32; 2], value: impl Fn(usize) -> f32) {

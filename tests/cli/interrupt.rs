@@ -2,7 +2,7 @@
 #![cfg(unix)]
 
 use super::{Sandbox, read};
-use lightsplat::image::ExrFile;
+use lightsplat::film::ExrFile;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 

@@ -1,7 +1,7 @@
 //! What a render leaves behind, and what it does not.
 
 use super::{Finished, Sandbox, read};
-use lightsplat::image::{ExrFile, Value, read_exr};
+use lightsplat::film::{ExrFile, Value, read_exr};
 use std::process::Command;
 
 #[test]

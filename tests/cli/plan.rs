@@ -1,7 +1,7 @@
 //! `render --time` and `--error`: what was asked, planned and got; and pictures that can be repeated.
 
 use super::{Sandbox, read};
-use lightsplat::image::ExrFile;
+use lightsplat::film::ExrFile;
 
 /// `--resolution` and the like, without the settings that plans choose.
 fn render(sandbox: &Sandbox, name: &str, more: &[&str]) -> super::Finished {

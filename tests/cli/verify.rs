@@ -1,7 +1,7 @@
 //! `render --verify`: the measured error in the statistics and in the file, for every method.
 
 use super::Sandbox;
-use lightsplat::image::ExrFile;
+use lightsplat::film::ExrFile;
 
 #[test]
 fn the_measured_error_is_in_statistics_and_metadata() {

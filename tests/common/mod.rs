@@ -2,9 +2,10 @@
 #![allow(dead_code, missing_docs)]
 
 use glam::Vec3;
-use lightsplat::eye::Window;
+use lightsplat::film::Window;
 use lightsplat::math::Rgb;
-use lightsplat::method::{Control, Output, cache};
+use lightsplat::method::{Output, cache};
+use lightsplat::progress::Control;
 use lightsplat::scene::{Camera, Emission, Fresnel, Lobe, Material, MaterialId, Mesh, Reflectance, Scene};
 use lightsplat::world::World;
 

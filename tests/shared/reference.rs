@@ -1,11 +1,11 @@
 //! The path tracer against converged pictures of the same scenes by an independent renderer (Mitsuba 3).
 
 use super::shared_scenes;
-use lightsplat::eye::Window;
-use lightsplat::image::metrics::{Variances, compare};
-use lightsplat::image::{Image, read_exr};
-use lightsplat::method::Control;
+use lightsplat::film::Window;
+use lightsplat::film::metrics::{Variances, compare};
+use lightsplat::film::{Image, read_exr};
 use lightsplat::method::path::{Settings, render};
+use lightsplat::progress::Control;
 use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::world::World;
 

@@ -16,9 +16,9 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     let mut cases = Vec::new();
     for trace in traces.refined.iter().flatten().filter(|t| t.rays() > 0) {
         let against = cases.len();
-        let without = occluded(&world.shadows(), trace);
+        let without = occluded(&Engine::new(world), trace);
         let add = |name: &str, engine| case(name, engine, trace, against, without);
-        cases.push(add("none", world.shadows()));
+        cases.push(add("none", Engine::new(world)));
         for (slots, ways) in SIZES {
             let engine = Engine::with_cache(world, OccluderCacheSettings { slots, ways });
             cases.push(add(&format!("{slots} x {ways}"), engine));

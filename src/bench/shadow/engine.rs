@@ -21,7 +21,7 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
             cases.push(Case::new(&labels, against, rays, move || {
                 black_box(prepared.occluded(&world.accel, coherent));
             }));
-            let engine = world.shadows().with_width(width);
+            let engine = Engine::new(world).with_width(width);
             if width == Width::One {
                 let singles: Vec<(Ray, u32)> = trace.bundles().flat_map(Packet::singles).collect();
                 cases.push(Case::new(&labels, against, rays, move || {

@@ -28,7 +28,7 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
             },
         ));
         let cache = || Engine::with_cache(world, OccluderCacheSettings::default());
-        let plain = || world.shadows();
+        let plain = || Engine::new(world);
         cases.push(through(alone, "engine with cache", [cache(), plain()], against));
         cases.push(through(shared, "engine", [plain(), plain()], against));
         cases.push(through(shared, "cache for single rays", [cache(), plain()], against));

@@ -5,7 +5,7 @@ use super::trace::{Packet, Traces};
 use crate::bench::measure::Case;
 use crate::bench::setting::Setting;
 use crate::bench::{Clock, Settings, Table};
-use crate::shadow::Packing;
+use crate::shadow::{Engine, Packing};
 use rayon::prelude::*;
 use std::hint::black_box;
 
@@ -18,7 +18,7 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     for trace in traces.pixels().iter().filter(|t| t.rays() > 0) {
         let packets: Vec<&Packet> = trace.packets().collect();
         let part = move |packets: &[&Packet]| -> u64 {
-            let engine = world.shadows();
+            let engine = Engine::new(world);
             let one = |p: &&Packet| {
                 let packing = if p.packing == Packing::Single { Packing::Unrelated } else { p.packing };
                 engine.occluded16(&p.rays, p.valid, packing, 0).count_ones()

@@ -1,8 +1,8 @@
 //! How far a picture is from another, or from the truth behind a reference.
 
 use super::{Reference, StudyError};
-use crate::image::Image;
-use crate::image::metrics::{Variances, compare};
+use crate::film::Image;
+use crate::film::metrics::{Variances, compare};
 use glam::DVec3;
 use serde::Serialize;
 

@@ -25,8 +25,8 @@ pub(super) use store::program;
 pub use subject::file_of;
 
 use crate::embree::EmbreeError;
-use crate::image::ImageError;
-use crate::method::Control;
+use crate::film::ImageError;
+use crate::progress::Control;
 use crate::scene::formats::SceneError;
 use std::path::{Path, PathBuf};
 use store::Store;

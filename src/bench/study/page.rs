@@ -1,7 +1,7 @@
 //! Parts of pages that need nothing else: pictures within the page, tables.
 
 use crate::bench::export::escaped;
-use crate::image::{Image, heatmap, tone};
+use crate::film::{Image, heatmap, tone};
 use ::image::codecs::jpeg::JpegEncoder;
 use ::image::codecs::png::PngEncoder;
 use ::image::{ExtendedColorType, ImageEncoder};

@@ -7,8 +7,8 @@
 use super::store::Kept;
 use super::{Study, StudyError, Subject};
 use crate::eye::Look;
-use crate::image::metrics::{flip_map, psnr, rel_mse_of_variance};
-use crate::image::{Image, tone};
+use crate::film::metrics::{flip_map, psnr, rel_mse_of_variance};
+use crate::film::{Image, tone};
 use crate::math::Rgb;
 use crate::method::path;
 use crate::stats::Stopwatch;

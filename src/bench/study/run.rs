@@ -5,7 +5,7 @@ use super::store::{Kept, program};
 use super::{Study, StudyError, Subject};
 use crate::embree::BuildQuality;
 use crate::eye::Look;
-use crate::image::Image;
+use crate::film::Image;
 use crate::method::Method;
 use crate::stats::{Stage, Stopwatch};
 use serde_json::{Value, json};

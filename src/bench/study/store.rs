@@ -1,12 +1,12 @@
 //! Pictures kept on disk under everything that they depend on.
 //!
 //! A picture is an OpenEXR file with its key and what was found out about it as attributes. It appears whole or not at all
-//! and is flushed to the disk before it takes its name (see [`crate::image::atomic`]), so that a crash loses
+//! and is flushed to the disk before it takes its name (see [`crate::film::atomic`]), so that a crash loses
 //! the picture in the making and nothing else. Files that cannot be read, or are not what their name says,
 //! count as missing.
 
 use super::StudyError;
-use crate::image::{ExrFile, Film, Image, write_exr};
+use crate::film::{ExrFile, Film, Image, write_exr};
 use serde_json::Value;
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};

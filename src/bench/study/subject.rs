@@ -3,7 +3,7 @@
 use super::store::hash_debug;
 use super::{Study, StudyError};
 use crate::embree::BuildQuality;
-use crate::eye::Window;
+use crate::film::Window;
 use crate::scene::formats::{Level, LoadOptions, load};
 use crate::world::World;
 use std::path::{Path, PathBuf};

@@ -7,7 +7,7 @@ use super::{SceneTable, Table1};
 use crate::bench::export::escaped;
 use crate::bench::study::page::{figure, heat, page, shown, table, worst, zoom};
 use crate::bench::study::scatter::{Series, scatter};
-use crate::image::metrics::flip_map;
+use crate::film::metrics::flip_map;
 
 /// Parts of the picture that are shown pixel by pixel.
 const ZOOMS: usize = 3;

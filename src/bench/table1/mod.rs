@@ -28,7 +28,7 @@ mod row;
 use super::study::{Document, Errors, Noise, Reference, Run, Study, StudyError};
 use super::{Benchmark, Kind};
 use crate::eye::Look;
-use crate::image::Image;
+use crate::film::Image;
 use entries::{Entry, Family, OPPONENTS, entries, look};
 use equal::{Speed, speed};
 use row::{Row, Versus};

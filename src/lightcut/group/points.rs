@@ -3,9 +3,9 @@
 use super::{LANES, Lanes};
 use crate::embree::Rays16;
 use crate::lightcut::Reflector;
+use crate::lightcut::shadow_rays::to_vpl16;
 use crate::material::AlikeBsdfs16;
 use crate::math::{Frame, LUMINANCE, Rgb};
-use crate::shadow;
 use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;
 
@@ -110,7 +110,7 @@ impl<'m> Points<'m> {
     /// Rays to a virtual light, in all lanes.
     #[inline]
     pub fn shadow_rays(&self, vpl: &Vpl, kind: VplKind) -> Rays16 {
-        shadow::to_vpl16(&self.position, &self.geometric_normal, vpl, kind)
+        to_vpl16(&self.position, &self.geometric_normal, vpl, kind)
     }
 
     /// Point number `lane`.

@@ -12,7 +12,8 @@ use crate::cache::{CacheSettings, FoundBy, adapt};
 use crate::eye::{EyePoint, EyeSamples, EyeSurface};
 use crate::lightcut::CutCounts;
 use crate::math::{Rgb, luminance};
-use crate::method::{Control, counts};
+use crate::method::counts;
+use crate::progress::Control;
 use crate::stats::{Stage, Stats};
 use crate::vpl::Origin;
 

@@ -19,7 +19,7 @@ use crate::cache::adapt::Seam;
 use crate::cache::layer::Layer;
 use crate::cache::record::Record;
 use crate::eye::EyeSamples;
-use crate::image::Image;
+use crate::film::Image;
 use crate::math::{LUMINANCE, Rgb};
 use rayon::prelude::*;
 

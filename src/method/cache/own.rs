@@ -11,7 +11,7 @@ use crate::eye::EyeSamples;
 use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LentCut, Likeness, Points, group_alike};
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Visibility};
 use crate::math::{Frame, Rgb};
-use crate::method::Control;
+use crate::progress::Control;
 use crate::sampling::hash;
 use crate::shadow::{Counts, Engine};
 use crate::vpl::Origin;

@@ -2,7 +2,7 @@
 
 use super::inspect::Layers;
 use crate::eye::EyeSamples;
-use crate::image::Image;
+use crate::film::Image;
 use crate::math::Rgb;
 use crate::vpl::Origin;
 

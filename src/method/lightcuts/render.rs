@@ -3,13 +3,15 @@
 use super::tile::{TILE, Tile, Workspace};
 use crate::compensation::Compensation;
 use crate::compensation::samples::NearCounts;
-use crate::eye::{ChainCounts, Window};
-use crate::image::Image;
+use crate::eye::ChainCounts;
+use crate::film::Image;
+use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::{CutCounts, CutSettings, Transfer};
 use crate::math::Rgb;
 use crate::method::lights::Lights;
-use crate::method::{Control, Output, counts};
+use crate::method::{Output, counts};
+use crate::progress::Control;
 use crate::shadow::{Counts, ShadowSettings};
 use crate::stats::{Stage, Stats};
 use crate::vpl::LightPassSettings;

@@ -2,7 +2,8 @@
 
 use super::batch::{Batch, Counts};
 use super::start::{Start, start};
-use crate::eye::{Look, Window};
+use crate::eye::Look;
+use crate::film::Window;
 use crate::world::World;
 use glam::DVec3;
 

@@ -2,10 +2,12 @@
 
 use super::batch::{Batch, Counts};
 use super::start::{Start, start};
-use crate::eye::{Look, Window};
-use crate::image::Image;
+use crate::eye::Look;
+use crate::film::Image;
+use crate::film::Window;
 use crate::math::Rgb;
-use crate::method::{Control, Output};
+use crate::method::Output;
+use crate::progress::Control;
 use crate::stats::{Stage, Stats};
 use crate::world::World;
 use rayon::prelude::*;

@@ -2,7 +2,8 @@
 
 use super::batch::Batch;
 use crate::embree::Rays16;
-use crate::eye::{Look, Window, eye_sampler, primary_ray};
+use crate::eye::{Look, eye_sampler, primary_ray};
+use crate::film::Window;
 use crate::math::LANES;
 use crate::sampling::{Samplers16, hash};
 use crate::world::World;

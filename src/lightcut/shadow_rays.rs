@@ -1,8 +1,7 @@
 //! Shadow rays towards virtual lights: the one place that knows what kinds of lights there are.
 
-use super::segment::ULPS;
-use super::{ray_from, segment};
 use crate::embree::{ALL_GEOMETRY, Ray, Rays16};
+use crate::shadow::{ULPS, ray_from, segment};
 use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;
 
@@ -58,7 +57,7 @@ fn set_origin(rays: &mut Rays16, l: usize, origin: Vec3) {
     (rays.origin_x[l], rays.origin_y[l], rays.origin_z[l]) = (origin.x, origin.y, origin.z);
 }
 
-/// [`super::offset`] by comparisons that vector code has.
+/// [`crate::shadow::offset`] by comparisons that vector code has.
 #[inline(always)]
 fn moved(p: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
     let larger = |a: f32, b: f32| if a > b { a } else { b };
@@ -67,4 +66,46 @@ fn moved(p: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
     let facing = normal.x * direction.x + normal.y * direction.y + normal.z * direction.z;
     let side = if facing < 0.0 { -step } else { step };
     Vec3::new(p.x + normal.x * side, p.y + normal.y * side, p.z + normal.z * side)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::{hash, owen_sobol_2d};
+    use proptest::prelude::*;
+
+    fn bits(ray: &Ray) -> [u32; 8] {
+        let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin.to_array(), ray.direction.to_array());
+        [ox, oy, oz, ray.t_near, dx, dy, dz, ray.t_far].map(f32::to_bits)
+    }
+
+    proptest! {
+        #[test]
+        fn sixteen_rays_to_a_light_are_those_of_each_point(seed in any::<u32>(), exponent in -20i32..20) {
+            let scale = 2f32.powi(exponent);
+            let point = |i: u32| {
+                let (a, b) = (owen_sobol_2d(i, seed), owen_sobol_2d(i, hash(seed, 1)));
+                2.0 * Vec3::new(a.x, a.y, b.x) - 1.0
+            };
+            let unit = |i: u32| point(i).normalize_or(Vec3::Z);
+            // Every third point lies on no surface.
+            let place: Vec<(Vec3, Vec3)> = (0..16)
+                .map(|i| (scale * point(i), if i % 3 == 0 { Vec3::ZERO } else { unit(i + 16) }))
+                .collect();
+            let lanes = |f: &dyn Fn(usize) -> Vec3| [0, 1, 2].map(|axis| std::array::from_fn(|l| f(l)[axis]));
+            let (x, n) = (lanes(&|l| place[l].0), lanes(&|l| place[l].1));
+            let towards = unit(40);
+            for (vpl, kind) in [
+                (Vpl::oriented(scale * point(41), towards), VplKind::Oriented),
+                (Vpl::omni(scale * point(41)), VplKind::Omni),
+                (Vpl::omni(place[3].0), VplKind::Omni),
+                (Vpl::directional(towards), VplKind::Directional),
+            ] {
+                let rays = to_vpl16(&x, &n, &vpl, kind);
+                for (lane, (x, n)) in place.iter().enumerate() {
+                    prop_assert_eq!(bits(&rays.get(lane)), bits(&to_vpl(*x, *n, &vpl, kind)));
+                }
+            }
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::exr_write::PREFIX;
 use super::{Image, ImageError, Metadata, Value};
-use crate::eye::Window;
+use crate::film::Window;
 use crate::math::Rgb;
 use ::exr::meta::header::Header;
 use ::exr::prelude::{

@@ -1,7 +1,7 @@
 //! What is written comes back, whole, in any shape; what other programs write is read.
 
 use super::*;
-use crate::eye::Window;
+use crate::film::Window;
 use crate::math::Rgb;
 use ::exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, ImageAttributes, Layer,

@@ -1,7 +1,7 @@
 //! What a picture file holds: named layers over one window of the film, and what is known about them.
 
 use super::{Image, ImageError};
-use crate::eye::Window;
+use crate::film::Window;
 
 /// The picture of one frame with everything that is written beside the colour.
 #[derive(Clone, Debug, PartialEq)]

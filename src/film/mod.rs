@@ -11,18 +11,20 @@ mod exr_read;
 mod exr_tests;
 mod exr_write;
 pub mod false_colour;
-mod film;
 pub mod heatmap;
+mod layers;
 pub mod metrics;
 mod png;
 pub mod tone;
+mod window;
 
 pub use error::ImageError;
 pub use exr_read::{ExrFile, read_exr};
 pub use exr_write::write_exr;
-pub use film::{Film, Metadata, Value};
+pub use layers::{Film, Metadata, Value};
 pub use png::{write_png, write_srgb8};
 pub use tone::Exposure;
+pub use window::Window;
 
 use crate::math::Rgb;
 
