@@ -4,9 +4,8 @@ use super::measure::Case;
 use super::setting::{Dice, Setting};
 use super::{Benchmark, Clock, Context, Kind, Table};
 use crate::light_tree::Node;
-use crate::lightcut::Reflector;
-use crate::lightcut::group::{LANES, Points};
-use crate::math::luminance;
+use crate::lightcut::{Points, Reflector};
+use crate::math::{LANES, luminance};
 use std::hint::black_box;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {

@@ -12,9 +12,10 @@ use super::wave::Pick;
 use crate::compensation::Compensation;
 use crate::compensation::near::{self, Clamped, Near};
 use crate::eye::EyeSamples;
-use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Likeness, Points, group_alike};
-use crate::lightcut::{CutSettings, Lightcut, Reflector};
-use crate::math::{Frame, Rgb, luminance};
+use crate::lightcut::{
+    CutSettings, GroupLightcut, LEAST_SHARED, Lightcut, Likeness, Points, Reflector, group_alike,
+};
+use crate::math::{Frame, LANES, Rgb, luminance};
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// Rays from each record.

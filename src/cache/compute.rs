@@ -17,9 +17,10 @@ use super::wave::Pick;
 use crate::compensation::Compensation;
 use crate::eye::EyeSamples;
 use crate::hsh::Radiance;
-use crate::lightcut::group::{GroupLightcut, LANES, Likeness, Points, group_alike};
-use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Transfer};
-use crate::math::{Frame, LUMINANCE, Rgb, luminance};
+use crate::lightcut::{
+    CutCounts, CutSettings, GroupLightcut, Lightcut, Likeness, Points, Reflector, Transfer, group_alike,
+};
+use crate::math::{Frame, LANES, LUMINANCE, Rgb, luminance};
 use crate::shadow::Engine;
 use crate::vpl::Origin;
 use crate::world::World;

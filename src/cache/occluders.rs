@@ -6,9 +6,8 @@
 
 use crate::embree::Occluders16;
 use crate::light_tree::Node;
-use crate::lightcut::Visibility;
-use crate::lightcut::group::{GroupVisibility, LANES, Lanes, Points};
-use crate::lightcut::to_vpl;
+use crate::lightcut::{GroupVisibility, Points, Visibility, to_vpl};
+use crate::math::{F32x16, LANES};
 use crate::shadow::{Engine, Packing};
 use crate::vpl::Vpl;
 use crate::world::World;
@@ -19,7 +18,7 @@ use std::cell::RefCell;
 pub struct OccluderLog<'w> {
     engine: Engine<'w>,
     /// Representative, and the distance to what hides it from each lane, or infinity.
-    log: RefCell<Vec<(u32, Lanes)>>,
+    log: RefCell<Vec<(u32, F32x16)>>,
 }
 
 impl<'w> OccluderLog<'w> {
@@ -37,7 +36,7 @@ impl<'w> OccluderLog<'w> {
 }
 
 /// What hides lights of a cut, sorted by representative.
-pub struct Hidden(Vec<(u32, Lanes)>);
+pub struct Hidden(Vec<(u32, F32x16)>);
 
 impl Hidden {
     /// Distance to what hides a representative from a lane; infinite if nothing does.

@@ -1,8 +1,7 @@
 //! What decides how many records there are, and how far each reaches.
 
 use crate::hsh::SeriesSettings;
-use crate::lightcut::CutSettings;
-use crate::lightcut::group::LEAST_SHARED;
+use crate::lightcut::{CutSettings, LEAST_SHARED};
 use crate::shadow::ShadowSettings;
 
 /// Patches of fewer samples than this would have too few that borrow.

@@ -9,9 +9,8 @@
 use super::Compensation;
 use super::near::{self, Clamped, Near};
 use crate::light_tree::LightTrees;
-use crate::lightcut::group::{GroupLightcut, LANES, Points};
-use crate::lightcut::{CutCounts, CutSettings, Reflector};
-use crate::math::{Frame, Rgb, luminance};
+use crate::lightcut::{CutCounts, CutSettings, GroupLightcut, Points, Reflector};
+use crate::math::{Frame, LANES, Rgb, luminance};
 use crate::vpl::Origin;
 use glam::Vec3;
 use std::f32::consts::PI;

@@ -5,22 +5,22 @@
 //! A [`Reflector`] says what is gathered (reflected radiance, irradiance), [`Transfer`] what reaches it from a VPL
 //! and at most from a cluster, [`expected`] how far a cluster is likely to be off, [`Lightcut`] finds the cut, [`gather_all`] is the exact sum that it approximates.
 
-mod exhaustive;
+mod coherence;
 pub mod expected;
-mod geometry;
-pub mod group;
+#[cfg(test)]
+mod fixtures;
+pub mod packet;
 mod receiver;
-mod refine;
+pub mod reconstruction;
 mod shadow_rays;
+pub mod single;
 mod transfer;
 mod visibility;
 
-#[cfg(test)]
-mod tests;
-
-pub use exhaustive::gather_all;
-pub use geometry::{OffsetBox, max_cos_to_cone};
+pub use coherence::{LEAST_SHARED, Likeness, group_alike};
+pub use packet::{GroupLightcut, GroupVisibility, Points};
 pub use receiver::Reflector;
-pub use refine::{CutCounts, CutEntry, CutSettings, Lightcut};
+pub use reconstruction::LentCut;
 pub use shadow_rays::{to_vpl, to_vpl16};
+pub use single::{CutCounts, CutEntry, CutSettings, Lightcut, OffsetBox, gather_all, max_cos_to_cone};
 pub use transfer::{Bound, Transfer, Unoccluded, Visibility};

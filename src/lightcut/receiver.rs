@@ -3,7 +3,7 @@
 //! The weight given to each direction decides what the cut's sum is: BRDF · cosine gives reflected radiance, the
 //! cosine alone irradiance.
 
-use super::geometry::OffsetBox;
+use super::OffsetBox;
 use crate::material::{Bsdf, DirectionBound};
 use crate::math::{Frame, Rgb};
 use glam::Vec3;

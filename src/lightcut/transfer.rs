@@ -4,8 +4,7 @@
 //! Units: all per unit intensity, before visibility.
 
 use super::expected::{Outlook, expected_share};
-use super::geometry::{OffsetBox, max_cos_to_cone};
-use super::receiver::Reflector;
+use super::{OffsetBox, Reflector, max_cos_to_cone};
 use crate::light_tree::{LightTrees, Node};
 use crate::math::{Frame, Rgb};
 use crate::vpl::{Vpl, VplKind, least_dist_sq, near_sq_of_size};

@@ -1,8 +1,6 @@
 //! Visibility in a real scene: shadow rays of single points and of groups.
 
-use super::group::{GroupVisibility, Points};
-use super::shadow_rays::to_vpl;
-use super::transfer::Visibility;
+use super::{GroupVisibility, Points, Visibility, to_vpl};
 use crate::light_tree::Node;
 use crate::shadow::{Engine, Packing};
 use crate::vpl::Vpl;

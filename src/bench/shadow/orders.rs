@@ -11,9 +11,10 @@ use crate::cache::CacheSettings;
 use crate::cache::compute::Source;
 use crate::cache::layer::Layer;
 use crate::cache::wave::{Pick, pick};
-use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LEAST_SHARED, Points};
-use crate::lightcut::{CutSettings, Lightcut, Reflector, Visibility};
-use crate::math::{Rgb, luminance};
+use crate::lightcut::{
+    CutSettings, GroupLightcut, GroupVisibility, LEAST_SHARED, Lightcut, Points, Reflector, Visibility,
+};
+use crate::math::{LANES, Rgb, luminance};
 use crate::method::cache::own::{Cutters, Job, patches};
 use crate::vpl::Origin;
 

@@ -8,9 +8,11 @@ use crate::cache::compute::Source;
 use crate::cache::settings::LEAST_PATCH;
 use crate::compensation::samples::{NearCounts, NearLight};
 use crate::eye::EyeSamples;
-use crate::lightcut::group::{GroupLightcut, GroupVisibility, LANES, LentCut, Likeness, Points, group_alike};
-use crate::lightcut::{CutCounts, CutSettings, Lightcut, Reflector, Visibility};
-use crate::math::{Frame, Rgb};
+use crate::lightcut::{
+    CutCounts, CutSettings, GroupLightcut, GroupVisibility, LentCut, Lightcut, Likeness, Points, Reflector,
+    Visibility, group_alike,
+};
+use crate::math::{Frame, LANES, Rgb};
 use crate::progress::Control;
 use crate::sampling::hash;
 use crate::shadow::{Counts, Engine};

@@ -5,9 +5,8 @@
 use super::render::{Scenery, Settings};
 use crate::compensation::samples::{NearCounts, NearLight};
 use crate::eye::{ChainCounts, EyeSample, eye_sampler, primary_ray, trace};
-use crate::lightcut::group::{GroupLightcut, LANES, LEAST_SHARED, Likeness, Points};
-use crate::lightcut::{CutCounts, Lightcut, Reflector};
-use crate::math::Rgb;
+use crate::lightcut::{CutCounts, GroupLightcut, LEAST_SHARED, Lightcut, Likeness, Points, Reflector};
+use crate::math::{LANES, Rgb};
 use crate::shadow::{Counts, Engine};
 use crate::world::World;
 

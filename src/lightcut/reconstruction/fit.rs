@@ -5,10 +5,10 @@
 //! least squares; the sum over the clusters, weighted by their intensities, serves all points of the patch, each
 //! with its own normal and base.
 
-use super::super::points::{Points, Vec3Lanes, lanes_of};
-use super::{LANES, Lanes, RgbLanes};
 use crate::light_tree::Node;
-use crate::lightcut::Transfer;
+use crate::lightcut::packet::points::{Vec3Lanes, lanes_of};
+use crate::lightcut::packet::{LANES, Lanes, RgbLanes};
+use crate::lightcut::{Points, Transfer};
 use crate::math::{Frame, LUMINANCE, Rgb, luminance};
 use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;

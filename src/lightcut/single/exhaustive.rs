@@ -1,7 +1,6 @@
 //! The sum over all VPLs, one shadow ray each: what a lightcut approximates, and is tested against.
 
-use super::receiver::Reflector;
-use super::transfer::{Transfer, Visibility};
+use crate::lightcut::{Reflector, Transfer, Visibility};
 use crate::math::Rgb;
 use glam::DVec3;
 

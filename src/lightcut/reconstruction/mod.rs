@@ -14,11 +14,11 @@
 
 mod fit;
 
-use super::points::{Points, lanes_of};
-use super::refine::{Entry, GroupLightcut};
-use super::transfer::{GroupVisibility, luminances};
-use super::{LANES, Lanes, RgbLanes};
-use crate::lightcut::{CutSettings, Transfer};
+use crate::lightcut::packet::points::lanes_of;
+use crate::lightcut::packet::refine::Entry;
+use crate::lightcut::packet::transfer::luminances;
+use crate::lightcut::packet::{LANES, Lanes, RgbLanes};
+use crate::lightcut::{CutSettings, GroupLightcut, GroupVisibility, Points, Transfer};
 use crate::math::{Rgb, luminance};
 use crate::vpl::Origin;
 use fit::{Fit, Share};

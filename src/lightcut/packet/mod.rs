@@ -10,16 +10,12 @@
 //! Deviations: a lane's luminance counts as at least 1/256 of the brightest lane's where errors are judged, so
 //! that one point in the dark does not drive the cut of fifteen in the light to its cap.
 
-mod alike;
-mod lend;
-mod points;
-mod refine;
+pub(super) mod points;
+pub(super) mod refine;
 #[cfg(test)]
 mod tests;
-mod transfer;
+pub(super) mod transfer;
 
-pub use alike::{LEAST_SHARED, Likeness, group_alike};
-pub use lend::LentCut;
 pub use points::Points;
 pub use refine::GroupLightcut;
 pub use transfer::GroupVisibility;

@@ -3,11 +3,13 @@
 use super::points::lanes_of;
 use super::*;
 use crate::light_tree::{Family, LightTrees, Node};
-use crate::lightcut::tests::{
+use crate::lightcut::fixtures::{
     Ball, EXACT, Numbers, SPOTS, all_materials, low_lamps, members, points_near_vpls, random_reflector, rms,
     room, three_kinds,
 };
-use crate::lightcut::{CutSettings, Lightcut, Reflector, Transfer, Unoccluded, Visibility, gather_all};
+use crate::lightcut::{
+    CutSettings, LentCut, Lightcut, Reflector, Transfer, Unoccluded, Visibility, gather_all,
+};
 use crate::material::Materials;
 use crate::math::{Rgb, luminance};
 use crate::scene::{MaterialId, Scene};
@@ -145,7 +147,7 @@ fn no_cluster_gives_the_lanes_more_than_a_quarter_however_coarse_the_cut() {
             };
             let cubes: f32 = (0..LANES).map(|lane| share(lane).powi(3)).sum();
             let share = (cubes / LANES as f32).cbrt();
-            assert!(share <= 1.001 * crate::lightcut::refine::DOMINANT, "{share}");
+            assert!(share <= 1.001 * crate::lightcut::single::DOMINANT, "{share}");
         }
     }
 }

@@ -4,15 +4,14 @@
 //! Paper: Walter et al., *Lightcuts*, 2005, section 3; Herzog et al. 2009, section 3 (one threshold for all
 //! trees, relative to their common total) and Eq. 13 (weak singularities).
 //! Deviations: the error of a cluster is not its upper bound but what is to be expected under that bound (see
-//! [`super::expected`]), but a cluster that gives more than a quarter of the total is split whatever is to be expected
+//! [`crate::lightcut::expected`]), but a cluster that gives more than a quarter of the total is split whatever is to be expected
 //! of it; up to [`BATCH`] offenders are split a round; a leaf's error is 0, so it never waits to be split;
 //! weak singularities are clamped once, when the cut is final, against a luminance in which no single indirect
 //! leaf counts for more than a quarter: a VPL close to the receiver would otherwise set its own limit,
 //! and hide the error of all others while the cut is refined.
 
-use super::receiver::Reflector;
-use super::transfer::{Transfer, Visibility};
 use crate::light_tree::LightTrees;
+use crate::lightcut::{Reflector, Transfer, Visibility};
 use crate::math::{Rgb, luminance};
 use crate::vpl::Origin;
 use glam::DVec3;
@@ -22,12 +21,12 @@ use std::collections::BinaryHeap;
 const BATCH: usize = 16;
 
 /// Largest share of the luminance that a single indirect leaf may have in what others are judged by.
-pub(super) const DOMINANT: f32 = 0.25;
+pub(in crate::lightcut) const DOMINANT: f32 = 0.25;
 
 /// When a cut is good enough.
 #[derive(Clone, Copy, Debug)]
 pub struct CutSettings {
-    /// Largest error to expect of one cluster (see [`super::expected`]), relative to the total's luminance.
+    /// Largest error to expect of one cluster (see [`crate::lightcut::expected`]), relative to the total's luminance.
     pub epsilon: f32,
     /// Most clusters in a cut.
     pub max_cut: usize,

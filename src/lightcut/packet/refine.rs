@@ -4,7 +4,7 @@ use super::points::{Points, lanes_of};
 use super::transfer::{GroupVisibility, luminances};
 use super::{LANES, Lanes, RgbLanes};
 use crate::light_tree::LightTrees;
-use crate::lightcut::refine::DOMINANT;
+use crate::lightcut::single::DOMINANT;
 use crate::lightcut::{CutCounts, CutSettings, Transfer};
 use crate::math::{Rgb, luminance};
 use crate::vpl::Origin;
@@ -21,7 +21,7 @@ const ZERO: Lanes = [0.0; LANES];
 
 /// A cluster of the cut and what is known of it in each lane.
 #[derive(Clone, Copy)]
-pub(super) struct Entry {
+pub(in crate::lightcut) struct Entry {
     pub node: u32,
     /// A leaf of the indirect trees: the only kind that is clamped.
     pub weak: bool,
@@ -36,7 +36,7 @@ pub(super) struct Entry {
 /// Computes shared cuts; one a thread, so that its buffers are allocated once.
 #[derive(Default)]
 pub struct GroupLightcut {
-    pub(super) entries: Vec<Entry>,
+    pub(in crate::lightcut) entries: Vec<Entry>,
     /// Offence (as bits: non-negative floats sort as integers) above place in `entries`.
     offenders: BinaryHeap<u64>,
     /// Luminance to which indirect leaves were clamped, by lane.
@@ -106,7 +106,7 @@ impl GroupLightcut {
     }
 
     /// The lanes' radiance: that of the entries, and `strong` besides, which is not clamped.
-    pub(super) fn sum(
+    pub(in crate::lightcut) fn sum(
         &mut self,
         trees: &LightTrees,
         points: &Points,

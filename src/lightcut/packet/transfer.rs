@@ -23,7 +23,7 @@ impl Transfer<'_> {
 
     /// Upper bound of each point's luminance, 0 in lanes without a point, and the error to expect relative to it.
     #[inline]
-    pub(super) fn bounds16(&self, points: &Points, node: &Node) -> (Lanes, Lanes) {
+    pub(in crate::lightcut) fn bounds16(&self, points: &Points, node: &Node) -> (Lanes, Lanes) {
         let cluster = Cluster::new(points, node);
         let Geometry { geometry, cos_x, shares } = self.geometry16(&cluster, points, node);
         let mut bounds = [0.0; LANES];
@@ -157,7 +157,7 @@ impl Transfer<'_> {
     }
 
     /// Irradiance vector at each point from a VPL of unit intensity, if visible; 0 where it is below the horizon.
-    pub(super) fn incidence16(&self, points: &Points, vpl: &Vpl, kind: VplKind) -> Vec3Lanes {
+    pub(in crate::lightcut) fn incidence16(&self, points: &Points, vpl: &Vpl, kind: VplKind) -> Vec3Lanes {
         let mut vector = [[0.0; LANES]; 3];
         let n = &points.frame[2];
         let near_sq = self.near_sq(vpl, kind);
@@ -321,7 +321,7 @@ impl GroupVisibility for Unoccluded {
 
 /// Luminance of each lane's colour times `intensity`.
 #[inline]
-pub(super) fn luminances(intensity: Rgb, responses: &RgbLanes) -> Lanes {
+pub(in crate::lightcut) fn luminances(intensity: Rgb, responses: &RgbLanes) -> Lanes {
     let w = intensity * crate::math::LUMINANCE;
     std::array::from_fn(|l| w.x * responses[0][l] + w.y * responses[1][l] + w.z * responses[2][l])
 }

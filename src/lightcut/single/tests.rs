@@ -1,114 +1,12 @@
 //! Bounds are never violated, cuts stay within their error, and nothing degenerate breaks them.
 
-use super::*;
 use crate::light_tree::{Family, LightTrees, Node};
+use crate::lightcut::fixtures::*;
+use crate::lightcut::*;
 use crate::material::Materials;
 use crate::math::{Frame, Rgb, luminance};
-use crate::sampling::{hash, uniform_sphere};
-use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
-use crate::vpl::{Origin, SpotProfile, Vpl, VplKind, VplSet};
-use glam::{Vec2, Vec3};
-
-/// A stream of numbers in [0, 1), not of samples.
-pub(super) struct Numbers(pub u32);
-
-impl Numbers {
-    pub fn next(&mut self) -> f32 {
-        self.0 += 1;
-        (hash(self.0, 0x51ed) >> 8) as f32 / (1 << 24) as f32
-    }
-
-    pub fn vec3(&mut self) -> Vec3 {
-        Vec3::new(self.next(), self.next(), self.next())
-    }
-
-    pub fn direction(&mut self) -> Vec3 {
-        uniform_sphere(Vec2::new(self.next(), self.next()))
-    }
-}
-
-/// One material of every kind, in a scene of nothing else.
-pub(super) fn all_materials() -> Scene {
-    let constant = |r: f32, g: f32, b: f32| Reflectance::Constant(Rgb::new(r, g, b));
-    let rough = |distribution, alpha, fresnel| Lobe::Rough {
-        distribution,
-        alpha,
-        fresnel,
-        scale: constant(0.7, 0.9, 0.5),
-    };
-    let gold = Fresnel::Conductor { eta: Rgb::new(0.14, 0.37, 1.44), k: Rgb::new(3.98, 2.39, 1.6) };
-    let (ggx, beckmann) = (Distribution::Ggx, Distribution::Beckmann);
-    let mut materials = Vec::new();
-    let mut add = |two_sided, diffuse, coat, lobe| {
-        let name = format!("{}", materials.len());
-        materials.push(Material { name, two_sided, diffuse, coat, lobe });
-    };
-    let coat = Some(Coat { eta: 1.5, nonlinear: true });
-    let (grey, black) = (constant(0.5, 0.4, 0.8), constant(0.0, 0.0, 0.0));
-    add(true, grey, None, Lobe::None);
-    add(false, grey, None, Lobe::None);
-    for alpha in [0.02, 0.1, 0.3, 0.8] {
-        add(true, grey, None, rough(ggx, alpha, Fresnel::One));
-        add(false, black, None, rough(ggx, alpha, gold));
-        add(true, grey, None, rough(beckmann, alpha, Fresnel::Dielectric(1.5)));
-        add(true, grey, coat, rough(ggx, alpha, Fresnel::Dielectric(1.5)));
-    }
-    let mirror = |fresnel| Lobe::Mirror { fresnel, scale: constant(1.0, 1.0, 1.0) };
-    add(true, grey, coat, mirror(Fresnel::Dielectric(1.5)));
-    add(true, black, None, mirror(Fresnel::One));
-    Scene { materials, ..Scene::default() }
-}
-
-/// VPLs in a few groups of very different size, some flat as walls, some with all normals alike.
-fn grouped(n: usize, kind: VplKind, scale: f32, numbers: &mut Numbers) -> VplSet {
-    let mut set = VplSet::new(kind, Origin::Indirect);
-    while set.len() < n {
-        let (centre, axis) = (numbers.vec3(), numbers.direction());
-        let size = 10f32.powf(-4.0 * numbers.next());
-        let spread = numbers.next() * numbers.next() * 2.0;
-        let flat = if numbers.next() < 0.5 { Vec3::ONE - Vec3::Y } else { Vec3::ONE };
-        for _ in 0..12 {
-            let position = (centre + numbers.direction() * size * flat) * scale;
-            let direction = (axis + numbers.direction() * spread).try_normalize().unwrap_or(axis);
-            let vpl = match kind {
-                VplKind::Omni if numbers.next() < 0.5 => Vpl::spot(position, 0),
-                VplKind::Omni => Vpl::omni(position),
-                VplKind::Oriented => Vpl::oriented(position, direction),
-                VplKind::Directional => Vpl::directional(direction),
-            };
-            set.push(vpl, numbers.vec3() + 0.05);
-        }
-    }
-    set
-}
-
-pub(super) const SPOTS: [SpotProfile; 1] =
-    [SpotProfile { direction: Vec3::Y, inner_angle: 0.4, outer_angle: 1.0 }];
-
-pub(super) fn three_kinds(n: usize, scale: f32, numbers: &mut Numbers) -> Vec<VplSet> {
-    [VplKind::Omni, VplKind::Oriented, VplKind::Directional].map(|k| grouped(n, k, scale, numbers)).into()
-}
-
-pub(super) fn random_reflector<'m>(
-    materials: &'m Materials,
-    scene: &Scene,
-    scale: f32,
-    n: &mut Numbers,
-) -> Reflector<'m> {
-    let id = MaterialId((n.next() * scene.materials.len() as f32) as u32);
-    let normal = n.direction();
-    let geometric = (normal + n.direction() * 0.2).normalize();
-    let bsdf = materials.at(scene, id, Vec2::ZERO);
-    Reflector::new(n.vec3() * scale, geometric, &Frame::from_normal(normal), bsdf, n.direction())
-}
-
-pub(super) fn members(trees: &LightTrees, id: u32, found: &mut Vec<usize>) {
-    let node = &trees.nodes[id as usize];
-    match node.children() {
-        None => found.push(node.representative()),
-        Some(left) => (left..left + 2).for_each(|child| members(trees, child, found)),
-    }
-}
+use crate::vpl::{Origin, Vpl, VplKind, VplSet};
+use glam::Vec3;
 
 #[test]
 fn no_member_contributes_more_than_the_clusters_bound() {
@@ -153,38 +51,6 @@ fn no_member_contributes_more_than_the_clusters_bound() {
     assert!(checked > 1_000_000, "{checked}");
 }
 
-/// A ball that casts shadows.
-pub(super) struct Ball {
-    pub centre: Vec3,
-    pub radius: f32,
-}
-
-impl Visibility for Ball {
-    fn visible(&self, x: Vec3, _: Vec3, vpl: &Vpl, node: &Node) -> bool {
-        let (direction, t_max) = match node.kind() {
-            VplKind::Directional => (vpl.position, f32::INFINITY),
-            _ => ((vpl.position - x).normalize_or_zero(), (vpl.position - x).length()),
-        };
-        let t = (self.centre - x).dot(direction).clamp(0.0, t_max);
-        (x + direction * t - self.centre).length() > self.radius
-    }
-}
-
-/// The inside of a box: VPLs on its six walls, facing inwards.
-pub(super) fn room(n: usize, numbers: &mut Numbers) -> VplSet {
-    let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
-    for i in 0..n {
-        let axis = i % 3;
-        let side = if i / 3 % 2 == 0 { 0.0 } else { 1.0 };
-        let mut position = numbers.vec3();
-        position[axis] = side;
-        let mut normal = Vec3::ZERO;
-        normal[axis] = 1.0 - 2.0 * side;
-        set.push(Vpl::oriented(position, normal), numbers.vec3() * numbers.next());
-    }
-    set
-}
-
 /// Relative errors of cuts against the full sum, over points in the room and materials of every kind.
 fn relative_errors(trees: &LightTrees, settings: &CutSettings, rays: &impl Visibility) -> (Vec<f32>, f64) {
     let scene = all_materials();
@@ -205,13 +71,6 @@ fn relative_errors(trees: &LightTrees, settings: &CutSettings, rays: &impl Visib
     (errors, cut.counts.clusters as f64 / cut.counts.cuts as f64)
 }
 
-pub(super) fn rms(errors: &[f32]) -> f32 {
-    (errors.iter().map(|e| e * e).sum::<f32>() / errors.len() as f32).sqrt()
-}
-
-pub(super) const EXACT: CutSettings =
-    CutSettings { epsilon: 0.02, max_cut: usize::MAX, clamp: None, only: None };
-
 #[test]
 fn cuts_are_within_their_error_and_shrink_with_epsilon() {
     let set = room(20_000, &mut Numbers(1));
@@ -230,26 +89,6 @@ fn cuts_are_within_their_error_and_shrink_with_epsilon() {
     }
 }
 
-/// Points a millimetre to a decimetre above the floor of a room of VPLs, some of which are that near.
-pub(super) fn points_near_vpls(numbers: &mut Numbers, count: usize) -> Vec<Reflector<'static>> {
-    let frame = Frame::from_normal(Vec3::Y);
-    let at = |numbers: &mut Numbers| {
-        let p = numbers.vec3() * 0.9 + 0.05;
-        Reflector::collector(p.with_y(0.1f32.powf(1.0 + 2.0 * p.y)), Vec3::Y, &frame)
-    };
-    (0..count).map(|_| at(numbers)).collect()
-}
-
-/// A room whose floor is covered by lamps, a hand's breadth above it and shining down.
-pub(super) fn low_lamps(numbers: &mut Numbers) -> LightTrees {
-    let mut set = room(3000, numbers);
-    for _ in 0..300 {
-        let position = numbers.vec3().with_y(0.05 + 0.05 * numbers.next());
-        set.push(Vpl::oriented(position, -Vec3::Y), numbers.vec3());
-    }
-    LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive)
-}
-
 #[test]
 fn no_cluster_gives_more_than_a_quarter_however_coarse_the_cut() {
     let mut numbers = Numbers(8);
@@ -262,7 +101,7 @@ fn no_cluster_gives_more_than_a_quarter_however_coarse_the_cut() {
         let total = luminance(cut.gather(&transfer, &Unoccluded, &receiver, &settings));
         for entry in cut.entries().iter().filter(|e| !trees.nodes[e.node as usize].is_leaf()) {
             let share = luminance(entry.contribution) / total;
-            assert!(share <= 1.001 * refine::DOMINANT, "{share} of {total} at {}", receiver.position());
+            assert!(share <= 1.001 * single::DOMINANT, "{share} of {total} at {}", receiver.position());
             clusters += 1;
         }
     }

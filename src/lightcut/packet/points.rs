@@ -10,7 +10,7 @@ use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;
 
 /// Three numbers for each point.
-pub(super) type Vec3Lanes = [Lanes; 3];
+pub(in crate::lightcut) type Vec3Lanes = [Lanes; 3];
 
 /// Up to sixteen reflecting points as a structure of arrays.
 ///
@@ -18,31 +18,31 @@ pub(super) type Vec3Lanes = [Lanes; 3];
 pub struct Points<'m> {
     reflectors: Vec<Reflector<'m>>,
     /// Lanes that hold a point.
-    pub(super) valid: u16,
+    pub(in crate::lightcut) valid: u16,
     /// Lanes whose material is not just Lambert.
-    pub(super) general: u16,
+    pub(in crate::lightcut) general: u16,
     /// Their materials, if they are alike: else their responses and bounds are computed one by one.
-    pub(super) glossy: Option<AlikeBsdfs16<'m>>,
-    pub(super) position: Vec3Lanes,
+    pub(in crate::lightcut) glossy: Option<AlikeBsdfs16<'m>>,
+    pub(in crate::lightcut) position: Vec3Lanes,
     /// Largest coordinate of any position.
-    pub(super) reach: f32,
-    pub(super) geometric_normal: Vec3Lanes,
+    pub(in crate::lightcut) reach: f32,
+    pub(in crate::lightcut) geometric_normal: Vec3Lanes,
     /// Shading frame: tangent, bitangent, normal.
-    pub(super) frame: [Vec3Lanes; 3],
+    pub(in crate::lightcut) frame: [Vec3Lanes; 3],
     /// The same, absolute values.
-    pub(super) abs_frame: [Vec3Lanes; 3],
+    pub(in crate::lightcut) abs_frame: [Vec3Lanes; 3],
     /// Frame about the mirror direction of the eye's.
-    pub(super) mirror: [Vec3Lanes; 3],
+    pub(in crate::lightcut) mirror: [Vec3Lanes; 3],
     /// The same, absolute values.
-    pub(super) abs_mirror: [Vec3Lanes; 3],
+    pub(in crate::lightcut) abs_mirror: [Vec3Lanes; 3],
     /// Luminance known from elsewhere.
-    pub(super) known: Lanes,
+    pub(in crate::lightcut) known: Lanes,
     /// Lambert BRDF.
-    pub(super) brdf: Vec3Lanes,
+    pub(in crate::lightcut) brdf: Vec3Lanes,
     /// BRDF of the base, for light that has passed the coat on its way in.
-    pub(super) base: Vec3Lanes,
+    pub(in crate::lightcut) base: Vec3Lanes,
     /// Lambert BRDF by what it weighs in the luminance.
-    pub(super) brdf_luminance: Vec3Lanes,
+    pub(in crate::lightcut) brdf_luminance: Vec3Lanes,
 }
 
 impl<'m> Points<'m> {
@@ -141,7 +141,7 @@ fn put_frame(axes: &mut [Vec3Lanes; 3], abs_axes: &mut [Vec3Lanes; 3], lane: usi
 
 /// The numbers of the lanes in a mask.
 #[inline]
-pub(super) fn lanes_of(mut mask: u16) -> impl Iterator<Item = usize> {
+pub(in crate::lightcut) fn lanes_of(mut mask: u16) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let lane = (mask != 0).then(|| mask.trailing_zeros() as usize)?;
         mask &= mask - 1;
