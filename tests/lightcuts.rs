@@ -8,7 +8,9 @@ use lightsplat::eye::primary_ray;
 use lightsplat::film::Image;
 use lightsplat::film::Window;
 use lightsplat::light_tree::{Family, LightTrees};
-use lightsplat::lightcut::{CutSettings, GroupLightcut, Lightcut, Points, Reflector, Transfer, gather_all};
+use lightsplat::lightcut::{
+    CutSettings, Lightcut, PacketLightcut, Receiver, ReceiverPacket, Transfer, gather_all,
+};
 use lightsplat::math::{Frame, Rgb, luminance};
 use lightsplat::method::lightcuts::{Settings, render};
 use lightsplat::method::{Output, path};
@@ -62,7 +64,7 @@ fn vpls_of_a_furnace_give_the_irradiance_of_the_geometric_series() {
     let expected = PI * emitted / (Rgb::ONE - albedo);
     for normal in [Vec3::Y, -Vec3::X, Vec3::new(1.0, 1.0, 1.0).normalize()] {
         let receiver =
-            Reflector::collector(Vec3::new(0.1, -0.2, 0.15), Vec3::ZERO, &Frame::from_normal(normal));
+            Receiver::irradiance(Vec3::new(0.1, -0.2, 0.15), Vec3::ZERO, &Frame::from_normal(normal));
         let all = gather_all(&transfer, &world, &receiver);
         let error = (all / expected - Rgb::ONE).abs().max_element();
         assert!(error < 0.02, "all VPLs: {all} against {expected}");
@@ -199,7 +201,7 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
                 let ray = primary_ray(&world.scene.camera, &window, [x, y], Vec2::splat(0.5));
                 let Some(s) = world.intersect(&ray) else { panic!("the room is closed") };
                 let out = -ray.direction;
-                let receiver = Reflector::new(s.position, s.normal, &s.frame, world.bsdf(&s), out);
+                let receiver = Receiver::new(s.position, s.normal, &s.frame, world.bsdf(&s), out);
                 let exact = luminance(gather_all(&transfer, &world, &receiver));
                 if exact > 0.0 {
                     let estimate = luminance(cut.gather(&transfer, &world, &receiver, &settings));
@@ -223,8 +225,8 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
     let path = path.with_extension("toml");
     let world = common::world(load(&path, &LoadOptions::default()).expect("the scene loads").scene);
     let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
-    let (mut single, mut shared) = (Lightcut::new(), GroupLightcut::new());
-    let mut points = Points::new();
+    let (mut single, mut shared) = (Lightcut::new(), PacketLightcut::new());
+    let mut points = ReceiverPacket::new();
     let (mut single_errors, mut shared_errors) = (Vec::new(), Vec::new());
     let window = Window::whole([256, 256]);
     for seed in 0..8 {
@@ -241,7 +243,7 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
                 let s = world.intersect(&ray)?;
                 let bsdf = world.bsdf(&s);
                 let smooth = bsdf.has_smooth();
-                smooth.then(|| Reflector::new(s.position, s.normal, &s.frame, bsdf, -ray.direction))
+                smooth.then(|| Receiver::new(s.position, s.normal, &s.frame, bsdf, -ray.direction))
             });
             points.set(eye);
             let mut radiance = [Rgb::ZERO; 16];

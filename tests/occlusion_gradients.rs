@@ -12,7 +12,7 @@ use lightsplat::cache::{CacheSettings, Footprints};
 use lightsplat::eye::{EyeSamples, EyeSettings};
 use lightsplat::film::Window;
 use lightsplat::light_tree::{Family, LightTrees};
-use lightsplat::lightcut::{CutSettings, Reflector, Transfer, gather_all};
+use lightsplat::lightcut::{CutSettings, Receiver, Transfer, gather_all};
 use lightsplat::math::{Frame, luminance};
 use lightsplat::progress::Control;
 use lightsplat::vpl::{LightPassSettings, Origin, light_pass};
@@ -67,7 +67,7 @@ fn extrapolate(world: &World, footprints: Footprints, probe_rays: u32) -> (f32, 
     let (found, _) = source.records(&samples, &layers, &picks);
 
     let irradiance = |position: Vec3| {
-        let receiver = Reflector::collector(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
+        let receiver = Receiver::irradiance(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
         luminance(gather_all(&transfer, world, &receiver))
     };
     let (mut error, mut agreement, mut square, mut count) = (0.0, 0.0, 0.0, 0.0);

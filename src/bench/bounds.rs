@@ -4,7 +4,7 @@ use super::measure::Case;
 use super::setting::{Dice, Setting};
 use super::{Benchmark, Clock, Context, Kind, Table};
 use crate::light_tree::Node;
-use crate::lightcut::{Points, Reflector};
+use crate::lightcut::{Receiver, ReceiverPacket};
 use crate::math::{LANES, luminance};
 use std::hint::black_box;
 
@@ -33,9 +33,9 @@ fn run(context: &Context) -> Vec<Table> {
     let nodes: Vec<&Node> =
         (0..CLUSTERS).filter_map(|_| inner.get(dice.below(inner.len())).copied()).collect();
     let units = (groups.iter().map(Vec::len).sum::<usize>() * nodes.len()) as f64;
-    let collectors: Vec<Points> =
+    let collectors: Vec<ReceiverPacket> =
         groups.iter().map(|g| points(g.iter().map(|&i| setting.collector(i)))).collect();
-    let surfaces: Vec<Points> =
+    let surfaces: Vec<ReceiverPacket> =
         groups.iter().map(|g| points(g.iter().map(|&i| setting.reflector(i)))).collect();
     let mut cases = Vec::new();
     for (name, all) in [("collectors (Lambert)", &collectors), ("the scene's materials", &surfaces)] {
@@ -96,8 +96,8 @@ fn run(context: &Context) -> Vec<Table> {
     )]
 }
 
-fn points<'m>(reflectors: impl Iterator<Item = Reflector<'m>>) -> Points<'m> {
-    let mut points = Points::new();
+fn points<'m>(reflectors: impl Iterator<Item = Receiver<'m>>) -> ReceiverPacket<'m> {
+    let mut points = ReceiverPacket::new();
     points.set(reflectors);
     points
 }

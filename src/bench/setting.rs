@@ -4,7 +4,7 @@ use super::Context;
 use crate::eye::{EyeSamples, EyeSettings};
 use crate::film::Window;
 use crate::light_tree::{Family, LightTrees, Node};
-use crate::lightcut::{Likeness, Reflector, Transfer, group_alike};
+use crate::lightcut::{CoherenceLimit, Receiver, Transfer, group_coherent};
 use crate::math::{Frame, LANES};
 use crate::progress::Control;
 use crate::sampling::hash;
@@ -45,16 +45,16 @@ impl<'w> Setting<'w> {
     }
 
     /// The surface at an eye sample, as lightcuts per pixel light it.
-    pub fn reflector(&self, sample: usize) -> Reflector<'w> {
+    pub fn reflector(&self, sample: usize) -> Receiver<'w> {
         let (point, surface) = (&self.samples.points[sample], &self.samples.surfaces[sample]);
         let frame = Frame::from_normal(point.normal);
-        Reflector::new(point.position, surface.geometric_normal, &frame, surface.bsdf, surface.out)
+        Receiver::new(point.position, surface.geometric_normal, &frame, surface.bsdf, surface.out)
     }
 
     /// The same as a record collects its light.
-    pub fn collector(&self, sample: usize) -> Reflector<'static> {
+    pub fn collector(&self, sample: usize) -> Receiver<'static> {
         let (point, surface) = (&self.samples.points[sample], &self.samples.surfaces[sample]);
-        Reflector::collector(point.position, surface.geometric_normal, &Frame::from_normal(point.normal))
+        Receiver::irradiance(point.position, surface.geometric_normal, &Frame::from_normal(point.normal))
     }
 
     /// Stretches of `n` items in a row.
@@ -75,7 +75,14 @@ impl<'w> Setting<'w> {
             let point = &self.samples.points[sample];
             (point.position, point.normal)
         };
-        group_alike(Likeness::CLOSE, stretch.iter().copied(), LANES, self.world.diagonal, place, |_, _| true)
+        group_coherent(
+            CoherenceLimit::CLOSE,
+            stretch.iter().copied(),
+            LANES,
+            self.world.diagonal,
+            place,
+            |_, _| true,
+        )
     }
 
     /// All single lights, neighbours in their tree next to each other.

@@ -13,7 +13,8 @@ use crate::compensation::Compensation;
 use crate::compensation::near::{self, Clamped, Near};
 use crate::eye::EyeSamples;
 use crate::lightcut::{
-    CutSettings, GroupLightcut, LEAST_SHARED, Lightcut, Likeness, Points, Reflector, group_alike,
+    CoherenceLimit, CutSettings, Lightcut, MIN_SHARED, PacketLightcut, Receiver, ReceiverPacket,
+    group_coherent,
 };
 use crate::math::{Frame, LANES, Rgb, luminance};
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -77,9 +78,9 @@ pub struct Cutters<'a> {
     /// For one point.
     pub single: &'a mut Lightcut,
     /// For several.
-    pub group: &'a mut GroupLightcut,
+    pub group: &'a mut PacketLightcut,
     /// The several.
-    pub points: &'a mut Points<'static>,
+    pub points: &'a mut ReceiverPacket<'static>,
 }
 
 /// How indirect leaves are clamped where none may give more than the luminance `limit`.
@@ -130,7 +131,7 @@ pub fn add(
     // What records met on one wall, then what they met on another: neighbours look up light side by side.
     lookups.sort_by_key(|lookup| (lookup.near.surface.mesh, lookup.record));
     let place = |lookup: &Lookup| (lookup.near.surface.position, lookup.near.normal);
-    for group in group_alike(Likeness::CLOSE, lookups, LANES, world.diagonal, place, |_, _| true) {
+    for group in group_coherent(CoherenceLimit::CLOSE, lookups, LANES, world.diagonal, place, |_, _| true) {
         let irradiance = cutters.irradiance(source, &group);
         for (lookup, irradiance) in group.iter().zip(irradiance) {
             let found = lookup.factor * irradiance;
@@ -177,11 +178,11 @@ impl Cutters<'_> {
         };
         let collectors = group.iter().map(|lookup| {
             let s = &lookup.near.surface;
-            Reflector::collector(s.position, s.normal, &Frame::from_normal(lookup.near.normal))
+            Receiver::irradiance(s.position, s.normal, &Frame::from_normal(lookup.near.normal))
         });
         let (transfer, world) = (&source.transfer, source.world);
         let mut irradiance = [Rgb::ZERO; LANES];
-        if group.len() < LEAST_SHARED {
+        if group.len() < MIN_SHARED {
             for (irradiance, collector) in irradiance.iter_mut().zip(collectors) {
                 *irradiance = self.single.gather(transfer, world, &collector, &settings);
             }

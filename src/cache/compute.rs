@@ -18,7 +18,8 @@ use crate::compensation::Compensation;
 use crate::eye::EyeSamples;
 use crate::hsh::Radiance;
 use crate::lightcut::{
-    CutCounts, CutSettings, GroupLightcut, Lightcut, Likeness, Points, Reflector, Transfer, group_alike,
+    CoherenceLimit, CutCounts, CutSettings, Lightcut, PacketLightcut, Receiver, ReceiverPacket, Transfer,
+    group_coherent,
 };
 use crate::math::{Frame, LANES, LUMINANCE, Rgb, luminance};
 use crate::shadow::Engine;
@@ -115,9 +116,14 @@ impl Source<'_> {
             let point = &samples.points[pick.sample as usize];
             (point.position, point.normal)
         };
-        group_alike(Likeness::CLOSE, picks.iter().copied(), LANES, self.world.diagonal, place, |a, b| {
-            a.lacks == b.lacks
-        })
+        group_coherent(
+            CoherenceLimit::CLOSE,
+            picks.iter().copied(),
+            LANES,
+            self.world.diagonal,
+            place,
+            |a, b| a.lacks == b.lacks,
+        )
     }
 
     /// The record of one layer, or `None` where it would be of no use.
@@ -167,8 +173,8 @@ impl Source<'_> {
 struct Workspace<'w> {
     shadows: Engine<'w>,
     single: Lightcut,
-    group: GroupLightcut,
-    points: Points<'static>,
+    group: PacketLightcut,
+    points: ReceiverPacket<'static>,
     series: SeriesGatherer,
 }
 
@@ -178,8 +184,8 @@ impl<'w> Workspace<'w> {
         Workspace {
             shadows: Engine::with(s.world, shadows.for_records(), shadows.cache),
             single: Lightcut::new(),
-            group: GroupLightcut::new(),
-            points: Points::new(),
+            group: PacketLightcut::new(),
+            points: ReceiverPacket::new(),
             series: SeriesGatherer::default(),
         }
     }
@@ -199,15 +205,15 @@ impl<'w> Workspace<'w> {
                 Some(irradiance) if !pick.lacks[l] => luminance(irradiance),
                 _ => 0.0,
             });
-            Reflector::collector(point.position, samples.surfaces[i].geometric_normal, &frame)
-                .knowing(known[0] + known[1])
+            Receiver::irradiance(point.position, samples.surfaces[i].geometric_normal, &frame)
+                .with_baseline(known[0] + known[1])
         });
-        let only = match task[0].lacks {
+        let origin = match task[0].lacks {
             [true, false] => Some(Origin::Direct),
             [false, true] => Some(Origin::Indirect),
             _ => None,
         };
-        let cut = CutSettings { only, ..s.settings.cut };
+        let cut = CutSettings { origin, ..s.settings.cut };
         let mut views: Vec<View> = if !s.settings.shares(task.len()) {
             collectors.zip(task).map(|(c, pick)| self.alone(s, samples, pick, &c, &cut)).collect()
         } else {
@@ -238,7 +244,7 @@ impl<'w> Workspace<'w> {
         s: &Source,
         samples: &EyeSamples,
         pick: &Pick,
-        collector: &Reflector<'static>,
+        collector: &Receiver<'static>,
         cut: &CutSettings,
     ) -> View {
         let hidden = if s.needs_occluders() {
@@ -313,7 +319,7 @@ impl<'a> Source<'a> {
         View { gathered: [gathered; 2], series: [None, None], sight }
     }
 
-    fn gatherer(&self, samples: &EyeSamples, sample: u32, collector: &Reflector<'static>) -> Gatherer<'a> {
+    fn gatherer(&self, samples: &EyeSamples, sample: u32, collector: &Receiver<'static>) -> Gatherer<'a> {
         let point = &samples.points[sample as usize];
         Gatherer {
             collector: *collector,

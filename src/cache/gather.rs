@@ -11,7 +11,7 @@
 //! gives or would give; occluders are whatever stops a shadow ray, not the nearest.
 
 use crate::light_tree::Node;
-use crate::lightcut::{Reflector, Transfer};
+use crate::lightcut::{Receiver, Transfer};
 use crate::material::Materials;
 use crate::math::{Rgb, luminance};
 use crate::vpl::{Vpl, VplKind};
@@ -66,7 +66,7 @@ impl Default for Gathered {
 #[derive(Clone, Copy, Debug)]
 pub struct Gatherer<'a> {
     /// What gathers the irradiance.
-    pub collector: Reflector<'static>,
+    pub collector: Receiver<'static>,
     /// Where.
     pub position: Vec3,
     /// Unit shading normal.

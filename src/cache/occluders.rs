@@ -6,7 +6,7 @@
 
 use crate::embree::Occluders16;
 use crate::light_tree::Node;
-use crate::lightcut::{GroupVisibility, Points, Visibility, to_vpl};
+use crate::lightcut::{PacketVisibility, ReceiverPacket, Visibility, to_vpl};
 use crate::math::{F32x16, LANES};
 use crate::shadow::{Engine, Packing};
 use crate::vpl::Vpl;
@@ -60,8 +60,8 @@ impl Visibility for OccluderLog<'_> {
     }
 }
 
-impl GroupVisibility for OccluderLog<'_> {
-    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+impl PacketVisibility for OccluderLog<'_> {
+    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
         let (rays, key) = (points.shadow_rays(vpl, node.kind()), node.representative() as u32);
         let mut found = Occluders16::default();
         let occluded = self.engine.occluders16(&rays, lanes, Packing::Neighbours, key, &mut found);

@@ -1,7 +1,7 @@
 //! What decides how many records there are, and how far each reaches.
 
 use crate::hsh::SeriesSettings;
-use crate::lightcut::{CutSettings, LEAST_SHARED};
+use crate::lightcut::{CutSettings, MIN_SHARED};
 use crate::shadow::ShadowSettings;
 
 /// Patches of fewer samples than this would have too few that borrow.
@@ -92,7 +92,7 @@ impl CacheSettings {
 
     /// Whether so many neighbours share a cut.
     pub fn shares(&self, points: usize) -> bool {
-        self.share && points >= LEAST_SHARED
+        self.share && points >= MIN_SHARED
     }
 }
 

@@ -9,7 +9,7 @@
 use super::Compensation;
 use super::near::{self, Clamped, Near};
 use crate::light_tree::LightTrees;
-use crate::lightcut::{CutCounts, CutSettings, GroupLightcut, Points, Reflector};
+use crate::lightcut::{CutCounts, CutSettings, PacketLightcut, Receiver, ReceiverPacket};
 use crate::math::{Frame, LANES, Rgb, luminance};
 use crate::vpl::Origin;
 use glam::Vec3;
@@ -40,10 +40,10 @@ pub struct NearLight {
     places: Vec<Place>,
     /// Whether anything is near.
     lacks: bool,
-    only: Option<Origin>,
+    origin: Option<Origin>,
     met: Vec<(usize, Near)>,
-    group: GroupLightcut,
-    points: Points<'static>,
+    group: PacketLightcut,
+    points: ReceiverPacket<'static>,
     counts: NearCounts,
 }
 
@@ -80,12 +80,12 @@ impl NearLight {
     pub fn begin(
         &mut self,
         c: &Compensation,
-        only: Option<Origin>,
-        points: &Points,
+        origin: Option<Origin>,
+        points: &ReceiverPacket,
         limits: &[f32; LANES],
         radiance: &mut [Rgb; LANES],
     ) {
-        self.only = only;
+        self.origin = origin;
         self.places.clear();
         self.trace(c, points, limits);
         let known = irradiance(points, radiance);
@@ -104,7 +104,7 @@ impl NearLight {
     pub fn add(
         &mut self,
         c: &Compensation,
-        points: &Points,
+        points: &ReceiverPacket,
         limits: &[f32; LANES],
         radiance: &mut [Rgb; LANES],
     ) {
@@ -120,9 +120,9 @@ impl NearLight {
         NearCounts { cuts, ..std::mem::take(&mut self.counts) }
     }
 
-    fn trace(&mut self, c: &Compensation, points: &Points, limits: &[f32; LANES]) {
+    fn trace(&mut self, c: &Compensation, points: &ReceiverPacket, limits: &[f32; LANES]) {
         let [direct, indirect] =
-            [Origin::Direct, Origin::Indirect].map(|origin| self.only.is_none_or(|only| only == origin));
+            [Origin::Direct, Origin::Indirect].map(|origin| self.origin.is_none_or(|o| o == origin));
         let clamped: Vec<Clamped> = (0..points.len())
             .map(|lane| {
                 let r = points.get(lane);
@@ -164,7 +164,8 @@ impl NearLight {
             }
         }
         let collector = |p: &Place| {
-            Reflector::collector(p.position, p.geometric_normal, &Frame::from_normal(p.normal)).knowing(known)
+            Receiver::irradiance(p.position, p.geometric_normal, &Frame::from_normal(p.normal))
+                .with_baseline(known)
         };
         self.points.set(self.places.iter().map(collector));
         let settings =
@@ -176,7 +177,7 @@ impl NearLight {
         }
     }
 
-    fn add_met(&mut self, c: &Compensation, points: &Points, radiance: &mut [Rgb; LANES]) {
+    fn add_met(&mut self, c: &Compensation, points: &ReceiverPacket, radiance: &mut [Rgb; LANES]) {
         let least = 1e-6 * c.world.diagonal;
         for (lane, near) in &self.met {
             let r = points.get(*lane);
@@ -194,7 +195,7 @@ impl NearLight {
 
 /// Irradiance of a place by the last cut of `group`, of which no indirect cluster may give more than ε of the light that it
 /// is added to: so coarse a cut leaves clusters whose representative happens to be next to the place.
-fn limited(trees: &LightTrees, group: &GroupLightcut, lane: usize, known: f32) -> Rgb {
+fn limited(trees: &LightTrees, group: &PacketLightcut, lane: usize, known: f32) -> Rgb {
     let sum = |limit: f32| {
         let given = group.entries().map(|(node, responses)| {
             let node = &trees.nodes[node as usize];
@@ -221,7 +222,7 @@ fn limited(trees: &LightTrees, group: &GroupLightcut, lane: usize, known: f32) -
 }
 
 /// Mean luminance of the irradiance that would reflect this radiance from the base alone.
-fn irradiance(points: &Points, radiance: &[Rgb; LANES]) -> f32 {
+fn irradiance(points: &ReceiverPacket, radiance: &[Rgb; LANES]) -> f32 {
     let known = |lane: usize| {
         let base = luminance(points.get(lane).base_brdf());
         (base > 0.0).then(|| luminance(radiance[lane]) / base)

@@ -213,7 +213,7 @@ fn virtual_lights_arrive_as_the_lightcut_counts_them() {
         (Vpl::spot(light, 0), VplKind::Omni),
         (Vpl::directional(Vec3::new(0.5, 0.0, 1.0).normalize()), VplKind::Directional),
     ] {
-        let receiver = crate::lightcut::Reflector::collector(position, frame.normal, &frame);
+        let receiver = crate::lightcut::Receiver::irradiance(position, frame.normal, &frame);
         let incidence = at(&vpl, kind, position).unwrap();
         let irradiance = incidence.irradiance();
         let expected = transfer.unshadowed(&receiver, &vpl, kind).x;

@@ -83,8 +83,8 @@ impl LightTrees {
     }
 
     /// The roots of all trees, or of those for light of one origin.
-    pub fn roots_of(&self, only: Option<Origin>) -> impl Iterator<Item = u32> + '_ {
-        let wanted = move |&root: &u32| only.is_none_or(|o| self.nodes[root as usize].origin() == o);
+    pub fn roots_of(&self, origin: Option<Origin>) -> impl Iterator<Item = u32> + '_ {
+        let wanted = move |&root: &u32| origin.is_none_or(|o| self.nodes[root as usize].origin() == o);
         self.roots.iter().copied().filter(wanted)
     }
 

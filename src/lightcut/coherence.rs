@@ -3,24 +3,24 @@
 use glam::Vec3;
 
 /// Fewer points than this have cuts of their own.
-pub const LEAST_SHARED: usize = 4;
+pub const MIN_SHARED: usize = 4;
 
 /// What points have in common that share a cut.
 #[derive(Clone, Copy, Debug)]
-pub struct Likeness {
+pub struct CoherenceLimit {
     /// Least cosine between their normals.
     cosine: f32,
     /// Largest distance, relative to the scene's diagonal.
     distance: f32,
-    /// How many groups are open at once in [`group_alike`].
+    /// How many groups are open at once in [`group_coherent`].
     open: usize,
 }
 
-impl Likeness {
+impl CoherenceLimit {
     /// They are likely to have nearly the same cut.
-    pub const CLOSE: Likeness = Likeness { cosine: 0.8, distance: 0.02, open: 8 };
+    pub const CLOSE: CoherenceLimit = CoherenceLimit { cosine: 0.8, distance: 0.02, open: 8 };
     /// Their cut is larger than that of each, but not by as much as they are many.
-    pub const REMOTE: Likeness = Likeness { cosine: 0.5, distance: 0.05, open: 64 };
+    pub const REMOTE: CoherenceLimit = CoherenceLimit { cosine: 0.5, distance: 0.05, open: 64 };
 
     /// Whether it holds between two points, each with its normal.
     #[inline]
@@ -32,8 +32,8 @@ impl Likeness {
 
 /// Groups of at most `most` items that are alike with their first, from a list in which neighbours in space are
 /// near each other; `same` excludes what must not be grouped for other reasons.
-pub fn group_alike<T: Copy>(
-    likeness: Likeness,
+pub fn group_coherent<T: Copy>(
+    likeness: CoherenceLimit,
     items: impl IntoIterator<Item = T>,
     most: usize,
     diagonal: f32,

@@ -1,6 +1,6 @@
 //! Random points, materials and virtual lights for tests of cuts.
 
-use super::{CutSettings, Reflector, Visibility};
+use super::{CutSettings, Receiver, Visibility};
 use crate::light_tree::{Family, LightTrees, Node};
 use crate::material::Materials;
 use crate::math::{Frame, Rgb};
@@ -93,12 +93,12 @@ pub fn random_reflector<'m>(
     scene: &Scene,
     scale: f32,
     n: &mut Numbers,
-) -> Reflector<'m> {
+) -> Receiver<'m> {
     let id = MaterialId((n.next() * scene.materials.len() as f32) as u32);
     let normal = n.direction();
     let geometric = (normal + n.direction() * 0.2).normalize();
     let bsdf = materials.at(scene, id, Vec2::ZERO);
-    Reflector::new(n.vec3() * scale, geometric, &Frame::from_normal(normal), bsdf, n.direction())
+    Receiver::new(n.vec3() * scale, geometric, &Frame::from_normal(normal), bsdf, n.direction())
 }
 
 pub fn members(trees: &LightTrees, id: u32, found: &mut Vec<usize>) {
@@ -145,14 +145,14 @@ pub fn rms(errors: &[f32]) -> f32 {
     (errors.iter().map(|e| e * e).sum::<f32>() / errors.len() as f32).sqrt()
 }
 
-pub const EXACT: CutSettings = CutSettings { epsilon: 0.02, max_cut: usize::MAX, clamp: None, only: None };
+pub const EXACT: CutSettings = CutSettings { epsilon: 0.02, max_cut: usize::MAX, clamp: None, origin: None };
 
 /// Points a millimetre to a decimetre above the floor of a room of VPLs, some of which are that near.
-pub fn points_near_vpls(numbers: &mut Numbers, count: usize) -> Vec<Reflector<'static>> {
+pub fn points_near_vpls(numbers: &mut Numbers, count: usize) -> Vec<Receiver<'static>> {
     let frame = Frame::from_normal(Vec3::Y);
     let at = |numbers: &mut Numbers| {
         let p = numbers.vec3() * 0.9 + 0.05;
-        Reflector::collector(p.with_y(0.1f32.powf(1.0 + 2.0 * p.y)), Vec3::Y, &frame)
+        Receiver::irradiance(p.with_y(0.1f32.powf(1.0 + 2.0 * p.y)), Vec3::Y, &frame)
     };
     (0..count).map(|_| at(numbers)).collect()
 }

@@ -2,7 +2,7 @@
 //!
 //! Paper: Walter et al., *Lightcuts: A Scalable Approach to Illumination*, 2005.
 //!
-//! A [`Reflector`] says what is gathered (reflected radiance, irradiance), [`Transfer`] what reaches it from a VPL
+//! A [`Receiver`] says what is gathered (reflected radiance, irradiance), [`Transfer`] what reaches it from a VPL
 //! and at most from a cluster, [`expected`] how far a cluster is likely to be off, [`Lightcut`] finds the cut, [`gather_all`] is the exact sum that it approximates.
 
 mod coherence;
@@ -17,10 +17,10 @@ pub mod single;
 mod transfer;
 mod visibility;
 
-pub use coherence::{LEAST_SHARED, Likeness, group_alike};
-pub use packet::{GroupLightcut, GroupVisibility, Points};
-pub use receiver::Reflector;
-pub use reconstruction::LentCut;
+pub use coherence::{CoherenceLimit, MIN_SHARED, group_coherent};
+pub use packet::{PacketLightcut, PacketVisibility, ReceiverPacket};
+pub use receiver::Receiver;
+pub use reconstruction::ReconstructionCut;
 pub use shadow_rays::{to_vpl, to_vpl16};
 pub use single::{CutCounts, CutEntry, CutSettings, Lightcut, OffsetBox, gather_all, max_cos_to_cone};
 pub use transfer::{Bound, Transfer, Unoccluded, Visibility};

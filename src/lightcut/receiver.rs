@@ -11,7 +11,7 @@ use std::f32::consts::FRAC_1_PI;
 
 /// A point on a surface seen from a direction: the cut's sum is the radiance it reflects there.
 #[derive(Clone, Copy, Debug)]
-pub struct Reflector<'m> {
+pub struct Receiver<'m> {
     position: Vec3,
     geometric_normal: Vec3,
     /// Shading frame, z on the side of `wo`.
@@ -20,7 +20,7 @@ pub struct Reflector<'m> {
     mirror: Frame,
     wo: Vec3,
     material: Kind<'m>,
-    known_luminance: f32,
+    baseline_luminance: f32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,7 @@ enum Kind<'m> {
     General(Bsdf<'m>),
 }
 
-impl<'m> Reflector<'m> {
+impl<'m> Receiver<'m> {
     /// The surface at `position` with the given normals and material, seen from the unit vector `out`.
     pub fn new(
         position: Vec3,
@@ -38,7 +38,7 @@ impl<'m> Reflector<'m> {
         frame: &Frame,
         bsdf: Bsdf<'m>,
         out: Vec3,
-    ) -> Reflector<'m> {
+    ) -> Receiver<'m> {
         let mut wo = frame.to_local(out);
         let mut frame = *frame;
         let front = wo.z > 0.0;
@@ -52,27 +52,27 @@ impl<'m> Reflector<'m> {
             None => Kind::General(bsdf),
         };
         let mirror = Frame::from_normal(frame.to_world(Vec3::new(-wo.x, -wo.y, wo.z)));
-        Reflector { position, geometric_normal, frame, mirror, wo, material, known_luminance: 0.0 }
+        Receiver { position, geometric_normal, frame, mirror, wo, material, baseline_luminance: 0.0 }
     }
 
     /// What collects irradiance on the side of the frame's z axis: a surface that reflects π times as much as is possible.
-    pub fn collector(position: Vec3, geometric_normal: Vec3, frame: &Frame) -> Reflector<'static> {
+    pub fn irradiance(position: Vec3, geometric_normal: Vec3, frame: &Frame) -> Receiver<'static> {
         let material = Kind::Lambert(Rgb::ONE);
-        let known_luminance = 0.0;
-        Reflector {
+        let baseline_luminance = 0.0;
+        Receiver {
             position,
             geometric_normal,
             frame: *frame,
             mirror: *frame,
             wo: Vec3::Z,
             material,
-            known_luminance,
+            baseline_luminance,
         }
     }
 
     /// The same, where light of this luminance is known to be reflected besides.
-    pub fn knowing(self, known_luminance: f32) -> Self {
-        Reflector { known_luminance, ..self }
+    pub fn with_baseline(self, baseline_luminance: f32) -> Self {
+        Receiver { baseline_luminance, ..self }
     }
 
     /// BRDF, if the material is Lambertian and nothing else.
@@ -135,7 +135,7 @@ impl<'m> Reflector<'m> {
 
     /// The same surface elsewhere.
     pub fn moved(self, position: Vec3) -> Self {
-        Reflector { position, ..self }
+        Receiver { position, ..self }
     }
 
     /// Where it is.
@@ -153,8 +153,8 @@ impl<'m> Reflector<'m> {
     /// Luminance of what the receiver is known to gather from trees that are left out of the cut:
     /// errors are judged against the whole.
     #[inline]
-    pub fn known_luminance(&self) -> f32 {
-        self.known_luminance
+    pub fn baseline_luminance(&self) -> f32 {
+        self.baseline_luminance
     }
 
     /// Weight of light from the unit direction `wi`: BRDF times cosine.

@@ -4,7 +4,7 @@
 //! Units: all per unit intensity, before visibility.
 
 use super::expected::{Outlook, expected_share};
-use super::{OffsetBox, Reflector, max_cos_to_cone};
+use super::{OffsetBox, Receiver, max_cos_to_cone};
 use crate::light_tree::{LightTrees, Node};
 use crate::math::{Frame, Rgb};
 use crate::vpl::{Vpl, VplKind, least_dist_sq, near_sq_of_size};
@@ -39,7 +39,7 @@ impl<'a> Transfer<'a> {
 
     /// Contribution of a VPL of unit intensity, if visible.
     #[inline]
-    pub fn unshadowed(&self, receiver: &Reflector, vpl: &Vpl, kind: VplKind) -> Rgb {
+    pub fn unshadowed(&self, receiver: &Receiver, vpl: &Vpl, kind: VplKind) -> Rgb {
         if kind == VplKind::Directional {
             return receiver.response(vpl.position);
         }
@@ -64,7 +64,7 @@ impl<'a> Transfer<'a> {
 
     /// What is known of a cluster of unit intensity.
     #[inline]
-    pub fn bound(&self, receiver: &Reflector, node: &Node) -> Bound {
+    pub fn bound(&self, receiver: &Receiver, node: &Node) -> Bound {
         let directional = node.kind() == VplKind::Directional;
         let x = if directional { Vec3::ZERO } else { receiver.position() };
         let offsets = OffsetBox::new(node.min - x, node.max - x);

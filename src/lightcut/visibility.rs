@@ -1,6 +1,6 @@
 //! Visibility in a real scene: shadow rays of single points and of groups.
 
-use super::{GroupVisibility, Points, Visibility, to_vpl};
+use super::{PacketVisibility, ReceiverPacket, Visibility, to_vpl};
 use crate::light_tree::Node;
 use crate::shadow::{Engine, Packing};
 use crate::vpl::Vpl;
@@ -14,9 +14,9 @@ impl Visibility for Engine<'_> {
     }
 }
 
-impl GroupVisibility for Engine<'_> {
+impl PacketVisibility for Engine<'_> {
     #[inline]
-    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
         let rays = points.shadow_rays(vpl, node.kind());
         lanes & !self.occluded16(&rays, lanes, Packing::Neighbours, node.representative() as u32)
     }
@@ -29,9 +29,9 @@ impl Visibility for World {
     }
 }
 
-impl GroupVisibility for World {
+impl PacketVisibility for World {
     #[inline]
-    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
         Engine::new(self).visible16(points, lanes, vpl, node)
     }
 }

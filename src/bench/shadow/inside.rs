@@ -9,7 +9,7 @@ use super::trace::Traces;
 use crate::bench::measure::Case;
 use crate::bench::{Clock, Settings, Table};
 use crate::light_tree::Node;
-use crate::lightcut::{GroupVisibility, Points, Visibility};
+use crate::lightcut::{PacketVisibility, ReceiverPacket, Visibility};
 use crate::shadow::{Engine, OccluderCacheSettings};
 use crate::vpl::Vpl;
 use crate::world::World;
@@ -110,9 +110,9 @@ impl Visibility for Known<'_> {
     }
 }
 
-impl GroupVisibility for Known<'_> {
+impl PacketVisibility for Known<'_> {
     #[inline]
-    fn visible16(&self, _: &Points, lanes: u16, _: &Vpl, _: &Node) -> u16 {
+    fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &Node) -> u16 {
         lanes & self.answer()
     }
 }

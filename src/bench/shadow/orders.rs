@@ -12,7 +12,7 @@ use crate::cache::compute::Source;
 use crate::cache::layer::Layer;
 use crate::cache::wave::{Pick, pick};
 use crate::lightcut::{
-    CutSettings, GroupLightcut, GroupVisibility, LEAST_SHARED, Lightcut, Points, Reflector, Visibility,
+    CutSettings, Lightcut, MIN_SHARED, PacketLightcut, PacketVisibility, Receiver, ReceiverPacket, Visibility,
 };
 use crate::math::{LANES, Rgb, luminance};
 use crate::method::cache::own::{Cutters, Job, patches};
@@ -60,11 +60,11 @@ impl<'s> Orders<'s> {
         for stretch in &stretches {
             let job = |&sample: &usize| {
                 // What a record is to have found already.
-                let cut = CutSettings { only: Some(Origin::Indirect), ..CutSettings::default() };
+                let cut = CutSettings { origin: Some(Origin::Indirect), ..CutSettings::default() };
                 let (transfer, reflector) = (setting.transfer(), setting.reflector(sample));
                 let indirect = single.gather(&transfer, setting.world, &reflector, &cut);
-                let only = Some(Origin::Direct);
-                Job { sample: sample as u32, lobe_only: false, only, known: luminance(indirect) }
+                let origin = Some(Origin::Direct);
+                Job { sample: sample as u32, lobe_only: false, origin, known: luminance(indirect) }
             };
             jobs.push(stretch.iter().map(job).collect());
         }
@@ -93,7 +93,7 @@ impl<'s> Orders<'s> {
     /// Lights the points of a stretch. Returns the sum of what they reflect.
     pub fn light<V>(&self, order: Order, chunk: usize, shared: bool, rays: &V) -> Rgb
     where
-        V: Visibility + GroupVisibility,
+        V: Visibility + PacketVisibility,
     {
         let setting = self.setting;
         match order {
@@ -103,14 +103,14 @@ impl<'s> Orders<'s> {
                 self.cut(&groups, surface, shared, &CutSettings::default(), rays)
             }
             Order::Records => {
-                let cut = CutSettings { only: Some(Origin::Indirect), ..self.cache.cut };
+                let cut = CutSettings { origin: Some(Origin::Indirect), ..self.cache.cut };
                 let groups = self.source().tasks(&setting.samples, &self.picks[chunk]);
                 self.cut(&groups, |pick| setting.collector(pick.sample as usize), shared, &cut, rays)
             }
             Order::Samples => {
                 let settings = CacheSettings { share: shared, ..*self.cache };
                 let source = Source { settings: &settings, ..self.source() };
-                let cut = CutSettings { only: Some(Origin::Direct), ..CutSettings::default() };
+                let cut = CutSettings { origin: Some(Origin::Direct), ..CutSettings::default() };
                 let (mut cutters, mut lit) = (Cutters::default(), Vec::new());
                 for patch in patches(&source, &setting.samples, &self.jobs[chunk]) {
                     cutters.light(&source, rays, &setting.samples, &patch, &cut, &mut lit);
@@ -125,19 +125,20 @@ impl<'s> Orders<'s> {
         Source { world, transfer, settings: self.cache, compensation: None }
     }
 
-    fn cut<'m, T, V: Visibility + GroupVisibility>(
+    fn cut<'m, T, V: Visibility + PacketVisibility>(
         &self,
         groups: &[Vec<T>],
-        reflector: impl Fn(&T) -> Reflector<'m>,
+        reflector: impl Fn(&T) -> Receiver<'m>,
         shared: bool,
         cut: &CutSettings,
         rays: &V,
     ) -> Rgb {
         let transfer = self.setting.transfer();
-        let (mut single, mut group, mut points) = (Lightcut::new(), GroupLightcut::new(), Points::new());
+        let (mut single, mut group, mut points) =
+            (Lightcut::new(), PacketLightcut::new(), ReceiverPacket::new());
         let mut sum = Rgb::ZERO;
         for members in groups {
-            if !shared || members.len() < LEAST_SHARED {
+            if !shared || members.len() < MIN_SHARED {
                 for point in members {
                     sum += single.gather(&transfer, rays, &reflector(point), cut);
                 }

@@ -4,7 +4,7 @@ use super::orders::{Order, Orders};
 use crate::bench::setting::{Dice, Setting};
 use crate::embree::{Ray, Rays16};
 use crate::light_tree::Node;
-use crate::lightcut::{GroupVisibility, Points, Reflector, Visibility, to_vpl};
+use crate::lightcut::{PacketVisibility, Receiver, ReceiverPacket, Visibility, to_vpl};
 use crate::math::{LANES, Rgb, lanes_in};
 use crate::shadow::Packing;
 use crate::vpl::Vpl;
@@ -114,7 +114,7 @@ impl Packer {
 }
 
 /// The ray to a light, if its light would be reflected.
-fn lit(setting: &Setting, reflector: &Reflector, leaf: &Node) -> Option<Ray> {
+fn lit(setting: &Setting, reflector: &Receiver, leaf: &Node) -> Option<Ray> {
     let vpl = &setting.trees.vpls[leaf.representative()];
     let response = setting.transfer().unshadowed(reflector, vpl, leaf.kind());
     let (x, normal) = (reflector.position(), reflector.geometric_normal());
@@ -153,7 +153,7 @@ fn drawn(
     name: &'static str,
     packing: Packing,
     times: usize,
-    mut draw: impl FnMut(&Reflector, &mut Packer),
+    mut draw: impl FnMut(&Receiver, &mut Packer),
 ) -> Trace {
     let stretches = setting.pixels();
     let points = stretches.iter().map(Vec::len).sum();
@@ -178,7 +178,7 @@ fn neighbours(setting: &Setting) -> Trace {
         let mut packets = Vec::new();
         for group in setting.groups(&stretch) {
             points += group.len();
-            let reflectors: Vec<Reflector> = group.iter().map(|&i| setting.reflector(i)).collect();
+            let reflectors: Vec<Receiver> = group.iter().map(|&i| setting.reflector(i)).collect();
             for _ in 0..256 {
                 let Some(leaf) = leaves.get(dice.below(leaves.len())) else { continue };
                 let key = leaf.representative() as u32;
@@ -252,8 +252,8 @@ impl Visibility for Recorder<'_> {
     }
 }
 
-impl GroupVisibility for Recorder<'_> {
-    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+impl PacketVisibility for Recorder<'_> {
+    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
         let rays = points.shadow_rays(vpl, node.kind());
         let seen = lanes & !self.setting.world.accel.occluded16(&rays, lanes, true);
         let key = node.representative() as u32;

@@ -10,15 +10,15 @@
 //! Deviations: a lane's luminance counts as at least 1/256 of the brightest lane's where errors are judged, so
 //! that one point in the dark does not drive the cut of fifteen in the light to its cap.
 
-pub(super) mod points;
+pub(super) mod receivers;
 pub(super) mod refine;
 #[cfg(test)]
 mod tests;
 pub(super) mod transfer;
 
-pub use points::Points;
-pub use refine::GroupLightcut;
-pub use transfer::GroupVisibility;
+pub use receivers::ReceiverPacket;
+pub use refine::PacketLightcut;
+pub use transfer::PacketVisibility;
 
 /// Points in a group.
 pub const LANES: usize = 16;

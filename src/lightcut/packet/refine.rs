@@ -1,7 +1,7 @@
 //! Refinement of a shared cut.
 
-use super::points::{Points, lanes_of};
-use super::transfer::{GroupVisibility, luminances};
+use super::receivers::{ReceiverPacket, lanes_of};
+use super::transfer::{PacketVisibility, luminances};
 use super::{LANES, Lanes, RgbLanes};
 use crate::light_tree::LightTrees;
 use crate::lightcut::single::DOMINANT;
@@ -35,7 +35,7 @@ pub(in crate::lightcut) struct Entry {
 
 /// Computes shared cuts; one a thread, so that its buffers are allocated once.
 #[derive(Default)]
-pub struct GroupLightcut {
+pub struct PacketLightcut {
     pub(in crate::lightcut) entries: Vec<Entry>,
     /// Offence (as bits: non-negative floats sort as integers) above place in `entries`.
     offenders: BinaryHeap<u64>,
@@ -47,10 +47,10 @@ pub struct GroupLightcut {
     pub packets: u64,
 }
 
-impl GroupLightcut {
+impl PacketLightcut {
     /// An empty workspace.
-    pub fn new() -> GroupLightcut {
-        GroupLightcut::default()
+    pub fn new() -> PacketLightcut {
+        PacketLightcut::default()
     }
 
     /// Clusters in the last cut.
@@ -75,11 +75,11 @@ impl GroupLightcut {
     }
 
     /// Reflected radiance of each point, on average to within the settings' error.
-    pub fn gather<V: GroupVisibility>(
+    pub fn gather<V: PacketVisibility>(
         &mut self,
         transfer: &Transfer,
         visibility: &V,
-        points: &Points,
+        points: &ReceiverPacket,
         settings: &CutSettings,
         radiance: &mut [Rgb; LANES],
     ) {
@@ -109,7 +109,7 @@ impl GroupLightcut {
     pub(in crate::lightcut) fn sum(
         &mut self,
         trees: &LightTrees,
-        points: &Points,
+        points: &ReceiverPacket,
         clamp: Option<f32>,
         strong: &RgbLanes,
         radiance: &mut [Rgb; LANES],
@@ -199,7 +199,7 @@ struct Pass<'a, 't, 'm, V> {
     trees: &'a LightTrees,
     transfer: &'a Transfer<'t>,
     visibility: &'a V,
-    points: &'a Points<'m>,
+    points: &'a ReceiverPacket<'m>,
     settings: &'a CutSettings,
     /// Luminance of the cut in each lane, as far as it counts.
     totals: Lanes,
@@ -209,14 +209,14 @@ struct Pass<'a, 't, 'm, V> {
     least_total: f32,
     /// Splits left before the cap.
     room: usize,
-    cut: &'a mut GroupLightcut,
+    cut: &'a mut PacketLightcut,
 }
 
-impl<V: GroupVisibility> Pass<'_, '_, '_, V> {
+impl<V: PacketVisibility> Pass<'_, '_, '_, V> {
     fn start(&mut self) {
         self.cut.entries.clear();
         self.cut.offenders.clear();
-        for root in self.trees.roots_of(self.settings.only) {
+        for root in self.trees.roots_of(self.settings.origin) {
             let responses = self.representative_responses(root);
             let entry = self.entry(root, &responses, &[f32::MAX; LANES]);
             self.count(&entry);

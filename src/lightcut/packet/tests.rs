@@ -1,6 +1,6 @@
 //! A group's lanes must agree with the single-point functions, which have tests of their own.
 
-use super::points::lanes_of;
+use super::receivers::lanes_of;
 use super::*;
 use crate::light_tree::{Family, LightTrees, Node};
 use crate::lightcut::fixtures::{
@@ -8,7 +8,7 @@ use crate::lightcut::fixtures::{
     room, three_kinds,
 };
 use crate::lightcut::{
-    CutSettings, LentCut, Lightcut, Reflector, Transfer, Unoccluded, Visibility, gather_all,
+    CutSettings, Lightcut, Receiver, ReconstructionCut, Transfer, Unoccluded, Visibility, gather_all,
 };
 use crate::material::Materials;
 use crate::math::{Rgb, luminance};
@@ -16,8 +16,8 @@ use crate::scene::{MaterialId, Scene};
 use crate::vpl::{Vpl, VplKind};
 use glam::{Vec2, Vec3};
 
-impl GroupVisibility for Ball {
-    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+impl PacketVisibility for Ball {
+    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
         let sees = |&lane: &usize| self.visible(points.get(lane).position(), Vec3::ZERO, vpl, node);
         lanes_of(lanes).filter(sees).fold(0, |mask, lane| mask | 1 << lane)
     }
@@ -30,7 +30,7 @@ fn neighbours<'m>(
     scale: f32,
     count: usize,
     numbers: &mut Numbers,
-) -> Vec<Reflector<'m>> {
+) -> Vec<Receiver<'m>> {
     let first = random_reflector(materials, scene, scale, numbers);
     let lambert = materials.at(scene, MaterialId(0), Vec2::ZERO);
     // In half of the groups two materials that are not alike.
@@ -47,7 +47,7 @@ fn neighbours<'m>(
             };
             let frame = crate::math::Frame::from_normal(normal);
             let position = first.position() + numbers.direction() * 0.01 * scale;
-            Reflector::new(position, normal, &frame, bsdf, out)
+            Receiver::new(position, normal, &frame, bsdf, out)
         })
         .collect()
 }
@@ -56,7 +56,7 @@ fn neighbours<'m>(
 fn lanes_have_the_responses_of_single_points_and_bounds_above_them() {
     let scene = all_materials();
     let materials = Materials::new(&scene);
-    let mut points = Points::new();
+    let mut points = ReceiverPacket::new();
     for round in 0..60u32 {
         let mut numbers = Numbers(round << 20);
         let scale = [1e-6, 1.0, 1e6][round as usize % 3];
@@ -102,7 +102,7 @@ fn errors(settings: &CutSettings) -> Vec<f32> {
     let ball = Ball { centre: Vec3::splat(0.5), radius: 0.25 };
     let trees = LightTrees::build(&[room(20_000, &mut Numbers(1))], Vec::new(), 1.73, Family::Divisive);
     let transfer = Transfer::new(&trees, 1.73);
-    let (mut cut, mut points) = (GroupLightcut::new(), Points::new());
+    let (mut cut, mut points) = (PacketLightcut::new(), ReceiverPacket::new());
     let mut numbers = Numbers(77);
     let mut errors = Vec::new();
     for _ in 0..30 {
@@ -132,7 +132,7 @@ fn no_cluster_gives_the_lanes_more_than_a_quarter_however_coarse_the_cut() {
     let mut numbers = Numbers(8);
     let trees = low_lamps(&mut numbers);
     let transfer = Transfer::new(&trees, 1.7);
-    let (mut cut, mut points) = (GroupLightcut::new(), Points::new());
+    let (mut cut, mut points) = (PacketLightcut::new(), ReceiverPacket::new());
     let settings = CutSettings { epsilon: 0.5, ..EXACT };
     for _ in 0..40 {
         points.set(points_near_vpls(&mut numbers, LANES));
@@ -165,12 +165,12 @@ fn one_lane_clamps_as_a_single_point_does() {
     let transfer = Transfer::new(&trees, 1.7);
     let frame = crate::math::Frame::from_normal(Vec3::Y);
     let lambert = materials.at(&scene, MaterialId(0), Vec2::ZERO);
-    let at = |p| Reflector::new(p, Vec3::Y, &frame, lambert, Vec3::Y);
-    let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02), only: None };
-    let mut points = Points::new();
+    let at = |p| Receiver::new(p, Vec3::Y, &frame, lambert, Vec3::Y);
+    let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02), origin: None };
+    let mut points = ReceiverPacket::new();
     points.set([at(x), at(x + Vec3::X * 0.02)]);
     let mut radiance = [Rgb::ZERO; LANES];
-    let mut cut = GroupLightcut::new();
+    let mut cut = PacketLightcut::new();
     cut.gather(&transfer, &Unoccluded, &points, &settings, &mut radiance);
     assert!(cut.counts.clamped > 0);
     for (lane, radiance) in radiance.iter().enumerate().take(2) {
@@ -191,10 +191,10 @@ fn the_cap_holds_for_the_group() {
     let scene = all_materials();
     let materials = Materials::new(&scene);
     let trees = LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive);
-    let mut points = Points::new();
+    let mut points = ReceiverPacket::new();
     points.set(neighbours(&materials, &scene, 1.0, 16, &mut Numbers(3)));
-    let settings = CutSettings { epsilon: 1e-4, max_cut: 77, clamp: None, only: None };
-    let mut cut = GroupLightcut::new();
+    let settings = CutSettings { epsilon: 1e-4, max_cut: 77, clamp: None, origin: None };
+    let mut cut = PacketLightcut::new();
     let mut radiance = [Rgb::ZERO; LANES];
     cut.gather(&Transfer::new(&trees, 1.7), &Unoccluded, &points, &settings, &mut radiance);
     assert_eq!((cut.size(), cut.counts.capped, cut.counts.cuts), (77, 16, 16));
@@ -208,8 +208,9 @@ fn a_lent_cut_gives_points_nearly_what_cuts_of_their_own_would() {
     let transfer = Transfer::new(&trees, 1.7);
     let frame = crate::math::Frame::from_normal(Vec3::Z);
     let at = |i: usize| Vec3::new(0.3 + 0.02 * (i % 8) as f32, 0.4 + 0.02 * (i / 8) as f32, 0.01);
-    let reflectors: Vec<Reflector> = (0..32).map(|i| Reflector::collector(at(i), Vec3::Z, &frame)).collect();
-    let (mut group, mut points, mut lent) = (GroupLightcut::new(), Points::new(), LentCut::default());
+    let reflectors: Vec<Receiver> = (0..32).map(|i| Receiver::irradiance(at(i), Vec3::Z, &frame)).collect();
+    let (mut group, mut points, mut lent) =
+        (PacketLightcut::new(), ReceiverPacket::new(), ReconstructionCut::default());
     let (mut own, mut again) = ([Rgb::ZERO; LANES], [Rgb::ZERO; LANES]);
     points.set(reflectors.iter().step_by(2).copied());
     group.gather(&transfer, &ball, &points, &EXACT, &mut own);
@@ -238,8 +239,9 @@ fn what_a_lent_cut_leaves_to_chance_is_right_on_average() {
     let transfer = Transfer::new(&trees, 1.7);
     let frame = crate::math::Frame::from_normal(Vec3::Z);
     let at = |i: usize| Vec3::new(0.3 + 0.02 * (i % 8) as f32, 0.4 + 0.02 * (i / 8) as f32, 0.01);
-    let reflectors: Vec<Reflector> = (0..64).map(|i| Reflector::collector(at(i), Vec3::Z, &frame)).collect();
-    let (mut group, mut points, mut lent) = (GroupLightcut::new(), Points::new(), LentCut::default());
+    let reflectors: Vec<Receiver> = (0..64).map(|i| Receiver::irradiance(at(i), Vec3::Z, &frame)).collect();
+    let (mut group, mut points, mut lent) =
+        (PacketLightcut::new(), ReceiverPacket::new(), ReconstructionCut::default());
     let mut radiance = [Rgb::ZERO; LANES];
     points.set(reflectors.iter().skip(1).step_by(4).copied());
     group.gather(&transfer, &ball, &points, &EXACT, &mut radiance);

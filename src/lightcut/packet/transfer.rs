@@ -1,7 +1,7 @@
 //! Transfer and bounds for all points of a group at once: the formulas of the single-point versions, written as
 //! loops over lanes that compile to vector code.
 
-use super::points::{Points, Vec3Lanes, lanes_of};
+use super::receivers::{ReceiverPacket, Vec3Lanes, lanes_of};
 use super::{LANES, Lanes, RgbLanes};
 use crate::light_tree::Node;
 use crate::lightcut::expected::{Outlook, expected_share};
@@ -16,14 +16,14 @@ const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
 impl Transfer<'_> {
     /// Error to expect of each point's luminance from a cluster of intensity `node.intensity`; 0 in lanes without a point.
-    pub fn errors16(&self, points: &Points, node: &Node) -> Lanes {
+    pub fn errors16(&self, points: &ReceiverPacket, node: &Node) -> Lanes {
         let (bounds, shares) = self.bounds16(points, node);
         std::array::from_fn(|l| bounds[l] * shares[l])
     }
 
     /// Upper bound of each point's luminance, 0 in lanes without a point, and the error to expect relative to it.
     #[inline]
-    pub(in crate::lightcut) fn bounds16(&self, points: &Points, node: &Node) -> (Lanes, Lanes) {
+    pub(in crate::lightcut) fn bounds16(&self, points: &ReceiverPacket, node: &Node) -> (Lanes, Lanes) {
         let cluster = Cluster::new(points, node);
         let Geometry { geometry, cos_x, shares } = self.geometry16(&cluster, points, node);
         let mut bounds = [0.0; LANES];
@@ -60,7 +60,7 @@ impl Transfer<'_> {
     }
 
     /// Bounds of everything but the material.
-    fn geometry16(&self, cluster: &Cluster, points: &Points, node: &Node) -> Geometry {
+    fn geometry16(&self, cluster: &Cluster, points: &ReceiverPacket, node: &Node) -> Geometry {
         let &Cluster { local, half, rounding, .. } = cluster;
         let oriented = local && node.cos_beta > -1.0;
         let emitter = Frame::from_normal(-node.axis);
@@ -100,7 +100,13 @@ impl Transfer<'_> {
     }
 
     /// Each point's contribution from a VPL of unit intensity, if visible, and the lanes where it is not 0.
-    pub fn unshadowed16(&self, points: &Points, vpl: &Vpl, kind: VplKind, responses: &mut RgbLanes) -> u16 {
+    pub fn unshadowed16(
+        &self,
+        points: &ReceiverPacket,
+        vpl: &Vpl,
+        kind: VplKind,
+        responses: &mut RgbLanes,
+    ) -> u16 {
         let mut one_by_one = points.general;
         match kind {
             VplKind::Oriented => self.lambert_oriented(points, vpl, responses),
@@ -128,7 +134,7 @@ impl Transfer<'_> {
     fn respond(
         &self,
         glossy: &AlikeBsdfs16,
-        points: &Points,
+        points: &ReceiverPacket,
         vpl: &Vpl,
         kind: VplKind,
         responses: &mut RgbLanes,
@@ -157,7 +163,12 @@ impl Transfer<'_> {
     }
 
     /// Irradiance vector at each point from a VPL of unit intensity, if visible; 0 where it is below the horizon.
-    pub(in crate::lightcut) fn incidence16(&self, points: &Points, vpl: &Vpl, kind: VplKind) -> Vec3Lanes {
+    pub(in crate::lightcut) fn incidence16(
+        &self,
+        points: &ReceiverPacket,
+        vpl: &Vpl,
+        kind: VplKind,
+    ) -> Vec3Lanes {
         let mut vector = [[0.0; LANES]; 3];
         let n = &points.frame[2];
         let near_sq = self.near_sq(vpl, kind);
@@ -188,7 +199,7 @@ impl Transfer<'_> {
         vector
     }
 
-    fn lambert_oriented(&self, points: &Points, vpl: &Vpl, responses: &mut RgbLanes) {
+    fn lambert_oriented(&self, points: &ReceiverPacket, vpl: &Vpl, responses: &mut RgbLanes) {
         let (y, normal) = (vpl.position, vpl.normal());
         let near_sq = self.near_sq(vpl, VplKind::Oriented);
         let (x, n) = (&points.position, &points.frame[2]);
@@ -228,7 +239,7 @@ struct Cluster {
 }
 
 impl Cluster {
-    fn new(points: &Points, node: &Node) -> Cluster {
+    fn new(points: &ReceiverPacket, node: &Node) -> Cluster {
         let local = node.kind() != VplKind::Directional;
         let centre = 0.5 * (node.min + node.max);
         let rounding = ROUNDING * (centre.abs().max_element() + if local { points.reach } else { 0.0 });
@@ -237,7 +248,7 @@ impl Cluster {
 
     /// Centre of the box as seen from a point.
     #[inline(always)]
-    fn offset(&self, points: &Points, l: usize) -> Vec3 {
+    fn offset(&self, points: &ReceiverPacket, l: usize) -> Vec3 {
         let origin = if self.local { 1.0 } else { 0.0 };
         let x = &points.position;
         self.centre - Vec3::new(x[0][l], x[1][l], x[2][l]) * origin
@@ -253,7 +264,13 @@ impl Cluster {
 
     /// Largest cosine to the z axis of a point's frame.
     #[inline(always)]
-    fn max_cos(&self, points: &Points, axes: &[Vec3Lanes; 3], abs_axes: &[Vec3Lanes; 3], l: usize) -> f32 {
+    fn max_cos(
+        &self,
+        points: &ReceiverPacket,
+        axes: &[Vec3Lanes; 3],
+        abs_axes: &[Vec3Lanes; 3],
+        l: usize,
+    ) -> f32 {
         let c = self.offset(points, l);
         let (x, half_x) = self.along(c, &axes[0], &abs_axes[0], l);
         let (y, half_y) = self.along(c, &axes[1], &abs_axes[1], l);
@@ -262,7 +279,7 @@ impl Cluster {
     }
 
     /// What a lobe's bound needs besides: least cosine to the normal, largest to the mirror direction.
-    fn lobe16(&self, points: &Points) -> (Lanes, Lanes) {
+    fn lobe16(&self, points: &ReceiverPacket) -> (Lanes, Lanes) {
         let (mut cos_min, mut cos_mirror) = ([0.0; LANES], [0.0; LANES]);
         let (f, a) = (&points.frame, &points.abs_frame);
         for l in 0..LANES {
@@ -279,7 +296,7 @@ impl Cluster {
     }
 }
 
-fn lambert_directional(points: &Points, towards: Vec3, responses: &mut RgbLanes) {
+fn lambert_directional(points: &ReceiverPacket, towards: Vec3, responses: &mut RgbLanes) {
     let n = &points.frame[2];
     for l in 0..LANES {
         let cos = positive(towards.x * n[0][l] + towards.y * n[1][l] + towards.z * n[2][l]);
@@ -307,14 +324,14 @@ fn positive(x: f32) -> f32 {
 }
 
 /// Which points of a group see a VPL.
-pub trait GroupVisibility {
+pub trait PacketVisibility {
     /// The lanes of `lanes` that see it.
-    fn visible16(&self, points: &Points, lanes: u16, vpl: &Vpl, node: &Node) -> u16;
+    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16;
 }
 
-impl GroupVisibility for Unoccluded {
+impl PacketVisibility for Unoccluded {
     #[inline]
-    fn visible16(&self, _: &Points, lanes: u16, _: &Vpl, _: &Node) -> u16 {
+    fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &Node) -> u16 {
         lanes
     }
 }

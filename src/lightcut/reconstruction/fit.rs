@@ -6,9 +6,9 @@
 //! with its own normal and base.
 
 use crate::light_tree::Node;
-use crate::lightcut::packet::points::{Vec3Lanes, lanes_of};
+use crate::lightcut::packet::receivers::{Vec3Lanes, lanes_of};
 use crate::lightcut::packet::{LANES, Lanes, RgbLanes};
-use crate::lightcut::{Points, Transfer};
+use crate::lightcut::{ReceiverPacket, Transfer};
 use crate::math::{Frame, LUMINANCE, Rgb, luminance};
 use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;
@@ -64,7 +64,7 @@ pub(super) type At = [Lanes; 3];
 
 impl Fit {
     /// Starts afresh for these makers.
-    pub fn begin(&mut self, makers: &Points) {
+    pub fn begin(&mut self, makers: &ReceiverPacket) {
         *self = Fit { basis: Basis::new(makers), ..Fit::default() };
         let count = makers.len().max(1) as f32;
         self.base = (0..makers.len()).map(|l| makers.get(l).base_brdf()).sum::<Rgb>() / count;
@@ -75,7 +75,7 @@ impl Fit {
     pub fn share(
         &self,
         transfer: &Transfer,
-        makers: &Points,
+        makers: &ReceiverPacket,
         node: &Node,
         vpl: &Vpl,
         seen: u16,
@@ -117,7 +117,7 @@ impl Fit {
 
     /// Root mean square of the luminance that the fit to `given` lacks or has too much at the makers, times
     /// `inverse_totals`.
-    pub fn error(&self, makers: &Points, node: &Node, given: &Given, inverse_totals: &Lanes) -> f32 {
+    pub fn error(&self, makers: &ReceiverPacket, node: &Node, given: &Given, inverse_totals: &Lanes) -> f32 {
         let Some(basis) = &self.basis else { return f32::INFINITY };
         let (v, r, n) = (&given.vector, &given.lobe, &makers.frame[2]);
         let reflected = luminance(node.intensity * self.base);
@@ -144,7 +144,7 @@ impl Fit {
     }
 
     /// The functions at some points.
-    pub fn at(&self, points: &Points) -> At {
+    pub fn at(&self, points: &ReceiverPacket) -> At {
         let mut at = [[0.0; LANES]; 3];
         let Some(basis) = &self.basis else { return at };
         for l in 0..LANES {
@@ -161,7 +161,7 @@ impl Fit {
     }
 
     /// What each point reflects of the sum.
-    pub fn reflected(&self, points: &Points, at: &At) -> RgbLanes {
+    pub fn reflected(&self, points: &ReceiverPacket, at: &At) -> RgbLanes {
         let mut radiance = [[0.0; LANES]; 3];
         for (c, row) in radiance.iter_mut().enumerate() {
             let irradiance = irradiance(points, at, self.vectors.map(|vectors| vectors[c]));
@@ -178,7 +178,7 @@ impl Fit {
 
 /// Irradiance at each point from the coefficients of one irradiance vector.
 #[inline]
-fn irradiance(points: &Points, at: &At, vectors: [Vec3; 3]) -> Lanes {
+fn irradiance(points: &ReceiverPacket, at: &At, vectors: [Vec3; 3]) -> Lanes {
     let n = &points.frame[2];
     let mut irradiance = [0.0; LANES];
     for (v, at) in vectors.iter().zip(at) {
@@ -190,7 +190,7 @@ fn irradiance(points: &Points, at: &At, vectors: [Vec3; 3]) -> Lanes {
 }
 
 /// Takes from irradiance vectors what coats reflect.
-fn pass_coat(points: &Points, vector: &mut Vec3Lanes) {
+fn pass_coat(points: &ReceiverPacket, vector: &mut Vec3Lanes) {
     let n = &points.frame[2];
     let passes: Lanes = match &points.glossy {
         Some(glossy) => {
@@ -216,7 +216,7 @@ fn pass_coat(points: &Points, vector: &mut Vec3Lanes) {
 
 impl Share {
     /// What each point reflects of it.
-    pub fn reflected(&self, points: &Points, at: &At) -> RgbLanes {
+    pub fn reflected(&self, points: &ReceiverPacket, at: &At) -> RgbLanes {
         let mut radiance = [[0.0; LANES]; 3];
         let irradiance = irradiance(points, at, self.vector);
         for (c, row) in radiance.iter_mut().enumerate() {
@@ -237,7 +237,7 @@ impl Share {
 }
 
 impl Basis {
-    fn new(makers: &Points) -> Option<Basis> {
+    fn new(makers: &ReceiverPacket) -> Option<Basis> {
         let count = makers.len() as f32;
         if makers.valid.count_ones() < LEAST_MAKERS {
             return None;

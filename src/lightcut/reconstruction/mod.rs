@@ -14,11 +14,11 @@
 
 mod fit;
 
-use crate::lightcut::packet::points::lanes_of;
+use crate::lightcut::packet::receivers::lanes_of;
 use crate::lightcut::packet::refine::Entry;
 use crate::lightcut::packet::transfer::luminances;
 use crate::lightcut::packet::{LANES, Lanes, RgbLanes};
-use crate::lightcut::{CutSettings, GroupLightcut, GroupVisibility, Points, Transfer};
+use crate::lightcut::{CutSettings, PacketLightcut, PacketVisibility, ReceiverPacket, Transfer};
 use crate::math::{Rgb, luminance};
 use crate::vpl::Origin;
 use fit::{Fit, Share};
@@ -67,7 +67,7 @@ struct Drawn {
 
 /// A cut and what its makers saw.
 #[derive(Default)]
-pub struct LentCut {
+pub struct ReconstructionCut {
     certain: Vec<Certain>,
     drawn: Vec<Drawn>,
     fit: Fit,
@@ -79,13 +79,13 @@ pub struct LentCut {
     size: usize,
 }
 
-impl LentCut {
+impl ReconstructionCut {
     /// Keeps the last cut of `group`, made for `points`, which reflect `radiance`, by `settings`.
     pub fn keep(
         &mut self,
-        group: &GroupLightcut,
+        group: &PacketLightcut,
         transfer: &Transfer,
-        points: &Points,
+        points: &ReceiverPacket,
         radiance: &[Rgb; LANES],
         settings: &CutSettings,
     ) {
@@ -168,21 +168,21 @@ impl LentCut {
 }
 
 /// Inverse of the luminance of each maker, as far as errors are judged by it.
-fn inverse_totals(points: &Points, radiance: &[Rgb; LANES]) -> Lanes {
+fn inverse_totals(points: &ReceiverPacket, radiance: &[Rgb; LANES]) -> Lanes {
     let totals: Lanes = std::array::from_fn(|l| points.known[l] + luminance(radiance[l]));
     let brightest = lanes_of(points.valid).map(|l| totals[l]).fold(f32::MIN_POSITIVE, f32::max);
     totals.map(|total| 1.0 / total.max(DARKEST * brightest))
 }
 
-impl GroupLightcut {
+impl PacketLightcut {
     /// Reflected radiance of points among those that `cut` was made for; `start` (in [0, 1)) decides on what is left
     /// to chance.
-    pub fn gather_lent<V: GroupVisibility>(
+    pub fn gather_lent<V: PacketVisibility>(
         &mut self,
-        cut: &LentCut,
+        cut: &ReconstructionCut,
         transfer: &Transfer,
         visibility: &V,
-        points: &Points,
+        points: &ReceiverPacket,
         start: f32,
         radiance: &mut [Rgb; LANES],
     ) {
@@ -245,11 +245,11 @@ impl GroupLightcut {
     }
 
     /// What a cluster of unit intensity gives to each point, with a shadow ray where it is brighter than `sure`.
-    fn responses<V: GroupVisibility>(
+    fn responses<V: PacketVisibility>(
         &mut self,
         transfer: &Transfer,
         visibility: &V,
-        points: &Points,
+        points: &ReceiverPacket,
         node: u32,
         sure: f32,
     ) -> Option<RgbLanes> {

@@ -1,11 +1,11 @@
 //! The sum over all VPLs, one shadow ray each: what a lightcut approximates, and is tested against.
 
-use crate::lightcut::{Reflector, Transfer, Visibility};
+use crate::lightcut::{Receiver, Transfer, Visibility};
 use crate::math::Rgb;
 use glam::DVec3;
 
 /// What `receiver` gathers from all VPLs. Time is proportional to their number; nothing is clamped.
-pub fn gather_all<V: Visibility>(transfer: &Transfer, visibility: &V, receiver: &Reflector) -> Rgb {
+pub fn gather_all<V: Visibility>(transfer: &Transfer, visibility: &V, receiver: &Receiver) -> Rgb {
     let mut sum = DVec3::ZERO;
     for leaf in transfer.trees.leaves() {
         let vpl = &transfer.trees.vpls[leaf.representative()];

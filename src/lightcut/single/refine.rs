@@ -11,7 +11,7 @@
 //! and hide the error of all others while the cut is refined.
 
 use crate::light_tree::LightTrees;
-use crate::lightcut::{Reflector, Transfer, Visibility};
+use crate::lightcut::{Receiver, Transfer, Visibility};
 use crate::math::{Rgb, luminance};
 use crate::vpl::Origin;
 use glam::DVec3;
@@ -34,12 +34,12 @@ pub struct CutSettings {
     /// singularities as they are.
     pub clamp: Option<f32>,
     /// Whether only the trees of direct or of indirect light are cut.
-    pub only: Option<Origin>,
+    pub origin: Option<Origin>,
 }
 
 impl Default for CutSettings {
     fn default() -> CutSettings {
-        CutSettings { epsilon: 0.02, max_cut: 5000, clamp: Some(0.02), only: None }
+        CutSettings { epsilon: 0.02, max_cut: 5000, clamp: Some(0.02), origin: None }
     }
 }
 
@@ -124,7 +124,7 @@ impl Lightcut {
         &mut self,
         transfer: &Transfer,
         visibility: &V,
-        receiver: &Reflector,
+        receiver: &Receiver,
         settings: &CutSettings,
     ) -> Rgb {
         let mut pass =
@@ -133,7 +133,7 @@ impl Lightcut {
         pass.refine();
         self.counts.cuts += 1;
         self.counts.clusters += self.entries.len() as u64;
-        self.sum(transfer.trees, settings.clamp, receiver.known_luminance())
+        self.sum(transfer.trees, settings.clamp, receiver.baseline_luminance())
     }
 
     /// Sums the cut anew, in one order and without the drift of the running total.
@@ -185,7 +185,7 @@ struct Pass<'a, 't, 'm, V> {
     trees: &'a LightTrees,
     transfer: &'a Transfer<'t>,
     visibility: &'a V,
-    receiver: &'a Reflector<'m>,
+    receiver: &'a Receiver<'m>,
     settings: &'a CutSettings,
     /// Luminance of the cut, as far as it counts.
     total: f64,
@@ -196,8 +196,8 @@ impl<V: Visibility> Pass<'_, '_, '_, V> {
     fn start(&mut self) {
         self.cut.entries.clear();
         self.cut.offenders.clear();
-        self.total = f64::from(self.receiver.known_luminance());
-        for root in self.trees.roots_of(self.settings.only) {
+        self.total = f64::from(self.receiver.baseline_luminance());
+        for root in self.trees.roots_of(self.settings.origin) {
             let response = self.representative_response(root);
             let entry = self.entry(root, response, f64::MAX);
             self.total += f64::from(entry.counted);

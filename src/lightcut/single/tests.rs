@@ -120,20 +120,20 @@ fn with_no_tolerance_the_cut_is_the_full_sum() {
 #[test]
 fn the_cap_is_respected_and_counted() {
     let trees = LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive);
-    let settings = CutSettings { epsilon: 0.001, max_cut: 77, clamp: None, only: None };
+    let settings = CutSettings { epsilon: 0.001, max_cut: 77, clamp: None, origin: None };
     let transfer = Transfer::new(&trees, 1.7);
-    let receiver = Reflector::collector(Vec3::splat(0.4), Vec3::Y, &Frame::from_normal(Vec3::Y));
+    let receiver = Receiver::irradiance(Vec3::splat(0.4), Vec3::Y, &Frame::from_normal(Vec3::Y));
     let mut cut = Lightcut::new();
     cut.gather(&transfer, &Unoccluded, &receiver, &settings);
     assert_eq!((cut.entries().len(), cut.counts.capped), (77, 1));
-    let roomy = CutSettings { epsilon: 0.5, max_cut: 1000, clamp: None, only: None };
+    let roomy = CutSettings { epsilon: 0.5, max_cut: 1000, clamp: None, origin: None };
     cut.gather(&transfer, &Unoccluded, &receiver, &roomy);
     assert_eq!(cut.counts.capped, 1, "a cut that converged is not counted as capped");
 }
 
 fn irradiance(trees: &LightTrees, diagonal: f32, position: Vec3, settings: &CutSettings) -> Rgb {
     let transfer = Transfer::new(trees, diagonal);
-    let receiver = Reflector::collector(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
+    let receiver = Receiver::irradiance(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
     Lightcut::new().gather(&transfer, &Unoccluded, &receiver, settings)
 }
 
@@ -193,7 +193,7 @@ fn a_weak_singularity_is_clamped_once_and_lights_are_not() {
     let x = Vec3::new(0.5, 0.5, 0.5);
     let trees_of =
         |set: &VplSet| LightTrees::build(std::slice::from_ref(set), Vec::new(), 1.7, Family::Divisive);
-    let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02), only: None };
+    let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02), origin: None };
     let without = luminance(irradiance(&trees_of(&set), 1.7, x, &settings));
     set.push(Vpl::oriented(x + Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
     let spike = luminance(irradiance(&trees_of(&set), 1.7, x, &CutSettings { clamp: None, ..settings }));

@@ -163,7 +163,7 @@ impl Cache {
             let mut known = 0.0;
             if self.wants[i] {
                 if lacking(&self.layers, self.wanted(i), i) != [false; 2] {
-                    jobs.push(Job { sample, lobe_only: false, only: None, known });
+                    jobs.push(Job { sample, lobe_only: false, origin: None, known });
                     continue;
                 }
                 let mean = |l: usize| self.layers[l].sums[i].mean().unwrap_or(Rgb::ZERO);
@@ -175,13 +175,13 @@ impl Cache {
                 picture.add(samples, i, recorded, reflected);
             }
             if self.found.contains(&FoundBy::Samples) {
-                jobs.push(Job { sample, lobe_only: false, only: left, known });
+                jobs.push(Job { sample, lobe_only: false, origin: left, known });
             }
             if self.found.contains(&FoundBy::Records)
                 && lobe.is_some()
                 && samples.points[i].sharing.bands() == 0
             {
-                jobs.push(Job { sample, lobe_only: true, only: recorded, known });
+                jobs.push(Job { sample, lobe_only: true, origin: recorded, known });
             }
         }
         jobs

@@ -4,7 +4,7 @@
 //! footprints. Beyond it: footprints and gradients that know of the edges of occluders (`occlusion`).
 //!
 //! Deviations: by default neither layer has records. Cuts shared by sixteen places of a patch, and lent to the
-//! eye samples among them (see [`crate::lightcut::LentCut`]), took as long and erred less, most of all where
+//! eye samples among them (see [`crate::lightcut::ReconstructionCut`]), took as long and erred less, most of all where
 //! shadows are fine: the patch's cut is its record, a linear fit its gradient, and rays correct it where the sixteen
 //! disagree.
 //!

@@ -1,7 +1,7 @@
 //! Eye samples with cuts of their own, or nearly so.
 //!
 //! Samples close together, seen in the order of the index, form patches. Sixteen spread over each patch share a
-//! cut; it is lent to the others, which trace shadow rays where the sixteen disagree (see [`LentCut`]). The
+//! cut; it is lent to the others, which trace shadow rays where the sixteen disagree (see [`ReconstructionCut`]). The
 //! others are taken in packets spread over the patch, so that neighbours leave different clusters to chance. Patches of few samples have cuts of their own.
 
 use crate::cache::compute::Source;
@@ -9,8 +9,8 @@ use crate::cache::settings::LEAST_PATCH;
 use crate::compensation::samples::{NearCounts, NearLight};
 use crate::eye::EyeSamples;
 use crate::lightcut::{
-    CutCounts, CutSettings, GroupLightcut, GroupVisibility, LentCut, Lightcut, Likeness, Points, Reflector,
-    Visibility, group_alike,
+    CoherenceLimit, CutCounts, CutSettings, Lightcut, PacketLightcut, PacketVisibility, Receiver,
+    ReceiverPacket, ReconstructionCut, Visibility, group_coherent,
 };
 use crate::math::{Frame, LANES, Rgb};
 use crate::progress::Control;
@@ -30,7 +30,7 @@ pub struct Job {
     /// Only the lobe on the base.
     pub lobe_only: bool,
     /// Only direct or only indirect light.
-    pub only: Option<Origin>,
+    pub origin: Option<Origin>,
     /// Luminance of the radiance that the sample is known to reflect besides.
     pub known: f32,
 }
@@ -39,9 +39,9 @@ pub struct Job {
 #[derive(Default)]
 pub struct Cutters<'w> {
     single: Lightcut,
-    group: GroupLightcut,
-    lent: LentCut,
-    points: Points<'w>,
+    group: PacketLightcut,
+    lent: ReconstructionCut,
+    points: ReceiverPacket<'w>,
     near: NearLight,
 }
 
@@ -89,7 +89,7 @@ pub fn light_patches<'w>(
                 }
                 shadows.begin_chunk();
                 (work.single.counts, work.group.counts) = Default::default();
-                let cut = CutSettings { only: jobs[0].only, ..*cut };
+                let cut = CutSettings { origin: jobs[0].origin, ..*cut };
                 let mut lit = Vec::with_capacity(jobs.len());
                 work.light(source, shadows, samples, jobs, &cut, &mut lit);
                 let mut cuts = work.single.counts;
@@ -118,21 +118,21 @@ pub fn patches(source: &Source, samples: &EyeSamples, jobs: &[Job]) -> Vec<Vec<J
     };
     let bsdf = |job: &Job| &samples.surfaces[job.sample as usize].bsdf;
     let same =
-        |a: &Job, b: &Job| a.lobe_only == b.lobe_only && a.only == b.only && bsdf(a).same_lobe(bsdf(b));
+        |a: &Job, b: &Job| a.lobe_only == b.lobe_only && a.origin == b.origin && bsdf(a).same_lobe(bsdf(b));
     let diagonal = source.world.diagonal;
     let most = source.settings.patch(samples.len());
-    let patches = group_alike(Likeness::CLOSE, jobs.iter().copied(), most, diagonal, place, same);
+    let patches = group_coherent(CoherenceLimit::CLOSE, jobs.iter().copied(), most, diagonal, place, same);
     // A cut costs nearly as much for few points as for sixteen: remnants make do with less likeness.
     let (mut patches, remnants): (Vec<_>, Vec<_>) =
         patches.into_iter().partition(|patch| patch.len() >= LEAST_PATCH);
     let remnants = remnants.into_iter().flatten();
-    patches.extend(group_alike(Likeness::REMOTE, remnants, LEAST_PATCH, diagonal, place, same));
+    patches.extend(group_coherent(CoherenceLimit::REMOTE, remnants, LEAST_PATCH, diagonal, place, same));
     patches
 }
 
 impl<'w> Cutters<'w> {
     /// Lights a patch.
-    pub fn light<V: Visibility + GroupVisibility>(
+    pub fn light<V: Visibility + PacketVisibility>(
         &mut self,
         s: &Source<'_>,
         rays: &V,
@@ -153,7 +153,7 @@ impl<'w> Cutters<'w> {
         self.points.set(chosen(true).map(|job| reflector(samples, job)));
         self.group.gather(&s.transfer, rays, &self.points, cut, &mut radiance);
         if let Some(c) = compensation {
-            self.near.begin(c, cut.only, &self.points, self.group.limits(), &mut radiance);
+            self.near.begin(c, cut.origin, &self.points, self.group.limits(), &mut radiance);
         }
         lit.extend(chosen(true).copied().zip(radiance));
         if lit.len() == jobs.len() {
@@ -194,7 +194,7 @@ impl<'w> Cutters<'w> {
         }
         if let Some(c) = &s.compensation {
             self.points.set(jobs.iter().map(|job| reflector(samples, job)));
-            self.near.begin(c, cut.only, &self.points, &limits, &mut radiance);
+            self.near.begin(c, cut.origin, &self.points, &limits, &mut radiance);
         }
         lit.extend(jobs.iter().copied().zip(radiance));
     }
@@ -220,10 +220,11 @@ fn makers(samples: &EyeSamples, jobs: &[Job]) -> Vec<bool> {
     makes
 }
 
-fn reflector<'w>(samples: &EyeSamples<'w>, job: &Job) -> Reflector<'w> {
+fn reflector<'w>(samples: &EyeSamples<'w>, job: &Job) -> Receiver<'w> {
     let (point, surface) = (&samples.points[job.sample as usize], &samples.surfaces[job.sample as usize]);
     let frame = Frame::from_normal(point.normal);
     let lobe = if job.lobe_only { surface.bsdf.split_base(1.0).1 } else { None };
     let bsdf = lobe.unwrap_or(surface.bsdf);
-    Reflector::new(point.position, surface.geometric_normal, &frame, bsdf, surface.out).knowing(job.known)
+    Receiver::new(point.position, surface.geometric_normal, &frame, bsdf, surface.out)
+        .with_baseline(job.known)
 }

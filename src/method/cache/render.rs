@@ -141,7 +141,7 @@ impl<'w> Prepared<'w> {
         control.begin(Stage::Render, jobs.len() as u64);
         let lit = stats.time(Stage::Render, || own::light(&source, &samples, &jobs, &settings.cut, control));
         for (job, radiance) in lit.radiance {
-            picture.add(&samples, job.sample as usize, job.only, radiance);
+            picture.add(&samples, job.sample as usize, job.origin, radiance);
         }
         stats.count("Cache/samples with own cuts", jobs.len() as u64);
         counts::cuts(&mut stats, "Lightcut", &lit.cuts);

@@ -5,7 +5,9 @@
 use super::render::{Scenery, Settings};
 use crate::compensation::samples::{NearCounts, NearLight};
 use crate::eye::{ChainCounts, EyeSample, eye_sampler, primary_ray, trace};
-use crate::lightcut::{CutCounts, GroupLightcut, LEAST_SHARED, Lightcut, Likeness, Points, Reflector};
+use crate::lightcut::{
+    CoherenceLimit, CutCounts, Lightcut, MIN_SHARED, PacketLightcut, Receiver, ReceiverPacket,
+};
 use crate::math::{LANES, Rgb};
 use crate::shadow::{Counts, Engine};
 use crate::world::World;
@@ -20,8 +22,8 @@ pub struct Workspace<'w> {
     single: Lightcut,
     /// Shadow rays; an occluder cache lives for a tile.
     shadows: Engine<'w>,
-    group: GroupLightcut,
-    points: Points<'w>,
+    group: PacketLightcut,
+    points: ReceiverPacket<'w>,
     near: NearLight,
     samples: Vec<Lit<'w>>,
     members: Vec<usize>,
@@ -36,8 +38,8 @@ impl<'w> Workspace<'w> {
         Workspace {
             single: Lightcut::new(),
             shadows: Engine::with(world, shadows.for_samples(settings.share), shadows.cache),
-            group: GroupLightcut::new(),
-            points: Points::new(),
+            group: PacketLightcut::new(),
+            points: ReceiverPacket::new(),
             near: NearLight::default(),
             samples: Vec::new(),
             members: Vec::new(),
@@ -49,7 +51,7 @@ impl<'w> Workspace<'w> {
 
 /// An eye sample waiting for light.
 struct Lit<'w> {
-    reflector: Reflector<'w>,
+    reflector: Receiver<'w>,
     throughput: Rgb,
     /// Which pixel and sample of the block.
     place: usize,
@@ -116,7 +118,7 @@ impl Tile {
                 let visit = |eye: EyeSample<'w>| {
                     if eye.depth < s.max_depth {
                         let surface = &eye.surface;
-                        let reflector = Reflector::new(
+                        let reflector = Receiver::new(
                             surface.position,
                             surface.normal,
                             &surface.frame,
@@ -165,13 +167,13 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
         for (i, sample) in work.samples.iter().enumerate().skip(first) {
             if !sample.done
                 && work.members.len() < LANES
-                && Likeness::CLOSE.holds(s.world.diagonal, seed.place(), sample.reflector.place())
+                && CoherenceLimit::CLOSE.holds(s.world.diagonal, seed.place(), sample.reflector.place())
             {
                 work.members.push(i);
             }
         }
         let cut = &s.settings.cut;
-        if !s.settings.share || work.members.len() < LEAST_SHARED {
+        if !s.settings.share || work.members.len() < MIN_SHARED {
             let sample = &mut work.samples[first];
             sample.done = true;
             let before = work.single.counts.clusters;
@@ -181,7 +183,7 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
             if let Some(c) = &s.compensation {
                 work.points.set([*reflector]);
                 let limits = [work.single.limit(); LANES];
-                work.near.begin(c, cut.only, &work.points, &limits, &mut radiance);
+                work.near.begin(c, cut.origin, &work.points, &limits, &mut radiance);
             }
             work.values[sample.place] += sample.throughput * radiance[0];
             work.cut_sizes[sample.place] += (work.single.counts.clusters - before) as f32;
@@ -191,7 +193,7 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
         let mut radiance = [Rgb::ZERO; LANES];
         work.group.gather(&s.transfer, &work.shadows, &work.points, cut, &mut radiance);
         if let Some(c) = &s.compensation {
-            work.near.begin(c, cut.only, &work.points, work.group.limits(), &mut radiance);
+            work.near.begin(c, cut.origin, &work.points, work.group.limits(), &mut radiance);
         }
         for (&i, radiance) in work.members.iter().zip(radiance) {
             let sample = &mut work.samples[i];

@@ -109,10 +109,10 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
     let direct_jobs: Vec<Job> = jobs
         .iter()
-        .filter(|job| job.only != Some(Origin::Indirect))
-        .map(|job| Job { only: Some(Origin::Direct), ..*job })
+        .filter(|job| job.origin != Some(Origin::Indirect))
+        .map(|job| Job { origin: Some(Origin::Direct), ..*job })
         .collect();
-    let indirect_jobs: Vec<&Job> = jobs.iter().filter(|job| job.only != Some(Origin::Direct)).collect();
+    let indirect_jobs: Vec<&Job> = jobs.iter().filter(|job| job.origin != Some(Origin::Direct)).collect();
     control.begin(Stage::Render, (direct_jobs.len() + indirect_jobs.len()) as u64);
     let lit = stats
         .time(Stage::Render, || own::light(&source.direct, &samples, &direct_jobs, &settings.cut, control));
@@ -122,7 +122,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
         stats.time(Stage::Render, || own_gathers(&source, &samples, &indirect_jobs, settings, control));
     let mut rays = *source.counts.lock().unwrap_or_else(PoisonError::into_inner);
     for (job, radiance) in lit.radiance {
-        picture.add(&samples, job.sample as usize, job.only, radiance);
+        picture.add(&samples, job.sample as usize, job.origin, radiance);
     }
     for (job, (radiance, used)) in indirect_jobs.iter().zip(gathered) {
         picture.add(&samples, job.sample as usize, Some(Origin::Indirect), radiance);

@@ -2,7 +2,7 @@
 
 use super::{LANES, Lanes};
 use crate::embree::Rays16;
-use crate::lightcut::Reflector;
+use crate::lightcut::Receiver;
 use crate::lightcut::shadow_rays::to_vpl16;
 use crate::material::AlikeBsdfs16;
 use crate::math::{Frame, LUMINANCE, Rgb};
@@ -15,8 +15,8 @@ pub(in crate::lightcut) type Vec3Lanes = [Lanes; 3];
 /// Up to sixteen reflecting points as a structure of arrays.
 ///
 /// Lanes without a point repeat the first one's and are masked.
-pub struct Points<'m> {
-    reflectors: Vec<Reflector<'m>>,
+pub struct ReceiverPacket<'m> {
+    reflectors: Vec<Receiver<'m>>,
     /// Lanes that hold a point.
     pub(in crate::lightcut) valid: u16,
     /// Lanes whose material is not just Lambert.
@@ -45,11 +45,11 @@ pub struct Points<'m> {
     pub(in crate::lightcut) brdf_luminance: Vec3Lanes,
 }
 
-impl<'m> Points<'m> {
+impl<'m> ReceiverPacket<'m> {
     /// No points yet.
-    pub fn new() -> Points<'m> {
+    pub fn new() -> ReceiverPacket<'m> {
         const ZERO: Vec3Lanes = [[0.0; LANES]; 3];
-        Points {
+        ReceiverPacket {
             reflectors: Vec::with_capacity(LANES),
             valid: 0,
             general: 0,
@@ -69,7 +69,7 @@ impl<'m> Points<'m> {
     }
 
     /// Replaces the points; all beyond [`LANES`] are left out.
-    pub fn set(&mut self, reflectors: impl IntoIterator<Item = Reflector<'m>>) {
+    pub fn set(&mut self, reflectors: impl IntoIterator<Item = Receiver<'m>>) {
         self.reflectors.clear();
         self.reflectors.extend(reflectors.into_iter().take(LANES));
         (self.valid, self.general, self.reach) = (0, 0, 0.0);
@@ -86,13 +86,13 @@ impl<'m> Points<'m> {
             put(&mut self.geometric_normal, lane, r.geometric_normal());
             put_frame(&mut self.frame, &mut self.abs_frame, lane, r.frame());
             put_frame(&mut self.mirror, &mut self.abs_mirror, lane, r.mirror());
-            self.known[lane] = r.known_luminance();
+            self.known[lane] = r.baseline_luminance();
             let brdf = r.lambert_brdf().unwrap_or(Rgb::ZERO);
             put(&mut self.brdf, lane, brdf);
             put(&mut self.base, lane, r.base_brdf());
             put(&mut self.brdf_luminance, lane, brdf * LUMINANCE);
         }
-        let bsdf = |lane: usize| self.reflectors.get(lane).and_then(Reflector::bsdf);
+        let bsdf = |lane: usize| self.reflectors.get(lane).and_then(Receiver::bsdf);
         let any = lanes_of(self.general).next().and_then(bsdf);
         self.glossy = any.and_then(|any| AlikeBsdfs16::new(|lane| bsdf(lane).unwrap_or(any)));
     }
@@ -114,14 +114,14 @@ impl<'m> Points<'m> {
     }
 
     /// Point number `lane`.
-    pub fn get(&self, lane: usize) -> &Reflector<'m> {
+    pub fn get(&self, lane: usize) -> &Receiver<'m> {
         &self.reflectors[lane]
     }
 }
 
-impl Default for Points<'_> {
+impl Default for ReceiverPacket<'_> {
     fn default() -> Self {
-        Points::new()
+        ReceiverPacket::new()
     }
 }
 
