@@ -10,7 +10,7 @@
 //! - [`lightcut`] finds, for each of those, the coarsest clusters whose expected errors stay below what is asked;
 //! - [`compensation`] finds again by short rays what clamping takes from light close by;
 //! - [`gradient`] says how that light changes along the surface, [`hsh`] expands it over the hemisphere;
-//! - [`cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their footprints;
+//! - [`radiance_cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their footprints;
 //! - [`shadow`] answers whether segments are free, by packets of rays, [`sampling`] gives every stage its numbers;
 //! - [`method`] holds the renderers that are compared; [`film`] writes and compares what they return;
 //! - [`verify`] measures how wrong a picture is by path-tracing some of its pixels, [`plan`] chooses settings for a time or an error;
@@ -19,7 +19,6 @@
 #![deny(unsafe_code)]
 
 pub mod bench;
-pub mod cache;
 pub mod cli;
 pub mod compensation;
 pub mod embree;
@@ -36,6 +35,7 @@ pub mod method;
 pub mod photon;
 pub mod plan;
 pub mod progress;
+pub mod radiance_cache;
 pub mod sampling;
 pub mod scene;
 pub mod shadow;

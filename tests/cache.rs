@@ -4,12 +4,12 @@ mod common;
 
 use common::*;
 use glam::Vec3;
-use lightsplat::cache::{Footprints, FoundBy, LayerSettings};
 use lightsplat::film::Image;
 use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::{Output, cache, lightcuts};
 use lightsplat::progress::Control;
+use lightsplat::radiance_cache::{Footprints, FoundBy, LayerSettings};
 use lightsplat::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
 use lightsplat::stats::{Counter, Stage};
 use lightsplat::world::World;

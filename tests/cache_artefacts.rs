@@ -5,13 +5,13 @@ mod common;
 
 use common::*;
 use glam::{Vec2, Vec3};
-use lightsplat::cache::{Footprints, FoundBy};
 use lightsplat::eye::primary_ray;
 use lightsplat::film::Image;
 use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::{cache, lightcuts};
 use lightsplat::progress::Control;
+use lightsplat::radiance_cache::{Footprints, FoundBy};
 use lightsplat::scene::MaterialId;
 use lightsplat::world::{Surface, World};
 

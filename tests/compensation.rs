@@ -4,13 +4,13 @@ mod common;
 
 use common::*;
 use glam::{Vec2, Vec3};
-use lightsplat::cache::FoundBy;
 use lightsplat::eye::primary_ray;
 use lightsplat::film::Image;
 use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::{Output, cache, lightcuts, path};
 use lightsplat::progress::Control;
+use lightsplat::radiance_cache::FoundBy;
 use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::stats::Counter;
 use lightsplat::world::World;

@@ -4,10 +4,10 @@ mod common;
 
 use common::*;
 use glam::Vec3;
-use lightsplat::cache::FoundBy;
 use lightsplat::math::Rgb;
 use lightsplat::method::{Output, cache, lightcuts};
 use lightsplat::progress::Control;
+use lightsplat::radiance_cache::FoundBy;
 use lightsplat::shadow::{OccluderCacheSettings, ShadowSettings};
 use lightsplat::stats::Counter;
 use lightsplat::vpl::LightPassSettings;

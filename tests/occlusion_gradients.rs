@@ -4,17 +4,17 @@ mod common;
 
 use common::*;
 use glam::Vec3;
-use lightsplat::cache::compute::{RecordSource, Source};
-use lightsplat::cache::layer::Layer;
-use lightsplat::cache::record::Record;
-use lightsplat::cache::wave::Pick;
-use lightsplat::cache::{CacheSettings, Footprints};
 use lightsplat::eye::{EyeSamples, EyeSettings};
 use lightsplat::film::Window;
 use lightsplat::light_tree::{Family, LightTrees};
 use lightsplat::lightcut::{CutSettings, Receiver, Transfer, gather_all};
 use lightsplat::math::{Frame, luminance};
 use lightsplat::progress::Control;
+use lightsplat::radiance_cache::compute::{RecordSource, Source};
+use lightsplat::radiance_cache::layer::Layer;
+use lightsplat::radiance_cache::record::Record;
+use lightsplat::radiance_cache::wave::Pick;
+use lightsplat::radiance_cache::{CacheSettings, Footprints};
 use lightsplat::vpl::{LightPassSettings, Origin, light_pass};
 use lightsplat::world::World;
 

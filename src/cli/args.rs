@@ -334,8 +334,8 @@ pub(super) fn parse_fraction(text: &str) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cache::FoundBy;
     use crate::method::{cache, lightcuts, path, photon_cache};
+    use crate::radiance_cache::FoundBy;
     use crate::verify;
     use clap::CommandFactory;
 

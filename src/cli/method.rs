@@ -3,9 +3,9 @@
 use super::args::{LightcutArgs, MethodName, PhotonArgs, RenderArgs, TreeFamily};
 use super::cache_args::{CacheArgs, FootprintShape, LightBy, Pair, Switch};
 use super::exit::Failure;
-use crate::cache::{CacheSettings, Footprints, FoundBy};
 use crate::light_tree::Family;
 use crate::method::{Method, cache, lightcuts, path, photon_cache};
+use crate::radiance_cache::{CacheSettings, Footprints, FoundBy};
 use anyhow::anyhow;
 
 /// From what was typed. An option of another method is an error: it would have no effect.

@@ -6,7 +6,7 @@
 //! distributed by the cosine. G exceeds b only where r < b^(-1/2), so rays end there and are cheap.
 //!
 //! [`near`] traces such rays, [`samples`] finds with them what eye samples lack, and
-//! [`crate::cache::compensate`] what records do.
+//! [`crate::radiance_cache::compensate`] what records do.
 //!
 //!
 //! Virtual lights on area lights count with cosθ_x cosθ_y / max(r², A), A the area that they stand for (to within a

@@ -1,12 +1,12 @@
 //! Any of the methods, with its settings.
 
 use super::{Output, cache, lightcuts, path, photon_cache};
-use crate::cache::{CacheSettings, Footprints, FoundBy};
 use crate::eye::{EyeSamples, Look};
 use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::progress::Control;
+use crate::radiance_cache::{CacheSettings, Footprints, FoundBy};
 use crate::shadow::ShadowSettings;
 use crate::vpl::LightPassSettings;
 use crate::world::World;

@@ -17,7 +17,7 @@ mod widths;
 
 use super::setting::Setting;
 use super::{Benchmark, Context, Kind, Table};
-use crate::cache::CacheSettings;
+use crate::radiance_cache::CacheSettings;
 use orders::Orders;
 use trace::Traces;
 

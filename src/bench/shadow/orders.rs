@@ -7,15 +7,15 @@
 //! any.
 
 use crate::bench::setting::Setting;
-use crate::cache::CacheSettings;
-use crate::cache::compute::Source;
-use crate::cache::layer::Layer;
-use crate::cache::wave::{Pick, pick};
 use crate::lightcut::{
     CutSettings, Lightcut, MIN_SHARED, PacketLightcut, PacketVisibility, Receiver, ReceiverPacket, Visibility,
 };
 use crate::math::{LANES, Rgb, luminance};
 use crate::method::cache::own::{Cutters, Job, patches};
+use crate::radiance_cache::CacheSettings;
+use crate::radiance_cache::compute::Source;
+use crate::radiance_cache::layer::Layer;
+use crate::radiance_cache::wave::{Pick, pick};
 use crate::vpl::Origin;
 
 /// Which points are lit.

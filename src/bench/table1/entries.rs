@@ -1,9 +1,9 @@
 //! What the table compares. Settings are the methods' own defaults but for what is said here.
 
 use crate::bench::study::Candidate;
-use crate::cache::{Footprints, FoundBy};
 use crate::eye::Look;
 use crate::method::{Method, cache, lightcuts, photon_cache};
+use crate::radiance_cache::{Footprints, FoundBy};
 
 /// A method's name over several settings, which make a curve of error against time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,9 +2,9 @@
 //!
 //! Coarse is what should be faster, fine what should be better; where a setting has no such order the text says so.
 
-use crate::cache::{Footprints, FoundBy};
 use crate::light_tree::Family;
 use crate::method::cache::Settings;
+use crate::radiance_cache::{Footprints, FoundBy};
 use serde::Serialize;
 
 /// A change of settings.

@@ -2,18 +2,18 @@
 
 use super::own::Job;
 use super::picture::Picture;
-use crate::cache::adapt::Seam;
-use crate::cache::compute::RecordSource;
-use crate::cache::layer::Layer;
-use crate::cache::record::Record;
-use crate::cache::series::Glossy;
-use crate::cache::wave::{Pick, lacking, pick};
-use crate::cache::{CacheSettings, FoundBy, adapt};
 use crate::eye::{EyePoint, EyeSamples, EyeSurface};
 use crate::lightcut::CutCounts;
 use crate::math::{Rgb, luminance};
 use crate::method::counts;
 use crate::progress::Control;
+use crate::radiance_cache::adapt::Seam;
+use crate::radiance_cache::compute::RecordSource;
+use crate::radiance_cache::layer::Layer;
+use crate::radiance_cache::record::Record;
+use crate::radiance_cache::series::Glossy;
+use crate::radiance_cache::wave::{Pick, lacking, pick};
+use crate::radiance_cache::{CacheSettings, FoundBy, adapt};
 use crate::stats::{Stage, Stats};
 use crate::vpl::Origin;
 

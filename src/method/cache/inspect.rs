@@ -15,12 +15,12 @@
 //! Where a pixel has several eye samples, the last in the order of the index stands for all but in sums and
 //! counts.
 
-use crate::cache::adapt::Seam;
-use crate::cache::layer::Layer;
-use crate::cache::record::Record;
 use crate::eye::EyeSamples;
 use crate::film::Image;
 use crate::math::{LUMINANCE, Rgb};
+use crate::radiance_cache::adapt::Seam;
+use crate::radiance_cache::layer::Layer;
+use crate::radiance_cache::record::Record;
 use rayon::prelude::*;
 
 /// Layers by name.

@@ -14,7 +14,7 @@
 //! | `seed` | 0 | another seed, other VPLs and other eye samples |
 //! | `max_depth` | the scene's | longest path in edges, counted from the eye |
 //! | `light` | as `lightcuts` | how many VPLs |
-//! | `cache` | see [`crate::cache::CacheSettings`] | how many records, and how good |
+//! | `cache` | see [`crate::radiance_cache::CacheSettings`] | how many records, and how good |
 //! | `cut.epsilon` | 0.02 | largest error to expect of a cluster where eye samples have cuts of their own |
 //! | `inspect` | off | further images of what the cache did, see [`inspect`] |
 //! | `family` | divisive | how light trees are built |

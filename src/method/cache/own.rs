@@ -4,8 +4,6 @@
 //! cut; it is lent to the others, which trace shadow rays where the sixteen disagree (see [`ReconstructionCut`]). The
 //! others are taken in packets spread over the patch, so that neighbours leave different clusters to chance. Patches of few samples have cuts of their own.
 
-use crate::cache::compute::Source;
-use crate::cache::settings::LEAST_PATCH;
 use crate::compensation::samples::{NearCounts, NearLight};
 use crate::eye::EyeSamples;
 use crate::lightcut::{
@@ -14,6 +12,8 @@ use crate::lightcut::{
 };
 use crate::math::{Frame, LANES, Rgb};
 use crate::progress::Control;
+use crate::radiance_cache::compute::Source;
+use crate::radiance_cache::settings::LEAST_PATCH;
 use crate::sampling::hash;
 use crate::shadow::{Counts, Engine};
 use crate::vpl::Origin;

@@ -1,8 +1,5 @@
 //! The picture: eye pass, photons, trees of direct light, the cache, and what it leaves to single samples.
 
-use crate::cache::compute::Source;
-use crate::cache::series::Glossy;
-use crate::cache::{CacheSettings, FoundBy};
 use crate::eye::{EyeSamples, EyeSettings};
 use crate::film::Window;
 use crate::light_tree::Family;
@@ -21,6 +18,9 @@ use crate::photon::records::PhotonSource;
 use crate::photon::strata::Strata;
 use crate::photon::{IrradianceMap, PhotonMap};
 use crate::progress::Control;
+use crate::radiance_cache::compute::Source;
+use crate::radiance_cache::series::Glossy;
+use crate::radiance_cache::{CacheSettings, FoundBy};
 use crate::stats::{Stage, Stats};
 use crate::vpl::{LightPassSettings, Origin, PhotonSettings};
 use crate::world::World;
