@@ -6,7 +6,6 @@
 mod camera;
 mod draft;
 pub mod formats;
-pub mod generate;
 mod light;
 mod material;
 mod mesh;

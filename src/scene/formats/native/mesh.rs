@@ -5,9 +5,9 @@ use super::{Builder, finite};
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::mesh::{Normals, Placement, RawMesh, shapes};
 use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan};
-use crate::scene::generate::Part;
 use crate::scene::mesh::Emission;
 use glam::{DMat4, DVec3};
+use lightsplat_scenes::Part;
 use std::path::Path;
 use toml::Spanned;
 

@@ -44,10 +44,10 @@ mod text;
 
 use super::error::{Log, Place, SceneError};
 use super::plan::{MeshPlan, Plan, TexturePlan, fnv1a, read_file};
-use crate::scene::generate::{self, Part};
 use crate::scene::light::DeltaLight;
 use crate::scene::material::{Material, MaterialId};
 use glam::DVec3;
+use lightsplat_scenes::Part;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -140,7 +140,7 @@ impl<'a> Builder<'a> {
                 kind: "generator",
                 name: name.get_ref().clone(),
             };
-            parts = generate::generate(name.get_ref()).ok_or_else(unknown)?;
+            parts = lightsplat_scenes::generate(name.get_ref()).ok_or_else(unknown)?;
         }
         Ok(Builder {
             file,

@@ -1,0 +1,22 @@
+//! Geometry of lightsplat's own scenes. [`generate`] yields named parts; the scene's TOML file gives every part its
+//! material, so that what a scene looks like stays editable.
+//!
+//! `shapes` holds what geometry is built with, `props` the things that stand in scenes, `scenes` the plans.
+
+mod props;
+mod scenes;
+mod shapes;
+
+pub use shapes::Part;
+
+/// Parts of the scene called `name`, or `None` where there is no such generator.
+pub fn generate(name: &str) -> Option<Vec<Part>> {
+    match name {
+        "apartment" => Some(scenes::apartment::parts()),
+        "hall" => Some(scenes::hall::parts()),
+        "kitchen" => Some(scenes::kitchen::parts()),
+        "knot" => Some(scenes::knot::parts()),
+        "nave" => Some(scenes::nave::parts()),
+        _ => None,
+    }
+}

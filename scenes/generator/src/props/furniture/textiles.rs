@@ -1,0 +1,23 @@
+//! Curtains and rugs.
+
+use crate::shapes::{Shell, patch, rounded_box};
+use glam::{Vec2, Vec3};
+use std::f32::consts::TAU;
+
+/// A curtain of `width` that hangs `drop` metres from y = 0 in `folds`, about the plane z = 0 from x = 0;
+/// the folds open towards the hem. A sheet for both sides.
+pub fn curtain(width: f32, drop: f32, folds: usize) -> Shell {
+    patch(folds * 8, 6, |u, v| {
+        let phase = TAU * folds as f32 * u + 0.5 * (7.0 * u).sin();
+        let depth = 0.035 * (0.75 + 0.35 * v) * (1.0 + 0.25 * (13.0 * u + 2.0).sin());
+        let sway = 0.012 * v * v * (9.0 * u + 1.0).sin();
+        Vec3::new(u * width + 0.3 * depth * (2.0 * phase).sin(), -v * drop, depth * phase.sin() + sway)
+    })
+    .flipped()
+}
+
+/// A rug of `size` about the origin, with a soft edge.
+pub fn rug(size: Vec2) -> Shell {
+    let half = 0.5 * size;
+    rounded_box(Vec3::new(-half.x, 0.0005, -half.y), Vec3::new(half.x, 0.014, half.y), 0.006, 2)
+}

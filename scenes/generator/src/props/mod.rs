@@ -1,0 +1,4 @@
+//! Things that scenes hold. Each stands on y = 0 about the origin and looks along +z, unless it says otherwise.
+
+pub mod furniture;
+pub mod kitchen;

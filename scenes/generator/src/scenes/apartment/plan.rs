@@ -1,0 +1,151 @@
+//! Walls with their openings, ceilings, windows, skirting and door casings.
+
+use super::HEIGHT;
+use crate::props::furniture::{casing, skirting};
+use crate::shapes::{
+    Assembly, Faces, at, beveled_box, extrude, extrude_faces, parallelogram, rectangle, turned,
+};
+use glam::{Affine3A, Vec2, Vec3};
+
+/// Width and height of door openings.
+const DOOR: Vec2 = Vec2::new(0.9, 2.1);
+/// Depth of the window reveals.
+const REVEAL: f32 = 0.18;
+const SKIRTING: f32 = 0.12;
+
+/// An inner face of a wall as seen from its room: x runs to the right from the lower left corner.
+struct Face {
+    place: Affine3A,
+    length: f32,
+    /// Left edges of the door openings.
+    doors: &'static [f32],
+}
+
+/// The face from `x`, `z` that runs to the right after a turn about y by `degrees` from +x.
+fn face(degrees: f32, x: f32, z: f32, length: f32, doors: &'static [f32]) -> Face {
+    Face { place: turned(degrees, Vec3::new(x, 0.0, z)), length, doors }
+}
+
+pub fn add(scene: &mut Assembly) {
+    partitions(scene);
+    outer_walls(scene);
+    for (low, high) in [(Vec2::ZERO, Vec2::new(5.65, 4.6)), (Vec2::new(5.65, -2.4), Vec2::new(9.7, 5.6))] {
+        let size = high - low;
+        let (u, v) = (Vec3::X * size.x, Vec3::Z * size.y);
+        scene.add("ceiling", &parallelogram(Vec3::new(low.x, HEIGHT, low.y), u, v, 1, 1));
+        scene.add("subfloor", &parallelogram(Vec3::new(low.x, 0.0, high.y), u, -v, 1, 1));
+    }
+    for face in faces() {
+        trim(scene, &face);
+    }
+}
+
+/// All inner faces, for skirting and casings.
+fn faces() -> Vec<Face> {
+    vec![
+        face(0.0, 0.0, 0.0, 5.6, &[]),
+        face(90.0, 0.0, 4.6, 4.6, &[]),
+        face(180.0, 5.6, 4.6, 5.6, &[]),
+        face(-90.0, 5.6, 0.0, 4.6, &[1.9]),
+        face(90.0, 5.7, 3.0, 1.3, &[0.2]),
+        face(0.0, 5.7, 1.7, 4.0, &[2.7]),
+        face(180.0, 9.7, 3.0, 4.0, &[2.2]),
+        face(0.0, 5.7, -2.4, 4.0, &[]),
+        face(90.0, 5.7, 1.6, 4.0, &[]),
+        face(180.0, 9.7, 1.6, 4.0, &[0.4]),
+        face(-90.0, 9.7, -2.4, 4.0, &[]),
+        face(0.0, 5.7, 3.1, 4.0, &[0.9]),
+        face(90.0, 5.7, 5.6, 2.5, &[]),
+        face(180.0, 9.7, 5.6, 4.0, &[]),
+        face(-90.0, 9.7, 3.1, 2.5, &[]),
+    ]
+}
+
+/// Skirting between the doors and a casing around each.
+fn trim(scene: &mut Assembly, face: &Face) {
+    let casing_width = 0.085;
+    let mut from = 0.0;
+    for &door in face.doors {
+        add_board(scene, face, from, door - casing_width);
+        scene.add_at("trim", &casing(DOOR, casing_width, false), &(face.place * at(door, 0.0, 0.0)));
+        from = door + DOOR.x + casing_width;
+    }
+    add_board(scene, face, from, face.length);
+}
+
+fn add_board(scene: &mut Assembly, face: &Face, from: f32, to: f32) {
+    scene.add_at("trim", &skirting(to - from, SKIRTING), &(face.place * at(from, 0.0, 0.0)));
+}
+
+/// The three inner walls, 0.1 m thick, with their doorways.
+fn partitions(scene: &mut Assembly) {
+    let wall = |length: f32, door: f32| {
+        let outline = [
+            [0.0, 0.0],
+            [door, 0.0],
+            [door, DOOR.y],
+            [door + DOOR.x, DOOR.y],
+            [door + DOOR.x, 0.0],
+            [length, 0.0],
+            [length, HEIGHT],
+            [0.0, HEIGHT],
+        ];
+        extrude(&outline.map(Vec2::from_array), &[], 0.1)
+    };
+    scene.add_at("walls", &wall(8.0, 4.3), &turned(-90.0, Vec3::new(5.7, 0.0, -2.4)));
+    scene.add_at("walls", &wall(4.0, 2.7), &at(5.7, 0.0, 1.6));
+    scene.add_at("walls", &wall(4.0, 0.9), &at(5.7, 0.0, 3.0));
+}
+
+fn outer_walls(scene: &mut Assembly) {
+    let sheet = |scene: &mut Assembly, part: &str, face: Face| {
+        let flat = parallelogram(Vec3::ZERO, Vec3::X * face.length, Vec3::Y * HEIGHT, 1, 1);
+        scene.add_at(part, &flat, &face.place);
+    };
+    sheet(scene, "walls", face(0.0, 0.0, 0.0, 5.6, &[]));
+    sheet(scene, "walls", face(180.0, 5.6, 4.6, 5.6, &[]));
+    sheet(scene, "walls", face(-90.0, 9.7, -2.4, 8.0, &[]));
+    pierced(scene, "walls", &face(90.0, 0.0, 4.6, 4.6, &[]), Vec2::new(1.0, 0.45), Vec2::new(2.2, 1.9));
+    pierced(
+        scene,
+        "bedroom_wall",
+        &face(0.0, 5.7, -2.4, 4.0, &[]),
+        Vec2::new(1.2, 0.85),
+        Vec2::new(1.8, 1.4),
+    );
+    pierced(scene, "walls", &face(180.0, 9.7, 5.6, 4.0, &[]), Vec2::new(1.1, 0.95), Vec2::new(1.3, 1.25));
+}
+
+/// An outer wall with a window: the opening's lower left corner and size.
+fn pierced(scene: &mut Assembly, part: &str, face: &Face, corner: Vec2, size: Vec2) {
+    let faces = Faces { front: true, back: false, rim: false, reveals: true };
+    let outline = rectangle(Vec2::ZERO, Vec2::new(face.length, HEIGHT));
+    let wall = extrude_faces(&outline, &[rectangle(corner, corner + size)], REVEAL, faces);
+    scene.add_at(part, &wall, &(face.place * at(0.0, 0.0, -REVEAL)));
+    scene.place(&window(size), &(face.place * at(corner.x, corner.y, 0.0)));
+}
+
+/// A window of two sashes with a transom; the sky behind it is a sheet of light.
+fn window(size: Vec2) -> Assembly {
+    let mut window = Assembly::new();
+    let sky = parallelogram(Vec3::new(0.0, 0.0, -0.15), Vec3::X * size.x, Vec3::Y * size.y, 1, 1);
+    window.add("daylight", &sky);
+    // Closes the gap between the sheet of light and the wall.
+    let back = Vec3::new(-0.06, -0.06, -REVEAL);
+    window.add("subfloor", &parallelogram(back, Vec3::X * (size.x + 0.12), Vec3::Y * (size.y + 0.12), 1, 1));
+    let (bar, transom) = (0.055, 0.3 * size.y);
+    let width = 0.5 * (size.x - 3.0 * bar);
+    let pane = |x: f32, y: f32, h: f32| rectangle(Vec2::new(x, y), Vec2::new(x + width, y + h));
+    let upper = size.y - transom;
+    let panes = [
+        pane(bar, bar, upper - 1.5 * bar),
+        pane(2.0 * bar + width, bar, upper - 1.5 * bar),
+        pane(bar, upper + 0.5 * bar, transom - 1.5 * bar),
+        pane(2.0 * bar + width, upper + 0.5 * bar, transom - 1.5 * bar),
+    ];
+    window.add_at("trim", &extrude(&rectangle(Vec2::ZERO, size), &panes, 0.05), &at(0.0, 0.0, -0.12));
+    window.add("trim", &casing(size, 0.08, true));
+    let sill = beveled_box(Vec3::new(-0.12, -0.035, -0.1), Vec3::new(size.x + 0.12, 0.003, 0.09), 0.005);
+    window.add("trim", &sill);
+    window
+}

@@ -1,0 +1,154 @@
+//! The walls of the nave, one bay at a time: moulded arcade arch, string courses, a triforium that opens on a
+//! dark gallery, and the clerestory window.
+
+use super::plan::{
+    ARCADE, ARCADE_SPRING, BAY, BAYS, CLERESTORY, CLERESTORY_WINDOW, EAST, NAVE, TOP, TRIFORIUM, WALL,
+    pier_z, south_wall,
+};
+use super::vault::rib_along;
+use super::windows;
+use crate::shapes::Part;
+use crate::shapes::{
+    Faces, PointedArch, Section, at, block, extrude_faces, lathe, mirror_x, parallelogram, patch, sweep,
+    sweep_along,
+};
+use glam::{Affine3A, Vec2, Vec3};
+
+/// Openings of the triforium in a bay.
+const GALLERY_ARCHES: usize = 4;
+const GALLERY_PITCH: f32 = 0.92;
+const GALLERY_SILL: f32 = 9.05;
+const GALLERY_SPRING: f32 = 10.2;
+const GALLERY_ARCH: PointedArch = PointedArch { half_span: 0.36, rise: 0.66 };
+/// How far the gallery reaches behind the wall.
+const GALLERY_DEPTH: f32 = 1.9;
+
+/// Appends both arcade walls.
+pub fn build(walls: &mut Part, mouldings: &mut Part, windows: &mut windows::Parts) {
+    let mut wall = Part::default();
+    let mut moulding = Part::default();
+    wall_bay(&mut wall);
+    mouldings_of_bay(&mut moulding);
+    for bay in 0..BAYS {
+        let south = south_wall(NAVE, bay);
+        for frame in [south, mirror_x(0.0) * south] {
+            walls.append(&wall, &frame);
+            mouldings.append(&moulding, &frame);
+            windows::build(windows, &CLERESTORY_WINDOW, 0.5 * BAY, WALL, &frame);
+        }
+    }
+    for frame in [Affine3A::IDENTITY, mirror_x(0.0)] {
+        gallery(walls, &frame);
+    }
+}
+
+/// The wall in its local frame: both faces and the reveals of all openings.
+fn wall_bay(wall: &mut Part) {
+    let middle = 0.5 * BAY;
+    let arch: Vec<Vec2> = ARCADE.curve(12).iter().map(|p| *p + Vec2::new(middle, ARCADE_SPRING)).collect();
+    let mut outline = vec![Vec2::new(0.0, ARCADE_SPRING)];
+    outline.extend(&arch);
+    outline.extend([Vec2::new(BAY, ARCADE_SPRING), Vec2::new(BAY, TOP), Vec2::new(0.0, TOP)]);
+    let mut holes: Vec<Vec<Vec2>> = gallery_middles()
+        .map(|x| GALLERY_ARCH.opening(Vec2::new(x, GALLERY_SPRING), GALLERY_SILL - GALLERY_SPRING, 4))
+        .collect();
+    holes.push(CLERESTORY_WINDOW.outline(middle, 10));
+    // The ends of a bay meet the next one, so only the soffit is left of the rim.
+    wall.add(&extrude_faces(&outline, &holes, WALL, Faces { rim: false, ..Faces::ALL }));
+    let soffit = patch(arch.len() - 1, 1, |u, v| {
+        let p = arch[(u * (arch.len() - 1) as f32).round() as usize];
+        p.extend(v * WALL)
+    });
+    wall.add(&soffit.facing(Vec3::new(middle, ARCADE_SPRING, 0.5 * WALL)));
+}
+
+fn gallery_middles() -> impl Iterator<Item = f32> {
+    (0..GALLERY_ARCHES).map(|k| 0.5 * BAY + GALLERY_PITCH * (k as f32 - 0.5 * (GALLERY_ARCHES - 1) as f32))
+}
+
+fn mouldings_of_bay(moulding: &mut Part) {
+    let centre = Vec3::new(0.5 * BAY, ARCADE_SPRING, 0.0);
+    let on_wall = |arch: PointedArch, segments: usize, depth: f32| -> Vec<Vec3> {
+        arch.curve(segments).iter().map(|p| p.extend(depth) + centre).collect()
+    };
+    // The inner order hangs below the soffit; its section is that of a heavy rib.
+    moulding.add(&rib_along(&on_wall(ARCADE, 8, 0.5 * WALL), Vec2::new(0.56, 0.34), 3));
+    // A roll on the edge of the outer order and a hood over it, towards the nave.
+    moulding.add(&roll(&on_wall(ARCADE, 8, 0.0), 0.085));
+    moulding.add(&roll(&on_wall(ARCADE.offset(0.24), 8, 0.0), 0.06));
+    for height in [TRIFORIUM, CLERESTORY] {
+        moulding.add(&string_course(0.0, BAY, height));
+    }
+    triforium_colonnettes(moulding);
+}
+
+fn roll(path: &[Vec3], radius: f32) -> crate::shapes::Shell {
+    let profile = crate::shapes::circle(radius, 4);
+    let section = Section { points: &profile, closed: true, crease_degrees: 95.0 };
+    sweep_along(section, path, Vec3::NEG_X, false, Faces { front: false, back: false, ..Faces::ALL })
+}
+
+/// A projecting course with a drip, from `from` to `to` along a wall's inner face.
+pub fn string_course(from: f32, to: f32, height: f32) -> crate::shapes::Shell {
+    let profile: Vec<Vec2> = [
+        [0.05, -0.12],
+        [0.05, 0.1],
+        [-0.07, 0.1],
+        [-0.14, 0.03],
+        [-0.14, -0.01],
+        [-0.08, -0.05],
+        [-0.05, -0.12],
+    ]
+    .iter()
+    .map(|p| Vec2::from_array(*p))
+    .collect();
+    // Travelling along +x with y up, the right is +z, which is into the wall.
+    let mut profile = profile;
+    profile.reverse();
+    sweep(&profile, &[Vec3::new(from, height, 0.0), Vec3::new(to, height, 0.0)], Vec3::Y).creased(20.0)
+}
+
+fn triforium_colonnettes(moulding: &mut Part) {
+    let profile: Vec<Vec2> =
+        [[0.11, 0.0], [0.11, 0.05], [0.055, 0.14], [0.055, 0.93], [0.08, 0.96], [0.115, 1.1], [0.115, 1.16]]
+            .iter()
+            .map(|p| Vec2::from_array(*p))
+            .collect();
+    let colonnette = lathe(&profile, 5);
+    let first = gallery_middles().next().unwrap_or(0.0) - 0.5 * GALLERY_PITCH;
+    for k in 0..=GALLERY_ARCHES {
+        let x = first + GALLERY_PITCH * k as f32;
+        moulding.add_at(&colonnette, &at(x, GALLERY_SILL - 0.01, 0.02));
+    }
+    for x in gallery_middles() {
+        let path: Vec<Vec3> = GALLERY_ARCH
+            .offset(0.05)
+            .curve(3)
+            .iter()
+            .map(|p| Vec3::new(p.x + x, p.y + GALLERY_SPRING, 0.0))
+            .collect();
+        moulding.add(&roll(&path, 0.045));
+    }
+    // The ledge they stand on.
+    moulding.add(&block(
+        Vec3::new(first - 0.2, GALLERY_SILL - 0.12, -0.12),
+        Vec3::new(first + GALLERY_PITCH * GALLERY_ARCHES as f32 + 0.2, GALLERY_SILL, 0.05),
+    ));
+}
+
+/// The passage behind the triforium: floor, back, ceiling and ends, seen from inside.
+fn gallery(walls: &mut Part, frame: &Affine3A) {
+    let (near, far) = (NAVE + WALL - 0.01, NAVE + WALL + GALLERY_DEPTH);
+    let (low, high) = (GALLERY_SILL - 0.05, CLERESTORY - 0.1);
+    let length = Vec3::Z * EAST;
+    let inside = Vec3::new(0.5 * (near + far), 0.5 * (low + high), 0.5 * pier_z(BAYS));
+    let mut add = |origin: Vec3, edge_u: Vec3, edge_v: Vec3| {
+        walls.add_at(&parallelogram(origin, edge_u, edge_v, 1, 1).facing(inside), frame);
+    };
+    add(Vec3::new(near, low, 0.0), length, Vec3::X * (far - near));
+    add(Vec3::new(near, high, 0.0), length, Vec3::X * (far - near));
+    add(Vec3::new(far, low, 0.0), length, Vec3::Y * (high - low));
+    for z in [0.0, EAST] {
+        add(Vec3::new(near, low, z), Vec3::X * (far - near), Vec3::Y * (high - low));
+    }
+}

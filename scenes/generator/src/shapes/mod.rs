@@ -1,0 +1,44 @@
+//! The shapes that generated scenes are made of. A shape function returns a [`Shell`], an indexed surface
+//! that knows which of its edges are creases; [`Part::add`] places it, computes its normals and appends
+//! it. Repeated things are built once as a `Part` of their own and placed with [`Part::append`].
+//!
+//! Conventions: y is up, faces are counter-clockwise seen from outside, texture coordinates are metres
+//! along the surface, so that a scene file scales its textures by the material alone.
+//!
+//! Units: metres; angles in degrees where a name says so, else radians.
+
+mod arch;
+mod assembly;
+mod extrude;
+mod loft;
+mod normals;
+mod part;
+mod patch;
+mod path;
+mod place;
+mod revolve;
+mod rng;
+mod shell;
+mod solids;
+mod spline;
+mod sweep;
+mod vessel;
+
+#[cfg(test)]
+mod tests;
+
+pub use arch::{PointedArch, arc, circle, foil, rectangle};
+pub use assembly::Assembly;
+pub use extrude::{Faces, extrude, extrude_faces, upright};
+pub use loft::{disc, loft, rounded_box, rounded_rectangle, stacked, superellipsoid};
+pub use part::Part;
+pub use patch::{grid, parallelogram, patch};
+pub use path::{fillet, helix};
+pub use place::{at, mirror_x, mirror_z, standing_on, turned};
+pub use revolve::{cone, cylinder, ellipsoid, lathe, lathe_sector, profile_lathe, ring, torus, tube};
+pub use rng::Rng;
+pub use shell::Shell;
+pub use solids::{beveled_box, block, frustum, slab};
+pub use spline::{spline, spline3};
+pub use sweep::{Section, pipe, rod, sweep, sweep_along};
+pub use vessel::Vessel;
