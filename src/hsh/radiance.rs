@@ -80,15 +80,18 @@ impl Radiance {
     }
 
     /// Coefficient `k` of the radiance.
-    pub fn coefficient(&self, k: usize) -> Rgb {
+    #[cfg(test)]
+    pub(super) fn coefficient(&self, k: usize) -> Rgb {
         self.part(0, k)
     }
 
     /// Coefficient `k` of the derivatives along u and v.
-    pub fn derivatives(&self, k: usize) -> [Rgb; 2] {
+    #[cfg(test)]
+    pub(super) fn derivatives(&self, k: usize) -> [Rgb; 2] {
         [self.part(1, k), self.part(2, k)]
     }
 
+    #[cfg(test)]
     fn part(&self, part: usize, k: usize) -> Rgb {
         let [r, g, b] = std::array::from_fn(|c| self.get(part * CHANNELS + c, k));
         Rgb::new(r, g, b)

@@ -10,7 +10,7 @@ use super::density::LEAST_COS;
 use super::radiance::{GatherCounts, IndirectLight};
 use crate::embree::{Hits16, Rays16};
 use crate::math::{F32x16, Frame, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in};
-use crate::sampling::{Sampler, cosine_hemisphere, hash};
+use crate::sampling::{Sampler, cosine_hemisphere, hash, power_heuristic};
 use crate::shadow;
 use crate::world::Surface;
 use glam::Vec3;
@@ -129,8 +129,11 @@ impl IndirectLight<'_> {
                 ),
                 false => far,
             };
-            let weight =
-                if lights.delta[lane] != 0 { 1.0 } else { heuristic(lights.pdf[lane], cos * FRAC_1_PI) };
+            let weight = if lights.delta[lane] != 0 {
+                1.0
+            } else {
+                power_heuristic(lights.pdf[lane], cos * FRAC_1_PI)
+            };
             let share = cos * FRAC_1_PI * weight / lights.pdf[lane];
             let arriving = near.throughput.get(lane) * lights.radiance.get(lane) * share;
             if arriving.is_finite() && !world.accel.occluded(&ray) {
@@ -168,7 +171,7 @@ impl IndirectLight<'_> {
             if world.emitters.is_light(surface.mesh) {
                 let emitted = world.emitted(&surface, -direction);
                 let other = self.density(near, &surface, direction, lane);
-                radiance[lane] += throughput * emitted * heuristic(pdf[lane], other);
+                radiance[lane] += throughput * emitted * power_heuristic(pdf[lane], other);
             }
             let resolved = if last { f32::INFINITY } else { hits.t[lane] };
             let (sent, albedo) = self.sent(&surface, direction, resolved, &mut samplers[lane], counts);
@@ -188,7 +191,7 @@ impl IndirectLight<'_> {
         let found = environment.radiance_pdf16(&rays.directions(), lanes);
         for lane in lanes_in(lanes) {
             let (light, other) = found[lane];
-            let weight = heuristic(pdf[lane], other * choice[lane]);
+            let weight = power_heuristic(pdf[lane], other * choice[lane]);
             radiance[lane] += near.throughput.get(lane) * light * weight;
         }
     }
@@ -200,11 +203,4 @@ impl IndirectLight<'_> {
         let at = (&near.position, &near.normal);
         self.world.emitters.pdf_areas(at, &mesh, &distance, &cos)[lane]
     }
-}
-
-/// Weight of a sample of density `a` against another technique of density `b` (Veach, β = 2).
-#[inline]
-fn heuristic(a: f32, b: f32) -> f32 {
-    let ratio = b / a;
-    1.0 / (1.0 + ratio * ratio)
 }

@@ -12,6 +12,7 @@ use crate::embree::{Hits16, Rays16};
 use crate::math::{LANES, Rgb, lanes_in};
 use crate::sampling::Sampler;
 use crate::shadow;
+use crate::stats::add_fields;
 use crate::world::{Surface, World};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
@@ -31,16 +32,7 @@ pub struct GatherCounts {
     /// Surfaces too near for the map.
     pub near: u64,
 }
-
-impl GatherCounts {
-    /// Adds those of another part of the work.
-    pub fn add(&mut self, other: &GatherCounts) {
-        self.record_rays += other.record_rays;
-        self.own_rays += other.own_rays;
-        self.followed += other.followed;
-        self.near += other.near;
-    }
-}
+add_fields!(GatherCounts { record_rays, own_rays, followed, near });
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug)]

@@ -76,7 +76,7 @@ impl RecordSource for PhotonSource<'_> {
             .collect();
         let mut gathered = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
         for (pick, pair, used) in indirect {
-            gathered.add(&used);
+            *gathered += used;
             records.push((pick, pair));
         }
         (records, counts)

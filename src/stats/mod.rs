@@ -11,12 +11,14 @@ mod counter;
 mod memory;
 mod report;
 mod stage;
+mod sum;
 
 use std::collections::BTreeMap;
 
 pub use counter::{Counter, Distribution};
 pub use memory::{available_bytes, peak_resident_bytes};
 pub use stage::{Stage, StageTime, Stopwatch};
+pub(crate) use sum::add_fields;
 
 /// Counters by name and times by stage.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -14,6 +14,7 @@ mod octahedral;
 mod pass;
 mod photons;
 
+use crate::light::spot_falloff;
 use crate::math::{Rgb, luminance};
 use glam::Vec3;
 
@@ -136,14 +137,7 @@ pub struct SpotProfile {
 impl SpotProfile {
     /// Fraction of the axial intensity sent in the unit direction `away`, in [0, 1].
     pub fn falloff(&self, away: Vec3) -> f32 {
-        let angle = self.direction.dot(away).clamp(-1.0, 1.0).acos();
-        if angle <= self.inner_angle {
-            1.0
-        } else if angle >= self.outer_angle {
-            0.0
-        } else {
-            ((self.outer_angle - angle) / (self.outer_angle - self.inner_angle)).clamp(0.0, 1.0)
-        }
+        spot_falloff(self.direction.dot(away), self.inner_angle, self.outer_angle)
     }
 }
 

@@ -126,7 +126,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     }
     for (job, (radiance, used)) in indirect_jobs.iter().zip(gathered) {
         picture.add(&samples, job.sample as usize, Some(Origin::Indirect), radiance);
-        rays.add(&used);
+        rays += used;
     }
     stats.count("Cache/samples with own cuts", direct_jobs.len() as u64);
     stats.count("Cache/samples with own gatherings", indirect_jobs.len() as u64);

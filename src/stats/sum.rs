@@ -1,0 +1,16 @@
+//! Sums of counts that parts of the work keep for themselves.
+
+/// Implements `+=` field by field.
+macro_rules! add_fields {
+    ($counts:ident { $($field:ident),+ $(,)? }) => {
+        impl std::ops::AddAssign for $counts {
+            #[inline]
+            fn add_assign(&mut self, other: $counts) {
+                // Without `..`, so that a field cannot be forgotten.
+                let $counts { $($field),+ } = other;
+                $(self.$field += $field;)+
+            }
+        }
+    };
+}
+pub(crate) use add_fields;
