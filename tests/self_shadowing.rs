@@ -2,7 +2,7 @@
 //! on, and whatever lets them through is a leak. Both at every scale, and far from the origin.
 
 use glam::Vec3;
-use lightsplat::embree::{ALL_GEOMETRY, Accel, Device, Hit, Ray, Rays16, TriangleMesh};
+use lightsplat::embree::{Accel, Device, Hit, Ray, Rays16, TriangleMesh};
 use lightsplat::shadow;
 use proptest::prelude::*;
 
@@ -72,7 +72,7 @@ impl Solid {
         let positions: Vec<Vec3> = faces.into_iter().flatten().map(|p| centre + size * p).collect();
         let triangles: Vec<[u32; 3]> =
             (0..positions.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let mesh = TriangleMesh { positions: &positions, triangles: &triangles, mask: ALL_GEOMETRY };
+        let mesh = TriangleMesh { positions: &positions, triangles: &triangles };
         let accel = Accel::build(&Device::new(1).unwrap(), &[mesh]).unwrap();
         Solid { positions, triangles, accel, centre, size }
     }

@@ -1,6 +1,7 @@
 //! The acceleration structure over triangle meshes, and queries of one ray.
 
-use super::{ALL_GEOMETRY, Device, EmbreeError, Hit, Ray, Width};
+use super::ray::ALL_GEOMETRY;
+use super::{Device, EmbreeError, Hit, Ray, Width};
 use embree4_sys as sys;
 use glam::Vec3;
 
@@ -14,8 +15,6 @@ pub struct TriangleMesh<'a> {
     pub positions: &'a [Vec3],
     /// Vertex indices of each triangle.
     pub triangles: &'a [[u32; 3]],
-    /// A ray meets the mesh only if this and the ray's mask have a bit in common.
-    pub mask: u32,
 }
 
 /// How much care Embree takes when it builds, and what it keeps.
@@ -139,7 +138,7 @@ impl Accel {
         unsafe {
             if copied {
                 sys::rtcSetGeometryBuildQuality(geometry, quality);
-                sys::rtcSetGeometryMask(geometry, mesh.mask);
+                sys::rtcSetGeometryMask(geometry, ALL_GEOMETRY);
                 sys::rtcCommitGeometry(geometry);
                 sys::rtcAttachGeometryByID(self.scene, geometry, id);
             }
@@ -177,13 +176,7 @@ impl Accel {
     /// always the same one.
     #[inline]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        self.closest_hit_masked(ray, ALL_GEOMETRY)
-    }
-
-    /// As [`Accel::closest_hit`], among meshes whose mask has a bit of `mask`.
-    #[inline]
-    pub fn closest_hit_masked(&self, ray: &Ray, mask: u32) -> Option<Hit> {
-        let ray = ray.to_embree(mask).filter(|_| !self.is_empty())?;
+        let ray = ray.to_embree().filter(|_| !self.is_empty())?;
         let mut rayhit = sys::RTCRayHit {
             ray,
             hit: sys::RTCHit {
@@ -214,13 +207,7 @@ impl Accel {
     /// Whether any triangle lies on the ray's segment.
     #[inline]
     pub fn occluded(&self, ray: &Ray) -> bool {
-        self.occluded_masked(ray, ALL_GEOMETRY)
-    }
-
-    /// As [`Accel::occluded`], among meshes whose mask has a bit of `mask`.
-    #[inline]
-    pub fn occluded_masked(&self, ray: &Ray, mask: u32) -> bool {
-        let Some(mut shadow_ray) = ray.to_embree(mask).filter(|_| !self.is_empty()) else { return false };
+        let Some(mut shadow_ray) = ray.to_embree().filter(|_| !self.is_empty()) else { return false };
         // SAFETY: as for `rtcIntersect1` above.
         unsafe { sys::rtcOccluded1(self.scene, &mut shadow_ray, std::ptr::null_mut()) };
         // Embree sets tfar so, and a traceable ray has not come with it: t_near <= t_far and -inf would

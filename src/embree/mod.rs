@@ -15,10 +15,10 @@
 //!
 //! ```
 //! use glam::Vec3;
-//! use lightsplat::embree::{ALL_GEOMETRY, Accel, Device, Ray, TriangleMesh};
+//! use lightsplat::embree::{Accel, Device, Ray, TriangleMesh};
 //!
 //! let positions = [Vec3::new(-1.0, -1.0, 2.0), Vec3::new(1.0, -1.0, 2.0), Vec3::new(0.0, 1.0, 2.0)];
-//! let mesh = TriangleMesh { positions: &positions, triangles: &[[0, 1, 2]], mask: ALL_GEOMETRY };
+//! let mesh = TriangleMesh { positions: &positions, triangles: &[[0, 1, 2]] };
 //! let accel = Accel::build(&Device::new(0)?, &[mesh])?;
 //! let hit = accel.closest_hit(&Ray::new(Vec3::ZERO, Vec3::Z)).expect("it is straight ahead");
 //! assert_eq!((hit.t, hit.geometry, hit.primitive), (2.0, 0, 0));
@@ -35,6 +35,8 @@ mod device;
 mod error;
 mod occluder;
 mod packet;
+mod prepared;
+mod query;
 mod ray;
 #[cfg(test)]
 mod tests;
@@ -43,7 +45,8 @@ mod width;
 pub use accel::{Accel, BuildQuality, TriangleMesh};
 pub use device::{Device, Version};
 pub use error::EmbreeError;
-pub use occluder::{Occluder, Occluders16, Skip16, TriangleId};
+pub use occluder::{Occluder, Occluders16, TriangleId};
 pub use packet::{Hits16, Rays16};
-pub use ray::{ALL_GEOMETRY, Hit, Ray};
-pub use width::{Prepared, Width};
+pub(crate) use prepared::Prepared;
+pub use ray::{Hit, Ray};
+pub use width::Width;

@@ -1,11 +1,7 @@
-//! Queries of sixteen rays at once.
-//!
-//! What shares a packet decides what it is worth. With the `coherent` hint, rays from neighbouring
-//! points towards one light run two to three times as fast as single rays; unrelated rays run at half
-//! the speed. Coherent packets should start at the receivers: a packet that starts at the light and
-//! fans out lost some 1e-4 of its hits.
+//! Packets of sixteen rays and of the hits that they find.
 
-use super::{ALL_GEOMETRY, Accel, Hit, Ray};
+use super::ray::ALL_GEOMETRY;
+use super::{Hit, Ray};
 use crate::math::Vec3x16;
 use embree4_sys as sys;
 use glam::Vec3;
@@ -32,8 +28,6 @@ pub struct Rays16 {
     pub direction_z: [f32; 16],
     /// Ends of the segments; may be infinite.
     pub t_far: [f32; 16],
-    /// Which meshes a ray meets: those whose mask has a bit of it.
-    pub mask: [u32; 16],
 }
 
 impl Default for Rays16 {
@@ -47,13 +41,12 @@ impl Default for Rays16 {
             direction_y: [0.0; 16],
             direction_z: [0.0; 16],
             t_far: [f32::NEG_INFINITY; 16],
-            mask: [ALL_GEOMETRY; 16],
         }
     }
 }
 
 impl Rays16 {
-    /// Puts a ray into a lane, and leaves the lane's mask.
+    /// Puts a ray into a lane.
     ///
     /// # Panics
     /// If `lane` is 16 or more.
@@ -94,8 +87,8 @@ impl Rays16 {
 
     /// The lanes of `valid` as Embree takes them, without those whose segment does not exist.
     #[inline]
-    pub(super) fn lanes(&self, valid: u16) -> Lanes {
-        let mut lanes = Lanes([0; 16]);
+    pub(super) fn lanes(&self, valid: u16) -> LaneMask {
+        let mut lanes = LaneMask([0; 16]);
         for i in 0..16 {
             // Zero for finite numbers, NaN for all others.
             let zero = 0.0 * self.origin_x[i]
@@ -125,7 +118,7 @@ impl Rays16 {
             dir_z: self.direction_z,
             time: [0.0; 16],
             tfar: self.t_far,
-            mask: self.mask,
+            mask: [ALL_GEOMETRY; 16],
             id: LANE_IDS,
             flags: [0; 16],
         }
@@ -137,9 +130,9 @@ pub(super) const LANE_IDS: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12
 
 /// Embree's mask of lanes.
 #[repr(C, align(64))]
-pub(super) struct Lanes(pub(super) [i32; 16]);
+pub(super) struct LaneMask(pub(super) [i32; 16]);
 
-impl Lanes {
+impl LaneMask {
     #[inline]
     pub(super) fn any(&self) -> bool {
         self.0 != [0; 16]
@@ -156,7 +149,7 @@ impl Lanes {
     }
 }
 
-/// What sixteen rays met; see [`super::Hit`] for the members. Lanes without a hit are left as they were.
+/// Hits of sixteen rays; see [`super::Hit`] for the members. Lanes without a hit are left as they were.
 #[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Hits16 {
@@ -196,82 +189,5 @@ impl Hits16 {
             self.geometry[i] = if copied { self.geometry[from] } else { self.geometry[i] };
             self.primitive[i] = if copied { self.primitive[from] } else { self.primitive[i] };
         }
-    }
-}
-
-/// The traversal that a hint asks for.
-#[inline]
-pub(super) fn query_flags(coherent: bool) -> sys::RTCRayQueryFlags {
-    if coherent { sys::RTC_RAY_QUERY_FLAG_COHERENT } else { sys::RTC_RAY_QUERY_FLAG_INCOHERENT }
-}
-
-impl Accel {
-    /// [`Accel::closest_hit`] for the lanes in `valid`. Returns the lanes that hit, and writes those
-    /// of `hits`. `coherent` is a hint that origins and directions are alike: it changes speed, not
-    /// meaning, but not the last bits either way.
-    #[inline]
-    pub fn closest_hit16(&self, rays: &Rays16, valid: u16, coherent: bool, hits: &mut Hits16) -> u16 {
-        let lanes = rays.lanes(valid);
-        if self.is_empty() || !lanes.any() {
-            return 0;
-        }
-        const NONE: [u32; 16] = [sys::RTC_INVALID_GEOMETRY_ID; 16];
-        let mut rayhit = sys::RTCRayHit16 {
-            ray: rays.to_embree(),
-            hit: sys::RTCHit16 {
-                Ng_x: [0.0; 16],
-                Ng_y: [0.0; 16],
-                Ng_z: [0.0; 16],
-                u: [0.0; 16],
-                v: [0.0; 16],
-                primID: NONE,
-                geomID: NONE,
-                instID: [NONE],
-                instPrimID: [NONE],
-            },
-        };
-        let mut arguments = sys::RTCIntersectArguments {
-            flags: query_flags(coherent),
-            feature_mask: sys::RTC_FEATURE_FLAG_ALL,
-            context: std::ptr::null_mut(),
-            filter: None,
-            intersect: None,
-        };
-        // SAFETY: the scene is committed; mask, packet and arguments are ours, outlive the call, have
-        // the library's layout (the version is checked) and the 64-byte alignment it asks for.
-        unsafe { sys::rtcIntersect16(lanes.0.as_ptr(), self.scene(), &mut rayhit, &mut arguments) };
-        let hit = &rayhit.hit;
-        let found = lanes.mask_where(|i| hit.geomID[i] != sys::RTC_INVALID_GEOMETRY_ID);
-        for i in 0..16 {
-            if (found >> i) & 1 != 0 {
-                hits.t[i] = rayhit.ray.tfar[i];
-                hits.u[i] = hit.u[i];
-                hits.v[i] = hit.v[i];
-                hits.geometry[i] = hit.geomID[i];
-                hits.primitive[i] = hit.primID[i];
-            }
-        }
-        found
-    }
-
-    /// [`Accel::occluded`] for the lanes in `valid`. Returns those that are occluded. For `coherent`
-    /// see [`Accel::closest_hit16`].
-    #[inline]
-    pub fn occluded16(&self, rays: &Rays16, valid: u16, coherent: bool) -> u16 {
-        let lanes = rays.lanes(valid);
-        if self.is_empty() || !lanes.any() {
-            return 0;
-        }
-        let mut packet = rays.to_embree();
-        let mut arguments = sys::RTCOccludedArguments {
-            flags: query_flags(coherent),
-            feature_mask: sys::RTC_FEATURE_FLAG_ALL,
-            context: std::ptr::null_mut(),
-            filter: None,
-            occluded: None,
-        };
-        // SAFETY: as for `rtcIntersect16` above.
-        unsafe { sys::rtcOccluded16(lanes.0.as_ptr(), self.scene(), &mut packet, &mut arguments) };
-        lanes.mask_where(|i| packet.tfar[i] == f32::NEG_INFINITY)
     }
 }

@@ -3,8 +3,8 @@
 use embree4_sys as sys;
 use glam::{Vec3, Vec4};
 
-/// Ray mask that meets geometry of any mask but zero.
-pub const ALL_GEOMETRY: u32 = u32::MAX;
+/// Embree's ray mask that meets all geometry: there is only one kind of it here.
+pub(super) const ALL_GEOMETRY: u32 = u32::MAX;
 
 /// The segment `origin + t direction`, `t_near < t <= t_far`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,10 +43,10 @@ impl Ray {
     /// Written by whole vectors, for Embree reads it so: from single words it would have to wait until they
     /// reach the cache.
     #[inline(always)]
-    pub(super) fn to_embree(self, mask: u32) -> Option<sys::RTCRay> {
+    pub(super) fn to_embree(self) -> Option<sys::RTCRay> {
         let origin = self.origin.extend(self.t_near);
         let direction = self.direction.extend(0.0); // time
-        let end = Vec4::new(self.t_far, f32::from_bits(mask), 0.0, 0.0); // mask, id, flags
+        let end = Vec4::new(self.t_far, f32::from_bits(ALL_GEOMETRY), 0.0, 0.0); // mask, id, flags
         let is_finite = origin.abs().cmplt(Vec4::INFINITY) & direction.abs().cmplt(Vec4::INFINITY);
         let is_traceable = is_finite.all() & direction.cmpne(Vec4::ZERO).any() & (self.t_near <= self.t_far);
         // SAFETY: both are 48 bytes of plain numbers in the same order: origin, t_near, direction, time, t_far,

@@ -1,6 +1,6 @@
 //! Shadow rays towards virtual lights: the one place that knows what kinds of lights there are.
 
-use crate::embree::{ALL_GEOMETRY, Ray, Rays16};
+use crate::embree::{Ray, Rays16};
 use crate::shadow::{ULPS, ray_from, segment};
 use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;
@@ -22,7 +22,7 @@ pub fn to_vpl(x: Vec3, normal: Vec3, vpl: &Vpl, kind: VplKind) -> Ray {
 /// out from the light loses hits.
 #[inline]
 pub fn to_vpl16(x: &Vec3Lanes, normal: &Vec3Lanes, vpl: &Vpl, kind: VplKind) -> Rays16 {
-    let mut rays = Rays16 { mask: [ALL_GEOMETRY; 16], ..Rays16::default() };
+    let mut rays = Rays16::default();
     let light = vpl.position;
     if kind == VplKind::Directional {
         for l in 0..16 {

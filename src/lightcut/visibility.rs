@@ -2,7 +2,7 @@
 
 use super::{PacketVisibility, ReceiverPacket, Visibility, to_vpl};
 use crate::light_tree::Node;
-use crate::shadow::{Engine, Packing};
+use crate::shadow::Engine;
 use crate::vpl::Vpl;
 use crate::world::World;
 use glam::Vec3;
@@ -18,7 +18,7 @@ impl PacketVisibility for Engine<'_> {
     #[inline]
     fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
         let rays = points.shadow_rays(vpl, node.kind());
-        lanes & !self.occluded16(&rays, lanes, Packing::Neighbours, node.representative() as u32)
+        lanes & !self.occluded16(&rays, lanes)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::embree::Occluders16;
 use crate::light_tree::Node;
 use crate::lightcut::{PacketVisibility, ReceiverPacket, Visibility, to_vpl};
 use crate::math::{F32x16, LANES};
-use crate::shadow::{Engine, Packing};
+use crate::shadow::Engine;
 use crate::vpl::Vpl;
 use crate::world::World;
 use glam::Vec3;
@@ -64,7 +64,7 @@ impl PacketVisibility for OccluderLog<'_> {
     fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
         let (rays, key) = (points.shadow_rays(vpl, node.kind()), node.representative() as u32);
         let mut found = Occluders16::default();
-        let occluded = self.engine.occluders16(&rays, lanes, Packing::Neighbours, key, &mut found);
+        let occluded = self.engine.occluders16(&rays, lanes, &mut found);
         if occluded != 0 {
             let mut distances = [f32::INFINITY; LANES];
             for (lane, distance) in distances.iter_mut().enumerate() {

@@ -6,13 +6,12 @@
 //!
 //! **The cache changes no answer.** It says "occluded" only where a ray passes a triangle's edges and the segment's ends
 //! at more than [`MARGIN`] roundings of the coordinates involved, and the plane at more than that angle: nothing that Embree
-//! rounds otherwise can then matter. All other rays are traced. (That coherent packets without the rays answered here may
-//! find something else for the rest is Embree's doing, see [`super::ShadowSettings`].)
+//! rounds otherwise can then matter. All other rays are traced.
 //!
 //! What the cache holds depends on what was asked before. So that results do not depend on threads, whoever uses one
 //! forgets it ([`OccluderCache::forget`]) at boundaries of the work that do not depend on threads either.
 
-use crate::embree::{Occluder, Ray, Rays16, TriangleId};
+use crate::embree::{Occluder, Ray, TriangleId};
 use glam::Vec3;
 
 /// Roundings by which a ray must keep off edges and ends.
@@ -94,69 +93,31 @@ impl OccluderCache {
         (self.slots[slot].generation == self.generation).then_some(slot)
     }
 
-    /// Whether one of the triangles held for `key`, other than the two in `skip`, certainly occludes the ray.
+    /// One of the triangles held for `key` that certainly occludes the ray.
     #[inline]
-    pub fn occluder(&self, key: u32, ray: &Ray, skip: [TriangleId; 2]) -> Option<Occluder> {
+    pub fn occluder(&self, key: u32, ray: &Ray) -> Option<Occluder> {
         let slot = self.held(key)?;
         match self.ways {
-            1 => self.search::<1>(slot, ray, skip),
-            2 => self.search::<2>(slot, ray, skip),
-            4 => self.search::<4>(slot, ray, skip),
-            _ => self.search::<8>(slot, ray, skip),
+            1 => self.search::<1>(slot, ray),
+            2 => self.search::<2>(slot, ray),
+            4 => self.search::<4>(slot, ray),
+            _ => self.search::<8>(slot, ray),
         }
     }
 
     #[inline(always)]
-    fn search<const W: usize>(&self, slot: usize, ray: &Ray, skip: [TriangleId; 2]) -> Option<Occluder> {
+    fn search<const W: usize>(&self, slot: usize, ray: &Ray) -> Option<Occluder> {
         let rows = &self.triangles[slot * W * ROWS..][..W * ROWS];
         let ids = &self.ids[slot * W..][..W];
         let reach = Reach::of(ray);
         let mut hits = [false; W];
         let mut t = [0.0; W];
         for w in 0..W {
-            (hits[w], t[w]) = certain(&triangle::<W>(rows, w), ray, reach);
+            let triangle = Held::from_rows(|row| rows[row * W + w]);
+            (hits[w], t[w]) = certain(&triangle, ray, reach);
         }
-        let usable = |w: &usize| hits[*w] && !skip.contains(&ids[*w]);
-        let w = (0..W).find(usable)?;
+        let w = hits.iter().position(|&hit| hit)?;
         Some(Occluder { t: t[w], geometry: ids[w].geometry, primitive: ids[w].primitive })
-    }
-
-    /// The lanes of `valid` whose rays a triangle held for `key` certainly occludes, each with the last such triangle
-    /// in `found`.
-    #[inline]
-    pub fn occluders16(
-        &self,
-        key: u32,
-        rays: &Rays16,
-        valid: u16,
-        mut found: impl FnMut(usize, Occluder),
-    ) -> u16 {
-        let Some(slot) = self.held(key) else { return 0 };
-        let mut occluded = 0;
-        for w in 0..self.ways {
-            let id = self.ids[slot * self.ways + w];
-            if id == TriangleId::NONE {
-                continue;
-            }
-            let row = |row: usize| self.triangles[(slot * ROWS + row) * self.ways + w];
-            let triangle = Held::from_rows(row);
-            let mut hits = [0u32; 16];
-            let mut t = [0.0; 16];
-            for lane in 0..16 {
-                let ray = rays.get(lane);
-                let (hit, at) = certain(&triangle, &ray, Reach::of(&ray));
-                (hits[lane], t[lane]) = (u32::from(hit), at);
-            }
-            let new = crate::math::mask_of(&hits) & valid & !occluded;
-            for lane in crate::math::lanes_in(new) {
-                found(lane, Occluder { t: t[lane], geometry: id.geometry, primitive: id.primitive });
-            }
-            occluded |= new;
-            if occluded == valid {
-                break;
-            }
-        }
-        occluded
     }
 
     /// Keeps an occluder found on the way to `key`, in the place of the oldest.
@@ -211,11 +172,6 @@ impl Held {
         let ([x, y, z], [a, b]) = (self.corner.to_array(), self.edges);
         [x, y, z, a.x, a.y, a.z, b.x, b.y, b.z, self.size, self.edge]
     }
-}
-
-#[inline(always)]
-fn triangle<const W: usize>(rows: &[f32], w: usize) -> Held {
-    Held::from_rows(|row| rows[row * W + w])
 }
 
 /// How large the numbers of a ray are.

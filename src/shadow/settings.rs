@@ -5,7 +5,7 @@ use super::OccluderCacheSettings;
 /// How a method uses the occluder cache: single rays ask it, if any. It changes the time that a picture takes, and nothing
 /// in the picture.
 ///
-/// Packets do not ask it. `lightsplat bench shadow` shows that it never pays for them; and Embree's answers in coherent packets
+/// Packets do not ask it: it never paid for them where that was measured, and Embree's answers in coherent packets
 /// depend, for a ray in some ten million, on which others are traced with it, so that leaving out those that the
 /// cache could answer would change a picture now and then.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

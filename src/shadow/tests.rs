@@ -1,7 +1,8 @@
-//! Rays for sixteen points are those of each point; the engine answers as Embree does, with and without the cache.
+//! Rays for sixteen points are those of each point; the engine answers as Embree does, and single rays with the cache
+//! as without.
 
 use super::*;
-use crate::embree::{Occluders16, Ray, Rays16, TriangleId, Width};
+use crate::embree::{Occluders16, Ray, Rays16, Width};
 use crate::math::Rgb;
 use crate::sampling::hash;
 use crate::scene::{Material, MaterialId, Mesh, Reflectance, Scene};
@@ -147,7 +148,7 @@ fn the_cache_changes_no_answer() {
         .into_par_iter()
         .map(|chunk| {
             let ways = [1, 2, 4, 8][chunk as usize % 4];
-            let cached = Engine::with_cache(&world, OccluderCacheSettings { slots: 128, ways });
+            let cached = Engine::with(&world, true, OccluderCacheSettings { slots: 128, ways });
             let mut numbers = Numbers(0, chunk);
             for _ in 0..CHUNK {
                 // Few triangles a light, so that what the cache holds is what the next rays pass closely.
@@ -161,8 +162,8 @@ fn the_cache_changes_no_answer() {
         })
         .collect();
     let mut counts = Counts::default();
-    totals.iter().for_each(|c| counts.add(c));
-    let all = counts.total();
+    totals.into_iter().for_each(|c| counts += c);
+    let all = counts.single;
     assert_eq!(all.rays, u64::from(SEGMENTS));
     assert!(all.saved * 10 > all.rays && all.occluded < all.rays, "the test saves too little: {all:?}");
 }
@@ -178,68 +179,26 @@ fn neighbours(corners: &[[Vec3; 3]], numbers: &mut Numbers) -> Rays16 {
 }
 
 #[test]
-fn packets_of_any_width_with_and_without_the_cache_agree() {
+fn packets_of_any_width_agree_with_single_rays() {
     let world = world();
     let corners = all_corners(&world);
-    let cached = Engine::with_cache(&world, OccluderCacheSettings::default());
+    let engine = Engine::new(&world);
     let mut numbers = Numbers(0, 5);
-    for i in 0..20_000u32 {
-        if i % 1000 == 0 {
-            cached.begin_chunk();
-        }
+    for _ in 0..20_000 {
         let rays = neighbours(&corners, &mut numbers);
-        let (valid, key) = (numbers.bits() as u16, numbers.bits() % KEYS);
+        let valid = numbers.bits() as u16;
         let expected = world.accel.occluded_by(Width::One, &rays, valid, false);
-        for packing in Packing::ALL {
-            let mut found = Occluders16 { t: [-1.0; 16], ..Occluders16::default() };
-            assert_eq!(cached.occluders16(&rays, valid, packing, key, &mut found), expected);
-            for lane in crate::math::lanes_in(expected) {
-                assert!(found.t[lane] >= 0.0 && found.t[lane] <= 1.0);
-            }
-        }
         for width in Width::ALL {
-            let engine = Engine::new(&world).with_width(width);
-            assert_eq!(engine.occluded16(&rays, valid, Packing::Neighbours, key), expected, "{width:?}");
-            assert_eq!(engine.take_counts().total().rays, u64::from(valid.count_ones()));
+            assert_eq!(world.accel.occluded_by(width, &rays, valid, true), expected, "{width:?}");
         }
+        assert_eq!(engine.occluded16(&rays, valid), expected);
+        let mut found = Occluders16 { t: [-1.0; 16], ..Occluders16::default() };
+        assert_eq!(engine.occluders16(&rays, valid, &mut found), expected);
+        for lane in crate::math::lanes_in(expected) {
+            assert!(found.t[lane] >= 0.0 && found.t[lane] <= 1.0);
+        }
+        let counts = engine.take_counts();
+        let rays = 2 * u64::from(valid.count_ones());
+        assert_eq!((counts.packets.queries, counts.packets.rays, counts.single.rays), (2, rays, 0));
     }
-    assert!(cached.take_counts().total().saved > 10_000);
-}
-
-#[test]
-fn the_triangles_that_segments_end_on_are_skipped_whoever_is_asked() {
-    let world = world();
-    let mut numbers = Numbers(0, 9);
-    let cached = Engine::with_cache(&world, OccluderCacheSettings { slots: 1, ways: 8 });
-    let (mut blocked, mut freed) = (0, 0);
-    for _ in 0..5000 {
-        let mut batch = Batch::new(numbers.of(&Packing::ALL));
-        let mut free = Batch::new(Packing::Single);
-        let light = End { position: numbers.point(), normal: Vec3::ZERO, triangle: TriangleId::NONE };
-        loop {
-            let from = End { position: numbers.point(), ..light };
-            // What is met first counts as the end's own triangle.
-            let met =
-                world.accel.closest_hit(&segment(from.position, Vec3::ZERO, light.position, Vec3::ZERO));
-            let own =
-                met.map_or(TriangleId::NONE, |h| TriangleId { geometry: h.geometry, primitive: h.primitive });
-            free.push(&from, &light, 3);
-            if batch.push(&End { triangle: own, ..from }, &light, 3) {
-                break;
-            }
-        }
-        let mut found = Occluders16::default();
-        let plain = cached.trace(&free, &mut found);
-        let with_skips = cached.trace(&batch, &mut found);
-        assert_eq!(with_skips, Engine::new(&world).trace(&batch, &mut Occluders16::default()));
-        assert_eq!(with_skips & !plain, 0);
-        for lane in crate::math::lanes_in(with_skips) {
-            let id = TriangleId { geometry: found.geometry[lane], primitive: found.primitive[lane] };
-            assert!(!batch.skip.get(lane).contains(&id));
-            assert!(batch.distance(lane, found.t[lane]) <= light.position.length() + 3.0);
-        }
-        blocked += with_skips.count_ones();
-        freed += (plain & !with_skips).count_ones();
-    }
-    assert!(blocked > 1000 && freed > 1000, "{blocked} {freed}");
 }

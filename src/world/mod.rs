@@ -2,9 +2,7 @@
 //!
 //! Units: positions relative to the scene's centre. A `World` is immutable and shared by all threads.
 
-use crate::embree::{
-    ALL_GEOMETRY, Accel, BuildQuality, Device, EmbreeError, Hit, Ray, TriangleId, TriangleMesh,
-};
+use crate::embree::{Accel, BuildQuality, Device, EmbreeError, Hit, Ray, TriangleId, TriangleMesh};
 use crate::light::{Emitters, emitted};
 use crate::material::{Bsdf, Materials};
 use crate::math::{Frame, Rgb};
@@ -35,8 +33,7 @@ pub struct World {
 /// What is built into an acceleration structure.
 pub fn triangle_meshes(scene: &Scene) -> Vec<TriangleMesh<'_>> {
     let meshes = scene.meshes.iter();
-    let data = meshes.map(|m| (&m.positions, &m.triangles));
-    data.map(|(positions, triangles)| TriangleMesh { positions, triangles, mask: ALL_GEOMETRY }).collect()
+    meshes.map(|m| TriangleMesh { positions: &m.positions, triangles: &m.triangles }).collect()
 }
 
 /// A point on a surface, seen along a ray.
@@ -73,8 +70,8 @@ impl World {
         Ok(World { scene, accel, materials, emitters, diagonal, triangles })
     }
 
-    /// Builds the acceleration structure anew, with other care.
-    pub fn rebuild(&mut self, quality: BuildQuality) -> Result<(), EmbreeError> {
+    /// Builds the acceleration structure anew, with other care, for benchmarks.
+    pub(crate) fn rebuild(&mut self, quality: BuildQuality) -> Result<(), EmbreeError> {
         self.accel = Accel::build_with(self.accel.device(), &triangle_meshes(&self.scene), quality)?;
         Ok(())
     }

@@ -1,17 +1,13 @@
 //! Shadow rays: widths, packings and flags by bare loops over Embree's queries, the engine against them, build qualities,
-//! the occluder cache, and what refinement asks for.
+//! the occluder cache, and the rays that refinement asks for.
 //!
-//! All segments are those of the scene: from what its camera sees to its virtual lights. One thread and its processor time,
-//! unless a table says otherwise.
+//! All segments are those of the scene: from what its camera sees to its virtual lights. One thread and its processor time.
 
 mod cached;
 mod engine;
-mod inside;
 mod orders;
 mod quality;
 mod refinement;
-mod spread;
-mod threads;
 mod trace;
 mod widths;
 
@@ -38,21 +34,15 @@ fn run(context: &Context) -> Vec<Table> {
     let say = context.say;
     let settings = &context.settings;
     let mut tables = Vec::new();
-    say("inside the refinement");
-    tables.push(inside::table(setting.world, &orders, &traces, settings));
     say("refinement");
     tables.push(refinement::table(&setting, &traces, settings));
     say("packings and widths");
     tables.push(widths::table(&setting, &traces, settings));
-    say("packets by size and spread");
-    tables.push(spread::table(&setting, &traces, settings));
     say("engine against bare loops");
     tables.push(engine::table(&setting, &traces, settings));
     say("occluder cache");
     tables.push(cached::table(&setting, &traces, settings));
     say("build qualities");
     tables.push(quality::table(&setting, &traces, settings));
-    say("threads");
-    tables.push(threads::table(&setting, &traces, settings));
     tables
 }

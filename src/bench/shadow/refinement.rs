@@ -6,7 +6,7 @@ use crate::bench::measure::Case;
 use crate::bench::setting::Setting;
 use crate::bench::{Clock, Settings, Table};
 use crate::embree::{Prepared, Width};
-use crate::shadow::{Engine, OccluderCacheSettings, Packing};
+use crate::shadow::{Engine, OccluderCacheSettings};
 use std::hint::black_box;
 
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
@@ -27,17 +27,15 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
                 black_box(prepared.occluded(&world.accel, false));
             },
         ));
-        let cache = || Engine::with_cache(world, OccluderCacheSettings::default());
-        let plain = || Engine::new(world);
-        cases.push(through(alone, "engine with cache", [cache(), plain()], against));
-        cases.push(through(shared, "engine", [plain(), plain()], against));
-        cases.push(through(shared, "cache for single rays", [cache(), plain()], against));
-        cases.push(through(shared, "cache for packets too", [cache(), cache()], against));
+        let engine = |cached| Engine::with(world, cached, OccluderCacheSettings::default());
+        cases.push(through(alone, "engine with cache", engine(true), against));
+        cases.push(through(shared, "engine", engine(false), against));
+        cases.push(through(shared, "cache for single rays", engine(true), against));
         let of = |t: &Trace| {
-            let singles = count(t.packets().filter(|p| p.packing == Packing::Single));
+            let singles = count(t.packets().filter(|p| !p.neighbours));
             [t.rays() as f64 / t.points.max(1) as f64, 100.0 * singles as f64 / t.rays() as f64]
         };
-        facts.extend([alone, alone, shared, shared, shared].map(of));
+        facts.extend([alone, alone, shared, shared].map(of));
     }
     let against: Vec<usize> = cases.iter().map(|c| c.against).collect();
     let mut table = Table::measured(
@@ -59,9 +57,8 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     table
 }
 
-fn through<'a>(trace: &'a Trace, how: &str, engines: [Engine<'a>; 2], against: usize) -> Case<'a> {
+fn through<'a>(trace: &'a Trace, how: &str, engine: Engine<'a>, against: usize) -> Case<'a> {
     Case::new(&[trace.name, how], against, trace.rays() as f64, move || {
-        let [singly, together] = &engines;
-        black_box(cached::occluded_by([singly, together], trace));
+        black_box(cached::occluded(&engine, trace));
     })
 }

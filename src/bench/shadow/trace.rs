@@ -6,7 +6,6 @@ use crate::embree::{Ray, Rays16};
 use crate::light_tree::Node;
 use crate::lightcut::{PacketVisibility, Receiver, ReceiverPacket, Visibility, to_vpl};
 use crate::math::{LANES, Rgb, lanes_in};
-use crate::shadow::Packing;
 use crate::vpl::Vpl;
 use glam::Vec3;
 use std::cell::RefCell;
@@ -14,8 +13,8 @@ use std::cell::RefCell;
 /// Up to sixteen segments.
 #[derive(Clone)]
 pub struct Packet {
-    /// What they have in common.
-    pub packing: Packing,
+    /// Whether they run from neighbouring points to one light.
+    pub neighbours: bool,
     pub rays: Rays16,
     pub valid: u16,
     /// Which light each runs to.
@@ -25,13 +24,11 @@ pub struct Packet {
 /// Segments in an order.
 pub struct Trace {
     pub name: &'static str,
-    /// What those of most packets have in common.
-    pub packing: Packing,
+    /// Whether most packets run from neighbouring points to one light.
+    pub neighbours: bool,
     /// By stretches of work in which a cache lives.
     pub chunks: Vec<Vec<Packet>>,
-    /// What each query of a refinement was answered, by the same stretches.
-    pub answers: Vec<Vec<u16>>,
-    /// Receivers that they were asked for.
+    /// Number of receivers that they were asked for.
     pub points: usize,
 }
 
@@ -41,9 +38,9 @@ impl Trace {
         self.chunks.iter().flatten()
     }
 
-    /// The packets of the trace's own packing: a shared cut's, without the rays of points that share with nobody.
+    /// The packets of most: a shared cut's, without the rays of points that share with nobody.
     pub fn bundles(&self) -> impl Iterator<Item = &Packet> {
-        self.packets().filter(|p| p.packing == self.packing)
+        self.packets().filter(|p| p.neighbours == self.neighbours)
     }
 
     /// How many segments.
@@ -84,20 +81,15 @@ impl Traces {
 }
 
 /// Rays to lights one after the other, sixteen a packet.
+#[derive(Default)]
 struct Packer {
-    packing: Packing,
     packets: Vec<Packet>,
     last: Option<Packet>,
 }
 
 impl Packer {
-    fn new(packing: Packing) -> Packer {
-        Packer { packing, packets: Vec::new(), last: None }
-    }
-
     fn push(&mut self, ray: &Ray, key: u32) {
-        let packing = self.packing;
-        let blank = || Packet { packing, rays: Rays16::default(), valid: 0, keys: [0; 16] };
+        let blank = || Packet { neighbours: false, rays: Rays16::default(), valid: 0, keys: [0; 16] };
         let packet = self.last.get_or_insert_with(blank);
         let lane = packet.valid.count_ones() as usize;
         packet.rays.set(lane, ray);
@@ -124,7 +116,7 @@ fn lit(setting: &Setting, reflector: &Receiver, leaf: &Node) -> Option<Ray> {
 /// From each eye sample to lights that have nothing in common.
 fn unrelated(setting: &Setting) -> Trace {
     let (leaves, mut dice) = (setting.leaves(), Dice(1));
-    drawn(setting, "unrelated lights", Packing::Unrelated, 16, |reflector, packer| {
+    drawn(setting, "unrelated lights", |reflector, packer| {
         for _ in 0..32 {
             let Some(leaf) = leaves.get(dice.below(leaves.len())) else { return };
             if let Some(ray) = lit(setting, reflector, leaf) {
@@ -137,7 +129,7 @@ fn unrelated(setting: &Setting) -> Trace {
 /// From each eye sample to sixteen lights that are neighbours in their tree.
 fn cluster(setting: &Setting) -> Trace {
     let (leaves, mut dice) = (setting.leaves(), Dice(2));
-    drawn(setting, "a cluster's lights", Packing::Cluster, 16, |reflector, packer| {
+    drawn(setting, "a cluster's lights", |reflector, packer| {
         let first = dice.below(leaves.len().saturating_sub(LANES));
         for leaf in leaves.iter().skip(first).take(LANES) {
             if let Some(ray) = lit(setting, reflector, leaf) {
@@ -148,26 +140,23 @@ fn cluster(setting: &Setting) -> Trace {
     })
 }
 
-fn drawn(
-    setting: &Setting,
-    name: &'static str,
-    packing: Packing,
-    times: usize,
-    mut draw: impl FnMut(&Receiver, &mut Packer),
-) -> Trace {
+/// Times that lights are drawn for each eye sample.
+const DRAWS: usize = 16;
+
+fn drawn(setting: &Setting, name: &'static str, mut draw: impl FnMut(&Receiver, &mut Packer)) -> Trace {
     let stretches = setting.pixels();
     let points = stretches.iter().map(Vec::len).sum();
     let chunk = |stretch: Vec<usize>| {
-        let mut packer = Packer::new(packing);
+        let mut packer = Packer::default();
         for sample in stretch {
             let reflector = setting.reflector(sample);
-            (0..times).for_each(|_| draw(&reflector, &mut packer));
+            (0..DRAWS).for_each(|_| draw(&reflector, &mut packer));
         }
         packer.flush();
         packer.packets
     };
     let chunks = stretches.into_iter().map(chunk).collect();
-    Trace { name, packing, chunks, answers: Vec::new(), points }
+    Trace { name, neighbours: false, chunks, points }
 }
 
 /// From groups of neighbouring eye samples to one light at a time.
@@ -182,8 +171,8 @@ fn neighbours(setting: &Setting) -> Trace {
             for _ in 0..256 {
                 let Some(leaf) = leaves.get(dice.below(leaves.len())) else { continue };
                 let key = leaf.representative() as u32;
-                let packing = Packing::Neighbours;
-                let mut packet = Packet { packing, rays: Rays16::default(), valid: 0, keys: [key; 16] };
+                let mut packet =
+                    Packet { neighbours: true, rays: Rays16::default(), valid: 0, keys: [key; 16] };
                 for (lane, reflector) in reflectors.iter().enumerate() {
                     if let Some(ray) = lit(setting, reflector, leaf) {
                         packet.rays.set(lane, &ray);
@@ -198,27 +187,22 @@ fn neighbours(setting: &Setting) -> Trace {
         packets
     };
     let chunks = setting.pixels().into_iter().map(&mut chunk).collect();
-    Trace { name: "neighbours, one light", packing: Packing::Neighbours, chunks, answers: Vec::new(), points }
+    Trace { name: "neighbours, one light", neighbours: true, chunks, points }
 }
 
 /// What cuts ask for: each point's own, and those that groups share.
 fn refined(setting: &Setting, orders: &Orders, order: Order) -> [Trace; 2] {
     [false, true].map(|shared| {
-        let (mut chunks, mut answers) = (Vec::new(), Vec::new());
-        for chunk in 0..orders.chunks() {
-            let recorder = Recorder::new(setting);
+        let chunk = |chunk| {
+            let recorder = Recorder { setting, packer: RefCell::default() };
             orders.light(order, chunk, shared, &recorder);
-            let (packets, answered) = recorder.finish();
-            chunks.push(packets);
-            answers.push(answered);
-        }
-        Trace {
-            name: order.names()[usize::from(shared)],
-            packing: if shared { Packing::Neighbours } else { Packing::Single },
-            chunks,
-            answers,
-            points: orders.points(order),
-        }
+            let mut packer = recorder.packer.into_inner();
+            packer.flush();
+            packer.packets
+        };
+        let chunks = (0..orders.chunks()).map(chunk).collect();
+        let name = order.names()[usize::from(shared)];
+        Trace { name, neighbours: shared, chunks, points: orders.points(order) }
     })
 }
 
@@ -226,29 +210,13 @@ fn refined(setting: &Setting, orders: &Orders, order: Order) -> [Trace; 2] {
 struct Recorder<'a> {
     setting: &'a Setting<'a>,
     packer: RefCell<Packer>,
-    answers: RefCell<Vec<u16>>,
-}
-
-impl<'a> Recorder<'a> {
-    fn new(setting: &'a Setting<'a>) -> Recorder<'a> {
-        let packer = RefCell::new(Packer::new(Packing::Single));
-        Recorder { setting, packer, answers: RefCell::default() }
-    }
-
-    fn finish(self) -> (Vec<Packet>, Vec<u16>) {
-        let mut packer = self.packer.into_inner();
-        packer.flush();
-        (packer.packets, self.answers.into_inner())
-    }
 }
 
 impl Visibility for Recorder<'_> {
     fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
         let ray = to_vpl(x, normal, vpl, node.kind());
         self.packer.borrow_mut().push(&ray, node.representative() as u32);
-        let seen = !self.setting.world.accel.occluded(&ray);
-        self.answers.borrow_mut().push(u16::from(seen));
-        seen
+        !self.setting.world.accel.occluded(&ray)
     }
 }
 
@@ -257,11 +225,10 @@ impl PacketVisibility for Recorder<'_> {
         let rays = points.shadow_rays(vpl, node.kind());
         let seen = lanes & !self.setting.world.accel.occluded16(&rays, lanes, true);
         let key = node.representative() as u32;
-        let packet = Packet { packing: Packing::Neighbours, rays, valid: lanes, keys: [key; 16] };
+        let packet = Packet { neighbours: true, rays, valid: lanes, keys: [key; 16] };
         let mut packer = self.packer.borrow_mut();
         packer.flush();
         packer.packets.push(packet);
-        self.answers.borrow_mut().push(seen);
         seen
     }
 }

@@ -9,7 +9,7 @@ use std::hint::black_box;
 const TRIANGLE: [Vec3; 3] = [Vec3::new(-9.0, -9.0, 1.0), Vec3::new(9.0, -9.0, 1.0), Vec3::new(0.0, 9.0, 1.0)];
 
 fn mesh<'a>(positions: &'a [Vec3], triangles: &'a [[u32; 3]]) -> TriangleMesh<'a> {
-    TriangleMesh { positions, triangles, mask: ALL_GEOMETRY }
+    TriangleMesh { positions, triangles }
 }
 
 fn meets_nothing(accel: &Accel, ray: &Ray) -> bool {

@@ -4,7 +4,6 @@ mod extremes;
 mod oracle;
 
 use super::*;
-use glam::Vec3;
 use oracle::{Soup, Verdict};
 use rayon::prelude::*;
 
@@ -70,6 +69,9 @@ fn packets_agree_with_brute_force() {
                     assert_eq!(bit(hit), expected.is_some());
                     assert_eq!(bit(occluded), expected.is_some());
                     assert_eq!(accel.occluded(ray), expected.is_some());
+                    let single = accel.occluder(ray);
+                    assert_eq!(single.is_some(), expected.is_some());
+                    single.into_iter().for_each(|occluder| assert_real(&soup, ray, occluder));
                     assert_eq!(bit(filtered), expected.is_some());
                     let Some(expected) = expected else { continue };
                     assert_eq!((hits.geometry[lane], hits.primitive[lane]), expected.id.into());
@@ -94,48 +96,6 @@ fn assert_real(soup: &Soup, ray: &Ray, occluder: Occluder) {
 }
 
 #[test]
-fn skipped_triangles_do_not_occlude() {
-    let soup = Soup::random(60, 5);
-    let rays = soup.rays(4096, 6);
-    for device in devices() {
-        let accel = soup.build(&device);
-        let mut revealed = 0;
-        for (packet, rays) in packets(&rays).iter().zip(rays.chunks_exact(16)) {
-            // Skip the first two triangles along each ray, as single rays find them.
-            let mut skip = Skip16::default();
-            let mut skips = [[TriangleId::NONE; 2]; 16];
-            for (lane, ray) in rays.iter().enumerate() {
-                for end in 0..2 {
-                    if let Some(o) = accel.occluder_except(ray, skips[lane], ALL_GEOMETRY) {
-                        assert_real(&soup, ray, o);
-                        skips[lane][end] = TriangleId { geometry: o.geometry, primitive: o.primitive };
-                    }
-                }
-                skip.set(lane, skips[lane]);
-            }
-            for coherent in [false, true] {
-                let mut found = Occluders16::default();
-                let lanes = accel.occluders16_except(packet, u16::MAX, coherent, &skip, &mut found);
-                for (lane, ray) in rays.iter().enumerate() {
-                    let Verdict::Certain(expected) = soup.closest_except(ray, &skips[lane]) else { continue };
-                    let is_occluded = (lanes >> lane) & 1 != 0;
-                    assert_eq!(is_occluded, expected.is_some());
-                    let single = accel.occluder_except(ray, skips[lane], ALL_GEOMETRY);
-                    assert_eq!(single.is_some(), expected.is_some());
-                    revealed += usize::from(!is_occluded && skips[lane][0] != TriangleId::NONE);
-                    if is_occluded {
-                        let id =
-                            TriangleId { geometry: found.geometry[lane], primitive: found.primitive[lane] };
-                        assert!(!skips[lane].contains(&id));
-                    }
-                }
-            }
-        }
-        assert!(revealed > 100, "the test reveals too little: {revealed}");
-    }
-}
-
-#[test]
 fn only_valid_lanes_are_traced_and_written() {
     let soup = Soup::random(300, 7);
     let rays = soup.rays(256, 8);
@@ -155,28 +115,6 @@ fn only_valid_lanes_are_traced_and_written() {
                 assert_eq!(hits.t[lane] >= 0.0, is_written);
             }
         }
-    }
-}
-
-#[test]
-fn masks_choose_the_geometry() {
-    let square = |z: f32| [Vec3::new(-9.0, -9.0, z), Vec3::new(9.0, -9.0, z), Vec3::new(0.0, 9.0, z)];
-    let (near, far) = (square(1.0), square(2.0));
-    let mesh = |positions, mask| TriangleMesh { positions, triangles: &[[0, 1, 2]], mask };
-    let accel = Accel::build(&Device::new(1).unwrap(), &[mesh(&near, 0b01), mesh(&far, 0b10)]).unwrap();
-    let ray = Ray::new(Vec3::ZERO, Vec3::Z);
-    for (mask, expected) in [(0b01, Some(0)), (0b10, Some(1)), (0b11, Some(0)), (0b100, None), (0, None)] {
-        assert_eq!(accel.closest_hit_masked(&ray, mask).map(|h| h.geometry), expected);
-        assert_eq!(accel.occluded_masked(&ray, mask), expected.is_some());
-        let occluder = accel.occluder_except(&ray, [TriangleId::NONE; 2], mask);
-        assert_eq!(occluder.is_some(), expected.is_some());
-        let mut packet = Rays16 { mask: [mask; 16], ..Default::default() };
-        packet.set(5, &ray);
-        let lanes = if expected.is_some() { 1 << 5 } else { 0 };
-        assert_eq!(accel.occluded16(&packet, u16::MAX, true), lanes);
-        let mut hits = Hits16::default();
-        assert_eq!(accel.closest_hit16(&packet, u16::MAX, false, &mut hits), lanes);
-        assert_eq!(expected.is_some().then_some(hits.geometry[5]), expected);
     }
 }
 

@@ -80,11 +80,8 @@ impl Soup {
     }
 
     pub fn build(&self, device: &Device) -> Accel {
-        let meshes: Vec<_> = self
-            .meshes
-            .iter()
-            .map(|(positions, triangles)| TriangleMesh { positions, triangles, mask: ALL_GEOMETRY })
-            .collect();
+        let meshes: Vec<_> =
+            self.meshes.iter().map(|(positions, triangles)| TriangleMesh { positions, triangles }).collect();
         Accel::build(device, &meshes).unwrap()
     }
 
@@ -107,12 +104,8 @@ impl Soup {
     }
 
     pub fn closest(&self, ray: &Ray) -> Verdict {
-        self.closest_except(ray, &[])
-    }
-
-    pub fn closest_except(&self, ray: &Ray, skip: &[TriangleId]) -> Verdict {
         let mut met: Vec<Met> = Vec::new();
-        for id in self.ids().filter(|id| !skip.contains(id)) {
+        for id in self.ids() {
             let Some((t, margin)) = moeller_trumbore(ray, self.corners(id)) else { continue };
             if margin < -ROUNDING || t < near(ray) - ROUNDING || t > far(ray) + ROUNDING {
                 continue;

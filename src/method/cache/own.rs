@@ -104,7 +104,7 @@ pub fn light_patches<'w>(
     for lit in done {
         all.radiance.extend(lit.radiance);
         all.cuts.add(&lit.cuts);
-        all.shadows.add(&lit.shadows);
+        all.shadows += lit.shadows;
         all.near.add(&lit.near);
     }
     all

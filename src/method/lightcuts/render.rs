@@ -113,7 +113,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
         used.add(&tile.counts);
         near.add(&tile.near);
         packets += tile.packets;
-        shadows.add(&tile.shadows);
+        shadows += tile.shadows;
         chains.add(&tile.chains);
         nonfinite += tile.nonfinite;
     }
