@@ -5,7 +5,7 @@
 //! cluster; ties break by the XOR of the positions, and a round that merges almost nothing pairs
 //! neighbours outright, so that neither coincident VPLs nor intensities in geometric progression stall it.
 
-use super::cost::{Bounds, DIMENSIONS, LUMINANCE_LANE, Record, cluster_cost};
+use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cost};
 use super::topology::Topology;
 use rayon::prelude::*;
 
@@ -17,59 +17,59 @@ const CHUNK: usize = 4096;
 const STALLED: usize = 32;
 
 #[derive(Clone, Copy)]
-struct Cluster {
-    bounds: Bounds,
+struct ActiveCluster {
+    bounds: PrimitiveBounds,
     intensity: f64,
     id: u32,
 }
 
-impl Cluster {
-    fn merged(&self, other: &Cluster, id: u32) -> Cluster {
+impl ActiveCluster {
+    fn merged(&self, other: &ActiveCluster, id: u32) -> ActiveCluster {
         let mut bounds = self.bounds;
         bounds.add(&other.bounds);
-        Cluster { bounds, intensity: self.intensity + other.intensity, id }
+        ActiveCluster { bounds, intensity: self.intensity + other.intensity, id }
     }
 }
 
 /// Builds a tree by rounds of mutual-nearest merges; `c_sq` is the square of the scene's diagonal.
-pub fn build(mut records: Vec<Record>, c_sq: f32) -> Topology {
-    sort_along_curve(&mut records, c_sq);
-    let leaf = |(i, r): (usize, &Record)| Cluster {
-        bounds: Bounds::of(r),
-        intensity: f64::from(r.0[LUMINANCE_LANE]),
+pub fn build(mut primitives: Vec<Primitive>, c_sq: f32) -> Topology {
+    sort_along_curve(&mut primitives, c_sq);
+    let leaf = |(i, r): (usize, &Primitive)| ActiveCluster {
+        bounds: PrimitiveBounds::of(r),
+        intensity: f64::from(r.0[LUMINANCE]),
         id: i as u32,
     };
-    let mut clusters: Vec<Cluster> = records.iter().enumerate().map(leaf).collect();
-    let mut pairs = Vec::with_capacity(records.len().saturating_sub(1));
+    let mut clusters: Vec<ActiveCluster> = primitives.iter().enumerate().map(leaf).collect();
+    let mut pairs = Vec::with_capacity(primitives.len().saturating_sub(1));
     while clusters.len() > 1 {
         let nearest = nearest_neighbours(&clusters, c_sq);
         let before = clusters.len();
-        merge(&mut clusters, &nearest, records.len(), &mut pairs);
+        merge(&mut clusters, &nearest, primitives.len(), &mut pairs);
         if before - clusters.len() <= before / STALLED {
             let paired: Vec<u32> = (0..clusters.len() as u32).map(|i| i ^ 1).collect();
-            merge(&mut clusters, &paired, records.len(), &mut pairs);
+            merge(&mut clusters, &paired, primitives.len(), &mut pairs);
         }
     }
-    Topology::from_pairs(&records, &pairs)
+    Topology::from_pairs(&primitives, &pairs)
 }
 
-fn sort_along_curve(records: &mut [Record], c_sq: f32) {
-    let bounds = Bounds::around(records);
+fn sort_along_curve(primitives: &mut [Primitive], c_sq: f32) {
+    let bounds = PrimitiveBounds::around(primitives);
     let half_c = 0.5 * c_sq.sqrt();
     let weight = |d: usize| if d < 3 { 1.0 } else { half_c };
     let widest = (0..DIMENSIONS).map(|d| bounds.extent(d) * weight(d)).fold(0.0, f32::max);
-    let code = |r: &Record| {
+    let code = |r: &Primitive| {
         let mut code = 0u64;
         for d in 0..DIMENSIONS {
             let x = (r.0[d] - bounds.min[d]) * weight(d) / widest;
-            // NaN, where all records coincide, becomes 0.
+            // NaN, where all primitives coincide, becomes 0.
             code |= spread_by_6((x * 1023.0) as u64) << d;
         }
         code
     };
-    let mut keyed: Vec<(u64, Record)> = records.par_iter().map(|r| (code(r), *r)).collect();
+    let mut keyed: Vec<(u64, Primitive)> = primitives.par_iter().map(|r| (code(r), *r)).collect();
     keyed.par_sort_unstable_by_key(|(code, r)| (*code, r.index()));
-    for (slot, (_, r)) in records.iter_mut().zip(keyed) {
+    for (slot, (_, r)) in primitives.iter_mut().zip(keyed) {
         *slot = r;
     }
 }
@@ -80,7 +80,7 @@ fn spread_by_6(x: u64) -> u64 {
 }
 
 /// The neighbour within [`RADIUS`] that makes the cheapest union with each cluster.
-fn nearest_neighbours(clusters: &[Cluster], c_sq: f32) -> Vec<u32> {
+fn nearest_neighbours(clusters: &[ActiveCluster], c_sq: f32) -> Vec<u32> {
     let nearest = |i: usize| {
         let mut best = (f64::INFINITY, usize::MAX, i);
         for j in i.saturating_sub(RADIUS)..(i + RADIUS + 1).min(clusters.len()) {
@@ -100,7 +100,7 @@ fn nearest_neighbours(clusters: &[Cluster], c_sq: f32) -> Vec<u32> {
 }
 
 /// Merges clusters that chose each other, in place and in order.
-fn merge(clusters: &mut Vec<Cluster>, nearest: &[u32], leaves: usize, pairs: &mut Vec<[u32; 2]>) {
+fn merge(clusters: &mut Vec<ActiveCluster>, nearest: &[u32], leaves: usize, pairs: &mut Vec<[u32; 2]>) {
     let mut kept = 0;
     for i in 0..clusters.len() {
         let j = nearest[i] as usize;

@@ -1,4 +1,4 @@
-//! What makes a good cluster: the records both builders sort, their bounds, and the cost of a cluster.
+//! The primitives that both builders sort, their bounds, and the cost of a cluster.
 //!
 //! Paper: Walter et al., *Lightcuts: A Scalable Approach to Illumination*, 2005, section 3.1: I(α² + c²(1 - cos β)²).
 //! Deviations: while building, β is estimated from the box around the unit normals (a chord of length e
@@ -8,28 +8,28 @@
 use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;
 
-/// Lanes of a record: position, normal, luminance of the intensity, and the bits of the VPL's index.
-pub type Lanes = [f32; 8];
+/// Numbers of a primitive: position, normal, luminance of the intensity, and the bits of the VPL's index.
+pub type Coordinates = [f32; 8];
 
-/// Lane of the luminance.
-pub const LUMINANCE_LANE: usize = 6;
-/// How many lanes are coordinates to cluster by.
+/// Place of the luminance in [`Coordinates`].
+pub const LUMINANCE: usize = 6;
+/// Number of coordinates to cluster by, which come first.
 pub const DIMENSIONS: usize = 6;
 
 /// One VPL as the builders see it: 32 bytes, one vector register.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub struct Record(pub Lanes);
+pub struct Primitive(pub Coordinates);
 
-impl Record {
-    /// The record of VPL number `index`.
-    pub fn new(vpl: &Vpl, kind: VplKind, luminance: f32, index: u32) -> Record {
+impl Primitive {
+    /// The primitive of VPL number `index`.
+    pub fn new(vpl: &Vpl, kind: VplKind, luminance: f32, index: u32) -> Primitive {
         let (p, n) = match kind {
             VplKind::Omni => (vpl.position, Vec3::ZERO),
             VplKind::Oriented => (vpl.position, vpl.normal()),
             VplKind::Directional => (Vec3::ZERO, vpl.position),
         };
-        Record([p.x, p.y, p.z, n.x, n.y, n.z, luminance, f32::from_bits(index)])
+        Primitive([p.x, p.y, p.z, n.x, n.y, n.z, luminance, f32::from_bits(index)])
     }
 
     /// Number of the VPL.
@@ -43,55 +43,56 @@ impl Record {
     }
 }
 
-/// Box around records in all lanes at once.
+/// Box around primitives, in all coordinates at once.
 #[derive(Clone, Copy, Debug)]
-pub struct Bounds {
-    /// Smallest value by lane.
-    pub min: Lanes,
-    /// Largest value by lane.
-    pub max: Lanes,
+pub struct PrimitiveBounds {
+    /// Smallest value by coordinate.
+    pub min: Coordinates,
+    /// Largest value by coordinate.
+    pub max: Coordinates,
 }
 
-impl Bounds {
+impl PrimitiveBounds {
     /// Around nothing.
-    pub const EMPTY: Bounds = Bounds { min: [f32::INFINITY; 8], max: [f32::NEG_INFINITY; 8] };
+    pub const EMPTY: PrimitiveBounds =
+        PrimitiveBounds { min: [f32::INFINITY; 8], max: [f32::NEG_INFINITY; 8] };
 
-    /// Around one record.
+    /// Around one primitive.
     #[inline]
-    pub fn of(r: &Record) -> Bounds {
-        Bounds { min: r.0, max: r.0 }
+    pub fn of(r: &Primitive) -> PrimitiveBounds {
+        PrimitiveBounds { min: r.0, max: r.0 }
     }
 
-    /// Around many records.
-    pub fn around(records: &[Record]) -> Bounds {
-        let mut b = Bounds::EMPTY;
-        for r in records {
-            b.add(&Bounds::of(r));
+    /// Around many primitives.
+    pub fn around(primitives: &[Primitive]) -> PrimitiveBounds {
+        let mut b = PrimitiveBounds::EMPTY;
+        for r in primitives {
+            b.add(&PrimitiveBounds::of(r));
         }
         b
     }
 
     /// Grows to contain `other`. Plain comparisons, which map to one instruction each (no NaN can occur).
     #[inline]
-    pub fn add(&mut self, other: &Bounds) {
+    pub fn add(&mut self, other: &PrimitiveBounds) {
         for i in 0..8 {
             self.min[i] = if other.min[i] < self.min[i] { other.min[i] } else { self.min[i] };
             self.max[i] = if other.max[i] > self.max[i] { other.max[i] } else { self.max[i] };
         }
     }
 
-    /// Extent in one lane.
+    /// Extent along one coordinate.
     #[inline]
-    pub fn extent(&self, lane: usize) -> f32 {
-        self.max[lane] - self.min[lane]
+    pub fn extent(&self, i: usize) -> f32 {
+        self.max[i] - self.min[i]
     }
 }
 
-/// Cost of clustering records within `bounds` of total luminance `intensity`; `c_sq` is the square of
+/// Cost of clustering primitives within `bounds` of total luminance `intensity`; `c_sq` is the square of
 /// the scene's diagonal, which makes an angle comparable with a length.
 #[inline]
-pub fn cluster_cost(bounds: &Bounds, intensity: f64, c_sq: f32) -> f64 {
-    let sq: Lanes = std::array::from_fn(|i| {
+pub fn cluster_cost(bounds: &PrimitiveBounds, intensity: f64, c_sq: f32) -> f64 {
+    let sq: Coordinates = std::array::from_fn(|i| {
         let extent = bounds.max[i] - bounds.min[i];
         extent * extent
     });
@@ -109,22 +110,22 @@ pub fn cluster_cost(bounds: &Bounds, intensity: f64, c_sq: f32) -> f64 {
 mod tests {
     use super::*;
 
-    fn oriented(p: Vec3, n: Vec3) -> Record {
-        Record::new(&Vpl::oriented(p, n), VplKind::Oriented, 1.0, 7)
+    fn oriented(p: Vec3, n: Vec3) -> Primitive {
+        Primitive::new(&Vpl::oriented(p, n), VplKind::Oriented, 1.0, 7)
     }
 
     #[test]
-    fn a_record_keeps_its_index_and_bounds_ignore_its_bits() {
+    fn a_primitive_keeps_its_index_and_bounds_ignore_its_bits() {
         let r = oriented(Vec3::ONE, Vec3::Y);
         assert_eq!(r.index(), 7);
-        let b = Bounds::around(&[r, oriented(Vec3::ZERO, Vec3::X)]);
+        let b = PrimitiveBounds::around(&[r, oriented(Vec3::ZERO, Vec3::X)]);
         assert_eq!((b.extent(0), b.extent(3), b.extent(4)), (1.0, 1.0, 1.0));
     }
 
     #[test]
     fn cost_grows_with_size_angle_and_intensity() {
         let cost = |p: Vec3, n: Vec3, intensity| {
-            let b = Bounds::around(&[oriented(Vec3::ZERO, Vec3::Z), oriented(p, n)]);
+            let b = PrimitiveBounds::around(&[oriented(Vec3::ZERO, Vec3::Z), oriented(p, n)]);
             cluster_cost(&b, intensity, 4.0)
         };
         assert_eq!(cost(Vec3::ZERO, Vec3::Z, 1.0), 0.0);

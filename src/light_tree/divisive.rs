@@ -5,7 +5,7 @@
 //! Deviations: clusters of at most [`SORTED`] are sorted along their widest dimension and split at the
 //! best of all places, which is cheaper than clearing bins and at least as good.
 
-use super::cost::{Bounds, DIMENSIONS, LUMINANCE_LANE, Record, cluster_cost};
+use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cost};
 use super::topology::Topology;
 use rayon::prelude::*;
 
@@ -15,16 +15,16 @@ const BINS: usize = 16;
 const SORTED: usize = 16;
 /// Above this size both halves are built in parallel.
 const PARALLEL: usize = 4096;
-/// Records binned by one task; fixed, so that sums do not depend on the number of threads.
+/// Primitives binned by one task; fixed, so that sums do not depend on the number of threads.
 const CHUNK: usize = 1 << 15;
 
 #[derive(Clone, Copy)]
 struct Bin {
-    bounds: Bounds,
+    bounds: PrimitiveBounds,
     intensity: f64,
 }
 
-const EMPTY_BIN: Bin = Bin { bounds: Bounds::EMPTY, intensity: 0.0 };
+const EMPTY_BIN: Bin = Bin { bounds: PrimitiveBounds::EMPTY, intensity: 0.0 };
 
 impl Bin {
     fn add(&mut self, other: &Bin) {
@@ -36,24 +36,24 @@ impl Bin {
 type Bins = [[Bin; BINS]; DIMENSIONS];
 
 /// Builds a tree by recursive splits; `c_sq` is the square of the scene's diagonal.
-pub fn build(mut records: Vec<Record>, c_sq: f32) -> Topology {
-    let mut left_sizes = vec![0; records.len().saturating_sub(1)];
-    split_all(&mut records, &mut left_sizes, c_sq);
-    Topology { leaves: records, left_sizes }
+pub fn build(mut primitives: Vec<Primitive>, c_sq: f32) -> Topology {
+    let mut left_sizes = vec![0; primitives.len().saturating_sub(1)];
+    split_all(&mut primitives, &mut left_sizes, c_sq);
+    Topology { leaves: primitives, left_sizes }
 }
 
-fn split_all(records: &mut [Record], left_sizes: &mut [u32], c_sq: f32) {
-    let n = records.len();
+fn split_all(primitives: &mut [Primitive], left_sizes: &mut [u32], c_sq: f32) {
+    let n = primitives.len();
     let Some((own, rest)) = left_sizes.split_first_mut() else { return };
     let left = if n == 2 {
         1
     } else if n <= SORTED {
-        split_sorted(records, c_sq)
+        split_sorted(primitives, c_sq)
     } else {
-        split_binned(records, c_sq)
+        split_binned(primitives, c_sq)
     };
     *own = left as u32;
-    let (left_records, right_records) = records.split_at_mut(left);
+    let (left_records, right_records) = primitives.split_at_mut(left);
     let (left_rest, right_rest) = rest.split_at_mut(left - 1);
     if n > PARALLEL {
         rayon::join(
@@ -67,30 +67,30 @@ fn split_all(records: &mut [Record], left_sizes: &mut [u32], c_sq: f32) {
 }
 
 /// Sorts a small cluster along its widest dimension and returns the size of the cheapest left part.
-fn split_sorted(records: &mut [Record], c_sq: f32) -> usize {
-    let bounds = Bounds::around(records);
+fn split_sorted(primitives: &mut [Primitive], c_sq: f32) -> usize {
+    let bounds = PrimitiveBounds::around(primitives);
     let half_c = 0.5 * c_sq.sqrt();
     let width = |lane: usize| bounds.extent(lane) * if lane < 3 { 1.0 } else { half_c };
     let widest = (1..DIMENSIONS).fold(0, |a, b| if width(b) > width(a) { b } else { a });
     // Insertion sort: stable, and the fastest for so few.
-    for i in 1..records.len() {
+    for i in 1..primitives.len() {
         let mut j = i;
-        while j > 0 && records[j].0[widest] < records[j - 1].0[widest] {
-            records.swap(j, j - 1);
+        while j > 0 && primitives[j].0[widest] < primitives[j - 1].0[widest] {
+            primitives.swap(j, j - 1);
             j -= 1;
         }
     }
-    let n = records.len();
+    let n = primitives.len();
     let mut right_costs = [0.0; SORTED];
     let mut sweep = EMPTY_BIN;
     for i in (1..n).rev() {
-        sweep.add(&Bin::of(&records[i]));
+        sweep.add(&Bin::of(&primitives[i]));
         right_costs[i] = cluster_cost(&sweep.bounds, sweep.intensity, c_sq);
     }
     let mut sweep = EMPTY_BIN;
     let mut best = (f64::INFINITY, n / 2);
     for i in 1..n {
-        sweep.add(&Bin::of(&records[i - 1]));
+        sweep.add(&Bin::of(&primitives[i - 1]));
         let cost = cluster_cost(&sweep.bounds, sweep.intensity, c_sq) + right_costs[i];
         // Equal costs (coincident VPLs) halve the cluster.
         let balance = |k: usize| k.abs_diff(n / 2);
@@ -103,27 +103,27 @@ fn split_sorted(records: &mut [Record], c_sq: f32) -> usize {
 
 impl Bin {
     #[inline]
-    fn of(r: &Record) -> Bin {
-        Bin { bounds: Bounds::of(r), intensity: f64::from(r.0[LUMINANCE_LANE]) }
+    fn of(r: &Primitive) -> Bin {
+        Bin { bounds: PrimitiveBounds::of(r), intensity: f64::from(r.0[LUMINANCE]) }
     }
 }
 
 /// Partitions a large cluster at the cheapest of all bin borders in all dimensions and returns the left size.
 #[inline(never)] // Its bins must not stay on the stack during the recursion.
-fn split_binned(records: &mut [Record], c_sq: f32) -> usize {
-    let bounds = if records.len() > CHUNK {
-        let parts: Vec<Bounds> = records.par_chunks(CHUNK).map(Bounds::around).collect();
-        parts.iter().fold(Bounds::EMPTY, |mut a, b| {
+fn split_binned(primitives: &mut [Primitive], c_sq: f32) -> usize {
+    let bounds = if primitives.len() > CHUNK {
+        let parts: Vec<PrimitiveBounds> = primitives.par_chunks(CHUNK).map(PrimitiveBounds::around).collect();
+        parts.iter().fold(PrimitiveBounds::EMPTY, |mut a, b| {
             a.add(b);
             a
         })
     } else {
-        Bounds::around(records)
+        PrimitiveBounds::around(primitives)
     };
     let binning = Binning::new(&bounds);
     let mut bins: Bins = [[EMPTY_BIN; BINS]; DIMENSIONS];
-    if records.len() > CHUNK {
-        let parts: Vec<Box<Bins>> = records
+    if primitives.len() > CHUNK {
+        let parts: Vec<Box<Bins>> = primitives
             .par_chunks(CHUNK)
             .map(|chunk| {
                 let mut bins: Box<Bins> = Box::new([[EMPTY_BIN; BINS]; DIMENSIONS]);
@@ -137,22 +137,22 @@ fn split_binned(records: &mut [Record], c_sq: f32) -> usize {
             }
         }
     } else {
-        binning.fill(records, &mut bins);
+        binning.fill(primitives, &mut bins);
     }
-    let n = records.len();
+    let n = primitives.len();
     let Some((dimension, border)) = cheapest_border(&bins, &binning, c_sq) else { return n / 2 };
-    let left = partition(records, |r| binning.bin(r)[dimension] < border as i32);
+    let left = partition(primitives, |r| binning.bin(r)[dimension] < border as i32);
     if left == 0 || left == n { n / 2 } else { left }
 }
 
-/// Maps records to bins in every dimension at once.
+/// Maps primitives to bins in every dimension at once.
 struct Binning {
     min: [f32; 8],
     scale: [f32; 8],
 }
 
 impl Binning {
-    fn new(bounds: &Bounds) -> Binning {
+    fn new(bounds: &PrimitiveBounds) -> Binning {
         let mut scale = [0.0; 8];
         for (d, s) in scale.iter_mut().enumerate().take(DIMENSIONS) {
             // A hair below BINS, so that the maximum itself falls into the last bin; 0 where flat.
@@ -163,7 +163,7 @@ impl Binning {
     }
 
     #[inline]
-    fn bin(&self, r: &Record) -> [i32; 8] {
+    fn bin(&self, r: &Primitive) -> [i32; 8] {
         let mut bin = [0; 8];
         for (i, b) in bin.iter_mut().enumerate() {
             *b = (((r.0[i] - self.min[i]) * self.scale[i]) as i32).min(BINS as i32 - 1);
@@ -171,8 +171,8 @@ impl Binning {
         bin
     }
 
-    fn fill(&self, records: &[Record], bins: &mut Bins) {
-        for r in records {
+    fn fill(&self, primitives: &[Primitive], bins: &mut Bins) {
+        for r in primitives {
             let single = Bin::of(r);
             let bin = self.bin(r);
             for (d, row) in bins.iter_mut().enumerate() {
@@ -215,20 +215,20 @@ fn cheapest_border(bins: &Bins, binning: &Binning, c_sq: f32) -> Option<(usize, 
     best
 }
 
-/// Moves records that satisfy `goes_left` to the front and returns how many.
-fn partition(records: &mut [Record], goes_left: impl Fn(&Record) -> bool) -> usize {
-    let (mut i, mut j) = (0, records.len());
+/// Moves primitives that satisfy `goes_left` to the front and returns how many.
+fn partition(primitives: &mut [Primitive], goes_left: impl Fn(&Primitive) -> bool) -> usize {
+    let (mut i, mut j) = (0, primitives.len());
     loop {
-        while i < j && goes_left(&records[i]) {
+        while i < j && goes_left(&primitives[i]) {
             i += 1;
         }
-        while i < j && !goes_left(&records[j - 1]) {
+        while i < j && !goes_left(&primitives[j - 1]) {
             j -= 1;
         }
         if i >= j {
             return i;
         }
-        records.swap(i, j - 1);
+        primitives.swap(i, j - 1);
         i += 1;
         j -= 1;
     }

@@ -5,7 +5,7 @@
 //! Deviations: the cone is the smallest about the centre of the normals' box that holds every member's
 //! normal, found from the members themselves; merging the children's cones would be looser at every level.
 
-use super::cost::{Bounds, Record};
+use super::cost::{Primitive, PrimitiveBounds};
 use super::node::Node;
 use super::topology::Topology;
 use crate::math::{Rgb, luminance};
@@ -19,13 +19,13 @@ const COSINE_SLACK: f32 = 1e-6;
 
 /// The part of a cluster that its parent needs and its node does not hold.
 struct Summary {
-    bounds: Bounds,
+    bounds: PrimitiveBounds,
     intensity: DVec3,
     luminance: f64,
     representative: u32,
 }
 
-/// What all subtrees share.
+/// The set of VPLs whose tree is finished.
 struct Finisher<'a> {
     set: &'a VplSet,
     /// Number of the set's first VPL among all VPLs of all trees.
@@ -38,22 +38,33 @@ pub fn finish(topology: &Topology, set: &VplSet, nodes: &mut [Node], first_node:
     let finisher = Finisher { set, first_vpl };
     if let Some((root, rest)) = nodes.split_first_mut() {
         let below = rest.get_mut(1..).unwrap_or_default();
-        finisher.subtree(&topology.leaves, &topology.left_sizes, root, below, first_node + 2, 0);
+        let subtree = Subtree { leaves: &topology.leaves, left_sizes: &topology.left_sizes, first_leaf: 0 };
+        finisher.subtree(subtree, SubtreeNodes { root, below, below_index: first_node + 2 });
     }
 }
 
+/// A subtree of a topology.
+struct Subtree<'a> {
+    leaves: &'a [Primitive],
+    left_sizes: &'a [u32],
+    /// Number of the first leaf in the tree.
+    first_leaf: u32,
+}
+
+/// Nodes of a subtree.
+struct SubtreeNodes<'a> {
+    root: &'a mut Node,
+    /// The descendants of the root.
+    below: &'a mut [Node],
+    /// Index of the first of them among all nodes.
+    below_index: u32,
+}
+
 impl Finisher<'_> {
-    /// Fills `node` and its descendants `below`, of which the first has index `below_index`;
-    /// `first_leaf` is the place of the subtree's first leaf in the tree.
-    fn subtree(
-        &self,
-        leaves: &[Record],
-        left_sizes: &[u32],
-        node: &mut Node,
-        below: &mut [Node],
-        below_index: u32,
-        first_leaf: u32,
-    ) -> Summary {
+    /// Fills the nodes of a subtree.
+    fn subtree(&self, subtree: Subtree, nodes: SubtreeNodes) -> Summary {
+        let Subtree { leaves, left_sizes, first_leaf } = subtree;
+        let SubtreeNodes { root: node, below, below_index } = nodes;
         let Some((&left, rest)) = left_sizes.split_first() else {
             return self.leaf(&leaves[0], first_leaf, node);
         };
@@ -62,15 +73,16 @@ impl Finisher<'_> {
         let (left_rest, right_rest) = rest.split_at(left - 1);
         let (children, below) = below.split_at_mut(2);
         let (left_below, right_below) = below.split_at_mut(2 * (left - 1));
-        let (left_node, right_node) = children.split_at_mut(1);
-        let left_index = below_index + 2;
+        let (left_root, right_root) = children.split_at_mut(1);
+        let (left_index, right_leaf) = (below_index + 2, first_leaf + left as u32);
         let right_index = left_index + left_below.len() as u32;
-        let right_leaf = first_leaf + left as u32;
-        let mut do_left =
-            || self.subtree(left_leaves, left_rest, &mut left_node[0], left_below, left_index, first_leaf);
-        let mut do_right = || {
-            self.subtree(right_leaves, right_rest, &mut right_node[0], right_below, right_index, right_leaf)
-        };
+        let left_subtree = Subtree { leaves: left_leaves, left_sizes: left_rest, first_leaf };
+        let right_subtree = Subtree { leaves: right_leaves, left_sizes: right_rest, first_leaf: right_leaf };
+        let left_nodes = SubtreeNodes { root: &mut left_root[0], below: left_below, below_index: left_index };
+        let right_nodes =
+            SubtreeNodes { root: &mut right_root[0], below: right_below, below_index: right_index };
+        let do_left = || self.subtree(left_subtree, left_nodes);
+        let do_right = || self.subtree(right_subtree, right_nodes);
         let (a, b) =
             if leaves.len() > PARALLEL { rayon::join(do_left, do_right) } else { (do_left(), do_right()) };
 
@@ -91,20 +103,20 @@ impl Finisher<'_> {
         Summary { bounds, intensity, luminance, representative }
     }
 
-    fn leaf(&self, record: &Record, place: u32, node: &mut Node) -> Summary {
-        let intensity = self.set.intensities[record.index() as usize];
+    fn leaf(&self, primitive: &Primitive, place: u32, node: &mut Node) -> Summary {
+        let intensity = self.set.intensities[primitive.index() as usize];
         let representative = self.first_vpl + place;
         *node = Node::new(intensity, representative, self.set.kind, self.set.origin);
-        let bounds = Bounds::of(record);
+        let bounds = PrimitiveBounds::of(primitive);
         self.set_box(node, &bounds);
         if self.set.kind == VplKind::Oriented {
-            set_cone(node, record.normal(), std::slice::from_ref(record));
+            set_cone(node, primitive.normal(), std::slice::from_ref(primitive));
         }
         let luminance = f64::from(luminance(intensity));
         Summary { bounds, intensity: intensity.as_dvec3(), luminance, representative }
     }
 
-    fn set_box(&self, node: &mut Node, bounds: &Bounds) {
+    fn set_box(&self, node: &mut Node, bounds: &PrimitiveBounds) {
         let first = if self.set.kind == VplKind::Directional { 3 } else { 0 };
         node.min = Vec3::from_array(std::array::from_fn(|i| bounds.min[first + i]));
         node.max = Vec3::from_array(std::array::from_fn(|i| bounds.max[first + i]));
@@ -112,7 +124,7 @@ impl Finisher<'_> {
 }
 
 /// The cone about `axis` that holds every normal.
-fn set_cone(node: &mut Node, axis: Vec3, members: &[Record]) {
+fn set_cone(node: &mut Node, axis: Vec3, members: &[Primitive]) {
     let cos_beta = members.iter().fold(1.0f32, |least, r| {
         let cos = r.normal().dot(axis);
         if cos < least { cos } else { least }

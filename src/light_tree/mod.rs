@@ -16,7 +16,7 @@ mod topology;
 
 use crate::math::luminance;
 use crate::vpl::{Origin, SpotProfile, Vpl, VplSet};
-use cost::Record;
+use cost::Primitive;
 
 pub use node::{MAX_VPLS, Node};
 
@@ -68,11 +68,12 @@ impl LightTrees {
         if n == 0 {
             return;
         }
-        let record = |i: usize| Record::new(&set.vpls[i], set.kind, luminance(set.intensities[i]), i as u32);
-        let records = (0..n).map(record).collect();
+        let primitive =
+            |i: usize| Primitive::new(&set.vpls[i], set.kind, luminance(set.intensities[i]), i as u32);
+        let primitives = (0..n).map(primitive).collect();
         let topology = match family {
-            Family::Divisive => divisive::build(records, diagonal * diagonal),
-            Family::Agglomerative => agglomerative::build(records, diagonal * diagonal),
+            Family::Divisive => divisive::build(primitives, diagonal * diagonal),
+            Family::Agglomerative => agglomerative::build(primitives, diagonal * diagonal),
         };
         let (first_node, first_vpl) = (self.nodes.len(), self.vpls.len());
         let blank = Node::new(crate::math::Rgb::ZERO, 0, set.kind, set.origin);
