@@ -7,9 +7,9 @@ use glam::{Vec2, Vec3};
 use lightsplat::embree::Rays16;
 use lightsplat::eye::{EyePoint, Sharing};
 use lightsplat::math::{Frame, LANES, Rgb};
-use lightsplat::photon::density::{Estimate, estimates};
-use lightsplat::photon::hemisphere::{Gathered, gather};
-use lightsplat::photon::radiance::{GatherCounts, IndirectLight};
+use lightsplat::photon::density::{IrradianceEstimate, estimates};
+use lightsplat::photon::hemisphere::{GatherPoint, gather};
+use lightsplat::photon::indirect_light::{GatherCounts, IndirectLight};
 use lightsplat::photon::strata::{Met, Strata};
 use lightsplat::photon::{IrradianceMap, PhotonMap};
 use lightsplat::progress::Control;
@@ -51,7 +51,7 @@ fn density_is_the_irradiance_inside_at_edges_at_walls_and_at_corners() {
     for nearest in [30, 100] {
         let photons = map(&world, 160_000);
         let (found, _) = estimates(&world, &photons, nearest);
-        let floor: Vec<&Estimate> = found.iter().filter(|e| e.normal.y > 0.9).collect();
+        let floor: Vec<&IrradianceEstimate> = found.iter().filter(|e| e.normal.y > 0.9).collect();
         let radius = floor.iter().map(|e| e.radius).sum::<f32>() / floor.len() as f32;
         let lit = IrradianceMap::new(&found, &photons.site_index);
         for (name, low, high, tolerance) in [
@@ -110,8 +110,9 @@ fn gathering_agrees_with_plain_sampling() {
         let point = EyePoint { position, spacing: 0.01, normal: Vec3::Y, sharing: Sharing::new(0, 0) };
         let mut met = Met::default();
         let strata = Strata::new(4000);
-        let how = (Vec3::Y, 1, f32::INFINITY);
-        let g: Gathered = gather(&light, &strata, &point, how, &mut met, &mut counts);
+        let at =
+            GatherPoint { point: &point, geometric_normal: Vec3::Y, seed: 1, max_nearness: f32::INFINITY };
+        let g = gather(&light, &strata, &at, &mut met, &mut counts);
         let frame = Frame::from_normal(Vec3::Y);
         let (mut plain, packets) = (Rgb::ZERO, 4000);
         for packet in 0..packets {

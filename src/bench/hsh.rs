@@ -3,7 +3,7 @@
 use super::measure::Case;
 use super::setting::Dice;
 use super::{Benchmark, Clock, Context, Kind, Table};
-use crate::gradient::{Incidence, Source};
+use crate::gradient::{Incidence, LocalVpl};
 use crate::hsh::{Accumulator, Kernel, Reflected};
 use crate::math::Rgb;
 use glam::Vec3;
@@ -19,7 +19,7 @@ const LIGHTS: usize = 1000;
 
 fn run(context: &Context) -> Vec<Table> {
     let mut dice = Dice(5);
-    let sources: Vec<Source<f32>> = (0..LIGHTS).map(|_| source(&mut dice)).collect();
+    let sources: Vec<LocalVpl<f32>> = (0..LIGHTS).map(|_| source(&mut dice)).collect();
     let incidences: Vec<Incidence<f32>> = sources.iter().filter_map(|s| s.incidence(1e-9)).collect();
     let (incidences, lights) = (&incidences, incidences.len() as f64);
     let mut cases = vec![Case::new(&["geometry and gradient", ""], 0, LIGHTS as f64, || {
@@ -53,9 +53,9 @@ fn run(context: &Context) -> Vec<Table> {
 }
 
 /// A patch somewhere above, facing the receiver more or less.
-fn source(dice: &mut Dice) -> Source<f32> {
+fn source(dice: &mut Dice) -> LocalVpl<f32> {
     let mut part = || dice.below(1 << 24) as f32 / (1 << 24) as f32;
     let offset = Vec3::new(part() - 0.5, part() - 0.5, part());
     let normal = (Vec3::new(part() - 0.5, part() - 0.5, part() - 0.5) - offset).normalize();
-    Source::Oriented { offset: offset.to_array(), normal: normal.to_array() }
+    LocalVpl::Oriented { offset: offset.to_array(), normal: normal.to_array() }
 }

@@ -1,6 +1,6 @@
 //! The Embree device: version check and error messages.
 
-use super::EmbreeError;
+use super::{EmbreeError, Version};
 use embree4_sys as sys;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::fmt;
@@ -8,30 +8,6 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Messages kept until they are asked for; later ones are dropped, for the first tells the cause.
 const MESSAGE_CAPACITY: usize = 16;
-
-/// A version of Embree; compares in release order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Version {
-    /// First number: the ABI.
-    pub major: u32,
-    /// Second number.
-    pub minor: u32,
-    /// Third number.
-    pub patch: u32,
-}
-
-impl Version {
-    /// Whether the bindings describe this version: 4.2 has a smaller hit, 5 is another interface.
-    pub(super) fn is_supported(self) -> bool {
-        self.major == 4 && self.minor >= 3
-    }
-}
-
-impl fmt::Display for Version {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{}.{}.{}", self.major, self.minor, self.patch)
-    }
-}
 
 /// A handle to the library, with the threads it builds with. Clones share one device; an
 /// [`super::Accel`] keeps its device alive.

@@ -40,13 +40,15 @@ mod query;
 mod ray;
 #[cfg(test)]
 mod tests;
+mod version;
 mod width;
 
 pub use accel::{Accel, BuildQuality, TriangleMesh};
-pub use device::{Device, Version};
+pub use device::Device;
 pub use error::EmbreeError;
 pub use occluder::{Occluder, Occluders16, TriangleId};
 pub use packet::{Hits16, Rays16};
-pub(crate) use prepared::Prepared;
+pub(crate) use prepared::PreparedRays;
 pub use ray::{Hit, Ray};
+pub use version::Version;
 pub use width::Width;

@@ -8,7 +8,7 @@ use super::{Accel, Rays16, Width};
 use embree4_sys as sys;
 
 /// Rays as queries of one width take them.
-pub struct Prepared(Form);
+pub struct PreparedRays(Form);
 
 enum Form {
     One(Vec<sys::RTCRay>),
@@ -17,12 +17,12 @@ enum Form {
     Sixteen(Vec<(LaneMask, sys::RTCRay16)>),
 }
 
-impl Prepared {
+impl PreparedRays {
     /// The rays in the given lanes of `packets`, in their order; narrower packets are cut from them, and those
     /// without a ray to be traced left out.
-    pub fn new<'a>(packets: impl IntoIterator<Item = (&'a Rays16, u16)>, width: Width) -> Prepared {
+    pub fn new<'a>(packets: impl IntoIterator<Item = (&'a Rays16, u16)>, width: Width) -> PreparedRays {
         let packets = packets.into_iter();
-        Prepared(match width {
+        PreparedRays(match width {
             Width::One => Form::One(
                 packets
                     .flat_map(|(rays, valid)| {

@@ -8,7 +8,7 @@
 //! al., *Importance Resampling for Global Illumination*, 2005.
 
 use super::chain::ChainCounts;
-use crate::light::delta_irradiance;
+use crate::light::{Receivers16, delta_irradiance};
 use crate::material::Bsdf;
 use crate::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
 use crate::sampling::{Sampler, power_heuristic};
@@ -47,8 +47,7 @@ impl Place {
 
     /// In all lanes.
     fn splat(&self) -> (Vec3x16, Vec3x16) {
-        let lanes = |v: Vec3| Vec3x16 { x: [v.x; LANES], y: [v.y; LANES], z: [v.z; LANES] };
-        (lanes(self.position), lanes(self.normal))
+        (Vec3x16::splat(self.position), Vec3x16::splat(self.normal))
     }
 }
 
@@ -61,16 +60,18 @@ impl Start {
     /// Weight of what the met surface emits, which points sampled on emitters find as well.
     pub fn weight_of_area(&self, world: &World, met: &Surface, direction: Vec3) -> f32 {
         let (x, n) = self.place.splat();
+        let at = Receivers16 { position: &x, normal: &n };
         let cos = met.normal.dot(direction);
         let distance = met.position.distance(self.place.position);
-        let pdf = world.emitters.pdf_areas((&x, &n), &[met.mesh; LANES], &[distance; LANES], &[cos; LANES]);
+        let pdf = world.emitters.pdf_areas(at, &[met.mesh; LANES], &[distance; LANES], &[cos; LANES]);
         self.weight(pdf[0])
     }
 
     /// Weight of the environment's radiance, whose density by solid angle is `pdf` once it is chosen.
     pub fn weight_of_environment(&self, world: &World, pdf: f32) -> f32 {
         let (x, n) = self.place.splat();
-        self.weight(pdf * world.emitters.environment_choice(&x, &n)[0])
+        let at = Receivers16 { position: &x, normal: &n };
+        self.weight(pdf * world.emitters.environment_choice(at)[0])
     }
 
     fn weight(&self, light_pdf: f32) -> f32 {
@@ -121,7 +122,8 @@ impl Sharp<'_> {
             places.set(i, (place + i as f32 * STEPS).fract());
         }
         let (x, n) = Place::new(self.surface, self.wo).splat();
-        let lights = emitters.sample_direct(&self.world.scene, (&x, &n), &choices, &places, u16::MAX);
+        let at = Receivers16 { position: &x, normal: &n };
+        let lights = emitters.sample_direct(&self.world.scene, at, &choices, &places, u16::MAX);
         let (mut values, mut sum) = ([Rgb::ZERO; LANES], 0.0);
         for i in lanes_in(lights.useful()).filter(|i| lights.delta[*i] == 0) {
             let wi = self.surface.frame.to_local(lights.direction.get(i));

@@ -16,7 +16,7 @@ mod source;
 mod spot;
 
 pub use incidence::{Incidence, IrradianceVector};
-pub use source::Source;
+pub use source::LocalVpl;
 
 #[cfg(test)]
 mod tests;

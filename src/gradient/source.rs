@@ -9,7 +9,7 @@ use glam::Vec3;
 
 /// A virtual light in the receiver's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Source<T> {
+pub enum LocalVpl<T> {
     /// Radiates by the cosine to its normal.
     Oriented {
         /// From the receiver.
@@ -30,7 +30,7 @@ pub enum Source<T> {
 }
 
 /// Direction, inverse distance and emitter's cosine of a light at a finite distance.
-struct Sight<T> {
+struct Connection<T> {
     omega: [T; 3],
     inverse: T,
     /// 1 for omni lights.
@@ -41,15 +41,15 @@ struct Sight<T> {
     too_near: bool,
 }
 
-impl<T: Real + PartialOrd> Source<T> {
+impl<T: Real + PartialOrd> LocalVpl<T> {
     /// What arrives, with its first derivatives; `None` where nothing does: on the light itself, and behind it.
     ///
     /// Distances below `min_dist_sq` count as that, and then nothing changes with the receiver.
     #[inline]
     pub fn incidence(&self, min_dist_sq: T) -> Option<Incidence<T>> {
         let zero = T::of(0.0);
-        let Source::Directional { towards } = *self else {
-            let Sight { omega, inverse, cos, normal, too_near } = self.sight(min_dist_sq)?;
+        let LocalVpl::Directional { towards } = *self else {
+            let Connection { omega, inverse, cos, normal, too_near } = self.sight(min_dist_sq)?;
             if too_near {
                 let factor = cos / min_dist_sq;
                 return Some(Incidence { direction: omega, inv_dist: zero, factor, gradient: [zero; 2] });
@@ -72,7 +72,7 @@ impl<T: Real + PartialOrd> Source<T> {
     #[inline]
     pub fn irradiance_hessian(&self, min_dist_sq: T) -> [T; 3] {
         let none = [T::of(0.0); 3];
-        let Some(Sight { omega: [x, y, z], inverse, cos, normal: [n_u, n_v], too_near }) =
+        let Some(Connection { omega: [x, y, z], inverse, cos, normal: [n_u, n_v], too_near }) =
             self.sight(min_dist_sq)
         else {
             return none;
@@ -93,17 +93,17 @@ impl<T: Real + PartialOrd> Source<T> {
     }
 
     fn is_oriented(&self) -> bool {
-        matches!(self, Source::Oriented { .. })
+        matches!(self, LocalVpl::Oriented { .. })
     }
 
     #[inline]
-    fn sight(&self, min_dist_sq: T) -> Option<Sight<T>> {
+    fn sight(&self, min_dist_sq: T) -> Option<Connection<T>> {
         let dot = |a: [T; 3], b: [T; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let zero = T::of(0.0);
         let (offset, normal) = match *self {
-            Source::Oriented { offset, normal } => (offset, normal),
-            Source::Omni { offset } => (offset, [zero; 3]),
-            Source::Directional { .. } => return None,
+            LocalVpl::Oriented { offset, normal } => (offset, normal),
+            LocalVpl::Omni { offset } => (offset, [zero; 3]),
+            LocalVpl::Directional { .. } => return None,
         };
         let dist_sq = dot(offset, offset);
         if !(dist_sq > zero) {
@@ -113,21 +113,21 @@ impl<T: Real + PartialOrd> Source<T> {
         let omega = [offset[0] * inverse, offset[1] * inverse, offset[2] * inverse];
         let cos = if self.is_oriented() { -dot(normal, omega) } else { T::of(1.0) };
         let too_near = dist_sq < min_dist_sq;
-        (cos > zero).then_some(Sight { omega, inverse, cos, normal: [normal[0], normal[1]], too_near })
+        (cos > zero).then_some(Connection { omega, inverse, cos, normal: [normal[0], normal[1]], too_near })
     }
 }
 
-impl Source<f32> {
+impl LocalVpl<f32> {
     /// A virtual light seen from `position` in `frame`, spot profiles left to [`Incidence::of_vpl`].
     #[inline]
-    pub fn of_vpl(frame: &Frame, position: Vec3, vpl: &Vpl, kind: VplKind) -> Source<f32> {
+    pub fn of_vpl(frame: &Frame, position: Vec3, vpl: &Vpl, kind: VplKind) -> LocalVpl<f32> {
         let local = |v: Vec3| frame.to_local(v).to_array();
         match kind {
             VplKind::Oriented => {
-                Source::Oriented { offset: local(vpl.position - position), normal: local(vpl.normal()) }
+                LocalVpl::Oriented { offset: local(vpl.position - position), normal: local(vpl.normal()) }
             }
-            VplKind::Omni => Source::Omni { offset: local(vpl.position - position) },
-            VplKind::Directional => Source::Directional { towards: local(vpl.position) },
+            VplKind::Omni => LocalVpl::Omni { offset: local(vpl.position - position) },
+            VplKind::Directional => LocalVpl::Directional { towards: local(vpl.position) },
         }
     }
 }
@@ -143,7 +143,7 @@ impl Incidence<f32> {
         spots: &[SpotProfile],
         min_dist_sq: f32,
     ) -> Option<Incidence<f32>> {
-        let incidence = Source::of_vpl(frame, position, vpl, kind).incidence(min_dist_sq)?;
+        let incidence = LocalVpl::of_vpl(frame, position, vpl, kind).incidence(min_dist_sq)?;
         match vpl.spot_profile() {
             Some(profile) if kind == VplKind::Omni => incidence.through_spot(frame, &spots[profile]),
             _ => Some(incidence),

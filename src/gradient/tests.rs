@@ -24,43 +24,43 @@ fn offsets() -> Vec<DVec3> {
 }
 
 /// Lights at every offset; oriented ones face away from straight ahead by several angles, to the edge.
-fn sources() -> Vec<Source<f64>> {
+fn sources() -> Vec<LocalVpl<f64>> {
     let mut all = Vec::new();
     for offset in offsets() {
-        all.push(Source::Omni { offset: offset.to_array() });
+        all.push(LocalVpl::Omni { offset: offset.to_array() });
         let (facing, side) = (-offset.normalize(), offset.normalize().any_orthonormal_vector());
         for angle in [0.0, 0.4, 1.0, 1.5, 1.57] {
             for sign in [-1.0, 1.0] {
                 let normal = facing * f64::cos(angle) + side * (sign * f64::sin(angle));
-                all.push(Source::Oriented { offset: offset.to_array(), normal: normal.to_array() });
+                all.push(LocalVpl::Oriented { offset: offset.to_array(), normal: normal.to_array() });
             }
         }
     }
     all
 }
 
-fn distance(source: &Source<f64>) -> f64 {
+fn distance(source: &LocalVpl<f64>) -> f64 {
     match *source {
-        Source::Oriented { offset, .. } | Source::Omni { offset } => DVec3::from(offset).length(),
-        Source::Directional { .. } => 1.0,
+        LocalVpl::Oriented { offset, .. } | LocalVpl::Omni { offset } => DVec3::from(offset).length(),
+        LocalVpl::Directional { .. } => 1.0,
     }
 }
 
 /// The light as seen once the receiver has moved.
-fn moved(source: &Source<f64>, axis: usize, by: f64) -> Source<f64> {
+fn moved(source: &LocalVpl<f64>, axis: usize, by: f64) -> LocalVpl<f64> {
     let mut source = *source;
     match &mut source {
-        Source::Oriented { offset, .. } | Source::Omni { offset } => offset[axis] -= by,
-        Source::Directional { .. } => {}
+        LocalVpl::Oriented { offset, .. } | LocalVpl::Omni { offset } => offset[axis] -= by,
+        LocalVpl::Directional { .. } => {}
     }
     source
 }
 
 /// Derivative of `f` of the light along `axis`, by finite differences of fourth order.
 fn difference<const N: usize>(
-    source: &Source<f64>,
+    source: &LocalVpl<f64>,
     axis: usize,
-    f: impl Fn(&Source<f64>) -> [f64; N],
+    f: impl Fn(&LocalVpl<f64>) -> [f64; N],
 ) -> [f64; N] {
     let step = 3e-4 * distance(source);
     let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|by| f(&moved(source, axis, by * step)));
@@ -68,13 +68,13 @@ fn difference<const N: usize>(
 }
 
 /// `value` within 1e-6 of `expected`, relative to it or to `scale`, the size it commonly has.
-fn assert_close(value: f64, expected: f64, scale: f64, what: &str, source: &Source<f64>) {
+fn assert_close(value: f64, expected: f64, scale: f64, what: &str, source: &LocalVpl<f64>) {
     let error = (value - expected).abs() / expected.abs().max(1e-3 * scale);
     assert!(error < 1e-6, "{what} {source:?}: {value} {expected} {error:e}");
 }
 
 /// Whether steps around stay on the lit side of the light.
-fn lit_around(source: &Source<f64>) -> bool {
+fn lit_around(source: &LocalVpl<f64>) -> bool {
     let reach = 1e-3 * distance(source);
     (0..2).all(|axis| [-reach, reach].iter().all(|by| moved(source, axis, *by).incidence(NEVER).is_some()))
 }
@@ -109,7 +109,7 @@ fn gradients_agree_with_finite_differences() {
 fn the_hessian_agrees_with_finite_differences_of_the_gradient() {
     for source in sources().iter().filter(|s| lit_around(s)) {
         let [uu, uv, vv] = source.irradiance_hessian(NEVER);
-        let gradient = |s: &Source<f64>| s.incidence(NEVER).unwrap().irradiance().gradient.map(|g| g[2]);
+        let gradient = |s: &LocalVpl<f64>| s.incidence(NEVER).unwrap().irradiance().gradient.map(|g| g[2]);
         let [d_uu, d_uv] = difference(source, 0, gradient);
         let [d_vu, d_vv] = difference(source, 1, gradient);
         let scale = source.incidence(NEVER).unwrap().direction[2] * distance(source).powi(-4);
@@ -125,7 +125,7 @@ fn the_hessian_agrees_with_finite_differences_of_the_gradient() {
 fn the_gradient_of_irradiance_is_the_one_printed_in_the_paper() {
     for source in sources() {
         let (offset, normal) = match source {
-            Source::Oriented { offset, normal } => (offset, normal),
+            LocalVpl::Oriented { offset, normal } => (offset, normal),
             _ => continue,
         };
         let Some(incidence) = source.incidence(NEVER) else { continue };
@@ -144,11 +144,11 @@ fn the_gradient_of_irradiance_is_the_one_printed_in_the_paper() {
 fn single_precision_holds_at_every_scale() {
     for scale in [1e-6, 1.0, 1e6] {
         for source in sources() {
-            let Source::Oriented { offset, normal } = source else { continue };
+            let LocalVpl::Oriented { offset, normal } = source else { continue };
             // Rounded first, so that only the arithmetic differs.
             let (offset, normal) = (offset.map(|c| (c * scale) as f32), normal.map(|c| c as f32));
-            let single = Source::Oriented { offset, normal };
-            let double = Source::Oriented { offset: offset.map(f64::from), normal: normal.map(f64::from) };
+            let single = LocalVpl::Oriented { offset, normal };
+            let double = LocalVpl::Oriented { offset: offset.map(f64::from), normal: normal.map(f64::from) };
             let (Some(a), Some(b)) = (single.incidence(1e-30), double.incidence(NEVER)) else { continue };
             let r = distance(&double);
             let near = |a: f32, b: f64, size: f64| (f64::from(a) - b).abs() < 4e-6 * size;
@@ -170,7 +170,7 @@ fn single_precision_holds_at_every_scale() {
 
 #[test]
 fn what_is_clamped_does_not_change_with_the_receiver() {
-    let source = Source::<f64>::Oriented { offset: [0.02, 0.0, 0.01], normal: [0.0, 0.0, -1.0] };
+    let source = LocalVpl::<f64>::Oriented { offset: [0.02, 0.0, 0.01], normal: [0.0, 0.0, -1.0] };
     let near = source.incidence(0.01).unwrap();
     assert_eq!((near.inv_dist, near.gradient), (0.0, [0.0; 2]));
     assert!((near.factor - near.direction[2] / 0.01).abs() < 1e-12);
@@ -183,14 +183,14 @@ fn what_is_clamped_does_not_change_with_the_receiver() {
 
 #[test]
 fn lights_that_cannot_be_seen_give_nothing() {
-    let dark = |s: Source<f64>| s.incidence(NEVER).is_none() && s.irradiance_hessian(NEVER) == [0.0; 3];
-    assert!(dark(Source::Omni { offset: [0.0; 3] }));
-    assert!(dark(Source::Omni { offset: [f64::NAN; 3] }));
-    assert!(dark(Source::Oriented { offset: [0.0, 0.3, 1.0], normal: [0.0, 0.0, 1.0] }));
-    let below = Source::Omni { offset: [0.4, 0.3, -1.0] };
+    let dark = |s: LocalVpl<f64>| s.incidence(NEVER).is_none() && s.irradiance_hessian(NEVER) == [0.0; 3];
+    assert!(dark(LocalVpl::Omni { offset: [0.0; 3] }));
+    assert!(dark(LocalVpl::Omni { offset: [f64::NAN; 3] }));
+    assert!(dark(LocalVpl::Oriented { offset: [0.0, 0.3, 1.0], normal: [0.0, 0.0, 1.0] }));
+    let below = LocalVpl::Omni { offset: [0.4, 0.3, -1.0] };
     assert_eq!(below.incidence(NEVER).unwrap().irradiance().value, [0.0; 3]);
     assert_eq!(below.irradiance_hessian(NEVER), [0.0; 3]);
-    let sun = Source::Directional { towards: [0.6, 0.0, 0.8] };
+    let sun = LocalVpl::Directional { towards: [0.6, 0.0, 0.8] };
     let incidence = sun.incidence(NEVER).unwrap();
     assert_eq!(incidence.irradiance().value, [0.6, 0.0, 0.8]);
     assert_eq!(incidence.irradiance().gradient, [[0.0; 3]; 2]);

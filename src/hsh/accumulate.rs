@@ -4,8 +4,9 @@
 //! Deviations: the receiver's cosine belongs to what reflects, not to the light, so that the series is of radiance.
 //! Units: radiance per band function: intensity times [`Incidence::factor`].
 
+use super::CHANNELS;
 use super::basis::{MAX_BANDS, MAX_FUNCTIONS, for_each};
-use super::radiance::{BLOCKS, CHANNELS, Radiance};
+use super::radiance::{BLOCKS, Radiance};
 use crate::gradient::Incidence;
 use crate::math::{F32x8, Rgb, WIDTH};
 
@@ -13,7 +14,7 @@ use crate::math::{F32x8, Rgb, WIDTH};
 /// that is always the same.
 pub struct Accumulator {
     bands: usize,
-    batch: Batch,
+    batch: Incidence8,
     /// How many of the batch's lanes are in use.
     filled: usize,
     /// By function: value and derivatives along u and v, three channels each; lanes are summed last.
@@ -22,7 +23,7 @@ pub struct Accumulator {
 
 /// Light from eight directions.
 #[derive(Clone, Copy)]
-struct Batch {
+struct Incidence8 {
     direction: [F32x8; 3],
     inv_dist: F32x8,
     factor: F32x8,
@@ -30,8 +31,8 @@ struct Batch {
     intensity: [F32x8; CHANNELS],
 }
 
-impl Batch {
-    const EMPTY: Batch = Batch {
+impl Incidence8 {
+    const EMPTY: Incidence8 = Incidence8 {
         direction: [F32x8::ZERO; 3],
         inv_dist: F32x8::ZERO,
         factor: F32x8::ZERO,
@@ -45,14 +46,14 @@ impl Accumulator {
     pub fn new(bands: usize) -> Accumulator {
         let bands = bands.clamp(1, MAX_BANDS);
         let sums = Box::new([[F32x8::ZERO; BLOCKS]; MAX_FUNCTIONS]);
-        Accumulator { bands, batch: Batch::EMPTY, filled: 0, sums }
+        Accumulator { bands, batch: Incidence8::EMPTY, filled: 0, sums }
     }
 
     /// Begins anew with a number of bands.
     pub fn reset(&mut self, bands: usize) {
         self.bands = bands.clamp(1, MAX_BANDS);
         self.sums.fill([F32x8::ZERO; BLOCKS]);
-        (self.batch, self.filled) = (Batch::EMPTY, 0);
+        (self.batch, self.filled) = (Incidence8::EMPTY, 0);
     }
 
     /// Adds the light of one direction; light from below the horizon counts for nothing.
@@ -102,12 +103,12 @@ impl Accumulator {
             7 => self.add_batch::<7>(),
             _ => self.add_batch::<8>(),
         }
-        (self.batch, self.filled) = (Batch::EMPTY, 0);
+        (self.batch, self.filled) = (Incidence8::EMPTY, 0);
     }
 
     #[inline(never)]
     fn add_batch<const BANDS: usize>(&mut self) {
-        let Batch { direction, inv_dist, factor, gradient: [slope_u, slope_v], intensity } = self.batch;
+        let Incidence8 { direction, inv_dist, factor, gradient: [slope_u, slope_v], intensity } = self.batch;
         let turning = factor * inv_dist;
         let sums = &mut self.sums;
         for_each::<F32x8, BANDS>(direction, |k, h, h_u, h_v| {

@@ -1,7 +1,7 @@
 //! What a surface seen from one direction does to the light from all others, as a series.
 
+use super::CHANNELS;
 use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
-use super::radiance::CHANNELS;
 use crate::math::Rgb;
 use std::f32::consts::PI;
 

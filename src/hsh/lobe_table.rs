@@ -4,10 +4,11 @@
 //! Deviations: as many as linear interpolation needs, by subdivision; and over √(1 - cos θ) = √2 sin θ/2, in which
 //! coefficients are smooth: over cos θ those of order 1 begin like a square root at normal incidence.
 
+use super::CHANNELS;
 use super::basis::{MAX_BANDS, MAX_FUNCTIONS};
 use super::kernel::{even_index, repeated};
 use super::projection::{Projection, Quadrature};
-use super::radiance::{CHANNELS, stride};
+use super::radiance::stride;
 use crate::material::Bsdf;
 use rayon::prelude::*;
 

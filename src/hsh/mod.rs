@@ -1,7 +1,7 @@
 //! Hemispherical harmonics (HSH): an orthonormal basis over the hemisphere above a surface, in which cache records
 //! of glossy surfaces keep the light that arrives.
 //!
-//! An [`Accumulator`] sums the light of a record into a [`Radiance`]. [`Surfaces`] holds what each material of a scene
+//! An [`Accumulator`] sums the light of a record into a [`Radiance`]. [`MaterialSeries`] holds what each material of a scene
 //! does to light: seen from one inclination it is a [`Profile`], from one direction a [`Kernel`], and
 //! [`Radiance::reflected`] is what the surface reflects there. Two bands hold the irradiance exactly.
 //!
@@ -26,7 +26,10 @@ pub use accumulate::Accumulator;
 pub use basis::{MAX_BANDS, MAX_FUNCTIONS, evaluate, for_each, index};
 pub use kernel::{Kernel, Profile};
 pub use radiance::{Radiance, Reflected};
-pub use surfaces::{Caching, SeriesSettings, Surfaces};
+pub use surfaces::{Caching, MaterialSeries, SeriesSettings};
+
+/// Colour channels.
+const CHANNELS: usize = 3;
 
 #[cfg(test)]
 mod tests;

@@ -1,8 +1,8 @@
 //! Projects what a surface does to light onto the basis, by quadrature over the hemisphere in double precision.
 
+use super::CHANNELS;
 use super::basis::{MAX_BANDS, evaluate, index};
 use super::kernel::{MAX_EVEN, even_index};
-use super::radiance::CHANNELS;
 use crate::material::Bsdf;
 use crate::math::{Rgb, gauss_legendre};
 use glam::Vec3;

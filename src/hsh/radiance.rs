@@ -3,12 +3,11 @@
 //!
 //! Units: radiance; its derivatives are per metre (or whatever unit the scene has).
 
+use super::CHANNELS;
 use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
 use super::kernel::Kernel;
 use crate::math::{F32x8, Rgb, WIDTH};
 
-/// Colour channels.
-pub(super) const CHANNELS: usize = 3;
 /// Value and two derivatives, each of every channel.
 pub(super) const BLOCKS: usize = 3 * CHANNELS;
 

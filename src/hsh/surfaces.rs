@@ -6,11 +6,11 @@
 //!
 //! Deviations: the paper sets the number of bands by hand; here it is the least that keeps the error of the kernel.
 
+use super::CHANNELS;
 use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
 use super::kernel::{Profile, even_index};
 use super::lobe_table::LobeTable;
 use super::projection::{Projection, Quadrature, ZonalProjection};
-use super::radiance::CHANNELS;
 use crate::material::{Bsdf, Materials};
 use crate::scene::{MaterialId, Scene};
 use rayon::prelude::*;
@@ -50,23 +50,23 @@ pub enum Caching {
 }
 
 /// Series of what every material of a scene does to light.
-pub struct Surfaces {
-    materials: Vec<Surface>,
+pub struct MaterialSeries {
+    materials: Vec<MaterialEntry>,
     lobes: Vec<LobeTable>,
 }
 
-struct Surface {
+struct MaterialEntry {
     caching: Caching,
-    /// See [`Surfaces::error`].
+    /// See [`MaterialSeries::error`].
     error: f64,
     lobe: Option<usize>,
     /// Transmittance of the coat times cosine: functions of order 0.
     base: [f32; MAX_BANDS],
 }
 
-impl Surfaces {
+impl MaterialSeries {
     /// Projects the materials of a scene. Materials whose lobes differ by a factor only share one table.
-    pub fn new(scene: &Scene, materials: &Materials, settings: &SeriesSettings) -> Surfaces {
+    pub fn new(scene: &Scene, materials: &Materials, settings: &SeriesSettings) -> MaterialSeries {
         let quadrature = Quadrature::standard();
         let averages: Vec<Bsdf> =
             (0..materials.count()).map(|i| materials.average(scene, MaterialId(i as u32))).collect();
@@ -88,10 +88,12 @@ impl Surfaces {
                 INCLINATIONS.par_iter().map(|d| quadrature.project(lobe, d.to_radians().cos())).collect()
             })
             .collect();
-        let mut surfaces: Vec<Surface> = averages
+        let mut surfaces: Vec<MaterialEntry> = averages
             .iter()
             .zip(&kinds)
-            .map(|(bsdf, kind)| Surface::new(bsdf, kind.map(|k| &tests[k][..]), *kind, &quadrature, settings))
+            .map(|(bsdf, kind)| {
+                MaterialEntry::new(bsdf, kind.map(|k| &tests[k][..]), *kind, &quadrature, settings)
+            })
             .collect();
         // Tables for those that are used, with as many bands as any of their materials needs.
         let mut lobes = Vec::new();
@@ -104,7 +106,7 @@ impl Surfaces {
             let kind = surface.lobe.filter(|_| surface.caching.bands().is_some());
             surface.lobe = kind.and_then(|kind| lobes.iter().position(|(k, _)| *k == kind));
         }
-        Surfaces { materials: surfaces, lobes: lobes.into_iter().map(|(_, table)| table).collect() }
+        MaterialSeries { materials: surfaces, lobes: lobes.into_iter().map(|(_, table)| table).collect() }
     }
 
     /// What records of a material hold.
@@ -125,7 +127,7 @@ impl Surfaces {
     }
 
     /// Kernel of a material for outgoing directions at `cos_o` > 0 to the normal, at a point where it is `bsdf`. Where
-    /// [`Surfaces::caching`] is not a series it is that of the base alone.
+    /// [`MaterialSeries::caching`] is not a series it is that of the base alone.
     #[inline]
     pub fn profile(&self, id: MaterialId, bsdf: &Bsdf, cos_o: f32) -> Profile {
         let surface = &self.materials[id.0 as usize];
@@ -169,14 +171,14 @@ impl Caching {
     }
 }
 
-impl Surface {
+impl MaterialEntry {
     fn new(
         bsdf: &Bsdf,
         tests: Option<&[Projection]>,
         lobe: Option<usize>,
         quadrature: &Quadrature,
         settings: &SeriesSettings,
-    ) -> Surface {
+    ) -> MaterialEntry {
         let zonal = quadrature.project_zonal(|z| z * f64::from(bsdf.base_transmittance(z as f32)));
         let base = zonal.coefficients.map(|c| c as f32);
         let (caching, error) = match tests {
@@ -191,7 +193,7 @@ impl Surface {
                 (if fits { Caching::Series(enough as u8) } else { Caching::PerSample }, error)
             }
         };
-        Surface { caching, error, lobe, base }
+        MaterialEntry { caching, error, lobe, base }
     }
 }
 

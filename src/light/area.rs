@@ -1,6 +1,6 @@
 //! Light from surfaces: the emitting triangles of one mesh, sampled uniformly by area.
 
-use super::distribution::Distribution;
+use super::distribution::DiscreteDistribution;
 use crate::math::{Rgb, luminance};
 use crate::sampling::uniform_triangle;
 use crate::scene::{Emission, Mesh, Scene, TextureId};
@@ -23,7 +23,7 @@ pub struct AreaLight {
     pub radius: f32,
     /// The front's normal where the mesh is flat and emits from one side: behind its plane it is invisible.
     flat_normal: Vec3,
-    triangles: Distribution,
+    triangles: DiscreteDistribution,
     /// First corner, two edges and unit normal of each triangle.
     shapes: Vec<[Vec3; 4]>,
 }
@@ -54,7 +54,7 @@ impl AreaLight {
         let emission = mesh.emission?;
         let shapes: Vec<(Vec3, f32)> =
             (0..mesh.triangles.len()).map(|t| normal_and_area(mesh.corners(t))).collect();
-        let triangles = Distribution::new(shapes.iter().map(|s| s.1));
+        let triangles = DiscreteDistribution::new(shapes.iter().map(|s| s.1));
         let area = triangles.total() as f32;
         let mean_texture = emission.texture.map_or(Rgb::ONE, |t| {
             let texels = &scene.textures[t.0 as usize].texels;

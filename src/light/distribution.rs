@@ -6,7 +6,7 @@
 
 /// A discrete distribution over `0..len`, in proportion to non-negative weights.
 #[derive(Clone, Debug)]
-pub struct Distribution {
+pub struct DiscreteDistribution {
     /// `cumulative[i]` = sum of the weights before `i`, over the total; the last entry is 1.
     cumulative: Vec<f32>,
     /// The outcome at `i / (guide.len() - 1)`, by which a search starts.
@@ -17,9 +17,9 @@ pub struct Distribution {
 /// Outcomes a guide entry covers on average.
 const GUIDE_SPACING: usize = 2;
 
-impl Distribution {
+impl DiscreteDistribution {
     /// Sums in f64; a total of zero makes an empty distribution that is never sampled.
-    pub fn new(weights: impl IntoIterator<Item = f32>) -> Distribution {
+    pub fn new(weights: impl IntoIterator<Item = f32>) -> DiscreteDistribution {
         let mut sum = 0.0f64;
         let mut sums = vec![0.0f64];
         for w in weights {
@@ -38,7 +38,7 @@ impl Distribution {
             (cumulative.partition_point(|c| *c <= u).clamp(1, outcomes.max(1)) - 1) as u32
         };
         let guide = (0..=spans).map(at).collect();
-        Distribution { cumulative, guide, total: sum }
+        DiscreteDistribution { cumulative, guide, total: sum }
     }
 
     /// Sum of the weights.
@@ -90,7 +90,7 @@ impl Distribution {
         Bracket { first: if above { middle } else { b.first }, last: if above { b.last } else { middle } }
     }
 
-    /// [`Distribution::sample`] within a bracket.
+    /// [`DiscreteDistribution::sample`] within a bracket.
     #[inline]
     pub(super) fn search(&self, u: f32, b: Bracket) -> (usize, f32) {
         let i = b.first + self.cumulative[b.first..=b.last].partition_point(|c| *c <= u);
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn frequencies_follow_weights_and_zero_is_never_drawn() {
-        let d = Distribution::new([0.0, 1.0, 0.0, 3.0, 0.0]);
+        let d = DiscreteDistribution::new([0.0, 1.0, 0.0, 3.0, 0.0]);
         let n = 4000;
         let mut counts = [0; 5];
         for i in 0..n {
@@ -131,7 +131,7 @@ mod tests {
         let weights: Vec<f32> = (0..1000)
             .map(|i| if i % 7 == 0 { 0.0 } else { ((i * 7919) % 101) as f32 + 1e4 * (i == 500) as u8 as f32 })
             .collect();
-        let d = Distribution::new(weights);
+        let d = DiscreteDistribution::new(weights);
         for k in 0..100_000 {
             let u = k as f32 / 100_000.0;
             let plain = d.cumulative.partition_point(|c| *c <= u) - 1;
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn nothing_to_draw() {
-        assert!(Distribution::new([]).is_empty());
-        assert!(Distribution::new([0.0, 0.0]).is_empty());
+        assert!(DiscreteDistribution::new([]).is_empty());
+        assert!(DiscreteDistribution::new([0.0, 0.0]).is_empty());
     }
 }

@@ -5,7 +5,7 @@
 //! bilinear luminance itself. So the density follows what [`EnvironmentLight::radiance`] returns
 //! up to the variation of the sine over one row, and a sun one texel wide costs no variance.
 
-use super::distribution::Distribution;
+use super::distribution::DiscreteDistribution;
 use crate::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
 use crate::sampling::uniform_sphere;
 use crate::scene::{Environment, EnvironmentMap};
@@ -15,15 +15,15 @@ use std::f32::consts::{FRAC_1_PI, PI, TAU};
 /// The environment, ready to be sampled.
 #[derive(Clone, Debug)]
 pub struct EnvironmentLight {
-    source: Source,
+    source: EnvironmentRadiance,
     /// Mean luminance over the sphere, W/(sr m²).
     mean_luminance: f32,
 }
 
 #[derive(Clone, Debug)]
-enum Source {
+enum EnvironmentRadiance {
     Constant(Rgb),
-    Map { map: EnvironmentMap, rows: Distribution, columns: Vec<Distribution> },
+    Map { map: EnvironmentMap, rows: DiscreteDistribution, columns: Vec<DiscreteDistribution> },
 }
 
 /// A direction drawn from the environment.
@@ -41,9 +41,10 @@ impl EnvironmentLight {
     /// Builds the distributions; `None` if the environment is black.
     pub fn new(environment: &Environment) -> Option<EnvironmentLight> {
         let light = match environment {
-            Environment::Constant(radiance) => {
-                EnvironmentLight { source: Source::Constant(*radiance), mean_luminance: luminance(*radiance) }
-            }
+            Environment::Constant(radiance) => EnvironmentLight {
+                source: EnvironmentRadiance::Constant(*radiance),
+                mean_luminance: luminance(*radiance),
+            },
             Environment::Map(map) => {
                 let cells: Vec<Vec<f32>> = (0..row_count(map))
                     .map(|row| {
@@ -55,10 +56,14 @@ impl EnvironmentLight {
                             .collect()
                     })
                     .collect();
-                let columns: Vec<Distribution> = cells.into_iter().map(Distribution::new).collect();
-                let rows = Distribution::new(columns.iter().map(|c| c.total() as f32));
+                let columns: Vec<DiscreteDistribution> =
+                    cells.into_iter().map(DiscreteDistribution::new).collect();
+                let rows = DiscreteDistribution::new(columns.iter().map(|c| c.total() as f32));
                 let mean_luminance = rows.total() as f32 / (2.0 * map.width as f32);
-                EnvironmentLight { source: Source::Map { map: map.clone(), rows, columns }, mean_luminance }
+                EnvironmentLight {
+                    source: EnvironmentRadiance::Map { map: map.clone(), rows, columns },
+                    mean_luminance,
+                }
             }
         };
         (light.mean_luminance > 0.0 && light.mean_luminance.is_finite()).then_some(light)
@@ -72,8 +77,8 @@ impl EnvironmentLight {
     /// Radiance arriving from the unit world direction `d`.
     pub fn radiance(&self, d: Vec3) -> Rgb {
         match &self.source {
-            Source::Constant(radiance) => *radiance,
-            Source::Map { map, .. } => {
+            EnvironmentRadiance::Constant(radiance) => *radiance,
+            EnvironmentRadiance::Map { map, .. } => {
                 let place = locate(map, d);
                 bilinear(corners(map, place.x, place.row), place.f)
             }
@@ -83,14 +88,13 @@ impl EnvironmentLight {
     /// Radiance arriving from the unit world direction `d`, and the density with which
     /// [`EnvironmentLight::sample`] draws it.
     pub fn radiance_pdf(&self, d: Vec3) -> (Rgb, f32) {
-        let lanes = Vec3x16 { x: [d.x; LANES], y: [d.y; LANES], z: [d.z; LANES] };
-        self.radiance_pdf16(&lanes, 1)[0]
+        self.radiance_pdf16(&Vec3x16::splat(d), 1)[0]
     }
 
     /// [`EnvironmentLight::radiance_pdf`] in the lanes of `wanted`, which wait for memory together: a large map lies
     /// outside the caches, and one look-up after the other would take most of a render's time.
     pub fn radiance_pdf16(&self, d: &Vec3x16, wanted: u16) -> [(Rgb, f32); LANES] {
-        let Source::Map { map, rows, columns } = &self.source else {
+        let EnvironmentRadiance::Map { map, rows, columns } = &self.source else {
             return [(self.radiance(Vec3::Z), 0.25 * FRAC_1_PI); LANES];
         };
         let places = each(wanted, |i| locate(map, d.get(i)));
@@ -113,7 +117,7 @@ impl EnvironmentLight {
 
     /// [`EnvironmentLight::sample`] in the lanes of `wanted`; `None` in the others. The lanes wait for memory together.
     pub fn sample16(&self, u: &Vec2x16, wanted: u16) -> [Option<EnvironmentSample>; LANES] {
-        let Source::Map { map, rows, columns } = &self.source else {
+        let EnvironmentRadiance::Map { map, rows, columns } = &self.source else {
             let (radiance, pdf) = (self.radiance(Vec3::Z), 0.25 * FRAC_1_PI);
             return each(wanted, |i| {
                 Some(EnvironmentSample { direction: uniform_sphere(u.get(i)), radiance, pdf })
@@ -167,7 +171,7 @@ fn direction_in(
 
 /// A cell of the map and the position in it.
 #[derive(Clone, Copy, Default)]
-struct Place {
+struct CellPosition {
     x: usize,
     row: usize,
     f: Vec2,
@@ -190,7 +194,7 @@ fn cell_solid_angle(map: &EnvironmentMap, sin_theta: f32) -> f32 {
 }
 
 /// Where in the map direction `d` is.
-fn locate(map: &EnvironmentMap, d: Vec3) -> Place {
+fn locate(map: &EnvironmentMap, d: Vec3) -> CellPosition {
     let local = map.to_local * d;
     let u = local.x.atan2(-local.z) / TAU;
     let x = (u - u.floor()) * map.width as f32 - 0.5;
@@ -199,7 +203,7 @@ fn locate(map: &EnvironmentMap, d: Vec3) -> Place {
     let y = local.y.clamp(-1.0, 1.0).acos() * FRAC_1_PI * rows as f32;
     let row = (y as usize).min(rows - 1);
     let f = Vec2::new(x - column, (y - row as f32).clamp(0.0, 1.0));
-    Place { x: (column as i64).rem_euclid(map.width as i64) as usize, row, f }
+    CellPosition { x: (column as i64).rem_euclid(map.width as i64) as usize, row, f }
 }
 
 /// Radiance at the corners of a cell: top left, top right, bottom left, bottom right.

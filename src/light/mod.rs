@@ -10,11 +10,12 @@ mod packet;
 mod select;
 
 pub use area::{AreaLight, AreaPoint, emitted, normal_and_area};
-pub use distribution::Distribution;
+pub use distribution::DiscreteDistribution;
 pub use environment::{EnvironmentLight, EnvironmentSample};
 pub use packet::DirectSamples16;
+pub use select::Receivers16;
 
-use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, luminance};
+use crate::math::{F32x16, LANES, Rgb, U32x16, luminance};
 use crate::scene::{DeltaLight, Scene};
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -78,19 +79,13 @@ impl Emitters {
         self.light_of_mesh[mesh as usize] != NO_LIGHT
     }
 
-    /// Densities with which [`Emitters::sample_direct`] at `x` draws points of the meshes `mesh` that lie at
+    /// Densities with which [`Emitters::sample_direct`] at `at` draws points of the meshes `mesh` that lie at
     /// `distance` and show their surfaces under `cos` (either sign); zero where a mesh is no light.
     #[inline]
-    pub fn pdf_areas(
-        &self,
-        (x, n): (&Vec3x16, &Vec3x16),
-        mesh: &U32x16,
-        distance: &F32x16,
-        cos: &F32x16,
-    ) -> F32x16 {
+    pub fn pdf_areas(&self, at: Receivers16, mesh: &U32x16, distance: &F32x16, cos: &F32x16) -> F32x16 {
         let lights = mesh.map(|mesh| self.light_of_mesh[mesh as usize]);
         let index = lights.map(|light| if light == NO_LIGHT { 0 } else { light });
-        let choice = self.selection.probability(self, (x, n), &index);
+        let choice = self.selection.probability(self, at, &index);
         std::array::from_fn(|i| {
             if lights[i] == NO_LIGHT {
                 return 0.0;
@@ -100,11 +95,11 @@ impl Emitters {
         })
     }
 
-    /// Probability with which [`Emitters::sample_direct`] at `x` chooses the environment.
+    /// Probability with which [`Emitters::sample_direct`] at `at` chooses the environment.
     #[inline]
-    pub fn environment_choice(&self, x: &Vec3x16, n: &Vec3x16) -> F32x16 {
+    pub fn environment_choice(&self, at: Receivers16) -> F32x16 {
         let index = (self.areas.len() + self.deltas.len()) as u32;
-        self.selection.probability(self, (x, n), &[index; LANES])
+        self.selection.probability(self, at, &[index; LANES])
     }
 }
 

@@ -1,6 +1,6 @@
 //! Next-event estimation for sixteen points at once.
 
-use super::{AreaLight, DirectSample, Emitters, sample_delta};
+use super::{AreaLight, DirectSample, Emitters, Receivers16, sample_delta};
 use crate::math::{F32x16, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
 use crate::sampling::uniform_triangle;
 use crate::scene::Scene;
@@ -61,18 +61,17 @@ impl DirectSamples16 {
 }
 
 impl Emitters {
-    /// Samples light arriving at the points `x`, on surfaces whose reflecting sides have normals `n`, in the
-    /// lanes of `wanted`. Visibility is not looked at.
+    /// Samples light arriving at points in the lanes of `wanted`. Visibility is not looked at.
     #[inline]
     pub fn sample_direct(
         &self,
         scene: &Scene,
-        (x, n): (&Vec3x16, &Vec3x16),
+        at: Receivers16,
         u_choice: &F32x16,
         u: &Vec2x16,
         wanted: u16,
     ) -> DirectSamples16 {
-        let (chosen, choice) = self.selection.sample(self, (x, n), u_choice);
+        let (chosen, choice) = self.selection.sample(self, at, u_choice);
         let mut triangles = Triangles16::default();
         let (mut textured, mut rest) = (0u16, 0u16);
         for lane in lanes_in(wanted).filter(|i| choice[*i] > 0.0) {
@@ -84,7 +83,7 @@ impl Emitters {
                 None => rest |= 1 << lane,
             }
         }
-        let mut samples = triangles.sample(x, &choice);
+        let mut samples = triangles.sample(at.position, &choice);
         for lane in lanes_in(textured) {
             let light = &self.areas[chosen[lane] as usize];
             let factor = light.texture(scene, triangles.index[lane], triangles.barycentric.get(lane));
@@ -95,7 +94,7 @@ impl Emitters {
         let mut far = 0;
         for lane in lanes_in(rest) {
             match self.deltas.get(chosen[lane] as usize - self.areas.len()) {
-                Some(light) => samples.set(lane, sample_delta(light, x.get(lane), choice[lane])),
+                Some(light) => samples.set(lane, sample_delta(light, at.position.get(lane), choice[lane])),
                 None => far |= 1 << lane,
             }
         }

@@ -3,7 +3,7 @@
 //! With few emitters the choice follows each one's rough irradiance at the point, mixed with its power so that
 //! no emitter is starved; with many it follows power alone.
 
-use super::{AreaLight, Distribution, Emitters, EnvironmentLight, delta_irradiance, delta_power};
+use super::{AreaLight, DiscreteDistribution, Emitters, EnvironmentLight, delta_irradiance, delta_power};
 use crate::math::{F32x16, LANES, U32x16, Vec3x16, luminance};
 use crate::scene::DeltaLight;
 use std::f32::consts::PI;
@@ -14,12 +14,18 @@ const WEIGHED: usize = 32;
 /// Share of the choice that ignores where the point is.
 const BY_POWER: f32 = 0.1;
 
-/// Points to be lit, and the normals of their reflecting sides.
-pub(super) type Points<'a> = (&'a Vec3x16, &'a Vec3x16);
+/// Sixteen points to be lit.
+#[derive(Clone, Copy, Debug)]
+pub struct Receivers16<'a> {
+    /// Positions.
+    pub position: &'a Vec3x16,
+    /// Unit normals of the reflecting sides.
+    pub normal: &'a Vec3x16,
+}
 
 #[derive(Clone, Debug)]
 pub(super) struct Selection {
-    by_power: Distribution,
+    by_power: DiscreteDistribution,
 }
 
 impl Selection {
@@ -34,12 +40,12 @@ impl Selection {
         let deltas = deltas.iter().map(|d| delta_power(d, radius));
         // Flux through the scene's bounding sphere.
         let environment = environment.map(|e| 4.0 * PI * PI * radius * radius * e.mean_luminance());
-        Selection { by_power: Distribution::new(areas.chain(deltas).chain(environment)) }
+        Selection { by_power: DiscreteDistribution::new(areas.chain(deltas).chain(environment)) }
     }
 
     /// An emitter for each lane and the probability of its choice; zero where no emitter can be chosen.
     #[inline]
-    pub fn sample(&self, e: &Emitters, at: Points, u: &F32x16) -> (U32x16, F32x16) {
+    pub fn sample(&self, e: &Emitters, at: Receivers16, u: &F32x16) -> (U32x16, F32x16) {
         let (mut chosen, mut choice) = ([0; LANES], [0.0; LANES]);
         let count = self.by_power.len();
         if self.by_power.is_empty() {
@@ -80,7 +86,7 @@ impl Selection {
 
     /// Probability of [`Selection::sample`] choosing emitter `index[lane]` in each lane.
     #[inline]
-    pub fn probability(&self, e: &Emitters, at: Points, index: &U32x16) -> F32x16 {
+    pub fn probability(&self, e: &Emitters, at: Receivers16, index: &U32x16) -> F32x16 {
         match self.by_power.len() {
             1 => [1.0; LANES],
             count if count > WEIGHED => index.map(|i| self.by_power.probability(i as usize)),
@@ -95,7 +101,8 @@ impl Selection {
 
     /// Weights of all emitters, and their sums.
     #[inline]
-    fn weights(&self, e: &Emitters, (x, n): Points) -> ([F32x16; WEIGHED], F32x16) {
+    fn weights(&self, e: &Emitters, at: Receivers16) -> ([F32x16; WEIGHED], F32x16) {
+        let Receivers16 { position: x, normal: n } = at;
         let mut weights = [[0.0; LANES]; WEIGHED];
         for (w, light) in weights.iter_mut().zip(&e.areas) {
             for i in 0..LANES {

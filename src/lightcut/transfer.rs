@@ -7,7 +7,7 @@ use super::expected::{Outlook, expected_share};
 use super::{OffsetBox, Receiver, max_cos_to_cone};
 use crate::light_tree::{LightTrees, Node};
 use crate::math::{Frame, Rgb};
-use crate::vpl::{Vpl, VplKind, least_dist_sq, near_sq_of_size};
+use crate::vpl::{Vpl, VplKind, min_dist_sq, near_sq_of_size};
 use glam::Vec3;
 
 /// What the transfer from all VPLs of a scene has in common.
@@ -25,7 +25,7 @@ pub struct Transfer<'a> {
 impl<'a> Transfer<'a> {
     /// From the VPLs of `trees` in a scene of the given diagonal.
     pub fn new(trees: &'a LightTrees, diagonal: f32) -> Transfer<'a> {
-        Transfer { trees, min_dist_sq: least_dist_sq(diagonal), patches: false }
+        Transfer { trees, min_dist_sq: min_dist_sq(diagonal), patches: false }
     }
 
     /// Least squared distance that the geometry term of a VPL divides by.

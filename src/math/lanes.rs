@@ -53,6 +53,15 @@ impl Vec2x16 {
 }
 
 impl Vec3x16 {
+    /// The zero vector in all lanes.
+    pub const ZERO: Vec3x16 = Vec3x16 { x: [0.0; LANES], y: [0.0; LANES], z: [0.0; LANES] };
+
+    /// The same vector in all lanes.
+    #[inline(always)]
+    pub const fn splat(v: Vec3) -> Vec3x16 {
+        Vec3x16 { x: [v.x; LANES], y: [v.y; LANES], z: [v.z; LANES] }
+    }
+
     /// The vector in a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Vec3 {

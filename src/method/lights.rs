@@ -5,7 +5,7 @@ use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::Transfer;
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
-use crate::vpl::{LightPassSettings, least_dist_sq, light_pass, near_sq_of_size};
+use crate::vpl::{LightPassSettings, light_pass, min_dist_sq, near_sq_of_size};
 use crate::world::World;
 
 /// A scene's virtual lights.
@@ -36,7 +36,7 @@ impl Lights {
         control.begin(Stage::Tree, 0);
         let build = || LightTrees::build(&found.sets, found.spots, world.diagonal, family);
         let trees = stats.time(Stage::Tree, build);
-        let least_sq = least_dist_sq(world.diagonal);
+        let least_sq = min_dist_sq(world.diagonal);
         let near_sq = |&size: &u32| if size > 0 { near_sq_of_size(size, least_sq) } else { 0.0 };
         Lights { trees, near_sq: found.sizes.iter().map(near_sq).collect(), diagonal: world.diagonal }
     }

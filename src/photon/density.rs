@@ -24,20 +24,20 @@ use std::f32::consts::PI;
 use std::ops::Range;
 
 /// Largest radius of a disc, as a fraction of the scene's diagonal: where photons are rarer, it is dark.
-const LARGEST_RADIUS: f32 = 0.05;
+const MAX_RADIUS: f32 = 0.05;
 
 /// How much more distances along the normal count.
 const NORMAL_SCALE: f32 = 3.0;
 
 /// Least cosine between the normals of surfaces that are taken for one.
-pub const LEAST_COS: f32 = 0.7;
+pub const MIN_COS: f32 = 0.7;
 
 /// Least part of a disc that is taken to be surface.
-const LEAST_SHARE: f32 = 0.15;
+const MIN_SHARE: f32 = 0.15;
 
 /// Irradiance at a point of a surface.
 #[derive(Clone, Copy, Debug)]
-pub struct Estimate {
+pub struct IrradianceEstimate {
     /// Where.
     pub position: Vec3,
     /// Unit normal.
@@ -56,8 +56,8 @@ pub fn surface_distance_sq(offset: Vec3, normal: Vec3) -> f32 {
 }
 
 /// Estimates at the sites of the map, in their order, and the rays traced.
-pub fn estimates(world: &World, map: &PhotonMap, nearest: usize) -> (Vec<Estimate>, u64) {
-    let by_leaf: Vec<Vec<Estimate>> = (0..map.site_index.leaves())
+pub fn estimates(world: &World, map: &PhotonMap, nearest: usize) -> (Vec<IrradianceEstimate>, u64) {
+    let by_leaf: Vec<Vec<IrradianceEstimate>> = (0..map.site_index.leaves())
         .into_par_iter()
         .map_init(Candidates::default, |near, leaf| leaf_estimates(world, map, nearest, leaf, near))
         .collect();
@@ -73,17 +73,17 @@ fn leaf_estimates(
     nearest: usize,
     leaf: usize,
     near: &mut Candidates,
-) -> Vec<Estimate> {
+) -> Vec<IrradianceEstimate> {
     let (photons, sites) = (&map.photons, &map.sites[map.site_index.leaf(leaf)]);
     let count = sites.len() as f32;
     let centre = sites.iter().map(|s| s.position).sum::<Vec3>() / count.max(1.0);
     let extent = sites.iter().map(|s| s.position.distance(centre)).fold(0.0, f32::max);
-    let largest = LARGEST_RADIUS * world.diagonal;
+    let largest = MAX_RADIUS * world.diagonal;
     // Around so many sites there are in proportion more photons.
     let around = count * photons.len() as f32 / map.sites.len().max(1) as f32;
     let guess = 1.5 * extent * (nearest as f32 / around.max(1.0)).sqrt();
     let mut radius = guess.clamp(1e-4 * largest, largest);
-    let mut found: Vec<Option<Estimate>> = vec![None; sites.len()];
+    let mut found: Vec<Option<IrradianceEstimate>> = vec![None; sites.len()];
     let mut distances = Vec::new();
     while found.iter().any(Option::is_none) {
         near.clear();
@@ -144,7 +144,7 @@ impl Candidates {
             for i in 0..LANES {
                 let d = surface_distance_sq(p.get(i) - position, normal);
                 // The normals of lanes without a photon are zero.
-                let same = (n.get(i).dot(normal) >= LEAST_COS) & (l.get(i).dot(normal) > 0.0);
+                let same = (n.get(i).dot(normal) >= MIN_COS) & (l.get(i).dot(normal) > 0.0);
                 (distance[i], counts[i]) = (d, u32::from(same & (d < radius_sq)));
             }
             distances.extend(lanes_in(mask_of(&counts)).map(|i| (distance[i], photons[i])));
@@ -159,7 +159,7 @@ fn estimate(
     nearest: usize,
     radius: f32,
     distances: &mut [(f32, u32)],
-) -> Estimate {
+) -> IrradianceEstimate {
     let order = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
     // The k-th photon ends the disc and is not in it.
     let (inside, radius_sq) = match nearest.checked_sub(1).filter(|&k| k < distances.len()) {
@@ -173,13 +173,13 @@ fn estimate(
     let mut irradiance = Rgb::ZERO;
     if radius > 0.0 {
         inside.sort_unstable_by(order);
-        let disc = Disc::look(world, (at.position, at.normal), radius);
+        let disc = Disc::probe(world, at, radius);
         let kernel = |&(d, j): &(f32, u32)| photons[j as usize].flux * (1.0 - d / radius_sq);
         let sum: Rgb = match disc.share < 1.0 {
             true => inside.iter().filter(|(_, j)| disc.sees(world, &photons[*j as usize])).map(kernel).sum(),
             false => inside.iter().map(kernel).sum(),
         };
-        irradiance = sum * (2.0 / (PI * radius_sq * disc.share.max(LEAST_SHARE)));
+        irradiance = sum * (2.0 / (PI * radius_sq * disc.share.max(MIN_SHARE)));
     }
-    Estimate { position: at.position, normal: at.normal, irradiance, radius }
+    IrradianceEstimate { position: at.position, normal: at.normal, irradiance, radius }
 }

@@ -1,9 +1,10 @@
-//! Which part of a disc on a surface is surface.
+//! Share of a disc on a surface that is surface.
 //!
-//! Near edges and corners part of the disc is beyond the surface, where no photon can be. Rays from a point low above its middle find
-//! out which part, and whether a photon on it can be seen from there: if not, it may lie in the next room, whose floor goes
-//! on under the wall.
+//! Near edges and corners part of the disc is beyond the surface, where no photon can be. Rays from a point low above
+//! its middle find out which part, and whether a photon on it can be seen from there: if not, it may lie in the next
+//! room, whose floor goes on under the wall.
 
+use super::map::Site;
 use crate::embree::{Hits16, Ray, Rays16};
 use crate::math::{Frame, LANES, lanes_in};
 use crate::sampling::{hash, owen_sobol_2d};
@@ -16,16 +17,16 @@ use std::f32::consts::TAU;
 /// Height of the eye over the disc, in radii.
 const HEIGHT: f32 = 0.3;
 
-/// What of the disc is hit may be this far off its plane, in radii.
+/// Largest distance of a hit on the disc from its plane, in radii.
 const FLATNESS: f32 = 0.2;
 
 /// Least cosine between normals of the disc and of what is hit.
-const LEAST_COS: f32 = 0.7;
+const MIN_COS: f32 = 0.7;
 
 /// Seed of the places on the disc.
 const SEED: u32 = 0xd15c;
 
-/// Rays that look at a disc.
+/// Rays that probe a disc.
 pub const RAYS: u64 = LANES as u64 + 1;
 
 /// A disc on a surface, seen from above its middle.
@@ -36,8 +37,9 @@ pub struct Disc {
 }
 
 impl Disc {
-    /// Looks at a disc around `position`.
-    pub fn look(world: &World, (position, normal): (Vec3, Vec3), radius: f32) -> Disc {
+    /// Probes the disc around a site.
+    pub fn probe(world: &World, site: &Site, radius: f32) -> Disc {
+        let Site { position, normal } = *site;
         let frame = Frame::from_normal(normal);
         let up = shadow::ray_from(position, normal, normal);
         let free = world.accel.closest_hit(&Ray { t_far: 2.0 * HEIGHT * radius, ..up });
@@ -60,7 +62,7 @@ impl Disc {
             let ray = rays.get(lane);
             let off = (eye + ray.direction * hits.t[lane] - position).dot(normal);
             let normal_there = world.geometric_normal(hits.geometry[lane], hits.primitive[lane]);
-            off.abs() <= FLATNESS * radius && normal_there.dot(normal).abs() >= LEAST_COS
+            off.abs() <= FLATNESS * radius && normal_there.dot(normal).abs() >= MIN_COS
         });
         Disc { eye, share: on_disc.count() as f32 / LANES as f32 }
     }

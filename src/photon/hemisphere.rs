@@ -3,7 +3,8 @@
 //! Papers: Ward and Heckbert 1992; Krivanek et al. 2005.
 //! Rays of sixteen neighbouring strata start at one point and are traced as a coherent packet.
 
-use super::radiance::{GatherCounts, IndirectLight, Seen};
+use super::indirect_light::{GatherCounts, IndirectLight};
+use super::radiance::IncomingRadiance;
 use super::strata::{BLOCK, Met, Strata};
 use crate::embree::Rays16;
 use crate::eye::EyePoint;
@@ -12,9 +13,9 @@ use crate::sampling::hash;
 use crate::shadow;
 use glam::{Mat3, Vec2, Vec3};
 
-/// What arrives at a point.
+/// Irradiance gathered at a point.
 #[derive(Clone, Copy, Debug)]
-pub struct Gathered {
+pub struct GatheredIrradiance {
     /// Irradiance.
     pub irradiance: Rgb,
     /// Irradiance vector by channel, in the world.
@@ -25,15 +26,28 @@ pub struct Gathered {
     pub distance: f32,
 }
 
+/// A point at which light is gathered.
+#[derive(Clone, Copy, Debug)]
+pub struct GatherPoint<'a> {
+    /// The point.
+    pub point: &'a EyePoint,
+    /// Unit geometric normal there.
+    pub geometric_normal: Vec3,
+    /// Another seed, other directions within the strata.
+    pub seed: u32,
+    /// Surfaces nearer than 1 / `max_nearness` count as that far in the gradient.
+    pub max_nearness: f32,
+}
+
 /// Gathers at a point, keeping in `met` what the rays have met.
 pub fn gather(
     light: &IndirectLight,
     strata: &Strata,
-    point: &EyePoint,
-    (geometric_normal, seed, most_near): (Vec3, u32, f32),
+    at: &GatherPoint,
     met: &mut Met,
     counts: &mut GatherCounts,
-) -> Gathered {
+) -> GatheredIrradiance {
+    let GatherPoint { point, geometric_normal, seed, max_nearness } = *at;
     met.clear(strata.len());
     let frame = Frame::from_normal(point.normal);
     let coat = point.sharing.coat();
@@ -52,7 +66,7 @@ pub fn gather(
                 rays.set(lane, &shadow::ray_from(point.position, geometric_normal, direction));
             }
             let found = light.along16(&rays, u16::MAX, true, block_seed, counts);
-            for (lane, Seen { radiance, distance, normal }) in found.into_iter().enumerate() {
+            for (lane, IncomingRadiance { radiance, distance, normal }) in found.into_iter().enumerate() {
                 let (ring, sector) = stratum(lane);
                 let place = strata.place(ring, sector);
                 let passed = match coat {
@@ -67,10 +81,10 @@ pub fn gather(
     }
     counts.record_rays += strata.len() as u64;
     let vector = strata.vector(met);
-    let gradient = strata.gradient(met, most_near);
+    let gradient = strata.gradient(met, max_nearness);
     let to_world = Mat3::from_cols(frame.tangent, frame.bitangent, frame.normal);
     let mean_nearness = met.nearness.iter().sum::<f32>() / strata.len() as f32;
-    Gathered {
+    GatheredIrradiance {
         irradiance: Rgb::new(vector.x_axis.z, vector.y_axis.z, vector.z_axis.z),
         vector: to_world * vector,
         gradient: to_world * gradient,

@@ -2,8 +2,8 @@
 //!
 //! Paper: Christensen 1999: one look-up at each hit of a final gathering, instead of an estimate.
 
-use super::density::{Estimate, LEAST_COS, surface_distance_sq};
-use super::nearest::NearestIndex;
+use super::density::{IrradianceEstimate, MIN_COS, surface_distance_sq};
+use super::nearest::WideKdTree;
 use crate::eye::EyeIndex;
 use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, lanes_in, mask_of};
 use glam::Vec3;
@@ -23,7 +23,7 @@ struct Leaf {
 /// Estimates in the order of an index over them.
 pub struct IrradianceMap {
     leaves: Vec<Leaf>,
-    index: NearestIndex,
+    index: WideKdTree,
     /// Each with the radius of the disc it is the mean over.
     irradiance: Vec<(Rgb, f32)>,
     /// Square of how far the furthest-reaching reaches.
@@ -32,14 +32,14 @@ pub struct IrradianceMap {
 
 impl IrradianceMap {
     /// Of estimates in the order of the index.
-    pub fn new(estimates: &[Estimate], index: &EyeIndex) -> IrradianceMap {
+    pub fn new(estimates: &[IrradianceEstimate], index: &EyeIndex) -> IrradianceMap {
         let leaves = (0..index.leaves())
             .map(|leaf| Leaf::new(estimates, index.leaf(leaf).start, index.leaf(leaf).len()));
         let positions: Vec<Vec3> = estimates.iter().map(|e| e.position).collect();
         let furthest = REACH * estimates.iter().map(|e| e.radius).fold(0.0, f32::max);
         IrradianceMap {
             leaves: leaves.collect(),
-            index: NearestIndex::new(index, &positions),
+            index: WideKdTree::new(index, &positions),
             irradiance: estimates.iter().map(|e| (e.irradiance, e.radius)).collect(),
             // That the furthest-reaching counts at its very end.
             reach_sq: (furthest * furthest).next_up(),
@@ -86,7 +86,7 @@ impl IrradianceMap {
 }
 
 impl Leaf {
-    fn new(estimates: &[Estimate], first: usize, count: usize) -> Leaf {
+    fn new(estimates: &[IrradianceEstimate], first: usize, count: usize) -> Leaf {
         let mut leaf = Leaf { first: first as u32, ..Leaf::default() };
         for (i, e) in estimates[first..].iter().take(count.min(PACKETS * LANES)).enumerate() {
             leaf.position[i / LANES].set(i % LANES, e.position);
@@ -102,7 +102,7 @@ fn distances_sq(positions: &Vec3x16, normals: &Vec3x16, point: Vec3, normal: Vec
     let mut distances = [f32::INFINITY; LANES];
     for i in 0..LANES {
         let d = surface_distance_sq(positions.get(i) - point, normal);
-        distances[i] = if normals.get(i).dot(normal) >= LEAST_COS { d } else { f32::INFINITY };
+        distances[i] = if normals.get(i).dot(normal) >= MIN_COS { d } else { f32::INFINITY };
     }
     distances
 }
@@ -126,11 +126,11 @@ mod tests {
                 1 => (Vec3::new(u.x, u.y, 0.0), Vec3::NEG_Z),
                 _ => (Vec3::new(0.0, u.x, u.y), Vec3::X),
             };
-            Estimate { position, normal, irradiance: Rgb::splat(i as f32), radius: 0.1 }
+            IrradianceEstimate { position, normal, irradiance: Rgb::splat(i as f32), radius: 0.1 }
         };
-        let estimates: Vec<Estimate> = (0..3000).map(estimate).collect();
+        let estimates: Vec<IrradianceEstimate> = (0..3000).map(estimate).collect();
         let (index, order) = EyeIndex::build(estimates.iter().map(|e| e.position));
-        let estimates: Vec<Estimate> = order.iter().map(|&i| estimates[i as usize]).collect();
+        let estimates: Vec<IrradianceEstimate> = order.iter().map(|&i| estimates[i as usize]).collect();
         let map = IrradianceMap::new(&estimates, &index);
         for (point, normal, near) in [
             (Vec3::new(0.01, 0.5, 0.0), Vec3::Z, true),
@@ -139,8 +139,8 @@ mod tests {
             (Vec3::new(0.5, 0.4, 0.01), Vec3::new(0.6, 0.0, 0.8), true),
             (Vec3::new(5.0, 0.4, 0.01), Vec3::new(0.6, 0.0, 0.8), false),
         ] {
-            let rated = |e: &&Estimate| surface_distance_sq(e.position - point, normal);
-            let same = estimates.iter().filter(|e| e.normal.dot(normal) >= LEAST_COS);
+            let rated = |e: &&IrradianceEstimate| surface_distance_sq(e.position - point, normal);
+            let same = estimates.iter().filter(|e| e.normal.dot(normal) >= MIN_COS);
             let nearest = same.min_by(|a, b| rated(a).total_cmp(&rated(b))).unwrap();
             let expected = near.then_some((nearest.irradiance, 0.1));
             assert_eq!(map.at(point, normal), expected);

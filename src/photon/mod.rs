@@ -7,12 +7,14 @@
 //! - [`density`]: irradiance from the photons around a place; [`disc`]: which part of the disc around it is surface;
 //! - [`irradiance`]: the same looked up anywhere, by [`nearest`];
 //! - [`strata`]: the directions of a final gathering; [`hemisphere`]: what they meet, and how that changes nearby;
-//! - [`radiance`]: light along a ray; [`near`]: from surfaces nearer than the map resolves;
+//! - [`indirect_light`]: light that a surface sends back along a ray; [`near`]: from surfaces nearer than the map
+//!   resolves; [`radiance`]: light along packets of rays;
 //! - [`records`]: records of indirect light for the cache; [`own`]: light at single samples.
 
 pub mod density;
 pub mod disc;
 pub mod hemisphere;
+pub mod indirect_light;
 pub mod irradiance;
 pub mod map;
 pub mod near;

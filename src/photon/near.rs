@@ -1,14 +1,15 @@
-//! What surfaces reflect that are nearer than the photon map resolves.
+//! Reflection by surfaces that are nearer than the photon map resolves.
 //!
-//! Its irradiance is the mean over a disc. Seen from far the blur is lost among that of all the hemisphere; seen from
-//! nearer than the disc is wide, it is not: light leaks under things and creases are dark. There, paths go on instead by another edge,
-//! with light sampled at their vertices, until they reach a surface far enough away.
+//! The map's irradiance is the mean over a disc. Seen from far the blur is lost among that of all the hemisphere; seen
+//! from nearer than the disc is wide, it is not: light leaks under things and creases are dark. There, paths go on
+//! instead by another edge, with light sampled at their vertices, until they reach a surface far enough away.
 //!
 //! Papers: Jensen 1996 (importance of near hits); Christensen 1999; Veach 1997 (the two ways to find light, weighted).
 
-use super::density::LEAST_COS;
-use super::radiance::{GatherCounts, IndirectLight};
+use super::density::MIN_COS;
+use super::indirect_light::{GatherCounts, IndirectLight};
 use crate::embree::{Hits16, Rays16};
+use crate::light::Receivers16;
 use crate::math::{F32x16, Frame, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in};
 use crate::sampling::{Sampler, cosine_hemisphere, hash, power_heuristic};
 use crate::shadow;
@@ -17,14 +18,14 @@ use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
 /// Most edges added; what is nearer still after so many is taken from the map.
-const MOST_EDGES: u32 = 4;
+const MAX_EDGES: u32 = 4;
 
 /// Most near surfaces that share what is found on one of them.
 const SHARED: usize = 4;
 
 /// Surfaces near to where their light goes.
 #[derive(Default)]
-pub struct Near {
+pub struct NearSurfaces {
     /// Lanes in use.
     pub lanes: u16,
     position: Vec3x16,
@@ -32,11 +33,15 @@ pub struct Near {
     normal: Vec3x16,
     /// Unit geometric normals on that side.
     geometric: Vec3x16,
-    /// What becomes of the irradiance's mean radiance on its way.
+    /// Factor on the irradiance's mean radiance on its way.
     throughput: Vec3x16,
 }
 
-impl Near {
+impl NearSurfaces {
+    fn receivers(&self) -> Receivers16<'_> {
+        Receivers16 { position: &self.position, normal: &self.normal }
+    }
+
     /// Adds a surface met along `direction`; `throughput` has its albedo.
     pub fn set(&mut self, lane: usize, surface: &Surface, direction: Vec3, throughput: Rgb) {
         let facing = |n: Vec3| if n.dot(direction) < 0.0 { n } else { -n };
@@ -53,7 +58,7 @@ impl IndirectLight<'_> {
     /// surfaces turned alike one is followed, drawn by chance, and its irradiance lent to the others.
     pub fn follow_shared(
         &self,
-        near: Near,
+        near: NearSurfaces,
         seed: u32,
         radiance: &mut [Rgb; LANES],
         counts: &mut GatherCounts,
@@ -65,7 +70,7 @@ impl IndirectLight<'_> {
         let mut left = near.lanes;
         while left != 0 {
             let normal = near.geometric.get(left.trailing_zeros() as usize);
-            let alike = |lane: &usize| near.geometric.get(*lane).dot(normal) >= LEAST_COS;
+            let alike = |lane: &usize| near.geometric.get(*lane).dot(normal) >= MIN_COS;
             let group = || lanes_in(left).filter(alike).take(SHARED);
             let of = group().count().max(1);
             let drawn = hash(u32::from(left), seed) as usize % of;
@@ -81,16 +86,22 @@ impl IndirectLight<'_> {
         }
         let mut lent = [Rgb::ZERO; LANES];
         let (lanes, albedo) = (near.lanes, near.throughput);
-        let white = Vec3x16 { x: [1.0; LANES], y: [1.0; LANES], z: [1.0; LANES] };
-        self.follow(Near { lanes: chosen, throughput: white, ..near }, seed, &mut lent, counts);
+        let white = Vec3x16::splat(Rgb::ONE);
+        self.follow(NearSurfaces { lanes: chosen, throughput: white, ..near }, seed, &mut lent, counts);
         for lane in lanes_in(lanes) {
             radiance[lane] += albedo.get(lane) * lent[lender[lane]];
         }
     }
 
     /// Adds to `radiance` what the near surfaces reflect.
-    pub fn follow(&self, mut near: Near, seed: u32, radiance: &mut [Rgb; LANES], counts: &mut GatherCounts) {
-        for edge in 1..=MOST_EDGES {
+    pub fn follow(
+        &self,
+        mut near: NearSurfaces,
+        seed: u32,
+        radiance: &mut [Rgb; LANES],
+        counts: &mut GatherCounts,
+    ) {
+        for edge in 1..=MAX_EDGES {
             if near.lanes == 0 {
                 return;
             }
@@ -98,19 +109,19 @@ impl IndirectLight<'_> {
             let mut samplers: [Sampler; LANES] = std::array::from_fn(|lane| Sampler::new(seed, lane as u32));
             counts.near += u64::from(near.lanes.count_ones());
             self.lit(&near, &mut samplers, radiance);
-            near = self.next(&near, edge == MOST_EDGES, &mut samplers, radiance, counts);
+            near = self.next(&near, edge == MAX_EDGES, &mut samplers, radiance, counts);
         }
     }
 
     /// Adds the direct light found by sampling emitters.
-    fn lit(&self, near: &Near, samplers: &mut [Sampler; LANES], radiance: &mut [Rgb; LANES]) {
+    fn lit(&self, near: &NearSurfaces, samplers: &mut [Sampler; LANES], radiance: &mut [Rgb; LANES]) {
         let world = self.world;
         let (mut choice, mut u) = (F32x16::default(), Vec2x16::default());
         for lane in lanes_in(near.lanes) {
             choice[lane] = samplers[lane].next_1d();
             u.set(lane, samplers[lane].next_2d());
         }
-        let at = (&near.position, &near.normal);
+        let at = near.receivers();
         let lights = world.emitters.sample_direct(&world.scene, at, &choice, &u, near.lanes);
         for lane in lanes_in(near.lanes & lights.useful()) {
             let (direction, distance) = (lights.direction.get(lane), lights.distance[lane]);
@@ -145,12 +156,12 @@ impl IndirectLight<'_> {
     /// Follows a ray from each: adds the light that it meets, and returns what is near again.
     fn next(
         &self,
-        near: &Near,
+        near: &NearSurfaces,
         last: bool,
         samplers: &mut [Sampler; LANES],
         radiance: &mut [Rgb; LANES],
         counts: &mut GatherCounts,
-    ) -> Near {
+    ) -> NearSurfaces {
         let world = self.world;
         let (mut rays, mut above, mut pdf) = (Rays16::default(), 0, F32x16::default());
         for lane in lanes_in(near.lanes) {
@@ -164,7 +175,7 @@ impl IndirectLight<'_> {
         let mut hits = Hits16::default();
         let met = world.accel.closest_hit16(&rays, above, false, &mut hits);
         self.sky(near, &rays, &pdf, above & !met, radiance);
-        let mut again = Near::default();
+        let mut again = NearSurfaces::default();
         for lane in lanes_in(met) {
             let surface = world.surface(&hits.get(lane));
             let (direction, throughput) = (rays.get(lane).direction, near.throughput.get(lane));
@@ -184,10 +195,10 @@ impl IndirectLight<'_> {
     }
 
     /// Adds the environment's light along rays that have met nothing.
-    fn sky(&self, near: &Near, rays: &Rays16, pdf: &F32x16, lanes: u16, radiance: &mut [Rgb; LANES]) {
+    fn sky(&self, near: &NearSurfaces, rays: &Rays16, pdf: &F32x16, lanes: u16, radiance: &mut [Rgb; LANES]) {
         let emitters = &self.world.emitters;
         let Some(environment) = emitters.environment.as_ref().filter(|_| lanes != 0) else { return };
-        let choice = emitters.environment_choice(&near.position, &near.normal);
+        let choice = emitters.environment_choice(near.receivers());
         let found = environment.radiance_pdf16(&rays.directions(), lanes);
         for lane in lanes_in(lanes) {
             let (light, other) = found[lane];
@@ -197,10 +208,10 @@ impl IndirectLight<'_> {
     }
 
     /// Density with which sampling emitters from a lane would have found a place of an emitter.
-    fn density(&self, near: &Near, surface: &Surface, direction: Vec3, lane: usize) -> f32 {
+    fn density(&self, near: &NearSurfaces, surface: &Surface, direction: Vec3, lane: usize) -> f32 {
         let (mut mesh, mut distance, mut cos) = (U32x16::default(), F32x16::default(), F32x16::default());
         (mesh[lane], distance[lane], cos[lane]) = (surface.mesh, surface.t, surface.normal.dot(direction));
-        let at = (&near.position, &near.normal);
+        let at = near.receivers();
         self.world.emitters.pdf_areas(at, &mesh, &distance, &cos)[lane]
     }
 }

@@ -17,13 +17,14 @@ const STACK: usize = 15 * 8;
 /// Boxes of sixteen children; those that do not exist are infinitely far from everything.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-struct Node {
+struct WideNode {
     min: [F32x16; 3],
     max: [F32x16; 3],
 }
 
-impl Node {
-    const EMPTY: Node = Node { min: [[f32::INFINITY; LANES]; 3], max: [[f32::NEG_INFINITY; LANES]; 3] };
+impl WideNode {
+    const EMPTY: WideNode =
+        WideNode { min: [[f32::INFINITY; LANES]; 3], max: [[f32::NEG_INFINITY; LANES]; 3] };
 
     /// Squares of the distances from a point to the boxes.
     #[inline(always)]
@@ -43,16 +44,16 @@ impl Node {
 }
 
 /// The hierarchy.
-pub struct NearestIndex {
+pub struct WideKdTree {
     /// Level after level from the root, which has 2^first children.
-    nodes: Vec<Node>,
+    nodes: Vec<WideNode>,
     /// Where each level begins in `nodes`.
     levels: Vec<usize>,
 }
 
-impl NearestIndex {
+impl WideKdTree {
     /// Over the leaves of an index, whose points are at `positions`.
-    pub fn new(index: &EyeIndex, positions: &[Vec3]) -> NearestIndex {
+    pub fn new(index: &EyeIndex, positions: &[Vec3]) -> WideKdTree {
         let first = match index.depth() % BITS {
             0 if index.depth() > 0 => BITS,
             rest => rest,
@@ -60,7 +61,7 @@ impl NearestIndex {
         let (mut nodes, mut levels) = (Vec::new(), Vec::new());
         for level in (first..=index.depth()).step_by(BITS as usize) {
             levels.push(nodes.len());
-            nodes.resize(nodes.len() + (1usize << level).div_ceil(LANES), Node::EMPTY);
+            nodes.resize(nodes.len() + (1usize << level).div_ceil(LANES), WideNode::EMPTY);
             let added = &mut nodes[levels[levels.len() - 1]..];
             for child in 0..1usize << level {
                 let (node, lane) = (&mut added[child / LANES], child % LANES);
@@ -72,7 +73,7 @@ impl NearestIndex {
                 }
             }
         }
-        NearestIndex { nodes, levels }
+        WideKdTree { nodes, levels }
     }
 
     /// Calls `visit` with the leaves whose boxes come within a radius of `p`, the nearest first and then near ones as a rule.
@@ -134,7 +135,7 @@ mod tests {
             let at = |i: u32| owen_sobol_2d(i, 1).extend(owen_sobol_2d(i, 2).x);
             let (index, order) = EyeIndex::build((0..n).map(at).collect::<Vec<_>>().into_iter());
             let points: Vec<Vec3> = order.iter().map(|&i| at(i)).collect();
-            let nearest_index = NearestIndex::new(&index, &points);
+            let nearest_index = WideKdTree::new(&index, &points);
             for x in [
                 Vec3::ZERO,
                 Vec3::new(0.3, 0.9, 0.2),

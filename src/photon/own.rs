@@ -1,6 +1,6 @@
 //! Indirect light at single eye samples, where records do not serve: rays drawn from what reflects.
 
-use super::radiance::{GatherCounts, IndirectLight};
+use super::indirect_light::{GatherCounts, IndirectLight};
 use crate::embree::Rays16;
 use crate::eye::EyeSamples;
 use crate::material::Bsdf;
@@ -8,21 +8,34 @@ use crate::math::{Frame, LANES, Rgb, first_lanes};
 use crate::sampling::{Sampler, hash};
 use crate::shadow;
 
-/// Indirect radiance that a sample reflects to the eye, or its lobe on the base alone, by about `count` rays.
+/// Gathering at a single sample.
+#[derive(Clone, Copy, Debug)]
+pub struct SampleGather {
+    /// Index of the eye sample.
+    pub sample: u32,
+    /// Whether only the lobe on the base is wanted.
+    pub lobe_only: bool,
+    /// Number of rays, about.
+    pub rays: u32,
+    /// Another seed, other rays.
+    pub seed: u32,
+}
+
+/// Indirect radiance that a sample reflects to the eye.
 pub fn reflected(
     light: &IndirectLight,
     samples: &EyeSamples,
-    (sample, lobe_only): (u32, bool),
-    (count, seed): (u32, u32),
+    task: &SampleGather,
     counts: &mut GatherCounts,
 ) -> Rgb {
+    let SampleGather { sample, lobe_only, rays, seed } = *task;
     let (point, surface) = (&samples.points[sample as usize], &samples.surfaces[sample as usize]);
     let lobe = if lobe_only { surface.bsdf.split_base(1.0).1 } else { None };
     let bsdf: Bsdf = lobe.unwrap_or(surface.bsdf);
     let frame = Frame::from_normal(point.normal);
     let wo = frame.to_local(surface.out);
     let seed = hash(sample, seed);
-    let packets = count.div_ceil(LANES as u32).max(1);
+    let packets = rays.div_ceil(LANES as u32).max(1);
     let mut sum = Rgb::ZERO;
     for packet in 0..packets {
         let mut rays = Rays16::default();

@@ -1,57 +1,23 @@
 //! Indirect light along rays of a final gathering.
 //!
-//! Where a ray ends, the surface reflects the irradiance of the map, unless it is nearer than the map resolves (see
-//! [`super::near`]). Mirrors, glass and sharp lobes are followed to what shows in them; what emits is direct light and
-//! counts for nothing.
-//!
 //! Units: radiance, and distance to the first surface.
 
-use super::irradiance::IrradianceMap;
-use super::near::Near;
+use super::indirect_light::{GatherCounts, IndirectLight, facing};
+use super::near::NearSurfaces;
 use crate::embree::{Hits16, Rays16};
 use crate::math::{LANES, Rgb, lanes_in};
 use crate::sampling::Sampler;
-use crate::shadow;
-use crate::stats::add_fields;
-use crate::world::{Surface, World};
 use glam::Vec3;
-use std::f32::consts::FRAC_1_PI;
 
-/// Most surfaces a ray is followed through.
-const MOST_EDGES: u32 = 8;
-
-/// What gathering took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct GatherCounts {
-    /// Rays from records.
-    pub record_rays: u64,
-    /// Rays from single samples.
-    pub own_rays: u64,
-    /// Rays from mirrors, glass and sharp lobes that those met.
-    pub followed: u64,
-    /// Surfaces too near for the map.
-    pub near: u64,
-}
-add_fields!(GatherCounts { record_rays, own_rays, followed, near });
-
-/// What a ray met.
+/// Indirect light along a ray, and the surface that it comes from.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct IncomingRadiance {
     /// Indirect light that comes back along the ray.
     pub radiance: Rgb,
     /// To the first surface; infinite if there is none.
     pub distance: f32,
     /// Its unit geometric normal on the side of the ray; zero if there is none.
     pub normal: Vec3,
-}
-
-/// The indirect light of a scene.
-#[derive(Clone, Copy)]
-pub struct IndirectLight<'w> {
-    /// The scene.
-    pub world: &'w World,
-    /// Irradiance on its surfaces.
-    pub map: &'w IrradianceMap,
 }
 
 impl IndirectLight<'_> {
@@ -64,13 +30,13 @@ impl IndirectLight<'_> {
         coherent: bool,
         seed: u32,
         counts: &mut GatherCounts,
-    ) -> [Seen; LANES] {
-        let nothing = Seen { radiance: Rgb::ZERO, distance: f32::INFINITY, normal: Vec3::ZERO };
+    ) -> [IncomingRadiance; LANES] {
+        let nothing = IncomingRadiance { radiance: Rgb::ZERO, distance: f32::INFINITY, normal: Vec3::ZERO };
         let mut found = [nothing; LANES];
         let mut hits = Hits16::default();
         let met = self.world.accel.closest_hit16(rays, valid, coherent, &mut hits);
         let mut radiance = [Rgb::ZERO; LANES];
-        let mut near = Near::default();
+        let mut near = NearSurfaces::default();
         for lane in lanes_in(met) {
             let hit = hits.get(lane);
             let surface = self.world.surface(&hit);
@@ -81,7 +47,8 @@ impl IndirectLight<'_> {
             if albedo != Rgb::ZERO {
                 near.set(lane, &surface, direction, albedo);
             }
-            found[lane] = Seen { distance: hit.t, normal: facing(&surface, direction), ..nothing };
+            found[lane] =
+                IncomingRadiance { distance: hit.t, normal: facing(&surface, direction), ..nothing };
         }
         match coherent {
             true => self.follow_shared(near, seed, &mut radiance, counts),
@@ -92,51 +59,4 @@ impl IndirectLight<'_> {
         }
         found
     }
-
-    /// Radiance that a surface sends back along `direction`, by which it was met at `distance`; and the albedo by which it
-    /// reflects besides, if it is too near for the map, else 0.
-    #[inline]
-    pub(super) fn sent(
-        &self,
-        first: &Surface,
-        mut direction: Vec3,
-        distance: f32,
-        sampler: &mut Sampler,
-        counts: &mut GatherCounts,
-    ) -> (Rgb, Rgb) {
-        let (mut radiance, mut throughput, mut near) = (Rgb::ZERO, Rgb::ONE, Rgb::ZERO);
-        let mut surface = *first;
-        for edge in 0..MOST_EDGES {
-            let bsdf = self.world.bsdf(&surface);
-            let out = surface.frame.to_local(-direction);
-            let albedo = bsdf.diffuse_albedo(out);
-            if albedo != Rgb::ZERO {
-                match self.map.at(surface.position, facing(&surface, direction)) {
-                    Some((_, radius)) if edge == 0 && distance < radius => near = albedo,
-                    Some((irradiance, _)) => radiance += throughput * albedo * irradiance * FRAC_1_PI,
-                    None => {}
-                }
-            }
-            let sharp = bsdf.split_sharp_lobe();
-            if sharp.is_none() && !bsdf.has_delta() {
-                break;
-            }
-            let followed = sharp.map_or(bsdf, |(_, sharp)| sharp);
-            let sample = followed.sample(out, sampler.next_1d(), sampler.next_2d());
-            let Some(s) = sample.filter(|s| s.delta || sharp.is_some()) else { break };
-            throughput *= s.weight;
-            direction = surface.frame.to_world(s.wi);
-            counts.followed += 1;
-            let ray = shadow::ray_from(surface.position, surface.normal, direction);
-            let Some(next) = self.world.intersect(&ray) else { break };
-            surface = next;
-        }
-        (radiance, near)
-    }
-}
-
-/// The geometric normal on the side that a ray along `direction` meets.
-#[inline]
-fn facing(surface: &Surface, direction: Vec3) -> Vec3 {
-    if surface.normal.dot(direction) < 0.0 { surface.normal } else { -surface.normal }
 }

@@ -4,8 +4,8 @@
 //! Deviations: for the series of glossy surfaces, what a stratum shows is a patch of surface that stays where it is as the point moves
 //! (as the virtual lights of `cache` do), so these gradients do not know of the edges of occluders.
 
-use super::hemisphere::{Gathered, gather};
-use super::radiance::{GatherCounts, IndirectLight};
+use super::hemisphere::{GatherPoint, GatheredIrradiance, gather};
+use super::indirect_light::{GatherCounts, IndirectLight};
 use super::strata::{Met, Strata};
 use crate::eye::{EyePoint, EyeSamples};
 use crate::gradient::Incidence;
@@ -25,10 +25,10 @@ use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
 /// Least cosine, at the point and at patches that it sees, by which is divided.
-const LEAST_COS: f32 = 0.05;
+const MIN_COS: f32 = 0.05;
 
 /// What computing records needs.
-pub struct PhotonSource<'w> {
+pub struct FinalGatherSource<'w> {
     /// Direct light, by cuts.
     pub direct: Source<'w>,
     /// Indirect light.
@@ -43,12 +43,12 @@ pub struct PhotonSource<'w> {
 
 /// A thread's buffers.
 #[derive(Default)]
-struct Workspace {
+struct GatherWorkspace {
     met: Met,
     series: SeriesGatherer,
 }
 
-impl RecordSource for PhotonSource<'_> {
+impl RecordSource for FinalGatherSource<'_> {
     fn settings(&self) -> &CacheSettings {
         self.direct.settings
     }
@@ -68,7 +68,7 @@ impl RecordSource for PhotonSource<'_> {
         let indirect: Vec<(Pick, Pair, GatherCounts)> = picks
             .par_iter()
             .filter(|pick| pick.lacks[1])
-            .map_init(Workspace::default, |work, pick| {
+            .map_init(GatherWorkspace::default, |work, pick| {
                 let mut counts = GatherCounts::default();
                 let made = self.indirect(work, samples, pick.sample, &mut counts);
                 (*pick, [None, made], counts)
@@ -83,10 +83,10 @@ impl RecordSource for PhotonSource<'_> {
     }
 }
 
-impl PhotonSource<'_> {
+impl FinalGatherSource<'_> {
     fn indirect(
         &self,
-        work: &mut Workspace,
+        work: &mut GatherWorkspace,
         samples: &EyeSamples,
         sample: u32,
         counts: &mut GatherCounts,
@@ -96,8 +96,9 @@ impl PhotonSource<'_> {
         let layer = &settings.layers[1];
         let reach = layer.reach.map(|r| r * point.spacing);
         let geometric_normal = samples.surfaces[sample as usize].geometric_normal;
-        let how = (geometric_normal, hash(sample, self.seed), 1.0 / reach[0].max(f32::MIN_POSITIVE));
-        let g = gather(&self.light, &self.strata, point, how, &mut work.met, counts);
+        let max_nearness = 1.0 / reach[0].max(f32::MIN_POSITIVE);
+        let at = GatherPoint { point, geometric_normal, seed: hash(sample, self.seed), max_nearness };
+        let g = gather(&self.light, &self.strata, &at, &mut work.met, counts);
         let luminance = luminance(g.irradiance);
         if !(luminance.is_finite() && g.vector.is_finite() && g.gradient.is_finite()) {
             return None;
@@ -110,17 +111,17 @@ impl PhotonSource<'_> {
             let radius = (layer.accuracy * g.distance).clamp(reach[0], reach[1]);
             Footprint::of_gradient(point.normal, g.gradient * LUMINANCE, luminance, radius, settings)
         };
-        let Gathered { vector, gradient, .. } = g;
+        let GatheredIrradiance { vector, gradient, .. } = g;
         let facts = Facts { sample, cut: self.strata.len() as u32, distance: g.distance, ..Facts::default() };
         let (position, normal, sharing) = (point.position, point.normal, point.sharing);
         let record = Record { position, normal, sharing, footprint, vector, gradient, luminance, facts };
-        work.series(&self.strata, point, how.2);
+        work.series(&self.strata, point, max_nearness);
         let [_, series] = work.series.finish();
         Some(Made { record, series })
     }
 }
 
-impl PhotonSource<'_> {
+impl FinalGatherSource<'_> {
     /// What the point sees, with the light met. Its gradient stays that of the strata, which knows of occluders' edges.
     fn sight(&self, point: &EyePoint, geometric_normal: Vec3, seed: u32, met: &Met) -> Sight {
         let (at, rays) = ((point.position, geometric_normal), self.settings().probe_rays);
@@ -135,17 +136,17 @@ impl PhotonSource<'_> {
     }
 }
 
-impl Workspace {
+impl GatherWorkspace {
     /// Adds what was met to the series, if the point is to have one.
-    fn series(&mut self, strata: &Strata, point: &EyePoint, most_near: f32) {
+    fn series(&mut self, strata: &Strata, point: &EyePoint, max_nearness: f32) {
         self.series.begin(point);
         if self.series.place().is_none() {
             return;
         }
         let met = &self.met;
         for (i, direction) in met.direction.iter().enumerate() {
-            let solid_angle = strata.measure() / direction.z.max(LEAST_COS);
-            let incidence = patch(*direction, met.nearness[i].min(most_near), met.normal[i], solid_angle);
+            let solid_angle = strata.measure() / direction.z.max(MIN_COS);
+            let incidence = patch(*direction, met.nearness[i].min(max_nearness), met.normal[i], solid_angle);
             self.series.add_incidence(1, &incidence, met.radiance[i]);
         }
     }
@@ -155,7 +156,7 @@ impl Workspace {
 fn patch(direction: Vec3, nearness: f32, normal: Vec3, solid_angle: f32) -> Incidence<f32> {
     let cos = -direction.dot(normal);
     let slope = match nearness > 0.0 {
-        true => (direction * 3.0 + normal / cos.max(LEAST_COS)) * (nearness * solid_angle),
+        true => (direction * 3.0 + normal / cos.max(MIN_COS)) * (nearness * solid_angle),
         false => Vec3::ZERO,
     };
     let gradient = [slope.x, slope.y];

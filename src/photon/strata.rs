@@ -115,8 +115,8 @@ impl Strata {
     }
 
     /// Gradient of the irradiance as the point moves in its plane, by channel (column). Surfaces nearer than
-    /// 1 / `most_near` count as that far.
-    pub fn gradient(&self, met: &Met, most_near: f32) -> Mat3 {
+    /// 1 / `max_nearness` count as that far.
+    pub fn gradient(&self, met: &Met, max_nearness: f32) -> Mat3 {
         let (rings, sectors) = (self.rings, self.sectors);
         let width = TAU / sectors as f32;
         let sin = |ring: usize| (ring as f32 / rings as f32).sqrt();
@@ -127,7 +127,7 @@ impl Strata {
             for ring in 0..rings {
                 let here = self.place(ring, sector);
                 let moved = |other: usize| {
-                    let nearness = met.nearness[here].max(met.nearness[other]).min(most_near);
+                    let nearness = met.nearness[here].max(met.nearness[other]).min(max_nearness);
                     (met.radiance[here] - met.radiance[other]) * nearness
                 };
                 if ring > 0 {

@@ -12,7 +12,7 @@ use super::layer::Layer;
 use super::record::Record;
 use crate::eye::{EyePoint, EyeSamples, EyeSurface};
 use crate::gradient::Incidence;
-use crate::hsh::{Accumulator, Caching, Kernel, Radiance, SeriesSettings, Surfaces};
+use crate::hsh::{Accumulator, Caching, Kernel, MaterialSeries, Radiance, SeriesSettings};
 use crate::light_tree::Node;
 use crate::lightcut::Transfer;
 use crate::material::Bsdf;
@@ -86,7 +86,7 @@ impl SeriesGatherer {
 
 /// The glossy surfaces of a scene.
 pub struct Glossy {
-    surfaces: Surfaces,
+    surfaces: MaterialSeries,
 }
 
 impl Glossy {
@@ -95,7 +95,7 @@ impl Glossy {
         if samples.surfaces.iter().all(|surface| surface.bsdf.split_base(1.0).1.is_none()) {
             return None;
         }
-        let surfaces = Surfaces::new(&world.scene, &world.materials, settings);
+        let surfaces = MaterialSeries::new(&world.scene, &world.materials, settings);
         for (point, surface) in samples.points.iter_mut().zip(&samples.surfaces) {
             if surface.bsdf.split_base(1.0).1.is_none() {
                 continue;

@@ -6,7 +6,7 @@
 
 use super::edges::CellLight;
 use super::probe::Probes;
-use crate::gradient::Source;
+use crate::gradient::LocalVpl;
 use crate::light_tree::Node;
 use crate::lightcut::Transfer;
 use crate::math::{Frame, Rgb, luminance};
@@ -92,7 +92,7 @@ impl Sight {
         }
         let y = luminance(contribution);
         let scale = luminance(node.intensity) * luminance(passed) / y.max(f32::MIN_POSITIVE);
-        let source = Source::of_vpl(frame, self.position, vpl, kind);
+        let source = LocalVpl::of_vpl(frame, self.position, vpl, kind);
         for (sum, h) in layer.held.iter_mut().zip(source.irradiance_hessian(transfer.near_sq(vpl, kind))) {
             *sum += scale * h;
         }
@@ -111,7 +111,7 @@ impl Sight {
             return;
         }
         let intensity = luminance(irradiance) * distance_sq / cosines;
-        let source = Source::Oriented { offset: offset.to_array(), normal: patch_normal.to_array() };
+        let source = LocalVpl::Oriented { offset: offset.to_array(), normal: patch_normal.to_array() };
         for (sum, h) in layer.held.iter_mut().zip(source.irradiance_hessian(0.0)) {
             *sum += intensity * h;
         }

@@ -113,7 +113,7 @@ impl OccluderCache {
         let mut hits = [false; W];
         let mut t = [0.0; W];
         for w in 0..W {
-            let triangle = Held::from_rows(|row| rows[row * W + w]);
+            let triangle = CachedTriangle::from_rows(|row| rows[row * W + w]);
             (hits[w], t[w]) = certain(&triangle, ray, reach);
         }
         let w = hits.iter().position(|&hit| hit)?;
@@ -138,7 +138,7 @@ impl OccluderCache {
         let way = state.next as usize;
         state.next = (state.next + 1) & (self.ways as u32 - 1);
         ids[way] = id;
-        for (row, value) in Held::new(corner, edges).rows().into_iter().enumerate() {
+        for (row, value) in CachedTriangle::new(corner, edges).rows().into_iter().enumerate() {
             self.triangles[(slot * ROWS + row) * self.ways + way] = value;
         }
     }
@@ -146,7 +146,7 @@ impl OccluderCache {
 
 /// A triangle as it is tested.
 #[derive(Clone, Copy)]
-struct Held {
+struct CachedTriangle {
     corner: Vec3,
     edges: [Vec3; 2],
     /// Largest coordinate.
@@ -155,17 +155,17 @@ struct Held {
     edge: f32,
 }
 
-impl Held {
-    fn new(corner: Vec3, edges: [Vec3; 2]) -> Held {
+impl CachedTriangle {
+    fn new(corner: Vec3, edges: [Vec3; 2]) -> CachedTriangle {
         let largest = |v: Vec3| v.abs().max_element();
         let edge = largest(edges[0]).max(largest(edges[1]));
-        Held { corner, edges, size: largest(corner) + edge, edge: 2.0 * edge }
+        CachedTriangle { corner, edges, size: largest(corner) + edge, edge: 2.0 * edge }
     }
 
     #[inline(always)]
-    fn from_rows(row: impl Fn(usize) -> f32) -> Held {
+    fn from_rows(row: impl Fn(usize) -> f32) -> CachedTriangle {
         let v = |i| Vec3::new(row(i), row(i + 1), row(i + 2));
-        Held { corner: v(0), edges: [v(3), v(6)], size: row(9), edge: row(10) }
+        CachedTriangle { corner: v(0), edges: [v(3), v(6)], size: row(9), edge: row(10) }
     }
 
     fn rows(&self) -> [f32; ROWS] {
@@ -194,7 +194,7 @@ impl Reach {
 ///
 /// Möller and Trumbore 1997, with every quantity times the determinant, and left above its rounding.
 #[inline(always)]
-fn certain(triangle: &Held, ray: &Ray, reach: Reach) -> (bool, f32) {
+fn certain(triangle: &CachedTriangle, ray: &Ray, reach: Reach) -> (bool, f32) {
     let [e1, e2] = triangle.edges;
     let to_corner = triangle.corner - ray.origin;
     let r = to_corner.cross(ray.direction);

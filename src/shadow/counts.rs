@@ -5,7 +5,7 @@ use std::cell::Cell;
 
 /// Counts of one kind of query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub struct QueryCounts {
     /// Queries, of one ray or of a packet.
     pub queries: u64,
     /// Rays asked for.
@@ -15,19 +15,19 @@ pub struct Tally {
     /// Rays that the occluder cache answered.
     pub saved: u64,
 }
-add_fields!(Tally { queries, rays, occluded, saved });
+add_fields!(QueryCounts { queries, rays, occluded, saved });
 
 /// Counts of shadow queries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct ShadowCounts {
     /// Queries of one ray.
-    pub single: Tally,
+    pub single: QueryCounts,
     /// Queries of packets from neighbouring points towards one light.
-    pub packets: Tally,
+    pub packets: QueryCounts,
 }
-add_fields!(Counts { single, packets });
+add_fields!(ShadowCounts { single, packets });
 
-impl Counts {
+impl ShadowCounts {
     /// Puts what is not zero into the statistics of a run.
     pub fn report(&self, stats: &mut Stats) {
         for (kind, tally) in [("single", self.single), ("neighbours", self.packets)] {
@@ -44,31 +44,31 @@ impl Counts {
     }
 }
 
-/// [`Counts`] that grow while queries borrow the engine.
+/// [`ShadowCounts`] that grow while queries borrow the engine.
 #[derive(Debug, Default)]
 pub(super) struct Counters {
-    pub single: TallyCell,
-    pub packets: TallyCell,
+    pub single: QueryCounter,
+    pub packets: QueryCounter,
 }
 
 impl Counters {
     /// The counts so far; starts anew.
-    pub fn take(&self) -> Counts {
-        Counts { single: self.single.0.take(), packets: self.packets.0.take() }
+    pub fn take(&self) -> ShadowCounts {
+        ShadowCounts { single: self.single.0.take(), packets: self.packets.0.take() }
     }
 }
 
-/// A [`Tally`] that grows behind a shared reference.
+/// A [`QueryCounts`] that grows behind a shared reference.
 #[derive(Debug, Default)]
-pub(super) struct TallyCell(Cell<Tally>);
+pub(super) struct QueryCounter(Cell<QueryCounts>);
 
-impl TallyCell {
+impl QueryCounter {
     /// Counts one query of `rays` lanes.
     #[inline(always)]
     pub fn count(&self, rays: u32, occluded: u32, saved: u32) {
         let [rays, occluded, saved] = [rays, occluded, saved].map(u64::from);
         let mut tally = self.0.get();
-        tally += Tally { queries: 1, rays, occluded, saved };
+        tally += QueryCounts { queries: 1, rays, occluded, saved };
         self.0.set(tally);
     }
 }

@@ -4,7 +4,7 @@
 //! reads.
 
 use super::cache::{OccluderCache, OccluderCacheSettings};
-use super::counts::{Counters, Counts};
+use super::counts::{Counters, ShadowCounts};
 use crate::embree::{Occluder, Occluders16, Ray, Rays16};
 use crate::world::World;
 use std::cell::RefCell;
@@ -38,7 +38,7 @@ impl<'w> Engine<'w> {
     }
 
     /// Counts since the last call.
-    pub fn take_counts(&self) -> Counts {
+    pub fn take_counts(&self) -> ShadowCounts {
         self.counters.take()
     }
 

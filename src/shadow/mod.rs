@@ -12,7 +12,7 @@ mod settings;
 mod tests;
 
 pub use cache::OccluderCacheSettings;
-pub use counts::{Counts, Tally};
+pub use counts::{QueryCounts, ShadowCounts};
 pub use engine::Engine;
 pub(crate) use segment::ULPS;
 pub use segment::{escapes, offset, ray_from, segment, visible};

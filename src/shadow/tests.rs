@@ -144,7 +144,7 @@ fn the_cache_changes_no_answer() {
     let world = world();
     let corners = all_corners(&world);
     const CHUNK: u32 = 50_000;
-    let totals: Vec<Counts> = (0..SEGMENTS / CHUNK)
+    let totals: Vec<ShadowCounts> = (0..SEGMENTS / CHUNK)
         .into_par_iter()
         .map(|chunk| {
             let ways = [1, 2, 4, 8][chunk as usize % 4];
@@ -161,7 +161,7 @@ fn the_cache_changes_no_answer() {
             cached.take_counts()
         })
         .collect();
-    let mut counts = Counts::default();
+    let mut counts = ShadowCounts::default();
     totals.into_iter().for_each(|c| counts += c);
     let all = counts.single;
     assert_eq!(all.rays, u64::from(SEGMENTS));

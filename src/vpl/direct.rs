@@ -31,13 +31,8 @@ pub fn direct_vpls(world: &World, settings: &LightPassSettings) -> DirectVpls {
         let count = ((share * f64::from(settings.direct)).ceil() as u32).max(MIN_PER_LIGHT);
         let size = size_of_area(light.area / count as f32, world.diagonal);
         sizes[light.mesh as usize] = size;
-        add_area_light(
-            world,
-            light,
-            [count, size],
-            hash(settings.seed, 0x0a1e_a000 ^ i as u32),
-            &mut oriented,
-        );
+        let patches = Patches { count, size, seed: hash(settings.seed, 0x0a1e_a000 ^ i as u32) };
+        add_area_light(world, light, patches, &mut oriented);
     }
     let mut omni = VplSet::new(VplKind::Omni, Origin::Direct);
     let mut directional = VplSet::new(VplKind::Directional, Origin::Direct);
@@ -61,14 +56,22 @@ pub fn direct_vpls(world: &World, settings: &LightPassSettings) -> DirectVpls {
     DirectVpls { sets: vec![oriented, omni, directional, environment], spots, sizes }
 }
 
-fn add_area_light(world: &World, light: &AreaLight, [count, size]: [u32; 2], seed: u32, set: &mut VplSet) {
-    let area = light.area / count as f32;
-    for i in 0..count {
-        let point = light.sample(owen_sobol_2d(i, seed));
+/// Patches that an area light is divided into.
+struct Patches {
+    count: u32,
+    /// See [`size_of_area`].
+    size: u32,
+    seed: u32,
+}
+
+fn add_area_light(world: &World, light: &AreaLight, patches: Patches, set: &mut VplSet) {
+    let area = light.area / patches.count as f32;
+    for i in 0..patches.count {
+        let point = light.sample(owen_sobol_2d(i, patches.seed));
         let radiance = light.radiance(&world.scene, &point, point.normal);
-        set.push(Vpl::patch(point.position, point.normal, size), radiance * area);
+        set.push(Vpl::patch(point.position, point.normal, patches.size), radiance * area);
         if light.emission.two_sided {
-            set.push(Vpl::patch(point.position, -point.normal, size), radiance * area);
+            set.push(Vpl::patch(point.position, -point.normal, patches.size), radiance * area);
         }
     }
 }

@@ -4,7 +4,7 @@
 
 use crate::embree::Ray;
 use crate::light::spot_falloff;
-use crate::light::{Distribution, delta_power};
+use crate::light::{DiscreteDistribution, delta_power};
 use crate::math::Frame;
 use crate::math::Rgb;
 use crate::sampling::{Sampler, cosine_hemisphere, uniform_disk, uniform_sphere};
@@ -15,17 +15,17 @@ use glam::Vec3;
 use std::f32::consts::{PI, TAU};
 
 /// The flux of a scene's emitters, to be sampled in proportion to power.
-pub struct PhotonSource<'w> {
+pub struct PhotonEmitter<'w> {
     world: &'w World,
-    by_power: Distribution,
+    by_power: DiscreteDistribution,
     /// Sphere around all surfaces: what light from infinitely far is aimed at.
     centre: Vec3,
     radius: f32,
 }
 
-impl<'w> PhotonSource<'w> {
+impl<'w> PhotonEmitter<'w> {
     /// `None` if nothing shines or there is no surface to shine on.
-    pub fn new(world: &'w World) -> Option<PhotonSource<'w>> {
+    pub fn new(world: &'w World) -> Option<PhotonEmitter<'w>> {
         let (low, high) = world.accel.bounds()?;
         let (centre, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
         let emitters = &world.emitters;
@@ -33,8 +33,8 @@ impl<'w> PhotonSource<'w> {
         let deltas = emitters.deltas.iter().map(|d| delta_power(d, radius));
         let disk = PI * radius * radius;
         let environment = emitters.environment.iter().map(|e| 4.0 * PI * disk * e.mean_luminance());
-        let by_power = Distribution::new(areas.chain(deltas).chain(environment));
-        (!by_power.is_empty()).then_some(PhotonSource { world, by_power, centre, radius })
+        let by_power = DiscreteDistribution::new(areas.chain(deltas).chain(environment));
+        (!by_power.is_empty()).then_some(PhotonEmitter { world, by_power, centre, radius })
     }
 
     /// The first ray of a path and the flux it carries; `None` where an emitter is dark.

@@ -13,13 +13,15 @@ mod indirect;
 mod octahedral;
 mod pass;
 mod photons;
+mod settings;
 
 use crate::light::spot_falloff;
 use crate::math::{Rgb, luminance};
 use glam::Vec3;
 
-pub use pass::{LightPass, LightPassSettings, light_pass};
+pub use pass::{LightPass, light_pass};
 pub use photons::{Photon, PhotonCounts, PhotonSettings, trace_photons};
+pub use settings::LightPassSettings;
 
 /// How a VPL radiates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +72,7 @@ impl Vpl {
     /// The same, standing for a patch of the given size (see [`size_of_area`]).
     pub fn patch(position: Vec3, normal: Vec3, size: u32) -> Vpl {
         let mut vpl = Vpl::oriented(position, normal);
-        vpl.word |= size.min(LARGEST_SIZE) << SIZE_SHIFT;
+        vpl.word |= size.min(MAX_SIZE) << SIZE_SHIFT;
         vpl
     }
 
@@ -102,25 +104,25 @@ impl Vpl {
 pub const MIN_DISTANCE: f32 = 1e-5;
 
 /// The square of that distance.
-pub fn least_dist_sq(diagonal: f32) -> f32 {
+pub fn min_dist_sq(diagonal: f32) -> f32 {
     let distance = (diagonal * MIN_DISTANCE).max(1e-18);
     distance * distance
 }
 
 const SIZE_SHIFT: u32 = 28;
-const LARGEST_SIZE: u32 = 15;
+const MAX_SIZE: u32 = 15;
 
 /// The size of a patch of the given area, in powers of four times the least squared distance.
 pub fn size_of_area(area: f32, diagonal: f32) -> u32 {
-    let steps = 0.5 * (area / least_dist_sq(diagonal)).log2();
+    let steps = 0.5 * (area / min_dist_sq(diagonal)).log2();
     // Not a number and what is too small become 0.
-    steps.round().clamp(0.0, LARGEST_SIZE as f32) as u32
+    steps.round().clamp(0.0, MAX_SIZE as f32) as u32
 }
 
 /// Squared distance from which on a patch of that size may be taken for a point.
 #[inline]
-pub fn near_sq_of_size(size: u32, least_dist_sq: f32) -> f32 {
-    least_dist_sq * f32::from_bits((127 + 2 * size) << 23)
+pub fn near_sq_of_size(size: u32, min_dist_sq: f32) -> f32 {
+    min_dist_sq * f32::from_bits((127 + 2 * size) << 23)
 }
 
 /// Angular profile of a spot light: 1 within `inner_angle`, falling linearly in angle to 0 at `outer_angle`.

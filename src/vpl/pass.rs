@@ -3,28 +3,11 @@
 use super::direct::{DirectVpls, direct_vpls};
 use super::indirect::indirect_vpls;
 use super::photons::PhotonCounts;
-use super::{SpotProfile, VplSet};
+use super::{LightPassSettings, SpotProfile, VplSet};
 use crate::progress::Control;
 use crate::world::World;
 
-/// How many VPLs to make.
-#[derive(Clone, Copy, Debug)]
-pub struct LightPassSettings {
-    /// Points shared out among all area lights by power (each gets at least 256), and directions of the environment.
-    pub direct: u32,
-    /// Indirect VPLs.
-    pub indirect: u32,
-    /// Another seed, other VPLs.
-    pub seed: u32,
-}
-
-impl Default for LightPassSettings {
-    fn default() -> LightPassSettings {
-        LightPassSettings { direct: 4096, indirect: 300_000, seed: 0 }
-    }
-}
-
-/// What the light pass leaves behind.
+/// VPLs of a scene.
 #[derive(Clone, Debug)]
 pub struct LightPass {
     /// VPLs by kind and origin; some sets may be empty.

@@ -7,7 +7,7 @@
 //! Paths run in chunks of fixed size and are kept in order, so the photons are the same for any number of threads.
 //! Units: flux in watts, to be divided by the number of paths.
 
-use super::emission::PhotonSource;
+use super::emission::PhotonEmitter;
 use crate::math::{Rgb, luminance};
 use crate::progress::Control;
 use crate::sampling::{Sampler, hash};
@@ -81,7 +81,7 @@ pub fn trace_photons<T: Send>(
     let mut counts = PhotonCounts::default();
     let max_edges = settings.max_edges.min(MAX_EDGES);
     let wanted = settings.photons as usize;
-    let source = match PhotonSource::new(world) {
+    let source = match PhotonEmitter::new(world) {
         Some(source) if wanted > 0 && max_edges > 0 => source,
         _ => return (Vec::new(), counts),
     };
@@ -122,7 +122,7 @@ fn next_wave(chunks: u32, found: usize, wanted: usize) -> u32 {
 
 fn trace_chunk<T>(
     world: &World,
-    source: &PhotonSource,
+    source: &PhotonEmitter,
     chunk: u32,
     seed: u32,
     max_edges: u32,
@@ -140,7 +140,7 @@ fn trace_chunk<T>(
 /// Follows a path; returns the rays traced.
 fn trace_path(
     world: &World,
-    source: &PhotonSource,
+    source: &PhotonEmitter,
     sampler: &mut Sampler,
     max_edges: u32,
     met: &mut impl FnMut(&Photon),

@@ -5,7 +5,7 @@ use super::trace::{Packet, Traces, count};
 use crate::bench::measure::Case;
 use crate::bench::setting::Setting;
 use crate::bench::{Clock, Settings, Table};
-use crate::embree::{Prepared, Ray, Width};
+use crate::embree::{PreparedRays, Ray, Width};
 use crate::shadow::Engine;
 use std::hint::black_box;
 
@@ -17,7 +17,7 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
         for width in [Width::One, world.accel.widest()] {
             let labels = [trace.name, &width.rays().to_string()];
             let against = cases.len();
-            let prepared = Prepared::new(trace.bundles().map(|p| (&p.rays, p.valid)), width);
+            let prepared = PreparedRays::new(trace.bundles().map(|p| (&p.rays, p.valid)), width);
             cases.push(Case::new(&labels, against, rays, move || {
                 black_box(prepared.occluded(&world.accel, width != Width::One));
             }));

@@ -5,7 +5,7 @@ use super::{MRAYS, cached};
 use crate::bench::measure::Case;
 use crate::bench::setting::Setting;
 use crate::bench::{Clock, Settings, Table};
-use crate::embree::{Prepared, Width};
+use crate::embree::{PreparedRays, Width};
 use crate::shadow::{Engine, OccluderCacheSettings};
 use std::hint::black_box;
 
@@ -18,7 +18,7 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
             continue;
         }
         let against = cases.len();
-        let prepared = Prepared::new(alone.packets().map(|p| (&p.rays, p.valid)), Width::One);
+        let prepared = PreparedRays::new(alone.packets().map(|p| (&p.rays, p.valid)), Width::One);
         cases.push(Case::new(
             &[alone.name, "single rays, bare loop"],
             against,

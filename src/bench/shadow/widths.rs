@@ -5,7 +5,7 @@ use super::trace::{Traces, count};
 use crate::bench::measure::Case;
 use crate::bench::setting::Setting;
 use crate::bench::{Clock, Settings, Table};
-use crate::embree::{Prepared, Width};
+use crate::embree::{PreparedRays, Width};
 use std::hint::black_box;
 
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
@@ -20,7 +20,7 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
                 if width == Width::One && coherent {
                     continue;
                 }
-                let prepared = Prepared::new(packets(), width);
+                let prepared = PreparedRays::new(packets(), width);
                 let occluded = 100.0 * prepared.occluded(accel, coherent) as f64 / rays;
                 let lanes = rays / prepared.queries().max(1) as f64;
                 let labels = [trace.name, &width.rays().to_string(), if coherent { "coherent" } else { "" }];

@@ -1,14 +1,14 @@
 //! Coefficients against sums in double precision, finite differences, and rotation of what they were summed from.
 
 use super::Random;
-use crate::gradient::Source;
+use crate::gradient::LocalVpl;
 use crate::hsh::kernel::Profile;
 use crate::hsh::*;
 use crate::math::Rgb;
 use glam::DVec3;
 
 /// Patches around the receiver, some below its horizon, and what each is multiplied by.
-fn lights(count: usize) -> Vec<(Source<f64>, Rgb)> {
+fn lights(count: usize) -> Vec<(LocalVpl<f64>, Rgb)> {
     let mut random = Random(5);
     let mut light = |i: usize| {
         let direction = random.hemisphere();
@@ -19,9 +19,9 @@ fn lights(count: usize) -> Vec<(Source<f64>, Rgb)> {
         let normal = (random.hemisphere() - 2.0 * direction).normalize();
         let intensity = Rgb::new(random.next() as f32, random.next() as f32, random.next() as f32);
         let source = match i % 5 {
-            0 => Source::Omni { offset: offset.to_array() },
-            1 => Source::Directional { towards: direction.to_array() },
-            _ => Source::Oriented { offset: offset.to_array(), normal: normal.to_array() },
+            0 => LocalVpl::Omni { offset: offset.to_array() },
+            1 => LocalVpl::Directional { towards: direction.to_array() },
+            _ => LocalVpl::Oriented { offset: offset.to_array(), normal: normal.to_array() },
         };
         (source, intensity)
     };
@@ -29,29 +29,29 @@ fn lights(count: usize) -> Vec<(Source<f64>, Rgb)> {
 }
 
 /// `f` applied to every offset, direction and normal.
-fn mapped(source: &Source<f64>, offset_by: DVec3, f: impl Fn(DVec3) -> DVec3) -> Source<f64> {
+fn mapped(source: &LocalVpl<f64>, offset_by: DVec3, f: impl Fn(DVec3) -> DVec3) -> LocalVpl<f64> {
     let apply = |v: [f64; 3], by: DVec3| f(DVec3::from(v) + by).to_array();
     match *source {
-        Source::Oriented { offset, normal } => {
-            Source::Oriented { offset: apply(offset, offset_by), normal: apply(normal, DVec3::ZERO) }
+        LocalVpl::Oriented { offset, normal } => {
+            LocalVpl::Oriented { offset: apply(offset, offset_by), normal: apply(normal, DVec3::ZERO) }
         }
-        Source::Omni { offset } => Source::Omni { offset: apply(offset, offset_by) },
-        Source::Directional { towards } => Source::Directional { towards: apply(towards, DVec3::ZERO) },
+        LocalVpl::Omni { offset } => LocalVpl::Omni { offset: apply(offset, offset_by) },
+        LocalVpl::Directional { towards } => LocalVpl::Directional { towards: apply(towards, DVec3::ZERO) },
     }
 }
 
-fn single(source: &Source<f64>) -> Source<f32> {
+fn single(source: &LocalVpl<f64>) -> LocalVpl<f32> {
     let round = |v: [f64; 3]| v.map(|c| c as f32);
     match *source {
-        Source::Oriented { offset, normal } => {
-            Source::Oriented { offset: round(offset), normal: round(normal) }
+        LocalVpl::Oriented { offset, normal } => {
+            LocalVpl::Oriented { offset: round(offset), normal: round(normal) }
         }
-        Source::Omni { offset } => Source::Omni { offset: round(offset) },
-        Source::Directional { towards } => Source::Directional { towards: round(towards) },
+        LocalVpl::Omni { offset } => LocalVpl::Omni { offset: round(offset) },
+        LocalVpl::Directional { towards } => LocalVpl::Directional { towards: round(towards) },
     }
 }
 
-fn accumulated(bands: usize, lights: &[(Source<f64>, Rgb)]) -> Radiance {
+fn accumulated(bands: usize, lights: &[(LocalVpl<f64>, Rgb)]) -> Radiance {
     let mut accumulator = Accumulator::new(bands);
     for (source, intensity) in lights {
         if let Some(incidence) = single(source).incidence(1e-12) {
@@ -62,7 +62,7 @@ fn accumulated(bands: usize, lights: &[(Source<f64>, Rgb)]) -> Radiance {
 }
 
 /// The coefficients by definition, at the record moved by `motion`.
-fn by_definition(lights: &[(Source<f64>, Rgb)], motion: DVec3) -> [DVec3; MAX_FUNCTIONS] {
+fn by_definition(lights: &[(LocalVpl<f64>, Rgb)], motion: DVec3) -> [DVec3; MAX_FUNCTIONS] {
     let mut sums = [DVec3::ZERO; MAX_FUNCTIONS];
     for (source, intensity) in lights {
         let Some(incidence) = mapped(source, -motion, |v| v).incidence(1e-12) else { continue };

@@ -15,7 +15,7 @@ use crate::progress::Control;
 use crate::radiance_cache::compute::Source;
 use crate::radiance_cache::settings::LEAST_PATCH;
 use crate::sampling::hash;
-use crate::shadow::{Counts, Engine};
+use crate::shadow::{Engine, ShadowCounts};
 use crate::vpl::Origin;
 use rayon::prelude::*;
 
@@ -53,7 +53,7 @@ pub struct Lit {
     /// Of the cuts.
     pub cuts: CutCounts,
     /// Of their shadow rays.
-    pub shadows: Counts,
+    pub shadows: ShadowCounts,
     /// Of what clamping took and was found again.
     pub near: NearCounts,
 }

@@ -12,7 +12,7 @@ use crate::math::Rgb;
 use crate::method::lights::Lights;
 use crate::method::{Output, counts};
 use crate::progress::Control;
-use crate::shadow::{Counts, ShadowSettings};
+use crate::shadow::{ShadowCounts, ShadowSettings};
 use crate::stats::{Stage, Stats};
 use crate::vpl::LightPassSettings;
 use crate::world::World;
@@ -103,7 +103,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let mut near = NearCounts::default();
     let mut chains = ChainCounts::default();
     let (mut packets, mut nonfinite) = (0, 0);
-    let mut shadows = Counts::default();
+    let mut shadows = ShadowCounts::default();
     for (i, tile) in tiles.iter().enumerate().filter(|(_, tile)| tile.done) {
         for (k, [x, y]) in scenery.tile_area(corner(i)).pixels().enumerate() {
             let at = ((y - window.offset[1]) * window.width + x - window.offset[0]) as usize;

@@ -9,7 +9,7 @@ use crate::lightcut::{
     CoherenceLimit, CutCounts, Lightcut, MIN_SHARED, PacketLightcut, Receiver, ReceiverPacket,
 };
 use crate::math::{LANES, Rgb};
-use crate::shadow::{Counts, Engine};
+use crate::shadow::{Engine, ShadowCounts};
 use crate::world::World;
 
 /// Pixels along a tile's edge.
@@ -65,7 +65,7 @@ pub struct Tile {
     pub cut_sizes: Vec<f32>,
     pub counts: CutCounts,
     pub packets: u64,
-    pub shadows: Counts,
+    pub shadows: ShadowCounts,
     pub near: NearCounts,
     pub chains: ChainCounts,
     pub nonfinite: u64,

@@ -5,6 +5,7 @@
 
 use super::packet::{Packet, Shadows};
 use crate::embree::{Hits16, Rays16};
+use crate::light::Receivers16;
 use crate::math::{LANES, Rgb, first_lanes, lanes_in};
 use crate::sampling::Samplers16;
 use crate::world::World;
@@ -97,7 +98,8 @@ impl Batch {
         if escaped == 0 {
             return;
         }
-        let choice = world.emitters.environment_choice(&packet.rays.origins(), &packet.normal);
+        let at = Receivers16 { position: &packet.rays.origins(), normal: &packet.normal };
+        let choice = world.emitters.environment_choice(at);
         let light = environment.radiance_pdf16(&packet.rays.directions(), escaped);
         for lane in lanes_in(escaped) {
             let (radiance, pdf) = light[lane];

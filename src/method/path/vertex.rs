@@ -9,6 +9,7 @@
 
 use super::packet::Packet;
 use crate::embree::{Ray, Rays16};
+use crate::light::Receivers16;
 use crate::material::Bsdfs16;
 use crate::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, mask_of};
 use crate::sampling::power_heuristic;
@@ -39,7 +40,7 @@ impl Packet {
         for i in 0..LANES {
             cos[i] = surfaces.normal.get(i).dot(directions.get(i));
         }
-        let start = (&self.rays.origins(), &self.normal);
+        let start = Receivers16 { position: &self.rays.origins(), normal: &self.normal };
         let light_pdf = world.emitters.pdf_areas(start, &surfaces.mesh, &surfaces.t, &cos);
         for i in lanes_in(lit) {
             let emitted = world.emitted(&surfaces.get(i), -directions.get(i));
@@ -105,7 +106,7 @@ impl Packet {
         wanted: u16,
         mut arrives: impl FnMut(&Ray, Rgb, u32),
     ) {
-        let at = (&surfaces.position, &self.normal);
+        let at = Receivers16 { position: &surfaces.position, normal: &self.normal };
         let lights = world.emitters.sample_direct(&world.scene, at, u_choice, u_light, wanted);
         let mut wi = Vec3x16::default();
         for i in 0..LANES {

@@ -12,9 +12,9 @@ use crate::method::cache::picture::Picture;
 use crate::method::lights::Lights;
 use crate::method::{Output, counts};
 use crate::photon::density::estimates;
-use crate::photon::own::reflected;
-use crate::photon::radiance::{GatherCounts, IndirectLight};
-use crate::photon::records::PhotonSource;
+use crate::photon::indirect_light::{GatherCounts, IndirectLight};
+use crate::photon::own::{SampleGather, reflected};
+use crate::photon::records::FinalGatherSource;
 use crate::photon::strata::Strata;
 use crate::photon::{IrradianceMap, PhotonMap};
 use crate::progress::Control;
@@ -96,7 +96,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     };
 
     let map = irradiance(world, settings, max_depth, control, &mut stats);
-    let source = PhotonSource {
+    let source = FinalGatherSource {
         direct,
         light: IndirectLight { world, map: &map },
         strata: Strata::new(settings.rays),
@@ -170,7 +170,7 @@ fn irradiance(
 
 /// Indirect light at samples that records do not serve.
 fn own_gathers(
-    source: &PhotonSource,
+    source: &FinalGatherSource,
     samples: &EyeSamples,
     jobs: &[&Job],
     settings: &Settings,
@@ -182,9 +182,9 @@ fn own_gathers(
             if control.is_cancelled() {
                 return (Rgb::ZERO, counts);
             }
-            let of = (job.sample, job.lobe_only);
-            let radiance =
-                reflected(&source.light, samples, of, (settings.own_rays, settings.seed), &mut counts);
+            let Job { sample, lobe_only, .. } = **job;
+            let task = SampleGather { sample, lobe_only, rays: settings.own_rays, seed: settings.seed };
+            let radiance = reflected(&source.light, samples, &task, &mut counts);
             control.advance(1);
             (radiance, counts)
         })

@@ -1,0 +1,90 @@
+//! Indirect light that surfaces send back along the rays that meet them.
+//!
+//! A surface reflects the irradiance of the map, unless it is nearer than the map resolves (see [`super::near`]). Mirrors,
+//! glass and sharp lobes are followed to what shows in them; what emits is direct light and counts for nothing.
+//!
+//! Units: radiance.
+
+use super::irradiance::IrradianceMap;
+use crate::math::Rgb;
+use crate::sampling::Sampler;
+use crate::shadow;
+use crate::stats::add_fields;
+use crate::world::{Surface, World};
+use glam::Vec3;
+use std::f32::consts::FRAC_1_PI;
+
+/// Most surfaces a ray is followed through.
+const MAX_EDGES: u32 = 8;
+
+/// Counts of what gathering took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GatherCounts {
+    /// Rays from records.
+    pub record_rays: u64,
+    /// Rays from single samples.
+    pub own_rays: u64,
+    /// Rays from mirrors, glass and sharp lobes that those met.
+    pub followed: u64,
+    /// Surfaces too near for the map.
+    pub near: u64,
+}
+add_fields!(GatherCounts { record_rays, own_rays, followed, near });
+
+/// The indirect light of a scene.
+#[derive(Clone, Copy)]
+pub struct IndirectLight<'w> {
+    /// The scene.
+    pub world: &'w World,
+    /// Irradiance on its surfaces.
+    pub map: &'w IrradianceMap,
+}
+
+impl IndirectLight<'_> {
+    /// Radiance that a surface sends back along `direction`, by which it was met at `distance`; and the albedo by which it
+    /// reflects besides, if it is too near for the map, else 0.
+    #[inline]
+    pub(super) fn sent(
+        &self,
+        first: &Surface,
+        mut direction: Vec3,
+        distance: f32,
+        sampler: &mut Sampler,
+        counts: &mut GatherCounts,
+    ) -> (Rgb, Rgb) {
+        let (mut radiance, mut throughput, mut near) = (Rgb::ZERO, Rgb::ONE, Rgb::ZERO);
+        let mut surface = *first;
+        for edge in 0..MAX_EDGES {
+            let bsdf = self.world.bsdf(&surface);
+            let out = surface.frame.to_local(-direction);
+            let albedo = bsdf.diffuse_albedo(out);
+            if albedo != Rgb::ZERO {
+                match self.map.at(surface.position, facing(&surface, direction)) {
+                    Some((_, radius)) if edge == 0 && distance < radius => near = albedo,
+                    Some((irradiance, _)) => radiance += throughput * albedo * irradiance * FRAC_1_PI,
+                    None => {}
+                }
+            }
+            let sharp = bsdf.split_sharp_lobe();
+            if sharp.is_none() && !bsdf.has_delta() {
+                break;
+            }
+            let followed = sharp.map_or(bsdf, |(_, sharp)| sharp);
+            let sample = followed.sample(out, sampler.next_1d(), sampler.next_2d());
+            let Some(s) = sample.filter(|s| s.delta || sharp.is_some()) else { break };
+            throughput *= s.weight;
+            direction = surface.frame.to_world(s.wi);
+            counts.followed += 1;
+            let ray = shadow::ray_from(surface.position, surface.normal, direction);
+            let Some(next) = self.world.intersect(&ray) else { break };
+            surface = next;
+        }
+        (radiance, near)
+    }
+}
+
+/// The geometric normal on the side that a ray along `direction` meets.
+#[inline]
+pub(super) fn facing(surface: &Surface, direction: Vec3) -> Vec3 {
+    if surface.normal.dot(direction) < 0.0 { surface.normal } else { -surface.normal }
+}
