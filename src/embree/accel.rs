@@ -17,7 +17,7 @@ pub struct TriangleMesh<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
-/// How much care Embree takes when it builds, and what it keeps.
+/// Care that Embree takes when it builds, and data that it keeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BuildQuality {
     /// Morton order: built fastest, traced slowest.
@@ -70,9 +70,9 @@ unsafe impl Send for Accel {}
 unsafe impl Sync for Accel {}
 
 impl Accel {
-    /// Builds with all threads of `device`, at medium quality. Ids in hits are indices into `meshes` and into the mesh's
-    /// `triangles`. Meshes without triangles keep their index and are never met. The vertices are
-    /// copied, so `meshes` may go afterwards.
+    /// Builds with all threads of `device`, at medium quality. Ids in hits are indices into `meshes` and into the
+    /// mesh's `triangles`. Meshes without triangles keep their index and are never met. The vertices are copied, so
+    /// `meshes` may go afterwards.
     ///
     /// # Errors
     /// If a triangle names a missing vertex, or has a coordinate for which Embree would leave it out

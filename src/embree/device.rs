@@ -126,7 +126,7 @@ impl Drop for Shared {
     }
 }
 
-/// What the error callback was told, in order.
+/// Errors that the callback was told, in order.
 #[derive(Default)]
 struct ErrorLog(Mutex<Vec<(sys::RTCError, String)>>);
 

@@ -1,8 +1,8 @@
-//! What can go wrong between us and Embree, with its remedy.
+//! Errors of building and querying with Embree, each with its remedy.
 
 use super::Version;
 
-/// Why there is no device or no acceleration structure.
+/// Reason that there is no device or no acceleration structure.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EmbreeError {
@@ -20,7 +20,7 @@ pub enum EmbreeError {
          or point EMBREE_DIR at a fitting one"
     )]
     Version {
-        /// What the library says it is.
+        /// Version that the library reports.
         found: Version,
     },
     /// The library was built without something that is needed here.
@@ -32,7 +32,7 @@ pub enum EmbreeError {
     /// Embree reported an error during a call.
     #[error("Embree failed while {during}: {code}: {message}")]
     Call {
-        /// What was being done.
+        /// Activity during which it failed.
         during: &'static str,
         /// Embree's name of the error code.
         code: String,
@@ -49,7 +49,7 @@ pub enum EmbreeError {
         mesh: usize,
         /// Index of the first such triangle.
         first: usize,
-        /// How many there are in this mesh.
+        /// Number of such triangles in this mesh.
         count: usize,
     },
     /// A triangle names a vertex that is not there.
@@ -67,9 +67,9 @@ pub enum EmbreeError {
     /// More meshes, vertices or triangles than 32-bit ids can tell apart.
     #[error("{count} {what} are more than 32-bit ids can tell apart: split the scene")]
     TooMany {
-        /// What there are too many of.
+        /// Name of the things that there are too many of.
         what: &'static str,
-        /// How many there are.
+        /// Their number.
         count: usize,
     },
 }

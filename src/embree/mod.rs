@@ -4,8 +4,8 @@
 //! A [`Device`] is made once, an [`Accel`] once per scene; queries go to the `Accel` from any number of
 //! threads. What the queries guarantee, and what not:
 //!
-//! * Every answer is for the segment `t_near < t <= t_far` of the ray, half-open up to rounding, and is the
-//!   same for any number of threads. It is *not* the same bit for bit between processors (Embree has AVX-512, AVX2 and SSE
+//! * Every answer is for the segment `t_near < t <= t_far` of the ray, half-open up to rounding, and is the same for
+//!   any number of threads. It is *not* the same bit for bit between processors (Embree has AVX-512, AVX2 and SSE
 //!   kernels), nor need a packet agree with single rays where a ray passes within rounding of an edge.
 //! * A hit next to the origin is a hit: keeping rays off their own surface is the caller's part.
 //! * A ray with a NaN or infinite origin or direction, a zero direction, or `t_near > t_far` or either

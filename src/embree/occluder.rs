@@ -1,7 +1,7 @@
 //! Occlusion queries that also say which triangle was in the way, and at what distance.
 //!
-//! `rtcOccluded` reports neither, so a filter passed with the query records each candidate, all of which it accepts, behind
-//! Embree's query context. It costs a few per cent against the plain query.
+//! `rtcOccluded` reports neither, so a filter passed with the query records each candidate, all of which it accepts,
+//! behind Embree's query context. It costs a few per cent against the plain query.
 //!
 //! The occluder is the first that the traversal came upon, not the closest: which one it is may differ
 //! between a packet and a single ray, and with the packet's other lanes.
@@ -36,7 +36,7 @@ pub struct Occluder {
 }
 
 impl Occluder {
-    /// Which triangle.
+    /// Name of the triangle.
     #[inline]
     pub fn id(&self) -> TriangleId {
         TriangleId { geometry: self.geometry, primitive: self.primitive }
@@ -55,7 +55,7 @@ pub struct Occluders16 {
     pub primitive: [u32; 16],
 }
 
-/// What the filters find behind `RTCFilterFunctionNArguments::context`.
+/// Context of a query, as the filters find it behind `RTCFilterFunctionNArguments::context`.
 #[repr(C)]
 struct Query<Found> {
     context: sys::RTCRayQueryContext,

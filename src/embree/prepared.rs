@@ -37,7 +37,7 @@ impl PreparedRays {
         })
     }
 
-    /// How many queries they make.
+    /// Number of queries that they make.
     pub fn queries(&self) -> usize {
         match &self.0 {
             Form::One(rays) => rays.len(),
@@ -47,7 +47,7 @@ impl PreparedRays {
         }
     }
 
-    /// Traces them all; how many are occluded.
+    /// Traces them all, and returns the number of occluded rays.
     pub fn occluded(&self, accel: &Accel, coherent: bool) -> u64 {
         if accel.is_empty() {
             return 0;

@@ -1,6 +1,6 @@
 //! Queries of packets.
 //!
-//! What shares a packet decides what it is worth. With the `coherent` hint, rays from neighbouring
+//! The speed of a packet depends on the rays that share it. With the `coherent` hint, rays from neighbouring
 //! points towards one light run two to three times as fast as single rays; unrelated rays run at half
 //! the speed. Coherent packets should start at the receivers: a packet that starts at the light and
 //! fans out lost some 1e-4 of its hits.

@@ -9,7 +9,7 @@ pub(super) const ALL_GEOMETRY: u32 = u32::MAX;
 /// The segment `origin + t direction`, `t_near < t <= t_far`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where `t` is 0.
+    /// Point at which `t` is 0.
     pub origin: Vec3,
     /// Start of the segment, at least 0.
     pub t_near: f32,
@@ -56,7 +56,7 @@ impl Ray {
     }
 }
 
-/// Where a ray met a triangle.
+/// Intersection of a ray with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Ray parameter of the point.

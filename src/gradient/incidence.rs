@@ -1,4 +1,4 @@
-//! What arrives from one direction, and how that changes as the receiver moves.
+//! Light that arrives from one direction, and its derivatives as the receiver moves.
 
 use crate::math::Real;
 
@@ -41,7 +41,7 @@ impl<T: Real + PartialOrd> Incidence<T> {
         Incidence { factor: self.factor * share, gradient: [along(0), along(1)], ..self }
     }
 
-    /// How the direction turns as the receiver moves along u (axis 0) or v (axis 1).
+    /// Derivative of the direction as the receiver moves along u (axis 0) or v (axis 1).
     #[inline]
     pub fn turning(&self, axis: usize) -> [T; 3] {
         let omega = self.direction;

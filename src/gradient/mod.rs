@@ -1,5 +1,5 @@
-//! How the light from one virtual light changes as its receiver moves over the surface: what lets a cache record
-//! speak for its surroundings.
+//! Derivatives of the light from one virtual light as its receiver moves over the surface: by them a cache record
+//! speaks for its surroundings.
 //!
 //! Everything is per unit intensity and for unchanged visibility, in the record's frame: u and v are the tangents x
 //! and y, n the normal z. Derivatives are by the motion of the receiver along u and v, the frame kept.

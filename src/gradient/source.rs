@@ -1,4 +1,4 @@
-//! The kinds of virtual lights as a receiver sees them.
+//! Virtual lights in the frame of their receiver.
 //!
 //! Units: per unit intensity (see [`crate::vpl`]), so the factor is 1/m² and its gradient 1/m³.
 
@@ -42,7 +42,7 @@ struct Connection<T> {
 }
 
 impl<T: Real + PartialOrd> LocalVpl<T> {
-    /// What arrives, with its first derivatives; `None` where nothing does: on the light itself, and behind it.
+    /// Light that arrives, with its first derivatives; `None` where none does: on the light itself, and behind it.
     ///
     /// Distances below `min_dist_sq` count as that, and then nothing changes with the receiver.
     #[inline]
@@ -133,7 +133,7 @@ impl LocalVpl<f32> {
 }
 
 impl Incidence<f32> {
-    /// What arrives from a virtual light at `position` in `frame`; spot profiles are looked up in `spots`.
+    /// Light that arrives from a virtual light at `position` in `frame`; spot profiles are looked up in `spots`.
     #[inline]
     pub fn of_vpl(
         frame: &Frame,

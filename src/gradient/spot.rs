@@ -6,7 +6,7 @@ use crate::vpl::SpotProfile;
 use glam::Vec3;
 
 impl Incidence<f32> {
-    /// What of the light passes the profile; `None` outside the cone.
+    /// The part of the light that passes the profile; `None` outside the cone.
     #[inline]
     pub(super) fn through_spot(self, frame: &Frame, spot: &SpotProfile) -> Option<Incidence<f32>> {
         let away = -Vec3::from(self.direction);

@@ -15,7 +15,7 @@ use crate::math::{F32x8, Rgb, WIDTH};
 pub struct Accumulator {
     bands: usize,
     batch: Incidence8,
-    /// How many of the batch's lanes are in use.
+    /// Number of the batch's lanes in use.
     filled: usize,
     /// By function: value and derivatives along u and v, three channels each; lanes are summed last.
     sums: Box<[[F32x8; BLOCKS]; MAX_FUNCTIONS]>,

@@ -92,7 +92,7 @@ const fn sqrt(x: f64) -> f64 {
 /// Calls `f(k, H, |q| ∂_u H, |q| ∂_v H)` for each function of the first `BANDS` bands at the direction ω.
 ///
 /// Directions below the horizon, as rounding makes them, count as on it.
-/// What `f` does not use of its arguments is not computed.
+/// Arguments that `f` does not use are not computed.
 #[inline(always)]
 pub fn for_each<T: Real, const BANDS: usize>(omega: [T; 3], mut f: impl FnMut(usize, T, T, T)) {
     const { assert!(BANDS >= 1 && BANDS <= MAX_BANDS) };

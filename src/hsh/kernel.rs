@@ -1,4 +1,4 @@
-//! What a surface seen from one direction does to the light from all others, as a series.
+//! Reflection kernels, BRDF times cosine for one outgoing direction, as series.
 
 use super::CHANNELS;
 use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
@@ -19,8 +19,8 @@ pub(super) const fn even_index(l: usize, m: usize) -> usize {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Profile {
     pub(super) bands: usize,
-    /// By channel and function; the places of odd functions repeat the coefficients of their even partners, which is what
-    /// turning the kernel distributes over both.
+    /// By channel and function; the places of odd functions repeat the coefficients of their even partners, which is
+    /// what turning the kernel distributes over both.
     pub(super) coefficients: [[f32; MAX_FUNCTIONS]; CHANNELS],
 }
 
@@ -30,7 +30,7 @@ impl Profile {
         self.bands
     }
 
-    /// What is reflected of light that is the same from all directions, up to a constant factor.
+    /// Reflectance for light that is the same from all directions, up to a constant factor.
     #[inline]
     pub fn strength(&self) -> Rgb {
         Rgb::from_array(std::array::from_fn(|c| self.coefficients[c][0]))
@@ -76,8 +76,8 @@ pub(super) fn repeated(even: &[f64; MAX_EVEN]) -> [f32; MAX_FUNCTIONS] {
     all
 }
 
-/// Coefficients of BRDF · cosine over the incoming directions, by channel; the scalar product with those of the radiance
-/// is what is reflected.
+/// Coefficients of BRDF · cosine over the incoming directions, by channel; the scalar product with those of the
+/// radiance is what is reflected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kernel {
     pub(super) coefficients: [[f32; MAX_FUNCTIONS]; CHANNELS],

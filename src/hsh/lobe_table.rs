@@ -24,7 +24,7 @@ pub(super) struct LobeTable {
     stride: usize,
     /// 1 if all channels agree, else 3.
     channels: usize,
-    /// Where, ascending from 0 to 1.
+    /// Parameters of the nodes, ascending from 0 to 1.
     nodes: Vec<f32>,
     /// By node, channel and function, laid out as in [`super::Profile`].
     coefficients: Vec<f32>,
@@ -87,7 +87,7 @@ impl LobeTable {
         }
     }
 
-    /// How many outgoing directions are tabulated.
+    /// Number of outgoing directions that are tabulated.
     pub fn directions(&self) -> usize {
         self.nodes.len()
     }

@@ -1,8 +1,8 @@
 //! Hemispherical harmonics (HSH): an orthonormal basis over the hemisphere above a surface, in which cache records
 //! of glossy surfaces keep the light that arrives.
 //!
-//! An [`Accumulator`] sums the light of a record into a [`Radiance`]. [`MaterialSeries`] holds what each material of a scene
-//! does to light: seen from one inclination it is a [`Profile`], from one direction a [`Kernel`], and
+//! An [`Accumulator`] sums the light of a record into a [`Radiance`]. [`MaterialSeries`] holds what each material of a
+//! scene does to light: seen from one inclination it is a [`Profile`], from one direction a [`Kernel`], and
 //! [`Radiance::reflected`] is what the surface reflects there. Two bands hold the irradiance exactly.
 //!
 //! Functions are numbered k = l² + l + m: degree l (the band) from 0, order m from -l to l, negative orders

@@ -1,4 +1,4 @@
-//! Projects what a surface does to light onto the basis, by quadrature over the hemisphere in double precision.
+//! Projection of reflection kernels onto the basis, by quadrature over the hemisphere in double precision.
 
 use super::CHANNELS;
 use super::basis::{MAX_BANDS, evaluate, index};

@@ -20,8 +20,8 @@ pub struct Radiance {
     coefficients: Box<[f32]>,
 }
 
-/// What leaves a surface in one direction, and its derivatives as the receiver moves along u and v. Cut off as the
-/// series is, it may be negative.
+/// Radiance that leaves a surface in one direction, and its derivatives as the receiver moves along u and v. Cut off as
+/// the series is, it may be negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reflected {
     /// At the record.
@@ -51,7 +51,7 @@ impl Radiance {
         Radiance { bands: bands as u8, coefficients: vec![0.0; BLOCKS * stride(bands)].into() }
     }
 
-    /// How many bands the series has.
+    /// Number of bands of the series.
     pub fn bands(&self) -> usize {
         usize::from(self.bands)
     }
@@ -96,8 +96,8 @@ impl Radiance {
         Rgb::new(r, g, b)
     }
 
-    /// What a surface reflects towards the direction its kernel was made for. Of kernel and radiance, the one with fewer
-    /// bands decides.
+    /// Radiance that a surface reflects towards the direction its kernel was made for. Of kernel and radiance, the one
+    /// with fewer bands decides.
     #[inline]
     pub fn reflected(&self, kernel: &Kernel) -> Reflected {
         let stride = stride(self.bands());

@@ -1,4 +1,4 @@
-//! How each material's reflection is served: by irradiance, by a series, or not by cache records at all.
+//! Representation of each material's reflection in cache records: irradiance, a series, or none.
 //!
 //! The kernel of a surface is base + lobe. The base, a Lambertian under a coat perhaps, varies with the height of the
 //! light only, by the coat's transmittance; it takes one row of functions and hardly any error. Both parts are
@@ -18,7 +18,7 @@ use rayon::prelude::*;
 /// Outgoing inclinations, in degrees, over which the error of a kernel is averaged.
 const INCLINATIONS: [f64; 6] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0];
 
-/// How good series have to be. Errors are in the L2 norm over the incoming directions, relative to the whole kernel (base
+/// Accuracy of series. Errors are in the L2 norm over the incoming directions, relative to the whole kernel (base
 /// and lobe), averaged over outgoing inclinations up to 75°.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeriesSettings {
@@ -38,7 +38,7 @@ impl Default for SeriesSettings {
     }
 }
 
-/// What cache records of a material hold.
+/// Content of the cache records of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Caching {
     /// Irradiance is enough: there is no rough lobe (or one so sharp that the eye follows it).
@@ -49,7 +49,7 @@ pub enum Caching {
     PerSample,
 }
 
-/// Series of what every material of a scene does to light.
+/// Series of the kernels of all materials of a scene.
 pub struct MaterialSeries {
     materials: Vec<MaterialEntry>,
     lobes: Vec<LobeTable>,
@@ -109,7 +109,7 @@ impl MaterialSeries {
         MaterialSeries { materials: surfaces, lobes: lobes.into_iter().map(|(_, table)| table).collect() }
     }
 
-    /// What records of a material hold.
+    /// Content of the records of a material.
     #[inline]
     pub fn caching(&self, id: MaterialId) -> Caching {
         self.materials[id.0 as usize].caching

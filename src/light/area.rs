@@ -9,9 +9,9 @@ use glam::{Vec2, Vec3};
 /// One mesh that emits.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
-    /// Which mesh.
+    /// Index of the mesh.
     pub mesh: u32,
-    /// What it emits.
+    /// Its emission.
     pub emission: Emission,
     /// Total area of its triangles.
     pub area: f32,

@@ -193,7 +193,7 @@ fn cell_solid_angle(map: &EnvironmentMap, sin_theta: f32) -> f32 {
     (TAU / map.width as f32) * (PI / row_count(map) as f32) * sin_theta.max(1e-7)
 }
 
-/// Where in the map direction `d` is.
+/// Position of direction `d` in the map.
 fn locate(map: &EnvironmentMap, d: Vec3) -> CellPosition {
     let local = map.to_local * d;
     let u = local.x.atan2(-local.z) / TAU;

@@ -1,4 +1,4 @@
-//! What shines: emitting triangles, point, spot and directional lights, and the environment, sampled.
+//! Emitters of light: emitting triangles, point, spot and directional lights, and the environment, sampled.
 //!
 //! [`Emitters`] is built once from the scene. Next-event estimation chooses one emitter in proportion to a
 //! rough irradiance at the shaded point, then samples that emitter; the light pass chooses by power.

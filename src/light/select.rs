@@ -1,4 +1,4 @@
-//! Which emitter to sample for a shaded point.
+//! Choice of the emitter to sample for a shaded point.
 //!
 //! With few emitters the choice follows each one's rough irradiance at the point, mixed with its power so that
 //! no emitter is starved; with many it follows power alone.

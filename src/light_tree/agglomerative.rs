@@ -9,7 +9,7 @@ use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cos
 use super::topology::Topology;
 use rayon::prelude::*;
 
-/// How far along the curve a cluster looks for its neighbour.
+/// Distance along the curve, in clusters, up to which a cluster looks for its neighbour.
 const RADIUS: usize = 8;
 /// Clusters handled by one task; fixed, so that the order of the nodes does not depend on threads.
 const CHUNK: usize = 4096;

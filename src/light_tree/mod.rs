@@ -20,7 +20,7 @@ use cost::Primitive;
 
 pub use node::{MAX_VPLS, Node};
 
-/// How a tree is built.
+/// Way to build a tree.
 ///
 /// Seconds of processor time to build (one thread's worth) and mean uncapped cuts at ε = 2 % / 1 %, by
 /// `lightsplat bench trees SCENE`:

@@ -78,7 +78,7 @@ impl Node {
         (self.tag & INDEX_MASK) as usize
     }
 
-    /// How the members radiate.
+    /// Kind of the members.
     #[inline]
     pub fn kind(&self) -> VplKind {
         match self.tag >> KIND_SHIFT {
@@ -88,7 +88,7 @@ impl Node {
         }
     }
 
-    /// Where the members' light comes from.
+    /// Origin of the members' light.
     #[inline]
     pub fn origin(&self) -> Origin {
         if self.tag & INDIRECT != 0 { Origin::Indirect } else { Origin::Direct }

@@ -45,7 +45,7 @@ macro_rules! scalar {
 }
 scalar!(f32, f64);
 
-/// How many numbers go side by side in [`F32x8`].
+/// Number of lanes of [`F32x8`].
 pub const WIDTH: usize = 8;
 
 /// Eight numbers in single precision; loops over them compile to vector code.
@@ -54,7 +54,7 @@ pub const WIDTH: usize = 8;
 pub struct F32x8(pub [f32; WIDTH]);
 
 impl F32x8 {
-    /// Eight times nothing.
+    /// Zero in all lanes.
     pub const ZERO: F32x8 = F32x8([0.0; WIDTH]);
 
     /// The sum of all eight, always added in the same order.

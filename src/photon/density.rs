@@ -7,8 +7,9 @@
 //! elsewhere, or from behind, not at all. Only the part of the disc that is surface counts, and only photons there
 //! (see [`super::disc`]).
 //!
-//! Estimates are not at the photons that they count, but at others (sites). At a photon there is certainly one; and the fewer photons
-//! chance has put into a place, the further each one's estimate reaches: either way the mean over the surface would be off by about 1/k.
+//! Estimates are not at the photons that they count, but at others (sites). At a photon there is certainly one; and the
+//! fewer photons chance has put into a place, the further each one's estimate reaches: either way the mean over the
+//! surface would be off by about 1/k.
 //!
 //! Deviations: on curved surfaces the disc stays flat.
 //! Units: W/m².
@@ -26,7 +27,7 @@ use std::ops::Range;
 /// Largest radius of a disc, as a fraction of the scene's diagonal: where photons are rarer, it is dark.
 const MAX_RADIUS: f32 = 0.05;
 
-/// How much more distances along the normal count.
+/// Factor on distances along the normal.
 const NORMAL_SCALE: f32 = 3.0;
 
 /// Least cosine between the normals of surfaces that are taken for one.
@@ -38,7 +39,7 @@ const MIN_SHARE: f32 = 0.15;
 /// Irradiance at a point of a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct IrradianceEstimate {
-    /// Where.
+    /// Position.
     pub position: Vec3,
     /// Unit normal.
     pub normal: Vec3,
@@ -105,7 +106,7 @@ fn leaf_estimates(
 /// Photons that may be near sites, sixteen together.
 #[derive(Default)]
 struct Candidates {
-    /// Which photons; the last packet may be part empty.
+    /// Indices of the photons; the last packet may be part empty.
     photon: Vec<u32>,
     position: Vec<Vec3x16>,
     normal: Vec<Vec3x16>,

@@ -32,7 +32,7 @@ pub const RAYS: u64 = LANES as u64 + 1;
 /// A disc on a surface, seen from above its middle.
 pub struct Disc {
     eye: Vec3,
-    /// Which part of it is surface, weighted by the kernel.
+    /// Share of it that is surface, weighted by the kernel.
     pub share: f32,
 }
 

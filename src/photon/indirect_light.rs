@@ -1,7 +1,8 @@
 //! Indirect light that surfaces send back along the rays that meet them.
 //!
-//! A surface reflects the irradiance of the map, unless it is nearer than the map resolves (see [`super::near`]). Mirrors,
-//! glass and sharp lobes are followed to what shows in them; what emits is direct light and counts for nothing.
+//! A surface reflects the irradiance of the map, unless it is nearer than the map resolves (see [`super::near`]).
+//! Mirrors, glass and sharp lobes are followed to what shows in them; what emits is direct light and counts for
+//! nothing.
 //!
 //! Units: radiance.
 
@@ -41,8 +42,8 @@ pub struct IndirectLight<'w> {
 }
 
 impl IndirectLight<'_> {
-    /// Radiance that a surface sends back along `direction`, by which it was met at `distance`; and the albedo by which it
-    /// reflects besides, if it is too near for the map, else 0.
+    /// Radiance that a surface sends back along `direction`, by which it was met at `distance`; and the albedo by which
+    /// it reflects besides, if it is too near for the map, else 0.
     #[inline]
     pub(super) fn sent(
         &self,

@@ -46,7 +46,7 @@ impl IrradianceMap {
         }
     }
 
-    /// How many estimates.
+    /// Number of estimates.
     pub fn len(&self) -> usize {
         self.irradiance.len()
     }
@@ -107,8 +107,8 @@ fn distances_sq(positions: &Vec3x16, normals: &Vec3x16, point: Vec3, normal: Vec
     distances
 }
 
-/// How far from its place an estimate is used, in radii of its disc. Were there as much light further on, photons would have
-/// left a site nearer by: of k photons in a disc, none but for e^(-k/4) of places.
+/// Distance up to which an estimate is used, in radii of its disc. Were there as much light further on, photons would
+/// have left a site nearer by: of k photons in a disc, none but for e^(-k/4) of places.
 const REACH: f32 = 1.0;
 
 #[cfg(test)]

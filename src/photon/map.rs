@@ -16,11 +16,11 @@ use glam::Vec3;
 /// Photons for each site.
 const PHOTONS_PER_SITE: u32 = 4;
 
-/// Where irradiance is estimated: where a photon of another set arrived, so that sites are dense where photons are, and
-/// independent of them.
+/// A place where irradiance is estimated: a photon of another set arrived there, so that sites are dense where photons
+/// are, and independent of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Site {
-    /// Where.
+    /// Position.
     pub position: Vec3,
     /// Unit geometric normal.
     pub normal: Vec3,
@@ -32,11 +32,11 @@ pub struct PhotonMap {
     pub photons: Vec<Photon>,
     /// The hierarchy over them.
     pub index: EyeIndex,
-    /// Where irradiance is to be estimated.
+    /// Sites at which irradiance is to be estimated.
     pub sites: Vec<Site>,
     /// The hierarchy over those.
     pub site_index: EyeIndex,
-    /// What tracing took.
+    /// Counts of tracing.
     pub counts: PhotonCounts,
 }
 

@@ -1,8 +1,8 @@
 //! The nearest of many points, by a hierarchy of boxes of which sixteen are tested at once.
 //!
-//! Paper: Wald, Benthin and Boulos, *Getting Rid of Packets*, 2008 (sixteen children a node, for rays).
-//! Every fourth level of an [`EyeIndex`], from its leaves up: what a query waits for is one node after the other, and there are three or
-//! four instead of twelve to sixteen.
+//! Paper: Wald, Benthin and Boulos, *Getting Rid of Packets*, 2008 (sixteen children a node, for rays). Every fourth
+//! level of an [`EyeIndex`], from its leaves up: what a query waits for is one node after the other, and there are
+//! three or four instead of twelve to sixteen.
 
 use crate::eye::EyeIndex;
 use crate::math::{F32x16, LANES, U32x16, lanes_in, mask_of};
@@ -47,7 +47,7 @@ impl WideNode {
 pub struct WideKdTree {
     /// Level after level from the root, which has 2^first children.
     nodes: Vec<WideNode>,
-    /// Where each level begins in `nodes`.
+    /// Index in `nodes` at which each level begins.
     levels: Vec<usize>,
 }
 
@@ -76,8 +76,8 @@ impl WideKdTree {
         WideKdTree { nodes, levels }
     }
 
-    /// Calls `visit` with the leaves whose boxes come within a radius of `p`, the nearest first and then near ones as a rule.
-    /// It is given the leaf and the radius squared, and returns what that has shrunk to.
+    /// Calls `visit` with the leaves whose boxes come within a radius of `p`, the nearest first and then near ones as a
+    /// rule. It is given the leaf and the radius squared, and returns what that has shrunk to.
     #[inline]
     pub fn leaves(&self, p: Vec3, mut radius_sq: f32, mut visit: impl FnMut(usize, f32) -> f32) {
         let p = p.to_array();

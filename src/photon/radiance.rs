@@ -21,8 +21,8 @@ pub struct IncomingRadiance {
 }
 
 impl IndirectLight<'_> {
-    /// Radiance along the rays of `valid` lanes, and the distances to what they meet (infinite: nothing). `seed` chooses among
-    /// what is followed. `coherent` rays are those of neighbouring strata.
+    /// Radiance along the rays of `valid` lanes, and the distances to what they meet (infinite: nothing). `seed`
+    /// chooses among what is followed. `coherent` rays are those of neighbouring strata.
     pub fn along16(
         &self,
         rays: &Rays16,

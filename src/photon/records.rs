@@ -1,8 +1,8 @@
 //! Records of indirect light by final gathering; those of direct light by cuts.
 //!
 //! Papers: Jensen 1996; Krivanek et al. 2005; Herzog et al. 2009, section 7 (the method they call PM).
-//! Deviations: for the series of glossy surfaces, what a stratum shows is a patch of surface that stays where it is as the point moves
-//! (as the virtual lights of `cache` do), so these gradients do not know of the edges of occluders.
+//! Deviations: for the series of glossy surfaces, what a stratum shows is a patch of surface that stays where it is as
+//! the point moves (as the virtual lights of `cache` do), so these gradients do not know of the edges of occluders.
 
 use super::hemisphere::{GatherPoint, GatheredIrradiance, gather};
 use super::indirect_light::{GatherCounts, IndirectLight};
@@ -27,7 +27,7 @@ use std::sync::{Mutex, PoisonError};
 /// Least cosine, at the point and at patches that it sees, by which is divided.
 const MIN_COS: f32 = 0.05;
 
-/// What computing records needs.
+/// Source of records of indirect light by final gathering.
 pub struct FinalGatherSource<'w> {
     /// Direct light, by cuts.
     pub direct: Source<'w>,
@@ -37,7 +37,7 @@ pub struct FinalGatherSource<'w> {
     pub strata: Strata,
     /// Another seed, other directions within their strata.
     pub seed: u32,
-    /// What gathering took so far.
+    /// Counts of gathering so far.
     pub counts: Mutex<GatherCounts>,
 }
 
@@ -122,7 +122,8 @@ impl FinalGatherSource<'_> {
 }
 
 impl FinalGatherSource<'_> {
-    /// What the point sees, with the light met. Its gradient stays that of the strata, which knows of occluders' edges.
+    /// Surfaces that the point sees, with the light met. Its gradient stays that of the strata, which knows of
+    /// occluders' edges.
     fn sight(&self, point: &EyePoint, geometric_normal: Vec3, seed: u32, met: &Met) -> Sight {
         let (at, rays) = ((point.position, geometric_normal), self.settings().probe_rays);
         let mut sight = Sight::new(self.light.world, at, point.normal, rays, seed);

@@ -1,8 +1,8 @@
 //! The directions of a final gathering: rings by sectors of the hemisphere, all of the same projected solid angle.
 //!
-//! Paper: Ward and Heckbert 1992; Krivanek et al. 2005, whose translational gradient is that of [`Strata::gradient`]: the boundaries between
-//! strata move as the point does, the faster the nearer the nearer of the two surfaces is, and light of one
-//! stratum gives way to that of the other.
+//! Paper: Ward and Heckbert 1992; Krivanek et al. 2005, whose translational gradient is that of [`Strata::gradient`]:
+//! the boundaries between strata move as the point does, the faster the nearer the nearer of the two surfaces is, and
+//! light of one stratum gives way to that of the other.
 
 use crate::math::Rgb;
 use glam::{Mat3, Vec2, Vec3};
@@ -24,7 +24,7 @@ pub struct Strata {
     azimuth: Vec<Vec2>,
 }
 
-/// What the rays of a gathering have met, ring by ring.
+/// Surfaces that the rays of a gathering have met, ring by ring.
 #[derive(Clone, Debug, Default)]
 pub struct Met {
     /// Radiance from each stratum.
@@ -70,12 +70,12 @@ impl Strata {
         Strata { rings, sectors, tangential, azimuth: (0..sectors).map(integral).collect() }
     }
 
-    /// How many.
+    /// Number of strata.
     pub fn len(&self) -> usize {
         self.rings * self.sectors
     }
 
-    /// Never.
+    /// False: there is at least one.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -4,11 +4,11 @@
 //! Deviations: a slot holds several triangles and no key. What it holds was put there by rays to some light, mostly the
 //! same one; testing another's occluder is no error, only less likely to help.
 //!
-//! **The cache changes no answer.** It says "occluded" only where a ray passes a triangle's edges and the segment's ends
-//! at more than [`MARGIN`] roundings of the coordinates involved, and the plane at more than that angle: nothing that Embree
-//! rounds otherwise can then matter. All other rays are traced.
+//! **The cache changes no answer.** It says "occluded" only where a ray passes a triangle's edges and the segment's
+//! ends at more than [`MARGIN`] roundings of the coordinates involved, and the plane at more than that angle: nothing
+//! that Embree rounds otherwise can then matter. All other rays are traced.
 //!
-//! What the cache holds depends on what was asked before. So that results do not depend on threads, whoever uses one
+//! The content of a cache depends on earlier queries. So that results do not depend on threads, whoever uses one
 //! forgets it ([`OccluderCache::forget`]) at boundaries of the work that do not depend on threads either.
 
 use crate::embree::{Occluder, Ray, TriangleId};
@@ -48,11 +48,11 @@ pub struct OccluderCache {
     generation: u32,
 }
 
-/// What a slot holds is void unless it is of the cache's generation.
+/// State of a slot, whose content is void unless it is of the cache's generation.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slot {
     generation: u32,
-    /// Which way is replaced next.
+    /// Way that is replaced next.
     next: u32,
 }
 
@@ -174,7 +174,7 @@ impl CachedTriangle {
     }
 }
 
-/// How large the numbers of a ray are.
+/// Largest coordinates of a ray.
 #[derive(Clone, Copy)]
 struct Reach {
     origin: f32,
@@ -190,7 +190,8 @@ impl Reach {
     }
 }
 
-/// Whether the ray meets the inside of a triangle beyond doubt, and where. All comparisons are false for what is not finite.
+/// Whether the ray meets the inside of a triangle beyond doubt, and where. All comparisons are false for what is not
+/// finite.
 ///
 /// Möller and Trumbore 1997, with every quantity times the determinant, and left above its rounding.
 #[inline(always)]

@@ -37,8 +37,8 @@ impl Numbers {
     }
 }
 
-/// A closed box whose walls are grids, so that rays can pass through shared edges; a ball; and loose triangles from large
-/// ones to slivers.
+/// A closed box whose walls are grids, so that rays can pass through shared edges; a ball; and loose triangles from
+/// large ones to slivers.
 fn world() -> World {
     let mut meshes = Vec::new();
     let mut mesh = |positions: Vec<Vec3>, triangles| {

@@ -1,4 +1,4 @@
-//! VPLs where light is emitted: stratified points on area lights, exact leaves for point, spot and directional
+//! VPLs of emitted light: stratified points on area lights, exact leaves for point, spot and directional
 //! lights, and luminance-stratified directions for the environment in a set of their own.
 
 use super::{LightPassSettings, Origin, SpotProfile, Vpl, VplKind, VplSet, size_of_area};
@@ -10,7 +10,7 @@ use crate::world::World;
 /// No area light is represented by fewer points a side: penumbrae would show bands.
 const MIN_PER_LIGHT: u32 = 256;
 
-/// What is emitted.
+/// VPLs of emitted light.
 pub struct DirectVpls {
     /// The sets, empty ones included.
     pub sets: Vec<VplSet>,
@@ -20,7 +20,7 @@ pub struct DirectVpls {
     pub sizes: Vec<u32>,
 }
 
-/// VPLs where light is emitted.
+/// Makes the VPLs of emitted light.
 pub fn direct_vpls(world: &World, settings: &LightPassSettings) -> DirectVpls {
     let emitters = &world.emitters;
     let mut oriented = VplSet::new(VplKind::Oriented, Origin::Direct);

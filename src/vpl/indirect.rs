@@ -9,7 +9,8 @@ use crate::progress::Control;
 use crate::world::World;
 use std::f32::consts::FRAC_1_PI;
 
-/// About `settings.indirect` indirect VPLs (whole chunks of paths, so a few more), or fewer where light is hard to catch.
+/// About `settings.indirect` indirect VPLs (whole chunks of paths, so a few more), or fewer where light is hard to
+/// catch.
 pub fn indirect_vpls(
     world: &World,
     settings: &LightPassSettings,

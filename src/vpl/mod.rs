@@ -23,7 +23,7 @@ pub use pass::{LightPass, light_pass};
 pub use photons::{Photon, PhotonCounts, PhotonSettings, trace_photons};
 pub use settings::LightPassSettings;
 
-/// How a VPL radiates.
+/// Directional distribution of a VPL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VplKind {
     /// Equally in all directions, or within the cone of a spot light.
@@ -34,7 +34,7 @@ pub enum VplKind {
     Directional,
 }
 
-/// Where a VPL's light comes from.
+/// Origin of a VPL's light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// Emitted there.
@@ -93,7 +93,7 @@ impl Vpl {
         self.word >> SIZE_SHIFT
     }
 
-    /// Which spot profile restricts an omni VPL.
+    /// Index of the spot profile that restricts an omni VPL.
     #[inline]
     pub fn spot_profile(&self) -> Option<usize> {
         (self.word as usize).checked_sub(1)
@@ -146,9 +146,9 @@ impl SpotProfile {
 /// VPLs of one kind and origin: what one light tree is built over.
 #[derive(Clone, Debug)]
 pub struct VplSet {
-    /// How all of them radiate.
+    /// Kind of all of them.
     pub kind: VplKind,
-    /// Where all of them come from.
+    /// Origin of all of them.
     pub origin: Origin,
     /// Hot records.
     pub vpls: Vec<Vpl>,
@@ -171,7 +171,7 @@ impl VplSet {
         }
     }
 
-    /// How many VPLs.
+    /// Number of VPLs.
     pub fn len(&self) -> usize {
         self.vpls.len()
     }

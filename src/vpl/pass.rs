@@ -16,17 +16,17 @@ pub struct LightPass {
     pub spots: Vec<SpotProfile>,
     /// Size of the patches that direct VPLs on each mesh stand for (see [`super::size_of_area`]).
     pub sizes: Vec<u32>,
-    /// What photon tracing took.
+    /// Counts of photon tracing.
     pub photons: PhotonCounts,
 }
 
 impl LightPass {
-    /// How many VPLs in all.
+    /// Number of VPLs.
     pub fn len(&self) -> usize {
         self.sets.iter().map(VplSet::len).sum()
     }
 
-    /// Whether nothing shines.
+    /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

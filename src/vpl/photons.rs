@@ -30,7 +30,7 @@ const MAX_SURVIVAL: f32 = 0.98;
 /// otherwise leave a VPL brighter than all others together.
 const MAX_CORRECTION: f32 = 8.0;
 
-/// What tracing photons took.
+/// Counts of tracing photons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhotonCounts {
     /// Paths shot, by which flux is divided.
@@ -42,7 +42,7 @@ pub struct PhotonCounts {
 /// Light that meets a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Photon {
-    /// Where.
+    /// Position.
     pub position: Vec3,
     /// Unit geometric normal on the side it arrives at.
     pub normal: Vec3,
@@ -54,7 +54,7 @@ pub struct Photon {
     pub albedo: Rgb,
 }
 
-/// What is wanted.
+/// Settings of tracing photons.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotonSettings {
     /// Photons, about (whole chunks of paths, so a few more), or fewer where light is hard to catch.

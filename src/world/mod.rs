@@ -15,7 +15,7 @@ mod triangle;
 pub use packet::Surfaces16;
 use triangle::Triangles;
 
-/// Everything a method needs to know of a scene.
+/// A scene with all tables that methods need.
 pub struct World {
     /// The scene as loaded.
     pub scene: Scene,
@@ -23,14 +23,14 @@ pub struct World {
     pub accel: Accel,
     /// Per-material tables.
     pub materials: Materials,
-    /// What shines.
+    /// Emitters of light.
     pub emitters: Emitters,
     /// Diagonal of the bounds of all surfaces; 1 if there are none. Lengths that depend on scale derive from it.
     pub diagonal: f32,
     triangles: Triangles,
 }
 
-/// What is built into an acceleration structure.
+/// Meshes of a scene as an acceleration structure is built from them.
 pub fn triangle_meshes(scene: &Scene) -> Vec<TriangleMesh<'_>> {
     let meshes = scene.meshes.iter();
     meshes.map(|m| TriangleMesh { positions: &m.positions, triangles: &m.triangles }).collect()
@@ -115,7 +115,7 @@ impl World {
         (triangle.corner, triangle.edges)
     }
 
-    /// How the surface scatters, textures looked up.
+    /// BSDF of the surface, textures looked up.
     #[inline]
     pub fn bsdf(&self, s: &Surface) -> Bsdf<'_> {
         let mesh = &self.scene.meshes[s.mesh as usize];

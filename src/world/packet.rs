@@ -6,7 +6,7 @@ use crate::embree::Hits16;
 use crate::material::Bsdfs16;
 use crate::math::{F32x16, Frame, LANES, U32x16, Vec2x16, Vec3x16};
 
-/// What sixteen rays met; see [`Surface`] for the members.
+/// Surfaces that sixteen rays met; see [`Surface`] for the members.
 #[derive(Clone, Debug, Default)]
 pub struct Surfaces16 {
     /// Positions.
@@ -87,7 +87,7 @@ impl World {
         s
     }
 
-    /// How the surfaces scatter, seen from `wo` in their shading frames, textures looked up.
+    /// BSDFs of the surfaces, seen from `wo` in their shading frames, textures looked up.
     #[inline]
     pub fn bsdfs(&self, s: &Surfaces16, wo: Vec3x16) -> Bsdfs16<'_> {
         Bsdfs16::new(wo, |i| {

@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 
 /// The triangles of all meshes.
 pub(super) struct Triangles {
-    /// Where each mesh begins.
+    /// Index of each mesh's first record.
     first: Vec<usize>,
     records: Vec<Triangle>,
 }

@@ -1,10 +1,10 @@
 //! The refinements that methods run, over stretches of a scene's eye samples, with whatever visibility.
 //!
-//! Lightcuts per pixel; the cache's eye samples, lit by direct light, whose neighbours are lent cuts; and its records, of
-//! indirect light. All in the order of the method, each point by itself or neighbours together.
+//! Lightcuts per pixel; the cache's eye samples, lit by direct light, whose neighbours are lent cuts; and its records,
+//! of indirect light. All in the order of the method, each point by itself or neighbours together.
 //!
-//! Records are those of the first wave of the finest level, as if there were no coarser ones: its records lie as close as
-//! any.
+//! Records are those of the first wave of the finest level, as if there were no coarser ones: its records lie as close
+//! as any.
 
 use crate::bench::setting::Setting;
 use crate::lightcut::{
@@ -18,7 +18,7 @@ use crate::radiance_cache::layer::Layer;
 use crate::radiance_cache::wave::{Pick, pick};
 use crate::vpl::Origin;
 
-/// Which points are lit.
+/// Points that are lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
     /// Pixels, by lightcuts.
@@ -77,12 +77,12 @@ impl<'s> Orders<'s> {
         Orders { setting, cache, stretches, jobs, picks: picks.collect() }
     }
 
-    /// How many stretches.
+    /// Number of stretches.
     pub fn chunks(&self) -> usize {
         self.stretches.len()
     }
 
-    /// How many points there are to be lit.
+    /// Number of points to be lit.
     pub fn points(&self, order: Order) -> usize {
         match order {
             Order::Pixels | Order::Samples => self.stretches.iter().map(Vec::len).sum(),

@@ -1,4 +1,4 @@
-//! What the shape of the refinement is worth: rays asked for a second, and time a point.
+//! Refinement of single points and of groups: rays asked for a second, and time a point.
 
 use super::trace::{Trace, Traces, count};
 use super::{MRAYS, cached};

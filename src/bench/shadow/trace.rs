@@ -17,7 +17,7 @@ pub struct Packet {
     pub neighbours: bool,
     pub rays: Rays16,
     pub valid: u16,
-    /// Which light each runs to.
+    /// Key of the light that each runs to.
     pub keys: [u32; 16],
 }
 
@@ -43,13 +43,13 @@ impl Trace {
         self.packets().filter(|p| p.neighbours == self.neighbours)
     }
 
-    /// How many segments.
+    /// Number of segments.
     pub fn rays(&self) -> u64 {
         count(self.packets())
     }
 }
 
-/// How many segments packets hold.
+/// Number of segments that packets hold.
 pub fn count<'a>(packets: impl IntoIterator<Item = &'a Packet>) -> u64 {
     packets.into_iter().map(|p| u64::from(p.valid.count_ones())).sum()
 }
@@ -190,7 +190,7 @@ fn neighbours(setting: &Setting) -> Trace {
     Trace { name: "neighbours, one light", neighbours: true, chunks, points }
 }
 
-/// What cuts ask for: each point's own, and those that groups share.
+/// Segments that cuts ask for: each point's own cut, and those that groups share.
 fn refined(setting: &Setting, orders: &Orders, order: Order) -> [Trace; 2] {
     [false, true].map(|shared| {
         let chunk = |chunk| {

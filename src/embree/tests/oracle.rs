@@ -32,7 +32,7 @@ pub struct Soup {
     meshes: [(Vec<Vec3>, Vec<[u32; 3]>); 3],
 }
 
-/// What brute force says about a ray.
+/// Answer of brute force for a ray.
 pub enum Verdict {
     /// It passes an edge, or two triangles, or an end of the segment, within rounding.
     Close,
