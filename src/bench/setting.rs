@@ -28,7 +28,7 @@ impl<'w> Setting<'w> {
     /// With the renderers' default settings. None if there is no scene.
     pub fn new(context: &Context<'w>) -> Option<Setting<'w>> {
         let world = context.world?;
-        let depth = world.scene.max_depth.unwrap_or(u32::MAX);
+        let depth = world.scene.path_limit(None);
         (context.say)("looking at the scene and lighting it");
         let eye = EyeSettings { spp: 1, seed: 0, max_depth: depth };
         let window = Window::whole(world.scene.resolution);

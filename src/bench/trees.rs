@@ -27,7 +27,7 @@ fn run(context: &Context) -> Vec<Table> {
     for indirect in LIGHTS {
         (context.say)(&format!("{indirect} indirect lights"));
         let light = LightPassSettings { indirect, ..LightPassSettings::default() };
-        let depth = world.scene.max_depth.unwrap_or(u32::MAX);
+        let depth = world.scene.path_limit(None);
         let LightPass { sets, spots, .. } = light_pass(world, &light, depth, &Control::new());
         let sets = std::rc::Rc::new(sets);
         let against = cases.len();

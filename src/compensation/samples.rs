@@ -11,6 +11,7 @@ use super::near::{self, Clamped, Near};
 use crate::light_tree::LightTrees;
 use crate::lightcut::{CutCounts, CutSettings, PacketLightcut, Receiver, ReceiverPacket};
 use crate::math::{Frame, LANES, Rgb, luminance};
+use crate::stats::add_fields;
 use crate::vpl::Origin;
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -57,15 +58,7 @@ pub struct NearCounts {
     /// Luminance of reflected light that was added to the radiance of samples, summed.
     pub found: f64,
 }
-
-impl NearCounts {
-    /// Adds `other`.
-    pub fn add(&mut self, other: &NearCounts) {
-        self.rays += other.rays;
-        self.cuts.add(&other.cuts);
-        self.found += other.found;
-    }
-}
+add_fields!(NearCounts { rays, cuts, found });
 
 struct Place {
     position: Vec3,

@@ -16,6 +16,7 @@ use crate::material::Bsdf;
 use crate::math::Rgb;
 use crate::sampling::Sampler;
 use crate::shadow;
+use crate::stats::add_fields;
 use crate::world::{Surface, World};
 use glam::Vec3;
 
@@ -52,15 +53,7 @@ pub struct ChainCounts {
     /// Branches dropped because too many were pending; their light is missing.
     pub overflow: u64,
 }
-
-impl ChainCounts {
-    /// Adds what others counted.
-    pub fn add(&mut self, other: &ChainCounts) {
-        self.rays += other.rays;
-        self.shadow_rays += other.shadow_rays;
-        self.overflow += other.overflow;
-    }
-}
+add_fields!(ChainCounts { rays, shadow_rays, overflow });
 
 struct Branch {
     ray: Ray,

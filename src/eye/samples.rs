@@ -116,7 +116,7 @@ impl<'w> EyeSamples<'w> {
             for (pixel, radiance) in tile.emitted {
                 emitted.pixels[pixel as usize] += radiance;
             }
-            chains.add(&tile.chains);
+            chains += tile.chains;
             nonfinite += tile.nonfinite;
             complete &= tile.done;
         }

@@ -18,15 +18,15 @@ mod accumulate;
 mod basis;
 mod kernel;
 mod lobe_table;
+mod material_series;
 mod projection;
 mod radiance;
-mod surfaces;
 
 pub use accumulate::Accumulator;
 pub use basis::{MAX_BANDS, MAX_FUNCTIONS, evaluate, for_each, index};
 pub use kernel::{Kernel, Profile};
+pub use material_series::{Caching, MaterialSeries, SeriesSettings};
 pub use radiance::{Radiance, Reflected};
-pub use surfaces::{Caching, MaterialSeries, SeriesSettings};
 
 /// Colour channels.
 const CHANNELS: usize = 3;

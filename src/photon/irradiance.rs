@@ -3,7 +3,7 @@
 //! Paper: Christensen 1999: one look-up at each hit of a final gathering, instead of an estimate.
 
 use super::density::{IrradianceEstimate, MIN_COS, surface_distance_sq};
-use super::nearest::WideKdTree;
+use super::wide_kd_tree::WideKdTree;
 use crate::eye::EyeIndex;
 use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, lanes_in, mask_of};
 use glam::Vec3;

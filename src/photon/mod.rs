@@ -5,7 +5,7 @@
 //!
 //! - [`map`]: the photons, in an order in which neighbours in space are neighbours in memory;
 //! - [`density`]: irradiance from the photons around a place; [`disc`]: which part of the disc around it is surface;
-//! - [`irradiance`]: the same looked up anywhere, by [`nearest`];
+//! - [`irradiance`]: the same looked up anywhere, by [`wide_kd_tree`];
 //! - [`strata`]: the directions of a final gathering; [`hemisphere`]: what they meet, and how that changes nearby;
 //! - [`indirect_light`]: light that a surface sends back along a ray; [`near`]: from surfaces nearer than the map
 //!   resolves; [`radiance`]: light along packets of rays;
@@ -18,11 +18,11 @@ pub mod indirect_light;
 pub mod irradiance;
 pub mod map;
 pub mod near;
-pub mod nearest;
 pub mod own;
 pub mod radiance;
 pub mod records;
 pub mod strata;
+pub mod wide_kd_tree;
 
 pub use irradiance::IrradianceMap;
 pub use map::PhotonMap;

@@ -22,7 +22,7 @@ use crate::radiance_cache::{CacheSettings, Footprints};
 use crate::sampling::hash;
 use glam::Vec3;
 use rayon::prelude::*;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Least cosine, at the point and at patches that it sees, by which is divided.
 const MIN_COS: f32 = 0.05;
@@ -33,12 +33,26 @@ pub struct FinalGatherSource<'w> {
     pub direct: Source<'w>,
     /// Indirect light.
     pub light: IndirectLight<'w>,
-    /// Directions of a gathering.
-    pub strata: Strata,
-    /// Another seed, other directions within their strata.
-    pub seed: u32,
+    strata: Strata,
+    seed: u32,
+    counts: Mutex<GatherCounts>,
+}
+
+impl<'w> FinalGatherSource<'w> {
+    /// A source whose directions of gathering are `strata`; another `seed`, other directions within them.
+    pub fn new(
+        direct: Source<'w>,
+        light: IndirectLight<'w>,
+        strata: Strata,
+        seed: u32,
+    ) -> FinalGatherSource<'w> {
+        FinalGatherSource { direct, light, strata, seed, counts: Mutex::default() }
+    }
+
     /// Counts of gathering so far.
-    pub counts: Mutex<GatherCounts>,
+    pub fn counts(&self) -> MutexGuard<'_, GatherCounts> {
+        self.counts.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// A thread's buffers.
@@ -74,7 +88,7 @@ impl RecordSource for FinalGatherSource<'_> {
                 (*pick, [None, made], counts)
             })
             .collect();
-        let mut gathered = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut gathered = self.counts();
         for (pick, pair, used) in indirect {
             *gathered += used;
             records.push((pick, pair));

@@ -102,7 +102,7 @@ impl RecordSource for Source<'_> {
         let mut counts = CutCounts::default();
         let mut records = Vec::with_capacity(picks.len());
         for (pairs, used) in done {
-            counts.add(&used);
+            counts += used;
             records.extend(pairs);
         }
         (records, counts)
@@ -192,7 +192,7 @@ impl<'w> Workspace<'w> {
 
     fn counts(&self) -> CutCounts {
         let mut counts = self.single.counts;
-        counts.add(&self.group.counts);
+        counts += self.group.counts;
         counts
     }
 

@@ -53,3 +53,10 @@ pub struct Scene {
     /// World position of the local origin.
     pub centre: DVec3,
 }
+
+impl Scene {
+    /// Longest path in edges: as `wanted`, else the scene's own, else no limit.
+    pub fn path_limit(&self, wanted: Option<u32>) -> u32 {
+        wanted.or(self.max_depth).unwrap_or(u32::MAX)
+    }
+}

@@ -107,7 +107,7 @@ impl Tracing<'_> {
         traced: &mut Traced,
     ) -> Option<Vec<Measured>> {
         let Tracing { world, window, settings, .. } = *self;
-        let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
+        let max_depth = world.scene.path_limit(settings.max_depth);
         let held = |pick: &Pick| Measured {
             held: self.image.pixels[pick.index].as_dvec3(),
             means: [DVec3::ZERO; MEANS],

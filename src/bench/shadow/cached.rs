@@ -26,7 +26,8 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     Table::measured(
         (
             "Occluder cache",
-            "Single rays through the engine, the cache emptied at each stretch of 64 receivers. Ratio to the engine without one.",
+            "Single rays through the engine, the cache emptied at each stretch of 64 receivers. Ratio to the engine \
+             without one.",
         ),
         (&["order", "slots x ways"], "Mrays/s", &["saved %", "answers changed"]),
         (Clock::Thread, settings, MRAYS),

@@ -1,7 +1,7 @@
 //! The engine against bare loops over the same packets.
 
 use super::MRAYS;
-use super::trace::{Packet, Traces, count};
+use super::trace::{SegmentPacket, Traces, count};
 use crate::bench::measure::Case;
 use crate::bench::setting::Setting;
 use crate::bench::{Clock, Settings, Table};
@@ -23,12 +23,13 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
             }));
             let engine = Engine::new(world);
             if width == Width::One {
-                let singles: Vec<(Ray, u32)> = trace.bundles().flat_map(Packet::singles).collect();
+                let singles: Vec<(Ray, u32)> = trace.bundles().flat_map(SegmentPacket::singles).collect();
                 cases.push(Case::new(&labels, against, rays, move || {
                     black_box(singles.iter().filter(|(ray, key)| engine.occluded(ray, *key)).count());
                 }));
             } else {
-                let one = move |p: &Packet| u64::from(engine.occluded16(&p.rays, p.valid).count_ones());
+                let one =
+                    move |p: &SegmentPacket| u64::from(engine.occluded16(&p.rays, p.valid).count_ones());
                 cases.push(Case::new(&labels, against, rays, move || {
                     black_box(trace.bundles().map(&one).sum::<u64>());
                 }));

@@ -32,7 +32,7 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     for (trace, coherent) in [(&traces.pixels()[0], false), (&traces.pixels()[1], true)] {
         let against = cases.len();
         let occluded = move |accel: &Accel| -> Vec<u16> {
-            let query = |p: &super::trace::Packet| {
+            let query = |p: &super::trace::SegmentPacket| {
                 if coherent {
                     accel.occluded16(&p.rays, p.valid, true)
                 } else {

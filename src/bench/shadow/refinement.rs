@@ -41,9 +41,9 @@ pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     let mut table = Table::measured(
         (
             "Refinement",
-            "Rays that cuts ask for, in their order: cuts of single points, and cuts shared by up to sixteen neighbours. \
-             Ratio to single rays in the order of single points; time a point is relative to that, and counts that shared \
-             cuts ask for more.",
+            "Rays that cuts ask for, in their order: cuts of single points, and cuts shared by up to sixteen \
+             neighbours. Ratio to single rays in the order of single points; time a point is relative to that, and \
+             counts that shared cuts ask for more.",
         ),
         (&["order", "traced"], "Mrays/s", &["time a point", "rays a point", "single %"]),
         (Clock::Thread, settings, MRAYS),

@@ -12,7 +12,7 @@ use std::cell::RefCell;
 
 /// Up to sixteen segments.
 #[derive(Clone)]
-pub struct Packet {
+pub struct SegmentPacket {
     /// Whether they run from neighbouring points to one light.
     pub neighbours: bool,
     pub rays: Rays16,
@@ -27,19 +27,19 @@ pub struct Trace {
     /// Whether most packets run from neighbouring points to one light.
     pub neighbours: bool,
     /// By stretches of work in which a cache lives.
-    pub chunks: Vec<Vec<Packet>>,
+    pub chunks: Vec<Vec<SegmentPacket>>,
     /// Number of receivers that they were asked for.
     pub points: usize,
 }
 
 impl Trace {
     /// All packets in order.
-    pub fn packets(&self) -> impl Iterator<Item = &Packet> {
+    pub fn packets(&self) -> impl Iterator<Item = &SegmentPacket> {
         self.chunks.iter().flatten()
     }
 
     /// The packets of most: a shared cut's, without the rays of points that share with nobody.
-    pub fn bundles(&self) -> impl Iterator<Item = &Packet> {
+    pub fn bundles(&self) -> impl Iterator<Item = &SegmentPacket> {
         self.packets().filter(|p| p.neighbours == self.neighbours)
     }
 
@@ -50,7 +50,7 @@ impl Trace {
 }
 
 /// Number of segments that packets hold.
-pub fn count<'a>(packets: impl IntoIterator<Item = &'a Packet>) -> u64 {
+pub fn count<'a>(packets: impl IntoIterator<Item = &'a SegmentPacket>) -> u64 {
     packets.into_iter().map(|p| u64::from(p.valid.count_ones())).sum()
 }
 
@@ -83,13 +83,13 @@ impl Traces {
 /// Rays to lights one after the other, sixteen a packet.
 #[derive(Default)]
 struct Packer {
-    packets: Vec<Packet>,
-    last: Option<Packet>,
+    packets: Vec<SegmentPacket>,
+    last: Option<SegmentPacket>,
 }
 
 impl Packer {
     fn push(&mut self, ray: &Ray, key: u32) {
-        let blank = || Packet { neighbours: false, rays: Rays16::default(), valid: 0, keys: [0; 16] };
+        let blank = || SegmentPacket { neighbours: false, rays: Rays16::default(), valid: 0, keys: [0; 16] };
         let packet = self.last.get_or_insert_with(blank);
         let lane = packet.valid.count_ones() as usize;
         packet.rays.set(lane, ray);
@@ -172,7 +172,7 @@ fn neighbours(setting: &Setting) -> Trace {
                 let Some(leaf) = leaves.get(dice.below(leaves.len())) else { continue };
                 let key = leaf.representative() as u32;
                 let mut packet =
-                    Packet { neighbours: true, rays: Rays16::default(), valid: 0, keys: [key; 16] };
+                    SegmentPacket { neighbours: true, rays: Rays16::default(), valid: 0, keys: [key; 16] };
                 for (lane, reflector) in reflectors.iter().enumerate() {
                     if let Some(ray) = lit(setting, reflector, leaf) {
                         packet.rays.set(lane, &ray);
@@ -225,7 +225,7 @@ impl PacketVisibility for Recorder<'_> {
         let rays = points.shadow_rays(vpl, node.kind());
         let seen = lanes & !self.setting.world.accel.occluded16(&rays, lanes, true);
         let key = node.representative() as u32;
-        let packet = Packet { neighbours: true, rays, valid: lanes, keys: [key; 16] };
+        let packet = SegmentPacket { neighbours: true, rays, valid: lanes, keys: [key; 16] };
         let mut packer = self.packer.borrow_mut();
         packer.flush();
         packer.packets.push(packet);
@@ -233,7 +233,7 @@ impl PacketVisibility for Recorder<'_> {
     }
 }
 
-impl Packet {
+impl SegmentPacket {
     /// Its rays and their lights.
     pub fn singles(&self) -> impl Iterator<Item = (Ray, u32)> + '_ {
         lanes_in(self.valid).map(|lane| (self.rays.get(lane), self.keys[lane]))

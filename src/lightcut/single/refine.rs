@@ -13,6 +13,7 @@
 use crate::light_tree::LightTrees;
 use crate::lightcut::{Receiver, Transfer, Visibility};
 use crate::math::{Rgb, luminance};
+use crate::stats::add_fields;
 use crate::vpl::Origin;
 use glam::DVec3;
 use std::collections::BinaryHeap;
@@ -76,20 +77,7 @@ pub struct CutCounts {
     /// What clamping took away of it.
     pub lost: f64,
 }
-
-impl CutCounts {
-    /// Adds `other`.
-    pub fn add(&mut self, other: &CutCounts) {
-        self.cuts += other.cuts;
-        self.clusters += other.clusters;
-        self.capped += other.capped;
-        self.rays += other.rays;
-        self.bounds += other.bounds;
-        self.clamped += other.clamped;
-        self.luminance += other.luminance;
-        self.lost += other.lost;
-    }
-}
+add_fields!(CutCounts { cuts, clusters, capped, rays, bounds, clamped, luminance, lost });
 
 /// Computes cuts; one a thread, so that its buffers are allocated once.
 #[derive(Default)]

@@ -98,7 +98,7 @@ impl Cache {
                     .time(Stage::Splat, || pick(samples, &self.layers, |i| self.wanted(i), level, parity));
                 let (mut records, counts) =
                     stats.time(Stage::Records, || source.records(samples, &self.layers, &picks));
-                self.counts.add(&counts);
+                self.counts += counts;
                 stats.time(Stage::Splat, || {
                     for (l, layer) in self.layers.iter_mut().enumerate() {
                         layer.splat(samples, records.iter_mut().filter_map(|(_, pair)| pair[l].take()));

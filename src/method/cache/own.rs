@@ -93,7 +93,7 @@ pub fn light_patches<'w>(
                 let mut lit = Vec::with_capacity(jobs.len());
                 work.light(source, shadows, samples, jobs, &cut, &mut lit);
                 let mut cuts = work.single.counts;
-                cuts.add(&work.group.counts);
+                cuts += work.group.counts;
                 control.advance(jobs.len() as u64);
                 let (shadows, near) = (shadows.take_counts(), work.near.take_counts());
                 Lit { radiance: lit, cuts, shadows, near }
@@ -103,9 +103,9 @@ pub fn light_patches<'w>(
     let mut all = Lit { radiance: Vec::new(), ..Lit::default() };
     for lit in done {
         all.radiance.extend(lit.radiance);
-        all.cuts.add(&lit.cuts);
+        all.cuts += lit.cuts;
         all.shadows += lit.shadows;
-        all.near.add(&lit.near);
+        all.near += lit.near;
     }
     all
 }

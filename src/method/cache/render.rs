@@ -87,7 +87,7 @@ impl<'w> Prepared<'w> {
     /// By the settings that say how many, and whether surfaces need series.
     pub fn new(world: &'w World, window: &Window, settings: &Settings, control: &Control) -> Prepared<'w> {
         let mut stats = Stats::new();
-        let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
+        let max_depth = world.scene.path_limit(settings.max_depth);
         let spp = settings.spp.max(1);
 
         let eye = EyeSettings { spp, seed: settings.seed, max_depth };

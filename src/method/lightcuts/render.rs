@@ -70,7 +70,7 @@ pub(super) struct Scenery<'a> {
 /// Renders `window` of the scene's film.
 pub fn render(world: &World, window: &Window, settings: &Settings, control: &Control) -> Output {
     let mut stats = Stats::new();
-    let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
+    let max_depth = world.scene.path_limit(settings.max_depth);
 
     let light = LightPassSettings { seed: settings.seed, ..settings.light };
     let lights = Lights::new(world, &light, settings.family, max_depth, control, &mut stats);
@@ -110,11 +110,11 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
             color.pixels[at] = tile.radiance[k];
             cut_size.pixels[at] = Rgb::splat(tile.cut_sizes[k]);
         }
-        used.add(&tile.counts);
-        near.add(&tile.near);
+        used += tile.counts;
+        near += tile.near;
         packets += tile.packets;
         shadows += tile.shadows;
-        chains.add(&tile.chains);
+        chains += tile.chains;
         nonfinite += tile.nonfinite;
     }
     stats.count("Rays/shadow packets", packets);

@@ -94,8 +94,8 @@ impl Tile {
                 self.store(&area, [block_x, block_y], spp, work);
             }
         }
-        self.counts.add(&work.single.counts);
-        self.counts.add(&work.group.counts);
+        self.counts += work.single.counts;
+        self.counts += work.group.counts;
         self.packets = work.group.packets;
         self.shadows = work.shadows.take_counts();
         self.near = work.near.take_counts();

@@ -102,7 +102,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
 impl Tile {
     /// Takes the samples up to `end` of every pixel.
     fn render(&mut self, world: &World, window: &Window, settings: &Settings, index: usize, end: u32) {
-        let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
+        let max_depth = world.scene.path_limit(settings.max_depth);
         let begin = self.samples;
         let coordinates = window.tile(index, TILE);
         if self.pixels.is_empty() {

@@ -25,7 +25,6 @@ use crate::stats::{Stage, Stats};
 use crate::vpl::{LightPassSettings, Origin, PhotonSettings};
 use crate::world::World;
 use rayon::prelude::*;
-use std::sync::{Mutex, PoisonError};
 
 /// What the user may set.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +77,7 @@ impl Default for Settings {
 /// Renders `window` of the scene's film.
 pub fn render(world: &World, window: &Window, settings: &Settings, control: &Control) -> Output {
     let mut stats = Stats::new();
-    let max_depth = settings.max_depth.or(world.scene.max_depth).unwrap_or(u32::MAX);
+    let max_depth = world.scene.path_limit(settings.max_depth);
 
     let eye = EyeSettings { spp: settings.spp.max(1), seed: settings.seed, max_depth };
     control.begin(Stage::EyePass, window.tile_count(16) as u64);
@@ -96,13 +95,8 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     };
 
     let map = irradiance(world, settings, max_depth, control, &mut stats);
-    let source = FinalGatherSource {
-        direct,
-        light: IndirectLight { world, map: &map },
-        strata: Strata::new(settings.rays),
-        seed: settings.seed,
-        counts: Mutex::default(),
-    };
+    let light = IndirectLight { world, map: &map };
+    let source = FinalGatherSource::new(direct, light, Strata::new(settings.rays), settings.seed);
     let cache = Cache::complete(&source, &samples, glossy, control, &mut stats);
 
     let mut picture = Picture::new(&samples, settings.inspect);
@@ -120,7 +114,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     lit.shadows.report(&mut stats);
     let gathered =
         stats.time(Stage::Render, || own_gathers(&source, &samples, &indirect_jobs, settings, control));
-    let mut rays = *source.counts.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut rays = *source.counts();
     for (job, radiance) in lit.radiance {
         picture.add(&samples, job.sample as usize, job.origin, radiance);
     }
