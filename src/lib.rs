@@ -41,5 +41,6 @@ pub mod scene;
 pub mod shadow;
 pub mod stats;
 pub mod verify;
+pub mod view;
 pub mod vpl;
 pub mod world;

@@ -5,14 +5,12 @@ mod common;
 use common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
-use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::{Output, cache, lightcuts};
 use lightsplat::progress::Control;
 use lightsplat::radiance_cache::{Footprints, FoundBy, LayerSettings};
 use lightsplat::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
 use lightsplat::stats::{Counter, Stage};
-use lightsplat::world::World;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 fn settings(direct: FoundBy, footprints: Footprints) -> cache::Settings {
@@ -59,7 +57,7 @@ fn cancelling_ends_the_lighting_before_all_is_lit() {
                 }
             }
         });
-        let output = cache::render(&world, &Window::whole(world.scene.resolution), &settings, &control);
+        let output = cache::render(&world, &world.view, &settings, &control);
         done.store(true, Ordering::Relaxed);
         output
     });
@@ -70,12 +68,12 @@ fn cancelling_ends_the_lighting_before_all_is_lit() {
 }
 
 /// Grey room lit by a square under its ceiling, with a ball in it.
-fn lit_room() -> World {
+fn lit_room() -> WorldAndView {
     room_with_ball(|_, wall| [wall; 2])
 }
 
 /// The same with a floor of rough plastic and a ball of rough metal, which has no base.
-fn glossy_room() -> World {
+fn glossy_room() -> WorldAndView {
     room_with_ball(|scene, _| {
         let rough = |fresnel, base, coat| {
             let scale = Reflectance::Constant(Rgb::splat(0.9));
@@ -88,7 +86,7 @@ fn glossy_room() -> World {
 }
 
 /// The room; `materials` chooses those of floor and ball, given the walls'.
-fn room_with_ball(materials: impl FnOnce(&mut Scene, MaterialId) -> [MaterialId; 2]) -> World {
+fn room_with_ball(materials: impl FnOnce(&mut Scene, MaterialId) -> [MaterialId; 2]) -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [96, 96]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.6)));
     let [floor, ball] = materials(&mut scene, wall);
@@ -100,12 +98,12 @@ fn room_with_ball(materials: impl FnOnce(&mut Scene, MaterialId) -> [MaterialId;
     world(scene)
 }
 
-fn per_pixel(world: &World, like: &cache::Settings) -> Image {
+fn per_pixel(world: &WorldAndView, like: &cache::Settings) -> Image {
     let mut settings =
         lightcuts::Settings { light: like.light, spp: like.spp, ..lightcuts::Settings::default() };
     settings.cut.epsilon = 0.005;
     settings.compensation = like.compensation;
-    lightcuts::render(world, &Window::whole(world.scene.resolution), &settings, &Control::new()).color
+    lightcuts::render(world, &world.view, &settings, &Control::new()).color
 }
 
 #[test]

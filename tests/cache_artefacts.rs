@@ -5,15 +5,13 @@ mod common;
 
 use common::*;
 use glam::{Vec2, Vec3};
-use lightsplat::eye::primary_ray;
 use lightsplat::film::Image;
-use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::{cache, lightcuts};
 use lightsplat::progress::Control;
 use lightsplat::radiance_cache::{Footprints, FoundBy};
 use lightsplat::scene::MaterialId;
-use lightsplat::world::{Surface, World};
+use lightsplat::world::Surface;
 
 const SIZE: u32 = 128;
 
@@ -26,7 +24,7 @@ fn block(low: Vec3, high: Vec3, material: MaterialId) -> Vec<lightsplat::scene::
 
 /// Half of the room, behind a thin wall that leaves a gap towards the eye, is lit by what the other half reflects. A block stands
 /// on the floor of the lit half, a sheet floats in either.
-fn divided_room() -> World {
+fn divided_room() -> WorldAndView {
     let (mut scene, wall) =
         lit_room(camera(Vec3::new(0.0, 0.3, 0.98), Vec3::new(0.0, -0.25, 0.0), 1.0), SIZE);
     scene.meshes.extend(block(Vec3::new(-0.01, -1.0, -1.0), Vec3::new(0.01, 1.0, 0.4), wall));
@@ -51,21 +49,20 @@ fn settings(footprints: Footprints) -> cache::Settings {
     settings
 }
 
-fn per_pixel(world: &World, like: &cache::Settings) -> Image {
+fn per_pixel(world: &WorldAndView, like: &cache::Settings) -> Image {
     let mut settings =
         lightcuts::Settings { light: like.light, spp: like.spp, ..lightcuts::Settings::default() };
     settings.cut.epsilon = 0.005;
     settings.cut.max_cut = 10_000;
     settings.compensation = like.compensation;
-    lightcuts::render(world, &Window::whole(world.scene.resolution), &settings, &Control::new()).color
+    lightcuts::render(world, &world.view, &settings, &Control::new()).color
 }
 
 /// What each pixel's centre shows.
-fn seen(world: &World) -> Vec<Surface> {
-    let window = Window::whole([SIZE, SIZE]);
+fn seen(world: &WorldAndView) -> Vec<Surface> {
     let look = |i: u32| {
         let pixel = [i % SIZE, i / SIZE];
-        let ray = primary_ray(&world.scene.camera, &window, pixel, Vec2::splat(0.5));
+        let ray = world.view.primary_ray(pixel, Vec2::splat(0.5));
         world.intersect(&ray).expect("the room is closed")
     };
     (0..SIZE * SIZE).map(look).collect()
@@ -193,10 +190,9 @@ fn inspection_changes_nothing_and_its_layers_add_up() {
         let found = inspected.extra.iter().find(|(n, _)| n == name);
         &found.unwrap_or_else(|| panic!("no layer {name}")).1
     };
-    let window = Window::whole([SIZE, SIZE]);
     for (i, whole) in inspected.color.pixels.iter().enumerate() {
         let pixel = [i as u32 % SIZE, i as u32 / SIZE];
-        let ray = primary_ray(&world.scene.camera, &window, pixel, Vec2::splat(0.5));
+        let ray = world.view.primary_ray(pixel, Vec2::splat(0.5));
         let emitted = world.intersect(&ray).map_or(Rgb::ZERO, |s| world.emitted(&s, -ray.direction));
         let parts = ["direct", "indirect", "both"].map(|name| layer(name).pixels[i]);
         let sum = emitted + parts[0] + parts[1] + parts[2];

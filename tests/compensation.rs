@@ -4,21 +4,17 @@ mod common;
 
 use common::*;
 use glam::{Vec2, Vec3};
-use lightsplat::eye::primary_ray;
 use lightsplat::film::Image;
-use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::{Output, cache, lightcuts, path};
 use lightsplat::progress::Control;
 use lightsplat::radiance_cache::FoundBy;
-use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::stats::Counter;
-use lightsplat::world::World;
 
 const SIZE: u32 = 96;
 
 /// Settings of the ways to find indirect light, with compensation or without.
-fn outputs(world: &World, vpls: u32, compensation: bool) -> Vec<(&'static str, Output)> {
+fn outputs(world: &WorldAndView, vpls: u32, compensation: bool) -> Vec<(&'static str, Output)> {
     let mut settings = cache::Settings { compensation, ..Default::default() };
     settings.light.indirect = vpls;
     settings.cache.least_cell = 8;
@@ -30,8 +26,7 @@ fn outputs(world: &World, vpls: u32, compensation: bool) -> Vec<(&'static str, O
     let alone = cached(world, &settings);
     let mut settings = lightcuts::Settings { compensation, ..Default::default() };
     settings.light.indirect = vpls;
-    let window = Window::whole(world.scene.resolution);
-    let cuts = lightcuts::render(world, &window, &settings, &Control::new());
+    let cuts = lightcuts::render(world, &world.view, &settings, &Control::new());
     vec![("lent", lent), ("records", records), ("alone", alone), ("lightcuts", cuts)]
 }
 
@@ -39,8 +34,7 @@ fn outputs(world: &World, vpls: u32, compensation: bool) -> Vec<(&'static str, O
 #[test]
 fn the_furnace_is_white_although_close_lights_are_clamped() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/furnace.toml");
-    let mut scene = load(&path, &LoadOptions::default()).expect("the scene loads").scene;
-    scene.resolution = [SIZE, SIZE];
+    let scene = load_scene(&path, Some([SIZE, SIZE]));
     let world = world(scene);
     let error = |output: &Output| {
         let pixels = &output.color.pixels;
@@ -61,9 +55,8 @@ fn the_furnace_is_white_although_close_lights_are_clamped() {
 fn creases_are_as_bright_as_paths_make_them() {
     let (scene, _) = lit_room(camera(Vec3::new(0.0, 0.2, 0.98), Vec3::new(0.0, -0.8, -0.2), 0.8), SIZE);
     let world = world(scene);
-    let window = Window::whole([SIZE, SIZE]);
     let in_crease = |i: u32| {
-        let ray = primary_ray(&world.scene.camera, &window, [i % SIZE, i / SIZE], Vec2::splat(0.5));
+        let ray = world.view.primary_ray([i % SIZE, i / SIZE], Vec2::splat(0.5));
         let p = world.intersect(&ray).expect("the room is closed").position.abs();
         p.min_element().max(p.x.min(p.z)).max(p.y.min(p.x.max(p.z))) > 0.95
     };
@@ -76,7 +69,7 @@ fn creases_are_as_bright_as_paths_make_them() {
     };
     // Few virtual lights: much is clamped.
     let paths = path::Settings { spp: 256, ..Default::default() };
-    let truth = of(&path::render(&world, &window, &paths, &Control::new()).color);
+    let truth = of(&path::render(&world, &world.view, &paths, &Control::new()).color);
     for ((name, with), (_, without)) in outputs(&world, 3000, true).iter().zip(&outputs(&world, 3000, false))
     {
         let (ratio, lacking) = (of(&with.color) / truth, of(&without.color) / truth);
@@ -105,9 +98,8 @@ fn surfaces_beside_lamps_are_as_bright_as_paths_make_them() {
     let window = quad(Vec3::new(-1.0, -1.0, -0.99), Vec3::X * 2.0, Vec3::Y * 2.0, wall);
     scene.meshes.push(emitting(window, Rgb::ONE));
     let world = world(scene);
-    let window = Window::whole([SIZE, SIZE]);
     let paths = path::Settings { spp: 64, ..Default::default() }; // noise: .02
-    let truth = path::render(&world, &window, &paths, &Control::new()).color;
+    let truth = path::render(&world, &world.view, &paths, &Control::new()).color;
     let brightest = |image: &Image| image.pixels.iter().map(|p| p.max_element()).fold(0.0, f32::max);
     let error = |compensation: bool| {
         let mut settings = cache::Settings { compensation, ..Default::default() };

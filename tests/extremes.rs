@@ -10,20 +10,18 @@ use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::{Output, lightcuts, path};
 use lightsplat::progress::Control;
-use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::vpl::LightPassSettings;
-use lightsplat::world::World;
 use std::path::Path;
 
-fn by_path(world: &World, spp: u32) -> Output {
+fn by_path(world: &WorldAndView, spp: u32) -> Output {
     let settings = path::Settings { spp, ..path::Settings::default() };
-    path::render(world, &Window::whole(world.scene.resolution), &settings, &Control::new())
+    path::render(world, &world.view, &settings, &Control::new())
 }
 
-fn by_lightcuts(world: &World) -> Output {
+fn by_lightcuts(world: &WorldAndView) -> Output {
     let light = LightPassSettings { direct: 256, indirect: 2000, ..LightPassSettings::default() };
     let settings = lightcuts::Settings { spp: 1, light, ..lightcuts::Settings::default() };
-    lightcuts::render(world, &Window::whole(world.scene.resolution), &settings, &Control::new())
+    lightcuts::render(world, &world.view, &settings, &Control::new())
 }
 
 fn mean(image: &Image) -> f32 {
@@ -36,7 +34,7 @@ fn relative_rms(a: &Image, b: &Image) -> f32 {
 }
 
 /// A lit room with a ball in it, everything times `scale`.
-fn room_at(scale: f32) -> World {
+fn room_at(scale: f32) -> WorldAndView {
     let view = camera(Vec3::new(0.1, 0.2, 0.9) * scale, Vec3::new(0.0, -0.4, 0.0) * scale, 0.8);
     let mut scene = scene(view, [24, 16]);
     let wall = add_material(&mut scene, diffuse(Rgb::splat(0.6)));
@@ -66,7 +64,7 @@ fn the_picture_does_not_depend_on_the_unit_of_length() {
 }
 
 /// Writes a room as TOML whose every coordinate is moved by `offset`, and loads it.
-fn room_moved_by(offset: f64, folder: &Path) -> World {
+fn room_moved_by(offset: f64, folder: &Path) -> WorldAndView {
     let at = |x: f64, y: f64, z: f64| format!("[{:?}, {:?}, {:?}]", x + offset, y + offset, z + offset);
     let wall = |turn: &str| {
         format!(
@@ -95,7 +93,7 @@ fn room_moved_by(offset: f64, folder: &Path) -> World {
     }
     let file = folder.join(format!("room{offset}.toml"));
     std::fs::write(&file, text).expect("the scene is written");
-    World::new(load(&file, &LoadOptions::default()).expect("the scene loads").scene, 2).expect("it builds")
+    world(load_scene(&file, None))
 }
 
 #[test]
@@ -112,9 +110,9 @@ fn a_scene_a_million_units_away_is_the_same_scene() {
 
 #[test]
 fn films_may_be_a_pixel_wide_or_very_long() {
-    let mut scene = room_at(1.0).scene;
+    let mut scene = staged(room_at(1.0));
     for resolution in [[1, 1], [1, 37], [16_384, 1]] {
-        scene.resolution = resolution;
+        scene.view.window = Window::whole(resolution);
         let world = world(scene.clone());
         let output = by_path(&world, 1);
         assert_eq!([output.color.width, output.color.height], resolution);
@@ -127,7 +125,7 @@ fn films_may_be_a_pixel_wide_or_very_long() {
 
 #[test]
 fn lights_twenty_orders_apart_share_a_scene() {
-    let mut scene = room_at(1.0).scene;
+    let mut scene = staged(room_at(1.0));
     let material = scene.meshes[0].material;
     let faint = quad(Vec3::new(-0.9, -0.9, -0.9), Vec3::X * 0.1, Vec3::Y * 0.1, material);
     scene.meshes.push(emitting(faint, Rgb::splat(1e-10)));
@@ -142,7 +140,7 @@ fn lights_twenty_orders_apart_share_a_scene() {
 
 #[test]
 fn white_walls_in_a_closed_room_end() {
-    let mut scene = room_at(1.0).scene;
+    let mut scene = staged(room_at(1.0));
     scene.materials[0] = diffuse(Rgb::ONE);
     let world = world(scene);
     let output = by_path(&world, 4);

@@ -4,7 +4,6 @@ mod common;
 
 use common::*;
 use glam::{Vec2, Vec3};
-use lightsplat::eye::primary_ray;
 use lightsplat::film::Image;
 use lightsplat::film::Window;
 use lightsplat::light_tree::{Family, LightTrees};
@@ -15,27 +14,26 @@ use lightsplat::math::{Frame, Rgb, luminance};
 use lightsplat::method::lightcuts::{Settings, render};
 use lightsplat::method::{Output, path};
 use lightsplat::progress::Control;
-use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::scene::{DeltaLight, Environment, Lobe, Material, Scene};
+use lightsplat::view::View;
 use lightsplat::vpl::{LightPassSettings, Origin, light_pass};
-use lightsplat::world::World;
 use std::f32::consts::PI;
 
 fn mean(image: &Image) -> Rgb {
     image.pixels.iter().copied().sum::<Rgb>() / image.pixels.len() as f32
 }
 
-fn lightcuts(world: &World, settings: &Settings) -> Output {
-    render(world, &Window::whole(world.scene.resolution), settings, &Control::new())
+fn lightcuts(world: &WorldAndView, settings: &Settings) -> Output {
+    render(world, &world.view, settings, &Control::new())
 }
 
-fn reference(world: &World, spp: u32) -> Output {
+fn reference(world: &WorldAndView, spp: u32) -> Output {
     let settings = path::Settings { spp, ..path::Settings::default() };
-    path::render(world, &Window::whole(world.scene.resolution), &settings, &Control::new())
+    path::render(world, &world.view, &settings, &Control::new())
 }
 
 /// Grey room lit by a square under its ceiling, with a ball in it.
-fn lit_room(ball: Option<Material>) -> World {
+fn lit_room(ball: Option<Material>) -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [32, 32]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.6)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
@@ -65,11 +63,11 @@ fn vpls_of_a_furnace_give_the_irradiance_of_the_geometric_series() {
     for normal in [Vec3::Y, -Vec3::X, Vec3::new(1.0, 1.0, 1.0).normalize()] {
         let receiver =
             Receiver::irradiance(Vec3::new(0.1, -0.2, 0.15), Vec3::ZERO, &Frame::from_normal(normal));
-        let all = gather_all(&transfer, &world, &receiver);
+        let all = gather_all(&transfer, &*world, &receiver);
         let error = (all / expected - Rgb::ONE).abs().max_element();
         assert!(error < 0.02, "all VPLs: {all} against {expected}");
         let cut = CutSettings { clamp: None, ..CutSettings::default() };
-        let approximate = Lightcut::new().gather(&transfer, &world, &receiver, &cut);
+        let approximate = Lightcut::new().gather(&transfer, &*world, &receiver, &cut);
         let error = (luminance(approximate) / luminance(expected) - 1.0).abs();
         assert!(error < 0.06, "cut: {approximate} against {expected}");
     }
@@ -103,7 +101,7 @@ fn a_direct_only_depth_makes_no_indirect_vpls() {
 }
 
 /// A floor seen from above under one light.
-fn floor_under(light: impl FnOnce(&mut Scene)) -> World {
+fn floor_under(light: impl FnOnce(&mut Scene)) -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(0.0, 3.0, 0.1), Vec3::ZERO, 0.3), [8, 8]);
     let floor = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
     scene.meshes.push(quad(Vec3::new(-9.0, 0.0, -9.0), Vec3::Z * 18.0, Vec3::X * 18.0, floor));
@@ -176,7 +174,7 @@ fn pictures_agree_with_path_tracing() {
 fn the_eye_sees_through_mirrors() {
     let sky = Rgb::new(1.0, 2.0, 0.5);
     let world = floor_under(|scene| scene.environment = Some(Environment::Constant(sky)));
-    let mut scene = world.scene;
+    let mut scene = staged(world);
     scene.materials[0] = mirror();
     let world = common::world(scene);
     for pixel in &lightcuts(&world, &Settings::default()).color.pixels {
@@ -197,14 +195,13 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
         let (mut squares, mut n) = (0.0, 0);
         for y in (1..32).step_by(2) {
             for x in (1..32).step_by(2) {
-                let window = Window::whole([32, 32]);
-                let ray = primary_ray(&world.scene.camera, &window, [x, y], Vec2::splat(0.5));
+                let ray = world.view.primary_ray([x, y], Vec2::splat(0.5));
                 let Some(s) = world.intersect(&ray) else { panic!("the room is closed") };
                 let out = -ray.direction;
                 let receiver = Receiver::new(s.position, s.normal, &s.frame, world.bsdf(&s), out);
-                let exact = luminance(gather_all(&transfer, &world, &receiver));
+                let exact = luminance(gather_all(&transfer, &*world, &receiver));
                 if exact > 0.0 {
-                    let estimate = luminance(cut.gather(&transfer, &world, &receiver, &settings));
+                    let estimate = luminance(cut.gather(&transfer, &*world, &receiver, &settings));
                     squares += (estimate / exact - 1.0).powi(2);
                     n += 1;
                 }
@@ -223,12 +220,11 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
 fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
     let path = path.with_extension("toml");
-    let world = common::world(load(&path, &LoadOptions::default()).expect("the scene loads").scene);
+    let world = common::world(load_scene(&path, Some([256, 256])));
     let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
     let (mut single, mut shared) = (Lightcut::new(), PacketLightcut::new());
     let mut points = ReceiverPacket::new();
     let (mut single_errors, mut shared_errors) = (Vec::new(), Vec::new());
-    let window = Window::whole([256, 256]);
     for seed in 0..8 {
         let light = LightPassSettings { direct: 1000, indirect: 19_000, seed };
         let lights = light_pass(&world, &light, u32::MAX, &Control::new());
@@ -239,7 +235,7 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
             let corner = [block % 4 * 64 + shift[0] + 6, block / 4 * 64 + shift[1] + 14];
             let eye = (0..16u32).filter_map(|i| {
                 let pixel = [corner[0] + i % 4, corner[1] + i / 4];
-                let ray = primary_ray(&world.scene.camera, &window, pixel, Vec2::splat(0.5));
+                let ray = world.view.primary_ray(pixel, Vec2::splat(0.5));
                 let s = world.intersect(&ray)?;
                 let bsdf = world.bsdf(&s);
                 let smooth = bsdf.has_smooth();
@@ -247,11 +243,11 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
             });
             points.set(eye);
             let mut radiance = [Rgb::ZERO; 16];
-            shared.gather(&transfer, &world, &points, &settings, &mut radiance);
+            shared.gather(&transfer, &*world, &points, &settings, &mut radiance);
             for (lane, radiance) in radiance.iter().enumerate().take(points.len()).step_by(9) {
-                let exact = luminance(gather_all(&transfer, &world, points.get(lane)));
+                let exact = luminance(gather_all(&transfer, &*world, points.get(lane)));
                 if exact > 0.0 {
-                    let alone = single.gather(&transfer, &world, points.get(lane), &settings);
+                    let alone = single.gather(&transfer, &*world, points.get(lane), &settings);
                     single_errors.push(luminance(alone) / exact - 1.0);
                     shared_errors.push(luminance(*radiance) / exact - 1.0);
                 }
@@ -280,9 +276,9 @@ fn a_room_of_any_size_looks_the_same() {
     let light = LightPassSettings { direct: 512, indirect: 20_000, seed: 0 };
     let settings = Settings { light, ..Settings::default() };
     let at_scale = |s: f32| {
-        let mut scene = lit_room(Some(diffuse(Rgb::splat(0.5)))).scene;
+        let mut scene = staged(lit_room(Some(diffuse(Rgb::splat(0.5)))));
         scene.meshes.iter_mut().flat_map(|m| &mut m.positions).for_each(|p| *p *= s);
-        scene.camera.origin *= s;
+        scene.view.camera.origin *= s;
         lightcuts(&common::world(scene), &settings).color
     };
     let unit = at_scale(1.0);
@@ -318,7 +314,7 @@ fn a_crop_repeats_the_whole_pictures_pixels() {
     let settings = Settings { light, ..Settings::default() };
     let whole = lightcuts(&world, &settings).color;
     let window = Window { film: [32, 32], offset: [5, 9], width: 7, height: 4 };
-    let crop = render(&world, &window, &settings, &Control::new()).color;
+    let crop = render(&world, &View { window, ..world.view }, &settings, &Control::new()).color;
     for y in 0..4 {
         for x in 0..7 {
             assert_eq!(crop.pixels[y * 7 + x], whole.pixels[(y + 9) * 32 + x + 5]);
@@ -346,7 +342,7 @@ fn a_cancelled_picture_says_so() {
     let world = lit_room(None);
     let control = Control::new();
     control.cancel();
-    let output = render(&world, &Window::whole([32, 32]), &Settings::default(), &control);
+    let output = render(&world, &world.view, &Settings::default(), &control);
     assert!(!output.complete);
     assert_eq!(output.color.pixels.len(), 32 * 32);
 }
@@ -361,7 +357,7 @@ fn polished_metal_is_followed_from_the_eye() {
     };
     let ball = |alpha| Material { lobe: facets(alpha), ..diffuse(Rgb::ZERO) };
     for alpha in [0.06, 0.1] {
-        let mut scene = lit_room(Some(ball(alpha))).scene;
+        let mut scene = staged(lit_room(Some(ball(alpha))));
         scene.lights.push(DeltaLight::Point { position: Vec3::new(0.5, 0.5, 0.7), intensity: Rgb::ONE });
         let world = world(scene);
         let expected = mean(&reference(&world, 256).color);

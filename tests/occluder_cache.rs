@@ -11,7 +11,6 @@ use lightsplat::radiance_cache::FoundBy;
 use lightsplat::shadow::{OccluderCacheSettings, ShadowSettings};
 use lightsplat::stats::Counter;
 use lightsplat::vpl::LightPassSettings;
-use lightsplat::world::World;
 
 const LIGHT: LightPassSettings = LightPassSettings { direct: 512, indirect: 10_000, seed: 0 };
 
@@ -25,7 +24,7 @@ fn uses() -> Vec<ShadowSettings> {
 }
 
 /// A hall of columns under a lamp.
-fn hall() -> World {
+fn hall() -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(-0.9, 0.2, 0.9), Vec3::ZERO, 0.8), [48, 40]);
     let grey = add_material(&mut scene, diffuse(Rgb::splat(0.6)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, grey));
@@ -51,7 +50,7 @@ fn saved(output: &Output) -> u64 {
 #[test]
 fn lightcuts_give_the_same_bits_with_it_and_without_on_any_number_of_threads() {
     let world = hall();
-    let window = lightsplat::film::Window::whole(world.scene.resolution);
+    let window = world.view;
     for share in [true, false] {
         let mut first: Option<Output> = None;
         for shadows in uses() {

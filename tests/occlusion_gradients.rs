@@ -5,7 +5,6 @@ mod common;
 use common::*;
 use glam::Vec3;
 use lightsplat::eye::{EyeSamples, EyeSettings};
-use lightsplat::film::Window;
 use lightsplat::light_tree::{Family, LightTrees};
 use lightsplat::lightcut::{CutSettings, Receiver, Transfer, gather_all};
 use lightsplat::math::{Frame, luminance};
@@ -16,13 +15,12 @@ use lightsplat::radiance_cache::record::Record;
 use lightsplat::radiance_cache::wave::Pick;
 use lightsplat::radiance_cache::{CacheSettings, Footprints};
 use lightsplat::vpl::{LightPassSettings, Origin, light_pass};
-use lightsplat::world::World;
 
 /// How far extrapolation goes; the room is 2 wide.
 const STEP: f32 = 0.06;
 
 /// A room of different walls, seen from above, with a ball and a table on its floor.
-fn furnished_room() -> World {
+fn furnished_room() -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(0.0, 0.9, 0.01), Vec3::new(0.0, -1.0, 0.0), 1.0), [64, 64]);
     let white = add_material(&mut scene, diffuse(Vec3::splat(0.7)));
     let dark = add_material(&mut scene, diffuse(Vec3::new(0.1, 0.2, 0.1)));
@@ -38,9 +36,9 @@ fn furnished_room() -> World {
 
 /// Irradiance of the room's indirect light at points of its floor, extrapolated by `STEP` in four directions:
 /// mean relative error, and the scalar product of estimated and true gradients, relative to the square of the true ones.
-fn extrapolate(world: &World, footprints: Footprints, probe_rays: u32) -> (f32, f32) {
+fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) -> (f32, f32) {
     let settings = EyeSettings { spp: 1, seed: 0, max_depth: 8 };
-    let samples = EyeSamples::look(world, &Window::whole(world.scene.resolution), settings, &Control::new());
+    let samples = EyeSamples::look(world, &world.view, settings, &Control::new());
     let light = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
     let mut pass = light_pass(world, &light, 8, &Control::new());
     pass.sets.retain(|set| set.origin == Origin::Indirect);
@@ -68,7 +66,7 @@ fn extrapolate(world: &World, footprints: Footprints, probe_rays: u32) -> (f32, 
 
     let irradiance = |position: Vec3| {
         let receiver = Receiver::irradiance(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
-        luminance(gather_all(&transfer, world, &receiver))
+        luminance(gather_all(&transfer, &world.world, &receiver))
     };
     let (mut error, mut agreement, mut square, mut count) = (0.0, 0.0, 0.0, 0.0);
     for record in found.iter().filter_map(|(_, pair)| pair[1].as_ref()) {

@@ -4,15 +4,16 @@
 use glam::Vec3;
 use lightsplat::embree::Ray;
 use lightsplat::scene::Camera;
+use lightsplat::scene::Cameras;
 use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::world::World;
 use std::path::Path;
 
-fn world(name: &str) -> World {
+fn world(name: &str) -> (World, Cameras) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).with_extension("toml");
     let loaded = load(&path, &LoadOptions { strict: true }).unwrap_or_else(|e| panic!("{e}"));
     assert!(loaded.warnings.is_empty(), "{name}: {:?}", loaded.warnings);
-    World::new(loaded.scene, 2).unwrap_or_else(|e| panic!("{e}"))
+    (World::new(loaded.scene, 2).unwrap_or_else(|e| panic!("{e}")), loaded.cameras)
 }
 
 /// `count` directions spread evenly over the sphere (a Fibonacci lattice).
@@ -26,18 +27,16 @@ fn directions(count: usize) -> impl Iterator<Item = Vec3> {
 }
 
 /// All the places from which the scene is looked at.
-fn viewpoints(world: &World) -> Vec<Camera> {
-    let mut cameras = vec![world.scene.camera];
-    cameras.extend(world.scene.camera_path.iter().step_by(20));
-    cameras
+fn viewpoints(cameras: &Cameras) -> Vec<Camera> {
+    [cameras.still].into_iter().chain(cameras.path.iter().step_by(20).copied()).collect()
 }
 
 #[test]
 fn rooms_are_closed_and_face_the_viewer() {
     for name in ["apartment", "furnace", "kitchen", "knot"] {
-        let world = world(name);
+        let (world, cameras) = world(name);
         let (mut hits, mut from_behind) = (0, 0);
-        for camera in viewpoints(&world) {
+        for camera in viewpoints(&cameras) {
             for direction in directions(20_000) {
                 let ray = Ray { origin: camera.origin, t_near: 0.0, direction, t_far: f32::INFINITY };
                 let hit = world.intersect(&ray);
@@ -56,8 +55,8 @@ fn rooms_are_closed_and_face_the_viewer() {
 
 #[test]
 fn the_walk_through_the_apartment_never_touches_anything() {
-    let world = world("apartment");
-    let path = &world.scene.camera_path;
+    let (world, cameras) = world("apartment");
+    let path = &cameras.path;
     assert_eq!(path.len(), 281);
     for (frame, camera) in path.iter().enumerate() {
         for direction in directions(500) {

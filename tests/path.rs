@@ -11,10 +11,10 @@ use lightsplat::method::Output;
 use lightsplat::method::path::{Settings, render};
 use lightsplat::progress::Control;
 use lightsplat::scene::{DeltaLight, Environment, Scene};
-use lightsplat::world::World;
+use lightsplat::view::View;
 
-fn path(world: &World, settings: &Settings) -> Output {
-    render(world, &Window::whole(world.scene.resolution), settings, &Control::new())
+fn path(world: &WorldAndView, settings: &Settings) -> Output {
+    render(world, &world.view, settings, &Control::new())
 }
 
 fn mean(image: &Image) -> Rgb {
@@ -33,7 +33,7 @@ fn assert_all_near(output: &Output, expected: Rgb, sigmas: f32) {
 }
 
 /// A closed room of albedo ρ whose walls all emit L: radiance L/(1-ρ) everywhere.
-fn furnace(albedo: Rgb, inside: impl FnOnce(&mut Scene)) -> World {
+fn furnace(albedo: Rgb, inside: impl FnOnce(&mut SceneAndView)) -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(0.3, 0.2, 0.8), Vec3::ZERO, 0.7), [8, 8]);
     let wall = add_material(&mut scene, diffuse(albedo));
     for mesh in room(Vec3::splat(-1.0), Vec3::ONE, wall) {
@@ -83,7 +83,7 @@ fn paths_end_at_the_given_depth() {
 }
 
 /// A floor of albedo ρ seen from above, one light over it.
-fn floor_under(light: impl FnOnce(&mut Scene)) -> World {
+fn floor_under(light: impl FnOnce(&mut Scene)) -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(0.0, 1.0, 0.0), Vec3::ZERO, 1e-3), [4, 4]);
     let floor = add_material(&mut scene, diffuse(Rgb::splat(0.6)));
     scene.meshes.push(quad(Vec3::new(-5.0, 0.0, -5.0), Vec3::Z * 10.0, Vec3::X * 10.0, floor));
@@ -91,7 +91,7 @@ fn floor_under(light: impl FnOnce(&mut Scene)) -> World {
     world(scene)
 }
 
-fn expect_floor(world: &World, irradiance: f32) {
+fn expect_floor(world: &WorldAndView, irradiance: f32) {
     let output = path(world, &Settings { spp: 4096, max_depth: Some(2), ..Settings::default() });
     let expected = 0.6 / std::f32::consts::PI * irradiance;
     let error = (mean(&output.color) / expected - Rgb::ONE).abs().max_element();
@@ -163,22 +163,22 @@ fn empty_scenes_and_the_void_are_black() {
 fn bits_do_not_depend_on_threads_and_crops_repeat_the_picture() {
     let world = furnace(Rgb::new(0.5, 0.8, 0.2), |scene| {
         let clear = add_material(scene, glass(1.5));
-        scene.resolution = [37, 21];
+        scene.view.window = Window::whole([37, 21]);
         scene.meshes.push(sphere(Vec3::new(0.0, 0.0, -0.1), 0.3, 24, clear));
     });
     let settings = Settings { spp: 20, ..Settings::default() };
-    let run = |threads: usize, window: &Window| {
+    let run = |threads: usize, view: &View| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| render(&world, window, &settings, &Control::new()))
+        pool.install(|| render(&world, view, &settings, &Control::new()))
     };
-    let whole = Window::whole([37, 21]);
-    let one = run(1, &whole);
+    let one = run(1, &world.view);
     for threads in [2, 4] {
-        let many = run(threads, &whole);
+        let many = run(threads, &world.view);
         assert_eq!(one.color, many.color);
         assert_eq!(one.variance, many.variance);
     }
-    let crop = run(2, &Window { offset: [5, 3], width: 19, height: 2, ..whole });
+    let window = Window { offset: [5, 3], width: 19, height: 2, ..world.view.window };
+    let crop = run(2, &View { window, ..world.view });
     for y in 0..2 {
         for x in 0..19 {
             let at = |i: &Image, x: u32, y: u32| i.pixels[(y * i.width + x) as usize];
@@ -192,7 +192,7 @@ fn a_cancelled_render_says_so() {
     let world = furnace(Rgb::splat(0.5), |_| {});
     let control = Control::new();
     control.cancel();
-    let output = render(&world, &Window::whole([8, 8]), &Settings::default(), &control);
+    let output = render(&world, &world.view, &Settings::default(), &control);
     assert!(!output.complete);
     assert_eq!(output.color, Image::new(8, 8));
 }

@@ -5,14 +5,11 @@ mod common;
 use common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
-use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::path;
 use lightsplat::method::photon_cache::{Settings, render};
 use lightsplat::progress::Control;
-use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::stats::Counter;
-use lightsplat::world::World;
 
 const SIZE: u32 = 64;
 
@@ -20,14 +17,14 @@ fn small() -> Settings {
     Settings { photons: 30_000, rays: 500, own_rays: 64, ..Settings::default() }
 }
 
-fn picture(world: &World, settings: &Settings) -> Image {
-    let output = render(world, &Window::whole(world.scene.resolution), settings, &Control::new());
+fn picture(world: &WorldAndView, settings: &Settings) -> Image {
+    let output = render(world, &world.view, settings, &Control::new());
     assert!(output.complete && output.nonfinite == 0);
     output.color
 }
 
 /// A room with a box on its floor.
-fn boxed_room() -> World {
+fn boxed_room() -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [SIZE; 2]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.6)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
@@ -53,7 +50,7 @@ fn blocks(image: &Image) -> Vec<f64> {
 #[test]
 fn it_converges_to_the_path_tracer_as_photons_and_rays_grow() {
     let world = boxed_room();
-    let window = Window::whole(world.scene.resolution);
+    let window = world.view;
     let paths = path::Settings { spp: 1024, ..path::Settings::default() };
     let reference = blocks(&path::render(&world, &window, &paths, &Control::new()).color);
     let mean = reference.iter().sum::<f64>() / reference.len() as f64;
@@ -71,8 +68,7 @@ fn it_converges_to_the_path_tracer_as_photons_and_rays_grow() {
 #[test]
 fn the_furnace_is_white() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/furnace.toml");
-    let mut scene = load(&path, &LoadOptions::default()).expect("the scene loads").scene;
-    scene.resolution = [SIZE, SIZE];
+    let scene = load_scene(&path, Some([SIZE, SIZE]));
     let picture = picture(&world(scene), &Settings { photons: 100_000, ..small() });
     let ratios: Vec<Rgb> = picture.pixels.iter().map(|p| *p / 0.8).collect();
     let mean = ratios.iter().copied().sum::<Rgb>() / ratios.len() as f32;
@@ -95,7 +91,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
 
 #[test]
 fn scenes_without_light_or_without_surfaces_are_black() {
-    let mut dark = boxed_room().scene;
+    let mut dark = staged(boxed_room());
     dark.meshes.iter_mut().for_each(|mesh| mesh.emission = None);
     let mut empty = dark.clone();
     empty.meshes.clear();
@@ -107,7 +103,7 @@ fn scenes_without_light_or_without_surfaces_are_black() {
 #[test]
 fn what_it_took_is_counted() {
     let world = boxed_room();
-    let output = render(&world, &Window::whole(world.scene.resolution), &small(), &Control::new());
+    let output = render(&world, &world.view, &small(), &Control::new());
     for name in ["Photons/total", "Cache/records, indirect", "Gathering/rays of records"] {
         let Some(Counter::Count(n)) = output.stats.get(name) else { panic!("no {name}") };
         assert!(n > 0, "{name}");

@@ -17,14 +17,13 @@ use lightsplat::sampling::{cosine_hemisphere, owen_sobol_2d};
 use lightsplat::scene::DeltaLight;
 use lightsplat::shadow;
 use lightsplat::vpl::PhotonSettings;
-use lightsplat::world::World;
 
-fn map(world: &World, photons: u32) -> PhotonMap {
+fn map(world: &WorldAndView, photons: u32) -> PhotonMap {
     PhotonMap::new(world, &PhotonSettings { photons, max_edges: 6, seed: 0 }, &Control::new())
 }
 
 /// A dark floor from -1 to 1 with a thin wall along z, in sunlight that comes over the wall from +x.
-fn sunlit_floor() -> (World, f32) {
+fn sunlit_floor() -> (WorldAndView, f32) {
     let mut scene = scene(camera(Vec3::Y, Vec3::ZERO, 1.0), [4, 4]);
     // Almost black, so that nothing but the sun lights anything.
     let black = add_material(&mut scene, diffuse(Rgb::splat(1e-6)));
@@ -88,7 +87,7 @@ fn photons_in_the_next_room_do_not_count() {
 }
 
 /// A room with a shelf in it, lit by a lamp.
-fn room_with_shelf() -> World {
+fn room_with_shelf() -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.9), Vec3::ZERO, 1.0), [4, 4]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.6)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));

@@ -1,8 +1,7 @@
 //! The corpus of small scenes: the valid load, the invalid fail with a file, a remedy and no panic, and so does
 //! whatever one gets by cutting and corrupting the valid ones.
 
-use lightsplat::scene::Scene;
-use lightsplat::scene::formats::{LoadOptions, load};
+use lightsplat::scene::formats::{LoadOptions, Loaded, load};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -19,7 +18,7 @@ fn is_scene(path: &Path) -> bool {
 }
 
 /// What every other stage relies on.
-fn assert_sound(scene: &Scene) {
+fn assert_sound(Loaded { scene, cameras, .. }: &Loaded) {
     for mesh in &scene.meshes {
         let count = mesh.positions.len();
         assert!(mesh.positions.iter().all(|p| p.is_finite()));
@@ -36,7 +35,7 @@ fn assert_sound(scene: &Scene) {
             texture.texels.iter().all(|t| t.is_finite() && t.min_element() >= 0.0 && t.max_element() <= 1.0)
         );
     }
-    assert!(scene.centre.is_finite() && scene.camera.origin.is_finite());
+    assert!(scene.centre.is_finite() && cameras.still.origin.is_finite());
 }
 
 #[test]
@@ -45,7 +44,7 @@ fn valid_scenes_load_and_are_sound() {
     assert!(scenes.len() >= 4);
     for path in scenes {
         let loaded = load(&path, &LoadOptions { strict: true }).unwrap_or_else(|e| panic!("{e}"));
-        assert_sound(&loaded.scene);
+        assert_sound(&loaded);
         assert!(
             loaded.repairs.is_clean() || loaded.repairs.turned > 0,
             "{}: {}",
@@ -137,7 +136,7 @@ fn damaged_files_never_panic() {
             for scene in scenes.iter().filter(|s| !is_own || **s == own) {
                 match load(&folder.path().join(scene), &LoadOptions::default()) {
                     Ok(loaded) => {
-                        assert_sound(&loaded.scene);
+                        assert_sound(&loaded);
                         survived += 1;
                     }
                     Err(error) => {

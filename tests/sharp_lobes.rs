@@ -5,16 +5,15 @@ mod common;
 use common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
-use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::{lightcuts, path};
 use lightsplat::progress::Control;
-use lightsplat::scene::{Distribution, Environment, Fresnel, Lobe, Material, Reflectance, Scene};
+use lightsplat::scene::{Distribution, Environment, Fresnel, Lobe, Material, Reflectance};
 
 const SIZE: u32 = 48;
 
 /// A rough mirror below two lamps, one small and one that fills much of the lobe, half hidden by a sheet.
-fn below_lamps() -> Scene {
+fn below_lamps() -> SceneAndView {
     let mut scene = scene(camera(Vec3::new(0.0, 1.0, 1.5), Vec3::ZERO, 0.4), [SIZE, SIZE]);
     let lobe = Lobe::Rough {
         distribution: Distribution::Ggx,
@@ -33,14 +32,14 @@ fn below_lamps() -> Scene {
     scene
 }
 
-fn of_paths(scene: &Scene, spp: u32) -> Image {
+fn of_paths(scene: &SceneAndView, spp: u32) -> Image {
     let settings = path::Settings { spp, ..Default::default() };
-    path::render(&world(scene.clone()), &Window::whole([SIZE, SIZE]), &settings, &Control::new()).color
+    path::render(&world(scene.clone()), &scene.view, &settings, &Control::new()).color
 }
 
-fn of_cuts(scene: &Scene) -> Image {
+fn of_cuts(scene: &SceneAndView) -> Image {
     let settings = lightcuts::Settings { spp: 4, ..Default::default() };
-    lightcuts::render(&world(scene.clone()), &Window::whole([SIZE, SIZE]), &settings, &Control::new()).color
+    lightcuts::render(&world(scene.clone()), &scene.view, &settings, &Control::new()).color
 }
 
 /// Mean luminance over that of the reference, and root mean square difference over that mean.
@@ -53,7 +52,7 @@ fn errors(test: &Image, reference: &Image) -> (f32, f32) {
 }
 
 /// As bright as by paths, and of at most `most` times the noise of as many of them.
-fn assert_as_by_paths(scene: &Scene, most: f32) {
+fn assert_as_by_paths(scene: &SceneAndView, most: f32) {
     let reference = of_paths(scene, 1024);
     let (ratio, rms) = errors(&of_cuts(scene), &reference);
     let (_, noise) = errors(&of_paths(scene, 4), &reference);

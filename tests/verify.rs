@@ -13,14 +13,13 @@ use lightsplat::math::Rgb;
 use lightsplat::method::path::{Counts, Wanted, pixel_means};
 use lightsplat::method::{cache, lightcuts, path};
 use lightsplat::progress::Control;
-use lightsplat::scene::Scene;
 use lightsplat::verify::{Estimate, Settings, Verified, verify};
-use lightsplat::world::World;
+use lightsplat::view::View;
 use rayon::prelude::*;
 use std::path::Path;
 
 /// A closed room of albedo ρ whose walls all emit L: radiance L/(1-ρ) everywhere.
-fn furnace() -> (World, Rgb) {
+fn furnace() -> (WorldAndView, Rgb) {
     let (albedo, emitted) = (Rgb::new(0.5, 0.3, 0.6), Rgb::new(1.0, 0.5, 2.0));
     let mut scene = scene(camera(Vec3::new(0.3, 0.2, 0.8), Vec3::ZERO, 0.7), [40, 30]);
     let wall = add_material(&mut scene, diffuse(albedo));
@@ -31,7 +30,7 @@ fn furnace() -> (World, Rgb) {
 }
 
 /// A room with a lamp and a sphere: dark corners, a penumbra, an emitter in view.
-fn lit_room() -> World {
+fn lit_room() -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(0.1, 0.0, 0.95), Vec3::new(0.0, -0.1, 0.0), 0.8), [48, 36]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.4)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
@@ -41,12 +40,8 @@ fn lit_room() -> World {
     world(scene)
 }
 
-fn whole(world: &World) -> Window {
-    Window::whole(world.scene.resolution)
-}
-
-fn check(world: &World, image: &Image, settings: &Settings) -> Verified {
-    verify(world, &whole(world), image, settings, &Control::new()).expect("nobody cancels")
+fn check(world: &WorldAndView, image: &Image, settings: &Settings) -> Verified {
+    verify(world, &world.view, image, settings, &Control::new()).expect("nobody cancels")
 }
 
 #[test]
@@ -91,7 +86,7 @@ fn width(estimate: Estimate) -> f64 {
 fn a_path_traced_picture_has_the_error_that_its_own_variance_states() {
     let world = lit_room();
     let settings = path::Settings { spp: 64, ..path::Settings::default() };
-    let output = path::render(&world, &whole(&world), &settings, &Control::new());
+    let output = path::render(&world, &world.view, &settings, &Control::new());
     let noise = rel_mse_of_variance(&output.variance.unwrap(), &output.color).sqrt();
     let found = check(&world, &output.color, &Settings { pixels: 600, ..Settings::default() });
     // The variance is stated on the safe side, since samples are stratified.
@@ -111,20 +106,20 @@ fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
     }
     let world = world(scene);
     let one = lightcuts::Settings { spp: 1, ..Default::default() };
-    let picture = lightcuts::render(&world, &whole(&world), &one, &Control::new());
+    let picture = lightcuts::render(&world, &world.view, &one, &Control::new());
     let at =
         |look: Look| check(&world, &picture.color, &Settings { pixels: 700, look, ..Settings::default() });
     let light = at(Look::EyeSamples { spp: 1, seed: 0 });
     assert_eq!((light.relative_rms.high, light.relative_bias.value), (0.0, 0.0), "{light:?}");
     let all = at(Look::Pixels);
     let exact = path::Settings { spp: 4096, ..path::Settings::default() };
-    let exact = path::render(&world, &whole(&world), &exact, &Control::new()).color;
+    let exact = path::render(&world, &world.view, &exact, &Control::new()).color;
     let rms = rel_mse(&picture.color, &exact, 0.0).sqrt();
     assert!(rms > 0.1 && all.relative_rms.covers(rms), "{rms} {all:?}");
 
     // Several eye samples at places of their own are found as well, and those of another seed are not theirs.
     let four = lightcuts::Settings { spp: 4, seed: 3, ..Default::default() };
-    let picture = lightcuts::render(&world, &whole(&world), &four, &Control::new());
+    let picture = lightcuts::render(&world, &world.view, &four, &Control::new());
     let at =
         |look: Look| check(&world, &picture.color, &Settings { pixels: 700, look, ..Settings::default() });
     assert!(at(Look::EyeSamples { spp: 4, seed: 3 }).relative_rms.high < 1e-6);
@@ -134,13 +129,14 @@ fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
 #[test]
 fn crops_threads_and_seeds() {
     let world = lit_room();
-    let window = Window { offset: [10, 5], width: 20, height: 16, ..whole(&world) };
+    let window = Window { offset: [10, 5], width: 20, height: 16, ..world.view.window };
+    let view = View { window, ..world.view };
     let settings = path::Settings { spp: 16, ..path::Settings::default() };
-    let image = path::render(&world, &window, &settings, &Control::new()).color;
+    let image = path::render(&world, &view, &settings, &Control::new()).color;
     let settings = Settings { pixels: 100, most_samples: 256, ..Settings::default() };
     let run = |threads: usize, settings: &Settings| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| verify(&world, &window, &image, settings, &Control::new())).unwrap()
+        pool.install(|| verify(&world, &view, &image, settings, &Control::new())).unwrap()
     };
     let one = run(1, &settings);
     assert_eq!(one, run(3, &settings));
@@ -149,20 +145,19 @@ fn crops_threads_and_seeds() {
     assert!(one.relative_rms.value < 0.5 && one.pixels <= 100, "{one:?}");
     let control = Control::new();
     control.cancel();
-    assert_eq!(verify(&world, &window, &image, &settings, &control), None);
+    assert_eq!(verify(&world, &view, &image, &settings, &control), None);
 }
 
 /// Independent references through the places that `look` says.
-fn references(world: &World, look: Look, spp: u32) -> Vec<Image> {
+fn references(world: &WorldAndView, look: Look, spp: u32) -> Vec<Image> {
     const MEANS: u32 = 16;
-    let window = whole(world);
-    let [width, height] = world.scene.resolution;
+    let [width, height] = world.view.window.film;
     let depth = world.scene.max_depth.unwrap_or(u32::MAX);
     let row = |y: u32, seed: u32| -> Vec<Rgb> {
         let wanted: Vec<Wanted> =
             (0..width).map(|x| Wanted { pixel: [x, y], samples: spp / MEANS }).collect();
         let seed = (0x00c0_ffee + seed, depth);
-        let (row, _) = pixel_means(world, &window, look, &wanted, seed, &mut Counts::default());
+        let (row, _) = pixel_means(world, &world.view, look, &wanted, seed, &mut Counts::default());
         row.into_iter().map(|mean| mean.as_vec3()).collect()
     };
     let reference = |seed: u32| {
@@ -211,12 +206,9 @@ fn agree(e: Estimate, (truth, standard_error): (f64, f64)) -> bool {
     (truth - e.value).abs() <= (end - e.value).hypot(1.96 * standard_error)
 }
 
-fn load(name: &str) -> World {
+fn load(name: &str) -> WorldAndView {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).with_extension("toml");
-    let mut scene: Scene =
-        lightsplat::scene::formats::load(&path, &Default::default()).expect("it loads").scene;
-    scene.resolution = [64, 64];
-    world(scene)
+    world(load_scene(&path, Some([64, 64])))
 }
 
 /// Ten pairs of scene and settings, each verified with four seeds. Prints the table: the truth's interval by a whole
@@ -228,7 +220,6 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
     let (mut covered, mut trials) = ([0; 3], 0);
     for name in ["cornell", "knot", "nave", "kitchen", "apartment"] {
         let world = load(name);
-        let window = whole(&world);
         let cached = cache::Settings::default();
         let eye = Look::EyeSamples { spp: cached.spp, seed: cached.seed };
         let mut few = cached;
@@ -237,20 +228,20 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
         let few_paths = path::Settings { spp: 64, ..Default::default() };
         let pairs = match name {
             "cornell" | "kitchen" => vec![
-                ("cache", cache::render(&world, &window, &cached, &control).color, eye),
-                ("cache, few VPLs", cache::render(&world, &window, &few, &control).color, eye),
+                ("cache", cache::render(&world, &world.view, &cached, &control).color, eye),
+                ("cache, few VPLs", cache::render(&world, &world.view, &few, &control).color, eye),
             ],
             "knot" => vec![
-                ("cache", cache::render(&world, &window, &cached, &control).color, eye),
-                ("path, 64 spp", path::render(&world, &window, &few_paths, &control).color, Look::Pixels),
+                ("cache", cache::render(&world, &world.view, &cached, &control).color, eye),
+                ("path, 64 spp", path::render(&world, &world.view, &few_paths, &control).color, Look::Pixels),
             ],
             "nave" => vec![
-                ("cache", cache::render(&world, &window, &cached, &control).color, eye),
-                ("cache, pixels", cache::render(&world, &window, &cached, &control).color, Look::Pixels),
+                ("cache", cache::render(&world, &world.view, &cached, &control).color, eye),
+                ("cache, pixels", cache::render(&world, &world.view, &cached, &control).color, Look::Pixels),
             ],
             _ => vec![
-                ("lightcuts", lightcuts::render(&world, &window, &cuts, &control).color, eye),
-                ("path, 64 spp", path::render(&world, &window, &few_paths, &control).color, Look::Pixels),
+                ("lightcuts", lightcuts::render(&world, &world.view, &cuts, &control).color, eye),
+                ("path, 64 spp", path::render(&world, &world.view, &few_paths, &control).color, Look::Pixels),
             ],
         };
         let mut traced: Vec<(Look, Vec<Image>)> = Vec::new();

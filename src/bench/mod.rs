@@ -21,6 +21,7 @@ mod trees;
 pub use measure::{Clock, Warning};
 pub use report::{Report, Row, Spread, Table};
 
+use crate::view::View;
 use crate::world::World;
 use std::path::PathBuf;
 use study::{Document, Study, StudyError};
@@ -87,6 +88,8 @@ impl Default for Settings {
 pub struct Context<'a> {
     /// The scene, if one was given; always there for those that need it.
     pub world: Option<&'a World>,
+    /// The whole film of its camera, if there is a scene.
+    pub view: Option<View>,
     /// How to measure.
     pub settings: Settings,
     /// Called with what is being done.

@@ -2,7 +2,6 @@
 
 use super::Context;
 use crate::eye::{EyeSamples, EyeSettings};
-use crate::film::Window;
 use crate::light_tree::{Family, LightTrees, Node};
 use crate::lightcut::{CoherenceLimit, Receiver, Transfer, group_coherent};
 use crate::math::{Frame, LANES};
@@ -31,8 +30,7 @@ impl<'w> Setting<'w> {
         let depth = world.scene.path_limit(None);
         (context.say)("looking at the scene and lighting it");
         let eye = EyeSettings { spp: 1, seed: 0, max_depth: depth };
-        let window = Window::whole(world.scene.resolution);
-        let samples = EyeSamples::look(world, &window, eye, &Control::new());
+        let samples = EyeSamples::look(world, &context.view?, eye, &Control::new());
         let LightPass { sets, spots, .. } =
             light_pass(world, &LightPassSettings::default(), depth, &Control::new());
         let trees = LightTrees::build(&sets, spots, world.diagonal, Family::default());

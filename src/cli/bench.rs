@@ -6,6 +6,7 @@ use super::{scene, study, talk};
 use crate::bench::export::{FORMATS, terminal};
 use crate::bench::{Benchmark, Context, Kind, REGISTRY, Settings};
 use crate::film::{ImageError, atomic};
+use crate::view::View;
 use crate::world::World;
 use anyhow::{Context as _, anyhow};
 use std::io::Write;
@@ -53,17 +54,19 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
         seconds: args.seconds.unwrap_or(defaults.seconds),
     };
     let pool = pool(settings.threads)?;
-    let world = match args.scenes.first() {
+    let scene = match args.scenes.first() {
         None => None,
         Some(path) => {
             let loaded = scene::read(path, false)?;
             let built = World::new(loaded.scene, settings.threads);
             let built = built.with_context(|| format!("cannot build {}", path.display()));
-            Some(built.map_err(Failure::render)?)
+            let view = View::whole(loaded.cameras.still, loaded.cameras.resolution);
+            Some((built.map_err(Failure::render)?, view))
         }
     };
     let report = pool.install(|| {
-        let context = Context { world: world.as_ref(), settings, say: &|what| talk::note(what) };
+        let (world, view) = scene.as_ref().map(|(world, view)| (world, *view)).unzip();
+        let context = Context { world, view, settings, say: &|what| talk::note(what) };
         benchmark.report(&context, measure(&context))
     });
     talk::print(&terminal(&report))?;

@@ -27,8 +27,8 @@ fn facts(loaded: &Loaded) -> Value {
     json!({
         "name": loaded.scene.name,
         "hash": format!("{:016x}", loaded.hash),
-        "resolution": loaded.scene.resolution,
-        "frames": loaded.scene.camera_path.len(),
+        "resolution": loaded.cameras.resolution,
+        "frames": loaded.cameras.path.len(),
         "max_depth": loaded.scene.max_depth,
         "meshes": meshes.len(),
         "triangles": meshes.iter().map(|m| m.triangles.len()).sum::<usize>(),

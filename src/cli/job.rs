@@ -7,9 +7,10 @@ use super::verify;
 use crate::film::Window;
 use crate::film::{Exposure, atomic};
 use crate::method::Method;
-use crate::scene::Scene;
+use crate::scene::{Camera, Cameras};
 use crate::stats::available_bytes;
 use crate::verify::Settings as VerifySettings;
+use crate::view::View;
 use anyhow::anyhow;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -84,9 +85,14 @@ impl RenderJob {
         })
     }
 
-    /// The part of the scene's film to render.
-    pub fn window(&self, scene: &Scene) -> Result<Window, Failure> {
-        let film = self.resolution.unwrap_or(scene.resolution);
+    /// The camera of the frame asked for, and the part of its film to render.
+    pub fn view(&self, cameras: &Cameras) -> Result<View, Failure> {
+        let window = self.window(cameras.resolution)?;
+        Ok(View { camera: self.camera(cameras)?, window })
+    }
+
+    fn window(&self, resolution: [u32; 2]) -> Result<Window, Failure> {
+        let film = self.resolution.unwrap_or(resolution);
         let mut window = Window::whole(film);
         if let Some(crop) = self.crop {
             window = Window { film, offset: crop.offset, width: crop.size[0], height: crop.size[1] };
@@ -107,24 +113,14 @@ impl RenderJob {
         Ok(window)
     }
 
-    /// Puts the camera of the frame asked for in place of the still camera.
-    pub fn choose_frame(&self, scene: &mut Scene) -> Result<(), Failure> {
-        let Some(frame) = self.frame else { return Ok(()) };
-        match scene.camera_path.get(frame) {
-            Some(&camera) => scene.camera = camera,
-            None => {
-                let frames = scene.camera_path.len();
-                let remedy = if frames == 0 {
-                    "leave --frame out".to_owned()
-                } else {
-                    format!("at most {}", frames - 1)
-                };
-                return Err(Failure::usage(anyhow!(
-                    "--frame {frame}: the scene has {frames} frames; {remedy}"
-                )));
-            }
-        }
-        Ok(())
+    fn camera(&self, cameras: &Cameras) -> Result<Camera, Failure> {
+        let Some(frame) = self.frame else { return Ok(cameras.still) };
+        cameras.path.get(frame).copied().ok_or_else(|| {
+            let frames = cameras.path.len();
+            let remedy =
+                if frames == 0 { "leave --frame out".to_owned() } else { format!("at most {}", frames - 1) };
+            Failure::usage(anyhow!("--frame {frame}: the scene has {frames} frames; {remedy}"))
+        })
     }
 }
 

@@ -5,12 +5,12 @@ use super::exit::Failure;
 use super::job::RenderJob;
 use super::{progress, talk};
 use crate::film::Metadata;
-use crate::film::Window;
 use crate::method::{Method, Output};
 use crate::plan::{self, Held, LATE, Ladder};
 use crate::progress::Control;
 use crate::stats::{Stage, Stats, Stopwatch};
 use crate::verify::{Settings as VerifySettings, Verified};
+use crate::view::View;
 use crate::world::World;
 use anyhow::anyhow;
 use serde_json::{Value, json};
@@ -91,25 +91,25 @@ pub struct Made {
 pub fn make(
     job: &RenderJob,
     world: &World,
-    window: &Window,
+    view: &View,
     control: &Control,
     run: &Stopwatch,
     stats: &mut Stats,
 ) -> Result<Made, Failure> {
     let plain = |method: Method, report: Value| {
         let watch = Stopwatch::start();
-        let output = progress::watched(job.progress, control, || method.render(world, window, control));
+        let output = progress::watched(job.progress, control, || method.render(world, view, control));
         let seconds = watch.elapsed().wall_seconds;
         Made { method, output, seconds, measured: None, report }
     };
     let wish = job.wish.and_then(|wish| Some((wish, Ladder::new(job.method, wish.held)?)));
     let Some((wish, ladder)) = wish else { return Ok(plain(job.method, Value::Null)) };
-    let ladder = ladder.within(window);
+    let ladder = ladder.within(&view.window);
     let interrupted = || Failure::interrupted(anyhow!("interrupted while planning; nothing is written"));
     match wish.wanted {
         Wanted::Time(asked) => {
             let left = || asked - run.elapsed().wall_seconds;
-            let search = || plan::for_time(world, window, &ladder, left, control);
+            let search = || plan::for_time(world, view, &ladder, left, control);
             let watch = Stopwatch::start();
             let found = progress::watched(job.progress, control, search).ok_or_else(interrupted)?;
             let spent = found.spent();
@@ -133,14 +133,14 @@ pub fn make(
             });
             let method = found.method;
             let watch = Stopwatch::start();
-            let output = progress::watched(job.progress, control, || found.render(world, window, control));
+            let output = progress::watched(job.progress, control, || found.render(world, view, control));
             let seconds = spent.wall_seconds + watch.elapsed().wall_seconds;
             Ok(Made { method, output, seconds, measured: None, report })
         }
         Wanted::Error(error) => {
             let measure = job.verify.unwrap_or_default();
             let asked = plan::Asked { error, measure, most_samples: wish.most_samples };
-            let search = || plan::for_error(world, window, &ladder, &asked, control);
+            let search = || plan::for_error(world, view, &ladder, &asked, control);
             let watch = Stopwatch::start();
             let found = progress::watched(job.progress, control, search).ok_or_else(interrupted)?;
             let all = watch.elapsed();

@@ -79,9 +79,8 @@ fn render(job: &RenderJob, control: &Control, run: &Stopwatch) -> Result<(Frame,
     let interrupted = || Failure::interrupted(anyhow!("interrupted before rendering; nothing is written"));
     let mut stats = Stats::new();
     let loaded = stats.time(Stage::Load, || scene::read(&job.scene, job.strict))?;
-    let Loaded { mut scene, warnings, hash, .. } = loaded;
-    let window = job.window(&scene)?;
-    job.choose_frame(&mut scene)?;
+    let Loaded { scene, cameras, warnings, hash, .. } = loaded;
+    let view = job.view(&cameras)?;
     if control.is_cancelled() {
         return Err(interrupted());
     }
@@ -92,13 +91,13 @@ fn render(job: &RenderJob, control: &Control, run: &Stopwatch) -> Result<(Frame,
     if control.is_cancelled() {
         return Err(interrupted());
     }
-    let made = plan::make(job, &world, &window, control, run, &mut stats)?;
+    let made = plan::make(job, &world, &view, control, run, &mut stats)?;
     let plan::Made { method, output, seconds, measured, report } = made;
     stats.merge(&output.stats);
 
     let complete = output.complete;
     let nonfinite_samples = output.nonfinite;
-    let mut film = film(output, window);
+    let mut film = film(output, view.window);
     let nonfinite_channels = film.remove_nonfinite();
     for (n, what) in [(nonfinite_samples, "samples"), (nonfinite_channels, "channels of the picture")] {
         if n > 0 {
@@ -125,7 +124,7 @@ fn render(job: &RenderJob, control: &Control, run: &Stopwatch) -> Result<(Frame,
     plan::store(&report, run.elapsed().wall_seconds, metadata);
     let measured = measured.filter(|_| complete).or_else(|| {
         let settings = job.verify.filter(|_| complete)?.of(&method);
-        let measure = || measure_error(&world, &window, &film.color, &settings, control);
+        let measure = || measure_error(&world, &view, &film.color, &settings, control);
         let search = || progress::watched(job.progress, control, measure);
         Some((settings, stats.time(Stage::Verify, search)))
     });
@@ -143,7 +142,7 @@ fn render(job: &RenderJob, control: &Control, run: &Stopwatch) -> Result<(Frame,
         "method": method.name(),
         "settings": method.settings(),
         "threads": job.threads,
-        "window": { "film": window.film, "offset": window.offset, "size": [window.width, window.height] },
+        "window": { "film": view.window.film, "offset": view.window.offset, "size": [view.window.width, view.window.height] },
         "complete": complete,
         "nonfinite": nonfinite_samples + nonfinite_channels,
         "standard_error": metadata.number("standard_error"),

@@ -1,9 +1,6 @@
 //! Where in its pixels a picture takes its samples.
 
-use crate::embree::Ray;
-use crate::film::Window;
 use crate::sampling::{Sampler, hash};
-use crate::scene::Camera;
 use glam::Vec2;
 
 /// What the value of a pixel is meant to be.
@@ -28,12 +25,4 @@ pub fn eye_sampler([x, y]: [u32; 2], seed: u32, sample: u32, spp: u32) -> (Sampl
     let mut sampler = Sampler::new(hash(hash(x, y), seed), sample);
     let jitter = if spp > 1 { sampler.next_2d() } else { Vec2::splat(0.5) };
     (sampler, jitter)
-}
-
-/// The ray through the film's pixel `[x, y]` at `jitter` within it, from the camera's near to its far plane.
-#[inline]
-pub fn primary_ray(camera: &Camera, window: &Window, [x, y]: [u32; 2], jitter: Vec2) -> Ray {
-    let direction = camera.direction([x as f32 + jitter.x, y as f32 + jitter.y], window.film);
-    let cos = direction.dot(camera.forward);
-    Ray { origin: camera.origin, t_near: camera.near / cos, direction, t_far: camera.far / cos }
 }

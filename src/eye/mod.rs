@@ -9,6 +9,6 @@ mod sharp;
 
 pub use chain::{ChainCounts, EyeSample, trace};
 pub use index::{Bounds, EyeIndex};
-pub use look::{Look, eye_sampler, primary_ray};
+pub use look::{Look, eye_sampler};
 pub use samples::{EyePoint, EyeSamples, EyeSettings, EyeSurface};
 pub use sharing::Sharing;

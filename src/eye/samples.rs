@@ -4,12 +4,13 @@
 //! Paper: Herzog et al. 2009, section 4: eye samples are stored through specular chains and sorted by a kd-tree.
 //! Units: positions relative to the scene's centre, throughputs per pixel (they include 1/spp).
 
-use super::{ChainCounts, EyeIndex, EyeSample, Sharing, eye_sampler, primary_ray, trace};
+use super::{ChainCounts, EyeIndex, EyeSample, Sharing, eye_sampler, trace};
 use crate::film::{Image, Window};
 use crate::material::Bsdf;
 use crate::math::Rgb;
 use crate::progress::Control;
 use crate::scene::MaterialId;
+use crate::view::View;
 use crate::world::World;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -48,7 +49,7 @@ pub struct EyeSurface<'w> {
     pub pixel: u32,
 }
 
-/// All eye samples of a window.
+/// All eye samples of a view.window.
 pub struct EyeSamples<'w> {
     /// Geometry, in the order of the index.
     pub points: Vec<EyePoint>,
@@ -88,25 +89,20 @@ pub struct EyeSettings {
 
 impl<'w> EyeSamples<'w> {
     /// Looks through every pixel of `window`, a single sample through its centre.
-    pub fn look(
-        world: &'w World,
-        window: &Window,
-        settings: EyeSettings,
-        control: &Control,
-    ) -> EyeSamples<'w> {
-        let tiles: Vec<Found> = (0..window.tile_count(TILE))
+    pub fn look(world: &'w World, view: &View, settings: EyeSettings, control: &Control) -> EyeSamples<'w> {
+        let tiles: Vec<Found> = (0..view.window.tile_count(TILE))
             .into_par_iter()
             .map(|tile| {
                 let mut found = Found::default();
                 if !control.is_cancelled() {
-                    found.look(world, window, settings, tile);
+                    found.look(world, view, settings, tile);
                     control.advance(1);
                 }
                 found
             })
             .collect();
 
-        let mut emitted = Image::new(window.width, window.height);
+        let mut emitted = Image::new(view.window.width, view.window.height);
         let mut chains = ChainCounts::default();
         let mut nonfinite = 0;
         let mut complete = true;
@@ -145,17 +141,16 @@ impl<'w> EyeSamples<'w> {
 }
 
 impl<'w> Found<'w> {
-    fn look(&mut self, world: &'w World, window: &Window, settings: EyeSettings, tile: usize) {
+    fn look(&mut self, world: &'w World, view: &View, settings: EyeSettings, tile: usize) {
         let spp = settings.spp.max(1);
-        let camera = &world.scene.camera;
         // Angle between neighbouring samples, at the film's centre.
-        let angle = 2.0 * camera.tan_half_x / window.film[0] as f32 / (spp as f32).sqrt();
-        for pixel in window.tile(tile, TILE) {
-            let film_pixel = window.film_pixel(pixel);
-            let place = pixel[1] * window.width + pixel[0];
+        let angle = view.pixel_angle() / (spp as f32).sqrt();
+        for pixel in view.window.tile(tile, TILE) {
+            let film_pixel = view.window.film_pixel(pixel);
+            let place = pixel[1] * view.window.width + pixel[0];
             for sample in 0..spp {
                 let (mut sampler, jitter) = eye_sampler(film_pixel, settings.seed, sample, spp);
-                let ray = primary_ray(camera, window, film_pixel, jitter);
+                let ray = view.primary_ray(film_pixel, jitter);
                 let samples = &mut self.samples;
                 let visit = |eye: EyeSample<'w>| {
                     if eye.depth < settings.max_depth {

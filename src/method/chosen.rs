@@ -8,6 +8,7 @@ use crate::lightcut::CutSettings;
 use crate::progress::Control;
 use crate::radiance_cache::{CacheSettings, Footprints, FoundBy};
 use crate::shadow::ShadowSettings;
+use crate::view::View;
 use crate::vpl::LightPassSettings;
 use crate::world::World;
 use serde_json::{Value, json};
@@ -84,13 +85,13 @@ impl Method {
         }
     }
 
-    /// Renders `window`.
-    pub fn render(&self, world: &World, window: &Window, control: &Control) -> Output {
+    /// Renders what `view` sees.
+    pub fn render(&self, world: &World, view: &View, control: &Control) -> Output {
         match self {
-            Method::Path(settings) => path::render(world, window, settings, control),
-            Method::Cache(settings) => cache::render(world, window, settings, control),
-            Method::PhotonCache(settings) => photon_cache::render(world, window, settings, control),
-            Method::Lightcuts(settings) => lightcuts::render(world, window, settings, control),
+            Method::Path(settings) => path::render(world, view, settings, control),
+            Method::Cache(settings) => cache::render(world, view, settings, control),
+            Method::PhotonCache(settings) => photon_cache::render(world, view, settings, control),
+            Method::Lightcuts(settings) => lightcuts::render(world, view, settings, control),
         }
     }
 }

@@ -11,12 +11,12 @@
 use super::ladder::{Ladder, options};
 use crate::eye::Look;
 use crate::film::Image;
-use crate::film::Window;
 use crate::method::{Method, Output};
 use crate::progress::Control;
 use crate::sampling::hash;
 use crate::stats::{StageTime, Stopwatch};
 use crate::verify::{Settings, Truth, Verified};
+use crate::view::View;
 use crate::world::World;
 
 /// How far below the error asked for the search aims: about as much as the interval reaches above its estimate.
@@ -78,7 +78,7 @@ pub struct Found {
 /// Renders `window` as cheaply as meets what is asked; `None` if cancelled before that film was begun.
 pub fn for_error(
     world: &World,
-    window: &Window,
+    view: &View,
     ladder: &Ladder,
     asked: &Asked,
     control: &Control,
@@ -88,7 +88,7 @@ pub fn for_error(
     ladder.held.spp |= matches!(asked.measure.look, Look::EyeSamples { .. });
     let top = STEPS * ladder.top();
     let Searched { mut step, error: expected, mut output, mut time, renders: searched } =
-        search(world, window, &ladder, asked, control)?;
+        search(world, view, &ladder, asked, control)?;
 
     let mut truth: Option<Truth> = None;
     let mut measure = asked.measure;
@@ -96,7 +96,7 @@ pub fn for_error(
     loop {
         let method = ladder.at(step / STEPS);
         let verified = if output.complete {
-            judge(world, window, &output.color, asked, &mut measure, &mut truth, control)
+            judge(world, view, &output.color, asked, &mut measure, &mut truth, control)
         } else {
             None
         };
@@ -112,7 +112,7 @@ pub fn for_error(
         // From between two steps to the upper one, or the next.
         step = (step.floor() + if over { 2.0 } else { 1.0 }).min(top);
         let watch = Stopwatch::start();
-        output = ladder.at(step / STEPS).render(world, window, control);
+        output = ladder.at(step / STEPS).render(world, view, control);
         time = watch.elapsed();
         raises += 1;
     }
@@ -122,7 +122,7 @@ pub fn for_error(
 /// `None` if cancelled.
 fn judge(
     world: &World,
-    window: &Window,
+    view: &View,
     image: &Image,
     asked: &Asked,
     measure: &mut Settings,
@@ -131,7 +131,7 @@ fn judge(
 ) -> Option<Verified> {
     loop {
         if truth.is_none() {
-            *truth = Some(Truth::trace(world, window, image, measure, control)?);
+            *truth = Some(Truth::trace(world, view, image, measure, control)?);
         }
         let verified = truth.as_ref()?.judge(image);
         let told = verified.noise <= asked.error || verified.relative_rms.low > asked.error;
@@ -156,13 +156,7 @@ struct Searched {
 
 /// The lowest step that seems to do, or settings between it and the one below that do too; where none is found, the last
 /// that was tried.
-fn search(
-    world: &World,
-    window: &Window,
-    ladder: &Ladder,
-    asked: &Asked,
-    control: &Control,
-) -> Option<Searched> {
+fn search(world: &World, view: &View, ladder: &Ladder, asked: &Asked, control: &Control) -> Option<Searched> {
     let measure = Settings { seed: hash(asked.measure.seed, SEED), ..asked.measure };
     let goal = AIM * asked.error;
     let top = (STEPS * ladder.top()) as usize;
@@ -170,13 +164,13 @@ fn search(
     let mut renders = 0;
     let mut attempt = |step: f64| {
         let watch = Stopwatch::start();
-        let output = ladder.at(step / STEPS).render(world, window, control);
+        let output = ladder.at(step / STEPS).render(world, view, control);
         let time = watch.elapsed();
         if !output.complete {
             return None;
         }
         if truth.is_none() {
-            truth = Some(Truth::trace(world, window, &output.color, &measure, control)?);
+            truth = Some(Truth::trace(world, view, &output.color, &measure, control)?);
         }
         let error = truth.as_ref()?.judge(&output.color).relative_rms.value;
         renders += 1;

@@ -11,11 +11,11 @@ use super::cost::{Cost, Timed};
 use super::ladder::{Ladder, options};
 use super::smaller;
 use super::tune::tune;
-use crate::film::Window;
 use crate::method::cache::Prepared;
 use crate::method::{Method, Output};
 use crate::progress::Control;
 use crate::stats::{Stage, StageTime, Stopwatch};
+use crate::view::View;
 use crate::world::World;
 
 /// Share of what is left of the time that the last small render may take.
@@ -64,10 +64,10 @@ impl Planned<'_> {
     }
 
     /// Renders `window`, as planned for, or what is missing.
-    pub fn render(self, world: &World, window: &Window, control: &Control) -> Output {
+    pub fn render(self, world: &World, view: &View, control: &Control) -> Output {
         match (self.prepared, &self.method) {
             (Some((prepared, _)), Method::Cache(settings)) => prepared.light(settings, control),
-            (_, method) => method.render(world, window, control),
+            (_, method) => method.render(world, view, control),
         }
     }
 }
@@ -75,19 +75,19 @@ impl Planned<'_> {
 /// Plans a render of `window` that ends when `left()` seconds, as of its call, have passed; `None` if cancelled.
 pub fn for_time<'w>(
     world: &'w World,
-    window: &Window,
+    view: &View,
     ladder: &Ladder,
     left: impl Fn() -> f64,
     control: &Control,
 ) -> Option<Planned<'w>> {
-    let usable = || left() * (1.0 - RESERVE) - WRITE * window.pixel_count() as f64;
+    let usable = || left() * (1.0 - RESERVE) - WRITE * view.window.pixel_count() as f64;
     let tunable = |method: &Method| matches!(method, Method::Cache(s) if s.lights_by_cuts());
     let tunes = tunable(&ladder.at(0.0));
-    let (cost, pilots) = small_renders(world, window, ladder, tunes, &usable, control)?;
-    let coarse = highest(&cost, ladder, window, usable());
-    let seconds = whole(&cost, ladder, window, coarse);
+    let (cost, pilots) = small_renders(world, view, ladder, tunes, &usable, control)?;
+    let coarse = highest(&cost, ladder, view, usable());
+    let seconds = whole(&cost, ladder, view, coarse);
     if tunes {
-        return tuned(world, window, ladder, (coarse, seconds), pilots, &usable, control);
+        return tuned(world, view, ladder, (coarse, seconds), pilots, &usable, control);
     }
     let method = ladder.at(coarse);
     let options = options(&method);
@@ -98,7 +98,7 @@ pub fn for_time<'w>(
 /// take.
 fn tuned<'w>(
     world: &'w World,
-    window: &Window,
+    view: &View,
     ladder: &Ladder,
     guess: (f64, f64),
     mut pilots: u64,
@@ -112,7 +112,7 @@ fn tuned<'w>(
         let method = ladder.at(coarse);
         let Method::Cache(settings) = &method else { return None };
         let watch = Stopwatch::start();
-        let there = Prepared::new(world, window, settings, control);
+        let there = Prepared::new(world, view, settings, control);
         let spent = watch.elapsed();
         if control.is_cancelled() {
             return None;
@@ -150,14 +150,14 @@ fn tuned<'w>(
 /// A model of cost, from the first small renders or from all, and how many there were.
 fn small_renders(
     world: &World,
-    window: &Window,
+    view: &View,
     ladder: &Ladder,
     only_rough: bool,
     usable: &impl Fn() -> f64,
     control: &Control,
 ) -> Option<(Cost, u64)> {
     let mut timed = Vec::new();
-    let mut time = |height: f64, small: Window| -> Option<Cost> {
+    let mut time = |height: f64, small: View| -> Option<Cost> {
         let method = ladder.at(height);
         let watch = Stopwatch::start();
         let output = method.render(world, &small, control);
@@ -173,8 +173,8 @@ fn small_renders(
     };
     let small = |scale: u32| {
         let scales = (1..=scale).rev();
-        let big = |&scale: &u32| smaller(window, scale).pixel_count() >= LEAST_PIXELS;
-        smaller(window, scales.into_iter().find(big).unwrap_or(1))
+        let big = |&scale: &u32| smaller(view, scale).window.pixel_count() >= LEAST_PIXELS;
+        smaller(view, scales.into_iter().find(big).unwrap_or(1))
     };
     let mut cost = time(0.0, small(SCALES[0]))?;
     let mut pilots = 1;
@@ -188,7 +188,7 @@ fn small_renders(
     }
     // As near to the settings wanted as the time for this render lets, smaller first, then cheaper.
     let allowed = PILOT_SHARE * usable();
-    let wanted = highest(&cost, ladder, window, usable() - allowed);
+    let wanted = highest(&cost, ladder, view, usable() - allowed);
     let scale = [4, 6, 8].into_iter().find(|&s| whole(&cost, ladder, &small(s), wanted) < allowed);
     let near = scale.map_or_else(|| highest(&cost, ladder, &second, allowed), |_| wanted);
     if near > 0.0 {
@@ -199,19 +199,19 @@ fn small_renders(
 }
 
 /// The highest settings that take no longer than `seconds`; the lowest if none do.
-fn highest(cost: &Cost, ladder: &Ladder, window: &Window, seconds: f64) -> f64 {
+fn highest(cost: &Cost, ladder: &Ladder, view: &View, seconds: f64) -> f64 {
     let steps = (ladder.top() * f64::from(STEPS)) as u32;
     let heights = (0..=steps).rev().map(|k| f64::from(k) / f64::from(STEPS));
-    heights.into_iter().find(|&height| whole(cost, ladder, window, height) <= seconds).unwrap_or(0.0)
+    heights.into_iter().find(|&height| whole(cost, ladder, view, height) <= seconds).unwrap_or(0.0)
 }
 
-fn whole(cost: &Cost, ladder: &Ladder, window: &Window, height: f64) -> f64 {
+fn whole(cost: &Cost, ladder: &Ladder, view: &View, height: f64) -> f64 {
     let method = ladder.at(height);
-    cost.seconds(height, samples(&method, window), vpls(&method))
+    cost.seconds(height, samples(&method, view), vpls(&method))
 }
 
-fn samples(method: &Method, window: &Window) -> f64 {
-    window.pixel_count() as f64 * f64::from(method.spp())
+fn samples(method: &Method, view: &View) -> f64 {
+    view.window.pixel_count() as f64 * f64::from(method.spp())
 }
 
 /// All virtual lights asked for, a few at least so that they can be divided by.

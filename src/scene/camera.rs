@@ -21,6 +21,17 @@ pub struct Camera {
     pub far: f32,
 }
 
+/// The cameras that a scene's file describes, and the size of their film.
+#[derive(Clone, Debug, Default)]
+pub struct Cameras {
+    /// The camera of a still.
+    pub still: Camera,
+    /// One camera a frame where the file has a walk-through, else empty.
+    pub path: Vec<Camera>,
+    /// Width and height of the film in pixels.
+    pub resolution: [u32; 2],
+}
+
 /// At the centre, looking along -z with y up, a right angle wide.
 impl Default for Camera {
     fn default() -> Camera {

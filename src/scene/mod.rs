@@ -17,7 +17,7 @@ mod texture;
 use glam::DVec3;
 use std::path::PathBuf;
 
-pub use camera::Camera;
+pub use camera::{Camera, Cameras};
 pub use light::{DeltaLight, Environment, EnvironmentMap};
 pub use material::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance};
 pub use mesh::{Emission, Mesh};
@@ -31,12 +31,6 @@ pub struct Scene {
     pub name: String,
     /// The files the scene was read from, main file first; the scene hash covers their bytes.
     pub sources: Vec<PathBuf>,
-    /// The camera of a still, or of the first frame.
-    pub camera: Camera,
-    /// One camera a frame where the scene has a walk-through, else empty.
-    pub camera_path: Vec<Camera>,
-    /// Width and height in pixels.
-    pub resolution: [u32; 2],
     /// Longest path in edges counted from the eye (1 = emitters in view only, 2 = direct light);
     /// `None` leaves the end to Russian roulette.
     pub max_depth: Option<u32>,

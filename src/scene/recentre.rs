@@ -4,7 +4,7 @@
 //! hold: the subtraction happens in f64, before any rounding.
 
 use super::draft::{Draft, DraftCamera};
-use super::{Camera, DeltaLight, Mesh, Scene};
+use super::{Camera, Cameras, DeltaLight, Mesh, Scene};
 use glam::{DVec3, Vec3};
 
 /// The middle of the box around all triangles; of all lights and the camera where there are none.
@@ -24,8 +24,8 @@ fn middle(points: impl Iterator<Item = DVec3>) -> Option<DVec3> {
     (low.cmple(high).all()).then(|| 0.5 * low + 0.5 * high)
 }
 
-/// The scene about `centre`.
-pub(crate) fn recentre(draft: Draft, centre: DVec3) -> Scene {
+/// The scene about `centre`, and its cameras.
+pub(crate) fn recentre(draft: Draft, centre: DVec3) -> (Scene, Cameras) {
     let local = |p: DVec3| (p - centre).as_vec3();
     let camera = |c: &DraftCamera| Camera {
         origin: local(c.origin),
@@ -45,12 +45,14 @@ pub(crate) fn recentre(draft: Draft, centre: DVec3) -> Scene {
         material: m.material,
         emission: m.emission,
     };
-    Scene {
+    let cameras = Cameras {
+        still: camera(&draft.camera),
+        path: draft.camera_path.iter().map(camera).collect(),
+        resolution: draft.resolution,
+    };
+    let scene = Scene {
         name: draft.name,
         sources: draft.sources,
-        camera: camera(&draft.camera),
-        camera_path: draft.camera_path.iter().map(camera).collect(),
-        resolution: draft.resolution,
         max_depth: draft.max_depth,
         meshes: draft.meshes.into_iter().map(mesh).collect(),
         materials: draft.materials,
@@ -62,7 +64,8 @@ pub(crate) fn recentre(draft: Draft, centre: DVec3) -> Scene {
             .collect(),
         environment: draft.environment,
         centre,
-    }
+    };
+    (scene, cameras)
 }
 
 fn place_light(light: DeltaLight, at: Vec3) -> DeltaLight {
@@ -77,11 +80,11 @@ fn place_light(light: DeltaLight, at: Vec3) -> DeltaLight {
 
 #[cfg(test)]
 mod tests {
-    use crate::scene::formats::{LoadOptions, load};
-    use crate::scene::{DeltaLight, Scene};
+    use crate::scene::DeltaLight;
+    use crate::scene::formats::{LoadOptions, Loaded, load};
 
     /// The same small room with everything moved by `offset` and scaled by `scale`.
-    fn room(scale: f64, offset: f64) -> Scene {
+    fn room(scale: f64, offset: f64) -> Loaded {
         let at = |x: f64, y: f64, z: f64| {
             format!("[{:e}, {:e}, {:e}]", x * scale + offset, y * scale + offset, z * scale + offset)
         };
@@ -101,31 +104,31 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("s.toml");
         std::fs::write(&path, text).unwrap();
-        load(&path, &LoadOptions::default()).unwrap().scene
+        load(&path, &LoadOptions::default()).unwrap()
     }
 
     #[test]
     fn an_offset_of_a_million_loses_nothing() {
         let (here, there) = (room(1.0, 0.0), room(1.0, 1e6));
-        for (a, b) in here.meshes.iter().zip(&there.meshes) {
+        for (a, b) in here.scene.meshes.iter().zip(&there.scene.meshes) {
             let worst =
                 a.positions.iter().zip(&b.positions).map(|(a, b)| (a - b).length()).fold(0.0, f32::max);
             // f64 at 1e6 is good to 1e-10, f32 near 4 to 2.4e-7.
             assert!(worst <= 5e-7, "{worst}");
         }
-        assert!((here.camera.origin - there.camera.origin).length() < 5e-7);
-        let position = |scene: &Scene| match scene.lights[0] {
+        assert!((here.cameras.still.origin - there.cameras.still.origin).length() < 5e-7);
+        let position = |loaded: &Loaded| match loaded.scene.lights[0] {
             DeltaLight::Point { position, .. } => position,
             _ => panic!(),
         };
         assert!((position(&here) - position(&there)).length() < 5e-7);
-        assert!((there.centre - here.centre - 1e6).length() < 1e-9);
+        assert!((there.scene.centre - here.scene.centre - 1e6).length() < 1e-9);
     }
 
     #[test]
     fn a_millimetre_at_a_thousand_kilometres_keeps_its_shape() {
         let (unit, tiny) = (room(1.0, 0.0), room(1e-3, 1e6));
-        for (a, b) in unit.meshes.iter().zip(&tiny.meshes) {
+        for (a, b) in unit.scene.meshes.iter().zip(&tiny.scene.meshes) {
             let worst =
                 a.positions.iter().zip(&b.positions).map(|(a, b)| (a - b * 1e3).length()).fold(0.0, f32::max);
             // What f64 leaves at 1e6, magnified by 1e3.
@@ -138,7 +141,7 @@ mod tests {
         let unit = room(1.0, 0.0);
         for scale in [1e-6, 1e6] {
             let scaled = room(scale, 0.0);
-            for (a, b) in unit.meshes.iter().zip(&scaled.meshes) {
+            for (a, b) in unit.scene.meshes.iter().zip(&scaled.scene.meshes) {
                 assert_eq!(a.triangles, b.triangles);
                 assert!(a.normals.iter().zip(&b.normals).all(|(a, b)| (a - b).length() < 1e-5));
             }

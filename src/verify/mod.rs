@@ -25,10 +25,10 @@ mod trace;
 
 use crate::eye::Look;
 use crate::film::Image;
-use crate::film::Window;
 use crate::method::Method;
 use crate::progress::Control;
 use crate::stats::Stage;
+use crate::view::View;
 use crate::world::World;
 use serde::Serialize;
 
@@ -105,18 +105,18 @@ impl Truth {
     /// Traces pixels of `window`, those preferred that stand out in `image`, a picture of it; `None` if cancelled.
     pub fn trace(
         world: &World,
-        window: &Window,
+        view: &View,
         image: &Image,
         settings: &Settings,
         control: &Control,
     ) -> Option<Truth> {
         let picks = picks::choose(image, settings.pixels, settings.seed);
         control.begin(Stage::Verify, 2 * picks.len() as u64);
-        let traced = trace::trace(world, window, image, &picks, settings, control)?;
+        let traced = trace::trace(world, view, image, &picks, settings, control)?;
         Some(Truth { picks, traced, seed: settings.seed })
     }
 
-    /// The error of `image`, a picture of the same window.
+    /// The error of `image`, a picture of the same view.window.
     pub fn judge(&self, image: &Image) -> Verified {
         let traced = &self.traced;
         let mut pixels = traced.pixels.clone();
@@ -143,10 +143,10 @@ impl Truth {
 /// Measures the error of `image`, the picture of `window`; `None` if cancelled.
 pub fn verify(
     world: &World,
-    window: &Window,
+    view: &View,
     image: &Image,
     settings: &Settings,
     control: &Control,
 ) -> Option<Verified> {
-    Some(Truth::trace(world, window, image, settings, control)?.judge(image))
+    Some(Truth::trace(world, view, image, settings, control)?.judge(image))
 }

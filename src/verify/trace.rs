@@ -5,10 +5,10 @@ use super::measure::{MEANS, Measured};
 use super::picks::Pick;
 use crate::eye::Look;
 use crate::film::Image;
-use crate::film::Window;
 use crate::method::path::{Counts, Wanted, pixel_means};
 use crate::progress::Control;
 use crate::sampling::hash;
+use crate::view::View;
 use crate::world::World;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -43,7 +43,7 @@ pub struct Traced {
 /// Traces paths through the pixels picked; `None` if cancelled.
 pub fn trace(
     world: &World,
-    window: &Window,
+    view: &View,
     image: &Image,
     picks: &[Pick],
     settings: &Settings,
@@ -58,12 +58,13 @@ pub fn trace(
     let sum: DVec3 = image.pixels.iter().map(|p| p.as_dvec3()).sum();
     let mean = sum.element_sum() / (3 * image.pixels.len().max(1)) as f64;
     let floor = FLOOR * mean * mean;
-    let tracing = Tracing { world, window, image, settings, control };
+    let tracing = Tracing { world, view, image, settings, control };
     let task = |picks: &[Pick]| {
         let mut traced = Traced { pixels: Vec::new(), at_cap: 0, paths: 0, nonfinite: 0 };
         let place = |pick: &Pick| {
-            let (column, row) = (pick.index as u32 % window.width, pick.index as u32 / window.width);
-            window.film_pixel([column, row])
+            let (column, row) =
+                (pick.index as u32 % view.window.width, pick.index as u32 / view.window.width);
+            view.window.film_pixel([column, row])
         };
         let mut wanted: Vec<Wanted> =
             picks.iter().map(|pick| Wanted { pixel: place(pick), samples: least }).collect();
@@ -91,7 +92,7 @@ pub fn trace(
 /// What is the same for all pixels.
 struct Tracing<'a> {
     world: &'a World,
-    window: &'a Window,
+    view: &'a View,
     image: &'a Image,
     settings: &'a Settings,
     control: &'a Control,
@@ -106,7 +107,7 @@ impl Tracing<'_> {
         round: u32,
         traced: &mut Traced,
     ) -> Option<Vec<Measured>> {
-        let Tracing { world, window, settings, .. } = *self;
+        let Tracing { world, view, settings, .. } = *self;
         let max_depth = world.scene.path_limit(settings.max_depth);
         let held = |pick: &Pick| Measured {
             held: self.image.pixels[pick.index].as_dvec3(),
@@ -121,7 +122,7 @@ impl Tracing<'_> {
             }
             let seed = hash(hash(settings.seed, SEED), round * MEANS as u32 + k as u32);
             let (means, nonfinite) =
-                pixel_means(world, window, settings.look, wanted, (seed, max_depth), &mut counts);
+                pixel_means(world, view, settings.look, wanted, (seed, max_depth), &mut counts);
             for (pixel, mean) in pixels.iter_mut().zip(means) {
                 pixel.means[k] = mean;
             }

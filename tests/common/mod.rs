@@ -2,12 +2,15 @@
 #![allow(dead_code, missing_docs)]
 
 use glam::Vec3;
-use lightsplat::film::Window;
 use lightsplat::math::Rgb;
 use lightsplat::method::{Output, cache};
 use lightsplat::progress::Control;
+use lightsplat::scene::formats::{LoadOptions, Loaded, load};
 use lightsplat::scene::{Camera, Emission, Fresnel, Lobe, Material, MaterialId, Mesh, Reflectance, Scene};
+use lightsplat::view::View;
 use lightsplat::world::World;
+use std::ops::{Deref, DerefMut};
+use std::path::Path;
 
 pub fn camera(origin: Vec3, target: Vec3, tan_half_x: f32) -> Camera {
     let forward = (target - origin).normalize();
@@ -16,8 +19,56 @@ pub fn camera(origin: Vec3, target: Vec3, tan_half_x: f32) -> Camera {
     Camera { origin, forward, right, up: right.cross(forward), tan_half_x, near: 0.0, far: f32::INFINITY }
 }
 
-pub fn scene(camera: Camera, resolution: [u32; 2]) -> Scene {
-    Scene { name: "test".into(), camera, resolution, ..Scene::default() }
+/// A scene in the making and the view of it.
+#[derive(Clone)]
+pub struct SceneAndView {
+    pub scene: Scene,
+    pub view: View,
+}
+
+impl Deref for SceneAndView {
+    type Target = Scene;
+
+    fn deref(&self) -> &Scene {
+        &self.scene
+    }
+}
+
+impl DerefMut for SceneAndView {
+    fn deref_mut(&mut self) -> &mut Scene {
+        &mut self.scene
+    }
+}
+
+/// A world and the view of it.
+pub struct WorldAndView {
+    pub world: World,
+    pub view: View,
+}
+
+impl Deref for WorldAndView {
+    type Target = World;
+
+    fn deref(&self) -> &World {
+        &self.world
+    }
+}
+
+pub fn scene(camera: Camera, resolution: [u32; 2]) -> SceneAndView {
+    let scene = Scene { name: "test".into(), ..Scene::default() };
+    SceneAndView { scene, view: View::whole(camera, resolution) }
+}
+
+/// A world's scene and view, to be changed.
+pub fn staged(WorldAndView { world, view }: WorldAndView) -> SceneAndView {
+    SceneAndView { scene: world.scene, view }
+}
+
+/// The scene in a file, seen by its still camera on a film of `resolution`, or of its own.
+pub fn load_scene(path: &Path, resolution: Option<[u32; 2]>) -> SceneAndView {
+    let Loaded { scene, cameras, .. } = load(path, &LoadOptions::default()).expect("the scene loads");
+    let view = View::whole(cameras.still, resolution.unwrap_or(cameras.resolution));
+    SceneAndView { scene, view }
 }
 
 pub fn diffuse(reflectance: Rgb) -> Material {
@@ -75,7 +126,7 @@ pub fn room(low: Vec3, high: Vec3, material: MaterialId) -> Vec<Mesh> {
 }
 
 /// A square room from -1 to 1 with a lamp below its ceiling, square pixels.
-pub fn lit_room(camera: Camera, size: u32) -> (Scene, MaterialId) {
+pub fn lit_room(camera: Camera, size: u32) -> (SceneAndView, MaterialId) {
     let mut scene = scene(camera, [size, size]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
@@ -115,13 +166,13 @@ pub fn sphere(centre: Vec3, radius: f32, n: u32, material: MaterialId) -> Mesh {
     mesh
 }
 
-pub fn world(scene: Scene) -> World {
-    World::new(scene, 2).expect("the scene builds")
+pub fn world(SceneAndView { scene, view }: SceneAndView) -> WorldAndView {
+    WorldAndView { world: World::new(scene, 2).expect("the scene builds"), view }
 }
 
 /// The picture by the cache, which must be whole.
-pub fn cached(world: &World, settings: &cache::Settings) -> Output {
-    let output = cache::render(world, &Window::whole(world.scene.resolution), settings, &Control::new());
+pub fn cached(world: &WorldAndView, settings: &cache::Settings) -> Output {
+    let output = cache::render(world, &world.view, settings, &Control::new());
     assert!(output.complete && output.nonfinite == 0);
     output
 }

@@ -7,6 +7,7 @@ use lightsplat::film::{Image, read_exr};
 use lightsplat::method::path::{Settings, render};
 use lightsplat::progress::Control;
 use lightsplat::scene::formats::{LoadOptions, load};
+use lightsplat::view::View;
 use lightsplat::world::World;
 
 /// The window's part of a picture of the whole film.
@@ -26,11 +27,16 @@ fn crop(image: &Image, window: &Window) -> Image {
 fn agrees(name: &str, offset: [u32; 2], size: [u32; 2], spp: u32) {
     let Some(directory) = shared_scenes().map(|folder| folder.join(name)) else { return };
     let loaded = load(&directory.join("scene.xml"), &LoadOptions::default()).expect("the scene loads");
-    let film = loaded.scene.resolution;
+    let film = loaded.cameras.resolution;
     let world = World::new(loaded.scene, 2).expect("the scene builds");
     let window = Window { offset, width: size[0], height: size[1], ..Window::whole(film) };
     assert!(window.is_valid());
-    let output = render(&world, &window, &Settings { spp, ..Settings::default() }, &Control::new());
+    let output = render(
+        &world,
+        &View { camera: loaded.cameras.still, window },
+        &Settings { spp, ..Settings::default() },
+        &Control::new(),
+    );
     assert_eq!(output.nonfinite, 0);
     let read = |file: &str| crop(&read_exr(&directory.join(file)).expect("the reference reads"), &window);
     let (reference, variance) = (read("reference.exr"), read("reference_variance.exr"));

@@ -35,14 +35,15 @@ fn every_shared_scene_loads_whole() {
     let Some(folder) = shared_scenes() else { return };
     for e in EXPECTED {
         let loaded = load(&folder.join(e.file), &LoadOptions { strict: true });
-        let Loaded { scene, warnings, repairs, .. } = loaded.unwrap_or_else(|error| panic!("{error}"));
+        let Loaded { scene, cameras, warnings, repairs, .. } =
+            loaded.unwrap_or_else(|error| panic!("{error}"));
         let triangles: usize = scene.meshes.iter().map(|m| m.triangles.len()).sum();
         let emitters = scene.meshes.iter().filter(|m| m.emission.is_some()).count();
         assert_eq!(triangles + repairs.degenerate, e.triangles, "{}", e.file);
         assert_eq!(repairs.degenerate, e.degenerate, "{}", e.file);
         let counts = (scene.meshes.len(), scene.materials.len(), scene.textures.len(), emitters);
         assert_eq!(counts, (e.meshes, e.materials, e.textures, e.emitters), "{}", e.file);
-        assert_eq!((scene.environment.is_some(), scene.resolution), (e.environment, e.resolution));
+        assert_eq!((scene.environment.is_some(), cameras.resolution), (e.environment, e.resolution));
         assert_eq!(scene.max_depth, Some(17));
         assert!(warnings.iter().all(|w| w.level == Level::Note), "{warnings:?}");
         assert_eq!(warnings.len(), e.notes, "{warnings:?}");

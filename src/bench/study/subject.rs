@@ -3,8 +3,8 @@
 use super::store::hash_debug;
 use super::{Study, StudyError};
 use crate::embree::BuildQuality;
-use crate::film::Window;
 use crate::scene::formats::{Level, LoadOptions, load};
+use crate::view::View;
 use crate::world::World;
 use std::path::{Path, PathBuf};
 
@@ -18,8 +18,8 @@ pub struct Subject {
     pub triangles: usize,
     /// The scene.
     pub world: World,
-    /// The whole film.
-    pub window: Window,
+    /// The whole film of its still camera.
+    pub view: View,
     path: PathBuf,
 }
 
@@ -42,13 +42,13 @@ impl Subject {
         let mut scene = loaded.scene;
         // Where its files lie does not matter.
         let sources = std::mem::take(&mut scene.sources);
-        let hash = hash_debug(&scene);
+        let hash = hash_debug(&(&scene, &loaded.cameras));
         scene.sources = sources;
         let triangles = scene.meshes.iter().map(|m| m.triangles.len()).sum();
         let world = World::new(scene, study.plan.threads)
             .map_err(|source| StudyError::Build { path: path.to_owned(), source })?;
-        let window = Window::whole(study.plan.resolution);
-        Ok(Subject { name: world.scene.name.clone(), hash, triangles, world, window, path: path.to_owned() })
+        let view = View::whole(loaded.cameras.still, study.plan.resolution);
+        Ok(Subject { name: world.scene.name.clone(), hash, triangles, world, view, path: path.to_owned() })
     }
 }
 

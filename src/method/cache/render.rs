@@ -7,7 +7,6 @@ use super::inspect;
 use super::own::{self, Job};
 use super::picture::Picture;
 use crate::eye::{EyeSamples, EyeSettings};
-use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::lights::Lights;
@@ -17,6 +16,7 @@ use crate::radiance_cache::compute::Source;
 use crate::radiance_cache::series::Glossy;
 use crate::radiance_cache::{CacheSettings, FoundBy};
 use crate::stats::{Stage, StageTime, Stats, Stopwatch};
+use crate::view::View;
 use crate::vpl::LightPassSettings;
 use crate::world::World;
 
@@ -70,8 +70,8 @@ impl Default for Settings {
 }
 
 /// Renders `window` of the scene's film.
-pub fn render(world: &World, window: &Window, settings: &Settings, control: &Control) -> Output {
-    Prepared::new(world, window, settings, control).light(settings, control)
+pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
+    Prepared::new(world, view, settings, control).light(settings, control)
 }
 
 /// Eye samples and virtual lights: all that the picture needs but lighting.
@@ -85,14 +85,14 @@ pub struct Prepared<'w> {
 
 impl<'w> Prepared<'w> {
     /// By the settings that say how many, and whether surfaces need series.
-    pub fn new(world: &'w World, window: &Window, settings: &Settings, control: &Control) -> Prepared<'w> {
+    pub fn new(world: &'w World, view: &View, settings: &Settings, control: &Control) -> Prepared<'w> {
         let mut stats = Stats::new();
         let max_depth = world.scene.path_limit(settings.max_depth);
         let spp = settings.spp.max(1);
 
         let eye = EyeSettings { spp, seed: settings.seed, max_depth };
-        control.begin(Stage::EyePass, window.tile_count(16) as u64);
-        let mut samples = stats.time(Stage::EyePass, || EyeSamples::look(world, window, eye, control));
+        control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
+        let mut samples = stats.time(Stage::EyePass, || EyeSamples::look(world, view, eye, control));
         let glossy = stats.time(Stage::EyePass, || {
             (!settings.lights_by_cuts())
                 .then(|| Glossy::find(world, &mut samples, &settings.cache.series))

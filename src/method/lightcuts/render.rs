@@ -5,7 +5,6 @@ use crate::compensation::Compensation;
 use crate::compensation::samples::NearCounts;
 use crate::eye::ChainCounts;
 use crate::film::Image;
-use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::{CutCounts, CutSettings, Transfer};
 use crate::math::Rgb;
@@ -14,6 +13,7 @@ use crate::method::{Output, counts};
 use crate::progress::Control;
 use crate::shadow::{ShadowCounts, ShadowSettings};
 use crate::stats::{Stage, Stats};
+use crate::view::View;
 use crate::vpl::LightPassSettings;
 use crate::world::World;
 use rayon::prelude::*;
@@ -60,7 +60,7 @@ impl Default for Settings {
 /// What all tiles share.
 pub(super) struct Scenery<'a> {
     pub world: &'a World,
-    pub window: &'a Window,
+    pub view: &'a View,
     pub settings: &'a Settings,
     pub transfer: Transfer<'a>,
     pub compensation: Option<Compensation<'a>>,
@@ -68,7 +68,7 @@ pub(super) struct Scenery<'a> {
 }
 
 /// Renders `window` of the scene's film.
-pub fn render(world: &World, window: &Window, settings: &Settings, control: &Control) -> Output {
+pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     let mut stats = Stats::new();
     let max_depth = world.scene.path_limit(settings.max_depth);
 
@@ -76,12 +76,12 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let lights = Lights::new(world, &light, settings.family, max_depth, control, &mut stats);
     let transfer = lights.transfer(settings.compensation);
     let compensation = settings.compensation.then(|| lights.compensation(world));
-    let scenery = Scenery { world, window, settings, transfer, compensation, max_depth };
+    let scenery = Scenery { world, view, settings, transfer, compensation, max_depth };
 
     // Tiles are aligned to the film, not to the window.
-    let first = window.offset.map(|o| o / TILE);
-    let across = (window.offset[0] + window.width).div_ceil(TILE) - first[0];
-    let down = (window.offset[1] + window.height).div_ceil(TILE) - first[1];
+    let first = view.window.offset.map(|o| o / TILE);
+    let across = (view.window.offset[0] + view.window.width).div_ceil(TILE) - first[0];
+    let down = (view.window.offset[1] + view.window.height).div_ceil(TILE) - first[1];
     let corner = |i: usize| [(i as u32 % across + first[0]) * TILE, (i as u32 / across + first[1]) * TILE];
     let mut tiles: Vec<Tile> = (0..across * down).map(|_| Tile::default()).collect();
     control.begin(Stage::Render, tiles.len() as u64);
@@ -97,8 +97,8 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
         );
     });
 
-    let mut color = Image::new(window.width, window.height);
-    let mut cut_size = Image::new(window.width, window.height);
+    let mut color = Image::new(view.window.width, view.window.height);
+    let mut cut_size = Image::new(view.window.width, view.window.height);
     let mut used = CutCounts::default();
     let mut near = NearCounts::default();
     let mut chains = ChainCounts::default();
@@ -106,7 +106,7 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
     let mut shadows = ShadowCounts::default();
     for (i, tile) in tiles.iter().enumerate().filter(|(_, tile)| tile.done) {
         for (k, [x, y]) in scenery.tile_area(corner(i)).pixels().enumerate() {
-            let at = ((y - window.offset[1]) * window.width + x - window.offset[0]) as usize;
+            let at = ((y - view.window.offset[1]) * view.window.width + x - view.window.offset[0]) as usize;
             color.pixels[at] = tile.radiance[k];
             cut_size.pixels[at] = Rgb::splat(tile.cut_sizes[k]);
         }

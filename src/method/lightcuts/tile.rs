@@ -4,7 +4,7 @@
 
 use super::render::{Scenery, Settings};
 use crate::compensation::samples::{NearCounts, NearLight};
-use crate::eye::{ChainCounts, EyeSample, eye_sampler, primary_ray, trace};
+use crate::eye::{ChainCounts, EyeSample, eye_sampler, trace};
 use crate::lightcut::{
     CoherenceLimit, CutCounts, Lightcut, MIN_SHARED, PacketLightcut, Receiver, ReceiverPacket,
 };
@@ -108,12 +108,12 @@ impl Tile {
         work.values.clear();
         for (x, y) in block_pixels(block) {
             for sample in 0..spp {
-                if x >= s.window.film[0] || y >= s.window.film[1] {
+                if x >= s.view.window.film[0] || y >= s.view.window.film[1] {
                     work.values.push(Rgb::ZERO);
                     continue;
                 }
                 let (mut sampler, jitter) = eye_sampler([x, y], s.settings.seed, sample, spp);
-                let ray = primary_ray(&s.world.scene.camera, s.window, [x, y], jitter);
+                let ray = s.view.primary_ray([x, y], jitter);
                 let place = work.values.len();
                 let visit = |eye: EyeSample<'w>| {
                     if eye.depth < s.max_depth {
@@ -207,7 +207,7 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
 impl Scenery<'_> {
     /// The part of a tile inside the window, in film coordinates.
     pub fn tile_area(&self, corner: [u32; 2]) -> Area {
-        let w = self.window;
+        let w = &self.view.window;
         let low = [0, 1].map(|i| corner[i].max(w.offset[i]));
         let high =
             [(corner[0] + TILE).min(w.offset[0] + w.width), (corner[1] + TILE).min(w.offset[1] + w.height)];

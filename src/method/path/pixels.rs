@@ -3,7 +3,7 @@
 use super::batch::{Batch, Counts};
 use super::start::{Start, start};
 use crate::eye::Look;
-use crate::film::Window;
+use crate::view::View;
 use crate::world::World;
 use glam::DVec3;
 
@@ -23,7 +23,7 @@ pub struct Wanted {
 /// `seed` gives independent means.
 pub fn pixel_means(
     world: &World,
-    window: &Window,
+    view: &View,
     look: Look,
     wanted: &[Wanted],
     (seed, max_depth): (u32, u32),
@@ -37,7 +37,7 @@ pub fn pixel_means(
         let samples = |w: &Wanted| first.min(w.samples)..(first + TOGETHER).min(w.samples);
         let paths =
             wanted.iter().flat_map(|w| samples(w).map(|sample| Start { pixel: w.pixel, sample, seed }));
-        start(&mut batch, paths, world, window, look);
+        start(&mut batch, paths, view, look);
         let mut values = batch.trace(world, max_depth, counts);
         for (w, sum) in wanted.iter().zip(&mut sums) {
             for value in values.by_ref().take(samples(w).len()) {

@@ -4,11 +4,11 @@ use super::batch::{Batch, Counts};
 use super::start::{Start, start};
 use crate::eye::Look;
 use crate::film::Image;
-use crate::film::Window;
 use crate::math::Rgb;
 use crate::method::Output;
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
+use crate::view::View;
 use crate::world::World;
 use rayon::prelude::*;
 
@@ -57,9 +57,9 @@ struct Tile {
 }
 
 /// Renders `window` of the scene's film.
-pub fn render(world: &World, window: &Window, settings: &Settings, control: &Control) -> Output {
+pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     let mut stats = Stats::new();
-    let mut tiles: Vec<Tile> = (0..window.tile_count(TILE))
+    let mut tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
         .map(|_| Tile { pixels: Vec::new(), samples: 0, counts: Counts::default(), nonfinite: 0 })
         .collect();
     let passes = settings.spp.div_ceil(PASS);
@@ -69,19 +69,19 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
             let end = ((pass + 1) * PASS).min(settings.spp);
             tiles.par_iter_mut().enumerate().for_each(|(i, tile)| {
                 if !control.is_cancelled() {
-                    tile.render(world, window, settings, i, end);
+                    tile.render(world, view, settings, i, end);
                     control.advance(1);
                 }
             });
         }
     });
-    let mut color = Image::new(window.width, window.height);
-    let mut variance = Image::new(window.width, window.height);
+    let mut color = Image::new(view.window.width, view.window.height);
+    let mut variance = Image::new(view.window.width, view.window.height);
     let (mut rays, mut shadow_rays, mut nonfinite, mut paths) = (0, 0, 0, 0);
     for (i, tile) in tiles.iter().enumerate() {
         let n = tile.samples as f32;
-        for (pixel, [x, y]) in tile.pixels.iter().zip(window.tile(i, TILE)) {
-            let at = (y * window.width + x) as usize;
+        for (pixel, [x, y]) in tile.pixels.iter().zip(view.window.tile(i, TILE)) {
+            let at = (y * view.window.width + x) as usize;
             color.pixels[at] = pixel.mean;
             variance.pixels[at] = if n > 1.0 { pixel.squares / (n * (n - 1.0)) } else { Rgb::ZERO };
         }
@@ -101,10 +101,10 @@ pub fn render(world: &World, window: &Window, settings: &Settings, control: &Con
 
 impl Tile {
     /// Takes the samples up to `end` of every pixel.
-    fn render(&mut self, world: &World, window: &Window, settings: &Settings, index: usize, end: u32) {
+    fn render(&mut self, world: &World, view: &View, settings: &Settings, index: usize, end: u32) {
         let max_depth = world.scene.path_limit(settings.max_depth);
         let begin = self.samples;
-        let coordinates = window.tile(index, TILE);
+        let coordinates = view.window.tile(index, TILE);
         if self.pixels.is_empty() {
             self.pixels = vec![Pixel::default(); coordinates.count()];
         }
@@ -112,10 +112,11 @@ impl Tile {
         for first in (begin..end).step_by(BATCH as usize) {
             let samples = first..(first + BATCH).min(end);
             // The film's own coordinates, so that a crop repeats the whole picture's pixels.
-            let paths = window.tile(index, TILE).map(|at| window.film_pixel(at)).flat_map(|pixel| {
-                samples.clone().map(move |sample| Start { pixel, sample, seed: settings.seed })
-            });
-            start(&mut batch, paths, world, window, settings.look);
+            let paths =
+                view.window.tile(index, TILE).map(|at| view.window.film_pixel(at)).flat_map(|pixel| {
+                    samples.clone().map(move |sample| Start { pixel, sample, seed: settings.seed })
+                });
+            start(&mut batch, paths, view, settings.look);
             let mut values = batch.trace(world, max_depth, &mut self.counts);
             for pixel in &mut self.pixels {
                 for (sample, mut value) in samples.clone().zip(values.by_ref()) {

@@ -2,11 +2,10 @@
 
 use super::batch::Batch;
 use crate::embree::Rays16;
-use crate::eye::{Look, eye_sampler, primary_ray};
-use crate::film::Window;
+use crate::eye::{Look, eye_sampler};
 use crate::math::LANES;
 use crate::sampling::{Samplers16, hash};
-use crate::world::World;
+use crate::view::View;
 
 /// A path to start.
 #[derive(Clone, Copy, Debug)]
@@ -20,13 +19,7 @@ pub(super) struct Start {
 }
 
 /// Adds `paths` to the batch, in order. With [`Look::EyeSamples`] they take the eye samples' places in turn.
-pub(super) fn start(
-    batch: &mut Batch,
-    mut paths: impl Iterator<Item = Start>,
-    world: &World,
-    window: &Window,
-    look: Look,
-) {
+pub(super) fn start(batch: &mut Batch, mut paths: impl Iterator<Item = Start>, view: &View, look: Look) {
     loop {
         let mut samplers = Samplers16::default();
         let mut starts = [Start { pixel: [0; 2], sample: 0, seed: 0 }; LANES];
@@ -52,7 +45,7 @@ pub(super) fn start(
                     eye_sampler(path.pixel, seed, path.sample % spp, spp).1
                 }
             };
-            rays.set(i, &primary_ray(&world.scene.camera, window, path.pixel, jitter));
+            rays.set(i, &view.primary_ray(path.pixel, jitter));
         }
         batch.push(rays, samplers, count);
     }

@@ -1,7 +1,6 @@
 //! The picture: eye pass, photons, trees of direct light, the cache, and what it leaves to single samples.
 
 use crate::eye::{EyeSamples, EyeSettings};
-use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::math::Rgb;
@@ -22,6 +21,7 @@ use crate::radiance_cache::compute::Source;
 use crate::radiance_cache::series::Glossy;
 use crate::radiance_cache::{CacheSettings, FoundBy};
 use crate::stats::{Stage, Stats};
+use crate::view::View;
 use crate::vpl::{LightPassSettings, Origin, PhotonSettings};
 use crate::world::World;
 use rayon::prelude::*;
@@ -75,13 +75,13 @@ impl Default for Settings {
 }
 
 /// Renders `window` of the scene's film.
-pub fn render(world: &World, window: &Window, settings: &Settings, control: &Control) -> Output {
+pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     let mut stats = Stats::new();
     let max_depth = world.scene.path_limit(settings.max_depth);
 
     let eye = EyeSettings { spp: settings.spp.max(1), seed: settings.seed, max_depth };
-    control.begin(Stage::EyePass, window.tile_count(16) as u64);
-    let mut samples = stats.time(Stage::EyePass, || EyeSamples::look(world, window, eye, control));
+    control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
+    let mut samples = stats.time(Stage::EyePass, || EyeSamples::look(world, view, eye, control));
     let glossy = stats.time(Stage::EyePass, || Glossy::find(world, &mut samples, &settings.cache.series));
     counts::eye(&mut stats, &samples.chains);
 

@@ -13,7 +13,7 @@ mod native;
 mod picture;
 mod plan;
 
-use super::{Scene, recentre, sanitize};
+use super::{Cameras, Scene, recentre, sanitize};
 use error::Log;
 use std::path::Path;
 
@@ -33,6 +33,8 @@ pub struct LoadOptions {
 pub struct Loaded {
     /// The scene, sanitised and recentred.
     pub scene: Scene,
+    /// From where its file wants it to be seen.
+    pub cameras: Cameras,
     /// What was replaced, in the order of the description.
     pub warnings: Vec<Warning>,
     /// What had to be repaired.
@@ -55,6 +57,6 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let generator = plan.generator.clone();
     let (mut draft, hash) = plan.realise()?;
     let (repairs, centre) = sanitize::sanitize(&mut draft)?;
-    let scene = recentre::recentre(draft, centre);
-    Ok(Loaded { scene, warnings: log.into_warnings(), repairs, hash, generator })
+    let (scene, cameras) = recentre::recentre(draft, centre);
+    Ok(Loaded { scene, cameras, warnings: log.into_warnings(), repairs, hash, generator })
 }

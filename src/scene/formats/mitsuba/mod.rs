@@ -30,7 +30,7 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let mut converter = Converter { document: &document, folder, log, parts: Parts::default() };
     converter.scene()?;
-    let view = converter.view()?;
+    let shot = converter.shot()?;
     let parts = converter.parts;
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let folder_name = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
@@ -40,10 +40,10 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
         name,
         sources: document.sources,
         generator: None,
-        camera: view.camera,
+        camera: shot.camera,
         camera_path: Vec::new(),
-        resolution: view.resolution,
-        max_depth: view.max_depth,
+        resolution: shot.resolution,
+        max_depth: shot.max_depth,
         meshes: parts.meshes,
         materials: parts.materials,
         material_places: parts.material_places,

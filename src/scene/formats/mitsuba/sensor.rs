@@ -7,14 +7,14 @@ use crate::scene::formats::error::{Place, SceneError};
 use glam::{DMat4, DVec3};
 
 /// What is seen, how large and with paths how long.
-pub(super) struct View {
+pub(super) struct Shot {
     pub camera: DraftCamera,
     pub resolution: [u32; 2],
     pub max_depth: Option<u32>,
 }
 
 impl Converter<'_> {
-    pub(super) fn view(&mut self) -> Result<View, SceneError> {
+    pub(super) fn shot(&mut self) -> Result<Shot, SceneError> {
         let root = &self.document.root;
         let integrators = self.tagged(root, "integrator")?;
         let max_depth = match integrators.first() {
@@ -59,7 +59,7 @@ impl Converter<'_> {
         self.tagged(sensor, "sampler")?;
         let camera = self.camera(&sensor.place, &to_world, tan_half_x, near, far)?;
         sensor.report_unused(self.log)?;
-        Ok(View { camera, resolution, max_depth })
+        Ok(Shot { camera, resolution, max_depth })
     }
 
     /// Mitsuba's camera looks along +z with +x to the left.

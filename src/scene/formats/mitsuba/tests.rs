@@ -219,15 +219,8 @@ fn the_sensor_takes_every_axis_of_the_field_of_view() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("s.xml");
         fs::write(&path, text).unwrap();
-        let scene = load(&path, &LoadOptions::default()).unwrap().scene;
-        assert!(
-            (scene.camera.tan_half_x - expected).abs() < 1e-6,
-            "{axis} {width} {}",
-            scene.camera.tan_half_x
-        );
-        assert_eq!(
-            (scene.camera.forward, scene.camera.right, scene.camera.up),
-            (Vec3::Z, Vec3::NEG_X, Vec3::Y)
-        );
+        let camera = load(&path, &LoadOptions::default()).unwrap().cameras.still;
+        assert!((camera.tan_half_x - expected).abs() < 1e-6, "{axis} {width} {}", camera.tan_half_x);
+        assert_eq!((camera.forward, camera.right, camera.up), (Vec3::Z, Vec3::NEG_X, Vec3::Y));
     }
 }

@@ -10,8 +10,8 @@ use crate::scene::draft::DraftCamera;
 use crate::scene::formats::error::{Place, SceneError};
 use glam::DVec3;
 
-/// What is seen, and how large.
-pub(super) struct View {
+/// The cameras, and the size of their film.
+pub(super) struct Shot {
     pub camera: DraftCamera,
     pub path: Vec<DraftCamera>,
     pub resolution: [u32; 2],
@@ -36,7 +36,7 @@ impl Key {
 }
 
 impl Builder<'_> {
-    pub(super) fn view(&self, scene: &SceneText) -> Result<View, SceneError> {
+    pub(super) fn shot(&self, scene: &SceneText) -> Result<Shot, SceneError> {
         let place = self.file.place(scene.resolution.span());
         let resolution = *scene.resolution.get_ref();
         if resolution.iter().any(|r| !(1..=65536).contains(r)) {
@@ -62,7 +62,7 @@ impl Builder<'_> {
                 path.push(self::camera(text, along(&keys, t), tan_half_x, &place)?);
             }
         }
-        Ok(View { camera, path, resolution })
+        Ok(Shot { camera, path, resolution })
     }
 
     fn tan_half_x(&self, text: &CameraText, resolution: [u32; 2], place: &Place) -> Result<f64, SceneError> {

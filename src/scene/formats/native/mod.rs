@@ -78,7 +78,7 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
         builder.light(light)?;
     }
     let environment = scene.environment.as_ref().map(|e| builder.environment(e)).transpose()?;
-    let view = builder.view(&scene)?;
+    let shot = builder.shot(&scene)?;
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let mut sources = vec![(path.to_owned(), hash)];
     sources.append(&mut builder.sources);
@@ -86,9 +86,9 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
         name: scene.name.unwrap_or(stem),
         sources,
         generator: scene.generator.map(|g| g.into_inner()),
-        camera: view.camera,
-        camera_path: view.path,
-        resolution: view.resolution,
+        camera: shot.camera,
+        camera_path: shot.path,
+        resolution: shot.resolution,
         max_depth: scene.max_depth,
         meshes: builder.meshes,
         materials: builder.materials,

@@ -53,11 +53,11 @@ fn every_kind_of_material_light_and_step_is_read() {
         environment = { radiance = [0.1, 0.2, 0.3] }
     "#;
     let loaded = load_text(text).unwrap();
-    let scene = &loaded.scene;
-    assert_eq!((scene.name.as_str(), scene.max_depth, scene.resolution), ("all", Some(5), [8, 4]));
-    assert!((scene.camera.tan_half_x - 2.0).abs() < 1e-6);
-    assert_eq!(scene.camera.right, Vec3::X);
-    assert_eq!((scene.camera.near, scene.camera.far), (0.0, f32::INFINITY));
+    let (scene, camera) = (&loaded.scene, &loaded.cameras.still);
+    assert_eq!((scene.name.as_str(), scene.max_depth, loaded.cameras.resolution), ("all", Some(5), [8, 4]));
+    assert!((camera.tan_half_x - 2.0).abs() < 1e-6);
+    assert_eq!(camera.right, Vec3::X);
+    assert_eq!((camera.near, camera.far), (0.0, f32::INFINITY));
     assert_eq!(scene.materials.len(), 8);
     assert!(!scene.materials[0].two_sided && scene.materials[1].two_sided);
     assert!(matches!(scene.materials[3].coat, Some(c) if c.eta == 1.3 && c.nonlinear));
@@ -155,7 +155,7 @@ fn a_path_has_a_camera_for_every_frame() {
         { origin = [4, 0, 5], target = [4, 0, 0] }]\n";
     let loaded = load_text(&format!("{HEAD}{path}")).unwrap();
     let xs: Vec<f32> =
-        loaded.scene.camera_path.iter().map(|c| c.origin.x + loaded.scene.centre.x as f32).collect();
+        loaded.cameras.path.iter().map(|c| c.origin.x + loaded.scene.centre.x as f32).collect();
     assert_eq!(xs.len(), 5);
     for (x, expected) in xs.iter().zip([0.0, 1.0, 2.0, 3.0, 4.0]) {
         assert!((x - expected).abs() < 1e-5, "{xs:?}");
