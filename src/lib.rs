@@ -38,6 +38,7 @@ pub mod progress;
 pub mod radiance_cache;
 pub mod sampling;
 pub mod scene;
+pub mod session;
 pub mod shadow;
 pub mod stats;
 pub mod verify;

@@ -21,8 +21,7 @@ mod trees;
 pub use measure::{Clock, Warning};
 pub use report::{Report, Row, Spread, Table};
 
-use crate::view::View;
-use crate::world::World;
+use crate::session::Session;
 use std::path::PathBuf;
 use study::{Document, Study, StudyError};
 
@@ -87,9 +86,7 @@ impl Default for Settings {
 /// What a benchmark is given.
 pub struct Context<'a> {
     /// The scene, if one was given; always there for those that need it.
-    pub world: Option<&'a World>,
-    /// The whole film of its camera, if there is a scene.
-    pub view: Option<View>,
+    pub session: Option<&'a Session>,
     /// How to measure.
     pub settings: Settings,
     /// Called with what is being done.
@@ -119,7 +116,7 @@ impl Benchmark {
             ("threads".to_owned(), context.settings.threads.to_string()),
             ("samples a case".to_owned(), context.settings.repeats.to_string()),
         ];
-        if let Some(world) = context.world {
+        if let Some(Session { world, .. }) = context.session {
             let triangles: usize = world.scene.meshes.iter().map(|m| m.triangles.len()).sum();
             facts.push(("triangles".to_owned(), triangles.to_string()));
             facts.push(("Embree".to_owned(), world.accel.device().version().to_string()));
@@ -127,7 +124,7 @@ impl Benchmark {
         }
         Report {
             benchmark: self.name.to_owned(),
-            scene: context.world.map(|w| w.scene.name.clone()),
+            scene: context.session.map(|s| s.world.scene.name.clone()),
             facts,
             tables,
         }

@@ -7,6 +7,8 @@ use crate::lightcut::{CoherenceLimit, Receiver, Transfer, group_coherent};
 use crate::math::{Frame, LANES};
 use crate::progress::Control;
 use crate::sampling::hash;
+use crate::session::Session;
+use crate::view::View;
 use crate::vpl::{LightPass, LightPassSettings, light_pass};
 use crate::world::World;
 use std::ops::Range;
@@ -26,11 +28,12 @@ pub(super) struct Setting<'w> {
 impl<'w> Setting<'w> {
     /// With the renderers' default settings. None if there is no scene.
     pub fn new(context: &Context<'w>) -> Option<Setting<'w>> {
-        let world = context.world?;
+        let Session { world, cameras, .. } = context.session?;
+        let view = View::whole(cameras.still, cameras.resolution);
         let depth = world.scene.path_limit(None);
         (context.say)("looking at the scene and lighting it");
         let eye = EyeSettings { spp: 1, seed: 0, max_depth: depth };
-        let samples = EyeSamples::look(world, &context.view?, eye, &Control::new());
+        let samples = EyeSamples::look(world, &view, eye, &Control::new());
         let LightPass { sets, spots, .. } =
             light_pass(world, &LightPassSettings::default(), depth, &Control::new());
         let trees = LightTrees::build(&sets, spots, world.diagonal, Family::default());

@@ -6,8 +6,6 @@ use super::{scene, study, talk};
 use crate::bench::export::{FORMATS, terminal};
 use crate::bench::{Benchmark, Context, Kind, REGISTRY, Settings};
 use crate::film::{ImageError, atomic};
-use crate::view::View;
-use crate::world::World;
 use anyhow::{Context as _, anyhow};
 use std::io::Write;
 use std::path::Path;
@@ -54,19 +52,10 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
         seconds: args.seconds.unwrap_or(defaults.seconds),
     };
     let pool = pool(settings.threads)?;
-    let scene = match args.scenes.first() {
-        None => None,
-        Some(path) => {
-            let loaded = scene::read(path, false)?;
-            let built = World::new(loaded.scene, settings.threads);
-            let built = built.with_context(|| format!("cannot build {}", path.display()));
-            let view = View::whole(loaded.cameras.still, loaded.cameras.resolution);
-            Some((built.map_err(Failure::render)?, view))
-        }
-    };
+    let session = args.scenes.first().map(|path| pool.install(|| scene::open(path, false))).transpose()?;
     let report = pool.install(|| {
-        let (world, view) = scene.as_ref().map(|(world, view)| (world, *view)).unzip();
-        let context = Context { world, view, settings, say: &|what| talk::note(what) };
+        let session = session.as_ref().map(|(session, _)| session);
+        let context = Context { session, settings, say: &|what| talk::note(what) };
         benchmark.report(&context, measure(&context))
     });
     talk::print(&terminal(&report))?;

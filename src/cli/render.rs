@@ -1,28 +1,24 @@
-//! `lightsplat render`: load, build, render, write; whatever happens, no file is left half-written.
+//! `lightsplat render`: opens a session, renders the frame, writes it; whatever happens, no file is left half-written.
 
 use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
 use super::job::RenderJob;
-use super::{interrupt, plan, progress, scene, talk, verify};
-use crate::film::Window;
-use crate::film::metrics::rel_mse_of_variance;
-use crate::film::{Film, Image, Metadata, false_colour, write_exr, write_png, write_srgb8};
-use crate::method::{Method, Output};
+use super::{interrupt, progress, scene, talk};
+use crate::film::{Film, false_colour, write_exr, write_png, write_srgb8};
+use crate::method::Method;
 use crate::progress::Control;
-use crate::scene::formats::Loaded;
-use crate::stats::{Stage, Stats, Stopwatch, peak_resident_bytes};
-use crate::verify::verify as measure_error;
-use crate::world::World;
+use crate::session::{Frame, FrameError, Remark};
+use crate::stats::{Stage, Stopwatch, peak_resident_bytes};
+use crate::view::View;
 use anyhow::{Context, anyhow};
-use serde_json::json;
 use std::path::Path;
 use std::sync::Arc;
 
 /// Runs the command.
 pub fn run(args: RenderArgs) -> Result<(), Failure> {
-    let total = Stopwatch::start();
+    let run = Stopwatch::start();
     talk::set_mode(args.progress);
-    let job = RenderJob::new(args)?;
+    let job = RenderJob::new(args, run)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     let pool = rayon::ThreadPoolBuilder::new()
@@ -31,17 +27,20 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
         .with_context(|| format!("cannot start {} threads; try fewer with --threads", job.threads))
         .map_err(Failure::render)?;
 
-    let (mut frame, mut stats) = pool.install(|| render(&job, &control, &total))?;
-    let Frame { complete, unverified, .. } = frame;
-    if !complete && is_black(&frame.film.color) {
-        return Err(Failure::interrupted(anyhow!("interrupted before the first pixel; nothing is written")));
+    let Frame { film, mut stats, mut facts, remarks, complete, unverified, .. } =
+        pool.install(|| render(&job, &control))?;
+    for remark in remarks {
+        match remark {
+            Remark::Note(text) => talk::note(&text),
+            Remark::Warning(text) => talk::warning(&text),
+        }
     }
-    stats.time(Stage::Write, || write(&job, frame.film))?;
-    stats.add_time(Stage::Total, total.elapsed());
-    if frame.facts["plan"]["asked_seconds"].is_number() {
+    stats.time(Stage::Write, || write(&job, film))?;
+    stats.add_time(Stage::Total, run.elapsed());
+    if facts["plan"]["asked_seconds"].is_number() {
         let seconds = |stage| stats.stage(stage).map_or(0.0, |t| t.wall_seconds);
         let got = seconds(Stage::Total) - seconds(Stage::Verify);
-        frame.facts["plan"]["got_seconds"] = got.into();
+        facts["plan"]["got_seconds"] = got.into();
         stats.add("Plan/time got, without --verify [s]", got);
     }
     if let Some(bytes) = peak_resident_bytes() {
@@ -51,7 +50,7 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
         Some(StatsFormat::Text) => talk::print(&stats.to_text())?,
         Some(StatsFormat::Json) => {
             let mut report = stats.to_json();
-            report["run"] = frame.facts;
+            report["run"] = facts;
             talk::print(&format!("{report}\n"))?;
         }
         None => {}
@@ -66,115 +65,29 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
     }
 }
 
-/// A rendered frame: what goes into the files, and about it.
-struct Frame {
-    film: Film,
-    facts: serde_json::Value,
-    complete: bool,
-    /// Whether measuring the picture's error was interrupted.
-    unverified: bool,
-}
-
-fn render(job: &RenderJob, control: &Control, run: &Stopwatch) -> Result<(Frame, Stats), Failure> {
-    let interrupted = || Failure::interrupted(anyhow!("interrupted before rendering; nothing is written"));
-    let mut stats = Stats::new();
-    let loaded = stats.time(Stage::Load, || scene::read(&job.scene, job.strict))?;
-    let Loaded { scene, cameras, warnings, hash, .. } = loaded;
-    let view = job.view(&cameras)?;
+/// The frame, with the times of opening its session and the facts that only the command knows.
+fn render(job: &RenderJob, control: &Control) -> Result<Frame, Failure> {
+    let (session, warnings) = scene::open(&job.scene, job.strict)?;
+    let view = View::new(&session.cameras, &job.framing).map_err(Failure::usage)?;
     if control.is_cancelled() {
-        return Err(interrupted());
+        return Err(Failure::interrupted(FrameError::Interrupted));
     }
-    let world = stats
-        .time(Stage::Build, || World::new(scene, job.threads))
-        .with_context(|| format!("cannot build {}", job.scene.display()))
-        .map_err(Failure::render)?;
-    if control.is_cancelled() {
-        return Err(interrupted());
+    let frame = progress::watched(job.progress, control, || session.frame(&view, &job.goal, control));
+    let mut frame = frame.map_err(|error| match error {
+        FrameError::Interrupted => Failure::interrupted(error),
+        FrameError::Memory { .. } | FrameError::Unplannable(_) => Failure::usage(error),
+    })?;
+    if !frame.complete && frame.is_black() {
+        return Err(Failure::interrupted(FrameError::Interrupted));
     }
-    let made = plan::make(job, &world, &view, control, run, &mut stats)?;
-    let plan::Made { method, output, seconds, measured, report } = made;
-    stats.merge(&output.stats);
-
-    let complete = output.complete;
-    let nonfinite_samples = output.nonfinite;
-    let mut film = film(output, view.window);
-    let nonfinite_channels = film.remove_nonfinite();
-    for (n, what) in [(nonfinite_samples, "samples"), (nonfinite_channels, "channels of the picture")] {
-        if n > 0 {
-            talk::warning(&format!(
-                "{n} {what} were NaN or infinite and count as 0; this is a defect, please report it"
-            ));
-        }
+    frame.stats.merge(&session.stats);
+    if let Some(number) = job.framing.frame {
+        frame.film.metadata.set("frame", number as f64);
     }
-    let metadata = &mut film.metadata;
-    metadata.set("version", env!("CARGO_PKG_VERSION"));
-    metadata.set("scene", world.scene.name.as_str());
-    metadata.set("scene_hash", format!("{hash:016x}"));
-    metadata.set("method", method.name());
-    metadata.set("settings", method.settings().to_string());
-    metadata.set("spp", method.spp() as f64);
-    metadata.set("seed", method.seed() as f64);
-    metadata.set("partial", if complete { "false" } else { "true" });
-    metadata.set("render_seconds", seconds);
-    metadata.set("threads", job.threads as f64);
-    metadata.set("nonfinite", (nonfinite_samples + nonfinite_channels) as f64);
-    if let Some(frame) = job.frame {
-        metadata.set("frame", frame as f64);
-    }
-    plan::store(&report, run.elapsed().wall_seconds, metadata);
-    let measured = measured.filter(|_| complete).or_else(|| {
-        let settings = job.verify.filter(|_| complete)?.of(&method);
-        let measure = || measure_error(&world, &view, &film.color, &settings, control);
-        let search = || progress::watched(job.progress, control, measure);
-        Some((settings, stats.time(Stage::Verify, search)))
-    });
-    let verified = measured.map(|(settings, found)| {
-        let found = found?;
-        verify::report(&found, &settings, &mut stats, &mut film.metadata);
-        Some(verify::to_json(&found, &settings))
-    });
-    let unverified = matches!(verified, Some(None));
-    let metadata = &film.metadata;
-    let facts = json!({
-        "scene": world.scene.name,
-        "scene_hash": format!("{hash:016x}"),
-        "scene_warnings": warnings.len(),
-        "method": method.name(),
-        "settings": method.settings(),
-        "threads": job.threads,
-        "window": { "film": view.window.film, "offset": view.window.offset, "size": [view.window.width, view.window.height] },
-        "complete": complete,
-        "nonfinite": nonfinite_samples + nonfinite_channels,
-        "standard_error": metadata.number("standard_error"),
-        "relative_mse_of_noise": metadata.number("relative_mse_of_noise"),
-        "verified": verified,
-        "plan": report,
-        "output": job.output,
-        "png": job.png.as_ref().map(|(path, _)| path),
-    });
-    Ok((Frame { film, facts, complete, unverified }, stats))
-}
-
-fn film(output: Output, window: Window) -> Film {
-    let mut metadata = Metadata::default();
-    if let Some(variance) = &output.variance {
-        metadata.set("standard_error", root_mean(variance));
-        metadata.set("relative_mse_of_noise", rel_mse_of_variance(variance, &output.color));
-    }
-    let mut layers: Vec<_> =
-        output.variance.map(|image| ("variance".to_owned(), image)).into_iter().collect();
-    layers.extend(output.extra);
-    Film { window, color: output.color, layers, metadata }
-}
-
-/// Root of the mean variance over pixels and channels: the standard error of a typical pixel.
-fn root_mean(variance: &Image) -> f64 {
-    let sum: f64 = variance.pixels.iter().map(|p| p.as_dvec3().element_sum() / 3.0).sum();
-    (sum / variance.pixels.len().max(1) as f64).sqrt()
-}
-
-fn is_black(image: &Image) -> bool {
-    image.pixels.iter().all(|p| *p == crate::math::Rgb::ZERO)
+    frame.facts["scene_warnings"] = warnings.into();
+    frame.facts["output"] = serde_json::json!(job.output);
+    frame.facts["png"] = serde_json::json!(job.png.as_ref().map(|(path, _)| path));
+    Ok(frame)
 }
 
 fn write(job: &RenderJob, mut film: Film) -> Result<(), Failure> {
@@ -189,7 +102,7 @@ fn write(job: &RenderJob, mut film: Film) -> Result<(), Failure> {
     write_exr(&job.output, &film).map_err(Failure::output)?;
     if let Some((path, factor)) = png {
         write_png(path, &film.color, factor).map_err(Failure::output)?;
-        if let Method::Cache(settings) = &job.method
+        if let Method::Cache(settings) = &job.goal.method
             && settings.inspect
         {
             write_layers(path, &film, factor)?;

@@ -3,6 +3,8 @@
 use super::exit::Failure;
 use super::talk;
 use crate::scene::formats::{Level, LoadOptions, Loaded, Warning, load};
+use crate::session::{OpenError, Session};
+use crate::stats::{Stage, Stats};
 use std::path::Path;
 
 /// Reads the scene at `path`.
@@ -19,6 +21,18 @@ pub fn read(path: &Path, strict: bool) -> Result<Loaded, Failure> {
         talk::note(&format!("{}: {}", path.display(), loaded.repairs));
     }
     Ok(loaded)
+}
+
+/// Opens a session on the scene at `path`; returns it and the number of warnings.
+pub fn open(path: &Path, strict: bool) -> Result<(Session, usize), Failure> {
+    let mut stats = Stats::new();
+    let loaded = stats.time(Stage::Load, || read(path, strict))?;
+    let warnings = loaded.warnings.len();
+    let session = Session::of(loaded, path, stats).map_err(|error| match error {
+        OpenError::Scene(_) => Failure::input(error),
+        OpenError::Build { .. } => Failure::render(error),
+    })?;
+    Ok((session, warnings))
 }
 
 /// Warnings that say the same of different places, once each with their number, in order of appearance.

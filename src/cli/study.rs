@@ -7,6 +7,7 @@ use super::{interrupt, talk};
 use crate::bench::study::{Plan, ReferenceSettings, SAMPLES, Study, StudyError, file_of};
 use crate::bench::{Benchmark, Kind};
 use crate::progress::Control;
+use crate::session::OpenError;
 use anyhow::{Context as _, anyhow};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -65,9 +66,9 @@ fn scene_files(args: &BenchArgs, scenes: &[&str]) -> Vec<PathBuf> {
 
 fn failure(error: StudyError) -> Failure {
     match error {
-        StudyError::Scene(_) | StudyError::Compare(_) => Failure::input(error),
+        StudyError::Open(OpenError::Scene(_)) | StudyError::Compare(_) => Failure::input(error),
         StudyError::Knob { .. } => Failure::usage(error),
-        StudyError::Build { .. } => Failure::render(error),
+        StudyError::Open(OpenError::Build { .. }) => Failure::render(error),
         StudyError::Folder { .. } | StudyError::Write(_) => Failure::output(error),
         StudyError::Interrupted => Failure::interrupted(error),
     }

@@ -26,6 +26,12 @@ pub enum Method {
     Lightcuts(lightcuts::Settings),
 }
 
+impl Default for Method {
+    fn default() -> Method {
+        Method::Cache(cache::Settings::default())
+    }
+}
+
 impl Method {
     /// The name under which the user chooses it.
     pub fn name(&self) -> &'static str {

@@ -24,10 +24,9 @@ pub(super) use run::Candidate;
 pub(super) use store::program;
 pub use subject::file_of;
 
-use crate::embree::EmbreeError;
 use crate::film::ImageError;
 use crate::progress::Control;
-use crate::scene::formats::SceneError;
+use crate::session::OpenError;
 use std::path::{Path, PathBuf};
 use store::Store;
 
@@ -76,17 +75,9 @@ pub const SAMPLES: u32 = 32;
 /// Why a study ended early. What had been rendered until then is kept.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
-    /// A scene cannot be read.
+    /// A scene cannot be read or made ready.
     #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// A scene cannot be made ready.
-    #[error("cannot build {}: {source}", path.display())]
-    Build {
-        /// Its file.
-        path: PathBuf,
-        /// What Embree says.
-        source: EmbreeError,
-    },
+    Open(#[from] OpenError),
     /// Pictures of different sizes are compared.
     #[error(transparent)]
     Compare(ImageError),

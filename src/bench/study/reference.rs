@@ -122,7 +122,7 @@ impl Progress {
         for half in 0..2 {
             // Seed 0 is the default of all methods, which nothing should share with its reference.
             let settings = path::Settings { spp, seed: 1 + 2 * self.rounds + half, max_depth: None, look };
-            let output = path::render(&subject.world, &subject.view, &settings, study.control);
+            let output = path::render(&subject.session.world, &subject.view, &settings, study.control);
             if !output.complete {
                 return Err(StudyError::Interrupted);
             }

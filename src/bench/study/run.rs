@@ -103,7 +103,7 @@ impl Study<'_> {
     fn render(&self, subject: &Subject, candidate: &Candidate) -> Result<Run, StudyError> {
         let mut best: Option<Run> = None;
         for _ in 0..self.plan.repeats.max(1) {
-            let output = candidate.method.render(&subject.world, &subject.view, self.control);
+            let output = candidate.method.render(&subject.session.world, &subject.view, self.control);
             if !output.complete {
                 return Err(StudyError::Interrupted);
             }

@@ -4,8 +4,9 @@ use super::store::hash_debug;
 use super::{Study, StudyError};
 use crate::embree::BuildQuality;
 use crate::scene::formats::{Level, LoadOptions, load};
+use crate::session::{OpenError, Session};
+use crate::stats::Stats;
 use crate::view::View;
-use crate::world::World;
 use std::path::{Path, PathBuf};
 
 /// A scene, ready to be rendered.
@@ -16,22 +17,21 @@ pub struct Subject {
     pub hash: u64,
     /// Number of triangles.
     pub triangles: usize,
-    /// The scene.
-    pub world: World,
+    /// The scene, made ready.
+    pub session: Session,
     /// The whole film of its still camera.
     pub view: View,
-    path: PathBuf,
 }
 
 impl Subject {
     /// Builds its acceleration structure anew.
     pub(super) fn rebuild(&mut self, quality: BuildQuality) -> Result<(), StudyError> {
-        self.world.rebuild(quality).map_err(|source| StudyError::Build { path: self.path.clone(), source })
+        Ok(self.session.rebuild(quality)?)
     }
 
     /// Loads it.
     pub(super) fn load(path: &Path, study: &Study) -> Result<Subject, StudyError> {
-        let loaded = load(path, &LoadOptions::default())?;
+        let mut loaded = load(path, &LoadOptions::default()).map_err(OpenError::Scene)?;
         let warnings = loaded.warnings.iter().filter(|w| w.level == Level::Warning).count();
         if warnings > 0 {
             (study.say)(&format!(
@@ -39,16 +39,14 @@ impl Subject {
                 path.display()
             ));
         }
-        let mut scene = loaded.scene;
-        // Where its files lie does not matter.
-        let sources = std::mem::take(&mut scene.sources);
-        let hash = hash_debug(&(&scene, &loaded.cameras));
-        scene.sources = sources;
-        let triangles = scene.meshes.iter().map(|m| m.triangles.len()).sum();
-        let world = World::new(scene, study.plan.threads)
-            .map_err(|source| StudyError::Build { path: path.to_owned(), source })?;
-        let view = View::whole(loaded.cameras.still, study.plan.resolution);
-        Ok(Subject { name: world.scene.name.clone(), hash, triangles, world, view, path: path.to_owned() })
+        // The paths of its files do not count.
+        let sources = std::mem::take(&mut loaded.scene.sources);
+        let hash = hash_debug(&(&loaded.scene, &loaded.cameras));
+        loaded.scene.sources = sources;
+        let triangles = loaded.scene.meshes.iter().map(|m| m.triangles.len()).sum();
+        let session = Session::of(loaded, path, Stats::new())?;
+        let view = View::whole(session.cameras.still, study.plan.resolution);
+        Ok(Subject { name: session.world.scene.name.clone(), hash, triangles, session, view })
     }
 }
 

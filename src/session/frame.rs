@@ -1,0 +1,63 @@
+//! A rendered frame: the picture and all that is reported about it.
+
+use crate::film::metrics::rel_mse_of_variance;
+use crate::film::{Film, Image, Metadata};
+use crate::math::Rgb;
+use crate::method::{Method, Output};
+use crate::stats::Stats;
+use crate::view::View;
+use serde_json::Value;
+
+/// A rendered frame.
+pub struct Frame {
+    /// The picture, its layers and metadata.
+    pub film: Film,
+    /// The method with the settings used.
+    pub method: Method,
+    /// Counters and stage times of the frame.
+    pub stats: Stats,
+    /// Facts about the frame for programs: scene, method, settings, window, errors, plan.
+    pub facts: Value,
+    /// What people should be told.
+    pub remarks: Vec<Remark>,
+    /// False if rendering was cancelled: the picture is partial.
+    pub complete: bool,
+    /// Whether measuring the picture's error was cancelled.
+    pub unverified: bool,
+}
+
+/// Something that people should be told about a frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Remark {
+    /// What was chosen on the way.
+    Note(String),
+    /// What may make the result differ from what is expected.
+    Warning(String),
+}
+
+impl Frame {
+    /// Whether there is nothing in the picture.
+    pub fn is_black(&self) -> bool {
+        self.film.color.pixels.iter().all(|p| *p == Rgb::ZERO)
+    }
+}
+
+/// The film of a method's output, without channels that are not finite, whose number is returned.
+pub(super) fn film(output: Output, view: &View) -> (Film, u64) {
+    let mut metadata = Metadata::default();
+    if let Some(variance) = &output.variance {
+        metadata.set("standard_error", root_mean(variance));
+        metadata.set("relative_mse_of_noise", rel_mse_of_variance(variance, &output.color));
+    }
+    let variance = output.variance.map(|image| ("variance".to_owned(), image));
+    let layers = variance.into_iter().chain(output.extra).collect();
+    let mut film = Film { window: view.window, color: output.color, layers, metadata };
+    let nonfinite = film.remove_nonfinite();
+    (film, nonfinite)
+}
+
+/// Root of the mean variance over pixels and channels: the standard error of a typical pixel.
+fn root_mean(variance: &Image) -> f64 {
+    let sum: f64 = variance.pixels.iter().map(|p| p.as_dvec3().element_sum() / 3.0).sum();
+    (sum / variance.pixels.len().max(1) as f64).sqrt()
+}

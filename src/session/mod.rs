@@ -1,0 +1,85 @@
+//! A session: one scene held ready, and frames rendered of it.
+//!
+//! ```no_run
+//! # use lightsplat::{film::write_exr, progress::Control, session::{Goal, Session}, view::{Framing, View}};
+//! # use std::path::Path;
+//! let session = Session::open(Path::new("scenes/cornell.toml"), &Default::default())?;
+//! let view = View::new(&session.cameras, &Framing::default())?;
+//! let frame = session.frame(&view, &Goal::default(), &Control::new())?;
+//! write_exr(Path::new("cornell.exr"), &frame.film)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The session holds what all frames share; a [`Goal`] says how a frame is rendered, or what its settings are to be
+//! planned for, and how its error is measured; a [`Frame`] holds the picture and all that is reported about it.
+
+mod frame;
+mod goal;
+mod render;
+mod report;
+
+pub use frame::{Frame, Remark};
+pub use goal::{Goal, Wanted};
+pub use render::FrameError;
+
+use crate::embree::{BuildQuality, EmbreeError};
+use crate::scene::Cameras;
+use crate::scene::formats::{LoadOptions, Loaded, SceneError, load};
+use crate::stats::{Stage, Stats};
+use crate::world::World;
+use std::path::{Path, PathBuf};
+
+/// A scene made ready, with what its file says besides.
+pub struct Session {
+    /// The scene, its acceleration structure, materials and emitters.
+    pub world: World,
+    /// The cameras of the scene's file.
+    pub cameras: Cameras,
+    /// Hash over the bytes of all source files.
+    pub hash: u64,
+    /// Times of loading and building.
+    pub stats: Stats,
+    /// The scene's file.
+    path: PathBuf,
+}
+
+/// Reason why a session cannot be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The scene cannot be read.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The acceleration structure cannot be built.
+    #[error("cannot build {}", path.display())]
+    Build {
+        /// The scene's file.
+        path: PathBuf,
+        /// Embree's reason.
+        source: EmbreeError,
+    },
+}
+
+impl Session {
+    /// Reads the scene at `path` and makes it ready on the threads of the current pool.
+    pub fn open(path: &Path, options: &LoadOptions) -> Result<Session, OpenError> {
+        let mut stats = Stats::new();
+        let loaded = stats.time(Stage::Load, || load(path, options))?;
+        Session::of(loaded, path, stats)
+    }
+
+    /// Makes a loaded scene ready on the threads of the current pool; `stats` holds what loading it took.
+    pub fn of(loaded: Loaded, path: &Path, mut stats: Stats) -> Result<Session, OpenError> {
+        let Loaded { scene, cameras, hash, .. } = loaded;
+        let path = path.to_owned();
+        match stats.time(Stage::Build, || World::new(scene, rayon::current_num_threads())) {
+            Ok(world) => Ok(Session { world, cameras, hash, stats, path }),
+            Err(source) => Err(OpenError::Build { path, source }),
+        }
+    }
+
+    /// Builds the acceleration structure anew with another quality.
+    pub fn rebuild(&mut self, quality: BuildQuality) -> Result<(), OpenError> {
+        let rebuilt = self.world.rebuild(quality);
+        rebuilt.map_err(|source| OpenError::Build { path: self.path.clone(), source })
+    }
+}

@@ -1,0 +1,211 @@
+//! A frame, from its goal to its facts.
+
+use super::frame::{self, Frame, Remark};
+use super::goal::{Goal, Wanted};
+use super::{Session, report};
+use crate::film::Image;
+use crate::method::{Method, Output};
+use crate::plan::{self, LATE, Ladder};
+use crate::progress::Control;
+use crate::stats::{Stage, Stats, Stopwatch, available_bytes};
+use crate::verify::{self, Verified, verify};
+use crate::view::View;
+use serde_json::{Value, json};
+
+/// Reason why there is no frame.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum FrameError {
+    /// Rendering was cancelled before there was anything to keep.
+    #[error("interrupted before the first pixel; nothing is written")]
+    Interrupted,
+    /// The frame needs more memory than there is.
+    #[error(
+        "the eye samples would take about {needed:.1} GiB, and {available:.1} GiB of memory are available: take a \
+         smaller --spp, render the film in parts with --crop, or use --method lightcuts"
+    )]
+    Memory {
+        /// Needed, in GiB.
+        needed: f64,
+        /// Available, in GiB.
+        available: f64,
+    },
+    /// Settings of the method cannot be planned.
+    #[error("settings of --method {0} cannot be planned for a time or an error")]
+    Unplannable(&'static str),
+}
+
+/// A picture by the settings that its goal led to.
+struct Made {
+    /// The method with the settings used.
+    method: Method,
+    output: Output,
+    /// Seconds that it took to render.
+    seconds: f64,
+    /// How the error was measured and what it is, unless that was cancelled, where settings were planned by it.
+    measured: Option<(verify::Settings, Option<Verified>)>,
+    /// What was asked, planned and got; null if nothing was planned.
+    plan: Value,
+}
+
+impl Session {
+    /// Renders what `view` sees as `goal` says. A frame that was cancelled halfway is partial, not an error.
+    pub fn frame(&self, view: &View, goal: &Goal, control: &Control) -> Result<Frame, FrameError> {
+        if let (Some(needed), Some(available)) = (goal.method.expected_bytes(&view.window), available_bytes())
+            && needed > available
+        {
+            let [needed, available] = [needed, available].map(|bytes| bytes as f64 / f64::from(1 << 30));
+            return Err(FrameError::Memory { needed, available });
+        }
+        let watch = Stopwatch::start();
+        let mut stats = Stats::new();
+        let mut remarks = Vec::new();
+        let made = self.make(view, goal, control, &mut stats, &mut remarks)?;
+        let Made { method, output, seconds, measured, plan } = made;
+        stats.merge(&output.stats);
+
+        let complete = output.complete;
+        let nonfinite_samples = output.nonfinite;
+        let (mut film, nonfinite_channels) = frame::film(output, view);
+        for (n, what) in [(nonfinite_samples, "samples"), (nonfinite_channels, "channels of the picture")] {
+            if n > 0 {
+                remarks.push(Remark::Warning(format!(
+                    "{n} {what} were NaN or infinite and count as 0; this is a defect, please report it"
+                )));
+            }
+        }
+        let nonfinite = nonfinite_samples + nonfinite_channels;
+        self.describe(&method, &mut film.metadata);
+        film.metadata.set("partial", if complete { "false" } else { "true" });
+        film.metadata.set("render_seconds", seconds);
+        film.metadata.set("nonfinite", nonfinite as f64);
+        let since_start = match goal.wanted {
+            Wanted::Time { run, .. } => run.elapsed(),
+            _ => watch.elapsed(),
+        };
+        report::store_plan(&plan, since_start.wall_seconds, &mut film.metadata);
+
+        let measured = measured.filter(|_| complete).or_else(|| {
+            let settings = goal.verify.filter(|_| complete)?.of(&method);
+            Some((settings, self.measure(view, &film.color, &settings, control, &mut stats)))
+        });
+        let verified = measured.map(|(settings, found)| {
+            let found = found?;
+            report::store_error(&found, &settings, &mut stats, &mut film.metadata);
+            Some(report::error_facts(&found, &settings))
+        });
+        let unverified = matches!(verified, Some(None));
+        let window = &view.window;
+        let facts = json!({
+            "scene": self.world.scene.name,
+            "scene_hash": format!("{:016x}", self.hash),
+            "method": method.name(),
+            "settings": method.settings(),
+            "threads": rayon::current_num_threads(),
+            "window": { "film": window.film, "offset": window.offset, "size": [window.width, window.height] },
+            "complete": complete,
+            "nonfinite": nonfinite,
+            "standard_error": film.metadata.number("standard_error"),
+            "relative_mse_of_noise": film.metadata.number("relative_mse_of_noise"),
+            "verified": verified,
+            "plan": plan,
+        });
+        Ok(Frame { film, method, stats, facts, remarks, complete, unverified })
+    }
+
+    /// States the scene, the method and its settings.
+    fn describe(&self, method: &Method, metadata: &mut crate::film::Metadata) {
+        metadata.set("version", env!("CARGO_PKG_VERSION"));
+        metadata.set("scene", self.world.scene.name.as_str());
+        metadata.set("scene_hash", format!("{:016x}", self.hash));
+        metadata.set("method", method.name());
+        metadata.set("settings", method.settings().to_string());
+        metadata.set("spp", f64::from(method.spp()));
+        metadata.set("seed", f64::from(method.seed()));
+        metadata.set("threads", rayon::current_num_threads() as f64);
+    }
+
+    fn measure(
+        &self,
+        view: &View,
+        image: &Image,
+        settings: &verify::Settings,
+        control: &Control,
+        stats: &mut Stats,
+    ) -> Option<Verified> {
+        stats.time(Stage::Verify, || verify(&self.world, view, image, settings, control))
+    }
+
+    /// The picture by the goal's settings, or by those planned for it.
+    fn make(
+        &self,
+        view: &View,
+        goal: &Goal,
+        control: &Control,
+        stats: &mut Stats,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<Made, FrameError> {
+        let method = goal.method;
+        let ladder = |held| {
+            let ladder = Ladder::new(method, held).ok_or(FrameError::Unplannable(method.name()))?;
+            Ok(ladder.within(&view.window))
+        };
+        match goal.wanted {
+            Wanted::AsSet => {
+                let watch = Stopwatch::start();
+                let output = method.render(&self.world, view, control);
+                let seconds = watch.elapsed().wall_seconds;
+                Ok(Made { method, output, seconds, measured: None, plan: Value::Null })
+            }
+            Wanted::Time { seconds: asked, run, held } => {
+                let left = || asked - run.elapsed().wall_seconds;
+                let watch = Stopwatch::start();
+                let found = plan::for_time(&self.world, view, &ladder(held)?, left, control)
+                    .ok_or(FrameError::Interrupted)?;
+                let spent = found.spent();
+                stats.add_time(Stage::Plan, watch.elapsed().without(spent));
+                let planned = run.elapsed().wall_seconds + found.render_seconds;
+                let in_reach = planned <= asked * LATE;
+                remarks.extend(report::of_time(asked, planned, in_reach, &found.options));
+                stats.add("Plan/time asked [s]", asked);
+                stats.add("Plan/time planned, without writing [s]", planned);
+                stats.count("Plan/in time (1: yes)", u64::from(in_reach));
+                stats.count("Plan/small renders and trials", found.pilots);
+                let plan = json!({
+                    "asked_seconds": asked,
+                    "planned_seconds": planned,
+                    "in_reach": in_reach,
+                    "options": found.options,
+                });
+                let method = found.method;
+                let watch = Stopwatch::start();
+                let output = found.render(&self.world, view, control);
+                let seconds = spent.wall_seconds + watch.elapsed().wall_seconds;
+                Ok(Made { method, output, seconds, measured: None, plan })
+            }
+            Wanted::Error { error, max_samples, held } => {
+                let measure = goal.verify.unwrap_or_default();
+                let asked = plan::Asked { error, measure, most_samples: max_samples };
+                let watch = Stopwatch::start();
+                let found = plan::for_error(&self.world, view, &ladder(held)?, &asked, control)
+                    .ok_or(FrameError::Interrupted)?;
+                stats.add_time(Stage::Plan, watch.elapsed().without(found.time));
+                let got = found.verified.map(|v| v.relative_rms);
+                remarks.extend(report::of_error(error, &found.options, got.filter(|_| !found.met)));
+                stats.add("Plan/error asked [%]", 100.0 * error);
+                stats.add("Plan/error planned [%]", 100.0 * found.expected);
+                stats.count("Plan/error met (1: yes)", u64::from(found.met));
+                stats.count("Plan/renders", found.renders);
+                let plan = json!({
+                    "asked_error": error,
+                    "planned_error": found.expected,
+                    "got_error": got,
+                    "met": found.met,
+                    "options": found.options,
+                });
+                let measured = Some((found.measure.of(&found.method), found.verified));
+                let (method, output, seconds) = (found.method, found.output, found.time.wall_seconds);
+                Ok(Made { method, output, seconds, measured, plan })
+            }
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Reports of a frame: its plan and its measured error, for statistics, metadata and people.
+
+use super::frame::Remark;
+use crate::eye::Look;
+use crate::film::Metadata;
+use crate::stats::Stats;
+use crate::verify::{Estimate, Settings, Verified};
+use serde_json::{Value, json};
+
+/// Remarks about a plan for a time.
+pub(super) fn of_time(asked: f64, planned: f64, in_reach: bool, options: &str) -> Vec<Remark> {
+    let mut remarks = Vec::new();
+    if !in_reach {
+        remarks.push(Remark::Warning(format!(
+            "{asked} s are too short: the cheapest settings are planned to take {planned:.2} s"
+        )));
+    }
+    remarks.push(Remark::Note(format!("planned for {asked} s on this machine, this time: {options}")));
+    remarks
+}
+
+/// Remarks about a plan for an error; `missed` is the measured error if it is not known to be as low as asked.
+pub(super) fn of_error(asked: f64, options: &str, missed: Option<Estimate>) -> Vec<Remark> {
+    let asked = 100.0 * asked;
+    let mut remarks = vec![Remark::Note(format!("planned for an error of {asked} %: {options}"))];
+    if let Some(rms) = missed {
+        let [value, low, high] = [rms.value, rms.low, rms.high].map(|x| 100.0 * x);
+        remarks.push(Remark::Warning(format!(
+            "the error is not known to be {asked} % or less: {value:.2} % ({low:.2} to {high:.2}); more --verify or \
+             --verify-samples may tell more"
+        )));
+    }
+    remarks
+}
+
+/// Stores a plan in a picture's metadata; `seconds` have passed since the start of the run.
+pub(super) fn store_plan(plan: &Value, seconds: f64, metadata: &mut Metadata) {
+    for (key, value) in plan.as_object().into_iter().flatten() {
+        let name = format!("plan_{key}");
+        match value {
+            Value::Number(number) => metadata.set(&name, number.as_f64().unwrap_or(f64::NAN)),
+            Value::Bool(yes) => metadata.set(&name, if *yes { "true" } else { "false" }),
+            Value::String(text) => metadata.set(&name, text.as_str()),
+            Value::Object(estimate) => {
+                metadata.set(&name, estimate.get("value").and_then(Value::as_f64).unwrap_or(f64::NAN));
+            }
+            _ => {}
+        }
+    }
+    if plan.get("asked_seconds").is_some() {
+        metadata.set("plan_got_seconds_before_writing", seconds);
+    }
+}
+
+/// Stores the measured error in statistics and metadata.
+pub(super) fn store_error(found: &Verified, settings: &Settings, stats: &mut Stats, metadata: &mut Metadata) {
+    let errors = [
+        ("relative bias", "bias", found.relative_bias),
+        ("relative RMS", "rms", found.relative_rms),
+        ("relative error, 95 % of pixels", "error_95", found.relative_error_95),
+    ];
+    for (name, key, estimate) in errors {
+        stats.add(&format!("Verify/{name} [%]"), 100.0 * estimate.value);
+        stats.add(&format!("Verify/{name}, from"), 100.0 * estimate.low);
+        stats.add(&format!("Verify/{name}, to"), 100.0 * estimate.high);
+        metadata.set(&format!("verified_{key}"), estimate.value);
+        metadata.set(&format!("verified_{key}_low"), estimate.low);
+        metadata.set(&format!("verified_{key}_high"), estimate.high);
+    }
+    stats.add("Verify/noise of the paths [%]", 100.0 * found.noise);
+    stats.count("Verify/pixels", found.pixels as u64);
+    stats.count("Verify/pixels at the cap", found.pixels_at_cap as u64);
+    stats.count("Verify/paths", found.paths);
+    stats.count("Verify/95 % hidden by noise (1: yes)", u64::from(!found.error_95_resolved));
+    metadata.set("verified_against", against(settings.look));
+    metadata.set("verified_error_95_resolved", if found.error_95_resolved { "true" } else { "false" });
+    metadata.set("verified_noise", found.noise);
+    metadata.set("verified_pixels", found.pixels as f64);
+    metadata.set("verified_pixels_at_cap", found.pixels_at_cap as f64);
+}
+
+/// The measured error for programs.
+pub(super) fn error_facts(found: &Verified, settings: &Settings) -> Value {
+    let mut facts = json!(found);
+    facts["against"] = against(settings.look).into();
+    facts["most_samples"] = settings.most_samples.into();
+    facts
+}
+
+fn against(look: Look) -> &'static str {
+    match look {
+        Look::Pixels => "pixels",
+        Look::EyeSamples { .. } => "eye-samples",
+    }
+}
