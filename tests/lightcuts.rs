@@ -67,7 +67,7 @@ fn vpls_of_a_furnace_give_the_irradiance_of_the_geometric_series() {
         let error = (all / expected - Rgb::ONE).abs().max_element();
         assert!(error < 0.02, "all VPLs: {all} against {expected}");
         let cut = CutSettings { clamp: None, ..CutSettings::default() };
-        let approximate = Lightcut::new().gather(&transfer, &*world, &receiver, &cut);
+        let approximate = Lightcut::new().gather(&transfer, &*world, &receiver, &cut).radiance;
         let error = (luminance(approximate) / luminance(expected) - 1.0).abs();
         assert!(error < 0.06, "cut: {approximate} against {expected}");
     }
@@ -201,7 +201,7 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
                 let receiver = Receiver::new(s.position, s.normal, &s.frame, world.bsdf(&s), out);
                 let exact = luminance(gather_all(&transfer, &*world, &receiver));
                 if exact > 0.0 {
-                    let estimate = luminance(cut.gather(&transfer, &*world, &receiver, &settings));
+                    let estimate = luminance(cut.gather(&transfer, &*world, &receiver, &settings).radiance);
                     squares += (estimate / exact - 1.0).powi(2);
                     n += 1;
                 }
@@ -242,12 +242,11 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
                 smooth.then(|| Receiver::new(s.position, s.normal, &s.frame, bsdf, -ray.direction))
             });
             points.set(eye);
-            let mut radiance = [Rgb::ZERO; 16];
-            shared.gather(&transfer, &*world, &points, &settings, &mut radiance);
+            let radiance = shared.gather(&transfer, &*world, &points, &settings).sum.radiance;
             for (lane, radiance) in radiance.iter().enumerate().take(points.len()).step_by(9) {
                 let exact = luminance(gather_all(&transfer, &*world, points.get(lane)));
                 if exact > 0.0 {
-                    let alone = single.gather(&transfer, &*world, points.get(lane), &settings);
+                    let alone = single.gather(&transfer, &*world, points.get(lane), &settings).radiance;
                     single_errors.push(luminance(alone) / exact - 1.0);
                     shared_errors.push(luminance(*radiance) / exact - 1.0);
                 }

@@ -5,7 +5,7 @@ use super::setting::{Dice, Setting};
 use super::{Benchmark, Clock, Context, Kind, Table};
 use crate::light_tree::Node;
 use crate::lightcut::{Receiver, ReceiverPacket};
-use crate::math::{LANES, luminance};
+use crate::math::luminance;
 use std::hint::black_box;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
@@ -71,11 +71,10 @@ fn run(context: &Context) -> Vec<Table> {
             }
         };
         let light_together = move || {
-            let mut responses = [[0.0; LANES]; 3];
             for points in all {
                 for node in nodes {
                     let vpl = &vpls[node.representative()];
-                    black_box(transfer.unshadowed16(points, vpl, node.kind(), &mut responses));
+                    black_box(transfer.unshadowed16(points, vpl, node.kind()));
                 }
             }
         };

@@ -9,7 +9,9 @@
 use super::Compensation;
 use super::near::{self, Clamped, Near};
 use crate::light_tree::LightTrees;
-use crate::lightcut::{CutCounts, CutSettings, PacketLightcut, Receiver, ReceiverPacket};
+use crate::lightcut::{
+    CutCounts, CutSettings, PacketCut, PacketLightcut, PacketSum, Receiver, ReceiverPacket, frozen_luminance,
+};
 use crate::math::{Frame, LANES, Rgb, luminance};
 use crate::stats::add_fields;
 use crate::vpl::Origin;
@@ -27,6 +29,9 @@ const EPSILON: f32 = 0.3;
 
 /// Most clusters in them.
 const MAX_CUT: usize = 600;
+
+/// Most steps towards the total that no cluster of them gives more than ε of.
+const MAX_STEPS: u32 = 8;
 
 /// How they are clamped: less, since light lost here is lost.
 const CLAMP: f32 = 0.05;
@@ -68,20 +73,18 @@ struct Place {
 }
 
 impl NearLight {
-    /// Begins a patch with those `points` that made its cut, of light of one origin if `only` says so. Indirect leaves were
-    /// limited to the luminances `limits`. Adds what their `radiance` lacks.
+    /// Begins a patch with the points that made its cut, of light of one origin or of both. Adds what their `sum` lacks.
     pub fn begin(
         &mut self,
         c: &Compensation,
         origin: Option<Origin>,
         points: &ReceiverPacket,
-        limits: &[f32; LANES],
-        radiance: &mut [Rgb; LANES],
+        sum: &mut PacketSum,
     ) {
         self.origin = origin;
         self.places.clear();
-        self.trace(c, points, limits);
-        let known = irradiance(points, radiance);
+        self.trace(c, points, &sum.limits);
+        let known = irradiance(points, &sum.radiance);
         let mut lacking = [0.0; LANES];
         for (lane, near) in &self.met {
             lacking[*lane] += (known * luminance(near.weight) + luminance(near.emitted)) * (PI / RAYS as f32);
@@ -89,21 +92,15 @@ impl NearLight {
         self.lacks = lacking.iter().any(|&lacking| lacking > NEGLIGIBLE * known);
         if self.lacks {
             self.look_up(c, known);
-            self.add_met(c, points, radiance);
+            self.add_met(c, points, &mut sum.radiance);
         }
     }
 
-    /// Adds what the `radiance` of further points of the patch lacks.
-    pub fn add(
-        &mut self,
-        c: &Compensation,
-        points: &ReceiverPacket,
-        limits: &[f32; LANES],
-        radiance: &mut [Rgb; LANES],
-    ) {
+    /// Adds what the `sum` of further points of the patch lacks.
+    pub fn add(&mut self, c: &Compensation, points: &ReceiverPacket, sum: &mut PacketSum) {
         if self.lacks {
-            self.trace(c, points, limits);
-            self.add_met(c, points, radiance);
+            self.trace(c, points, &sum.limits);
+            self.add_met(c, points, &mut sum.radiance);
         }
     }
 
@@ -163,9 +160,9 @@ impl NearLight {
         self.points.set(self.places.iter().map(collector));
         let settings =
             CutSettings { epsilon: EPSILON, max_cut: MAX_CUT, clamp: Some(CLAMP), ..CutSettings::default() };
-        self.group.gather(&c.transfer, c.world, &self.points, &settings, &mut [Rgb::ZERO; LANES]);
+        let cut = self.group.gather(&c.transfer, c.world, &self.points, &settings);
         for (lane, place) in self.places.iter_mut().enumerate() {
-            let irradiance = limited(c.transfer.trees, &self.group, lane, known);
+            let irradiance = limited(c.transfer.trees, &cut, lane, known);
             place.irradiance = if irradiance.is_finite() { irradiance } else { Rgb::ZERO };
         }
     }
@@ -186,16 +183,16 @@ impl NearLight {
     }
 }
 
-/// Irradiance of a place by the last cut of `group`, of which no indirect cluster may give more than ε of the light that it
+/// Irradiance of a place by a `cut`, of which no indirect cluster may give more than ε of the light that it
 /// is added to: so coarse a cut leaves clusters whose representative happens to be next to the place.
-fn limited(trees: &LightTrees, group: &PacketLightcut, lane: usize, known: f32) -> Rgb {
+fn limited(trees: &LightTrees, cut: &PacketCut, lane: usize, known: f32) -> Rgb {
     let sum = |limit: f32| {
-        let given = group.entries().map(|(node, responses)| {
-            let node = &trees.nodes[node as usize];
-            let given = node.intensity * Rgb::from_array(responses.each_ref().map(|row| row[lane]));
+        let given = cut.clusters.iter().map(|cluster| {
+            let node = &trees.nodes[cluster.node as usize];
+            let given = node.intensity * cluster.responses.get(lane);
             let most = match node.origin() {
                 Origin::Direct => f32::INFINITY,
-                Origin::Indirect if node.is_leaf() => group.limit(lane).min(limit),
+                Origin::Indirect if node.is_leaf() => cut.sum.limits[lane].min(limit),
                 Origin::Indirect => limit,
             };
             let y = luminance(given);
@@ -204,13 +201,10 @@ fn limited(trees: &LightTrees, group: &PacketLightcut, lane: usize, known: f32) 
         given.sum::<Rgb>()
     };
     let mut irradiance = sum(f32::INFINITY);
-    for _ in 0..8 {
-        let total = luminance(irradiance) + known;
+    frozen_luminance(luminance(irradiance) + known, MAX_STEPS, |total| {
         irradiance = sum(EPSILON * total);
-        if luminance(irradiance) + known > 0.99 * total {
-            break;
-        }
-    }
+        luminance(irradiance) + known
+    });
     irradiance
 }
 

@@ -1,52 +1,52 @@
-//! Which points share a cut.
+//! Groups of points coherent enough to share a cut.
 
 use glam::Vec3;
 
 /// Fewer points than this have cuts of their own.
 pub const MIN_SHARED: usize = 4;
 
-/// What points have in common that share a cut.
+/// Limit on how far points that share a cut may differ.
 #[derive(Clone, Copy, Debug)]
 pub struct CoherenceLimit {
     /// Least cosine between their normals.
-    cosine: f32,
+    min_cosine: f32,
     /// Largest distance, relative to the scene's diagonal.
-    distance: f32,
-    /// How many groups are open at once in [`group_coherent`].
+    max_distance: f32,
+    /// Number of groups open at once in [`group_coherent`].
     open: usize,
 }
 
 impl CoherenceLimit {
-    /// They are likely to have nearly the same cut.
-    pub const CLOSE: CoherenceLimit = CoherenceLimit { cosine: 0.8, distance: 0.02, open: 8 };
-    /// Their cut is larger than that of each, but not by as much as they are many.
-    pub const REMOTE: CoherenceLimit = CoherenceLimit { cosine: 0.5, distance: 0.05, open: 64 };
+    /// Points likely to have nearly the same cut.
+    pub const CLOSE: CoherenceLimit = CoherenceLimit { min_cosine: 0.8, max_distance: 0.02, open: 8 };
+    /// Points whose common cut is larger than that of each, but not by as much as they are many.
+    pub const REMOTE: CoherenceLimit = CoherenceLimit { min_cosine: 0.5, max_distance: 0.05, open: 64 };
 
-    /// Whether it holds between two points, each with its normal.
+    /// True if two points, each with its normal, are within the limit.
     #[inline]
     pub fn holds(self, diagonal: f32, (a, a_normal): (Vec3, Vec3), (b, b_normal): (Vec3, Vec3)) -> bool {
-        let limit = self.distance * diagonal;
-        a.distance_squared(b) <= limit * limit && a_normal.dot(b_normal) >= self.cosine
+        let limit = self.max_distance * diagonal;
+        a.distance_squared(b) <= limit * limit && a_normal.dot(b_normal) >= self.min_cosine
     }
 }
 
-/// Groups of at most `most` items that are alike with their first, from a list in which neighbours in space are
-/// near each other; `same` excludes what must not be grouped for other reasons.
+/// Groups of at most `max_size` items that are each coherent with its first, from a list in which neighbours in space are
+/// near each other; `same` excludes pairs that must not be grouped for other reasons.
 pub fn group_coherent<T: Copy>(
-    likeness: CoherenceLimit,
+    limit: CoherenceLimit,
     items: impl IntoIterator<Item = T>,
-    most: usize,
+    max_size: usize,
     diagonal: f32,
     place: impl Fn(&T) -> (Vec3, Vec3),
     same: impl Fn(&T, &T) -> bool,
 ) -> Vec<Vec<T>> {
     let mut groups: Vec<Vec<T>> = Vec::new();
     for item in items {
-        let open = groups.len().saturating_sub(likeness.open);
+        let open = groups.len().saturating_sub(limit.open);
         let joins = |group: &&mut Vec<T>| {
-            group.len() < most
+            group.len() < max_size
                 && same(&group[0], &item)
-                && likeness.holds(diagonal, place(&group[0]), place(&item))
+                && limit.holds(diagonal, place(&group[0]), place(&item))
         };
         match groups[open..].iter_mut().rev().find(joins) {
             Some(group) => group.push(item),

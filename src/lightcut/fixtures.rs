@@ -1,9 +1,9 @@
 //! Random points, materials and virtual lights for tests of cuts.
 
-use super::{CutSettings, Receiver, Visibility};
+use super::{CutSettings, PacketVisibility, Receiver, ReceiverPacket, Visibility};
 use crate::light_tree::{Family, LightTrees, Node};
 use crate::material::Materials;
-use crate::math::{Frame, Rgb};
+use crate::math::{Frame, Rgb, lanes_in};
 use crate::sampling::{hash, uniform_sphere};
 use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
 use crate::vpl::{Origin, SpotProfile, Vpl, VplKind, VplSet};
@@ -88,7 +88,7 @@ pub fn three_kinds(n: usize, scale: f32, numbers: &mut Numbers) -> Vec<VplSet> {
     [VplKind::Omni, VplKind::Oriented, VplKind::Directional].map(|k| grouped(n, k, scale, numbers)).into()
 }
 
-pub fn random_reflector<'m>(
+pub fn random_receiver<'m>(
     materials: &'m Materials,
     scene: &Scene,
     scale: f32,
@@ -123,6 +123,13 @@ impl Visibility for Ball {
         };
         let t = (self.centre - x).dot(direction).clamp(0.0, t_max);
         (x + direction * t - self.centre).length() > self.radius
+    }
+}
+
+impl PacketVisibility for Ball {
+    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+        let sees = |&lane: &usize| self.visible(receivers.get(lane).position(), Vec3::ZERO, vpl, node);
+        lanes_in(lanes).filter(sees).fold(0, |mask, lane| mask | 1 << lane)
     }
 }
 

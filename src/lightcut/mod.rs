@@ -2,9 +2,13 @@
 //!
 //! Paper: Walter et al., *Lightcuts: A Scalable Approach to Illumination*, 2005.
 //!
-//! A [`Receiver`] says what is gathered (reflected radiance, irradiance), [`Transfer`] what reaches it from a VPL
-//! and at most from a cluster, [`expected`] how far a cluster is likely to be off, [`Lightcut`] finds the cut, [`gather_all`] is the exact sum that it approximates.
+//! A [`Receiver`] says what is gathered (reflected radiance or irradiance), [`Transfer`] how much of it one VPL
+//! gives, and [`expected`] how far a cluster is likely to be off. Three workspaces gather the light of all VPLs: [`Lightcut`] at
+//! a single point ([`single`]), [`PacketLightcut`] at up to sixteen neighbours, which share a cut ([`packet`]), and
+//! [`ReconstructionCut`] at the points between such neighbours ([`reconstruction`]). [`gather_all`] is the exact sum that they
+//! approximate.
 
+mod clamp;
 mod coherence;
 pub mod expected;
 #[cfg(test)]
@@ -12,15 +16,20 @@ mod fixtures;
 pub mod packet;
 mod receiver;
 pub mod reconstruction;
+mod refinement;
+mod settings;
 mod shadow_rays;
 pub mod single;
 mod transfer;
 mod visibility;
 
+pub use clamp::frozen_luminance;
 pub use coherence::{CoherenceLimit, MIN_SHARED, group_coherent};
-pub use packet::{PacketLightcut, PacketVisibility, ReceiverPacket};
+pub use packet::{PacketCluster, PacketCut, PacketLightcut, PacketSum, ReceiverPacket};
 pub use receiver::Receiver;
 pub use reconstruction::ReconstructionCut;
+pub use settings::{CutCounts, CutSettings};
 pub use shadow_rays::{to_vpl, to_vpl16};
-pub use single::{CutCounts, CutEntry, CutSettings, Lightcut, OffsetBox, gather_all, max_cos_to_cone};
-pub use transfer::{Bound, Transfer, Unoccluded, Visibility};
+pub use single::{Bound, Cut, CutCluster, Lightcut, OffsetBox, gather_all, max_cos_to_cone};
+pub use transfer::Transfer;
+pub use visibility::{PacketVisibility, Unoccluded, Visibility};

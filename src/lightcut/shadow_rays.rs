@@ -1,12 +1,10 @@
 //! Shadow rays towards virtual lights: the one place that knows what kinds of lights there are.
 
 use crate::embree::{Ray, Rays16};
+use crate::math::{LANES, Vec3x16};
 use crate::shadow::{ULPS, ray_from, segment};
 use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;
-
-/// Three numbers for each of sixteen points.
-type Vec3Lanes = [[f32; 16]; 3];
 
 /// The ray from the surface point `x` with geometric normal `normal` (zero on no surface) to a virtual light.
 #[inline]
@@ -21,12 +19,12 @@ pub fn to_vpl(x: Vec3, normal: Vec3, vpl: &Vpl, kind: VplKind) -> Ray {
 /// [`to_vpl`] from sixteen points at once, bit for bit. Rays start at the points: a coherent packet that fans
 /// out from the light loses hits.
 #[inline]
-pub fn to_vpl16(x: &Vec3Lanes, normal: &Vec3Lanes, vpl: &Vpl, kind: VplKind) -> Rays16 {
+pub fn to_vpl16(x: &Vec3x16, normal: &Vec3x16, vpl: &Vpl, kind: VplKind) -> Rays16 {
     let mut rays = Rays16::default();
     let light = vpl.position;
     if kind == VplKind::Directional {
-        for l in 0..16 {
-            let (o, n) = (lane(x, l), lane(normal, l));
+        for l in 0..LANES {
+            let (o, n) = (x.get(l), normal.get(l));
             set_origin(&mut rays, l, moved(o, n, light));
             (rays.direction_x[l], rays.direction_y[l], rays.direction_z[l]) = (light.x, light.y, light.z);
             rays.t_far[l] = f32::INFINITY;
@@ -34,8 +32,8 @@ pub fn to_vpl16(x: &Vec3Lanes, normal: &Vec3Lanes, vpl: &Vpl, kind: VplKind) -> 
         return rays;
     }
     let light_normal = if kind == VplKind::Oriented { vpl.normal() } else { Vec3::ZERO };
-    for l in 0..16 {
-        let (o, n) = (lane(x, l), lane(normal, l));
+    for l in 0..LANES {
+        let (o, n) = (x.get(l), normal.get(l));
         let direction = light - o;
         let origin = moved(o, n, direction);
         let direction = moved(light, light_normal, -direction) - origin;
@@ -45,11 +43,6 @@ pub fn to_vpl16(x: &Vec3Lanes, normal: &Vec3Lanes, vpl: &Vpl, kind: VplKind) -> 
         rays.t_far[l] = 1.0;
     }
     rays
-}
-
-#[inline(always)]
-fn lane(v: &Vec3Lanes, l: usize) -> Vec3 {
-    Vec3::new(v[0][l], v[1][l], v[2][l])
 }
 
 #[inline(always)]
@@ -92,8 +85,11 @@ mod tests {
             let place: Vec<(Vec3, Vec3)> = (0..16)
                 .map(|i| (scale * point(i), if i % 3 == 0 { Vec3::ZERO } else { unit(i + 16) }))
                 .collect();
-            let lanes = |f: &dyn Fn(usize) -> Vec3| [0, 1, 2].map(|axis| std::array::from_fn(|l| f(l)[axis]));
-            let (x, n) = (lanes(&|l| place[l].0), lanes(&|l| place[l].1));
+            let (mut x, mut n) = (Vec3x16::ZERO, Vec3x16::default());
+            for (lane, &(position, normal)) in place.iter().enumerate() {
+                x.set(lane, position);
+                n.set(lane, normal);
+            }
             let towards = unit(40);
             for (vpl, kind) in [
                 (Vpl::oriented(scale * point(41), towards), VplKind::Oriented),

@@ -1,16 +1,14 @@
-//! What reaches a receiver from one VPL, and the upper bound of what can reach it from a cluster.
+//! Light transfer from one VPL to a receiver.
 //!
-//! Paper: Walter et al. 2005, section 3.2: bound = I · M⁺ · G⁺, visibility bounded by 1.
+//! Paper: Walter et al. 2005, Eq. 1: M · G, the material and the geometric term.
 //! Units: all per unit intensity, before visibility.
 
-use super::expected::{Outlook, expected_share};
-use super::{OffsetBox, Receiver, max_cos_to_cone};
-use crate::light_tree::{LightTrees, Node};
-use crate::math::{Frame, Rgb};
+use super::Receiver;
+use crate::light_tree::LightTrees;
+use crate::math::Rgb;
 use crate::vpl::{Vpl, VplKind, min_dist_sq, near_sq_of_size};
-use glam::Vec3;
 
-/// What the transfer from all VPLs of a scene has in common.
+/// Transfer from all VPLs of a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Transfer<'a> {
     /// All VPLs and their clusters.
@@ -60,60 +58,5 @@ impl<'a> Transfer<'a> {
             return Rgb::ZERO;
         }
         receiver.response(wi) * (emitted / dist_sq.max(self.near_sq(vpl, kind)))
-    }
-
-    /// What is known of a cluster of unit intensity.
-    #[inline]
-    pub fn bound(&self, receiver: &Receiver, node: &Node) -> Bound {
-        let directional = node.kind() == VplKind::Directional;
-        let x = if directional { Vec3::ZERO } else { receiver.position() };
-        let offsets = OffsetBox::new(node.min - x, node.max - x);
-        let local = offsets.turned(receiver.frame());
-        let response = receiver.max_response(&offsets, &local);
-        if response == Rgb::ZERO {
-            return Bound { most: Rgb::ZERO, share: 0.0 };
-        }
-        let centre_sq = offsets.centre().length_squared();
-        let near_sq = if directional { centre_sq } else { offsets.min_dist_sq().max(self.min_dist_sq) };
-        let (emitted, emitted_centre) = if node.cos_beta <= -1.0 || directional {
-            (1.0, centre_sq.sqrt())
-        } else {
-            let turned = offsets.turned(&Frame::from_normal(-node.axis));
-            (max_cos_to_cone(turned.max_cos_z(), node.cos_beta, node.sin_beta), turned.centre().z)
-        };
-        let share = expected_share(Outlook {
-            near_sq,
-            centre_sq,
-            at_centre: [local.centre().z, emitted_centre],
-            largest: [local.max_cos_z(), emitted],
-        });
-        Bound { most: if directional { response } else { response * (emitted / near_sq) }, share }
-    }
-}
-
-/// Upper bound of a cluster of unit intensity, before visibility, and the error to expect.
-#[derive(Clone, Copy, Debug)]
-pub struct Bound {
-    /// No smaller, in any channel, than the contribution of any member.
-    pub most: Rgb,
-    /// Error to expect, relative to `most`: see [`super::expected`].
-    pub share: f32,
-}
-
-/// Whether a receiver sees a VPL.
-pub trait Visibility {
-    /// True if nothing lies between the surface point `x` with geometric normal `normal` and the VPL, which
-    /// represents `node`.
-    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool;
-}
-
-/// No surfaces at all: everything is visible.
-#[derive(Clone, Copy, Debug)]
-pub struct Unoccluded;
-
-impl Visibility for Unoccluded {
-    #[inline]
-    fn visible(&self, _: Vec3, _: Vec3, _: &Vpl, _: &Node) -> bool {
-        true
     }
 }

@@ -1,11 +1,42 @@
-//! Visibility in a real scene: shadow rays of single points and of groups.
+//! Visibility of virtual lights: from a single point and from a packet, in a scene and without surfaces.
 
-use super::{PacketVisibility, ReceiverPacket, Visibility, to_vpl};
+use super::{ReceiverPacket, to_vpl};
 use crate::light_tree::Node;
 use crate::shadow::Engine;
 use crate::vpl::Vpl;
 use crate::world::World;
 use glam::Vec3;
+
+/// Visibility of a VPL from a single point.
+pub trait Visibility {
+    /// True if nothing lies between the surface point `x` with geometric normal `normal` and the VPL, which
+    /// represents `node`.
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool;
+}
+
+/// Visibility of a VPL from the points of a packet.
+pub trait PacketVisibility {
+    /// The lanes of `lanes` that see the VPL, which represents `node`.
+    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16;
+}
+
+/// A scene without surfaces, in which everything is visible.
+#[derive(Clone, Copy, Debug)]
+pub struct Unoccluded;
+
+impl Visibility for Unoccluded {
+    #[inline]
+    fn visible(&self, _: Vec3, _: Vec3, _: &Vpl, _: &Node) -> bool {
+        true
+    }
+}
+
+impl PacketVisibility for Unoccluded {
+    #[inline]
+    fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &Node) -> u16 {
+        lanes
+    }
+}
 
 impl Visibility for Engine<'_> {
     #[inline]
@@ -16,8 +47,8 @@ impl Visibility for Engine<'_> {
 
 impl PacketVisibility for Engine<'_> {
     #[inline]
-    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
-        let rays = points.shadow_rays(vpl, node.kind());
+    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+        let rays = receivers.shadow_rays(vpl, node.kind());
         lanes & !self.occluded16(&rays, lanes)
     }
 }
@@ -31,7 +62,7 @@ impl Visibility for World {
 
 impl PacketVisibility for World {
     #[inline]
-    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
-        Engine::new(self).visible16(points, lanes, vpl, node)
+    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+        Engine::new(self).visible16(receivers, lanes, vpl, node)
     }
 }

@@ -62,6 +62,32 @@ impl Vec3x16 {
         Vec3x16 { x: [v.x; LANES], y: [v.y; LANES], z: [v.z; LANES] }
     }
 
+    /// Coordinates by row: all first ones, all second ones, all third ones.
+    #[inline(always)]
+    pub fn rows(&self) -> [&F32x16; 3] {
+        [&self.x, &self.y, &self.z]
+    }
+
+    /// Sets the lanes outside a mask to 0.
+    #[inline(always)]
+    pub fn keep(&mut self, mask: u16) {
+        for row in [&mut self.x, &mut self.y, &mut self.z] {
+            for (i, value) in row.iter_mut().enumerate() {
+                *value = if mask >> i & 1 != 0 { *value } else { 0.0 };
+            }
+        }
+    }
+
+    /// Adds `v` times `scale`, coordinate by coordinate.
+    #[inline(always)]
+    pub fn add_scaled(&mut self, scale: Vec3, v: &Vec3x16) {
+        for i in 0..LANES {
+            self.x[i] += scale.x * v.x[i];
+            self.y[i] += scale.y * v.y[i];
+            self.z[i] += scale.z * v.z[i];
+        }
+    }
+
     /// The vector in a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Vec3 {

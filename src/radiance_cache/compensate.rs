@@ -181,14 +181,13 @@ impl Cutters<'_> {
             Receiver::irradiance(s.position, s.normal, &Frame::from_normal(lookup.near.normal))
         });
         let (transfer, world) = (&source.transfer, source.world);
-        let mut irradiance = [Rgb::ZERO; LANES];
-        if group.len() < MIN_SHARED {
-            for (irradiance, collector) in irradiance.iter_mut().zip(collectors) {
-                *irradiance = self.single.gather(transfer, world, &collector, &settings);
-            }
-        } else {
+        if group.len() >= MIN_SHARED {
             self.points.set(collectors);
-            self.group.gather(transfer, world, self.points, &settings, &mut irradiance);
+            return self.group.gather(transfer, world, self.points, &settings).sum.radiance;
+        }
+        let mut irradiance = [Rgb::ZERO; LANES];
+        for (irradiance, collector) in irradiance.iter_mut().zip(collectors) {
+            *irradiance = self.single.gather(transfer, world, &collector, &settings).radiance;
         }
         irradiance
     }

@@ -247,45 +247,41 @@ impl<'w> Workspace<'w> {
         collector: &Receiver<'static>,
         cut: &CutSettings,
     ) -> View {
-        let hidden = if s.needs_occluders() {
-            let rays = OccluderLog::new(s.world);
-            self.single.gather(&s.transfer, &rays, collector, cut);
-            Some(rays.sorted())
-        } else {
-            self.single.gather(&s.transfer, &self.shadows, collector, cut);
-            None
+        let rays = s.needs_occluders().then(|| OccluderLog::new(s.world));
+        let cut = match &rays {
+            Some(rays) => self.single.gather(&s.transfer, rays, collector, cut),
+            None => self.single.gather(&s.transfer, &self.shadows, collector, cut),
         };
+        let hidden = rays.map(OccluderLog::sorted);
         let gatherer = s.gatherer(samples, pick.sample, collector);
-        let clamp = compensate::clamp(&s.compensation, self.single.limit());
-        let mut view = s.view(samples, pick.sample, self.single.entries().len(), clamp);
+        let clamp = compensate::clamp(&s.compensation, cut.limit);
+        let mut view = s.view(samples, pick.sample, cut.clusters.len(), clamp);
         let series = &mut self.series;
         series.begin(&samples.points[pick.sample as usize]);
-        for entry in self.single.entries() {
-            s.add((&mut view, series), &gatherer, entry.node, entry.response, clamp, (hidden.as_ref(), 0));
+        for cluster in cut.clusters {
+            let hidden = (hidden.as_ref(), 0);
+            s.add((&mut view, series), &gatherer, cluster.node, cluster.response, clamp, hidden);
         }
         view.series = series.finish();
         view
     }
 
     fn shared(&mut self, s: &Source, samples: &EyeSamples, task: &[Pick], cut: &CutSettings) -> Vec<View> {
-        let mut irradiance = [Rgb::ZERO; LANES];
-        let hidden = if s.needs_occluders() {
-            let rays = OccluderLog::new(s.world);
-            self.group.gather(&s.transfer, &rays, &self.points, cut, &mut irradiance);
-            Some(rays.sorted())
-        } else {
-            self.group.gather(&s.transfer, &self.shadows, &self.points, cut, &mut irradiance);
-            None
+        let rays = s.needs_occluders().then(|| OccluderLog::new(s.world));
+        let cut = match &rays {
+            Some(rays) => self.group.gather(&s.transfer, rays, &self.points, cut),
+            None => self.group.gather(&s.transfer, &self.shadows, &self.points, cut),
         };
+        let hidden = rays.map(OccluderLog::sorted);
         let series = &mut self.series;
         let lane = |(lane, pick): (usize, &Pick)| {
             let gatherer = s.gatherer(samples, pick.sample, self.points.get(lane));
-            let clamp = compensate::clamp(&s.compensation, self.group.limit(lane));
-            let mut view = s.view(samples, pick.sample, self.group.size(), clamp);
+            let clamp = compensate::clamp(&s.compensation, cut.sum.limits[lane]);
+            let mut view = s.view(samples, pick.sample, cut.clusters.len(), clamp);
             series.begin(&samples.points[pick.sample as usize]);
-            for (node, responses) in self.group.entries() {
-                let response = Rgb::from_array(std::array::from_fn(|c| responses[c][lane]));
-                s.add((&mut view, series), &gatherer, node, response, clamp, (hidden.as_ref(), lane));
+            for cluster in cut.clusters {
+                let (response, hidden) = (cluster.responses.get(lane), (hidden.as_ref(), lane));
+                s.add((&mut view, series), &gatherer, cluster.node, response, clamp, hidden);
             }
             view.series = series.finish();
             view

@@ -10,7 +10,7 @@ use crate::bench::setting::Setting;
 use crate::lightcut::{
     CutSettings, Lightcut, MIN_SHARED, PacketLightcut, PacketVisibility, Receiver, ReceiverPacket, Visibility,
 };
-use crate::math::{LANES, Rgb, luminance};
+use crate::math::{Rgb, luminance};
 use crate::method::cache::own::{Cutters, Job, patches};
 use crate::radiance_cache::CacheSettings;
 use crate::radiance_cache::compute::Source;
@@ -62,7 +62,7 @@ impl<'s> Orders<'s> {
                 // What a record is to have found already.
                 let cut = CutSettings { origin: Some(Origin::Indirect), ..CutSettings::default() };
                 let (transfer, reflector) = (setting.transfer(), setting.reflector(sample));
-                let indirect = single.gather(&transfer, setting.world, &reflector, &cut);
+                let indirect = single.gather(&transfer, setting.world, &reflector, &cut).radiance;
                 let origin = Some(Origin::Direct);
                 Job { sample: sample as u32, lobe_only: false, origin, known: luminance(indirect) }
             };
@@ -140,12 +140,11 @@ impl<'s> Orders<'s> {
         for members in groups {
             if !shared || members.len() < MIN_SHARED {
                 for point in members {
-                    sum += single.gather(&transfer, rays, &reflector(point), cut);
+                    sum += single.gather(&transfer, rays, &reflector(point), cut).radiance;
                 }
             } else {
-                let mut radiance = [Rgb::ZERO; LANES];
                 points.set(members.iter().map(&reflector));
-                group.gather(&transfer, rays, &points, cut, &mut radiance);
+                let radiance = group.gather(&transfer, rays, &points, cut).sum.radiance;
                 sum = radiance.into_iter().fold(sum, |sum, r| sum + r);
             }
         }

@@ -1,4 +1,4 @@
-//! One cut for up to sixteen neighbouring points, a vector lane each.
+//! One cut for a packet of up to sixteen neighbouring points, a vector lane each.
 //!
 //! Neighbours have nearly the same cut. Sharing it, every bound is evaluated for all points at once, a cluster's
 //! data is fetched once, and the shadow rays of one cluster run from neighbouring points to one light: a coherent
@@ -10,21 +10,88 @@
 //! Deviations: a lane's luminance counts as at least 1/256 of the brightest lane's where errors are judged, so
 //! that one point in the dark does not drive the cut of fifteen in the light to its cap.
 
-pub(super) mod receivers;
-pub(super) mod refine;
+mod bound;
+mod receivers;
+mod refine;
+mod sum;
 #[cfg(test)]
 mod tests;
-pub(super) mod transfer;
+mod transfer;
+
+use super::refinement::Offenders;
+use super::{CutCounts, CutSettings, PacketVisibility, Transfer};
+use crate::math::{F32x16, LANES, Rgb, Vec3x16};
+use refine::{Judgement, Pass};
 
 pub use receivers::ReceiverPacket;
-pub use refine::PacketLightcut;
-pub use transfer::PacketVisibility;
+pub(super) use refine::halved;
+pub(super) use sum::{PacketLight, luminances};
 
-/// Points in a group.
-pub const LANES: usize = 16;
+/// A cluster of a packet's cut.
+#[derive(Clone, Copy)]
+pub struct PacketCluster {
+    /// Number of the node.
+    pub node: u32,
+    /// Contribution of a representative of unit intensity to each lane, with visibility.
+    pub responses: Vec3x16,
+}
 
-/// One number for each point.
-pub type Lanes = [f32; LANES];
+/// The light that a packet gathers from a cut.
+#[derive(Clone, Copy, Debug)]
+pub struct PacketSum {
+    /// Radiance that each receiver reflects, or its irradiance; 0 in lanes without a receiver.
+    pub radiance: [Rgb; LANES],
+    /// Luminance above which indirect leaves were clamped; infinite without clamping.
+    pub limits: F32x16,
+}
 
-/// A colour for each point, by channel.
-pub type RgbLanes = [Lanes; 3];
+impl Default for PacketSum {
+    fn default() -> PacketSum {
+        PacketSum { radiance: [Rgb::ZERO; LANES], limits: [f32::INFINITY; LANES] }
+    }
+}
+
+/// A packet's cut, and the light gathered from it.
+pub struct PacketCut<'c> {
+    /// The light.
+    pub sum: PacketSum,
+    /// The clusters.
+    pub clusters: &'c [PacketCluster],
+}
+
+/// Workspace for cuts of packets; one a thread, so that its buffers are allocated once.
+#[derive(Default)]
+pub struct PacketLightcut {
+    clusters: Vec<PacketCluster>,
+    /// The clusters' errors and shares of the total.
+    judgements: Vec<Judgement>,
+    /// By the sum of the cubes of relative errors.
+    offenders: Offenders,
+    /// Work done so far.
+    pub counts: CutCounts,
+}
+
+impl PacketLightcut {
+    /// An empty workspace.
+    pub fn new() -> PacketLightcut {
+        PacketLightcut::default()
+    }
+
+    /// Gathers the light of all VPLs, on average over the lanes to within the settings' error.
+    pub fn gather<V: PacketVisibility>(
+        &mut self,
+        transfer: &Transfer,
+        visibility: &V,
+        receivers: &ReceiverPacket,
+        settings: &CutSettings,
+    ) -> PacketCut<'_> {
+        let capped = Pass::new(self, transfer, visibility, receivers, settings).run();
+        let count = receivers.len() as u64;
+        self.counts.cuts += count;
+        self.counts.clusters += count * self.clusters.len() as u64;
+        self.counts.capped += count * u64::from(capped);
+        let light = PacketLight { clusters: &self.clusters, strong: Vec3x16::ZERO };
+        let sum = light.sum(transfer.trees, receivers, settings.clamp, &mut self.counts);
+        PacketCut { sum, clusters: &self.clusters }
+    }
+}

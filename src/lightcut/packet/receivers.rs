@@ -1,110 +1,82 @@
-//! The points of a group, lane by lane.
+//! The points of a packet, lane by lane.
 
-use super::{LANES, Lanes};
 use crate::embree::Rays16;
-use crate::lightcut::Receiver;
-use crate::lightcut::shadow_rays::to_vpl16;
+use crate::lightcut::{Receiver, to_vpl16};
 use crate::material::AlikeBsdfs16;
-use crate::math::{Frame, LUMINANCE, Rgb};
+use crate::math::{F32x16, Frame, LANES, LUMINANCE, Rgb, Vec3x16, first_lanes, lanes_in};
 use crate::vpl::{Vpl, VplKind};
-use glam::Vec3;
 
-/// Three numbers for each point.
-pub(in crate::lightcut) type Vec3Lanes = [Lanes; 3];
-
-/// Up to sixteen reflecting points as a structure of arrays.
+/// Up to sixteen receivers as a structure of arrays.
 ///
-/// Lanes without a point repeat the first one's and are masked.
+/// Lanes without a receiver repeat the first one's and are masked.
+#[derive(Default)]
 pub struct ReceiverPacket<'m> {
-    reflectors: Vec<Receiver<'m>>,
-    /// Lanes that hold a point.
+    receivers: Vec<Receiver<'m>>,
+    /// Lanes that hold a receiver.
     pub(in crate::lightcut) valid: u16,
     /// Lanes whose material is not just Lambert.
     pub(in crate::lightcut) general: u16,
     /// Their materials, if they are alike: else their responses and bounds are computed one by one.
     pub(in crate::lightcut) glossy: Option<AlikeBsdfs16<'m>>,
-    pub(in crate::lightcut) position: Vec3Lanes,
+    pub(in crate::lightcut) position: Vec3x16,
     /// Largest coordinate of any position.
     pub(in crate::lightcut) reach: f32,
-    pub(in crate::lightcut) geometric_normal: Vec3Lanes,
-    /// Shading frame: tangent, bitangent, normal.
-    pub(in crate::lightcut) frame: [Vec3Lanes; 3],
-    /// The same, absolute values.
-    pub(in crate::lightcut) abs_frame: [Vec3Lanes; 3],
-    /// Frame about the mirror direction of the eye's.
-    pub(in crate::lightcut) mirror: [Vec3Lanes; 3],
-    /// The same, absolute values.
-    pub(in crate::lightcut) abs_mirror: [Vec3Lanes; 3],
-    /// Luminance known from elsewhere.
-    pub(in crate::lightcut) known: Lanes,
+    pub(in crate::lightcut) geometric_normal: Vec3x16,
+    /// Shading frames.
+    pub(in crate::lightcut) frame: Frames16,
+    /// Frames about the mirror direction of the eye's.
+    pub(in crate::lightcut) mirror: Frames16,
+    /// Luminance reflected besides.
+    pub(in crate::lightcut) baseline: F32x16,
     /// Lambert BRDF.
-    pub(in crate::lightcut) brdf: Vec3Lanes,
+    pub(in crate::lightcut) brdf: Vec3x16,
     /// BRDF of the base, for light that has passed the coat on its way in.
-    pub(in crate::lightcut) base: Vec3Lanes,
-    /// Lambert BRDF by what it weighs in the luminance.
-    pub(in crate::lightcut) brdf_luminance: Vec3Lanes,
+    pub(in crate::lightcut) base: Vec3x16,
+    /// Lambert BRDF by its weight in the luminance.
+    pub(in crate::lightcut) brdf_luminance: Vec3x16,
 }
 
 impl<'m> ReceiverPacket<'m> {
-    /// No points yet.
+    /// No receivers yet.
     pub fn new() -> ReceiverPacket<'m> {
-        const ZERO: Vec3Lanes = [[0.0; LANES]; 3];
-        ReceiverPacket {
-            reflectors: Vec::with_capacity(LANES),
-            valid: 0,
-            general: 0,
-            glossy: None,
-            position: ZERO,
-            reach: 0.0,
-            geometric_normal: ZERO,
-            frame: [ZERO; 3],
-            abs_frame: [ZERO; 3],
-            mirror: [ZERO; 3],
-            abs_mirror: [ZERO; 3],
-            known: [0.0; LANES],
-            brdf: ZERO,
-            base: ZERO,
-            brdf_luminance: ZERO,
-        }
+        ReceiverPacket::default()
     }
 
-    /// Replaces the points; all beyond [`LANES`] are left out.
-    pub fn set(&mut self, reflectors: impl IntoIterator<Item = Receiver<'m>>) {
-        self.reflectors.clear();
-        self.reflectors.extend(reflectors.into_iter().take(LANES));
-        (self.valid, self.general, self.reach) = (0, 0, 0.0);
-        let Some(first) = self.reflectors.first().copied() else { return };
+    /// Replaces the receivers; all beyond [`LANES`] are left out.
+    pub fn set(&mut self, receivers: impl IntoIterator<Item = Receiver<'m>>) {
+        self.receivers.clear();
+        self.receivers.extend(receivers.into_iter().take(LANES));
+        self.valid = first_lanes(self.receivers.len());
+        (self.general, self.reach) = (0, 0.0);
+        let Some(first) = self.receivers.first().copied() else { return };
         for lane in 0..LANES {
-            let reflector = self.reflectors.get(lane).copied();
-            if let Some(r) = &reflector {
-                self.valid |= 1 << lane;
-                self.general |= u16::from(r.lambert_brdf().is_none()) << lane;
-            }
-            let r = reflector.unwrap_or(first);
+            let r = self.receivers.get(lane).copied().unwrap_or(first);
             self.reach = self.reach.max(r.position().abs().max_element());
-            put(&mut self.position, lane, r.position());
-            put(&mut self.geometric_normal, lane, r.geometric_normal());
-            put_frame(&mut self.frame, &mut self.abs_frame, lane, r.frame());
-            put_frame(&mut self.mirror, &mut self.abs_mirror, lane, r.mirror());
-            self.known[lane] = r.baseline_luminance();
-            let brdf = r.lambert_brdf().unwrap_or(Rgb::ZERO);
-            put(&mut self.brdf, lane, brdf);
-            put(&mut self.base, lane, r.base_brdf());
-            put(&mut self.brdf_luminance, lane, brdf * LUMINANCE);
+            self.position.set(lane, r.position());
+            self.geometric_normal.set(lane, r.geometric_normal());
+            self.frame.set(lane, r.frame());
+            self.mirror.set(lane, r.mirror());
+            self.baseline[lane] = r.baseline_luminance();
+            let brdf = r.lambert_brdf();
+            self.general |= u16::from(brdf.is_none()) << lane & self.valid;
+            let brdf = brdf.unwrap_or(Rgb::ZERO);
+            self.brdf.set(lane, brdf);
+            self.base.set(lane, r.base_brdf());
+            self.brdf_luminance.set(lane, brdf * LUMINANCE);
         }
-        let bsdf = |lane: usize| self.reflectors.get(lane).and_then(Receiver::bsdf);
-        let any = lanes_of(self.general).next().and_then(bsdf);
+        let bsdf = |lane: usize| self.receivers.get(lane).and_then(Receiver::bsdf);
+        let any = lanes_in(self.general).next().and_then(bsdf);
         self.glossy = any.and_then(|any| AlikeBsdfs16::new(|lane| bsdf(lane).unwrap_or(any)));
     }
 
-    /// How many points.
+    /// Number of receivers.
     pub fn len(&self) -> usize {
-        self.reflectors.len()
+        self.receivers.len()
     }
 
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(&self) -> bool {
-        self.reflectors.is_empty()
+        self.receivers.is_empty()
     }
 
     /// Rays to a virtual light, in all lanes.
@@ -113,38 +85,32 @@ impl<'m> ReceiverPacket<'m> {
         to_vpl16(&self.position, &self.geometric_normal, vpl, kind)
     }
 
-    /// Point number `lane`.
+    /// Receiver number `lane`.
     pub fn get(&self, lane: usize) -> &Receiver<'m> {
-        &self.reflectors[lane]
+        &self.receivers[lane]
     }
 }
 
-impl Default for ReceiverPacket<'_> {
-    fn default() -> Self {
-        ReceiverPacket::new()
-    }
+/// An orthonormal frame for each receiver.
+#[derive(Default)]
+pub(in crate::lightcut) struct Frames16 {
+    /// Tangents, bitangents, normals.
+    pub axes: [Vec3x16; 3],
+    /// Their absolute values.
+    pub abs: [Vec3x16; 3],
 }
 
-#[inline]
-fn put(lanes: &mut Vec3Lanes, lane: usize, v: Vec3) {
-    for (i, row) in lanes.iter_mut().enumerate() {
-        row[lane] = v[i];
+impl Frames16 {
+    /// The z axes.
+    #[inline(always)]
+    pub fn normal(&self) -> &Vec3x16 {
+        &self.axes[2]
     }
-}
 
-fn put_frame(axes: &mut [Vec3Lanes; 3], abs_axes: &mut [Vec3Lanes; 3], lane: usize, frame: &Frame) {
-    for (i, axis) in [frame.tangent, frame.bitangent, frame.normal].into_iter().enumerate() {
-        put(&mut axes[i], lane, axis);
-        put(&mut abs_axes[i], lane, axis.abs());
+    fn set(&mut self, lane: usize, frame: &Frame) {
+        for (i, axis) in [frame.tangent, frame.bitangent, frame.normal].into_iter().enumerate() {
+            self.axes[i].set(lane, axis);
+            self.abs[i].set(lane, axis.abs());
+        }
     }
-}
-
-/// The numbers of the lanes in a mask.
-#[inline]
-pub(in crate::lightcut) fn lanes_of(mut mask: u16) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = (mask != 0).then(|| mask.trailing_zeros() as usize)?;
-        mask &= mask - 1;
-        Some(lane)
-    })
 }

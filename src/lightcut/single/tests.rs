@@ -22,7 +22,7 @@ fn no_member_contributes_more_than_the_clusters_bound() {
             LightTrees::build(&three_kinds(60, scale, &mut numbers), SPOTS.to_vec(), diagonal, family);
         let transfer = Transfer::new(&trees, diagonal);
         for _ in 0..25 {
-            let mut receiver = random_reflector(&materials, &scene, scale, &mut numbers);
+            let mut receiver = random_receiver(&materials, &scene, scale, &mut numbers);
             if numbers.next() < 0.2 {
                 // On top of a VPL, or next to it.
                 let vpl = trees.vpls[(numbers.next() * trees.vpls.len() as f32) as usize];
@@ -60,11 +60,11 @@ fn relative_errors(trees: &LightTrees, settings: &CutSettings, rays: &impl Visib
     let mut errors = Vec::new();
     let mut numbers = Numbers(9);
     while errors.len() < 300 {
-        let receiver = random_reflector(&materials, &scene, 1.0, &mut numbers);
+        let receiver = random_receiver(&materials, &scene, 1.0, &mut numbers);
         let receiver = receiver.moved(receiver.position() * 0.9 + 0.05);
         let exact = luminance(gather_all(&transfer, rays, &receiver));
         if exact > 0.0 {
-            let estimate = luminance(cut.gather(&transfer, rays, &receiver, settings));
+            let estimate = luminance(cut.gather(&transfer, rays, &receiver, settings).radiance);
             errors.push((estimate - exact) / exact);
         }
     }
@@ -94,14 +94,15 @@ fn no_cluster_gives_more_than_a_quarter_however_coarse_the_cut() {
     let mut numbers = Numbers(8);
     let trees = low_lamps(&mut numbers);
     let transfer = Transfer::new(&trees, 1.7);
-    let mut cut = Lightcut::new();
+    let mut lightcut = Lightcut::new();
     let mut clusters = 0;
     for receiver in points_near_vpls(&mut numbers, 300) {
         let settings = CutSettings { epsilon: 0.5, ..EXACT };
-        let total = luminance(cut.gather(&transfer, &Unoccluded, &receiver, &settings));
-        for entry in cut.entries().iter().filter(|e| !trees.nodes[e.node as usize].is_leaf()) {
-            let share = luminance(entry.contribution) / total;
-            assert!(share <= 1.001 * single::DOMINANT, "{share} of {total} at {}", receiver.position());
+        let cut = lightcut.gather(&transfer, &Unoccluded, &receiver, &settings);
+        let total = luminance(cut.radiance);
+        for cluster in cut.clusters.iter().filter(|c| !trees.nodes[c.node as usize].is_leaf()) {
+            let share = luminance(cluster.contribution) / total;
+            assert!(share <= 1.001 * clamp::DOMINANT, "{share} of {total} at {}", receiver.position());
             clusters += 1;
         }
     }
@@ -124,8 +125,8 @@ fn the_cap_is_respected_and_counted() {
     let transfer = Transfer::new(&trees, 1.7);
     let receiver = Receiver::irradiance(Vec3::splat(0.4), Vec3::Y, &Frame::from_normal(Vec3::Y));
     let mut cut = Lightcut::new();
-    cut.gather(&transfer, &Unoccluded, &receiver, &settings);
-    assert_eq!((cut.entries().len(), cut.counts.capped), (77, 1));
+    assert_eq!(cut.gather(&transfer, &Unoccluded, &receiver, &settings).clusters.len(), 77);
+    assert_eq!(cut.counts.capped, 1);
     let roomy = CutSettings { epsilon: 0.5, max_cut: 1000, clamp: None, origin: None };
     cut.gather(&transfer, &Unoccluded, &receiver, &roomy);
     assert_eq!(cut.counts.capped, 1, "a cut that converged is not counted as capped");
@@ -134,7 +135,7 @@ fn the_cap_is_respected_and_counted() {
 fn irradiance(trees: &LightTrees, diagonal: f32, position: Vec3, settings: &CutSettings) -> Rgb {
     let transfer = Transfer::new(trees, diagonal);
     let receiver = Receiver::irradiance(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
-    Lightcut::new().gather(&transfer, &Unoccluded, &receiver, settings)
+    Lightcut::new().gather(&transfer, &Unoccluded, &receiver, settings).radiance
 }
 
 #[test]

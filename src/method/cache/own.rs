@@ -7,7 +7,7 @@
 use crate::compensation::samples::{NearCounts, NearLight};
 use crate::eye::EyeSamples;
 use crate::lightcut::{
-    CoherenceLimit, CutCounts, CutSettings, Lightcut, PacketLightcut, PacketVisibility, Receiver,
+    CoherenceLimit, CutCounts, CutSettings, Lightcut, PacketLightcut, PacketSum, PacketVisibility, Receiver,
     ReceiverPacket, ReconstructionCut, Visibility, group_coherent,
 };
 use crate::math::{Frame, LANES, Rgb};
@@ -40,7 +40,7 @@ pub struct Job {
 pub struct Cutters<'w> {
     single: Lightcut,
     group: PacketLightcut,
-    lent: ReconstructionCut,
+    reconstruction: ReconstructionCut,
     points: ReceiverPacket<'w>,
     near: NearLight,
 }
@@ -88,12 +88,11 @@ pub fn light_patches<'w>(
                     return Lit::default();
                 }
                 shadows.begin_chunk();
-                (work.single.counts, work.group.counts) = Default::default();
+                work.take_cut_counts();
                 let cut = CutSettings { origin: jobs[0].origin, ..*cut };
                 let mut lit = Vec::with_capacity(jobs.len());
                 work.light(source, shadows, samples, jobs, &cut, &mut lit);
-                let mut cuts = work.single.counts;
-                cuts += work.group.counts;
+                let cuts = work.take_cut_counts();
                 control.advance(jobs.len() as u64);
                 let (shadows, near) = (shadows.take_counts(), work.near.take_counts());
                 Lit { radiance: lit, cuts, shadows, near }
@@ -131,6 +130,14 @@ pub fn patches(source: &Source, samples: &EyeSamples, jobs: &[Job]) -> Vec<Vec<J
 }
 
 impl<'w> Cutters<'w> {
+    /// Work done since this was last asked.
+    fn take_cut_counts(&mut self) -> CutCounts {
+        let mut counts = std::mem::take(&mut self.single.counts);
+        counts += std::mem::take(&mut self.group.counts);
+        counts += std::mem::take(&mut self.reconstruction.counts);
+        counts
+    }
+
     /// Lights a patch.
     pub fn light<V: Visibility + PacketVisibility>(
         &mut self,
@@ -149,17 +156,16 @@ impl<'w> Cutters<'w> {
         let makes = makers(samples, jobs);
         let chosen =
             |wanted| jobs.iter().zip(&makes).filter(move |(_, makes)| **makes == wanted).map(|(j, _)| j);
-        let mut radiance = [Rgb::ZERO; LANES];
         self.points.set(chosen(true).map(|job| reflector(samples, job)));
-        self.group.gather(&s.transfer, rays, &self.points, cut, &mut radiance);
+        let mut anchors_cut = self.group.gather(&s.transfer, rays, &self.points, cut);
         if let Some(c) = compensation {
-            self.near.begin(c, cut.origin, &self.points, self.group.limits(), &mut radiance);
+            self.near.begin(c, cut.origin, &self.points, &mut anchors_cut.sum);
         }
-        lit.extend(chosen(true).copied().zip(radiance));
+        lit.extend(chosen(true).copied().zip(anchors_cut.sum.radiance));
         if lit.len() == jobs.len() {
             return;
         }
-        self.lent.keep(&self.group, &s.transfer, &self.points, &radiance, cut);
+        self.reconstruction.set(&s.transfer, &self.points, &anchors_cut, cut);
         let others: Vec<&Job> = chosen(false).collect();
         let first = hash(jobs[0].sample, 0) as f32 * (1.0 / 4_294_967_296.0);
         let chunks = others.len().div_ceil(LANES);
@@ -167,11 +173,11 @@ impl<'w> Cutters<'w> {
             let jobs = || others.iter().skip(chunk).step_by(chunks);
             let start = (first + chunk as f32 * GOLDEN).fract();
             self.points.set(jobs().map(|job| reflector(samples, job)));
-            self.group.gather_lent(&self.lent, &s.transfer, rays, &self.points, start, &mut radiance);
+            let mut sum = self.reconstruction.gather(&s.transfer, rays, &self.points, start);
             if let Some(c) = compensation {
-                self.near.add(c, &self.points, self.group.limits(), &mut radiance);
+                self.near.add(c, &self.points, &mut sum);
             }
-            lit.extend(jobs().map(|job| **job).zip(radiance));
+            lit.extend(jobs().map(|job| **job).zip(sum.radiance));
         }
     }
 }
@@ -187,16 +193,16 @@ impl<'w> Cutters<'w> {
         cut: &CutSettings,
         lit: &mut Vec<(Job, Rgb)>,
     ) {
-        let (mut radiance, mut limits) = ([Rgb::ZERO; LANES], [f32::INFINITY; LANES]);
-        for ((job, radiance), limit) in jobs.iter().zip(&mut radiance).zip(&mut limits) {
-            *radiance = self.single.gather(&s.transfer, rays, &reflector(samples, job), cut);
-            *limit = self.single.limit();
+        let mut sum = PacketSum::default();
+        for (lane, job) in jobs.iter().enumerate() {
+            let own = self.single.gather(&s.transfer, rays, &reflector(samples, job), cut);
+            (sum.radiance[lane], sum.limits[lane]) = (own.radiance, own.limit);
         }
         if let Some(c) = &s.compensation {
             self.points.set(jobs.iter().map(|job| reflector(samples, job)));
-            self.near.begin(c, cut.origin, &self.points, &limits, &mut radiance);
+            self.near.begin(c, cut.origin, &self.points, &mut sum);
         }
-        lit.extend(jobs.iter().copied().zip(radiance));
+        lit.extend(jobs.iter().copied().zip(sum.radiance));
     }
 }
 

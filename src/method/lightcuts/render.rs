@@ -102,7 +102,7 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
     let mut used = CutCounts::default();
     let mut near = NearCounts::default();
     let mut chains = ChainCounts::default();
-    let (mut packets, mut nonfinite) = (0, 0);
+    let mut nonfinite = 0;
     let mut shadows = ShadowCounts::default();
     for (i, tile) in tiles.iter().enumerate().filter(|(_, tile)| tile.done) {
         for (k, [x, y]) in scenery.tile_area(corner(i)).pixels().enumerate() {
@@ -112,12 +112,11 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
         }
         used += tile.counts;
         near += tile.near;
-        packets += tile.packets;
         shadows += tile.shadows;
         chains += tile.chains;
         nonfinite += tile.nonfinite;
     }
-    stats.count("Rays/shadow packets", packets);
+    stats.count("Rays/shadow packets", used.packets);
     shadows.report(&mut stats);
     counts::cuts(&mut stats, "Lightcut", &used);
     counts::clamping(&mut stats, &used, scenery.compensation.is_some().then_some(&near));

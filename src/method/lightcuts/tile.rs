@@ -6,7 +6,7 @@ use super::render::{Scenery, Settings};
 use crate::compensation::samples::{NearCounts, NearLight};
 use crate::eye::{ChainCounts, EyeSample, eye_sampler, trace};
 use crate::lightcut::{
-    CoherenceLimit, CutCounts, Lightcut, MIN_SHARED, PacketLightcut, Receiver, ReceiverPacket,
+    CoherenceLimit, CutCounts, Lightcut, MIN_SHARED, PacketLightcut, PacketSum, Receiver, ReceiverPacket,
 };
 use crate::math::{LANES, Rgb};
 use crate::shadow::{Engine, ShadowCounts};
@@ -64,7 +64,6 @@ pub struct Tile {
     pub radiance: Vec<Rgb>,
     pub cut_sizes: Vec<f32>,
     pub counts: CutCounts,
-    pub packets: u64,
     pub shadows: ShadowCounts,
     pub near: NearCounts,
     pub chains: ChainCounts,
@@ -77,7 +76,6 @@ impl Tile {
     pub fn render<'w>(&mut self, s: &Scenery<'w>, corner: [u32; 2], work: &mut Workspace<'w>) {
         work.single.counts = CutCounts::default();
         work.group.counts = CutCounts::default();
-        work.group.packets = 0;
         work.shadows.begin_chunk();
         let area = s.tile_area(corner);
         let size = (area.width * area.height) as usize;
@@ -96,7 +94,6 @@ impl Tile {
         }
         self.counts += work.single.counts;
         self.counts += work.group.counts;
-        self.packets = work.group.packets;
         self.shadows = work.shadows.take_counts();
         self.near = work.near.take_counts();
         self.done = true;
@@ -176,30 +173,28 @@ fn light<'w>(s: &Scenery<'w>, work: &mut Workspace<'w>) {
         if !s.settings.share || work.members.len() < MIN_SHARED {
             let sample = &mut work.samples[first];
             sample.done = true;
-            let before = work.single.counts.clusters;
             let reflector = &sample.reflector;
-            let mut radiance = [Rgb::ZERO; LANES];
-            radiance[0] = work.single.gather(&s.transfer, &work.shadows, reflector, cut);
+            let own = work.single.gather(&s.transfer, &work.shadows, reflector, cut);
+            let (mut sum, size) = (PacketSum::default(), own.clusters.len());
+            (sum.radiance[0], sum.limits[0]) = (own.radiance, own.limit);
             if let Some(c) = &s.compensation {
                 work.points.set([*reflector]);
-                let limits = [work.single.limit(); LANES];
-                work.near.begin(c, cut.origin, &work.points, &limits, &mut radiance);
+                work.near.begin(c, cut.origin, &work.points, &mut sum);
             }
-            work.values[sample.place] += sample.throughput * radiance[0];
-            work.cut_sizes[sample.place] += (work.single.counts.clusters - before) as f32;
+            work.values[sample.place] += sample.throughput * sum.radiance[0];
+            work.cut_sizes[sample.place] += size as f32;
             continue;
         }
         work.points.set(work.members.iter().map(|&i| work.samples[i].reflector));
-        let mut radiance = [Rgb::ZERO; LANES];
-        work.group.gather(&s.transfer, &work.shadows, &work.points, cut, &mut radiance);
+        let mut shared = work.group.gather(&s.transfer, &work.shadows, &work.points, cut);
         if let Some(c) = &s.compensation {
-            work.near.begin(c, cut.origin, &work.points, work.group.limits(), &mut radiance);
+            work.near.begin(c, cut.origin, &work.points, &mut shared.sum);
         }
-        for (&i, radiance) in work.members.iter().zip(radiance) {
+        for (&i, radiance) in work.members.iter().zip(shared.sum.radiance) {
             let sample = &mut work.samples[i];
             sample.done = true;
             work.values[sample.place] += sample.throughput * radiance;
-            work.cut_sizes[sample.place] += work.group.size() as f32;
+            work.cut_sizes[sample.place] += shared.clusters.len() as f32;
         }
     }
 }
