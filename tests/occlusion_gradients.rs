@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use glam::Vec3;
-use lightsplat::eye::{EyeSamples, EyeSettings};
+use lightsplat::eye::{EyePass, EyeSettings};
 use lightsplat::light_tree::{Family, LightTrees};
 use lightsplat::lightcut::{CutSettings, Receiver, Transfer, gather_all};
 use lightsplat::math::{Frame, luminance};
@@ -38,7 +38,7 @@ fn furnished_room() -> WorldAndView {
 /// mean relative error, and the scalar product of estimated and true gradients, relative to the square of the true ones.
 fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) -> (f32, f32) {
     let settings = EyeSettings { spp: 1, seed: 0, max_depth: 8 };
-    let samples = EyeSamples::look(world, &world.view, settings, &Control::new());
+    let samples = EyePass::trace(world, &world.view, settings, &Control::new());
     let light = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
     let mut pass = light_pass(world, &light, 8, &Control::new());
     pass.sets.retain(|set| set.origin == Origin::Indirect);
@@ -57,7 +57,7 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
             && p.abs().with_y(0.0).max_element() < 0.8
             && (table.max_element() - 0.3).abs() > 0.1
     };
-    let floor = (0..samples.len()).filter(|&i| open(samples.points[i].position));
+    let floor = (0..samples.len()).filter(|&i| open(samples.points.geometry[i].position));
     let picks: Vec<Pick> =
         floor.step_by(4).map(|i| Pick { sample: i as u32, lacks: [false, true] }).collect();
     assert!(picks.len() > 60, "{}", picks.len());

@@ -5,7 +5,7 @@ mod common;
 use common::*;
 use glam::{Vec2, Vec3};
 use lightsplat::embree::Rays16;
-use lightsplat::eye::{EyePoint, Sharing};
+use lightsplat::eye::{PointGeometry, Sharing};
 use lightsplat::math::{Frame, LANES, Rgb};
 use lightsplat::photon::density::{IrradianceEstimate, estimates};
 use lightsplat::photon::hemisphere::{GatherPoint, gather};
@@ -106,7 +106,7 @@ fn gathering_agrees_with_plain_sampling() {
     let light = IndirectLight { world: &world, map: &map };
     let mut counts = GatherCounts::default();
     for position in [Vec3::new(0.4, -1.0, 0.1), Vec3::new(-0.6, -1.0, 0.0), Vec3::new(-0.5, -1.0, 0.8)] {
-        let point = EyePoint { position, spacing: 0.01, normal: Vec3::Y, sharing: Sharing::new(0, 0) };
+        let point = PointGeometry { position, spacing: 0.01, normal: Vec3::Y, sharing: Sharing::new(0, 0) };
         let mut met = Met::default();
         let strata = Strata::new(4000);
         let at =

@@ -1,7 +1,7 @@
 //! What benchmarks on a scene measure with: its eye samples, its virtual lights in their trees.
 
 use super::Context;
-use crate::eye::{EyeSamples, EyeSettings};
+use crate::eye::{EyePass, EyeSettings};
 use crate::light_tree::{Family, LightTrees, Node};
 use crate::lightcut::{CoherenceLimit, Receiver, Transfer, group_coherent};
 use crate::math::{Frame, LANES};
@@ -21,7 +21,7 @@ const STRETCHES: usize = 6;
 /// A scene seen and lit.
 pub(super) struct Setting<'w> {
     pub world: &'w World,
-    pub samples: EyeSamples<'w>,
+    pub samples: EyePass<'w>,
     pub trees: LightTrees,
 }
 
@@ -33,7 +33,7 @@ impl<'w> Setting<'w> {
         let depth = world.scene.path_limit(None);
         (context.say)("looking at the scene and lighting it");
         let eye = EyeSettings { spp: 1, seed: 0, max_depth: depth };
-        let samples = EyeSamples::look(world, &view, eye, &Control::new());
+        let samples = EyePass::trace(world, &view, eye, &Control::new());
         let LightPass { sets, spots, .. } =
             light_pass(world, &LightPassSettings::default(), depth, &Control::new());
         let trees = LightTrees::build(&sets, spots, world.diagonal, Family::default());
@@ -47,14 +47,14 @@ impl<'w> Setting<'w> {
 
     /// The surface at an eye sample, as lightcuts per pixel light it.
     pub fn reflector(&self, sample: usize) -> Receiver<'w> {
-        let (point, surface) = (&self.samples.points[sample], &self.samples.surfaces[sample]);
+        let (point, surface) = (&self.samples.points.geometry[sample], &self.samples.points.surfaces[sample]);
         let frame = Frame::from_normal(point.normal);
         Receiver::new(point.position, surface.geometric_normal, &frame, surface.bsdf, surface.out)
     }
 
     /// The same as a record collects its light.
     pub fn collector(&self, sample: usize) -> Receiver<'static> {
-        let (point, surface) = (&self.samples.points[sample], &self.samples.surfaces[sample]);
+        let (point, surface) = (&self.samples.points.geometry[sample], &self.samples.points.surfaces[sample]);
         Receiver::irradiance(point.position, surface.geometric_normal, &Frame::from_normal(point.normal))
     }
 
@@ -73,7 +73,7 @@ impl<'w> Setting<'w> {
     /// A stretch as groups that share a cut.
     pub fn groups(&self, stretch: &[usize]) -> Vec<Vec<usize>> {
         let place = |&sample: &usize| {
-            let point = &self.samples.points[sample];
+            let point = &self.samples.points.geometry[sample];
             (point.position, point.normal)
         };
         group_coherent(

@@ -3,12 +3,16 @@
 mod chain;
 mod index;
 mod look;
-mod samples;
+mod pass;
+mod points;
+mod rays;
 mod sharing;
 mod sharp;
 
 pub use chain::{ChainCounts, EyeSample, trace};
 pub use index::{Bounds, EyeIndex};
 pub use look::{Look, eye_sampler};
-pub use samples::{EyePoint, EyeSamples, EyeSettings, EyeSurface};
+pub use pass::{EyePass, TILE};
+pub use points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySample, VisibilitySamples};
+pub use rays::{EyeRays, EyeSettings, VisibleSurfaces};
 pub use sharing::Sharing;

@@ -1,7 +1,7 @@
 //! Any of the methods, with its settings.
 
 use super::{Output, cache, lightcuts, path, photon_cache};
-use crate::eye::{EyeSamples, Look};
+use crate::eye::{EyePass, Look};
 use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
@@ -67,7 +67,7 @@ impl Method {
     pub fn expected_bytes(&self, window: &Window) -> Option<u64> {
         match self {
             Method::Path(_) | Method::Lightcuts(_) => None,
-            Method::Cache(_) | Method::PhotonCache(_) => Some(EyeSamples::expected_bytes(window, self.spp())),
+            Method::Cache(_) | Method::PhotonCache(_) => Some(EyePass::expected_bytes(window, self.spp())),
         }
     }
 

@@ -7,7 +7,7 @@ use super::indirect_light::{GatherCounts, IndirectLight};
 use super::radiance::IncomingRadiance;
 use super::strata::{BLOCK, Met, Strata};
 use crate::embree::Rays16;
-use crate::eye::EyePoint;
+use crate::eye::PointGeometry;
 use crate::math::{Frame, Rgb};
 use crate::sampling::hash;
 use crate::shadow;
@@ -30,7 +30,7 @@ pub struct GatheredIrradiance {
 #[derive(Clone, Copy, Debug)]
 pub struct GatherPoint<'a> {
     /// The point.
-    pub point: &'a EyePoint,
+    pub point: &'a PointGeometry,
     /// Unit geometric normal there.
     pub geometric_normal: Vec3,
     /// Another seed, other directions within the strata.

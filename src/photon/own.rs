@@ -2,7 +2,7 @@
 
 use super::indirect_light::{GatherCounts, IndirectLight};
 use crate::embree::Rays16;
-use crate::eye::EyeSamples;
+use crate::eye::EyePass;
 use crate::material::Bsdf;
 use crate::math::{Frame, LANES, Rgb, first_lanes};
 use crate::sampling::{Sampler, hash};
@@ -24,12 +24,13 @@ pub struct SampleGather {
 /// Indirect radiance that a sample reflects to the eye.
 pub fn reflected(
     light: &IndirectLight,
-    samples: &EyeSamples,
+    samples: &EyePass,
     task: &SampleGather,
     counts: &mut GatherCounts,
 ) -> Rgb {
     let SampleGather { sample, lobe_only, rays, seed } = *task;
-    let (point, surface) = (&samples.points[sample as usize], &samples.surfaces[sample as usize]);
+    let (point, surface) =
+        (&samples.points.geometry[sample as usize], &samples.points.surfaces[sample as usize]);
     let lobe = if lobe_only { surface.bsdf.split_base(1.0).1 } else { None };
     let bsdf: Bsdf = lobe.unwrap_or(surface.bsdf);
     let frame = Frame::from_normal(point.normal);

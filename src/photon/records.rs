@@ -7,7 +7,7 @@
 use super::hemisphere::{GatherPoint, GatheredIrradiance, gather};
 use super::indirect_light::{GatherCounts, IndirectLight};
 use super::strata::{Met, Strata};
-use crate::eye::{EyePoint, EyeSamples};
+use crate::eye::{EyePass, PointGeometry};
 use crate::gradient::Incidence;
 use crate::lightcut::CutCounts;
 use crate::math::{LUMINANCE, luminance};
@@ -69,7 +69,7 @@ impl RecordSource for FinalGatherSource<'_> {
 
     fn records(
         &self,
-        samples: &EyeSamples,
+        samples: &EyePass,
         layers: &[Layer; 2],
         picks: &[Pick],
     ) -> (Vec<(Pick, Pair)>, CutCounts) {
@@ -101,15 +101,15 @@ impl FinalGatherSource<'_> {
     fn indirect(
         &self,
         work: &mut GatherWorkspace,
-        samples: &EyeSamples,
+        samples: &EyePass,
         sample: u32,
         counts: &mut GatherCounts,
     ) -> Option<Made> {
-        let point = &samples.points[sample as usize];
+        let point = &samples.points.geometry[sample as usize];
         let settings = self.settings();
         let layer = &settings.layers[1];
         let reach = layer.reach.map(|r| r * point.spacing);
-        let geometric_normal = samples.surfaces[sample as usize].geometric_normal;
+        let geometric_normal = samples.points.surfaces[sample as usize].geometric_normal;
         let max_nearness = 1.0 / reach[0].max(f32::MIN_POSITIVE);
         let at = GatherPoint { point, geometric_normal, seed: hash(sample, self.seed), max_nearness };
         let g = gather(&self.light, &self.strata, &at, &mut work.met, counts);
@@ -138,7 +138,7 @@ impl FinalGatherSource<'_> {
 impl FinalGatherSource<'_> {
     /// Surfaces that the point sees, with the light met. Its gradient stays that of the strata, which knows of
     /// occluders' edges.
-    fn sight(&self, point: &EyePoint, geometric_normal: Vec3, seed: u32, met: &Met) -> Sight {
+    fn sight(&self, point: &PointGeometry, geometric_normal: Vec3, seed: u32, met: &Met) -> Sight {
         let (at, rays) = ((point.position, geometric_normal), self.settings().probe_rays);
         let mut sight = Sight::new(self.light.world, at, point.normal, rays, seed);
         let measure = self.strata.measure();
@@ -153,7 +153,7 @@ impl FinalGatherSource<'_> {
 
 impl GatherWorkspace {
     /// Adds what was met to the series, if the point is to have one.
-    fn series(&mut self, strata: &Strata, point: &EyePoint, max_nearness: f32) {
+    fn series(&mut self, strata: &Strata, point: &PointGeometry, max_nearness: f32) {
         self.series.begin(point);
         if self.series.place().is_none() {
             return;

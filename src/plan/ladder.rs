@@ -4,7 +4,7 @@
 //! geometrically, so that a plan need not jump. Every step halves ε, which cuts cost by its root,
 //! and the virtual lights follow: a cut as fine as ε asks is no use in a tree whose leaves are coarser.
 
-use crate::eye::EyeSamples;
+use crate::eye::EyePass;
 use crate::film::Window;
 use crate::method::Method;
 use crate::stats::available_bytes;
@@ -86,7 +86,7 @@ impl Ladder {
     pub fn within(mut self, window: &Window) -> Ladder {
         if let (Method::Cache(_), Some(bytes)) = (&self.base, available_bytes()) {
             let doubled = (0..16).map(|k| self.base.spp().saturating_mul(1 << k));
-            let fits = doubled.take_while(|&spp| EyeSamples::expected_bytes(window, spp) <= bytes);
+            let fits = doubled.take_while(|&spp| EyePass::expected_bytes(window, spp) <= bytes);
             self.most_spp = fits.last().unwrap_or(1);
         }
         self

@@ -9,7 +9,7 @@
 
 use super::layer::Layer;
 use super::series::Glossy;
-use crate::eye::EyeSamples;
+use crate::eye::EyePass;
 use crate::math::{Rgb, luminance};
 use rayon::prelude::*;
 
@@ -25,12 +25,7 @@ pub struct Seam {
 }
 
 /// Finds all seams, leaf by leaf.
-pub fn seams(
-    samples: &EyeSamples,
-    layers: &[Layer; 2],
-    glossy: Option<&Glossy>,
-    threshold: f32,
-) -> Vec<Seam> {
+pub fn seams(samples: &EyePass, layers: &[Layer; 2], glossy: Option<&Glossy>, threshold: f32) -> Vec<Seam> {
     let by_leaf: Vec<Vec<Seam>> = (0..samples.index.leaves())
         .into_par_iter()
         .map_init(Default::default, |contributions, leaf| {
@@ -45,7 +40,7 @@ pub fn seams(
 }
 
 fn at_sample(
-    samples: &EyeSamples,
+    samples: &EyePass,
     layers: &[Layer; 2],
     glossy: Option<&Glossy>,
     threshold: f32,
@@ -53,8 +48,8 @@ fn at_sample(
     contributions: &mut [Vec<(u32, f32, Rgb)>; 2],
     seams: &mut Vec<Seam>,
 ) {
-    let point = &samples.points[sample];
-    let mut seen = glossy.and_then(|glossy| glossy.seen(point, &samples.surfaces[sample]));
+    let point = &samples.points.geometry[sample];
+    let mut seen = glossy.and_then(|glossy| glossy.seen(point, &samples.points.surfaces[sample]));
     let mut sums = [(Rgb::ZERO, 0.0); 2];
     for ((layer, contributions), (sum, weights)) in layers.iter().zip(&mut *contributions).zip(&mut sums) {
         contributions.clear();
@@ -91,7 +86,7 @@ fn at_sample(
 /// Shrinks the footprints of the records at `seams` and says in which leaves that changes something; the sums
 /// there must be formed anew.
 pub fn shrink(
-    samples: &EyeSamples,
+    samples: &EyePass,
     layers: &mut [Layer; 2],
     seams: &[Seam],
     least_reach: [f32; 2],
@@ -99,7 +94,7 @@ pub fn shrink(
     let mut changed = vec![false; samples.index.leaves()];
     for seam in seams {
         let record = &mut layers[seam.layer].records[seam.record as usize];
-        let point = &samples.points[seam.sample as usize];
+        let point = &samples.points.geometry[seam.sample as usize];
         if record.delta(point) >= 1.0 {
             continue; // an earlier seam has excluded this sample
         }

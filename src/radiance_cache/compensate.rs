@@ -11,7 +11,7 @@ use super::gather::Gathered;
 use super::wave::Pick;
 use crate::compensation::Compensation;
 use crate::compensation::near::{self, Clamped, Near};
-use crate::eye::EyeSamples;
+use crate::eye::EyePass;
 use crate::lightcut::{
     CoherenceLimit, CutSettings, Lightcut, MIN_SHARED, PacketLightcut, Receiver, ReceiverPacket,
     group_coherent,
@@ -93,17 +93,17 @@ pub fn add(
     c: &Compensation,
     source: &Source,
     mut cutters: Cutters,
-    samples: &EyeSamples,
+    samples: &EyePass,
     task: &[Pick],
     gathered: &mut [&mut [Gathered; 2]],
 ) {
     let world = source.world;
     let clamped = |(pick, gathered): (&Pick, &&mut [Gathered; 2])| {
         let i = pick.sample as usize;
-        let point = &samples.points[i];
+        let point = &samples.points.geometry[i];
         Clamped {
             position: point.position,
-            geometric_normal: samples.surfaces[i].geometric_normal,
+            geometric_normal: samples.points.surfaces[i].geometric_normal,
             frame: Frame::from_normal(point.normal),
             bound: if pick.lacks[1] { gathered[1].bound } else { f32::INFINITY },
             direct: pick.lacks[0],
@@ -112,14 +112,14 @@ pub fn add(
     let points: Vec<Clamped> = task.iter().zip(gathered.iter()).map(clamped).collect();
     let mut met = vec![Vec::new(); points.len()];
     near::trace(c, &points, RAYS, |record, near| {
-        let passed = match samples.points[task[record].sample as usize].sharing.coat() {
+        let passed = match samples.points.geometry[task[record].sample as usize].sharing.coat() {
             0 => 1.0,
             coat => world.materials.coat_transmittance(coat, near.cos),
         };
         let pick = &task[record];
         let emitted = near.emitted * (passed * PI / RAYS as f32);
         if emitted.is_finite() && emitted != Rgb::ZERO {
-            let normal = samples.points[pick.sample as usize].normal;
+            let normal = samples.points.geometry[pick.sample as usize].normal;
             gathered[record][0].compensate(normal, emitted, near.distance);
         }
         met[record].push(Near { weight: near.weight * passed, ..near });
@@ -136,7 +136,7 @@ pub fn add(
         for (lookup, irradiance) in group.iter().zip(irradiance) {
             let found = lookup.factor * irradiance;
             if found.is_finite() {
-                let normal = samples.points[task[lookup.record].sample as usize].normal;
+                let normal = samples.points.geometry[task[lookup.record].sample as usize].normal;
                 gathered[lookup.record][1].compensate(normal, found, lookup.near.distance);
             }
         }

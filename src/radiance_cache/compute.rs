@@ -15,7 +15,7 @@ use super::settings::{CacheSettings, Footprints};
 use super::sight::Sight;
 use super::wave::Pick;
 use crate::compensation::Compensation;
-use crate::eye::EyeSamples;
+use crate::eye::EyePass;
 use crate::hsh::Radiance;
 use crate::lightcut::{
     CoherenceLimit, CutCounts, CutSettings, Lightcut, PacketLightcut, Receiver, ReceiverPacket, Transfer,
@@ -69,7 +69,7 @@ pub trait RecordSource: Sync {
     /// Computes the records of a wave, always in the same order.
     fn records(
         &self,
-        samples: &EyeSamples,
+        samples: &EyePass,
         layers: &[Layer; 2],
         picks: &[Pick],
     ) -> (Vec<(Pick, Pair)>, CutCounts);
@@ -82,7 +82,7 @@ impl RecordSource for Source<'_> {
 
     fn records(
         &self,
-        samples: &EyeSamples,
+        samples: &EyePass,
         layers: &[Layer; 2],
         picks: &[Pick],
     ) -> (Vec<(Pick, Pair)>, CutCounts) {
@@ -111,9 +111,9 @@ impl RecordSource for Source<'_> {
 
 impl Source<'_> {
     /// Picks that share a cut: neighbours that lack the same layers.
-    pub fn tasks(&self, samples: &EyeSamples, picks: &[Pick]) -> Vec<Vec<Pick>> {
+    pub fn tasks(&self, samples: &EyePass, picks: &[Pick]) -> Vec<Vec<Pick>> {
         let place = |pick: &Pick| {
-            let point = &samples.points[pick.sample as usize];
+            let point = &samples.points.geometry[pick.sample as usize];
             (point.position, point.normal)
         };
         group_coherent(
@@ -127,9 +127,9 @@ impl Source<'_> {
     }
 
     /// The record of one layer, or `None` where it would be of no use.
-    fn record(&self, samples: &EyeSamples, sample: u32, layer: usize, view: &View) -> Option<Record> {
+    fn record(&self, samples: &EyePass, sample: u32, layer: usize, view: &View) -> Option<Record> {
         let g = &view.gathered[layer];
-        let point = &samples.points[sample as usize];
+        let point = &samples.points.geometry[sample as usize];
         let luminance = luminance(g.irradiance);
         if !(luminance.is_finite() && g.vector.is_finite() && g.gradient.is_finite()) {
             return None;
@@ -196,16 +196,16 @@ impl<'w> Workspace<'w> {
         counts
     }
 
-    fn compute(&mut self, s: &Source, samples: &EyeSamples, layers: &[Layer; 2], task: &[Pick]) -> Vec<Pair> {
+    fn compute(&mut self, s: &Source, samples: &EyePass, layers: &[Layer; 2], task: &[Pick]) -> Vec<Pair> {
         let collectors = task.iter().map(|pick| {
             let i = pick.sample as usize;
-            let point = &samples.points[i];
+            let point = &samples.points.geometry[i];
             let frame = Frame::from_normal(point.normal);
             let known = [0, 1].map(|l| match layers[l].sums[i].mean() {
                 Some(irradiance) if !pick.lacks[l] => luminance(irradiance),
                 _ => 0.0,
             });
-            Receiver::irradiance(point.position, samples.surfaces[i].geometric_normal, &frame)
+            Receiver::irradiance(point.position, samples.points.surfaces[i].geometric_normal, &frame)
                 .with_baseline(known[0] + known[1])
         });
         let origin = match task[0].lacks {
@@ -242,7 +242,7 @@ impl<'w> Workspace<'w> {
     fn alone(
         &mut self,
         s: &Source,
-        samples: &EyeSamples,
+        samples: &EyePass,
         pick: &Pick,
         collector: &Receiver<'static>,
         cut: &CutSettings,
@@ -257,7 +257,7 @@ impl<'w> Workspace<'w> {
         let clamp = compensate::clamp(&s.compensation, cut.limit);
         let mut view = s.view(samples, pick.sample, cut.clusters.len(), clamp);
         let series = &mut self.series;
-        series.begin(&samples.points[pick.sample as usize]);
+        series.begin(&samples.points.geometry[pick.sample as usize]);
         for cluster in cut.clusters {
             let hidden = (hidden.as_ref(), 0);
             s.add((&mut view, series), &gatherer, cluster.node, cluster.response, clamp, hidden);
@@ -266,7 +266,7 @@ impl<'w> Workspace<'w> {
         view
     }
 
-    fn shared(&mut self, s: &Source, samples: &EyeSamples, task: &[Pick], cut: &CutSettings) -> Vec<View> {
+    fn shared(&mut self, s: &Source, samples: &EyePass, task: &[Pick], cut: &CutSettings) -> Vec<View> {
         let rays = s.needs_occluders().then(|| OccluderLog::new(s.world));
         let cut = match &rays {
             Some(rays) => self.group.gather(&s.transfer, rays, &self.points, cut),
@@ -278,7 +278,7 @@ impl<'w> Workspace<'w> {
             let gatherer = s.gatherer(samples, pick.sample, self.points.get(lane));
             let clamp = compensate::clamp(&s.compensation, cut.sum.limits[lane]);
             let mut view = s.view(samples, pick.sample, cut.clusters.len(), clamp);
-            series.begin(&samples.points[pick.sample as usize]);
+            series.begin(&samples.points.geometry[pick.sample as usize]);
             for cluster in cut.clusters {
                 let (response, hidden) = (cluster.responses.get(lane), (hidden.as_ref(), lane));
                 s.add((&mut view, series), &gatherer, cluster.node, response, clamp, hidden);
@@ -304,10 +304,10 @@ impl<'a> Source<'a> {
         self.settings.footprints != Footprints::Occlusion
     }
 
-    fn view(&self, samples: &EyeSamples, sample: u32, cut: usize, clamp: Clamp) -> View {
+    fn view(&self, samples: &EyePass, sample: u32, cut: usize, clamp: Clamp) -> View {
         let sight = (!self.needs_occluders()).then(|| {
-            let point = &samples.points[sample as usize];
-            let geometric_normal = samples.surfaces[sample as usize].geometric_normal;
+            let point = &samples.points.geometry[sample as usize];
+            let geometric_normal = samples.points.surfaces[sample as usize].geometric_normal;
             let (at, rays) = ((point.position, geometric_normal), self.settings.probe_rays);
             Box::new(Sight::new(self.world, at, point.normal, rays, sample))
         });
@@ -315,8 +315,8 @@ impl<'a> Source<'a> {
         View { gathered: [gathered; 2], series: [None, None], sight }
     }
 
-    fn gatherer(&self, samples: &EyeSamples, sample: u32, collector: &Receiver<'static>) -> Gatherer<'a> {
-        let point = &samples.points[sample as usize];
+    fn gatherer(&self, samples: &EyePass, sample: u32, collector: &Receiver<'static>) -> Gatherer<'a> {
+        let point = &samples.points.geometry[sample as usize];
         Gatherer {
             collector: *collector,
             position: point.position,

@@ -5,7 +5,7 @@
 
 use super::compute::Made;
 use super::record::Record;
-use crate::eye::{EyeIndex, EyePoint, EyeSamples};
+use crate::eye::{EyeIndex, EyePass, PointGeometry};
 use crate::hsh::Radiance;
 use crate::math::Rgb;
 use rayon::prelude::*;
@@ -42,7 +42,7 @@ pub struct Layer {
 
 impl Layer {
     /// No records yet.
-    pub fn new(samples: &EyeSamples) -> Layer {
+    pub fn new(samples: &EyePass) -> Layer {
         Layer {
             records: Vec::new(),
             series: Vec::new(),
@@ -63,7 +63,7 @@ impl Layer {
     }
 
     /// Adds records and splats them.
-    pub fn splat(&mut self, samples: &EyeSamples, new: impl Iterator<Item = Made>) {
+    pub fn splat(&mut self, samples: &EyePass, new: impl Iterator<Item = Made>) {
         let first = self.records.len() as u32;
         let mut touched = vec![false; self.lists.len()];
         for made in new {
@@ -94,16 +94,16 @@ impl Layer {
         by_leaf(&mut self.sums, &samples.index, &touched).into_par_iter().for_each(|(leaf, sums)| {
             let list = &lists[leaf];
             let new = &list[list.partition_point(|&id| id < first)..];
-            add(records, new, &samples.points[samples.index.leaf(leaf)], sums);
+            add(records, new, &samples.points.geometry[samples.index.leaf(leaf)], sums);
         });
     }
 
     /// Forms the sums of some leaves anew.
-    pub fn resplat(&mut self, samples: &EyeSamples, changed: &[bool]) {
+    pub fn resplat(&mut self, samples: &EyePass, changed: &[bool]) {
         let (records, lists) = (&self.records, &self.lists);
         by_leaf(&mut self.sums, &samples.index, changed).into_par_iter().for_each(|(leaf, sums)| {
             sums.fill(Sum::default());
-            add(records, &lists[leaf], &samples.points[samples.index.leaf(leaf)], sums);
+            add(records, &lists[leaf], &samples.points.geometry[samples.index.leaf(leaf)], sums);
         });
     }
 }
@@ -125,7 +125,7 @@ fn by_leaf<'a>(sums: &'a mut [Sum], index: &EyeIndex, marked: &[bool]) -> Vec<(u
 }
 
 /// Adds what records give at the samples of a leaf.
-fn add(records: &[Record], ids: &[u32], points: &[EyePoint], sums: &mut [Sum]) {
+fn add(records: &[Record], ids: &[u32], points: &[PointGeometry], sums: &mut [Sum]) {
     for &id in ids {
         let record = &records[id as usize];
         for (point, sum) in points.iter().zip(sums.iter_mut()) {

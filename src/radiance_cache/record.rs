@@ -8,7 +8,7 @@
 //! footprint's edge) is that of Eq. 11 less its value there, so that it does not jump.
 
 use super::footprint::Footprint;
-use crate::eye::{EyePoint, Sharing};
+use crate::eye::{PointGeometry, Sharing};
 use crate::math::{Rgb, luminance};
 use glam::{Mat3, Vec3};
 
@@ -62,7 +62,7 @@ impl Record {
     /// Distance δ of a point in units of the footprint: 1 at its edge; infinite where the record does not apply at
     /// all.
     #[inline]
-    pub fn delta(&self, p: &EyePoint) -> f32 {
+    pub fn delta(&self, p: &PointGeometry) -> f32 {
         let offset = p.position - self.position;
         let cos = self.normal.dot(p.normal);
         let tilt = (1.0 - cos).max(0.0).sqrt() * self.footprint.inverse_normal_tolerance;
@@ -76,7 +76,7 @@ impl Record {
 
     /// Weight and extrapolated irradiance at a point, or `None` outside the footprint or where it is not believed.
     #[inline]
-    pub fn at(&self, p: &EyePoint) -> Option<(f32, Rgb)> {
+    pub fn at(&self, p: &PointGeometry) -> Option<(f32, Rgb)> {
         let delta = self.delta(p);
         if !(delta < 1.0) {
             return None;
@@ -91,7 +91,7 @@ impl Record {
 
     /// Shrinks the footprint so that it ends at `p`, along the axis that leaves it the larger area, though not
     /// below `least`. True if it became smaller.
-    pub fn exclude(&mut self, p: &EyePoint, least: f32) -> bool {
+    pub fn exclude(&mut self, p: &PointGeometry, least: f32) -> bool {
         let tilt =
             (1.0 - self.normal.dot(p.normal)).max(0.0).sqrt() * self.footprint.inverse_normal_tolerance;
         let edge = (1.0 - tilt).max(0.0);

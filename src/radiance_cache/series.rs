@@ -10,7 +10,7 @@
 
 use super::layer::Layer;
 use super::record::Record;
-use crate::eye::{EyePoint, EyeSamples, EyeSurface};
+use crate::eye::{EyePass, PointGeometry, PointSurface};
 use crate::gradient::Incidence;
 use crate::hsh::{Accumulator, Caching, Kernel, MaterialSeries, Radiance, SeriesSettings};
 use crate::light_tree::Node;
@@ -36,7 +36,7 @@ pub struct SeriesGatherer {
 
 impl SeriesGatherer {
     /// Begins a record at a sample; nothing is summed if irradiance is enough there.
-    pub fn begin(&mut self, point: &EyePoint) {
+    pub fn begin(&mut self, point: &PointGeometry) {
         let bands = point.sharing.bands();
         self.place = (bands > 0).then(|| (Frame::from_normal(point.normal), point.position));
         if bands > 0 {
@@ -91,12 +91,12 @@ pub struct Glossy {
 
 impl Glossy {
     /// Which samples are lit by series, if any; their bands are noted with them.
-    pub fn find(world: &World, samples: &mut EyeSamples, settings: &SeriesSettings) -> Option<Glossy> {
-        if samples.surfaces.iter().all(|surface| surface.bsdf.split_base(1.0).1.is_none()) {
+    pub fn find(world: &World, samples: &mut EyePass, settings: &SeriesSettings) -> Option<Glossy> {
+        if samples.points.surfaces.iter().all(|surface| surface.bsdf.split_base(1.0).1.is_none()) {
             return None;
         }
         let surfaces = MaterialSeries::new(&world.scene, &world.materials, settings);
-        for (point, surface) in samples.points.iter_mut().zip(&samples.surfaces) {
+        for (point, surface) in samples.points.geometry.iter_mut().zip(&samples.points.surfaces) {
             if surface.bsdf.split_base(1.0).1.is_none() {
                 continue;
             }
@@ -108,7 +108,7 @@ impl Glossy {
     }
 
     /// What a sample does to the light of records; `None` if its lobe is not to be lit by them.
-    pub fn seen<'a>(&'a self, point: &'a EyePoint, surface: &'a EyeSurface<'a>) -> Option<Seen<'a>> {
+    pub fn seen<'a>(&'a self, point: &'a PointGeometry, surface: &'a PointSurface<'a>) -> Option<Seen<'a>> {
         if point.sharing.bands() == 0 {
             return None;
         }
@@ -121,11 +121,12 @@ impl Glossy {
     }
 
     /// For each sample, the mean over the records around it of what its lobe reflects, both layers together.
-    pub fn lobes(&self, samples: &EyeSamples, layers: &[Layer; 2]) -> Vec<Rgb> {
+    pub fn lobes(&self, samples: &EyePass, layers: &[Layer; 2]) -> Vec<Rgb> {
         let by_leaf: Vec<Vec<Rgb>> = (0..samples.index.leaves())
             .into_par_iter()
             .map(|leaf| {
-                let at = |i: usize| match self.seen(&samples.points[i], &samples.surfaces[i]) {
+                let at = |i: usize| match self.seen(&samples.points.geometry[i], &samples.points.surfaces[i])
+                {
                     Some(mut seen) => seen.mean(&layers[0], leaf) + seen.mean(&layers[1], leaf),
                     None => Rgb::ZERO,
                 };
@@ -139,8 +140,8 @@ impl Glossy {
 /// A sample in the light of one record after another.
 pub struct Seen<'a> {
     glossy: &'a Glossy,
-    point: &'a EyePoint,
-    surface: &'a EyeSurface<'a>,
+    point: &'a PointGeometry,
+    surface: &'a PointSurface<'a>,
     /// BRDF of the base.
     base: Rgb,
     lobe: Bsdf<'a>,

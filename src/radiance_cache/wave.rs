@@ -5,7 +5,7 @@
 //! eye samples' index, the one nearest to the middle of what is uncovered there.
 
 use super::layer::Layer;
-use crate::eye::EyeSamples;
+use crate::eye::EyePass;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -27,7 +27,7 @@ pub fn lacking(layers: &[Layer; 2], wanted: [bool; 2], sample: usize) -> [bool; 
 /// The picks of every other cell of `level` (`parity` 0 or 1): siblings take turns, so that
 /// what one needs may be covered already by the other's record.
 pub fn pick(
-    samples: &EyeSamples,
+    samples: &EyePass,
     layers: &[Layer; 2],
     wanted: impl Fn(usize) -> [bool; 2] + Sync,
     level: u32,
@@ -42,14 +42,14 @@ pub fn pick(
             let uncovered = |i: &usize| lacking(layers, wanted(*i), *i) != [false; 2];
             let (mut sum, mut count) = (Vec3::ZERO, 0.0);
             for i in range.clone().filter(uncovered) {
-                sum += samples.points[i].position;
+                sum += samples.points.geometry[i].position;
                 count += 1.0;
             }
             if count == 0.0 {
                 return None;
             }
             let middle = sum / count;
-            let distance = |i: &usize| samples.points[*i].position.distance_squared(middle);
+            let distance = |i: &usize| samples.points.geometry[*i].position.distance_squared(middle);
             let sample = range.filter(uncovered).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
             Some(Pick { sample: sample as u32, lacks: lacking(layers, wanted(sample), sample) })
         })

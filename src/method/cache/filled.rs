@@ -2,7 +2,7 @@
 
 use super::own::Job;
 use super::picture::Picture;
-use crate::eye::{EyePoint, EyeSamples, EyeSurface};
+use crate::eye::{EyePass, PointGeometry, PointSurface};
 use crate::lightcut::CutCounts;
 use crate::math::{Rgb, luminance};
 use crate::method::counts;
@@ -42,7 +42,7 @@ impl Cache {
     /// A cache filled from `source`, adapted and filled again.
     pub fn complete(
         source: &impl RecordSource,
-        samples: &EyeSamples,
+        samples: &EyePass,
         glossy: Option<Glossy>,
         control: &Control,
         stats: &mut Stats,
@@ -65,11 +65,11 @@ impl Cache {
     }
 
     /// A cache without records yet.
-    pub fn new(samples: &EyeSamples, glossy: Option<Glossy>, found: [FoundBy; 2]) -> Cache {
-        let lit = |(point, surface): (&EyePoint, &EyeSurface)| {
+    pub fn new(samples: &EyePass, glossy: Option<Glossy>, found: [FoundBy; 2]) -> Cache {
+        let lit = |(point, surface): (&PointGeometry, &PointSurface)| {
             point.sharing.bands() > 0 || surface.bsdf.split_base(1.0).0 != Rgb::ZERO
         };
-        let wants = samples.points.iter().zip(&samples.surfaces).map(lit).collect();
+        let wants = samples.points.geometry.iter().zip(&samples.points.surfaces).map(lit).collect();
         let layers = [Layer::new(samples), Layer::new(samples)];
         Cache { layers, glossy, found, wants, seams: Vec::new(), counts: CutCounts::default() }
     }
@@ -80,13 +80,7 @@ impl Cache {
     }
 
     /// Computes and splats records until every cell worth one is covered.
-    fn fill(
-        &mut self,
-        source: &impl RecordSource,
-        samples: &EyeSamples,
-        control: &Control,
-        stats: &mut Stats,
-    ) {
+    fn fill(&mut self, source: &impl RecordSource, samples: &EyePass, control: &Control, stats: &mut Stats) {
         let count = samples.len();
         let mut level = FIRST_LEVEL;
         while count >> level >= source.settings().least_cell.max(1) as usize {
@@ -110,7 +104,7 @@ impl Cache {
     }
 
     /// Shrinks footprints at visible seams; false if there are none.
-    fn adapt(&mut self, settings: &CacheSettings, samples: &EyeSamples, stats: &mut Stats) -> bool {
+    fn adapt(&mut self, settings: &CacheSettings, samples: &EyePass, stats: &mut Stats) -> bool {
         stats.time(Stage::Splat, || {
             let threshold = settings.threshold;
             let seams = adapt::seams(samples, &self.layers, self.glossy.as_ref(), threshold);
@@ -148,7 +142,7 @@ impl Cache {
     }
 
     /// Adds what records give to the pixels; the rest is left to cuts.
-    pub fn resolve(&self, samples: &EyeSamples, picture: &mut Picture) -> Vec<Job> {
+    pub fn resolve(&self, samples: &EyePass, picture: &mut Picture) -> Vec<Job> {
         let lobes = self.glossy.as_ref().map(|glossy| glossy.lobes(samples, &self.layers));
         let mut jobs = Vec::new();
         // The only layer that records light, and the only one that they leave.
@@ -157,9 +151,9 @@ impl Cache {
             [FoundBy::Samples, FoundBy::Records] => (Some(Origin::Indirect), Some(Origin::Direct)),
             _ => (None, None),
         };
-        for (i, surface) in samples.surfaces.iter().enumerate() {
+        for (i, surface) in samples.points.surfaces.iter().enumerate() {
             let sample = i as u32;
-            let (base, lobe) = surface.bsdf.split_base(surface.out.dot(samples.points[i].normal));
+            let (base, lobe) = surface.bsdf.split_base(surface.out.dot(samples.points.geometry[i].normal));
             let mut known = 0.0;
             if self.wants[i] {
                 if lacking(&self.layers, self.wanted(i), i) != [false; 2] {
@@ -179,7 +173,7 @@ impl Cache {
             }
             if self.found.contains(&FoundBy::Records)
                 && lobe.is_some()
-                && samples.points[i].sharing.bands() == 0
+                && samples.points.geometry[i].sharing.bands() == 0
             {
                 jobs.push(Job { sample, lobe_only: true, origin: recorded, known });
             }

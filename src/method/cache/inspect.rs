@@ -15,7 +15,7 @@
 //! Where a pixel has several eye samples, the last in the order of the index stands for all but in sums and
 //! counts.
 
-use crate::eye::EyeSamples;
+use crate::eye::EyePass;
 use crate::film::Image;
 use crate::math::{LUMINANCE, Rgb};
 use crate::radiance_cache::adapt::Seam;
@@ -27,18 +27,18 @@ use rayon::prelude::*;
 pub type Layers = Vec<(String, Image)>;
 
 /// All layers that are known once the cache is complete.
-pub fn layers(samples: &EyeSamples, layers: &[Layer; 2], seams: &[Vec<Seam>]) -> Layers {
+pub fn layers(samples: &EyePass, layers: &[Layer; 2], seams: &[Vec<Seam>]) -> Layers {
     let blank = || Image::new(samples.emitted.width, samples.emitted.height);
     let mut placed = blank();
     for (l, layer) in layers.iter().enumerate() {
         for record in &layer.records {
-            placed.pixels[pixel(samples, record.facts.sample as usize)][l] += 1.0;
+            pixels(samples, record.facts.sample as usize).for_each(|pixel| placed.pixels[pixel][l] += 1.0);
         }
     }
     let mut weights = blank();
     for i in 0..samples.len() {
         let sums = Rgb::new(layers[0].sums[i].weight, layers[1].sums[i].weight, 0.0);
-        weights.pixels[pixel(samples, i)] += sums;
+        pixels(samples, i).for_each(|pixel| weights.pixels[pixel] += sums);
     }
     let heaviest: Vec<[Option<u32>; 2]> = (0..samples.index.leaves())
         .into_par_iter()
@@ -51,7 +51,7 @@ pub fn layers(samples: &EyeSamples, layers: &[Layer; 2], seams: &[Vec<Seam>]) ->
         let mut image = blank();
         for i in 0..samples.len() {
             if let Some(value) = value(i) {
-                image.pixels[pixel(samples, i)] = value;
+                pixels(samples, i).for_each(|pixel| image.pixels[pixel] = value);
             }
         }
         image
@@ -73,20 +73,21 @@ pub fn layers(samples: &EyeSamples, layers: &[Layer; 2], seams: &[Vec<Seam>]) ->
     for (pass, seams) in (1..).zip(seams) {
         let mut image = blank();
         for seam in seams {
-            image.pixels[pixel(samples, seam.sample as usize)][seam.layer] += 1.0;
+            pixels(samples, seam.sample as usize).for_each(|pixel| image.pixels[pixel][seam.layer] += 1.0);
         }
         found.push((format!("seams.{pass}"), image));
     }
     found
 }
 
-fn pixel(samples: &EyeSamples, sample: usize) -> usize {
-    samples.surfaces[sample].pixel as usize
+/// Pixels that see a shading point.
+fn pixels(samples: &EyePass, point: usize) -> impl Iterator<Item = usize> {
+    samples.visibility.of(point).iter().map(|seen| seen.pixel as usize)
 }
 
 /// The record of `layer` that weighs most at a sample.
-fn heaviest(samples: &EyeSamples, layer: &Layer, leaf: usize, sample: usize) -> Option<u32> {
-    let point = &samples.points[sample];
+fn heaviest(samples: &EyePass, layer: &Layer, leaf: usize, sample: usize) -> Option<u32> {
+    let point = &samples.points.geometry[sample];
     let weight = |&id: &u32| layer.records[id as usize].at(point).map(|(weight, _)| (weight, id));
     layer.lists[leaf].iter().filter_map(weight).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)
 }

@@ -5,7 +5,7 @@
 //! others are taken in packets spread over the patch, so that neighbours leave different clusters to chance. Patches of few samples have cuts of their own.
 
 use crate::compensation::samples::{NearCounts, NearLight};
-use crate::eye::EyeSamples;
+use crate::eye::EyePass;
 use crate::lightcut::{
     CoherenceLimit, CutCounts, CutSettings, Lightcut, PacketLightcut, PacketSum, PacketVisibility, Receiver,
     ReceiverPacket, ReconstructionCut, Visibility, group_coherent,
@@ -61,7 +61,7 @@ pub struct Lit {
 /// Lights all jobs, unless cancelled.
 pub fn light<'w>(
     source: &Source<'w>,
-    samples: &EyeSamples<'w>,
+    samples: &EyePass<'w>,
     jobs: &[Job],
     cut: &CutSettings,
     control: &Control,
@@ -72,7 +72,7 @@ pub fn light<'w>(
 /// Lights patches, each of jobs that are lit together; none any more once cancelled.
 pub fn light_patches<'w>(
     source: &Source<'w>,
-    samples: &EyeSamples<'w>,
+    samples: &EyePass<'w>,
     patches: &[Vec<Job>],
     cut: &CutSettings,
     control: &Control,
@@ -110,12 +110,12 @@ pub fn light_patches<'w>(
 }
 
 /// Jobs that are lit together.
-pub fn patches(source: &Source, samples: &EyeSamples, jobs: &[Job]) -> Vec<Vec<Job>> {
+pub fn patches(source: &Source, samples: &EyePass, jobs: &[Job]) -> Vec<Vec<Job>> {
     let place = |job: &Job| {
-        let point = &samples.points[job.sample as usize];
+        let point = &samples.points.geometry[job.sample as usize];
         (point.position, point.normal)
     };
-    let bsdf = |job: &Job| &samples.surfaces[job.sample as usize].bsdf;
+    let bsdf = |job: &Job| &samples.points.surfaces[job.sample as usize].bsdf;
     let same =
         |a: &Job, b: &Job| a.lobe_only == b.lobe_only && a.origin == b.origin && bsdf(a).same_lobe(bsdf(b));
     let diagonal = source.world.diagonal;
@@ -143,7 +143,7 @@ impl<'w> Cutters<'w> {
         &mut self,
         s: &Source<'_>,
         rays: &V,
-        samples: &EyeSamples<'w>,
+        samples: &EyePass<'w>,
         jobs: &[Job],
         cut: &CutSettings,
         lit: &mut Vec<(Job, Rgb)>,
@@ -188,7 +188,7 @@ impl<'w> Cutters<'w> {
         &mut self,
         s: &Source<'_>,
         rays: &V,
-        samples: &EyeSamples<'w>,
+        samples: &EyePass<'w>,
         jobs: &[Job],
         cut: &CutSettings,
         lit: &mut Vec<(Job, Rgb)>,
@@ -208,11 +208,11 @@ impl<'w> Cutters<'w> {
 
 /// Which jobs of a patch make its cut: the outermost, so that light is never extrapolated, and every so many others,
 /// from the middle of each stretch.
-fn makers(samples: &EyeSamples, jobs: &[Job]) -> Vec<bool> {
+fn makers(samples: &EyePass, jobs: &[Job]) -> Vec<bool> {
     if jobs.len() <= LANES {
         return vec![true; jobs.len()];
     }
-    let point = |job: &Job| &samples.points[job.sample as usize];
+    let point = |job: &Job| &samples.points.geometry[job.sample as usize];
     let frame = Frame::from_normal(point(&jobs[0]).normal);
     let mut makes = vec![false; jobs.len()];
     let axes = [frame.tangent, -frame.tangent, frame.bitangent, -frame.bitangent];
@@ -226,8 +226,9 @@ fn makers(samples: &EyeSamples, jobs: &[Job]) -> Vec<bool> {
     makes
 }
 
-fn reflector<'w>(samples: &EyeSamples<'w>, job: &Job) -> Receiver<'w> {
-    let (point, surface) = (&samples.points[job.sample as usize], &samples.surfaces[job.sample as usize]);
+fn reflector<'w>(samples: &EyePass<'w>, job: &Job) -> Receiver<'w> {
+    let (point, surface) =
+        (&samples.points.geometry[job.sample as usize], &samples.points.surfaces[job.sample as usize]);
     let frame = Frame::from_normal(point.normal);
     let lobe = if job.lobe_only { surface.bsdf.split_base(1.0).1 } else { None };
     let bsdf = lobe.unwrap_or(surface.bsdf);

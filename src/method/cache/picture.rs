@@ -1,7 +1,7 @@
 //! The picture in the making, and if wanted its parts by the light's origin.
 
 use super::inspect::Layers;
-use crate::eye::EyeSamples;
+use crate::eye::EyePass;
 use crate::film::Image;
 use crate::math::Rgb;
 use crate::vpl::Origin;
@@ -18,7 +18,7 @@ pub struct Picture {
 
 impl Picture {
     /// Only the emitters in view so far.
-    pub fn new(samples: &EyeSamples, with_parts: bool) -> Picture {
+    pub fn new(samples: &EyePass, with_parts: bool) -> Picture {
         let color = samples.emitted.clone();
         let blank = || Image::new(color.width, color.height);
         let parts = with_parts.then(|| [blank(), blank(), blank()]);
@@ -26,21 +26,22 @@ impl Picture {
     }
 
     /// Adds radiance that an eye sample reflects, of one origin or of both.
-    pub fn add(&mut self, samples: &EyeSamples, sample: usize, origin: Option<Origin>, radiance: Rgb) {
+    pub fn add(&mut self, samples: &EyePass, sample: usize, origin: Option<Origin>, radiance: Rgb) {
         if !radiance.is_finite() {
             self.nonfinite += 1;
             return;
         }
-        let surface = &samples.surfaces[sample];
-        let seen = surface.throughput * radiance;
-        self.color.pixels[surface.pixel as usize] += seen;
-        if let Some(parts) = &mut self.parts {
-            let part = match origin {
-                Some(Origin::Direct) => 0,
-                Some(Origin::Indirect) => 1,
-                None => 2,
-            };
-            parts[part].pixels[surface.pixel as usize] += seen;
+        for seen in samples.visibility.of(sample) {
+            let light = seen.weight * radiance;
+            self.color.pixels[seen.pixel as usize] += light;
+            if let Some(parts) = &mut self.parts {
+                let part = match origin {
+                    Some(Origin::Direct) => 0,
+                    Some(Origin::Indirect) => 1,
+                    None => 2,
+                };
+                parts[part].pixels[seen.pixel as usize] += light;
+            }
         }
     }
 

@@ -6,7 +6,7 @@ use super::filled::Cache;
 use super::inspect;
 use super::own::{self, Job};
 use super::picture::Picture;
-use crate::eye::{EyeSamples, EyeSettings};
+use crate::eye::{EyePass, EyeSettings};
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::lights::Lights;
@@ -77,7 +77,7 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
 /// Eye samples and virtual lights: all that the picture needs but lighting.
 pub struct Prepared<'w> {
     world: &'w World,
-    samples: EyeSamples<'w>,
+    samples: EyePass<'w>,
     glossy: Option<Glossy>,
     lights: Lights,
     stats: Stats,
@@ -92,7 +92,7 @@ impl<'w> Prepared<'w> {
 
         let eye = EyeSettings { spp, seed: settings.seed, max_depth };
         control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
-        let mut samples = stats.time(Stage::EyePass, || EyeSamples::look(world, view, eye, control));
+        let mut samples = stats.time(Stage::EyePass, || EyePass::trace(world, view, eye, control));
         let glossy = stats.time(Stage::EyePass, || {
             (!settings.lights_by_cuts())
                 .then(|| Glossy::find(world, &mut samples, &settings.cache.series))

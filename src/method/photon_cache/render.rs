@@ -1,6 +1,6 @@
 //! The picture: eye pass, photons, trees of direct light, the cache, and what it leaves to single samples.
 
-use crate::eye::{EyeSamples, EyeSettings};
+use crate::eye::{EyePass, EyeSettings};
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::math::Rgb;
@@ -81,7 +81,7 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
 
     let eye = EyeSettings { spp: settings.spp.max(1), seed: settings.seed, max_depth };
     control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
-    let mut samples = stats.time(Stage::EyePass, || EyeSamples::look(world, view, eye, control));
+    let mut samples = stats.time(Stage::EyePass, || EyePass::trace(world, view, eye, control));
     let glossy = stats.time(Stage::EyePass, || Glossy::find(world, &mut samples, &settings.cache.series));
     counts::eye(&mut stats, &samples.chains);
 
@@ -165,7 +165,7 @@ fn irradiance(
 /// Indirect light at samples that records do not serve.
 fn own_gathers(
     source: &FinalGatherSource,
-    samples: &EyeSamples,
+    samples: &EyePass,
     jobs: &[&Job],
     settings: &Settings,
     control: &Control,

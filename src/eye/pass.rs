@@ -1,0 +1,119 @@
+//! The eye pass: all surfaces that a window sees, found once and kept in an order in which neighbours in space are
+//! neighbours in memory.
+//!
+//! Paper: Herzog et al. 2009, section 4: eye samples are stored through specular chains and sorted by a kd-tree.
+
+use super::points::{PointGeometry, PointSurface, VisibilitySample};
+use super::{ChainCounts, EyeIndex, EyeRays, EyeSettings, ShadingPoints, VisibilitySamples, VisibleSurfaces};
+use crate::film::{Image, Window};
+use crate::progress::Control;
+use crate::view::View;
+use crate::world::World;
+use rayon::prelude::*;
+use std::mem;
+
+/// Pixels along the edge of the square whose eye rays one task traces.
+pub const TILE: u32 = 16;
+
+/// All that a window sees.
+pub struct EyePass<'w> {
+    /// The surfaces seen, in the order of the index.
+    pub points: ShadingPoints<'w>,
+    /// The hierarchy over `points`.
+    pub index: EyeIndex,
+    /// Shares of the points' radiances that reach the pixels.
+    pub visibility: VisibilitySamples,
+    /// Light that reaches the eye from emitters, directly or along specular chains.
+    pub emitted: Image,
+    /// Rays traced.
+    pub chains: ChainCounts,
+    /// Radiances that were not finite and left out.
+    pub nonfinite: u64,
+    /// False if the pass was cancelled.
+    pub complete: bool,
+}
+
+impl<'w> EyePass<'w> {
+    /// Traces the eye rays of every pixel in the view's window.
+    pub fn trace(world: &'w World, view: &View, settings: EyeSettings, control: &Control) -> EyePass<'w> {
+        let rays = EyeRays::new(world, view, settings);
+        let window = &view.window;
+        let mut tiles: Vec<VisibleSurfaces> = (0..window.tile_count(TILE))
+            .into_par_iter()
+            .filter_map(|tile| {
+                if control.is_cancelled() {
+                    return None;
+                }
+                let mut found = VisibleSurfaces::default();
+                for [x, y] in window.tile(tile, TILE) {
+                    for sample in 0..settings.spp.max(1) {
+                        rays.trace(window.film_pixel([x, y]), sample, y * window.width + x, &mut found);
+                    }
+                }
+                control.advance(1);
+                Some(found)
+            })
+            .collect();
+
+        let complete = tiles.len() == window.tile_count(TILE);
+        let mut emitted = Image::new(window.width, window.height);
+        let mut chains = ChainCounts::default();
+        let mut nonfinite = 0;
+        for tile in &mut tiles {
+            for (pixel, radiance) in mem::take(&mut tile.emitted) {
+                emitted.pixels[pixel as usize] += radiance;
+            }
+            chains += tile.chains;
+            nonfinite += tile.nonfinite;
+        }
+        // One array after the other, so that only one at a time is in memory twice.
+        let geometry = joined(&mut tiles, |tile| mem::take(&mut tile.points.geometry));
+        let (index, order) = EyeIndex::build(geometry.iter().map(|point| point.position));
+        let geometry = ordered(geometry, &order);
+        let surfaces = ordered(joined(&mut tiles, |tile| mem::take(&mut tile.points.surfaces)), &order);
+        let samples = ordered(joined(&mut tiles, |tile| mem::take(&mut tile.visibility)), &order);
+        EyePass {
+            points: ShadingPoints { geometry, surfaces },
+            index,
+            visibility: VisibilitySamples::one_each(samples),
+            emitted,
+            chains,
+            nonfinite,
+            complete,
+        }
+    }
+
+    /// Memory in bytes that it takes to render `window` from eye samples kept all at once, if every ray meets one
+    /// surface: they themselves, and as measured half as much again for sorting and lighting them.
+    pub fn expected_bytes(window: &Window, spp: u32) -> u64 {
+        let point = size_of::<PointGeometry>() + size_of::<PointSurface>();
+        let each = 3 * (point + size_of::<VisibilitySample>()) / 2;
+        window.pixel_count().saturating_mul(u64::from(spp)).saturating_mul(each as u64)
+    }
+
+    /// Number of shading points.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether nothing is seen.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+}
+
+/// One part of all tiles in one array; the tiles' are freed one by one.
+fn joined<'w, T>(
+    tiles: &mut [VisibleSurfaces<'w>],
+    part: impl Fn(&mut VisibleSurfaces<'w>) -> Vec<T>,
+) -> Vec<T> {
+    let mut parts: Vec<Vec<T>> = tiles.iter_mut().map(part).collect();
+    let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
+    parts.iter_mut().for_each(|part| all.append(&mut mem::take(part)));
+    all
+}
+
+/// The items in another order.
+fn ordered<T: Copy + Send + Sync>(items: Vec<T>, order: &[u32]) -> Vec<T> {
+    order.par_iter().map(|&i| items[i as usize]).collect()
+}

@@ -1,0 +1,100 @@
+//! Shading points and visibility samples: where light is wanted, and what it adds to which pixel.
+//!
+//! A shading point is lit once; any number of visibility samples carry its radiance to pixels. Neither a camera nor
+//! a pixel is known to a shading point, so that points can be merged and records reused over views.
+//!
+//! Units: positions relative to the scene's centre; weights are per pixel (they include 1/spp).
+
+use super::Sharing;
+use crate::material::Bsdf;
+use crate::math::Rgb;
+use crate::scene::MaterialId;
+use glam::Vec3;
+use std::ops::Range;
+
+/// Geometry of a shading point, all that splatting reads of it: half a cache line.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub struct PointGeometry {
+    /// Position.
+    pub position: Vec3,
+    /// Root of the area that the pixel covers on the surface: the distance to the next point, about.
+    pub spacing: f32,
+    /// Unit shading normal on the side of the eye.
+    pub normal: Vec3,
+    /// Which records can light it.
+    pub sharing: Sharing,
+}
+
+/// Surface of a shading point: the data that shading reads beside the geometry.
+#[derive(Clone, Copy, Debug)]
+pub struct PointSurface<'w> {
+    /// How it scatters; lobes that the chain follows itself are taken out.
+    pub bsdf: Bsdf<'w>,
+    /// Material of the mesh.
+    pub material: MaterialId,
+    /// Unit geometric normal.
+    pub geometric_normal: Vec3,
+    /// Unit vector towards the eye, or towards the last mirror or glass before it.
+    pub out: Vec3,
+}
+
+/// Points whose reflected radiance is wanted, as a structure of arrays.
+#[derive(Clone, Debug, Default)]
+pub struct ShadingPoints<'w> {
+    /// Geometry by point.
+    pub geometry: Vec<PointGeometry>,
+    /// Surface by point.
+    pub surfaces: Vec<PointSurface<'w>>,
+}
+
+impl ShadingPoints<'_> {
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.geometry.len()
+    }
+
+    /// Whether there is no point.
+    pub fn is_empty(&self) -> bool {
+        self.geometry.is_empty()
+    }
+}
+
+/// A share of a shading point's radiance that reaches a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VisibilitySample {
+    /// Pixel of the window, in rows.
+    pub pixel: u32,
+    /// What the pixel's colour gains per radiance leaving the point along its `out`.
+    pub weight: Rgb,
+}
+
+/// The visibility samples of a frame, grouped by shading point, so that the point is implied: 16 bytes a sample and 4
+/// a point.
+///
+/// They are in the order of points, not of pixels, because radiances are added to pixels as points are lit; the
+/// order of those sums decides the last bits of a picture.
+#[derive(Clone, Debug)]
+pub struct VisibilitySamples {
+    /// Index of each point's first sample, and at last the number of samples.
+    first: Vec<u32>,
+    samples: Vec<VisibilitySample>,
+}
+
+impl VisibilitySamples {
+    /// One sample of each point, in the order of the points.
+    pub fn one_each(samples: Vec<VisibilitySample>) -> VisibilitySamples {
+        VisibilitySamples { first: (0..=samples.len() as u32).collect(), samples }
+    }
+
+    /// The samples of a shading point.
+    #[inline]
+    pub fn of(&self, point: usize) -> &[VisibilitySample] {
+        &self.samples[self.range(point)]
+    }
+
+    #[inline]
+    fn range(&self, point: usize) -> Range<usize> {
+        self.first[point] as usize..self.first[point + 1] as usize
+    }
+}

@@ -1,0 +1,110 @@
+//! Eye rays one by one: their random numbers, their places in pixels, and the surfaces that they make visible.
+
+use super::chain::{ChainCounts, EyeSample, trace};
+use super::points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySample};
+use super::{Sharing, eye_sampler};
+use crate::math::Rgb;
+use crate::view::View;
+use crate::world::World;
+
+/// Settings of eye rays.
+#[derive(Clone, Copy, Debug)]
+pub struct EyeSettings {
+    /// Eye rays a pixel.
+    pub spp: u32,
+    /// Another seed, other rays.
+    pub seed: u32,
+    /// Longest path in edges, the one to the light included.
+    pub max_depth: u32,
+}
+
+/// The eye rays of a frame.
+#[derive(Clone, Copy)]
+pub struct EyeRays<'a, 'w> {
+    world: &'w World,
+    view: &'a View,
+    settings: EyeSettings,
+    /// Angle between neighbouring rays at the film's centre, in radians.
+    angle: f32,
+}
+
+/// Surfaces that eye rays have made visible, in the order of the rays, each with one visibility sample.
+#[derive(Default)]
+pub struct VisibleSurfaces<'w> {
+    /// The surfaces.
+    pub points: ShadingPoints<'w>,
+    /// Visibility sample of each of them.
+    pub visibility: Vec<VisibilitySample>,
+    /// By pixel: light, other than 0, that reaches the eye from emitters, directly or along specular chains; per pixel
+    /// as weights are.
+    pub emitted: Vec<(u32, Rgb)>,
+    /// Rays traced.
+    pub chains: ChainCounts,
+    /// Radiances that were not finite and left out.
+    pub nonfinite: u64,
+}
+
+impl VisibleSurfaces<'_> {
+    /// Forgets all surfaces, and keeps the memory.
+    pub fn clear(&mut self) {
+        self.points.geometry.clear();
+        self.points.surfaces.clear();
+        self.visibility.clear();
+        self.emitted.clear();
+    }
+}
+
+impl<'a, 'w> EyeRays<'a, 'w> {
+    /// Rays of the camera of `view` into `world`.
+    pub fn new(world: &'w World, view: &'a View, settings: EyeSettings) -> EyeRays<'a, 'w> {
+        let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
+        // Angle between neighbouring samples, at the film's centre.
+        let angle = view.pixel_angle() / (settings.spp as f32).sqrt();
+        EyeRays { world, view, settings, angle }
+    }
+
+    /// Follows eye ray `sample` of the film's pixel `film_pixel` and appends what it makes visible to `found`, where the
+    /// pixel has the number `pixel`.
+    pub fn trace(&self, film_pixel: [u32; 2], sample: u32, pixel: u32, found: &mut VisibleSurfaces<'w>) {
+        let EyeSettings { spp, seed, max_depth } = self.settings;
+        let (mut sampler, jitter) = eye_sampler(film_pixel, seed, sample, spp);
+        let ray = self.view.primary_ray(film_pixel, jitter);
+        let VisibleSurfaces { points, visibility, chains, .. } = found;
+        let visit = |eye: EyeSample<'w>| {
+            if eye.depth < max_depth
+                && let Some((geometry, surface)) = self.shading_point(&eye)
+            {
+                points.geometry.push(geometry);
+                points.surfaces.push(surface);
+                visibility.push(VisibilitySample { pixel, weight: eye.throughput / spp as f32 });
+            }
+        };
+        let emitted = trace(self.world, ray, max_depth, &mut sampler, chains, visit) / spp as f32;
+        if !emitted.is_finite() {
+            found.nonfinite += 1;
+        } else if emitted != Rgb::ZERO {
+            found.emitted.push((pixel, emitted));
+        }
+    }
+
+    /// The shading point at a visible surface, or `None` if it cannot be lit.
+    fn shading_point(&self, eye: &EyeSample<'w>) -> Option<(PointGeometry, PointSurface<'w>)> {
+        let s = &eye.surface;
+        let front = s.frame.normal.dot(eye.out) > 0.0;
+        if !front && !eye.bsdf.two_sided() {
+            return None;
+        }
+        let normal = if front { s.frame.normal } else { -s.frame.normal };
+        // Foreshortening is limited, so that grazing samples do not claim whole floors.
+        let spacing = self.angle * eye.distance / normal.dot(eye.out).max(0.05).sqrt();
+        let sharing = Sharing::new(eye.bsdf.coat(), 0);
+        let geometry = PointGeometry { position: s.position, spacing, normal, sharing };
+        let surface = PointSurface {
+            bsdf: eye.bsdf,
+            material: self.world.scene.meshes[s.mesh as usize].material,
+            geometric_normal: s.normal,
+            out: eye.out,
+        };
+        (s.position.is_finite() && spacing.is_finite()).then_some((geometry, surface))
+    }
+}
