@@ -1,4 +1,4 @@
-//! Bounds of clusters, and what lights give, point by point and for sixteen points at once.
+//! Cluster bounds and contributions of lights, point by point and for sixteen points at once.
 
 use super::measure::Case;
 use super::setting::{Dice, Setting};
@@ -14,21 +14,21 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
     kind: Kind::Parts { needs_scene: true, run },
 };
 
-/// Clusters drawn for each group.
+/// Number of clusters drawn for each group.
 const CLUSTERS: usize = 256;
-/// Groups, at most.
+/// Maximum number of groups.
 const GROUPS: usize = 16;
 
 fn run(context: &Context) -> Vec<Table> {
     let Some(setting) = Setting::new(context) else { return Vec::new() };
     let stretches = setting.pixels();
     let mut groups: Vec<Vec<usize>> = stretches.iter().flat_map(|s| setting.groups(s)).collect();
-    // The fullest, for whose sake there are groups.
+    // Largest groups first: they are the reason for grouping.
     groups.sort_by_key(|g| std::cmp::Reverse(g.len()));
     groups.truncate(GROUPS);
     let transfer = setting.transfer();
     let mut dice = Dice(4);
-    // Inner nodes, and the lights that stand for them.
+    // Inner nodes, and their representative lights.
     let inner: Vec<&Node> = setting.trees.nodes.iter().filter(|n| !n.is_leaf()).collect();
     let nodes: Vec<&Node> =
         (0..CLUSTERS).filter_map(|_| inner.get(dice.below(inner.len())).copied()).collect();

@@ -65,7 +65,7 @@ fn run(context: &Context) -> Vec<Table> {
     )]
 }
 
-/// One of each kind.
+/// Returns a material of each kind.
 fn kinds() -> Vec<Material> {
     let constant = |v: f32| Reflectance::Constant(Rgb::splat(v));
     let rough = |alpha, distribution, fresnel, scale| Lobe::Rough {

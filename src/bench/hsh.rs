@@ -1,4 +1,5 @@
-//! Hemispherical harmonics: virtual lights added to a series a second, and look-ups of what it reflects.
+//! Hemispherical harmonics: virtual lights added to a series a second, and evaluations of the reflected
+//! radiance.
 
 use super::measure::Case;
 use super::setting::Dice;
@@ -52,7 +53,7 @@ fn run(context: &Context) -> Vec<Table> {
     )]
 }
 
-/// A patch somewhere above, facing the receiver more or less.
+/// Draws a patch somewhere above, facing the receiver more or less.
 fn source(dice: &mut Dice) -> LocalVpl<f32> {
     let mut part = || dice.below(1 << 24) as f32 / (1 << 24) as f32;
     let offset = Vec3::new(part() - 0.5, part() - 0.5, part());

@@ -1,20 +1,20 @@
-//! Rates of cases measured in turns, so that whatever else the machine does falls on all of them alike.
+//! Rates of cases measured in turns, so that other load on the machine affects all of them equally.
 //!
-//! Every case is run once to warm up and to see how many runs make a sample. Then each round takes a sample of every
-//! case, every other round in reverse; a case's ratio is formed within the rounds.
+//! Every case is run once to warm up and to find the number of runs in a sample. Then each round takes a
+//! sample of every case, every other round in reverse; a case's ratio is formed within the rounds.
 
 use super::{Row, Settings, Spread, Table};
 use rustix::time::{ClockId, clock_gettime};
 use std::fmt;
 
-/// What time is.
+/// Clock by which a benchmark is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
     /// Processor time of the calling thread: for work on one thread.
     Thread,
-    /// Processor time of all threads together: for what it costs.
+    /// Processor time of all threads together: for cost.
     Process,
-    /// Time that passes: for work on several threads, on a machine with nothing else to do.
+    /// Elapsed time: for work on several threads, on an otherwise idle machine.
     Wall,
 }
 
@@ -37,7 +37,7 @@ impl Clock {
 
 /// Work to be timed.
 pub(super) struct Case<'a> {
-    /// What it is.
+    /// Labels of its row.
     pub labels: Vec<String>,
     /// Index of the case that its ratio is to; may be its own.
     pub against: usize,
@@ -45,12 +45,12 @@ pub(super) struct Case<'a> {
     pub units: f64,
     /// Further figures.
     pub figures: Vec<Option<f64>>,
-    /// A run.
+    /// Function that does one run.
     pub work: Box<dyn FnMut() + 'a>,
 }
 
 impl<'a> Case<'a> {
-    /// A case without further figures.
+    /// Creates a case without further figures.
     pub fn new(labels: &[&str], against: usize, units: f64, work: impl FnMut() + 'a) -> Case<'a> {
         Case {
             labels: labels.iter().map(|l| (*l).to_owned()).collect(),
@@ -62,26 +62,26 @@ impl<'a> Case<'a> {
     }
 }
 
-/// What casts doubt on a figure.
+/// Reasons to doubt a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Warning {
-    /// Some samples lie far from the rest.
+    /// Some samples are far from the median.
     Outliers {
-        /// Which case.
+        /// Labels of the case.
         case: String,
-        /// How many samples.
+        /// Number of such samples.
         count: usize,
     },
     /// The quartiles of the ratio are far apart.
     Unsteady {
-        /// Which case.
+        /// Labels of the case.
         case: String,
-        /// Their distance over the median.
+        /// Distance of the quartiles over the median.
         spread: f64,
     },
-    /// The work is too short for the clock.
+    /// The work is too short for the clock's resolution.
     Short {
-        /// Which case.
+        /// Labels of the case.
         case: String,
     },
 }
@@ -104,13 +104,13 @@ impl fmt::Display for Warning {
     }
 }
 
-/// A sample this many times the median deviation from the median is an outlier.
+/// Distance from the median, in median deviations, beyond which a sample is an outlier.
 const OUTLYING: f64 = 10.0 * 1.4826;
-/// Ratios whose quartiles are further apart than this are unsteady.
+/// Relative distance of a ratio's quartiles beyond which it is unsteady.
 const UNSTEADY: f64 = 0.1;
-/// The shortest sample worth a figure, seconds.
+/// Minimum duration of a usable sample, seconds.
 const SHORTEST: f64 = 1e-5;
-/// Most runs in a sample.
+/// Maximum number of runs in a sample.
 const MOST_RUNS: f64 = 1e6;
 
 /// Measures cases in turns. Rates are in units of work a second times `scale`.
@@ -163,7 +163,8 @@ pub(super) fn alternate(
     (rows, warnings)
 }
 
-/// How many values lie far from the others. At least one per cent counts as the usual deviation.
+/// Counts values far from the others. The median deviation is taken to be at least one per cent of the
+/// median.
 fn outliers(values: &[f64]) -> usize {
     let median = Spread::of(values).median;
     let deviations: Vec<f64> = values.iter().map(|v| (v - median).abs()).collect();

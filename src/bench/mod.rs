@@ -1,9 +1,9 @@
-//! `lightsplat bench`: how fast parts of the renderer are, and what whole pictures cost and are worth.
+//! `lightsplat bench`: speed of parts of the renderer, time and error of whole pictures.
 //!
-//! A benchmark is an entry of [`REGISTRY`]. Those of parts measure cases against each other (`measure`) and return a
-//! [`Report`] of tables whose first figure is a ratio, for ratios hold from one machine to the next better than rates
-//! do; [`export`] writes reports, one format a file. Studies ([`study`]) render whole pictures, keep them, judge
-//! them against references and write a page. Nothing here decides how a picture is made.
+//! A benchmark is an entry of [`REGISTRY`]. Those of parts measure cases against each other (`measure`) and
+//! return a [`Report`] of tables whose first figure is a ratio, for ratios hold from one machine to the next
+//! better than rates do; [`export`] writes reports, one format a file. Studies ([`study`]) render whole
+//! pictures, store them, judge them against references and write a page. No picture depends on this module.
 
 mod bounds;
 mod bsdf;
@@ -25,32 +25,32 @@ use crate::session::Session;
 use std::path::PathBuf;
 use study::{Document, Study, StudyError};
 
-/// A benchmark that can be asked for by name.
+/// A benchmark that can be chosen by name.
 pub struct Benchmark {
     /// Name on the command line.
     pub name: &'static str,
-    /// What it measures, in a line.
+    /// Description in a line.
     pub about: &'static str,
-    /// What it works on.
+    /// Kind of benchmark.
     pub kind: Kind,
 }
 
-/// What a benchmark works on.
+/// Kinds of benchmarks, by their subject.
 pub enum Kind {
     /// Parts of the renderer.
     Parts {
-        /// Whether it measures on a scene.
+        /// True if it measures on a scene.
         needs_scene: bool,
-        /// Measures.
+        /// Function that measures.
         run: fn(&Context) -> Vec<Table>,
     },
     /// Whole pictures.
     Study {
-        /// Names of the scenes that are studied if the user names none; if there are none, the user has to.
+        /// Names of the scenes studied by default; if empty, the user has to name some.
         scenes: &'static [&'static str],
-        /// Width and height of the pictures unless the user wants others.
+        /// Default width and height of the pictures.
         pixels: [u32; 2],
-        /// Studies scene files.
+        /// Function that studies scene files.
         run: fn(&Study, &[PathBuf]) -> Result<Document, StudyError>,
     },
 }
@@ -66,14 +66,14 @@ pub const REGISTRY: [Benchmark; 7] = [
     hsh::BENCHMARK,
 ];
 
-/// How to measure.
+/// Settings of measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Threads where all are used.
+    /// Number of threads of multi-threaded cases.
     pub threads: usize,
-    /// Samples of every case.
+    /// Number of samples of every case.
     pub repeats: usize,
-    /// Seconds a sample lasts, about.
+    /// Approximate duration of a sample, seconds.
     pub seconds: f64,
 }
 
@@ -83,23 +83,23 @@ impl Default for Settings {
     }
 }
 
-/// What a benchmark is given.
+/// Inputs of a benchmark.
 pub struct Context<'a> {
-    /// The scene, if one was given; always there for those that need it.
+    /// The scene, if one was named; always present for benchmarks that need one.
     pub session: Option<&'a Session>,
-    /// How to measure.
+    /// Settings of measurements.
     pub settings: Settings,
-    /// Called with what is being done.
+    /// Callback for progress messages.
     pub say: &'a dyn Fn(&str),
 }
 
 impl Benchmark {
-    /// The one of that name.
+    /// Finds a benchmark by its name.
     pub fn named(name: &str) -> Option<&'static Benchmark> {
         REGISTRY.iter().find(|b| b.name == name)
     }
 
-    /// What it measures on, in the usage.
+    /// Returns the name of its operand in the usage.
     pub fn operand(&self) -> &'static str {
         match self.kind {
             Kind::Parts { needs_scene: false, .. } => "",
@@ -109,7 +109,7 @@ impl Benchmark {
         }
     }
 
-    /// The report of what measuring found.
+    /// Makes a report of measured tables.
     pub fn report(&self, context: &Context, tables: Vec<Table>) -> Report {
         let mut facts = vec![
             ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),

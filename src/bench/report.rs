@@ -1,26 +1,26 @@
-//! What a benchmark found.
+//! Results of a benchmark.
 
 use serde::Serialize;
 
 /// All tables of a benchmark.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Which benchmark.
+    /// Name of the benchmark.
     pub benchmark: String,
-    /// The scene's name, if it was on one.
+    /// Name of the scene, if it was on one.
     pub scene: Option<String>,
-    /// What else the figures depend on, by name.
+    /// Other conditions that the figures depend on, by name.
     pub facts: Vec<(String, String)>,
-    /// What was measured.
+    /// The measured tables.
     pub tables: Vec<Table>,
 }
 
 /// Cases measured against each other.
 #[derive(Clone, Debug, Serialize)]
 pub struct Table {
-    /// In a few words.
+    /// Title in a few words.
     pub title: String,
-    /// What the rows are, and what the ratio is to.
+    /// Description of the rows, and of the case that ratios are to.
     pub about: String,
     /// Names of the columns that tell rows apart.
     pub labels: Vec<String>,
@@ -30,14 +30,14 @@ pub struct Table {
     pub figures: Vec<String>,
     /// The cases.
     pub rows: Vec<Row>,
-    /// What casts doubt on some of them.
+    /// Warnings about some of them.
     pub warnings: Vec<String>,
 }
 
 /// A case.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// What it is.
+    /// Labels of the case.
     pub labels: Vec<String>,
     /// Rate over the rate of the case it is compared with, sample by sample.
     pub ratio: Spread,
@@ -45,23 +45,23 @@ pub struct Row {
     pub rate: Spread,
     /// The rates of all samples, in their order.
     pub samples: Vec<f64>,
-    /// Further figures; empty cells are none.
+    /// Further figures; `None` gives an empty cell.
     pub figures: Vec<Option<f64>>,
 }
 
 /// Median and quartiles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
-    /// Half the values are below.
+    /// Median.
     pub median: f64,
-    /// A quarter is below.
+    /// Lower quartile.
     pub low: f64,
-    /// A quarter is above.
+    /// Upper quartile.
     pub high: f64,
 }
 
 impl Spread {
-    /// Of some values; all 0 of none.
+    /// Computes median and quartiles of some values; all 0 for none.
     pub fn of(values: &[f64]) -> Spread {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -76,20 +76,21 @@ impl Spread {
         Spread { median: at(0.5), low: at(0.25), high: at(0.75) }
     }
 
-    /// Distance of the quartiles over the median.
+    /// Returns the distance of the quartiles over the median.
     pub fn relative(&self) -> f64 {
         if self.median > 0.0 { (self.high - self.low) / self.median } else { 0.0 }
     }
 }
 
 impl Table {
-    /// Heads of the columns: labels, ratio and its quartiles, rate and its relative spread, further figures.
+    /// Returns the heads of the columns: labels, ratio and its quartiles, rate and its relative spread,
+    /// further figures.
     pub fn heads(&self) -> Vec<String> {
         let fixed = ["ratio".to_owned(), "quartiles".to_owned(), self.unit.clone(), "spread".to_owned()];
         self.labels.iter().chain(&fixed).chain(&self.figures).cloned().collect()
     }
 
-    /// A row's cells under [`Table::heads`], for people.
+    /// Returns a row's cells under [`Table::heads`], for people.
     pub fn cells(&self, row: &Row) -> Vec<String> {
         let fixed = [
             number(row.ratio.median),
@@ -102,7 +103,7 @@ impl Table {
     }
 }
 
-/// Three digits at least, without an exponent.
+/// Formats a number with at least three digits, without an exponent.
 fn number(value: f64) -> String {
     match value.abs() {
         v if v == 0.0 || v >= 1000.0 => format!("{value:.0}"),

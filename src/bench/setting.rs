@@ -1,4 +1,4 @@
-//! What benchmarks on a scene measure with: its eye samples, its virtual lights in their trees.
+//! Inputs of benchmarks on a scene: its eye samples, its virtual lights in their trees.
 
 use super::Context;
 use crate::eye::{EyePass, EyeSettings};
@@ -13,12 +13,12 @@ use crate::vpl::{LightPass, LightPassSettings, light_pass};
 use crate::world::World;
 use std::ops::Range;
 
-/// Neighbouring eye samples in a stretch.
+/// Number of neighbouring eye samples in a stretch.
 const STRETCH: usize = 64;
-/// Stretches, spread over the picture.
+/// Number of stretches, spread over the picture.
 const STRETCHES: usize = 6;
 
-/// A scene seen and lit.
+/// A scene with its eye samples and virtual lights.
 pub(super) struct Setting<'w> {
     pub world: &'w World,
     pub samples: EyePass<'w>,
@@ -26,7 +26,7 @@ pub(super) struct Setting<'w> {
 }
 
 impl<'w> Setting<'w> {
-    /// With the renderers' default settings. None if there is no scene.
+    /// Prepares a scene with the renderers' default settings. `None` if there is no scene.
     pub fn new(context: &Context<'w>) -> Option<Setting<'w>> {
         let Session { world, cameras, .. } = context.session?;
         let view = View::whole(cameras.still, cameras.resolution);
@@ -40,37 +40,37 @@ impl<'w> Setting<'w> {
         Some(Setting { world, samples, trees })
     }
 
-    /// What reaches points from the lights.
+    /// Returns the transfer of light to points.
     pub fn transfer(&self) -> Transfer<'_> {
         Transfer::new(&self.trees, self.world.diagonal)
     }
 
-    /// The surface at an eye sample, as lightcuts per pixel light it.
+    /// Returns the surface at an eye sample, as lightcuts per pixel shade it.
     pub fn reflector(&self, sample: usize) -> Receiver<'w> {
         let (point, surface) = (&self.samples.points.geometry[sample], &self.samples.points.surfaces[sample]);
         let frame = Frame::from_normal(point.normal);
         Receiver::new(point.position, surface.geometric_normal, &frame, surface.bsdf, surface.out)
     }
 
-    /// The same as a record collects its light.
+    /// Returns the same as a receiver of irradiance, as records use it.
     pub fn collector(&self, sample: usize) -> Receiver<'static> {
         let (point, surface) = (&self.samples.points.geometry[sample], &self.samples.points.surfaces[sample]);
         Receiver::irradiance(point.position, surface.geometric_normal, &Frame::from_normal(point.normal))
     }
 
-    /// Stretches of `n` items in a row.
+    /// Returns stretches of `n` consecutive items.
     pub fn spread(&self, n: usize) -> Vec<Range<usize>> {
         let length = STRETCH.min(n);
         let first = |s| (n - length) * s / (STRETCHES - 1);
         (0..STRETCHES).map(|s| first(s)..first(s) + length).collect()
     }
 
-    /// Stretches of eye samples that are neighbours in space, as pixels are lit.
+    /// Returns stretches of eye samples that are neighbours in space, as pixels are.
     pub fn pixels(&self) -> Vec<Vec<usize>> {
         self.spread(self.samples.len()).into_iter().map(Iterator::collect).collect()
     }
 
-    /// A stretch as groups that share a cut.
+    /// Divides a stretch into groups that share a cut.
     pub fn groups(&self, stretch: &[usize]) -> Vec<Vec<usize>> {
         let place = |&sample: &usize| {
             let point = &self.samples.points.geometry[sample];
@@ -86,17 +86,17 @@ impl<'w> Setting<'w> {
         )
     }
 
-    /// All single lights, neighbours in their tree next to each other.
+    /// Returns all single lights, neighbours in their tree next to each other.
     pub fn leaves(&self) -> Vec<&Node> {
         self.trees.leaves().collect()
     }
 }
 
-/// The same numbers every time.
+/// A random number generator of fixed seed.
 pub(super) struct Dice(pub u32);
 
 impl Dice {
-    /// From 0 to `n` - 1; 0 if there is no such number.
+    /// Returns an integer from 0 to `n` - 1; 0 if `n` is 0.
     pub fn below(&mut self, n: usize) -> usize {
         self.0 += 1;
         ((u64::from(hash(self.0, 0xbe7c)) * n as u64) >> 32) as usize

@@ -17,7 +17,7 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 
 /// Indirect virtual lights.
 const LIGHTS: [u32; 2] = [300_000, 1_000_000];
-/// Eye samples whose cuts are averaged.
+/// Number of eye samples whose cuts are averaged.
 const CUTS: usize = 1024;
 
 fn run(context: &Context) -> Vec<Table> {
@@ -55,7 +55,7 @@ fn run(context: &Context) -> Vec<Table> {
     )]
 }
 
-/// Mean size of the cuts of eye samples spread over the picture.
+/// Computes the mean size of the cuts of eye samples spread over the picture.
 fn mean_cut(setting: &Setting, trees: &LightTrees, epsilon: f32) -> f64 {
     let settings = CutSettings { epsilon, max_cut: usize::MAX, ..CutSettings::default() };
     let transfer = Transfer::new(trees, setting.world.diagonal);

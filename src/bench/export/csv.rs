@@ -5,7 +5,7 @@ use crate::bench::Report;
 const HEAD: &str =
     "benchmark,scene,table,case,ratio,ratio low,ratio high,rate,rate low,rate high,unit,figures";
 
-/// A head, then a line a case.
+/// Returns a head, then a line a case.
 pub fn csv(report: &Report) -> String {
     let mut text = format!("{HEAD}\r\n");
     for table in &report.tables {

@@ -1,4 +1,4 @@
-//! One page that needs nothing else: tables, and their ratios as bars.
+//! One self-contained page: tables, and their ratios as bars.
 
 use super::{headline, plot};
 use crate::bench::{Report, Table};
@@ -10,7 +10,7 @@ th,td{padding:.15em .7em;text-align:right;border-bottom:1px solid #ddd}\
 text{font:13px system-ui,sans-serif;fill:#222}.label{text-anchor:end}.bar{fill:#4a7fb5}\
 .whisker{stroke:#222;fill:none}.one{stroke:#a40;stroke-dasharray:4 3;fill:none}";
 
-/// The page.
+/// Returns the page.
 pub fn html(report: &Report) -> String {
     let title = escaped(&headline(report));
     let mut text = format!(
@@ -47,7 +47,7 @@ fn section(table: &Table) -> String {
     text
 }
 
-/// Text as HTML shows it.
+/// Escapes text for HTML.
 pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

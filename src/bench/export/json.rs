@@ -1,8 +1,8 @@
-//! JSON: the report as it is, with every sample.
+//! JSON: the report unchanged, with every sample.
 
 use crate::bench::Report;
 
-/// One object.
+/// Returns one object.
 pub fn json(report: &Report) -> String {
     format!("{:#}\n", serde_json::json!(report))
 }

@@ -3,7 +3,7 @@
 use super::headline;
 use crate::bench::Report;
 
-/// A section a table.
+/// Returns a section a table.
 pub fn markdown(report: &Report) -> String {
     let mut text = format!("# {}\n\n", headline(report));
     let facts: Vec<String> = report.facts.iter().map(|(name, value)| format!("{name} {value}")).collect();

@@ -1,4 +1,4 @@
-//! Reports in the formats that can be asked for, one a file.
+//! Export formats of reports, one a file.
 
 mod csv;
 mod html;
@@ -16,11 +16,11 @@ pub use terminal::terminal;
 pub struct Format {
     /// Name on the command line, behind `--export-`.
     pub name: &'static str,
-    /// The text of such a file.
+    /// Function that writes a report in the format.
     pub write: fn(&Report) -> String,
 }
 
-/// All of them.
+/// All formats.
 pub const FORMATS: [Format; 4] = [
     Format { name: "json", write: json::json },
     Format { name: "csv", write: csv::csv },
@@ -28,7 +28,7 @@ pub const FORMATS: [Format; 4] = [
     Format { name: "html", write: html::html },
 ];
 
-/// Headline of a report.
+/// Returns the headline of a report.
 fn headline(report: &Report) -> String {
     match &report.scene {
         Some(scene) => format!("{} on {scene}", report.benchmark),

@@ -9,7 +9,7 @@ const LABELS: f64 = 330.0;
 const BARS: f64 = 420.0;
 const VALUES: f64 = 90.0;
 
-/// A bar for each row, from 0 to its ratio, a whisker over the quartiles, and a line at 1.
+/// Draws a bar for each row, from 0 to its ratio, a whisker over the quartiles, and a line at 1.
 pub fn bars(table: &Table) -> String {
     let most = table.rows.iter().map(|row| row.ratio.high).fold(1.0, f64::max);
     let x = |ratio: f64| LABELS + BARS * (ratio / most).clamp(0.0, 1.0);

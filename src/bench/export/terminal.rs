@@ -3,7 +3,7 @@
 use super::headline;
 use crate::bench::Report;
 
-/// The whole report.
+/// Returns the whole report.
 pub fn terminal(report: &Report) -> String {
     let mut text = format!("{}\n", headline(report));
     for (name, value) in &report.facts {

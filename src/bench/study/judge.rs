@@ -1,4 +1,4 @@
-//! How far a picture is from another, or from the truth behind a reference.
+//! Errors of a picture against another picture, or against the truth that a reference estimates.
 
 use super::{Reference, StudyError};
 use crate::film::Image;
@@ -6,33 +6,34 @@ use crate::film::metrics::{Variances, compare};
 use glam::DVec3;
 use serde::Serialize;
 
-/// Share of the pixels that do not count: those that err most, as in `compare`.
+/// Share of the pixels, those with the largest error, that is left out, as in `compare`.
 const WORST: f64 = 0.001;
 
 /// Error measures.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Errors {
-    /// PSNR of the displayed pictures, dB; none if they are the same.
+    /// PSNR of the displayed pictures, dB; `None` if they are identical.
     pub psnr: Option<f64>,
-    /// Relative mean square error without the worst pixel of a thousand: where paths rarely find a lamp, a few pixels
-    /// of the reference are wrong by more than all others together. Against a reference, without the reference's
-    /// noise, for which reason it may be slightly negative.
+    /// Relative mean square error without the worst pixel of a thousand: where paths rarely find a lamp, a
+    /// few pixels of the reference are wrong by more than all others together. Against a reference, its noise
+    /// is subtracted, so that the value may be slightly negative.
     pub rel_mse: f64,
     /// Mean FLIP of the displayed pictures.
     pub flip: f64,
-    /// Mean radiance over that of the other: what clamping takes away shows here.
+    /// Mean radiance over that of the other picture: shows the energy lost by clamping.
     pub brightness: f64,
 }
 
 impl Errors {
-    /// Against another picture.
+    /// Returns the errors against another picture.
     pub fn between(test: &Image, other: &Image) -> Result<Errors, StudyError> {
         let found = compare(test, other, Variances::default()).map_err(StudyError::Compare)?;
         let brightness = mean(test) / mean(other).max(f64::MIN_POSITIVE);
         Ok(Errors { psnr: found.psnr, rel_mse: found.rel_mse_trimmed, flip: found.flip, brightness })
     }
 
-    /// Against the truth that a reference estimates. PSNR and FLIP are against the reference as it is.
+    /// Returns the errors against the truth that a reference estimates. PSNR and FLIP are against the
+    /// reference as it is.
     pub fn against(test: &Image, reference: &Reference) -> Result<Errors, StudyError> {
         let errors = Errors::between(test, &reference.mean)?;
         let floor = 0.01 * mean(&reference.mean).powi(2);
@@ -51,7 +52,7 @@ impl Errors {
         Ok(Errors { rel_mse: sum / counted.max(1) as f64, ..errors })
     }
 
-    /// Root of the relative mean square error; 0 where that is negative.
+    /// Returns the root of the relative mean square error; 0 where that is negative.
     pub fn rel_rmse(&self) -> f64 {
         self.rel_mse.max(0.0).sqrt()
     }
@@ -84,7 +85,8 @@ mod tests {
         test.pixels.iter_mut().for_each(|p| *p = Rgb::splat(1.1));
         (0..15).for_each(|i| test.pixels[i * 271] = Rgb::splat(300.0));
         let errors = Errors::against(&test, &reference).unwrap();
-        // The square of 0.1, of which the floor takes a hundredth; with the reference's noise it would be .0103.
+        // The square of 0.1; leaving out the worst pixels takes a hundredth; with the reference's noise it
+        // would be .0103.
         assert!((0.0097..0.0101).contains(&errors.rel_mse), "{errors:?}");
     }
 }

@@ -1,9 +1,11 @@
-//! Studies: benchmarks that render whole pictures by several methods and judge them against a converged reference.
+//! Studies: benchmarks that render whole pictures by several methods and judge them against a converged
+//! reference.
 //!
-//! Everything rendered is kept in the study's folder under what it depends on (`store`), so that a run that was
-//! interrupted goes on where it stopped, and a second run renders only what is missing. References are path-traced in
-//! two independent halves, whose difference is their noise (`reference`).
-//! Units: processor seconds, over all threads, unless they are said to be elapsed.
+//! Every picture is stored in the study's folder under a key of all it depends on (`store`), so that an
+//! interrupted run resumes where it stopped, and a second run renders only missing pictures. References are
+//! path-traced in two independent halves, whose difference is their noise (`reference`).
+//!
+//! Units: processor seconds, over all threads, unless stated to be elapsed.
 
 mod judge;
 mod numbers;
@@ -30,83 +32,83 @@ use crate::session::OpenError;
 use std::path::{Path, PathBuf};
 use store::Store;
 
-/// What a study is given.
+/// A study in progress: its plan, its store of pictures, cancellation and messages.
 pub struct Study<'a> {
-    /// What was chosen.
+    /// Options chosen on the command line.
     pub plan: Plan,
     /// Stops the study between pictures and within them.
     pub control: &'a Control,
-    /// Called with what is being done.
+    /// Callback for progress messages.
     pub say: &'a (dyn Fn(&str) + Sync),
     store: Store,
 }
 
-/// What a study wrote down: the same in three formats.
+/// A study's result in three formats with the same content.
 pub struct Document {
-    /// For programs.
+    /// JSON, for programs.
     pub json: serde_json::Value,
-    /// For people and terminals.
+    /// Markdown, for people and terminals.
     pub markdown: String,
-    /// One page that needs nothing else.
+    /// HTML: one self-contained page.
     pub html: String,
 }
 
-/// What the command line chooses of a study.
+/// Options of a study that the command line sets.
 pub struct Plan {
-    /// Where results are kept.
+    /// Folder of results.
     pub folder: PathBuf,
-    /// Threads that render.
+    /// Number of rendering threads.
     pub threads: usize,
-    /// How often a picture is rendered; the run that took the least processor time counts.
+    /// Number of times that each picture is rendered; the run of the least processor time counts.
     pub repeats: usize,
     /// Width and height of the pictures.
     pub resolution: [u32; 2],
-    /// How good references are to be.
+    /// Quality of the references.
     pub reference: ReferenceSettings,
-    /// Points of a designed sample, where there is one.
+    /// Number of points of a designed sample, in studies that have one.
     pub samples: u32,
-    /// Names of the settings that are varied, where any are; if there are none, all.
+    /// Names of the settings to vary, in studies that vary any; if empty, all.
     pub knobs: Vec<String>,
 }
 
-/// Points of a designed sample, unless the user wants others.
+/// Default number of points of a designed sample.
 pub const SAMPLES: u32 = 32;
 
-/// Why a study ended early. What had been rendered until then is kept.
+/// A reason for which a study ended early. Pictures rendered until then are kept.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
-    /// A scene cannot be read or made ready.
+    /// A scene cannot be read or prepared.
     #[error(transparent)]
     Open(#[from] OpenError),
     /// Pictures of different sizes are compared.
     #[error(transparent)]
     Compare(ImageError),
-    /// A result cannot be kept.
+    /// A result cannot be written.
     #[error(transparent)]
     Write(ImageError),
-    /// The folder cannot be made.
+    /// The folder cannot be created.
     #[error("cannot make the folder {}: {source}", path.display())]
     Folder {
-        /// Which.
+        /// Path of the folder.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// A setting to vary that does not exist.
+    /// The name of a setting to vary does not exist.
     #[error("there is no knob {name}; there are: {known}")]
     Knob {
-        /// What was asked for.
+        /// Name asked for.
         name: String,
-        /// What there is.
+        /// Names that exist.
         known: String,
     },
-    /// It was cancelled.
+    /// The study was cancelled.
     #[error("interrupted; what is rendered is kept, the same command goes on from there")]
     Interrupted,
 }
 
 impl<'a> Study<'a> {
-    /// Opens the folder of results.
+    /// Creates a study and opens its folder of results.
     pub fn new(
         plan: Plan,
         control: &'a Control,
@@ -121,7 +123,7 @@ impl<'a> Study<'a> {
         Subject::load(path, self)
     }
 
-    /// What the figures depend on, by name.
+    /// Returns the conditions that the figures depend on, by name.
     pub fn facts(&self) -> Vec<(String, String)> {
         let [width, height] = self.plan.resolution;
         vec![

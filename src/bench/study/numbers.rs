@@ -1,6 +1,6 @@
-//! Figures as text.
+//! Formatting of figures.
 
-/// Three digits that count.
+/// Formats a value with three significant digits.
 pub fn figure(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
@@ -15,12 +15,12 @@ pub fn figure(value: f64) -> String {
     }
 }
 
-/// The same, or a dash.
+/// Formats a value with three significant digits; a dash for `None`.
 pub fn optional(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), figure)
 }
 
-/// Seconds.
+/// Formats seconds.
 pub fn seconds(value: f64) -> String {
     if value >= 100.0 { format!("{value:.0}") } else { format!("{value:.2}") }
 }

@@ -1,4 +1,4 @@
-//! Parts of pages that need nothing else: pictures within the page, tables.
+//! Parts of self-contained HTML pages: embedded pictures, tables.
 
 use crate::bench::export::escaped;
 use crate::film::{Image, heatmap, tone};
@@ -6,7 +6,7 @@ use ::image::codecs::jpeg::JpegEncoder;
 use ::image::codecs::png::PngEncoder;
 use ::image::{ExtendedColorType, ImageEncoder};
 
-/// How pages look.
+/// Style sheet of the pages.
 pub const STYLE: &str = "body{font:15px system-ui,sans-serif;max-width:80em;margin:2em auto;padding:0 1em;color:#222}\
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:1em 0;font-size:13px}\
 th,td{padding:.15em .6em;text-align:right;border-bottom:1px solid #ddd}td:first-child,th:first-child{text-align:left}\
@@ -15,7 +15,7 @@ figcaption{font-size:13px;max-width:22em}img{display:block}.zoom{image-rendering
 svg{max-width:100%;height:auto}svg text{font:12px system-ui,sans-serif;fill:#222}.minor{color:#888}\
 .axis{stroke:#888;fill:none}.grid{stroke:#e5e5e5;fill:none}.warning{color:#a40}";
 
-/// A whole page.
+/// Returns a whole page.
 pub fn page(title: &str, body: &str) -> String {
     let title = escaped(title);
     format!(
@@ -24,7 +24,7 @@ pub fn page(title: &str, body: &str) -> String {
     )
 }
 
-/// A table; `minor` says which rows are grey.
+/// Returns a table; `minor` selects the rows shown in grey.
 pub fn table(heads: &[String], rows: &[Vec<String>], minor: impl Fn(usize) -> bool) -> String {
     let cells = |cells: &[String], tag: &str| -> String {
         cells.iter().map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell))).collect()
@@ -37,7 +37,8 @@ pub fn table(heads: &[String], rows: &[Vec<String>], minor: impl Fn(usize) -> bo
     text + "</table></div>\n"
 }
 
-/// A picture with a caption; with a second picture, holding the pointer over it shows that.
+/// Returns a picture with a caption; if there is a second picture, it shows while the pointer is over the
+/// first.
 pub fn figure(source: &str, beneath: Option<&str>, caption: &str, class: &str) -> String {
     let swap = beneath.map_or_else(String::new, |_| {
         " onmouseenter=\"this.dataset.own=this.src;this.src=document.getElementById(this.dataset.other).src\" \
@@ -51,19 +52,19 @@ pub fn figure(source: &str, beneath: Option<&str>, caption: &str, class: &str) -
     )
 }
 
-/// A picture on the screen as the address of an image; JPEG, for pages of many.
+/// Encodes a tone-mapped picture as a data URL; JPEG, for pages of many pictures.
 pub fn shown(image: &Image, exposure: f32) -> String {
     jpeg(&tone::to_srgb8(image, exposure), image.width, image.height)
 }
 
-/// Errors from 0 to 1 in magma colours, as the address of an image.
+/// Encodes errors from 0 to 1 in magma colours, as a data URL.
 pub fn heat(error: &[f32], image: &Image) -> String {
     jpeg(&heatmap::colours(error), image.width, image.height)
 }
 
 fn jpeg(bytes: &[u8], width: u32, height: u32) -> String {
     let mut file = Vec::new();
-    // Writing to memory fails only for sizes beyond what JPEG knows, which show as nothing.
+    // Writing to memory fails only for sizes beyond the limits of JPEG; those give an empty image.
     let _ = JpegEncoder::new_with_quality(&mut file, 92).write_image(
         bytes,
         width,
@@ -73,16 +74,16 @@ fn jpeg(bytes: &[u8], width: u32, height: u32) -> String {
     format!("data:image/jpeg;base64,{}", base64(&file))
 }
 
-/// Part of a picture, pixel by pixel.
+/// A square part of a picture, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
     /// First column and row.
     pub at: [u32; 2],
-    /// Columns and rows.
+    /// Number of columns, and of rows.
     pub side: u32,
 }
 
-/// That part of a picture as the address of an image, without loss.
+/// Encodes a part of a picture, tone-mapped, losslessly as a data URL.
 pub fn zoom(image: &Image, exposure: f32, part: Part) -> String {
     let rows = (part.at[1]..part.at[1] + part.side).flat_map(|y| {
         let first = (y * image.width + part.at[0]) as usize;
@@ -95,11 +96,12 @@ pub fn zoom(image: &Image, exposure: f32, part: Part) -> String {
     format!("data:image/png;base64,{}", base64(&file))
 }
 
-/// The `count` square parts with the largest mean error that do not overlap, a sixth of the shorter side wide.
+/// Returns the `count` square parts with the largest mean error that do not overlap, a sixth of the shorter
+/// side wide.
 pub fn worst(error: &[f32], width: u32, height: u32, count: usize) -> Vec<Part> {
     let side = (width.min(height) / 6).max(1);
     let mut parts: Vec<(f64, Part)> = Vec::new();
-    // Half a part's side apart.
+    // Parts start half a part's side apart.
     let step = (side / 2).max(1) as usize;
     for y in (0..=height - side).step_by(step) {
         for x in (0..=width - side).step_by(step) {
@@ -121,7 +123,7 @@ pub fn worst(error: &[f32], width: u32, height: u32, count: usize) -> Vec<Part> 
     chosen
 }
 
-/// RFC 4648.
+/// Encodes bytes as base64 (RFC 4648).
 fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);

@@ -1,8 +1,9 @@
-//! Converged references, of pixels or of the places of eye samples: path-traced in two independent halves, in rounds that are kept as they come.
+//! Converged references, of pixels or of the points of eye samples: path-traced in two independent halves, in
+//! rounds each of which is stored when it is finished.
 //!
-//! Half the halves' difference estimates the noise of their mean, pixel by pixel; and as the halves' errors are
-//! independent, a picture's mean square error against the truth is the mean of the product of its differences
-//! from either, without the reference's noise in it.
+//! Half the halves' difference estimates the noise of their mean, pixel by pixel; and as the halves' errors
+//! are independent, a picture's mean square error against the truth is the mean of the product of its
+//! differences from either, without the reference's noise in it.
 
 use super::store::Kept;
 use super::{Study, StudyError, Subject};
@@ -15,10 +16,10 @@ use crate::stats::Stopwatch;
 use serde::Serialize;
 use serde_json::json;
 
-/// Most samples a pixel that each half takes in a round.
+/// Maximum number of samples a pixel that each half takes in a round.
 const ROUND: u32 = 64;
 
-/// When a reference is good enough.
+/// Limits at which a reference is good enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceSettings {
     /// Samples a pixel, both halves together.
@@ -33,36 +34,37 @@ impl Default for ReferenceSettings {
     }
 }
 
-/// A reference.
+/// A reference picture with its noise.
 pub struct Reference {
-    /// The mean of its halves.
+    /// Mean of the halves.
     pub mean: Image,
-    /// Independent of each other, of equal numbers of samples.
+    /// The two halves: independent, of equal numbers of samples.
     pub halves: [Image; 2],
-    /// How good it is.
+    /// Noise of the mean.
     pub noise: Noise,
-    /// What brings it to the screen.
+    /// Exposure for display.
     pub exposure: f32,
 }
 
-/// What is known about a reference's own error.
+/// Estimates of a reference's own error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Noise {
     /// Samples a pixel, both halves together.
     pub spp: u32,
-    /// Processor seconds that they took.
+    /// Processor seconds spent on both halves.
     pub cpu_seconds: f64,
-    /// Standard error of a pixel's mean over the mean of the picture, root mean square over pixels and channels.
+    /// Standard error of a pixel's mean over the mean of the picture, root mean square over pixels and
+    /// channels.
     pub standard_error: f64,
-    /// The part of a picture's relMSE that is the reference's noise.
+    /// Part of a picture's relMSE that is due to the reference's noise.
     pub rel_mse: f64,
-    /// PSNR that the truth would have against the reference, dB.
+    /// PSNR of the truth against the reference, dB.
     pub psnr: Option<f64>,
     /// FLIP between the halves, whose difference is twice the noise of their mean.
     pub flip_of_halves: f64,
 }
 
-/// Renders what is missing of the subject's reference.
+/// Renders the missing rounds of the subject's reference.
 pub(super) fn reference(study: &Study, subject: &Subject, look: Look) -> Result<Reference, StudyError> {
     let (of, cycle) = match look {
         Look::Pixels => ("", 1),
@@ -85,7 +87,7 @@ pub(super) fn reference(study: &Study, subject: &Subject, look: Look) -> Result<
         && (progress.rounds == 0 || progress.seconds < study.plan.reference.seconds)
     {
         let spp = (study.plan.reference.spp.div_ceil(2) - progress.each).min(ROUND);
-        // Each place equally often.
+        // A cycle of samples takes each position of a sample equally often.
         progress.round(study, subject, look, spp.next_multiple_of(cycle))?;
         study.store.save(&name, &key, &progress.kept())?;
         (study.say)(&format!("{name}: {} samples a pixel, {:.0} s", progress.each * 2, progress.seconds));
@@ -95,7 +97,7 @@ pub(super) fn reference(study: &Study, subject: &Subject, look: Look) -> Result<
 
 struct Progress {
     halves: [Image; 2],
-    /// Samples a pixel of each half.
+    /// Number of samples a pixel of each half.
     each: u32,
     rounds: u32,
     seconds: f64,
@@ -120,7 +122,8 @@ impl Progress {
         let watch = Stopwatch::start();
         let mut more = Vec::with_capacity(2);
         for half in 0..2 {
-            // Seed 0 is the default of all methods, which nothing should share with its reference.
+            // Seed 0 is the default of all methods, none of which should share random numbers with its
+            // reference.
             let settings = path::Settings { spp, seed: 1 + 2 * self.rounds + half, max_depth: None, look };
             let output = path::render(&subject.session.world, &subject.view, &settings, study.control);
             if !output.complete {
@@ -161,7 +164,7 @@ impl Progress {
 }
 
 impl Reference {
-    /// Of independent halves, both together of `spp` samples a pixel.
+    /// Combines independent halves, of `spp` samples a pixel together.
     pub(super) fn of_halves(halves: [Image; 2], spp: u32, cpu_seconds: f64) -> Reference {
         let mean = mean(&halves);
         let exposure = tone::auto_factor(&mean);
@@ -204,7 +207,7 @@ mod tests {
     use super::*;
     use crate::sampling::hash;
 
-    /// Halves of a known standard deviation around 1: the noise of their mean is what it must be.
+    /// Halves of a given standard deviation around 1 have the expected noise of the mean.
     #[test]
     fn noise_is_that_of_the_mean() {
         let deviation = 0.02f32;

@@ -1,4 +1,4 @@
-//! A picture by some method and settings, rendered or found again.
+//! A picture by some method and settings, rendered or loaded from the store.
 
 use super::reference::{Reference, reference};
 use super::store::{Kept, program};
@@ -10,16 +10,16 @@ use crate::method::Method;
 use crate::stats::{Stage, Stopwatch};
 use serde_json::{Value, json};
 
-/// What may be rendered.
+/// A method with settings, under a label.
 #[derive(Clone)]
 pub struct Candidate {
-    /// What it is called.
+    /// Label of the row or point.
     pub label: String,
-    /// How it is rendered.
+    /// Method and settings.
     pub method: Method,
 }
 
-/// What was rendered.
+/// A rendered picture with its statistics.
 #[derive(Clone)]
 pub struct Run {
     /// The picture.
@@ -28,19 +28,19 @@ pub struct Run {
     stats: Value,
 }
 
-/// Where a picture is kept, and what it depends on.
+/// Name and key under which a picture is stored; the key holds all that the picture depends on.
 struct Place {
     file: String,
     key: Value,
 }
 
 impl Study<'_> {
-    /// The subject's reference, as far as the settings ask.
+    /// Returns the subject's reference, rendered as far as the settings ask.
     pub fn reference(&self, subject: &Subject, look: Look) -> Result<Reference, StudyError> {
         reference(self, subject, look)
     }
 
-    /// Renders, unless this program has already done so.
+    /// Renders a picture, or loads it if this program has already rendered it.
     pub fn run(&self, subject: &Subject, candidate: &Candidate) -> Result<Run, StudyError> {
         let place = self.place(subject, candidate, None);
         match self.kept(&place) {
@@ -49,7 +49,7 @@ impl Study<'_> {
         }
     }
 
-    /// The same over an acceleration structure built for it, which counts in its time.
+    /// The same over an acceleration structure built for this run; the time includes the build.
     pub fn run_over(
         &self,
         quality: BuildQuality,
@@ -70,7 +70,7 @@ impl Study<'_> {
         self.keep(&place, run)
     }
 
-    /// Where it is kept; that whose time holds a build by itself.
+    /// Returns name and key; a picture whose time includes a build has a key of its own.
     fn place(&self, subject: &Subject, candidate: &Candidate, built: Option<BuildQuality>) -> Place {
         let method = &candidate.method;
         let key = json!({
@@ -81,10 +81,10 @@ impl Study<'_> {
             "build": built.map(|quality| format!("{quality:?}")),
             "repeats": self.plan.repeats,
             "method": method.name(),
-            // All settings, those without a name on the command line too.
+            // All settings, including those that the command line lacks.
             "settings": format!("{method:?}"),
         });
-        // Whatever it is called here.
+        // The label is not part of the key.
         Place { file: format!("{}, {}", subject.name, method.name()), key }
     }
 
@@ -99,7 +99,7 @@ impl Study<'_> {
         Ok(run)
     }
 
-    /// The fastest of as many runs as are planned.
+    /// Renders `repeats` times and returns the run that took the least processor time.
     fn render(&self, subject: &Subject, candidate: &Candidate) -> Result<Run, StudyError> {
         let mut best: Option<Run> = None;
         for _ in 0..self.plan.repeats.max(1) {
@@ -113,7 +113,7 @@ impl Study<'_> {
                 best = Some(run);
             }
         }
-        // At least one was rendered.
+        // `None` only if the first run was interrupted.
         let Some(run) = best else { return Err(StudyError::Interrupted) };
         (self.say)(&format!("{}, {}: {:.2} s", subject.name, candidate.label, run.seconds(&Stage::ALL)));
         Ok(run)
@@ -121,12 +121,12 @@ impl Study<'_> {
 }
 
 impl Run {
-    /// Processor seconds of some stages.
+    /// Returns the sum of some stages' processor seconds.
     pub fn seconds(&self, stages: &[Stage]) -> f64 {
         self.sum(stages, "cpu_seconds")
     }
 
-    /// Elapsed seconds of all stages.
+    /// Returns the sum of all stages' elapsed seconds.
     pub fn elapsed(&self) -> f64 {
         self.sum(&Stage::ALL, "wall_seconds")
     }
@@ -135,7 +135,7 @@ impl Run {
         stages.iter().filter_map(|stage| self.stats["times"][stage.key()][clock].as_f64()).sum()
     }
 
-    /// A counter, if it was counted.
+    /// Returns a counter, if it was counted.
     pub fn counter(&self, group: &str, name: &str) -> Option<f64> {
         self.stats["counters"][group][name].as_f64()
     }

@@ -1,10 +1,10 @@
-//! Points over two logarithmic axes, in SVG.
+//! Scatter plots over two logarithmic axes, in SVG.
 
 use crate::bench::export::escaped;
 
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 420.0;
-/// Room for the axes' figures, left and below; and for names, right and above.
+/// Margins for the axes' figures, left and below; and for names, right and above.
 const LEFT: f64 = 70.0;
 const BELOW: f64 = 48.0;
 const RIGHT: f64 = 150.0;
@@ -12,23 +12,23 @@ const ABOVE: f64 = 14.0;
 
 /// Points of one colour.
 pub struct Series {
-    /// Named in the legend if not empty.
+    /// Name in the legend; not in the legend if empty.
     pub name: String,
     /// CSS colour.
     pub colour: &'static str,
-    /// Whether the points are joined in their order.
+    /// True if the points are joined in their order.
     pub joined: bool,
-    /// x, y and a name, which may be empty.
+    /// Points: x, y and a name, which may be empty.
     pub points: Vec<(f64, f64, String)>,
 }
 
-/// Points that are not positive are left out.
+/// Returns a scatter plot; points with a coordinate that is not positive are left out.
 pub fn scatter(x_name: &str, y_name: &str, series: &[Series]) -> String {
     let all = || series.iter().flat_map(|s| &s.points).filter(|p| drawable(p));
     let range = |of: fn(&(f64, f64, String)) -> f64| {
         let (low, high) =
             all().map(of).fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), v| (l.min(v), h.max(v)));
-        // A margin of a tenth, and never an empty range.
+        // A margin of a tenth, which also keeps the range from being empty.
         let margin = (high / low).powf(0.1).max(1.1);
         (low / margin, high * margin)
     };
@@ -106,11 +106,11 @@ fn drawable(point: &(f64, f64, String)) -> bool {
     [point.0, point.1].iter().all(|v| v.is_finite() && *v > 0.0)
 }
 
-/// 1, 2 and 5 times powers of ten within the range.
+/// Returns 1, 2 and 5 times powers of ten within the range.
 fn ticks(low: f64, high: f64) -> Vec<f64> {
     let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
     let decades = (first..=last).flat_map(|decade| [1, 2, 5].map(|m| format!("{m}e{decade}")));
-    // By way of text, for 5 times a tenth of a tenth is not 0.05.
+    // Parsed from text, for 5 times a tenth of a tenth is not 0.05.
     let values = decades.filter_map(|text| text.parse().ok());
     values.filter(|v| (low..=high).contains(v)).collect()
 }

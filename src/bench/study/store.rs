@@ -1,9 +1,9 @@
-//! Pictures kept on disk under everything that they depend on.
+//! Pictures stored on disk under a key of all that they depend on.
 //!
-//! A picture is an OpenEXR file with its key and what was found out about it as attributes. It appears whole or not at all
+//! A picture is an OpenEXR file with its key and its statistics as attributes. It appears whole or not at all
 //! and is flushed to the disk before it takes its name (see [`crate::film::atomic`]), so that a crash loses
-//! the picture in the making and nothing else. Files that cannot be read, or are not what their name says,
-//! count as missing.
+//! only the picture being written. Files that cannot be read, or whose key is not the one asked for, count as
+//! missing.
 
 use super::StudyError;
 use crate::film::{ExrFile, Film, Image, write_exr};
@@ -17,18 +17,18 @@ pub(super) struct Store {
     folder: PathBuf,
 }
 
-/// A picture with what is known about it.
+/// A picture with layers and statistics.
 pub(super) struct Kept {
     /// The picture.
     pub color: Image,
     /// Further images by name.
     pub layers: Vec<(String, Image)>,
-    /// What is known.
+    /// Statistics.
     pub facts: Value,
 }
 
 impl Store {
-    /// The pictures in the folder `pictures` of `folder`; both are made if they are missing.
+    /// Opens the folder `pictures` of `folder`; creates both if they are missing.
     pub fn open(folder: &Path) -> Result<Store, StudyError> {
         let folder = folder.join("pictures");
         match std::fs::create_dir_all(&folder) {
@@ -37,7 +37,7 @@ impl Store {
         }
     }
 
-    /// The picture of that key, if it is there, with the layers named.
+    /// Loads the picture of that key, if stored, with the layers named.
     pub fn load(&self, name: &str, key: &Value, layers: &[&str]) -> Option<Kept> {
         let file = ExrFile::read(&self.file(name, key)).ok()?;
         let metadata = file.metadata();
@@ -54,7 +54,7 @@ impl Store {
         })
     }
 
-    /// Keeps a picture.
+    /// Stores a picture.
     pub fn save(&self, name: &str, key: &Value, kept: &Kept) -> Result<(), StudyError> {
         let mut film = Film::new(kept.color.clone());
         film.layers.clone_from(&kept.layers);
@@ -71,7 +71,7 @@ impl Store {
     }
 }
 
-/// Which program this is: a hash of its file, so that no other build's times are taken for its own.
+/// Returns a hash of this program's file, so that times of another build are not taken for its own.
 pub fn program() -> String {
     static PROGRAM: OnceLock<String> = OnceLock::new();
     let read = || std::env::current_exe().and_then(std::fs::read);
@@ -87,7 +87,7 @@ pub fn program() -> String {
         .clone()
 }
 
-/// Hash of what a value is written as.
+/// Returns the hash of a value's text.
 pub(super) fn hash(value: &dyn fmt::Display) -> u64 {
     let mut fnv = Fnv::default();
     // Hashing cannot fail.
@@ -95,14 +95,14 @@ pub(super) fn hash(value: &dyn fmt::Display) -> u64 {
     fnv.0
 }
 
-/// Hash of what a value is written as for programmers: all of it, for numbers are written exactly.
+/// Returns the hash of a value's debug text, which holds every field and writes numbers exactly.
 pub(super) fn hash_debug(value: &dyn fmt::Debug) -> u64 {
     let mut fnv = Fnv::default();
     let _ = write!(fnv, "{value:?}");
     fnv.0
 }
 
-/// 64-bit FNV-1a of text in pieces.
+/// 64-bit FNV-1a hash of text in pieces.
 struct Fnv(u64);
 
 impl Default for Fnv {
@@ -136,7 +136,7 @@ mod tests {
     fn pictures_are_found_by_their_whole_key_and_damaged_ones_are_missing() {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(folder.path()).unwrap();
-        // Of these, parsers that are not exact read some as their neighbours.
+        // Inexact parsers read some of these as their neighbours.
         let numbers: Vec<f64> = (1..100).map(|n| f64::from(n).sqrt() / 7.0).collect();
         let mut color = Image::new(3, 2);
         color.pixels[4] = Rgb::new(1.0, 0.5, 7.25);

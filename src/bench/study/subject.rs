@@ -1,4 +1,4 @@
-//! A scene that is studied.
+//! A scene under study.
 
 use super::store::hash_debug;
 use super::{Study, StudyError};
@@ -13,13 +13,13 @@ use std::path::{Path, PathBuf};
 pub struct Subject {
     /// Its name.
     pub name: String,
-    /// Hash of all that it holds once loaded, generated geometry included.
+    /// Hash of all its content once loaded, generated geometry included.
     pub hash: u64,
     /// Number of triangles.
     pub triangles: usize,
-    /// The scene, made ready.
+    /// The scene, prepared for rendering.
     pub session: Session,
-    /// The whole film of its still camera.
+    /// View of the whole film by its still camera.
     pub view: View,
 }
 
@@ -29,7 +29,7 @@ impl Subject {
         Ok(self.session.rebuild(quality)?)
     }
 
-    /// Loads it.
+    /// Loads a scene and prepares it.
     pub(super) fn load(path: &Path, study: &Study) -> Result<Subject, StudyError> {
         let mut loaded = load(path, &LoadOptions::default()).map_err(OpenError::Scene)?;
         let warnings = loaded.warnings.iter().filter(|w| w.level == Level::Warning).count();
@@ -39,7 +39,7 @@ impl Subject {
                 path.display()
             ));
         }
-        // The paths of its files do not count.
+        // The hash does not depend on the paths of its files.
         let sources = std::mem::take(&mut loaded.scene.sources);
         let hash = hash_debug(&(&loaded.scene, &loaded.cameras));
         loaded.scene.sources = sources;
@@ -50,7 +50,7 @@ impl Subject {
     }
 }
 
-/// The file of a scene that is given by its path, or by the name of one in `folder`.
+/// Returns the file of a scene given by its path, or by the name of one in `folder`.
 pub fn file_of(scene: &Path, folder: &Path) -> PathBuf {
     let named = scene.extension().is_none() && scene.components().count() == 1;
     if named { folder.join(scene).with_extension("toml") } else { scene.to_owned() }

@@ -1,4 +1,4 @@
-//! What the table compares. Settings are the methods' own defaults but for what is said here.
+//! Rows of the table. Settings are the methods' own defaults but for the exceptions stated here.
 
 use crate::bench::study::Candidate;
 use crate::eye::Look;
@@ -10,42 +10,43 @@ use crate::radiance_cache::{Footprints, FoundBy};
 pub enum Family {
     /// The radiance cache.
     Cache,
-    /// Lightcuts per pixel, which neighbours share.
+    /// Lightcuts per pixel, with cuts shared between neighbours.
     Lightcuts,
-    /// Lightcuts per pixel as in the paper: every sample has one of its own.
+    /// Lightcuts per pixel as in the paper: one cut a sample.
     Unshared,
     /// Records of final gathering over a photon map.
     PhotonCache,
 }
 
-/// Families that others are compared with, by the label of their own row.
+/// Families that others are compared with, each with the label of its own row.
 pub const OPPONENTS: [(Family, &str); 2] =
     [(Family::Lightcuts, "lightcuts"), (Family::PhotonCache, "photon-cache")];
 
 /// A row of the table.
 pub struct Entry {
-    /// What is rendered.
+    /// Method and settings.
     pub candidate: Candidate,
-    /// What it is a setting of.
+    /// Family that the settings belong to.
     pub family: Family,
-    /// The paper's name for it, if it has one.
+    /// The paper's name for it, if any.
     pub paper: Option<&'static str>,
-    /// Whether it is one of the methods compared, not just a point on the curve of its family.
+    /// True for the methods compared, false for mere points on the curve of a family.
     pub main: bool,
 }
 
-/// Errors of lightcuts per pixel that make its curve, relative to the default.
+/// Error thresholds of lightcuts per pixel that make its curve, relative to the default.
 const CURVE: [f32; 4] = [0.5, 2.0, 4.0, 8.0];
-/// Rays of photon-cache that make its curve, relative to the default.
+/// Numbers of rays of photon-cache that make its curve, relative to the default.
 const RAYS: [f32; 3] = [0.25, 0.5, 2.0];
 
-/// Where the eye samples of all rows are.
+/// Returns the positions of the eye samples of all rows.
 pub fn look() -> Look {
     let cache::Settings { spp, seed, .. } = cache::Settings::default();
     Look::EyeSamples { spp, seed }
 }
 
-/// All rows. Other methods take the eye samples of the cache, lightcuts per pixel its virtual lights and cuts too.
+/// Returns all rows. Other methods take the eye samples of the cache, lightcuts per pixel its virtual lights
+/// and cuts too.
 pub fn entries() -> Vec<Entry> {
     let default = cache::Settings::default();
     let shaped = |footprints| {

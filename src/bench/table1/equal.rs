@@ -1,17 +1,17 @@
-//! How much faster a picture is than another method at equal error, as far as the other's curve reaches.
+//! Speed relative to another method at equal error, as far as the other's curve reaches.
 
 use serde::Serialize;
 use std::fmt;
 
-/// The other's time over this one's.
+/// Ratio of the other's time to this one's.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "is", content = "factor", rename_all = "snake_case")]
 pub enum Speed {
     /// Interpolated between two of the other's pictures.
     About(f64),
-    /// No picture of the other's is as good: against its best.
+    /// Lower bound: no picture of the other's is as good; taken against its best.
     AtLeast(f64),
-    /// All pictures of the other's are better: against its fastest.
+    /// Upper bound: all pictures of the other's are better; taken against its fastest.
     AtMost(f64),
 }
 
@@ -25,8 +25,9 @@ impl fmt::Display for Speed {
     }
 }
 
-/// Of a picture's time and error against the times and errors of another method, which are all positive. Those of
-/// the other's settings that another setting beats in both do not count; times are interpolated in logarithms.
+/// Returns the speed of a picture of a time and error against the times and errors of another method, all
+/// positive. Settings of the other that are beaten in both by another of its settings are ignored; times are
+/// interpolated in logarithms.
 pub fn speed((time, error): (f64, f64), others: &[(f64, f64)]) -> Option<Speed> {
     let mut sorted: Vec<(f64, f64)> = others.iter().copied().filter(|o| o.0 > 0.0 && o.1 > 0.0).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));

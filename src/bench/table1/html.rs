@@ -9,10 +9,10 @@ use crate::bench::study::page::{figure, heat, page, shown, table, worst, zoom};
 use crate::bench::study::scatter::{Series, scatter};
 use crate::film::metrics::flip_map;
 
-/// Parts of the picture that are shown pixel by pixel.
+/// Number of parts of the picture that are shown pixel by pixel.
 const ZOOMS: usize = 3;
 
-/// The page.
+/// Returns the page.
 pub fn html(table1: &Table1) -> String {
     let facts: Vec<String> = table1.facts.iter().map(|(name, value)| format!("{name} {value}")).collect();
     let mut body = format!("<p>{}</p>\n", escaped(&facts.join(", ")));
@@ -51,7 +51,7 @@ fn section(scene: &SceneTable, number: usize) -> String {
     text + &pictures(scene, number)
 }
 
-/// Other methods as curves, the cache's settings as points.
+/// Returns other methods as curves, the cache's settings as points.
 fn curves(scene: &SceneTable, error: impl Fn(&super::Row) -> f64) -> Vec<Series> {
     let of = |family| {
         let rows = scene.rows.iter().filter(move |row| row.family == family);
@@ -74,7 +74,7 @@ fn curves(scene: &SceneTable, error: impl Fn(&super::Row) -> f64) -> Vec<Series>
     series
 }
 
-/// Every method's picture, its FLIP, and parts of it; the reference's parts show under the pointer.
+/// Returns every method's picture, its FLIP, and parts of it; the reference's parts show under the pointer.
 fn pictures(scene: &SceneTable, number: usize) -> String {
     let pictures = &scene.pictures;
     let (reference, exposure) = (&pictures.reference, pictures.exposure);

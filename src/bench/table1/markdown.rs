@@ -5,7 +5,7 @@ use super::row::HEADS;
 use super::{SceneTable, Speed, Table1};
 use crate::bench::study::{figure, optional};
 
-/// A section a scene, then the paper's claims.
+/// Returns a section a scene, then the paper's claims.
 pub fn markdown(table: &Table1) -> String {
     let facts: Vec<String> = table.facts.iter().map(|(name, value)| format!("{name} {value}")).collect();
     let mut text = format!("# Table 1\n\n{}. Times are processor seconds.\n", facts.join(", "));
@@ -28,7 +28,7 @@ pub fn markdown(table: &Table1) -> String {
     text
 }
 
-/// What a scene's figures are against.
+/// Describes the references of a scene's errors.
 pub fn about(scene: &SceneTable) -> String {
     let noise = &scene.reference;
     format!(
@@ -48,7 +48,7 @@ pub fn about(scene: &SceneTable) -> String {
     )
 }
 
-/// The paper's claims, its figures and ours scene by scene.
+/// Returns the paper's claims, its figures and ours scene by scene.
 pub fn claims(table: &Table1) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     for claim in &CLAIMS {

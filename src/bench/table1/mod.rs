@@ -6,17 +6,17 @@
 //! |---|---|
 //! | N_c, direct | records, and the share of them that hold direct light |
 //! | anisotropy | long over short radius of footprints, mean over records: direct / indirect |
-//! | a | radius of footprints over the distance of what casts light and shadow, mean: direct / indirect |
+//! | a | radius of footprints over the distance of the geometry that casts light and shadow, mean: direct / indirect |
 //! | cut | clusters in a record's cut, mean; of eye samples' where there are no records |
 //! | T_light | light pass and trees |
-//! | T_f | records, and cuts of eye samples' own |
+//! | T_f | records, and eye samples' own cuts |
 //! | T_cache | splatting and adaptation |
 //! | total | all of that and the eye pass |
 //!
-//! Deviations: the paper's ΣT leaves out T_light, our total does not. All errors are against a path-traced reference of
-//! the same scene: of its pixels, and of the places of the eye samples alone, in which only wrong light counts, not what
-//! few eye samples a pixel cannot resolve; and against lightcuts per pixel on the same eye samples and virtual
-//! lights, where clamping does not show either.
+//! Deviations: the paper's ΣT leaves out T_light, our total does not. All errors are against a path-traced
+//! reference of the same scene: of its pixels, and of the points of the eye samples alone, which measures
+//! errors of light without the aliasing of few eye samples a pixel; and against lightcuts per pixel on the
+//! same eye samples and virtual lights, where clamping does not show either.
 
 mod entries;
 mod equal;
@@ -41,12 +41,12 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
     kind: Kind::Study { scenes: &["knot", "nave", "kitchen", "hall", "apartment"], pixels: [512, 512], run },
 };
 
-/// All that was found out.
+/// All results.
 #[derive(Serialize)]
 struct Table1 {
-    /// What it depends on.
+    /// Conditions that the figures depend on.
     facts: Vec<(String, String)>,
-    /// Scene by scene.
+    /// Results scene by scene.
     scenes: Vec<SceneTable>,
 }
 
@@ -56,9 +56,9 @@ struct SceneTable {
     /// The scene's name.
     scene: String,
     triangles: usize,
-    /// Its reference's own error.
+    /// Noise of its reference of pixels.
     reference: Noise,
-    /// That of the reference of eye samples.
+    /// Noise of its reference of eye samples.
     light_reference: Noise,
     /// The methods compared, then the points on their curves.
     rows: Vec<Row>,
@@ -66,11 +66,11 @@ struct SceneTable {
     pictures: Pictures,
 }
 
-/// What a page shows of a scene.
+/// Pictures of a scene for the page.
 struct Pictures {
     reference: Image,
     exposure: f32,
-    /// Of every row.
+    /// Pictures of all rows.
     rows: Vec<Image>,
 }
 
@@ -124,7 +124,7 @@ fn rows(
     Ok(rows)
 }
 
-/// Against another family: its own row, and the curve of all its rows.
+/// Compares with another family: its own row, and the curve of all its rows.
 fn versus(row: &Row, rows: &[Row], (family, label): (Family, &str)) -> Option<Versus> {
     let own = rows.iter().find(|other| other.label == label)?;
     let at_equal = |error: fn(&Row) -> f64| {
@@ -141,7 +141,7 @@ fn versus(row: &Row, rows: &[Row], (family, label): (Family, &str)) -> Option<Ve
 }
 
 impl SceneTable {
-    /// A row by its label.
+    /// Finds a row by its label.
     fn row(&self, label: &str) -> Option<&Row> {
         self.rows.iter().find(|row| row.label == label)
     }

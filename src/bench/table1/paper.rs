@@ -1,19 +1,19 @@
-//! What the paper reports, to stand beside ours.
+//! Figures that the paper reports, for comparison with ours.
 //!
-//! Paper: Herzog et al. 2009, Table 1. Of the table, only the ratios of times with the light pass were to be had when
-//! this was written; its rows, on scenes other than ours, are missing.
+//! Paper: Herzog et al. 2009, Table 1. Of the table, only the ratios of times with the light pass were
+//! available when this was written; its rows, on scenes other than ours, are missing.
 
 /// A claim of the paper's.
 pub struct Claim {
-    /// What is compared.
+    /// Description of the comparison.
     pub what: &'static str,
     /// Our rows: the faster one and the one that it is compared with.
     pub of: [&'static str; 2],
-    /// The least and the largest ratio of times over the paper's scenes, where it has any.
+    /// Minimum and maximum ratio of times over the paper's scenes, where it reports any.
     pub range: Option<[f64; 2]>,
 }
 
-/// All of them, the paper's methods first, then our own against the same opponents.
+/// All claims, the paper's methods first, then our own against the same opponents.
 pub const CLAIMS: [Claim; 5] = [
     Claim {
         what: "LCache2, both layers, against photon mapping with radiance caching",
@@ -42,5 +42,5 @@ pub const CLAIMS: [Claim; 5] = [
     },
 ];
 
-/// Records that anisotropy saves, of all, least and most.
+/// Share of the records that anisotropy saves, minimum and maximum.
 pub const SAVED_BY_ANISOTROPY: [f64; 2] = [0.03, 0.06];

@@ -1,4 +1,4 @@
-//! A method's figures on a scene.
+//! Figures of a method on a scene.
 
 use super::Speed;
 use super::entries::{Entry, Family, OPPONENTS};
@@ -10,29 +10,30 @@ use serde_json::Value;
 /// A row of the table.
 #[derive(Serialize)]
 pub struct Row {
-    /// What it is.
+    /// Label of its entry.
     pub label: String,
     /// The paper's name for it.
     pub paper: Option<&'static str>,
-    /// Whether it is a method compared, not a point on a curve.
+    /// True for a method compared, false for a point on a curve.
     pub main: bool,
     #[serde(skip)]
     pub family: Family,
     /// The method's settings.
     pub settings: Value,
-    /// Records, direct and indirect.
+    /// Numbers of records, direct and indirect.
     pub records: Option<[f64; 2]>,
-    /// Long over short radius, direct and indirect.
+    /// Long over short radius of footprints, direct and indirect.
     pub anisotropy: [Option<f64>; 2],
-    /// Radius over distance, direct and indirect.
+    /// Radius of footprints over distance, direct and indirect.
     pub accuracy: [Option<f64>; 2],
-    /// Clusters in a cut of indirect records, or rays of their gathering; in cuts of pixels without records.
+    /// Clusters in a cut of indirect records, or rays of their gathering; without records, clusters in cuts
+    /// of eye samples.
     pub cut: Option<f64>,
     /// Processor seconds: eye pass, light pass and trees, records and cuts, splatting.
     pub eye: f64,
     pub light_pass: f64,
     pub f: f64,
-    /// None where there are no records.
+    /// `None` where there are no records.
     pub cache: Option<f64>,
     pub total: f64,
     /// Elapsed seconds.
@@ -40,18 +41,18 @@ pub struct Row {
     /// Speed against other methods.
     pub versus: [Option<Versus>; OPPONENTS.len()],
     pub against_reference: Errors,
-    /// Against the reference of the eye samples.
+    /// Errors against the reference of the eye samples.
     pub light: Errors,
-    /// None for lightcuts themselves.
+    /// Errors against lightcuts per pixel; `None` for lightcuts themselves.
     pub against_lightcuts: Option<Errors>,
 }
 
-/// Another method's time over this one's.
+/// Ratio of another method's time to this one's.
 #[derive(Clone, Serialize)]
 pub struct Versus {
     /// The label of the other's row.
     pub method: String,
-    /// As they are.
+    /// At their own settings.
     pub speed: f64,
     /// At equal FLIP against the reference.
     pub at_equal_flip: Option<Speed>,
@@ -91,7 +92,7 @@ pub const HEADS: [&str; 27] = [
 ];
 
 impl Row {
-    /// Of a picture.
+    /// Computes the figures of a picture.
     pub fn new(entry: &Entry, run: &Run, [against_reference, light_errors]: [Errors; 2]) -> Row {
         let records = |layer: &str| run.counter("Cache", &format!("records, {layer}"));
         let records = records("direct").zip(records("indirect")).map(|(d, i)| [d, i]);
@@ -129,7 +130,7 @@ impl Row {
         }
     }
 
-    /// What stands under [`HEADS`].
+    /// Returns the cells under [`HEADS`].
     pub fn cells(&self) -> Vec<String> {
         let total = self.records.map(|[d, i]| d + i);
         let share = self.records.map(|[d, i]| 100.0 * d / (d + i).max(1.0));

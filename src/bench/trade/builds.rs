@@ -1,4 +1,5 @@
-//! How the acceleration structure is built, which is no setting of a method: the default picture, rendered over each.
+//! Builds of the acceleration structure, which are no setting of a method: the default picture, rendered over
+//! each.
 
 use super::knobs::JudgedBy;
 use super::{Candidate, Judge, Sort, StudyError, Sweep};
@@ -8,13 +9,13 @@ use crate::method::cache::Settings;
 
 /// A choice between builds.
 pub struct Builds {
-    /// What it is called.
+    /// Name of the choice.
     pub name: &'static str,
-    /// From coarse to fine.
+    /// Levels from coarse to fine.
     levels: &'static [(&'static str, BuildQuality)],
 }
 
-/// All of them.
+/// All choices.
 pub const BUILDS: [Builds; 2] = [
     Builds {
         name: "build quality",
@@ -27,7 +28,7 @@ pub const BUILDS: [Builds; 2] = [
 ];
 
 impl Judge<'_> {
-    /// Renders the default over every build; times hold the build.
+    /// Renders the default over every build; times include the build.
     pub fn sweep_builds(&mut self, builds: &Builds) -> Result<Sweep, StudyError> {
         let mut levels = Vec::with_capacity(builds.levels.len());
         for &(text, quality) in builds.levels {

@@ -1,28 +1,29 @@
-//! The Pareto front, and what a designed sample says of each knob.
+//! The Pareto front, and the effect of each knob in a designed sample.
 
 use crate::verify::NORMAL_975;
 use serde::Serialize;
 
-/// Which points no other point beats in both figures.
+/// Marks the points that no other point beats in both figures.
 pub fn front(points: &[(f64, f64)]) -> Vec<bool> {
     let beats = |a: &(f64, f64), b: &(f64, f64)| a.0 <= b.0 && a.1 <= b.1 && (a.0 < b.0 || a.1 < b.1);
     points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect()
 }
 
-/// By what factor something changes as a knob goes from its coarsest to its finest level, all others varied too.
+/// Factor by which a figure changes as a knob goes from its coarsest to its finest level, all others varied
+/// too.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Effect {
     /// The factor.
     pub factor: f64,
-    /// What covers it in 95 of 100 cases.
+    /// Confidence interval of the factor, 95 %.
     pub range: [f64; 2],
 }
 
-/// Fewest points that say how far off an effect may be.
+/// Minimum number of points for a confidence interval.
 const FEWEST: usize = 6;
 
-/// Least squares of the logarithm of `values` over `places`, a knob's levels from 0 to 1. None of too few points,
-/// or if the knob stands still.
+/// Fits the logarithm of `values` over `places`, a knob's levels from 0 to 1, by least squares. `None` for
+/// too few points, or if the knob does not vary.
 pub fn effect(places: &[f64], values: &[f64]) -> Option<Effect> {
     let points: Vec<(f64, f64)> =
         places.iter().zip(values).filter(|(_, v)| **v > 0.0).map(|(p, v)| (*p, v.ln())).collect();
@@ -40,7 +41,7 @@ pub fn effect(places: &[f64], values: &[f64]) -> Option<Effect> {
     Some(Effect { factor: slope.exp(), range: [(slope - error).exp(), (slope + error).exp()] })
 }
 
-/// The 97.5 % quantile of Student's distribution for at least four degrees of freedom, to .5 %.
+/// Returns the 97.5 % quantile of Student's distribution for at least four degrees of freedom, to .5 %.
 ///
 /// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5.
 fn student_975(freedom: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! The trade as a page: both fronts, and a plot a knob.
+//! The trade-off as a page: both fronts, and a plot a knob.
 
 use super::markdown::{
     EFFECT_HEADS, FRONT_HEADS, NAMED, SWEEP_HEADS, TOGETHER, about, effects, front, judged_by, legend, sweeps,
@@ -8,7 +8,7 @@ use crate::bench::export::escaped;
 use crate::bench::study::page::{page, table};
 use crate::bench::study::scatter::{Series, scatter};
 
-/// The page.
+/// Returns the page.
 pub fn html(trade: &Trade) -> String {
     let facts: Vec<String> = trade.facts.iter().map(|(name, value)| format!("{name} {value}")).collect();
     let facts = escaped(&facts.join(", "));
@@ -48,7 +48,7 @@ fn rows(heads: &[&str], rows: Vec<Vec<String>>) -> String {
     table(&heads, &rows, |_| false)
 }
 
-/// All points by their sort, the front joined.
+/// Returns all points by their sort, the front joined.
 fn cloud(scene: &SceneTrade, error: fn(&Point) -> Option<f64>, on: fn(&Point) -> bool) -> Vec<Series> {
     let place = |point: &Point| {
         let turned = if matches!(point.sort, Sort::Sweep | Sort::Quality) { "" } else { &*point.turned };
@@ -72,7 +72,7 @@ fn cloud(scene: &SceneTrade, error: fn(&Point) -> Option<f64>, on: fn(&Point) ->
     ]
 }
 
-/// A knob's levels, and the default.
+/// Plots a knob's levels and the default.
 fn plot(scene: &SceneTrade, sweep: &Sweep) -> String {
     let place = |point: &Point, name: &str| (point.seconds, point.error(sweep.judged_by), name.to_owned());
     let levels: Vec<_> =

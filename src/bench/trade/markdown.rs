@@ -1,4 +1,4 @@
-//! The trade as Markdown.
+//! The trade-off as Markdown.
 
 use super::knobs::JudgedBy;
 use super::verdict::{ERROR_TOLERANCE, TIME_TOLERANCE};
@@ -14,16 +14,16 @@ pub const FRONT_HEADS: [&str; 6] =
 /// Heads of [`effects`].
 pub const EFFECT_HEADS: [&str; 3] = ["knob", "error, fine over coarse", "time, fine over coarse"];
 
-/// What [`SceneTrade::named`] are.
+/// Heading of [`SceneTrade::named`].
 pub const NAMED: &str = "The default, the qualities, and other methods";
 
-/// What [`effects`] says.
+/// Caption of [`effects`].
 pub const TOGETHER: &str = "By what factor error and time change from a knob's coarsest to its finest level (the error is that \
      of light) while all others vary by a designed sample; in brackets what covers that factor in 95 of 100 cases. The line from \
      level to level is straight in logarithms, what bends counts as noise. Of fewer samples than knobs, what is one \
      knob's may be taken for another's.";
 
-/// A section a scene.
+/// Returns a section a scene.
 pub fn markdown(trade: &Trade) -> String {
     let facts: Vec<String> = trade.facts.iter().map(|(name, value)| format!("{name} {value}")).collect();
     let mut text = format!("# Trade\n\n{}. Times are processor seconds.\n", facts.join(", "));
@@ -44,7 +44,7 @@ pub fn markdown(trade: &Trade) -> String {
     text
 }
 
-/// What errors are against.
+/// Describes the references of the errors.
 pub fn about(scene: &SceneTrade) -> String {
     let (pixels, light) = (&scene.reference, &scene.light_reference);
     format!(
@@ -58,7 +58,7 @@ pub fn about(scene: &SceneTrade) -> String {
     )
 }
 
-/// How verdicts come about.
+/// Explains the verdicts.
 pub fn legend() -> String {
     format!(
         "Each knob alone, from coarse to fine; changes of error below {:.0} % and of time below {:.0} % count as none. \
@@ -68,7 +68,7 @@ pub fn legend() -> String {
     )
 }
 
-/// What an error is called.
+/// Returns the name of an error.
 pub fn judged_by(error: JudgedBy) -> &'static str {
     match error {
         JudgedBy::Limit => "from the limit",
@@ -77,7 +77,7 @@ pub fn judged_by(error: JudgedBy) -> &'static str {
     }
 }
 
-/// A row a knob.
+/// Returns a row a knob.
 pub fn sweeps(scene: &SceneTrade) -> Vec<Vec<String>> {
     let row = |sweep: &super::Sweep| {
         let level = |(text, point): &(String, usize)| {
@@ -98,7 +98,7 @@ pub fn sweeps(scene: &SceneTrade) -> Vec<Vec<String>> {
     scene.sweeps.iter().map(row).collect()
 }
 
-/// A row a point.
+/// Returns a row a point.
 pub fn front(points: &[&Point]) -> Vec<Vec<String>> {
     let row = |point: &&Point| {
         vec![
@@ -113,7 +113,7 @@ pub fn front(points: &[&Point]) -> Vec<Vec<String>> {
     points.iter().map(row).collect()
 }
 
-/// A row a knob, by the designed sample.
+/// Returns a row a knob, by the designed sample.
 pub fn effects(scene: &SceneTrade) -> Vec<Vec<String>> {
     let text = |effect: &Option<Effect>| match effect {
         Some(e) => format!("{:.2} ({:.2} to {:.2})", e.factor, e.range[0], e.range[1]),

@@ -1,15 +1,17 @@
-//! What each setting of the cache buys: error against time, one setting at a time and by a designed sample.
+//! The trade-off of each setting of the cache: error against time, one setting at a time and by a designed
+//! sample.
 //!
-//! Every knob is swept alone around the defaults; then all are varied together by an Owen-scrambled Sobol design,
-//! whose projection on any one knob is stratified. Three errors are told apart:
+//! Every knob is swept alone around the defaults; then all are varied together by an Owen-scrambled Sobol
+//! design, whose projection on any one knob is stratified. Three errors are distinguished:
 //!
-//! - from the limit: against lightcuts of a quarter of the error on the same virtual lights, which is what records and
-//!   cuts add;
-//! - of light: against a reference path-traced through the picture's own eye samples, which adds what virtual lights
-//!   and their clamping get wrong;
-//! - FLIP: against a reference of whole pixels, which adds what few eye samples a pixel cannot resolve.
+//! - from the limit: against lightcuts of a quarter of the error on the same virtual lights, the error added
+//!   by records and cuts;
+//! - of light: against a reference path-traced through the picture's own eye samples, which includes the
+//!   errors of virtual lights and their clamping;
+//! - FLIP: against a reference of whole pixels, which includes the aliasing of few eye samples a pixel.
 //!
-//! The settings of `--quality` are beside them. How the acceleration structure is built is varied alone, not in the designed sample.
+//! The settings of `--quality` are shown beside them. Builds of the acceleration structure are varied alone,
+//! not in the designed sample.
 
 mod builds;
 mod front;
@@ -40,76 +42,76 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
     kind: Kind::Study { scenes: &[], pixels: [256, 256], run },
 };
 
-/// All that was found out.
+/// All results.
 #[derive(Serialize)]
 struct Trade {
     facts: Vec<(String, String)>,
     scenes: Vec<SceneTrade>,
 }
 
-/// A scene's part.
+/// Results of a scene.
 #[derive(Serialize)]
 struct SceneTrade {
     scene: String,
-    /// Of the reference of pixels.
+    /// Noise of the reference of pixels.
     reference: Noise,
-    /// Of that of eye samples.
+    /// Noise of the reference of eye samples.
     light_reference: Noise,
     points: Vec<Point>,
     sweeps: Vec<Sweep>,
     effects: Vec<KnobEffect>,
 }
 
-/// A picture.
+/// A picture's settings, time and errors.
 #[derive(Serialize)]
 struct Point {
     label: String,
-    /// Which sort of point it is.
+    /// Reason for which it was rendered.
     sort: Sort,
     settings: Value,
     /// Processor seconds.
     seconds: f64,
-    /// What differs from the defaults.
+    /// Settings that differ from the defaults.
     turned: String,
     /// Relative RMSE from the limit, where the eye samples are the same.
     limit: Option<f64>,
-    /// Relative RMSE of light, likewise.
+    /// Relative RMSE of light, where the eye samples are the same.
     light: Option<f64>,
     /// FLIP against the reference of pixels.
     flip: f64,
-    /// Whether no other point of the cache is faster and no worse.
+    /// True if no other point of the cache is faster and no worse.
     on_limit_front: bool,
     on_light_front: bool,
     on_flip_front: bool,
 }
 
-/// Why a picture was rendered.
+/// Reason for which a picture was rendered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum Sort {
     /// The cache's defaults.
     Default,
-    /// What `--quality` gives.
+    /// A setting of `--quality`.
     Quality,
-    /// One knob turned.
+    /// One knob varied.
     Sweep,
-    /// Of the designed sample.
+    /// A point of the designed sample.
     Sample,
     /// Another method.
     Other,
 }
 
-/// A knob turned.
+/// A sweep of one knob.
 #[derive(Serialize)]
 struct Sweep {
     knob: &'static str,
-    /// Level and its point.
+    /// Names of the levels, with the indices of their points.
     levels: Vec<(String, usize)>,
     /// Courses of error and time from coarse to fine.
     error: Course,
     time: Course,
     verdict: &'static str,
-    /// Which error.
+    /// Error that the knob is judged by.
     judged_by: JudgedBy,
 }
 
@@ -122,7 +124,7 @@ struct KnobEffect {
 }
 
 fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
-    // Before anything is rendered.
+    // Names are checked before anything is rendered.
     chosen(&study.plan.knobs)?;
     let mut trade = Trade { facts: study.facts(), scenes: Vec::new() };
     for path in scenes {
@@ -181,7 +183,8 @@ fn scene(study: &Study, subject: Subject) -> Result<SceneTrade, StudyError> {
     })
 }
 
-/// What cuts and records of the default's virtual lights come to as they are made better.
+/// Returns the limit of cuts and records over the default's virtual lights: lightcuts of a quarter of the
+/// error.
 fn limit() -> Candidate {
     let Settings { spp, seed, light, cut, family, .. } = Settings::default();
     let mut settings = lightcuts::Settings { spp, seed, light, cut, family, ..Default::default() };
@@ -190,14 +193,14 @@ fn limit() -> Candidate {
     Candidate { label: "limit".to_owned(), method: Method::Lightcuts(settings) }
 }
 
-/// The cache at the heights of the ladder that have names.
+/// Returns the cache at the named levels of the quality scale.
 fn qualities() -> Vec<(&'static str, Method)> {
     let ladder = Ladder::new(Method::Cache(Settings::default()), Held::default());
     let named = [("draft", DRAFT), ("preview", PREVIEW), ("final", FINAL), ("reference", REFERENCE)];
     ladder.iter().flat_map(|ladder| named.map(|(name, height)| (name, ladder.at(height)))).collect()
 }
 
-/// The knobs and builds named, or all.
+/// Returns the knobs and builds named, or all.
 fn chosen(names: &[String]) -> Result<(Vec<Knob>, Vec<&'static Builds>), StudyError> {
     let mut knobs = knobs();
     let mut builds: Vec<&Builds> = BUILDS.iter().collect();
@@ -213,7 +216,7 @@ fn chosen(names: &[String]) -> Result<(Vec<Knob>, Vec<&'static Builds>), StudyEr
     Ok((knobs, builds))
 }
 
-/// The other methods at their defaults, on the cache's eye samples.
+/// Returns the other methods at their defaults, on the cache's eye samples.
 fn others() -> [(&'static str, Method); 2] {
     let Settings { spp, seed, light, cut, family, .. } = Settings::default();
     let cuts = lightcuts::Settings { spp, seed, light, cut, family, ..Default::default() };
@@ -222,7 +225,7 @@ fn others() -> [(&'static str, Method); 2] {
 }
 
 impl Judge<'_> {
-    /// Renders a point; its index.
+    /// Renders a point; returns its index.
     fn point(
         &mut self,
         label: &str,
@@ -236,7 +239,7 @@ impl Judge<'_> {
         self.judge(&candidate, turned, sort, &run, same_samples)
     }
 
-    /// Judges a picture; the index of its point.
+    /// Judges a picture; returns the index of its point.
     fn judge(
         &mut self,
         candidate: &Candidate,
@@ -267,7 +270,7 @@ impl Judge<'_> {
     }
 }
 
-/// Among the cache's own points.
+/// Marks the fronts among the cache's own points.
 fn mark_fronts(points: &mut [Point]) {
     let own: Vec<usize> = (0..points.len()).filter(|&i| points[i].sort != Sort::Other).collect();
     let flips: Vec<_> = own.iter().map(|&i| (points[i].seconds, points[i].flip)).collect();
@@ -288,13 +291,13 @@ fn mark_fronts(points: &mut [Point]) {
 }
 
 impl SceneTrade {
-    /// Points that are not there to find the front.
+    /// Returns the points that do not belong to the search for the front.
     fn named(&self) -> Vec<&Point> {
         let found = |point: &&Point| !matches!(point.sort, Sort::Sweep | Sort::Sample);
         self.points.iter().filter(found).collect()
     }
 
-    /// Points on a front, fastest first.
+    /// Returns the points on a front, fastest first.
     fn front(&self, on: fn(&Point) -> bool) -> Vec<&Point> {
         let mut points: Vec<&Point> = self.points.iter().filter(|point| on(point)).collect();
         points.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
@@ -303,7 +306,7 @@ impl SceneTrade {
 }
 
 impl Point {
-    /// One of its errors; 0 where it has none of that sort.
+    /// Returns one of its errors; 0 where it has none of that sort.
     fn error(&self, judged_by: JudgedBy) -> f64 {
         match judged_by {
             JudgedBy::Limit => self.limit.unwrap_or(0.0),

@@ -1,4 +1,4 @@
-//! Knobs turned one by one, and all together.
+//! Sweeps of single knobs, and the designed sample of all together.
 
 use super::front::effect;
 use super::knobs::{JudgedBy, Knob};
@@ -12,7 +12,7 @@ use crate::sampling::Sampler;
 const DESIGN: u32 = 1;
 
 impl Judge<'_> {
-    /// Turns a knob alone.
+    /// Varies a knob alone.
     pub fn sweep(&mut self, knob: &Knob) -> Result<Sweep, StudyError> {
         let mut levels = Vec::with_capacity(knob.levels.len());
         for level in &knob.levels {
@@ -44,7 +44,7 @@ impl Judge<'_> {
         Sweep { knob, levels, error, time, verdict, judged_by }
     }
 
-    /// Turns all knobs together that leave the eye samples alone.
+    /// Varies all knobs together that leave the eye samples unchanged.
     pub fn sample(&mut self, knobs: &[Knob]) -> Result<Vec<KnobEffect>, StudyError> {
         let knobs: Vec<&Knob> = knobs.iter().filter(|knob| knob.judged_by != JudgedBy::Flip).collect();
         let mut places = vec![Vec::new(); knobs.len()];

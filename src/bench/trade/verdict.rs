@@ -1,4 +1,4 @@
-//! Whether a knob does what knobs should: finer is better and costs more.
+//! Verdicts on knobs: finer levels should lower the error and cost more.
 
 use serde::Serialize;
 use std::fmt;
@@ -8,21 +8,21 @@ pub const ERROR_TOLERANCE: f64 = 0.03;
 /// Relative change of time that counts as none; times of a busy machine vary.
 pub const TIME_TOLERANCE: f64 = 0.1;
 
-/// How a figure changes from coarse to fine.
+/// Course of a figure from coarse to fine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Course {
-    /// Not at all.
+    /// No change.
     Flat,
-    /// Never down; the last over the first.
+    /// Monotonic rise; the last value over the first.
     Rises(f64),
-    /// Never up; the first over the last.
+    /// Monotonic fall; the first value over the last.
     Falls(f64),
-    /// Up here and down there: the levels at which it goes against where it goes on the whole.
+    /// Rise and fall: the pairs of levels between which it moves against its overall direction.
     Mixed(Vec<[String; 2]>),
 }
 
-/// Of values from coarse to fine, with the levels' names.
+/// Returns the course of values from coarse to fine, with the levels' names.
 pub fn course(values: &[f64], names: &[String], tolerance: f64) -> Course {
     let step = |from: f64, to: f64| match to / from {
         ratio if ratio > 1.0 + tolerance => 1,
@@ -31,7 +31,7 @@ pub fn course(values: &[f64], names: &[String], tolerance: f64) -> Course {
     };
     let (Some(&first), Some(&last)) = (values.first(), values.last()) else { return Course::Flat };
     let on_the_whole = if last > first { 1 } else { -1 };
-    // Against the least or largest so far, so that many small steps do not pass for none.
+    // Compared with the extreme so far, so that many small steps are not overlooked.
     let mut extreme = 0;
     let mut against = Vec::new();
     let mut moves = false;
@@ -67,7 +67,7 @@ impl fmt::Display for Course {
     }
 }
 
-/// What both courses come to.
+/// Returns the verdict on both courses.
 pub fn verdict(error: &Course, time: &Course) -> &'static str {
     use Course::{Falls, Flat, Mixed, Rises};
     match (error, time) {
@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(of(&[1.0, 1.05, 2.0, 4.0]), Course::Rises(4.0));
         assert_eq!(of(&[4.0, 2.0, 2.1, 1.0]), Course::Falls(4.0));
         assert_eq!(of(&[4.0, 1.0, 2.0]), Course::Mixed(vec![["1".into(), "2".into()]]));
-        // Creeping up by less than the tolerance a step is seen all the same.
+        // A slow rise by less than the tolerance a step is detected.
         assert_eq!(of(&[4.0, 1.0, 1.08, 1.16]), Course::Mixed(vec![["1".into(), "3".into()]]));
         assert_eq!(verdict(&of(&[2.0, 1.0]), &of(&[1.0, 3.0])), "monotone: finer is better and costs more");
     }
