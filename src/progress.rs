@@ -1,14 +1,14 @@
-//! How a running method is watched and stopped from another thread.
+//! Progress and cancellation of a running method, from another thread.
 //!
 //! A method calls [`Control::begin`] when a stage starts, [`Control::advance`] as it goes, and between units
-//! of work (a tile, a batch of photon paths) asks [`Control::is_cancelled`]; once that is true it returns
-//! what it has, marked incomplete. Nothing here influences the picture.
+//! of work (a tile, a batch of photon paths) asks [`Control::is_cancelled`]; once that is true it returns its
+//! partial result, marked incomplete. Nothing here influences the picture.
 
 use crate::stats::Stage;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Shared between the thread that renders and those that watch.
+/// State shared between the thread that renders and those that watch it.
 #[derive(Debug, Default)]
 pub struct Control {
     cancelled: AtomicBool,
@@ -17,10 +17,10 @@ pub struct Control {
     done: AtomicU64,
 }
 
-/// How far a method has come.
+/// A snapshot of a method's progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// The stage that runs.
+    /// The current stage.
     pub stage: Stage,
     /// Units of work done in this stage, at most `total`.
     pub done: u64,
@@ -29,7 +29,7 @@ pub struct Progress {
 }
 
 impl Control {
-    /// Not cancelled, no stage begun.
+    /// Creates a control: not cancelled, no stage begun.
     pub fn new() -> Control {
         Control::default()
     }
@@ -39,26 +39,26 @@ impl Control {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the method should return what it has.
+    /// True if the method should return its partial result.
     #[inline]
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// A stage of `total` units starts (0 if their number is not known). Stages follow one another.
+    /// Starts a stage of `total` units (0 if their number is not known). Stages follow one another.
     pub fn begin(&self, stage: Stage, total: u64) {
         let mut current = self.lock();
         self.done.store(0, Ordering::Relaxed);
         *current = Some((stage, total));
     }
 
-    /// `n` more units of the current stage are done. Callable from any worker.
+    /// Counts `n` more finished units of the current stage. Callable from any worker.
     #[inline]
     pub fn advance(&self, n: u64) {
         self.done.fetch_add(n, Ordering::Relaxed);
     }
 
-    /// How far the method has come; `None` before the first stage.
+    /// Returns the progress; `None` before the first stage.
     pub fn progress(&self) -> Option<Progress> {
         let current = self.lock();
         let (stage, total) = (*current)?;

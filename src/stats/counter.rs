@@ -1,9 +1,9 @@
-//! What one named counter holds.
+//! Values of named counters.
 
 /// The value of one counter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Counter {
-    /// How many.
+    /// An integer count.
     Count(u64),
     /// A real sum.
     Sum(f64),
@@ -27,13 +27,13 @@ impl Counter {
 /// Number, sum and range of integer observations: exact, so the same for any order of merging.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Distribution {
-    /// How many observations.
+    /// Number of observations.
     pub count: u64,
     /// Their sum.
     pub sum: u64,
-    /// The least, `u64::MAX` if there is none.
+    /// Minimum; `u64::MAX` if there is none.
     pub min: u64,
-    /// The largest, 0 if there is none.
+    /// Maximum; 0 if there is none.
     pub max: u64,
 }
 
@@ -44,7 +44,7 @@ impl Default for Distribution {
 }
 
 impl Distribution {
-    /// One observation.
+    /// Creates a distribution of one observation.
     pub fn of(value: u64) -> Distribution {
         Distribution { count: 1, sum: value, min: value, max: value }
     }

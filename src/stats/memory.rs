@@ -1,16 +1,16 @@
-//! How much memory the process has used, and how much the machine has left.
+//! Memory used by the process, and memory left on the machine.
 
-/// Largest resident set of this process so far, in bytes; `None` where the system does not tell.
+/// Peak resident set size of this process, in bytes; `None` where the system does not report it.
 pub fn peak_resident_bytes() -> Option<u64> {
     field(&std::fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }
 
-/// Memory that can be had without swapping, in bytes; `None` where the system does not tell.
+/// Memory available without swapping, in bytes; `None` where the system does not report it.
 pub fn available_bytes() -> Option<u64> {
     field(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
-/// A line such as `VmHWM:   1024 kB`, in bytes.
+/// Parses a line such as `VmHWM:   1024 kB`, in bytes.
 fn field(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;

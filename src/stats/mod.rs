@@ -28,7 +28,7 @@ pub struct Stats {
 }
 
 impl Stats {
-    /// Nothing counted yet.
+    /// Creates empty statistics.
     pub fn new() -> Stats {
         Stats::default()
     }
@@ -43,22 +43,22 @@ impl Stats {
         self.combine(name, Counter::Sum(value));
     }
 
-    /// Adds one observation to the distribution `name`, which reports count, mean, least and largest.
+    /// Adds one observation to the distribution `name`, which reports count, mean, minimum and maximum.
     pub fn observe(&mut self, name: &str, value: u64) {
         self.combine(name, Counter::Distribution(Distribution::of(value)));
     }
 
-    /// Adds the observations gathered in `distribution` to the distribution `name`.
+    /// Adds all observations of `distribution` to the distribution `name`.
     pub fn distribution(&mut self, name: &str, distribution: Distribution) {
         self.combine(name, Counter::Distribution(distribution));
     }
 
-    /// Adds a time to what `stage` has taken so far.
+    /// Adds a time to that of `stage`.
     pub fn add_time(&mut self, stage: Stage, time: StageTime) {
         *self.times.entry(stage).or_default() += time;
     }
 
-    /// Runs `work` and adds what it took to `stage`.
+    /// Runs `work` and adds its time to `stage`.
     pub fn time<R>(&mut self, stage: Stage, work: impl FnOnce() -> R) -> R {
         let watch = Stopwatch::start();
         let result = work();
@@ -81,7 +81,7 @@ impl Stats {
         self.counters.get(name).copied()
     }
 
-    /// What `stage` has taken so far, if it ran.
+    /// Time of `stage` so far, if it ran.
     pub fn stage(&self, stage: Stage) -> Option<StageTime> {
         self.times.get(&stage).copied()
     }

@@ -1,4 +1,4 @@
-//! The stages a run is timed by.
+//! Stages of a run, each timed.
 
 use serde::Serialize;
 use std::ops::AddAssign;
@@ -12,9 +12,9 @@ pub enum Stage {
     Load,
     /// Building the acceleration structure and the tables of materials and lights.
     Build,
-    /// What settings are planned by: renders that are not kept, and the measuring of their errors.
+    /// Planning settings: renders that are discarded, and the measuring of their errors.
     Plan,
-    /// Eye rays and specular chains, where they are a pass of their own.
+    /// Eye rays and specular chains, in methods where they are a pass of their own.
     EyePass,
     /// Photon paths: lights become virtual point lights.
     LightPass,
@@ -24,7 +24,7 @@ pub enum Stage {
     Records,
     /// Splatting and adapting records.
     Splat,
-    /// Everything per pixel in methods without records.
+    /// All work per pixel in methods without records.
     Render,
     /// Path-tracing pixels to measure the picture's error.
     Verify,
@@ -79,7 +79,7 @@ impl Stage {
     }
 }
 
-/// What a stage took.
+/// Time of a stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct StageTime {
     /// Elapsed seconds.
@@ -89,7 +89,7 @@ pub struct StageTime {
 }
 
 impl StageTime {
-    /// What is left besides `part`.
+    /// Returns the time without that of `part`.
     pub fn without(self, part: StageTime) -> StageTime {
         StageTime {
             wall_seconds: self.wall_seconds - part.wall_seconds,
@@ -118,7 +118,7 @@ impl Stopwatch {
         Stopwatch { wall: Instant::now(), cpu_seconds: process_cpu_seconds() }
     }
 
-    /// What has passed since the start.
+    /// Returns the time since the start.
     pub fn elapsed(&self) -> StageTime {
         StageTime {
             wall_seconds: self.wall.elapsed().as_secs_f64(),

@@ -1,4 +1,4 @@
-//! Sums of counts that parts of the work keep for themselves.
+//! Sums of counts of parts of the work.
 
 /// Implements `+=` field by field.
 macro_rules! add_fields {

@@ -6,13 +6,13 @@
 use crate::sampling::hash;
 use serde::Serialize;
 
-/// Resamples.
+/// Number of resamples.
 const RESAMPLES: u32 = 2000;
 
 /// Standard normal quantile of 97.5 %.
 pub const NORMAL_975: f64 = 1.959963984540054;
 
-/// An estimate and the interval that covers the truth in 95 of 100 cases.
+/// An estimate and its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Estimate {
     /// The estimate.
@@ -24,18 +24,18 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Whether the interval covers `truth`.
+    /// True if the interval covers `truth`.
     pub fn covers(&self, truth: f64) -> bool {
         self.low <= truth && truth <= self.high
     }
 
-    /// The same estimate seen through a function that does not decrease.
+    /// Maps estimate and interval by a non-decreasing function.
     pub fn map(self, f: impl Fn(f64) -> f64) -> Estimate {
         Estimate { value: f(self.value), low: f(self.low), high: f(self.high) }
     }
 }
 
-/// How often each of `count` items comes up in each resample.
+/// Draws, for each resample, the number of times that each of `count` items occurs.
 pub fn resamples(count: usize, seed: u32) -> Vec<Vec<u16>> {
     (0..RESAMPLES)
         .map(|r| {
@@ -50,8 +50,8 @@ pub fn resamples(count: usize, seed: u32) -> Vec<Vec<u16>> {
         .collect()
 }
 
-/// The interval around `value`, given the estimates from resamples and the acceleration: a sixth of the skewness of
-/// the items' influences over the root of their number, 0 where not known.
+/// Computes the interval around `value`, given the estimates from resamples and the acceleration: a sixth of
+/// the skewness of the items' influences over the root of their number, 0 where not known.
 pub fn bca(value: f64, mut again: Vec<f64>, acceleration: f64) -> Estimate {
     again.retain(|x| x.is_finite());
     again.sort_by(f64::total_cmp);

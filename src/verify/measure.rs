@@ -1,64 +1,66 @@
 //! The picture's error from noisy values of some of its pixels.
 //!
-//! A pixel's truth is known from K independent means of path-traced radiance. The relative square error of a channel,
-//! `(t - r)² / (r² + 0.01 m²)` as [`crate::film::metrics::rel_mse`] has it, is too large on average when r is noisy, by the noise's
-//! variance and by what the quotient does to it. The jackknife over the K means takes both away to first order,
-//! and where the denominator does not matter entirely.
+//! A pixel's truth is estimated by K independent means of path-traced radiance. The relative square error of
+//! a channel, `(t - r)² / (r² + 0.01 m²)` as in [`crate::film::metrics::rel_mse`], is biased upwards when r
+//! is noisy, by the noise's variance and by the non-linear quotient. The jackknife over the K means removes
+//! both to first order, and entirely where the denominator does not matter.
 //!
-//! The 95th percentile is too large as well. Leaving away every other mean doubles the variance of the noise: from the percentile's
-//! square at one and at two parts of noise, a line leads to that at none. Where noise makes most of what is seen, the line leads
-//! anywhere, even below 0, and its spread over resamples says nothing of that: the percentile counts as unresolved, and its interval
-//! goes from 0 to where the percentile with the noise in it may lie. Noise spreads errors, so that the percentile without it is lower.
+//! The 95th percentile is biased upwards as well. Omitting every other mean doubles the variance of the
+//! noise: from the percentile's square at one and at two parts of noise, a line extrapolates to zero noise.
+//! When noise dominates, that extrapolation is ill-conditioned (it may be negative), and the bootstrap does
+//! not reveal it: the percentile counts as unresolved, and its interval goes from 0 to the upper end of the
+//! percentile with the noise in it. Noise spreads errors, so that the percentile without it is lower.
 //!
 //! Papers: Quenouille 1956 (jackknife); Cook and Stefanski, *Simulation-Extrapolation Estimation*, 1994.
-//! Deviations: the line is exact for errors that are all noise or all constant, approximate in between. Intervals treat picks as
-//! independent, though they are stratified; they are wide rather than narrow. A pick that was certain varies
-//! by the noise of its means alone, and others by a mixture according to their probability; for the percentile all
-//! vary as if drawn at random.
+//! Deviations: the line is exact for errors that are all noise or all constant, approximate in between.
+//! Intervals treat picks as independent, though they are stratified; they are wide rather than narrow. A pick
+//! of probability 1 varies by the noise of its means alone, and others by a mixture according to their
+//! probability; for the percentile all vary as if drawn at random.
 
 use super::interval::{Estimate, acceleration, bca, resamples};
 use crate::sampling::hash;
 use glam::DVec3;
 
-/// Independent means at each pixel.
+/// Number of independent means at each pixel.
 pub const MEANS: usize = 16;
 
-/// Share of the pixels that are no worse than the percentile reported.
+/// Share of the pixels whose error is at most the percentile reported.
 const PERCENTILE: f64 = 0.95;
 
-/// Largest part of the percentile's square that may be noise for the line to none to be trusted.
+/// Maximum share of noise in the percentile's square for the extrapolation to zero noise to be trusted.
 const RESOLVED: f64 = 0.5;
 
-/// As in [`crate::film::metrics::rel_mse`]: the share of the squared mean that keeps dark pixels from ruling.
+/// Share of the squared mean added to the denominator, as in [`crate::film::metrics::rel_mse`], so that dark
+/// pixels do not dominate.
 const FLOOR: f64 = 0.01;
 
 /// A pixel whose error is measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured {
-    /// What the picture holds.
+    /// Value of the pixel in the picture.
     pub held: DVec3,
-    /// Independent unbiased estimates of what it should hold.
+    /// Independent unbiased estimates of its true value.
     pub means: [DVec3; MEANS],
-    /// How many pixels it stands for.
+    /// Number of pixels it represents.
     pub weight: f64,
 }
 
-/// What the pixels say of the picture.
+/// Estimates of the picture's errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
     /// Mean of the picture over mean of the truth, minus 1.
     pub bias: Estimate,
     /// Root of the mean relative square error.
     pub rms: Estimate,
-    /// The relative error that 95 % of the pixels keep.
+    /// Relative error not exceeded by 95 % of the pixels.
     pub percentile_95: Estimate,
-    /// Whether errors rule the percentile; if not, noise does, and its interval is that of the unknown.
+    /// True if errors dominate the percentile; if noise does, the interval starts at 0.
     pub percentile_resolved: bool,
     /// Root of the mean relative variance of the truth's estimates.
     pub noise: f64,
 }
 
-/// Errors of a picture whose mean over pixels and channels is `mean`.
+/// Computes the errors of a picture whose mean over pixels and channels is `mean`.
 pub fn errors(pixels: &[Measured], mean: f64, seed: u32) -> Errors {
     let again = resamples(pixels.len(), seed);
     let interval = |values: &[(f64, f64)]| {
@@ -81,7 +83,7 @@ pub fn errors(pixels: &[Measured], mean: f64, seed: u32) -> Errors {
     let noise = mean_of(pixels, &variances).sqrt();
 
     let ranked = [0, 1, 2].map(|part| Ranked::new(pixels, floor, part));
-    // The square with the noise in it, and without.
+    // The percentile's square with noise, and extrapolated to none.
     let percentile = |times: Option<&[u16]>| {
         let [all, even, odd] = [0, 1, 2].map(|part| ranked[part].percentile(pixels, times));
         (all, 2.0 * all - 0.5 * (even + odd))
@@ -97,7 +99,7 @@ pub fn errors(pixels: &[Measured], mean: f64, seed: u32) -> Errors {
     Errors { bias, rms, percentile_95, percentile_resolved, noise }
 }
 
-/// Mean over the picture of values known for the picks.
+/// Estimates the mean over the picture from values at the picks.
 fn mean_of(pixels: &[Measured], values: &[(f64, f64)]) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
     for (p, (value, _)) in pixels.iter().zip(values) {
@@ -107,7 +109,7 @@ fn mean_of(pixels: &[Measured], values: &[(f64, f64)]) -> f64 {
     if total > 0.0 { sum / total } else { 0.0 }
 }
 
-/// The same mean had picks and noise come out differently.
+/// Estimates the same mean for other random picks and noise.
 fn resampled(pixels: &[Measured], values: &[(f64, f64)], times: &[u16], seed: u32) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
     for (i, (p, (value, deviation))) in pixels.iter().zip(values).enumerate() {
@@ -122,18 +124,18 @@ fn resampled(pixels: &[Measured], values: &[(f64, f64)], times: &[u16], seed: u3
 }
 
 impl Measured {
-    /// Root of the probability that the pixel would not have been picked.
+    /// Returns the root of the probability that the pixel would not have been picked.
     fn chance(&self) -> f64 {
         (1.0 - 1.0 / self.weight.max(1.0)).sqrt()
     }
 
-    /// How much brighter the picture is, mean over channels, and the standard error.
+    /// Returns picture minus truth, mean over channels, and the standard error.
     fn difference(&self) -> (f64, f64) {
         let of = |truth: DVec3| (self.held - truth).element_sum() / 3.0;
         self.jackknife(of)
     }
 
-    /// A function of the truth without the bias that noise in the truth brings, and its standard error.
+    /// Estimates a function of the truth without the bias due to its noise, and its standard error.
     fn jackknife(&self, of: impl Fn(DVec3) -> f64) -> (f64, f64) {
         let truth = self.truth();
         let (n, less) = (MEANS as f64, (MEANS - 1) as f64);
@@ -144,7 +146,7 @@ impl Measured {
         (mean, (squares / (n * less)).sqrt())
     }
 
-    /// The best estimate of what the pixel should hold.
+    /// Returns the best estimate of the pixel's true value.
     pub fn truth(&self) -> DVec3 {
         self.means.iter().sum::<DVec3>() / MEANS as f64
     }
@@ -162,7 +164,7 @@ impl Measured {
         quotient(self.variance(), truth * truth + floor)
     }
 
-    /// Relative square error, the noise's part taken away (negative at times), and its standard error.
+    /// Returns the relative square error less the noise's part (may be negative), and its standard error.
     fn relative_square(&self, floor: f64) -> (f64, f64) {
         self.jackknife(|truth| {
             let difference = self.held - truth;
@@ -170,7 +172,8 @@ impl Measured {
         })
     }
 
-    /// Relative square error by all means (part 0) or by every other one (parts 1 and 2), noise included.
+    /// Returns the relative square error by all means (part 0) or by every other one (parts 1 and 2), noise
+    /// included.
     fn noisy_square(&self, floor: f64, part: usize) -> f64 {
         let truth = self.truth();
         let seen = match part {
@@ -182,7 +185,7 @@ impl Measured {
     }
 }
 
-/// Pixels in the order of their errors.
+/// Pixels sorted by their errors.
 struct Ranked(Vec<(f64, usize)>);
 
 impl Ranked {
@@ -207,7 +210,7 @@ impl Ranked {
     }
 }
 
-/// Mean over the channels of numerator / denominator; 0 / 0 is 0 (black where it should be).
+/// Mean over the channels of numerator / denominator; 0 / 0 is 0 (black, and correctly so).
 fn quotient(numerator: DVec3, denominator: DVec3) -> f64 {
     (0..3).map(|c| ratio(numerator[c], denominator[c])).sum::<f64>() / 3.0
 }
@@ -224,7 +227,7 @@ mod tests {
         (f64::from(hash(a, b)) + 0.5) / 4294967296.0
     }
 
-    /// Pixels of truth 0.2 to 2 with the given errors, known with relative noise `noise`.
+    /// Pixels of truth 0.2 to 2 with the given errors, measured with relative noise `noise`.
     fn pixels(n: u32, noise: f64, error: impl Fn(u32) -> f64) -> Vec<Measured> {
         let pixel = |i: u32| {
             let truth = DVec3::new(1.0, 0.5, 0.8) * (0.2 + 1.8 * uniform(i, 90));
@@ -267,7 +270,8 @@ mod tests {
     fn percentiles_lose_the_noise() {
         let noisy = pixels(4000, 0.01, |_| 0.0);
         let found = errors(&noisy, mean(&noisy), 2);
-        // Unknown, and no larger than if all the noise were error: 1.96 times its deviation, and a tenth for the interval.
+        // Unresolved, and no larger than if all the noise were error: 1.96 times its deviation, and a tenth
+        // for the interval.
         assert!(!found.percentile_resolved && found.percentile_95.low == 0.0, "{found:?}");
         assert!(found.percentile_95.high < 1.1 * 1.96 * 0.01, "{found:?}");
         assert!(found.rms.low == 0.0 && found.rms.high < 0.003 && found.bias.covers(0.0), "{found:?}");
@@ -278,13 +282,13 @@ mod tests {
         let clean = pixels(4000, 0.0, spread);
         let truth = errors(&clean, mean(&clean), 3).percentile_95.value;
         assert!((truth - 0.0945).abs() < 0.002, "{truth}");
-        // The line to no noise is an approximation here.
+        // The extrapolation is approximate here.
         assert!((found.value / truth - 1.0).abs() < 0.06 && found.high - found.low < 0.02, "{found:?}");
     }
 
     #[test]
     fn a_percentile_lost_in_noise_is_called_unknown_and_covered() {
-        // Nine pixels in ten are known to 1 %, the others, as at the cap of paths, hardly at all.
+        // Nine pixels in ten are measured to 1 %, the others, as at the cap of paths, with great noise.
         for (error, seed) in [(0.0, 5), (0.02, 6), (0.05, 7), (0.1, 8)] {
             let rough = pixels(1000, 0.5, |i| error * f64::from(i % 2));
             let mut mixed = pixels(1000, 0.01, |i| error * f64::from(i % 2));

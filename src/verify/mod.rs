@@ -1,22 +1,22 @@
-//! How wrong a picture is, without a reference: some of its pixels are path-traced.
+//! Error of a picture, measured without a reference: some of its pixels are path-traced.
 //!
 //! | setting | default | meaning |
 //! |---|---|---|
 //! | `pixels` | - | about how many pixels are traced; all, if the picture has no more |
-//! | `look` | that of the method | what a pixel is held to be: the mean over its square, or through the picture's own eye samples |
+//! | `look` | that of the method | a pixel's meaning: the mean over its square, or through the picture's own eye samples |
 //! | `seed` | 0 | another seed, other pixels and paths |
 //! | `max_depth` | the scene's | longest path in edges |
 //! | `most_samples` | 4096 | most paths a pixel |
 //!
-//! A short pilot says how many paths each pixel takes until its standard error is 1 % of its radiance; they are then traced
-//! anew, so that what stopped them does not bias them. The error is reported with the interval that covers it in 95 of 100 cases; it holds
-//! the chance of which pixels were picked and the noise of their paths.
+//! A short pilot estimates the number of paths that each pixel takes until its standard error is 1 % of its
+//! radiance; they are then traced anew, so that the stopping rule does not bias them. The error is reported
+//! with a 95 % confidence interval, which covers the random choice of pixels and the noise of their paths.
 //!
-//! Pictures that differ in how they were computed, but not in what a pixel is meant to be, can be held to one [`Truth`]. Those that were
-//! chosen because they did well by it need another, of another seed.
+//! Pictures that differ in how they were computed, but not in the meaning of a pixel, can be compared with
+//! one [`Truth`]. Pictures that were selected for their small error against it need another, of another seed.
 //!
-//! It says what the path tracer knows: light that it hardly finds (small lights through glass) is missing from the
-//! truth or widens the interval.
+//! The measure is limited by the path tracer: light that it hardly finds (small lights through glass) is
+//! missing from the truth or widens the interval.
 
 mod interval;
 mod measure;
@@ -36,23 +36,23 @@ pub use interval::{Estimate, NORMAL_975};
 use picks::Pick;
 use trace::Traced;
 
-/// What to verify.
+/// Settings of a verification.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// About how many pixels.
+    /// Approximate number of pixels.
     pub pixels: usize,
-    /// What their values are meant to be.
+    /// Meaning of a pixel's value.
     pub look: Look,
-    /// Another seed, other pixels and paths.
+    /// Seed of the choice of pixels and of their paths.
     pub seed: u32,
-    /// Longest path in edges; `None` for the scene's own limit.
+    /// Maximum path length in edges; `None` for the scene's own limit.
     pub max_depth: Option<u32>,
-    /// Most paths a pixel.
+    /// Maximum number of paths a pixel.
     pub most_samples: u32,
 }
 
 impl Settings {
-    /// The same for a picture of `method`, whose own eye samples may be others than those that were planned with.
+    /// The same settings for a picture of `method`, whose own eye samples may differ from those planned with.
     pub fn of(self, method: &Method) -> Settings {
         match self.look {
             Look::Pixels => self,
@@ -74,27 +74,27 @@ impl Default for Settings {
 pub struct Verified {
     /// Mean of the picture over mean of the truth, minus 1.
     pub relative_bias: Estimate,
-    /// Root of the mean over pixels and channels of `(t - r)² / (r² + 0.01 m²)`, r the truth and m its mean: the root of
-    /// [`crate::film::metrics::rel_mse`].
+    /// Root of the mean over pixels and channels of `(t - r)² / (r² + 0.01 m²)`, r the truth and m its mean:
+    /// the root of [`crate::film::metrics::rel_mse`].
     pub relative_rms: Estimate,
-    /// What the root of that, by pixel, is not above in 95 % of them.
+    /// Root of the same, pixel by pixel: the value not exceeded by 95 % of the pixels.
     pub relative_error_95: Estimate,
-    /// Whether errors rule that figure; if not, the noise of the paths does, and its interval starts at 0 and ends where the
-    /// figure would be if all that is seen were error.
+    /// True if errors dominate that figure; if the noise of the paths does, its interval goes from 0 to the
+    /// value that the figure would have if all noise were error.
     pub error_95_resolved: bool,
-    /// Root of the mean relative variance of the path-traced pixels. It is taken out of the figures above.
+    /// Root of the mean relative variance of the path-traced pixels. It is subtracted from the figures above.
     pub noise: f64,
-    /// Pixels traced.
+    /// Number of pixels traced.
     pub pixels: usize,
-    /// Pixels that would have needed more paths than allowed to be known to 1 %.
+    /// Number of pixels that would have needed more paths than allowed for a standard error of 1 %.
     pub pixels_at_cap: usize,
-    /// Paths traced.
+    /// Number of paths traced.
     pub paths: u64,
-    /// Radiances along them that were not finite and count as 0.
+    /// Number of radiances along them that were not finite and count as 0.
     pub nonfinite: u64,
 }
 
-/// What some pixels of a window should hold.
+/// True values of some pixels of a window.
 pub struct Truth {
     picks: Vec<Pick>,
     traced: Traced,
@@ -102,7 +102,8 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// Traces pixels of `window`, those preferred that stand out in `image`, a picture of it; `None` if cancelled.
+    /// Traces pixels of `window`, preferably those of high contrast in `image`, a picture of it; `None` if
+    /// cancelled.
     pub fn trace(
         world: &World,
         view: &View,
@@ -116,7 +117,7 @@ impl Truth {
         Some(Truth { picks, traced, seed: settings.seed })
     }
 
-    /// The error of `image`, a picture of the same view.window.
+    /// Measures the error of `image`, a picture of the same view.window.
     pub fn judge(&self, image: &Image) -> Verified {
         let traced = &self.traced;
         let mut pixels = traced.pixels.clone();

@@ -1,10 +1,11 @@
-//! Which pixels are verified.
+//! Choice of the pixels to verify.
 //!
-//! Every pixel may be picked, with a probability of which half is the same for all and half goes with how much it stands
-//! out among its neighbours: errors of caches and of aliasing gather in creases and at edges, and the square of
-//! noise in few bright pixels, so that a plain random sample would see too few of the pixels that rule the root mean square.
-//! Weights undo the preference (Horvitz-Thompson). Picks are systematic: pixels are lined up block by
-//! block along the Morton curve, in random order within blocks, and picked at equal steps of the probability.
+//! Every pixel may be picked. Half of its probability is the same for all; the other half is proportional to
+//! its contrast with its neighbours: errors of caches and of aliasing gather in creases and at edges, and the
+//! square of noise in few bright pixels, so that a plain random sample would see too few of the pixels that
+//! dominate the root mean square. Weights undo the preference (Horvitz-Thompson). Picks are systematic:
+//! pixels are ordered block by block along the Morton curve, in random order within blocks, and picked at
+//! equal steps of the cumulative probability.
 
 use crate::film::Image;
 use crate::sampling::hash;
@@ -12,22 +13,22 @@ use crate::sampling::hash;
 /// A pixel to verify.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pick {
-    /// Place in the image's rows.
+    /// Index into the image's pixels, row by row.
     pub index: usize,
-    /// How many pixels it stands for.
+    /// Number of pixels it represents.
     pub weight: f64,
 }
 
-/// Share of the probability that goes with contrast.
+/// Share of the probability that is proportional to contrast.
 const BY_CONTRAST: f64 = 0.5;
 
-/// Radiances this share of the mean apart are no contrast.
+/// Difference of radiances, over the mean, that does not count as contrast.
 const CONTRAST_FLOOR: f64 = 0.1;
 
-/// Pixels along the edge of a block, within which the order is random.
+/// Side of a block, within which the order is random, in pixels.
 const BLOCK: u32 = 8;
 
-/// `count` picks, every pixel once where there are no more.
+/// Picks `count` pixels, or every pixel once if there are no more.
 pub fn choose(image: &Image, count: usize, seed: u32) -> Vec<Pick> {
     let mut order: Vec<usize> = (0..image.pixels.len()).collect();
     let block = |i: usize| {
@@ -52,7 +53,7 @@ pub fn choose(image: &Image, count: usize, seed: u32) -> Vec<Pick> {
     picks
 }
 
-/// Probability of each pixel to be picked; `count` in all.
+/// Probability of each pixel to be picked; they sum to `count`.
 fn inclusion(image: &Image, count: usize) -> Vec<f64> {
     let contrast = contrasts(image);
     let total: f64 = contrast.iter().sum();
@@ -61,7 +62,7 @@ fn inclusion(image: &Image, count: usize) -> Vec<f64> {
     let by_contrast = |c: f64| if total > 0.0 { share * c / total } else { 0.0 };
     let mut inclusion: Vec<f64> =
         contrast.into_iter().map(|c| count as f64 * ((1.0 - share) * even + by_contrast(c))).collect();
-    // What some have beyond certainty goes to the others, until none has.
+    // Probability in excess of 1 is redistributed to the others, until none exceeds it.
     loop {
         let certain = inclusion.iter().filter(|&&p| p >= 1.0).count() as f64;
         let rest: f64 = inclusion.iter().filter(|&&p| p < 1.0).sum();
@@ -74,8 +75,8 @@ fn inclusion(image: &Image, count: usize) -> Vec<f64> {
     }
 }
 
-/// How much each pixel stands out: its relative difference from the median around it, and at most 1 more for the largest
-/// difference from a neighbour.
+/// Contrast of each pixel: its relative difference from the median around it, and at most 1 more for the
+/// largest difference from a neighbour.
 fn contrasts(image: &Image) -> Vec<f64> {
     let value = |i: usize| f64::from(image.pixels[i].element_sum());
     let mean = (0..image.pixels.len()).map(value).sum::<f64>() / image.pixels.len().max(1) as f64;
@@ -101,7 +102,7 @@ fn contrasts(image: &Image) -> Vec<f64> {
     (0..image.pixels.len()).map(at).collect()
 }
 
-/// Bits of both coordinates in turn.
+/// Interleaves the bits of both coordinates.
 fn morton(x: u32, y: u32) -> u64 {
     let spread = |v: u32| {
         let mut v = u64::from(v);

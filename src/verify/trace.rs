@@ -1,4 +1,4 @@
-//! The truth at the pixels picked.
+//! Path-traced values of the pixels picked.
 
 use super::Settings;
 use super::measure::{MEANS, Measured};
@@ -13,30 +13,31 @@ use crate::world::World;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Paths for each of a pixel's means in the pilot.
+/// Number of paths for each of a pixel's means in the pilot.
 const PILOT: u32 = 4;
 
-/// Standard error at which a pixel is known well enough, relative to its radiance.
+/// Standard error to reach, relative to the pixel's radiance.
 const TARGET: f64 = 0.01;
 
-/// As in [`crate::film::metrics::rel_mse`], with the picture's mean: dark pixels are not known relative to themselves.
+/// Share of the squared mean of the picture in the denominator, as in [`crate::film::metrics::rel_mse`], so
+/// that dark pixels need not reach a standard error relative to themselves.
 const FLOOR: f64 = 0.01;
 
-/// Pixels of one task.
+/// Number of pixels of one task.
 const TASK: usize = 16;
 
-/// Keeps the paths apart from those of the picture, which may have the same seed.
+/// Seed that separates these paths from those of the picture, which may have the same seed.
 const SEED: u32 = 0x7e57_ab1e;
 
-/// Pixels and what tracing them took.
+/// Traced pixels and their cost.
 pub struct Traced {
-    /// In the order of the picks.
+    /// Pixels in the order of the picks.
     pub pixels: Vec<Measured>,
-    /// Pixels given fewer paths than they needed.
+    /// Number of pixels given fewer paths than they needed.
     pub at_cap: usize,
-    /// Paths.
+    /// Number of paths.
     pub paths: u64,
-    /// Radiances that were not finite.
+    /// Number of radiances that were not finite.
     pub nonfinite: u64,
 }
 
@@ -89,7 +90,7 @@ pub fn trace(
     Some(all)
 }
 
-/// What is the same for all pixels.
+/// Inputs shared by all pixels.
 struct Tracing<'a> {
     world: &'a World,
     view: &'a View,
@@ -99,7 +100,7 @@ struct Tracing<'a> {
 }
 
 impl Tracing<'_> {
-    /// All means of some pixels. Another `round` gives independent ones.
+    /// Traces all means of some pixels. Another `round` gives independent ones.
     fn measure(
         &self,
         picks: &[Pick],
