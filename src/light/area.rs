@@ -6,7 +6,7 @@ use crate::sampling::uniform_triangle;
 use crate::scene::{Emission, Mesh, Scene, TextureId};
 use glam::{Vec2, Vec3};
 
-/// One mesh that emits.
+/// A mesh that emits.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
     /// Index of the mesh.
@@ -48,7 +48,7 @@ pub fn normal_and_area([a, b, c]: [Vec3; 3]) -> (Vec3, f32) {
 }
 
 impl AreaLight {
-    /// The light of mesh `index`, or `None` if it emits nothing.
+    /// Creates the light of mesh `index`, or `None` if it emits nothing.
     pub fn new(scene: &Scene, index: u32) -> Option<AreaLight> {
         let mesh = &scene.meshes[index as usize];
         let emission = mesh.emission?;
@@ -86,7 +86,7 @@ impl AreaLight {
         })
     }
 
-    /// A point uniform over the area; density 1/area.
+    /// Samples a point uniformly by area; density 1/area.
     #[inline]
     pub fn sample(&self, u: Vec2) -> AreaPoint {
         let (triangle, [corner, e1, e2, normal], u) = self.choose_triangle(u);
@@ -99,15 +99,15 @@ impl AreaLight {
         }
     }
 
-    /// A triangle in proportion to its area, its first corner, edges from there and unit normal, and the numbers
-    /// left to choose a point on it.
+    /// Chooses a triangle in proportion to its area; returns it, its first corner, edges from there and unit
+    /// normal, and the numbers left to choose a point on it.
     #[inline]
     pub(super) fn choose_triangle(&self, u: Vec2) -> (u32, [Vec3; 4], Vec2) {
         let (triangle, rest) = self.triangles.sample(u.x);
         (triangle as u32, self.shapes[triangle], Vec2::new(rest, u.y))
     }
 
-    /// Factor by texture on what the light emits at a point of a triangle.
+    /// Returns the factor of the texture on the emission at a point of a triangle.
     #[inline]
     pub(super) fn texture(&self, scene: &Scene, triangle: u32, barycentric: Vec2) -> Rgb {
         let mesh = &scene.meshes[self.mesh as usize];
@@ -120,20 +120,20 @@ impl AreaLight {
         emitted(scene, self.mesh, point.triangle, point.barycentric, point.normal, out)
     }
 
-    /// Rough irradiance at `x`, on a surface of normal `n` that could face the light, for choosing between lights
-    /// only; zero where no part of the light can shine on that side.
+    /// Estimates the irradiance at `x` on a surface of normal `n` that could face the light, for choosing
+    /// between lights only; zero where no part of the light can shine on that side.
     #[inline(always)]
     pub(super) fn importance(&self, x: Vec3, n: Vec3) -> f32 {
         let to_light = self.centre - x;
         let below = n.dot(to_light) <= -self.radius;
-        // The zero vector of a light that is not flat passes for a plane that nothing is behind.
+        // A light that is not flat has the zero vector: the test never fails.
         let behind = self.flat_normal.dot(to_light) >= self.radius;
         let dist_sq = to_light.length_squared().max(self.radius * self.radius).max(f32::MIN_POSITIVE);
         if below | behind { 0.0 } else { self.power / dist_sq }
     }
 }
 
-/// Radiance that a point of a mesh emits towards `out`; zero where it does not emit.
+/// Returns the radiance that a point of a mesh emits towards `out`; zero where it does not emit.
 #[inline]
 pub fn emitted(scene: &Scene, mesh: u32, triangle: u32, barycentric: Vec2, normal: Vec3, out: Vec3) -> Rgb {
     let mesh = &scene.meshes[mesh as usize];
@@ -144,7 +144,7 @@ pub fn emitted(scene: &Scene, mesh: u32, triangle: u32, barycentric: Vec2, norma
     emission.radiance * texture_factor(scene, mesh, emission.texture, triangle, barycentric)
 }
 
-/// Factor by texture on what a mesh emits.
+/// Returns the factor of the texture on a mesh's emission.
 #[inline]
 fn texture_factor(
     scene: &Scene,

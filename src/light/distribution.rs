@@ -9,16 +9,16 @@
 pub struct DiscreteDistribution {
     /// `cumulative[i]` = sum of the weights before `i`, over the total; the last entry is 1.
     cumulative: Vec<f32>,
-    /// The outcome at `i / (guide.len() - 1)`, by which a search starts.
+    /// Outcome at `i / (guide.len() - 1)`, from which a search starts.
     guide: Vec<u32>,
     total: f64,
 }
 
-/// Outcomes a guide entry covers on average.
+/// Mean number of outcomes per guide entry.
 const GUIDE_SPACING: usize = 2;
 
 impl DiscreteDistribution {
-    /// Sums in f64; a total of zero makes an empty distribution that is never sampled.
+    /// Builds the distribution with sums in f64; a total of zero makes an empty one that is never sampled.
     pub fn new(weights: impl IntoIterator<Item = f32>) -> DiscreteDistribution {
         let mut sum = 0.0f64;
         let mut sums = vec![0.0f64];
@@ -51,7 +51,7 @@ impl DiscreteDistribution {
         self.cumulative.len() - 1
     }
 
-    /// Whether there is no outcome to draw.
+    /// True if there is no outcome to draw.
     pub fn is_empty(&self) -> bool {
         self.len() == 0 || self.total <= 0.0
     }
@@ -62,7 +62,7 @@ impl DiscreteDistribution {
         if self.total > 0.0 { self.cumulative[i + 1] - self.cumulative[i] } else { 0.0 }
     }
 
-    /// The outcome at `u` in [0, 1), and `u` stretched to [0, 1) within it.
+    /// Returns the outcome at `u` in [0, 1), and `u` stretched to [0, 1) within it.
     ///
     /// Never returns an outcome of probability zero unless all are.
     #[inline]
@@ -70,8 +70,8 @@ impl DiscreteDistribution {
         self.search(u, self.bracket(u))
     }
 
-    /// Outcomes between which the one at `u` lies. A step of its own so that several searches can be under way at
-    /// once while each waits for memory.
+    /// Returns the range of outcomes that contains the one at `u`. A step of its own so that several searches
+    /// can be under way at once while each waits for memory.
     #[inline]
     pub(super) fn bracket(&self, u: f32) -> Bracket {
         let spans = self.guide.len() - 1;
@@ -90,7 +90,7 @@ impl DiscreteDistribution {
         Bracket { first: if above { middle } else { b.first }, last: if above { b.last } else { middle } }
     }
 
-    /// [`DiscreteDistribution::sample`] within a bracket.
+    /// Finishes [`DiscreteDistribution::sample`] within a bracket.
     #[inline]
     pub(super) fn search(&self, u: f32, b: Bracket) -> (usize, f32) {
         let i = b.first + self.cumulative[b.first..=b.last].partition_point(|c| *c <= u);
@@ -101,7 +101,7 @@ impl DiscreteDistribution {
     }
 }
 
-/// Part of a distribution that holds the outcome searched for.
+/// A range of outcomes that contains the one searched for.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Bracket {
     first: usize,

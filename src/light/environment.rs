@@ -2,8 +2,8 @@
 //!
 //! A map is sampled by its cells: the squares between four texels (the first and last row lie at the poles),
 //! chosen by the mean luminance of their corners times the sine of their latitude, then within a cell by the
-//! bilinear luminance itself. So the density follows what [`EnvironmentLight::radiance`] returns
-//! up to the variation of the sine over one row, and a sun one texel wide costs no variance.
+//! bilinear luminance itself. So the density is proportional to [`EnvironmentLight::radiance`] up to the
+//! variation of the sine over one row, and a sun one texel wide costs no variance.
 
 use super::distribution::DiscreteDistribution;
 use crate::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
@@ -12,7 +12,7 @@ use crate::scene::{Environment, EnvironmentMap};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
 
-/// The environment, ready to be sampled.
+/// The environment with its sampling distributions.
 #[derive(Clone, Debug)]
 pub struct EnvironmentLight {
     source: EnvironmentRadiance,
@@ -31,7 +31,7 @@ enum EnvironmentRadiance {
 pub struct EnvironmentSample {
     /// Unit world direction towards the environment.
     pub direction: Vec3,
-    /// Radiance from there.
+    /// Radiance arriving from that direction.
     pub radiance: Rgb,
     /// Density by solid angle.
     pub pdf: f32,
@@ -91,8 +91,8 @@ impl EnvironmentLight {
         self.radiance_pdf16(&Vec3x16::splat(d), 1)[0]
     }
 
-    /// [`EnvironmentLight::radiance_pdf`] in the lanes of `wanted`, which wait for memory together: a large map lies
-    /// outside the caches, and one look-up after the other would take most of a render's time.
+    /// [`EnvironmentLight::radiance_pdf`] in the lanes of `wanted`, which wait for memory together: a large
+    /// map lies outside the caches, and look-ups one after the other would take most of a render's time.
     pub fn radiance_pdf16(&self, d: &Vec3x16, wanted: u16) -> [(Rgb, f32); LANES] {
         let EnvironmentRadiance::Map { map, rows, columns } = &self.source else {
             return [(self.radiance(Vec3::Z), 0.25 * FRAC_1_PI); LANES];
@@ -110,7 +110,7 @@ impl EnvironmentLight {
         })
     }
 
-    /// A direction in proportion to luminance; `None` where the density vanishes.
+    /// Samples a direction in proportion to luminance; `None` where the density vanishes.
     pub fn sample(&self, u: Vec2) -> Option<EnvironmentSample> {
         self.sample16(&Vec2x16 { x: [u.x; LANES], y: [u.y; LANES] }, 1)[0]
     }
@@ -138,7 +138,7 @@ impl EnvironmentLight {
     }
 }
 
-/// `f` of each lane in `wanted`.
+/// Applies `f` to each lane in `wanted`.
 #[inline(always)]
 fn each<T: Copy + Default>(wanted: u16, mut f: impl FnMut(usize) -> T) -> [T; LANES] {
     let mut values = [T::default(); LANES];
@@ -148,7 +148,7 @@ fn each<T: Copy + Default>(wanted: u16, mut f: impl FnMut(usize) -> T) -> [T; LA
     values
 }
 
-/// The sample at position `f` of a cell that is chosen with probability `cell`.
+/// Returns the sample at position `f` of a cell that is chosen with probability `cell`.
 fn direction_in(
     map: &EnvironmentMap,
     row: usize,
@@ -182,7 +182,7 @@ fn row_count(map: &EnvironmentMap) -> usize {
     map.height.max(2) - 1
 }
 
-/// Latitudes, over π, between which row `row` of cells lies.
+/// Returns the latitudes, over π, that bound row `row` of cells.
 fn row_span(map: &EnvironmentMap, row: usize) -> (f32, f32) {
     let rows = row_count(map) as f32;
     (row as f32 / rows, (row + 1) as f32 / rows)

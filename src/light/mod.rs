@@ -20,7 +20,7 @@ use crate::scene::{DeltaLight, Scene};
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// Marks a mesh that is no light in [`Emitters::light_of_mesh`].
+/// Mark of a mesh that is no light in [`Emitters::light_of_mesh`].
 const NO_LIGHT: u32 = u32::MAX;
 
 /// All emitters of a scene. Emitter indices count area lights, then delta lights, then the environment.
@@ -30,13 +30,13 @@ pub struct Emitters {
     pub areas: Vec<AreaLight>,
     /// Point, spot and directional lights.
     pub deltas: Vec<DeltaLight>,
-    /// The environment, unless black.
+    /// The environment; `None` if black.
     pub environment: Option<EnvironmentLight>,
     light_of_mesh: Vec<u32>,
     selection: select::Selection,
 }
 
-/// Light arriving at a point from one sampled place of one emitter.
+/// Light arriving at a point from a sampled point of one emitter.
 #[derive(Clone, Copy, Debug)]
 pub struct DirectSample {
     /// Unit vector from the point to the emitter.
@@ -49,7 +49,7 @@ pub struct DirectSample {
     pub radiance: Rgb,
     /// Density by solid angle including the choice of the emitter; for delta lights that choice's probability.
     pub pdf: f32,
-    /// Whether no other technique can sample this light.
+    /// True if no other technique can sample this light.
     pub delta: bool,
 }
 
@@ -68,19 +68,20 @@ impl Emitters {
         Emitters { areas, deltas, environment, light_of_mesh, selection }
     }
 
-    /// Whether nothing shines.
+    /// True if there is no emitter.
     pub fn is_empty(&self) -> bool {
         self.areas.is_empty() && self.deltas.is_empty() && self.environment.is_none()
     }
 
-    /// Whether a mesh is a light.
+    /// True if a mesh is a light.
     #[inline]
     pub fn is_light(&self, mesh: u32) -> bool {
         self.light_of_mesh[mesh as usize] != NO_LIGHT
     }
 
-    /// Densities with which [`Emitters::sample_direct`] at `at` draws points of the meshes `mesh` that lie at
-    /// `distance` and show their surfaces under `cos` (either sign); zero where a mesh is no light.
+    /// Densities with which [`Emitters::sample_direct`] at `at` draws points of the meshes `mesh` at
+    /// `distance` whose normals have the cosine `cos` (either sign) to the ray; zero where a mesh is no
+    /// light.
     #[inline]
     pub fn pdf_areas(&self, at: Receivers16, mesh: &U32x16, distance: &F32x16, cos: &F32x16) -> F32x16 {
         let lights = mesh.map(|mesh| self.light_of_mesh[mesh as usize]);
@@ -104,7 +105,7 @@ impl Emitters {
 }
 
 impl EnvironmentSample {
-    /// The sample as one of several emitters', chosen with probability `choice`.
+    /// Makes a direct sample of it, for an emitter chosen with probability `choice`.
     #[inline]
     fn direct(&self, choice: f32) -> DirectSample {
         DirectSample {
@@ -118,7 +119,7 @@ impl EnvironmentSample {
     }
 }
 
-/// The light at `x` from a delta light chosen with probability `choice`.
+/// Samples the light at `x` from a delta light chosen with probability `choice`.
 #[inline]
 fn sample_delta(light: &DeltaLight, x: Vec3, choice: f32) -> Option<DirectSample> {
     let (direction, distance, irradiance) = delta_irradiance(light, x);
@@ -134,7 +135,7 @@ fn sample_delta(light: &DeltaLight, x: Vec3, choice: f32) -> Option<DirectSample
     })
 }
 
-/// Direction and distance to a delta light from `x`, and the irradiance it gives a surface facing it.
+/// Returns direction and distance to a delta light from `x`, and its irradiance on a surface facing it.
 #[inline]
 pub fn delta_irradiance(light: &DeltaLight, x: Vec3) -> (Vec3, f32, Rgb) {
     match *light {
@@ -167,12 +168,12 @@ pub fn spot_falloff(cos: f32, inner_angle: f32, outer_angle: f32) -> f32 {
     }
 }
 
-/// Flux of a delta light as luminance; a directional light by the disk of the given radius it shines through.
+/// Flux of a delta light as luminance; of a directional light, through a disk of the given radius.
 pub fn delta_power(light: &DeltaLight, scene_radius: f32) -> f32 {
     match *light {
         DeltaLight::Point { intensity, .. } => 4.0 * PI * luminance(intensity),
         DeltaLight::Spot { intensity, inner_angle, outer_angle, .. } => {
-            // Full inside, linear in angle outside: the mean of both cones' solid angles is near enough.
+            // Full inside, linear in angle outside: approximated by the mean of both cones' solid angles.
             let cone = |a: f32| 2.0 * PI * (1.0 - a.cos());
             0.5 * (cone(inner_angle) + cone(outer_angle)) * luminance(intensity)
         }

@@ -21,11 +21,11 @@ pub struct DirectSamples16 {
     pub pdf: F32x16,
     /// Not zero where the light is a delta light.
     pub delta: U32x16,
-    /// Not zero where something arrives.
+    /// Not zero where the sample contributes.
     useful: U32x16,
 }
 
-/// A point on an emitting triangle in each lane; lanes of no area stand for other emitters.
+/// Points on emitting triangles, one a lane; lanes of zero area are those of other emitters.
 #[derive(Default)]
 struct Triangles16 {
     corner: Vec3x16,
@@ -40,13 +40,13 @@ struct Triangles16 {
 }
 
 impl DirectSamples16 {
-    /// Lanes where something arrives.
+    /// Mask of the lanes whose samples contribute.
     #[inline]
     pub fn useful(&self) -> u16 {
         mask_of(&self.useful)
     }
 
-    /// Puts the sample of one lane.
+    /// Sets the sample of one lane.
     fn set(&mut self, lane: usize, sample: Option<DirectSample>) {
         self.useful[lane] = u32::from(sample.is_some());
         if let Some(s) = sample {
@@ -61,7 +61,7 @@ impl DirectSamples16 {
 }
 
 impl Emitters {
-    /// Samples light arriving at points in the lanes of `wanted`. Visibility is not looked at.
+    /// Samples light arriving at points in the lanes of `wanted`, without testing visibility.
     #[inline]
     pub fn sample_direct(
         &self,
@@ -128,7 +128,8 @@ impl Triangles16 {
         self.barycentric.set(lane, u);
     }
 
-    /// Turns the numbers of the unit square in `barycentric` into weights, and samples the light from there.
+    /// Maps the numbers of the unit square in `barycentric` to barycentric weights, and samples the light
+    /// from there.
     #[inline]
     fn sample(&mut self, x: &Vec3x16, choice: &F32x16) -> DirectSamples16 {
         let mut s = DirectSamples16 { normal: self.normal, radiance: self.radiance, ..Default::default() };

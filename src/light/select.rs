@@ -1,17 +1,17 @@
 //! Choice of the emitter to sample for a shaded point.
 //!
-//! With few emitters the choice follows each one's rough irradiance at the point, mixed with its power so that
-//! no emitter is starved; with many it follows power alone.
+//! With few emitters the choice is proportional to each one's rough irradiance at the point, mixed with its
+//! power so that no emitter is starved; with many, to power alone.
 
 use super::{AreaLight, DiscreteDistribution, Emitters, EnvironmentLight, delta_irradiance, delta_power};
 use crate::math::{F32x16, LANES, U32x16, Vec3x16, luminance};
 use crate::scene::DeltaLight;
 use std::f32::consts::PI;
 
-/// Up to this many emitters are weighed one by one at every shaded point.
+/// Maximum number of emitters that are weighted one by one at every shaded point.
 const WEIGHED: usize = 32;
 
-/// Share of the choice that ignores where the point is.
+/// Share of the choice that is by power, whatever the point.
 const BY_POWER: f32 = 0.1;
 
 /// Sixteen points to be lit.
@@ -43,7 +43,7 @@ impl Selection {
         Selection { by_power: DiscreteDistribution::new(areas.chain(deltas).chain(environment)) }
     }
 
-    /// An emitter for each lane and the probability of its choice; zero where no emitter can be chosen.
+    /// Chooses an emitter for each lane; returns it and its probability, zero where no emitter can be chosen.
     #[inline]
     pub fn sample(&self, e: &Emitters, at: Receivers16, u: &F32x16) -> (U32x16, F32x16) {
         let (mut chosen, mut choice) = ([0; LANES], [0.0; LANES]);
@@ -67,7 +67,7 @@ impl Selection {
         for i in 0..LANES {
             left[i] = u[i] * total[i];
         }
-        // The last emitter of a lane that has weight is kept where rounding leaves something over.
+        // Rounding may leave a remainder: then a lane keeps its last emitter of positive weight.
         let mut open = [1u32; LANES];
         for (index, w) in (0u32..).zip(&weights[..count]) {
             for i in 0..LANES {
@@ -136,7 +136,7 @@ impl Selection {
         for (index, w) in weights_used.iter_mut().enumerate() {
             let by_power = BY_POWER * self.by_power.probability(index);
             for i in 0..LANES {
-                // Emitters that cannot shine on this side stay at zero.
+                // Emitters that cannot shine on this side keep weight zero.
                 let shines = (w[i] > 0.0) & (scale[i] > 0.0);
                 w[i] = if shines { w[i] * scale[i] + by_power } else { 0.0 };
                 total[i] += w[i];

@@ -16,7 +16,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A frame whose z axis is the unit vector `normal`.
+    /// Builds a frame whose z axis is the unit vector `normal`.
     #[inline]
     pub fn from_normal(normal: Vec3) -> Frame {
         let sign = 1.0f32.copysign(normal.z);
@@ -29,13 +29,13 @@ impl Frame {
         }
     }
 
-    /// World-space vector to local coordinates.
+    /// Transforms a world-space vector to local coordinates.
     #[inline]
     pub fn to_local(&self, v: Vec3) -> Vec3 {
         Vec3::new(v.dot(self.tangent), v.dot(self.bitangent), v.dot(self.normal))
     }
 
-    /// Local coordinates to a world-space vector.
+    /// Transforms local coordinates to a world-space vector.
     #[inline]
     pub fn to_world(&self, v: Vec3) -> Vec3 {
         self.tangent * v.x + self.bitangent * v.y + self.normal * v.z

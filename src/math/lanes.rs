@@ -1,12 +1,13 @@
 //! Sixteen values at a time, as structures of arrays.
 //!
-//! A loop over all lanes whose body neither calls nor branches compiles to vector instructions, whatever scalar
-//! functions it was written with: so stages read their lanes with `get`, compute on [`Vec3`]s as usual, and
-//! write with `set`. What cannot be done so (look-ups, rare cases) goes lane by lane in a loop of its own.
+//! A loop over all lanes whose body neither calls nor branches compiles to vector instructions, whatever
+//! scalar functions it was written with: so stages read their lanes with `get`, compute on [`Vec3`]s as
+//! usual, and write with `set`. Work that does not vectorise (look-ups, rare cases) goes lane by lane in a
+//! loop of its own.
 
 use glam::{Vec2, Vec3};
 
-/// Lanes of a packet, as many as Embree's largest.
+/// Number of lanes of a packet, the width of Embree's largest.
 pub const LANES: usize = 16;
 
 /// A number in each lane.
@@ -44,7 +45,7 @@ impl Vec2x16 {
         Vec2::new(self.x[lane], self.y[lane])
     }
 
-    /// Puts a point into a lane.
+    /// Sets the point in a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, v: Vec2) {
         self.x[lane] = v.x;
@@ -94,7 +95,7 @@ impl Vec3x16 {
         Vec3::new(self.x[lane], self.y[lane], self.z[lane])
     }
 
-    /// Puts a vector into a lane.
+    /// Sets the vector in a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, v: Vec3) {
         self.x[lane] = v.x;

@@ -1,5 +1,4 @@
-//! The small mathematics every stage shares: linear colour, orthonormal frames, quadrature, and numbers
-//! side by side.
+//! Mathematics shared by all stages: linear colour, orthonormal frames, quadrature, and lanes of numbers.
 
 mod frame;
 mod lanes;

@@ -1,9 +1,9 @@
-//! Arithmetic that one formula can be written in once, and then run in single precision, in double precision, or
-//! in single precision for eight arguments side by side.
+//! Arithmetic for formulas that are written once and run in single precision, in double precision, or in
+//! single precision for eight arguments side by side.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-/// A number, or several that go through the same steps.
+/// A number, or several lanes of numbers.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -13,13 +13,13 @@ pub trait Real:
     + Neg<Output = Self>
     + AddAssign
 {
-    /// A constant, rounded.
+    /// Returns a constant, rounded.
     fn of(value: f64) -> Self;
 
     /// Square root.
     fn sqrt(self) -> Self;
 
-    /// The larger, and `other` where this is NaN.
+    /// Returns the larger, and `other` where this is NaN.
     fn max(self, other: Self) -> Self;
 }
 
@@ -72,7 +72,8 @@ macro_rules! lanewise {
 
             #[inline(always)]
             fn $function(mut self, other: F32x8) -> F32x8 {
-                // A plain loop: iterators and `from_fn` are not always inlined, and then nothing is vector code.
+                // A plain loop: iterators and `from_fn` are not always inlined, and then the code does not
+                // vectorise.
                 for i in 0..WIDTH {
                     self.0[i] $symbol other.0[i];
                 }

@@ -13,7 +13,7 @@ pub struct Samplers16 {
 }
 
 impl Samplers16 {
-    /// The points in pair `pair` of dimensions, counted from 1: what each sampler's `pair`-th call gives.
+    /// Points in pair `pair` of dimensions, counted from 1: those that each sampler's `pair`-th call returns.
     #[inline]
     pub fn point(&self, pair: u32) -> Vec2x16 {
         let dimension = pair.wrapping_mul(DIMENSION_STEP);

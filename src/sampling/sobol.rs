@@ -10,7 +10,7 @@
 
 use glam::Vec2;
 
-/// Tell the dimensions of a pair, and pairs, apart: the digits of π, e and the golden ratio.
+/// Seeds that tell the dimensions of a pair, and pairs, apart: the digits of π, e and the golden ratio.
 const X_SEED: u32 = 0x6487_ed51;
 const Y_SEED: u32 = 0xb7e1_5162;
 pub(super) const DIMENSION_STEP: u32 = 0x9e37_79b9;
@@ -57,19 +57,20 @@ fn sobol_second_reversed(mut x: u32) -> u32 {
     x ^ ((x >> 1) & 0x5555_5555)
 }
 
-/// 32 random bits to [0, 1), never 1.
+/// Maps 32 random bits to [0, 1), never 1.
 #[inline(always)]
 fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
-/// The order in which `seed` visits the points: a nested shuffle, so that every power-of-two run stays stratified.
+/// Position of point `index` in the order of `seed`: a nested shuffle, so that every power-of-two run stays
+/// stratified.
 #[inline(always)]
 fn shuffled(index: u32, seed: u32) -> u32 {
     scramble_reversed(index.reverse_bits(), seed).reverse_bits()
 }
 
-/// Point `index` of the two-dimensional Owen-scrambled Sobol sequence called `seed`, in [0, 1)².
+/// Point `index` of the two-dimensional Owen-scrambled Sobol sequence of seed `seed`, in [0, 1)².
 #[inline]
 pub fn owen_sobol_2d(index: u32, seed: u32) -> Vec2 {
     let i = shuffled(index, seed);
@@ -79,14 +80,14 @@ pub fn owen_sobol_2d(index: u32, seed: u32) -> Vec2 {
     Vec2::new(unit(x), unit(y))
 }
 
-/// Point `index` of the one-dimensional Owen-scrambled van der Corput sequence called `seed`, in [0, 1).
+/// Point `index` of the one-dimensional Owen-scrambled van der Corput sequence of seed `seed`, in [0, 1).
 #[inline]
 pub fn owen_van_der_corput(index: u32, seed: u32) -> f32 {
     unit(scramble_reversed(shuffled(index, seed), mix(seed ^ X_SEED)).reverse_bits())
 }
 
-/// The random numbers of one sample: as many dimensions as are asked for, each stratified over the samples
-/// that share a seed.
+/// The random numbers of one sample, in any number of dimensions, each stratified over the samples that share
+/// a seed.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
     seed: u32,
@@ -95,19 +96,20 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// Sample `index` of the sequence called `seed` (one seed a pixel, one index a sample).
+    /// Creates the sampler of sample `index` of the sequence of seed `seed` (one seed a pixel, one index a
+    /// sample).
     #[inline]
     pub fn new(seed: u32, index: u32) -> Sampler {
         Sampler { seed, index, dimension: 0 }
     }
 
-    /// The next dimension, in [0, 1).
+    /// Returns the next dimension, in [0, 1).
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
         owen_van_der_corput(self.index, self.next_seed())
     }
 
-    /// The next two dimensions, in [0, 1)².
+    /// Returns the next two dimensions, in [0, 1)².
     #[inline]
     pub fn next_2d(&mut self) -> Vec2 {
         owen_sobol_2d(self.index, self.next_seed())

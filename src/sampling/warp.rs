@@ -1,9 +1,9 @@
-//! Maps from the unit square to the domains that are sampled, all area-preserving up to the stated density.
+//! Maps from the unit square to other domains, all area-preserving up to the stated density.
 
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_4, TAU};
 
-/// Unit disk, uniform, by concentric squares (Shirley & Chiu 1997), which keeps strata compact.
+/// Uniform points of the unit disk, by concentric squares (Shirley & Chiu 1997), which keeps strata compact.
 #[inline]
 pub fn uniform_disk(u: Vec2) -> Vec2 {
     let p = 2.0 * u - Vec2::ONE;
@@ -14,7 +14,7 @@ pub fn uniform_disk(u: Vec2) -> Vec2 {
 }
 
 /// Sine and cosine of an angle within ±π/4, by their Taylor polynomials: 1e-7 relative, and much faster than
-/// the library's functions, which this would otherwise spend its time in.
+/// the library's functions, which would otherwise dominate the time of this map.
 #[inline]
 fn sin_cos_octant(x: f32) -> (f32, f32) {
     let x2 = x * x;
