@@ -15,13 +15,13 @@ pub struct Camera {
     pub up: Vec3,
     /// Tangent of half the horizontal field of view, for the scene's own aspect ratio.
     pub tan_half_x: f32,
-    /// Surfaces nearer than this along `forward` are not seen.
+    /// Near clipping distance along `forward`.
     pub near: f32,
-    /// Surfaces farther than this along `forward` are not seen.
+    /// Far clipping distance along `forward`.
     pub far: f32,
 }
 
-/// The cameras that a scene's file describes, and the size of their film.
+/// Cameras that a scene's file describes, and the size of their film.
 #[derive(Clone, Debug, Default)]
 pub struct Cameras {
     /// The camera of a still.
@@ -32,7 +32,7 @@ pub struct Cameras {
     pub resolution: [u32; 2],
 }
 
-/// At the centre, looking along -z with y up, a right angle wide.
+/// At the centre, looking along -z with y up, with a horizontal field of view of a right angle.
 impl Default for Camera {
     fn default() -> Camera {
         Camera {

@@ -1,4 +1,4 @@
-//! A scene as it stands in its files: world coordinates in f64, not yet sanitised or recentred.
+//! A scene as described by its files: world coordinates in f64, not yet sanitised or recentred.
 //!
 //! Every reader ends in a [`Draft`]; [`super::sanitize`] and [`super::recentre`] make the
 //! [`Scene`](super::Scene) of it.
@@ -11,7 +11,7 @@ use super::texture::Texture;
 use glam::{DVec3, Vec2, Vec3};
 use std::path::PathBuf;
 
-/// A camera in world coordinates; the fields mean what those of [`super::Camera`] do.
+/// A camera in world coordinates; fields as in [`super::Camera`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DraftCamera {
     pub origin: DVec3,
@@ -28,14 +28,14 @@ pub(crate) struct DraftCamera {
 pub(crate) struct DraftMesh {
     pub name: String,
     pub positions: Vec<DVec3>,
-    /// By vertex, or empty; may hold zeros or NaN until sanitised.
+    /// Normals by vertex, or empty; may hold zeros or NaN until sanitised.
     pub normals: Vec<Vec3>,
-    /// By vertex, v up, or empty.
+    /// Texture coordinates by vertex, v up, or empty.
     pub uvs: Vec<Vec2>,
     pub triangles: Vec<[u32; 3]>,
     pub material: MaterialId,
     pub emission: Option<Emission>,
-    /// How many triangles were turned to agree with their vertex normals.
+    /// Number of triangles whose winding was reversed to agree with their vertex normals.
     pub turned: usize,
 }
 
@@ -50,10 +50,10 @@ pub(crate) struct Draft {
     pub max_depth: Option<u32>,
     pub meshes: Vec<DraftMesh>,
     pub materials: Vec<Material>,
-    /// Where each material is described.
+    /// Place in the files where each material is described.
     pub material_places: Vec<Place>,
     pub textures: Vec<Texture>,
-    /// Each with its world position, which stands in for the one inside.
+    /// Lights with their world positions, which replace the positions inside.
     pub lights: Vec<(DeltaLight, DVec3)>,
     pub environment: Option<Environment>,
 }

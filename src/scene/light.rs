@@ -1,4 +1,4 @@
-//! Lights without a surface: point, spot and directional lights, and the environment.
+//! Delta lights (point, spot and directional lights), and the environment.
 //!
 //! Light from surfaces is [`super::Emission`] on a mesh.
 
@@ -8,15 +8,15 @@ use glam::{Mat3, Vec3};
 /// A light that no ray can hit by chance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DeltaLight {
-    /// Radiates equally in all directions.
+    /// A point light: equal intensity in all directions.
     Point {
         /// Position relative to the scene's centre.
         position: Vec3,
         /// Radiant intensity, W/sr.
         intensity: Rgb,
     },
-    /// Radiates into a cone; intensity falls linearly in angle from `cos_inner` to `cos_outer`
-    /// (Mitsuba's falloff: `(outer_angle - angle) / (outer_angle - inner_angle)`).
+    /// A spot light; intensity falls linearly in angle from `inner_angle` to `outer_angle` (Mitsuba's
+    /// falloff: `(outer_angle - angle) / (outer_angle - inner_angle)`).
     Spot {
         /// Position relative to the scene's centre.
         position: Vec3,
@@ -24,9 +24,9 @@ pub enum DeltaLight {
         direction: Vec3,
         /// Radiant intensity on the axis, W/sr.
         intensity: Rgb,
-        /// Half angle within which the intensity is full, radians.
+        /// Half angle of the cone of full intensity, radians.
         inner_angle: f32,
-        /// Half angle beyond which it is zero, radians.
+        /// Half angle beyond which the intensity is zero, radians.
         outer_angle: f32,
     },
     /// Parallel light from infinitely far.
@@ -41,7 +41,7 @@ pub enum DeltaLight {
 /// Light from infinitely far in every direction.
 #[derive(Clone, Debug)]
 pub enum Environment {
-    /// The same radiance from everywhere.
+    /// Constant radiance from all directions.
     Constant(Rgb),
     /// A latitude-longitude map.
     Map(EnvironmentMap),

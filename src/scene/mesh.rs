@@ -14,13 +14,13 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Unit shading normals by vertex, or empty: then the geometric normal is used.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates by vertex, v up, or empty: then the barycentric coordinates stand in.
+    /// Texture coordinates by vertex, v up, or empty: then the barycentric coordinates are used.
     pub uvs: Vec<Vec2>,
     /// Vertex indices, counter-clockwise seen from the front; all in range.
     pub triangles: Vec<[u32; 3]>,
     /// Material of every triangle.
     pub material: MaterialId,
-    /// Present where the surface emits.
+    /// Emission, if the surface emits.
     pub emission: Option<Emission>,
 }
 
@@ -29,9 +29,9 @@ pub struct Mesh {
 pub struct Emission {
     /// Radiance leaving every point in every direction of the front side.
     pub radiance: Rgb,
-    /// Factor by texture over the surface.
+    /// Texture that scales it over the surface.
     pub texture: Option<TextureId>,
-    /// Whether the back emits as well.
+    /// True if the back emits as well.
     pub two_sided: bool,
 }
 

@@ -1,7 +1,7 @@
-//! What is rendered: plain data, as the readers in `formats` leave it after sanitising and recentring.
+//! The scene model: plain data, sanitised and recentred, as the readers in `formats` return it.
 //!
-//! Units: lengths are the scene file's; radiance W/(sr m²) in linear Rec. 709; all positions are
-//! relative to [`Scene::centre`], which is kept in f64 so that a scene far from its origin loses nothing.
+//! Units: lengths are the scene file's; radiance W/(sr m²) in linear Rec. 709; all positions are relative to
+//! [`Scene::centre`], which is kept in f64 so that a scene far from its origin keeps its precision.
 
 mod camera;
 mod draft;
@@ -24,15 +24,15 @@ pub use mesh::{Emission, Mesh};
 pub use requirements::Requirements;
 pub use texture::{Filter, Texture, TextureId, Wrap};
 
-/// A scene, ready for the acceleration structure. By default there is nothing in it.
+/// A scene, ready for the acceleration structure. The default is an empty one.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// Name for reports and file metadata.
     pub name: String,
-    /// The files the scene was read from, main file first; the scene hash covers their bytes.
+    /// Files the scene was read from, main file first; the scene hash covers their bytes.
     pub sources: Vec<PathBuf>,
-    /// Longest path in edges counted from the eye (1 = emitters in view only, 2 = direct light);
-    /// `None` leaves the end to Russian roulette.
+    /// Maximum path length in edges counted from the eye (1 = emitters in view only, 2 = direct light);
+    /// `None` leaves termination to Russian roulette.
     pub max_depth: Option<u32>,
     /// Triangle meshes; a mesh's index is its geometry id.
     pub meshes: Vec<Mesh>,
@@ -49,7 +49,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Longest path in edges: as `wanted`, else the scene's own, else no limit.
+    /// Maximum path length in edges: `wanted` if set, else the scene's own, else no limit.
     pub fn path_limit(&self, wanted: Option<u32>) -> u32 {
         wanted.or(self.max_depth).unwrap_or(u32::MAX)
     }

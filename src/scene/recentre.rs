@@ -1,13 +1,13 @@
 //! From world coordinates in f64 to coordinates about the scene's centre in f32.
 //!
-//! A scene a millimetre across lies a million units from the origin without losing a bit that f32 can
-//! hold: the subtraction happens in f64, before any rounding.
+//! A scene a millimetre across, a million units from the origin, loses no bit that f32 can hold: the
+//! subtraction happens in f64, before any rounding.
 
 use super::draft::{Draft, DraftCamera};
 use super::{Camera, Cameras, DeltaLight, Mesh, Scene};
 use glam::{DVec3, Vec3};
 
-/// The middle of the box around all triangles; of all lights and the camera where there are none.
+/// Returns the middle of the box around all triangles; of all lights and the camera where there are none.
 pub(crate) fn centre(draft: &Draft) -> DVec3 {
     let corners = draft.meshes.iter().flat_map(|mesh| {
         let used = mesh.triangles.iter().flatten();
@@ -24,7 +24,7 @@ fn middle(points: impl Iterator<Item = DVec3>) -> Option<DVec3> {
     (low.cmple(high).all()).then(|| 0.5 * low + 0.5 * high)
 }
 
-/// The scene about `centre`, and its cameras.
+/// Returns the scene about `centre`, and its cameras.
 pub(crate) fn recentre(draft: Draft, centre: DVec3) -> (Scene, Cameras) {
     let local = |p: DVec3| (p - centre).as_vec3();
     let camera = |c: &DraftCamera| Camera {
@@ -83,7 +83,7 @@ mod tests {
     use crate::scene::DeltaLight;
     use crate::scene::formats::{LoadOptions, Loaded, load};
 
-    /// The same small room with everything moved by `offset` and scaled by `scale`.
+    /// Returns the same small room with everything moved by `offset` and scaled by `scale`.
     fn room(scale: f64, offset: f64) -> Loaded {
         let at = |x: f64, y: f64, z: f64| {
             format!("[{:e}, {:e}, {:e}]", x * scale + offset, y * scale + offset, z * scale + offset)
@@ -131,7 +131,7 @@ mod tests {
         for (a, b) in unit.scene.meshes.iter().zip(&tiny.scene.meshes) {
             let worst =
                 a.positions.iter().zip(&b.positions).map(|(a, b)| (a - b * 1e3).length()).fold(0.0, f32::max);
-            // What f64 leaves at 1e6, magnified by 1e3.
+            // Rounding of f64 at 1e6, magnified by 1e3.
             assert!(worst < 1e-6, "{worst}");
         }
     }

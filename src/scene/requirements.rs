@@ -1,5 +1,5 @@
-//! What a scene requires: which materials, chains, trees and textures have to exist at run time, how much of
-//! it there is, and roughly how much memory it takes.
+//! Requirements of a scene: the materials, specular chains, light trees and textures needed at run time,
+//! their amounts, and an estimate of their memory.
 //!
 //! Computed once from the scene. A stage that a scene does not require is not built.
 
@@ -9,27 +9,27 @@ use glam::DVec3;
 use serde::Serialize;
 use std::fmt;
 
-/// Embree's MEDIUM-quality hierarchy over triangles, with its copy of the indices; an estimate.
+/// Size of Embree's MEDIUM-quality hierarchy, with its copy of the indices, per triangle; an estimate.
 const BVH_BYTES_PER_TRIANGLE: usize = 110;
 
-/// How many materials in use are of each kind.
+/// Number of materials in use, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct MaterialKinds {
-    /// A Lambert base alone.
+    /// Lambert base alone.
     pub diffuse: usize,
-    /// A base, if any, beside a rough lobe.
+    /// Rough lobe, with or without a base.
     pub glossy: usize,
-    /// A base under a smooth coat.
+    /// Base under a smooth coat.
     pub plastic: usize,
-    /// A base under a rough coat.
+    /// Base under a rough coat.
     pub rough_plastic: usize,
-    /// A mirror.
+    /// Mirrors.
     pub mirror: usize,
     /// Smooth glass.
     pub glass: usize,
 }
 
-/// Which light trees have anything to hold.
+/// Light trees that are not empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Trees {
     /// Point and spot lights.
@@ -44,7 +44,7 @@ pub struct Trees {
     pub indirect: bool,
 }
 
-/// Bytes, estimated.
+/// Estimated memory, in bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Memory {
     /// Vertices and indices, Embree's copy included.
@@ -56,20 +56,20 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// All of it.
+    /// Returns the sum.
     pub fn total(&self) -> usize {
         self.geometry + self.hierarchy + self.pictures
     }
 }
 
-/// What a scene requires.
+/// Requirements of a scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Requirements {
     /// Materials in use, by kind.
     pub materials: MaterialKinds,
-    /// Whether the eye has to follow mirrors, glass or smooth coats.
+    /// True if the eye pass has to follow mirrors, glass or smooth coats.
     pub specular_chains: bool,
-    /// Whether records need more than irradiance.
+    /// True if records need more than irradiance.
     pub glossy: bool,
     /// Share of the surface area with a rough lobe.
     pub glossy_area_share: f64,
@@ -77,17 +77,17 @@ pub struct Requirements {
     pub specular_area_share: f64,
     /// Smallest roughness of a rough lobe.
     pub smallest_alpha: Option<f32>,
-    /// Whether a back side scatters or emits.
+    /// True if a back side scatters or emits.
     pub two_sided: bool,
-    /// Light trees with anything to hold.
+    /// Light trees that are not empty.
     pub trees: Trees,
-    /// Textures in use.
+    /// Number of textures in use.
     pub textures: usize,
-    /// Triangles.
+    /// Number of triangles.
     pub triangles: usize,
-    /// Triangles that emit.
+    /// Number of triangles that emit.
     pub emitting_triangles: usize,
-    /// Area lights, point, spot and directional lights, and the environment.
+    /// Number of area lights, point, spot and directional lights, and the environment.
     pub lights: usize,
     /// Surface area, in squares of the scene's unit.
     pub area: f64,
@@ -98,7 +98,7 @@ pub struct Requirements {
 }
 
 impl Requirements {
-    /// What `scene` requires.
+    /// Computes the requirements of `scene`.
     pub fn of(scene: &Scene) -> Requirements {
         let mut r = Requirements { textures: scene.textures.len(), ..Requirements::default() };
         let mut used = vec![false; scene.materials.len()];
@@ -177,7 +177,7 @@ impl Requirements {
     }
 }
 
-/// Whether light that arrives leaves again in all directions, so that reflected light has to be stored.
+/// True if the material reflects light in all directions, so that reflected light has to be stored.
 fn stores_light(material: &Material) -> bool {
     let black = |r: &Reflectance| matches!(r, Reflectance::Constant(c) if c.max_element() <= 0.0);
     !black(&material.diffuse) || matches!(&material.lobe, Lobe::Rough { scale, .. } if !black(scale))

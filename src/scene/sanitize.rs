@@ -1,11 +1,11 @@
-//! What a scene must not contain, removed or repaired before anything else sees it, with one report.
+//! Removal and repair of invalid scene content before anything else uses it, with one report.
 //!
-//! Triangles that no ray could meaningfully hit are dropped, normals that are none are replaced by the
-//! geometric ones, lights that give no light are dropped. Reflectances that would create energy, and
-//! negative light, are errors: there is no picture to be had from them.
+//! Triangles that no ray could meaningfully hit are dropped, invalid normals are replaced by the geometric
+//! ones, lights without power are dropped. Reflectances that would create energy, and negative light, are
+//! errors: no picture could be computed from them.
 //!
-//! Deviations: texels that would reflect more than they receive are clamped, not rejected, since filtered
-//! and compressed pictures overshoot.
+//! Deviations: texels that would reflect more than they receive are clamped, not rejected, since filtered and
+//! compressed pictures overshoot.
 
 use super::draft::{Draft, DraftMesh};
 use super::formats::error::{Place, SceneError};
@@ -16,14 +16,14 @@ use glam::{DVec3, Vec2, Vec3};
 use serde::Serialize;
 use std::fmt;
 
-/// Embree drops triangles beyond 1.8e18 without a word.
+/// Maximum coordinate; Embree silently drops triangles beyond 1.8e18.
 const HUGE: f64 = 1e18;
-/// How far a reflectance may exceed 1 by rounding.
+/// Tolerance by which a reflectance may exceed 1 through rounding.
 const ALBEDO_SLACK: f32 = 1e-3;
-/// Mitsuba's smallest roughness.
+/// Minimum roughness, that of Mitsuba.
 const MIN_ALPHA: f32 = 1e-4;
 
-/// What had to be removed or repaired.
+/// Counts of removals and repairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct SanitizeReport {
     /// Triangles with a vertex index out of range.
@@ -38,11 +38,11 @@ pub struct SanitizeReport {
     pub empty_meshes: usize,
     /// Zero or NaN vertex normals, replaced by the geometric ones.
     pub bad_normals: usize,
-    /// Triangles whose winding was turned to agree with their vertex normals.
+    /// Triangles whose winding was reversed to agree with their vertex normals.
     pub turned: usize,
     /// NaN or infinite texture coordinates, set to 0.
     pub bad_uvs: usize,
-    /// Reflectances clamped to 1, and texels clamped to what cannot create energy.
+    /// Reflectances clamped to 1, and texels clamped to values that cannot create energy.
     pub clamped: usize,
     /// NaN, infinite or negative texels, set to 0.
     pub bad_texels: usize,
@@ -51,7 +51,7 @@ pub struct SanitizeReport {
 }
 
 impl SanitizeReport {
-    /// Whether nothing had to be done.
+    /// True if nothing was removed or repaired.
     pub fn is_clean(&self) -> bool {
         *self == SanitizeReport::default()
     }
@@ -142,7 +142,7 @@ fn drop_degenerate(mesh: &mut DraftMesh, centre: DVec3, report: &mut SanitizeRep
     report.degenerate += before - mesh.triangles.len();
 }
 
-/// Drops vertices that no triangle uses, and attributes that are not given for every vertex.
+/// Drops vertices that no triangle uses, and attributes that are not present for every vertex.
 fn use_all_vertices(mesh: &mut DraftMesh) {
     let count = mesh.positions.len();
     if mesh.normals.len() != count {
@@ -183,7 +183,7 @@ fn repair_normals(mesh: &mut DraftMesh, report: &mut SanitizeReport) {
     for (normal, geometric) in mesh.normals.iter_mut().zip(geometric) {
         if bad(normal) {
             report.bad_normals += 1;
-            // Faces that cancel leave no direction; any unit vector will do then.
+            // Where faces cancel, any unit vector will do.
             *normal = if geometric == Vec3::ZERO { Vec3::Z } else { geometric };
         }
     }
@@ -253,7 +253,7 @@ fn check_material(
     check_sum(material, place)
 }
 
-/// A Lambert base beside a lobe of constant reflectance must not exceed 1 together.
+/// Checks that a Lambert base and a lobe of constant reflectance do not exceed 1 together.
 fn check_sum(material: &Material, place: &Place) -> Result<(), SceneError> {
     let (
         Lobe::Rough { fresnel: Fresnel::One, scale, .. } | Lobe::Mirror { fresnel: Fresnel::One, scale },

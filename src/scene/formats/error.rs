@@ -1,9 +1,9 @@
-//! What can be wrong with a scene, and what was understood only in part: both name the file and the line.
+//! Errors in scenes, and warnings about parts that are not modelled: both name the file and the line.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// A file, and a line where one is known.
+/// A file, and the line, if available.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
     /// The file.
@@ -13,12 +13,12 @@ pub struct Place {
 }
 
 impl Place {
-    /// The file as a whole.
+    /// Returns the place of the file as a whole.
     pub fn file(path: &Path) -> Place {
         Place { path: path.to_owned(), line: None }
     }
 
-    /// Line `line` (from 1) of the file.
+    /// Returns the place of line `line` (from 1) of the file.
     pub fn line(path: &Path, line: u32) -> Place {
         Place { path: path.to_owned(), line: Some(line) }
     }
@@ -33,25 +33,25 @@ impl fmt::Display for Place {
     }
 }
 
-/// How much a warning matters.
+/// Severity of a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// The expected picture is what the file asks for, to within filtering or tessellation.
+    /// The expected picture is the one described, to within filtering or tessellation.
     Note,
-    /// The picture will differ from what the file asks for; an error under `strict`.
+    /// The picture will differ from the one described; an error under `strict`.
     Warning,
 }
 
-/// Something a scene file asks for that is not modelled, and what is done instead.
+/// A feature requested by a scene file that is not modelled, and its replacement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// Where it is asked for.
+    /// Place of the request.
     pub place: Place,
-    /// How much it matters.
+    /// Severity.
     pub level: Level,
-    /// What is asked for.
+    /// The feature requested.
     pub what: String,
-    /// What is done instead.
+    /// The replacement.
     pub fallback: String,
 }
 
@@ -61,7 +61,7 @@ impl fmt::Display for Warning {
     }
 }
 
-/// Why a scene could not be read. Every message ends in a remedy.
+/// Reasons why a scene could not be read. Every message ends in a remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// A file that cannot be opened or read.
@@ -69,38 +69,38 @@ pub enum SceneError {
     Read {
         /// The file.
         path: PathBuf,
-        /// Where it is asked for.
+        /// Place that refers to it.
         from: Place,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// Neither extension that is understood.
+    /// A file whose extension is that of no supported format.
     #[error("{}: unknown kind of scene; name a .toml (native) or .xml (Mitsuba) file", .0.display())]
     UnknownFormat(PathBuf),
     /// Text that is not well-formed XML or TOML.
     #[error("{place}: {message}; correct the file's syntax")]
     Syntax {
-        /// Where.
+        /// Place of the error.
         place: Place,
-        /// What the parser said.
+        /// Message of the parser.
         message: String,
     },
     /// A value that is missing, of the wrong type or out of range.
     #[error("{place}: {what}; {remedy}")]
     Value {
-        /// Where.
+        /// Place of the value.
         place: Place,
-        /// What is wrong.
+        /// Description of the error.
         what: String,
-        /// What to do.
+        /// Remedy.
         remedy: String,
     },
-    /// A name that nothing in the scene bears.
+    /// A reference to a name that is not defined in the scene.
     #[error("{place}: there is no {kind} called \"{name}\"; define it or correct the name")]
     Reference {
-        /// Where it is used.
+        /// Place of the reference.
         place: Place,
-        /// What kind of thing is meant.
+        /// Kind of object referred to.
         kind: &'static str,
         /// The name.
         name: String,
@@ -108,19 +108,19 @@ pub enum SceneError {
     /// A mesh file with wrong contents.
     #[error("{place}: {what}; repair or re-export the mesh")]
     Mesh {
-        /// Where.
+        /// Place of the error.
         place: Place,
-        /// What is wrong.
+        /// Description of the error.
         what: String,
     },
     /// A picture that cannot be decoded.
     #[error("{place}: cannot decode {}: {what}; convert it to PNG, JPEG, BMP, TGA, Radiance HDR or OpenEXR", .path.display())]
     Picture {
-        /// Where it is asked for.
+        /// Place that refers to it.
         place: Place,
         /// The picture.
         path: PathBuf,
-        /// What the decoder said.
+        /// Message of the decoder.
         what: String,
     },
     /// A warning, under `strict`.
@@ -129,12 +129,12 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// A wrong value.
+    /// Returns the error of a wrong value.
     pub(crate) fn value(place: &Place, what: impl Into<String>, remedy: impl Into<String>) -> SceneError {
         SceneError::Value { place: place.clone(), what: what.into(), remedy: remedy.into() }
     }
 
-    /// A wrong mesh file.
+    /// Returns the error of a wrong mesh file.
     pub(crate) fn mesh(place: Place, what: impl Into<String>) -> SceneError {
         SceneError::Mesh { place, what: what.into() }
     }
@@ -152,7 +152,7 @@ impl Log {
         Log { strict, warnings: Vec::new() }
     }
 
-    /// Something that changes the picture.
+    /// Adds a warning about a change of the picture.
     pub fn warn(
         &mut self,
         place: &Place,
@@ -172,7 +172,7 @@ impl Log {
         Ok(())
     }
 
-    /// Something that does not change the expected picture.
+    /// Adds a note that does not concern the expected picture.
     pub fn note(&mut self, place: &Place, what: impl Into<String>, fallback: impl Into<String>) {
         self.push(Warning {
             place: place.clone(),
@@ -182,7 +182,7 @@ impl Log {
         });
     }
 
-    /// The same thing at the same place is said once.
+    /// The same message for the same place is added once.
     fn push(&mut self, warning: Warning) {
         if !self.warnings.contains(&warning) {
             self.warnings.push(warning);

@@ -1,9 +1,9 @@
 //! Scene readers: native TOML and Mitsuba XML, one model.
 //!
 //! A reader turns its text into a `Plan`, which opens meshes and pictures in parallel; the result is
-//! sanitised and recentred. A description that asks for something the model lacks is read as far as it goes,
-//! with a [`Warning`] for each replacement; under [`LoadOptions::strict`] the first of them is an error.
-//! Whatever the bytes, reading ends in a scene or a [`SceneError`].
+//! sanitised and recentred. Features that the model lacks are replaced, with a [`Warning`] for each
+//! replacement; under [`LoadOptions::strict`] the first of them is an error. Whatever the bytes, reading ends
+//! in a scene or a [`SceneError`].
 
 mod constants;
 pub(crate) mod error;
@@ -21,27 +21,27 @@ pub use super::sanitize::SanitizeReport;
 pub use error::{Level, Place, SceneError, Warning};
 pub(crate) use mesh::smooth_normals;
 
-/// How to read a scene.
+/// Options for reading a scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LoadOptions {
-    /// Treat the first [`Level::Warning`] as an error.
+    /// True if the first [`Level::Warning`] is an error.
     pub strict: bool,
 }
 
-/// A scene and what was noticed on the way.
+/// A scene, its cameras, and reports of reading it.
 #[derive(Clone, Debug)]
 pub struct Loaded {
     /// The scene, sanitised and recentred.
     pub scene: Scene,
-    /// From where its file wants it to be seen.
+    /// Cameras and film size that its file describes.
     pub cameras: Cameras,
-    /// What was replaced, in the order of the description.
+    /// Warnings about replacements, in the order of the description.
     pub warnings: Vec<Warning>,
-    /// What had to be repaired.
+    /// Report of repairs.
     pub repairs: SanitizeReport,
     /// Hash over the bytes of all source files, in order (64-bit FNV-1a).
     pub hash: u64,
-    /// The generator of its geometry, where it has one.
+    /// The generator of its geometry, if any.
     pub generator: Option<String>,
 }
 

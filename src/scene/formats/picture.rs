@@ -8,7 +8,7 @@ use crate::math::Rgb;
 use std::io::Cursor;
 use std::path::Path;
 
-/// 16k by 16k.
+/// Maximum number of pixels: 16k by 16k.
 const MAX_PIXELS: usize = 1 << 28;
 
 /// A decoded picture, top row first.
@@ -35,7 +35,7 @@ pub(crate) fn decode(bytes: &[u8], raw: bool, path: &Path, place: &Place) -> Res
 
 fn decode_exr(bytes: &[u8]) -> Result<Picture, exr::error::Error> {
     use exr::prelude::*;
-    // The size is checked before anything is allocated on its word.
+    // The size is checked before any allocation that depends on it.
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)?;
     if meta.headers.iter().any(|h| h.layer_size.width().saturating_mul(h.layer_size.height()) > MAX_PIXELS) {
         return Err(exr::error::Error::Invalid("more pixels than any real picture has".into()));
@@ -102,7 +102,7 @@ fn linear(encoded: f32, raw: bool) -> f32 {
     if raw { encoded } else { srgb_to_linear(encoded) }
 }
 
-/// The sRGB transfer function's inverse (IEC 61966-2-1).
+/// Inverse of the sRGB transfer function (IEC 61966-2-1).
 pub(crate) fn srgb_to_linear(encoded: f32) -> f32 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }

@@ -1,6 +1,6 @@
-//! What a scene description asks for, before any mesh or picture is opened; [`Plan::realise`] opens them all.
+//! A parsed scene description, before any mesh or picture is opened; [`Plan::realise`] opens them all.
 //!
-//! Both readers end in a [`Plan`]. Files are read in parallel, each once; results stand in the order of the
+//! Both readers end in a [`Plan`]. Files are read in parallel, each once; results are in the order of the
 //! description, and of several errors the first in that order is reported.
 
 use super::error::{Place, SceneError};
@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Everything a scene description says.
+/// The whole content of a scene description.
 #[derive(Clone, Debug)]
 pub(crate) struct Plan {
     pub name: String,
@@ -30,14 +30,14 @@ pub(crate) struct Plan {
     pub max_depth: Option<u32>,
     pub meshes: Vec<MeshPlan>,
     pub materials: Vec<Material>,
-    /// Where each material is described.
+    /// Place in the files where each material is described.
     pub material_places: Vec<Place>,
     pub textures: Vec<TexturePlan>,
     pub lights: Vec<(DeltaLight, DVec3)>,
     pub environment: Option<EnvironmentPlan>,
 }
 
-/// A mesh to be read or made.
+/// A mesh to be read or tessellated.
 #[derive(Clone, Debug)]
 pub(crate) struct MeshPlan {
     pub place: Place,
@@ -48,21 +48,21 @@ pub(crate) struct MeshPlan {
     pub emission: Option<Emission>,
 }
 
-/// Where a mesh comes from.
+/// Source of a mesh.
 #[derive(Clone, Debug)]
 pub(crate) enum Geometry {
     Obj(PathBuf),
     Ply(PathBuf),
-    /// File and number of the mesh in it.
+    /// File and index of the mesh in it.
     Serialized(PathBuf, usize),
     Ready(RawMesh),
 }
 
-/// Which material a mesh has.
+/// Choice of a mesh's materials.
 #[derive(Clone, Debug)]
 pub(crate) enum MaterialPlan {
     One(MaterialId),
-    /// By the file's own material names; the other one where a name is unknown.
+    /// Materials by the file's own names, and the one for unknown names.
     ByName(BTreeMap<String, MaterialId>, MaterialId),
 }
 
@@ -76,7 +76,7 @@ pub(crate) struct TexturePlan {
     pub to_uv: Mat3,
 }
 
-/// Where a texture's texels come from.
+/// Source of a texture's texels.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Image {
     File { path: PathBuf, raw: bool },
@@ -90,7 +90,7 @@ pub(crate) enum EnvironmentPlan {
     Map { place: Place, path: PathBuf, scale: f32, to_world: DMat4 },
 }
 
-/// Something to be done with a file's bytes.
+/// A task on a file's bytes.
 enum Task<'a> {
     Mesh(usize, &'a MeshPlan),
     Texture(usize, &'a TexturePlan, bool),
@@ -158,7 +158,7 @@ impl Plan {
         Ok((draft, fnv1a(&bytes)))
     }
 
-    /// What is to be done with each file, files by first mention.
+    /// Returns the tasks of each file, files by first mention.
     fn tasks(&self) -> Vec<(&Path, Vec<Task<'_>>)> {
         let mut files: Vec<(&Path, Vec<Task>)> = Vec::new();
         let mut by_path: BTreeMap<&Path, usize> = BTreeMap::new();
@@ -189,7 +189,7 @@ impl Plan {
     }
 }
 
-/// Reads a file that `from` asks for.
+/// Reads a file that `from` refers to.
 pub(crate) fn read_file(path: &Path, from: &Place) -> Result<Vec<u8>, SceneError> {
     let fail = |source| SceneError::Read { path: path.to_owned(), from: from.clone(), source };
     std::fs::read(path).map_err(fail)
@@ -252,7 +252,7 @@ fn texture(plan: TexturePlan, decoded: Option<Picture>) -> Option<Texture> {
     Some(Texture { name, width, height, texels, filter: plan.filter, wrap: plan.wrap, to_uv: plan.to_uv })
 }
 
-/// The map with `scale` applied. As in Mitsuba, fewer than 3 rows are padded by repeating the last.
+/// Makes the map with `scale` applied. As in Mitsuba, fewer than 3 rows are padded by repeating the last.
 fn environment_map(picture: Picture, scale: f32, to_world: &DMat4) -> EnvironmentMap {
     let Picture { width, height, texels } = picture;
     let mut radiance: Vec<Rgb> = texels.iter().map(|&t| t * scale).collect();
@@ -265,7 +265,7 @@ fn environment_map(picture: Picture, scale: f32, to_world: &DMat4) -> Environmen
     EnvironmentMap { width, height: height.max(3), radiance, to_local }
 }
 
-/// 64-bit FNV-1a: fast enough to vanish beside parsing, and all that telling scenes apart needs.
+/// 64-bit FNV-1a: negligible beside parsing, and sufficient to tell scenes apart.
 pub(crate) fn fnv1a(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }

@@ -77,7 +77,7 @@ fn triangles_that_vanish_in_f32_are_degenerate() {
     let mut d = draft(vec![mesh.clone(), other], vec![grey()]);
     let (report, _) = sanitize(&mut d).unwrap();
     assert_eq!((report.degenerate, report.empty_meshes, d.meshes.len()), (1, 1, 1));
-    // Alone it is as good as any.
+    // Alone it is kept.
     let mut d = draft(vec![mesh], vec![grey()]);
     assert!(sanitize(&mut d).unwrap().0.is_clean());
 }

@@ -1,9 +1,9 @@
-//! Geometry by file and by formula: each reader yields a [`RawMesh`] in the object's own coordinates, and
-//! [`place`] brings it into the world the way Mitsuba does.
+//! Geometry from files and analytic shapes: each reader yields a [`RawMesh`] in the object's own coordinates,
+//! and [`place`] transforms it to world coordinates as Mitsuba does.
 //!
-//! Which side is the front: Mitsuba decides by the shading normal (emission, one-sided materials), this
-//! renderer by the winding. So where the vertex normals oppose the winding (mirrored transforms,
-//! careless exporters), the winding is turned.
+//! Front sides: Mitsuba decides by the shading normal (emission, one-sided materials), this renderer by the
+//! winding. So where the vertex normals oppose the winding (mirrored transforms, careless exporters), the
+//! winding is reversed.
 
 pub(crate) mod mtl;
 pub(crate) mod obj;
@@ -17,44 +17,45 @@ pub(crate) use smooth::vertex_normals as smooth_normals;
 use crate::scene::draft::DraftMesh;
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
-/// A mesh in its own coordinates, as its file has it.
+/// A mesh in its own coordinates, as read from its file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RawMesh {
     pub positions: Vec<DVec3>,
-    /// By vertex, or empty.
+    /// Normals by vertex, or empty.
     pub normals: Vec<Vec3>,
-    /// By vertex, or empty; v as in the file.
+    /// Texture coordinates by vertex, or empty; v as in the file.
     pub uvs: Vec<Vec2>,
     pub triangles: Vec<[u32; 3]>,
-    /// Where a new material begins: name and first triangle, ascending.
+    /// Material groups: name and first triangle, ascending.
     pub groups: Vec<(String, usize)>,
 }
 
-/// Which normals a mesh has.
+/// Choice of a mesh's shading normals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Normals {
-    /// Its faces'.
+    /// Geometric normals of the faces.
     Flat,
-    /// The file's, else its faces'.
+    /// Normals of the file, else those of the faces.
     AsGiven,
-    /// The file's, else smooth ones are computed.
+    /// Normals of the file, else smooth ones are computed.
     Smooth,
 }
 
-/// How a raw mesh is brought into the world.
+/// Options for placing a raw mesh in the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     pub to_world: DMat4,
     pub normals: Normals,
-    /// The other side is the front.
+    /// True if the front is the other side.
     pub flip_normals: bool,
-    /// Texture coordinates count v from the top: v becomes 1 - v.
+    /// True if texture coordinates count v from the top: v becomes 1 - v.
     pub v_down: bool,
-    /// Give every triangle its barycentric coordinates as uv where the file has none (Mitsuba's convention).
+    /// True if every triangle gets its barycentric coordinates as uv where the file has none (Mitsuba's
+    /// convention).
     pub needs_uv: bool,
 }
 
-/// The mesh in world coordinates; name, material and emission are left for the caller to fill in.
+/// Returns the mesh in world coordinates; name, material and emission are left for the caller to fill in.
 pub(crate) fn place(raw: RawMesh, how: &Placement) -> DraftMesh {
     let mut mesh = DraftMesh {
         positions: raw.positions.iter().map(|&p| how.to_world.transform_point3(p)).collect(),
@@ -94,7 +95,7 @@ fn cofactor(m: &glam::DMat3) -> glam::DMat3 {
     glam::DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis))
 }
 
-/// Unshares all vertices and gives each triangle (0,0), (1,0), (0,1) in Mitsuba's v-down convention.
+/// Duplicates shared vertices and gives each triangle (0,0), (1,0), (0,1) in Mitsuba's v-down convention.
 fn give_barycentric_uvs(mesh: &mut DraftMesh) {
     let corners = || mesh.triangles.iter().flatten().map(|&i| i as usize);
     if corners().any(|i| i >= mesh.positions.len()) || mesh.triangles.len() > (u32::MAX / 3) as usize {
@@ -110,7 +111,7 @@ fn give_barycentric_uvs(mesh: &mut DraftMesh) {
     mesh.triangles = (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
 }
 
-/// Turns every triangle whose vertex normals point, in sum, away from its geometric normal.
+/// Reverses every triangle whose vertex normals point, in sum, away from its geometric normal.
 fn follow_normals(mesh: &mut DraftMesh) {
     if mesh.normals.is_empty() {
         return;

@@ -1,6 +1,7 @@
 //! Wavefront MTL: the classic materials an OBJ refers to, as the file states them.
 //!
-//! Why not `tobj`: a colour of one or two numbers makes its MTL reader panic (4.0.5), and its errors name no line.
+//! Reason not to use `tobj`: a colour of one or two numbers makes its MTL reader panic (4.0.5), and its
+//! errors name no line.
 
 use super::obj::numbers;
 use crate::math::Rgb;
@@ -8,7 +9,7 @@ use crate::scene::formats::error::{Place, SceneError};
 use glam::DVec3;
 use std::path::Path;
 
-/// One `newmtl`.
+/// A material (`newmtl`) with its statements.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ClassicMaterial {
     pub name: String,
@@ -87,7 +88,7 @@ fn statement(material: &mut ClassicMaterial, word: &[u8], rest: &[u8], text: Str
     Ok(())
 }
 
-/// Three numbers, or one for a grey.
+/// Parses three numbers, or one for a grey.
 fn colour(rest: &[u8]) -> Result<Rgb, String> {
     let three = numbers::<3>(rest).map(|c| DVec3::from(c).as_vec3());
     three.or_else(|e| match rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty()).count() {

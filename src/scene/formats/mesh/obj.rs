@@ -1,15 +1,16 @@
 //! Wavefront OBJ: positions, texture coordinates, normals, polygons and material groups of the whole file.
 //!
-//! A vertex is a distinct (position, uv, normal) triple of indices, numbered by first use, and polygons
-//! are fans, as in Mitsuba. Lines, points, curves and smoothing groups are passed over.
+//! A vertex is a distinct (position, uv, normal) triple of indices, numbered by first use, and polygons are
+//! fans, as in Mitsuba. Lines, points, curves and smoothing groups are ignored.
 //!
-//! Why not `tobj` (4.0.5, tried behind a `BufRead` that hands it one line at a time, counts them, and leaves out `o`, `g`
-//! and `usemtl`, at which it would split the mesh so that vertices are no longer shared where normals have to be
-//! computed): a corner without a normal or texture coordinate among others that have one gets the file's first; a
-//! face with an index out of range is found after the last line, so its line is not named; a byte that is not
-//! UTF-8, as in comments by old exporters, a `vt` of one number, or colours on some of the vertices end the reading; a face
-//! of two corners is no error. A pass before it that checks all this and finds the faces of each material reads
-//! every number and every face, and is as long as this file.
+//! Reasons not to use `tobj` (4.0.5, tried behind a `BufRead` that passes it one line at a time, counts them,
+//! and leaves out `o`, `g` and `usemtl`, at which it would split the mesh so that vertices are no longer
+//! shared where normals have to be computed): a corner without a normal or texture coordinate among others
+//! that have one gets the file's first; a face with an index out of range is found after the last line, so
+//! its line is not named; a byte that is not UTF-8, as in comments by old exporters, a `vt` of one number, or
+//! colours on some of the vertices end the reading; a face of two corners is no error. A pass before it that
+//! checks all this and finds the faces of each material reads every number and every face, and is as long as
+//! this file.
 
 use super::RawMesh;
 use crate::scene::formats::error::{Place, SceneError};
@@ -32,7 +33,7 @@ pub(crate) fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
     Ok(reader.finish())
 }
 
-/// The `mtllib` names of the OBJ text `bytes`, in order.
+/// Returns the `mtllib` names of the OBJ text `bytes`, in order.
 pub(crate) fn material_libraries(bytes: &[u8]) -> Vec<String> {
     let lines = bytes.split(|&b| b == b'\n').filter(|l| l.starts_with(b"mtllib"));
     lines.map(|l| String::from_utf8_lossy(&l[6..]).trim().to_owned()).filter(|n| !n.is_empty()).collect()
@@ -43,7 +44,8 @@ struct Reader {
     positions: Vec<DVec3>,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
-    /// Vertices by position index: a chain through `next`, which beats a hash map on real files.
+    /// First vertex of each position index: a chain through `next`, which is faster than a hash map on real
+    /// files.
     first: Vec<u32>,
     vertices: Vec<Vertex>,
     mesh: RawMesh,
@@ -161,7 +163,8 @@ pub(crate) fn split_by_material(raw: RawMesh) -> Vec<(String, RawMesh)> {
         .collect()
 }
 
-/// A mesh of `triangles` over just the vertices of `raw` they use. Indices are in range: the reader made them.
+/// Returns the mesh of `triangles` over only the vertices of `raw` they use. Indices are in range: the reader
+/// made them.
 fn with_used_vertices(raw: &RawMesh, mut triangles: Vec<[u32; 3]>) -> RawMesh {
     let mut renumbered = vec![MISSING; raw.positions.len()];
     let mut part = RawMesh::default();
@@ -179,7 +182,7 @@ fn with_used_vertices(raw: &RawMesh, mut triangles: Vec<[u32; 3]>) -> RawMesh {
     part
 }
 
-/// The first `N` numbers of a line; what follows them (w, vertex colours) is passed over.
+/// Parses the first `N` numbers of a line; any further ones (w, vertex colours) are ignored.
 pub(super) fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
     let mut values = [0.0; N];
     let mut tokens = rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty());
@@ -192,7 +195,7 @@ pub(super) fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
     Ok(values)
 }
 
-/// A one-based index, or one counted back from the latest if negative; `MISSING` where it is left out.
+/// Parses a one-based index, or one counted back from the latest if negative; `MISSING` where it is left out.
 fn index(token: Option<&[u8]>, count: usize, what: &str) -> Result<u32, String> {
     let Some(token) = token.filter(|t| !t.is_empty()) else { return Ok(MISSING) };
     let text = String::from_utf8_lossy(token);

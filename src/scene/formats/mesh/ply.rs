@@ -1,5 +1,5 @@
 //! PLY meshes, ASCII and binary of either byte order: vertices with optional normals and texture coordinates,
-//! faces of any size as fans. Other elements and properties are passed over.
+//! faces of any size as fans. Other elements and properties are ignored.
 
 use super::RawMesh;
 use crate::scene::formats::error::{Place, SceneError};
@@ -44,7 +44,7 @@ enum Scalar {
 struct Header {
     format: Format,
     elements: Vec<Element>,
-    /// Lines of the header.
+    /// Number of lines of the header.
     lines: u32,
 }
 
@@ -63,7 +63,7 @@ struct Property {
     scalar: Scalar,
 }
 
-/// The header and what follows it; errors with their line.
+/// Parses the header; returns it and the bytes after it, or an error with its line.
 fn header(bytes: &[u8]) -> Result<(Header, &[u8]), (u32, String)> {
     let mut header = Header { format: Format::Ascii, elements: Vec::new(), lines: 0 };
     let mut format = None;
@@ -220,7 +220,7 @@ fn contents(header: &Header, values: &mut dyn Values) -> Result<RawMesh, String>
     Ok(mesh)
 }
 
-/// Reads one property of one element, handing over each of its values.
+/// Reads one property of one element, passing on each of its values.
 fn property_values(
     property: &Property,
     values: &mut dyn Values,
@@ -278,7 +278,7 @@ fn faces(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> Resu
                 continue;
             }
             corners.clear();
-            // Negative and fractional indices become ones that are out of range.
+            // Negative and fractional indices are mapped out of range.
             let index = |v: f64| if v >= 0.0 && v.fract() == 0.0 { v as u32 } else { u32::MAX };
             property_values(property, values, |v| corners.push(index(v)))?;
             if corners.len() < 3 {

@@ -61,7 +61,7 @@ fn read_block(bytes: &[u8], index: usize) -> Result<RawMesh, String> {
     Ok(mesh)
 }
 
-/// Where block `index` begins, from the table at the file's end.
+/// Returns the offset of block `index`, from the table at the file's end.
 fn offset(bytes: &[u8], index: usize, version: u16) -> Result<usize, String> {
     let broken = || "the table of offsets at the file's end is broken".to_string();
     let table_end = bytes.len().checked_sub(4).ok_or_else(broken)?;
@@ -82,8 +82,8 @@ fn array<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at.checked_add(N)?)?.try_into().ok()
 }
 
-/// A deflated block. Nothing is allocated on the word of a count alone: deflate cannot expand by more
-/// than about 1032, so a count beyond that is a lie.
+/// A deflated block. A count alone never causes an allocation: deflate cannot expand by more than about 1032,
+/// so that a count beyond that is wrong.
 struct Stream<'a> {
     inner: ZlibDecoder<&'a [u8]>,
     limit: usize,

@@ -1,13 +1,13 @@
-//! Shapes by formula, with Mitsuba's extents and texture coordinates (v counts downwards).
+//! Analytic shapes, with Mitsuba's extents and texture coordinates (v counts downwards).
 //!
-//! Deviations: spheres, disks and cylinders are tessellated. Their vertices are pushed outwards just so far
-//! that the area, hence the power of an emitter, is the true shape's; normals are exact.
+//! Deviations: spheres, disks and cylinders are tessellated. Their vertices are moved outwards by the
+//! distance that makes the area, hence the power of an emitter, the true shape's; normals are exact.
 
 use super::RawMesh;
 use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::{PI, TAU};
 
-/// Facets around a sphere, disk or cylinder; the facets' edges stay within 0.03 % of the radius.
+/// Number of facets around a sphere, disk or cylinder; the facets' edges stay within 0.03 % of the radius.
 const AROUND: u32 = 128;
 
 /// The square [-1, 1]² in the plane z = 0, facing +z.

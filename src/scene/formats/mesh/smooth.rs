@@ -5,7 +5,7 @@
 
 use glam::{DVec3, Vec3};
 
-/// Unit normals by vertex; zero where no face of any area touches the vertex.
+/// Computes unit normals by vertex; zero where no face of positive area touches the vertex.
 pub(crate) fn vertex_normals(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; positions.len()];
     for t in triangles {

@@ -1,4 +1,4 @@
-//! Typed access to an object's properties; whatever is asked for counts as understood.
+//! Typed access to an object's properties; a property that is asked for counts as supported.
 
 use super::tree::{Object, Property};
 use super::value::Value;
@@ -6,9 +6,9 @@ use crate::scene::formats::error::{Log, SceneError};
 use glam::{DMat4, DVec3};
 
 impl Object {
-    /// The property, marked as used.
+    /// Returns the property and marks it as used.
     pub fn property(&self, name: &str) -> Option<&Property> {
-        // The last one counts where a file gives a parameter twice.
+        // If a file gives a parameter twice, the last one counts.
         let found = self.properties.iter().rev().find(|p| p.name == name);
         found.inspect(|p| p.used.set(true))
     }
@@ -63,7 +63,7 @@ impl Object {
         self.typed(name, "transform", get)
     }
 
-    /// A float in the given open range.
+    /// Returns a positive float.
     pub fn positive(&self, name: &str, default: f64) -> Result<f64, SceneError> {
         let value = self.float(name)?.unwrap_or(default);
         match self.property(name) {
@@ -74,12 +74,12 @@ impl Object {
         }
     }
 
-    /// Marks parameters as understood, though nothing here depends on them.
+    /// Marks parameters as supported, though nothing here depends on them.
     pub fn ignore(&self, names: &[&str]) {
         names.iter().for_each(|name| _ = self.property(name));
     }
 
-    /// Warns of every property and child that nothing has asked for.
+    /// Warns of every property and child that was never asked for.
     pub fn report_unused(&self, log: &mut Log) -> Result<(), SceneError> {
         let of = || format!("of {} \"{}\" is not modelled", self.tag, self.plugin);
         for property in self.properties.iter().filter(|p| !p.used.replace(true)) {

@@ -1,4 +1,4 @@
-//! Emitters: of shapes, of the whole scene, and those without a surface.
+//! Emitters: of shapes, of the whole scene, and delta lights.
 
 use super::Converter;
 use super::tree::Object;
@@ -11,7 +11,7 @@ use crate::scene::mesh::Emission;
 use glam::{DMat4, DVec3, Vec3};
 
 impl Converter<'_> {
-    /// The emission of a shape's emitter.
+    /// Converts a shape's emitter to its emission.
     pub(super) fn area_emitter(&mut self, emitter: &Object) -> Result<Option<Emission>, SceneError> {
         if emitter.plugin != "area" {
             let what = format!("a shape cannot emit as \"{}\"", emitter.plugin);
@@ -99,7 +99,7 @@ impl Converter<'_> {
         Ok(())
     }
 
-    /// The transform without its scale; an error where it shears or is singular.
+    /// Returns the transform without its scale; an error where it shears or is singular.
     fn rotation(&mut self, emitter: &Object, m: DMat4) -> Result<DMat4, SceneError> {
         let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|a| a.truncate());
         let [Some(a), Some(b), Some(c)] = [x, y, z].map(|a| a.try_normalize()) else {

@@ -1,12 +1,11 @@
-//! What the integrator says about the expected image: the longest path. All else about it is the renderer's
-//! own business.
+//! The only property of the integrator that affects the expected image: the maximum path length.
 
 use super::Converter;
 use super::tree::Object;
 use crate::scene::formats::error::SceneError;
 
 impl Converter<'_> {
-    /// Longest path in edges, `None` for no limit.
+    /// Maximum path length in edges, `None` for no limit.
     pub(super) fn max_depth(&mut self, integrator: &Object) -> Result<Option<u32>, SceneError> {
         if integrator.boolean("hide_emitters", false)? {
             self.log.warn(

@@ -3,7 +3,8 @@
 //! `tree` reads the XML, the other modules turn sensors, shapes, bsdfs, textures and emitters into a
 //! [`Plan`]. Defaults and conventions are those of Mitsuba 3.9.1 in its `rgb` variants.
 //!
-//! Deviations: what has no counterpart in the scene model is replaced, and every replacement is reported.
+//! Deviations: features without a counterpart in the scene model are replaced, and every replacement is
+//! reported.
 
 mod access;
 mod bsdf;
@@ -34,7 +35,7 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     let parts = converter.parts;
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let folder_name = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
-    // Scene files are usually called scene.xml; then the folder says more.
+    // Scene files are usually called scene.xml; then the folder's name is used.
     let name = if stem == "scene" { folder_name.unwrap_or(stem) } else { stem };
     Ok(Plan {
         name,
@@ -55,19 +56,19 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
 
 struct Converter<'a> {
     document: &'a Document,
-    /// Where file names start.
+    /// Folder that file names are relative to.
     folder: PathBuf,
     log: &'a mut Log,
     parts: Parts,
 }
 
-/// What has been converted so far.
+/// Parts converted so far.
 #[derive(Default)]
 struct Parts {
     meshes: Vec<MeshPlan>,
     materials: Vec<Material>,
     material_places: Vec<Place>,
-    /// The bsdf object and wrapping that each material came from.
+    /// Source of each material: the bsdf object and its wrapping.
     material_of: Vec<(*const Object, MaterialId)>,
     default_materials: [Option<MaterialId>; 2],
     textures: Vec<TexturePlan>,
@@ -91,7 +92,7 @@ impl Converter<'_> {
         Ok(())
     }
 
-    /// A file named by `object`: beside the main file, or beside the file that names it.
+    /// Finds a file named by `object`: beside the main file, or beside the file that names it.
     fn file(&self, object: &Object, name: &str) -> Result<PathBuf, SceneError> {
         let missing = || {
             let what = format!("{} \"{}\" names no file", object.tag, object.plugin);

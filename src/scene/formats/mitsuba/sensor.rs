@@ -6,7 +6,7 @@ use crate::scene::draft::DraftCamera;
 use crate::scene::formats::error::{Place, SceneError};
 use glam::{DMat4, DVec3};
 
-/// What is seen, how large and with paths how long.
+/// Camera, film size and maximum path length.
 pub(super) struct Shot {
     pub camera: DraftCamera,
     pub resolution: [u32; 2],
@@ -105,7 +105,7 @@ impl Converter<'_> {
                 )?;
             }
         }
-        // A pixel is the mean over its square here, whatever the filter asked for.
+        // A pixel is the mean over its square here, whatever the filter.
         let filters = self.tagged(film, "rfilter")?;
         let filter = filters.first().map_or("gaussian", |f| f.plugin.as_str());
         if filter != "box" {
@@ -116,7 +116,7 @@ impl Converter<'_> {
     }
 }
 
-/// Radians.
+/// Horizontal field of view, radians.
 fn horizontal_fov(sensor: &Object, aspect: f64) -> Result<f64, SceneError> {
     let wrong = |what: String, remedy: &str| SceneError::value(&sensor.place, what, remedy);
     let (fov, axis) = match (sensor.float("fov")?, sensor.property("focal_length")) {

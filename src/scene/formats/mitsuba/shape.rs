@@ -1,4 +1,4 @@
-//! Shapes: meshes from files and shapes by formula.
+//! Shapes: meshes from files and analytic shapes.
 
 use super::Converter;
 use super::tree::Object;

@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Elements nested deeper than this, or files included deeper, are an error; no real scene is.
+/// Maximum nesting of elements, and of included files; deeper is an error, and no real scene is.
 const MAX_DEPTH: usize = 48;
 
-/// A plugin instance: `<bsdf type="diffuse" id="a">` and what is inside.
+/// A plugin instance: `<bsdf type="diffuse" id="a">` and its contents.
 #[derive(Debug)]
 pub(super) struct Object {
     /// `bsdf`, `shape`, `emitter`, ...
@@ -31,7 +31,7 @@ pub(super) struct Property {
     pub name: String,
     pub value: Value,
     pub place: Place,
-    /// Whether a converter has asked for it; what nobody asked for is reported.
+    /// True if a converter has asked for it; unused properties are reported.
     pub used: Cell<bool>,
 }
 
@@ -39,14 +39,14 @@ pub(super) struct Property {
 #[derive(Debug)]
 pub(super) struct Child {
     pub target: Target,
-    /// The parameter it is given for.
+    /// Name of the parameter that it is the value of.
     pub name: Option<String>,
     pub place: Place,
-    /// As [`Property::used`].
+    /// Used flag, as [`Property::used`].
     pub used: Cell<bool>,
 }
 
-/// What a child is.
+/// Target of a child: an object or a reference.
 #[derive(Debug)]
 pub(super) enum Target {
     Own(Rc<Object>),
@@ -77,7 +77,7 @@ impl Document {
         Ok(Document { root, ids: builder.ids, sources: builder.sources })
     }
 
-    /// The object a child stands for.
+    /// Returns the object that a child refers to.
     pub fn object(&self, child: &Child) -> Result<Rc<Object>, SceneError> {
         match &child.target {
             Target::Own(object) => Ok(object.clone()),
@@ -89,7 +89,7 @@ impl Document {
         }
     }
 
-    /// All children of `object` with tag `tag`, which count as used from now on.
+    /// Returns all children of `object` with tag `tag` and marks them as used.
     pub fn tagged(&self, object: &Object, tag: &str) -> Result<Vec<Rc<Object>>, SceneError> {
         let mut found = Vec::new();
         for child in &object.children {
@@ -102,7 +102,7 @@ impl Document {
         Ok(found)
     }
 
-    /// The child of `object` given for the parameter `name`.
+    /// Returns the child of `object` that is the value of the parameter `name`.
     pub fn named(&self, object: &Object, name: &str) -> Result<Option<Rc<Object>>, SceneError> {
         let child = object.children.iter().find(|c| c.name.as_deref() == Some(name));
         child.inspect(|c| c.used.set(true)).map(|c| self.object(c)).transpose()
@@ -112,13 +112,13 @@ impl Document {
 #[derive(Default)]
 struct Builder {
     ids: BTreeMap<String, Rc<Object>>,
-    /// `$name` to its value.
+    /// Values of `$name` parameters.
     parameters: BTreeMap<String, String>,
     sources: Vec<(PathBuf, u64)>,
 }
 
 impl Builder {
-    /// Reads the file into `parent`: the contents of a scene, or the one object that it is, under `name`.
+    /// Reads the file into `parent`: the contents of a scene, or its only object under `name`.
     fn file(
         &mut self,
         path: &Path,
@@ -269,7 +269,7 @@ impl Builder {
         Ok(())
     }
 
-    /// The attributes with their `$parameters` replaced.
+    /// Returns the attributes with their `$parameters` replaced.
     fn attributes(
         &self,
         node: &roxmltree::Node,
@@ -292,7 +292,7 @@ impl Builder {
                 continue;
             }
             out.push_str(before);
-            // The longest defined name that the text continues with.
+            // The longest defined name at the start of the text.
             let known = self.parameters.iter().filter(|(name, _)| from[1..].starts_with(name.as_str()));
             let Some((name, value)) = known.max_by_key(|(name, _)| name.len()) else {
                 let name = from[1..].split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("");
@@ -327,7 +327,7 @@ fn is_object(tag: &str) -> bool {
     TAGS.contains(&tag)
 }
 
-/// `intIOR` to `int_ior`, `toWorld` to `to_world`; names of 3.x stay as they are.
+/// Converts `intIOR` to `int_ior`, `toWorld` to `to_world`; names of 3.x stay as they are.
 pub(super) fn snake_case(name: &str) -> String {
     let mut out = String::with_capacity(name.len() + 2);
     let mut previous_lower = false;

@@ -15,16 +15,16 @@ pub(super) enum Value {
     String(String),
     Vector(DVec3),
     Rgb(DVec3),
-    /// The same at every wavelength.
+    /// A spectrum constant over wavelength.
     Spectrum(f64),
-    /// Wavelength and value, in the file's order.
+    /// A sampled spectrum: wavelengths and values, in the file's order.
     Samples(Vec<(f64, f64)>),
     Transform(DMat4),
 }
 
 type Attributes = BTreeMap<String, String>;
 
-/// The value of a property element such as `<float name="alpha" value="0.1"/>`.
+/// Parses the value of a property element such as `<float name="alpha" value="0.1"/>`.
 pub(super) fn parse(tag: &str, attributes: &Attributes, place: &Place) -> Result<Value, SceneError> {
     let text = || {
         let missing = || SceneError::value(place, format!("<{tag}> has no value"), "add value=\"...\"");
@@ -81,7 +81,7 @@ pub(super) fn parse(tag: &str, attributes: &Attributes, place: &Place) -> Result
     })
 }
 
-/// A finite number.
+/// Parses a finite number.
 fn number(text: &str) -> Option<f64> {
     text.trim().parse::<f64>().ok().filter(|v| v.is_finite())
 }
@@ -90,7 +90,7 @@ fn numbers(text: &str) -> Option<Vec<f64>> {
     text.split(|c: char| c == ',' || c.is_whitespace()).filter(|s| !s.is_empty()).map(number).collect()
 }
 
-/// One number, three numbers or `#rrggbb`.
+/// Parses one number, three numbers or `#rrggbb`.
 fn colour(text: &str) -> Option<DVec3> {
     if let Some(hex) = text.strip_prefix('#') {
         let digits = if hex.len() == 6 { u32::from_str_radix(hex, 16).ok()? } else { return None };
@@ -104,7 +104,7 @@ fn colour(text: &str) -> Option<DVec3> {
     }
 }
 
-/// `x`, `y`, `z`, each `default` where left out, or all in `value`.
+/// Parses `x`, `y`, `z`, each `default` where left out, or all in `value`.
 fn vector(attributes: &Attributes, default: f64, place: &Place) -> Result<DVec3, SceneError> {
     let unreadable = |text: &str| {
         SceneError::value(
@@ -127,7 +127,7 @@ fn vector(attributes: &Attributes, default: f64, place: &Place) -> Result<DVec3,
     Ok(DVec3::new(component("x")?, component("y")?, component("z")?))
 }
 
-/// The operations of a `<transform>`, first one applied first.
+/// Composes the operations of a `<transform>`, first one applied first.
 pub(super) fn transform(operations: &[(String, Attributes, Place)]) -> Result<Value, SceneError> {
     let mut matrix = DMat4::IDENTITY;
     for (tag, attributes, place) in operations {
@@ -201,7 +201,7 @@ fn operation(tag: &str, attributes: &Attributes, place: &Place) -> Result<DMat4,
     })
 }
 
-/// A frame at `origin` with z towards `target` and x = up × z, or `None` where that has no direction.
+/// Frame at `origin` with z towards `target` and x = up × z, or `None` where that has no direction.
 fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DMat4> {
     let forward = (target - origin).try_normalize()?;
     let up = if up == DVec3::ZERO { forward.any_orthonormal_vector() } else { up };
@@ -210,7 +210,7 @@ fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DMat4> {
     Some(DMat4::from_cols(left.extend(0.0), new_up.extend(0.0), forward.extend(0.0), origin.extend(1.0)))
 }
 
-/// The colour as the renderer holds it.
+/// Converts a colour to the renderer's type.
 pub(super) fn rgb(colour: DVec3) -> Rgb {
     colour.as_vec3()
 }

@@ -1,8 +1,8 @@
 //! Camera and walk-through of the native format.
 //!
-//! Paper: Yuksel, Schaefer and Keyser, *Parameterization and Applications of Catmull-Rom Curves*, CAD 2011: the
-//! path through the keys is a centripetal Catmull-Rom curve, which neither overshoots nor loops between keys.
-//! Eye and target run along it together; the curve is walked at constant parameter speed, end keys included.
+//! Paper: Yuksel, Schaefer and Keyser, *Parameterization and Applications of Catmull-Rom Curves*, CAD 2011:
+//! the path through the keys is a centripetal Catmull-Rom curve, which neither overshoots nor loops between
+//! keys. Eye and target follow it together, at constant parameter speed, end keys included.
 
 use super::text::{CameraText, KeyText, SceneText};
 use super::{Builder, finite};
@@ -10,14 +10,14 @@ use crate::scene::draft::DraftCamera;
 use crate::scene::formats::error::{Place, SceneError};
 use glam::DVec3;
 
-/// The cameras, and the size of their film.
+/// Cameras, and the size of their film.
 pub(super) struct Shot {
     pub camera: DraftCamera,
     pub path: Vec<DraftCamera>,
     pub resolution: [u32; 2],
 }
 
-/// Eye and target.
+/// A key: eye and target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     origin: DVec3,
@@ -101,14 +101,14 @@ fn camera(text: &CameraText, key: Key, tan_half_x: f64, place: &Place) -> Result
     Ok(DraftCamera { origin: key.origin, forward, right, up: right.cross(forward), tan_half_x, near, far })
 }
 
-/// The key at `t` in [0, 1] along the curve through `keys`.
+/// Returns the key at `t` in [0, 1] along the curve through `keys`.
 fn along(keys: &[Key], t: f64) -> Key {
     let [first, .., last] = keys else { return keys[0] };
-    // Ends continue straight on.
+    // Ends are extrapolated linearly.
     let before = first.blend(keys[1], -1.0);
     let after = last.blend(keys[keys.len() - 2], -1.0);
     let points: Vec<Key> = [before].into_iter().chain(keys.iter().copied()).chain([after]).collect();
-    // Centripetal knots; keys that coincide are kept apart by a trifle.
+    // Centripetal knots; coincident keys are separated by a tiny distance.
     let mut knots = vec![0.0];
     for pair in points.windows(2) {
         knots.push(knots[knots.len() - 1] + pair[0].distance(pair[1]).sqrt().max(1e-9));

@@ -107,7 +107,7 @@ impl Builder<'_> {
         Ok(to_world)
     }
 
-    /// Whether the OBJ's own materials are used: then `materials` are read from its MTL files.
+    /// Resolves the materials: without one, those of the OBJ's own MTL files.
     fn mtl_materials(&mut self, path: &Path, place: &Place) -> Result<MaterialPlan, SceneError> {
         let names = self.read_mtl(path, place)?;
         let other = self.default_material(place);

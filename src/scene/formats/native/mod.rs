@@ -116,7 +116,7 @@ impl File<'_> {
 
 struct Builder<'a> {
     file: File<'a>,
-    /// Where file names start.
+    /// Folder that file names are relative to.
     folder: PathBuf,
     log: &'a mut Log,
     parts: Vec<Part>,
@@ -177,7 +177,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// A finite vector, or an error at `place` that says which.
+/// Returns a finite vector, or an error at `place` that names `what`.
 fn finite(v: [f64; 3], what: &str, place: &Place) -> Result<DVec3, SceneError> {
     let v = DVec3::from(v);
     let wrong = || SceneError::value(place, format!("{what} is not finite"), "write finite numbers");

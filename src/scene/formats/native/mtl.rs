@@ -18,7 +18,7 @@ use std::path::Path;
 const BLACK: Reflectance = Reflectance::Constant(Rgb::ZERO);
 
 impl Builder<'_> {
-    /// The materials of the OBJ's libraries, by name.
+    /// Reads the materials of the OBJ's libraries, by name.
     pub(super) fn read_mtl(
         &mut self,
         path: &Path,
@@ -50,7 +50,7 @@ impl Builder<'_> {
         Ok(ids)
     }
 
-    /// For what the file leaves without a material.
+    /// Returns the material for faces that the file leaves without one.
     pub(super) fn default_material(&mut self, place: &Place) -> MaterialId {
         let grey = Reflectance::Constant(Rgb::splat(0.5));
         let material =

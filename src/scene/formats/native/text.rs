@@ -1,4 +1,4 @@
-//! The native format as text: what each table may hold. Anything else is an error, so that a misspelt key
+//! The native format as text: the keys of each table. Any other key is an error, so that a misspelt one
 //! cannot pass unnoticed.
 
 use serde::Deserialize;
@@ -48,7 +48,7 @@ pub(super) struct KeyText {
     pub target: [f64; 3],
 }
 
-/// All keys of all kinds of material; `material` says which kind knows which.
+/// All keys of all kinds of material; `material` checks which kind allows which.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MaterialText {
@@ -68,7 +68,7 @@ pub(super) struct MaterialText {
     pub k: Option<[f64; 3]>,
 }
 
-/// A colour, a grey, or the name of a picture with or without how to read it.
+/// A colour, a grey, or the name of a picture, optionally with reading options.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(untagged, expecting = "expected [r, g, b], a number, a picture's name or { file = \"...\" }")]
 pub(super) enum ColourText {
@@ -113,7 +113,7 @@ pub(super) struct MeshText {
     pub part: Option<String>,
     pub file: Option<String>,
     pub shape: Option<String>,
-    /// Which mesh of a `.serialized` file.
+    /// Index of the mesh in a `.serialized` file.
     pub index: Option<usize>,
     pub material: Option<Spanned<String>>,
     #[serde(default)]
