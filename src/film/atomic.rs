@@ -2,7 +2,7 @@
 //!
 //! The bytes go to a temporary file in the target's folder, are flushed to the disk, and only then take the
 //! target's name; the folder is flushed last. A full disk, an error half-way or a kill at any moment leaves
-//! what the target held before. After a kill, a hidden `.NAME.*.tmp` may remain beside it.
+//! the target's former content. After a kill, a hidden `.NAME.*.tmp` may remain beside it.
 
 use super::ImageError;
 use std::fs::{self, File};
@@ -39,7 +39,7 @@ pub fn check_writable(path: &Path) -> Result<(), ImageError> {
     }
 }
 
-/// Replaces the file at `path` by what `write` writes, whole or not at all.
+/// Replaces the file at `path` by the output of `write`, whole or not at all.
 ///
 /// A symbolic link is followed; the permissions of a file already there are kept.
 pub fn write_atomically(
@@ -68,13 +68,13 @@ fn temporary(target: &Path) -> io::Result<NamedTempFile> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // What any newly created file gets, the umask applied; the default would be private to the user.
+        // Permissions of any newly created file, the umask applied; the default would be private to the user.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder_of(target))
 }
 
-/// The file behind a symbolic link, so that the link itself stays.
+/// Returns the file behind a symbolic link, so that the link itself stays.
 fn resolve(path: &Path) -> PathBuf {
     fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
 }
@@ -88,7 +88,7 @@ fn folder_of(path: &Path) -> PathBuf {
 
 fn sync_folder(folder: &Path) -> io::Result<()> {
     match File::open(folder).and_then(|folder| folder.sync_all()) {
-        // Some file systems cannot flush folders; there is nothing more to be done about it.
+        // Some file systems cannot flush folders; there is no remedy.
         Err(error) if error.kind() == io::ErrorKind::InvalidInput => Ok(()),
         Err(error) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
         other => other,

@@ -1,4 +1,4 @@
-//! What can go wrong with picture files.
+//! Errors of picture files.
 
 use std::io;
 use std::path::PathBuf;
@@ -12,47 +12,47 @@ pub enum ImageError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The file is not an OpenEXR picture we can read.
+    /// The file is not a supported OpenEXR picture.
     #[error("{} is not a readable OpenEXR picture: {reason}", path.display())]
     Decode {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Description of the error.
         reason: String,
     },
-    /// The picture has no colour under the name asked for.
+    /// The picture has no colour of the name asked for.
     #[error("{} has no {wanted}; its channels are: {}", path.display(), channels.join(", "))]
     NoColor {
         /// The file.
         path: PathBuf,
-        /// What was looked for.
+        /// Name asked for.
         wanted: String,
-        /// What there is.
+        /// Names of its channels.
         channels: Vec<String>,
     },
-    /// A picture cannot be written where the user asked for it; found before rendering.
+    /// A picture cannot be written to the path asked for; found before rendering.
     #[error("cannot write {}: {reason}", path.display())]
     Output {
         /// The file.
         path: PathBuf,
-        /// Why, and what to do.
+        /// Reason and remedy.
         reason: String,
     },
-    /// Writing failed; what the file held before is untouched.
+    /// Writing failed; the file's former content is untouched.
     #[error("writing {} failed: {source}; the file, if there was one, is as it was before", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// The images of one film, or two to compare, differ in size.
     #[error("{what}: {}x{} and {}x{} pixels", sizes[0][0], sizes[0][1], sizes[1][0], sizes[1][1])]
     Size {
-        /// Which images.
+        /// Description of the images.
         what: String,
         /// Width and height of both.
         sizes: [[u32; 2]; 2],

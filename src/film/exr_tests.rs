@@ -1,4 +1,4 @@
-//! What is written comes back, whole, in any shape; what other programs write is read.
+//! Files written are read back whole, in any shape; files of other programs are read.
 
 use super::*;
 use crate::film::Window;

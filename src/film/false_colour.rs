@@ -1,10 +1,11 @@
-//! Layers that are no pictures, made visible: numbers in magma colours, directions as hues, points over the picture.
+//! Layers of data as pictures: numbers in magma colours, directions as hues, points over the picture.
 
 use super::{Image, metrics, tone};
 use crate::math::Rgb;
 use std::f32::consts::TAU;
 
-/// Display bytes of the layer `name` of a picture exposed by `factor`; see `method::cache::inspect` for the names.
+/// Display bytes of the layer `name` of a picture exposed by `factor`; see `method::cache::inspect` for the
+/// names.
 pub fn show(name: &str, layer: &Image, picture: &Image, factor: f32) -> Vec<u8> {
     match name.split('.').next().unwrap_or_default() {
         "records" | "seams" => points(layer, picture, factor),
@@ -31,7 +32,7 @@ fn points(layer: &Image, picture: &Image, factor: f32) -> Vec<u8> {
     bytes
 }
 
-/// Magma colours from 0 to the 99th percentile of what is positive.
+/// Magma colours from 0 to the 99th percentile of the positive values.
 fn numbers(layer: &Image, value: impl Fn(&Rgb) -> f32) -> Vec<u8> {
     let lut = metrics::magma();
     let values: Vec<f32> = layer.pixels.iter().map(value).collect();
@@ -43,7 +44,8 @@ fn numbers(layer: &Image, value: impl Fn(&Rgb) -> f32) -> Vec<u8> {
     values.iter().flat_map(colour).collect()
 }
 
-/// The direction in the plane of the two axes along which the layer varies most, as a hue; its length as brightness, saturating.
+/// Hues of the directions, in the plane of the two axes along which the layer varies most; brightness is the
+/// length, saturating.
 fn hues(layer: &Image) -> Vec<u8> {
     let mean = layer.pixels.iter().map(|p| p.length()).sum::<f32>() / layer.pixels.len().max(1) as f32;
     let squares = layer.pixels.iter().fold(Rgb::ZERO, |sum, p| sum + *p * *p);

@@ -1,4 +1,5 @@
-//! A picture of where two pictures differ: test, reference and the error in magma colours, next to each other.
+//! A picture of the differences of two pictures: test, reference and the error in magma colours, next to each
+//! other.
 
 use super::{Image, metrics, tone};
 

@@ -45,7 +45,7 @@ impl Image {
         Image { width, height, pixels: vec![Rgb::ZERO; width as usize * height as usize] }
     }
 
-    /// Replaces every channel that is not finite by 0 and says how many there were.
+    /// Replaces every channel that is not finite by 0 and returns their number.
     pub fn remove_nonfinite(&mut self) -> u64 {
         let channels = self.pixels.iter_mut().flat_map(|pixel| pixel.as_mut());
         let bad = channels.filter(|channel| !channel.is_finite());

@@ -1,4 +1,4 @@
-//! 8-bit sRGB PNG files for looking at.
+//! 8-bit sRGB PNG files for display.
 
 use super::{Image, ImageError, atomic, tone};
 use ::image::codecs::png::PngEncoder;

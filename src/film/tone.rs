@@ -7,12 +7,12 @@ use crate::math::{Rgb, luminance};
 use std::fmt;
 use std::str::FromStr;
 
-/// The luminance percentile that automatic exposure places at [`AUTO_TARGET`].
+/// Luminance percentile that automatic exposure maps to [`AUTO_TARGET`].
 pub const AUTO_PERCENTILE: f64 = 0.9;
 /// Linear display value of that percentile.
 pub const AUTO_TARGET: f64 = 0.8;
 
-/// How radiance is scaled before it is clipped.
+/// Scale of radiance before clipping.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Exposure {
     /// The 90th percentile of luminance becomes 0.8.
@@ -23,7 +23,7 @@ pub enum Exposure {
 }
 
 impl Exposure {
-    /// The factor on radiance for this image.
+    /// Returns the factor on radiance for this image.
     pub fn factor(self, image: &Image) -> f32 {
         match self {
             Exposure::Auto => auto_factor(image),
@@ -55,8 +55,8 @@ impl fmt::Display for Exposure {
     }
 }
 
-/// The factor that brings the 90th percentile of luminance to 0.8; where that percentile is black, the
-/// brightest pixel stands in for it, and a black image is left alone.
+/// Factor that brings the 90th percentile of luminance to 0.8; where that percentile is black, the brightest
+/// pixel is used instead; 1 for a black image.
 pub fn auto_factor(image: &Image) -> f32 {
     let mut luminances: Vec<f32> =
         image.pixels.iter().map(|&p| luminance(p)).filter(|l| l.is_finite()).collect();
@@ -75,7 +75,7 @@ fn percentile(values: &mut [f32], share: f64) -> f64 {
     }
     let position = share * (values.len() - 1) as f64;
     let (_, &mut low, above) = values.select_nth_unstable_by(position as usize, f32::total_cmp);
-    // The next order statistic is the least of those above; at the end there is none, and no fraction.
+    // The next order statistic is the minimum of those above; at the end there is none, and no fraction.
     let high = above.iter().copied().fold(f32::INFINITY, f32::min);
     let fraction = position.fract();
     if fraction == 0.0 || above.is_empty() {
@@ -85,7 +85,7 @@ fn percentile(values: &mut [f32], share: f64) -> f64 {
     }
 }
 
-/// Linear value to sRGB, clipped to [0, 1]; NaN becomes 0.
+/// Encodes a linear value as sRGB, clipped to [0, 1]; NaN becomes 0.
 #[inline]
 pub fn srgb_encode(linear: f32) -> f32 {
     // `max` returns the other operand for NaN.
@@ -100,14 +100,14 @@ pub fn srgb_encode(linear: f32) -> f32 {
     }
 }
 
-/// Exposed, clipped and encoded display colour.
+/// Returns the exposed, clipped and encoded display colour.
 #[inline]
 pub fn display(radiance: Rgb, factor: f32) -> Rgb {
     let exposed = radiance * factor;
     Rgb::new(srgb_encode(exposed.x), srgb_encode(exposed.y), srgb_encode(exposed.z))
 }
 
-/// The image as 8-bit sRGB, row-major, three bytes a pixel.
+/// Converts the image to 8-bit sRGB, row-major, three bytes a pixel.
 pub fn to_srgb8(image: &Image, factor: f32) -> Vec<u8> {
     let quantise = |value: f32| (value * 255.0 + 0.5) as u8;
     image.pixels.iter().flat_map(|&p| display(p, factor).to_array().map(quantise)).collect()

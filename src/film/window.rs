@@ -19,12 +19,12 @@ impl Window {
         Window { film, offset: [0, 0], width: film[0], height: film[1] }
     }
 
-    /// How many pixels are rendered.
+    /// Number of pixels rendered.
     pub fn pixel_count(&self) -> u64 {
         self.width as u64 * self.height as u64
     }
 
-    /// Whether the rectangle lies on the film and has at least one pixel.
+    /// True if the rectangle lies on the film and has at least one pixel.
     pub fn is_valid(&self) -> bool {
         let end = |offset: u32, length: u32| offset as u64 + length as u64;
         self.pixel_count() > 0
@@ -32,12 +32,13 @@ impl Window {
             && end(self.offset[1], self.height) <= self.film[1] as u64
     }
 
-    /// How many square tiles of `size` pixels cover the window.
+    /// Number of square tiles of `size` pixels that cover the window.
     pub fn tile_count(&self, size: u32) -> usize {
         self.width.div_ceil(size) as usize * self.height.div_ceil(size) as usize
     }
 
-    /// The pixels of tile `index` in rows, relative to the window; tiles go in rows too.
+    /// Returns the pixels of tile `index` row by row, relative to the window; tiles are numbered row by row
+    /// too.
     pub fn tile(&self, index: usize, size: u32) -> impl Iterator<Item = [u32; 2]> + use<> {
         let across = self.width.div_ceil(size).max(1) as usize;
         let (left, top) = ((index % across) as u32 * size, (index / across) as u32 * size);

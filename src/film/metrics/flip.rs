@@ -1,8 +1,9 @@
 //! FLIP: the difference a viewer perceives when flipping between two pictures.
 //!
-//! Paper: Andersson et al., *FLIP: A Difference Evaluator for Alternating Images*, HPG 2020; the authors' code
-//! through the crate `nv-flip`.
-//! Deviations: the crate takes 8-bit images, so display values are quantised first: +0.1 % on a noisy picture of FLIP 0.094.
+//! Paper: Andersson et al., *FLIP: A Difference Evaluator for Alternating Images*, HPG 2020; the authors'
+//! code through the crate `nv-flip`.
+//! Deviations: the crate takes 8-bit images, so display values are quantised first: +0.1 % on a noisy picture
+//! of FLIP 0.094.
 
 use super::super::{Image, tone};
 use nv_flip::{FlipImageRgb8, flip};

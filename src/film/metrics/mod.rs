@@ -1,8 +1,9 @@
-//! How far a picture is from a reference of the same scene.
+//! Errors of a picture against a reference of the same scene.
 //!
-//! Relative error is judged on linear radiance, PSNR and FLIP on what a screen shows: radiance exposed so that
-//! the *reference's* 90th percentile of luminance is 0.8, clipped at 1, sRGB. A reference has noise of its own;
-//! where its variance is known, [`Comparison::reference_rel_mse`] says how much of the relative error it explains.
+//! Relative error is measured on linear radiance, PSNR and FLIP on displayed values: radiance exposed so that
+//! the *reference's* 90th percentile of luminance is 0.8, clipped at 1, sRGB. A reference has noise of its
+//! own; where its variance is known, [`Comparison::reference_rel_mse`] is the part of the relative error due
+//! to it.
 
 mod flip;
 mod pixelwise;
@@ -20,21 +21,21 @@ pub use ztest::{BLOCK, SHARE_REQUIRED, SIGNIFICANCE, ZTest, z_test, z_test_block
 pub struct Comparison {
     /// Mean over pixels and channels of `(t - r)² / (r² + 0.01 m²)`, m the reference's mean.
     pub rel_mse: f64,
-    /// The same without the worst 0.1 % of pixels, so that single outliers do not rule it.
+    /// The same without the worst 0.1 % of pixels, so that single outliers do not dominate.
     pub rel_mse_trimmed: f64,
-    /// Part of `rel_mse` that the reference's own noise explains, where its variance is known.
+    /// Part of `rel_mse` that is due to the reference's own noise, where its variance is known.
     pub reference_rel_mse: Option<f64>,
     /// Root mean square difference of radiance.
     pub rmse: f64,
-    /// Peak signal-to-noise ratio of the displayed images in dB; `None` if they are the same.
+    /// Peak signal-to-noise ratio of the displayed images in dB; `None` if they are identical.
     pub psnr: Option<f64>,
-    /// Mean FLIP of the displayed images, 0 (same) to 1.
+    /// Mean FLIP of the displayed images, 0 (identical) to 1.
     pub flip: f64,
     /// Mean of the image over mean of the reference, per channel; `None` where the reference is black.
     pub mean_ratio: [Option<f64>; 3],
     /// Standard error of `mean_ratio`, where both variances are known.
     pub mean_ratio_std_error: Option<[Option<f64>; 3]>,
-    /// Whether the differences are what the two variances allow, where both are known.
+    /// Test whether the differences agree with the two variances, where both are known.
     pub z_test: Option<ZTest>,
     /// The same over means of 8x8 pixels, for pictures of few samples.
     pub z_test_blocks: Option<ZTest>,
@@ -45,9 +46,9 @@ pub struct Comparison {
 /// Variances of the pixel means of an image and its reference.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Variances<'a> {
-    /// The image's.
+    /// Variance of the image.
     pub test: Option<&'a Image>,
-    /// The reference's.
+    /// Variance of the reference.
     pub reference: Option<&'a Image>,
 }
 

@@ -4,7 +4,8 @@ use super::super::{Image, tone};
 use crate::math::Rgb;
 use glam::DVec3;
 
-/// Share of the reference's squared mean that keeps dark pixels from ruling the relative error.
+/// Share of the reference's squared mean that is added to the denominator, so that dark pixels do not
+/// dominate the relative error.
 const REL_MSE_FLOOR: f64 = 0.01;
 
 /// Root mean square difference over pixels and channels.
@@ -24,8 +25,8 @@ pub fn rel_mse(test: &Image, reference: &Image, trim: f64) -> f64 {
     mean(errors.into_iter())
 }
 
-/// The relative mean square error that a picture would have against `reference` if it differed only by
-/// the noise that `variance` (of the reference's pixel means) states.
+/// Relative mean square error that a picture would have against `reference` if it differed only by noise of
+/// the given `variance` (of the reference's pixel means).
 pub fn rel_mse_of_variance(variance: &Image, reference: &Image) -> f64 {
     let floor = floor(reference);
     mean(pairs(variance, reference).map(|(v, r)| finite_ratio(v, r * r + floor)))
@@ -36,7 +37,7 @@ pub fn relative_error_map(test: &Image, reference: &Image) -> Vec<f32> {
     relative_squared(test, reference).into_iter().map(|e| e.sqrt() as f32).collect()
 }
 
-/// Peak signal-to-noise ratio in dB of the displayed images, peak 1; `None` if they are the same.
+/// Peak signal-to-noise ratio in dB of the displayed images, peak 1; `None` if they are identical.
 pub fn psnr(test: &Image, reference: &Image, exposure_factor: f32) -> Option<f64> {
     let shown = |p: Rgb| tone::display(p, exposure_factor).as_dvec3();
     let pixels = test.pixels.iter().zip(&reference.pixels);

@@ -1,4 +1,4 @@
-//! The measures against values worked out by hand, and against what must hold for any images.
+//! The measures against values worked out by hand, and against properties that hold for any images.
 
 use super::*;
 use crate::math::Rgb;
@@ -56,7 +56,7 @@ fn psnr_by_hand() {
     let expected = -10.0 * (0.274001f64.powi(2) / 2.0).log10();
     assert!((psnr(&test, &reference, 1.0).unwrap() - expected).abs() < 1e-3);
     assert_eq!(psnr(&reference, &reference, 1.0), None);
-    // What is clipped on both sides is the same on the screen.
+    // Values clipped on both sides look the same on the screen.
     assert_eq!(psnr(&grey(&[2.0]), &grey(&[9.0]), 1.0), None);
 }
 
@@ -142,7 +142,7 @@ fn the_z_test_accepts_noise_of_the_stated_variance_and_rejects_more_or_bias() {
     let mut biased = a.clone();
     biased.pixels.iter_mut().for_each(|p| p.y += 1.5);
     assert!(!z_test(&biased, &b, &va, &vb).passed);
-    // A bias that single pixels cannot show, blocks can.
+    // A bias too small for single pixels is detected by blocks.
     assert!(z_test_blocks(&a, &b, &va, &vb).passed);
     biased.pixels.iter_mut().for_each(|p| p.y -= 1.2);
     assert!(z_test(&biased, &b, &va, &vb).passed && !z_test_blocks(&biased, &b, &va, &vb).passed);
@@ -170,7 +170,7 @@ fn the_standard_error_of_the_mean_ratio_is_that_of_repeated_noise() {
     // 256 pixels of sigma 0.5 around 2: 0.5 / 16 / 2.
     let error = pixelwise::mean_ratio_std_error(&reference, &reference, &variance, &zero);
     assert!((error[0].unwrap() - 0.5 / 16.0 / 2.0).abs() < 1e-12);
-    // The noise of the reference counts alike, and both add in squares.
+    // The noise of the reference counts equally, and both add in squares.
     let both = pixelwise::mean_ratio_std_error(&reference, &reference, &variance, &variance);
     assert!((both[1].unwrap() - 2f64.sqrt() * 0.5 / 16.0 / 2.0).abs() < 1e-12);
 }

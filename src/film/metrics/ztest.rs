@@ -1,8 +1,8 @@
-//! Are two noisy renderings of a scene the same within their noise?
+//! Test whether two noisy renderings of a scene are the same within their noise.
 //!
 //! Each pixel and channel is tested against the hypothesis that both pixel means estimate the same radiance,
-//! at a level (Šidák) that keeps the chance of even one false alarm among all pixels at 1 %. As heavy tails and
-//! badly known variances must be expected, the picture passes if 99.75 % of the tests do.
+//! at a level (Šidák) that keeps the chance of even one false alarm among all pixels at 1 %. As heavy tails
+//! and inaccurate variances must be expected, the picture passes if 99.75 % of the tests do.
 //!
 //! Paper: Subr & Arvo, *Statistical Hypothesis Testing for Assessing Monte Carlo Estimators*, 2007.
 
@@ -22,9 +22,9 @@ pub struct ZTest {
     pub level: f64,
     /// Share of the tests (pixels times channels) whose two-sided p-value is above the level.
     pub share_passed: f64,
-    /// Whether that is at least 99.75 %.
+    /// True if that is at least 99.75 %.
     pub passed: bool,
-    /// Mean of z² over the tests that have a variance; 1 if the differences are just the noise.
+    /// Mean of z² over the tests that have a variance; 1 if the differences are mere noise.
     pub mean_z_squared: f64,
 }
 
@@ -64,10 +64,10 @@ pub fn z_test(test: &Image, reference: &Image, test_variance: &Image, reference_
 /// Side in pixels of the blocks of [`z_test_blocks`].
 pub const BLOCK: u32 = 8;
 
-/// The same test over means of 8x8 pixels.
+/// Applies the same test to means of 8x8 pixels.
 ///
-/// Few samples a pixel make for heavy-tailed means and badly known variances, which fail the test of single pixels
-/// however right the picture is. Means over blocks are nearer to normal, and eight times as sharp an eye for bias.
+/// With few samples a pixel, means are heavy-tailed and variances inaccurate, so that correct pictures fail
+/// the test of single pixels. Means over blocks are nearer to normal, and eight times as sensitive to bias.
 pub fn z_test_blocks(
     test: &Image,
     reference: &Image,
@@ -80,8 +80,8 @@ pub fn z_test_blocks(
     z_test(&test, &reference, &test_variance, &reference_variance)
 }
 
-/// Means over blocks, those at the right and bottom edge being smaller; or, given variances of independent
-/// values, the variances of such means.
+/// Computes means over blocks, those at the right and bottom edge being smaller; or, from variances of
+/// independent values, the variances of such means.
 fn block_means(image: &Image, variances: bool) -> Image {
     let mut blocks = Image::new(image.width.div_ceil(BLOCK), image.height.div_ceil(BLOCK));
     let columns = blocks.width;
@@ -97,7 +97,7 @@ fn block_means(image: &Image, variances: bool) -> Image {
     blocks
 }
 
-/// Chance that a standard normal variable is at least `z` away from 0.
+/// Probability that a standard normal variable is at least `z` away from 0.
 fn two_sided_p_value(z: f64) -> f64 {
     libm::erfc(z / std::f64::consts::SQRT_2)
 }
