@@ -1,4 +1,4 @@
-//! Light that arrives from one direction, and its derivatives as the receiver moves.
+//! Light arriving from one direction, and its derivatives as the receiver moves.
 
 use crate::math::Real;
 
@@ -7,7 +7,7 @@ use crate::math::Real;
 pub struct Incidence<T> {
     /// Unit direction it comes from.
     pub direction: [T; 3],
-    /// 1 / distance, by which the direction turns as the receiver moves; 0 if it does not.
+    /// 1 / distance, the rate at which the direction turns as the receiver moves; 0 at infinite distance.
     pub inv_dist: T,
     /// Irradiance on a surface that faces the light: the emitter's cosine over the squared distance, or 1.
     pub factor: T,
@@ -26,15 +26,15 @@ pub struct IrradianceVector<T> {
 }
 
 impl<T: Real + PartialOrd> Incidence<T> {
-    /// The same light, of which only a `share` is counted, and held constant: a clamped contribution does not change
-    /// with the receiver.
+    /// Returns `share` of the same light with zero gradient: a clamped contribution does not change with the
+    /// receiver.
     #[inline]
     pub fn held(self, share: T) -> Incidence<T> {
         let zero = T::of(0.0);
         Incidence { inv_dist: zero, gradient: [zero; 2], factor: self.factor * share, ..self }
     }
 
-    /// The same light through something that passes a `share` of it, whose derivatives along u and v are `slope`.
+    /// Returns the light behind an attenuation `share`, whose derivatives along u and v are `slope`.
     #[inline]
     pub fn attenuated(self, share: T, slope: [T; 2]) -> Incidence<T> {
         let along = |axis: usize| self.gradient[axis] * share + self.factor * slope[axis];

@@ -10,19 +10,19 @@ use glam::Vec3;
 /// A virtual light in the receiver's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LocalVpl<T> {
-    /// Radiates by the cosine to its normal.
+    /// A light whose intensity is proportional to the cosine to its normal.
     Oriented {
-        /// From the receiver.
+        /// Offset from the receiver.
         offset: [T; 3],
-        /// Unit length.
+        /// Unit normal.
         normal: [T; 3],
     },
-    /// Radiates equally in all directions.
+    /// A light of equal intensity in all directions.
     Omni {
-        /// From the receiver.
+        /// Offset from the receiver.
         offset: [T; 3],
     },
-    /// Infinitely far away.
+    /// A light at infinite distance.
     Directional {
         /// Unit direction to the light.
         towards: [T; 3],
@@ -33,18 +33,19 @@ pub enum LocalVpl<T> {
 struct Connection<T> {
     omega: [T; 3],
     inverse: T,
-    /// 1 for omni lights.
+    /// Cosine at the emitter; 1 for omni lights.
     cos: T,
     /// Derivative of `cos` by an offset of unit length, tangential part: the normal's, or 0.
     normal: [T; 2],
-    /// Whether the distance is below the least that counts.
+    /// True if the distance is below the minimum.
     too_near: bool,
 }
 
 impl<T: Real + PartialOrd> LocalVpl<T> {
-    /// Light that arrives, with its first derivatives; `None` where none does: on the light itself, and behind it.
+    /// Returns the light that arrives, with its first derivatives; `None` if there is none: on the light
+    /// itself, and behind it.
     ///
-    /// Distances below `min_dist_sq` count as that, and then nothing changes with the receiver.
+    /// Smaller distances are clamped to `min_dist_sq`, and then the light is constant.
     #[inline]
     pub fn incidence(&self, min_dist_sq: T) -> Option<Incidence<T>> {
         let zero = T::of(0.0);
@@ -80,7 +81,8 @@ impl<T: Real + PartialOrd> LocalVpl<T> {
         if too_near || !(z > T::of(0.0)) {
             return none;
         }
-        // Falloff of the irradiance over the constant height: 3 powers of the distance, and one from the cosine.
+        // Falloff of the irradiance over the constant height: 3 powers of the distance, and one from the
+        // cosine.
         let (same, crossed) = if self.is_oriented() { (4.0, 24.0) } else { (3.0, 15.0) };
         let (same, crossed, four) = (T::of(same), T::of(crossed) * cos, T::of(4.0));
         let square = inverse * inverse;
@@ -118,7 +120,8 @@ impl<T: Real + PartialOrd> LocalVpl<T> {
 }
 
 impl LocalVpl<f32> {
-    /// A virtual light seen from `position` in `frame`, spot profiles left to [`Incidence::of_vpl`].
+    /// Transforms a virtual light to the frame `frame` at `position`, without its spot profile, which
+    /// [`Incidence::of_vpl`] applies.
     #[inline]
     pub fn of_vpl(frame: &Frame, position: Vec3, vpl: &Vpl, kind: VplKind) -> LocalVpl<f32> {
         let local = |v: Vec3| frame.to_local(v).to_array();
@@ -133,7 +136,8 @@ impl LocalVpl<f32> {
 }
 
 impl Incidence<f32> {
-    /// Light that arrives from a virtual light at `position` in `frame`; spot profiles are looked up in `spots`.
+    /// Computes the light arriving from a virtual light at `position` in `frame`; spot profiles are looked up
+    /// in `spots`.
     #[inline]
     pub fn of_vpl(
         frame: &Frame,

@@ -1,4 +1,5 @@
-//! The edge of a spot light's cone: its falloff by angle, and how that changes as the receiver moves.
+//! The edge of a spot light's cone: its falloff by angle, and the derivatives of the falloff as the receiver
+//! moves.
 
 use super::incidence::Incidence;
 use crate::math::Frame;
@@ -6,7 +7,7 @@ use crate::vpl::SpotProfile;
 use glam::Vec3;
 
 impl Incidence<f32> {
-    /// The part of the light that passes the profile; `None` outside the cone.
+    /// Applies the spot profile; `None` outside the cone.
     #[inline]
     pub(super) fn through_spot(self, frame: &Frame, spot: &SpotProfile) -> Option<Incidence<f32>> {
         let away = -Vec3::from(self.direction);

@@ -23,7 +23,7 @@ fn offsets() -> Vec<DVec3> {
     all
 }
 
-/// Lights at every offset; oriented ones face away from straight ahead by several angles, to the edge.
+/// Lights at every offset; oriented ones turned away from the receiver by several angles, up to grazing.
 fn sources() -> Vec<LocalVpl<f64>> {
     let mut all = Vec::new();
     for offset in offsets() {
@@ -46,7 +46,7 @@ fn distance(source: &LocalVpl<f64>) -> f64 {
     }
 }
 
-/// The light as seen once the receiver has moved.
+/// Returns the light relative to the moved receiver.
 fn moved(source: &LocalVpl<f64>, axis: usize, by: f64) -> LocalVpl<f64> {
     let mut source = *source;
     match &mut source {
@@ -67,13 +67,13 @@ fn difference<const N: usize>(
     std::array::from_fn(|i| (a[i] - 8.0 * b[i] + 8.0 * c[i] - d[i]) / (12.0 * step))
 }
 
-/// `value` within 1e-6 of `expected`, relative to it or to `scale`, the size it commonly has.
+/// Asserts that `value` is within 1e-6 of `expected`, relative to it or to `scale`, its typical magnitude.
 fn assert_close(value: f64, expected: f64, scale: f64, what: &str, source: &LocalVpl<f64>) {
     let error = (value - expected).abs() / expected.abs().max(1e-3 * scale);
     assert!(error < 1e-6, "{what} {source:?}: {value} {expected} {error:e}");
 }
 
-/// Whether steps around stay on the lit side of the light.
+/// True if all steps stay on the lit side of the light.
 fn lit_around(source: &LocalVpl<f64>) -> bool {
     let reach = 1e-3 * distance(source);
     (0..2).all(|axis| [-reach, reach].iter().all(|by| moved(source, axis, *by).incidence(NEVER).is_some()))
@@ -91,7 +91,7 @@ fn gradients_agree_with_finite_differences() {
             assert_close(incidence.gradient[axis], factor, r.powi(-3), "factor", source);
             let vector = difference(source, axis, |s| s.incidence(NEVER).unwrap().irradiance().value);
             for i in 0..3 {
-                // The vertical component is as small as the height is.
+                // The vertical component is proportional to the height.
                 let scale = if i == 2 { incidence.direction[2] } else { 1.0 } * r.powi(-3);
                 assert_close(irradiance.gradient[axis][i], vector[i], scale, "irradiance", source);
             }

@@ -1,15 +1,15 @@
 //! Irradiance from the density of photons.
 //!
-//! Papers: Jensen 1996 (the k nearest photons, on the area of a disc); Christensen 1999 (at photons, in advance);
-//! Silverman, *Density Estimation*, 1986 (Epanechnikov's kernel).
+//! Papers: Jensen 1996 (the k nearest photons, on the area of a disc); Christensen 1999 (at photons, in
+//! advance); Silverman, *Density Estimation*, 1986 (Epanechnikov's kernel).
 //!
-//! The disc lies on the surface: distances along its normal count more, photons that arrived on surfaces turned
-//! elsewhere, or from behind, not at all. Only the part of the disc that is surface counts, and only photons there
-//! (see [`super::disc`]).
+//! The disc lies on the surface: distances along its normal are scaled up, and photons that arrived on
+//! surfaces of another orientation, or from behind, are ignored. Only the part of the disc that is surface
+//! counts, and only photons there (see [`super::disc`]).
 //!
-//! Estimates are not at the photons that they count, but at others (sites). At a photon there is certainly one; and the
-//! fewer photons chance has put into a place, the further each one's estimate reaches: either way the mean over the
-//! surface would be off by about 1/k.
+//! Estimates are made at sites drawn independently of the photons that they count. At a photon there is
+//! certainly one; and the fewer photons chance has put into a region, the larger the area over which each
+//! one's estimate is used: either would bias the mean over the surface by about 1/k.
 //!
 //! Deviations: on curved surfaces the disc stays flat.
 //! Units: W/m².
@@ -24,16 +24,17 @@ use rayon::prelude::*;
 use std::f32::consts::PI;
 use std::ops::Range;
 
-/// Largest radius of a disc, as a fraction of the scene's diagonal: where photons are rarer, it is dark.
+/// Maximum radius of a disc, as a fraction of the scene's diagonal: where photons are rarer, the estimate is
+/// dark.
 const MAX_RADIUS: f32 = 0.05;
 
 /// Factor on distances along the normal.
 const NORMAL_SCALE: f32 = 3.0;
 
-/// Least cosine between the normals of surfaces that are taken for one.
+/// Minimum cosine between the normals of surfaces that count as one.
 pub const MIN_COS: f32 = 0.7;
 
-/// Least part of a disc that is taken to be surface.
+/// Minimum share of a disc that is taken to be surface.
 const MIN_SHARE: f32 = 0.15;
 
 /// Irradiance at a point of a surface.
@@ -45,7 +46,7 @@ pub struct IrradianceEstimate {
     pub normal: Vec3,
     /// Irradiance.
     pub irradiance: Rgb,
-    /// Radius of the disc it is the mean over.
+    /// Radius of the disc that it is the mean over.
     pub radius: f32,
 }
 
@@ -56,7 +57,7 @@ pub fn surface_distance_sq(offset: Vec3, normal: Vec3) -> f32 {
     offset.length_squared() + height * height
 }
 
-/// Estimates at the sites of the map, in their order, and the rays traced.
+/// Computes the estimates at the sites of the map, in their order, and the number of rays traced.
 pub fn estimates(world: &World, map: &PhotonMap, nearest: usize) -> (Vec<IrradianceEstimate>, u64) {
     let by_leaf: Vec<Vec<IrradianceEstimate>> = (0..map.site_index.leaves())
         .into_par_iter()
@@ -67,7 +68,7 @@ pub fn estimates(world: &World, map: &PhotonMap, nearest: usize) -> (Vec<Irradia
     (all, rays)
 }
 
-/// Estimates at the sites of a leaf, which share the search for photons around.
+/// Computes the estimates at the sites of a leaf, which share the search for photons around.
 fn leaf_estimates(
     world: &World,
     map: &PhotonMap,
@@ -80,7 +81,7 @@ fn leaf_estimates(
     let centre = sites.iter().map(|s| s.position).sum::<Vec3>() / count.max(1.0);
     let extent = sites.iter().map(|s| s.position.distance(centre)).fold(0.0, f32::max);
     let largest = MAX_RADIUS * world.diagonal;
-    // Around so many sites there are in proportion more photons.
+    // The number of photons is in proportion to that of the sites.
     let around = count * photons.len() as f32 / map.sites.len().max(1) as f32;
     let guess = 1.5 * extent * (nearest as f32 / around.max(1.0)).sqrt();
     let mut radius = guess.clamp(1e-4 * largest, largest);
@@ -103,7 +104,7 @@ fn leaf_estimates(
     found.into_iter().flatten().collect()
 }
 
-/// Photons that may be near sites, sixteen together.
+/// Photons that may be near sites, in packets of sixteen.
 #[derive(Default)]
 struct Candidates {
     /// Indices of the photons; the last packet may be part empty.
@@ -136,7 +137,7 @@ impl Candidates {
         }
     }
 
-    /// Adds those that count at a site and are within the radius, with the squares of their distances.
+    /// Appends those that count at a site and are within the radius, with the squares of their distances.
     fn within(&self, at: &Site, radius_sq: f32, distances: &mut Vec<(f32, u32)>) {
         let Site { position, normal } = *at;
         for (packet, photons) in self.photon.chunks(LANES).enumerate() {

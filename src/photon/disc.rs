@@ -1,8 +1,8 @@
 //! Share of a disc on a surface that is surface.
 //!
-//! Near edges and corners part of the disc is beyond the surface, where no photon can be. Rays from a point low above
-//! its middle find out which part, and whether a photon on it can be seen from there: if not, it may lie in the next
-//! room, whose floor goes on under the wall.
+//! Near edges and corners part of the disc is beyond the surface, where no photon can be. Rays from a point
+//! low above its middle measure that part, and test the visibility of photons on it: an occluded one may lie
+//! in the next room, whose floor continues under the wall.
 
 use super::map::Site;
 use crate::embree::{Hits16, Ray, Rays16};
@@ -14,22 +14,22 @@ use crate::world::World;
 use glam::Vec3;
 use std::f32::consts::TAU;
 
-/// Height of the eye over the disc, in radii.
+/// Height of the ray origin over the disc, in radii.
 const HEIGHT: f32 = 0.3;
 
-/// Largest distance of a hit on the disc from its plane, in radii.
+/// Maximum distance of a hit on the disc from its plane, in radii.
 const FLATNESS: f32 = 0.2;
 
-/// Least cosine between normals of the disc and of what is hit.
+/// Minimum cosine between the normals of the disc and of a hit.
 const MIN_COS: f32 = 0.7;
 
-/// Seed of the places on the disc.
+/// Seed of the points on the disc.
 const SEED: u32 = 0xd15c;
 
-/// Rays that probe a disc.
+/// Number of rays that probe a disc.
 pub const RAYS: u64 = LANES as u64 + 1;
 
-/// A disc on a surface, seen from above its middle.
+/// A disc on a surface, probed from above its middle.
 pub struct Disc {
     eye: Vec3,
     /// Share of it that is surface, weighted by the kernel.
@@ -46,7 +46,7 @@ impl Disc {
         let height = free.map_or(HEIGHT * radius, |hit| 0.5 * hit.t);
         let eye = position + normal * height;
         let mut rays = Rays16::default();
-        // Other places on every disc: what one set of them gets wrong would be wrong along a whole edge.
+        // Every disc has points of its own: the error of a common set would be correlated along a whole edge.
         let seed = position.to_array().iter().fold(SEED, |seed, x| hash(x.to_bits(), seed));
         for lane in 0..LANES {
             let u = owen_sobol_2d(lane as u32, seed);
@@ -67,7 +67,7 @@ impl Disc {
         Disc { eye, share: on_disc.count() as f32 / LANES as f32 }
     }
 
-    /// Whether a photon can be seen from above.
+    /// True if a photon is visible from above.
     pub fn sees(&self, world: &World, photon: &Photon) -> bool {
         let segment = shadow::segment(photon.position, photon.normal, self.eye, Vec3::ZERO);
         !world.accel.occluded(&segment)

@@ -22,7 +22,7 @@ pub struct GatheredIrradiance {
     pub vector: Mat3,
     /// Gradient of the irradiance by channel, in the tangent plane.
     pub gradient: Mat3,
-    /// Harmonic mean distance of what is seen; infinite if nothing is.
+    /// Harmonic mean distance of the surfaces hit; infinite if there are none.
     pub distance: f32,
 }
 
@@ -33,13 +33,13 @@ pub struct GatherPoint<'a> {
     pub point: &'a PointGeometry,
     /// Unit geometric normal there.
     pub geometric_normal: Vec3,
-    /// Another seed, other directions within the strata.
+    /// Seed of the directions within the strata.
     pub seed: u32,
-    /// Surfaces nearer than 1 / `max_nearness` count as that far in the gradient.
+    /// Inverse of the minimum distance, to which nearer surfaces are clamped in the gradient.
     pub max_nearness: f32,
 }
 
-/// Gathers at a point, keeping in `met` what the rays have met.
+/// Gathers at a point; stores the surfaces that the rays hit in `met`.
 pub fn gather(
     light: &IndirectLight,
     strata: &Strata,

@@ -1,8 +1,8 @@
-//! Indirect light that surfaces send back along the rays that meet them.
+//! Indirect light that surfaces reflect along the rays that hit them.
 //!
-//! A surface reflects the irradiance of the map, unless it is nearer than the map resolves (see [`super::near`]).
-//! Mirrors, glass and sharp lobes are followed to what shows in them; what emits is direct light and counts for
-//! nothing.
+//! A surface reflects the irradiance of the map, unless it is nearer than the map resolves (see
+//! [`super::near`]). Mirrors, glass and sharp lobes are followed to the surfaces visible in them; emission is
+//! direct light and is not counted.
 //!
 //! Units: radiance.
 
@@ -15,17 +15,17 @@ use crate::world::{Surface, World};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
-/// Most surfaces a ray is followed through.
+/// Maximum number of surfaces a ray is followed through.
 const MAX_EDGES: u32 = 8;
 
-/// Counts of what gathering took.
+/// Counts of the work of gathering.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GatherCounts {
     /// Rays from records.
     pub record_rays: u64,
     /// Rays from single samples.
     pub own_rays: u64,
-    /// Rays from mirrors, glass and sharp lobes that those met.
+    /// Rays continued from mirrors, glass and sharp lobes.
     pub followed: u64,
     /// Surfaces too near for the map.
     pub near: u64,
@@ -42,8 +42,8 @@ pub struct IndirectLight<'w> {
 }
 
 impl IndirectLight<'_> {
-    /// Radiance that a surface sends back along `direction`, by which it was met at `distance`; and the albedo by which
-    /// it reflects besides, if it is too near for the map, else 0.
+    /// Returns the radiance that a surface reflects against `direction`, from which it was hit at `distance`;
+    /// and the albedo of the reflection still missing, if it is too near for the map, else 0.
     #[inline]
     pub(super) fn sent(
         &self,
@@ -84,7 +84,7 @@ impl IndirectLight<'_> {
     }
 }
 
-/// The geometric normal on the side that a ray along `direction` meets.
+/// Returns the geometric normal on the side that a ray along `direction` hits.
 #[inline]
 pub(super) fn facing(surface: &Surface, direction: Vec3) -> Vec3 {
     if surface.normal.dot(direction) < 0.0 { surface.normal } else { -surface.normal }

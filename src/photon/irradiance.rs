@@ -1,4 +1,4 @@
-//! Irradiance anywhere: that of the nearest estimate on a surface turned the same way.
+//! Irradiance anywhere: that of the nearest estimate on a surface of similar orientation.
 //!
 //! Paper: Christensen 1999: one look-up at each hit of a final gathering, instead of an estimate.
 
@@ -8,15 +8,16 @@ use crate::eye::EyeIndex;
 use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, lanes_in, mask_of};
 use glam::Vec3;
 
-/// Packets of estimates in a leaf: those of the index hold no more.
+/// Maximum number of packets of estimates in a leaf, given by the leaf size of the index.
 const PACKETS: usize = 2;
 
-/// Places and unit normals of a leaf's estimates, as structures of arrays; normals are zero where there is none.
+/// Positions and unit normals of a leaf's estimates, as structures of arrays; normals are zero in empty
+/// lanes.
 #[derive(Clone, Debug, Default)]
 struct Leaf {
     position: [Vec3x16; PACKETS],
     normal: [Vec3x16; PACKETS],
-    /// Of its first estimate.
+    /// Index of its first estimate.
     first: u32,
 }
 
@@ -24,14 +25,14 @@ struct Leaf {
 pub struct IrradianceMap {
     leaves: Vec<Leaf>,
     index: WideKdTree,
-    /// Each with the radius of the disc it is the mean over.
+    /// Irradiance of each estimate, with the radius of the disc that it is the mean over.
     irradiance: Vec<(Rgb, f32)>,
-    /// Square of how far the furthest-reaching reaches.
+    /// Square of the maximum distance at which any estimate is used.
     reach_sq: f32,
 }
 
 impl IrradianceMap {
-    /// Of estimates in the order of the index.
+    /// Builds the map from estimates in the order of the index.
     pub fn new(estimates: &[IrradianceEstimate], index: &EyeIndex) -> IrradianceMap {
         let leaves = (0..index.leaves())
             .map(|leaf| Leaf::new(estimates, index.leaf(leaf).start, index.leaf(leaf).len()));
@@ -41,7 +42,7 @@ impl IrradianceMap {
             leaves: leaves.collect(),
             index: WideKdTree::new(index, &positions),
             irradiance: estimates.iter().map(|e| (e.irradiance, e.radius)).collect(),
-            // That the furthest-reaching counts at its very end.
+            // Rounded up, so that an estimate at exactly that distance counts.
             reach_sq: (furthest * furthest).next_up(),
         }
     }
@@ -51,13 +52,13 @@ impl IrradianceMap {
         self.irradiance.len()
     }
 
-    /// Whether there are none.
+    /// True if there are none.
     pub fn is_empty(&self) -> bool {
         self.irradiance.is_empty()
     }
 
-    /// Irradiance at a point of a surface with unit normal `normal`, and the radius of the disc it is the mean
-    /// over; none where no light reaches, so that no photon is near.
+    /// Looks up the irradiance at a point of a surface with unit normal `normal`, and the radius of the disc
+    /// that it is the mean over; `None` where no photon, hence no light, is near.
     #[inline]
     pub fn at(&self, point: Vec3, normal: Vec3) -> Option<(Rgb, f32)> {
         let mut best = None;
@@ -96,7 +97,7 @@ impl Leaf {
     }
 }
 
-/// Squares of the distances to sixteen estimates; infinite to those on surfaces turned elsewhere.
+/// Squares of the distances to sixteen estimates; infinite to those on surfaces of another orientation.
 #[inline(always)]
 fn distances_sq(positions: &Vec3x16, normals: &Vec3x16, point: Vec3, normal: Vec3) -> F32x16 {
     let mut distances = [f32::INFINITY; LANES];
@@ -107,8 +108,8 @@ fn distances_sq(positions: &Vec3x16, normals: &Vec3x16, point: Vec3, normal: Vec
     distances
 }
 
-/// Distance up to which an estimate is used, in radii of its disc. Were there as much light further on, photons would
-/// have left a site nearer by: of k photons in a disc, none but for e^(-k/4) of places.
+/// Maximum distance at which an estimate is used, in radii of its disc. Were there as much light farther
+/// away, there would be a nearer site: of k photons in a disc, none but for e^(-k/4) of places.
 const REACH: f32 = 1.0;
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The photons of a scene.
 //!
-//! Every hit that reflects diffusely keeps one, the first included: what direct light a surface reflects is indirect
-//! light where it arrives. Direct light itself is found elsewhere.
+//! Every hit that reflects diffusely stores one, the first included: reflected direct light is indirect light
+//! at the next surface. Direct light itself is computed elsewhere.
 //!
 //! Units: flux in watts.
 
@@ -13,11 +13,11 @@ use crate::vpl::{Photon, PhotonCounts, PhotonSettings, trace_photons};
 use crate::world::World;
 use glam::Vec3;
 
-/// Photons for each site.
+/// Number of photons for each site.
 const PHOTONS_PER_SITE: u32 = 4;
 
-/// A place where irradiance is estimated: a photon of another set arrived there, so that sites are dense where photons
-/// are, and independent of them.
+/// A point where irradiance is estimated: the hit of a photon of another set, so that sites are dense where
+/// photons are, and independent of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Site {
     /// Position.
@@ -28,11 +28,11 @@ pub struct Site {
 
 /// Photons in the order of an index over their positions, and sites likewise.
 pub struct PhotonMap {
-    /// The photons; their flux has been divided by the paths shot.
+    /// The photons; their flux has been divided by the number of paths.
     pub photons: Vec<Photon>,
     /// The hierarchy over them.
     pub index: EyeIndex,
-    /// Sites at which irradiance is to be estimated.
+    /// Sites at which irradiance is estimated.
     pub sites: Vec<Site>,
     /// The hierarchy over those.
     pub site_index: EyeIndex,
@@ -66,7 +66,7 @@ impl PhotonMap {
     }
 }
 
-/// A hierarchy over places, and what is there in its order.
+/// Builds a hierarchy over positions, and returns it with the items in its order.
 fn indexed<T: Copy>(items: &[T], position: impl Fn(&T) -> Vec3) -> (EyeIndex, Vec<T>) {
     let (index, order) = EyeIndex::build(items.iter().map(position));
     (index, order.iter().map(|&i| items[i as usize]).collect())

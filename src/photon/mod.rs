@@ -1,14 +1,16 @@
-//! Photon mapping: light that photons left on surfaces, gathered over the hemisphere.
+//! Photon mapping: flux of photons stored on surfaces, gathered over the hemisphere.
 //!
-//! Papers: Jensen, *Global Illumination using Photon Maps*, 1996; Christensen, *Faster Photon Map Global Illumination*,
-//! 1999; Ward and Heckbert, *Irradiance Gradients*, 1992; Krivanek et al., *Radiance Caching*, 2005.
+//! Papers: Jensen, *Global Illumination using Photon Maps*, 1996; Christensen, *Faster Photon Map Global
+//! Illumination*, 1999; Ward and Heckbert, *Irradiance Gradients*, 1992; Krivanek et al., *Radiance Caching*,
+//! 2005.
 //!
 //! - [`map`]: the photons, in an order in which neighbours in space are neighbours in memory;
-//! - [`density`]: irradiance from the photons around a place; [`disc`]: which part of the disc around it is surface;
-//! - [`irradiance`]: the same looked up anywhere, by [`wide_kd_tree`];
-//! - [`strata`]: the directions of a final gathering; [`hemisphere`]: what they meet, and how that changes nearby;
-//! - [`indirect_light`]: light that a surface sends back along a ray; [`near`]: from surfaces nearer than the map
-//!   resolves; [`radiance`]: light along packets of rays;
+//! - [`density`]: irradiance from the photons around a point; [`disc`]: the part of the disc around it that
+//!   is surface;
+//! - [`irradiance`]: look-ups of it anywhere, by [`wide_kd_tree`];
+//! - [`strata`]: the directions of a final gathering; [`hemisphere`]: the surfaces they hit, and gradients;
+//! - [`indirect_light`]: light that a surface reflects along a ray; [`near`]: from surfaces nearer than the
+//!   map resolves; [`radiance`]: light along packets of rays;
 //! - [`records`]: records of indirect light for the cache; [`own`]: light at single samples.
 
 pub mod density;

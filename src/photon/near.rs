@@ -1,10 +1,12 @@
 //! Reflection by surfaces that are nearer than the photon map resolves.
 //!
-//! The map's irradiance is the mean over a disc. Seen from far the blur is lost among that of all the hemisphere; seen
-//! from nearer than the disc is wide, it is not: light leaks under things and creases are dark. There, paths go on
-//! instead by another edge, with light sampled at their vertices, until they reach a surface far enough away.
+//! The map's irradiance is the mean over a disc. Seen from far, the blur averages out over the hemisphere;
+//! seen from nearer than the disc's width it does not: light leaks under objects and creases are dark. There,
+//! paths continue by another edge instead, with light sampled at their vertices, until they reach a surface
+//! far enough away.
 //!
-//! Papers: Jensen 1996 (importance of near hits); Christensen 1999; Veach 1997 (the two ways to find light, weighted).
+//! Papers: Jensen 1996 (importance of near hits); Christensen 1999; Veach 1997 (multiple importance
+//! sampling).
 
 use super::density::MIN_COS;
 use super::indirect_light::{GatherCounts, IndirectLight};
@@ -17,13 +19,13 @@ use crate::world::Surface;
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
-/// Most edges added; what is nearer still after so many is taken from the map.
+/// Maximum number of added edges; surfaces that are still too near after them use the map.
 const MAX_EDGES: u32 = 4;
 
-/// Most near surfaces that share what is found on one of them.
+/// Maximum number of near surfaces that share the irradiance found on one of them.
 const SHARED: usize = 4;
 
-/// Surfaces near to where their light goes.
+/// Surfaces that are too near to the points that they light.
 #[derive(Default)]
 pub struct NearSurfaces {
     /// Lanes in use.
@@ -33,7 +35,7 @@ pub struct NearSurfaces {
     normal: Vec3x16,
     /// Unit geometric normals on that side.
     geometric: Vec3x16,
-    /// Factor on the irradiance's mean radiance on its way.
+    /// Throughput up to the irradiance's mean radiance.
     throughput: Vec3x16,
 }
 
@@ -42,7 +44,7 @@ impl NearSurfaces {
         Receivers16 { position: &self.position, normal: &self.normal }
     }
 
-    /// Adds a surface met along `direction`; `throughput` has its albedo.
+    /// Adds a surface hit along `direction`; `throughput` includes its albedo.
     pub fn set(&mut self, lane: usize, surface: &Surface, direction: Vec3, throughput: Rgb) {
         let facing = |n: Vec3| if n.dot(direction) < 0.0 { n } else { -n };
         self.lanes |= 1 << lane;
@@ -54,8 +56,8 @@ impl NearSurfaces {
 }
 
 impl IndirectLight<'_> {
-    /// Adds to `radiance` what the near surfaces reflect that rays of neighbouring strata have met: of up to four on
-    /// surfaces turned alike one is followed, drawn by chance, and its irradiance lent to the others.
+    /// Adds to `radiance` the reflection of near surfaces hit by rays of neighbouring strata: of up to four
+    /// surfaces of similar orientation, a random one is followed, and its irradiance is used for the others.
     pub fn follow_shared(
         &self,
         near: NearSurfaces,
@@ -76,7 +78,7 @@ impl IndirectLight<'_> {
             let drawn = hash(u32::from(left), seed) as usize % of;
             let follows = group().nth(drawn).unwrap_or(left.trailing_zeros() as usize);
             chosen |= 1 << follows;
-            // The first is always one of them, were its normal not a number.
+            // The first is always one of them, even if its normal is not a number.
             let mut taken = left & left.wrapping_neg();
             for lane in group() {
                 taken |= 1 << lane;
@@ -93,7 +95,7 @@ impl IndirectLight<'_> {
         }
     }
 
-    /// Adds to `radiance` what the near surfaces reflect.
+    /// Adds to `radiance` the reflection of the near surfaces.
     pub fn follow(
         &self,
         mut near: NearSurfaces,
@@ -153,7 +155,7 @@ impl IndirectLight<'_> {
         }
     }
 
-    /// Follows a ray from each: adds the light that it meets, and returns what is near again.
+    /// Traces a ray from each: adds the light that it hits, and returns the surfaces that are too near again.
     fn next(
         &self,
         near: &NearSurfaces,
@@ -194,7 +196,7 @@ impl IndirectLight<'_> {
         again
     }
 
-    /// Adds the environment's light along rays that have met nothing.
+    /// Adds the environment's light along rays that hit no surface.
     fn sky(&self, near: &NearSurfaces, rays: &Rays16, pdf: &F32x16, lanes: u16, radiance: &mut [Rgb; LANES]) {
         let emitters = &self.world.emitters;
         let Some(environment) = emitters.environment.as_ref().filter(|_| lanes != 0) else { return };
@@ -207,7 +209,7 @@ impl IndirectLight<'_> {
         }
     }
 
-    /// Density with which sampling emitters from a lane would have found a place of an emitter.
+    /// Density with which sampling emitters from a lane would have found a point of an emitter.
     fn density(&self, near: &NearSurfaces, surface: &Surface, direction: Vec3, lane: usize) -> f32 {
         let (mut mesh, mut distance, mut cos) = (U32x16::default(), F32x16::default(), F32x16::default());
         (mesh[lane], distance[lane], cos[lane]) = (surface.mesh, surface.t, surface.normal.dot(direction));

@@ -1,4 +1,4 @@
-//! Indirect light at single eye samples, where records do not serve: rays drawn from what reflects.
+//! Indirect light at single eye samples for which records do not serve: rays drawn from the reflecting lobes.
 
 use super::indirect_light::{GatherCounts, IndirectLight};
 use crate::embree::Rays16;
@@ -13,15 +13,15 @@ use crate::shadow;
 pub struct SampleGather {
     /// Index of the eye sample.
     pub sample: u32,
-    /// Whether only the lobe on the base is wanted.
+    /// True if only the lobe on the base is to be sampled.
     pub lobe_only: bool,
-    /// Number of rays, about.
+    /// Approximate number of rays.
     pub rays: u32,
-    /// Another seed, other rays.
+    /// Seed of the rays.
     pub seed: u32,
 }
 
-/// Indirect radiance that a sample reflects to the eye.
+/// Estimates the indirect radiance that a sample reflects to the eye.
 pub fn reflected(
     light: &IndirectLight,
     samples: &EyePass,

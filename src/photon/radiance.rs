@@ -12,17 +12,18 @@ use glam::Vec3;
 /// Indirect light along a ray, and the surface that it comes from.
 #[derive(Clone, Copy, Debug)]
 pub struct IncomingRadiance {
-    /// Indirect light that comes back along the ray.
+    /// Indirect radiance arriving along the ray.
     pub radiance: Rgb,
-    /// To the first surface; infinite if there is none.
+    /// Distance to the first surface; infinite if there is none.
     pub distance: f32,
     /// Its unit geometric normal on the side of the ray; zero if there is none.
     pub normal: Vec3,
 }
 
 impl IndirectLight<'_> {
-    /// Radiance along the rays of `valid` lanes, and the distances to what they meet (infinite: nothing). `seed`
-    /// chooses among what is followed. `coherent` rays are those of neighbouring strata.
+    /// Computes the radiance along the rays of `valid` lanes, and the distances to the surfaces hit
+    /// (infinite: none). `seed` drives the random choice of continued paths. `coherent` rays are those of
+    /// neighbouring strata.
     pub fn along16(
         &self,
         rays: &Rays16,

@@ -1,8 +1,9 @@
 //! Records of indirect light by final gathering; those of direct light by cuts.
 //!
 //! Papers: Jensen 1996; Krivanek et al. 2005; Herzog et al. 2009, section 7 (the method they call PM).
-//! Deviations: for the series of glossy surfaces, what a stratum shows is a patch of surface that stays where it is as
-//! the point moves (as the virtual lights of `cache` do), so these gradients do not know of the edges of occluders.
+//! Deviations: for the series of glossy surfaces, the surface seen in a stratum is a patch that stays in
+//! place as the point moves (as the virtual lights of `cache` do), so that these gradients ignore the edges
+//! of occluders.
 
 use super::hemisphere::{GatherPoint, GatheredIrradiance, gather};
 use super::indirect_light::{GatherCounts, IndirectLight};
@@ -24,7 +25,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Least cosine, at the point and at patches that it sees, by which is divided.
+/// Minimum cosine in denominators, at the point and at the patches that it sees.
 const MIN_COS: f32 = 0.05;
 
 /// Source of records of indirect light by final gathering.
@@ -39,7 +40,8 @@ pub struct FinalGatherSource<'w> {
 }
 
 impl<'w> FinalGatherSource<'w> {
-    /// A source whose directions of gathering are `strata`; another `seed`, other directions within them.
+    /// Creates a source whose directions of gathering are `strata`; `seed` determines the directions within
+    /// them.
     pub fn new(
         direct: Source<'w>,
         light: IndirectLight<'w>,
@@ -167,7 +169,8 @@ impl GatherWorkspace {
     }
 }
 
-/// Light of unit radiance from a patch of surface seen under a solid angle: how both change as the point moves.
+/// Returns the light of unit radiance from a patch of surface seen under a solid angle, and its change as the
+/// point moves.
 fn patch(direction: Vec3, nearness: f32, normal: Vec3, solid_angle: f32) -> Incidence<f32> {
     let cos = -direction.dot(normal);
     let slope = match nearness > 0.0 {

@@ -1,44 +1,45 @@
-//! The directions of a final gathering: rings by sectors of the hemisphere, all of the same projected solid angle.
+//! The directions of a final gathering: rings by sectors of the hemisphere, all of the same projected solid
+//! angle.
 //!
-//! Paper: Ward and Heckbert 1992; Krivanek et al. 2005, whose translational gradient is that of [`Strata::gradient`]:
-//! the boundaries between strata move as the point does, the faster the nearer the nearer of the two surfaces is, and
-//! light of one stratum gives way to that of the other.
+//! Paper: Ward and Heckbert 1992; Krivanek et al. 2005, whose translational gradient is that of
+//! [`Strata::gradient`]: the boundaries between strata move as the point does, faster the nearer the nearer
+//! of the two surfaces is, and light of one stratum is replaced by that of the other.
 
 use crate::math::Rgb;
 use glam::{Mat3, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// Strata along both sides of a block whose rays are traced together.
+/// Side in strata of a block whose rays are traced together.
 pub const BLOCK: usize = 4;
 
 /// A partition of the hemisphere.
 #[derive(Clone, Debug)]
 pub struct Strata {
-    /// From the pole to the horizon; a multiple of [`BLOCK`].
+    /// Number of rings from the pole to the horizon; a multiple of [`BLOCK`].
     pub rings: usize,
-    /// Around the pole; a multiple of [`BLOCK`].
+    /// Number of sectors around the pole; a multiple of [`BLOCK`].
     pub sectors: usize,
-    /// By ring: length of the tangential part of the directions, integrated over it.
+    /// Length of the tangential part of the directions, integrated over each ring.
     tangential: Vec<f32>,
-    /// By sector: its azimuth, integrated likewise.
+    /// Unit vector of the azimuth, integrated over each sector.
     azimuth: Vec<Vec2>,
 }
 
-/// Surfaces that the rays of a gathering have met, ring by ring.
+/// Surfaces hit by the rays of a gathering, ring by ring.
 #[derive(Clone, Debug, Default)]
 pub struct Met {
     /// Radiance from each stratum.
     pub radiance: Vec<Rgb>,
-    /// Inverse distance to what is seen there; 0 if nothing is.
+    /// Inverse distance to the surface hit; 0 if there is none.
     pub nearness: Vec<f32>,
     /// Unit direction of its ray, in the frame of the hemisphere.
     pub direction: Vec<Vec3>,
-    /// Unit normal of what is seen, in that frame; zero if nothing is.
+    /// Unit normal of the surface hit, in that frame; zero if there is none.
     pub normal: Vec<Vec3>,
 }
 
 impl Met {
-    /// Nothing met yet in `count` strata.
+    /// Resets to `count` strata without hits.
     pub fn clear(&mut self, count: usize) {
         self.radiance.clear();
         self.radiance.resize(count, Rgb::ZERO);
@@ -52,7 +53,7 @@ impl Met {
 }
 
 impl Strata {
-    /// About `rays` of them, at least 16.
+    /// Creates about `rays` strata, at least 16.
     pub fn new(rays: u32) -> Strata {
         // Strata about as wide as long: sectors = π · rings (Ward and Heckbert).
         let blocks = |x: f64| ((x / BLOCK as f64).round() as usize).max(1) * BLOCK;
@@ -75,18 +76,18 @@ impl Strata {
         self.rings * self.sectors
     }
 
-    /// False: there is at least one.
+    /// Always false: there is at least one.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Place of a stratum in [`Met`].
+    /// Index of a stratum in [`Met`].
     #[inline]
     pub fn place(&self, ring: usize, sector: usize) -> usize {
         ring * self.sectors + sector
     }
 
-    /// A direction of a stratum, about +z, at `u` within it.
+    /// Returns a direction of a stratum, about +z, at `u` within it.
     #[inline]
     pub fn direction(&self, ring: usize, sector: usize, u: Vec2) -> Vec3 {
         let sin_sq = (ring as f32 + u.x) / self.rings as f32;
@@ -100,7 +101,7 @@ impl Strata {
         PI / self.len() as f32
     }
 
-    /// Irradiance as a vector by channel (column), in the frame of the hemisphere: z is the irradiance itself.
+    /// Irradiance vector by channel (column), in the frame of the hemisphere: z is the irradiance itself.
     pub fn vector(&self, met: &Met) -> Mat3 {
         let mut vector = Mat3::ZERO;
         for ring in 0..self.rings {
@@ -115,7 +116,7 @@ impl Strata {
     }
 
     /// Gradient of the irradiance as the point moves in its plane, by channel (column). Surfaces nearer than
-    /// 1 / `max_nearness` count as that far.
+    /// 1 / `max_nearness` are clamped to that distance.
     pub fn gradient(&self, met: &Met, max_nearness: f32) -> Mat3 {
         let (rings, sectors) = (self.rings, self.sectors);
         let width = TAU / sectors as f32;

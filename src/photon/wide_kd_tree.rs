@@ -1,8 +1,8 @@
 //! The nearest of many points, by a hierarchy of boxes of which sixteen are tested at once.
 //!
-//! Paper: Wald, Benthin and Boulos, *Getting Rid of Packets*, 2008 (sixteen children a node, for rays). Every fourth
-//! level of an [`EyeIndex`], from its leaves up: what a query waits for is one node after the other, and there are
-//! three or four instead of twelve to sixteen.
+//! Paper: Wald, Benthin and Boulos, *Getting Rid of Packets*, 2008 (sixteen children a node, for rays). Every
+//! fourth level of an [`EyeIndex`], from its leaves up: a query is bound by the latency of one node after the
+//! other, and there are three or four instead of twelve to sixteen.
 
 use crate::eye::EyeIndex;
 use crate::math::{F32x16, LANES, U32x16, lanes_in, mask_of};
@@ -11,10 +11,10 @@ use glam::Vec3;
 /// Levels of the index that one node spans: sixteen children.
 const BITS: u32 = LANES.trailing_zeros();
 
-/// Nodes put off: fifteen a level, of which there are eight for 2³² leaves.
+/// Size of the stack of nodes still to visit: fifteen a level, of which there are eight for 2³² leaves.
 const STACK: usize = 15 * 8;
 
-/// Boxes of sixteen children; those that do not exist are infinitely far from everything.
+/// Boxes of sixteen children; missing ones are at infinite distance.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 struct WideNode {
@@ -52,7 +52,7 @@ pub struct WideKdTree {
 }
 
 impl WideKdTree {
-    /// Over the leaves of an index, whose points are at `positions`.
+    /// Builds the hierarchy over the leaves of an index, whose points are at `positions`.
     pub fn new(index: &EyeIndex, positions: &[Vec3]) -> WideKdTree {
         let first = match index.depth() % BITS {
             0 if index.depth() > 0 => BITS,
@@ -76,8 +76,8 @@ impl WideKdTree {
         WideKdTree { nodes, levels }
     }
 
-    /// Calls `visit` with the leaves whose boxes come within a radius of `p`, the nearest first and then near ones as a
-    /// rule. It is given the leaf and the radius squared, and returns what that has shrunk to.
+    /// Calls `visit` with the leaves whose boxes come within a radius of `p`, the nearest first and then near
+    /// ones as a rule. `visit` takes the leaf and the radius squared, and returns the reduced radius squared.
     #[inline]
     pub fn leaves(&self, p: Vec3, mut radius_sq: f32, mut visit: impl FnMut(usize, f32) -> f32) {
         let p = p.to_array();

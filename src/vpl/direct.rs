@@ -7,16 +7,16 @@ use crate::sampling::{hash, owen_sobol_2d};
 use crate::scene::DeltaLight;
 use crate::world::World;
 
-/// No area light is represented by fewer points a side: penumbrae would show bands.
+/// Minimum number of points on an area light: with fewer, penumbrae would show bands.
 const MIN_PER_LIGHT: u32 = 256;
 
 /// VPLs of emitted light.
 pub struct DirectVpls {
-    /// The sets, empty ones included.
+    /// The sets, including empty ones.
     pub sets: Vec<VplSet>,
     /// Profiles of the spot lights.
     pub spots: Vec<SpotProfile>,
-    /// Size of the patches that the VPLs on each mesh stand for; 0 where it does not shine.
+    /// Size code of the patches of the VPLs on each mesh; 0 for meshes that do not emit.
     pub sizes: Vec<u32>,
 }
 
@@ -56,10 +56,10 @@ pub fn direct_vpls(world: &World, settings: &LightPassSettings) -> DirectVpls {
     DirectVpls { sets: vec![oriented, omni, directional, environment], spots, sizes }
 }
 
-/// Patches that an area light is divided into.
+/// Division of an area light into patches.
 struct Patches {
     count: u32,
-    /// See [`size_of_area`].
+    /// Size code, see [`size_of_area`].
     size: u32,
     seed: u32,
 }

@@ -1,6 +1,6 @@
-//! Photons as they leave the emitters.
+//! Photons leaving the emitters.
 //!
-//! Units: flux is in watts by channel, for a single path; divide by the paths shot.
+//! Units: flux in watts by channel, for a single path; to be divided by the number of paths.
 
 use crate::embree::Ray;
 use crate::light::spot_falloff;
@@ -14,17 +14,17 @@ use crate::world::World;
 use glam::Vec3;
 use std::f32::consts::{PI, TAU};
 
-/// The flux of a scene's emitters, to be sampled in proportion to power.
+/// The flux of a scene's emitters, sampled in proportion to power.
 pub struct PhotonEmitter<'w> {
     world: &'w World,
     by_power: DiscreteDistribution,
-    /// Sphere around all surfaces: what light from infinitely far is aimed at.
+    /// Sphere around all surfaces: the target of light from infinitely far.
     centre: Vec3,
     radius: f32,
 }
 
 impl<'w> PhotonEmitter<'w> {
-    /// `None` if nothing shines or there is no surface to shine on.
+    /// Prepares sampling; `None` if there is no emitter or no surface.
     pub fn new(world: &'w World) -> Option<PhotonEmitter<'w>> {
         let (low, high) = world.accel.bounds()?;
         let (centre, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
@@ -37,7 +37,7 @@ impl<'w> PhotonEmitter<'w> {
         (!by_power.is_empty()).then_some(PhotonEmitter { world, by_power, centre, radius })
     }
 
-    /// The first ray of a path and the flux it carries; `None` where an emitter is dark.
+    /// Samples the first ray of a path and its flux; `None` where an emitter is dark.
     pub fn sample(&self, sampler: &mut Sampler) -> Option<(Ray, Rgb)> {
         let (index, _) = self.by_power.sample(sampler.next_1d());
         let (u_place, u_direction, u_side) = (sampler.next_2d(), sampler.next_2d(), sampler.next_1d());
@@ -87,11 +87,11 @@ impl<'w> PhotonEmitter<'w> {
         PI * self.radius * self.radius
     }
 
-    /// A ray along `direction` through a point of the disk that faces it and shades all surfaces.
+    /// Returns a ray along `direction` through a point of the disk that faces it and covers all surfaces.
     fn ray_through_disk(&self, direction: Vec3, u: glam::Vec2) -> Ray {
         let d = uniform_disk(u) * self.radius;
         let frame = Frame::from_normal(direction);
-        // From a little farther than the sphere's surface: rounding must not start a ray inside the scene.
+        // Starts a little beyond the sphere's surface: rounding must not put the origin inside the scene.
         let origin = self.centre + frame.to_world(Vec3::new(d.x, d.y, -1.01 * self.radius));
         Ray { origin, t_near: 0.0, direction, t_far: f32::INFINITY }
     }

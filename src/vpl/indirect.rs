@@ -1,7 +1,7 @@
-//! VPLs where light is reflected: one for every photon.
+//! VPLs of reflected light: one for every photon.
 //!
-//! Paper: Keller, *Instant Radiosity*, 1997; Herzog et al. 2009, section 3: the first hit's reflected light is
-//! already indirect, and moderately glossy reflection counts as diffuse where light is deposited.
+//! Paper: Keller, *Instant Radiosity*, 1997; Herzog et al. 2009, section 3: the first hit's reflected light
+//! is already indirect, and moderately glossy reflection counts as diffuse where light is deposited.
 
 use super::photons::{PhotonCounts, PhotonSettings, trace_photons};
 use super::{LightPassSettings, Origin, Vpl, VplKind, VplSet};
@@ -9,8 +9,8 @@ use crate::progress::Control;
 use crate::world::World;
 use std::f32::consts::FRAC_1_PI;
 
-/// About `settings.indirect` indirect VPLs (whole chunks of paths, so a few more), or fewer where light is hard to
-/// catch.
+/// Returns about `settings.indirect` indirect VPLs (whole chunks of paths, so a few more), or fewer where few
+/// paths hit a surface.
 pub fn indirect_vpls(
     world: &World,
     settings: &LightPassSettings,

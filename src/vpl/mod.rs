@@ -1,11 +1,11 @@
 //! Stage 1: lights and photon paths become virtual point lights (VPLs).
 //!
-//! A VPL is stored in two places: a 16-byte [`Vpl`] with all that a shadow ray and a geometry term need
-//! (random fetches of VPLs cost as much as tracing, so this record is as small as it can be), and its
-//! intensity in an array apart, which only the tree builder and the leaves of a cut read.
+//! A VPL is stored in two parts: a 16-byte [`Vpl`] with all data of a shadow ray and a geometry term (random
+//! fetches of VPLs cost as much as tracing, so this record is as small as possible), and its intensity in a
+//! separate array, which only the tree builder and the leaves of a cut read.
 //!
-//! Units: intensity is radiant intensity (W/sr) of omni VPLs, radiant intensity per cosine of oriented
-//! ones, irradiance on a facing surface (W/m²) of directional ones.
+//! Units: intensity is radiant intensity (W/sr) of omni VPLs, radiant intensity per cosine of oriented ones,
+//! irradiance on a facing surface (W/m²) of directional ones.
 
 mod direct;
 mod emission;
@@ -26,9 +26,9 @@ pub use settings::LightPassSettings;
 /// Directional distribution of a VPL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VplKind {
-    /// Equally in all directions, or within the cone of a spot light.
+    /// Equal in all directions, or within the cone of a spot light.
     Omni,
-    /// By the cosine to its normal: a patch of a diffuse surface.
+    /// Proportional to the cosine to its normal: a patch of a diffuse surface.
     Oriented,
     /// From infinitely far, without falloff: a directional light, or a patch of the environment.
     Directional,
@@ -37,9 +37,9 @@ pub enum VplKind {
 /// Origin of a VPL's light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// Emitted there.
+    /// Emitted at its position.
     Direct,
-    /// Reflected there.
+    /// Reflected at its position.
     Indirect,
 }
 
@@ -54,7 +54,7 @@ pub struct Vpl {
 }
 
 impl Vpl {
-    /// A VPL that radiates equally in all directions.
+    /// Creates a VPL of equal intensity in all directions.
     pub fn omni(position: Vec3) -> Vpl {
         Vpl { position, word: 0 }
     }
@@ -64,12 +64,13 @@ impl Vpl {
         Vpl { position, word: profile + 1 }
     }
 
-    /// A VPL that radiates by the cosine to the unit vector `normal` (kept to within 3e-4 rad).
+    /// Creates a VPL of intensity proportional to the cosine to the unit vector `normal` (stored to within
+    /// 3e-4 rad).
     pub fn oriented(position: Vec3, normal: Vec3) -> Vpl {
         Vpl { position, word: octahedral::encode(normal) }
     }
 
-    /// The same, standing for a patch of the given size (see [`size_of_area`]).
+    /// Creates the same for a patch of the given size (see [`size_of_area`]).
     pub fn patch(position: Vec3, normal: Vec3, size: u32) -> Vpl {
         let mut vpl = Vpl::oriented(position, normal);
         vpl.word |= size.min(MAX_SIZE) << SIZE_SHIFT;
@@ -87,7 +88,7 @@ impl Vpl {
         octahedral::decode(self.word)
     }
 
-    /// Size of the patch that an oriented VPL stands for; 0 if it is a point.
+    /// Size code of the patch of an oriented VPL; 0 if it is a point.
     #[inline]
     pub fn size(&self) -> u32 {
         self.word >> SIZE_SHIFT
@@ -100,7 +101,8 @@ impl Vpl {
     }
 }
 
-/// Distances below this fraction of the scene's diagonal count as this: it keeps a VPL on the receiver finite.
+/// Minimum distance as a fraction of the scene's diagonal: nearer ones are clamped to it, which keeps a VPL
+/// on the receiver finite.
 pub const MIN_DISTANCE: f32 = 1e-5;
 
 /// The square of that distance.
@@ -112,14 +114,14 @@ pub fn min_dist_sq(diagonal: f32) -> f32 {
 const SIZE_SHIFT: u32 = 28;
 const MAX_SIZE: u32 = 15;
 
-/// The size of a patch of the given area, in powers of four times the least squared distance.
+/// Size code of a patch of the given area, in powers of four times the minimum squared distance.
 pub fn size_of_area(area: f32, diagonal: f32) -> u32 {
     let steps = 0.5 * (area / min_dist_sq(diagonal)).log2();
-    // Not a number and what is too small become 0.
+    // Not a number and too small areas become 0.
     steps.round().clamp(0.0, MAX_SIZE as f32) as u32
 }
 
-/// Squared distance from which on a patch of that size may be taken for a point.
+/// Squared distance from which on a patch of that size may be treated as a point.
 #[inline]
 pub fn near_sq_of_size(size: u32, min_dist_sq: f32) -> f32 {
     min_dist_sq * f32::from_bits((127 + 2 * size) << 23)
@@ -143,7 +145,7 @@ impl SpotProfile {
     }
 }
 
-/// VPLs of one kind and origin: what one light tree is built over.
+/// VPLs of one kind and origin, over which one light tree is built.
 #[derive(Clone, Debug)]
 pub struct VplSet {
     /// Kind of all of them.
@@ -157,12 +159,12 @@ pub struct VplSet {
 }
 
 impl VplSet {
-    /// An empty set.
+    /// Creates an empty set.
     pub fn new(kind: VplKind, origin: Origin) -> VplSet {
         VplSet { kind, origin, vpls: Vec::new(), intensities: Vec::new() }
     }
 
-    /// Adds a VPL, unless it is black or not finite: such a VPL can light nothing and would poison every sum.
+    /// Adds a VPL, unless it is black or not finite: it would add no light, or spoil every sum.
     pub fn push(&mut self, vpl: Vpl, intensity: Rgb) {
         let usable = vpl.position.is_finite() && intensity.is_finite() && intensity.min_element() >= 0.0;
         if usable && luminance(intensity) > 0.0 {
@@ -176,7 +178,7 @@ impl VplSet {
         self.vpls.len()
     }
 
-    /// Whether there are none.
+    /// True if there are none.
     pub fn is_empty(&self) -> bool {
         self.vpls.is_empty()
     }

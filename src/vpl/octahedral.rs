@@ -4,7 +4,7 @@
 
 use glam::Vec3;
 
-/// Bits of each coordinate.
+/// Number of bits of each coordinate.
 const BITS: u32 = 14;
 const STEPS: f32 = ((1 << BITS) - 2) as f32;
 const MASK: u32 = (1 << BITS) - 1;
@@ -23,7 +23,7 @@ pub fn encode(v: Vec3) -> u32 {
     quantise(x) | quantise(y) << BITS
 }
 
-/// The unit vector of a code, whose upper four bits may be anything.
+/// Decodes the unit vector of a code, whose upper four bits are ignored.
 #[inline]
 pub fn decode(code: u32) -> Vec3 {
     let coordinate = |c: u32| c as f32 * (2.0 / STEPS) - 1.0;

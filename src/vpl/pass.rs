@@ -14,7 +14,7 @@ pub struct LightPass {
     pub sets: Vec<VplSet>,
     /// Profiles that spot lights among the omni VPLs refer to.
     pub spots: Vec<SpotProfile>,
-    /// Size of the patches that direct VPLs on each mesh stand for (see [`super::size_of_area`]).
+    /// Size code of the patches of direct VPLs on each mesh (see [`super::size_of_area`]).
     pub sizes: Vec<u32>,
     /// Counts of photon tracing.
     pub photons: PhotonCounts,
@@ -26,14 +26,14 @@ impl LightPass {
         self.sets.iter().map(VplSet::len).sum()
     }
 
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// Makes the VPLs of a scene for paths of at most `max_depth` edges. Stops early, with fewer indirect VPLs of
-/// the right total flux, if `control` is cancelled.
+/// Creates the VPLs of a scene for paths of at most `max_depth` edges. Stops early, with fewer indirect VPLs
+/// of the right total flux, if `control` is cancelled.
 pub fn light_pass(
     world: &World,
     settings: &LightPassSettings,

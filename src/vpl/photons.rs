@@ -1,10 +1,11 @@
-//! Photon paths from the emitters, and what they leave at every hit that reflects diffusely.
+//! Photon paths from the emitters, with a photon stored at every hit that reflects diffusely.
 //!
 //! Papers: Jensen, *Global Illumination using Photon Maps*, 1996; Keller, *Instant Radiosity*, 1997.
-//! Deviations: paths end by Russian roulette on the luminance they would lose, which keeps photons alike in
-//! power; with interpolated normals, flux is corrected as importance demands (Veach 1997, section 5.3).
+//! Deviations: paths end by Russian roulette on the luminance they would lose, which keeps the powers of
+//! photons similar; with interpolated normals, flux is corrected as for importance (Veach 1997, section 5.3).
 //!
-//! Paths run in chunks of fixed size and are kept in order, so the photons are the same for any number of threads.
+//! Paths run in chunks of fixed size and are kept in order, so the photons are the same for any number of
+//! threads.
 //! Units: flux in watts, to be divided by the number of paths.
 
 use super::emission::PhotonEmitter;
@@ -16,30 +17,30 @@ use crate::world::World;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Paths traced by one task.
+/// Number of paths traced by one task.
 const CHUNK: u32 = 1024;
-/// Chunks in the first wave, from which the yield of the others is guessed.
+/// Number of chunks in the first wave, from which the yield of the others is estimated.
 const FIRST_WAVE: u32 = 16;
-/// No more paths are shot for each photon wanted; reached where most light misses the scene.
+/// Maximum number of paths for each photon asked for; reached where most light misses the scene.
 const PATHS_PER_PHOTON: u32 = 32;
-/// Edges after which a path is given up: only a closed scene of mirrors gets there.
+/// Maximum number of edges of a path: only a closed scene of mirrors reaches it.
 const MAX_EDGES: u32 = 256;
-/// Most a path's survival is worth, so that it ends even where nothing absorbs.
+/// Maximum probability of survival, so that a path ends even if nothing absorbs.
 const MAX_SURVIVAL: f32 = 0.98;
-/// Largest correction for the difference between shading and geometric normal; a grazing photon would
+/// Maximum correction for the difference between shading and geometric normal; a grazing photon would
 /// otherwise leave a VPL brighter than all others together.
 const MAX_CORRECTION: f32 = 8.0;
 
 /// Counts of tracing photons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhotonCounts {
-    /// Paths shot, by which flux is divided.
+    /// Number of paths, by which flux is divided.
     pub paths: u64,
-    /// Closest-hit queries.
+    /// Number of closest-hit queries.
     pub rays: u64,
 }
 
-/// Light that meets a surface.
+/// A photon: light arriving at a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Photon {
     /// Position.
@@ -48,20 +49,21 @@ pub struct Photon {
     pub normal: Vec3,
     /// Unit vector back along its path.
     pub towards_light: Vec3,
-    /// Flux, to be divided by the paths shot.
+    /// Flux, to be divided by the number of paths.
     pub flux: Rgb,
-    /// Share of it that is reflected diffusely; not 0.
+    /// Diffusely reflected share of it; not 0.
     pub albedo: Rgb,
 }
 
-/// Settings of tracing photons.
+/// Settings of photon tracing.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotonSettings {
-    /// Photons, about (whole chunks of paths, so a few more), or fewer where light is hard to catch.
+    /// Approximate number of photons (whole chunks of paths, so a few more), or fewer where few paths hit a
+    /// surface.
     pub photons: u32,
-    /// Most edges of a path.
+    /// Maximum number of edges of a path.
     pub max_edges: u32,
-    /// Another seed, other paths.
+    /// Seed of the paths.
     pub seed: u32,
 }
 
@@ -71,7 +73,7 @@ struct Chunk<T> {
     rays: u64,
 }
 
-/// Traces photons and returns what `keep` makes of each, in order.
+/// Traces photons, maps each by `keep`, and returns the results in order.
 pub fn trace_photons<T: Send>(
     world: &World,
     settings: &PhotonSettings,
@@ -97,7 +99,8 @@ pub fn trace_photons<T: Send>(
             .collect();
         for chunk in traced {
             counts.rays += chunk.rays;
-            // Chunks beyond the one that fills the quota are dropped, so that waves leave no trace.
+            // Chunks beyond the one that fills the quota are dropped, so that the result does not depend on
+            // the waves.
             if photons.len() < wanted {
                 chunks += 1;
                 control.advance(chunk.kept.len() as u64);
@@ -109,7 +112,7 @@ pub fn trace_photons<T: Send>(
     (photons, counts)
 }
 
-/// Chunks to trace next: as many as the yield so far suggests, a tenth fewer, so that little is thrown away.
+/// Number of chunks to trace next, according to the yield so far, less a tenth, so that little is discarded.
 fn next_wave(chunks: u32, found: usize, wanted: usize) -> u32 {
     if chunks == 0 {
         return FIRST_WAVE;
@@ -137,7 +140,7 @@ fn trace_chunk<T>(
     Chunk { kept, rays }
 }
 
-/// Follows a path; returns the rays traced.
+/// Follows a path; returns the number of rays traced.
 fn trace_path(
     world: &World,
     source: &PhotonEmitter,
@@ -174,7 +177,7 @@ fn trace_path(
             return rays;
         }
         let back = (out_g / s.wi.z).min(MAX_CORRECTION);
-        // Delta lobes turn the whole pencil of rays, normals and all.
+        // A delta lobe transforms the whole pencil of rays, normals included.
         let corrected = if s.delta { 1.0 } else { correction * back };
         let next = flux * s.weight * (s.eta * s.eta * corrected);
         let survival = (luminance(next) / luminance(flux)).min(MAX_SURVIVAL);

@@ -1,13 +1,14 @@
 //! Settings of the light pass.
 
-/// Numbers of VPLs to make.
+/// Numbers of VPLs to create.
 #[derive(Clone, Copy, Debug)]
 pub struct LightPassSettings {
-    /// Points shared out among all area lights by power (each gets at least 256), and directions of the environment.
+    /// Number of points divided among all area lights by power (each gets at least 256), and of directions of
+    /// the environment.
     pub direct: u32,
-    /// Indirect VPLs.
+    /// Number of indirect VPLs.
     pub indirect: u32,
-    /// Another seed, other VPLs.
+    /// Seed of the VPLs.
     pub seed: u32,
 }
 
