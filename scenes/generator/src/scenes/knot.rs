@@ -2,9 +2,8 @@
 //! shadow; the room's other light is a lamp that faces the wall from behind a folding screen, so that most
 //! of what one sees is lit indirectly.
 
-use crate::shapes::Part;
-use crate::shapes::{Assembly, Shell, at, block, ellipsoid, grid, lathe, parallelogram, standing_on, turned};
-use glam::{Affine3A, Quat, Vec2, Vec3};
+use crate::shapes::*;
+use glam::{Affine3A, Quat, Vec3};
 use std::f32::consts::TAU;
 
 /// Half the width and depth of the room, and its height.
@@ -21,14 +20,14 @@ pub fn parts() -> Vec<Part> {
     plinth_and_knot(&mut scene);
     screen_and_lamp(&mut scene);
     spot(&mut scene);
-    scene.add_at("ball", &ellipsoid(Vec3::splat(0.24), 16, 9), &at(-0.84, 0.24, 0.42));
+    scene.add_at("ball", &ellipsoid(Vec3::splat(0.24), 16, 9), at(-0.84, 0.24, 0.42));
     scene.into_parts()
 }
 
 fn room(scene: &mut Assembly) {
     let Vec3 { x, y, z } = ROOM;
     let (across, up, along) = (Vec3::X * 2.0 * x, Vec3::Y * y, Vec3::Z * 2.0 * z);
-    let wall = |origin: Vec3, u: Vec3, v: Vec3| parallelogram(origin, u, v, 1, 1);
+    let wall = |origin: Vec3, u: Vec3, v: Vec3| sheet(origin, u, v);
     scene.add("floor", &wall(Vec3::new(-x, 0.0, z), across, -along));
     scene.add("ceiling", &wall(Vec3::new(-x, y, -z), across, along));
     scene.add("back_wall", &wall(Vec3::new(-x, 0.0, -z), across, up));
@@ -38,21 +37,21 @@ fn room(scene: &mut Assembly) {
     // Three beams below the ceiling and a panel on the back wall, without the faces that touch the room.
     for k in [-1.0, 0.0, 1.0] {
         let low = Vec3::new(-x, y - 0.16, 1.3 * k - 0.07);
-        scene.add("beams", &block(low, Vec3::new(x, y, 1.3 * k + 0.07)).without_faces(Vec3::Y));
+        scene.add("beams", &block(low, [x, y, 1.3 * k + 0.07]).without_faces(Vec3::Y));
     }
-    let panel = block(Vec3::new(-1.9, 0.75, -z), Vec3::new(-0.5, 2.05, -z + 0.05));
+    let panel = block([-1.9, 0.75, -z], [-0.5, 2.05, -z + 0.05]);
     scene.add("panel", &panel.without_faces(-Vec3::Z));
 }
 
 fn plinth_and_knot(scene: &mut Assembly) {
     let profile = [[0.74, 0.0], [0.74, PLINTH_HEIGHT - 0.03], [0.71, PLINTH_HEIGHT], [0.0, PLINTH_HEIGHT]];
-    scene.add_at("plinth", &lathe(&profile.map(Vec2::from_array), 24), &at(0.1, 0.0, -0.2));
+    scene.add_at("plinth", &lathe(&profile, 24), at(0.1, 0.0, -0.2));
 
     // Tipped up to stand on its rim, then lowered until it touches the plinth.
     let pose = Quat::from_rotation_y(0.5) * Quat::from_rotation_x(1.25) * Quat::from_rotation_y(0.35);
-    let knot = trefoil(0.44, 0.19, 0.105, 100, 12).transformed(&Affine3A::from_quat(pose));
+    let knot = trefoil(0.44, 0.19, 0.105, 100, 12).transformed(Affine3A::from_quat(pose));
     let lowest = knot.points.iter().fold(f32::INFINITY, |y, p| y.min(p.y));
-    scene.add_at("knot", &knot, &at(0.1, PLINTH_HEIGHT - lowest, -0.2));
+    scene.add_at("knot", &knot, at(0.1, PLINTH_HEIGHT - lowest, -0.2));
 }
 
 /// A tube of radius `tube` along the trefoil that winds twice about the y axis and three times around the
@@ -90,29 +89,27 @@ fn screen_and_lamp(scene: &mut Assembly) {
     // Four leaves, folded in a zigzag across the right rear corner.
     let mut foot = Vec3::new(0.72, 0.0, -1.9);
     for degrees in [-62.0, -18.0, -58.0, -14.0] {
-        let leaf = block(Vec3::new(0.008, 0.03, -0.012), Vec3::new(0.522, 1.7, 0.012));
+        let leaf = block([0.008, 0.03, -0.012], [0.522, 1.7, 0.012]);
         let place = turned(degrees, foot);
-        scene.add_at("screen", &leaf, &place);
+        scene.add_at("screen", &leaf, place);
         foot = place.transform_point3(Vec3::new(0.53, 0.0, 0.0));
     }
     // The lamp: a trough whose open side, the emitter, looks at the wall.
-    let trough = block(Vec3::new(-0.3, -0.12, -0.2), Vec3::new(0.3, 0.12, 0.0));
-    let aim = Affine3A::from_rotation_translation(
-        Quat::from_rotation_y(125.0_f32.to_radians()) * Quat::from_rotation_x(-0.7),
-        Vec3::new(1.5, 0.6, -1.35),
-    );
-    scene.add_at("lamp_case", &trough.without_faces(Vec3::Z), &aim);
-    let face = parallelogram(Vec3::new(-0.3, -0.12, 0.0), Vec3::X * 0.6, Vec3::Y * 0.24, 1, 1);
-    scene.add_at("lamp", &face, &aim);
+    let trough = block([-0.3, -0.12, -0.2], [0.3, 0.12, 0.0]);
+    let aim =
+        posed(Quat::from_rotation_y(125.0_f32.to_radians()) * Quat::from_rotation_x(-0.7), [1.5, 0.6, -1.35]);
+    scene.add_at("lamp_case", &trough.without_faces(Vec3::Z), aim);
+    let face = sheet([-0.3, -0.12, 0.0], Vec3::X * 0.6, Vec3::Y * 0.24);
+    scene.add_at("lamp", &face, aim);
 }
 
 fn spot(scene: &mut Assembly) {
     // An open can behind the light, hanging from the ceiling by a bar.
     let back = SPOT + (SPOT - SPOT_TARGET).normalize() * 0.22;
-    let can = lathe(&[[0.075, 0.0], [0.075, 0.22], [0.0, 0.22]].map(Vec2::from_array), 12);
-    scene.add_at("spot_case", &can, &standing_on(SPOT, back));
-    let bar = block(Vec3::new(-0.012, 0.0, -0.012), Vec3::new(0.012, 0.5, 0.012));
+    let can = lathe(&[[0.075, 0.0], [0.075, 0.22], [0.0, 0.22]], 12);
+    scene.add_at("spot_case", &can, standing_on(SPOT, back));
+    let bar = block([-0.012, 0.0, -0.012], [0.012, 0.5, 0.012]);
     let length = ROOM.y - back.y + 0.02;
     let bar = bar.mapped(|p| Vec3::new(p.x, p.y * length / 0.5, p.z));
-    scene.add_at("spot_case", &bar, &Affine3A::from_translation(back - Vec3::Y * 0.02));
+    scene.add_at("spot_case", &bar, Affine3A::from_translation(back - Vec3::Y * 0.02));
 }

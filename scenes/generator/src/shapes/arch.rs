@@ -2,6 +2,20 @@
 
 use glam::Vec2;
 use std::f32::consts::TAU;
+use std::ops::Mul;
+
+/// Points of an outline or a profile written as pairs of numbers.
+pub fn points(pairs: &[impl Into<Vec2> + Copy]) -> Vec<Vec2> {
+    pairs.iter().map(|&p| p.into()).collect()
+}
+
+/// The same times `factor`, a number or one for each coordinate.
+pub fn scaled<F: Copy>(pairs: &[impl Into<Vec2> + Copy], factor: F) -> Vec<Vec2>
+where
+    Vec2: Mul<F, Output = Vec2>,
+{
+    pairs.iter().map(|&p| p.into() * factor).collect()
+}
 
 /// Points on the arc about `centre` from one angle to another (degrees), both ends included.
 pub fn arc(centre: Vec2, radius: f32, from_degrees: f32, to_degrees: f32, segments: usize) -> Vec<Vec2> {

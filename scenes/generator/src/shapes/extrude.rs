@@ -1,8 +1,8 @@
 //! Flat outlines with holes given a thickness: pierced walls, gussets, plates with cut-outs.
 
-use super::Shell;
+use super::{Shell, points};
 use earcut::Earcut;
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// Which faces of a prism exist.
 #[derive(Clone, Copy, Debug)]
@@ -20,18 +20,29 @@ pub struct Faces {
 impl Faces {
     /// A closed prism.
     pub const ALL: Faces = Faces { front: true, back: true, rim: true, reveals: true };
+    /// A wall whose outer edges are hidden.
+    pub const NO_RIM: Faces = Faces { rim: false, ..Faces::ALL };
+    /// A sheet with the reveals of its holes behind it.
+    pub const FRONT: Faces = Faces { back: false, rim: false, ..Faces::ALL };
+    /// A tube.
+    pub const NO_ENDS: Faces = Faces { front: false, back: false, ..Faces::ALL };
 }
 
 /// Extrudes `outline` (in x and y) with `holes` from z = 0 to z = `depth`, closed. Either winding will do;
 /// outlines may not cross themselves or each other.
-pub fn extrude(outline: &[Vec2], holes: &[Vec<Vec2>], depth: f32) -> Shell {
+pub fn extrude(outline: &[impl Into<Vec2> + Copy], holes: &[Vec<Vec2>], depth: f32) -> Shell {
     extrude_faces(outline, holes, depth, Faces::ALL)
 }
 
 /// The same with only some of the faces.
-pub fn extrude_faces(outline: &[Vec2], holes: &[Vec<Vec2>], depth: f32, faces: Faces) -> Shell {
+pub fn extrude_faces(
+    outline: &[impl Into<Vec2> + Copy],
+    holes: &[Vec<Vec2>],
+    depth: f32,
+    faces: Faces,
+) -> Shell {
     let mut shell = Shell::new(30.0);
-    let outer = oriented(outline, true);
+    let outer = oriented(&points(outline), true);
     let inner: Vec<Vec<Vec2>> = holes.iter().map(|h| oriented(h, false)).collect();
     let flat: Vec<Vec2> = outer.iter().chain(inner.iter().flatten()).copied().collect();
     let count = flat.len() as u32;
@@ -101,10 +112,4 @@ pub(super) fn triangulate(outline: &[Vec2], holes: &[Vec<Vec2>]) -> Vec<[u32; 3]
             if (b - a).perp_dot(c - a) >= 0.0 { [t[0], t[1], t[2]] } else { [t[0], t[2], t[1]] }
         })
         .collect()
-}
-
-/// Places a prism of outline (x, y) so that x runs along `right`, y along `up` and the depth along
-/// `right` x `up`, from `origin`.
-pub fn upright(origin: Vec3, right: Vec3, up: Vec3) -> glam::Affine3A {
-    glam::Affine3A::from_mat3_translation(glam::Mat3::from_cols(right, up, right.cross(up)), origin)
 }

@@ -51,7 +51,8 @@ pub fn stacked(
 }
 
 /// The box between `low` and `high` with all edges rounded by `radius` in `steps`.
-pub fn rounded_box(low: Vec3, high: Vec3, radius: f32, steps: usize) -> Shell {
+pub fn rounded_box(low: impl Into<Vec3>, high: impl Into<Vec3>, radius: f32, steps: usize) -> Shell {
+    let (low, high) = (low.into(), high.into());
     let size = high - low;
     let radius = radius.min(0.49 * size.min_element());
     let quarter = |k: usize| (0.5 * PI * k as f32 / steps as f32).sin_cos();
@@ -73,7 +74,14 @@ pub fn rounded_box(low: Vec3, high: Vec3, radius: f32, steps: usize) -> Shell {
 /// section through the y axis, `squareness` the outline seen from above. Upholstery and pillows.
 ///
 /// Paper: Barr, "Superquadrics and Angle-Preserving Transformations", 1981.
-pub fn superellipsoid(radii: Vec3, flatness: f32, squareness: f32, segments: usize, rings: usize) -> Shell {
+pub fn superellipsoid(
+    radii: impl Into<Vec3>,
+    flatness: f32,
+    squareness: f32,
+    segments: usize,
+    rings: usize,
+) -> Shell {
+    let radii = radii.into();
     let power = |x: f32, e: f32| x.abs().powf(e).copysign(x);
     let rows: Vec<Vec<Vec3>> = (0..=rings)
         .map(|j| {

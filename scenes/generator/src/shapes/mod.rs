@@ -1,6 +1,6 @@
 //! The shapes that generated scenes are made of. A shape function returns a [`Shell`], an indexed surface
-//! that knows which of its edges are creases; [`Part::add`] places it, computes its normals and appends
-//! it. Repeated things are built once as a `Part` of their own and placed with [`Part::append`].
+//! that knows which of its edges are creases; [`Assembly::add_at`] computes its normals, places it and appends it to a
+//! part. Whatever consists of several shells is an [`Assembly`].
 //!
 //! Conventions: y is up, faces are counter-clockwise seen from outside, texture coordinates are metres
 //! along the surface, so that a scene file scales its textures by the material alone.
@@ -27,15 +27,15 @@ mod vessel;
 #[cfg(test)]
 mod tests;
 
-pub use arch::{PointedArch, arc, circle, foil, rectangle};
+pub use arch::{PointedArch, arc, circle, foil, points, rectangle, scaled};
 pub use assembly::Assembly;
-pub use extrude::{Faces, extrude, extrude_faces, upright};
+pub use extrude::{Faces, extrude, extrude_faces};
 pub use loft::{disc, loft, rounded_box, rounded_rectangle, stacked, superellipsoid};
 pub use part::Part;
-pub use patch::{grid, parallelogram, patch};
+pub use patch::{grid, patch, sheet};
 pub use path::{fillet, helix};
-pub use place::{at, mirror_x, mirror_z, standing_on, turned};
-pub use revolve::{cone, cylinder, ellipsoid, lathe, lathe_sector, profile_lathe, ring, torus, tube};
+pub use place::{at, both_sides, mirror_x, mirror_z, moved, posed, standing_on, turned, upright};
+pub use revolve::{cone, cylinder, ellipsoid, lathe, lathe_sector, profile_lathe, ring, torus};
 pub use rng::Rng;
 pub use shell::Shell;
 pub use solids::{beveled_box, block, frustum, slab};

@@ -6,34 +6,37 @@
 use super::{Part, Shell};
 use glam::{Vec2, Vec3};
 
-/// Appends `shell` to `part` with normals; corners with equal normal and texture coordinate share a vertex.
-pub(super) fn write(shell: &Shell, part: &mut Part) {
-    let face_normals: Vec<Vec3> = shell.triangles.iter().map(|&t| face_normal(shell, t)).collect();
-    let around = FacesAroundPoints::new(shell);
-    let cos_crease = shell.crease_degrees.to_radians().cos();
-    // The vertices made so far for each point, as a linked list through `next`.
-    let mut first = vec![u32::MAX; shell.points.len()];
-    let mut next: Vec<u32> = Vec::new();
-    let base = part.positions.len() as u32;
-    for (face, (&corners, uvs)) in shell.triangles.iter().zip(&shell.uvs).enumerate() {
-        let vertices = [0, 1, 2].map(|k| {
-            let point = corners[k];
-            let normal = corner_normal(shell, &face_normals, around.of(point), face, point, cos_crease);
-            let mut vertex = first[point as usize];
-            while vertex != u32::MAX && !same(part, base + vertex, normal, uvs[k]) {
-                vertex = next[vertex as usize];
-            }
-            if vertex == u32::MAX {
-                vertex = next.len() as u32;
-                next.push(first[point as usize]);
-                first[point as usize] = vertex;
-                part.positions.push(shell.points[point as usize]);
-                part.normals.push(normal);
-                part.uvs.push(uvs[k]);
-            }
-            base + vertex
-        });
-        part.triangles.push(vertices);
+impl Shell {
+    /// The shell as a nameless part with normals; corners with equal normal and texture coordinate share a vertex.
+    pub(super) fn with_normals(&self) -> Part {
+        let mut part = Part::default();
+        let face_normals: Vec<Vec3> = self.triangles.iter().map(|&t| face_normal(self, t)).collect();
+        let around = FacesAroundPoints::new(self);
+        let cos_crease = self.crease_degrees.to_radians().cos();
+        // The vertices made so far for each point, as a linked list through `next`.
+        let mut first = vec![u32::MAX; self.points.len()];
+        let mut next: Vec<u32> = Vec::new();
+        for (face, (&corners, uvs)) in self.triangles.iter().zip(&self.uvs).enumerate() {
+            let vertices = [0, 1, 2].map(|k| {
+                let point = corners[k];
+                let normal = corner_normal(self, &face_normals, around.of(point), face, point, cos_crease);
+                let mut vertex = first[point as usize];
+                while vertex != u32::MAX && !same(&part, vertex, normal, uvs[k]) {
+                    vertex = next[vertex as usize];
+                }
+                if vertex == u32::MAX {
+                    vertex = next.len() as u32;
+                    next.push(first[point as usize]);
+                    first[point as usize] = vertex;
+                    part.positions.push(self.points[point as usize]);
+                    part.normals.push(normal);
+                    part.uvs.push(uvs[k]);
+                }
+                vertex
+            });
+            part.triangles.push(vertices);
+        }
+        part
     }
 }
 

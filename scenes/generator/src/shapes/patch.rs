@@ -3,7 +3,7 @@
 use super::Shell;
 use glam::{Vec2, Vec3};
 
-/// A sheet of rows of points: `rows[j][i]`, where the outside is on the side of (along i) x (along j).
+/// Sheet of rows of points: `rows[j][i]`, where the outside is on the side of (along i) x (along j).
 /// `wrap_columns` joins the last column to the first, `wrap_rows` the last row to the first. Points of one
 /// row that coincide (the pole of a sphere) become one.
 pub fn grid(rows: &[Vec<Vec3>], wrap_columns: bool, wrap_rows: bool, crease_degrees: f32) -> Shell {
@@ -53,7 +53,7 @@ fn lengths_along(rows: &[Vec<Vec3>], columns: usize) -> Vec<f32> {
         .collect()
 }
 
-/// The sheet f(u, v) for u, v in 0..=1 on `columns` x `rows` quadrilaterals, smooth; the outside is on the
+/// Sheet f(u, v) for u, v in 0..=1 on `columns` x `rows` quadrilaterals, smooth; the outside is on the
 /// side of ∂f/∂u x ∂f/∂v.
 pub fn patch(columns: usize, rows: usize, f: impl Fn(f32, f32) -> Vec3) -> Shell {
     let points: Vec<Vec<Vec3>> = (0..=rows)
@@ -62,7 +62,8 @@ pub fn patch(columns: usize, rows: usize, f: impl Fn(f32, f32) -> Vec3) -> Shell
     grid(&points, false, false, 60.0)
 }
 
-/// The flat sheet origin + s·edge_u + t·edge_v in `columns` x `rows` quadrilaterals, outside edge_u x edge_v.
-pub fn parallelogram(origin: Vec3, edge_u: Vec3, edge_v: Vec3, columns: usize, rows: usize) -> Shell {
-    patch(columns, rows, |u, v| origin + edge_u * u + edge_v * v)
+/// Flat sheet, the parallelogram with one corner at `origin`; the outside is on the side of edge_u x edge_v.
+pub fn sheet(origin: impl Into<Vec3>, edge_u: Vec3, edge_v: Vec3) -> Shell {
+    let origin = origin.into();
+    patch(1, 1, |u, v| origin + edge_u * u + edge_v * v)
 }

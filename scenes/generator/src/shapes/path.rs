@@ -5,7 +5,8 @@ use std::f32::consts::TAU;
 
 /// `path` with every inner corner replaced by an arc of `radius` in steps of at most `step_degrees`; where
 /// the neighbouring segments are too short for the radius, it shrinks to fit.
-pub fn fillet(path: &[Vec3], radius: f32, step_degrees: f32) -> Vec<Vec3> {
+pub fn fillet(path: &[impl Into<Vec3> + Copy], radius: f32, step_degrees: f32) -> Vec<Vec3> {
+    let path: Vec<Vec3> = path.iter().map(|&p| p.into()).collect();
     let mut rounded = vec![path[0]];
     for k in 1..path.len() - 1 {
         let corner = path[k];

@@ -1,20 +1,25 @@
 //! Surfaces of revolution about the y axis.
 
-use super::{Shell, grid};
+use super::{Shell, grid, points};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
 /// Turns `profile`, points (radius, height) from bottom to top with the material on the axis side, in
 /// `segments` around the y axis. The ends are open unless they lie on the axis. Corners of the profile
 /// sharper than 40° stay sharp.
-pub fn lathe(profile: &[Vec2], segments: usize) -> Shell {
-    turn(profile, segments, false)
+pub fn lathe(profile: &[impl Into<Vec2> + Copy], segments: usize) -> Shell {
+    turn(&points(profile), segments, false)
 }
 
 /// The part of a lathe between two angles (degrees, from +x towards +z), open along both cuts: half shafts
 /// against a wall.
-pub fn lathe_sector(profile: &[Vec2], from_degrees: f32, to_degrees: f32, segments: usize) -> Shell {
-    let rows: Vec<Vec<Vec3>> = profile
+pub fn lathe_sector(
+    profile: &[impl Into<Vec2> + Copy],
+    from_degrees: f32,
+    to_degrees: f32,
+    segments: usize,
+) -> Shell {
+    let rows: Vec<Vec<Vec3>> = points(profile)
         .iter()
         .map(|p| {
             (0..=segments)
@@ -32,8 +37,8 @@ pub fn lathe_sector(profile: &[Vec2], from_degrees: f32, to_degrees: f32, segmen
 
 /// Like [`lathe`] for a closed profile that does not touch the axis (rings, rims), given counter-clockwise with
 /// radius to the right and height upwards.
-pub fn profile_lathe(profile: &[Vec2], segments: usize) -> Shell {
-    turn(profile, segments, true)
+pub fn profile_lathe(profile: &[impl Into<Vec2> + Copy], segments: usize) -> Shell {
+    turn(&points(profile), segments, true)
 }
 
 fn turn(profile: &[Vec2], segments: usize, closed: bool) -> Shell {
@@ -72,22 +77,10 @@ pub fn cone(bottom_radius: f32, top_radius: f32, height: f32, segments: usize) -
     lathe(&profile, segments)
 }
 
-/// A closed pipe wall on the y axis from the origin to `height`.
-pub fn tube(inner_radius: f32, outer_radius: f32, height: f32, segments: usize) -> Shell {
-    ring(inner_radius, outer_radius, 0.0, height, segments)
-}
-
 /// A closed ring of rectangular section (a flange, a hoop) between two heights.
 pub fn ring(inner_radius: f32, outer_radius: f32, low: f32, high: f32, segments: usize) -> Shell {
-    profile_lathe(
-        &[
-            Vec2::new(inner_radius, low),
-            Vec2::new(outer_radius, low),
-            Vec2::new(outer_radius, high),
-            Vec2::new(inner_radius, high),
-        ],
-        segments,
-    )
+    let section = [[inner_radius, low], [outer_radius, low], [outer_radius, high], [inner_radius, high]];
+    profile_lathe(&section, segments)
 }
 
 /// A ring of round section about the y axis.
@@ -102,7 +95,8 @@ pub fn torus(major_radius: f32, minor_radius: f32, segments: usize, section_segm
 }
 
 /// An ellipsoid about the origin.
-pub fn ellipsoid(radii: Vec3, segments: usize, rings: usize) -> Shell {
+pub fn ellipsoid(radii: impl Into<Vec3>, segments: usize, rings: usize) -> Shell {
+    let radii = radii.into();
     let profile: Vec<Vec2> = (0..=rings)
         .map(|k| {
             let polar = PI * k as f32 / rings as f32;

@@ -1,7 +1,7 @@
 //! An indexed surface before it has normals: corners that belong together share a point, so that whether
 //! a shell is closed can be asked of its topology and creases can be found by angle.
 
-use glam::{Affine3A, DVec3, Mat3, Vec2, Vec3};
+use glam::{Affine3A, Mat3, Vec2, Vec3};
 
 /// A surface with a texture coordinate at every triangle corner.
 #[derive(Clone, Debug, Default)]
@@ -52,7 +52,7 @@ impl Shell {
     }
 
     /// The shell moved by `transform`; a mirroring transform keeps the outside outside.
-    pub fn transformed(mut self, transform: &Affine3A) -> Self {
+    pub fn transformed(mut self, transform: Affine3A) -> Self {
         for point in &mut self.points {
             *point = transform.transform_point3(*point);
         }
@@ -109,26 +109,5 @@ impl Shell {
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| base + i)));
         self.uvs.extend_from_slice(&other.uvs);
         self
-    }
-
-    /// The volume inside, positive where the faces look outwards; meaningful for closed shells only.
-    pub fn signed_volume(&self) -> f64 {
-        let origin = self.points.first().map_or(DVec3::ZERO, |p| p.as_dvec3());
-        self.triangles
-            .iter()
-            .map(|t| {
-                let [a, b, c] = t.map(|i| self.points[i as usize].as_dvec3() - origin);
-                a.dot(b.cross(c)) / 6.0
-            })
-            .sum()
-    }
-
-    /// Whether every edge is shared by exactly two triangles that run along it in opposite directions.
-    pub fn is_closed(&self) -> bool {
-        let mut edges: Vec<(u32, u32)> =
-            self.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
-        edges.sort_unstable();
-        edges.windows(2).all(|pair| pair[0] != pair[1])
-            && edges.iter().all(|&(a, b)| edges.binary_search(&(b, a)).is_ok())
     }
 }

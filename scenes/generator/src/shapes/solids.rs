@@ -4,12 +4,13 @@ use super::{Shell, grid};
 use glam::{Vec2, Vec3};
 
 /// The box between `low` and `high`, flat shaded.
-pub fn block(low: Vec3, high: Vec3) -> Shell {
+pub fn block(low: impl Into<Vec3>, high: impl Into<Vec3>) -> Shell {
     frustum(low, high, Vec2::ONE)
 }
 
 /// A box whose top is its bottom scaled by `taper` in x and z about the middle (a wedge, a hopper, a plinth).
-pub fn frustum(low: Vec3, high: Vec3, taper: Vec2) -> Shell {
+pub fn frustum(low: impl Into<Vec3>, high: impl Into<Vec3>, taper: Vec2) -> Shell {
+    let (low, high) = (low.into(), high.into());
     let mut shell = Shell::new(0.0);
     let middle = 0.5 * (low + high);
     let corners: Vec<u32> = (0..8)
@@ -30,7 +31,8 @@ pub fn frustum(low: Vec3, high: Vec3, taper: Vec2) -> Shell {
 }
 
 /// The box between `low` and `high` with edges cut at 45° by `bevel` metres (limited to what fits).
-pub fn beveled_box(low: Vec3, high: Vec3, bevel: f32) -> Shell {
+pub fn beveled_box(low: impl Into<Vec3>, high: impl Into<Vec3>, bevel: f32) -> Shell {
+    let (low, high) = (low.into(), high.into());
     let cut = bevel.min(0.49 * (high - low).min_element());
     if cut <= 0.0 {
         return block(low, high);

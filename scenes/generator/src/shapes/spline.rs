@@ -4,8 +4,8 @@ use glam::{Vec2, Vec3};
 use std::ops::{Add, Mul, Sub};
 
 /// The uniform Catmull-Rom curve through `points` with `steps` segments between neighbours.
-pub fn spline(points: &[Vec2], steps: usize) -> Vec<Vec2> {
-    through(points, steps)
+pub fn spline(points: &[impl Into<Vec2> + Copy], steps: usize) -> Vec<Vec2> {
+    through(&super::points(points), steps)
 }
 
 /// The same in space.

@@ -1,6 +1,6 @@
 //! Profiles swept along polylines with mitred corners: pipes, mouldings, ribs, rails, cables.
 
-use super::{Faces, Shell, circle, extrude::triangulate, grid};
+use super::{Faces, Shell, circle, extrude::triangulate, grid, points};
 use glam::{Vec2, Vec3};
 
 /// The profile of a sweep, in the plane across the path as someone sees it who travels along: x to the
@@ -18,8 +18,8 @@ pub struct Section<'a> {
 
 /// Sweeps a closed profile along `path`, with ends. `up` fixes the roll at the start and may not be parallel
 /// to the first segment.
-pub fn sweep(profile: &[Vec2], path: &[Vec3], up: Vec3) -> Shell {
-    let section = Section { points: profile, closed: true, crease_degrees: 35.0 };
+pub fn sweep(profile: &[impl Into<Vec2> + Copy], path: &[Vec3], up: Vec3) -> Shell {
+    let section = Section { points: &points(profile), closed: true, crease_degrees: 35.0 };
     sweep_along(section, path, up, false, Faces::ALL)
 }
 
@@ -88,16 +88,17 @@ fn rotate_into(v: Vec3, from: Vec3, to: Vec3) -> Vec3 {
 }
 
 /// A round pipe along `path`, closed at the ends.
-pub fn pipe(path: &[Vec3], radius: f32, segments: usize) -> Shell {
+pub fn pipe(path: &[impl Into<Vec3> + Copy], radius: f32, segments: usize) -> Shell {
+    let path: Vec<Vec3> = path.iter().map(|&p| p.into()).collect();
     let profile = circle(radius, segments);
     let first = (path[1] - path[0]).normalize();
     let up = if first.y.abs() > 0.9 { Vec3::X } else { Vec3::Y };
     let crease = f32::max(40.0, 360.0 / segments as f32 + 1.0);
     let section = Section { points: &profile, closed: true, crease_degrees: crease };
-    sweep_along(section, path, up, false, Faces::ALL)
+    sweep_along(section, &path, up, false, Faces::ALL)
 }
 
 /// A straight round bar between two points, closed at the ends.
-pub fn rod(from: Vec3, to: Vec3, radius: f32, segments: usize) -> Shell {
-    pipe(&[from, to], radius, segments)
+pub fn rod(from: impl Into<Vec3>, to: impl Into<Vec3>, radius: f32, segments: usize) -> Shell {
+    pipe(&[from.into(), to.into()], radius, segments)
 }

@@ -1,7 +1,7 @@
 //! Books and the shelves they stand on.
 
-use crate::shapes::{Assembly, Rng, Shell, at, beveled_box, block, extrude, turned};
-use glam::{Affine3A, Quat, Vec2, Vec3};
+use crate::shapes::*;
+use glam::{Affine3A, Quat, Vec3};
 
 /// The parts books are divided into, for as many bindings.
 const BINDINGS: [&str; 4] = ["books_red", "books_blue", "books_green", "books_cream"];
@@ -22,9 +22,8 @@ fn book(binding: &str, thickness: f32, height: f32, depth: f32) -> Assembly {
         [0.0, depth],
     ];
     let rise = Affine3A::from_quat(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2));
-    book.add_at(binding, &extrude(&cover.map(Vec2::from_array), &[], height), &rise);
-    let pages =
-        block(Vec3::new(board, 0.004, 0.006 - depth), Vec3::new(thickness - board, height - 0.004, -0.004));
+    book.add_at(binding, &extrude(&cover, &[], height), rise);
+    let pages = block([board, 0.004, 0.006 - depth], [thickness - board, height - 0.004, -0.004]);
     // Only the head and the fore-edge can be seen.
     let pages = [Vec3::X, -Vec3::X, Vec3::Z, -Vec3::Y].into_iter().fold(pages, Shell::without_faces);
     book.add("pages", &pages);
@@ -39,34 +38,20 @@ pub fn bookcase(wood: &str, size: Vec3, shelves: usize, seed: u64) -> Assembly {
     let (half, board) = (0.5 * width, 0.025);
     for side in [-1.0, 1.0] {
         let x = side * (half - 0.5 * board);
-        case.add(
-            wood,
-            &beveled_box(
-                Vec3::new(x - 0.5 * board, 0.0, 0.0),
-                Vec3::new(x + 0.5 * board, height, depth),
-                0.002,
-            ),
-        );
+        case.add(wood, &beveled_box([x - 0.5 * board, 0.0, 0.0], [x + 0.5 * board, height, depth], 0.002));
     }
     let inner = half - board;
-    case.add(wood, &block(Vec3::new(-inner, 0.08, 0.004), Vec3::new(inner, height - 0.01, 0.012)));
+    case.add(wood, &block([-inner, 0.08, 0.004], [inner, height - 0.01, 0.012]));
     case.add(
         wood,
-        &beveled_box(
-            Vec3::new(-half - 0.01, height, 0.0),
-            Vec3::new(half + 0.01, height + 0.03, depth + 0.012),
-            0.006,
-        ),
+        &beveled_box([-half - 0.01, height, 0.0], [half + 0.01, height + 0.03, depth + 0.012], 0.006),
     );
-    case.add(wood, &block(Vec3::new(-inner, 0.0, 0.02), Vec3::new(inner, 0.08, depth - 0.02)));
+    case.add(wood, &block([-inner, 0.0, 0.02], [inner, 0.08, depth - 0.02]));
     let pitch = (height - 0.1) / shelves as f32;
     let mut rng = Rng::new(seed);
     for k in 0..shelves {
         let y = 0.08 + pitch * k as f32;
-        case.add(
-            wood,
-            &beveled_box(Vec3::new(-inner, y, 0.013), Vec3::new(inner, y + board, depth - 0.006), 0.002),
-        );
+        case.add(wood, &beveled_box([-inner, y, 0.013], [inner, y + board, depth - 0.006], 0.002));
         let deepest = depth - 0.05;
         fill(
             &mut case,
@@ -94,7 +79,7 @@ fn fill(case: &mut Assembly, rng: &mut Rng, start: Vec3, width: f32, headroom: f
         let binding = BINDINGS[rng.below(BINDINGS.len())];
         let set_back = rng.range(0.0, 0.012);
         let place = at(start.x + x, start.y, start.z - set_back);
-        case.place(&book(binding, thickness, height, depth), &place);
+        case.place(&book(binding, thickness, height, depth), place);
         x += thickness + rng.range(0.0005, 0.002);
     }
 }
@@ -108,9 +93,8 @@ pub fn pile(seed: u64, count: usize) -> Assembly {
         let thickness = rng.range(0.02, 0.035);
         let (height, depth) = (rng.range(0.2, 0.26), rng.range(0.15, 0.19));
         let lying = Affine3A::from_quat(Quat::from_rotation_z(std::f32::consts::FRAC_PI_2));
-        let place =
-            turned(rng.jitter(14.0), Vec3::new(0.0, y, 0.0)) * at(0.5 * height, 0.0, 0.5 * depth) * lying;
-        pile.place(&book(BINDINGS[rng.below(BINDINGS.len())], thickness, height, depth), &place);
+        let place = turned(rng.jitter(14.0), [0.0, y, 0.0]) * at(0.5 * height, 0.0, 0.5 * depth) * lying;
+        pile.place(&book(BINDINGS[rng.below(BINDINGS.len())], thickness, height, depth), place);
         y += thickness + 0.0005;
     }
     pile

@@ -1,8 +1,6 @@
 //! Doors, panelled fronts, handles, casings, skirting.
 
-use crate::shapes::{
-    Assembly, Faces, Section, Shell, at, beveled_box, fillet, grid, lathe, pipe, sweep_along, turned,
-};
+use crate::shapes::*;
 use glam::{Affine3A, Quat, Vec2, Vec3};
 
 /// A frame-and-panel front of `size` with its lower left corner at the origin, its back at z = 0 and its
@@ -56,7 +54,7 @@ pub fn knob(radius: f32) -> Shell {
     let profile = [[0.45, 0.0], [0.35, 0.5], [0.4, 0.75], [0.95, 1.0], [1.0, 1.25], [0.7, 1.5], [0.0, 1.55]];
     lathe(&profile.map(|p| Vec2::from_array(p) * radius), 10)
         .creased(60.0)
-        .transformed(&Affine3A::from_quat(Quat::from_rotation_x(90.0_f32.to_radians())))
+        .transformed(Affine3A::from_quat(Quat::from_rotation_x(90.0_f32.to_radians())))
 }
 
 /// A moulding around an opening of `size` that stands on the floor (`sill` false) or all around it, with
@@ -79,10 +77,9 @@ pub fn casing(size: Vec2, width: f32, sill: bool) -> Shell {
 
 /// A skirting board of `height` on the wall z = 0, from x = 0 to `length`.
 pub fn skirting(length: f32, height: f32) -> Shell {
-    let profile = [[0.0, 0.0], [0.016, 0.0], [0.016, height - 0.025], [0.01, height - 0.008], [0.0, height]]
-        .map(Vec2::from_array);
+    let profile = [[0.0, 0.0], [0.016, 0.0], [0.016, height - 0.025], [0.01, height - 0.008], [0.0, height]];
     let path = [Vec3::ZERO, Vec3::X * length];
-    let section = Section { points: &profile, closed: true, crease_degrees: 25.0 };
+    let section = Section { points: &points(&profile), closed: true, crease_degrees: 25.0 };
     sweep_along(section, &path, Vec3::Y, false, Faces::ALL)
 }
 
@@ -90,21 +87,17 @@ pub fn skirting(length: f32, height: f32) -> Shell {
 /// on both faces: parts "door" and "door_furniture".
 pub fn door_leaf() -> Assembly {
     let mut leaf = Assembly::new();
-    leaf.add("door", &beveled_box(Vec3::new(0.004, 0.008, -0.018), Vec3::new(0.892, 2.092, 0.018), 0.002));
+    leaf.add("door", &beveled_box([0.004, 0.008, -0.018], [0.892, 2.092, 0.018], 0.002));
     for side in [0.0, 180.0_f32] {
         let face = at(0.448, 0.0, 0.0) * turned(side, Vec3::ZERO);
         for (y, h) in [(0.16, 0.56), (0.84, 0.62), (1.58, 0.38)] {
             for x in [-0.375, 0.03] {
-                leaf.add_at(
-                    "door",
-                    &framed_panel(Vec2::new(0.345, h), 0.01, 0.012),
-                    &(face * at(x, y, 0.0165)),
-                );
+                leaf.add_at("door", &framed_panel(Vec2::new(0.345, h), 0.01, 0.012), face * at(x, y, 0.0165));
             }
         }
         let x = if side == 0.0 { 0.4 } else { -0.4 };
-        let lever = [[x, 1.05, 0.012], [x, 1.05, 0.065], [0.7 * x, 1.05, 0.065]].map(Vec3::from_array);
-        leaf.add_at("door_furniture", &pipe(&fillet(&lever, 0.02, 22.5), 0.009, 10), &face);
+        let lever = [[x, 1.05, 0.012], [x, 1.05, 0.065], [0.7 * x, 1.05, 0.065]];
+        leaf.add_at("door_furniture", &pipe(&fillet(&lever, 0.02, 22.5), 0.009, 10), face);
     }
     leaf
 }
@@ -114,18 +107,18 @@ pub fn door_leaf() -> Assembly {
 pub fn door() -> Assembly {
     let mut door = Assembly::new();
     let (width, height) = (0.9, 2.1);
-    door.add_at("trim", &casing(Vec2::new(width, height), 0.09, false), &at(-0.5 * width, 0.0, 0.0));
-    let leaf = beveled_box(Vec3::new(-0.448, 0.006, 0.0), Vec3::new(0.448, height - 0.003, 0.012), 0.002);
+    door.add_at("trim", &casing(Vec2::new(width, height), 0.09, false), at(-0.5 * width, 0.0, 0.0));
+    let leaf = beveled_box([-0.448, 0.006, 0.0], [0.448, height - 0.003, 0.012], 0.002);
     door.add("door", &leaf);
     for (y, h) in [(0.16, 0.56), (0.84, 0.62), (1.58, 0.38)] {
         for x in [-0.375, 0.03] {
             let panel = framed_panel(Vec2::new(0.345, h), 0.012, 0.012);
-            door.add_at("door", &panel, &at(x, y, 0.0105));
+            door.add_at("door", &panel, at(x, y, 0.0105));
         }
     }
-    let plate = beveled_box(Vec3::new(-0.425, 0.93, 0.012), Vec3::new(-0.385, 1.13, 0.018), 0.002);
+    let plate = beveled_box([-0.425, 0.93, 0.012], [-0.385, 1.13, 0.018], 0.002);
     door.add("door_furniture", &plate);
-    let lever = [[-0.405, 1.05, 0.015], [-0.405, 1.05, 0.065], [-0.285, 1.05, 0.065]].map(Vec3::from_array);
+    let lever = [[-0.405, 1.05, 0.015], [-0.405, 1.05, 0.065], [-0.285, 1.05, 0.065]];
     door.add("door_furniture", &pipe(&fillet(&lever, 0.02, 22.5), 0.009, 10));
     door
 }

@@ -1,6 +1,6 @@
 //! The turned chair and its leg.
 
-use crate::shapes::{Assembly, Shell, at, lathe, loft, rod, spline, spline3, standing_on, superellipsoid};
+use crate::shapes::*;
 use glam::{Vec2, Vec3};
 
 /// A turned leg of `height` and greatest radius `radius`: foot, rings and a tapering vase.
@@ -33,20 +33,20 @@ pub fn turned_leg(height: f32, radius: f32, segments: usize, steps: usize) -> Sh
 /// and a cushion, part `cloth`.
 pub fn chair(wood: &str, cloth: &str) -> Assembly {
     let mut chair = Assembly::new();
-    let seat = superellipsoid(Vec3::new(0.225, 0.016, 0.215), 0.35, 0.55, 24, 6);
-    chair.add_at(wood, &seat, &at(0.0, 0.44, 0.0));
-    let cushion = superellipsoid(Vec3::new(0.195, 0.02, 0.185), 0.6, 0.5, 20, 6);
-    chair.add_at(cloth, &cushion, &at(0.0, 0.472, 0.005));
+    let seat = superellipsoid([0.225, 0.016, 0.215], 0.35, 0.55, 24, 6);
+    chair.add_at(wood, &seat, at(0.0, 0.44, 0.0));
+    let cushion = superellipsoid([0.195, 0.02, 0.185], 0.6, 0.5, 20, 6);
+    chair.add_at(cloth, &cushion, at(0.0, 0.472, 0.005));
     for side in [-1.0, 1.0] {
         let front = [Vec3::new(side * 0.195, 0.0, 0.185), Vec3::new(side * 0.165, 0.435, 0.15)];
         let rear = [Vec3::new(side * 0.185, 0.0, -0.215), Vec3::new(side * 0.155, 0.435, -0.16)];
         for [foot, top] in [front, rear] {
-            chair.add_at(wood, &turned_leg(foot.distance(top), 0.02, 8, 1), &standing_on(foot, top));
+            chair.add_at(wood, &turned_leg(foot.distance(top), 0.02, 8, 1), standing_on(foot, top));
         }
         let at_height = |leg: [Vec3; 2], t: f32| leg[0].lerp(leg[1], t);
         chair.add(wood, &rod(at_height(front, 0.36), at_height(rear, 0.36), 0.0085, 8));
     }
-    chair.add(wood, &rod(Vec3::new(-0.183, 0.157, 0.0), Vec3::new(0.183, 0.157, 0.0), 0.0085, 8));
+    chair.add(wood, &rod([-0.183, 0.157, 0.0], [0.183, 0.157, 0.0], 0.0085, 8));
     back(&mut chair, wood);
     chair
 }
@@ -61,7 +61,7 @@ fn back(chair: &mut Assembly, wood: &str) {
         let length = from.distance(to);
         let profile = [[0.7, 0.0], [1.0, 0.3], [1.2, 0.45], [0.9, 0.6], [0.65, 1.0]];
         let points: Vec<Vec2> = profile.iter().map(|p| Vec2::new(p[0] * thick, p[1] * length)).collect();
-        chair.add_at(wood, &lathe(&spline(&points, 1), 8), &standing_on(from, to));
+        chair.add_at(wood, &lathe(&spline(&points, 1), 8), standing_on(from, to));
     }
     // The rail: a board bent about the sitter, thicker in the middle, rounded at both ends.
     let line =

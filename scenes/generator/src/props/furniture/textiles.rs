@@ -1,6 +1,6 @@
 //! Curtains and rugs.
 
-use crate::shapes::{Shell, patch, rounded_box};
+use crate::shapes::*;
 use glam::{Vec2, Vec3};
 use std::f32::consts::TAU;
 
@@ -19,5 +19,5 @@ pub fn curtain(width: f32, drop: f32, folds: usize) -> Shell {
 /// A rug of `size` about the origin, with a soft edge.
 pub fn rug(size: Vec2) -> Shell {
     let half = 0.5 * size;
-    rounded_box(Vec3::new(-half.x, 0.0005, -half.y), Vec3::new(half.x, 0.014, half.y), 0.006, 2)
+    rounded_box([-half.x, 0.0005, -half.y], [half.x, 0.014, half.y], 0.006, 2)
 }

@@ -1,8 +1,8 @@
 //! Sofas and beds.
 
 use super::framed_panel;
-use crate::shapes::{Assembly, Shell, at, beveled_box, cone, patch, rounded_box, superellipsoid};
-use glam::{Affine3A, Quat, Vec2, Vec3};
+use crate::shapes::*;
+use glam::{Quat, Vec2, Vec3};
 
 /// A cushion of `size` about its middle: flat faces, full in the middle, drawn in at the corners.
 fn cushion(size: Vec3, segments: usize, rings: usize) -> Shell {
@@ -25,36 +25,27 @@ pub fn sofa(cloth: &str, seats: usize) -> Assembly {
     let half = 0.5 * place * seats as f32;
     let outer = half + arm;
     for (x, z) in [(-1.0, 0.08), (1.0, 0.08), (-1.0, depth - 0.08), (1.0, depth - 0.08)] {
-        sofa.add_at("wood", &cone(0.018, 0.03, 0.12, 14), &at(x * (outer - 0.08), 0.0, z));
+        sofa.add_at("wood", &cone(0.018, 0.03, 0.12, 14), at(x * (outer - 0.08), 0.0, z));
     }
-    sofa.add(
-        cloth,
-        &rounded_box(Vec3::new(-half - 0.01, 0.12, 0.1), Vec3::new(half + 0.01, 0.3, depth - 0.03), 0.02, 3),
-    );
-    let back = rounded_box(Vec3::new(-outer, 0.12, 0.0), Vec3::new(outer, 0.8, 0.2), 0.06, 4);
+    sofa.add(cloth, &rounded_box([-half - 0.01, 0.12, 0.1], [half + 0.01, 0.3, depth - 0.03], 0.02, 3));
+    let back = rounded_box([-outer, 0.12, 0.0], [outer, 0.8, 0.2], 0.06, 4);
     sofa.add(cloth, &back.mapped(|p| p - Vec3::Z * 0.05 * (p.y - 0.8)));
     for side in [-1.0, 1.0_f32] {
         let (a, b) = (side * half, side * outer);
-        sofa.add(
-            cloth,
-            &rounded_box(Vec3::new(a.min(b), 0.12, 0.02), Vec3::new(a.max(b), 0.6, depth), 0.065, 4),
-        );
+        sofa.add(cloth, &rounded_box([a.min(b), 0.12, 0.02], [a.max(b), 0.6, depth], 0.065, 4));
     }
     for k in 0..seats {
         let x = (k as f32 + 0.5) * place - half;
-        sofa.add_at(cloth, &cushion(Vec3::new(place - 0.01, 0.17, 0.68), 28, 10), &at(x, 0.385, 0.57));
-        let lean = Affine3A::from_rotation_translation(Quat::from_rotation_x(1.33), Vec3::new(x, 0.66, 0.3));
-        sofa.add_at(cloth, &cushion(Vec3::new(place - 0.02, 0.17, 0.46), 28, 10), &lean);
+        sofa.add_at(cloth, &cushion(Vec3::new(place - 0.01, 0.17, 0.68), 28, 10), at(x, 0.385, 0.57));
+        let lean = posed(Quat::from_rotation_x(1.33), [x, 0.66, 0.3]);
+        sofa.add_at(cloth, &cushion(Vec3::new(place - 0.02, 0.17, 0.46), 28, 10), lean);
     }
     let thrown = |x: f32, degrees: f32| {
-        Affine3A::from_rotation_translation(
-            Quat::from_rotation_y(degrees.to_radians()) * Quat::from_rotation_x(1.1),
-            Vec3::new(x, 0.655, 0.47),
-        )
+        posed(Quat::from_rotation_y(degrees.to_radians()) * Quat::from_rotation_x(1.1), [x, 0.655, 0.47])
     };
-    sofa.add_at("pillows", &pillow(Vec3::new(0.42, 0.14, 0.42)), &thrown(half - 0.26, -14.0));
+    sofa.add_at("pillows", &pillow(Vec3::new(0.42, 0.14, 0.42)), thrown(half - 0.26, -14.0));
     if seats > 1 {
-        sofa.add_at("pillows", &pillow(Vec3::new(0.42, 0.14, 0.42)), &thrown(0.26 - half, 16.0));
+        sofa.add_at("pillows", &pillow(Vec3::new(0.42, 0.14, 0.42)), thrown(0.26 - half, 16.0));
     }
     sofa
 }
@@ -64,25 +55,16 @@ pub fn sofa(cloth: &str, seats: usize) -> Assembly {
 pub fn bed() -> Assembly {
     let mut bed = Assembly::new();
     let (half, length) = (0.8, 2.02);
-    bed.add(
-        "wood",
-        &beveled_box(Vec3::new(-half - 0.04, 0.12, 0.03), Vec3::new(half + 0.04, 0.34, length + 0.06), 0.01),
-    );
+    bed.add("wood", &beveled_box([-half - 0.04, 0.12, 0.03], [half + 0.04, 0.34, length + 0.06], 0.01));
     for (x, z) in [(-1.0, 0.1), (1.0, 0.1), (-1.0, length), (1.0, length)] {
-        bed.add_at("wood", &cone(0.022, 0.035, 0.12, 14), &at(x * half, 0.0, z));
+        bed.add_at("wood", &cone(0.022, 0.035, 0.12, 14), at(x * half, 0.0, z));
     }
-    bed.add(
-        "wood",
-        &beveled_box(Vec3::new(-half - 0.08, 0.0, 0.0), Vec3::new(half + 0.08, 1.1, 0.03), 0.006),
-    );
+    bed.add("wood", &beveled_box([-half - 0.08, 0.0, 0.0], [half + 0.08, 1.1, 0.03], 0.006));
     for k in 0..3 {
         let x = -half - 0.06 + 0.575 * k as f32;
-        bed.add_at("wood", &framed_panel(Vec2::new(0.565, 0.66), 0.03, 0.07), &at(x, 0.4, 0.028));
+        bed.add_at("wood", &framed_panel(Vec2::new(0.565, 0.66), 0.03, 0.07), at(x, 0.4, 0.028));
     }
-    bed.add(
-        "linen",
-        &rounded_box(Vec3::new(-half, 0.33, 0.06), Vec3::new(half, 0.56, length + 0.03), 0.05, 4),
-    );
+    bed.add("linen", &rounded_box([-half, 0.33, 0.06], [half, 0.56, length + 0.03], 0.05, 4));
     for (x, z, lean, part) in [
         (-0.39, 0.24, 0.5, "linen"),
         (0.39, 0.24, 0.5, "linen"),
@@ -90,11 +72,11 @@ pub fn bed() -> Assembly {
         (0.37, 0.4, 0.75, "pillows"),
     ] {
         let small = if part == "pillows" { 0.8 } else { 1.0 };
-        let place = Affine3A::from_rotation_translation(
+        let place = posed(
             Quat::from_rotation_y(0.06 * x) * Quat::from_rotation_x(lean),
-            Vec3::new(x, 0.56 + 0.26 * lean * small, z),
+            [x, 0.56 + 0.26 * lean * small, z],
         );
-        bed.add_at(part, &pillow(Vec3::new(0.7 * small, 0.17, 0.46 * small)), &place);
+        bed.add_at(part, &pillow(Vec3::new(0.7 * small, 0.17, 0.46 * small)), place);
     }
     bed.add("duvet", &duvet(half));
     bed

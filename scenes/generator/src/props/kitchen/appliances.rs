@@ -2,28 +2,25 @@
 
 use super::{BASE_DEPTH, WORKTOP};
 use crate::props::furniture::{bar_handle, downlight};
-use crate::shapes::{
-    Assembly, Shell, at, beveled_box, block, fillet, lathe, loft, pipe, ring, rod, rounded_box,
-    rounded_rectangle, spline, stacked,
-};
+use crate::shapes::*;
 use glam::{Affine3A, Quat, Vec2, Vec3};
 use std::f32::consts::FRAC_PI_2;
 
 fn upright_bar(x: f32, y: f32, z: f32) -> Affine3A {
-    Affine3A::from_rotation_translation(Quat::from_rotation_z(FRAC_PI_2), Vec3::new(x, y, z))
+    posed(Quat::from_rotation_z(FRAC_PI_2), [x, y, z])
 }
 
 /// A refrigerator with two doors, 0.68 m wide.
 pub fn refrigerator() -> Assembly {
     let mut fridge = Assembly::new();
-    fridge.add("fridge", &beveled_box(Vec3::new(0.0, 0.06, 0.02), Vec3::new(0.68, 1.88, 0.6), 0.008));
-    fridge.add("plinth", &block(Vec3::new(0.02, 0.0, 0.04), Vec3::new(0.66, 0.06, 0.57)));
+    fridge.add("fridge", &beveled_box([0.0, 0.06, 0.02], [0.68, 1.88, 0.6], 0.008));
+    fridge.add("plinth", &block([0.02, 0.0, 0.04], [0.66, 0.06, 0.57]));
     for (low, high) in [(0.075, 0.63), (0.645, 1.88)] {
-        let leaf = rounded_box(Vec3::new(0.0, low, 0.605), Vec3::new(0.68, high, 0.665), 0.014, 4);
+        let leaf = rounded_box([0.0, low, 0.605], [0.68, high, 0.665], 0.014, 4);
         fridge.add("fridge", &leaf);
     }
-    fridge.add_at("steel", &bar_handle(0.3, 0.045, 0.009), &upright_bar(0.62, 0.44, 0.663));
-    fridge.add_at("steel", &bar_handle(0.5, 0.045, 0.009), &upright_bar(0.62, 0.98, 0.663));
+    fridge.add_at("steel", &bar_handle(0.3, 0.045, 0.009), upright_bar(0.62, 0.44, 0.663));
+    fridge.add_at("steel", &bar_handle(0.5, 0.045, 0.009), upright_bar(0.62, 0.98, 0.663));
     fridge
 }
 
@@ -31,49 +28,40 @@ pub fn refrigerator() -> Assembly {
 pub fn cooker() -> Assembly {
     let mut cooker = Assembly::new();
     let top = WORKTOP - 0.035;
-    cooker.add("carcass", &block(Vec3::new(0.0, 0.1, 0.0), Vec3::new(0.6, top, BASE_DEPTH)));
-    cooker.add("plinth", &block(Vec3::ZERO, Vec3::new(0.6, 0.1, BASE_DEPTH - 0.06)));
+    cooker.add("carcass", &block([0.0, 0.1, 0.0], [0.6, top, BASE_DEPTH]));
+    cooker.add("plinth", &block(Vec3::ZERO, [0.6, 0.1, BASE_DEPTH - 0.06]));
     let front = BASE_DEPTH + 0.001;
-    let panel =
-        beveled_box(Vec3::new(0.003, 0.74, front), Vec3::new(0.597, top - 0.004, front + 0.022), 0.003);
+    let panel = beveled_box([0.003, 0.74, front], [0.597, top - 0.004, front + 0.022], 0.003);
     cooker.add("steel", &panel);
-    let leaf = beveled_box(Vec3::new(0.003, 0.25, front), Vec3::new(0.597, 0.735, front + 0.026), 0.004);
+    let leaf = beveled_box([0.003, 0.25, front], [0.597, 0.735, front + 0.026], 0.004);
     cooker.add("steel", &leaf);
-    let window =
-        rounded_box(Vec3::new(0.07, 0.31, front + 0.02), Vec3::new(0.53, 0.62, front + 0.029), 0.006, 3);
+    let window = rounded_box([0.07, 0.31, front + 0.02], [0.53, 0.62, front + 0.029], 0.006, 3);
     cooker.add("dark_glass", &window);
-    let drawer = beveled_box(Vec3::new(0.003, 0.108, front), Vec3::new(0.597, 0.245, front + 0.022), 0.003);
+    let drawer = beveled_box([0.003, 0.108, front], [0.597, 0.245, front + 0.022], 0.003);
     cooker.add("steel", &drawer);
-    cooker.add_at("handles", &bar_handle(0.5, 0.045, 0.009), &at(0.3, 0.685, front + 0.024));
-    let knob = lathe(
-        &[[0.0, 0.0], [0.02, 0.0], [0.018, 0.022], [0.015, 0.025], [0.0, 0.025]].map(Vec2::from_array),
-        18,
-    );
+    cooker.add_at("handles", &bar_handle(0.5, 0.045, 0.009), at(0.3, 0.685, front + 0.024));
+    let knob = lathe(&[[0.0, 0.0], [0.02, 0.0], [0.018, 0.022], [0.015, 0.025], [0.0, 0.025]], 18);
     for k in 0..5 {
-        let turn = Affine3A::from_rotation_translation(
-            Quat::from_rotation_x(FRAC_PI_2),
-            Vec3::new(0.1 + 0.1 * k as f32, 0.795, front + 0.021),
-        );
-        cooker.add_at("hob", &knob, &turn);
+        let turn = posed(Quat::from_rotation_x(FRAC_PI_2), [0.1 + 0.1 * k as f32, 0.795, front + 0.021]);
+        cooker.add_at("hob", &knob, turn);
     }
     hob(&mut cooker);
     cooker
 }
 
 fn hob(cooker: &mut Assembly) {
-    let plate =
-        rounded_box(Vec3::new(0.02, WORKTOP + 0.001, 0.06), Vec3::new(0.58, WORKTOP + 0.011, 0.57), 0.004, 3);
+    let plate = rounded_box([0.02, WORKTOP + 0.001, 0.06], [0.58, WORKTOP + 0.011, 0.57], 0.004, 3);
     cooker.add("dark_glass", &plate);
     let deck = WORKTOP + 0.011;
     for (x, z, size) in
         [(0.16, 0.19, 0.042), (0.44, 0.19, 0.034), (0.16, 0.43, 0.034), (0.44, 0.43, 0.05_f32)]
     {
-        cooker.add_at("steel", &ring(0.8 * size, 1.25 * size, 0.0, 0.008, 24), &at(x, deck, z));
+        cooker.add_at("steel", &ring(0.8 * size, 1.25 * size, 0.0, 0.008, 24), at(x, deck, z));
         let cap = spline(
             &[[0.9, 0.008], [0.95, 0.018], [0.8, 0.024], [0.0, 0.025]].map(|p| Vec2::new(p[0] * size, p[1])),
             3,
         );
-        cooker.add_at("hob", &lathe(&cap, 24), &at(x, deck, z));
+        cooker.add_at("hob", &lathe(&cap, 24), at(x, deck, z));
         // The grate: a square frame on feet, four fingers towards the flame.
         let (half, high) = (0.115, 0.04);
         let frame = rounded_rectangle(Vec2::splat(2.0 * half), 0.02, 3);
@@ -86,15 +74,15 @@ fn hob(cooker: &mut Assembly) {
             let corner = Vec3::new(dx + dz, 0.0, dz - dx) * (half - 0.012);
             grate = grate.joined(&rod(corner, corner + Vec3::Y * high, 0.005, 6));
         }
-        cooker.add_at("hob", &grate, &at(x, deck, z));
+        cooker.add_at("hob", &grate, at(x, deck, z));
     }
 }
 
 /// A wire of square-ish section along a closed line in a horizontal plane.
 fn closed_wire(line: &[Vec3], radius: f32) -> Shell {
-    let section: Vec<Vec2> = crate::shapes::circle(radius, 6);
-    let section = crate::shapes::Section { points: &section, closed: true, crease_degrees: 65.0 };
-    crate::shapes::sweep_along(section, line, Vec3::Y, true, crate::shapes::Faces::ALL)
+    let section: Vec<Vec2> = circle(radius, 6);
+    let section = Section { points: &section, closed: true, crease_degrees: 65.0 };
+    sweep_along(section, line, Vec3::Y, true, Faces::ALL)
 }
 
 /// An extractor hood, 0.6 m wide, its lower edge at y = 0, the chimney up to `height`; two lights.
@@ -113,7 +101,7 @@ pub fn hood(height: f32) -> Assembly {
     ];
     hood.add("steel", &loft(&rings, true, true, 5.0));
     for x in [0.16, 0.44] {
-        hood.place(&downlight("lamp_metal", "hood_light", 0.025), &at(x, 0.012, 0.32));
+        hood.place(&downlight("lamp_metal", "hood_light", 0.025), at(x, 0.012, 0.32));
     }
     let rail = [
         Vec3::new(0.02, 0.03, 0.5),
@@ -128,16 +116,13 @@ pub fn hood(height: f32) -> Assembly {
 /// A kettle with spout, lid and handle.
 pub fn kettle() -> Assembly {
     let mut kettle = Assembly::new();
-    let body = spline(
-        &[[0.07, 0.0], [0.095, 0.015], [0.098, 0.06], [0.08, 0.12], [0.05, 0.15], [0.045, 0.155]]
-            .map(Vec2::from_array),
-        4,
-    );
+    let body =
+        spline(&[[0.07, 0.0], [0.095, 0.015], [0.098, 0.06], [0.08, 0.12], [0.05, 0.15], [0.045, 0.155]], 4);
     let mut profile = vec![Vec2::ZERO];
     profile.extend(body);
-    profile.extend([[0.03, 0.168], [0.01, 0.172], [0.0, 0.172]].map(Vec2::from_array));
+    profile.extend(points(&[[0.03, 0.168], [0.01, 0.172], [0.0, 0.172]]));
     kettle.add("pots", &lathe(&profile, 24));
-    kettle.add_at("hob", &crate::shapes::ellipsoid(Vec3::splat(0.012), 12, 8), &at(0.0, 0.18, 0.0));
+    kettle.add_at("hob", &ellipsoid(Vec3::splat(0.012), 12, 8), at(0.0, 0.18, 0.0));
     let spout =
         spline_rings(&[(0.07, 0.06, 0.022), (0.11, 0.09, 0.016), (0.135, 0.14, 0.012), (0.15, 0.15, 0.012)]);
     kettle.add("pots", &spout);
@@ -149,8 +134,7 @@ pub fn kettle() -> Assembly {
 
 /// A tapering tube in the plane z = 0 through (x, y, radius).
 fn spline_rings(stations: &[(f32, f32, f32)]) -> Shell {
-    let line: Vec<Vec3> =
-        crate::shapes::spline3(&stations.iter().map(|s| Vec3::new(s.0, s.1, s.2)).collect::<Vec<_>>(), 4);
+    let line: Vec<Vec3> = spline3(&stations.iter().map(|s| Vec3::new(s.0, s.1, s.2)).collect::<Vec<_>>(), 4);
     let rings: Vec<Vec<Vec3>> = (0..line.len())
         .map(|k| {
             let (a, b) = (line[k.saturating_sub(1)], line[(k + 1).min(line.len() - 1)]);
@@ -170,10 +154,9 @@ pub fn toaster() -> Assembly {
     let levels = [(0.006, 0.0), (0.0, 0.01), (0.0, 0.13), (0.004, 0.15), (0.014, 0.165), (0.03, 0.172)];
     toaster.add("steel", &stacked(Vec2::new(0.28, 0.16), 0.04, 5, &levels, true, true));
     for z in [-0.028, 0.028] {
-        let slot =
-            rounded_box(Vec3::new(-0.09, 0.165, z - 0.011), Vec3::new(0.09, 0.1735, z + 0.011), 0.004, 2);
+        let slot = rounded_box([-0.09, 0.165, z - 0.011], [0.09, 0.1735, z + 0.011], 0.004, 2);
         toaster.add("hob", &slot);
     }
-    toaster.add("hob", &rounded_box(Vec3::new(0.135, 0.09, -0.02), Vec3::new(0.165, 0.105, 0.02), 0.005, 3));
+    toaster.add("hob", &rounded_box([0.135, 0.09, -0.02], [0.165, 0.105, 0.02], 0.005, 3));
     toaster
 }

@@ -3,8 +3,8 @@
 
 use super::{BASE_DEPTH, WALL_UNIT, WORKTOP, WORKTOP_DEPTH};
 use crate::props::furniture::{bar_handle, framed_panel, knob};
-use crate::shapes::{Assembly, Shell, at, beveled_box, block, extrude, rectangle, turned, upright};
-use glam::{Affine3A, Quat, Vec2, Vec3};
+use crate::shapes::*;
+use glam::{Quat, Vec2, Vec3};
 
 /// Height of the recessed plinth below base cupboards.
 const PLINTH: f32 = 0.1;
@@ -38,8 +38,8 @@ pub fn base_unit(width: f32, fronts: Fronts) -> Assembly {
 pub fn base_unit_below(width: f32, fronts: Fronts, room: f32) -> Assembly {
     let mut unit = Assembly::new();
     let top = WORKTOP - SLAB;
-    unit.add("carcass", &block(Vec3::new(0.0, PLINTH, 0.0), Vec3::new(width, top - room, BASE_DEPTH)));
-    unit.add("plinth", &block(Vec3::ZERO, Vec3::new(width, PLINTH, BASE_DEPTH - 0.06)));
+    unit.add("carcass", &block([0.0, PLINTH, 0.0], [width, top - room, BASE_DEPTH]));
+    unit.add("plinth", &block(Vec3::ZERO, [width, PLINTH, BASE_DEPTH - 0.06]));
     let low = Vec2::new(0.0, PLINTH + 0.005);
     add_fronts(&mut unit, low, Vec2::new(width, top) - low, BASE_DEPTH, fronts, true);
     unit
@@ -49,17 +49,14 @@ pub fn base_unit_below(width: f32, fronts: Fronts, room: f32) -> Assembly {
 pub fn wall_unit(width: f32, fronts: Fronts, light: bool) -> Assembly {
     let (low, height, depth) = WALL_UNIT;
     let mut unit = Assembly::new();
-    unit.add("carcass", &block(Vec3::new(0.0, low, 0.0), Vec3::new(width, low + height, depth)));
-    let cornice = beveled_box(
-        Vec3::new(-0.002, low + height, 0.0),
-        Vec3::new(width + 0.002, low + height + 0.045, depth + 0.05),
-        0.012,
-    );
+    unit.add("carcass", &block([0.0, low, 0.0], [width, low + height, depth]));
+    let cornice =
+        beveled_box([-0.002, low + height, 0.0], [width + 0.002, low + height + 0.045, depth + 0.05], 0.012);
     unit.add("fronts", &cornice);
     add_fronts(&mut unit, Vec2::new(0.0, low), Vec2::new(width, height), depth, fronts, false);
     if light {
         let lamp = crate::props::furniture::downlight("lamp_metal", "under_light", 0.035);
-        unit.place(&lamp, &at(0.5 * width, low, 0.6 * depth));
+        unit.place(&lamp, at(0.5 * width, low, 0.6 * depth));
     }
     unit
 }
@@ -93,27 +90,24 @@ fn add_fronts(unit: &mut Assembly, low: Vec2, size: Vec2, depth: f32, fronts: Fr
 
 fn add_door(unit: &mut Assembly, low: Vec2, size: Vec2, depth: f32, hinged_left: bool, base: bool) {
     let place = at(low.x + GAP, low.y + GAP, depth + 0.001);
-    unit.add_at("fronts", &framed_panel(size - 2.0 * GAP, FRONT, 0.062), &place);
+    unit.add_at("fronts", &framed_panel(size - 2.0 * GAP, FRONT, 0.062), place);
     let x = if hinged_left { low.x + size.x - 0.035 } else { low.x + 0.035 };
     let y = if base { low.y + size.y - 0.13 } else { low.y + 0.13 };
-    let stand = Affine3A::from_rotation_translation(
-        Quat::from_rotation_z(std::f32::consts::FRAC_PI_2),
-        Vec3::new(x, y, depth + FRONT),
-    );
-    unit.add_at("handles", &bar_handle(0.13, 0.032, 0.0055), &stand);
+    let stand = posed(Quat::from_rotation_z(std::f32::consts::FRAC_PI_2), [x, y, depth + FRONT]);
+    unit.add_at("handles", &bar_handle(0.13, 0.032, 0.0055), stand);
 }
 
 fn add_drawer(unit: &mut Assembly, low: Vec2, size: Vec2, depth: f32) {
     let place = at(low.x + GAP, low.y + GAP, depth + 0.001);
     let frame = if size.y < 0.2 { 0.032 } else { 0.05 };
-    unit.add_at("fronts", &framed_panel(size - 2.0 * GAP, FRONT, frame), &place);
+    unit.add_at("fronts", &framed_panel(size - 2.0 * GAP, FRONT, frame), place);
     let middle = at(low.x + 0.5 * size.x, low.y + 0.5 * size.y, depth + FRONT - 0.004);
     if size.x > 0.7 {
         for x in [-0.25, 0.25] {
-            unit.add_at("handles", &knob(0.016), &(middle * at(x * size.x, 0.0, 0.0)));
+            unit.add_at("handles", &knob(0.016), middle * at(x * size.x, 0.0, 0.0));
         }
     } else {
-        unit.add_at("handles", &bar_handle(0.16, 0.036, 0.0055), &middle);
+        unit.add_at("handles", &bar_handle(0.16, 0.036, 0.0055), middle);
     }
 }
 
@@ -124,13 +118,13 @@ pub fn worktop(from: f32, to: f32, holes: &[Vec<Vec2>]) -> Shell {
     let outline = rectangle(Vec2::new(from, -WORKTOP_DEPTH), Vec2::new(to, 0.0));
     let holes: Vec<Vec<Vec2>> = holes.iter().map(|h| h.iter().map(flip).collect()).collect();
     let slab = extrude(&outline, &holes, SLAB);
-    slab.transformed(&upright(Vec3::new(0.0, WORKTOP - SLAB, 0.0), Vec3::X, -Vec3::Z))
+    slab.transformed(upright([0.0, WORKTOP - SLAB, 0.0], Vec3::X, -Vec3::Z))
 }
 
 /// An open shelf of `width` on two brackets, its upper face at y = 0.
 pub fn shelf(width: f32, depth: f32) -> Assembly {
     let mut shelf = Assembly::new();
-    shelf.add("wood", &beveled_box(Vec3::new(0.0, -0.028, 0.0), Vec3::new(width, 0.0, depth), 0.003));
+    shelf.add("wood", &beveled_box([0.0, -0.028, 0.0], [width, 0.0, depth], 0.003));
     let outline = [
         [0.0, 0.0],
         [0.85 * depth, 0.0],
@@ -139,9 +133,9 @@ pub fn shelf(width: f32, depth: f32) -> Assembly {
         [0.03, -0.15],
         [0.0, -0.17],
     ];
-    let bracket = extrude(&outline.map(Vec2::from_array), &[], 0.014);
+    let bracket = extrude(&outline, &[], 0.014);
     for x in [0.08, width - 0.08] {
-        shelf.add_at("handles", &bracket, &(at(x, -0.028, 0.0) * turned(-90.0, Vec3::ZERO)));
+        shelf.add_at("handles", &bracket, at(x, -0.028, 0.0) * turned(-90.0, Vec3::ZERO));
     }
     shelf
 }

@@ -1,7 +1,7 @@
 //! The sink: a rounded basin let into the worktop, its rim, drain and a swan-neck tap.
 
 use super::WORKTOP;
-use crate::shapes::{Assembly, at, fillet, lathe, loft, pipe, ring, rod, rounded_rectangle};
+use crate::shapes::*;
 use glam::{Vec2, Vec3};
 
 /// Size of the basin's opening.
@@ -37,16 +37,15 @@ pub fn sink() -> Assembly {
         })
         .collect();
     sink.add("sink", &loft(&rings, false, true, 50.0));
-    sink.add_at("tap", &ring(0.03, 0.045, -0.001, 0.003, 24), &at(0.0, WORKTOP - 0.18, 0.0));
+    sink.add_at("tap", &ring(0.03, 0.045, -0.001, 0.003, 24), at(0.0, WORKTOP - 0.18, 0.0));
     tap(&mut sink);
     sink
 }
 
 fn tap(sink: &mut Assembly) {
     let foot = Vec3::new(0.0, WORKTOP, -0.225);
-    let base =
-        [[0.028, 0.0], [0.028, 0.008], [0.02, 0.016], [0.018, 0.07], [0.0, 0.075]].map(Vec2::from_array);
-    sink.add_at("tap", &lathe(&base, 24), &at(foot.x, foot.y, foot.z));
+    let base = [[0.028, 0.0], [0.028, 0.008], [0.02, 0.016], [0.018, 0.07], [0.0, 0.075]];
+    sink.add_at("tap", &lathe(&base, 24), at(foot.x, foot.y, foot.z));
     let neck = [[0.0, 0.05, 0.0], [0.0, 0.33, 0.0], [0.0, 0.33, 0.19], [0.0, 0.22, 0.19]];
     let path: Vec<Vec3> = neck.iter().map(|p| foot + Vec3::from_array(*p)).collect();
     sink.add("tap", &pipe(&fillet(&path, 0.09, 9.0), 0.0115, 14));

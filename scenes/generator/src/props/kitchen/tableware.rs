@@ -1,10 +1,6 @@
 //! Crockery, pots, jars, bottles, cutlery and fruit. Everything stands on y = 0 about the origin.
 
-use crate::shapes::Vessel;
-use crate::shapes::{
-    Assembly, Rng, Shell, at, beveled_box, ellipsoid, extrude, fillet, lathe, pipe, rod, superellipsoid,
-    turned,
-};
+use crate::shapes::*;
 use glam::{Affine3A, Quat, Vec2, Vec3};
 use std::f32::consts::FRAC_PI_2;
 
@@ -106,8 +102,8 @@ pub fn bottle(scale: f32) -> Shell {
 pub fn jar(part: &str, scale: Vec2) -> Assembly {
     let mut jar = Assembly::new();
     let place = Affine3A::from_scale(Vec3::new(scale.x, scale.y, scale.x));
-    jar.add_at(part, &JAR.turned(1.0), &place);
-    jar.add_at("jar_lids", &LID.turned(scale.x), &at(0.0, 0.134 * scale.y, 0.0));
+    jar.add_at(part, &JAR.turned(1.0), place);
+    jar.add_at("jar_lids", &LID.turned(scale.x), at(0.0, 0.134 * scale.y, 0.0));
     jar
 }
 
@@ -163,7 +159,7 @@ pub fn mug(part: &str) -> Assembly {
 /// Knife, fork and spoon beside a plate about the origin, the diner at +z.
 pub fn cutlery() -> Assembly {
     let mut set = Assembly::new();
-    let flat = Affine3A::from_rotation_translation(Quat::from_rotation_x(-FRAC_PI_2), Vec3::Y * 0.001);
+    let flat = posed(Quat::from_rotation_x(-FRAC_PI_2), Vec3::Y * 0.001);
     let knife = [
         [-0.008, -0.1],
         [0.006, -0.1],
@@ -173,7 +169,7 @@ pub fn cutlery() -> Assembly {
         [-0.004, 0.105],
         [-0.006, 0.0],
     ];
-    set.add_at("cutlery", &extrude(&knife.map(Vec2::from_array), &[], 0.003), &(at(0.165, 0.0, 0.0) * flat));
+    set.add_at("cutlery", &extrude(&knife, &[], 0.003), at(0.165, 0.0, 0.0) * flat);
     let fork = [
         [-0.006, -0.1],
         [0.006, -0.1],
@@ -192,13 +188,9 @@ pub fn cutlery() -> Assembly {
         [-0.012, 0.05],
         [-0.004, 0.03],
     ];
-    set.add_at("cutlery", &extrude(&fork.map(Vec2::from_array), &[], 0.003), &(at(-0.165, 0.0, 0.0) * flat));
-    set.add_at(
-        "cutlery",
-        &superellipsoid(Vec3::new(0.018, 0.004, 0.028), 1.0, 0.9, 16, 6),
-        &at(0.195, 0.0045, -0.075),
-    );
-    set.add("cutlery", &rod(Vec3::new(0.195, 0.0045, -0.05), Vec3::new(0.195, 0.0035, 0.1), 0.003, 8));
+    set.add_at("cutlery", &extrude(&fork, &[], 0.003), at(-0.165, 0.0, 0.0) * flat);
+    set.add_at("cutlery", &superellipsoid([0.018, 0.004, 0.028], 1.0, 0.9, 16, 6), at(0.195, 0.0045, -0.075));
+    set.add("cutlery", &rod([0.195, 0.0045, -0.05], [0.195, 0.0035, 0.1], 0.003, 8));
     set
 }
 
@@ -212,9 +204,9 @@ pub fn fruit_bowl() -> Assembly {
     for (k, [x, z]) in spots.into_iter().enumerate() {
         let radius = 0.036 + rng.range(0.0, 0.003);
         let y = radius + if k == 0 { 0.012 } else { 0.034 };
-        bowl.add_at("fruit", &apple(radius), &(turned(rng.range(0.0, 360.0), Vec3::new(x, y, z))));
+        bowl.add_at("fruit", &apple(radius), turned(rng.range(0.0, 360.0), [x, y, z]));
     }
-    bowl.add_at("fruit", &apple(0.038), &turned(40.0, Vec3::new(0.02, 0.11, 0.01)));
+    bowl.add_at("fruit", &apple(0.038), turned(40.0, [0.02, 0.11, 0.01]));
     bowl
 }
 
@@ -232,13 +224,12 @@ fn apple(radius: f32) -> Shell {
 pub fn knife_block() -> Assembly {
     let mut set = Assembly::new();
     let lean = Affine3A::from_quat(Quat::from_rotation_x(-0.3));
-    let body = [[-0.085, 0.0], [0.06, 0.0], [0.03, 0.2], [-0.055, 0.16]].map(Vec2::from_array);
-    set.add_at("wood", &extrude(&body, &[], 0.1), &(at(0.05, 0.0, 0.0) * turned(-90.0, Vec3::ZERO)));
+    let body = [[-0.085, 0.0], [0.06, 0.0], [0.03, 0.2], [-0.055, 0.16]];
+    set.add_at("wood", &extrude(&body, &[], 0.1), at(0.05, 0.0, 0.0) * turned(-90.0, Vec3::ZERO));
     for k in 0..4 {
         let x = -0.033 + 0.022 * k as f32;
-        let handle =
-            beveled_box(Vec3::new(x - 0.008, 0.16, -0.03), Vec3::new(x + 0.008, 0.27, -0.008), 0.003);
-        set.add_at("hob", &handle, &(at(0.0, 0.01, 0.03) * lean));
+        let handle = beveled_box([x - 0.008, 0.16, -0.03], [x + 0.008, 0.27, -0.008], 0.003);
+        set.add_at("hob", &handle, at(0.0, 0.01, 0.03) * lean);
     }
     set
 }

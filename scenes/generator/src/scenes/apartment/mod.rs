@@ -21,7 +21,7 @@ mod parquet;
 mod plan;
 mod study;
 
-use crate::shapes::{Assembly, Part};
+use crate::shapes::*;
 
 /// Height of all rooms.
 const HEIGHT: f32 = 2.7;

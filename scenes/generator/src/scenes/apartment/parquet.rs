@@ -1,6 +1,6 @@
 //! Planks with bevelled edges, staggered at random, in three shades.
 
-use crate::shapes::{Assembly, Rng, Shell, at, grid};
+use crate::shapes::*;
 use glam::{Vec2, Vec3};
 
 const PLANK: Vec2 = Vec2::new(1.6, 0.155);
@@ -19,7 +19,7 @@ pub fn add(scene: &mut Assembly) {
                 if b - a > 0.02 {
                     let size = Vec2::new(b - a - 0.0015, width - 0.0015);
                     let shade = SHADES[rng.below(SHADES.len())];
-                    scene.add_at(shade, &plank(size), &at(0.5 * (a + b), 0.0, z));
+                    scene.add_at(shade, &plank(size), at(0.5 * (a + b), 0.0, z));
                 }
                 from += PLANK.x;
             }

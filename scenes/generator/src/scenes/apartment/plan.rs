@@ -2,9 +2,7 @@
 
 use super::HEIGHT;
 use crate::props::furniture::{casing, skirting};
-use crate::shapes::{
-    Assembly, Faces, at, beveled_box, extrude, extrude_faces, parallelogram, rectangle, turned,
-};
+use crate::shapes::*;
 use glam::{Affine3A, Vec2, Vec3};
 
 /// Width and height of door openings.
@@ -23,7 +21,7 @@ struct Face {
 
 /// The face from `x`, `z` that runs to the right after a turn about y by `degrees` from +x.
 fn face(degrees: f32, x: f32, z: f32, length: f32, doors: &'static [f32]) -> Face {
-    Face { place: turned(degrees, Vec3::new(x, 0.0, z)), length, doors }
+    Face { place: turned(degrees, [x, 0.0, z]), length, doors }
 }
 
 pub fn add(scene: &mut Assembly) {
@@ -32,8 +30,8 @@ pub fn add(scene: &mut Assembly) {
     for (low, high) in [(Vec2::ZERO, Vec2::new(5.65, 4.6)), (Vec2::new(5.65, -2.4), Vec2::new(9.7, 5.6))] {
         let size = high - low;
         let (u, v) = (Vec3::X * size.x, Vec3::Z * size.y);
-        scene.add("ceiling", &parallelogram(Vec3::new(low.x, HEIGHT, low.y), u, v, 1, 1));
-        scene.add("subfloor", &parallelogram(Vec3::new(low.x, 0.0, high.y), u, -v, 1, 1));
+        scene.add("ceiling", &sheet([low.x, HEIGHT, low.y], u, v));
+        scene.add("subfloor", &sheet([low.x, 0.0, high.y], u, -v));
     }
     for face in faces() {
         trim(scene, &face);
@@ -67,14 +65,14 @@ fn trim(scene: &mut Assembly, face: &Face) {
     let mut from = 0.0;
     for &door in face.doors {
         add_board(scene, face, from, door - casing_width);
-        scene.add_at("trim", &casing(DOOR, casing_width, false), &(face.place * at(door, 0.0, 0.0)));
+        scene.add_at("trim", &casing(DOOR, casing_width, false), face.place * at(door, 0.0, 0.0));
         from = door + DOOR.x + casing_width;
     }
     add_board(scene, face, from, face.length);
 }
 
 fn add_board(scene: &mut Assembly, face: &Face, from: f32, to: f32) {
-    scene.add_at("trim", &skirting(to - from, SKIRTING), &(face.place * at(from, 0.0, 0.0)));
+    scene.add_at("trim", &skirting(to - from, SKIRTING), face.place * at(from, 0.0, 0.0));
 }
 
 /// The three inner walls, 0.1 m thick, with their doorways.
@@ -90,17 +88,17 @@ fn partitions(scene: &mut Assembly) {
             [length, HEIGHT],
             [0.0, HEIGHT],
         ];
-        extrude(&outline.map(Vec2::from_array), &[], 0.1)
+        extrude(&outline, &[], 0.1)
     };
-    scene.add_at("walls", &wall(8.0, 4.3), &turned(-90.0, Vec3::new(5.7, 0.0, -2.4)));
-    scene.add_at("walls", &wall(4.0, 2.7), &at(5.7, 0.0, 1.6));
-    scene.add_at("walls", &wall(4.0, 0.9), &at(5.7, 0.0, 3.0));
+    scene.add_at("walls", &wall(8.0, 4.3), turned(-90.0, [5.7, 0.0, -2.4]));
+    scene.add_at("walls", &wall(4.0, 2.7), at(5.7, 0.0, 1.6));
+    scene.add_at("walls", &wall(4.0, 0.9), at(5.7, 0.0, 3.0));
 }
 
 fn outer_walls(scene: &mut Assembly) {
     let sheet = |scene: &mut Assembly, part: &str, face: Face| {
-        let flat = parallelogram(Vec3::ZERO, Vec3::X * face.length, Vec3::Y * HEIGHT, 1, 1);
-        scene.add_at(part, &flat, &face.place);
+        let flat = sheet(Vec3::ZERO, Vec3::X * face.length, Vec3::Y * HEIGHT);
+        scene.add_at(part, &flat, face.place);
     };
     sheet(scene, "walls", face(0.0, 0.0, 0.0, 5.6, &[]));
     sheet(scene, "walls", face(180.0, 5.6, 4.6, 5.6, &[]));
@@ -121,18 +119,18 @@ fn pierced(scene: &mut Assembly, part: &str, face: &Face, corner: Vec2, size: Ve
     let faces = Faces { front: true, back: false, rim: false, reveals: true };
     let outline = rectangle(Vec2::ZERO, Vec2::new(face.length, HEIGHT));
     let wall = extrude_faces(&outline, &[rectangle(corner, corner + size)], REVEAL, faces);
-    scene.add_at(part, &wall, &(face.place * at(0.0, 0.0, -REVEAL)));
-    scene.place(&window(size), &(face.place * at(corner.x, corner.y, 0.0)));
+    scene.add_at(part, &wall, face.place * at(0.0, 0.0, -REVEAL));
+    scene.place(&window(size), face.place * at(corner.x, corner.y, 0.0));
 }
 
 /// A window of two sashes with a transom; the sky behind it is a sheet of light.
 fn window(size: Vec2) -> Assembly {
     let mut window = Assembly::new();
-    let sky = parallelogram(Vec3::new(0.0, 0.0, -0.15), Vec3::X * size.x, Vec3::Y * size.y, 1, 1);
+    let sky = sheet([0.0, 0.0, -0.15], Vec3::X * size.x, Vec3::Y * size.y);
     window.add("daylight", &sky);
     // Closes the gap between the sheet of light and the wall.
     let back = Vec3::new(-0.06, -0.06, -REVEAL);
-    window.add("subfloor", &parallelogram(back, Vec3::X * (size.x + 0.12), Vec3::Y * (size.y + 0.12), 1, 1));
+    window.add("subfloor", &sheet(back, Vec3::X * (size.x + 0.12), Vec3::Y * (size.y + 0.12)));
     let (bar, transom) = (0.055, 0.3 * size.y);
     let width = 0.5 * (size.x - 3.0 * bar);
     let pane = |x: f32, y: f32, h: f32| rectangle(Vec2::new(x, y), Vec2::new(x + width, y + h));
@@ -143,9 +141,9 @@ fn window(size: Vec2) -> Assembly {
         pane(bar, upper + 0.5 * bar, transom - 1.5 * bar),
         pane(2.0 * bar + width, upper + 0.5 * bar, transom - 1.5 * bar),
     ];
-    window.add_at("trim", &extrude(&rectangle(Vec2::ZERO, size), &panes, 0.05), &at(0.0, 0.0, -0.12));
+    window.add_at("trim", &extrude(&rectangle(Vec2::ZERO, size), &panes, 0.05), at(0.0, 0.0, -0.12));
     window.add("trim", &casing(size, 0.08, true));
-    let sill = beveled_box(Vec3::new(-0.12, -0.035, -0.1), Vec3::new(size.x + 0.12, 0.003, 0.09), 0.005);
+    let sill = beveled_box([-0.12, -0.035, -0.1], [size.x + 0.12, 0.003, 0.09], 0.005);
     window.add("trim", &sill);
     window
 }

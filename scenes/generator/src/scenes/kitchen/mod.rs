@@ -8,7 +8,7 @@ mod layout;
 mod room;
 mod table;
 
-use crate::shapes::{Assembly, Part};
+use crate::shapes::*;
 use glam::Vec3;
 
 /// The room's extent from the origin.

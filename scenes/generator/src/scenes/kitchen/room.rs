@@ -2,10 +2,7 @@
 
 use super::ROOM;
 use crate::props::furniture::{casing, door, skirting};
-use crate::shapes::{
-    Assembly, Faces, Shell, at, beveled_box, extrude_faces, grid, parallelogram, patch, rectangle, rod,
-    turned, upright,
-};
+use crate::shapes::*;
 use glam::{Vec2, Vec3};
 
 /// Window opening in the right wall: low and high corner in (z, y).
@@ -17,20 +14,20 @@ pub fn add(scene: &mut Assembly) {
     shell(scene);
     floor(scene);
     window(scene);
-    scene.place(&door(), &turned(90.0, Vec3::new(0.0, 0.0, 1.55)));
+    scene.place(&door(), turned(90.0, [0.0, 0.0, 1.55]));
     let board = |length: f32| skirting(length, 0.1);
-    scene.add_at("trim", &board(0.29), &turned(90.0, Vec3::new(0.0, 0.0, 1.01)));
-    scene.add_at("trim", &board(2.11), &turned(90.0, Vec3::new(0.0, 0.0, ROOM.z)));
-    scene.add_at("trim", &board(ROOM.x), &turned(180.0, Vec3::new(ROOM.x, 0.0, ROOM.z)));
-    scene.add_at("trim", &board(ROOM.z - 2.87), &turned(-90.0, Vec3::new(ROOM.x, 0.0, 2.87)));
+    scene.add_at("trim", &board(0.29), turned(90.0, [0.0, 0.0, 1.01]));
+    scene.add_at("trim", &board(2.11), turned(90.0, [0.0, 0.0, ROOM.z]));
+    scene.add_at("trim", &board(ROOM.x), turned(180.0, [ROOM.x, 0.0, ROOM.z]));
+    scene.add_at("trim", &board(ROOM.z - 2.87), turned(-90.0, [ROOM.x, 0.0, 2.87]));
     // Splashbacks: behind the worktop of the back wall, and of the right wall up to the sill.
-    scene.place(&tiled_wall(Vec2::new(3.88, 0.55)), &at(0.72, 0.9, 0.0));
-    scene.place(&tiled_wall(Vec2::new(2.87, 0.14)), &turned(-90.0, Vec3::new(ROOM.x, 0.9, 0.0)));
+    scene.place(&tiled_wall(Vec2::new(3.88, 0.55)), at(0.72, 0.9, 0.0));
+    scene.place(&tiled_wall(Vec2::new(2.87, 0.14)), turned(-90.0, [ROOM.x, 0.9, 0.0]));
 }
 
 fn shell(scene: &mut Assembly) {
     let Vec3 { x, y, z } = ROOM;
-    let sheet = |origin: Vec3, u: Vec3, v: Vec3| parallelogram(origin, u, v, 1, 1);
+    let sheet = |origin: Vec3, u: Vec3, v: Vec3| sheet(origin, u, v);
     scene.add("floor", &sheet(Vec3::new(0.0, 0.0, z), Vec3::X * x, -Vec3::Z * z));
     scene.add("ceiling", &sheet(Vec3::new(0.0, y, 0.0), Vec3::X * x, Vec3::Z * z));
     scene.add("walls", &sheet(Vec3::ZERO, Vec3::X * x, Vec3::Y * y));
@@ -40,7 +37,7 @@ fn shell(scene: &mut Assembly) {
     let faces = Faces { front: true, back: false, rim: false, reveals: true };
     let hole = rectangle(WINDOW.0, WINDOW.1);
     let wall = extrude_faces(&rectangle(Vec2::ZERO, Vec2::new(z, y)), &[hole], REVEAL, faces);
-    scene.add_at("walls", &wall, &(turned(-90.0, Vec3::new(x, 0.0, 0.0)) * at(0.0, 0.0, -REVEAL)));
+    scene.add_at("walls", &wall, turned(-90.0, [x, 0.0, 0.0]) * at(0.0, 0.0, -REVEAL));
 }
 
 /// Square tiles with bevelled edges over a bed of grout.
@@ -50,13 +47,13 @@ fn floor(scene: &mut Assembly) {
     for j in 0..rows {
         for i in 0..columns {
             let centre = pitch * Vec2::new(i as f32 + 0.5, j as f32 + 0.5);
-            scene.add_at("floor_tiles", &tile(pitch - 0.004, 0.004, 0.0025), &lying(centre));
+            scene.add_at("floor_tiles", &tile(pitch - 0.004, 0.004, 0.0025), lying(centre));
         }
     }
 }
 
 fn lying(centre: Vec2) -> glam::Affine3A {
-    upright(Vec3::new(centre.x, 0.0, centre.y), Vec3::X, -Vec3::Z)
+    upright([centre.x, 0.0, centre.y], Vec3::X, -Vec3::Z)
 }
 
 /// A tile about the origin that rises from z = 0 to `thickness`, without its back.
@@ -83,12 +80,12 @@ fn tiled_wall(size: Vec2) -> Assembly {
             let extent = Vec2::new(to - from, top - bottom) - gap;
             let centre = Vec3::new(0.5 * (from + to), 0.5 * (bottom + top), 0.001);
             if extent.min_element() > 0.01 {
-                wall.add_at("wall_tiles", &tile(extent, 0.007, 0.002), &at(centre.x, centre.y, centre.z));
+                wall.add_at("wall_tiles", &tile(extent, 0.007, 0.002), at(centre.x, centre.y, centre.z));
             }
             left += pitch.x;
         }
     }
-    let bed = parallelogram(Vec3::Z * 0.002, Vec3::X * size.x, Vec3::Y * size.y, 1, 1);
+    let bed = sheet(Vec3::Z * 0.002, Vec3::X * size.x, Vec3::Y * size.y);
     wall.add("grout", &bed);
     wall
 }
@@ -98,15 +95,9 @@ fn window(scene: &mut Assembly) {
     let (low, high) = WINDOW;
     let size = high - low;
     // Local frame: x to the right seen from inside, z into the room, origin at the lower left corner.
-    let place = turned(-90.0, Vec3::new(ROOM.x, low.y, low.x));
+    let place = turned(-90.0, [ROOM.x, low.y, low.x]);
     let mut window = Assembly::new();
-    let pane = parallelogram(
-        Vec3::new(-0.05, -0.05, -0.12),
-        Vec3::X * (size.x + 0.1),
-        Vec3::Y * (size.y + 0.1),
-        1,
-        1,
-    );
+    let pane = sheet([-0.05, -0.05, -0.12], Vec3::X * (size.x + 0.1), Vec3::Y * (size.y + 0.1));
     window.add("panes", &pane);
     let light = 0.5 * (size - Vec2::new(0.15, 0.15));
     let holes: Vec<Vec<Vec2>> = (0..4)
@@ -115,34 +106,19 @@ fn window(scene: &mut Assembly) {
             rectangle(corner, corner + light)
         })
         .collect();
-    let frame = crate::shapes::extrude(&rectangle(Vec2::ZERO, size), &holes, 0.05);
-    window.add_at("trim", &frame, &at(0.0, 0.0, -0.118));
+    let frame = extrude(&rectangle(Vec2::ZERO, size), &holes, 0.05);
+    window.add_at("trim", &frame, at(0.0, 0.0, -0.118));
     window.add("trim", &casing(size, 0.07, true));
-    window
-        .add("trim", &beveled_box(Vec3::new(-0.1, -0.03, -0.1), Vec3::new(size.x + 0.1, 0.004, 0.05), 0.004));
+    window.add("trim", &beveled_box([-0.1, -0.03, -0.1], [size.x + 0.1, 0.004, 0.05], 0.004));
     // The blind hangs from a roller in the reveal, in soft folds below.
     let blind = patch(6, 24, |u, v| {
         let z = -0.035 + 0.006 * (40.0 * v).sin() * v;
         Vec3::new(0.02 + u * (size.x - 0.04), size.y - 0.03 - 0.4 * v, z)
     });
     window.add("blind", &blind.flipped());
-    window.add(
-        "blind",
-        &rod(
-            Vec3::new(0.01, size.y - 0.03, -0.035),
-            Vec3::new(size.x - 0.01, size.y - 0.03, -0.035),
-            0.018,
-            14,
-        ),
-    );
-    window.add(
-        "blind",
-        &rod(
-            Vec3::new(0.02, size.y - 0.43, -0.035),
-            Vec3::new(size.x - 0.02, size.y - 0.43, -0.035),
-            0.008,
-            8,
-        ),
-    );
-    scene.place(&window, &place);
+    window
+        .add("blind", &rod([0.01, size.y - 0.03, -0.035], [size.x - 0.01, size.y - 0.03, -0.035], 0.018, 14));
+    window
+        .add("blind", &rod([0.02, size.y - 0.43, -0.035], [size.x - 0.02, size.y - 0.43, -0.035], 0.008, 8));
+    scene.place(&window, place);
 }

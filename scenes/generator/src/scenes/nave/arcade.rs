@@ -6,14 +6,11 @@ use super::plan::{
     pier_z, south_wall,
 };
 use super::vault::rib_along;
-use super::windows;
-use crate::shapes::Part;
-use crate::shapes::{
-    Faces, PointedArch, Section, at, block, extrude_faces, lathe, mirror_x, parallelogram, patch, sweep,
-    sweep_along,
-};
+use super::windows::glazed;
+use crate::shapes::*;
 use glam::{Affine3A, Vec2, Vec3};
 
+const MOULDINGS: &str = "mouldings";
 /// Openings of the triforium in a bay.
 const GALLERY_ARCHES: usize = 4;
 const GALLERY_PITCH: f32 = 0.92;
@@ -23,27 +20,25 @@ const GALLERY_ARCH: PointedArch = PointedArch { half_span: 0.36, rise: 0.66 };
 /// How far the gallery reaches behind the wall.
 const GALLERY_DEPTH: f32 = 1.9;
 
-/// Appends both arcade walls.
-pub fn build(walls: &mut Part, mouldings: &mut Part, windows: &mut windows::Parts) {
-    let mut wall = Part::default();
-    let mut moulding = Part::default();
+/// Both arcade walls.
+pub fn add(scene: &mut Assembly) {
+    let mut wall = Assembly::new();
     wall_bay(&mut wall);
-    mouldings_of_bay(&mut moulding);
+    mouldings_of_bay(&mut wall);
     for bay in 0..BAYS {
-        let south = south_wall(NAVE, bay);
-        for frame in [south, mirror_x(0.0) * south] {
-            walls.append(&wall, &frame);
-            mouldings.append(&moulding, &frame);
-            windows::build(windows, &CLERESTORY_WINDOW, 0.5 * BAY, WALL, &frame);
+        for side in both_sides() {
+            let frame = side * south_wall(NAVE, bay);
+            scene.place(&wall, frame);
+            scene.merge(glazed(&CLERESTORY_WINDOW, 0.5 * BAY, WALL, frame));
         }
     }
-    for frame in [Affine3A::IDENTITY, mirror_x(0.0)] {
-        gallery(walls, &frame);
+    for side in both_sides() {
+        scene.merge(gallery(side));
     }
 }
 
 /// The wall in its local frame: both faces and the reveals of all openings.
-fn wall_bay(wall: &mut Part) {
+fn wall_bay(wall: &mut Assembly) {
     let middle = 0.5 * BAY;
     let arch: Vec<Vec2> = ARCADE.curve(12).iter().map(|p| *p + Vec2::new(middle, ARCADE_SPRING)).collect();
     let mut outline = vec![Vec2::new(0.0, ARCADE_SPRING)];
@@ -54,101 +49,90 @@ fn wall_bay(wall: &mut Part) {
         .collect();
     holes.push(CLERESTORY_WINDOW.outline(middle, 10));
     // The ends of a bay meet the next one, so only the soffit is left of the rim.
-    wall.add(&extrude_faces(&outline, &holes, WALL, Faces { rim: false, ..Faces::ALL }));
+    wall.add("walls", &extrude_faces(&outline, &holes, WALL, Faces::NO_RIM));
     let soffit = patch(arch.len() - 1, 1, |u, v| {
         let p = arch[(u * (arch.len() - 1) as f32).round() as usize];
         p.extend(v * WALL)
     });
-    wall.add(&soffit.facing(Vec3::new(middle, ARCADE_SPRING, 0.5 * WALL)));
+    wall.add("walls", &soffit.facing(Vec3::new(middle, ARCADE_SPRING, 0.5 * WALL)));
 }
 
 fn gallery_middles() -> impl Iterator<Item = f32> {
     (0..GALLERY_ARCHES).map(|k| 0.5 * BAY + GALLERY_PITCH * (k as f32 - 0.5 * (GALLERY_ARCHES - 1) as f32))
 }
 
-fn mouldings_of_bay(moulding: &mut Part) {
+fn mouldings_of_bay(wall: &mut Assembly) {
     let centre = Vec3::new(0.5 * BAY, ARCADE_SPRING, 0.0);
     let on_wall = |arch: PointedArch, segments: usize, depth: f32| -> Vec<Vec3> {
         arch.curve(segments).iter().map(|p| p.extend(depth) + centre).collect()
     };
     // The inner order hangs below the soffit; its section is that of a heavy rib.
-    moulding.add(&rib_along(&on_wall(ARCADE, 8, 0.5 * WALL), Vec2::new(0.56, 0.34), 3));
+    wall.add(MOULDINGS, &rib_along(&on_wall(ARCADE, 8, 0.5 * WALL), Vec2::new(0.56, 0.34), 3));
     // A roll on the edge of the outer order and a hood over it, towards the nave.
-    moulding.add(&roll(&on_wall(ARCADE, 8, 0.0), 0.085));
-    moulding.add(&roll(&on_wall(ARCADE.offset(0.24), 8, 0.0), 0.06));
+    wall.add(MOULDINGS, &roll(&on_wall(ARCADE, 8, 0.0), 0.085));
+    wall.add(MOULDINGS, &roll(&on_wall(ARCADE.offset(0.24), 8, 0.0), 0.06));
     for height in [TRIFORIUM, CLERESTORY] {
-        moulding.add(&string_course(0.0, BAY, height));
+        wall.add(MOULDINGS, &string_course(0.0, BAY, height));
     }
-    triforium_colonnettes(moulding);
+    triforium_colonnettes(wall);
 }
 
-fn roll(path: &[Vec3], radius: f32) -> crate::shapes::Shell {
-    let profile = crate::shapes::circle(radius, 4);
+fn roll(path: &[Vec3], radius: f32) -> Shell {
+    let profile = circle(radius, 4);
     let section = Section { points: &profile, closed: true, crease_degrees: 95.0 };
-    sweep_along(section, path, Vec3::NEG_X, false, Faces { front: false, back: false, ..Faces::ALL })
+    sweep_along(section, path, Vec3::NEG_X, false, Faces::NO_ENDS)
 }
 
-/// A projecting course with a drip, from `from` to `to` along a wall's inner face.
-pub fn string_course(from: f32, to: f32, height: f32) -> crate::shapes::Shell {
-    let profile: Vec<Vec2> = [
-        [0.05, -0.12],
-        [0.05, 0.1],
-        [-0.07, 0.1],
-        [-0.14, 0.03],
-        [-0.14, -0.01],
-        [-0.08, -0.05],
-        [-0.05, -0.12],
-    ]
-    .iter()
-    .map(|p| Vec2::from_array(*p))
-    .collect();
+/// Projecting course with a drip, from `from` to `to` along a wall's inner face.
+pub fn string_course(from: f32, to: f32, height: f32) -> Shell {
     // Travelling along +x with y up, the right is +z, which is into the wall.
-    let mut profile = profile;
-    profile.reverse();
+    let profile = [
+        [-0.05, -0.12],
+        [-0.08, -0.05],
+        [-0.14, -0.01],
+        [-0.14, 0.03],
+        [-0.07, 0.1],
+        [0.05, 0.1],
+        [0.05, -0.12],
+    ];
     sweep(&profile, &[Vec3::new(from, height, 0.0), Vec3::new(to, height, 0.0)], Vec3::Y).creased(20.0)
 }
 
-fn triforium_colonnettes(moulding: &mut Part) {
-    let profile: Vec<Vec2> =
-        [[0.11, 0.0], [0.11, 0.05], [0.055, 0.14], [0.055, 0.93], [0.08, 0.96], [0.115, 1.1], [0.115, 1.16]]
-            .iter()
-            .map(|p| Vec2::from_array(*p))
-            .collect();
-    let colonnette = lathe(&profile, 5);
+fn triforium_colonnettes(wall: &mut Assembly) {
+    let base = [[0.11, 0.0], [0.11, 0.05], [0.055, 0.14]];
+    let capital = [[0.055, 0.93], [0.08, 0.96], [0.115, 1.1], [0.115, 1.16]];
+    let colonnette = lathe(&[&base[..], &capital].concat(), 5);
     let first = gallery_middles().next().unwrap_or(0.0) - 0.5 * GALLERY_PITCH;
     for k in 0..=GALLERY_ARCHES {
         let x = first + GALLERY_PITCH * k as f32;
-        moulding.add_at(&colonnette, &at(x, GALLERY_SILL - 0.01, 0.02));
+        wall.add_at(MOULDINGS, &colonnette, at(x, GALLERY_SILL - 0.01, 0.02));
     }
     for x in gallery_middles() {
-        let path: Vec<Vec3> = GALLERY_ARCH
-            .offset(0.05)
-            .curve(3)
-            .iter()
-            .map(|p| Vec3::new(p.x + x, p.y + GALLERY_SPRING, 0.0))
-            .collect();
-        moulding.add(&roll(&path, 0.045));
+        let arch = GALLERY_ARCH.offset(0.05).curve(3);
+        let path: Vec<Vec3> = arch.iter().map(|p| Vec3::new(p.x + x, p.y + GALLERY_SPRING, 0.0)).collect();
+        wall.add(MOULDINGS, &roll(&path, 0.045));
     }
     // The ledge they stand on.
-    moulding.add(&block(
-        Vec3::new(first - 0.2, GALLERY_SILL - 0.12, -0.12),
-        Vec3::new(first + GALLERY_PITCH * GALLERY_ARCHES as f32 + 0.2, GALLERY_SILL, 0.05),
-    ));
+    let last = first + GALLERY_PITCH * GALLERY_ARCHES as f32;
+    let ledge = block([first - 0.2, GALLERY_SILL - 0.12, -0.12], [last + 0.2, GALLERY_SILL, 0.05]);
+    wall.add(MOULDINGS, &ledge);
 }
 
-/// The passage behind the triforium: floor, back, ceiling and ends, seen from inside.
-fn gallery(walls: &mut Part, frame: &Affine3A) {
+/// Passage behind the triforium in the frame of a side: floor, back, ceiling and ends, seen from inside.
+fn gallery(side: Affine3A) -> Assembly {
+    let mut gallery = Assembly::framed(side);
     let (near, far) = (NAVE + WALL - 0.01, NAVE + WALL + GALLERY_DEPTH);
     let (low, high) = (GALLERY_SILL - 0.05, CLERESTORY - 0.1);
-    let length = Vec3::Z * EAST;
+    let (across, up, length) = (Vec3::X * (far - near), Vec3::Y * (high - low), Vec3::Z * EAST);
     let inside = Vec3::new(0.5 * (near + far), 0.5 * (low + high), 0.5 * pier_z(BAYS));
-    let mut add = |origin: Vec3, edge_u: Vec3, edge_v: Vec3| {
-        walls.add_at(&parallelogram(origin, edge_u, edge_v, 1, 1).facing(inside), frame);
-    };
-    add(Vec3::new(near, low, 0.0), length, Vec3::X * (far - near));
-    add(Vec3::new(near, high, 0.0), length, Vec3::X * (far - near));
-    add(Vec3::new(far, low, 0.0), length, Vec3::Y * (high - low));
-    for z in [0.0, EAST] {
-        add(Vec3::new(near, low, z), Vec3::X * (far - near), Vec3::Y * (high - low));
+    for face in [
+        sheet([near, low, 0.0], length, across),
+        sheet([near, high, 0.0], length, across),
+        sheet([far, low, 0.0], length, up),
+        sheet([near, low, 0.0], across, up),
+        sheet([near, low, EAST], across, up),
+    ] {
+        gallery.add("walls", &face.facing(inside));
     }
+    gallery
 }

@@ -2,17 +2,18 @@
 //! the steps and floor of the chancel.
 
 use super::plan::{AISLE, CHANCEL, CHANCEL_FLOOR, EAST, NAVE};
-use crate::shapes::Part;
-use crate::shapes::{Rng, Shell, beveled_box, extrude, parallelogram, slab};
+use crate::shapes::*;
 use glam::{Vec2, Vec3};
 
+const LIGHT: &str = "slabs_light";
+const BED: &str = "floor_bed";
 const SLAB: f32 = 1.0;
 const JOINT: f32 = 0.012;
 const STEPS: usize = 3;
 const TREAD: f32 = 0.36;
 
-/// Appends the floor: light and dark slabs, and the mortar below them together with the chancel's steps.
-pub fn build(light: &mut Part, dark: &mut Part, bed: &mut Part) {
+/// Light and dark slabs, and the mortar below them together with the chancel's steps.
+pub fn add(scene: &mut Assembly) {
     let mut rng = Rng::new(3);
     let half_width = AISLE[1];
     let columns = (2.0 * half_width / SLAB).round() as usize;
@@ -24,13 +25,13 @@ pub fn build(light: &mut Part, dark: &mut Part, bed: &mut Part) {
             if under_chancel {
                 continue;
             }
-            let part = if (row + column) % 2 == 0 { &mut *light } else { &mut *dark };
-            part.add(&worn_slab(low, &mut rng));
+            let part = if (row + column) % 2 == 0 { LIGHT } else { "slabs_dark" };
+            scene.add(part, &worn_slab(low, &mut rng));
         }
     }
     let corner = Vec3::new(-half_width - 0.2, -0.016, EAST - 0.2);
-    bed.add(&parallelogram(corner, Vec3::Z * (0.4 - EAST), Vec3::X * (2.0 * half_width + 0.4), 1, 1));
-    chancel(bed, light);
+    scene.add(BED, &sheet(corner, Vec3::Z * (0.4 - EAST), Vec3::X * (2.0 * half_width + 0.4)));
+    chancel(scene);
 }
 
 /// A slab, its top slightly tilted.
@@ -45,24 +46,23 @@ fn worn_slab(low: Vec2, rng: &mut Rng) -> Shell {
     })
 }
 
-fn chancel(bed: &mut Part, light: &mut Part) {
+fn chancel(scene: &mut Assembly) {
     let rise = CHANCEL_FLOOR / STEPS as f32;
     for step in 0..STEPS {
         let front = CHANCEL - TREAD * step as f32;
         let back = if step + 1 == STEPS { EAST } else { front - TREAD - 0.1 };
         let low = Vec3::new(-NAVE + 0.01, -0.05, back);
         let high = Vec3::new(NAVE - 0.01, rise * (step + 1) as f32, front);
-        let part = if step + 1 == STEPS { &mut *light } else { &mut *bed };
-        part.add(&beveled_box(low, high, 0.02));
+        let part = if step + 1 == STEPS { LIGHT } else { BED };
+        scene.add(part, &beveled_box(low, high, 0.02));
     }
     // The floor of the apse, a little larger than it so that it ends inside the walls.
-    let outline: Vec<Vec2> = crate::shapes::arc(Vec2::ZERO, NAVE + 0.25, 0.0, 180.0, 10);
+    let outline: Vec<Vec2> = arc(Vec2::ZERO, NAVE + 0.25, 0.0, 180.0, 10);
     let floor = extrude(&outline, &[], 0.5)
         .mapped(|p| Vec3::new(p.x, p.z - 0.5 + CHANCEL_FLOOR - 0.003, EAST - p.y + 0.02));
-    light.add(&floor);
-    light.add(&beveled_box(
-        Vec3::new(-2.4, CHANCEL_FLOOR - 0.05, EAST - 2.9),
-        Vec3::new(2.4, CHANCEL_FLOOR + 0.16, EAST + 0.6),
-        0.02,
-    ));
+    scene.add(LIGHT, &floor);
+    scene.add(
+        LIGHT,
+        &beveled_box([-2.4, CHANCEL_FLOOR - 0.05, EAST - 2.9], [2.4, CHANCEL_FLOOR + 0.16, EAST + 0.6], 0.02),
+    );
 }

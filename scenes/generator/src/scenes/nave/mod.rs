@@ -7,78 +7,45 @@
 mod aisles;
 mod apse;
 mod arcade;
-mod candles;
 mod floodlights;
 mod floor;
-mod furniture;
 mod piers;
 mod plan;
 mod vault;
 mod west;
 mod windows;
 
-use crate::shapes::Part;
-use glam::Vec2;
-use plan::{BAY, BAYS, CROWN, NAVE, VAULT_SPRING, pier_z};
+use crate::props::church::{altar, candle_crown, candlestick, font, pew, pulpit};
+use crate::shapes::*;
+use glam::{Affine3A, Vec2, Vec3};
+use plan::{BAY, BAYS, CHANCEL, CHANCEL_FLOOR, CROWN, EAST, NAVE, VAULT_SPRING, pier_z};
 
-/// The parts of the church.
+/// Rows of pews on each side.
+const ROWS: usize = 9;
+const PITCH: f32 = 1.15;
+/// z of the westernmost row.
+const FIRST_ROW: f32 = -8.4;
+/// Where the altar stands.
+const ALTAR: Vec3 = Vec3::new(0.0, CHANCEL_FLOOR + 0.16, EAST - 1.7);
+/// Height of the hanging candle crowns.
+const CROWN_HEIGHT: f32 = 5.6;
+
+/// Parts of the scene.
 pub fn parts() -> Vec<Part> {
-    let [mut walls, mut piers, mut mouldings] = ["walls", "piers", "mouldings"].map(Part::new);
-    let [mut webs, mut ribs] = ["vault_webs", "vault_ribs"].map(Part::new);
-    let [mut slabs_light, mut slabs_dark, mut floor_bed] =
-        ["slabs_light", "slabs_dark", "floor_bed"].map(Part::new);
-    let [mut wood, mut furniture_stone, mut cloth] = ["wood", "furniture_stone", "cloth"].map(Part::new);
-    let mut windows = windows::Parts {
-        tracery: Part::new("tracery"),
-        sills: Part::new("sills"),
-        sky: Part::new("sky_panels"),
-    };
-    let mut candles =
-        candles::Parts { iron: Part::new("iron"), wax: Part::new("wax"), flames: Part::new("flames") };
-
-    high_vault(&mut webs, &mut ribs);
-    piers::build(&mut piers);
-    arcade::build(&mut walls, &mut mouldings, &mut windows);
-    aisles::build(&mut aisles::Parts {
-        walls: &mut walls,
-        piers: &mut piers,
-        ribs: &mut ribs,
-        webs: &mut webs,
-        windows: &mut windows,
-    });
-    apse::build(&mut walls, &mut piers, &mut ribs, &mut webs, &mut windows);
-    west::build(&mut walls, &mut mouldings, &mut wood, &mut windows);
-    floor::build(&mut slabs_light, &mut slabs_dark, &mut floor_bed);
-    furniture::build(&mut wood, &mut furniture_stone, &mut cloth);
-    candles::build(&mut candles);
-    let mut lamps = Part::new("floodlights");
-    floodlights::build(&mut candles.iron, &mut lamps);
-
-    let windows::Parts { tracery, sills, sky } = windows;
-    let candles::Parts { iron, wax, flames } = candles;
-    vec![
-        walls,
-        piers,
-        mouldings,
-        webs,
-        ribs,
-        slabs_light,
-        slabs_dark,
-        floor_bed,
-        wood,
-        furniture_stone,
-        cloth,
-        tracery,
-        sills,
-        sky,
-        iron,
-        wax,
-        flames,
-        lamps,
-    ]
+    let mut scene = Assembly::new();
+    high_vault(&mut scene);
+    piers::add(&mut scene);
+    arcade::add(&mut scene);
+    aisles::add(&mut scene);
+    apse::add(&mut scene);
+    west::add(&mut scene);
+    floor::add(&mut scene);
+    furnish(&mut scene);
+    floodlights::add(&mut scene);
+    scene.into_parts()
 }
 
-fn high_vault(webs: &mut Part, ribs: &mut Part) {
+fn high_vault(scene: &mut Assembly) {
     let detail = vault::Detail {
         web: [3, 8],
         diagonal: Vec2::new(0.34, 0.36),
@@ -95,10 +62,34 @@ fn high_vault(webs: &mut Part, ribs: &mut Part) {
             crown: CROWN,
             apex: [CROWN, CROWN - 0.7],
         };
-        bay.build(&detail, webs, ribs);
+        scene.merge(bay.vaulted(&detail));
         if k + 1 == BAYS {
             let halves = [bay.transverse(true, false), bay.transverse(true, true)];
-            ribs.add(&vault::whole_arch(halves, Vec2::new(0.8, 0.6), 14, 6));
+            scene.add("vault_ribs", &vault::whole_arch(halves, Vec2::new(0.8, 0.6), 14, 6));
         }
+    }
+}
+
+/// Pews, altar, pulpit, font and candles. The flames are the only emitters that one sees directly from below.
+fn furnish(scene: &mut Assembly) {
+    let pew = pew(1.0, 3.75);
+    for row in 0..ROWS {
+        for side in both_sides() {
+            scene.place(&pew, side * at(0.0, 0.0, FIRST_ROW - PITCH * row as f32));
+        }
+    }
+    scene.merge(altar(ALTAR));
+    scene.merge(pulpit(turned(22.5, [-3.1, -0.01, pier_z(4) - 1.9])));
+    scene.add_at("furniture_stone", &font(), turned(22.5, [-2.55, -0.01, pier_z(1) + 0.9]));
+    for bay in [2, 4] {
+        let place = at(0.0, CROWN_HEIGHT, pier_z(bay) - 0.5 * BAY);
+        scene.merge(candle_crown(place, CROWN - CROWN_HEIGHT - 0.5));
+    }
+    for x in [-1.05, -0.75, -0.45, 0.45, 0.75, 1.05] {
+        let foot = ALTAR + Vec3::new(x, 1.06, -0.2);
+        scene.merge(candlestick(Affine3A::from_translation(foot), 0.42));
+    }
+    for x in [-3.4, 3.4] {
+        scene.merge(candlestick(at(x, CHANCEL_FLOOR - 0.005, CHANCEL - 1.1), 1.35));
     }
 }

@@ -2,8 +2,7 @@
 //! Early English manner. The shafts towards the nave run on up to the high vault.
 
 use super::plan::{ARCADE_SPRING, BAYS, NAVE, PIER, VAULT_SPRING, pier_z};
-use crate::shapes::Part;
-use crate::shapes::{Faces, arc, at, beveled_box, extrude_faces, lathe_sector, mirror_x};
+use crate::shapes::*;
 use glam::{Affine3A, Quat, Vec2, Vec3};
 
 /// Half the core across the nave and along it.
@@ -11,84 +10,76 @@ const CORE: Vec2 = Vec2::new(0.5, 0.56);
 /// Height of the plinth under the shafts' bases.
 pub const PLINTH: f32 = 0.42;
 
-/// Appends all free piers of both sides, and half piers against the west wall and the chancel arch.
-pub fn build(part: &mut Part) {
-    let mut pier = Part::default();
-    pier_at_origin(&mut pier);
+/// All free piers of both sides, and half piers against the west wall and the chancel arch.
+pub fn add(scene: &mut Assembly) {
+    let pier = pier();
     for line in 0..=BAYS {
-        let place = at(PIER, 0.0, pier_z(line));
-        part.append(&pier, &place);
-        part.append(&pier, &(mirror_x(0.0) * place));
+        for side in both_sides() {
+            scene.place(&pier, side * at(PIER, 0.0, pier_z(line)));
+        }
     }
+}
+
+/// The half of a turned shaft that shows towards -x.
+pub fn half_shaft(profile: &[Vec2], segments: usize) -> Shell {
+    lathe_sector(profile, 80.0, 280.0, segments)
 }
 
 /// One pier about the origin; the nave lies towards -x.
-fn pier_at_origin(pier: &mut Part) {
-    pier.add(&beveled_box(Vec3::new(-0.95, -0.05, -1.08), Vec3::new(0.95, 0.2, 1.08), 0.04));
-    pier.add(&beveled_box(Vec3::new(-0.84, 0.15, -0.97), Vec3::new(0.84, PLINTH, 0.97), 0.06));
-    pier.add(&core(ARCADE_SPRING));
-    let shaft = |radius: f32, top: f32, segments: usize| {
-        lathe_sector(&shaft_profile(radius, PLINTH, top), 80.0, 280.0, segments)
-    };
-    // A sector about 180° looks towards -x; it is turned to the other sides.
+fn pier() -> Assembly {
+    let mut pier = Assembly::new();
+    pier.add("piers", &beveled_box([-0.95, -0.05, -1.08], [0.95, 0.2, 1.08], 0.04));
+    pier.add("piers", &beveled_box([-0.84, 0.15, -0.97], [0.84, PLINTH, 0.97], 0.06));
+    pier.add("piers", &core(ARCADE_SPRING));
+    // Shafts look towards -x; they are turned to the other sides.
     let face = |degrees: f32, distance: f32, aside: f32| {
         Affine3A::from_quat(Quat::from_rotation_y(degrees.to_radians())) * at(-distance, 0.0, aside)
     };
-    let arcade = shaft(0.26, ARCADE_SPRING, 6);
-    pier.add_at(&arcade, &face(90.0, CORE.y, 0.0));
-    pier.add_at(&arcade, &face(270.0, CORE.y, 0.0));
-    pier.add_at(&shaft(0.2, ARCADE_SPRING, 6), &face(180.0, CORE.x, 0.0));
-    let thin = lathe_sector(&thin_shaft_profile(0.085, PLINTH, ARCADE_SPRING), 80.0, 280.0, 4);
+    let shaft = |radius: f32, top: f32| half_shaft(&shaft_profile(radius, PLINTH, top), 6);
+    let arcade = shaft(0.26, ARCADE_SPRING);
+    pier.add_at("piers", &arcade, face(90.0, CORE.y, 0.0));
+    pier.add_at("piers", &arcade, face(270.0, CORE.y, 0.0));
+    pier.add_at("piers", &shaft(0.2, ARCADE_SPRING), face(180.0, CORE.x, 0.0));
+    let thin = half_shaft(&thin_shaft_profile(0.085, PLINTH, ARCADE_SPRING), 4);
     for (degrees, aside) in [(90.0, 0.38), (90.0, -0.38), (270.0, 0.38), (270.0, -0.38)] {
-        pier.add_at(&thin, &face(degrees, CORE.y, aside));
+        pier.add_at("piers", &thin, face(degrees, CORE.y, aside));
     }
     // The vaulting shafts, three together.
-    pier.add_at(&shaft(0.2, VAULT_SPRING, 6), &face(0.0, PIER - NAVE, 0.0));
-    let tall = lathe_sector(&thin_shaft_profile(0.1, PLINTH, VAULT_SPRING), 80.0, 280.0, 5);
+    pier.add_at("piers", &shaft(0.2, VAULT_SPRING), face(0.0, PIER - NAVE, 0.0));
+    let tall = half_shaft(&thin_shaft_profile(0.1, PLINTH, VAULT_SPRING), 5);
     for aside in [-0.31, 0.31] {
-        pier.add_at(&tall, &face(0.0, PIER - NAVE, aside));
+        pier.add_at("piers", &tall, face(0.0, PIER - NAVE, aside));
     }
     // Shaft rings bind the three at the string course.
-    let ring = [[0.12, -0.1], [0.19, -0.07], [0.21, 0.0], [0.19, 0.07], [0.12, 0.1]].map(Vec2::from_array);
-    let ring = lathe_sector(&ring, 80.0, 280.0, 6);
+    let ring = points(&[[0.12, -0.1], [0.19, -0.07], [0.21, 0.0], [0.19, 0.07], [0.12, 0.1]]);
     for (scale, aside) in [(1.35, 0.0), (0.8, -0.31), (0.8, 0.31)] {
         let size = Affine3A::from_scale(Vec3::new(scale, 1.0, scale));
-        pier.add_at(&ring, &(face(0.0, PIER - NAVE, aside) * at(0.0, 8.7, 0.0) * size));
+        let place = face(0.0, PIER - NAVE, aside) * at(0.0, 8.7, 0.0) * size;
+        pier.add_at("piers", &half_shaft(&ring, 6), place);
     }
+    pier
 }
 
 /// The core: a rectangle with notched corners, without ends.
-fn core(top: f32) -> crate::shapes::Shell {
+fn core(top: f32) -> Shell {
     let notch = 0.12;
-    let quadrant = [
-        Vec2::new(CORE.x, CORE.y - notch),
-        Vec2::new(CORE.x - notch, CORE.y - notch),
-        Vec2::new(CORE.x - notch, CORE.y),
-    ];
-    let mirror = |sx: f32, sy: f32| quadrant.map(|p| p * Vec2::new(sx, sy));
-    let mut outline: Vec<Vec2> = mirror(1.0, 1.0).to_vec();
+    let quadrant = [[CORE.x, CORE.y - notch], [CORE.x - notch, CORE.y - notch], [CORE.x - notch, CORE.y]];
+    let mirror = |sx: f32, sy: f32| scaled(&quadrant, Vec2::new(sx, sy));
+    let mut outline = mirror(1.0, 1.0);
     outline.extend(mirror(-1.0, 1.0).iter().rev());
     outline.extend(mirror(-1.0, -1.0));
     outline.extend(mirror(1.0, -1.0).iter().rev());
-    let sides_only = Faces { front: false, back: false, ..Faces::ALL };
     // Laid down in x and y, then stood up: y becomes -z.
-    extrude_faces(&outline, &[], top + 0.02 - 0.15, sides_only).mapped(|p| Vec3::new(p.x, p.z + 0.15, -p.y))
+    extrude_faces(&outline, &[], top + 0.02 - 0.15, Faces::NO_ENDS)
+        .mapped(|p| Vec3::new(p.x, p.z + 0.15, -p.y))
 }
 
-/// The profile of a shaft too thin for mouldings: a sloped base and a plain bell.
+/// Profile of a shaft too thin for mouldings: a sloped base and a plain bell.
 pub fn thin_shaft_profile(radius: f32, bottom: f32, top: f32) -> Vec<Vec2> {
-    [
-        (1.9, bottom),
-        (1.9, bottom + 0.1),
-        (1.0, bottom + 0.2),
-        (1.0, top - 0.34),
-        (1.3, top - 0.3),
-        (1.05, top - 0.26),
-    ]
-    .into_iter()
-    .chain([(1.2, top - 0.14), (1.9, top - 0.06), (1.9, top + 0.01)])
-    .map(|(scale, y)| Vec2::new(scale * radius, y))
-    .collect()
+    let base = [(1.9, bottom), (1.9, bottom + 0.1), (1.0, bottom + 0.2)];
+    let neck = [(1.0, top - 0.34), (1.3, top - 0.3), (1.05, top - 0.26)];
+    let bell = [(1.2, top - 0.14), (1.9, top - 0.06), (1.9, top + 0.01)];
+    scaled(&[base, neck, bell].concat(), Vec2::new(radius, 1.0))
 }
 
 /// Base, shaft, astragal, bell and abacus as one profile from `bottom` to `top`.

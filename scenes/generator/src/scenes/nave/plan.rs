@@ -3,7 +3,7 @@
 //!
 //! Units: metres.
 
-use crate::shapes::{PointedArch, upright};
+use crate::shapes::*;
 use glam::{Affine3A, Vec3};
 
 /// Number of bays west of the apse.
@@ -76,5 +76,5 @@ pub fn pier_z(bay: usize) -> f32 {
 
 /// The local frame of the south wall at `x` in bay `bay`: x runs east along the wall, y up, z outwards.
 pub fn south_wall(x: f32, bay: usize) -> Affine3A {
-    upright(Vec3::new(x, 0.0, pier_z(bay)), Vec3::NEG_Z, Vec3::Y)
+    upright([x, 0.0, pier_z(bay)], Vec3::NEG_Z, Vec3::Y)
 }

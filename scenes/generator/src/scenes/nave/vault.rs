@@ -1,8 +1,7 @@
 //! Quadripartite rib vaults. A web is ruled between the arch at the edge of a bay and the diagonal rib, as
 //! masons laid it, with a little camber so that every course is an arch of its own.
 
-use crate::shapes::Part;
-use crate::shapes::{Faces, PointedArch, Section, Shell, patch, sweep_along};
+use crate::shapes::*;
 use glam::{Vec2, Vec3};
 
 /// Half an arch in the vertical plane through its foot and its crown.
@@ -99,26 +98,29 @@ impl Bay {
         Rib { foot: self.corner(east, south), crown: self.middle() }
     }
 
-    /// Appends webs, diagonal ribs, wall ribs and the transverse arch at the bay's western edge.
-    pub fn build(&self, detail: &Detail, webs: &mut Part, ribs: &mut Part) {
+    /// Webs, diagonal ribs, wall ribs and the transverse arch at the bay's western edge.
+    pub fn vaulted(&self, detail: &Detail) -> Assembly {
+        let mut vault = Assembly::new();
         let [across, along] = detail.web;
         let camber = 0.05 * (self.high - self.low).min_element();
         for (east, south) in [(false, false), (false, true), (true, false), (true, true)] {
-            let diagonal = self.diagonal(east, south);
-            webs.add(&web(self.transverse(east, south), diagonal, camber, across, along));
-            webs.add(&web(self.wall(east, south), diagonal, camber, across, along));
+            for edge in [self.transverse(east, south), self.wall(east, south)] {
+                vault.add("vault_webs", &web(edge, self.diagonal(east, south), camber, across, along));
+            }
         }
+        let mut rib = |halves: [Rib; 2], size: Vec2, roll: usize| {
+            vault.add("vault_ribs", &whole_arch(halves, size, along, roll));
+        };
         for south in [false, true] {
-            let diagonal = [self.diagonal(false, south), self.diagonal(true, !south)];
-            ribs.add(&whole_arch(diagonal, detail.diagonal, along, detail.roll));
+            rib([self.diagonal(false, south), self.diagonal(true, !south)], detail.diagonal, detail.roll);
             if south || detail.both_walls {
-                let wall = [self.wall(false, south), self.wall(true, south)];
-                ribs.add(&whole_arch(wall, detail.wall, along, 0));
+                rib([self.wall(false, south), self.wall(true, south)], detail.wall, 0);
             }
         }
         let transverse = [self.transverse(false, false), self.transverse(false, true)];
-        ribs.add(&whole_arch(transverse, detail.transverse, along, detail.roll));
-        ribs.add(&boss(self.middle(), 0.8 * detail.diagonal.x));
+        rib(transverse, detail.transverse, detail.roll);
+        vault.add("vault_ribs", &boss(self.middle(), 0.8 * detail.diagonal.x));
+        vault
     }
 }
 
@@ -141,36 +143,22 @@ pub fn rib_along(path: &[Vec3], size: Vec2, roll: usize) -> Shell {
 fn rib_profile(width: f32, depth: f32, roll: usize) -> Vec<Vec2> {
     let half = 0.5 * width;
     if roll == 0 {
-        return [
-            [-half, 0.2],
-            [-half, -0.5],
-            [-0.5 * half, -1.0],
-            [0.5 * half, -1.0],
-            [half, -0.5],
-            [half, 0.2],
-        ]
-        .map(|p| Vec2::new(p[0], p[1] * depth))
-        .to_vec();
+        let left = [[-half, 0.2], [-half, -0.5], [-0.5 * half, -1.0]];
+        let right = [[0.5 * half, -1.0], [half, -0.5], [half, 0.2]];
+        return scaled(&[left, right].concat(), Vec2::new(1.0, depth));
     }
     let radius = 0.6 * half;
-    let mut left = vec![
-        Vec2::new(-half, 0.2 * depth),
-        Vec2::new(-half, -0.3 * depth),
-        Vec2::new(-0.72 * half, -0.42 * depth),
-    ];
+    let mut left = points(&[[-half, 0.2 * depth], [-half, -0.3 * depth], [-0.72 * half, -0.42 * depth]]);
     let right: Vec<Vec2> = left.iter().rev().map(|p| Vec2::new(-p.x, p.y)).collect();
     let centre = Vec2::new(0.0, radius - depth);
-    left.extend(crate::shapes::arc(centre, radius, 160.0, 380.0, roll));
+    left.extend(arc(centre, radius, 160.0, 380.0, roll));
     left.extend(right);
     left
 }
 
 /// The carved keystone where the diagonals cross.
 fn boss(crown: Vec3, radius: f32) -> Shell {
-    let profile: Vec<Vec2> =
-        [[0.0, -0.62], [0.35, -0.58], [0.45, -0.42], [0.8, -0.4], [1.0, -0.2], [1.0, 0.3]]
-            .iter()
-            .map(|p| Vec2::new(p[0], p[1] - 0.35) * radius * 1.3)
-            .collect();
-    crate::shapes::lathe(&profile, 8).mapped(|p| p + crown)
+    let profile = [[0.0, -0.62], [0.35, -0.58], [0.45, -0.42], [0.8, -0.4], [1.0, -0.2], [1.0, 0.3]]
+        .map(|[r, y]| Vec2::new(r, y - 0.35) * radius * 1.3);
+    lathe(&profile, 8).mapped(|p| p + crown)
 }

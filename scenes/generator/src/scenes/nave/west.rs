@@ -1,12 +1,8 @@
 //! The west wall: a door in a stepped portal, and a rose window over it.
 
 use super::plan::{AISLE, AISLE_WALL, TOP, WALL, Window};
-use super::windows;
-use crate::shapes::Part;
-use crate::shapes::{
-    Faces, PointedArch, Section, at, beveled_box, circle, ellipsoid, extrude, extrude_faces, foil, rectangle,
-    sweep_along,
-};
+use super::windows::sky_behind;
+use crate::shapes::*;
 use glam::{Affine3A, Vec2, Vec3};
 
 const ROSE: Vec2 = Vec2::new(0.0, 14.2);
@@ -14,51 +10,43 @@ const ROSE_RADIUS: f32 = 2.1;
 const DOOR: PointedArch = PointedArch { half_span: 1.25, rise: 1.6 };
 const DOOR_SPRING: f32 = 2.5;
 
-/// Appends the west wall with its rose and its door.
-pub fn build(walls: &mut Part, mouldings: &mut Part, wood: &mut Part, windows: &mut windows::Parts) {
+/// West wall with its rose and its door.
+pub fn add(scene: &mut Assembly) {
     let half = AISLE[1] + AISLE_WALL;
     let outline = rectangle(Vec2::new(-half, -0.1), Vec2::new(half, TOP));
     let rose: Vec<Vec2> = circle(ROSE_RADIUS, 40).iter().map(|p| *p + ROSE).collect();
-    let door = DOOR.opening(Vec2::new(0.0, DOOR_SPRING), -DOOR_SPRING - 0.02, 10);
-    walls.add(&extrude_faces(&outline, &[rose, door], WALL, Faces { rim: false, ..Faces::ALL }));
+    let door =
+        |arch: PointedArch, below: f32| arch.opening(Vec2::new(0.0, DOOR_SPRING), -DOOR_SPRING - below, 10);
+    scene.add("walls", &extrude_faces(&outline, &[rose, door(DOOR, 0.02)], WALL, Faces::NO_RIM));
 
-    windows.tracery.add_at(&rose_tracery(), &at(ROSE.x, ROSE.y, 0.55 * WALL));
+    scene.add_at("tracery", &rose_tracery(), at(ROSE.x, ROSE.y, 0.55 * WALL));
     let opening = Window {
         head: PointedArch { half_span: ROSE_RADIUS, rise: ROSE_RADIUS },
         sill: ROSE.y - ROSE_RADIUS,
         spring: ROSE.y,
     };
-    windows::sky_behind(windows, &opening, WALL, &Affine3A::IDENTITY);
+    scene.merge(sky_behind(&opening, WALL, Affine3A::IDENTITY));
 
     for offset in [0.0, 0.3] {
-        let path: Vec<Vec3> = DOOR
-            .offset(offset)
-            .opening(Vec2::new(0.0, DOOR_SPRING), -DOOR_SPRING - 0.02, 10)
-            .iter()
-            .skip(1)
-            .map(|p| p.extend(0.0))
-            .collect();
+        // From the lower right up over the arch; the last point of the outline is the left springing.
+        let path: Vec<Vec3> = door(DOOR.offset(offset), 0.02)[1..].iter().map(|p| p.extend(0.0)).collect();
         let profile = circle(0.09 - 0.1 * offset, 8);
         let section = Section { points: &profile, closed: true, crease_degrees: 60.0 };
-        // From the lower right up over the arch; the last point of the outline is the left springing.
-        mouldings.add(&sweep_along(section, &path, Vec3::X, false, Faces::ALL));
+        scene.add("mouldings", &sweep_along(section, &path, Vec3::X, false, Faces::ALL));
     }
-    let leaf = DOOR.offset(0.03).opening(Vec2::new(0.0, DOOR_SPRING), -DOOR_SPRING - 0.05, 10);
-    wood.add_at(&extrude(&leaf, &[], 0.1), &at(0.0, 0.0, 0.5 * WALL));
+    let leaf = extrude(&door(DOOR.offset(0.03), 0.05), &[], 0.1);
+    scene.add_at("wood", &leaf, at(0.0, 0.0, 0.5 * WALL));
     for k in 0..7 {
         let x = -1.08 + 0.36 * k as f32;
         let height = DOOR_SPRING + 1.4 * (1.0 - (x / 1.3).powi(2));
-        wood.add(&beveled_box(
-            Vec3::new(x - 0.16, 0.02, 0.5 * WALL - 0.04),
-            Vec3::new(x + 0.16, height, 0.5 * WALL + 0.02),
-            0.015,
-        ));
+        let (back, front) = (0.5 * WALL - 0.04, 0.5 * WALL + 0.02);
+        scene.add("wood", &beveled_box([x - 0.16, 0.02, back], [x + 0.16, height, front], 0.015));
     }
-    wood.add_at(&ellipsoid(Vec3::splat(0.06), 12, 8), &at(0.2, 1.15, 0.5 * WALL - 0.1));
+    scene.add_at("wood", &ellipsoid(Vec3::splat(0.06), 12, 8), at(0.2, 1.15, 0.5 * WALL - 0.1));
 }
 
 /// A wheel of eight trefoils around a foiled eye.
-fn rose_tracery() -> crate::shapes::Shell {
+fn rose_tracery() -> Shell {
     let outline = circle(ROSE_RADIUS + 0.03, 40);
     let mut holes = vec![foil(8, 0.36, 0.2, 0.0, 4)];
     for k in 0..8 {
@@ -70,5 +58,5 @@ fn rose_tracery() -> crate::shapes::Shell {
         eye.reverse();
         holes.push(eye);
     }
-    extrude_faces(&outline, &holes, 0.2, Faces { rim: false, ..Faces::ALL })
+    extrude_faces(&outline, &holes, 0.2, Faces::NO_RIM)
 }

@@ -2,43 +2,33 @@
 //! face, so that the thickness of the wall hides it from most of what is below.
 
 use super::plan::Window;
-use crate::shapes::Part;
-use crate::shapes::{Faces, PointedArch, extrude, extrude_faces, foil};
+use crate::shapes::*;
 use glam::{Affine3A, Vec2, Vec3};
 
-/// What windows are made of.
-#[derive(Default)]
-pub struct Parts {
-    /// Mullions and tracery.
-    pub tracery: Part,
-    /// Sills.
-    pub sills: Part,
-    /// Emitters.
-    pub sky: Part,
-}
-
-/// Appends tracery, sill and sky panel of `window` about `middle` in a wall whose local frame is `frame`.
-pub fn build(parts: &mut Parts, window: &Window, middle: f32, thickness: f32, frame: &Affine3A) {
-    let local = *frame * Affine3A::from_translation(Vec3::new(middle, 0.0, 0.0));
-    let plate = tracery(window).mapped(|p| p + Vec3::Z * (0.58 * thickness));
-    parts.tracery.add_at(&plate, &local);
+/// Tracery, sill and sky panel of `window` about `middle` in a wall whose local frame is `frame`.
+pub fn glazed(window: &Window, middle: f32, thickness: f32, frame: Affine3A) -> Assembly {
+    let local = frame * at(middle, 0.0, 0.0);
+    let mut glazed = Assembly::framed(local);
+    glazed.add("tracery", &tracery(window).mapped(|p| p + Vec3::Z * (0.58 * thickness)));
     let half = window.head.half_span;
     // The sill slopes down towards the inside.
+    let (inner, outer) = (-0.04, thickness - 0.02);
     let slope = [
-        Vec2::new(-0.04, window.sill),
-        Vec2::new(-0.04, window.sill + 0.04),
-        Vec2::new(thickness - 0.02, window.sill + 0.45),
-        Vec2::new(thickness - 0.02, window.sill),
+        [inner, window.sill],
+        [inner, window.sill + 0.04],
+        [outer, window.sill + 0.45],
+        [outer, window.sill],
     ];
     let sill = extrude(&slope, &[], 2.0 * half + 0.1)
         .mapped(|p| Vec3::new(p.z - half - 0.05, p.y - 0.01, p.x))
         .flipped();
-    parts.sills.add_at(&sill, &local);
-    sky_behind(parts, window, thickness, &local);
+    glazed.add("sills", &sill);
+    glazed.merge(sky_behind(window, thickness, local));
+    glazed
 }
 
 /// A plate with two lancets and a quatrefoil (one lancet where the window is narrow).
-fn tracery(window: &Window) -> crate::shapes::Shell {
+fn tracery(window: &Window) -> Shell {
     let fitted = PointedArch { half_span: window.head.half_span + 0.03, rise: window.head.rise + 0.03 };
     let spring = window.spring;
     let outline = fitted.opening(Vec2::new(0.0, spring), window.sill - spring - 0.02, 6);
@@ -57,16 +47,18 @@ fn tracery(window: &Window) -> crate::shapes::Shell {
     let lobe = 0.19 * half;
     let centre = Vec2::new(0.0, spring + 0.53 * window.head.rise);
     holes.push(foil(4, 1.08 * lobe, lobe, 45.0, 4).iter().map(|p| *p + centre).collect());
-    extrude_faces(&outline, &holes, 0.18, Faces { rim: false, ..Faces::ALL })
+    extrude_faces(&outline, &holes, 0.18, Faces::NO_RIM)
 }
 
-/// Appends the sky panel that closes a window, a little inside the wall's outer face.
-pub fn sky_behind(parts: &mut Parts, window: &Window, thickness: f32, local: &Affine3A) {
+/// Sky panel that closes a window, a little inside the wall's outer face.
+pub fn sky_behind(window: &Window, thickness: f32, local: Affine3A) -> Assembly {
     // Its edge lies inside the wall, so that no gap is left where the curves are cut differently.
     let hidden = 0.04;
     let sill = window.sill - window.spring - hidden;
     let outline = window.head.offset(hidden).opening(Vec2::new(0.0, window.spring), sill, 8);
-    let faces = Faces { front: true, back: false, rim: false, reveals: false };
-    let panel = extrude_faces(&outline, &[], thickness - 0.06, faces).facing(Vec3::NEG_Z);
-    parts.sky.add_at(&panel.mapped(|p| Vec3::new(p.x, p.y, thickness - 0.06)), local);
+    let front = Faces { reveals: false, ..Faces::FRONT };
+    let panel = extrude_faces(&outline, &[], thickness - 0.06, front).facing(Vec3::NEG_Z);
+    let mut sky = Assembly::framed(local);
+    sky.add("sky_panels", &panel.mapped(|p| Vec3::new(p.x, p.y, thickness - 0.06)));
+    sky
 }
