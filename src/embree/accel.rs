@@ -5,7 +5,7 @@ use super::{Device, EmbreeError, Hit, Ray, Width};
 use embree4_sys as sys;
 use glam::Vec3;
 
-/// Embree leaves out triangles with a coordinate of this size or more (its `FLT_LARGE`).
+/// Coordinate from which on Embree leaves out a triangle (its `FLT_LARGE`).
 const COORDINATE_LIMIT: f32 = 1.844e18;
 
 /// Triangles to build from; borrowed, for [`Accel::build`] copies them.
@@ -17,13 +17,13 @@ pub struct TriangleMesh<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
-/// Care that Embree takes when it builds, and data that it keeps.
+/// Effort of Embree's build, and size of the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BuildQuality {
     /// Morton order: built fastest, traced slowest.
     Low,
-    /// Binned surface-area heuristic. Without further flags it is the fastest that loses no hits worth counting
-    /// (occlusion differs from `Robust` in about one ray of a million).
+    /// Binned surface-area heuristic. Without further flags it is the fastest that loses no hits worth
+    /// counting (occlusion differs from `Robust` in about one ray of a million).
     #[default]
     Medium,
     /// With spatial splits.
@@ -35,7 +35,7 @@ pub enum BuildQuality {
 }
 
 impl BuildQuality {
-    /// All, in the order of their declaration.
+    /// All qualities, in the order of their declaration.
     pub const ALL: [BuildQuality; 5] = [
         BuildQuality::Low,
         BuildQuality::Medium,
@@ -70,13 +70,13 @@ unsafe impl Send for Accel {}
 unsafe impl Sync for Accel {}
 
 impl Accel {
-    /// Builds with all threads of `device`, at medium quality. Ids in hits are indices into `meshes` and into the
-    /// mesh's `triangles`. Meshes without triangles keep their index and are never met. The vertices are copied, so
-    /// `meshes` may go afterwards.
+    /// Builds with all threads of `device`, at medium quality. Ids in hits are indices into `meshes` and into
+    /// the mesh's `triangles`. Meshes without triangles keep their index and are never hit. The vertices are
+    /// copied, so that `meshes` may be dropped afterwards.
     ///
     /// # Errors
-    /// If a triangle names a missing vertex, or has a coordinate for which Embree would leave it out
-    /// without a word, or if Embree fails (memory).
+    /// If a triangle refers to a missing vertex, or has a coordinate for which Embree would silently leave it
+    /// out, or if Embree fails (memory).
     pub fn build(device: &Device, meshes: &[TriangleMesh]) -> Result<Accel, EmbreeError> {
         Accel::build_with(device, meshes, BuildQuality::default())
     }
@@ -99,12 +99,12 @@ impl Accel {
         // SAFETY: the device is live.
         let scene = unsafe { sys::rtcNewScene(device.handle()) };
         device.check("making a scene")?;
-        // From here on dropping releases the scene.
+        // From here on, dropping releases the scene.
         let widest = if device.native_packets16() { Width::Sixteen } else { Width::Eight };
         let mut accel = Accel { scene, bounds: None, widest, device: device.clone() };
         let (quality, flags) = quality.to_embree();
-        // SAFETY: the scene is live and not yet committed. The flag is what lets a query bring its own
-        // filter; without it Embree ignores the filter silently.
+        // SAFETY: the scene is live and not yet committed. The flag allows a query to pass its own filter;
+        // without it Embree ignores the filter silently.
         unsafe {
             sys::rtcSetSceneBuildQuality(scene, quality);
             sys::rtcSetSceneFlags(scene, flags | sys::RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
@@ -133,7 +133,7 @@ impl Accel {
         let copied =
             copy_buffer(geometry, sys::RTC_BUFFER_TYPE_VERTEX, sys::RTC_FORMAT_FLOAT3, mesh.positions)
                 && copy_buffer(geometry, sys::RTC_BUFFER_TYPE_INDEX, sys::RTC_FORMAT_UINT3, mesh.triangles);
-        // SAFETY: geometry and scene are live; the scene takes a reference of its own, so ours goes. A
+        // SAFETY: geometry and scene are live; the scene takes a reference of its own, so ours is released. A
         // geometry whose buffers are missing is not attached.
         unsafe {
             if copied {
@@ -165,15 +165,15 @@ impl Accel {
         (lower.is_finite() && upper.is_finite()).then_some((lower, upper))
     }
 
-    /// The box around all triangles, as corners with the least and the greatest coordinates; none if
-    /// there is no triangle.
+    /// The box around all triangles, as corners with the minimum and the maximum coordinates; `None` if there
+    /// is no triangle.
     #[inline]
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         self.bounds
     }
 
-    /// The first triangle along the ray. Which of several at the same `t` is not specified, but it is
-    /// always the same one.
+    /// Returns the first triangle along the ray. Of several at the same `t`, the choice is unspecified but
+    /// always the same.
     #[inline]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
         let ray = ray.to_embree().filter(|_| !self.is_empty())?;
@@ -191,8 +191,8 @@ impl Accel {
                 instPrimID: [sys::RTC_INVALID_GEOMETRY_ID],
             },
         };
-        // SAFETY: the scene is committed; the ray is ours, has the library's layout (the version is
-        // checked) and is 16-byte aligned by its type; null arguments stand for the defaults.
+        // SAFETY: the scene is committed; the ray is ours, has the library's layout (the version is checked)
+        // and is 16-byte aligned by its type; null arguments stand for the defaults.
         unsafe { sys::rtcIntersect1(self.scene, &mut rayhit, std::ptr::null_mut()) };
         let hit = &rayhit.hit;
         (hit.geomID != sys::RTC_INVALID_GEOMETRY_ID).then_some(Hit {
@@ -204,30 +204,30 @@ impl Accel {
         })
     }
 
-    /// Whether any triangle lies on the ray's segment.
+    /// True if any triangle intersects the ray's segment.
     #[inline]
     pub fn occluded(&self, ray: &Ray) -> bool {
         let Some(mut shadow_ray) = ray.to_embree().filter(|_| !self.is_empty()) else { return false };
         // SAFETY: as for `rtcIntersect1` above.
         unsafe { sys::rtcOccluded1(self.scene, &mut shadow_ray, std::ptr::null_mut()) };
-        // Embree sets tfar so, and a traceable ray has not come with it: t_near <= t_far and -inf would
-        // need t_near to be -inf as well.
+        // Embree marks an occluded ray so; a traceable ray never starts that way: t_near <= t_far and -inf
+        // would need t_near to be -inf as well.
         shadow_ray.tfar == f32::NEG_INFINITY
     }
 
-    /// Whether there is nothing to meet. Embree is not asked then.
+    /// True if there are no triangles. Queries then skip Embree.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.bounds.is_none()
     }
 
-    /// The widest packets that are traced as such and not by parts.
+    /// Width of the widest packets that are traced natively and not by parts.
     #[inline]
     pub fn widest(&self) -> Width {
         self.widest
     }
 
-    /// The device that the structure was built with.
+    /// Device that the structure was built with.
     pub fn device(&self) -> &Device {
         &self.device
     }
@@ -239,13 +239,13 @@ impl Accel {
 
 impl Drop for Accel {
     fn drop(&mut self) {
-        // SAFETY: the scene is live and this is the only reference that we hold.
+        // SAFETY: the scene is live and this is our only reference.
         unsafe { sys::rtcReleaseScene(self.scene) };
     }
 }
 
-/// Copies `items`, three 32-bit numbers each, into a new buffer of Embree's, which it pads as it
-/// needs. False if there is no memory; Embree has then reported it.
+/// Copies `items`, three 32-bit numbers each, into a new buffer of Embree's, which pads it as required.
+/// Returns false if there is no memory; Embree has then reported it.
 fn copy_buffer<T: Copy>(
     geometry: sys::RTCGeometry,
     buffer_type: sys::RTCBufferType,
@@ -266,7 +266,7 @@ fn copy_buffer<T: Copy>(
     true
 }
 
-/// Refuses what Embree would read out of bounds or leave out silently.
+/// Rejects input that Embree would read out of bounds or leave out silently.
 fn validate(mesh_index: usize, mesh: &TriangleMesh) -> Result<(), EmbreeError> {
     for (what, count) in [("triangles", mesh.triangles.len()), ("vertices", mesh.positions.len())] {
         if u32::try_from(count).is_err() {

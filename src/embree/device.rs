@@ -6,11 +6,12 @@ use std::ffi::{CStr, CString, c_char, c_void};
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Messages kept until they are asked for; later ones are dropped, for the first tells the cause.
+/// Maximum number of messages kept until they are read; later ones are dropped, for the first tells the
+/// cause.
 const MESSAGE_CAPACITY: usize = 16;
 
-/// A handle to the library, with the threads it builds with. Clones share one device; an
-/// [`super::Accel`] keeps its device alive.
+/// A handle to the library and its build threads. Clones share one device; an [`super::Accel`] keeps its
+/// device alive.
 #[derive(Clone)]
 pub struct Device {
     shared: Arc<Shared>,
@@ -23,23 +24,23 @@ struct Shared {
     errors: Box<ErrorLog>,
 }
 
-// SAFETY: Embree's devices are reference-counted and their functions may be called from any thread;
-// the log that the error callback writes is behind a mutex.
+// SAFETY: Embree's devices are reference-counted and their functions may be called from any thread; the log
+// that the error callback writes is behind a mutex.
 unsafe impl Send for Shared {}
 // SAFETY: as above.
 unsafe impl Sync for Shared {}
 
 impl Device {
-    /// A device that builds with `threads` threads; 0 stands for one per hardware thread. Queries run
+    /// Creates a device that builds with `threads` threads; 0 stands for one per hardware thread. Queries run
     /// on the caller's threads and are not limited by it.
     ///
     /// # Errors
-    /// If Embree gives no device, or is a version or build that the bindings do not describe.
+    /// If Embree returns no device, or is a version or build that the bindings do not describe.
     pub fn new(threads: usize) -> Result<Device, EmbreeError> {
         Device::with_config(&format!("threads={threads}"))
     }
 
-    /// As [`Device::new`], with a configuration string of `rtcNewDevice`. Tests choose an ISA by it.
+    /// As [`Device::new`], with a configuration string of `rtcNewDevice`, by which tests choose an ISA.
     pub(super) fn with_config(config: &str) -> Result<Device, EmbreeError> {
         let config = CString::new(config).unwrap_or_default();
         // SAFETY: the string is NUL-terminated and outlives the call.
@@ -71,19 +72,19 @@ impl Device {
             }
         }
         let log: *const ErrorLog = &*device.errors;
-        // SAFETY: the log is boxed, and `Shared::drop` takes the callback away before the box goes; the
-        // callback has the type that Embree asks for and reads the log only through a shared reference.
+        // SAFETY: the log is boxed, and `Shared::drop` unregisters the callback before the box is dropped;
+        // the callback has the type that Embree requires and reads the log only through a shared reference.
         unsafe { sys::rtcSetDeviceErrorFunction(handle, Some(record_error), log.cast_mut().cast()) };
         Ok(Device { shared: Arc::new(device) })
     }
 
-    /// The version of the library that was loaded.
+    /// Version of the library that was loaded.
     pub fn version(&self) -> Version {
         self.shared.version
     }
 
-    /// Whether sixteen-wide packets run natively (AVX-512). Where they do not, the packet queries give
-    /// the same answers by single rays, and packing rays gains nothing.
+    /// True if sixteen-wide packets run natively (AVX-512). Otherwise the packet queries give the same
+    /// answers by single rays, and packing rays gains nothing.
     pub fn native_packets16(&self) -> bool {
         // SAFETY: the handle is a live device.
         unsafe {
@@ -91,10 +92,10 @@ impl Device {
         }
     }
 
-    /// The first error that was reported since the last look, if any; the rest are forgotten.
+    /// Returns the first error reported since the last call, if any; discards the rest.
     ///
     /// # Errors
-    /// With what Embree reported; `during` says what was being done.
+    /// The error that Embree reported; `during` names the activity.
     pub fn check(&self, during: &'static str) -> Result<(), EmbreeError> {
         let reported = std::mem::take(&mut *self.shared.errors.lock());
         match reported.into_iter().next() {
@@ -116,9 +117,9 @@ impl fmt::Debug for Device {
 
 impl Drop for Shared {
     fn drop(&mut self) {
-        // SAFETY: the handle is live and ours to release. Scenes may hold the device longer than we do
-        // (an `Accel` releases its scene before its `Device`, but Embree counts by itself), so the
-        // callback is taken away from it first.
+        // SAFETY: the handle is live and ours to release. Scenes may hold the device longer than we do (an
+        // `Accel` releases its scene before its `Device`, but Embree counts by itself), so the callback is
+        // unregistered first.
         unsafe {
             sys::rtcSetDeviceErrorFunction(self.handle, None, std::ptr::null_mut());
             sys::rtcReleaseDevice(self.handle);
@@ -126,7 +127,7 @@ impl Drop for Shared {
     }
 }
 
-/// Errors that the callback was told, in order.
+/// Errors passed to the callback, in order.
 #[derive(Default)]
 struct ErrorLog(Mutex<Vec<(sys::RTCError, String)>>);
 
@@ -136,9 +137,9 @@ impl ErrorLog {
     }
 }
 
-/// Called by Embree from any of its threads.
+/// Error callback, called by Embree from any of its threads.
 unsafe extern "C" fn record_error(log: *mut c_void, code: sys::RTCError, message: *const c_char) {
-    // SAFETY: `log` is what was registered, a live `ErrorLog` that is only ever shared.
+    // SAFETY: `log` is the registered pointer, to a live `ErrorLog` that is only ever shared.
     let log = unsafe { &*log.cast::<ErrorLog>() };
     let mut reported = log.lock();
     if reported.len() < MESSAGE_CAPACITY {
@@ -153,6 +154,8 @@ fn code_name(code: sys::RTCError) -> String {
     unsafe { text(sys::rtcGetErrorString(code)) }
 }
 
+/// Converts a C string.
+///
 /// # Safety
 /// `string` must be null or NUL-terminated and live through the call.
 unsafe fn text(string: *const c_char) -> String {

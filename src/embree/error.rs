@@ -6,7 +6,7 @@ use super::Version;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EmbreeError {
-    /// `rtcNewDevice` gave nothing: the processor is too old, or memory is short.
+    /// `rtcNewDevice` returned no device: the processor is too old, or memory is short.
     #[error("Embree gave no device: {code}: {message}")]
     NoDevice {
         /// Embree's name of the error code.
@@ -14,7 +14,7 @@ pub enum EmbreeError {
         /// Embree's explanation.
         message: String,
     },
-    /// The library that was loaded is outside what the bindings describe.
+    /// The library that was loaded is of a version that the bindings do not describe.
     #[error(
         "Embree {found} was loaded, but 4.3 or later below 5 is needed: run `make setup` and build again, \
          or point EMBREE_DIR at a fitting one"
@@ -23,7 +23,7 @@ pub enum EmbreeError {
         /// Version that the library reports.
         found: Version,
     },
-    /// The library was built without something that is needed here.
+    /// The library was built without a feature that is needed here.
     #[error("this Embree was built without {feature}: run `make setup` without EMBREE_DIR and build again")]
     Feature {
         /// CMake option that is off.
@@ -39,7 +39,7 @@ pub enum EmbreeError {
         /// Embree's explanation.
         message: String,
     },
-    /// Embree would have left these triangles out without a word.
+    /// Triangles that Embree would silently leave out.
     #[error(
         "mesh {mesh}: {count} triangles have a coordinate that is not finite or beyond ±1.8e18 \
          (the first is triangle {first}): sanitise the scene before building"
@@ -52,7 +52,7 @@ pub enum EmbreeError {
         /// Number of such triangles in this mesh.
         count: usize,
     },
-    /// A triangle names a vertex that is not there.
+    /// A triangle refers to a vertex that does not exist.
     #[error("mesh {mesh}: triangle {triangle} names vertex {index}, but there are {vertices} vertices")]
     VertexIndex {
         /// Index of the mesh.
@@ -64,10 +64,10 @@ pub enum EmbreeError {
         /// Number of vertices.
         vertices: usize,
     },
-    /// More meshes, vertices or triangles than 32-bit ids can tell apart.
+    /// More meshes, vertices or triangles than 32-bit ids can distinguish.
     #[error("{count} {what} are more than 32-bit ids can tell apart: split the scene")]
     TooMany {
-        /// Name of the things that there are too many of.
+        /// Name of the excessive objects.
         what: &'static str,
         /// Their number.
         count: usize,

@@ -1,16 +1,16 @@
-//! Occlusion queries that also say which triangle was in the way, and at what distance.
+//! Occlusion queries that also return the occluding triangle and its distance.
 //!
-//! `rtcOccluded` reports neither, so a filter passed with the query records each candidate, all of which it accepts,
-//! behind Embree's query context. It costs a few per cent against the plain query.
+//! `rtcOccluded` reports neither, so a filter passed with the query records each candidate, all of which it
+//! accepts, behind Embree's query context. It costs a few per cent against the plain query.
 //!
-//! The occluder is the first that the traversal came upon, not the closest: which one it is may differ
-//! between a packet and a single ray, and with the packet's other lanes.
+//! The occluder is the first that the traversal found, not the closest: it may differ between a packet and a
+//! single ray, and with the packet's other lanes.
 
 use super::query::query_flags;
 use super::{Accel, Ray, Rays16};
 use embree4_sys as sys;
 
-/// Names a triangle of an [`Accel`].
+/// Identifier of a triangle of an [`Accel`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TriangleId {
     /// Index of the mesh.
@@ -24,10 +24,10 @@ impl TriangleId {
     pub const NONE: TriangleId = TriangleId { geometry: u32::MAX, primitive: u32::MAX };
 }
 
-/// A triangle found in the way of a ray.
+/// A triangle that occludes a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Occluder {
-    /// Ray parameter where the ray meets it.
+    /// Ray parameter of the intersection.
     pub t: f32,
     /// Index of the mesh.
     pub geometry: u32,
@@ -36,14 +36,14 @@ pub struct Occluder {
 }
 
 impl Occluder {
-    /// Name of the triangle.
+    /// Identifier of the triangle.
     #[inline]
     pub fn id(&self) -> TriangleId {
         TriangleId { geometry: self.geometry, primitive: self.primitive }
     }
 }
 
-/// The occluders of sixteen rays. Lanes that are not occluded are left as they were.
+/// The occluders of sixteen rays. Lanes that are not occluded are left unchanged.
 #[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Occluders16 {
@@ -55,7 +55,7 @@ pub struct Occluders16 {
     pub primitive: [u32; 16],
 }
 
-/// Context of a query, as the filters find it behind `RTCFilterFunctionNArguments::context`.
+/// Context of a query, which the filters find behind `RTCFilterFunctionNArguments::context`.
 #[repr(C)]
 struct Query<Found> {
     context: sys::RTCRayQueryContext,
@@ -63,7 +63,7 @@ struct Query<Found> {
 }
 
 impl<Found> Query<Found> {
-    /// The query's arguments, with `filter` to be called for every candidate. They point into `self`.
+    /// Returns the query's arguments, with `filter` to be called for every candidate. They point into `self`.
     #[inline]
     fn arguments(
         &mut self,
@@ -85,7 +85,7 @@ const CONTEXT: sys::RTCRayQueryContext = sys::RTCRayQueryContext {
     instPrimID: [sys::RTC_INVALID_GEOMETRY_ID],
 };
 
-/// Word offsets, times the packet's size, of what the filters read from `RTCRayN` and `RTCHitN`.
+/// Word offsets, times the packet's size, of the fields that the filters read from `RTCRayN` and `RTCHitN`.
 mod word {
     pub const RAY_T_FAR: usize = 8;
     pub const RAY_ID: usize = 10;
@@ -94,7 +94,7 @@ mod word {
 }
 
 impl Accel {
-    /// As [`Accel::occluded`], and says by what.
+    /// As [`Accel::occluded`], but returns the occluder.
     #[inline]
     pub fn occluder(&self, ray: &Ray) -> Option<Occluder> {
         let mut shadow_ray = ray.to_embree().filter(|_| !self.is_empty())?;
@@ -107,7 +107,7 @@ impl Accel {
         (shadow_ray.tfar == f32::NEG_INFINITY).then_some(query.found)
     }
 
-    /// As [`Accel::occluded16`], and says by what: the returned lanes of `found` are written.
+    /// As [`Accel::occluded16`], but also writes the occluders to the returned lanes of `found`.
     #[inline]
     pub fn occluders16(&self, rays: &Rays16, valid: u16, coherent: bool, found: &mut Occluders16) -> u16 {
         let lanes = rays.lanes(valid);
@@ -117,20 +117,20 @@ impl Accel {
         let mut query = Query { context: CONTEXT, found };
         let mut arguments = query.arguments(coherent, record_occluders);
         let mut packet = rays.to_embree();
-        // SAFETY: as above; mask and packet have the 64-byte alignment that is asked for.
+        // SAFETY: as above; mask and packet have the required 64-byte alignment.
         unsafe { sys::rtcOccluded16(lanes.0.as_ptr(), self.scene(), &mut packet, &mut arguments) };
         lanes.mask_where(|i| packet.tfar[i] == f32::NEG_INFINITY)
     }
 }
 
-/// The filter of a single ray.
+/// Filter of a single ray.
 ///
 /// # Safety
 /// For Embree to call during a query whose context is the head of a `Query<Occluder>`.
 unsafe extern "C" fn record_occluder(arguments: *const sys::RTCFilterFunctionNArguments) {
-    // SAFETY: Embree passes valid arguments for packets of N = 1: one valid lane, a ray and a hit
-    // of the word offsets above. The context is the one that the query was given, alive and not
-    // borrowed by anybody while the query runs on this thread.
+    // SAFETY: Embree passes valid arguments for packets of N = 1: one valid lane, a ray and a hit of the word
+    // offsets above. The context is that of the query, alive and not borrowed elsewhere while the query runs
+    // on this thread.
     unsafe {
         let arguments = &*arguments;
         let hit = arguments.hit.cast::<u32>();
@@ -142,15 +142,15 @@ unsafe extern "C" fn record_occluder(arguments: *const sys::RTCFilterFunctionNAr
     }
 }
 
-/// The filter of a packet of sixteen. It handles all lanes alike and blends, so that it compiles to
-/// vector instructions; a loop over the valid lanes costs several times as much.
+/// Filter of a packet of sixteen. It processes all lanes and blends, so that it compiles to vector
+/// instructions; a loop over the valid lanes costs several times as much.
 ///
 /// # Safety
 /// For Embree to call during a query whose context is the head of a `Query<&mut Occluders16>` and whose rays
 /// carry their lane as their id.
 unsafe extern "C" fn record_occluders(arguments: *const sys::RTCFilterFunctionNArguments) {
-    // SAFETY: Embree passes valid arguments; the context is the one that the query was given, alive and
-    // not borrowed by anybody while the query runs on this thread.
+    // SAFETY: Embree passes valid arguments; the context is that of the query, alive and not borrowed
+    // elsewhere while the query runs on this thread.
     let (arguments, found) = unsafe {
         let arguments = &*arguments;
         (arguments, &mut *(*arguments.context.cast::<Query<&mut Occluders16>>()).found)
@@ -181,13 +181,13 @@ unsafe extern "C" fn record_occluders(arguments: *const sys::RTCFilterFunctionNA
     }
 }
 
-/// `new` where the mask is all ones, `old` where it is zero.
+/// Returns `new` where the mask is all ones, `old` where it is zero.
 #[inline]
 fn blend(mask: u32, new: u32, old: u32) -> u32 {
     (mask & new) | (!mask & old)
 }
 
-/// The same where Embree has no sixteen-wide kernels and traces the rays of the packet one by one, or
+/// The same filter where Embree has no sixteen-wide kernels and traces the rays of the packet one by one, or
 /// in smaller packets: the lane is then the ray's id.
 ///
 /// # Safety

@@ -1,4 +1,4 @@
-//! Packets of sixteen rays and of the hits that they find.
+//! Packets of sixteen rays and of their hits.
 
 use super::ray::ALL_GEOMETRY;
 use super::{Hit, Ray};
@@ -8,7 +8,7 @@ use glam::Vec3;
 
 /// Sixteen rays, a lane each, as a structure of arrays.
 ///
-/// Lanes that were never set are unusable rays that meet nothing.
+/// Lanes that were never set are unusable rays that hit nothing.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct Rays16 {
@@ -46,7 +46,7 @@ impl Default for Rays16 {
 }
 
 impl Rays16 {
-    /// Puts a ray into a lane.
+    /// Sets the ray in a lane.
     ///
     /// # Panics
     /// If `lane` is 16 or more.
@@ -85,7 +85,7 @@ impl Rays16 {
         Vec3x16 { x: self.direction_x, y: self.direction_y, z: self.direction_z }
     }
 
-    /// The lanes of `valid` as Embree takes them, without those whose segment does not exist.
+    /// Returns the lanes of `valid` as Embree's mask, without those whose segment is empty or invalid.
     #[inline]
     pub(super) fn lanes(&self, valid: u16) -> LaneMask {
         let mut lanes = LaneMask([0; 16]);
@@ -125,7 +125,7 @@ impl Rays16 {
     }
 }
 
-/// Each ray carries its lane, which a filter needs where Embree splits the packet into single rays.
+/// Ids of the rays, their lanes, which a filter needs where Embree splits the packet into single rays.
 pub(super) const LANE_IDS: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// Embree's mask of lanes.
@@ -149,7 +149,7 @@ impl LaneMask {
     }
 }
 
-/// Hits of sixteen rays; see [`super::Hit`] for the members. Lanes without a hit are left as they were.
+/// Hits of sixteen rays; see [`super::Hit`] for the members. Lanes without a hit are left unchanged.
 #[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Hits16 {
@@ -178,7 +178,7 @@ impl Hits16 {
         }
     }
 
-    /// Puts a copy of lane `from` into the lanes of `to`.
+    /// Copies lane `from` into the lanes of `to`.
     #[inline]
     pub fn repeat(&mut self, from: usize, to: u16) {
         for i in 0..16 {

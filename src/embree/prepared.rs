@@ -1,13 +1,13 @@
-//! The barest loop over rays of each width, for benchmarks: the yardstick to judge a renderer's queries by.
+//! A minimal loop over rays of each width, for benchmarks: the baseline for a renderer's queries.
 //!
-//! Rays are laid out as the library takes them, copied (a query writes to them) and traced, with nothing around it.
+//! Rays are stored in the library's layout, copied (a query writes to them) and traced, with no other work.
 
 use super::packet::LaneMask;
 use super::query::{EmbreePacket, occluded_arguments};
 use super::{Accel, Rays16, Width};
 use embree4_sys as sys;
 
-/// Rays as queries of one width take them.
+/// Rays in the layout of queries of one width.
 pub struct PreparedRays(Form);
 
 enum Form {
@@ -18,8 +18,8 @@ enum Form {
 }
 
 impl PreparedRays {
-    /// The rays in the given lanes of `packets`, in their order; narrower packets are cut from them, and those
-    /// without a ray to be traced left out.
+    /// Takes the rays in the given lanes of `packets`, in their order; narrower packets are cut from them,
+    /// and those without a ray to be traced left out.
     pub fn new<'a>(packets: impl IntoIterator<Item = (&'a Rays16, u16)>, width: Width) -> PreparedRays {
         let packets = packets.into_iter();
         PreparedRays(match width {
@@ -37,7 +37,7 @@ impl PreparedRays {
         })
     }
 
-    /// Number of queries that they make.
+    /// Number of queries.
     pub fn queries(&self) -> usize {
         match &self.0 {
             Form::One(rays) => rays.len(),

@@ -1,16 +1,16 @@
 //! Queries of packets.
 //!
 //! The speed of a packet depends on the rays that share it. With the `coherent` hint, rays from neighbouring
-//! points towards one light run two to three times as fast as single rays; unrelated rays run at half
-//! the speed. Coherent packets should start at the receivers: a packet that starts at the light and
-//! fans out lost some 1e-4 of its hits.
+//! points towards one light run two to three times as fast as single rays; unrelated rays run at half the
+//! speed. Coherent packets should start at the receivers: a packet that starts at the light and fans out lost
+//! some 1e-4 of its hits.
 
 use super::packet::LANE_IDS;
 use super::ray::ALL_GEOMETRY;
 use super::{Accel, Hits16, Rays16, Width};
 use embree4_sys as sys;
 
-/// The traversal that a hint asks for.
+/// Query flags for a coherence hint.
 #[inline]
 pub(super) fn query_flags(coherent: bool) -> sys::RTCRayQueryFlags {
     if coherent { sys::RTC_RAY_QUERY_FLAG_COHERENT } else { sys::RTC_RAY_QUERY_FLAG_INCOHERENT }
@@ -30,9 +30,9 @@ pub(super) fn occluded_arguments(coherent: bool) -> sys::RTCOccludedArguments {
 
 /// A packet of Embree's own layout.
 pub(super) trait EmbreePacket: Copy {
-    /// Lanes `first..first + width` of sixteen.
+    /// Takes lanes `first..first + width` of sixteen.
     fn of(rays: &Rays16, first: usize) -> Self;
-    /// Traces the lanes that `lanes` says, and returns those found occluded as bits from 0 on.
+    /// Traces the lanes of the mask `lanes`, and returns those found occluded as bits from 0 on.
     ///
     /// # Safety
     /// The scene is committed, and `lanes` is as long as the packet is wide and as aligned as the packet.
@@ -49,7 +49,7 @@ macro_rules! packet {
         impl EmbreePacket for sys::$packet {
             #[inline(always)]
             fn of(rays: &Rays16, first: usize) -> Self {
-                // Whole vectors, for Embree reads them so.
+                // Copied as whole vectors, as Embree reads them.
                 fn part<T: Copy + Default>(row: &[T; 16], first: usize) -> [T; $width] {
                     let mut part = [T::default(); $width];
                     part.copy_from_slice(&row[first..first + $width]);
@@ -79,7 +79,7 @@ macro_rules! packet {
                 scene: sys::RTCScene,
                 arguments: &mut sys::RTCOccludedArguments,
             ) -> u16 {
-                // SAFETY: by contract; the packet has its type's alignment, which is what Embree asks for.
+                // SAFETY: by contract; the packet has its type's alignment, which Embree requires.
                 unsafe { sys::$query(lanes, scene, &mut self, arguments) };
                 let mut bits = [0u32; $width];
                 for (i, bit) in bits.iter_mut().enumerate() {
@@ -96,9 +96,9 @@ packet!(RTCRay8, 8, rtcOccluded8);
 packet!(RTCRay16, 16, rtcOccluded16);
 
 impl Accel {
-    /// [`Accel::closest_hit`] for the lanes in `valid`. Returns the lanes that hit, and writes those
-    /// of `hits`. `coherent` is a hint that origins and directions are alike: it changes speed, not
-    /// meaning, but not the last bits either way.
+    /// [`Accel::closest_hit`] for the lanes in `valid`. Returns the lanes that hit, and writes those of
+    /// `hits`. `coherent` is a hint that origins and directions are similar: it may change the last bits and
+    /// the speed, not the meaning.
     #[inline]
     pub fn closest_hit16(&self, rays: &Rays16, valid: u16, coherent: bool, hits: &mut Hits16) -> u16 {
         let lanes = rays.lanes(valid);
@@ -127,8 +127,8 @@ impl Accel {
             filter: None,
             intersect: None,
         };
-        // SAFETY: the scene is committed; mask, packet and arguments are ours, outlive the call, have
-        // the library's layout (the version is checked) and the 64-byte alignment it asks for.
+        // SAFETY: the scene is committed; mask, packet and arguments are ours, outlive the call, have the
+        // library's layout (the version is checked) and the required 64-byte alignment.
         unsafe { sys::rtcIntersect16(lanes.0.as_ptr(), self.scene(), &mut rayhit, &mut arguments) };
         let hit = &rayhit.hit;
         let found = lanes.mask_where(|i| hit.geomID[i] != sys::RTC_INVALID_GEOMETRY_ID);

@@ -1,9 +1,9 @@
-//! One ray and what it meets.
+//! A ray and its hit.
 
 use embree4_sys as sys;
 use glam::{Vec3, Vec4};
 
-/// Embree's ray mask that meets all geometry: there is only one kind of it here.
+/// Ray mask that includes all geometry, of which there is only one kind here.
 pub(super) const ALL_GEOMETRY: u32 = u32::MAX;
 
 /// The segment `origin + t direction`, `t_near < t <= t_far`.
@@ -38,10 +38,11 @@ impl Ray {
         self.origin + t * self.direction
     }
 
-    /// The ray as Embree takes it; none if its segment does not exist: then it meets nothing and Embree is not asked.
+    /// Converts to Embree's layout; `None` if the segment is empty or invalid: then it hits nothing and
+    /// Embree is not called.
     ///
-    /// Written by whole vectors, for Embree reads it so: from single words it would have to wait until they
-    /// reach the cache.
+    /// Written as whole vectors, as Embree reads it: after writes of single words the read would stall until
+    /// they reach the cache.
     #[inline(always)]
     pub(super) fn to_embree(self) -> Option<sys::RTCRay> {
         let origin = self.origin.extend(self.t_near);

@@ -14,7 +14,7 @@ pub struct Version {
 }
 
 impl Version {
-    /// Whether the bindings describe this version: 4.2 has a smaller hit, 5 is another interface.
+    /// True if the bindings describe this version: 4.2 has a smaller hit, 5 is another interface.
     pub(super) fn is_supported(self) -> bool {
         self.major == 4 && self.minor >= 3
     }

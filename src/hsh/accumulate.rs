@@ -1,7 +1,8 @@
 //! Sums the light of many directions into coefficients, eight directions at a time.
 //!
 //! Paper: Herzog et al. 2009, equations 5 and 6.
-//! Deviations: the receiver's cosine belongs to what reflects, not to the light, so that the series is of radiance.
+//! Deviations: the receiver's cosine is part of the reflection, not of the light, so that the series is of
+//! radiance.
 //! Units: radiance per band function: intensity times [`Incidence::factor`].
 
 use super::CHANNELS;
@@ -10,8 +11,8 @@ use super::radiance::{BLOCKS, Radiance};
 use crate::gradient::Incidence;
 use crate::math::{F32x8, Rgb, WIDTH};
 
-/// Coefficients under construction. The order in which light is added decides the last bits, so add it in an order
-/// that is always the same.
+/// Coefficients under construction. The last bits depend on the order in which light is added, so add it in a
+/// fixed order.
 pub struct Accumulator {
     bands: usize,
     batch: Incidence8,
@@ -42,21 +43,21 @@ impl Incidence8 {
 }
 
 impl Accumulator {
-    /// For series of 1 to 8 bands (more or fewer count as the nearest of these).
+    /// Creates an accumulator for series of 1 to 8 bands (more or fewer are clamped).
     pub fn new(bands: usize) -> Accumulator {
         let bands = bands.clamp(1, MAX_BANDS);
         let sums = Box::new([[F32x8::ZERO; BLOCKS]; MAX_FUNCTIONS]);
         Accumulator { bands, batch: Incidence8::EMPTY, filled: 0, sums }
     }
 
-    /// Begins anew with a number of bands.
+    /// Resets it to a number of bands.
     pub fn reset(&mut self, bands: usize) {
         self.bands = bands.clamp(1, MAX_BANDS);
         self.sums.fill([F32x8::ZERO; BLOCKS]);
         (self.batch, self.filled) = (Incidence8::EMPTY, 0);
     }
 
-    /// Adds the light of one direction; light from below the horizon counts for nothing.
+    /// Adds the light of one direction; light from below the horizon is ignored.
     #[inline]
     pub fn add(&mut self, incidence: &Incidence<f32>, intensity: Rgb) {
         if !(incidence.direction[2] > 0.0) {
@@ -77,7 +78,7 @@ impl Accumulator {
         }
     }
 
-    /// The sum of all that was added since the last time; begins anew.
+    /// Returns the sum of the light added since the last call, and resets it.
     pub fn finish(&mut self) -> Radiance {
         if self.filled > 0 {
             self.flush();

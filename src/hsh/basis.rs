@@ -1,26 +1,26 @@
-//! The basis functions and how they change as the receiver moves.
+//! The basis functions and their derivatives as the receiver moves.
 //!
-//! With ω = (x, y, z), t = 2z - 1 and σ² = 4z / (1 + z),
-//! H_l^m = N Q_l^m(t) · {Re, Im} (σ(x + iy))^|m|, Q_l^m = dᵐP_l / dtᵐ, N² = (2l + 1)(l - m)! / (2π(l + m)!), twice
-//! that for m ≠ 0. Q is found by the recurrence in l of its normalised form, its derivative is Q of the next order.
+//! With ω = (x, y, z), t = 2z - 1 and σ² = 4z / (1 + z), H_l^m = N Q_l^m(t) · {Re, Im} (σ(x + iy))^|m|, Q_l^m
+//! = dᵐP_l / dtᵐ, N² = (2l + 1)(l - m)! / (2π(l + m)!), twice that for m ≠ 0. Q is computed by the recurrence
+//! in l of its normalised form, its derivative is Q of the next order.
 //!
-//! A source in direction ω at distance |q| is seen in another direction once the receiver has moved; the derivative
-//! by such motion along the tangent u is, with C = {Re, Im} (x + iy)^m and |∂ω| = 1 / |q|,
+//! A source in direction ω at distance |q| is seen in another direction once the receiver has moved; the
+//! derivative by such motion along the tangent u is, with C = {Re, Im} (x + iy)^m and |∂ω| = 1 / |q|,
 //! |q| ∂_u H = N { ω_u σᵐ C [ mQ + 2zQ' + mQ / (2(1 + z)) ] - σᵐ Q ∂C/∂u }.
 //!
 //! Paper: Gautron et al. 2004, equations 3 and 4.
-//! Deviations: theirs is written in angles, singular at the pole and, differentiated, at the horizon; this is the
-//! same function as a polynomial in x and y, and all of it is finite everywhere.
+//! Deviations: theirs is written in angles, singular at the pole and, differentiated, at the horizon; this is
+//! the same function as a polynomial in x and y, finite everywhere with its derivatives.
 
 use crate::math::Real;
 use std::f64::consts::PI;
 
-/// Most bands a function is expanded into.
+/// Maximum number of bands of an expansion.
 pub const MAX_BANDS: usize = 8;
-/// Functions in so many bands.
+/// Number of functions in so many bands.
 pub const MAX_FUNCTIONS: usize = MAX_BANDS * MAX_BANDS;
 
-/// Number of the function of degree `l` and order `m`, |m| <= l.
+/// Index of the function of degree `l` and order `m`, |m| <= l.
 #[inline]
 pub const fn index(l: usize, m: isize) -> usize {
     (l * l + l).wrapping_add_signed(m)
@@ -91,8 +91,8 @@ const fn sqrt(x: f64) -> f64 {
 
 /// Calls `f(k, H, |q| ∂_u H, |q| ∂_v H)` for each function of the first `BANDS` bands at the direction ω.
 ///
-/// Directions below the horizon, as rounding makes them, count as on it.
-/// Arguments that `f` does not use are not computed.
+/// Directions below the horizon, as rounding produces them, are moved to it. Arguments that `f` does not use
+/// are not computed.
 #[inline(always)]
 pub fn for_each<T: Real, const BANDS: usize>(omega: [T; 3], mut f: impl FnMut(usize, T, T, T)) {
     const { assert!(BANDS >= 1 && BANDS <= MAX_BANDS) };
@@ -143,7 +143,7 @@ pub fn for_each<T: Real, const BANDS: usize>(omega: [T; 3], mut f: impl FnMut(us
     }
 }
 
-/// The first `bands`² functions at ω, `bands` in 1..=8; the rest is 0.
+/// Evaluates the first `bands`² functions at ω, `bands` in 1..=8; the rest is 0.
 pub fn evaluate<T: Real>(bands: usize, omega: [T; 3]) -> [T; MAX_FUNCTIONS] {
     let mut values = [T::of(0.0); MAX_FUNCTIONS];
     for_each::<T, MAX_BANDS>(omega, |k, h, _, _| values[k] = h);

@@ -5,10 +5,10 @@ use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
 use crate::math::Rgb;
 use std::f32::consts::PI;
 
-/// Functions that are even in azimuth: orders m >= 0.
+/// Number of functions that are even in azimuth: orders m >= 0.
 pub(super) const MAX_EVEN: usize = MAX_BANDS * (MAX_BANDS + 1) / 2;
 
-/// Number of the function of degree `l` and order `m`, 0 <= m <= l, among the even ones.
+/// Index of the function of degree `l` and order `m`, 0 <= m <= l, among the even ones.
 #[inline]
 pub(super) const fn even_index(l: usize, m: usize) -> usize {
     l * (l + 1) / 2 + m
@@ -19,29 +19,31 @@ pub(super) const fn even_index(l: usize, m: usize) -> usize {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Profile {
     pub(super) bands: usize,
-    /// By channel and function; the places of odd functions repeat the coefficients of their even partners, which is
-    /// what turning the kernel distributes over both.
+    /// Coefficients by channel and function; those of odd functions repeat their even partners, since turning
+    /// the kernel distributes the coefficient over both.
     pub(super) coefficients: [[f32; MAX_FUNCTIONS]; CHANNELS],
 }
 
 impl Profile {
-    /// Bands in use; all coefficients beyond are 0.
+    /// Number of bands in use; all coefficients beyond are 0.
     pub fn bands(&self) -> usize {
         self.bands
     }
 
-    /// Reflectance for light that is the same from all directions, up to a constant factor.
+    /// Reflectance for uniform light from all directions, up to a constant factor.
     #[inline]
     pub fn strength(&self) -> Rgb {
         Rgb::from_array(std::array::from_fn(|c| self.coefficients[c][0]))
     }
 
-    /// The kernel seen from the azimuth of `(x, y)`, which need not have unit length; at (0, 0) any azimuth will do.
+    /// Returns the kernel seen from the azimuth of `(x, y)`, which need not have unit length; at (0, 0) any
+    /// azimuth will do.
     #[inline]
     pub fn towards(&self, x: f32, y: f32) -> Kernel {
         let length = (x * x + y * y).sqrt();
         let (cos, sin) = if length > 0.0 { (x / length, y / length) } else { (1.0, 0.0) };
-        // sin mφ from the highest order down, then cos mφ up, so that a degree's functions are a run around the middle.
+        // sin mφ from the highest order down, then cos mφ up, so that a degree's functions are contiguous
+        // around the middle.
         const MIDDLE: usize = MAX_BANDS - 1;
         let mut multiples = [1.0; 2 * MAX_BANDS - 1];
         let (mut cos_m, mut sin_m) = (1.0, 0.0);
@@ -63,7 +65,7 @@ impl Profile {
     }
 }
 
-/// Coefficients of even functions, repeated in the places of their odd partners.
+/// Coefficients of even functions, repeated for their odd partners.
 pub(super) fn repeated(even: &[f64; MAX_EVEN]) -> [f32; MAX_FUNCTIONS] {
     let mut all = [0.0; MAX_FUNCTIONS];
     for l in 0..MAX_BANDS {
@@ -76,15 +78,15 @@ pub(super) fn repeated(even: &[f64; MAX_EVEN]) -> [f32; MAX_FUNCTIONS] {
     all
 }
 
-/// Coefficients of BRDF · cosine over the incoming directions, by channel; the scalar product with those of the
-/// radiance is what is reflected.
+/// Coefficients of BRDF · cosine over the incoming directions, by channel; their scalar product with those of
+/// the radiance is the reflected radiance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kernel {
     pub(super) coefficients: [[f32; MAX_FUNCTIONS]; CHANNELS],
 }
 
 impl Kernel {
-    /// The cosine alone, by which radiance becomes irradiance.
+    /// Kernel of the cosine alone, which converts radiance to irradiance.
     pub fn cosine(bands: usize) -> Kernel {
         let mut row = [0.0; MAX_FUNCTIONS];
         // cos θ = (1 + P_1(2 cos θ - 1)) / 2, and N is sqrt((2l + 1) / 2π)

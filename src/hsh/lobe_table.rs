@@ -1,8 +1,8 @@
 //! A lobe's coefficients by outgoing direction.
 //!
-//! Paper: Herzog et al. 2009, section 4, precompute them per outgoing direction without saying how many.
-//! Deviations: as many as linear interpolation needs, by subdivision; and over √(1 - cos θ) = √2 sin θ/2, in which
-//! coefficients are smooth: over cos θ those of order 1 begin like a square root at normal incidence.
+//! Paper: Herzog et al. 2009, section 4, precompute them per outgoing direction without stating their number.
+//! Deviations: as many as linear interpolation needs, by subdivision; and over √(1 - cos θ) = √2 sin θ/2, in
+//! which coefficients are smooth: over cos θ those of order 1 begin like a square root at normal incidence.
 
 use super::CHANNELS;
 use super::basis::{MAX_BANDS, MAX_FUNCTIONS};
@@ -12,32 +12,33 @@ use super::radiance::stride;
 use crate::material::Bsdf;
 use rayon::prelude::*;
 
-/// Intervals to start with.
+/// Number of intervals to start with.
 const COARSEST: usize = 8;
-/// Halvings of these at most.
+/// Maximum number of halvings of these.
 const MAX_HALVINGS: usize = 8;
 
-/// Coefficients at some angles, linear between.
+/// Coefficients at some angles, with linear interpolation between.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LobeTable {
     /// Floats per channel, a multiple of the vectors' width.
     stride: usize,
-    /// 1 if all channels agree, else 3.
+    /// Number of channels: 1 if all agree, else 3.
     channels: usize,
     /// Parameters of the nodes, ascending from 0 to 1.
     nodes: Vec<f32>,
-    /// By node, channel and function, laid out as in [`super::Profile`].
+    /// Coefficients by node, channel and function, in the layout of [`super::Profile`].
     coefficients: Vec<f32>,
 }
 
-/// Normal incidence is at 0, grazing at 1.
+/// Parameter of an outgoing direction: 0 at normal incidence, 1 at grazing.
 #[inline]
 fn parameter(cos_o: f32) -> f32 {
     (1.0 - cos_o.clamp(0.0, 1.0)).sqrt()
 }
 
 impl LobeTable {
-    /// Tabulates the first `bands` of a lobe so that the interpolated kernel errs by at most `tolerance` of its norm.
+    /// Tabulates the first `bands` of a lobe so that the error of the interpolated kernel is at most
+    /// `tolerance` of its norm.
     pub fn new(lobe: &Bsdf, bands: usize, tolerance: f64, quadrature: &Quadrature) -> LobeTable {
         let bands = bands.clamp(1, MAX_BANDS);
         let used = even_index(bands, 0);
@@ -45,7 +46,7 @@ impl LobeTable {
         let coarsest = |i: usize| i as f64 / COARSEST as f64;
         let mut samples: Vec<(f64, Projection)> =
             (0..=COARSEST).into_par_iter().map(|i| (coarsest(i), project(coarsest(i)))).collect();
-        // Intervals not known to be short enough, by the place of their lower end.
+        // Intervals that may have to be split, by the index of their lower end.
         let mut open: Vec<usize> = (0..COARSEST).collect();
         for _ in 0..MAX_HALVINGS {
             let halved: Vec<(f64, Projection, bool)> = open
@@ -97,7 +98,7 @@ impl LobeTable {
         size_of_val(&*self.nodes) + size_of_val(&*self.coefficients)
     }
 
-    /// The coefficients at `cos_o`, all that there are.
+    /// Returns all coefficients at `cos_o`, interpolated.
     #[inline]
     pub fn lookup(&self, cos_o: f32) -> [[f32; MAX_FUNCTIONS]; CHANNELS] {
         let x = parameter(cos_o);
@@ -120,13 +121,13 @@ impl LobeTable {
     }
 }
 
-/// The functions of the first `bands`, padded with zeros.
+/// Returns the functions of the first `bands`, padded with zeros.
 fn cut_off(mut row: [f32; MAX_FUNCTIONS], bands: usize) -> impl Iterator<Item = f32> {
     row[bands * bands..].fill(0.0);
     row.into_iter().take(stride(bands))
 }
 
-/// Distance of the mean of two kernels from the one between, relative to the latter's norm.
+/// Returns the distance of the mean of two kernels from the one between, relative to the latter's norm.
 fn midpoint_error(below: &Projection, above: &Projection, middle: &Projection, used: usize) -> f64 {
     let mut error_sq = 0.0;
     for c in 0..CHANNELS {

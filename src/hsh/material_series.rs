@@ -1,10 +1,12 @@
 //! Representation of each material's reflection in cache records: irradiance, a series, or none.
 //!
-//! The kernel of a surface is base + lobe. The base, a Lambertian under a coat perhaps, varies with the height of the
-//! light only, by the coat's transmittance; it takes one row of functions and hardly any error. Both parts are
-//! projected with reflectance 1: colour and texture are factors on either, looked up at the point.
+//! The kernel of a surface is base + lobe. The base, Lambertian and perhaps under a coat, varies with the
+//! height of the light only, by the coat's transmittance; it takes one row of functions and has hardly any
+//! error. Both parts are projected with reflectance 1: colour and texture are factors on either, looked up at
+//! the point.
 //!
-//! Deviations: the paper sets the number of bands by hand; here it is the least that keeps the error of the kernel.
+//! Deviations: the paper sets the number of bands by hand; here it is the minimum that keeps the error of the
+//! kernel within the tolerance.
 
 use super::CHANNELS;
 use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
@@ -22,13 +24,13 @@ const INCLINATIONS: [f64; 6] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0];
 /// and lobe), averaged over outgoing inclinations up to 75°.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeriesSettings {
-    /// Sharper lobes are not expanded whatever the error.
+    /// Minimum roughness: sharper lobes are not expanded whatever the error.
     pub min_alpha: f32,
-    /// Bands are added until the error is no larger than this.
+    /// Tolerated error: bands are added until the error is no larger.
     pub error: f64,
-    /// Materials whose error is larger than this even at 8 bands get no records.
+    /// Maximum error: materials that exceed it even at 8 bands get no records.
     pub max_error: f64,
-    /// Largest error by interpolation between outgoing directions.
+    /// Maximum error by interpolation between outgoing directions.
     pub interpolation_error: f64,
 }
 
@@ -41,7 +43,7 @@ impl Default for SeriesSettings {
 /// Content of the cache records of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Caching {
-    /// Irradiance is enough: there is no rough lobe (or one so sharp that the eye follows it).
+    /// Irradiance is enough: there is no rough lobe (or one so sharp that the eye pass follows it).
     Irradiance,
     /// A series of so many bands.
     Series(u8),
@@ -65,12 +67,12 @@ struct MaterialEntry {
 }
 
 impl MaterialSeries {
-    /// Projects the materials of a scene. Materials whose lobes differ by a factor only share one table.
+    /// Projects the materials of a scene. Materials whose lobes differ only by a factor share one table.
     pub fn new(scene: &Scene, materials: &Materials, settings: &SeriesSettings) -> MaterialSeries {
         let quadrature = Quadrature::standard();
         let averages: Vec<Bsdf> =
             (0..materials.count()).map(|i| materials.average(scene, MaterialId(i as u32))).collect();
-        // One of each kind of lobe, and for each material which.
+        // One lobe of each kind, and for each material the index of its own.
         let mut distinct: Vec<Bsdf> = Vec::new();
         let mut kinds: Vec<Option<usize>> = Vec::with_capacity(averages.len());
         for bsdf in &averages {
@@ -95,7 +97,7 @@ impl MaterialSeries {
                 MaterialEntry::new(bsdf, kind.map(|k| &tests[k][..]), *kind, &quadrature, settings)
             })
             .collect();
-        // Tables for those that are used, with as many bands as any of their materials needs.
+        // Tables for the lobes in use, with as many bands as any of their materials needs.
         let mut lobes = Vec::new();
         for (kind, lobe) in distinct.iter().enumerate() {
             let users = || surfaces.iter().filter(|s| s.lobe == Some(kind)).filter_map(|s| s.caching.bands());
@@ -109,25 +111,25 @@ impl MaterialSeries {
         MaterialSeries { materials: surfaces, lobes: lobes.into_iter().map(|(_, table)| table).collect() }
     }
 
-    /// Content of the records of a material.
+    /// Returns the content of the records of a material.
     #[inline]
     pub fn caching(&self, id: MaterialId) -> Caching {
         self.materials[id.0 as usize].caching
     }
 
-    /// Whether any material is to have a series.
+    /// True if any material is to have a series.
     pub fn any_series(&self) -> bool {
         self.materials.iter().any(|surface| surface.caching.bands().is_some())
     }
 
-    /// Error of the material's kernel at the number of bands chosen (8 if there are to be no records), for its mean
-    /// reflectances; 0 for irradiance.
+    /// Error of the material's kernel at the number of bands chosen (8 if there are to be no records), for
+    /// its mean reflectances; 0 for irradiance.
     pub fn error(&self, id: MaterialId) -> f64 {
         self.materials[id.0 as usize].error
     }
 
-    /// Kernel of a material for outgoing directions at `cos_o` > 0 to the normal, at a point where it is `bsdf`. Where
-    /// [`MaterialSeries::caching`] is not a series it is that of the base alone.
+    /// Returns the kernel of a material for outgoing directions at `cos_o` > 0 to the normal, at a point
+    /// whose BSDF is `bsdf`. Where [`MaterialSeries::caching`] is not a series it is that of the base alone.
     #[inline]
     pub fn profile(&self, id: MaterialId, bsdf: &Bsdf, cos_o: f32) -> Profile {
         let surface = &self.materials[id.0 as usize];
@@ -150,7 +152,7 @@ impl MaterialSeries {
         Profile { bands, coefficients }
     }
 
-    /// Tables of lobes and the outgoing directions in each.
+    /// Number of outgoing directions in each lobe table.
     pub fn directions(&self) -> Vec<usize> {
         self.lobes.iter().map(LobeTable::directions).collect()
     }
@@ -162,7 +164,7 @@ impl MaterialSeries {
 }
 
 impl Caching {
-    /// Bands of the series, if it is one.
+    /// Number of bands of the series, if it is one.
     pub fn bands(self) -> Option<usize> {
         match self {
             Caching::Series(bands) => Some(usize::from(bands)),
@@ -197,12 +199,12 @@ impl MaterialEntry {
     }
 }
 
-/// Whether the material has a lobe that the eye does not follow.
+/// True if the material has a lobe that the eye pass does not follow.
 fn has_lobe(bsdf: &Bsdf) -> bool {
     bsdf.alpha().is_some() && bsdf.split_sharp_lobe().is_none() && bsdf.lobe_scale().max_element() > 0.0
 }
 
-/// Error of a kernel in its first `bands`.
+/// Computes the error of a kernel in its first `bands`.
 fn mean_error(bsdf: &Bsdf, tests: &[Projection], zonal: &ZonalProjection, bands: usize) -> f64 {
     let errors = INCLINATIONS.iter().zip(tests).map(|(degrees, lobe)| {
         let through = bsdf.base_transmittance(degrees.to_radians().cos() as f32);

@@ -1,9 +1,10 @@
-//! Hemispherical harmonics (HSH): an orthonormal basis over the hemisphere above a surface, in which cache records
-//! of glossy surfaces keep the light that arrives.
+//! Hemispherical harmonics (HSH): an orthonormal basis over the hemisphere above a surface, in which cache
+//! records of glossy surfaces represent incoming radiance.
 //!
-//! An [`Accumulator`] sums the light of a record into a [`Radiance`]. [`MaterialSeries`] holds what each material of a
-//! scene does to light: seen from one inclination it is a [`Profile`], from one direction a [`Kernel`], and
-//! [`Radiance::reflected`] is what the surface reflects there. Two bands hold the irradiance exactly.
+//! An [`Accumulator`] sums the light of a record into a [`Radiance`]. [`MaterialSeries`] holds the reflection
+//! of each material of a scene: seen from one inclination it is a [`Profile`], from one direction a
+//! [`Kernel`], and [`Radiance::reflected`] is the radiance that the surface reflects there. Two bands hold
+//! the irradiance exactly.
 //!
 //! Functions are numbered k = l² + l + m: degree l (the band) from 0, order m from -l to l, negative orders
 //! being those with sin |m|φ. The first n² functions are the first n bands.
@@ -28,7 +29,7 @@ pub use kernel::{Kernel, Profile};
 pub use material_series::{Caching, MaterialSeries, SeriesSettings};
 pub use radiance::{Radiance, Reflected};
 
-/// Colour channels.
+/// Number of colour channels.
 const CHANNELS: usize = 3;
 
 #[cfg(test)]

@@ -8,12 +8,12 @@ use crate::math::{Rgb, gauss_legendre};
 use glam::Vec3;
 use std::f64::consts::PI;
 
-/// Nodes in height and in azimuth: for α >= 0.15, coefficients and norms are good to 1e-5 of the norm at any
-/// inclination.
+/// Number of nodes in height and in azimuth: for α >= 0.15, coefficients and norms are accurate to 1e-5 of
+/// the norm at any inclination.
 const HEIGHTS: usize = 48;
 const AZIMUTHS: usize = 48;
 
-/// A rule for half the hemisphere, the other being its mirror image.
+/// Quadrature rule for half the hemisphere, the other being its mirror image.
 pub(super) struct Quadrature {
     rings: Vec<Ring>,
     azimuths: Vec<Azimuth>,
@@ -36,7 +36,7 @@ struct Azimuth {
     multiple: [f64; MAX_BANDS],
 }
 
-/// Coefficients of the even functions, and the square of the norm of what was projected, by channel.
+/// Coefficients of the even functions, and the square of the norm of the projected function, by channel.
 #[derive(Clone, Debug)]
 pub(super) struct Projection {
     pub coefficients: [[f64; MAX_EVEN]; CHANNELS],
@@ -69,7 +69,7 @@ impl Quadrature {
             }
             Ring { z, sin, weight: 2.0 * s * weight, even }
         };
-        // Closer together towards azimuth π, where a surface seen from azimuth 0 has its lobe.
+        // Nodes are denser towards azimuth π, where a surface seen from azimuth 0 has its lobe.
         let azimuth = |(t, weight): (f64, f64)| {
             let phi = PI * (1.0 - t * t);
             let multiple = std::array::from_fn(|m| (m as f64 * phi).cos());
@@ -81,7 +81,7 @@ impl Quadrature {
         }
     }
 
-    /// BRDF · cosine of a rough lobe seen at cosine `cos_o` from azimuth 0.
+    /// Projects BRDF · cosine of a rough lobe seen at cosine `cos_o` from azimuth 0.
     pub fn project(&self, lobe: &Bsdf, cos_o: f64) -> Projection {
         let cos_o = cos_o.clamp(1e-5, 1.0);
         let wo = Vec3::new(((1.0 - cos_o) * (1.0 + cos_o)).sqrt() as f32, 0.0, cos_o as f32);
@@ -112,7 +112,7 @@ impl Quadrature {
         projection
     }
 
-    /// A function of the height.
+    /// Projects a function of the height.
     pub fn project_zonal(&self, f: impl Fn(f64) -> f64) -> ZonalProjection {
         let mut projection = ZonalProjection { coefficients: [0.0; MAX_BANDS], norm_sq: 0.0 };
         for ring in &self.rings {

@@ -1,5 +1,4 @@
-//! The light that arrives at a point, as a series, with its derivatives along the surface; and what a surface
-//! reflects of it.
+//! Radiance arriving at a point, as a series, with its derivatives along the surface; and its reflection.
 //!
 //! Units: radiance; its derivatives are per metre (or whatever unit the scene has).
 
@@ -8,7 +7,7 @@ use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
 use super::kernel::Kernel;
 use crate::math::{F32x8, Rgb, WIDTH};
 
-/// Value and two derivatives, each of every channel.
+/// Number of rows: value and two derivatives, each of every channel.
 pub(super) const BLOCKS: usize = 3 * CHANNELS;
 
 /// Radiance over the hemisphere, and its derivatives as the receiver moves along u and v.
@@ -20,32 +19,32 @@ pub struct Radiance {
     coefficients: Box<[f32]>,
 }
 
-/// Radiance that leaves a surface in one direction, and its derivatives as the receiver moves along u and v. Cut off as
-/// the series is, it may be negative.
+/// Radiance that leaves a surface in one direction, and its derivatives as the receiver moves along u and v.
+/// May be negative, since the series is truncated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reflected {
-    /// At the record.
+    /// Value at the record.
     pub value: Rgb,
-    /// By motion along u and v.
+    /// Derivatives along u and v.
     pub gradient: [Rgb; 2],
 }
 
 impl Reflected {
-    /// Extrapolated by motion along the tangents; what is negative there is clamped to 0.
+    /// Extrapolates by motion along the tangents; negative values are clamped to 0.
     #[inline]
     pub fn at(&self, along_u: f32, along_v: f32) -> Rgb {
         (self.value + self.gradient[0] * along_u + self.gradient[1] * along_v).max(Rgb::ZERO)
     }
 }
 
-/// Floats of one block.
+/// Number of floats in a block.
 #[inline]
 pub(super) const fn stride(bands: usize) -> usize {
     (bands * bands).next_multiple_of(WIDTH)
 }
 
 impl Radiance {
-    /// No light.
+    /// Returns a series without light.
     pub fn black(bands: usize) -> Radiance {
         let bands = bands.clamp(1, MAX_BANDS);
         Radiance { bands: bands as u8, coefficients: vec![0.0; BLOCKS * stride(bands)].into() }
@@ -61,7 +60,7 @@ impl Radiance {
         size_of_val(&*self.coefficients)
     }
 
-    /// The same light, taken not to change along the surface.
+    /// Returns the same light without change along the surface.
     pub fn without_gradients(mut self) -> Radiance {
         let values = CHANNELS * stride(self.bands());
         self.coefficients[values..].fill(0.0);
@@ -96,8 +95,8 @@ impl Radiance {
         Rgb::new(r, g, b)
     }
 
-    /// Radiance that a surface reflects towards the direction its kernel was made for. Of kernel and radiance, the one
-    /// with fewer bands decides.
+    /// Returns the radiance reflected towards the direction that the kernel was made for, in the smaller
+    /// number of bands of kernel and radiance.
     #[inline]
     pub fn reflected(&self, kernel: &Kernel) -> Reflected {
         let stride = stride(self.bands());
@@ -113,12 +112,13 @@ impl Radiance {
         Reflected { value, gradient: [along_u, along_v] }
     }
 
-    /// The irradiance: exact, whatever else the bands leave out, from two bands on.
+    /// Returns the irradiance: exact from two bands on.
     pub fn irradiance(&self) -> Reflected {
         self.reflected(&Kernel::cosine(self.bands()))
     }
 
-    /// The same light in a frame whose tangents are turned by `angle` about the normal, from u towards v.
+    /// Returns the same light in a frame whose tangents are turned by `angle` about the normal, from u
+    /// towards v.
     pub fn turned(&self, angle: f32) -> Radiance {
         let mut turned = self.clone();
         for block in 0..BLOCKS {

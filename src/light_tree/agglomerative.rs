@@ -9,11 +9,11 @@ use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cos
 use super::topology::Topology;
 use rayon::prelude::*;
 
-/// Distance along the curve, in clusters, up to which a cluster looks for its neighbour.
+/// Distance along the curve, in clusters, up to which a cluster searches for its neighbour.
 const RADIUS: usize = 8;
-/// Clusters handled by one task; fixed, so that the order of the nodes does not depend on threads.
+/// Number of clusters handled by one task; fixed, so that the order of the nodes does not depend on threads.
 const CHUNK: usize = 4096;
-/// A round that merges fewer than one cluster in this many is followed by outright pairing.
+/// Divisor of the number of clusters: a round with fewer merges than that is followed by outright pairing.
 const STALLED: usize = 32;
 
 #[derive(Clone, Copy)]
@@ -74,12 +74,12 @@ fn sort_along_curve(primitives: &mut [Primitive], c_sq: f32) {
     }
 }
 
-/// Ten bits, five zeros after each.
+/// Spreads ten bits, five zeros after each.
 fn spread_by_6(x: u64) -> u64 {
     (0..10).fold(0, |code, bit| code | (x >> bit & 1) << (6 * bit))
 }
 
-/// The neighbour within [`RADIUS`] that makes the cheapest union with each cluster.
+/// Finds the neighbour within [`RADIUS`] that makes the cheapest union with each cluster.
 fn nearest_neighbours(clusters: &[ActiveCluster], c_sq: f32) -> Vec<u32> {
     let nearest = |i: usize| {
         let mut best = (f64::INFINITY, usize::MAX, i);

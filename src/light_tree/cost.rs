@@ -8,21 +8,21 @@
 use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;
 
-/// Numbers of a primitive: position, normal, luminance of the intensity, and the bits of the VPL's index.
+/// Coordinates of a primitive: position, normal, luminance of the intensity, and the bits of the VPL's index.
 pub type Coordinates = [f32; 8];
 
-/// Place of the luminance in [`Coordinates`].
+/// Index of the luminance in [`Coordinates`].
 pub const LUMINANCE: usize = 6;
 /// Number of coordinates to cluster by, which come first.
 pub const DIMENSIONS: usize = 6;
 
-/// One VPL as the builders see it: 32 bytes, one vector register.
+/// One VPL for the builders: 32 bytes, one vector register.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct Primitive(pub Coordinates);
 
 impl Primitive {
-    /// The primitive of VPL number `index`.
+    /// Creates the primitive of the VPL of index `index`.
     pub fn new(vpl: &Vpl, kind: VplKind, luminance: f32, index: u32) -> Primitive {
         let (p, n) = match kind {
             VplKind::Omni => (vpl.position, Vec3::ZERO),
@@ -32,7 +32,7 @@ impl Primitive {
         Primitive([p.x, p.y, p.z, n.x, n.y, n.z, luminance, f32::from_bits(index)])
     }
 
-    /// Number of the VPL.
+    /// Index of the VPL.
     pub fn index(&self) -> u32 {
         self.0[7].to_bits()
     }
@@ -46,24 +46,24 @@ impl Primitive {
 /// Box around primitives, in all coordinates at once.
 #[derive(Clone, Copy, Debug)]
 pub struct PrimitiveBounds {
-    /// Smallest value by coordinate.
+    /// Minimum of each coordinate.
     pub min: Coordinates,
-    /// Largest value by coordinate.
+    /// Maximum of each coordinate.
     pub max: Coordinates,
 }
 
 impl PrimitiveBounds {
-    /// Around nothing.
+    /// The empty box.
     pub const EMPTY: PrimitiveBounds =
         PrimitiveBounds { min: [f32::INFINITY; 8], max: [f32::NEG_INFINITY; 8] };
 
-    /// Around one primitive.
+    /// Box around one primitive.
     #[inline]
     pub fn of(r: &Primitive) -> PrimitiveBounds {
         PrimitiveBounds { min: r.0, max: r.0 }
     }
 
-    /// Around many primitives.
+    /// Box around many primitives.
     pub fn around(primitives: &[Primitive]) -> PrimitiveBounds {
         let mut b = PrimitiveBounds::EMPTY;
         for r in primitives {

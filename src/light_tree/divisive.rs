@@ -2,20 +2,20 @@
 //!
 //! Paper: the cost is that of Walter et al. 2005 (see `cost`); binning as in Wald, *On fast Construction of
 //! SAH-based Bounding Volume Hierarchies*, 2007, over six dimensions in place of three.
-//! Deviations: clusters of at most [`SORTED`] are sorted along their widest dimension and split at the
-//! best of all places, which is cheaper than clearing bins and at least as good.
+//! Deviations: clusters of at most [`SORTED`] are sorted along their widest dimension and split at the best
+//! of all places, which is cheaper than clearing bins and at least as good.
 
 use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cost};
 use super::topology::Topology;
 use rayon::prelude::*;
 
-/// Bins by dimension.
+/// Number of bins by dimension.
 const BINS: usize = 16;
-/// Largest cluster that is sorted, not binned.
+/// Maximum size of a cluster that is sorted, not binned.
 const SORTED: usize = 16;
-/// Above this size both halves are built in parallel.
+/// Size above which both halves are built in parallel.
 const PARALLEL: usize = 4096;
-/// Primitives binned by one task; fixed, so that sums do not depend on the number of threads.
+/// Number of primitives binned by one task; fixed, so that sums do not depend on the number of threads.
 const CHUNK: usize = 1 << 15;
 
 #[derive(Clone, Copy)]
@@ -155,7 +155,7 @@ impl Binning {
     fn new(bounds: &PrimitiveBounds) -> Binning {
         let mut scale = [0.0; 8];
         for (d, s) in scale.iter_mut().enumerate().take(DIMENSIONS) {
-            // A hair below BINS, so that the maximum itself falls into the last bin; 0 where flat.
+            // Slightly below BINS, so that the maximum itself falls into the last bin; 0 where flat.
             let inverse = (BINS as f32 * (1.0 - 1e-6)) / bounds.extent(d);
             *s = if inverse.is_finite() { inverse } else { 0.0 };
         }
@@ -182,7 +182,7 @@ impl Binning {
     }
 }
 
-/// The dimension and the bin at which the cheapest split begins its right part.
+/// Returns the dimension and the bin at which the cheapest split begins its right part.
 fn cheapest_border(bins: &Bins, binning: &Binning, c_sq: f32) -> Option<(usize, usize)> {
     let mut best = None;
     let mut best_cost = f64::INFINITY;
@@ -215,7 +215,7 @@ fn cheapest_border(bins: &Bins, binning: &Binning, c_sq: f32) -> Option<(usize, 
     best
 }
 
-/// Moves primitives that satisfy `goes_left` to the front and returns how many.
+/// Moves primitives that satisfy `goes_left` to the front and returns their number.
 fn partition(primitives: &mut [Primitive], goes_left: impl Fn(&Primitive) -> bool) -> usize {
     let (mut i, mut j) = (0, primitives.len());
     loop {

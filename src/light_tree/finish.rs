@@ -1,9 +1,9 @@
 //! From the shape of a tree to its nodes: exact boxes and cones, f64 intensity sums, representatives.
 //!
-//! Paper: Walter et al. 2005: a cluster's representative is drawn from its children's in proportion to
-//! their intensities, so one child shares it and a split costs at most one new shadow ray.
-//! Deviations: the cone is the smallest about the centre of the normals' box that holds every member's
-//! normal, found from the members themselves; merging the children's cones would be looser at every level.
+//! Paper: Walter et al. 2005: a cluster's representative is drawn from its children's in proportion to their
+//! intensities, so one child shares it and a split costs at most one new shadow ray.
+//! Deviations: the cone is the smallest about the centre of the normals' box that contains every member's
+//! normal, computed from the members themselves; merging the children's cones would be looser at every level.
 
 use super::cost::{Primitive, PrimitiveBounds};
 use super::node::Node;
@@ -12,12 +12,12 @@ use crate::math::{Rgb, luminance};
 use crate::vpl::{VplKind, VplSet};
 use glam::{DVec3, Vec3};
 
-/// Above this size both halves are finished in parallel.
+/// Size above which both halves are finished in parallel.
 const PARALLEL: usize = 4096;
-/// Cosines are lowered by this much: more than the rounding of a dot product of unit vectors.
+/// Amount by which cosines are lowered: more than the rounding of a dot product of unit vectors.
 const COSINE_SLACK: f32 = 1e-6;
 
-/// The part of a cluster that its parent needs and its node does not hold.
+/// Values of a cluster that its parent needs and its node lacks.
 struct Summary {
     bounds: PrimitiveBounds,
     intensity: DVec3,
@@ -28,7 +28,7 @@ struct Summary {
 /// The set of VPLs whose tree is finished.
 struct Finisher<'a> {
     set: &'a VplSet,
-    /// Number of the set's first VPL among all VPLs of all trees.
+    /// Index of the set's first VPL among all VPLs of all trees.
     first_vpl: u32,
 }
 
@@ -47,14 +47,14 @@ pub fn finish(topology: &Topology, set: &VplSet, nodes: &mut [Node], first_node:
 struct Subtree<'a> {
     leaves: &'a [Primitive],
     left_sizes: &'a [u32],
-    /// Number of the first leaf in the tree.
+    /// Index of the first leaf in the tree.
     first_leaf: u32,
 }
 
 /// Nodes of a subtree.
 struct SubtreeNodes<'a> {
     root: &'a mut Node,
-    /// The descendants of the root.
+    /// Descendants of the root.
     below: &'a mut [Node],
     /// Index of the first of them among all nodes.
     below_index: u32,
@@ -123,7 +123,7 @@ impl Finisher<'_> {
     }
 }
 
-/// The cone about `axis` that holds every normal.
+/// Sets the cone about `axis` that contains every normal.
 fn set_cone(node: &mut Node, axis: Vec3, members: &[Primitive]) {
     let cos_beta = members.iter().fold(1.0f32, |least, r| {
         let cos = r.normal().dot(axis);
@@ -134,7 +134,7 @@ fn set_cone(node: &mut Node, axis: Vec3, members: &[Primitive]) {
     node.sin_beta = (1.0 - node.cos_beta * node.cos_beta).sqrt();
 }
 
-/// The f32 colour not below `c` in any channel, so that a cluster is never dimmer than its members.
+/// Rounds up to f32 in every channel, so that a cluster is never dimmer than its members.
 fn rounded_up(c: DVec3) -> Rgb {
     let up = |x: f64| {
         let nearest = x.min(f64::from(f32::MAX)) as f32;
@@ -143,7 +143,7 @@ fn rounded_up(c: DVec3) -> Rgb {
     Rgb::new(up(c.x), up(c.y), up(c.z))
 }
 
-/// A number in [0, 1) that depends on the node alone.
+/// Returns a number in [0, 1) that depends on the node alone.
 ///
 /// Paper: the finaliser of Stafford's *Better Bit Mixing*, variant 13.
 fn unit_hash(node: u32) -> f64 {

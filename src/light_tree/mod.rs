@@ -45,14 +45,15 @@ pub struct LightTrees {
     pub nodes: Vec<Node>,
     /// Indices of the roots in `nodes`.
     pub roots: Vec<u32>,
-    /// The VPLs in the order of the leaves, tree after tree: what is near in a tree is near in memory.
+    /// The VPLs in the order of the leaves, tree after tree: neighbours in a tree are neighbours in memory.
     pub vpls: Vec<Vpl>,
     /// Profiles of the spot lights among the omni VPLs.
     pub spots: Vec<SpotProfile>,
 }
 
 impl LightTrees {
-    /// Builds a tree over each of `sets`; `diagonal` of the scene sets what an angle weighs against a length.
+    /// Builds a tree over each of `sets`; `diagonal` of the scene sets the weight of an angle against a
+    /// length.
     ///
     /// VPLs beyond [`MAX_VPLS`] in all are ignored.
     pub fn build(sets: &[VplSet], spots: Vec<SpotProfile>, diagonal: f32, family: Family) -> LightTrees {
@@ -83,7 +84,7 @@ impl LightTrees {
         self.roots.push(first_node as u32);
     }
 
-    /// The roots of all trees, or of those for light of one origin.
+    /// Returns the roots of all trees, or of those for light of one origin.
     pub fn roots_of(&self, origin: Option<Origin>) -> impl Iterator<Item = u32> + '_ {
         let wanted = move |&root: &u32| origin.is_none_or(|o| self.nodes[root as usize].origin() == o);
         self.roots.iter().copied().filter(wanted)
@@ -103,7 +104,7 @@ impl LightTrees {
         if count == 0 { 0.0 } else { (sum / count as f64) as f32 }
     }
 
-    /// Numbers of nodes that are leaves, in order of their VPLs within each tree.
+    /// Returns the leaves, in order of their VPLs within each tree.
     pub fn leaves(&self) -> impl Iterator<Item = &Node> {
         let mut stack: Vec<u32> = self.roots.iter().rev().copied().collect();
         std::iter::from_fn(move || {

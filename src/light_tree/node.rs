@@ -1,4 +1,4 @@
-//! The cluster as a lightcut reads it: one cache line, siblings next to each other, so that a split
+//! A cluster in the layout of a lightcut: one cache line, siblings next to each other, so that a split
 //! touches two adjacent lines.
 
 use crate::math::Rgb;
@@ -10,7 +10,7 @@ const INDEX_MASK: u32 = (1 << INDEX_BITS) - 1;
 const INDIRECT: u32 = 1 << INDEX_BITS;
 const KIND_SHIFT: u32 = INDEX_BITS + 1;
 
-/// Most VPLs one [`super::LightTrees`] can hold.
+/// Maximum number of VPLs in a [`super::LightTrees`].
 pub const MAX_VPLS: usize = 1 << INDEX_BITS;
 
 /// A cluster of VPLs, or a single one.
@@ -36,7 +36,7 @@ pub struct Node {
 }
 
 impl Node {
-    /// A node with all but its bounds.
+    /// Creates a node without bounds.
     pub(super) fn new(intensity: Rgb, representative: u32, kind: VplKind, origin: Origin) -> Node {
         let kind = match kind {
             VplKind::Oriented => 0,
@@ -66,13 +66,13 @@ impl Node {
         (self.children != 0).then_some(self.children)
     }
 
-    /// Whether this is a single VPL.
+    /// True if this is a single VPL.
     #[inline]
     pub fn is_leaf(&self) -> bool {
         self.children == 0
     }
 
-    /// Index of the VPL that stands for the cluster.
+    /// Index of the VPL that represents the cluster.
     #[inline]
     pub fn representative(&self) -> usize {
         (self.tag & INDEX_MASK) as usize

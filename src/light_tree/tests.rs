@@ -43,7 +43,7 @@ fn build(set: &VplSet, family: Family) -> LightTrees {
     LightTrees::build(std::slice::from_ref(set), Vec::new(), 3f32.sqrt(), family)
 }
 
-/// Checks everything a lightcut relies on.
+/// Checks all properties that lightcuts rely on.
 fn assert_valid(trees: &LightTrees, sets: &[VplSet]) {
     let total: usize = sets.iter().map(VplSet::len).sum();
     assert_eq!(trees.vpls.len(), total);
@@ -82,7 +82,7 @@ fn assert_valid(trees: &LightTrees, sets: &[VplSet]) {
     assert_eq!(visited, sets.iter().map(|s| (2 * s.len()).saturating_sub(1)).sum::<usize>());
 }
 
-/// Every member's normal lies in the cone of every cluster above it.
+/// Checks that every member's normal lies in the cone of every cluster above it.
 fn assert_cones_hold_members(trees: &LightTrees) {
     fn members(trees: &LightTrees, id: u32) -> Vec<Vec3> {
         let node = &trees.nodes[id as usize];
@@ -196,7 +196,8 @@ fn trees_are_the_same_for_any_number_of_threads() {
 
 #[test]
 fn representatives_are_drawn_in_proportion_to_intensity() {
-    // Over many trees of two VPLs, the one with three times the intensity stands for three in four.
+    // Over many trees of two VPLs, the one with three times the intensity is the representative of three in
+    // four.
     let mut bright = 0;
     let sets: Vec<VplSet> = (0..4000)
         .map(|_| {

@@ -2,21 +2,22 @@
 
 use super::cost::Primitive;
 
-/// A binary tree: leaves in order, and for each inner node, in preorder, how many leaves its left child has.
+/// A binary tree: leaves in order, and for each inner node, in preorder, the number of leaves of its left
+/// child.
 ///
-/// A subtree over `n` leaves owns `n` consecutive primitives and `n - 1` consecutive entries of
-/// `left_sizes`, of which the first is its root's: so a subtree is a pair of slices.
+/// A subtree over `n` leaves owns `n` consecutive primitives and `n - 1` consecutive entries of `left_sizes`,
+/// of which the first is its root's: so a subtree is a pair of slices.
 #[derive(Debug)]
 pub struct Topology {
     /// The leaves, in the tree's order.
     pub leaves: Vec<Primitive>,
-    /// Leaves in the left child of each inner node, preorder.
+    /// Number of leaves in the left child of each inner node, in preorder.
     pub left_sizes: Vec<u32>,
 }
 
 impl Topology {
-    /// From inner nodes given as pairs of children: ids below `leaves.len()` are leaves, the others
-    /// inner nodes in the order of `pairs`; the last pair is the root.
+    /// Converts from inner nodes as pairs of children: ids below `leaves.len()` are leaves, the others inner
+    /// nodes in the order of `pairs`; the last pair is the root.
     pub fn from_pairs(leaves: &[Primitive], pairs: &[[u32; 2]]) -> Topology {
         let n = leaves.len();
         // Children precede their parents, so one sweep finds every size.

@@ -138,8 +138,8 @@ impl FinalGatherSource<'_> {
 }
 
 impl FinalGatherSource<'_> {
-    /// Surfaces that the point sees, with the light met. Its gradient stays that of the strata, which knows of
-    /// occluders' edges.
+    /// Returns the surfaces visible from the point, with the light found. Its gradient is that of the strata,
+    /// which includes the edges of occluders.
     fn sight(&self, point: &PointGeometry, geometric_normal: Vec3, seed: u32, met: &Met) -> Sight {
         let (at, rays) = ((point.position, geometric_normal), self.settings().probe_rays);
         let mut sight = Sight::new(self.light.world, at, point.normal, rays, seed);
@@ -154,7 +154,7 @@ impl FinalGatherSource<'_> {
 }
 
 impl GatherWorkspace {
-    /// Adds what was met to the series, if the point is to have one.
+    /// Adds the light found to the series, if the point is to have one.
     fn series(&mut self, strata: &Strata, point: &PointGeometry, max_nearness: f32) {
         self.series.begin(point);
         if self.series.place().is_none() {

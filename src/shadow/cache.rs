@@ -1,31 +1,31 @@
-//! The last occluders of rays towards a light, asked before a ray is traced.
+//! Cache of recent occluders of rays towards a light, tested before a ray is traced.
 //!
 //! Paper: Herzog et al. 2009, section 3 (an occluder hash cache saves more than 20 % of shadow rays).
-//! Deviations: a slot holds several triangles and no key. What it holds was put there by rays to some light, mostly the
-//! same one; testing another's occluder is no error, only less likely to help.
+//! Deviations: a slot holds several triangles and no key. Its triangles were inserted by rays to some light,
+//! mostly the same one; testing another's occluder is no error, only less likely to help.
 //!
-//! **The cache changes no answer.** It says "occluded" only where a ray passes a triangle's edges and the segment's
-//! ends at more than [`MARGIN`] roundings of the coordinates involved, and the plane at more than that angle: nothing
-//! that Embree rounds otherwise can then matter. All other rays are traced.
+//! **The cache changes no answer.** It says "occluded" only where a ray passes a triangle's edges and the
+//! segment's ends at more than [`MARGIN`] roundings of the coordinates involved, and the plane at more than
+//! that angle: rounding in Embree cannot change such an answer. All other rays are traced.
 //!
-//! The content of a cache depends on earlier queries. So that results do not depend on threads, whoever uses one
-//! forgets it ([`OccluderCache::forget`]) at boundaries of the work that do not depend on threads either.
+//! The content of a cache depends on earlier queries. So that results do not depend on threads, its user
+//! clears it ([`OccluderCache::forget`]) at boundaries of the work that do not depend on threads either.
 
 use crate::embree::{Occluder, Ray, TriangleId};
 use glam::Vec3;
 
-/// Roundings by which a ray must keep off edges and ends.
+/// Margin to edges and ends, in roundings, that a ray must keep.
 const MARGIN: f32 = 64.0 * f32::EPSILON;
 
-/// Numbers kept of a triangle: a corner, two edges, its largest coordinate and its largest edge component.
+/// Numbers stored of a triangle: a corner, two edges, its largest coordinate and its largest edge component.
 const ROWS: usize = 11;
 
-/// The size of a cache.
+/// Size of a cache.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OccluderCacheSettings {
-    /// Slots; the next power of two, at most 2^20.
+    /// Number of slots; rounded up to a power of two, at most 2^20.
     pub slots: usize,
-    /// Triangles in a slot: 1, 2, 4 or 8 (the next of them).
+    /// Number of triangles in a slot: 1, 2, 4 or 8 (rounded up).
     pub ways: usize,
 }
 
@@ -48,16 +48,16 @@ pub struct OccluderCache {
     generation: u32,
 }
 
-/// State of a slot, whose content is void unless it is of the cache's generation.
+/// State of a slot; its content is void unless it is of the cache's generation.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slot {
     generation: u32,
-    /// Way that is replaced next.
+    /// Index of the way that is replaced next.
     next: u32,
 }
 
 impl OccluderCache {
-    /// An empty one.
+    /// Creates an empty cache.
     pub fn new(settings: OccluderCacheSettings) -> OccluderCache {
         let slots = settings.slots.clamp(1, 1 << 20).next_power_of_two();
         let ways = settings.ways.clamp(1, 8).next_power_of_two();
@@ -71,7 +71,7 @@ impl OccluderCache {
         }
     }
 
-    /// Forgets everything.
+    /// Clears the cache.
     pub fn forget(&mut self) {
         self.generation = self.generation.wrapping_add(1);
         if self.generation == 0 {
@@ -86,14 +86,14 @@ impl OccluderCache {
         (key.wrapping_mul(2_654_435_769).rotate_left(15) & self.mask) as usize
     }
 
-    /// The slot of `key`, if it holds anything.
+    /// Returns the slot of `key`, if it is not empty.
     #[inline(always)]
     fn held(&self, key: u32) -> Option<usize> {
         let slot = self.slot(key);
         (self.slots[slot].generation == self.generation).then_some(slot)
     }
 
-    /// One of the triangles held for `key` that certainly occludes the ray.
+    /// Returns one of the triangles stored for `key` that certainly occludes the ray.
     #[inline]
     pub fn occluder(&self, key: u32, ray: &Ray) -> Option<Occluder> {
         let slot = self.held(key)?;
@@ -120,7 +120,7 @@ impl OccluderCache {
         Some(Occluder { t: t[w], geometry: ids[w].geometry, primitive: ids[w].primitive })
     }
 
-    /// Keeps an occluder found on the way to `key`, in the place of the oldest.
+    /// Stores an occluder found on the way to `key`, replacing the oldest.
     #[inline]
     pub fn keep(&mut self, key: u32, id: TriangleId, corner: Vec3, edges: [Vec3; 2]) {
         let slot = self.slot(key);
@@ -144,7 +144,7 @@ impl OccluderCache {
     }
 }
 
-/// A triangle as it is tested.
+/// A triangle in the form in which it is tested.
 #[derive(Clone, Copy)]
 struct CachedTriangle {
     corner: Vec3,
@@ -190,10 +190,10 @@ impl Reach {
     }
 }
 
-/// Whether the ray meets the inside of a triangle beyond doubt, and where. All comparisons are false for what is not
-/// finite.
+/// Tests whether the ray hits the inside of a triangle beyond doubt; returns the ray parameter too. All
+/// comparisons are false for values that are not finite.
 ///
-/// Möller and Trumbore 1997, with every quantity times the determinant, and left above its rounding.
+/// Möller and Trumbore 1997, with every quantity times the determinant, and compared with its rounding.
 #[inline(always)]
 fn certain(triangle: &CachedTriangle, ray: &Ray, reach: Reach) -> (bool, f32) {
     let [e1, e2] = triangle.edges;

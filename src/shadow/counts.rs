@@ -6,13 +6,13 @@ use std::cell::Cell;
 /// Counts of one kind of query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct QueryCounts {
-    /// Queries, of one ray or of a packet.
+    /// Number of queries, of one ray or of a packet.
     pub queries: u64,
-    /// Rays asked for.
+    /// Number of rays queried.
     pub rays: u64,
-    /// Rays found occluded.
+    /// Number of rays found occluded.
     pub occluded: u64,
-    /// Rays that the occluder cache answered.
+    /// Number of rays that the occluder cache answered.
     pub saved: u64,
 }
 add_fields!(QueryCounts { queries, rays, occluded, saved });
@@ -28,7 +28,7 @@ pub struct ShadowCounts {
 add_fields!(ShadowCounts { single, packets });
 
 impl ShadowCounts {
-    /// Puts what is not zero into the statistics of a run.
+    /// Adds the counts that are not zero to the statistics of a run.
     pub fn report(&self, stats: &mut Stats) {
         for (kind, tally) in [("single", self.single), ("neighbours", self.packets)] {
             let figures = [
@@ -52,7 +52,7 @@ pub(super) struct Counters {
 }
 
 impl Counters {
-    /// The counts so far; starts anew.
+    /// Returns the counts so far and resets them.
     pub fn take(&self) -> ShadowCounts {
         ShadowCounts { single: self.single.0.take(), packets: self.packets.0.take() }
     }

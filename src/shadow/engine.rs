@@ -1,7 +1,7 @@
 //! Shadow queries in a world, counted, and answered by an occluder cache where there is one.
 //!
-//! One engine for each thread, or made where it is needed: without a cache it is a reference and counters that nobody
-//! reads.
+//! There is one engine for each thread, or it is created on demand: without a cache it is a reference and
+//! counters that nobody reads.
 
 use super::cache::{OccluderCache, OccluderCacheSettings};
 use super::counts::{Counters, ShadowCounts};
@@ -12,37 +12,37 @@ use std::cell::RefCell;
 /// Shadow queries in a world.
 pub struct Engine<'w> {
     world: &'w World,
-    /// Asked before single rays are traced. Packets do not ask it (see [`super::ShadowSettings`]).
+    /// Occluder cache for single rays. Packets do not use it (see [`super::ShadowSettings`]).
     cache: Option<RefCell<OccluderCache>>,
     counters: Counters,
 }
 
 impl<'w> Engine<'w> {
-    /// An engine without an occluder cache.
+    /// Creates an engine without an occluder cache.
     #[inline]
     pub fn new(world: &'w World) -> Engine<'w> {
         Engine { world, cache: None, counters: Counters::default() }
     }
 
-    /// An engine with an occluder cache, if rays are to be `cached`.
+    /// Creates an engine, with an occluder cache if rays are to be `cached`.
     pub fn with(world: &'w World, cached: bool, settings: OccluderCacheSettings) -> Engine<'w> {
         let cache = cached.then(|| RefCell::new(OccluderCache::new(settings)));
         Engine { cache, ..Engine::new(world) }
     }
 
-    /// Empties the cache. To be called at boundaries of the work that do not depend on the number of threads.
+    /// Clears the cache. To be called at boundaries of the work that do not depend on the number of threads.
     pub fn begin_chunk(&self) {
         if let Some(cache) = &self.cache {
             cache.borrow_mut().forget();
         }
     }
 
-    /// Counts since the last call.
+    /// Returns the counts since the last call.
     pub fn take_counts(&self) -> ShadowCounts {
         self.counters.take()
     }
 
-    /// Whether a ray is occluded. `key` names the light to the cache.
+    /// True if a ray is occluded. `key` identifies the light in the cache.
     #[inline]
     pub fn occluded(&self, ray: &Ray, key: u32) -> bool {
         if self.cache.is_some() {
@@ -53,7 +53,7 @@ impl<'w> Engine<'w> {
         occluded
     }
 
-    /// The triangle that occludes a ray; which of several is not specified. `key` names the light to the cache.
+    /// Returns a triangle that occludes a ray; of several, any. `key` identifies the light in the cache.
     #[inline]
     pub fn occluder(&self, ray: &Ray, key: u32) -> Option<Occluder> {
         let known = self.cache.as_ref().and_then(|cache| cache.borrow().occluder(key, ray));
@@ -66,7 +66,7 @@ impl<'w> Engine<'w> {
         found
     }
 
-    /// The lanes of `valid` that are occluded, of rays from neighbouring points towards one light.
+    /// Returns the lanes of `valid` that are occluded, of rays from neighbouring points towards one light.
     #[inline]
     pub fn occluded16(&self, rays: &Rays16, valid: u16) -> u16 {
         let accel = &self.world.accel;
@@ -75,7 +75,7 @@ impl<'w> Engine<'w> {
         occluded
     }
 
-    /// As [`Engine::occluded16`], and says by what: the returned lanes of `found` are written.
+    /// As [`Engine::occluded16`], but also writes the occluders to the returned lanes of `found`.
     #[inline]
     pub fn occluders16(&self, rays: &Rays16, valid: u16, found: &mut Occluders16) -> u16 {
         let occluded = self.world.accel.occluders16(rays, valid, true, found);

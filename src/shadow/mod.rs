@@ -1,7 +1,8 @@
-//! Shadow rays: segments that keep off their ends, packets of them, and the engine that answers whether they are free.
+//! Shadow rays: segments whose ends are offset from their surfaces, packets of them, and the engine that
+//! tests them for occlusion.
 //!
-//! [`segment()`] and [`ray_from`] make rays; [`Engine`] traces and counts them, and may ask an occluder cache first.
-//! The cache changes how long an answer takes and which occluder is named, never whether there is one.
+//! [`segment()`] and [`ray_from`] make rays; [`Engine`] traces and counts them, and may test an occluder
+//! cache first. The cache changes the time of an answer and the occluder named, never the answer itself.
 
 mod cache;
 mod counts;

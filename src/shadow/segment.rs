@@ -1,7 +1,7 @@
 //! Rays that keep a surface from shadowing itself.
 //!
 //! A ray that starts on a surface is moved off it along the geometric normal, to the side it leaves towards,
-//! by 8 units in the last place of the position's largest coordinate. The move scales with the rounding of
+//! by 8 units in the last place of the position's largest coordinate. The offset scales with the rounding of
 //! the position itself, so it holds for any scene size or offset, where a constant would not.
 
 use crate::embree::Ray;
@@ -11,7 +11,7 @@ use glam::Vec3;
 /// Offset in units of the last place of the largest coordinate.
 pub(crate) const ULPS: f32 = 8.0;
 
-/// `position` moved off its surface towards the side of `direction`.
+/// Returns `position` moved off its surface towards the side of `direction`.
 #[inline]
 pub fn offset(position: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
     let step = position.abs().max_element().max(f32::MIN_POSITIVE) * (ULPS * f32::EPSILON);
@@ -34,13 +34,14 @@ pub fn segment(a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> Ray {
     Ray { origin, t_near: 0.0, direction: target - origin, t_far: 1.0 }
 }
 
-/// Whether the segment between two surface points is free. A zero normal marks a point that lies on no surface.
+/// True if the segment between two surface points is unoccluded. A zero normal marks a point that lies on no
+/// surface.
 #[inline]
 pub fn visible(world: &World, a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> bool {
     !world.accel.occluded(&segment(a, a_normal, b, b_normal))
 }
 
-/// Whether a ray from a surface point meets nothing.
+/// True if a ray from a surface point hits nothing.
 #[inline]
 pub fn escapes(world: &World, position: Vec3, normal: Vec3, direction: Vec3) -> bool {
     !world.accel.occluded(&ray_from(position, normal, direction))

@@ -1,5 +1,5 @@
-//! Rays for sixteen points are those of each point; the engine answers as Embree does, and single rays with the cache
-//! as without.
+//! Packets of sixteen segments equal the single segments; the engine agrees with Embree, and single rays with
+//! the cache with those without.
 
 use super::*;
 use crate::embree::{Occluders16, Ray, Rays16, Width};
@@ -11,9 +11,9 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::f32::consts::{PI, TAU};
 
-/// Segments in the long comparison.
+/// Number of segments in the long comparison.
 const SEGMENTS: u32 = 10_000_000;
-/// Lights that the cache tells apart in it.
+/// Number of lights that the cache distinguishes in it.
 const KEYS: u32 = 173;
 
 struct Numbers(u32, u32);
@@ -104,7 +104,7 @@ fn world() -> World {
     World::new(Scene { meshes, materials: vec![grey], ..Scene::default() }, 1).unwrap()
 }
 
-/// A segment as unkind as the draw will have it.
+/// A random segment among difficult cases.
 fn segment_among(corners: &[[Vec3; 3]], numbers: &mut Numbers) -> Ray {
     let [a, b, c] = numbers.of(corners);
     let inside = |numbers: &mut Numbers| {
@@ -120,7 +120,7 @@ fn segment_among(corners: &[[Vec3; 3]], numbers: &mut Numbers) -> Ray {
         0..4 => Ray::between(from, from + (inside(numbers) - from) * (1.0 + numbers.next())),
         4 => Ray::between(from, from + (edge(numbers) - from) * 1.5),
         5 => Ray::between(from, from + (a - from) * 1.5),
-        // Ends on the triangle, or starts there, kept off or not.
+        // Segments that end on the triangle, or start there, offset or not.
         6 => Ray::between(from, inside(numbers)),
         7 => Ray::between(inside(numbers), from),
         8 => segment(inside(numbers), normal, from, Vec3::ZERO),
@@ -129,7 +129,7 @@ fn segment_among(corners: &[[Vec3; 3]], numbers: &mut Numbers) -> Ray {
             let (p, q) = (inside(numbers), inside(numbers));
             Ray::between(p - (q - p) * numbers.next(), q + (q - p) * numbers.next())
         }
-        // No length; out of sight.
+        // Zero length; far away.
         10 => Ray::between(from, from),
         _ => Ray { t_far: f32::INFINITY, ..Ray::between(from, inside(numbers)) },
     }
@@ -151,7 +151,7 @@ fn the_cache_changes_no_answer() {
             let cached = Engine::with(&world, true, OccluderCacheSettings { slots: 128, ways });
             let mut numbers = Numbers(0, chunk);
             for _ in 0..CHUNK {
-                // Few triangles a light, so that what the cache holds is what the next rays pass closely.
+                // Few triangles a light, so that the next rays pass close to the cached ones.
                 let key = numbers.bits() % KEYS;
                 let few = &corners[key as usize * 3..][..3];
                 let ray = segment_among(few, &mut numbers);

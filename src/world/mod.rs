@@ -1,4 +1,4 @@
-//! A scene made ready to render: acceleration structure, material tables and emitters beside the data.
+//! A scene prepared for rendering: acceleration structure, material tables and emitters beside the data.
 //!
 //! Units: positions relative to the scene's centre. A `World` is immutable and shared by all threads.
 
@@ -30,20 +30,20 @@ pub struct World {
     triangles: Triangles,
 }
 
-/// Meshes of a scene as an acceleration structure is built from them.
+/// Returns the meshes of a scene as input of an acceleration structure.
 pub fn triangle_meshes(scene: &Scene) -> Vec<TriangleMesh<'_>> {
     let meshes = scene.meshes.iter();
     meshes.map(|m| TriangleMesh { positions: &m.positions, triangles: &m.triangles }).collect()
 }
 
-/// A point on a surface, seen along a ray.
+/// A point on a surface, hit by a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
     /// Position.
     pub position: Vec3,
     /// Unit geometric normal, on the front by winding.
     pub normal: Vec3,
-    /// Shading frame; its z axis is the interpolated normal, on the front as the mesh says.
+    /// Shading frame; its z axis is the interpolated normal, on the mesh's front.
     pub frame: Frame,
     /// Barycentric weights of corners 1 and 2.
     pub barycentric: Vec2,
@@ -56,7 +56,7 @@ pub struct Surface {
 }
 
 impl World {
-    /// Builds what rendering needs; `threads` is Embree's number for the build.
+    /// Builds the world; `threads` is the number of Embree's build threads.
     pub fn new(scene: Scene, threads: usize) -> Result<World, EmbreeError> {
         let device = Device::new(threads)?;
         let accel = Accel::build(&device, &triangle_meshes(&scene))?;
@@ -70,19 +70,19 @@ impl World {
         Ok(World { scene, accel, materials, emitters, diagonal, triangles })
     }
 
-    /// Builds the acceleration structure anew, with other care, for benchmarks.
+    /// Builds the acceleration structure anew, at another quality, for benchmarks.
     pub(crate) fn rebuild(&mut self, quality: BuildQuality) -> Result<(), EmbreeError> {
         self.accel = Accel::build_with(self.accel.device(), &triangle_meshes(&self.scene), quality)?;
         Ok(())
     }
 
-    /// The nearest surface along a ray.
+    /// Returns the nearest surface along a ray.
     #[inline]
     pub fn intersect(&self, ray: &Ray) -> Option<Surface> {
         self.accel.closest_hit(ray).map(|hit| self.surface(&hit))
     }
 
-    /// The surface at a hit.
+    /// Returns the surface at a hit.
     #[inline]
     pub fn surface(&self, hit: &Hit) -> Surface {
         let triangle = self.triangles.get(hit.geometry, hit.primitive);
@@ -115,7 +115,7 @@ impl World {
         (triangle.corner, triangle.edges)
     }
 
-    /// BSDF of the surface, textures looked up.
+    /// Returns the BSDF of the surface, textures looked up.
     #[inline]
     pub fn bsdf(&self, s: &Surface) -> Bsdf<'_> {
         let mesh = &self.scene.meshes[s.mesh as usize];

@@ -6,7 +6,7 @@ use crate::embree::Hits16;
 use crate::material::Bsdfs16;
 use crate::math::{F32x16, Frame, LANES, U32x16, Vec2x16, Vec3x16};
 
-/// Surfaces that sixteen rays met; see [`Surface`] for the members.
+/// Surfaces hit by sixteen rays; see [`Surface`] for the members.
 #[derive(Clone, Debug, Default)]
 pub struct Surfaces16 {
     /// Positions.
@@ -56,7 +56,7 @@ impl Surfaces16 {
 }
 
 impl World {
-    /// The surfaces at sixteen hits, of which every lane must hold one.
+    /// Returns the surfaces at sixteen hits, all of which must be valid.
     #[inline]
     pub fn surfaces(&self, hits: &Hits16) -> Surfaces16 {
         let mut s =
@@ -87,7 +87,7 @@ impl World {
         s
     }
 
-    /// BSDFs of the surfaces, seen from `wo` in their shading frames, textures looked up.
+    /// Returns the BSDFs of the surfaces, seen from `wo` in their shading frames, textures looked up.
     #[inline]
     pub fn bsdfs(&self, s: &Surfaces16, wo: Vec3x16) -> Bsdfs16<'_> {
         Bsdfs16::new(wo, |i| {

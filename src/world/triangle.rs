@@ -1,4 +1,4 @@
-//! Triangles as a hit asks for them: all that a point on one needs, in one cache line.
+//! Triangles in the layout of a hit: all data of a point on one, in one cache line.
 //!
 //! Deviations: this repeats the meshes' positions, 64 bytes a triangle. Following a triangle's indices to its
 //! corners instead waits for memory twice, and up to four times.
@@ -19,7 +19,7 @@ pub(super) struct Triangles {
 pub(super) struct Triangle {
     /// Corner 0.
     pub corner: Vec3,
-    /// From corner 0 to corners 1 and 2.
+    /// Edges from corner 0 to corners 1 and 2.
     pub edges: [Vec3; 2],
     /// Unit geometric normal, on the front by winding.
     pub normal: Vec3,
@@ -42,7 +42,7 @@ impl Triangles {
         Triangles { first, records }
     }
 
-    /// Triangle `primitive` of mesh `mesh`.
+    /// Returns triangle `primitive` of mesh `mesh`.
     #[inline]
     pub fn get(&self, mesh: u32, primitive: u32) -> &Triangle {
         &self.records[self.first[mesh as usize] + primitive as usize]
@@ -50,20 +50,21 @@ impl Triangles {
 }
 
 impl Triangle {
-    /// The point at barycentric weights `b` of corners 1 and 2.
+    /// Returns the point at barycentric weights `b` of corners 1 and 2.
     #[inline]
     pub fn position(&self, b: Vec2) -> Vec3 {
         position(self.corner, self.edges, b)
     }
 }
 
-/// The point at barycentric weights `b` of a triangle's corners 1 and 2.
+/// Returns the point at barycentric weights `b` of a triangle's corners 1 and 2.
 #[inline(always)]
 pub(super) fn position(corner: Vec3, edges: [Vec3; 2], b: Vec2) -> Vec3 {
     corner + (edges[0] * b.x + edges[1] * b.y)
 }
 
-/// Unit normal of a triangle from two edges, scaled first so that tiny triangles do not underflow.
+/// Returns the unit normal of a triangle from two edges, scaled first so that tiny triangles do not
+/// underflow.
 fn unit_normal([e1, e2]: [Vec3; 2]) -> Vec3 {
     let cross = e1.cross(e2);
     let length_sq = cross.length_squared();

@@ -88,7 +88,7 @@ fn packets_agree_with_brute_force() {
     }
 }
 
-/// The occluder lies on the ray, at the distance it says.
+/// Asserts that the occluder lies on the ray, at the stated distance.
 fn assert_real(soup: &Soup, ray: &Ray, occluder: Occluder) {
     let id = TriangleId { geometry: occluder.geometry, primitive: occluder.primitive };
     let t = soup.distance(ray, id).unwrap_or_else(|| panic!("{id:?} is not on {ray:?}"));
@@ -131,6 +131,6 @@ fn any_number_of_threads_gives_the_same_bits() {
     let accel = soup.build(&Device::new(4).unwrap());
     let parallel: Vec<_> = rays.par_iter().map(|ray| bits(accel.closest_hit(ray))).collect();
     assert_eq!(sequential, parallel);
-    // The structure may also go on another thread than the one it was built on.
+    // The structure may also be dropped on another thread than the one it was built on.
     std::thread::spawn(move || drop(accel)).join().unwrap();
 }

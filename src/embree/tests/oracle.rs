@@ -1,4 +1,4 @@
-//! Random triangles, and the same questions answered without Embree.
+//! Random triangles, and brute-force answers to the same queries without Embree.
 
 use super::super::*;
 use glam::{DVec3, Vec3};
@@ -32,11 +32,11 @@ pub struct Soup {
     meshes: [(Vec<Vec3>, Vec<[u32; 3]>); 3],
 }
 
-/// Answer of brute force for a ray.
+/// Brute-force answer for a ray.
 pub enum Verdict {
-    /// It passes an edge, or two triangles, or an end of the segment, within rounding.
+    /// The ray passes an edge, or two triangles, or an end of the segment, within rounding.
     Close,
-    /// Nothing is within rounding of changing.
+    /// No rounding can change the answer.
     Certain(Option<Met>),
 }
 
@@ -46,7 +46,7 @@ pub struct Met {
     pub t: f64,
 }
 
-/// Below this distance in barycentric coordinates or relative t, single precision may decide either way.
+/// Distance in barycentric coordinates or relative t below which single precision may decide either way.
 const ROUNDING: f64 = 1e-4;
 
 impl Soup {

@@ -1,4 +1,4 @@
-//! The basis against what defines it: orthonormality, the formula in angles, finite differences.
+//! The basis against its defining properties: orthonormality, the formula in angles, finite differences.
 
 use crate::hsh::*;
 use crate::math::{F32x8, Real, gauss_legendre};
@@ -39,7 +39,7 @@ fn legendre_derivative(l: usize, m: usize) -> Vec<f64> {
     powers.iter().map(|c| c / (2.0f64.powi(l as i32) * factorial(l))).collect()
 }
 
-/// Gautron's formula as it is printed: associated Legendre functions of 2 cos θ - 1, and angles.
+/// Gautron's formula as printed: associated Legendre functions of 2 cos θ - 1, and angles.
 fn printed_formula(l: usize, m: isize, [x, y, z]: [f64; 3]) -> f64 {
     let order = m.unsigned_abs();
     let t = 2.0 * z - 1.0;
@@ -129,7 +129,7 @@ fn derivatives_agree_with_finite_differences() {
         for axis in 0..2 {
             let moved = |by: f64| {
                 let mut q = omega;
-                q[axis] -= by * step; // the receiver moves one way, the source is seen to move the other
+                q[axis] -= by * step; // the receiver moves one way, the source appears to move the other
                 let length = q.iter().map(|c| c * c).sum::<f64>().sqrt();
                 evaluate(MAX_BANDS, q.map(|c| c / length))
             };

@@ -1,4 +1,4 @@
-//! Tests of the module, by what they compare with.
+//! Tests of the module, by their reference.
 
 mod basis;
 mod projection;

@@ -204,7 +204,7 @@ fn smooth_light_is_reflected_within_the_product_of_what_both_series_leave_out() 
     let directions = hemisphere();
     let values: Vec<_> = directions.iter().map(|(wi, _)| evaluate(MAX_BANDS, wi.to_array())).collect();
     let sun = outgoing(0.9, 0.4);
-    // Even light, two lobes of light, and light that grows towards the horizon.
+    // Uniform light, two lobes of light, and light that grows towards the horizon.
     let environments: [&dyn Fn(DVec3) -> f64; 4] =
         [&|_| 1.0, &|w| (3.0 * (w.dot(sun) - 1.0)).exp(), &|w| (12.0 * (w.dot(sun) - 1.0)).exp(), &|w| {
             (1.0 - w.z).powi(3)
@@ -313,7 +313,7 @@ fn each_material_gets_the_records_it_needs() {
         (plastic, Some(Caching::Irradiance)),
         (Material { lobe: smooth, ..lambert(0.0) }, Some(Caching::Irradiance)),
         (dull, Some(Caching::Irradiance)),
-        (rough_plastic(0.05, 0.5), Some(Caching::Irradiance)), // the eye follows its lobe
+        (rough_plastic(0.05, 0.5), Some(Caching::Irradiance)), // the eye pass follows its lobe
         (rough_plastic(0.15, 0.5), Some(Caching::PerSample)),
         (metal(0.2), Some(Caching::PerSample)),
         (metal(0.3), None),

@@ -1,4 +1,4 @@
-//! Coefficients against sums in double precision, finite differences, and rotation of what they were summed from.
+//! Coefficients against sums in double precision, finite differences, and rotation of the light summed.
 
 use super::Random;
 use crate::gradient::LocalVpl;
@@ -7,7 +7,7 @@ use crate::hsh::*;
 use crate::math::Rgb;
 use glam::DVec3;
 
-/// Patches around the receiver, some below its horizon, and what each is multiplied by.
+/// Patches around the receiver, some below its horizon, with their intensities.
 fn lights(count: usize) -> Vec<(LocalVpl<f64>, Rgb)> {
     let mut random = Random(5);
     let mut light = |i: usize| {
@@ -28,7 +28,7 @@ fn lights(count: usize) -> Vec<(LocalVpl<f64>, Rgb)> {
     (0..count).map(&mut light).collect()
 }
 
-/// `f` applied to every offset, direction and normal.
+/// Applies `f` to every offset, direction and normal.
 fn mapped(source: &LocalVpl<f64>, offset_by: DVec3, f: impl Fn(DVec3) -> DVec3) -> LocalVpl<f64> {
     let apply = |v: [f64; 3], by: DVec3| f(DVec3::from(v) + by).to_array();
     match *source {
@@ -61,7 +61,7 @@ fn accumulated(bands: usize, lights: &[(LocalVpl<f64>, Rgb)]) -> Radiance {
     accumulator.finish()
 }
 
-/// The coefficients by definition, at the record moved by `motion`.
+/// Computes the coefficients by definition, at the record moved by `motion`.
 fn by_definition(lights: &[(LocalVpl<f64>, Rgb)], motion: DVec3) -> [DVec3; MAX_FUNCTIONS] {
     let mut sums = [DVec3::ZERO; MAX_FUNCTIONS];
     for (source, intensity) in lights {
@@ -145,7 +145,7 @@ fn two_bands_hold_the_irradiance_exactly() {
 fn turning_the_frame_turns_the_light() {
     let lights = lights(60);
     for angle in [0.0f64, 0.3, 1.9, -2.5] {
-        // Seen from axes turned one way, everything is turned the other.
+        // A rotation of the axes rotates everything the other way relative to them.
         let (sin, cos) = angle.sin_cos();
         let turn = |v: DVec3| DVec3::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x, v.z);
         let there: Vec<_> = lights.iter().map(|(s, i)| (mapped(s, DVec3::ZERO, turn), *i)).collect();
