@@ -1,9 +1,10 @@
-//! Lets binaries and tests find the Embree that `embree4-sys` linked, where the loader would not.
+//! Adds the folder of the Embree that `embree4-sys` linked to the run path of binaries and tests, where the
+//! loader would not find it.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=DEP_EMBREE4_LIBDIR");
-    // Absent where Embree lies in a folder of the system.
+    // Absent where Embree is in a system folder.
     if let Ok(directory) = std::env::var("DEP_EMBREE4_LIBDIR") {
         println!("cargo::rustc-link-arg=-Wl,-rpath,{directory}");
     }

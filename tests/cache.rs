@@ -17,11 +17,11 @@ fn settings(direct: FoundBy, footprints: Footprints) -> cache::Settings {
     let mut settings = cache::Settings::default();
     settings.light.indirect = 20_000;
     settings.spp = 1;
-    // What it adds is noisier than what is compared here; it has tests of its own.
+    // Compensation is noisier than the differences tested here; it has tests of its own.
     settings.compensation = false;
     settings.cache.direct = direct;
     settings.cache.indirect = FoundBy::Records;
-    // Records wherever they can be, which small pictures would leave to cuts.
+    // Records even for small cells: in small pictures cuts would be used instead.
     settings.cache.least_cell = 8;
     settings.cache.layers[1].accuracy = 0.3;
     settings.cache.footprints = footprints;
@@ -113,7 +113,7 @@ fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
         for footprints in [Footprints::Isotropic, Footprints::Anisotropic, Footprints::Occlusion] {
             let mut settings = settings(direct, footprints);
             if direct == FoundBy::Records {
-                // Penumbrae are steep: at the default accuracy they are what the other mode is for.
+                // Penumbrae are steep: at the default accuracy they need the other mode.
                 settings.cache.layers[0] = LayerSettings { accuracy: 0.1, reach: [0.7, 5.0] };
             }
             let error = rms(&cached(&world, &settings).color, &per_pixel(&world, &settings));
@@ -130,7 +130,7 @@ fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
         settings.cache.layers[0] = LayerSettings { accuracy: 0.1, reach: [0.7, 5.0] };
         let output = cached(&world, &settings);
         assert!(count(&output, "Cache/records with series").is_some_and(|n| n > 0));
-        // None for a lobe's sake: a sample has one cut at most, of its direct light.
+        // No second cut for the lobe: a sample has one cut at most, of its direct light.
         let own = count(&output, "Cache/samples with own cuts");
         assert!(own.is_some_and(|own| own <= 96 * 96), "{own:?}");
         let exact = per_pixel(&world, &settings);

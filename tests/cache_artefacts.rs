@@ -1,4 +1,4 @@
-//! Where radiance caches are known to fail: light that leaks through thin walls and sheets, lost contact shadows,
+//! Known failures of radiance caches: light that leaks through thin walls and sheets, lost contact shadows,
 //! rings and seams.
 
 mod common;
@@ -22,8 +22,8 @@ fn block(low: Vec3, high: Vec3, material: MaterialId) -> Vec<lightsplat::scene::
     faces
 }
 
-/// Half of the room, behind a thin wall that leaves a gap towards the eye, is lit by what the other half reflects. A block stands
-/// on the floor of the lit half, a sheet floats in either.
+/// Half of the room, behind a thin wall that leaves a gap towards the eye, is lit by reflection from the
+/// other half. A block stands on the floor of the lit half, a sheet floats in either.
 fn divided_room() -> WorldAndView {
     let (mut scene, wall) =
         lit_room(camera(Vec3::new(0.0, 0.3, 0.98), Vec3::new(0.0, -0.25, 0.0), 1.0), SIZE);
@@ -41,10 +41,10 @@ fn settings(footprints: Footprints) -> cache::Settings {
     settings.spp = 1;
     settings.cache.footprints = footprints;
     settings.cache.indirect = FoundBy::Records;
-    // Records wherever they can be, which small pictures would leave to cuts.
+    // Records even for small cells: in small pictures cuts would be used instead.
     settings.cache.least_cell = 8;
     settings.cache.layers[1].accuracy = 0.3;
-    // The reference clamps as the cache does without it.
+    // Without compensation the reference clamps as the cache does.
     settings.compensation = false;
     settings
 }
@@ -58,7 +58,7 @@ fn per_pixel(world: &WorldAndView, like: &cache::Settings) -> Image {
     lightcuts::render(world, &world.view, &settings, &Control::new()).color
 }
 
-/// What each pixel's centre shows.
+/// Surface at each pixel's centre.
 fn seen(world: &WorldAndView) -> Vec<Surface> {
     let look = |i: u32| {
         let pixel = [i % SIZE, i / SIZE];
@@ -68,7 +68,7 @@ fn seen(world: &WorldAndView) -> Vec<Surface> {
     (0..SIZE * SIZE).map(look).collect()
 }
 
-/// Differences of luminance relative to the reference, of the pixels that `wanted` picks.
+/// Differences of luminance relative to the reference, of the pixels that `wanted` selects.
 fn errors(test: &Image, reference: &Image, seen: &[Surface], wanted: impl Fn(&Surface) -> bool) -> Vec<f32> {
     let pixels = test.pixels.iter().zip(&reference.pixels).zip(seen);
     let wanted = pixels.filter(|(_, s)| wanted(s));
@@ -87,8 +87,9 @@ fn quantile(values: &[f32], q: f32) -> f32 {
     sorted[((sorted.len() - 1) as f32 * q) as usize]
 }
 
-/// Names of the regions that err by more than 2 % on average or 12 % in one pixel of twenty. What leaked from the lit half
-/// would be several times as bright as the dark one. The limits are a little above what was measured, not derived.
+/// Names of the regions whose error exceeds 2 % on average or 12 % in one pixel of twenty. Light leaking from
+/// the lit half would be several times as bright as the dark one. The limits are a little above the measured
+/// errors, not derived.
 fn bad_regions(settings: &cache::Settings) -> Vec<&'static str> {
     let world = divided_room();
     let seen = seen(&world);
@@ -133,7 +134,8 @@ fn circles_do_not_leak() {
     assert!(bad.iter().all(|&region| region == "around the block"), "{bad:?}");
 }
 
-/// An open defect: circles blur the contact shadow of the block, by 3 % on average and up to 29 % in nineteen pixels of twenty.
+/// An open defect: circles blur the contact shadow of the block, by 3 % on average and up to 29 % in nineteen
+/// pixels of twenty.
 #[test]
 #[should_panic(expected = "around the block")]
 fn circles_keep_contact_shadows() {
@@ -141,8 +143,8 @@ fn circles_keep_contact_shadows() {
     assert!(bad.is_empty(), "{bad:?}");
 }
 
-/// On a floor without a shadow on it, the error hardly changes from pixel to pixel: no rings at the edges of footprints, no
-/// seams between patches. The limits are a little above what was measured.
+/// On a floor without a shadow on it, the error hardly changes from pixel to pixel: no rings at the edges of
+/// footprints, no seams between patches. The limits are a little above the measured values.
 #[test]
 fn smooth_light_stays_smooth() {
     let mut scene = scene(camera(Vec3::new(0.0, 0.2, 0.98), Vec3::new(0.0, -0.8, -0.2), 0.8), [SIZE, SIZE]);

@@ -1,4 +1,4 @@
-//! Light that clamping takes away and short rays find again.
+//! Light lost by clamping and recovered by short rays.
 
 mod common;
 
@@ -13,7 +13,7 @@ use lightsplat::stats::Counter;
 
 const SIZE: u32 = 96;
 
-/// Settings of the ways to find indirect light, with compensation or without.
+/// Pictures by all methods of indirect light, with compensation or without.
 fn outputs(world: &WorldAndView, vpls: u32, compensation: bool) -> Vec<(&'static str, Output)> {
     let mut settings = cache::Settings { compensation, ..Default::default() };
     settings.light.indirect = vpls;
@@ -30,7 +30,7 @@ fn outputs(world: &WorldAndView, vpls: u32, compensation: bool) -> Vec<(&'static
     vec![("lent", lent), ("records", records), ("alone", alone), ("lightcuts", cuts)]
 }
 
-/// Radiance everywhere is emitted / (1 - albedo), as much in creases as elsewhere.
+/// Tests that radiance is emitted / (1 - albedo) everywhere, in creases too.
 #[test]
 fn the_furnace_is_white_although_close_lights_are_clamped() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/furnace.toml");
@@ -50,7 +50,7 @@ fn the_furnace_is_white_although_close_lights_are_clamped() {
     }
 }
 
-/// What lies along the creases of a room, against paths.
+/// Compares the surfaces along the creases of a room with path tracing.
 #[test]
 fn creases_are_as_bright_as_paths_make_them() {
     let (scene, _) = lit_room(camera(Vec3::new(0.0, 0.2, 0.98), Vec3::new(0.0, -0.8, -0.2), 0.8), SIZE);
@@ -88,7 +88,7 @@ fn creases_are_as_bright_as_paths_make_them() {
     }
 }
 
-/// What lies so close to a lamp that one virtual light would outshine all others, against paths.
+/// Compares surfaces so close to a lamp that one virtual light would outshine all others with path tracing.
 #[test]
 fn surfaces_beside_lamps_are_as_bright_as_paths_make_them() {
     let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.3), Vec3::new(0.0, 0.0, -0.9), 1.0), [SIZE, SIZE]);

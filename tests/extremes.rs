@@ -1,4 +1,4 @@
-//! Whole pictures at the edges of what numbers can hold: scene sizes over twelve decades, scenes far from their
+//! Whole pictures at the limits of the number formats: scene sizes over twelve decades, scenes far from their
 //! origin, films of odd shapes, radiances twenty orders apart.
 
 mod common;
@@ -55,7 +55,7 @@ fn the_picture_does_not_depend_on_the_unit_of_length() {
         let world = room_at(scale);
         let (scaled_path, scaled_cuts) = (by_path(&world, 64), by_lightcuts(&world));
         assert_eq!(scaled_path.nonfinite + scaled_cuts.nonfinite, 0);
-        // Not a power of two: other roundings, now and then another path or cluster.
+        // Not a power of two: other rounding, now and then another path or cluster.
         let error = relative_rms(&scaled_path.color, &path.color);
         assert!(error < 0.05, "path at {scale}: {error}");
         let error = relative_rms(&scaled_cuts.color, &cuts.color);
@@ -63,7 +63,7 @@ fn the_picture_does_not_depend_on_the_unit_of_length() {
     }
 }
 
-/// Writes a room as TOML whose every coordinate is moved by `offset`, and loads it.
+/// Writes a room as TOML with every coordinate moved by `offset`, and loads it.
 fn room_moved_by(offset: f64, folder: &Path) -> WorldAndView {
     let at = |x: f64, y: f64, z: f64| format!("[{:?}, {:?}, {:?}]", x + offset, y + offset, z + offset);
     let wall = |turn: &str| {

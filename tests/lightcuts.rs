@@ -212,11 +212,12 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
     }
 }
 
-/// Relative errors, against the full sum over the same 20,000 VPLs, of single and shared cuts for blocks of eye
-/// samples all over the film.
+/// Relative errors, against the full sum over the same 20,000 VPLs, of single and shared cuts for blocks of
+/// eye samples all over the film.
 ///
-/// All points of a picture share the representatives, and with them much of their error. So eight light passes, each
-/// with representatives of its own, look at two points each in sixteen blocks: one pass alone scatters by a tenth or more.
+/// All points of a picture share the representatives, and with them much of their error. So eight light
+/// passes, each with representatives of its own, use two points each in sixteen blocks: one pass alone varies
+/// by a tenth or more.
 fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
     let path = path.with_extension("toml");

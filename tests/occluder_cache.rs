@@ -1,4 +1,4 @@
-//! The occluder cache changes how long a picture takes, and no pixel of it.
+//! The occluder cache changes the time of a picture, and none of its pixels.
 
 mod common;
 

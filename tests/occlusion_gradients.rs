@@ -1,4 +1,5 @@
-//! Gradients that know of occluders' edges against irradiance summed over all virtual lights, around a ball and a table.
+//! Gradients that include occluders' edges against irradiance summed over all virtual lights, around a ball
+//! and a table.
 
 mod common;
 
@@ -16,7 +17,7 @@ use lightsplat::radiance_cache::wave::Pick;
 use lightsplat::radiance_cache::{CacheSettings, Footprints};
 use lightsplat::vpl::{LightPassSettings, Origin, light_pass};
 
-/// How far extrapolation goes; the room is 2 wide.
+/// Distance of extrapolation; the room is 2 wide.
 const STEP: f32 = 0.06;
 
 /// A room of different walls, seen from above, with a ball and a table on its floor.
@@ -35,7 +36,8 @@ fn furnished_room() -> WorldAndView {
 }
 
 /// Irradiance of the room's indirect light at points of its floor, extrapolated by `STEP` in four directions:
-/// mean relative error, and the scalar product of estimated and true gradients, relative to the square of the true ones.
+/// mean relative error, and the scalar product of estimated and true gradients, relative to the square of the
+/// true ones.
 fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) -> (f32, f32) {
     let settings = EyeSettings { spp: 1, seed: 0, max_depth: 8 };
     let samples = EyePass::trace(world, &world.view, settings, &Control::new());
@@ -48,7 +50,8 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
     let cache = CacheSettings { cut, footprints, probe_rays, ..CacheSettings::default() };
     let source = Source { world, transfer, settings: &cache, compensation: None };
 
-    // Open floor: neither under the ball or the table nor within a step of a wall, where light varies by its own distance.
+    // Open floor: neither under the ball or the table nor within a step of a wall, where light varies by its
+    // own distance.
     let open = |p: Vec3| {
         let from_ball = (p - Vec3::new(0.4, -1.0, 0.3)).length();
         let table = (p - Vec3::new(-0.4, -1.0, -0.3)).abs();

@@ -1,5 +1,5 @@
-//! The scenes of `scenes/` that are rooms: they load without a word, no light leaks out of them, their
-//! surfaces face whoever looks, and the walk-through keeps clear of the furniture.
+//! The rooms in `scenes/`: they load without warnings, are closed to light, show front faces to the camera,
+//! and the walk-through keeps clear of the furniture.
 
 use glam::Vec3;
 use lightsplat::embree::Ray;
@@ -16,7 +16,7 @@ fn world(name: &str) -> (World, Cameras) {
     (World::new(loaded.scene, 2).unwrap_or_else(|e| panic!("{e}")), loaded.cameras)
 }
 
-/// `count` directions spread evenly over the sphere (a Fibonacci lattice).
+/// Returns `count` directions spread evenly over the sphere (a Fibonacci lattice).
 fn directions(count: usize) -> impl Iterator<Item = Vec3> {
     (0..count).map(move |k| {
         let y = 1.0 - (2.0 * k as f32 + 1.0) / count as f32;
@@ -26,7 +26,7 @@ fn directions(count: usize) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// All the places from which the scene is looked at.
+/// Returns all cameras of the scene.
 fn viewpoints(cameras: &Cameras) -> Vec<Camera> {
     [cameras.still].into_iter().chain(cameras.path.iter().step_by(20).copied()).collect()
 }

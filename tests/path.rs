@@ -1,4 +1,4 @@
-//! The path tracer against scenes whose answer is known in closed form.
+//! The path tracer against scenes with solutions in closed form.
 
 mod common;
 
@@ -21,7 +21,8 @@ fn mean(image: &Image) -> Rgb {
     image.pixels.iter().copied().sum::<Rgb>() / image.pixels.len() as f32
 }
 
-/// Every pixel within `sigmas` of its own standard error (plus rounding) of `expected`, and the mean closer still.
+/// Asserts that every pixel is within `sigmas` of its own standard error (plus rounding) of `expected`, and
+/// the mean closer still.
 fn assert_all_near(output: &Output, expected: Rgb, sigmas: f32) {
     let variance = output.variance.as_ref().expect("more than one sample");
     for (value, variance) in output.color.pixels.iter().zip(&variance.pixels) {

@@ -37,7 +37,7 @@ fn boxed_room() -> WorldAndView {
     world(scene)
 }
 
-/// Luminance of blocks of 4 x 4 pixels, whose edges both methods resolve alike.
+/// Luminance of blocks of 4 x 4 pixels, whose edges both methods resolve equally.
 fn blocks(image: &Image) -> Vec<f64> {
     let n = SIZE as usize / 4;
     let block = |i: usize| {
@@ -64,7 +64,7 @@ fn it_converges_to_the_path_tracer_as_photons_and_rays_grow() {
     assert!(bias.abs() < 0.01 && fine < 0.02 && fine < 0.5 * coarse, "{errors:?}");
 }
 
-/// Radiance everywhere is emitted / (1 - albedo).
+/// Tests that radiance is emitted / (1 - albedo) everywhere.
 #[test]
 fn the_furnace_is_white() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/furnace.toml");

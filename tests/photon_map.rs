@@ -1,4 +1,4 @@
-//! The photon map where its answer is known: density of photons, leaks, and gathering against plain sampling.
+//! The photon map against known solutions: density of photons, leaks, and gathering against plain sampling.
 
 mod common;
 
@@ -25,7 +25,7 @@ fn map(world: &WorldAndView, photons: u32) -> PhotonMap {
 /// A dark floor from -1 to 1 with a thin wall along z, in sunlight that comes over the wall from +x.
 fn sunlit_floor() -> (WorldAndView, f32) {
     let mut scene = scene(camera(Vec3::Y, Vec3::ZERO, 1.0), [4, 4]);
-    // Almost black, so that nothing but the sun lights anything.
+    // Almost black, so that there is no light but the sun's.
     let black = add_material(&mut scene, diffuse(Rgb::splat(1e-6)));
     scene.meshes.push(quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, black));
     scene.meshes.push(quad(Vec3::new(0.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::Y * 0.5, black));
@@ -34,7 +34,7 @@ fn sunlit_floor() -> (WorldAndView, f32) {
     (world(scene), -3.0 * direction.y)
 }
 
-/// Mean of the irradiance over the floor's part between two places, by looking at a grid of points.
+/// Mean of the irradiance over a rectangle of the floor, on a grid of points.
 fn mean(map: &IrradianceMap, low: Vec2, high: Vec2) -> f32 {
     let at = |i: u32| {
         let p = low + (high - low) * owen_sobol_2d(i, 3);
@@ -46,7 +46,8 @@ fn mean(map: &IrradianceMap, low: Vec2, high: Vec2) -> f32 {
 #[test]
 fn density_is_the_irradiance_inside_at_edges_at_walls_and_at_corners() {
     let (world, expected) = sunlit_floor();
-    // The sun's photons lie evenly, by Sobol's sequence, where the estimate is up to 1 / (2 · nearest) low.
+    // The sun's photons are evenly distributed, by Sobol's sequence, for which the estimate is up to 1 / (2 ·
+    // nearest) low.
     for nearest in [30, 100] {
         let photons = map(&world, 160_000);
         let (found, _) = estimates(&world, &photons, nearest);
@@ -62,7 +63,8 @@ fn density_is_the_irradiance_inside_at_edges_at_walls_and_at_corners() {
             let ratio = mean(&lit, low, high) / expected;
             assert!((ratio - 1.0).abs() < tolerance, "{name} with {nearest} photons: {ratio}");
         }
-        // Behind the wall, away from the end of its shadow, and from the wall by more than half a disc of as many photons reaches.
+        // Behind the wall, away from the end of its shadow, and farther from the wall than half the disc of
+        // as many photons.
         let shadow = mean(&lit, Vec2::new(-0.25 + 4.0 * radius, -0.8), Vec2::new(-2.0 * radius, 0.8));
         assert!(shadow < 0.05 * expected, "{nearest}: {shadow} in the shadow");
     }
@@ -70,7 +72,7 @@ fn density_is_the_irradiance_inside_at_edges_at_walls_and_at_corners() {
 
 #[test]
 fn photons_in_the_next_room_do_not_count() {
-    // Sunlight on both sides of the wall: from both sides as much, so that photons behind it would double the estimate.
+    // Equal sunlight on both sides of the wall, so that photons from behind it would double the estimate.
     let (world, _) = sunlit_floor();
     let photons = map(&world, 40_000);
     let (found, _) = estimates(&world, &photons, 30);

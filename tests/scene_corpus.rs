@@ -1,5 +1,5 @@
-//! The corpus of small scenes: the valid load, the invalid fail with a file, a remedy and no panic, and so does
-//! whatever one gets by cutting and corrupting the valid ones.
+//! The corpus of small scenes: the valid ones load, the invalid ones fail with a file, a remedy and no panic,
+//! and so do valid ones after cutting and corrupting.
 
 use lightsplat::scene::formats::{LoadOptions, Loaded, load};
 use std::fs;
@@ -17,7 +17,7 @@ fn is_scene(path: &Path) -> bool {
     !included && path.extension().is_some_and(|e| e == "toml" || e == "xml")
 }
 
-/// What every other stage relies on.
+/// Asserts the properties that every other stage relies on.
 fn assert_sound(Loaded { scene, cameras, .. }: &Loaded) {
     for mesh in &scene.meshes {
         let count = mesh.positions.len();
@@ -80,7 +80,7 @@ fn invalid_scenes_fail_with_file_and_remedy() {
     }
 }
 
-/// A generator good enough to pick bytes with.
+/// A random generator good enough to pick bytes with.
 struct Lcg(u64);
 
 impl Lcg {

@@ -1,12 +1,12 @@
-//! Shadow rays between points of one convex solid: whatever occludes them outside is the surface they start
-//! on, and whatever lets them through is a leak. Both at every scale, and far from the origin.
+//! Shadow rays between points of one convex solid: any occlusion outside is self-shadowing, and any free
+//! segment inside is a leak. Both at every scale, and far from the origin.
 
 use glam::Vec3;
 use lightsplat::embree::{Accel, Device, Hit, Ray, Rays16, TriangleMesh};
 use lightsplat::shadow;
 use proptest::prelude::*;
 
-/// A convex solid and where it is.
+/// A convex solid and its position.
 struct Solid {
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
@@ -15,7 +15,7 @@ struct Solid {
     size: f32,
 }
 
-/// A point on the surface, as a renderer gets it: rounded, with the normal of its triangle.
+/// A point on the surface, in a renderer's precision: rounded, with the normal of its triangle.
 #[derive(Clone, Copy)]
 struct Point {
     position: Vec3,
@@ -31,7 +31,7 @@ impl Solid {
             let flip = |axis: u32| if signs >> axis & 1 == 0 { 1.0 } else { -1.0 };
             let sign = Vec3::new(flip(0), flip(1), flip(2));
             let [a, b, c] = octant.map(|p| p * sign);
-            // Counter-clockwise from outside, which an odd number of reflections turns round.
+            // Counter-clockwise from outside; an odd number of reflections reverses the order.
             faces.push(if sign.element_product() > 0.0 { [a, b, c] } else { [a, c, b] });
         }
         for _ in 0..2 {
@@ -46,7 +46,7 @@ impl Solid {
         Solid::new(faces, size, centre)
     }
 
-    /// A box of sides up to `size` whose walls are the thinnest of solids: a hundredth of it.
+    /// A box of sides up to `size` with a thickness of a hundredth of it.
     fn slab(size: f32, centre: Vec3) -> Solid {
         let half = Vec3::new(1.0, 0.8, 0.01);
         let mut faces = Vec::new();
@@ -83,7 +83,7 @@ impl Solid {
         Point { position, normal: (b - a).cross(c - a).normalize() }
     }
 
-    /// Surface points seen from around, a few of them near edges.
+    /// Surface points in the given directions, a few of them near edges.
     fn points(&self, directions: &[Vec3]) -> Vec<Point> {
         let seen = |d: &Vec3| {
             let eye = self.centre + 3.0 * self.size * *d;
@@ -109,12 +109,12 @@ fn count(occluded: &[bool]) -> usize {
     occluded.iter().filter(|&&o| o).count()
 }
 
-/// No ray between points that see each other is stopped, and none between points that do not is let through.
+/// Checks that all rays between mutually visible points are free, and all others are occluded.
 fn check(solid: &Solid, directions: &[Vec3]) -> Result<(), TestCaseError> {
     let points = solid.points(directions);
     prop_assert!(points.len() * 10 >= directions.len() * 9, "too few points on the surface");
 
-    // Outside, on the side of each point's own face: the solid is convex, so nothing is in the way.
+    // Outside, on the side of each point's own face: the solid is convex, so that there is no occluder.
     let (mut free, mut blocked) = (Vec::new(), Vec::new());
     for (p, d) in points.iter().zip(directions.iter().rev()) {
         let outside = solid.centre + 3.0 * solid.size * *d;
@@ -132,7 +132,7 @@ fn check(solid: &Solid, directions: &[Vec3]) -> Result<(), TestCaseError> {
     let leaks = blocked.len() - count(&solid.occluded(&blocked));
     prop_assert_eq!(leaks, 0, "of {} rays through the solid", blocked.len());
 
-    // Inside, from surface to surface: both ends must keep off.
+    // Inside, from surface to surface: both ends must be offset.
     let inner: Vec<Ray> = points
         .iter()
         .zip(points.iter().rev())
@@ -160,7 +160,7 @@ proptest! {
     #[test]
     fn surfaces_neither_shadow_themselves_nor_leak(
         exponent in -6.0f32..6.0,
-        // The scene's centre is the origin, so parts of it lie at some multiples of their own size.
+        // The scene's centre is the origin, so that parts of it are at multiples of their own size.
         distance in prop_oneof![Just(0.0f32), 1.0f32..1000.0],
         towards in direction(),
         directions in prop::collection::vec(direction(), 400),

@@ -1,4 +1,4 @@
-//! What sharp lobes reflect of emitters that their sampled directions hardly ever find.
+//! Reflection by sharp lobes of emitters that their sampled directions hardly ever hit.
 
 mod common;
 
@@ -51,7 +51,8 @@ fn errors(test: &Image, reference: &Image) -> (f32, f32) {
     (mean(test) / mean(reference), (squares / test.pixels.len() as f32).sqrt() / mean(reference))
 }
 
-/// As bright as by paths, and of at most `most` times the noise of as many of them.
+/// Asserts that the picture is as bright as by path tracing, and has at most `most` times the noise of as
+/// many paths.
 fn assert_as_by_paths(scene: &SceneAndView, most: f32) {
     let reference = of_paths(scene, 1024);
     let (ratio, rms) = errors(&of_cuts(scene), &reference);
@@ -70,6 +71,7 @@ fn the_environment_shows_in_sharp_lobes_as_paths_see_it() {
     let mut scene = below_lamps();
     scene.meshes.truncate(2);
     scene.environment = Some(Environment::Constant(Rgb::ONE));
-    // Nothing beats the lobe's own directions under an even sky; points sampled on it add noise in the lobe's tail.
+    // Under a uniform sky the lobe's own directions are best; points sampled on it add noise in the lobe's
+    // tail.
     assert_as_by_paths(&scene, 1.5);
 }

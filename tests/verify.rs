@@ -1,4 +1,4 @@
-//! The error that `verify` measures against errors that are known.
+//! Errors measured by `verify` against known errors.
 
 mod common;
 
@@ -52,7 +52,8 @@ fn a_right_picture_is_measured_as_right() {
     let found = check(&world, &image, &Settings { pixels: 300, ..Settings::default() });
     assert!(found.relative_bias.covers(0.0), "{found:?}");
     assert!(found.relative_rms.low == 0.0 && found.relative_rms.high < 0.006, "{found:?}");
-    // Hidden by noise, and no more than if all of that were error: 1.96 times its deviation, more by the interval.
+    // Hidden by noise, and no more than if all of that were error: 1.96 times its deviation, more by the
+    // interval.
     assert!(!found.error_95_resolved && found.relative_error_95.low == 0.0, "{found:?}");
     assert!(found.relative_error_95.high < 2.5 * found.noise, "{found:?}");
     assert!(found.noise <= 0.013 && found.nonfinite == 0, "{found:?}");
@@ -73,7 +74,7 @@ fn errors_put_into_a_right_picture_are_measured_within_their_intervals() {
         assert!(found.relative_bias.covers(bias) && width(found.relative_bias) < 0.02, "{found:?}");
         let rms = rel_mse(&image, &truth, 0.0).sqrt();
         assert!(found.relative_rms.covers(rms) && width(found.relative_rms) < 0.6 * rms, "{found:?}");
-        // From 3 % to 30 % at just that share of the pixels.
+        // From 3 % to 30 % at exactly that share of the pixels.
         assert!((0.02..0.31).contains(&found.relative_error_95.value), "{found:?}");
     }
 }
@@ -89,7 +90,7 @@ fn a_path_traced_picture_has_the_error_that_its_own_variance_states() {
     let output = path::render(&world, &world.view, &settings, &Control::new());
     let noise = rel_mse_of_variance(&output.variance.unwrap(), &output.color).sqrt();
     let found = check(&world, &output.color, &Settings { pixels: 600, ..Settings::default() });
-    // The variance is stated on the safe side, since samples are stratified.
+    // The variance is a conservative estimate, since samples are stratified.
     assert!(found.relative_rms.low < noise && found.relative_rms.high > 0.5 * noise, "{noise} {found:?}");
     assert!(found.relative_bias.low < 0.0 && found.relative_bias.high > 0.0, "{found:?}");
 }
@@ -117,7 +118,8 @@ fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
     let rms = rel_mse(&picture.color, &exact, 0.0).sqrt();
     assert!(rms > 0.1 && all.relative_rms.covers(rms), "{rms} {all:?}");
 
-    // Several eye samples at places of their own are found as well, and those of another seed are not theirs.
+    // Errors at several eye samples with positions of their own are found as well, and differ from those of
+    // another seed.
     let four = lightcuts::Settings { spp: 4, seed: 3, ..Default::default() };
     let picture = lightcuts::render(&world, &world.view, &four, &Control::new());
     let at =
@@ -148,7 +150,7 @@ fn crops_threads_and_seeds() {
     assert_eq!(verify(&world, &view, &image, &settings, &control), None);
 }
 
-/// Independent references through the places that `look` says.
+/// Renders independent references through the positions of `look`.
 fn references(world: &WorldAndView, look: Look, spp: u32) -> Vec<Image> {
     const MEANS: u32 = 16;
     let [width, height] = world.view.window.film;
@@ -168,9 +170,10 @@ fn references(world: &WorldAndView, look: Look, spp: u32) -> Vec<Image> {
     (0..MEANS).map(reference).collect()
 }
 
-/// Bias, and mean and 95th percentile of the relative square error, each with its standard error, of an image by
-/// independent references. The jackknife takes out what their noise adds, but for the percentile, which it is not made for: the
-/// line from half of the references through all leads to none of their noise, and is taken to be off by as much as that.
+/// Bias, and mean and 95th percentile of the relative square error, each with its standard error, of an image
+/// by independent references. The jackknife removes the bias due to their noise, except for the percentile,
+/// which it is not made for: that is extrapolated linearly from half of the references through all to zero
+/// noise, and its error is taken to be the length of the step.
 fn known(image: &Image, references: &[Image]) -> [(f64, f64); 3] {
     let by = |wanted: &dyn Fn(usize) -> bool| {
         let mut reference = image.clone();
@@ -194,13 +197,13 @@ fn known(image: &Image, references: &[Image]) -> [(f64, f64); 3] {
         let squares: f64 = pseudo.iter().map(|p| (p - mean) * (p - mean)).sum();
         (mean, (squares / (n * (n - 1.0))).sqrt())
     };
-    // Eight ways to part them.
+    // Eight partitions into halves.
     let halves: f64 = (0..8).map(|k| by(&|r| (r + k) % 16 < 8)[2] + by(&|r| (r + k) % 16 >= 8)[2]).sum();
     let noise = (halves / 16.0 - all[2]).max(0.0);
     [jackknife(0), jackknife(1), (all[2] - noise, noise / 1.96)]
 }
 
-/// Whether the difference of an estimate from what is known to a standard error is within what both allow.
+/// True if an estimate and a truth with its standard error agree within both their tolerances.
 fn agree(e: Estimate, (truth, standard_error): (f64, f64)) -> bool {
     let end = if truth > e.value { e.high } else { e.low };
     (truth - e.value).abs() <= (end - e.value).hypot(1.96 * standard_error)
@@ -211,8 +214,8 @@ fn load(name: &str) -> WorldAndView {
     world(load_scene(&path, Some([64, 64])))
 }
 
-/// Ten pairs of scene and settings, each verified with four seeds. Prints the table: the truth's interval by a whole
-/// reference, which is itself noisy, and the estimate with its own.
+/// Ten pairs of scene and settings, each verified with four seeds. Prints the table: the truth's interval by
+/// a whole reference, which is itself noisy, and the estimate with its own.
 #[test]
 #[ignore = "minutes of path tracing; run with --release --ignored --nocapture"]
 fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {

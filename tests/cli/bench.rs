@@ -1,4 +1,4 @@
-//! Benchmarks run on any scene and leave what they are asked for; their figures are no test's business.
+//! Benchmarks run on any scene and write the files asked for; no test depends on their figures.
 
 use super::Sandbox;
 

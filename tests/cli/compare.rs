@@ -1,4 +1,4 @@
-//! `compare` from the outside.
+//! The command `compare`.
 
 use super::Sandbox;
 use lightsplat::film::{Film, Image, write_exr};

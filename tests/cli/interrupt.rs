@@ -1,4 +1,4 @@
-//! Signals: the first one ends the render with what there is, SIGKILL leaves what was there.
+//! Signals: the first one ends the render with a partial picture, SIGKILL leaves the former file.
 #![cfg(unix)]
 
 use super::{Sandbox, read};
@@ -6,7 +6,7 @@ use lightsplat::film::ExrFile;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 
-/// A render that would take very long, once its first pixels are done.
+/// Starts a render that would take very long; returns once its first pixels are done.
 fn begun(sandbox: &Sandbox) -> Child {
     let mut child = sandbox
         .command(&Sandbox::path_tracing("100000000", &["--progress", "ndjson"]))
@@ -19,7 +19,7 @@ fn begun(sandbox: &Sandbox) -> Child {
         event["event"] == "progress" && event["done"].as_u64() > Some(0)
     });
     assert!(begun);
-    // Someone has to go on reading, or the child would meet a closed pipe.
+    // The pipe must be read on, or the child would find it closed.
     std::thread::spawn(move || lines.for_each(drop));
     child
 }

@@ -1,4 +1,4 @@
-//! The command as a user or a script meets it: exit codes, files, streams, signals.
+//! The command as users and scripts call it: exit codes, files, streams, signals.
 
 mod bench;
 mod compare;
@@ -77,7 +77,7 @@ impl From<Output> for Finished {
 }
 
 impl Finished {
-    /// Asserts the exit code, and shows what was said if it is another.
+    /// Asserts the exit code, and shows the output if it is another.
     #[track_caller]
     fn expect(self, code: i32) -> Finished {
         assert_eq!(self.code, Some(code), "stdout: {}\nstderr: {}", self.stdout, self.stderr);

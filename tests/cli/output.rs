@@ -1,4 +1,4 @@
-//! What a render leaves behind, and what it does not.
+//! Files that a render leaves behind.
 
 use super::{Finished, Sandbox, read};
 use lightsplat::film::{ExrFile, Value, read_exr};
@@ -105,7 +105,7 @@ fn ndjson_progress_is_one_object_a_line() {
 fn unwritable_outputs_end_with_4_before_rendering() {
     let sandbox = Sandbox::new();
     std::fs::create_dir(sandbox.path("folder.exr")).unwrap();
-    // A render that would take hours: it must not have begun.
+    // A render that would take hours: the error must come before it begins.
     let long = ["render", "room.xml", "--method", "path", "--spp", "4000000000", "-o"];
     for output in ["none/a.exr", "folder.exr", "room.xml/a.exr"] {
         let stderr = sandbox.run(&[&long[..], &[output]].concat()).expect(4).stderr;

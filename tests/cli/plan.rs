@@ -1,9 +1,10 @@
-//! `render --time` and `--error`: what was asked, planned and got; and pictures that can be repeated.
+//! `render --time` and `--error`: the goal, the plan and the result as reported; and pictures that can be
+//! repeated.
 
 use super::{Sandbox, read};
 use lightsplat::film::ExrFile;
 
-/// `--resolution` and the like, without the settings that plans choose.
+/// Renders with `--resolution` and the like, without the settings that plans choose.
 fn render(sandbox: &Sandbox, name: &str, more: &[&str]) -> super::Finished {
     sandbox.run(&[&["render", "room.xml", "-o", name, "--resolution", "24x16", "--no-png"], more].concat())
 }

@@ -1,4 +1,4 @@
-//! Studies render what they lack, keep it, and write the same results in three formats.
+//! Studies render missing pictures, store them, and write the same results in three formats.
 
 use super::Sandbox;
 use serde_json::Value;
@@ -7,7 +7,7 @@ use std::path::Path;
 
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
 
-/// Lines of talk that say that a picture was rendered.
+/// Returns the messages that say that a picture was rendered.
 fn rendered(stderr: &str) -> Vec<&str> {
     stderr.lines().filter(|line| line.ends_with(" s")).collect()
 }
@@ -42,7 +42,7 @@ fn the_table_covers_all_methods_and_renders_nothing_twice() {
             let flip = row["against_lightcuts"]["flip"].as_f64();
             assert!(flip.is_none_or(|flip| flip < 0.1) && flip.is_none() == (label == "lightcuts"), "{row}");
         }
-        // With two references.
+        // Includes the two references.
         pictures += rows.len() + 2;
     }
     assert_eq!(rendered(&first.stderr).len(), pictures, "{}", first.stderr);
@@ -54,7 +54,7 @@ fn the_table_covers_all_methods_and_renders_nothing_twice() {
     assert_eq!(rendered(&again.stderr), [""; 0]);
     assert_eq!(again.stdout, first.stdout);
 
-    // What is lost is rendered again, and references grow by what they lack.
+    // Lost pictures are rendered again, and references grow by the missing rounds.
     let folder = sandbox.path("study/pictures");
     let lost = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let lost = lost.filter(|path| path.to_str().unwrap().contains("knot--photon-cache"));

@@ -19,7 +19,7 @@ pub fn camera(origin: Vec3, target: Vec3, tan_half_x: f32) -> Camera {
     Camera { origin, forward, right, up: right.cross(forward), tan_half_x, near: 0.0, far: f32::INFINITY }
 }
 
-/// A scene in the making and the view of it.
+/// A scene being built, and its view.
 #[derive(Clone)]
 pub struct SceneAndView {
     pub scene: Scene,
@@ -40,7 +40,7 @@ impl DerefMut for SceneAndView {
     }
 }
 
-/// A world and the view of it.
+/// A world and its view.
 pub struct WorldAndView {
     pub world: World,
     pub view: View,
@@ -59,12 +59,12 @@ pub fn scene(camera: Camera, resolution: [u32; 2]) -> SceneAndView {
     SceneAndView { scene, view: View::whole(camera, resolution) }
 }
 
-/// A world's scene and view, to be changed.
+/// Returns a world's scene and view for changes.
 pub fn staged(WorldAndView { world, view }: WorldAndView) -> SceneAndView {
     SceneAndView { scene: world.scene, view }
 }
 
-/// The scene in a file, seen by its still camera on a film of `resolution`, or of its own.
+/// Loads a scene from a file, with the view of its still camera on a film of `resolution`, or of its own.
 pub fn load_scene(path: &Path, resolution: Option<[u32; 2]>) -> SceneAndView {
     let Loaded { scene, cameras, .. } = load(path, &LoadOptions::default()).expect("the scene loads");
     let view = View::whole(cameras.still, resolution.unwrap_or(cameras.resolution));
@@ -170,7 +170,7 @@ pub fn world(SceneAndView { scene, view }: SceneAndView) -> WorldAndView {
     WorldAndView { world: World::new(scene, 2).expect("the scene builds"), view }
 }
 
-/// The picture by the cache, which must be whole.
+/// Renders the picture by the cache; it must be complete.
 pub fn cached(world: &WorldAndView, settings: &cache::Settings) -> Output {
     let output = cache::render(world, &world.view, settings, &Control::new());
     assert!(output.complete && output.nonfinite == 0);

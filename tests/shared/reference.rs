@@ -10,7 +10,7 @@ use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::view::View;
 use lightsplat::world::World;
 
-/// The window's part of a picture of the whole film.
+/// Crops a picture of the whole film to the window.
 fn crop(image: &Image, window: &Window) -> Image {
     let mut part = Image::new(window.width, window.height);
     for y in 0..window.height {
@@ -22,8 +22,8 @@ fn crop(image: &Image, window: &Window) -> Image {
     part
 }
 
-/// Renders `size` pixels at `offset` with `spp` samples and asks for the z-test to pass and for means within
-/// 0.5 % or what the two standard errors allow, whichever is wider.
+/// Renders `size` pixels at `offset` with `spp` samples; asserts that the z-test passes and that means agree
+/// within 0.5 % or the two standard errors, whichever is wider.
 fn agrees(name: &str, offset: [u32; 2], size: [u32; 2], spp: u32) {
     let Some(directory) = shared_scenes().map(|folder| folder.join(name)) else { return };
     let loaded = load(&directory.join("scene.xml"), &LoadOptions::default()).expect("the scene loads");

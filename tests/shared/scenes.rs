@@ -1,4 +1,4 @@
-//! Every scene of the shared collection loads whole: counts as Mitsuba 3.9.1 has them, no unexplained
+//! Every scene of the shared collection loads completely: counts as in Mitsuba 3.9.1, no unexplained
 //! warnings.
 
 use super::shared_scenes;
@@ -6,7 +6,7 @@ use lightsplat::scene::formats::{Level, LoadOptions, Loaded, load};
 
 struct Expected {
     file: &'static str,
-    /// In the files, before triangles without area are dropped.
+    /// Number in the files, before triangles without area are dropped.
     triangles: usize,
     degenerate: usize,
     meshes: usize,

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// What the safe face calls; types and constants follow from the signatures.
+/// Functions that the safe interface calls; types and constants follow from the signatures.
 const FUNCTIONS: &[&str] = &[
     "rtc(New|Release|Commit)(Device|Scene|Geometry)",
     "rtcGetDevice(Property|Error|LastErrorMessage)",
@@ -19,7 +19,7 @@ const FUNCTIONS: &[&str] = &[
     "rtcIntersect(1|16)",
     "rtcOccluded(1|4|8|16)",
 ];
-/// Types that only casts mention: the views of a packet inside a filter, and the flags.
+/// Types that occur only in casts: the views of a packet inside a filter, and the flags.
 const TYPES: &[&str] =
     &["RTCRayQueryFlags", "RTCSceneFlags", "RTCHit", "RTCHit16", "RTCFilterFunctionNArguments"];
 

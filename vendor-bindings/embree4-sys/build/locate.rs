@@ -1,9 +1,9 @@
-//! Where Embree 4 is, in this order: `EMBREE_DIR`, pkg-config, the system's library folders, and the
+//! Search for Embree 4, in this order: `EMBREE_DIR`, pkg-config, the system's library folders, and the
 //! redistributable that `make setup` unpacks into `.embree/`.
 //!
-//! The library's file does not tell its version (Debian's is `libembree4.so.4`), so what counts is the
-//! check at run time, when the device is made. Of the system's libraries those are passed over whose
-//! headers say that they are too old, so that `make setup` helps there too.
+//! The library's file does not tell its version (Debian's is `libembree4.so.4`), so the check at run time,
+//! when the device is created, is authoritative. Libraries of the system whose headers say that they are too
+//! old are skipped, so that `make setup` helps there too.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -11,15 +11,15 @@ use std::process::Command;
 
 /// A shared library of Embree 4.
 pub struct Library {
-    /// Absolute path of the folder it lies in.
+    /// Absolute path of its folder.
     pub directory: PathBuf,
     /// Its file name there.
     pub file_name: String,
-    /// Whether the dynamic loader searches that folder without being told.
+    /// True if the dynamic loader searches that folder by default.
     pub loader_knows: bool,
 }
 
-/// Finds Embree, or says in one line what to do.
+/// Finds Embree, or returns the remedy in one line.
 pub fn embree() -> Result<Library, String> {
     for name in ["EMBREE_DIR", "PKG_CONFIG_PATH", "LIBRARY_PATH"] {
         println!("cargo::rerun-if-env-changed={name}");
@@ -40,13 +40,13 @@ pub fn embree() -> Result<Library, String> {
     })
 }
 
-/// The library in `dir` or in the usual folders below it.
+/// Finds the library in `dir` or in the usual folders below it.
 fn below(dir: &Path) -> Option<Library> {
     let multiarch = format!("lib/{}", multiarch());
     ["", "lib", "lib64", &multiarch].iter().find_map(|sub| library_in(&dir.join(sub)))
 }
 
-/// The library in exactly this folder: the development link if there, else the versioned file.
+/// Finds the library in exactly this folder: the development link if there, else the versioned file.
 fn library_in(directory: &Path) -> Option<Library> {
     let directory = directory.canonicalize().ok()?;
     let mut names: Vec<String> = std::fs::read_dir(&directory)
@@ -56,7 +56,7 @@ fn library_in(directory: &Path) -> Option<Library> {
         .collect();
     names.sort_unstable(); // so that the plain `libembree4.so` precedes `libembree4.so.4`
     let file_name = names.into_iter().next()?;
-    // A file that comes or goes changes the answer.
+    // A file added or removed changes the result.
     println!("cargo::rerun-if-changed={}", directory.join(&file_name).display());
     Some(Library { directory, file_name, loader_knows: false })
 }
@@ -83,7 +83,7 @@ fn from_system() -> Option<Library> {
         .find_map(|dir| mark_system(library_in(&dir)?))
 }
 
-/// Whether the headers installed with the libraries of `dir` are of 4.0 to 4.2.
+/// True if the headers installed with the libraries of `dir` are of 4.0 to 4.2.
 fn headers_are_too_old(dir: &Path) -> bool {
     dir.ancestors()
         .filter_map(|prefix| std::fs::read_to_string(prefix.join("include/embree4/rtcore_config.h")).ok())
@@ -108,7 +108,7 @@ fn mark_system(mut library: Library) -> Option<Library> {
     Some(library)
 }
 
-/// Folders that the linker searches and the loader knows.
+/// Returns the folders that both linker and loader search by default.
 fn system_folders() -> impl Iterator<Item = PathBuf> {
     let multiarch = multiarch();
     [format!("/usr/lib/{multiarch}"), format!("/usr/local/lib/{multiarch}")]
@@ -117,7 +117,7 @@ fn system_folders() -> impl Iterator<Item = PathBuf> {
         .map(PathBuf::from)
 }
 
-/// Debian's name for the target, as in `/usr/lib/x86_64-linux-gnu`.
+/// Returns Debian's name for the target, as in `/usr/lib/x86_64-linux-gnu`.
 fn multiarch() -> String {
     format!("{}-linux-gnu", env::var("CARGO_CFG_TARGET_ARCH").unwrap_or_else(|_| "x86_64".into()))
 }

@@ -1,7 +1,7 @@
 //! Finds Embree 4, links it and passes its folder on as `DEP_EMBREE4_LIBDIR`.
 //!
-//! With feature `generate` the bindings are first written anew. Only Linux is supported: the product
-//! is built and tested nowhere else.
+//! With feature `generate` the bindings are first written anew. Only Linux is supported: the product is built
+//! and tested nowhere else.
 
 #[cfg(feature = "generate")]
 mod generate;
@@ -23,9 +23,9 @@ fn main() {
     }
 }
 
-/// Emits what cargo, this package's tests and the packages above need to link and to load `library`.
+/// Emits the cargo directives by which this package's tests and the packages above link and load `library`.
 fn link(library: &Library) -> Result<(), String> {
-    // Verbatim, for the redistributable's file name carries a hash: lib<name>.so would not find it.
+    // Verbatim, for the redistributable's file name contains a hash: lib<name>.so would not find it.
     println!("cargo::rustc-link-lib=dylib:+verbatim={}", library.file_name);
     println!("cargo::rustc-link-search=native={}", library.directory.display());
     if library.loader_knows {
@@ -43,7 +43,7 @@ fn link(library: &Library) -> Result<(), String> {
     Ok(())
 }
 
-/// Symbolic links in `to` to each shared object of `from`: Embree's own and the TBB it loads.
+/// Creates symbolic links in `to` to each shared object of `from`: Embree's own and the TBB it loads.
 fn link_shared_objects(from: &Path, to: &Path) -> std::io::Result<()> {
     for entry in std::fs::read_dir(from)? {
         let path = entry?.path();

@@ -1,4 +1,4 @@
-//! What the hand-written callers rely on, stated apart from bindgen's own assertions: those follow
+//! Layouts that the hand-written callers rely on, checked apart from bindgen's own assertions: those follow
 //! the headers wherever they go, these must not.
 
 use crate::*;
