@@ -18,6 +18,13 @@
 
 #![deny(unsafe_code)]
 
+// So that unit tests may use the scenes that the tests of behaviour are made of.
+#[cfg(test)]
+extern crate self as lightsplat;
+#[cfg(test)]
+#[path = "../tests/common/mod.rs"]
+mod test_scenes;
+
 pub mod bench;
 pub mod cli;
 pub mod compensation;

@@ -1,23 +1,18 @@
-//! Lightcuts and light pass against closed forms, the full sum, and the path tracer.
+//! Pictures by lightcuts against closed forms and the path tracer.
 
 mod common;
 
 use common::*;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::film::Window;
-use lightsplat::light_tree::{Family, LightTrees};
-use lightsplat::lightcut::{
-    CutSettings, Lightcut, PacketLightcut, Receiver, ReceiverPacket, Transfer, gather_all,
-};
-use lightsplat::math::{Frame, Rgb, luminance};
+use lightsplat::math::Rgb;
 use lightsplat::method::lightcuts::{Settings, render};
 use lightsplat::method::{Output, path};
 use lightsplat::progress::Control;
 use lightsplat::scene::{DeltaLight, Environment, Lobe, Material, Scene};
 use lightsplat::view::View;
-use lightsplat::vpl::{LightPassSettings, Origin, light_pass};
-use std::f32::consts::PI;
+use lightsplat::vpl::LightPassSettings;
 
 fn mean(image: &Image) -> Rgb {
     image.pixels.iter().copied().sum::<Rgb>() / image.pixels.len() as f32
@@ -30,74 +25,6 @@ fn lightcuts(world: &WorldAndView, settings: &Settings) -> Output {
 fn reference(world: &WorldAndView, spp: u32) -> Output {
     let settings = path::Settings { spp, ..path::Settings::default() };
     path::render(world, &world.view, &settings, &Control::new())
-}
-
-/// Grey room lit by a square under its ceiling, with a ball in it.
-fn lit_room(ball: Option<Material>) -> WorldAndView {
-    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [32, 32]);
-    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.6)));
-    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
-    let corner = Vec3::new(-0.3, 0.99, -0.3);
-    let lamp = quad(corner, Vec3::X * 0.6, Vec3::Z * 0.6, wall);
-    scene.meshes.push(emitting(lamp, Rgb::new(10.0, 9.0, 8.0)));
-    if let Some(material) = ball {
-        let material = add_material(&mut scene, material);
-        scene.meshes.push(sphere(Vec3::new(0.2, -0.6, -0.2), 0.4, 32, material));
-    }
-    world(scene)
-}
-
-#[test]
-fn vpls_of_a_furnace_give_the_irradiance_of_the_geometric_series() {
-    let albedo = Rgb::new(0.5, 0.8, 0.2);
-    let emitted = Rgb::new(1.0, 0.5, 2.0);
-    let mut scene = scene(camera(Vec3::ZERO, Vec3::Z, 1.0), [1, 1]);
-    let wall = add_material(&mut scene, diffuse(albedo));
-    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall).into_iter().map(|m| emitting(m, emitted)));
-    let world = world(scene);
-    let settings = LightPassSettings { direct: 6000, indirect: 40_000, seed: 3 };
-    let lights = light_pass(&world, &settings, u32::MAX, &Control::new());
-    let trees = LightTrees::build(&lights.sets, lights.spots, world.diagonal, Family::Divisive);
-    let transfer = Transfer::new(&trees, world.diagonal);
-    let expected = PI * emitted / (Rgb::ONE - albedo);
-    for normal in [Vec3::Y, -Vec3::X, Vec3::new(1.0, 1.0, 1.0).normalize()] {
-        let receiver =
-            Receiver::irradiance(Vec3::new(0.1, -0.2, 0.15), Vec3::ZERO, &Frame::from_normal(normal));
-        let all = gather_all(&transfer, &*world, &receiver);
-        let error = (all / expected - Rgb::ONE).abs().max_element();
-        assert!(error < 0.02, "all VPLs: {all} against {expected}");
-        let cut = CutSettings { clamp: None, ..CutSettings::default() };
-        let approximate = Lightcut::new().gather(&transfer, &*world, &receiver, &cut).radiance;
-        let error = (luminance(approximate) / luminance(expected) - 1.0).abs();
-        assert!(error < 0.06, "cut: {approximate} against {expected}");
-    }
-}
-
-#[test]
-fn indirect_flux_is_what_the_surfaces_reflect() {
-    // In a closed room each watt emitted is reflected ρ + ρ² + ... = ρ/(1-ρ) times.
-    let world = lit_room(None);
-    let settings = LightPassSettings { indirect: 50_000, ..LightPassSettings::default() };
-    let lights = light_pass(&world, &settings, u32::MAX, &Control::new());
-    let of = |origin| {
-        let sets = lights.sets.iter().filter(|s| s.origin == origin);
-        sets.flat_map(|s| &s.intensities).copied().sum::<Rgb>() * PI
-    };
-    let emitted = Rgb::new(10.0, 9.0, 8.0) * (PI * 0.36);
-    let direct = of(Origin::Direct);
-    assert!((direct / emitted - Rgb::ONE).abs().max_element() < 1e-3, "{direct} {emitted}");
-    let albedo = Rgb::new(0.7, 0.5, 0.6);
-    let expected = emitted * albedo / (Rgb::ONE - albedo);
-    let indirect = of(Origin::Indirect);
-    assert!((indirect / expected - Rgb::ONE).abs().max_element() < 0.02, "{indirect} {expected}");
-}
-
-#[test]
-fn a_direct_only_depth_makes_no_indirect_vpls() {
-    let world = lit_room(None);
-    let lights = light_pass(&world, &LightPassSettings::default(), 2, &Control::new());
-    assert!(lights.sets.iter().all(|s| s.origin == Origin::Direct || s.is_empty()));
-    assert_eq!(lights.photons.rays, 0);
 }
 
 /// A floor seen from above under one light.
@@ -158,7 +85,7 @@ fn pictures_agree_with_path_tracing() {
     };
     for ball in [None, Some(diffuse(Rgb::splat(0.5))), Some(glossy)] {
         let name = format!("{ball:?}");
-        let world = lit_room(ball);
+        let world = room_with_ball(ball);
         let light = LightPassSettings { direct: 2048, indirect: 60_000, seed: 0 };
         let output = lightcuts(&world, &Settings { spp: 4, light, ..Settings::default() });
         assert_eq!(output.nonfinite, 0);
@@ -183,100 +110,11 @@ fn the_eye_sees_through_mirrors() {
 }
 
 #[test]
-fn cuts_in_a_scene_with_shadows_are_within_their_error() {
-    let world = lit_room(Some(diffuse(Rgb::splat(0.5))));
-    let settings = LightPassSettings { direct: 1024, indirect: 19_000, seed: 1 };
-    let lights = light_pass(&world, &settings, u32::MAX, &Control::new());
-    for family in [Family::Divisive, Family::Agglomerative] {
-        let trees = LightTrees::build(&lights.sets, lights.spots.clone(), world.diagonal, family);
-        let transfer = Transfer::new(&trees, world.diagonal);
-        let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
-        let mut cut = Lightcut::new();
-        let (mut squares, mut n) = (0.0, 0);
-        for y in (1..32).step_by(2) {
-            for x in (1..32).step_by(2) {
-                let ray = world.view.primary_ray([x, y], Vec2::splat(0.5));
-                let Some(s) = world.intersect(&ray) else { panic!("the room is closed") };
-                let out = -ray.direction;
-                let receiver = Receiver::new(s.position, s.normal, &s.frame, world.bsdf(&s), out);
-                let exact = luminance(gather_all(&transfer, &*world, &receiver));
-                if exact > 0.0 {
-                    let estimate = luminance(cut.gather(&transfer, &*world, &receiver, &settings).radiance);
-                    squares += (estimate / exact - 1.0).powi(2);
-                    n += 1;
-                }
-            }
-        }
-        let rms = (squares / n as f32).sqrt();
-        assert!(n > 200 && rms <= 0.035, "{family:?}: relative RMS error {rms} over {n} points");
-    }
-}
-
-/// Relative errors, against the full sum over the same 20,000 VPLs, of single and shared cuts for blocks of
-/// eye samples all over the film.
-///
-/// All points of a picture share the representatives, and with them much of their error. So eight light
-/// passes, each with representatives of its own, use two points each in sixteen blocks: one pass alone varies
-/// by a tenth or more.
-fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
-    let path = path.with_extension("toml");
-    let world = common::world(load_scene(&path, Some([256, 256])));
-    let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
-    let (mut single, mut shared) = (Lightcut::new(), PacketLightcut::new());
-    let mut points = ReceiverPacket::new();
-    let (mut single_errors, mut shared_errors) = (Vec::new(), Vec::new());
-    for seed in 0..8 {
-        let light = LightPassSettings { direct: 1000, indirect: 19_000, seed };
-        let lights = light_pass(&world, &light, u32::MAX, &Control::new());
-        let trees = LightTrees::build(&lights.sets, lights.spots, world.diagonal, family);
-        let transfer = Transfer::new(&trees, world.diagonal);
-        let shift = [seed % 4 * 16, seed / 4 * 32];
-        for block in 0..16 {
-            let corner = [block % 4 * 64 + shift[0] + 6, block / 4 * 64 + shift[1] + 14];
-            let eye = (0..16u32).filter_map(|i| {
-                let pixel = [corner[0] + i % 4, corner[1] + i / 4];
-                let ray = world.view.primary_ray(pixel, Vec2::splat(0.5));
-                let s = world.intersect(&ray)?;
-                let bsdf = world.bsdf(&s);
-                let smooth = bsdf.has_smooth();
-                smooth.then(|| Receiver::new(s.position, s.normal, &s.frame, bsdf, -ray.direction))
-            });
-            points.set(eye);
-            let radiance = shared.gather(&transfer, &*world, &points, &settings).sum.radiance;
-            for (lane, radiance) in radiance.iter().enumerate().take(points.len()).step_by(9) {
-                let exact = luminance(gather_all(&transfer, &*world, points.get(lane)));
-                if exact > 0.0 {
-                    let alone = single.gather(&transfer, &*world, points.get(lane), &settings).radiance;
-                    single_errors.push(luminance(alone) / exact - 1.0);
-                    shared_errors.push(luminance(*radiance) / exact - 1.0);
-                }
-            }
-        }
-    }
-    (single_errors, shared_errors)
-}
-
-#[test]
-fn cuts_of_real_scenes_are_within_their_error() {
-    let rms = |e: &[f32]| (e.iter().map(|e| e * e).sum::<f32>() / e.len() as f32).sqrt();
-    for scene in ["apartment", "cornell", "furnace", "hall", "kitchen", "knot", "nave"] {
-        for family in [Family::Divisive, Family::Agglomerative] {
-            let (single, shared) = errors_in(scene, family);
-            assert!(single.len() > 100, "{scene}: {} points", single.len());
-            println!("{scene} {family:?}: {} {}", rms(&single), rms(&shared));
-            assert!(rms(&single) <= 0.035, "{scene} {family:?}: single {}", rms(&single));
-            assert!(rms(&shared) <= 0.035, "{scene} {family:?}: shared {}", rms(&shared));
-        }
-    }
-}
-
-#[test]
 fn a_room_of_any_size_looks_the_same() {
     let light = LightPassSettings { direct: 512, indirect: 20_000, seed: 0 };
     let settings = Settings { light, ..Settings::default() };
     let at_scale = |s: f32| {
-        let mut scene = staged(lit_room(Some(diffuse(Rgb::splat(0.5)))));
+        let mut scene = staged(room_with_ball(Some(diffuse(Rgb::splat(0.5)))));
         scene.meshes.iter_mut().flat_map(|m| &mut m.positions).for_each(|p| *p *= s);
         scene.view.camera.origin *= s;
         lightcuts(&common::world(scene), &settings).color
@@ -292,7 +130,7 @@ fn a_room_of_any_size_looks_the_same() {
 
 #[test]
 fn the_picture_is_the_same_for_any_number_of_threads() {
-    let world = lit_room(Some(mirror()));
+    let world = room_with_ball(Some(mirror()));
     let light = LightPassSettings { direct: 512, indirect: 30_000, seed: 0 };
     let settings = Settings { light, ..Settings::default() };
     let with = |threads| {
@@ -309,7 +147,7 @@ fn the_picture_is_the_same_for_any_number_of_threads() {
 
 #[test]
 fn a_crop_repeats_the_whole_pictures_pixels() {
-    let world = lit_room(None);
+    let world = room_with_ball(None);
     let light = LightPassSettings { direct: 512, indirect: 5000, seed: 0 };
     let settings = Settings { light, ..Settings::default() };
     let whole = lightcuts(&world, &settings).color;
@@ -339,7 +177,7 @@ fn nothing_to_see_and_nothing_that_shines_is_black() {
 
 #[test]
 fn a_cancelled_picture_says_so() {
-    let world = lit_room(None);
+    let world = room_with_ball(None);
     let control = Control::new();
     control.cancel();
     let output = render(&world, &world.view, &Settings::default(), &control);
@@ -357,7 +195,7 @@ fn polished_metal_is_followed_from_the_eye() {
     };
     let ball = |alpha| Material { lobe: facets(alpha), ..diffuse(Rgb::ZERO) };
     for alpha in [0.06, 0.1] {
-        let mut scene = staged(lit_room(Some(ball(alpha))));
+        let mut scene = staged(room_with_ball(Some(ball(alpha))));
         scene.lights.push(DeltaLight::Point { position: Vec3::new(0.5, 0.5, 0.7), intensity: Rgb::ONE });
         let world = world(scene);
         let expected = mean(&reference(&world, 256).color);

@@ -20,6 +20,8 @@ mod refinement;
 mod settings;
 mod shadow_rays;
 pub mod single;
+#[cfg(test)]
+mod tests;
 mod transfer;
 mod visibility;
 

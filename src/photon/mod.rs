@@ -24,6 +24,8 @@ pub mod own;
 pub mod radiance;
 pub mod records;
 pub mod strata;
+#[cfg(test)]
+mod tests;
 pub mod wide_kd_tree;
 
 pub use irradiance::IrradianceMap;

@@ -27,6 +27,8 @@ pub mod record;
 pub mod series;
 pub mod settings;
 pub mod sight;
+#[cfg(test)]
+mod tests;
 pub mod wave;
 
 pub use settings::{CacheSettings, Footprints, FoundBy, LayerSettings};

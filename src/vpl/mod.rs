@@ -14,6 +14,8 @@ mod octahedral;
 mod pass;
 mod photons;
 mod settings;
+#[cfg(test)]
+mod tests;
 
 use crate::light::spot_falloff;
 use crate::math::{Rgb, luminance};
@@ -181,42 +183,5 @@ impl VplSet {
     /// True if there are none.
     pub fn is_empty(&self) -> bool {
         self.vpls.is_empty()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_vpl_fills_a_quarter_of_a_cache_line() {
-        assert_eq!((size_of::<Vpl>(), align_of::<Vpl>()), (16, 16));
-    }
-
-    #[test]
-    fn spot_falloff_is_linear_in_angle_between_its_cones() {
-        let spot = SpotProfile { direction: Vec3::Z, inner_angle: 0.2, outer_angle: 0.6 };
-        let at = |angle: f32| spot.falloff(Vec3::new(angle.sin(), 0.0, angle.cos()));
-        assert_eq!((at(0.1), at(0.7)), (1.0, 0.0));
-        assert!((at(0.4) - 0.5).abs() < 1e-5 && (at(0.5) - 0.25).abs() < 1e-5);
-    }
-
-    #[test]
-    fn a_spot_with_equal_cones_is_a_step() {
-        let spot = SpotProfile { direction: Vec3::Z, inner_angle: 0.5, outer_angle: 0.5 };
-        assert_eq!(spot.falloff(Vec3::new(0.6f32.sin(), 0.0, 0.6f32.cos())), 0.0);
-        assert_eq!(spot.falloff(Vec3::Z), 1.0);
-    }
-
-    #[test]
-    fn black_negative_and_non_finite_vpls_are_left_out() {
-        let mut set = VplSet::new(VplKind::Omni, Origin::Direct);
-        set.push(Vpl::omni(Vec3::ZERO), Rgb::ZERO);
-        set.push(Vpl::omni(Vec3::ZERO), Rgb::new(f32::NAN, 1.0, 1.0));
-        set.push(Vpl::omni(Vec3::INFINITY), Rgb::ONE);
-        set.push(Vpl::omni(Vec3::ZERO), Rgb::new(1.0, -1.0, 1.0));
-        assert!(set.is_empty());
-        set.push(Vpl::omni(Vec3::ZERO), Rgb::ONE);
-        assert_eq!(set.len(), 1);
     }
 }

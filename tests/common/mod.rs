@@ -135,6 +135,21 @@ pub fn lit_room(camera: Camera, size: u32) -> (SceneAndView, MaterialId) {
     (scene, wall)
 }
 
+/// Grey room lit by a square under its ceiling, with a ball in it.
+pub fn room_with_ball(ball: Option<Material>) -> WorldAndView {
+    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [32, 32]);
+    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.6)));
+    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    let corner = Vec3::new(-0.3, 0.99, -0.3);
+    let lamp = quad(corner, Vec3::X * 0.6, Vec3::Z * 0.6, wall);
+    scene.meshes.push(emitting(lamp, Rgb::new(10.0, 9.0, 8.0)));
+    if let Some(material) = ball {
+        let material = add_material(&mut scene, material);
+        scene.meshes.push(sphere(Vec3::new(0.2, -0.6, -0.2), 0.4, 32, material));
+    }
+    world(scene)
+}
+
 pub fn emitting(mut mesh: Mesh, radiance: Rgb) -> Mesh {
     mesh.emission = Some(Emission { radiance, texture: None, two_sided: false });
     mesh

@@ -1,6 +1,8 @@
 //! Packets of sixteen segments equal the single segments; the engine agrees with Embree, and single rays with
 //! the cache with those without.
 
+mod self_shadowing;
+
 use super::*;
 use crate::embree::{Occluders16, Ray, Rays16, Width};
 use crate::math::Rgb;

@@ -1,9 +1,9 @@
 //! Shadow rays between points of one convex solid: any occlusion outside is self-shadowing, and any free
 //! segment inside is a leak. Both at every scale, and far from the origin.
 
+use crate::embree::{Accel, Device, Hit, Ray, Rays16, TriangleMesh};
+use crate::shadow;
 use glam::Vec3;
-use lightsplat::embree::{Accel, Device, Hit, Ray, Rays16, TriangleMesh};
-use lightsplat::shadow;
 use proptest::prelude::*;
 
 /// A convex solid and its position.

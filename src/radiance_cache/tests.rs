@@ -1,21 +1,19 @@
 //! Gradients that include occluders' edges against irradiance summed over all virtual lights, around a ball
 //! and a table.
 
-mod common;
-
-use common::*;
+use super::compute::{RecordSource, Source};
+use super::layer::Layer;
+use super::record::Record;
+use super::wave::Pick;
+use super::{CacheSettings, Footprints};
+use crate::eye::{EyePass, EyeSettings};
+use crate::light_tree::{Family, LightTrees};
+use crate::lightcut::{CutSettings, Receiver, Transfer, gather_all};
+use crate::math::{Frame, luminance};
+use crate::progress::Control;
+use crate::test_scenes::*;
+use crate::vpl::{LightPassSettings, Origin, light_pass};
 use glam::Vec3;
-use lightsplat::eye::{EyePass, EyeSettings};
-use lightsplat::light_tree::{Family, LightTrees};
-use lightsplat::lightcut::{CutSettings, Receiver, Transfer, gather_all};
-use lightsplat::math::{Frame, luminance};
-use lightsplat::progress::Control;
-use lightsplat::radiance_cache::compute::{RecordSource, Source};
-use lightsplat::radiance_cache::layer::Layer;
-use lightsplat::radiance_cache::record::Record;
-use lightsplat::radiance_cache::wave::Pick;
-use lightsplat::radiance_cache::{CacheSettings, Footprints};
-use lightsplat::vpl::{LightPassSettings, Origin, light_pass};
 
 /// Distance of extrapolation; the room is 2 wide.
 const STEP: f32 = 0.06;

@@ -1,22 +1,20 @@
 //! The photon map against known solutions: density of photons, leaks, and gathering against plain sampling.
 
-mod common;
-
-use common::*;
+use super::density::{IrradianceEstimate, estimates};
+use super::hemisphere::{GatherPoint, gather};
+use super::indirect_light::{GatherCounts, IndirectLight};
+use super::strata::{Met, Strata};
+use super::{IrradianceMap, PhotonMap};
+use crate::embree::Rays16;
+use crate::eye::{PointGeometry, Sharing};
+use crate::math::{Frame, LANES, Rgb};
+use crate::progress::Control;
+use crate::sampling::{cosine_hemisphere, owen_sobol_2d};
+use crate::scene::DeltaLight;
+use crate::shadow;
+use crate::test_scenes::*;
+use crate::vpl::PhotonSettings;
 use glam::{Vec2, Vec3};
-use lightsplat::embree::Rays16;
-use lightsplat::eye::{PointGeometry, Sharing};
-use lightsplat::math::{Frame, LANES, Rgb};
-use lightsplat::photon::density::{IrradianceEstimate, estimates};
-use lightsplat::photon::hemisphere::{GatherPoint, gather};
-use lightsplat::photon::indirect_light::{GatherCounts, IndirectLight};
-use lightsplat::photon::strata::{Met, Strata};
-use lightsplat::photon::{IrradianceMap, PhotonMap};
-use lightsplat::progress::Control;
-use lightsplat::sampling::{cosine_hemisphere, owen_sobol_2d};
-use lightsplat::scene::DeltaLight;
-use lightsplat::shadow;
-use lightsplat::vpl::PhotonSettings;
 
 fn map(world: &WorldAndView, photons: u32) -> PhotonMap {
     PhotonMap::new(world, &PhotonSettings { photons, max_edges: 6, seed: 0 }, &Control::new())

@@ -1,0 +1,65 @@
+//! VPLs one by one, and those of whole scenes against closed forms.
+
+use super::*;
+use crate::progress::Control;
+use crate::test_scenes::*;
+use std::f32::consts::PI;
+
+#[test]
+fn indirect_flux_is_what_the_surfaces_reflect() {
+    // In a closed room each watt emitted is reflected ρ + ρ² + ... = ρ/(1-ρ) times.
+    let world = room_with_ball(None);
+    let settings = LightPassSettings { indirect: 50_000, ..LightPassSettings::default() };
+    let lights = light_pass(&world, &settings, u32::MAX, &Control::new());
+    let of = |origin| {
+        let sets = lights.sets.iter().filter(|s| s.origin == origin);
+        sets.flat_map(|s| &s.intensities).copied().sum::<Rgb>() * PI
+    };
+    let emitted = Rgb::new(10.0, 9.0, 8.0) * (PI * 0.36);
+    let direct = of(Origin::Direct);
+    assert!((direct / emitted - Rgb::ONE).abs().max_element() < 1e-3, "{direct} {emitted}");
+    let albedo = Rgb::new(0.7, 0.5, 0.6);
+    let expected = emitted * albedo / (Rgb::ONE - albedo);
+    let indirect = of(Origin::Indirect);
+    assert!((indirect / expected - Rgb::ONE).abs().max_element() < 0.02, "{indirect} {expected}");
+}
+
+#[test]
+fn a_direct_only_depth_makes_no_indirect_vpls() {
+    let world = room_with_ball(None);
+    let lights = light_pass(&world, &LightPassSettings::default(), 2, &Control::new());
+    assert!(lights.sets.iter().all(|s| s.origin == Origin::Direct || s.is_empty()));
+    assert_eq!(lights.photons.rays, 0);
+}
+
+#[test]
+fn a_vpl_fills_a_quarter_of_a_cache_line() {
+    assert_eq!((size_of::<Vpl>(), align_of::<Vpl>()), (16, 16));
+}
+
+#[test]
+fn spot_falloff_is_linear_in_angle_between_its_cones() {
+    let spot = SpotProfile { direction: Vec3::Z, inner_angle: 0.2, outer_angle: 0.6 };
+    let at = |angle: f32| spot.falloff(Vec3::new(angle.sin(), 0.0, angle.cos()));
+    assert_eq!((at(0.1), at(0.7)), (1.0, 0.0));
+    assert!((at(0.4) - 0.5).abs() < 1e-5 && (at(0.5) - 0.25).abs() < 1e-5);
+}
+
+#[test]
+fn a_spot_with_equal_cones_is_a_step() {
+    let spot = SpotProfile { direction: Vec3::Z, inner_angle: 0.5, outer_angle: 0.5 };
+    assert_eq!(spot.falloff(Vec3::new(0.6f32.sin(), 0.0, 0.6f32.cos())), 0.0);
+    assert_eq!(spot.falloff(Vec3::Z), 1.0);
+}
+
+#[test]
+fn black_negative_and_non_finite_vpls_are_left_out() {
+    let mut set = VplSet::new(VplKind::Omni, Origin::Direct);
+    set.push(Vpl::omni(Vec3::ZERO), Rgb::ZERO);
+    set.push(Vpl::omni(Vec3::ZERO), Rgb::new(f32::NAN, 1.0, 1.0));
+    set.push(Vpl::omni(Vec3::INFINITY), Rgb::ONE);
+    set.push(Vpl::omni(Vec3::ZERO), Rgb::new(1.0, -1.0, 1.0));
+    assert!(set.is_empty());
+    set.push(Vpl::omni(Vec3::ZERO), Rgb::ONE);
+    assert_eq!(set.len(), 1);
+}
