@@ -7,9 +7,9 @@ use common::*;
 use glam::{Vec2, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::{Footprints, FoundBy};
 use lightsplat::method::{cache, lightcuts};
 use lightsplat::progress::Control;
-use lightsplat::radiance_cache::{Footprints, FoundBy};
 use lightsplat::scene::MaterialId;
 use lightsplat::world::Surface;
 

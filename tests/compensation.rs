@@ -6,9 +6,9 @@ use common::*;
 use glam::{Vec2, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::FoundBy;
 use lightsplat::method::{Output, cache, lightcuts, path};
 use lightsplat::progress::Control;
-use lightsplat::radiance_cache::FoundBy;
 use lightsplat::stats::Counter;
 
 const SIZE: u32 = 96;

@@ -8,9 +8,9 @@ use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::LightPassSettings;
 use lightsplat::method::{Output, lightcuts, path};
 use lightsplat::progress::Control;
-use lightsplat::vpl::LightPassSettings;
 use std::path::Path;
 
 fn by_path(world: &WorldAndView, spp: u32) -> Output {

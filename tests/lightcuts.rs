@@ -7,12 +7,12 @@ use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::film::Window;
 use lightsplat::math::Rgb;
+use lightsplat::method::LightPassSettings;
 use lightsplat::method::lightcuts::{Settings, render};
 use lightsplat::method::{Output, path};
 use lightsplat::progress::Control;
 use lightsplat::scene::{DeltaLight, Environment, Lobe, Material, Scene};
 use lightsplat::view::View;
-use lightsplat::vpl::LightPassSettings;
 
 fn mean(image: &Image) -> Rgb {
     image.pixels.iter().copied().sum::<Rgb>() / image.pixels.len() as f32

@@ -5,12 +5,12 @@ mod common;
 use common::*;
 use glam::Vec3;
 use lightsplat::math::Rgb;
+use lightsplat::method::FoundBy;
+use lightsplat::method::LightPassSettings;
+use lightsplat::method::{OccluderCacheSettings, ShadowSettings};
 use lightsplat::method::{Output, cache, lightcuts};
 use lightsplat::progress::Control;
-use lightsplat::radiance_cache::FoundBy;
-use lightsplat::shadow::{OccluderCacheSettings, ShadowSettings};
 use lightsplat::stats::Counter;
-use lightsplat::vpl::LightPassSettings;
 
 const LIGHT: LightPassSettings = LightPassSettings { direct: 512, indirect: 10_000, seed: 0 };
 

@@ -2,10 +2,10 @@
 //! and the walk-through keeps clear of the furniture.
 
 use glam::Vec3;
-use lightsplat::embree::Ray;
 use lightsplat::scene::Camera;
 use lightsplat::scene::Cameras;
 use lightsplat::scene::formats::{LoadOptions, load};
+use lightsplat::world::Ray;
 use lightsplat::world::World;
 use std::path::Path;
 

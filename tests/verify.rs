@@ -4,12 +4,12 @@ mod common;
 
 use common::*;
 use glam::{DVec3, Vec3};
-use lightsplat::eye::Look;
 use lightsplat::film::Image;
 use lightsplat::film::Window;
 use lightsplat::film::metrics::{rel_mse, rel_mse_of_variance, relative_error_map};
-use lightsplat::light_tree::Family;
 use lightsplat::math::Rgb;
+use lightsplat::method::Family;
+use lightsplat::method::Look;
 use lightsplat::method::path::{Counts, Wanted, pixel_means};
 use lightsplat::method::{cache, lightcuts, path};
 use lightsplat::progress::Control;

@@ -14,8 +14,6 @@ pub enum Clock {
     Thread,
     /// Processor time of all threads together: for cost.
     Process,
-    /// Elapsed time: for work on several threads, on an otherwise idle machine.
-    Wall,
 }
 
 impl Clock {
@@ -23,7 +21,6 @@ impl Clock {
         let time = clock_gettime(match self {
             Clock::Thread => ClockId::ThreadCPUTime,
             Clock::Process => ClockId::ProcessCPUTime,
-            Clock::Wall => ClockId::Monotonic,
         });
         time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
     }
@@ -207,7 +204,7 @@ mod tests {
             Case::new(&[name], against, 1.0, move || order.borrow_mut().push(name))
         };
         let settings = Settings { repeats: 3, seconds: 0.0, threads: 1 };
-        let (rows, _) = alternate(vec![case("a", 0), case("b", 0)], Clock::Wall, &settings, 1.0);
+        let (rows, _) = alternate(vec![case("a", 0), case("b", 0)], Clock::Process, &settings, 1.0);
         assert_eq!(order.borrow().concat(), "aabbabbaab");
         assert_eq!((rows[0].ratio.median, rows[0].samples.len()), (1.0, 3));
         let median = |i: usize| rows[0].samples[i] / rows[1].samples[i];

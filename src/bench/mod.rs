@@ -18,7 +18,7 @@ mod table1;
 mod trade;
 mod trees;
 
-pub use measure::{Clock, Warning};
+pub use measure::Clock;
 pub use report::{Report, Row, Spread, Table};
 
 use crate::session::Session;

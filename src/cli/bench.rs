@@ -3,7 +3,7 @@
 use super::bench_args::{BenchArgs, StudyArgs};
 use super::exit::Failure;
 use super::{scene, study, talk};
-use crate::bench::export::{FORMATS, terminal};
+use crate::bench::export::{WRITERS, terminal};
 use crate::bench::{Benchmark, Context, Kind, REGISTRY, Settings};
 use crate::film::{ImageError, atomic};
 use anyhow::{Context as _, anyhow};
@@ -59,9 +59,9 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
         benchmark.report(&context, measure(&context))
     });
     talk::print(&terminal(&report))?;
-    for (format, path) in FORMATS.iter().zip(exports) {
+    for (format, path) in WRITERS.iter().zip(exports) {
         if let Some(path) = path {
-            write(path, &(format.write)(&report))?;
+            write(path, &format(&report))?;
         }
     }
     Ok(())

@@ -35,15 +35,6 @@ pub enum BuildQuality {
 }
 
 impl BuildQuality {
-    /// All qualities, in the order of their declaration.
-    pub const ALL: [BuildQuality; 5] = [
-        BuildQuality::Low,
-        BuildQuality::Medium,
-        BuildQuality::High,
-        BuildQuality::Compact,
-        BuildQuality::Robust,
-    ];
-
     fn to_embree(self) -> (sys::RTCBuildQuality, sys::RTCSceneFlags) {
         match self {
             BuildQuality::Low => (sys::RTC_BUILD_QUALITY_LOW, sys::RTC_SCENE_FLAG_NONE),

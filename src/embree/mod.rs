@@ -14,19 +14,6 @@
 //! * Both sides of a triangle are hit; triangles of zero area are not.
 //! * The floating-point control word (MXCSR) of the calling thread is left as it is.
 //!
-//! ```
-//! use glam::Vec3;
-//! use lightsplat::embree::{Accel, Device, Ray, TriangleMesh};
-//!
-//! let positions = [Vec3::new(-1.0, -1.0, 2.0), Vec3::new(1.0, -1.0, 2.0), Vec3::new(0.0, 1.0, 2.0)];
-//! let mesh = TriangleMesh { positions: &positions, triangles: &[[0, 1, 2]] };
-//! let accel = Accel::build(&Device::new(0)?, &[mesh])?;
-//! let hit = accel.closest_hit(&Ray::new(Vec3::ZERO, Vec3::Z)).expect("it is straight ahead");
-//! assert_eq!((hit.t, hit.geometry, hit.primitive), (2.0, 0, 0));
-//! assert!(!accel.occluded(&Ray::between(Vec3::ZERO, Vec3::new(0.0, 0.0, 1.9))));
-//! # Ok::<(), lightsplat::embree::EmbreeError>(())
-//! ```
-//!
 //! Units: `t` counts in lengths of the ray's direction, which need not be a unit vector.
 
 #![allow(unsafe_code)]

@@ -10,9 +10,9 @@ mod sharing;
 mod sharp;
 
 pub use chain::{ChainCounts, EyeSample, trace};
-pub use index::{Bounds, EyeIndex};
+pub use index::EyeIndex;
 pub use look::{Look, eye_sampler};
-pub use pass::{EyePass, TILE};
-pub use points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySample, VisibilitySamples};
+pub use pass::EyePass;
+pub use points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySamples};
 pub use rays::{EyeRays, EyeSettings, VisibleSurfaces};
 pub use sharing::Sharing;

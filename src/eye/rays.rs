@@ -44,16 +44,6 @@ pub struct VisibleSurfaces<'w> {
     pub nonfinite: u64,
 }
 
-impl VisibleSurfaces<'_> {
-    /// Forgets all surfaces, and keeps the memory.
-    pub fn clear(&mut self) {
-        self.points.geometry.clear();
-        self.points.surfaces.clear();
-        self.visibility.clear();
-        self.emitted.clear();
-    }
-}
-
 impl<'a, 'w> EyeRays<'a, 'w> {
     /// Rays of the camera of `view` into `world`.
     pub fn new(world: &'w World, view: &'a View, settings: EyeSettings) -> EyeRays<'a, 'w> {

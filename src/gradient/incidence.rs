@@ -15,16 +15,6 @@ pub struct Incidence<T> {
     pub gradient: [T; 2],
 }
 
-/// Irradiance as a vector: its scalar product with a normal is the irradiance of that surface, as long as all the
-/// light is above it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct IrradianceVector<T> {
-    /// In the record's frame; z is the irradiance of the surface itself.
-    pub value: [T; 3],
-    /// Derivatives of `value` along u and v.
-    pub gradient: [[T; 3]; 2],
-}
-
 impl<T: Real + PartialOrd> Incidence<T> {
     /// Returns `share` of the same light with zero gradient: a clamped contribution does not change with the
     /// receiver.
@@ -49,19 +39,5 @@ impl<T: Real + PartialOrd> Incidence<T> {
         let mut turning = omega.map(|c| c * along * self.inv_dist);
         turning[axis] = turning[axis] - self.inv_dist;
         turning
-    }
-
-    /// The irradiance vector; zero if the light comes from below.
-    #[inline]
-    pub fn irradiance(&self) -> IrradianceVector<T> {
-        let zero = T::of(0.0);
-        if !(self.direction[2] > zero) {
-            return IrradianceVector { value: [zero; 3], gradient: [[zero; 3]; 2] };
-        }
-        let along = |axis: usize| {
-            let turning = self.turning(axis);
-            std::array::from_fn(|i| self.gradient[axis] * self.direction[i] + self.factor * turning[i])
-        };
-        IrradianceVector { value: self.direction.map(|c| c * self.factor), gradient: [along(0), along(1)] }
     }
 }

@@ -16,7 +16,7 @@ mod incidence;
 mod source;
 mod spot;
 
-pub use incidence::{Incidence, IrradianceVector};
+pub use incidence::Incidence;
 pub use source::LocalVpl;
 
 #[cfg(test)]

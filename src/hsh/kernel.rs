@@ -18,18 +18,12 @@ pub(super) const fn even_index(l: usize, m: usize) -> usize {
 /// that azimuth, it has even functions only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Profile {
-    pub(super) bands: usize,
     /// Coefficients by channel and function; those of odd functions repeat their even partners, since turning
     /// the kernel distributes the coefficient over both.
     pub(super) coefficients: [[f32; MAX_FUNCTIONS]; CHANNELS],
 }
 
 impl Profile {
-    /// Number of bands in use; all coefficients beyond are 0.
-    pub fn bands(&self) -> usize {
-        self.bands
-    }
-
     /// Reflectance for uniform light from all directions, up to a constant factor.
     #[inline]
     pub fn strength(&self) -> Rgb {

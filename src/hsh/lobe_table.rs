@@ -89,13 +89,9 @@ impl LobeTable {
     }
 
     /// Number of outgoing directions that are tabulated.
+    #[cfg(test)]
     pub fn directions(&self) -> usize {
         self.nodes.len()
-    }
-
-    /// Bytes on the heap.
-    pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.coefficients)
     }
 
     /// Returns all coefficients at `cos_o`, interpolated.

@@ -59,8 +59,6 @@ pub struct MaterialSeries {
 
 struct MaterialEntry {
     caching: Caching,
-    /// See [`MaterialSeries::error`].
-    error: f64,
     lobe: Option<usize>,
     /// Transmittance of the coat times cosine: functions of order 0.
     base: [f32; MAX_BANDS],
@@ -122,10 +120,10 @@ impl MaterialSeries {
         self.materials.iter().any(|surface| surface.caching.bands().is_some())
     }
 
-    /// Error of the material's kernel at the number of bands chosen (8 if there are to be no records), for
-    /// its mean reflectances; 0 for irradiance.
-    pub fn error(&self, id: MaterialId) -> f64 {
-        self.materials[id.0 as usize].error
+    /// Number of tables of lobes.
+    #[cfg(test)]
+    pub(super) fn tables(&self) -> usize {
+        self.lobes.len()
     }
 
     /// Returns the kernel of a material for outgoing directions at `cos_o` > 0 to the normal, at a point
@@ -149,17 +147,7 @@ impl MaterialSeries {
             // The table may have more bands, for another material.
             row[bands * bands..].fill(0.0);
         }
-        Profile { bands, coefficients }
-    }
-
-    /// Number of outgoing directions in each lobe table.
-    pub fn directions(&self) -> Vec<usize> {
-        self.lobes.iter().map(LobeTable::directions).collect()
-    }
-
-    /// Bytes on the heap.
-    pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.materials) + self.lobes.iter().map(LobeTable::heap_bytes).sum::<usize>()
+        Profile { coefficients }
     }
 }
 
@@ -183,19 +171,18 @@ impl MaterialEntry {
     ) -> MaterialEntry {
         let zonal = quadrature.project_zonal(|z| z * f64::from(bsdf.base_transmittance(z as f32)));
         let base = zonal.coefficients.map(|c| c as f32);
-        let (caching, error) = match tests {
-            None => (Caching::Irradiance, 0.0),
+        let caching = match tests {
+            None => Caching::Irradiance,
             Some(tests) => {
                 let error = |bands: usize| mean_error(bsdf, tests, &zonal, bands);
                 // Two bands hold the irradiance.
                 let enough =
                     (2..=MAX_BANDS).find(|bands| error(*bands) <= settings.error).unwrap_or(MAX_BANDS);
-                let error = error(enough);
-                let fits = error <= settings.max_error && bsdf.alpha() >= Some(settings.min_alpha);
-                (if fits { Caching::Series(enough as u8) } else { Caching::PerSample }, error)
+                let fits = error(enough) <= settings.max_error && bsdf.alpha() >= Some(settings.min_alpha);
+                if fits { Caching::Series(enough as u8) } else { Caching::PerSample }
             }
         };
-        MaterialEntry { caching, error, lobe, base }
+        MaterialEntry { caching, lobe, base }
     }
 }
 

@@ -2,7 +2,7 @@
 //! records of glossy surfaces represent incoming radiance.
 //!
 //! An [`Accumulator`] sums the light of a record into a [`Radiance`]. [`MaterialSeries`] holds the reflection
-//! of each material of a scene: seen from one inclination it is a [`Profile`], from one direction a
+//! of each material of a scene: seen from one inclination it is a [`kernel::Profile`], from one direction a
 //! [`Kernel`], and [`Radiance::reflected`] is the radiance that the surface reflects there. Two bands hold
 //! the irradiance exactly.
 //!
@@ -13,7 +13,7 @@
 //!
 //! Paper: Gautron, Křivánek, Pattanaik and Bouatouch, *A Novel Hemispherical Basis for Accurate and Efficient
 //! Rendering*, EGSR 2004.
-//! Deviations: see [`for_each`]: no poles.
+//! Deviations: see [`basis::for_each`]: no poles.
 
 mod accumulate;
 mod basis;
@@ -24,8 +24,7 @@ mod projection;
 mod radiance;
 
 pub use accumulate::Accumulator;
-pub use basis::{MAX_BANDS, MAX_FUNCTIONS, evaluate, for_each, index};
-pub use kernel::{Kernel, Profile};
+pub use kernel::Kernel;
 pub use material_series::{Caching, MaterialSeries, SeriesSettings};
 pub use radiance::{Radiance, Reflected};
 

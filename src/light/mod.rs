@@ -9,10 +9,9 @@ mod environment;
 mod packet;
 mod select;
 
-pub use area::{AreaLight, AreaPoint, emitted, normal_and_area};
+pub use area::{AreaLight, emitted};
 pub use distribution::DiscreteDistribution;
 pub use environment::{EnvironmentLight, EnvironmentSample};
-pub use packet::DirectSamples16;
 pub use select::Receivers16;
 
 use crate::math::{F32x16, LANES, Rgb, U32x16, luminance};
@@ -66,11 +65,6 @@ impl Emitters {
         let deltas = scene.lights.clone();
         let selection = select::Selection::new(&areas, &deltas, environment.as_ref(), diagonal);
         Emitters { areas, deltas, environment, light_of_mesh, selection }
-    }
-
-    /// True if there is no emitter.
-    pub fn is_empty(&self) -> bool {
-        self.areas.is_empty() && self.deltas.is_empty() && self.environment.is_none()
     }
 
     /// True if a mesh is a light.

@@ -173,3 +173,21 @@ pub fn low_lamps(numbers: &mut Numbers) -> LightTrees {
     }
     LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive)
 }
+
+/// A scene without surfaces, in which everything is visible.
+#[derive(Clone, Copy, Debug)]
+pub struct Unoccluded;
+
+impl Visibility for Unoccluded {
+    #[inline]
+    fn visible(&self, _: Vec3, _: Vec3, _: &Vpl, _: &Node) -> bool {
+        true
+    }
+}
+
+impl PacketVisibility for Unoccluded {
+    #[inline]
+    fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &Node) -> u16 {
+        lanes
+    }
+}

@@ -5,14 +5,14 @@
 //! A [`Receiver`] says what is gathered (reflected radiance or irradiance), [`Transfer`] how much of it one VPL
 //! gives, and [`expected`] how far a cluster is likely to be off. Three workspaces gather the light of all VPLs: [`Lightcut`] at
 //! a single point ([`single`]), [`PacketLightcut`] at up to sixteen neighbours, which share a cut ([`packet`]), and
-//! [`ReconstructionCut`] at the points between such neighbours ([`reconstruction`]). [`gather_all`] is the exact sum that they
+//! [`ReconstructionCut`] at the points between such neighbours ([`reconstruction`]). `gather_all` is the exact sum that they
 //! approximate.
 
 mod clamp;
 mod coherence;
 pub mod expected;
 #[cfg(test)]
-mod fixtures;
+pub mod fixtures;
 pub mod packet;
 mod receiver;
 pub mod reconstruction;
@@ -27,11 +27,13 @@ mod visibility;
 
 pub use clamp::frozen_luminance;
 pub use coherence::{CoherenceLimit, MIN_SHARED, group_coherent};
-pub use packet::{PacketCluster, PacketCut, PacketLightcut, PacketSum, ReceiverPacket};
+pub use packet::{PacketCut, PacketLightcut, PacketSum, ReceiverPacket};
 pub use receiver::Receiver;
 pub use reconstruction::ReconstructionCut;
 pub use settings::{CutCounts, CutSettings};
 pub use shadow_rays::{to_vpl, to_vpl16};
-pub use single::{Bound, Cut, CutCluster, Lightcut, OffsetBox, gather_all, max_cos_to_cone};
+#[cfg(test)]
+pub use single::gather_all;
+pub use single::{Lightcut, OffsetBox};
 pub use transfer::Transfer;
-pub use visibility::{PacketVisibility, Unoccluded, Visibility};
+pub use visibility::{PacketVisibility, Visibility};

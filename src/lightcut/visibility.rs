@@ -1,4 +1,4 @@
-//! Visibility of virtual lights: from a single point and from a packet, in a scene and without surfaces.
+//! Visibility of virtual lights in a scene: from a single point and from a packet.
 
 use super::{ReceiverPacket, to_vpl};
 use crate::light_tree::Node;
@@ -18,24 +18,6 @@ pub trait Visibility {
 pub trait PacketVisibility {
     /// The lanes of `lanes` that see the VPL, which represents `node`.
     fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16;
-}
-
-/// A scene without surfaces, in which everything is visible.
-#[derive(Clone, Copy, Debug)]
-pub struct Unoccluded;
-
-impl Visibility for Unoccluded {
-    #[inline]
-    fn visible(&self, _: Vec3, _: Vec3, _: &Vpl, _: &Node) -> bool {
-        true
-    }
-}
-
-impl PacketVisibility for Unoccluded {
-    #[inline]
-    fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &Node) -> u16 {
-        lanes
-    }
 }
 
 impl Visibility for Engine<'_> {

@@ -23,8 +23,7 @@ pub use alike16::{AlikeBsdfs16, DirectionBounds16};
 pub use bound::DirectionBound;
 pub use bsdf::Bsdf;
 pub use model::Materials;
-pub use packet::{BsdfSamples16, Bsdfs16};
-pub use sample::{BsdfSample, DeltaLobes};
+pub use packet::Bsdfs16;
 
 #[cfg(test)]
 pub(crate) mod tests;

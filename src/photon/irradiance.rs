@@ -52,11 +52,6 @@ impl IrradianceMap {
         self.irradiance.len()
     }
 
-    /// True if there are none.
-    pub fn is_empty(&self) -> bool {
-        self.irradiance.is_empty()
-    }
-
     /// Looks up the irradiance at a point of a surface with unit normal `normal`, and the radius of the disc
     /// that it is the mean over; `None` where no photon, hence no light, is near.
     #[inline]

@@ -76,11 +76,6 @@ impl Strata {
         self.rings * self.sectors
     }
 
-    /// Always false: there is at least one.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// Index of a stratum in [`Met`].
     #[inline]
     pub fn place(&self, ring: usize, sector: usize) -> usize {

@@ -20,9 +20,9 @@ mod tune;
 use crate::film::Window;
 use crate::view::View;
 
-pub use error::{Asked, Found, for_error};
+pub use error::{Asked, for_error};
 pub use ladder::{DRAFT, FINAL, Held, Ladder, PREVIEW, REFERENCE, options};
-pub use time::{LATE, Planned, for_time};
+pub use time::{LATE, for_time};
 
 /// The same view on a film `scale` times smaller along each side.
 fn smaller(view: &View, scale: u32) -> View {

@@ -13,8 +13,8 @@ mod settings;
 mod tests;
 
 pub use cache::OccluderCacheSettings;
-pub use counts::{QueryCounts, ShadowCounts};
+pub use counts::ShadowCounts;
 pub use engine::Engine;
 pub(crate) use segment::ULPS;
-pub use segment::{escapes, offset, ray_from, segment, visible};
+pub use segment::{escapes, ray_from, segment, visible};
 pub use settings::ShadowSettings;

@@ -25,11 +25,6 @@ impl LightPass {
     pub fn len(&self) -> usize {
         self.sets.iter().map(VplSet::len).sum()
     }
-
-    /// True if there is none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
 }
 
 /// Creates the VPLs of a scene for paths of at most `max_depth` edges. Stops early, with fewer indirect VPLs

@@ -2,7 +2,7 @@
 //!
 //! Units: positions relative to the scene's centre. A `World` is immutable and shared by all threads.
 
-use crate::embree::{Accel, BuildQuality, Device, EmbreeError, Hit, Ray, TriangleId, TriangleMesh};
+use crate::embree::{Accel, BuildQuality, Device, Hit, TriangleId, TriangleMesh};
 use crate::light::{Emitters, emitted};
 use crate::material::{Bsdf, Materials};
 use crate::math::{Frame, Rgb};
@@ -12,6 +12,7 @@ use glam::{Vec2, Vec3};
 mod packet;
 mod triangle;
 
+pub use crate::embree::{EmbreeError, Ray};
 pub use packet::Surfaces16;
 use triangle::Triangles;
 
@@ -20,11 +21,11 @@ pub struct World {
     /// The scene as loaded.
     pub scene: Scene,
     /// Ray queries over its meshes.
-    pub accel: Accel,
+    pub(crate) accel: Accel,
     /// Per-material tables.
-    pub materials: Materials,
+    pub(crate) materials: Materials,
     /// Emitters of light.
-    pub emitters: Emitters,
+    pub(crate) emitters: Emitters,
     /// Diagonal of the bounds of all surfaces; 1 if there are none. Lengths that depend on scale derive from it.
     pub diagonal: f32,
     triangles: Triangles,

@@ -12,21 +12,8 @@ use super::Report;
 pub(super) use html::escaped;
 pub use terminal::terminal;
 
-/// A file format.
-pub struct Format {
-    /// Name on the command line, behind `--export-`.
-    pub name: &'static str,
-    /// Function that writes a report in the format.
-    pub write: fn(&Report) -> String,
-}
-
-/// All formats.
-pub const FORMATS: [Format; 4] = [
-    Format { name: "json", write: json::json },
-    Format { name: "csv", write: csv::csv },
-    Format { name: "markdown", write: markdown::markdown },
-    Format { name: "html", write: html::html },
-];
+/// Writers of all file formats, in the order of their options on the command line.
+pub const WRITERS: [fn(&Report) -> String; 4] = [json::json, csv::csv, markdown::markdown, html::html];
 
 /// Returns the headline of a report.
 fn headline(report: &Report) -> String {

@@ -1,6 +1,6 @@
 //! The basis against its defining properties: orthonormality, the formula in angles, finite differences.
 
-use crate::hsh::*;
+use crate::hsh::basis::*;
 use crate::math::{F32x8, Real, gauss_legendre};
 use std::array::from_fn;
 use std::f64::consts::TAU;

@@ -2,6 +2,7 @@
 
 use super::Random;
 use crate::gradient::LocalVpl;
+use crate::hsh::basis::*;
 use crate::hsh::kernel::Profile;
 use crate::hsh::*;
 use crate::math::Rgb;
@@ -165,7 +166,7 @@ fn turning_the_frame_turns_the_light() {
 #[test]
 fn a_kernel_may_be_turned_instead_of_the_light() {
     let mut random = Random(9);
-    let mut profile = Profile { bands: 7, coefficients: [[0.0; MAX_FUNCTIONS]; 3] };
+    let mut profile = Profile { coefficients: [[0.0; MAX_FUNCTIONS]; 3] };
     for row in &mut profile.coefficients {
         let mut even = [0.0; kernel::MAX_EVEN];
         even[..kernel::even_index(7, 0)].fill_with(|| random.next() - 0.5);

@@ -3,10 +3,10 @@
 use super::*;
 use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::fixtures::{
-    Ball, EXACT, Numbers, SPOTS, all_materials, low_lamps, members, points_near_vpls, random_receiver, rms,
-    room, three_kinds,
+    Ball, EXACT, Numbers, SPOTS, Unoccluded, all_materials, low_lamps, members, points_near_vpls,
+    random_receiver, rms, room, three_kinds,
 };
-use crate::lightcut::{CutSettings, Lightcut, Receiver, Transfer, Unoccluded, gather_all};
+use crate::lightcut::{CutSettings, Lightcut, Receiver, Transfer, gather_all};
 use crate::material::Materials;
 use crate::math::{Rgb, luminance};
 use crate::scene::{MaterialId, Scene};

@@ -8,6 +8,7 @@
 //! clusters are split a round; a leaf's error is 0, so it never waits to be split.
 
 mod bound;
+#[cfg(test)]
 mod exhaustive;
 mod geometry;
 mod refine;
@@ -22,7 +23,7 @@ use crate::math::{Rgb, luminance};
 use glam::DVec3;
 use refine::Pass;
 
-pub use bound::Bound;
+#[cfg(test)]
 pub use exhaustive::gather_all;
 pub use geometry::{OffsetBox, max_cos_to_cone};
 

@@ -1,6 +1,7 @@
 //! Samples are distributed as the density says, and their weights are what the BSDF says.
 
 use super::*;
+use crate::material::sample::BsdfSample;
 use crate::math::gauss_legendre;
 use std::f32::consts::{PI, TAU};
 
