@@ -78,7 +78,7 @@ fn glossy_room() -> WorldAndView {
         let rough = |fresnel, base, coat| {
             let scale = Reflectance::Constant(Rgb::splat(0.9));
             let lobe = Lobe::Rough { distribution: Distribution::Ggx, alpha: 0.5, fresnel, scale };
-            Material { lobe, coat, ..diffuse(Rgb::splat(base)) }
+            Material { lobes: vec![lobe], coat, ..diffuse(Rgb::splat(base)) }
         };
         let plastic = rough(Fresnel::Dielectric(1.5), 0.4, Some(Coat { eta: 1.5, nonlinear: false }));
         [plastic, rough(Fresnel::One, 0.0, None)].map(|material| add_material(scene, material))

@@ -75,12 +75,12 @@ fn a_floor_under_a_uniform_sky_reflects_its_albedo() {
 #[test]
 fn pictures_agree_with_path_tracing() {
     let glossy = Material {
-        lobe: Lobe::Rough {
+        lobes: vec![Lobe::Rough {
             distribution: lightsplat::scene::Distribution::Ggx,
             alpha: 0.4,
             fresnel: lightsplat::scene::Fresnel::One,
             scale: lightsplat::scene::Reflectance::Constant(Rgb::splat(0.3)),
-        },
+        }],
         ..diffuse(Rgb::splat(0.3))
     };
     for ball in [None, Some(diffuse(Rgb::splat(0.5))), Some(glossy)] {
@@ -193,7 +193,7 @@ fn polished_metal_is_followed_from_the_eye() {
         fresnel: lightsplat::scene::Fresnel::One,
         scale: lightsplat::scene::Reflectance::Constant(Rgb::splat(0.8)),
     };
-    let ball = |alpha| Material { lobe: facets(alpha), ..diffuse(Rgb::ZERO) };
+    let ball = |alpha| Material { lobes: vec![facets(alpha)], ..diffuse(Rgb::ZERO) };
     for alpha in [0.06, 0.1] {
         let mut scene = staged(room_with_ball(Some(ball(alpha))));
         scene.lights.push(DeltaLight::Point { position: Vec3::new(0.5, 0.5, 0.7), intensity: Rgb::ONE });

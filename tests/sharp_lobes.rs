@@ -21,7 +21,7 @@ fn below_lamps() -> SceneAndView {
         fresnel: Fresnel::One,
         scale: Reflectance::Constant(Rgb::new(0.9, 0.7, 0.5)),
     };
-    let rough = add_material(&mut scene, Material { lobe, ..diffuse(Rgb::ZERO) });
+    let rough = add_material(&mut scene, Material { lobes: vec![lobe], ..diffuse(Rgb::ZERO) });
     let black = add_material(&mut scene, diffuse(Rgb::ZERO));
     scene.meshes.push(quad(Vec3::new(-9.0, 0.0, -9.0), Vec3::Z * 18.0, Vec3::X * 18.0, rough));
     scene.meshes.push(quad(Vec3::new(-0.4, 1.1, -1.4), Vec3::X * 0.6, Vec3::Y * 0.3, black));

@@ -68,20 +68,17 @@ fn run(context: &Context) -> Vec<Table> {
 /// Returns a material of each kind.
 fn kinds() -> Vec<Material> {
     let constant = |v: f32| Reflectance::Constant(Rgb::splat(v));
-    let rough = |alpha, distribution, fresnel, scale| Lobe::Rough {
-        distribution,
-        alpha,
-        fresnel,
-        scale: constant(scale),
+    let rough = |alpha, distribution, fresnel, scale| {
+        Some(Lobe::Rough { distribution, alpha, fresnel, scale: constant(scale) })
     };
     let coat = Some(Coat { eta: 1.5, nonlinear: false });
     let dielectric = Fresnel::Dielectric(1.5);
     let gold = Fresnel::Conductor { eta: Rgb::new(0.143, 0.375, 1.442), k: Rgb::new(3.983, 2.386, 1.603) };
     let (ggx, beckmann) = (Distribution::Ggx, Distribution::Beckmann);
     let glass = Lobe::Dielectric { eta: 1.5, reflectance: constant(1.0), transmittance: constant(1.0) };
-    let mirror = |fresnel| Lobe::Mirror { fresnel, scale: constant(1.0) };
+    let mirror = |fresnel| Some(Lobe::Mirror { fresnel, scale: constant(1.0) });
     [
-        ("diffuse", 0.5, None, Lobe::None),
+        ("diffuse", 0.5, None, None),
         ("glossy", 0.5, None, rough(0.3, ggx, Fresnel::One, 0.3)),
         ("plastic", 0.5, coat, mirror(dielectric)),
         ("rough plastic, GGX", 0.5, coat, rough(0.1, ggx, dielectric, 1.0)),
@@ -89,14 +86,14 @@ fn kinds() -> Vec<Material> {
         ("rough conductor, GGX", 0.0, None, rough(0.1, ggx, gold, 1.0)),
         ("rough conductor, Beckmann", 0.0, None, rough(0.1, beckmann, gold, 1.0)),
         ("conductor", 0.0, None, mirror(gold)),
-        ("glass", 0.0, None, glass),
+        ("glass", 0.0, None, Some(glass)),
     ]
     .map(|(name, diffuse, coat, lobe)| Material {
         name: name.into(),
         two_sided: true,
         diffuse: constant(diffuse),
         coat,
-        lobe,
+        lobes: Vec::from_iter(lobe),
     })
     .into()
 }

@@ -108,7 +108,7 @@ pub fn trace<'w>(
             emitted += branch.throughput * light * branch.start.map_or(1.0, weight);
         }
         let whole = world.bsdf(&surface);
-        let (bsdf, sharp) = match whole.split_sharp_lobe() {
+        let (bsdf, sharp) = match whole.split_sharp_lobes() {
             Some((bsdf, sharp)) => (bsdf, Some(sharp)),
             None => (whole, None),
         };

@@ -13,7 +13,8 @@ use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
 use super::kernel::{Profile, even_index};
 use super::lobe_table::LobeTable;
 use super::projection::{Projection, Quadrature, ZonalProjection};
-use crate::material::{Bsdf, Materials};
+use crate::material::{Bsdf, Materials, RoughLobe};
+use crate::math::Rgb;
 use crate::scene::{MaterialId, Scene};
 use rayon::prelude::*;
 
@@ -43,11 +44,11 @@ impl Default for SeriesSettings {
 /// Content of the cache records of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Caching {
-    /// Irradiance is enough: there is no rough lobe (or one so sharp that the eye pass follows it).
+    /// Irradiance is enough: there is no rough lobe (or only such sharp ones as the eye pass follows).
     Irradiance,
     /// A series of so many bands.
     Series(u8),
-    /// Too glossy for records.
+    /// Too glossy for records, or several rough lobes: series are made for single ones.
     PerSample,
 }
 
@@ -59,9 +60,19 @@ pub struct MaterialSeries {
 
 struct MaterialEntry {
     caching: Caching,
-    lobe: Option<usize>,
+    /// Lobe that the series stands for.
+    lobe: Option<LobeUse>,
     /// Transmittance of the coat times cosine: functions of order 0.
     base: [f32; MAX_BANDS],
+}
+
+/// A lobe of a material.
+#[derive(Clone, Copy)]
+struct LobeUse {
+    /// Its place in the material.
+    slot: usize,
+    /// Number among the different lobes of all materials; once the tables are made, of its table.
+    kind: usize,
 }
 
 impl MaterialSeries {
@@ -70,19 +81,20 @@ impl MaterialSeries {
         let quadrature = Quadrature::standard();
         let averages: Vec<Bsdf> =
             (0..materials.count()).map(|i| materials.average(scene, MaterialId(i as u32))).collect();
-        // One lobe of each kind, and for each material the index of its own.
-        let mut distinct: Vec<Bsdf> = Vec::new();
-        let mut kinds: Vec<Option<usize>> = Vec::with_capacity(averages.len());
+        // One lobe of each kind, and for each material the slots and kinds of its own.
+        let mut kinds: Vec<&RoughLobe> = Vec::new();
+        let mut used: Vec<Vec<LobeUse>> = Vec::with_capacity(averages.len());
         for bsdf in &averages {
-            let lobe = bsdf.unit_lobe().filter(|_| has_lobe(bsdf));
-            kinds.push(lobe.map(|lobe| {
-                distinct.iter().position(|d| d.same_lobe(&lobe)).unwrap_or_else(|| {
-                    distinct.push(lobe);
-                    distinct.len() - 1
+            let mut kind_of = |lobe| {
+                kinds.iter().position(|kind| *kind == lobe).unwrap_or_else(|| {
+                    kinds.push(lobe);
+                    kinds.len() - 1
                 })
-            }));
+            };
+            let lobes = bsdf.dull_lobes();
+            used.push(lobes.map(|(slot, lobe)| LobeUse { slot, kind: kind_of(lobe) }).collect());
         }
-        let tests: Vec<Vec<Projection>> = distinct
+        let tests: Vec<Vec<Projection>> = kinds
             .par_iter()
             .map(|lobe| {
                 INCLINATIONS.par_iter().map(|d| quadrature.project(lobe, d.to_radians().cos())).collect()
@@ -90,23 +102,27 @@ impl MaterialSeries {
             .collect();
         let mut surfaces: Vec<MaterialEntry> = averages
             .iter()
-            .zip(&kinds)
-            .map(|(bsdf, kind)| {
-                MaterialEntry::new(bsdf, kind.map(|k| &tests[k][..]), *kind, &quadrature, settings)
+            .zip(&used)
+            .map(|(bsdf, lobes)| match lobes[..] {
+                [] => MaterialEntry::without_series(bsdf, Caching::Irradiance, &quadrature),
+                [lobe] => {
+                    let alpha = kinds[lobe.kind].alpha();
+                    MaterialEntry::new(bsdf, lobe, alpha, &tests[lobe.kind], &quadrature, settings)
+                }
+                _ => MaterialEntry::without_series(bsdf, Caching::PerSample, &quadrature),
             })
             .collect();
         // Tables for the lobes in use, with as many bands as any of their materials needs.
         let mut lobes = Vec::new();
-        for (kind, lobe) in distinct.iter().enumerate() {
-            let users = || surfaces.iter().filter(|s| s.lobe == Some(kind)).filter_map(|s| s.caching.bands());
-            let Some(bands) = users().max() else { continue };
-            lobes.push((kind, LobeTable::new(lobe, bands, settings.interpolation_error, &quadrature)));
+        for (kind, lobe) in kinds.iter().enumerate() {
+            let uses_it = |s: &&mut MaterialEntry| s.lobe.is_some_and(|lobe| lobe.kind == kind);
+            let users: Vec<&mut MaterialEntry> = surfaces.iter_mut().filter(uses_it).collect();
+            let Some(bands) = users.iter().filter_map(|s| s.caching.bands()).max() else { continue };
+            // There are no more tables than kinds, so none met later in this loop is taken for this one.
+            users.into_iter().filter_map(|s| s.lobe.as_mut()).for_each(|lobe| lobe.kind = lobes.len());
+            lobes.push(LobeTable::new(lobe, bands, settings.interpolation_error, &quadrature));
         }
-        for surface in &mut surfaces {
-            let kind = surface.lobe.filter(|_| surface.caching.bands().is_some());
-            surface.lobe = kind.and_then(|kind| lobes.iter().position(|(k, _)| *k == kind));
-        }
-        MaterialSeries { materials: surfaces, lobes: lobes.into_iter().map(|(_, table)| table).collect() }
+        MaterialSeries { materials: surfaces, lobes }
     }
 
     /// Returns the content of the records of a material.
@@ -132,11 +148,11 @@ impl MaterialSeries {
     pub fn profile(&self, id: MaterialId, bsdf: &Bsdf, cos_o: f32) -> Profile {
         let surface = &self.materials[id.0 as usize];
         let bands = surface.caching.bands().unwrap_or(MAX_BANDS);
-        let mut coefficients = match surface.lobe {
-            Some(lobe) => self.lobes[lobe].lookup(cos_o),
-            None => [[0.0; MAX_FUNCTIONS]; CHANNELS],
+        let (mut coefficients, scale) = match surface.lobe {
+            Some(lobe) => (self.lobes[lobe.kind].lookup(cos_o), bsdf.lobe_scale(lobe.slot)),
+            None => ([[0.0; MAX_FUNCTIONS]; CHANNELS], Rgb::ZERO),
         };
-        let (scale, base) = (bsdf.lobe_scale(), bsdf.base_brdf() * bsdf.base_transmittance(cos_o));
+        let base = bsdf.base_brdf() * bsdf.coat_transmittance(cos_o);
         for (c, row) in coefficients.iter_mut().enumerate() {
             for coefficient in row.iter_mut() {
                 *coefficient *= scale[c];
@@ -162,43 +178,53 @@ impl Caching {
 }
 
 impl MaterialEntry {
+    /// For a material with no lobe to expand, or several.
+    fn without_series(bsdf: &Bsdf, caching: Caching, quadrature: &Quadrature) -> MaterialEntry {
+        let base = project_base(bsdf, quadrature).coefficients.map(|c| c as f32);
+        MaterialEntry { caching, lobe: None, base }
+    }
+
+    /// For a material with one lobe to expand, given its projections at [`INCLINATIONS`].
     fn new(
         bsdf: &Bsdf,
-        tests: Option<&[Projection]>,
-        lobe: Option<usize>,
+        lobe: LobeUse,
+        alpha: f32,
+        tests: &[Projection],
         quadrature: &Quadrature,
         settings: &SeriesSettings,
     ) -> MaterialEntry {
-        let zonal = quadrature.project_zonal(|z| z * f64::from(bsdf.base_transmittance(z as f32)));
+        let zonal = project_base(bsdf, quadrature);
+        let error = |bands: usize| mean_error(bsdf, bsdf.lobe_scale(lobe.slot), tests, &zonal, bands);
+        // Two bands hold the irradiance.
+        let bands = (2..=MAX_BANDS).find(|bands| error(*bands) <= settings.error).unwrap_or(MAX_BANDS);
+        let fits = error(bands) <= settings.max_error && alpha >= settings.min_alpha;
         let base = zonal.coefficients.map(|c| c as f32);
-        let caching = match tests {
-            None => Caching::Irradiance,
-            Some(tests) => {
-                let error = |bands: usize| mean_error(bsdf, tests, &zonal, bands);
-                // Two bands hold the irradiance.
-                let enough =
-                    (2..=MAX_BANDS).find(|bands| error(*bands) <= settings.error).unwrap_or(MAX_BANDS);
-                let fits = error(enough) <= settings.max_error && bsdf.alpha() >= Some(settings.min_alpha);
-                if fits { Caching::Series(enough as u8) } else { Caching::PerSample }
-            }
-        };
-        MaterialEntry { caching, lobe, base }
+        match fits {
+            true => MaterialEntry { caching: Caching::Series(bands as u8), lobe: Some(lobe), base },
+            false => MaterialEntry { caching: Caching::PerSample, lobe: None, base },
+        }
     }
 }
 
-/// True if the material has a lobe that the eye pass does not follow.
-fn has_lobe(bsdf: &Bsdf) -> bool {
-    bsdf.alpha().is_some() && bsdf.split_sharp_lobe().is_none() && bsdf.lobe_scale().max_element() > 0.0
+/// Projects the transmittance of the coat times cosine.
+fn project_base(bsdf: &Bsdf, quadrature: &Quadrature) -> ZonalProjection {
+    quadrature.project_zonal(|z| z * f64::from(bsdf.coat_transmittance(z as f32)))
 }
 
 /// Computes the error of a kernel in its first `bands`.
-fn mean_error(bsdf: &Bsdf, tests: &[Projection], zonal: &ZonalProjection, bands: usize) -> f64 {
+fn mean_error(
+    bsdf: &Bsdf,
+    lobe_scale: Rgb,
+    tests: &[Projection],
+    zonal: &ZonalProjection,
+    bands: usize,
+) -> f64 {
     let errors = INCLINATIONS.iter().zip(tests).map(|(degrees, lobe)| {
-        let through = bsdf.base_transmittance(degrees.to_radians().cos() as f32);
+        let through = bsdf.coat_transmittance(degrees.to_radians().cos() as f32);
         let (mut left_out, mut whole) = (0.0, 0.0);
         for c in 0..CHANNELS {
             let base = f64::from(bsdf.base_brdf()[c] * through);
-            let scale = f64::from(bsdf.lobe_scale()[c]);
+            let scale = f64::from(lobe_scale[c]);
             let row = &lobe.coefficients[c];
             let common: f64 = (0..MAX_BANDS).map(|l| zonal.coefficients[l] * row[even_index(l, 0)]).sum();
             let norm_sq =

@@ -3,7 +3,7 @@
 use super::CHANNELS;
 use super::basis::{MAX_BANDS, evaluate, index};
 use super::kernel::{MAX_EVEN, even_index};
-use crate::material::Bsdf;
+use crate::material::RoughLobe;
 use crate::math::{Rgb, gauss_legendre};
 use glam::Vec3;
 use std::f64::consts::PI;
@@ -82,7 +82,7 @@ impl Quadrature {
     }
 
     /// Projects BRDF · cosine of a rough lobe seen at cosine `cos_o` from azimuth 0.
-    pub fn project(&self, lobe: &Bsdf, cos_o: f64) -> Projection {
+    pub fn project(&self, lobe: &RoughLobe, cos_o: f64) -> Projection {
         let cos_o = cos_o.clamp(1e-5, 1.0);
         let wo = Vec3::new(((1.0 - cos_o) * (1.0 + cos_o)).sqrt() as f32, 0.0, cos_o as f32);
         let mut projection =

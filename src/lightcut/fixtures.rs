@@ -30,30 +30,27 @@ impl Numbers {
 /// One material of every kind, in a scene of nothing else.
 pub fn all_materials() -> Scene {
     let constant = |r: f32, g: f32, b: f32| Reflectance::Constant(Rgb::new(r, g, b));
-    let rough = |distribution, alpha, fresnel| Lobe::Rough {
-        distribution,
-        alpha,
-        fresnel,
-        scale: constant(0.7, 0.9, 0.5),
+    let rough = |distribution, alpha, fresnel| {
+        Some(Lobe::Rough { distribution, alpha, fresnel, scale: constant(0.7, 0.9, 0.5) })
     };
     let gold = Fresnel::Conductor { eta: Rgb::new(0.14, 0.37, 1.44), k: Rgb::new(3.98, 2.39, 1.6) };
     let (ggx, beckmann) = (Distribution::Ggx, Distribution::Beckmann);
     let mut materials = Vec::new();
-    let mut add = |two_sided, diffuse, coat, lobe| {
+    let mut add = |two_sided, diffuse, coat, lobe: Option<Lobe>| {
         let name = format!("{}", materials.len());
-        materials.push(Material { name, two_sided, diffuse, coat, lobe });
+        materials.push(Material { name, two_sided, diffuse, coat, lobes: Vec::from_iter(lobe) });
     };
     let coat = Some(Coat { eta: 1.5, nonlinear: true });
     let (grey, black) = (constant(0.5, 0.4, 0.8), constant(0.0, 0.0, 0.0));
-    add(true, grey, None, Lobe::None);
-    add(false, grey, None, Lobe::None);
+    add(true, grey, None, None);
+    add(false, grey, None, None);
     for alpha in [0.02, 0.1, 0.3, 0.8] {
         add(true, grey, None, rough(ggx, alpha, Fresnel::One));
         add(false, black, None, rough(ggx, alpha, gold));
         add(true, grey, None, rough(beckmann, alpha, Fresnel::Dielectric(1.5)));
         add(true, grey, coat, rough(ggx, alpha, Fresnel::Dielectric(1.5)));
     }
-    let mirror = |fresnel| Lobe::Mirror { fresnel, scale: constant(1.0, 1.0, 1.0) };
+    let mirror = |fresnel| Some(Lobe::Mirror { fresnel, scale: constant(1.0, 1.0, 1.0) });
     add(true, grey, coat, mirror(Fresnel::Dielectric(1.5)));
     add(true, black, None, mirror(Fresnel::One));
     Scene { materials, ..Scene::default() }

@@ -2,7 +2,8 @@
 //!
 //! Units: `eval` is 1/sr, without the cosine; `pdf` is per solid angle.
 
-use super::model::{Base, DIFFUSE_LOBE_ALPHA, Model, SHARP_LOBE_ALPHA, Scattering};
+use super::lobe::{Directions, LobeModel, MAX_LOBES, RoughLobe, mean};
+use super::model::Model;
 use crate::math::Rgb;
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -13,25 +14,26 @@ pub struct Bsdf<'m> {
     pub(super) model: &'m Model,
     /// BRDF of the base, less the coat's transmittances by angle.
     pub(super) base: Rgb,
-    /// Factor on reflection by the lobe.
-    pub(super) scale: Rgb,
-    /// Factor on refraction.
-    pub(super) transmittance: Rgb,
+    /// Factors on the lobes; zero beyond them.
+    pub(super) scales: [Rgb; MAX_LOBES],
 }
 
 /// What depends on `wo` alone.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outgoing {
-    /// On the side of the normal, so z > 0.
+    /// On the side of the normal, so z > 0, unless light may be transmitted.
     pub wo: Vec3,
     /// Of the coat.
     pub transmittance: f32,
-    /// Probability of sampling the base rather than the lobe.
+    /// Probability of sampling the base.
     pub base_probability: f32,
+    /// Probabilities of sampling the lobes.
+    pub probabilities: [f32; MAX_LOBES],
 }
 
-impl Bsdf<'_> {
-    /// BSDF for light from `wi` seen from `wo`; delta lobes excluded; 0 where either is on a wrong side.
+impl<'m> Bsdf<'m> {
+    /// BSDF for light from `wi` seen from `wo`, which may be on different sides; 0 where no lobe scatters from one to
+    /// the other. Delta lobes are excluded.
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         self.eval_pdf(wo, wi).0
@@ -46,7 +48,11 @@ impl Bsdf<'_> {
     /// [`Bsdf::eval`] and [`Bsdf::pdf`] at once.
     #[inline]
     pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
-        let Some((wo, wi)) = self.on_front(wo, wi) else { return (Rgb::ZERO, 0.0) };
+        let side = self.side(wo);
+        let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z * side), Vec3::new(wi.x, wi.y, wi.z * side));
+        if !(wo.z > 0.0 && wi.z > 0.0 || self.model.transmits) {
+            return (Rgb::ZERO, 0.0);
+        }
         if self.is_lambert() {
             return (self.base, wi.z * FRAC_1_PI);
         }
@@ -56,32 +62,34 @@ impl Bsdf<'_> {
     /// True if light is scattered into more than isolated directions.
     #[inline]
     pub fn has_smooth(&self) -> bool {
-        self.base != Rgb::ZERO
-            || (matches!(self.model.lobe, Scattering::Rough(..)) && self.scale != Rgb::ZERO)
+        self.base != Rgb::ZERO || self.has_smooth_lobe()
     }
 
     /// True if part of the light is reflected as by a mirror or refracted as by smooth glass.
     #[inline]
     pub fn has_delta(&self) -> bool {
-        matches!(self.model.lobe, Scattering::Mirror(_) | Scattering::Glass(_))
+        self.model.delta_lobes
     }
 
-    /// Base and lobe apart, where the lobe is rough but so sharp (α ≤ 0.1) that light sampled along it
-    /// says more than a sum over virtual lights, each of which would show as a highlight.
+    /// The BSDF without its sharp lobes, and these alone, if there are any: rough lobes of α ≤ 0.1, which eye paths
+    /// follow by sampling them.
     #[inline]
-    pub fn split_sharp_lobe(&self) -> Option<(Self, Self)> {
-        match &self.model.lobe {
-            Scattering::Rough(facets, _) if facets.alpha <= SHARP_LOBE_ALPHA && self.scale != Rgb::ZERO => {
-                Some((Bsdf { scale: Rgb::ZERO, ..*self }, Bsdf { base: Rgb::ZERO, ..*self }))
-            }
-            _ => None,
+    pub fn split_sharp_lobes(&self) -> Option<(Self, Self)> {
+        if !self.model.smooth_lobes || !self.any_lobe(LobeModel::is_sharp) {
+            return None;
         }
+        let (mut rest, mut sharp) = (*self, Bsdf { base: Rgb::ZERO, ..*self });
+        for (i, lobe) in self.model.lobes.iter().enumerate() {
+            let without = if lobe.is_sharp() { &mut rest } else { &mut sharp };
+            without.scales[i] = Rgb::ZERO;
+        }
+        Some((rest, sharp))
     }
 
     /// Whether the material is Lambertian and nothing else.
     #[inline]
     pub(super) fn is_lambert(&self) -> bool {
-        matches!((&self.model.base, &self.model.lobe), (Base::Lambert, Scattering::None))
+        self.model.lambert
     }
 
     /// Which coat lies on the base (see [`super::Materials::coat_transmittance`]); 0 for none.
@@ -90,13 +98,12 @@ impl Bsdf<'_> {
         self.model.coat
     }
 
-    /// Base and lobe apart, where both are smooth functions of direction: the BRDF of the base for light that has passed
-    /// the coat on its way in, seen from the cosine `cos_out`; and the rest, if it reflects anything.
+    /// Base and lobes apart, where both are smooth functions of direction: the BRDF of the base for light that has
+    /// passed the coat on its way in, seen from the cosine `cos_out`; and the rest, if it reflects anything.
     #[inline]
     pub fn split_base(&self, cos_out: f32) -> (Rgb, Option<Self>) {
         let base = self.base * self.coat_transmittance(cos_out.abs());
-        let glossy = matches!(self.model.lobe, Scattering::Rough(..)) && self.scale != Rgb::ZERO;
-        (base, glossy.then_some(Bsdf { base: Rgb::ZERO, ..*self }))
+        (base, self.has_smooth_lobe().then_some(Bsdf { base: Rgb::ZERO, ..*self }))
     }
 
     /// The albedo, if the material is Lambertian and nothing else.
@@ -111,108 +118,153 @@ impl Bsdf<'_> {
         self.model.two_sided
     }
 
+    /// Whether the lobes agree but for their factors.
+    #[inline]
+    pub fn same_lobes(&self, other: &Bsdf) -> bool {
+        self.model.lobe_list == other.model.lobe_list
+    }
+
+    /// Slot and model of each rough lobe that reflects anything and that the eye does not follow.
+    pub fn dull_lobes(&self) -> impl Iterator<Item = (usize, &'m RoughLobe)> {
+        let lobes = self.model.lobes.iter().zip(self.scales).enumerate();
+        lobes.filter_map(|(slot, (lobe, scale))| match lobe {
+            LobeModel::Rough(rough) if !rough.is_sharp() && scale.max_element() > 0.0 => Some((slot, rough)),
+            _ => None,
+        })
+    }
+
+    /// BRDF of the base, to be multiplied by [`Bsdf::coat_transmittance`] of either direction.
+    #[inline]
+    pub fn base_brdf(&self) -> Rgb {
+        self.base
+    }
+
+    /// Factor on the lobe in a slot below [`MAX_LOBES`].
+    #[inline]
+    pub fn lobe_scale(&self, slot: usize) -> Rgb {
+        self.scales[slot]
+    }
+
+    /// Share of the light at `cos` > 0 that passes the coat; 1 where there is none.
+    #[inline]
+    pub fn coat_transmittance(&self, cos: f32) -> f32 {
+        self.model.base.interface.transmittance(cos)
+    }
+
     /// Share of the flux arriving from `wi` that a virtual light in this place radiates diffusely, to the side
-    /// of `wi`: what the base reflects (through the coat, if there is one, in and out) and, where the lobe is
-    /// rough enough to pass for diffuse, what the lobe reflects.
+    /// of `wi`: what the base reflects (through the coat, if there is one, in and out) and what those lobes reflect
+    /// that are rough enough to pass for diffuse.
     ///
     /// The virtual light's intensity per cosine is flux · `diffuse_albedo` / π.
     #[inline]
     pub fn diffuse_albedo(&self, wi: Vec3) -> Rgb {
-        let Some((wi, _)) = self.on_front(wi, wi) else { return Rgb::ZERO };
-        let mut albedo = self.base_albedo(self.coat_transmittance(wi.z));
-        if let (Scattering::Rough(facets, _), Some(table)) = (&self.model.lobe, &self.model.lobe_albedo)
-            && facets.alpha >= DIFFUSE_LOBE_ALPHA
-        {
-            albedo += self.scale * table.lookup(wi.z);
+        let cos = wi.z * self.side(wi);
+        if !(cos > 0.0) {
+            return Rgb::ZERO;
+        }
+        let mut albedo = self.model.base.albedo(self.base, self.coat_transmittance(cos));
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            if let Some(more) = lobe.diffuse_albedo(self.scales[slot], cos) {
+                albedo += more;
+            }
         }
         albedo
     }
 
-    /// Both directions mirrored to the side of the normal, or `None` where nothing is reflected.
-    #[inline]
-    pub(super) fn on_front(&self, mut wo: Vec3, mut wi: Vec3) -> Option<(Vec3, Vec3)> {
-        if wo.z < 0.0 && self.model.two_sided {
-            wo.z = -wo.z;
-            wi.z = -wi.z;
+    /// Whether a lobe that scatters anything is of a kind.
+    #[inline(always)]
+    fn any_lobe(&self, is_such: impl Fn(&LobeModel) -> bool) -> bool {
+        let mut found = false;
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            found |= self.scales[slot] != Rgb::ZERO && is_such(lobe);
         }
-        (wo.z > 0.0 && wi.z > 0.0 && !matches!(self.model.lobe, Scattering::Glass(_))).then_some((wo, wi))
+        found
     }
 
-    /// What [`Bsdf::eval_pdf_layered`] and sampling need to know about `wo` (z > 0).
     #[inline]
+    fn has_smooth_lobe(&self) -> bool {
+        self.model.smooth_lobes && self.any_lobe(|lobe| !lobe.is_delta())
+    }
+
+    /// Factor that turns the z of directions to the side of the normal: -1 if a two-sided surface is seen from behind.
+    #[inline]
+    pub(super) fn side(&self, wo: Vec3) -> f32 {
+        if wo.z < 0.0 && self.model.two_sided && !self.model.transmits { -1.0 } else { 1.0 }
+    }
+
+    /// What [`Bsdf::eval_pdf_layered`] and sampling need to know about `wo`.
+    #[inline(always)]
     pub(super) fn outgoing(&self, wo: Vec3) -> Outgoing {
         let transmittance = self.coat_transmittance(wo.z);
-        let base = mean(self.base_albedo(transmittance));
-        let base_probability = if base > 0.0 {
-            let lobe = match &self.model.lobe {
-                Scattering::None | Scattering::Glass(_) => 0.0,
-                Scattering::Mirror(fresnel) => mean(self.scale * fresnel.reflectance(wo.z)),
-                Scattering::Rough(..) => match &self.model.lobe_albedo {
-                    Some(table) => mean(self.scale * table.lookup(wo.z)),
-                    None => mean(self.scale) * (1.0 - transmittance).max(0.0),
-                },
-            };
-            base / (base + lobe)
-        } else {
-            0.0
+        let base = mean(self.model.base.albedo(self.base, transmittance));
+        // Most materials have one lobe at most.
+        let (base_probability, probabilities) = match &self.model.lobes[..] {
+            [] => (if base > 0.0 { 1.0 } else { 0.0 }, [0.0; MAX_LOBES]),
+            [lobe] => {
+                let probability = match base > 0.0 {
+                    true => base / (base + lobe.sampling_weight(self.scales[0], wo, transmittance)),
+                    false => 0.0,
+                };
+                (probability, [1.0 - probability, 0.0, 0.0])
+            }
+            _ => self.probabilities(base, wo, transmittance),
         };
-        Outgoing { wo, transmittance, base_probability }
+        Outgoing { wo, transmittance, base_probability, probabilities }
     }
 
-    #[inline]
+    /// Probabilities of sampling the base, whose albedo is `base`, and each lobe.
+    #[inline(never)]
+    fn probabilities(&self, base: f32, wo: Vec3, transmittance: f32) -> (f32, [f32; MAX_LOBES]) {
+        let mut weights = [0.0; MAX_LOBES];
+        let mut total = base;
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            weights[slot] = lobe.sampling_weight(self.scales[slot], wo, transmittance);
+            total += weights[slot];
+        }
+        let base_probability = if base > 0.0 { base / total } else { 0.0 };
+        let mut probabilities = [0.0; MAX_LOBES];
+        let mut left = 1.0 - base_probability;
+        let last = self.model.lobes.len() - 1;
+        for slot in 0..last {
+            probabilities[slot] = weights[slot] / total; // NaN (nothing is scattered at all) chooses nothing
+            left -= probabilities[slot];
+        }
+        // The last lobe takes the rest, so that rounding loses nothing.
+        probabilities[last] = left.max(0.0);
+        (base_probability, probabilities)
+    }
+
+    #[inline(always)]
     pub(super) fn eval_pdf_layered(&self, outgoing: &Outgoing, wi: Vec3) -> (Rgb, f32) {
-        match self.model.lobe {
-            Scattering::Rough(..) => {
-                let h = outgoing.wo + wi;
-                let length_sq = h.length_squared();
-                if length_sq < 1e-20 {
-                    return (Rgb::ZERO, 0.0); // both grazing and opposite: no facet is seen at all
-                }
-                self.eval_pdf_rough(outgoing, wi, h / length_sq.sqrt())
-            }
-            _ => self.eval_pdf_base(outgoing, wi),
+        if !self.model.smooth_lobes {
+            return self.eval_pdf_base(outgoing, wi);
+        }
+        match Directions::new(outgoing.wo, wi) {
+            Some(directions) => self.eval_pdf_between(outgoing, &directions),
+            None => (Rgb::ZERO, 0.0),
         }
     }
 
     /// Base alone.
-    #[inline]
-    pub(super) fn eval_pdf_base(&self, outgoing: &Outgoing, wi: Vec3) -> (Rgb, f32) {
-        if outgoing.base_probability == 0.0 {
+    #[inline(always)]
+    fn eval_pdf_base(&self, outgoing: &Outgoing, wi: Vec3) -> (Rgb, f32) {
+        if outgoing.base_probability == 0.0 || wi.z < 0.0 {
             return (Rgb::ZERO, 0.0);
         }
         let transmittance = outgoing.transmittance * self.coat_transmittance(wi.z);
         (self.base * transmittance, outgoing.base_probability * wi.z * FRAC_1_PI)
     }
 
-    /// Base and rough lobe, for the facet normal `h` half-way between the directions.
+    /// Base and lobes.
     #[inline]
-    pub(super) fn eval_pdf_rough(&self, outgoing: &Outgoing, wi: Vec3, h: Vec3) -> (Rgb, f32) {
-        let (mut value, mut pdf) = self.eval_pdf_base(outgoing, wi);
-        if let Scattering::Rough(facets, fresnel) = &self.model.lobe {
-            let density = facets.density(h);
-            let cos_o = outgoing.wo.z.min(1.0);
-            let masked = density * facets.v1(cos_o) * facets.v1(wi.z.min(1.0));
-            value += self.scale * fresnel.reflectance(outgoing.wo.dot(h).min(1.0)) * masked;
-            pdf += (1.0 - outgoing.base_probability) * 0.5 * density * facets.v1_exact(cos_o);
+    pub(super) fn eval_pdf_between(&self, outgoing: &Outgoing, directions: &Directions) -> (Rgb, f32) {
+        let (mut value, mut pdf) = self.eval_pdf_base(outgoing, directions.wi);
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            let (scale, probability) = (self.scales[slot], outgoing.probabilities[slot]);
+            let (lobe_value, lobe_pdf) = lobe.eval_pdf(scale, probability, directions);
+            value += lobe_value;
+            pdf += lobe_pdf;
         }
         (value, pdf)
     }
-
-    /// Share of the light at `cos` > 0 that passes the coat; 1 where there is none.
-    #[inline]
-    pub fn coat_transmittance(&self, cos: f32) -> f32 {
-        self.model.base.coat_transmittance(cos)
-    }
-
-    /// Share of the light from one direction that the base reflects, given the coat's transmittance for it.
-    #[inline]
-    fn base_albedo(&self, transmittance: f32) -> Rgb {
-        self.base * (PI * transmittance * self.model.mean_transmittance)
-    }
-}
-
-/// Mean of the channels.
-#[inline]
-pub(super) fn mean(c: Rgb) -> f32 {
-    (c.x + c.y + c.z) * (1.0 / 3.0)
 }

@@ -1,104 +1,59 @@
 //! Materials made ready for evaluation: what does not depend on the point is computed once a scene.
 
+use super::base::{BaseModel, CoatInterface, RoughCoat};
 use super::bsdf::Bsdf;
-use super::fresnel;
+use super::lobe::{
+    DIFFUSE_ALPHA, Interface, LobeModel, MAX_LOBES, Mirror, Passage, RoughLobe, albedo_table,
+    max_reflectance_table,
+};
 use super::microfacet::Microfacets;
-use super::table::{AngleTable, RoughCoat, lobe_albedo, max_reflectance};
+use super::table::AngleTable;
 use crate::math::Rgb;
-use crate::scene::{Coat, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
-use glam::Vec2;
-use std::f32::consts::FRAC_1_PI;
+use crate::scene::{Fresnel, Lobe, Material, MaterialId, Reflectance, Scene, TextureId};
+use glam::{DVec3, Vec2};
 use std::sync::Arc;
 
-/// Lobes at least this rough count as diffuse where a surface becomes a virtual light: among polished metals most of
-/// the light would otherwise be lost, which is worse than its spreading too widely.
-pub(super) const DIFFUSE_LOBE_ALPHA: f32 = 0.05;
-
-/// Lobes up to this rough are followed from the eye like mirrors, by a sampled direction.
-pub(super) const SHARP_LOBE_ALPHA: f32 = 0.1;
+const BLACK: Reflectance = Reflectance::Constant(Rgb::ZERO);
 
 /// The scene's materials, ready to be looked up at points.
 #[derive(Clone, Debug)]
 pub struct Materials {
-    pub(super) models: Vec<Model>,
-    /// A base under each kind of coat; the first is bare.
-    coats: Vec<Base>,
+    models: Vec<Model>,
+    /// Every coat that differs from others; the first is none.
+    coats: Vec<CoatInterface>,
 }
 
 /// One material.
 #[derive(Clone, Debug)]
 pub(super) struct Model {
+    /// Whether the back behaves as the front; never so where an interface has two sides of its own.
     pub two_sided: bool,
-    pub base: Base,
+    pub base: BaseModel,
     /// Number of the coat on it; 0 for none.
     pub coat: u32,
-    pub lobe: Scattering,
-    /// Cosine-weighted mean of the coat's transmittance; 1 without a coat.
-    pub mean_transmittance: f32,
-    /// Largest Fresnel reflectance of a rough conductor by the least cosine: its formula costs more than the
-    /// rest of a bound.
-    pub max_reflectance: Option<Arc<AngleTable<Rgb>>>,
-    /// Albedo of a rough lobe by angle, where something asks for it.
-    pub lobe_albedo: Option<Arc<AngleTable<Rgb>>>,
-    /// Base albedo to its BRDF, less the transmittances by angle: factor, and internal reflectance.
-    base_factor: f32,
-    internal_reflectance: f32,
-    nonlinear: bool,
-    pub(super) source: Reflectances<Reflectance>,
+    pub lobes: Vec<LobeModel>,
+    /// Number of the list of lobes: equal where lobes agree but for their factors.
+    pub lobe_list: u32,
+    /// Whether it is Lambertian and nothing else.
+    pub lambert: bool,
+    /// Whether some lobe scatters into more than isolated directions.
+    pub smooth_lobes: bool,
+    /// Whether some lobe scatters into isolated directions.
+    pub delta_lobes: bool,
+    /// Whether light may go to the other side.
+    pub transmits: bool,
+    source: Colours<Reflectance>,
     /// Where nothing is textured, what `at` returns.
-    constant: Option<Reflectances<Rgb>>,
+    constant: Option<Colours<Rgb>>,
 }
 
-/// What may be textured.
+/// The colours of a material.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reflectances<T> {
-    /// Of the base.
-    pub base: T,
-    /// Factor on reflection by the lobe.
-    pub scale: T,
-    /// Factor on refraction.
-    pub transmittance: T,
-}
-
-/// What is below the lobe.
-#[derive(Clone, Debug)]
-pub(super) enum Base {
-    None,
-    Lambert,
-    /// Lambert under a smooth interface of this index.
-    SmoothCoat(f32),
-    RoughCoat(Arc<RoughCoat>),
-}
-
-impl Base {
-    /// Share of the light at `cos` > 0 that passes the coat; 1 where there is none.
-    #[inline]
-    pub fn coat_transmittance(&self, cos: f32) -> f32 {
-        match self {
-            Base::None | Base::Lambert => 1.0,
-            Base::SmoothCoat(eta) => 1.0 - fresnel::dielectric(cos, *eta),
-            Base::RoughCoat(coat) => coat.transmittance.lookup(cos),
-        }
-    }
-
-    /// Whether the same light reaches the base.
-    fn same_coat(&self, other: &Base) -> bool {
-        match (self, other) {
-            (Base::SmoothCoat(a), Base::SmoothCoat(b)) => a == b,
-            (Base::RoughCoat(a), Base::RoughCoat(b)) => Arc::ptr_eq(a, b),
-            (Base::None | Base::Lambert, Base::None | Base::Lambert) => true,
-            _ => false,
-        }
-    }
-}
-
-/// The lobe.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Scattering {
-    None,
-    Rough(Microfacets, Fresnel),
-    Mirror(Fresnel),
-    Glass(f32),
+struct Colours<T> {
+    /// Albedo or BRDF of the base.
+    base: T,
+    /// Factors on the lobes.
+    scales: [T; MAX_LOBES],
 }
 
 impl Materials {
@@ -106,21 +61,24 @@ impl Materials {
     pub fn new(scene: &Scene) -> Materials {
         let mut tables = Tables::default();
         let mut models: Vec<Model> = scene.materials.iter().map(|m| Model::new(m, &mut tables)).collect();
-        let mut coats = vec![Base::None];
+        let mut coats = vec![CoatInterface::None];
+        let mut lobe_lists: Vec<Vec<LobeModel>> = Vec::new();
         for model in &mut models {
-            let known = coats.iter().position(|coat| coat.same_coat(&model.base));
-            model.coat = known.unwrap_or(coats.len()) as u32;
-            if known.is_none() {
-                coats.push(model.base.clone());
-            }
+            model.coat = number(&mut coats, &model.base.interface);
+            model.lobe_list = number(&mut lobe_lists, &model.lobes);
         }
         Materials { models, coats }
+    }
+
+    /// Number of materials.
+    pub fn count(&self) -> usize {
+        self.models.len()
     }
 
     /// Share of the light at the cosine `cos` > 0 that passes the coat of the given number (see [`Bsdf::coat`]).
     #[inline]
     pub fn coat_transmittance(&self, coat: u32, cos: f32) -> f32 {
-        self.coats.get(coat as usize).map_or(1.0, |base| base.coat_transmittance(cos))
+        self.coats.get(coat as usize).map_or(1.0, |coat| coat.transmittance(cos))
     }
 
     /// The material at texture coordinates `uv`. `scene` must be the one the materials were made from.
@@ -133,12 +91,35 @@ impl Materials {
     #[inline]
     pub fn at_coordinates(&self, scene: &Scene, id: MaterialId, uv: impl FnOnce() -> Vec2) -> Bsdf<'_> {
         let model = &self.models[id.0 as usize];
-        let values = match model.constant {
-            Some(values) => values,
-            None => model.textured(scene, uv()),
+        let colours = match model.constant {
+            Some(colours) => colours,
+            None => {
+                let uv = uv();
+                model.colours(|id| scene.textures.get(id.0 as usize).map_or(Rgb::ONE, |t| t.lookup(uv)))
+            }
         };
-        Bsdf { model, base: values.base, scale: values.scale, transmittance: values.transmittance }
+        Bsdf { model, base: colours.base, scales: colours.scales }
     }
+
+    /// The material with every texture replaced by its mean.
+    pub fn average(&self, scene: &Scene, id: MaterialId) -> Bsdf<'_> {
+        let model = &self.models[id.0 as usize];
+        let colours = model.colours(|id| {
+            let texels = scene.textures.get(id.0 as usize).map_or(&[][..], |t| &t.texels);
+            let sum = texels.iter().fold(DVec3::ZERO, |sum, t| sum + t.as_dvec3());
+            if texels.is_empty() { Rgb::ONE } else { (sum / texels.len() as f64).as_vec3() }
+        });
+        Bsdf { model, base: colours.base, scales: colours.scales }
+    }
+}
+
+/// Place of `item` among `known`, to which it is added if it is not there.
+fn number<T: PartialEq + Clone>(known: &mut Vec<T>, item: &T) -> u32 {
+    let at = known.iter().position(|k| k == item).unwrap_or_else(|| {
+        known.push(item.clone());
+        known.len() - 1
+    });
+    at as u32
 }
 
 /// Tables that materials share when roughness and indices agree.
@@ -162,7 +143,7 @@ impl Tables {
         if let Some((_, _, albedo)) = self.albedos.iter().find(|a| a.0 == facets && a.1 == fresnel) {
             return albedo.clone();
         }
-        let albedo = Arc::new(lobe_albedo(&facets, &fresnel));
+        let albedo = Arc::new(albedo_table(&facets, &fresnel));
         self.albedos.push((facets, fresnel, albedo.clone()));
         albedo
     }
@@ -170,97 +151,82 @@ impl Tables {
 
 impl Model {
     fn new(material: &Material, tables: &mut Tables) -> Model {
-        let zero = Reflectance::Constant(Rgb::ZERO);
-        let (lobe, scale, transmittance) = match material.lobe {
-            Lobe::None => (Scattering::None, zero, zero),
-            Lobe::Rough { distribution, alpha, fresnel, scale } => {
-                (Scattering::Rough(Microfacets::new(distribution, alpha), fresnel), scale, zero)
-            }
-            Lobe::Mirror { fresnel, scale } => (Scattering::Mirror(fresnel), scale, zero),
-            Lobe::Dielectric { eta, reflectance, transmittance } => {
-                (Scattering::Glass(eta), reflectance, transmittance)
+        let mut source = Colours { base: material.diffuse, scales: [BLACK; MAX_LOBES] };
+        let mut lobes = Vec::new();
+        let mut add = |lobe, scale| {
+            if let Some(slot) = source.scales.get_mut(lobes.len()) {
+                *slot = scale;
+                lobes.push(lobe);
             }
         };
-        // Glass has no base: nothing could lie beneath it.
-        let black = material.diffuse == zero || matches!(lobe, Scattering::Glass(_));
-        let base = match (material.coat, lobe) {
-            _ if black => Base::None,
-            (None, _) => Base::Lambert,
-            (Some(coat), Scattering::Rough(facets, _)) => Base::RoughCoat(tables.coat(facets, coat.eta)),
-            (Some(coat), _) => Base::SmoothCoat(coat.eta),
-        };
-        let (mean_transmittance, internal_reflectance) = match &base {
-            Base::None | Base::Lambert => (1.0, 0.0),
-            // 1 - the mean reflectance outside follows from that inside by reciprocity; the fit inside is
-            // the one that sets the base's brightness, so both come from it.
-            Base::SmoothCoat(eta) => {
-                let internal = fresnel::diffuse_reflectance(1.0 / eta);
-                (eta * eta * (1.0 - internal), internal)
+        for lobe in &material.lobes {
+            match *lobe {
+                Lobe::Rough { distribution, alpha, fresnel, scale } => {
+                    let facets = Microfacets::new(distribution, alpha);
+                    let lobe = RoughLobe { facets, fresnel, max_reflectance: None, albedo: None };
+                    add(LobeModel::Rough(lobe), scale);
+                }
+                Lobe::Mirror { fresnel, scale } => add(LobeModel::Mirror(Mirror { fresnel }), scale),
+                Lobe::Dielectric { eta, reflectance, transmittance } => {
+                    let way = |passage| LobeModel::Interface(Interface { eta, passage });
+                    add(way(Passage::Reflection), reflectance);
+                    add(way(Passage::Refraction), transmittance);
+                }
             }
-            Base::RoughCoat(coat) => (coat.mean_transmittance, coat.internal_reflectance),
-        };
-        let lobe_albedo = match lobe {
-            Scattering::Rough(facets, fresnel)
-                if matches!(base, Base::Lambert) || facets.alpha >= DIFFUSE_LOBE_ALPHA =>
-            {
-                Some(tables.albedo(facets, fresnel))
-            }
+        }
+        let transmits = lobes.iter().any(LobeModel::transmits);
+        // Nothing could lie beneath an interface that light passes.
+        let black = material.diffuse == BLACK || transmits;
+        if black {
+            source.base = BLACK;
+        }
+        let coat = material.coat.filter(|_| !black);
+        let facets = lobes.iter().find_map(|lobe| match lobe {
+            LobeModel::Rough(rough) => Some(rough.facets),
             _ => None,
+        });
+        let interface = match (coat, facets) {
+            (None, _) => CoatInterface::None,
+            (Some(coat), Some(facets)) => CoatInterface::Rough(tables.coat(facets, coat.eta)),
+            (Some(coat), None) => CoatInterface::Smooth(coat.eta),
         };
-        let coat = material.coat.unwrap_or(Coat { eta: 1.0, nonlinear: false });
+        let bare = !black && coat.is_none();
+        let alone = lobes.len() == 1;
+        for lobe in &mut lobes {
+            let LobeModel::Rough(rough) = lobe else { continue };
+            if bare || !alone || rough.facets.alpha >= DIFFUSE_ALPHA {
+                rough.albedo = Some(tables.albedo(rough.facets, rough.fresnel));
+            }
+            if let Fresnel::Conductor { .. } = rough.fresnel {
+                rough.max_reflectance = Some(Arc::new(max_reflectance_table(&rough.fresnel)));
+            }
+        }
         let mut model = Model {
             two_sided: material.two_sided,
-            base,
+            base: BaseModel::new(coat, interface),
             coat: 0,
-            lobe,
-            mean_transmittance,
-            max_reflectance: match lobe {
-                Scattering::Rough(_, fresnel @ Fresnel::Conductor { .. }) => {
-                    Some(Arc::new(max_reflectance(&fresnel)))
-                }
-                _ => None,
-            },
-            lobe_albedo,
-            base_factor: FRAC_1_PI / (coat.eta * coat.eta),
-            internal_reflectance,
-            nonlinear: coat.nonlinear,
-            source: Reflectances { base: if black { zero } else { material.diffuse }, scale, transmittance },
+            lobe_list: 0,
+            lambert: bare && lobes.is_empty(),
+            smooth_lobes: lobes.iter().any(|lobe| !lobe.is_delta()),
+            delta_lobes: lobes.iter().any(LobeModel::is_delta),
+            transmits,
+            lobes,
+            source,
             constant: None,
         };
-        if let Reflectances {
-            base: Reflectance::Constant(base),
-            scale: Reflectance::Constant(scale),
-            transmittance: Reflectance::Constant(transmittance),
-        } = model.source
-        {
-            let base = model.base_brdf(base);
-            model.constant = Some(Reflectances { base, scale, transmittance });
+        let textured = |r: &Reflectance| matches!(r, Reflectance::Textured { .. });
+        if !textured(&source.base) && !source.scales.iter().any(textured) {
+            model.constant = Some(model.colours(|_| Rgb::ONE));
         }
         model
     }
 
-    fn textured(&self, scene: &Scene, uv: Vec2) -> Reflectances<Rgb> {
-        let lookup = |reflectance| match reflectance {
+    /// The colours where each texture has the value `texel` of it.
+    fn colours(&self, texel: impl Fn(TextureId) -> Rgb) -> Colours<Rgb> {
+        let value = |reflectance| match reflectance {
             Reflectance::Constant(value) => value,
-            Reflectance::Textured { texture, scale } => {
-                let texel = scene.textures.get(texture.0 as usize).map_or(Rgb::ONE, |t| t.lookup(uv));
-                (texel * scale).max(Rgb::ZERO)
-            }
+            Reflectance::Textured { texture, scale } => (texel(texture) * scale).max(Rgb::ZERO),
         };
-        Reflectances {
-            base: self.base_brdf(lookup(self.source.base)),
-            scale: lookup(self.source.scale),
-            transmittance: lookup(self.source.transmittance),
-        }
-    }
-
-    /// BRDF of the base, less the coat's transmittances by angle.
-    #[inline]
-    pub(super) fn base_brdf(&self, albedo: Rgb) -> Rgb {
-        if self.internal_reflectance == 0.0 {
-            return albedo * self.base_factor;
-        }
-        let returned = if self.nonlinear { albedo.min(Rgb::ONE) } else { Rgb::ONE };
-        albedo * self.base_factor / (1.0 - returned * self.internal_reflectance)
+        Colours { base: self.base.brdf(value(self.source.base)), scales: self.source.scales.map(value) }
     }
 }

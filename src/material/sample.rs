@@ -1,9 +1,8 @@
-//! Choosing directions in proportion to what they carry: base or lobe by their expected share of the light,
-//! cosine-weighted for the base, visible normals for a rough lobe.
+//! Choosing directions in proportion to what they carry: base or lobe by their expected shares of the light,
+//! cosine-weighted for the base, by its own rule for a lobe.
 
-use super::bsdf::{Bsdf, mean};
-use super::fresnel;
-use super::model::{Base, Scattering};
+use super::bsdf::{Bsdf, Outgoing};
+use super::lobe::MAX_LOBES;
 use crate::math::Rgb;
 use crate::sampling::cosine_hemisphere;
 use glam::{Vec2, Vec3};
@@ -24,6 +23,14 @@ pub struct BsdfSample {
     pub eta: f32,
 }
 
+impl BsdfSample {
+    /// The direction of a delta lobe that has been chosen with probability 1.
+    #[inline]
+    pub(super) fn delta(wi: Vec3, weight: Rgb, eta: f32) -> BsdfSample {
+        BsdfSample { wi, weight, pdf: 1.0, delta: true, eta }
+    }
+}
+
 /// The directions in which light goes on without being spread, all of them, for following specular chains
 /// without chance: each weight is what the lobe carries, each pdf is 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -37,23 +44,19 @@ pub struct DeltaLobes {
 impl Bsdf<'_> {
     /// Chooses `wi` with [`Bsdf::pdf`] (or a delta lobe): `u_lobe` picks base or lobe, `u` the direction.
     ///
-    /// `None` where nothing is reflected, or the facet chosen sends the light into the surface: the path ends.
+    /// `None` where nothing is scattered, or the facet chosen sends the light into the surface: the path ends.
     #[inline]
     pub fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        if let Scattering::Glass(_) = self.model.lobe {
-            return self.sample_glass(wo, u_lobe);
-        }
-        let side = if wo.z < 0.0 && self.model.two_sided { -1.0 } else { 1.0 };
-        let front = Vec3::new(wo.x, wo.y, wo.z * side);
-        if front.z.is_nan() || front.z <= 0.0 {
+        let side = self.side(wo);
+        let wo = Vec3::new(wo.x, wo.y, wo.z * side);
+        if !(wo.z > 0.0) && !self.model.transmits {
             return None;
         }
-        let mut sample = match (&self.model.base, &self.model.lobe) {
-            (Base::Lambert, Scattering::None) => {
-                let wi = cosine_hemisphere(u);
-                BsdfSample { wi, weight: self.base * PI, pdf: wi.z * FRAC_1_PI, delta: false, eta: 1.0 }
-            }
-            _ => self.sample_layered(front, u_lobe, u)?,
+        let mut sample = if self.is_lambert() {
+            let wi = cosine_hemisphere(u);
+            BsdfSample { wi, weight: self.base * PI, pdf: wi.z * FRAC_1_PI, delta: false, eta: 1.0 }
+        } else {
+            self.sample_layered(wo, u_lobe, u)?
         };
         sample.wi.z *= side;
         Some(sample)
@@ -61,74 +64,53 @@ impl Bsdf<'_> {
 
     fn sample_layered(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let outgoing = self.outgoing(wo);
-        let base_probability = outgoing.base_probability;
         let smooth = |wi: Vec3, (value, pdf): (Rgb, f32)| {
-            (pdf > 0.0).then(|| BsdfSample { wi, weight: value * (wi.z / pdf), pdf, delta: false, eta: 1.0 })
+            let weight = value * (wi.z.abs() / pdf);
+            (pdf > 0.0).then_some(BsdfSample { wi, weight, pdf, delta: false, eta: 1.0 })
         };
-        if u_lobe < base_probability {
+        if u_lobe < outgoing.base_probability {
             let wi = cosine_hemisphere(u);
             return smooth(wi, self.eval_pdf_layered(&outgoing, wi));
         }
-        match &self.model.lobe {
-            Scattering::Mirror(fresnel) => {
-                let pdf = 1.0 - base_probability;
-                let weight = self.scale * fresnel.reflectance(wo.z) / pdf;
-                (pdf > 0.0).then_some(BsdfSample { wi: mirror(wo), weight, pdf, delta: true, eta: 1.0 })
-            }
-            Scattering::Rough(facets, _) => {
-                let h = facets.sample_visible(wo, u);
-                let wi = (2.0 * wo.dot(h)) * h - wo;
-                if wi.z > 0.0 { smooth(wi, self.eval_pdf_rough(&outgoing, wi, h)) } else { None }
-            }
-            Scattering::None | Scattering::Glass(_) => None,
+        let slot = self.pick(&outgoing, u_lobe)?;
+        let (lobe, pdf) = (&self.model.lobes[slot], outgoing.probabilities[slot]);
+        if !lobe.is_delta() {
+            let directions = lobe.sample(wo, u)?;
+            return smooth(directions.wi, self.eval_pdf_between(&outgoing, &directions));
         }
+        let sample = lobe.delta(self.scales[slot], wo)?;
+        (pdf > 0.0).then_some(BsdfSample { weight: sample.weight / pdf, pdf, ..sample })
     }
 
-    fn sample_glass(&self, wo: Vec3, u_lobe: f32) -> Option<BsdfSample> {
-        let lobes = self.delta_lobes(wo);
-        let share = |lobe: Option<BsdfSample>| lobe.map_or(0.0, |s| mean(s.weight) * s.eta * s.eta);
-        let (reflected, refracted) = (share(lobes.reflection), share(lobes.refraction));
-        let probability = reflected / (reflected + refracted); // NaN (nothing goes on) picks neither
-        let (lobe, pdf) = if u_lobe < probability {
-            (lobes.reflection, probability)
-        } else {
-            (lobes.refraction, 1.0 - probability)
-        };
-        let lobe = lobe?;
-        (pdf > 0.0).then_some(BsdfSample { weight: lobe.weight / pdf, pdf, ..lobe })
+    /// Slot of the lobe that `u_lobe`, beyond the base's probability, picks.
+    #[inline]
+    fn pick(&self, outgoing: &Outgoing, u_lobe: f32) -> Option<usize> {
+        let last = self.model.lobes.len().checked_sub(1)?;
+        let mut below = outgoing.base_probability;
+        for slot in 0..last.min(MAX_LOBES - 1) {
+            below += outgoing.probabilities[slot];
+            if u_lobe < below {
+                return Some(slot);
+            }
+        }
+        Some(last)
     }
 
     /// Every delta lobe as seen from `wo`.
     pub fn delta_lobes(&self, wo: Vec3) -> DeltaLobes {
-        let lobe = |wi, weight, eta| Some(BsdfSample { wi, weight, pdf: 1.0, delta: true, eta });
-        match &self.model.lobe {
-            Scattering::Mirror(fresnel) if wo.z > 0.0 || (wo.z < 0.0 && self.model.two_sided) => {
-                let weight = self.scale * fresnel.reflectance(wo.z.abs());
-                DeltaLobes { reflection: lobe(mirror(wo), weight, 1.0), refraction: None }
+        let side = self.side(wo);
+        let wo = Vec3::new(wo.x, wo.y, wo.z * side);
+        let mut all = DeltaLobes::default();
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            let Some(mut sample) = lobe.delta(self.scales[slot], wo) else { continue };
+            let way =
+                if (sample.wi.z > 0.0) == (wo.z > 0.0) { &mut all.reflection } else { &mut all.refraction };
+            sample.wi.z *= side;
+            match way {
+                Some(known) => known.weight += sample.weight,
+                None => *way = Some(sample),
             }
-            Scattering::Glass(eta) if wo.z != 0.0 => {
-                let interface = fresnel::interface(wo.z, *eta);
-                let transmitted = 1.0 - interface.reflectance;
-                let inv_eta = 1.0 / interface.eta;
-                let through =
-                    Vec3::new(-wo.x * inv_eta, -wo.y * inv_eta, -interface.cos_t.copysign(wo.z)).normalize();
-                DeltaLobes {
-                    reflection: lobe(mirror(wo), self.scale * interface.reflectance, 1.0),
-                    // The solid angle of a pencil of rays changes at the interface, and radiance with it.
-                    refraction: if transmitted > 0.0 {
-                        lobe(through, self.transmittance * (transmitted * inv_eta * inv_eta), interface.eta)
-                    } else {
-                        None
-                    },
-                }
-            }
-            _ => DeltaLobes::default(),
         }
+        all
     }
-}
-
-/// Reflection about the shading normal.
-#[inline]
-fn mirror(wo: Vec3) -> Vec3 {
-    Vec3::new(-wo.x, -wo.y, wo.z)
 }

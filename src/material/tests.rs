@@ -47,11 +47,11 @@ fn constant(value: Rgb) -> Reflectance {
 }
 
 fn material(name: &str, diffuse: Rgb, coat: Option<Coat>, lobe: Lobe) -> Material {
-    Material { name: name.into(), two_sided: false, diffuse: constant(diffuse), coat, lobe }
+    Material { name: name.into(), two_sided: false, diffuse: constant(diffuse), coat, lobes: vec![lobe] }
 }
 
 fn lambert(albedo: Rgb) -> Material {
-    material("diffuse", albedo, None, Lobe::None)
+    Material { name: "diffuse".into(), diffuse: constant(albedo), ..Material::default() }
 }
 
 fn plastic(nonlinear: bool) -> Material {
@@ -109,13 +109,36 @@ fn smooth_materials() -> Vec<Material> {
     }
     let mut inverted = rough_plastic(Distribution::Ggx, 0.2, true);
     inverted.coat = Some(Coat { eta: 0.75, nonlinear: true });
-    if let Lobe::Rough { fresnel, .. } = &mut inverted.lobe {
+    if let [Lobe::Rough { fresnel, .. }] = &mut inverted.lobes[..] {
         *fresnel = Fresnel::Dielectric(0.75);
     }
     all.push(Material { name: "coat of lower index".into(), ..inverted });
     all.push(Material { name: "two-sided".into(), two_sided: true, ..glossy(PAINT * 0.5, 0.4, 0.3) });
     all.push(Material { name: "black glossy".into(), ..glossy(Rgb::ZERO, 0.4, 0.3) });
+    all.push(layered());
+    all.push(Material { name: "layered, black base".into(), diffuse: constant(Rgb::ZERO), ..layered() });
     all
+}
+
+/// Base and three lobes: a sharp one, a wide one, and a mirror.
+fn layered() -> Material {
+    let rough = |alpha, fresnel, scale| {
+        let scale = constant(scale);
+        Lobe::Rough { distribution: Distribution::Ggx, alpha, fresnel, scale }
+    };
+    let mirror = Lobe::Mirror { fresnel: Fresnel::Dielectric(1.5), scale: constant(Rgb::splat(0.4)) };
+    let lobes =
+        vec![rough(0.4, GOLD, Rgb::splat(0.3)), mirror, rough(0.06, Fresnel::One, Rgb::new(0.1, 0.2, 0.05))];
+    Material { name: "layered".into(), diffuse: constant(PAINT * 0.3), lobes, ..Material::default() }
+}
+
+/// Least roughness of the rough lobes; infinite without any.
+fn min_alpha(material: &Material) -> f32 {
+    let alphas = material.lobes.iter().filter_map(|lobe| match lobe {
+        Lobe::Rough { alpha, .. } => Some(*alpha),
+        _ => None,
+    });
+    alphas.fold(f32::INFINITY, f32::min)
 }
 
 /// A small deterministic generator (PCG), enough for tests.
@@ -150,7 +173,7 @@ fn textures_are_looked_up_where_they_are_and_only_there() {
     let mut coated = plastic(true);
     coated.diffuse = textured;
     let mut metal = rough_conductor(Distribution::Ggx, 0.3, Rgb::ONE);
-    if let Lobe::Rough { scale, .. } = &mut metal.lobe {
+    if let [Lobe::Rough { scale, .. }] = &mut metal.lobes[..] {
         *scale = textured;
     }
     let scene = scene(vec![Material { diffuse: textured, ..lambert(Rgb::ONE) }, coated, metal]);

@@ -66,7 +66,7 @@ impl IndirectLight<'_> {
                     None => {}
                 }
             }
-            let sharp = bsdf.split_sharp_lobe();
+            let sharp = bsdf.split_sharp_lobes();
             if sharp.is_none() && !bsdf.has_delta() {
                 break;
             }

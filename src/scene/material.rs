@@ -1,7 +1,7 @@
-//! How a surface scatters: one Lambert base, at most one lobe above it, and an optional clear coat.
+//! How a surface scatters: a Lambert base, up to three lobes above it, and an optional clear coat.
 //!
 //! Every material of the supported formats is one of these combinations, so a stage that handles base,
-//! lobe and coat handles them all: `plastic` is a base under a coat with a mirror lobe, `roughplastic`
+//! lobes and coat handles them all: `plastic` is a base under a coat with a mirror lobe, `roughplastic`
 //! the same with a rough lobe, `conductor` a mirror lobe alone.
 
 use super::texture::TextureId;
@@ -25,8 +25,19 @@ pub enum Reflectance {
     },
 }
 
-/// A material: base + lobe, seen from one side or two.
-#[derive(Clone, Debug, PartialEq)]
+impl Reflectance {
+    /// No reflection anywhere.
+    pub const BLACK: Reflectance = Reflectance::Constant(Rgb::ZERO);
+}
+
+impl Default for Reflectance {
+    fn default() -> Reflectance {
+        Reflectance::BLACK
+    }
+}
+
+/// A material: base + lobes, seen from one side or two. The default is black.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Material {
     /// Name for reports.
     pub name: String,
@@ -35,10 +46,38 @@ pub struct Material {
     pub two_sided: bool,
     /// Albedo of the Lambert base, before the coat takes its share; zero where there is none.
     pub diffuse: Reflectance,
-    /// Dielectric interface over the base.
+    /// Dielectric interface over the base, as rough as the first rough lobe.
     pub coat: Option<Coat>,
-    /// What scatters besides the base.
-    pub lobe: Lobe,
+    /// What scatters besides the base: up to three, of which [`Lobe::Dielectric`] counts for two. More are ignored.
+    pub lobes: Vec<Lobe>,
+}
+
+impl Material {
+    /// Every colour that may be textured.
+    pub(super) fn reflectances_mut(&mut self) -> Vec<&mut Reflectance> {
+        let mut all = vec![&mut self.diffuse];
+        for lobe in &mut self.lobes {
+            match lobe {
+                Lobe::Rough { scale, .. } | Lobe::Mirror { scale, .. } => all.push(scale),
+                Lobe::Dielectric { reflectance, transmittance, .. } => {
+                    all.extend([reflectance, transmittance])
+                }
+            }
+        }
+        all
+    }
+
+    /// Whether any colour is textured.
+    pub fn is_textured(&self) -> bool {
+        let textured = |r: &Reflectance| matches!(r, Reflectance::Textured { .. });
+        textured(&self.diffuse)
+            || self.lobes.iter().any(|lobe| match lobe {
+                Lobe::Rough { scale, .. } | Lobe::Mirror { scale, .. } => textured(scale),
+                Lobe::Dielectric { reflectance, transmittance, .. } => {
+                    textured(reflectance) || textured(transmittance)
+                }
+            })
+    }
 }
 
 /// A smooth or rough dielectric interface over the Lambert base, as Mitsuba's `plastic` and
@@ -54,8 +93,6 @@ pub struct Coat {
 /// The part of a material that is not the Lambert base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lobe {
-    /// A purely diffuse material.
-    None,
     /// Isotropic microfacet reflection.
     Rough {
         /// Microfacet distribution.

@@ -122,11 +122,9 @@ impl Requirements {
             if let Some(used) = used.get_mut(mesh.material.0 as usize) {
                 *used = true;
             }
-            match material.lobe {
-                Lobe::None => {}
-                Lobe::Rough { .. } => glossy_area += area,
-                Lobe::Mirror { .. } | Lobe::Dielectric { .. } => specular_area += area,
-            }
+            let rough = |lobe: &Lobe| matches!(lobe, Lobe::Rough { .. });
+            glossy_area += if material.lobes.iter().any(rough) { area } else { 0.0 };
+            specular_area += if material.lobes.iter().all(rough) { 0.0 } else { area };
             reflects |= stores_light(material);
         }
         for (material, _) in scene.materials.iter().zip(&used).filter(|(_, used)| **used) {
@@ -161,26 +159,34 @@ impl Requirements {
     }
 
     fn count(&mut self, material: &Material) {
-        self.two_sided |= material.two_sided && !matches!(material.lobe, Lobe::Dielectric { .. });
+        self.two_sided |= material.two_sided && !is_glass(material);
         let kinds = &mut self.materials;
-        let kind = match (&material.lobe, &material.coat) {
-            (Lobe::None, _) => &mut kinds.diffuse,
-            (Lobe::Rough { alpha, .. }, coat) => {
-                self.smallest_alpha = Some(self.smallest_alpha.map_or(*alpha, |a| a.min(*alpha)));
-                if coat.is_some() { &mut kinds.rough_plastic } else { &mut kinds.glossy }
-            }
-            (Lobe::Mirror { .. }, Some(_)) => &mut kinds.plastic,
-            (Lobe::Mirror { .. }, None) => &mut kinds.mirror,
-            (Lobe::Dielectric { .. }, _) => &mut kinds.glass,
+        let kind = match (material.lobes.first(), &material.coat) {
+            _ if is_glass(material) => &mut kinds.glass,
+            (None | Some(Lobe::Dielectric { .. }), _) => &mut kinds.diffuse,
+            (Some(Lobe::Rough { .. }), Some(_)) => &mut kinds.rough_plastic,
+            (Some(Lobe::Rough { .. }), None) => &mut kinds.glossy,
+            (Some(Lobe::Mirror { .. }), Some(_)) => &mut kinds.plastic,
+            (Some(Lobe::Mirror { .. }), None) => &mut kinds.mirror,
         };
         *kind += 1;
+        for lobe in &material.lobes {
+            if let Lobe::Rough { alpha, .. } = lobe {
+                self.smallest_alpha = Some(self.smallest_alpha.map_or(*alpha, |a| a.min(*alpha)));
+            }
+        }
     }
 }
 
 /// True if the material reflects light in all directions, so that reflected light has to be stored.
 fn stores_light(material: &Material) -> bool {
     let black = |r: &Reflectance| matches!(r, Reflectance::Constant(c) if c.max_element() <= 0.0);
-    !black(&material.diffuse) || matches!(&material.lobe, Lobe::Rough { scale, .. } if !black(scale))
+    let glossy = |lobe: &Lobe| matches!(lobe, Lobe::Rough { scale, .. } if !black(scale));
+    !black(&material.diffuse) || material.lobes.iter().any(glossy)
+}
+
+fn is_glass(material: &Material) -> bool {
+    material.lobes.iter().any(|lobe| matches!(lobe, Lobe::Dielectric { .. }))
 }
 
 fn area_and_bounds(mesh: &super::Mesh, low: &mut DVec3, high: &mut DVec3) -> f64 {

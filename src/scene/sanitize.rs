@@ -195,35 +195,28 @@ fn check_material(
     place: &Place,
     report: &mut SanitizeReport,
 ) -> Result<(), SceneError> {
-    let name = &material.name;
+    let name = material.name.clone();
     let wrong = |what: String, remedy: &str| {
         Err(SceneError::value(place, format!("material \"{name}\": {what}"), remedy))
     };
     let positive = |v: f32| v.is_finite() && v > 0.0;
-    let mut reflectances = vec![&mut material.diffuse];
-    let etas = material.coat.map(|c| c.eta);
-    match &mut material.lobe {
-        Lobe::None => {}
-        Lobe::Rough { alpha, scale, .. } => {
-            if !alpha.is_finite() || *alpha < 0.0 {
-                return wrong(format!("its roughness is {alpha}"), "give 0 to 1");
+    let mut etas = Vec::from_iter(material.coat.map(|coat| coat.eta));
+    for lobe in &mut material.lobes {
+        match lobe {
+            Lobe::Rough { alpha, .. } => {
+                if !alpha.is_finite() || *alpha < 0.0 {
+                    return wrong(format!("its roughness is {alpha}"), "give 0 to 1");
+                }
+                *alpha = alpha.max(MIN_ALPHA);
             }
-            *alpha = alpha.max(MIN_ALPHA);
-            reflectances.push(scale);
-        }
-        Lobe::Mirror { scale, .. } => reflectances.push(scale),
-        Lobe::Dielectric { eta, reflectance, transmittance } => {
-            if !positive(*eta) {
-                return wrong(format!("its index of refraction is {eta}"), "give a number above 0");
-            }
-            reflectances.push(reflectance);
-            reflectances.push(transmittance);
+            Lobe::Mirror { .. } => {}
+            Lobe::Dielectric { eta, .. } => etas.push(*eta),
         }
     }
-    if let Some(eta) = etas.filter(|eta| !positive(*eta)) {
+    if let Some(eta) = etas.into_iter().find(|eta| !positive(*eta)) {
         return wrong(format!("its index of refraction is {eta}"), "give a number above 0");
     }
-    for reflectance in reflectances {
+    for reflectance in material.reflectances_mut() {
         match reflectance {
             Reflectance::Constant(albedo) => {
                 if !albedo.is_finite() || albedo.min_element() < 0.0 {
@@ -253,20 +246,18 @@ fn check_material(
     check_sum(material, place)
 }
 
-/// Checks that a Lambert base and a lobe of constant reflectance do not exceed 1 together.
+/// Checks that a bare Lambert base and lobes of constant reflectance do not exceed 1 together.
 fn check_sum(material: &Material, place: &Place) -> Result<(), SceneError> {
-    let (
-        Lobe::Rough { fresnel: Fresnel::One, scale, .. } | Lobe::Mirror { fresnel: Fresnel::One, scale },
-        None,
-    ) = (&material.lobe, &material.coat)
-    else {
-        return Ok(());
+    let (None, Reflectance::Constant(base)) = (material.coat, material.diffuse) else { return Ok(()) };
+    let constant = |lobe: &Lobe| match lobe {
+        Lobe::Rough { fresnel: Fresnel::One, scale: Reflectance::Constant(scale), .. }
+        | Lobe::Mirror { fresnel: Fresnel::One, scale: Reflectance::Constant(scale) } => *scale,
+        _ => Rgb::ZERO,
     };
-    if let (Reflectance::Constant(base), Reflectance::Constant(lobe)) = (material.diffuse, *scale)
-        && (base + lobe).max_element() > 1.0 + ALBEDO_SLACK
-    {
+    let lobes: Rgb = material.lobes.iter().map(constant).sum();
+    if lobes != Rgb::ZERO && (base + lobes).max_element() > 1.0 + ALBEDO_SLACK {
         let what =
-            format!("material \"{}\": diffuse {base} and specular {lobe} exceed 1 together", material.name);
+            format!("material \"{}\": diffuse {base} and specular {lobes} exceed 1 together", material.name);
         return Err(SceneError::value(place, what, "lower one of them"));
     }
     Ok(())

@@ -77,20 +77,21 @@ pub fn diffuse(reflectance: Rgb) -> Material {
         two_sided: true,
         diffuse: Reflectance::Constant(reflectance),
         coat: None,
-        lobe: Lobe::None,
+        lobes: vec![],
     }
 }
 
 pub fn mirror() -> Material {
     Material {
-        lobe: Lobe::Mirror { fresnel: Fresnel::One, scale: Reflectance::Constant(Rgb::ONE) },
+        lobes: vec![Lobe::Mirror { fresnel: Fresnel::One, scale: Reflectance::Constant(Rgb::ONE) }],
         ..diffuse(Rgb::ZERO)
     }
 }
 
 pub fn glass(eta: f32) -> Material {
     let one = Reflectance::Constant(Rgb::ONE);
-    Material { lobe: Lobe::Dielectric { eta, reflectance: one, transmittance: one }, ..diffuse(Rgb::ZERO) }
+    let lobes = vec![Lobe::Dielectric { eta, reflectance: one, transmittance: one }];
+    Material { lobes, ..diffuse(Rgb::ZERO) }
 }
 
 pub fn add_material(scene: &mut Scene, material: Material) -> MaterialId {

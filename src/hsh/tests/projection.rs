@@ -7,7 +7,7 @@ use crate::hsh::kernel::even_index;
 use crate::hsh::projection::{Projection, Quadrature};
 use crate::hsh::*;
 use crate::material::tests::scene;
-use crate::material::{Bsdf, Materials};
+use crate::material::{Materials, RoughLobe};
 use crate::math::Rgb;
 use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, TextureId};
 use glam::{DVec3, Vec2, Vec3};
@@ -21,18 +21,12 @@ fn constant(value: f32) -> Reflectance {
 }
 
 fn lambert(albedo: f32) -> Material {
-    Material {
-        name: "lambert".into(),
-        two_sided: true,
-        diffuse: constant(albedo),
-        coat: None,
-        lobe: Lobe::None,
-    }
+    Material { name: "lambert".into(), two_sided: true, diffuse: constant(albedo), coat: None, lobes: vec![] }
 }
 
 fn rough(alpha: f32, fresnel: Fresnel, albedo: f32, coat: Option<Coat>) -> Material {
     let lobe = Lobe::Rough { distribution: Distribution::Ggx, alpha, fresnel, scale: constant(1.0) };
-    Material { coat, lobe, ..lambert(albedo) }
+    Material { coat, lobes: vec![lobe], ..lambert(albedo) }
 }
 
 fn metal(alpha: f32) -> Material {
@@ -43,10 +37,10 @@ fn rough_plastic(alpha: f32, albedo: f32) -> Material {
     rough(alpha, Fresnel::Dielectric(1.5), albedo, Some(Coat { eta: 1.5, nonlinear: true }))
 }
 
-fn with_lobe<R>(material: Material, f: impl FnOnce(&Bsdf) -> R) -> R {
+fn with_lobe<R>(material: Material, f: impl FnOnce(&RoughLobe) -> R) -> R {
     let scene = scene(vec![material]);
     let materials = Materials::new(&scene);
-    f(&materials.at(&scene, MaterialId(0), Vec2::ZERO).unit_lobe().unwrap())
+    f(materials.at(&scene, MaterialId(0), Vec2::ZERO).dull_lobes().next().unwrap().1)
 }
 
 fn relative_error(projection: &Projection, bands: usize) -> f64 {
@@ -168,14 +162,14 @@ fn interpolation_keeps_its_tolerance_everywhere() {
     let quadrature = Quadrature::standard();
     let mut random = Random(3);
     for i in 0..scene.materials.len() {
-        let lobe = materials.at(&scene, MaterialId(i as u32), Vec2::ZERO).unit_lobe().unwrap();
+        let lobe = materials.at(&scene, MaterialId(i as u32), Vec2::ZERO).dull_lobes().next().unwrap().1;
         for tolerance in [0.01, 0.001] {
-            let table = lobe_table::LobeTable::new(&lobe, MAX_BANDS, tolerance, &quadrature);
+            let table = lobe_table::LobeTable::new(lobe, MAX_BANDS, tolerance, &quadrature);
             assert!(table.directions() > 16 && table.directions() < 200);
             let mut angles: Vec<f64> = (0..60).map(|_| random.next()).collect();
             angles.extend([0.0, 1e-7, 0.999, 1.0]);
             for cos_o in angles {
-                let (values, exact) = (table.lookup(cos_o as f32), quadrature.project(&lobe, cos_o));
+                let (values, exact) = (table.lookup(cos_o as f32), quadrature.project(lobe, cos_o));
                 let mut error_sq = 0.0;
                 for (values, exact) in values.iter().zip(&exact.coefficients) {
                     for l in 0..MAX_BANDS {
@@ -304,15 +298,16 @@ fn hundreds_of_virtual_lights_are_reflected_as_by_the_brdf() {
 #[test]
 fn each_material_gets_the_records_it_needs() {
     let smooth = Lobe::Mirror { fresnel: Fresnel::Dielectric(1.5), scale: constant(1.0) };
-    let plastic = Material { coat: Some(Coat { eta: 1.5, nonlinear: false }), lobe: smooth, ..lambert(0.5) };
+    let plastic =
+        Material { coat: Some(Coat { eta: 1.5, nonlinear: false }), lobes: vec![smooth], ..lambert(0.5) };
     let mut dull = metal(0.5);
-    if let Lobe::Rough { scale, .. } = &mut dull.lobe {
+    if let [Lobe::Rough { scale, .. }] = &mut dull.lobes[..] {
         *scale = constant(0.0);
     }
     let list = [
         (lambert(0.7), Some(Caching::Irradiance)),
         (plastic, Some(Caching::Irradiance)),
-        (Material { lobe: smooth, ..lambert(0.0) }, Some(Caching::Irradiance)),
+        (Material { lobes: vec![smooth], ..lambert(0.0) }, Some(Caching::Irradiance)),
         (dull, Some(Caching::Irradiance)),
         (rough_plastic(0.05, 0.5), Some(Caching::Irradiance)), // the eye pass follows its lobe
         (rough_plastic(0.15, 0.5), Some(Caching::PerSample)),
@@ -356,7 +351,7 @@ fn each_material_gets_the_records_it_needs() {
 fn textures_scale_base_and_lobe_at_each_point() {
     let textured = Reflectance::Textured { texture: TextureId(0), scale: Rgb::splat(0.8) };
     let mut metal = rough(0.5, GOLD, 0.0, None);
-    if let Lobe::Rough { scale, .. } = &mut metal.lobe {
+    if let [Lobe::Rough { scale, .. }] = &mut metal.lobes[..] {
         *scale = textured;
     }
     let scene = scene(vec![metal, Material { diffuse: textured, ..rough_plastic(0.4, 0.5) }]);
@@ -396,8 +391,9 @@ fn tables_are_the_same_for_any_number_of_threads() {
         pool.install(|| {
             (0..scene.materials.len())
                 .map(|i| {
-                    let lobe = materials.at(&scene, MaterialId(i as u32), Vec2::ZERO).unit_lobe().unwrap();
-                    lobe_table::LobeTable::new(&lobe, 6, 0.002, &quadrature)
+                    let lobe =
+                        materials.at(&scene, MaterialId(i as u32), Vec2::ZERO).dull_lobes().next().unwrap().1;
+                    lobe_table::LobeTable::new(lobe, 6, 0.002, &quadrature)
                 })
                 .collect::<Vec<_>>()
         })

@@ -58,7 +58,7 @@ fn sampling_follows_the_density() {
     for material in smooth_materials() {
         with_bsdf(&material, |bsdf| {
             for theta in INCLINATIONS {
-                if theta > 1.3 && matches!(material.lobe, Lobe::Rough { alpha, .. } if alpha < 0.2) {
+                if theta > 1.3 && min_alpha(&material) < 0.2 {
                     continue; // the reflection is narrower than the quadrature's nodes are apart
                 }
                 let wo = direction(theta, 0.5);
@@ -128,12 +128,12 @@ fn delta_lobes_are_sampled_for_what_they_carry() {
     let mut random = Random(3);
     let scale = |material: Material, reflectance: Rgb, transmittance: Rgb| {
         let (r, t) = (constant(reflectance), constant(transmittance));
-        let lobe = match material.lobe {
-            Lobe::Dielectric { eta, .. } => Lobe::Dielectric { eta, reflectance: r, transmittance: t },
-            Lobe::Mirror { fresnel, .. } => Lobe::Mirror { fresnel, scale: r },
-            other => other,
+        let lobe = match material.lobes[..] {
+            [Lobe::Dielectric { eta, .. }] => Lobe::Dielectric { eta, reflectance: r, transmittance: t },
+            [Lobe::Mirror { fresnel, .. }] => Lobe::Mirror { fresnel, scale: r },
+            _ => panic!("{}", material.name),
         };
-        Material { lobe, ..material }
+        Material { lobes: vec![lobe], ..material }
     };
     for material in [
         mirror(GOLD),
@@ -144,6 +144,7 @@ fn delta_lobes_are_sampled_for_what_they_carry() {
         scale(glass(1.5), Rgb::new(0.2, 0.3, 0.4), Rgb::new(0.9, 0.2, 0.1)),
         scale(glass(1.5), Rgb::ZERO, Rgb::ONE),
         scale(glass(1.5), Rgb::ZERO, Rgb::ZERO),
+        layered(),
     ] {
         with_bsdf(&material, |bsdf| {
             for theta in [0.0, 0.7, 1.5, 1.7, 2.5] {

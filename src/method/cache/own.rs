@@ -117,7 +117,7 @@ pub fn patches(source: &Source, samples: &EyePass, jobs: &[Job]) -> Vec<Vec<Job>
     };
     let bsdf = |job: &Job| &samples.points.surfaces[job.sample as usize].bsdf;
     let same =
-        |a: &Job, b: &Job| a.lobe_only == b.lobe_only && a.origin == b.origin && bsdf(a).same_lobe(bsdf(b));
+        |a: &Job, b: &Job| a.lobe_only == b.lobe_only && a.origin == b.origin && bsdf(a).same_lobes(bsdf(b));
     let diagonal = source.world.diagonal;
     let most = source.settings.patch(samples.len());
     let patches = group_coherent(CoherenceLimit::CLOSE, jobs.iter().copied(), most, diagonal, place, same);

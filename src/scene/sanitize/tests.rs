@@ -6,7 +6,7 @@ use crate::scene::texture::{Filter, TextureId, Wrap};
 
 fn grey() -> Material {
     let diffuse = Reflectance::Constant(Rgb::splat(0.5));
-    Material { name: "grey".into(), two_sided: false, diffuse, coat: None, lobe: Lobe::None }
+    Material { name: "grey".into(), diffuse, ..Material::default() }
 }
 
 fn draft(meshes: Vec<DraftMesh>, materials: Vec<Material>) -> Draft {
@@ -114,12 +114,12 @@ fn reflectances_must_not_create_energy() {
         fresnel,
         scale: Reflectance::Constant(Rgb::splat(scale)),
     };
-    let glossy = |fresnel, scale| Material { lobe: lobe(fresnel, scale), ..grey() };
+    let glossy = |fresnel, scale| Material { lobes: vec![lobe(fresnel, scale)], ..grey() };
     assert!(sanitize(&mut draft(vec![], vec![glossy(Fresnel::One, 0.6)])).is_err(), "0.5 + 0.6");
     assert!(sanitize(&mut draft(vec![], vec![glossy(Fresnel::Dielectric(1.5), 1.0)])).is_ok());
     let mut d = draft(vec![], vec![glossy(Fresnel::One, 0.5)]);
     sanitize(&mut d).unwrap();
-    assert!(matches!(d.materials[0].lobe, Lobe::Rough { alpha, .. } if alpha == MIN_ALPHA));
+    assert!(matches!(d.materials[0].lobes[..], [Lobe::Rough { alpha, .. }] if alpha == MIN_ALPHA));
 
     let coated = |eta| Material { coat: Some(Coat { eta, nonlinear: false }), ..grey() };
     for eta in [0.0, -1.5, f32::NAN] {

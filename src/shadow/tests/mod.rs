@@ -101,7 +101,7 @@ fn world() -> World {
         two_sided: true,
         diffuse: Reflectance::Constant(Rgb::ONE),
         coat: None,
-        lobe: crate::scene::Lobe::None,
+        lobes: vec![],
     };
     World::new(Scene { meshes, materials: vec![grey], ..Scene::default() }, 1).unwrap()
 }

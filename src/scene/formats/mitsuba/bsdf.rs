@@ -11,8 +11,6 @@ use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::material::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance};
 use std::rc::Rc;
 
-const BLACK: Reflectance = Reflectance::Constant(Rgb::ZERO);
-
 impl Converter<'_> {
     /// The material of a shape: its bsdf's, or Mitsuba's default, which is black on emitters.
     pub(super) fn material_of_shape(
@@ -100,7 +98,7 @@ impl Converter<'_> {
     /// The nested bsdf seen from both sides.
     fn two_sided(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let nested = self.nested(bsdf, depth)?;
-        if matches!(nested.lobe, Lobe::Dielectric { .. }) {
+        if let [Lobe::Dielectric { .. }, ..] = nested.lobes[..] {
             self.log.warn(&bsdf.place, "twosided stands around a transmitting bsdf", "it is left out")?;
         }
         Ok(Material { two_sided: true, ..nested })
@@ -139,7 +137,7 @@ impl Converter<'_> {
             _ => self.rough(bsdf, fresnel, scale)?,
         };
         let coat = Some(Coat { eta, nonlinear: bsdf.boolean("nonlinear", false)? });
-        Ok(Material { name, two_sided: false, diffuse, coat, lobe })
+        Ok(Material { name, diffuse, coat, lobes: vec![lobe], ..Material::default() })
     }
 
     fn conductor(&mut self, bsdf: &Object, name: String) -> Result<Material, SceneError> {
@@ -175,7 +173,7 @@ impl Converter<'_> {
             "conductor" => Lobe::Mirror { fresnel, scale },
             _ => self.rough(bsdf, fresnel, scale)?,
         };
-        Ok(Material { name, two_sided: false, diffuse: BLACK, coat: None, lobe })
+        Ok(Material { name, lobes: vec![lobe], ..Material::default() })
     }
 
     fn dielectric(&mut self, bsdf: &Object, name: String) -> Result<Material, SceneError> {
@@ -215,7 +213,7 @@ impl Converter<'_> {
         self.log.warn(&bsdf.place, what, format!("a GGX lobe of alpha {alpha:.4} stands in"))?;
         let alpha = alpha as f32;
         let lobe = Lobe::Rough { distribution: Distribution::Ggx, alpha, fresnel: Fresnel::One, scale };
-        Ok(Material { name, two_sided: false, diffuse, coat: None, lobe })
+        Ok(Material { name, diffuse, lobes: vec![lobe], ..Material::default() })
     }
 
     fn rough(&mut self, bsdf: &Object, fresnel: Fresnel, scale: Reflectance) -> Result<Lobe, SceneError> {
@@ -279,10 +277,10 @@ impl Converter<'_> {
 }
 
 fn diffuse(name: String, diffuse: Reflectance) -> Material {
-    Material { name, two_sided: false, diffuse, coat: None, lobe: Lobe::None }
+    Material { name, diffuse, ..Material::default() }
 }
 
 fn glass(name: String, eta: f32, reflectance: Reflectance, transmittance: Reflectance) -> Material {
     let lobe = Lobe::Dielectric { eta, reflectance, transmittance };
-    Material { name, two_sided: true, diffuse: BLACK, coat: None, lobe }
+    Material { name, two_sided: true, lobes: vec![lobe], ..Material::default() }
 }

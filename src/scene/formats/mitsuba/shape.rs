@@ -5,7 +5,7 @@ use super::tree::Object;
 use crate::scene::formats::error::SceneError;
 use crate::scene::formats::mesh::{Normals, Placement, shapes};
 use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan};
-use crate::scene::material::{Lobe, Material, MaterialId, Reflectance};
+use crate::scene::material::{Material, MaterialId};
 use glam::{DMat4, DVec3};
 
 impl Converter<'_> {
@@ -88,18 +88,6 @@ impl Converter<'_> {
     }
 
     fn is_textured(&self, id: MaterialId) -> bool {
-        self.parts.materials.get(id.0 as usize).is_some_and(uses_texture)
+        self.parts.materials.get(id.0 as usize).is_some_and(Material::is_textured)
     }
-}
-
-fn uses_texture(material: &Material) -> bool {
-    let textured = |r: &Reflectance| matches!(r, Reflectance::Textured { .. });
-    textured(&material.diffuse)
-        || match &material.lobe {
-            Lobe::None => false,
-            Lobe::Rough { scale, .. } | Lobe::Mirror { scale, .. } => textured(scale),
-            Lobe::Dielectric { reflectance, transmittance, .. } => {
-                textured(reflectance) || textured(transmittance)
-            }
-        }
 }

@@ -33,14 +33,14 @@ fn defaults_are_mitsubas() {
     let (m, _) = bsdf("<bsdf type=\"roughplastic\"/>");
     assert!(matches!(m.coat, Some(c) if (c.eta - 1.49 / 1.000277).abs() < 1e-6 && !c.nonlinear));
     assert_eq!(m.diffuse, Reflectance::Constant(Rgb::splat(0.5)));
-    assert!(matches!(m.lobe, Lobe::Rough { distribution: Distribution::Beckmann, alpha: 0.1, .. }));
+    assert!(matches!(m.lobes[..], [Lobe::Rough { distribution: Distribution::Beckmann, alpha: 0.1, .. }]));
     assert!(!m.two_sided);
     let (m, _) = bsdf("<bsdf type=\"dielectric\"/>");
-    assert!(matches!(m.lobe, Lobe::Dielectric { eta, .. } if (eta - 1.5046 / 1.000277).abs() < 1e-6));
+    assert!(matches!(m.lobes[..], [Lobe::Dielectric { eta, .. }] if (eta - 1.5046 / 1.000277).abs() < 1e-6));
     let (m, _) = bsdf("<bsdf type=\"conductor\"/>");
-    assert!(matches!(m.lobe, Lobe::Mirror { fresnel: Fresnel::One, .. }));
+    assert!(matches!(m.lobes[..], [Lobe::Mirror { fresnel: Fresnel::One, .. }]));
     let (m, _) = bsdf("<bsdf type=\"roughconductor\"><string name=\"material\" value=\"Cr\"/></bsdf>");
-    let Lobe::Rough { fresnel: Fresnel::Conductor { eta, k }, .. } = m.lobe else { panic!("{m:?}") };
+    let [Lobe::Rough { fresnel: Fresnel::Conductor { eta, k }, .. }] = m.lobes[..] else { panic!("{m:?}") };
     assert!((eta - Vec3::new(4.36967, 2.91651, 1.6549)).length() < 1e-4);
     assert!((k - Vec3::new(5.20655, 4.23131, 3.7547)).length() < 1e-4);
     let (m, _) = bsdf("");
@@ -61,8 +61,8 @@ fn the_old_spellings_mean_the_same() {
     assert_eq!(old.meshes[0].positions, new.meshes[0].positions);
     assert_eq!(old.centre, new.centre);
     assert_eq!(
-        (old.materials[0].coat, old.materials[0].lobe),
-        (new.materials[0].coat, new.materials[0].lobe)
+        (old.materials[0].coat, &old.materials[0].lobes),
+        (new.materials[0].coat, &new.materials[0].lobes)
     );
     let [Reflectance::Constant(a), Reflectance::Constant(b)] =
         [old.materials[0].diffuse, new.materials[0].diffuse]
@@ -99,7 +99,7 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
     }
     let (phong, _) = bsdf("<bsdf type=\"phong\"><float name=\"exponent\" value=\"98\"/></bsdf>");
     assert!(
-        matches!(phong.lobe, Lobe::Rough { alpha, .. } if (alpha - (2.0f32 / 100.0).sqrt()).abs() < 1e-6)
+        matches!(phong.lobes[..], [Lobe::Rough { alpha, .. }] if (alpha - (2.0f32 / 100.0).sqrt()).abs() < 1e-6)
     );
     let (mask, _) = bsdf(&format!("<bsdf type=\"mask\">{nested}</bsdf>"));
     assert_eq!(mask.diffuse, Reflectance::Constant(Rgb::splat(0.3)));

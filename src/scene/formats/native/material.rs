@@ -23,8 +23,6 @@ use crate::scene::texture::{Filter, TextureId, Wrap};
 use glam::{DVec3, Mat3, Vec2};
 use toml::Spanned;
 
-const BLACK: Reflectance = Reflectance::Constant(Rgb::ZERO);
-
 impl Builder<'_> {
     pub(super) fn material(&mut self, text: &Spanned<MaterialText>) -> Result<(), SceneError> {
         let place = self.file.place(text.span());
@@ -32,7 +30,8 @@ impl Builder<'_> {
         check_keys(text, &place)?;
         let (diffuse, coat, lobe) = self.layers(text, &place)?;
         let two_sided = text.two_sided.unwrap_or(true);
-        let material = Material { name: text.name.clone(), two_sided, diffuse, coat, lobe };
+        let lobes = Vec::from_iter(lobe);
+        let material = Material { name: text.name.clone(), two_sided, diffuse, coat, lobes };
         let id = self.add_material(material, place.clone());
         if self.material_ids.insert(text.name.clone(), id).is_some() {
             let what = format!("there are two materials called \"{}\"", text.name);
@@ -45,7 +44,7 @@ impl Builder<'_> {
         &mut self,
         text: &MaterialText,
         place: &Place,
-    ) -> Result<(Reflectance, Option<Coat>, Lobe), SceneError> {
+    ) -> Result<(Reflectance, Option<Coat>, Option<Lobe>), SceneError> {
         let need = |colour: &Option<ColourText>, key: &str| {
             let what = || format!("the material \"{}\" lacks {key}", text.name);
             colour.clone().ok_or_else(|| SceneError::value(place, what(), format!("add {key} = ...")))
@@ -53,11 +52,11 @@ impl Builder<'_> {
         let one = || ColourText::Grey(1.0);
         let ior = text.ior.unwrap_or(1.5) as f32;
         Ok(match text.kind.as_str() {
-            "diffuse" => (self.colour(&need(&text.reflectance, "reflectance")?, place)?, None, Lobe::None),
+            "diffuse" => (self.colour(&need(&text.reflectance, "reflectance")?, place)?, None, None),
             "glossy" => {
                 let diffuse = self.colour(&need(&text.diffuse, "diffuse")?, place)?;
                 let scale = self.colour(&need(&text.specular, "specular")?, place)?;
-                (diffuse, None, rough(text, Fresnel::One, scale, place)?)
+                (diffuse, None, Some(rough(text, Fresnel::One, scale, place)?))
             }
             "plastic" | "roughplastic" => {
                 let diffuse = self.colour(&need(&text.diffuse, "diffuse")?, place)?;
@@ -67,7 +66,8 @@ impl Builder<'_> {
                     "plastic" => Lobe::Mirror { fresnel, scale },
                     _ => rough(text, fresnel, scale, place)?,
                 };
-                (diffuse, Some(Coat { eta: ior, nonlinear: text.nonlinear.unwrap_or(false) }), lobe)
+                let coat = Coat { eta: ior, nonlinear: text.nonlinear.unwrap_or(false) };
+                (diffuse, Some(coat), Some(lobe))
             }
             "conductor" => {
                 let scale = self.colour(&text.specular.clone().unwrap_or(one()), place)?;
@@ -76,18 +76,19 @@ impl Builder<'_> {
                     None | Some(0.0) => Lobe::Mirror { fresnel, scale },
                     Some(_) => rough(text, fresnel, scale, place)?,
                 };
-                (BLACK, None, lobe)
+                (Reflectance::BLACK, None, Some(lobe))
             }
             "mirror" => {
                 let scale = self.colour(&text.reflectance.clone().unwrap_or(one()), place)?;
-                (BLACK, None, Lobe::Mirror { fresnel: Fresnel::One, scale })
+                (Reflectance::BLACK, None, Some(Lobe::Mirror { fresnel: Fresnel::One, scale }))
             }
             "glass" => {
                 let reflectance = self.colour(&text.reflectance.clone().unwrap_or(one()), place)?;
                 let transmittance = self.colour(&text.transmittance.clone().unwrap_or(one()), place)?;
-                (BLACK, None, Lobe::Dielectric { eta: ior, reflectance, transmittance })
+                let glass = Lobe::Dielectric { eta: ior, reflectance, transmittance };
+                (Reflectance::BLACK, None, Some(glass))
             }
-            _ => (BLACK, None, Lobe::None),
+            _ => (Reflectance::BLACK, None, None),
         })
     }
 

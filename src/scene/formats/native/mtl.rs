@@ -15,8 +15,6 @@ use crate::scene::material::{Distribution, Fresnel, Lobe, Material, MaterialId, 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-const BLACK: Reflectance = Reflectance::Constant(Rgb::ZERO);
-
 impl Builder<'_> {
     /// Reads the materials of the OBJ's libraries, by name.
     pub(super) fn read_mtl(
@@ -54,7 +52,7 @@ impl Builder<'_> {
     pub(super) fn default_material(&mut self, place: &Place) -> MaterialId {
         let grey = Reflectance::Constant(Rgb::splat(0.5));
         let material =
-            Material { name: "default".into(), two_sided: true, diffuse: grey, coat: None, lobe: Lobe::None };
+            Material { name: "default".into(), two_sided: true, diffuse: grey, ..Material::default() };
         self.add_material(material, place.clone())
     }
 
@@ -62,8 +60,13 @@ impl Builder<'_> {
         let place = &source.place;
         let (kd, ks) = (source.diffuse, source.specular);
         let name = source.name.clone();
-        let made =
-            |diffuse, lobe| Material { name: name.clone(), two_sided: true, diffuse, coat: None, lobe };
+        let made = |diffuse, lobe| Material {
+            name: name.clone(),
+            two_sided: true,
+            diffuse,
+            coat: None,
+            lobes: Vec::from_iter(lobe),
+        };
         if source.emissive != Rgb::ZERO {
             let what = format!("the material \"{name}\" emits");
             self.log.warn(place, what, "it does not: give the mesh an emission in the scene file")?;
@@ -74,11 +77,12 @@ impl Builder<'_> {
         if matches!(source.model, 4 | 6 | 7 | 9) || source.dissolve < 1.0 {
             let eta = source.ior.filter(|n| *n > 0.0).unwrap_or(1.5);
             let white = Reflectance::Constant(Rgb::ONE);
-            return Ok(made(BLACK, Lobe::Dielectric { eta, reflectance: white, transmittance: white }));
+            let glass = Lobe::Dielectric { eta, reflectance: white, transmittance: white };
+            return Ok(made(Reflectance::BLACK, Some(glass)));
         }
         if matches!(source.model, 3 | 5) {
             let scale = Reflectance::Constant(ks.min(Rgb::ONE));
-            return Ok(made(BLACK, Lobe::Mirror { fresnel: Fresnel::One, scale }));
+            return Ok(made(Reflectance::BLACK, Some(Lobe::Mirror { fresnel: Fresnel::One, scale })));
         }
         let diffuse = match &source.diffuse_map {
             Some(map) => match self.mtl_texture(map, file) {
@@ -91,7 +95,7 @@ impl Builder<'_> {
             None => Reflectance::Constant(kd),
         };
         if source.model < 2 || ks == Rgb::ZERO || source.exponent <= 0.0 {
-            return Ok(made(diffuse, Lobe::None));
+            return Ok(made(diffuse, None));
         }
         let room = (Rgb::ONE - kd.min(Rgb::ONE)).max(Rgb::ZERO);
         let lobe = Lobe::Rough {
@@ -104,7 +108,7 @@ impl Builder<'_> {
             let what = format!("Kd and Ks of the material \"{name}\" exceed 1 together");
             self.log.warn(place, what, "its lobe is dimmed")?;
         }
-        Ok(made(diffuse, lobe))
+        Ok(made(diffuse, Some(lobe)))
     }
 
     fn mtl_texture(&mut self, name: &str, file: &Path) -> Reflectance {

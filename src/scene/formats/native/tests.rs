@@ -61,9 +61,12 @@ fn every_kind_of_material_light_and_step_is_read() {
     assert_eq!(scene.materials.len(), 8);
     assert!(!scene.materials[0].two_sided && scene.materials[1].two_sided);
     assert!(matches!(scene.materials[3].coat, Some(c) if c.eta == 1.3 && c.nonlinear));
-    assert!(matches!(scene.materials[4].lobe, Lobe::Mirror { fresnel: Fresnel::Conductor { .. }, .. }));
-    assert!(matches!(scene.materials[5].lobe, Lobe::Rough { alpha: 0.2, .. }));
-    assert!(matches!(scene.materials[7].lobe, Lobe::Dielectric { eta: 1.6, .. }));
+    assert!(matches!(
+        scene.materials[4].lobes[..],
+        [Lobe::Mirror { fresnel: Fresnel::Conductor { .. }, .. }]
+    ));
+    assert!(matches!(scene.materials[5].lobes[..], [Lobe::Rough { alpha: 0.2, .. }]));
+    assert!(matches!(scene.materials[7].lobes[..], [Lobe::Dielectric { eta: 1.6, .. }]));
     // Scaled, then laid down facing -y, then moved by 1 along z and 10 along x.
     let corner = scene.meshes[0].positions[0].as_dvec3() + scene.centre;
     assert!((corner - DVec3::new(8.0, 0.0, -1.0)).length() < 1e-5, "{corner}");
@@ -131,7 +134,7 @@ fn an_obj_brings_its_mtl_materials() {
         scene.meshes.iter().map(|m| scene.materials[m.material.0 as usize].name.as_str()).collect();
     assert_eq!(names, ["red", "shiny", "default"]);
     let shiny = &scene.materials[scene.meshes[1].material.0 as usize];
-    let Lobe::Rough { alpha, scale: Reflectance::Constant(scale), .. } = shiny.lobe else { panic!() };
+    let [Lobe::Rough { alpha, scale: Reflectance::Constant(scale), .. }] = shiny.lobes[..] else { panic!() };
     assert!((alpha - (2.0f32 / 100.0).sqrt()).abs() < 1e-6);
     assert!((scale - Vec3::new(0.5, 0.5, 0.6)).length() < 1e-6, "dimmed: {scale}");
     assert_eq!(loaded.warnings.len(), 1, "{:?}", loaded.warnings);

@@ -1,0 +1,161 @@
+//! Lobes: how a surface scatters besides its Lambertian base. One file a lobe holds everything about it: value and
+//! sampling density, sampling, albedo, the upper bound for clusters of lights, and value and bound in sixteen lanes.
+//!
+//! A [`LobeModel`] is what all points of a material share. The lobe's factor, which may be textured, comes with each
+//! call as `scale`. The dispatch in this file is the only code that knows which lobes there are.
+
+mod half_vector;
+mod interface;
+mod mirror;
+mod rough;
+
+pub(super) use half_vector::{Directions, Directions16, FacetBound, FacetBounds16};
+pub(super) use interface::{Interface, Passage};
+pub(super) use mirror::Mirror;
+pub use rough::RoughLobe;
+pub(super) use rough::{DIFFUSE_ALPHA, albedo as rough_albedo, albedo_table, max_reflectance_table};
+
+use super::sample::BsdfSample;
+use crate::math::{F32x16, LANES, Rgb, Vec3x16};
+use glam::{Vec2, Vec3};
+
+/// Lobes of a BSDF at most.
+pub const MAX_LOBES: usize = 3;
+
+/// A lobe without its factor.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum LobeModel {
+    Rough(RoughLobe),
+    Mirror(Mirror),
+    Interface(Interface),
+}
+
+/// Sixteen points' data of a lobe.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LobeLanes {
+    /// Factors; zero where nothing is reflected.
+    pub scale: Vec3x16,
+    /// Masking of `wo`, where facets mask each other.
+    pub masking: F32x16,
+}
+
+impl LobeModel {
+    /// True if light goes on into isolated directions, so that value and density are 0 everywhere.
+    #[inline]
+    pub fn is_delta(&self) -> bool {
+        match self {
+            LobeModel::Rough(_) => false,
+            LobeModel::Mirror(_) | LobeModel::Interface(_) => true,
+        }
+    }
+
+    /// True if the surface's two sides are the two sides of one interface.
+    pub fn transmits(&self) -> bool {
+        matches!(self, LobeModel::Interface(_))
+    }
+
+    /// True if eye paths follow the lobe by sampling it, as they do a mirror.
+    #[inline]
+    pub fn is_sharp(&self) -> bool {
+        matches!(self, LobeModel::Rough(rough) if rough.is_sharp())
+    }
+
+    /// Value and density; the latter times `probability`, that of choosing the lobe.
+    #[inline(always)]
+    pub fn eval_pdf(&self, scale: Rgb, probability: f32, directions: &Directions) -> (Rgb, f32) {
+        match self {
+            LobeModel::Rough(rough) => rough.eval_pdf(scale, probability, directions),
+            LobeModel::Mirror(_) | LobeModel::Interface(_) => (Rgb::ZERO, 0.0),
+        }
+    }
+
+    /// A direction in proportion to the lobe, if it is not a delta lobe and the facet chosen does not send the light
+    /// into the surface.
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
+        match self {
+            LobeModel::Rough(rough) => rough.sample(wo, u),
+            LobeModel::Mirror(_) | LobeModel::Interface(_) => None,
+        }
+    }
+
+    /// The direction in which a delta lobe sends light from `wo`, with probability 1.
+    #[inline(always)]
+    pub fn delta(&self, scale: Rgb, wo: Vec3) -> Option<BsdfSample> {
+        match self {
+            LobeModel::Rough(_) => None,
+            LobeModel::Mirror(mirror) => mirror.delta(scale, wo),
+            LobeModel::Interface(interface) => interface.delta(scale, wo),
+        }
+    }
+
+    /// Share of the light from `wo` that the lobe scatters, as far as it is known: a weight for choosing among lobes.
+    /// `transmittance` is the coat's for `wo`.
+    #[inline(always)]
+    pub fn sampling_weight(&self, scale: Rgb, wo: Vec3, transmittance: f32) -> f32 {
+        match self {
+            LobeModel::Rough(rough) => rough.sampling_weight(scale, wo.z, transmittance),
+            LobeModel::Mirror(mirror) => mean(mirror.weight(scale, wo.z)),
+            LobeModel::Interface(interface) => interface.sampling_weight(scale, wo.z),
+        }
+    }
+
+    /// Albedo for light at the cosine `cos` > 0, where the lobe is wide enough to pass for diffuse.
+    #[inline]
+    pub fn diffuse_albedo(&self, scale: Rgb, cos: f32) -> Option<Rgb> {
+        match self {
+            LobeModel::Rough(rough) => rough.diffuse_albedo(scale, cos),
+            LobeModel::Mirror(_) | LobeModel::Interface(_) => None,
+        }
+    }
+
+    /// Upper bound of value times cosine.
+    #[inline(always)]
+    pub fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
+        match self {
+            LobeModel::Rough(rough) => rough.bound(scale, bound),
+            LobeModel::Mirror(_) | LobeModel::Interface(_) => Rgb::ZERO,
+        }
+    }
+
+    /// Sets a lane for `wo` on the side of the normal.
+    #[inline]
+    pub fn set_lane(&self, lanes: &mut LobeLanes, lane: usize, scale: Rgb, wo: Vec3) {
+        if let LobeModel::Rough(rough) = self {
+            rough.set_lane(lanes, lane, scale, wo);
+        }
+    }
+
+    /// Adds the lobe's values, without the cosine, in all lanes.
+    #[inline]
+    pub fn add_value16(&self, lanes: &LobeLanes, directions: &Directions16, sum: &mut Vec3x16) {
+        if let LobeModel::Rough(rough) = self {
+            rough.add_value16(lanes, directions, sum);
+        }
+    }
+
+    /// Adds the lobe's bounds of value times cosine in all lanes.
+    #[inline]
+    pub fn add_bound16(&self, lanes: &LobeLanes, bounds: &FacetBounds16, sum: &mut Vec3x16) {
+        if let LobeModel::Rough(rough) = self {
+            rough.add_bound16(lanes, bounds, sum);
+        }
+    }
+}
+
+impl LobeLanes {
+    /// Adds factor · reflectance · `weight` in all lanes.
+    #[inline(always)]
+    fn add(&self, sum: &mut Vec3x16, reflectance: &Vec3x16, weight: &F32x16) {
+        for l in 0..LANES {
+            let value: Rgb = self.scale.get(l) * reflectance.get(l) * weight[l];
+            sum.set(l, sum.get(l) + value);
+        }
+    }
+}
+
+/// Mean of the channels.
+#[inline]
+pub(super) fn mean(c: Rgb) -> f32 {
+    (c.x + c.y + c.z) * (1.0 / 3.0)
+}

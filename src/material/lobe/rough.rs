@@ -1,0 +1,177 @@
+//! Reflection by isotropic microfacets.
+//!
+//! The value is F D V1(wo) V1(wi), the density of sampling visible normals D V1(wo) / 2 (see [`Microfacets`]). For the
+//! bound, D and the Fresnel reflectance F are bounded by the half-way normals that a set of directions allows
+//! ([`FacetBound`]); masking times cosine grows with the cosine.
+//!
+//! Paper: Walter et al., *Lightcuts*, 2005, section 4.1, for the use made of such bounds.
+//! Deviations: single scattering only; the energy that masking takes is lost.
+
+use super::{Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};
+use crate::material::DirectionBound;
+use crate::material::microfacet::Microfacets;
+use crate::material::table::{ANGLES, AngleTable, rule};
+use crate::math::{LANES, Rgb, Vec3x16};
+use crate::scene::Fresnel;
+use glam::{Vec2, Vec3};
+use std::sync::Arc;
+
+/// Lobes at least this rough count as diffuse where a surface becomes a virtual light: among polished metals most of
+/// the light would otherwise be lost, which is worse than its spreading too widely.
+pub(in crate::material) const DIFFUSE_ALPHA: f32 = 0.05;
+
+/// Lobes up to this rough are followed from the eye like mirrors, by a sampled direction: light sampled along them
+/// says more than a sum over virtual lights, each of which would show as a highlight.
+const SHARP_ALPHA: f32 = 0.1;
+
+/// A rough reflection lobe without its factor. Two are equal if roughness and Fresnel reflectance agree.
+#[derive(Clone, Debug)]
+pub struct RoughLobe {
+    pub(in crate::material) facets: Microfacets,
+    pub(in crate::material) fresnel: Fresnel,
+    /// Largest reflectance of a conductor by the least cosine: its formula costs more than the rest of a bound.
+    pub(in crate::material) max_reflectance: Option<Arc<AngleTable<Rgb>>>,
+    /// Albedo by angle, where something asks for it.
+    pub(in crate::material) albedo: Option<Arc<AngleTable<Rgb>>>,
+}
+
+impl PartialEq for RoughLobe {
+    fn eq(&self, other: &RoughLobe) -> bool {
+        self.facets == other.facets && self.fresnel == other.fresnel
+    }
+}
+
+impl RoughLobe {
+    /// Roughness α.
+    pub fn alpha(&self) -> f32 {
+        self.facets.alpha
+    }
+
+    /// Value in 1/sr for directions with z > 0.
+    #[inline]
+    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        Directions::new(wo, wi).map_or(Rgb::ZERO, |d| self.eval_pdf(Rgb::ONE, 1.0, &d).0)
+    }
+
+    /// Whether the eye follows the lobe.
+    #[inline]
+    pub fn is_sharp(&self) -> bool {
+        self.facets.alpha <= SHARP_ALPHA
+    }
+
+    #[inline]
+    pub(super) fn eval_pdf(&self, scale: Rgb, probability: f32, d: &Directions) -> (Rgb, f32) {
+        if !(d.wo.z > 0.0 && d.wi.z > 0.0) {
+            return (Rgb::ZERO, 0.0);
+        }
+        let density = self.facets.density(d.half);
+        let cos_o = d.wo.z.min(1.0);
+        let masked = density * self.facets.v1(cos_o) * self.facets.v1(d.wi.z.min(1.0));
+        let value = scale * self.fresnel.reflectance(d.wo.dot(d.half).min(1.0)) * masked;
+        (value, probability * 0.5 * density * self.facets.v1_exact(cos_o))
+    }
+
+    #[inline]
+    pub(super) fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
+        let half = self.facets.sample_visible(wo, u);
+        let wi = (2.0 * wo.dot(half)) * half - wo;
+        (wo.z > 0.0 && wi.z > 0.0).then_some(Directions { wo, wi, half })
+    }
+
+    #[inline]
+    pub(super) fn sampling_weight(&self, scale: Rgb, cos: f32, transmittance: f32) -> f32 {
+        match &self.albedo {
+            _ if cos <= 0.0 => 0.0,
+            Some(table) => mean(scale * table.lookup(cos)),
+            None => mean(scale) * (1.0 - transmittance).max(0.0),
+        }
+    }
+
+    #[inline]
+    pub(super) fn diffuse_albedo(&self, scale: Rgb, cos: f32) -> Option<Rgb> {
+        let table = self.albedo.as_ref().filter(|_| self.facets.alpha >= DIFFUSE_ALPHA)?;
+        Some(scale * table.lookup(cos))
+    }
+
+    #[inline]
+    pub(super) fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
+        let density = self.facets.max_density(bound.sin_sq);
+        let masked = density * self.facets.v1(bound.cos_o) * 0.5 * self.facets.max_g1(bound.cos_max);
+        let reflectance = match &self.max_reflectance {
+            Some(table) => table.floor(bound.cos_d),
+            None => self.fresnel.reflectance(bound.cos_d),
+        };
+        scale * reflectance * (masked * DirectionBound::WIDER)
+    }
+
+    #[inline]
+    pub(super) fn set_lane(&self, lanes: &mut LobeLanes, lane: usize, scale: Rgb, wo: Vec3) {
+        lanes.scale.set(lane, scale);
+        lanes.masking[lane] = self.facets.v1(wo.z.min(1.0));
+    }
+
+    #[inline(always)]
+    pub(super) fn add_value16(&self, lanes: &LobeLanes, d: &Directions16, sum: &mut Vec3x16) {
+        let reflectance = self.fresnel.reflectance16(&d.cos_d);
+        let mut masked = self.facets.density16(&d.sin_sq, &d.cos_sq);
+        for l in 0..LANES {
+            let cos_i = if d.wi.z[l] < 1.0 { d.wi.z[l] } else { 1.0 };
+            masked[l] *= lanes.masking[l] * self.facets.v1(if cos_i > 0.0 { cos_i } else { 1.0 });
+            masked[l] = if d.sin_sq[l] + d.cos_sq[l] > 0.0 { masked[l] } else { 0.0 };
+        }
+        lanes.add(sum, &reflectance, &masked);
+    }
+
+    #[inline(always)]
+    pub(super) fn add_bound16(&self, lanes: &LobeLanes, bounds: &FacetBounds16, sum: &mut Vec3x16) {
+        let mut masked = self.facets.max_density16(&bounds.sin_sq);
+        for l in 0..LANES {
+            let cos = bounds.cos_max[l];
+            let lit = cos > 0.0;
+            let max_g1 = self.facets.max_g1(if lit { cos } else { 1.0 });
+            masked[l] *= lanes.masking[l] * 0.5 * max_g1 * DirectionBound::WIDER;
+            masked[l] = if lit { masked[l] } else { 0.0 };
+        }
+        let reflectance = match &self.max_reflectance {
+            Some(table) => {
+                let mut reflectance = Vec3x16::default();
+                (0..LANES).for_each(|l| reflectance.set(l, table.floor(bounds.cos_d[l])));
+                reflectance
+            }
+            None => self.fresnel.reflectance16(&bounds.cos_d),
+        };
+        lanes.add(sum, &reflectance, &masked);
+    }
+}
+
+/// Albedo by angle.
+pub(in crate::material) fn albedo_table(facets: &Microfacets, fresnel: &Fresnel) -> AngleTable<Rgb> {
+    let rule = rule(32);
+    AngleTable::new(|wo| albedo(facets, fresnel, wo, &rule))
+}
+
+/// Largest reflectance at any cosine >= each entry's, so that [`AngleTable::floor`] bounds it.
+pub(in crate::material) fn max_reflectance_table(fresnel: &Fresnel) -> AngleTable<Rgb> {
+    let normal = fresnel.reflectance(1.0);
+    AngleTable(std::array::from_fn(|i| {
+        let cos = i as f32 / (ANGLES - 1) as f32;
+        fresnel.max_reflectance((cos - 1e-6).max(0.0), normal)
+    }))
+}
+
+/// Light from `wo`, in the xz plane, that single scattering on the facets reflects back to its side.
+pub(in crate::material) fn albedo(
+    facets: &Microfacets,
+    fresnel: &Fresnel,
+    wo: Vec3,
+    rule: &[(f32, f32)],
+) -> Rgb {
+    facets.mean_over_visible(wo, rule, |h| {
+        let cos = wo.dot(h);
+        let wi = 2.0 * cos * h - wo;
+        if cos <= 0.0 || wi.z <= 0.0 {
+            return Rgb::ZERO;
+        }
+        fresnel.reflectance(cos.min(1.0)) * (2.0 * wi.z * facets.v1(wi.z.min(1.0)))
+    })
+}
