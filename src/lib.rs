@@ -13,6 +13,7 @@
 //! - [`radiance_cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their footprints;
 //! - [`shadow`] answers whether segments are free, by packets of rays, [`sampling`] gives every stage its numbers;
 //! - [`method`] holds the renderers that are compared; [`film`] writes and compares what they return;
+//! - [`setting`] declares settings, of which [`method`] and the command line make the rest;
 //! - [`verify`] measures how wrong a picture is by path-tracing some of its pixels, [`plan`] chooses settings for a time or an error;
 //! - [`mod@bench`] measures how fast the parts are; [`cli`] is the command around it all, [`stats`] what it reports.
 
@@ -46,6 +47,7 @@ mod radiance_cache;
 mod sampling;
 pub mod scene;
 pub mod session;
+pub mod setting;
 mod shadow;
 pub mod stats;
 pub mod verify;

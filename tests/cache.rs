@@ -6,8 +6,8 @@ use common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
-use lightsplat::method::{Footprints, FoundBy, LayerSettings};
-use lightsplat::method::{Output, cache, lightcuts};
+use lightsplat::method::{Footprints, FoundBy};
+use lightsplat::method::{Output, cache, lightcuts, reconstruction};
 use lightsplat::progress::Control;
 use lightsplat::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
 use lightsplat::stats::{Counter, Stage};
@@ -23,7 +23,7 @@ fn settings(direct: FoundBy, footprints: Footprints) -> cache::Settings {
     settings.cache.indirect = FoundBy::Records;
     // Records even for small cells: in small pictures cuts would be used instead.
     settings.cache.least_cell = 8;
-    settings.cache.layers[1].accuracy = 0.3;
+    settings.cache.accuracy[1] = 0.3;
     settings.cache.footprints = footprints;
     settings
 }
@@ -46,7 +46,7 @@ fn rms(a: &Image, b: &Image) -> f32 {
 #[test]
 fn cancelling_ends_the_lighting_before_all_is_lit() {
     let world = lit_room();
-    let settings = cache::Settings { spp: 64, ..cache::Settings::default() };
+    let settings = reconstruction::Settings { spp: 64, ..Default::default() };
     let (control, done) = (Control::new(), AtomicBool::new(false));
     let output = std::thread::scope(|scope| {
         scope.spawn(|| {
@@ -57,13 +57,12 @@ fn cancelling_ends_the_lighting_before_all_is_lit() {
                 }
             }
         });
-        let output = cache::render(&world, &world.view, &settings, &control);
+        let output = reconstruction::render(&world, &world.view, &settings, &control);
         done.store(true, Ordering::Relaxed);
         output
     });
     assert!(!output.complete);
-    let [lit, all] =
-        ["Lightcut/cuts", "Cache/samples with own cuts"].map(|name| count(&output, name).unwrap());
+    let [lit, all] = ["Lightcut/cuts", "Shading/tasks by cuts"].map(|name| count(&output, name).unwrap());
     assert!(lit > 0 && lit < all / 2, "{lit} of {all}");
 }
 
@@ -109,12 +108,12 @@ fn per_pixel(world: &WorldAndView, like: &cache::Settings) -> Image {
 #[test]
 fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
     let world = lit_room();
-    for (direct, limit) in [(FoundBy::Samples, 0.02), (FoundBy::Records, 0.06)] {
+    for (direct, limit) in [(FoundBy::Cuts, 0.02), (FoundBy::Records, 0.06)] {
         for footprints in [Footprints::Isotropic, Footprints::Anisotropic, Footprints::Occlusion] {
             let mut settings = settings(direct, footprints);
             if direct == FoundBy::Records {
                 // Penumbrae are steep: at the default accuracy they need the other mode.
-                settings.cache.layers[0] = LayerSettings { accuracy: 0.1, reach: [0.7, 5.0] };
+                (settings.cache.accuracy[0], settings.cache.reach[0]) = (0.1, [0.7, 5.0]);
             }
             let error = rms(&cached(&world, &settings).color, &per_pixel(&world, &settings));
             assert!(error < limit, "{direct:?} {footprints:?}: {error}");
@@ -125,13 +124,13 @@ fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
 #[test]
 fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
     let world = glossy_room();
-    for (direct, limit) in [(FoundBy::Samples, 0.03), (FoundBy::Records, 0.08)] {
+    for (direct, limit) in [(FoundBy::Cuts, 0.03), (FoundBy::Records, 0.08)] {
         let mut settings = settings(direct, Footprints::Anisotropic);
-        settings.cache.layers[0] = LayerSettings { accuracy: 0.1, reach: [0.7, 5.0] };
+        (settings.cache.accuracy[0], settings.cache.reach[0]) = (0.1, [0.7, 5.0]);
         let output = cached(&world, &settings);
         assert!(count(&output, "Cache/records with series").is_some_and(|n| n > 0));
         // No second cut for the lobe: a sample has one cut at most, of its direct light.
-        let own = count(&output, "Cache/samples with own cuts");
+        let own = count(&output, "Shading/tasks by cuts");
         assert!(own.is_some_and(|own| own <= 96 * 96), "{own:?}");
         let exact = per_pixel(&world, &settings);
         let error = rms(&output.color, &exact);
@@ -145,12 +144,12 @@ fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
 #[test]
 fn lent_cuts_agree_with_lightcuts_per_pixel() {
     for world in [lit_room(), glossy_room()] {
-        let mut settings = settings(FoundBy::Samples, Footprints::Occlusion);
+        let mut settings = settings(FoundBy::Cuts, Footprints::Occlusion);
         settings.spp = 4;
-        settings.cache.indirect = FoundBy::Samples;
+        settings.cache.indirect = FoundBy::Cuts;
         settings.cut.epsilon = 0.01;
         let output = cached(&world, &settings);
-        let (records, own) = ("Cache/records, indirect", "Cache/samples with own cuts");
+        let (records, own) = ("Cache/records, indirect", "Shading/tasks by cuts");
         assert_eq!(count(&output, records).unwrap_or(0), 0);
         assert!(count(&output, own).is_some_and(|own| own > 3 * 96 * 96));
         let exact = per_pixel(&world, &settings);
@@ -166,11 +165,11 @@ fn lent_cuts_agree_with_lightcuts_per_pixel() {
 fn layers_by_records_and_by_samples_add_up_in_every_combination() {
     let world = glossy_room();
     let mut first = None;
-    for direct in [FoundBy::Samples, FoundBy::Records] {
-        for indirect in [FoundBy::Samples, FoundBy::Records] {
+    for direct in [FoundBy::Cuts, FoundBy::Records] {
+        for indirect in [FoundBy::Cuts, FoundBy::Records] {
             let mut settings = settings(direct, Footprints::Anisotropic);
             settings.cache.indirect = indirect;
-            settings.cache.layers[0] = LayerSettings { accuracy: 0.1, reach: [0.7, 5.0] };
+            (settings.cache.accuracy[0], settings.cache.reach[0]) = (0.1, [0.7, 5.0]);
             let picture = cached(&world, &settings).color;
             let error = rms(&picture, first.get_or_insert_with(|| per_pixel(&world, &settings)));
             assert!(error < 0.08, "{direct:?} {indirect:?}: {error}");
@@ -180,7 +179,7 @@ fn layers_by_records_and_by_samples_add_up_in_every_combination() {
 
 #[test]
 fn surfaces_without_lobes_make_no_series() {
-    let output = cached(&lit_room(), &settings(FoundBy::Samples, Footprints::Anisotropic));
+    let output = cached(&lit_room(), &settings(FoundBy::Cuts, Footprints::Anisotropic));
     assert_eq!(count(&output, "Cache/records with series"), None);
 }
 
@@ -188,7 +187,7 @@ fn surfaces_without_lobes_make_no_series() {
 fn the_bits_do_not_depend_on_the_number_of_threads() {
     let records = settings(FoundBy::Records, Footprints::Occlusion);
     let mut lent = records;
-    (lent.cache.direct, lent.cache.indirect) = (FoundBy::Samples, FoundBy::Samples);
+    (lent.cache.direct, lent.cache.indirect) = (FoundBy::Cuts, FoundBy::Cuts);
     for (world, settings) in [(lit_room(), records), (glossy_room(), records), (glossy_room(), lent)] {
         let pictures = [1, 2, 4].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -202,7 +201,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
 fn far_fewer_records_than_eye_samples_and_growing_slower() {
     let world = lit_room();
     let records = |spp| {
-        let mut settings = settings(FoundBy::Samples, Footprints::Anisotropic);
+        let mut settings = settings(FoundBy::Cuts, Footprints::Anisotropic);
         settings.spp = spp;
         count(&cached(&world, &settings), "Cache/records, indirect").unwrap() as f64
     };

@@ -43,7 +43,7 @@ fn settings(footprints: Footprints) -> cache::Settings {
     settings.cache.indirect = FoundBy::Records;
     // Records even for small cells: in small pictures cuts would be used instead.
     settings.cache.least_cell = 8;
-    settings.cache.layers[1].accuracy = 0.3;
+    settings.cache.accuracy[1] = 0.3;
     // Without compensation the reference clamps as the cache does.
     settings.compensation = false;
     settings
@@ -123,8 +123,8 @@ fn no_leaks_and_no_lost_contact_shadows() {
 
 #[test]
 fn lent_cuts_neither_leak_nor_lose_contact_shadows() {
-    let mut settings = settings(Footprints::default());
-    settings.cache.indirect = FoundBy::Samples;
+    let mut settings = settings(Footprints::Occlusion);
+    settings.cache.indirect = FoundBy::Cuts;
     assert_eq!(bad_regions(&settings), [""; 0]);
 }
 
@@ -157,8 +157,8 @@ fn smooth_light_stays_smooth() {
     let mut by = settings(Footprints::Isotropic);
     let reference = per_pixel(&world, &by);
     for (direct, indirect, footprints) in [
-        (FoundBy::Samples, FoundBy::Samples, Footprints::Isotropic),
-        (FoundBy::Samples, FoundBy::Records, Footprints::Isotropic),
+        (FoundBy::Cuts, FoundBy::Cuts, Footprints::Isotropic),
+        (FoundBy::Cuts, FoundBy::Records, Footprints::Isotropic),
         (FoundBy::Records, FoundBy::Records, Footprints::Isotropic),
         (FoundBy::Records, FoundBy::Records, Footprints::Anisotropic),
         (FoundBy::Records, FoundBy::Records, Footprints::Occlusion),

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::FoundBy;
-use lightsplat::method::{Output, cache, lightcuts, path};
+use lightsplat::method::{Output, cache, lightcuts, path, reconstruction};
 use lightsplat::progress::Control;
 use lightsplat::stats::Counter;
 
@@ -18,10 +18,11 @@ fn outputs(world: &WorldAndView, vpls: u32, compensation: bool) -> Vec<(&'static
     let mut settings = cache::Settings { compensation, ..Default::default() };
     settings.light.indirect = vpls;
     settings.cache.least_cell = 8;
+    settings.cache.indirect = FoundBy::Cuts;
     let lent = cached(world, &settings);
     settings.cache.indirect = FoundBy::Records;
     let records = cached(world, &settings);
-    settings.cache.indirect = FoundBy::Samples;
+    settings.cache.indirect = FoundBy::Cuts;
     settings.cache.share = false;
     let alone = cached(world, &settings);
     let mut settings = lightcuts::Settings { compensation, ..Default::default() };
@@ -102,7 +103,7 @@ fn surfaces_beside_lamps_are_as_bright_as_paths_make_them() {
     let truth = path::render(&world, &world.view, &paths, &Control::new()).color;
     let brightest = |image: &Image| image.pixels.iter().map(|p| p.max_element()).fold(0.0, f32::max);
     let error = |compensation: bool| {
-        let mut settings = cache::Settings { compensation, ..Default::default() };
+        let mut settings = reconstruction::Settings { compensation, ..Default::default() };
         settings.light.direct = 256;
         settings.light.indirect = 10_000;
         let picture = cached(&world, &settings).color;

@@ -11,7 +11,7 @@ use lightsplat::math::Rgb;
 use lightsplat::method::Family;
 use lightsplat::method::Look;
 use lightsplat::method::path::{Counts, Wanted, pixel_means};
-use lightsplat::method::{cache, lightcuts, path};
+use lightsplat::method::{lightcuts, path, reconstruction};
 use lightsplat::progress::Control;
 use lightsplat::verify::{Estimate, Settings, Verified, verify};
 use lightsplat::view::View;
@@ -223,7 +223,7 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
     let (mut covered, mut trials) = ([0; 3], 0);
     for name in ["cornell", "knot", "nave", "kitchen", "apartment"] {
         let world = load(name);
-        let cached = cache::Settings::default();
+        let cached = reconstruction::Settings::default();
         let eye = Look::EyeSamples { spp: cached.spp, seed: cached.seed };
         let mut few = cached;
         (few.light.indirect, few.cut.epsilon) = (20_000, 0.04);
@@ -231,16 +231,24 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
         let few_paths = path::Settings { spp: 64, ..Default::default() };
         let pairs = match name {
             "cornell" | "kitchen" => vec![
-                ("cache", cache::render(&world, &world.view, &cached, &control).color, eye),
-                ("cache, few VPLs", cache::render(&world, &world.view, &few, &control).color, eye),
+                ("reconstruction", reconstruction::render(&world, &world.view, &cached, &control).color, eye),
+                (
+                    "reconstruction, few VPLs",
+                    reconstruction::render(&world, &world.view, &few, &control).color,
+                    eye,
+                ),
             ],
             "knot" => vec![
-                ("cache", cache::render(&world, &world.view, &cached, &control).color, eye),
+                ("reconstruction", reconstruction::render(&world, &world.view, &cached, &control).color, eye),
                 ("path, 64 spp", path::render(&world, &world.view, &few_paths, &control).color, Look::Pixels),
             ],
             "nave" => vec![
-                ("cache", cache::render(&world, &world.view, &cached, &control).color, eye),
-                ("cache, pixels", cache::render(&world, &world.view, &cached, &control).color, Look::Pixels),
+                ("reconstruction", reconstruction::render(&world, &world.view, &cached, &control).color, eye),
+                (
+                    "reconstruction, pixels",
+                    reconstruction::render(&world, &world.view, &cached, &control).color,
+                    Look::Pixels,
+                ),
             ],
             _ => vec![
                 ("lightcuts", lightcuts::render(&world, &world.view, &cuts, &control).color, eye),

@@ -1,16 +1,17 @@
 //! Options of `bench`.
 
-use super::args::Resolution;
+use super::values::Resolution;
+use crate::bench::{Benchmark, REGISTRY};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
 
 /// The defaults are the benchmarks' own; a test holds the text to them.
 #[derive(Debug, Args)]
-#[command(after_help = super::bench::list())]
+#[command(after_help = list())]
 pub struct BenchArgs {
     /// What to measure
-    #[arg(value_parser = PossibleValuesParser::new(crate::bench::REGISTRY.iter().map(|b| b.name)), hide_possible_values = true)]
+    #[arg(value_parser = PossibleValuesParser::new(REGISTRY.iter().map(|b| b.name)), hide_possible_values = true)]
     pub benchmark: String,
     /// Scenes: native (.toml) or Mitsuba (.xml); for those that need them. Studies also take names of scenes in --scenes
     #[arg(value_name = "SCENE")]
@@ -76,6 +77,12 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
     }
 }
 
+/// What `--help` lists.
+fn list() -> String {
+    let line = |b: &Benchmark| format!("  {:<18}{}\n", format!("{}{}", b.name, b.operand()), b.about);
+    format!("Benchmarks:\n{}", REGISTRY.iter().map(line).collect::<String>())
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::args::Cli;
@@ -102,7 +109,7 @@ mod tests {
             assert!(stated.contains(&format!("[default: {default}]")), "{stated}");
         }
         let listed = bench.get_after_help().unwrap().to_string();
-        assert!(crate::bench::REGISTRY.iter().all(|b| listed.contains(b.name)), "{listed}");
+        assert!(REGISTRY.iter().all(|b| listed.contains(b.name)), "{listed}");
         assert!(parse_seconds("-1").is_err() && parse_seconds("nan").is_err());
     }
 }

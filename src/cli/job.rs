@@ -1,9 +1,9 @@
 //! A render command that has been checked as far as it can be without the scene.
 
-use super::args::{ProgressMode, RenderArgs, StatsFormat};
+use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
-use super::plan::{method, wanted};
-use super::verify;
+use super::values::ProgressMode;
+use super::{threads, verify};
 use crate::film::{Exposure, atomic};
 use crate::session::Goal;
 use crate::stats::Stopwatch;
@@ -38,9 +38,10 @@ pub struct RenderJob {
 impl RenderJob {
     /// Checks what was typed, and that the results can be written where they are wanted. The run began with `run`.
     pub fn new(args: RenderArgs, run: Stopwatch) -> Result<RenderJob, Failure> {
-        let method = method(&args)?;
-        let verify = verify::settings(&args.verify, &method, args.max_depth, args.plan.error.is_some());
-        let wanted = wanted(&args, &method, run)?;
+        let held = args.method.typed();
+        let method = args.plan.method(args.method.method()?, &held);
+        let verify = verify::settings(&args.verify, &method, args.plan.error.is_some());
+        let wanted = args.plan.wanted(&method, held, args.verify.verify_samples, run)?;
         named(&args.output, "exr", "--output")?;
         let png = match (args.no_png, args.png) {
             (true, _) => None,
@@ -53,14 +54,13 @@ impl RenderJob {
         for path in std::iter::once(&args.output).chain(&png) {
             atomic::check_writable(path).map_err(Failure::output)?;
         }
-        let processors = || std::thread::available_parallelism().map_or(1, |n| n.get());
         Ok(RenderJob {
             scene: args.scene,
             strict: args.strict,
             output: args.output,
             png: png.map(|path| (path, args.exposure)),
             goal: Goal { method, wanted, verify },
-            threads: args.threads.map_or_else(processors, |n| n as usize),
+            threads: threads::count(args.threads),
             framing: Framing {
                 frame: args.frame,
                 resolution: args.resolution.map(|r| r.0),

@@ -5,20 +5,21 @@
 mod args;
 mod bench;
 mod bench_args;
-mod cache_args;
 mod compare;
 mod exit;
+mod files;
 mod info;
 mod interrupt;
 mod job;
-mod method;
-mod plan;
+mod method_args;
 mod plan_args;
 mod progress;
 mod render;
 mod scene;
 mod study;
 mod talk;
+mod threads;
+mod values;
 mod verify;
 
 use args::{Cli, Command};

@@ -1,7 +1,15 @@
 //! Options of `render` that say what is wanted instead of how.
 
-use crate::plan::{DRAFT, FINAL, PREVIEW, REFERENCE};
+use super::exit::Failure;
+use crate::method::Method;
+use crate::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE};
+use crate::session::Wanted;
+use crate::stats::Stopwatch;
+use anyhow::anyhow;
 use clap::{Args, ValueEnum};
+
+/// Most paths a pixel where its error is measured, unless typed.
+const MAX_SAMPLES: u32 = 1 << 16;
 
 /// Named settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -43,6 +51,38 @@ pub struct PlanArgs {
     /// settings that are typed are held. --verify says how many pixels are measured [default: 1000]
     #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
     pub error: Option<f64>,
+}
+
+impl PlanArgs {
+    /// `method`, with what a quality stands for where settings are not `held`.
+    pub fn method(&self, method: Method, held: &[&'static str]) -> Method {
+        let named = self.quality.zip(Ladder::new(method, held));
+        named.map_or(method, |(quality, ladder)| ladder.at(quality.height()))
+    }
+
+    /// What settings of `method` are to be planned for, without those `held`; `max_samples` as typed. The run began
+    /// with `run`.
+    pub fn wanted(
+        &self,
+        method: &Method,
+        held: Vec<&'static str>,
+        max_samples: Option<u32>,
+        run: Stopwatch,
+    ) -> Result<Wanted, Failure> {
+        let max_samples = max_samples.unwrap_or(MAX_SAMPLES);
+        let wanted = match (self.time, self.error) {
+            (Some(seconds), _) => Wanted::Time { seconds, run, held },
+            (None, Some(error)) => Wanted::Error { error, max_samples, held },
+            (None, None) => return Ok(Wanted::AsSet),
+        };
+        if method.ladder().is_empty() {
+            let planned = Method::all().filter(|method| !method.ladder().is_empty());
+            let planned: Vec<_> = planned.map(|method| method.name()).collect();
+            let planned = planned.join(", ");
+            return Err(Failure::usage(anyhow!("--time and --error plan settings of --method {planned}")));
+        }
+        Ok(wanted)
+    }
 }
 
 /// Seconds.

@@ -1,7 +1,7 @@
 //! Tells on stderr how far a method has come, from a thread of its own that looks at its [`Control`].
 
-use super::args::ProgressMode;
 use super::talk;
+use super::values::ProgressMode;
 use crate::progress::{Control, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;

@@ -3,9 +3,8 @@
 use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
 use super::job::RenderJob;
-use super::{interrupt, progress, scene, talk};
+use super::{interrupt, progress, scene, talk, threads};
 use crate::film::{Film, false_colour, write_exr, write_png, write_srgb8};
-use crate::method::Method;
 use crate::progress::Control;
 use crate::session::{Frame, FrameError, Remark};
 use crate::stats::{Stage, Stopwatch, peak_resident_bytes};
@@ -21,11 +20,7 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
     let job = RenderJob::new(args, run)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(job.threads)
-        .build()
-        .with_context(|| format!("cannot start {} threads; try fewer with --threads", job.threads))
-        .map_err(Failure::render)?;
+    let pool = threads::pool(job.threads)?;
 
     let Frame { film, mut stats, mut facts, remarks, complete, unverified, .. } =
         pool.install(|| render(&job, &control))?;
@@ -102,9 +97,7 @@ fn write(job: &RenderJob, mut film: Film) -> Result<(), Failure> {
     write_exr(&job.output, &film).map_err(Failure::output)?;
     if let Some((path, factor)) = png {
         write_png(path, &film.color, factor).map_err(Failure::output)?;
-        if let Method::Cache(settings) = &job.goal.method
-            && settings.inspect
-        {
+        if job.goal.method.text("inspect").is_some_and(|text| text == "on") {
             write_layers(path, &film, factor)?;
         }
     }

@@ -1,9 +1,9 @@
 //! Benchmarks that render whole pictures: runs them, prints their table, writes their files into one folder.
 
-use super::bench::{pool, write};
 use super::bench_args::BenchArgs;
 use super::exit::Failure;
-use super::{interrupt, talk};
+use super::files::write;
+use super::{interrupt, talk, threads};
 use crate::bench::study::{Plan, ReferenceSettings, SAMPLES, Study, StudyError, file_of};
 use crate::bench::{Benchmark, Kind};
 use crate::progress::Control;
@@ -30,12 +30,11 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     }
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
-    let processors = || std::thread::available_parallelism().map_or(1, |n| n.get());
     let defaults = ReferenceSettings::default();
     let folder = args.study.output.unwrap_or_else(|| Path::new("out").join(name));
     let plan = Plan {
         folder: folder.clone(),
-        threads: args.threads.map_or_else(processors, |n| n as usize),
+        threads: threads::count(args.threads),
         repeats: args.repeats.map_or(1, |n| n as usize),
         resolution: args.study.resolution.map_or(pixels, |r| r.0),
         reference: ReferenceSettings {
@@ -45,7 +44,7 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
         samples: args.study.samples.unwrap_or(SAMPLES),
         knobs: args.study.knobs,
     };
-    let pool = pool(plan.threads)?;
+    let pool = threads::pool(plan.threads)?;
     let study = Study::new(plan, &control, &|what| talk::note(what)).map_err(failure)?;
     let document = pool.install(|| run(&study, &files)).map_err(failure)?;
     talk::print(&document.markdown)?;

@@ -1,7 +1,7 @@
 //! Output: talk on stderr, data on stdout.
 
-use super::args::ProgressMode;
 use super::exit::Failure;
+use super::values::ProgressMode;
 use anyhow::Context;
 use serde_json::json;
 use std::io::{self, Write};

@@ -6,12 +6,7 @@ use crate::method::Method;
 use crate::verify::Settings;
 
 /// What to verify, if that was asked for; `always`, as where settings are planned by it, whether or not.
-pub fn settings(
-    args: &VerifyArgs,
-    method: &Method,
-    max_depth: Option<u32>,
-    always: bool,
-) -> Option<Settings> {
+pub fn settings(args: &VerifyArgs, method: &Method, always: bool) -> Option<Settings> {
     let defaults = Settings::default();
     if args.verify.is_none() && !always {
         return None;
@@ -24,7 +19,7 @@ pub fn settings(
             Some(VerifyAgainst::EyeSamples) => Look::EyeSamples { spp: method.spp(), seed: method.seed() },
         },
         seed: method.seed(),
-        max_depth,
+        max_depth: method.sampling().max_depth,
         most_samples: args.verify_samples.unwrap_or(defaults.most_samples),
     })
 }

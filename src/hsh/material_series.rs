@@ -16,28 +16,26 @@ use super::projection::{Projection, Quadrature, ZonalProjection};
 use crate::material::{Bsdf, Materials, RoughLobe};
 use crate::math::Rgb;
 use crate::scene::{MaterialId, Scene};
+use crate::setting::{DOWN, settings};
 use rayon::prelude::*;
 
 /// Outgoing inclinations, in degrees, over which the error of a kernel is averaged.
 const INCLINATIONS: [f64; 6] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0];
 
-/// Accuracy of series. Errors are in the L2 norm over the incoming directions, relative to the whole kernel (base
-/// and lobe), averaged over outgoing inclinations up to 75°.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeriesSettings {
-    /// Minimum roughness: sharper lobes are not expanded whatever the error.
-    pub min_alpha: f32,
-    /// Tolerated error: bands are added until the error is no larger.
-    pub error: f64,
-    /// Maximum error: materials that exceed it even at 8 bands get no records.
-    pub max_error: f64,
-    /// Maximum error by interpolation between outgoing directions.
-    pub interpolation_error: f64,
-}
-
-impl Default for SeriesSettings {
-    fn default() -> SeriesSettings {
-        SeriesSettings { min_alpha: 0.25, error: 0.05, max_error: 0.12, interpolation_error: 0.002 }
+settings! {
+    /// Accuracy of series. Errors are in the L2 norm over the incoming directions, relative to the whole kernel (base
+    /// and lobe), averaged over outgoing inclinations up to 75°.
+    pub struct SeriesSettings in "Records" {
+        /// Roughness α from which lobes are lit by records, 2 for none: sharper ones are lit by cuts.
+        min_alpha: f32 = 0.25 => [
+            .named("series_alpha").positive().values(&["0.15", "0.2", "0.25", "0.35", "0.5", "2"])
+        ];
+        /// Error below which a lobe's series gets no further bands, relative to the whole reflection.
+        error: f64 = 0.05 => [.named("series_band_error").positive().scaled(&DOWN)];
+        /// Largest error of a lobe's series for which it is lit by records, relative to the whole reflection.
+        max_error: f64 = 0.12 => [.named("series_error").at_least(0.0).scaled(&DOWN)];
+        /// Largest error by interpolation between outgoing directions.
+        interpolation_error: f64 = 0.002;
     }
 }
 

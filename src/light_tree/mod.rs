@@ -15,27 +15,39 @@ mod tests;
 mod topology;
 
 use crate::math::luminance;
+use crate::setting::{Each, Settings, Spec, choices};
 use crate::vpl::{Origin, SpotProfile, Vpl, VplSet};
 use cost::Primitive;
 
 pub use node::{MAX_VPLS, Node};
 
-/// Way to build a tree.
-///
-/// Seconds of processor time to build (one thread's worth) and mean uncapped cuts at ε = 2 % / 1 %, by
-/// `lightsplat bench trees SCENE`:
-///
-/// | | nave, 500k | nave, 1M | sibenik, 500k | sibenik, 1M |
-/// |---|--:|--:|--:|--:|
-/// | divisive | 0.65 s, 1058 / 1504 | 1.36 s, 1091 / 1549 | 0.64 s, 560 / 783 | 1.41 s, 570 / 798 |
-/// | agglomerative | 0.45 s, 1251 / 1701 | 1.01 s, 1335 / 1801 | 0.47 s, 673 / 902 | 0.91 s, 696 / 926 |
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Family {
-    /// Top-down, binned splits in position and normal.
-    #[default]
-    Divisive,
-    /// Bottom-up, locally-ordered clustering.
-    Agglomerative,
+choices! {
+    /// Way to build a tree.
+    ///
+    /// Seconds of processor time to build (one thread's worth) and mean uncapped cuts at ε = 2 % / 1 %, by
+    /// `lightsplat bench trees SCENE`:
+    ///
+    /// | | nave, 500k | nave, 1M | sibenik, 500k | sibenik, 1M |
+    /// |---|--:|--:|--:|--:|
+    /// | divisive | 0.65 s, 1058 / 1504 | 1.36 s, 1091 / 1549 | 0.64 s, 560 / 783 | 1.41 s, 570 / 798 |
+    /// | agglomerative | 0.45 s, 1251 / 1701 | 1.01 s, 1335 / 1801 | 0.47 s, 673 / 902 | 0.91 s, 696 / 926 |
+    pub enum Family = Divisive {
+        /// Top-down: binned splits in position and normal.
+        Divisive = "divisive",
+        /// Bottom-up: locally-ordered clustering.
+        Agglomerative = "agglomerative",
+    }
+}
+
+/// Declaration of the choice between them.
+static TREE: Spec =
+    Spec::new("tree", "Builder of the light trees", "Lightcuts").values(&["agglomerative", "divisive"]);
+
+/// A setting by itself.
+impl Settings for Family {
+    fn each(&mut self, each: Each) {
+        each(&TREE, self);
+    }
 }
 
 /// The light trees of a scene.

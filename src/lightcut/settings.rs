@@ -1,25 +1,24 @@
 //! Settings of cuts, and counts of the work they took.
 
+use crate::setting::{DOWN, JudgedBy, UP, settings};
 use crate::stats::add_fields;
 use crate::vpl::Origin;
 
-/// Settings of a cut.
-#[derive(Clone, Copy, Debug)]
-pub struct CutSettings {
-    /// Largest error to expect of one cluster (see [`super::expected`]), relative to the total's luminance.
-    pub epsilon: f32,
-    /// Most clusters in a cut.
-    pub max_cut: usize,
-    /// Largest share of the luminance that a single indirect VPL may contribute; `None` leaves weak singularities
-    /// unclamped.
-    pub clamp: Option<f32>,
-    /// Origin of the light whose trees alone are cut; `None` for all trees.
-    pub origin: Option<Origin>,
-}
-
-impl Default for CutSettings {
-    fn default() -> CutSettings {
-        CutSettings { epsilon: 0.02, max_cut: 5000, clamp: Some(0.02), origin: None }
+settings! {
+    /// Settings of a cut.
+    pub struct CutSettings in "Lightcuts" {
+        /// Largest error to expect of a cluster, relative to the sample's luminance.
+        ///
+        /// See [`super::expected`].
+        epsilon: f32 = 0.02 => [.fraction().scaled(&DOWN)];
+        /// Most clusters in a cut.
+        max_cut: usize = 5000 => [.at_least(1.0).scaled(&UP)];
+        /// Most that one indirect virtual point light may give, relative to the sample's luminance; 0 does not clamp.
+        ///
+        /// `None` leaves weak singularities unclamped.
+        clamp: Option<f32> = Some(0.02) => [.fraction().scaled(&UP).judged_by(JudgedBy::Light)];
+        /// Origin of the light whose trees alone are cut; `None` for all trees.
+        origin: Option<Origin> = None;
     }
 }
 

@@ -1,21 +1,30 @@
 //! The renderers compared, one folder each; they share every stage they can.
+//!
+//! A method is a [`Renderer`]: a struct of settings that says what it is called and renders. [`Method`] is any of them.
 
 pub mod cache;
-mod chosen;
 mod counts;
+mod ladder;
 pub mod lightcuts;
 pub mod lights;
 pub mod output;
 pub mod path;
 pub mod photon_cache;
+pub mod reconstruction;
+mod registry;
+mod renderer;
+mod sampling;
 
-pub use chosen::Method;
+pub use ladder::{Move, RUNGS};
 pub use output::Output;
+pub use registry::Method;
+pub use renderer::{Prepared, Renderer};
+pub use sampling::{Sampled, Sampling};
 
 // Parts of the methods' settings.
 pub use crate::eye::Look;
 pub use crate::light_tree::Family;
 pub use crate::lightcut::CutSettings;
-pub use crate::radiance_cache::{CacheSettings, Footprints, FoundBy, LayerSettings};
+pub use crate::radiance_cache::{CacheSettings, Footprints, FoundBy};
 pub use crate::shadow::{OccluderCacheSettings, ShadowSettings};
 pub use crate::vpl::LightPassSettings;

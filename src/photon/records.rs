@@ -109,8 +109,8 @@ impl FinalGatherSource<'_> {
     ) -> Option<Made> {
         let point = &samples.points.geometry[sample as usize];
         let settings = self.settings();
-        let layer = &settings.layers[1];
-        let reach = layer.reach.map(|r| r * point.spacing);
+        let accuracy = settings.accuracy[1];
+        let reach = settings.reach[1].map(|r| r * point.spacing);
         let geometric_normal = samples.points.surfaces[sample as usize].geometric_normal;
         let max_nearness = 1.0 / reach[0].max(f32::MIN_POSITIVE);
         let at = GatherPoint { point, geometric_normal, seed: hash(sample, self.seed), max_nearness };
@@ -121,10 +121,10 @@ impl FinalGatherSource<'_> {
         }
         let footprint = if settings.footprints == Footprints::Occlusion {
             let change = self.sight(point, geometric_normal, sample, &work.met).change(1);
-            let furthest = layer.accuracy * g.distance;
-            Footprint::of_change(&change, luminance, layer.accuracy, furthest, reach, settings)
+            let furthest = accuracy * g.distance;
+            Footprint::of_change(&change, luminance, accuracy, furthest, reach, settings)
         } else {
-            let radius = (layer.accuracy * g.distance).clamp(reach[0], reach[1]);
+            let radius = (accuracy * g.distance).clamp(reach[0], reach[1]);
             Footprint::of_gradient(point.normal, g.gradient * LUMINANCE, luminance, radius, settings)
         };
         let GatheredIrradiance { vector, gradient, .. } = g;

@@ -83,9 +83,11 @@ pub fn for_error(
     asked: &Asked,
     control: &Control,
 ) -> Option<Found> {
-    let mut ladder = *ladder;
+    let mut ladder = ladder.clone();
     // Errors of the light at the picture's own samples do not go away by taking more of them.
-    ladder.held.spp |= matches!(asked.measure.look, Look::EyeSamples { .. });
+    if matches!(asked.measure.look, Look::EyeSamples { .. }) {
+        ladder.hold("spp");
+    }
     let top = STEPS * ladder.top();
     let Searched { mut step, error: expected, mut output, mut time, renders: searched } =
         search(world, view, &ladder, asked, control)?;

@@ -21,7 +21,7 @@ use crate::film::Window;
 use crate::view::View;
 
 pub use error::{Asked, for_error};
-pub use ladder::{DRAFT, FINAL, Held, Ladder, PREVIEW, REFERENCE, options};
+pub use ladder::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
 pub use time::{LATE, for_time};
 
 /// The same view on a film `scale` times smaller along each side.

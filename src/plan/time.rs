@@ -11,8 +11,7 @@ use super::cost::{Cost, Timed};
 use super::ladder::{Ladder, options};
 use super::smaller;
 use super::tune::tune;
-use crate::method::cache::Prepared;
-use crate::method::{Method, Output};
+use crate::method::{Method, Output, Prepared};
 use crate::progress::Control;
 use crate::stats::{Stage, StageTime, Stopwatch};
 use crate::view::View;
@@ -54,7 +53,7 @@ pub struct Planned<'w> {
     /// Small renders made, and trials of the picture itself.
     pub pilots: u64,
     /// What is there of the picture, and what it took.
-    prepared: Option<(Prepared<'w>, StageTime)>,
+    prepared: Option<(Box<dyn Prepared + 'w>, StageTime)>,
 }
 
 impl Planned<'_> {
@@ -65,10 +64,8 @@ impl Planned<'_> {
 
     /// Renders `window`, as planned for, or what is missing.
     pub fn render(self, world: &World, view: &View, control: &Control) -> Output {
-        match (self.prepared, &self.method) {
-            (Some((prepared, _)), Method::Cache(settings)) => prepared.light(settings, control),
-            (_, method) => method.render(world, view, control),
-        }
+        let lit = self.prepared.and_then(|(prepared, _)| prepared.light(&self.method, control));
+        lit.unwrap_or_else(|| self.method.render(world, view, control))
     }
 }
 
@@ -81,8 +78,7 @@ pub fn for_time<'w>(
     control: &Control,
 ) -> Option<Planned<'w>> {
     let usable = || left() * (1.0 - RESERVE) - WRITE * view.window.pixel_count() as f64;
-    let tunable = |method: &Method| matches!(method, Method::Cache(s) if s.lights_by_cuts());
-    let tunes = tunable(&ladder.at(0.0));
+    let tunes = ladder.at(0.0).prepares();
     let (cost, pilots) = small_renders(world, view, ladder, tunes, &usable, control)?;
     let coarse = highest(&cost, ladder, view, usable());
     let seconds = whole(&cost, ladder, view, coarse);
@@ -110,22 +106,18 @@ fn tuned<'w>(
     let mut tried = StageTime::default();
     for round in 1.. {
         let method = ladder.at(coarse);
-        let Method::Cache(settings) = &method else { return None };
         let watch = Stopwatch::start();
-        let there = Prepared::new(world, view, settings, control);
+        let there = method.prepare(world, view, control)?;
         let spent = watch.elapsed();
         if control.is_cancelled() {
             return None;
         }
         let lighting = (seconds - spent.wall_seconds).max(0.0);
         let every = (lighting / (TRIAL_SHARE * usable()).max(1e-9)).ceil().clamp(1.0, 64.0) as usize;
-        let mut try_at = |fine: f64| match ladder.between(coarse, fine) {
-            Method::Cache(settings) => {
-                let time = there.lighting_time(&settings, every)?;
-                tried += time;
-                Some(time.cpu_seconds * tried.wall_seconds / tried.cpu_seconds.max(f64::MIN_POSITIVE))
-            }
-            _ => None,
+        let mut try_at = |fine: f64| {
+            let time = there.lighting_time(&ladder.between(coarse, fine), every)?;
+            tried += time;
+            Some(time.cpu_seconds * tried.wall_seconds / tried.cpu_seconds.max(f64::MIN_POSITIVE))
         };
         let first = tune(coarse, ladder.top(), 1, usable, &mut try_at)?;
         // Samples and lights that do not go with how fine cuts can be are given up.
@@ -216,10 +208,5 @@ fn samples(method: &Method, view: &View) -> f64 {
 
 /// All virtual lights asked for, a few at least so that they can be divided by.
 fn vpls(method: &Method) -> f64 {
-    let light = match method {
-        Method::Path(_) | Method::PhotonCache(_) => return 0.0,
-        Method::Cache(s) => &s.light,
-        Method::Lightcuts(s) => &s.light,
-    };
-    f64::from(light.indirect) + f64::from(light.direct)
+    ["vpls", "direct_vpls"].iter().filter_map(|key| method.number(key)).sum()
 }

@@ -134,8 +134,8 @@ impl Source<'_> {
         if !(luminance.is_finite() && g.vector.is_finite() && g.gradient.is_finite()) {
             return None;
         }
-        let settings = &self.settings.layers[layer];
-        let reach = settings.reach.map(|r| r * point.spacing);
+        let accuracy = self.settings.accuracy[layer];
+        let reach = self.settings.reach[layer].map(|r| r * point.spacing);
         let normal = point.normal;
         let tangential = |v: Vec3| v - normal * normal.dot(v);
         let mut gradient = Mat3::from_cols(
@@ -148,11 +148,11 @@ impl Source<'_> {
             Some(sight) => {
                 let change = sight.change(layer);
                 gradient += change.gradient;
-                let furthest = settings.accuracy * distance;
-                Footprint::of_change(&change, luminance, settings.accuracy, furthest, reach, self.settings)
+                let furthest = accuracy * distance;
+                Footprint::of_change(&change, luminance, accuracy, furthest, reach, self.settings)
             }
             None => {
-                let radius = (settings.accuracy * distance).clamp(reach[0], reach[1]);
+                let radius = (accuracy * distance).clamp(reach[0], reach[1]);
                 Footprint::of_gradient(normal, gradient * LUMINANCE, luminance, radius, self.settings)
             }
         };

@@ -31,4 +31,4 @@ pub mod sight;
 mod tests;
 pub mod wave;
 
-pub use settings::{CacheSettings, Footprints, FoundBy, LayerSettings};
+pub use settings::{CacheSettings, Footprints, FoundBy};

@@ -2,81 +2,88 @@
 
 use crate::hsh::SeriesSettings;
 use crate::lightcut::{CutSettings, MIN_SHARED};
+use crate::setting::{DOWN, PATCHES, SHARE, UP, choices, settings};
 use crate::shadow::ShadowSettings;
 
 /// Patches of fewer samples than this would have too few that borrow.
 pub const LEAST_PATCH: usize = 64;
 
-/// How the shape of footprints is chosen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Footprints {
-    /// Circles: LCache1 of the paper.
-    Isotropic,
-    /// Ellipses, short along the gradient that the virtual lights have while their visibility is held: LCache2 of
-    /// the paper.
-    Anisotropic,
-    /// Ellipses by second derivatives, and gradients, that know of the edges of occluders, which probe rays find.
-    #[default]
-    Occlusion,
+choices! {
+    /// Shape of footprints.
+    pub enum Footprints {
+        /// Circles: LCache1 of the paper.
+        Isotropic = "isotropic",
+        /// Ellipses, short along the gradient that the virtual lights have while their visibility is held: LCache2 of
+        /// the paper.
+        Anisotropic = "anisotropic",
+        /// Ellipses by second derivatives, gradients corrected at the edges of occluders, which probe rays find.
+        Occlusion = "occlusion",
+    }
 }
 
-/// How the light of a layer is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FoundBy {
-    /// By records, as in the paper.
-    Records,
-    /// By cuts that neighbouring eye samples share and lend each other.
-    #[default]
-    Samples,
+choices! {
+    /// Source of the light of a layer.
+    pub enum FoundBy {
+        /// Records, as in the paper, splatted onto the eye samples.
+        Records = "records",
+        /// Cuts that neighbouring eye samples share, reconstructed between them.
+        Cuts = "cuts",
+    }
 }
 
-/// Settings of one layer of the cache.
-#[derive(Clone, Copy, Debug)]
-pub struct LayerSettings {
-    /// Radius of a footprint relative to the distance of what casts light and shadow; the paper's a.
-    pub accuracy: f32,
-    /// Least and largest radius of a footprint, in spacings of eye samples.
-    pub reach: [f32; 2],
-}
+/// Settings with which both layers have records.
+const RECORDS: &[(&str, &str)] = &[("direct", "records"), ("indirect", "records")];
 
-/// Settings of the cache.
-#[derive(Clone, Copy, Debug)]
-pub struct CacheSettings {
-    /// When the cut of a record is good enough.
-    pub cut: CutSettings,
-    /// The layer of direct light, and that of indirect light.
-    pub layers: [LayerSettings; 2],
-    /// How direct light is found.
-    pub direct: FoundBy,
-    /// How indirect light is found.
-    pub indirect: FoundBy,
-    /// Which glossy surfaces records light, and how good series are.
-    pub series: SeriesSettings,
-    /// How the shape of footprints is chosen.
-    pub footprints: Footprints,
-    /// Rays that find the edges of occluders around a record, in whole rings of sixteen.
-    pub probe_rays: u32,
-    /// Whether the light of records is extrapolated by their gradients, which shape the footprints in any case.
-    pub gradients: bool,
-    /// Relative change of luminance across a footprint at which it is halved along the gradient; the paper's μ.
-    pub mu: f32,
-    /// Root of 1 - cos of the angle between normals at which a footprint ends.
-    pub normal_tolerance: f32,
-    /// Most passes of adaptation.
-    pub passes: u32,
-    /// Smallest relative difference of luminance that is visible.
-    pub threshold: f32,
-    /// About how many patches the eye samples without records form, of which sixteen each share a cut that is lent to
-    /// the others. The cost of cuts is in proportion to it, whatever the resolution.
-    pub patches: u32,
-    /// Whether neighbours share cuts; if not, records and samples all have their own, whatever `patches` says.
-    pub share: bool,
-    /// Which shadow rays of cuts ask an occluder cache. It is emptied before every group of neighbours.
-    pub shadows: ShadowSettings,
-    /// Cells of fewer eye samples than this get no record: a record costs as much as the lent cuts of some hundred
-    /// samples. Their samples have cuts of their own, which
-    /// neighbours share.
-    pub least_cell: u32,
+settings! {
+    /// Settings of the cache.
+    pub struct CacheSettings in "Records" {
+        /// Source of direct light.
+        direct: FoundBy = FoundBy::Cuts => [.values(&["records", "cuts"])];
+        /// Source of indirect light.
+        indirect: FoundBy = FoundBy::Records => [.values(&["records", "cuts"])];
+        /// Largest error bound of a cluster in a record's cut, relative to its luminance.
+        cut: CutSettings = CutSettings { epsilon: 0.01, ..CutSettings::default() } => [
+            at epsilon .named("record_epsilon").fraction().scaled(&DOWN)
+        ];
+        /// Shape of footprints.
+        footprints: Footprints = Footprints::Occlusion => [.values(&["isotropic", "anisotropic", "occlusion"])];
+        /// Rays that find the edges of occluders around a record, in whole rings of sixteen.
+        probe_rays: u32 = 128 => [.range(1.0, 4096.0).scaled(&UP)];
+        /// Radius of footprints relative to the distance of what casts light and shadow, for direct and for indirect
+        /// light; the paper's a.
+        accuracy: [f32; 2] = [0.3, 0.2] => [
+            .positive().placeholder("DIRECT,INDIRECT").scaled(&DOWN).parts(&["direct", "indirect"]).with(RECORDS)
+        ];
+        /// Least and largest radius of footprints, in spacings of eye samples, of all or of direct and of indirect light.
+        reach: [[f32; 2]; 2] = [[1.5, 20.0], [1.5, 40.0]] => [
+            .positive().placeholder("LEAST,LARGEST").scaled(&DOWN).parts(&["", "", "least", "largest"])
+        ];
+        /// Choice of the glossy surfaces lit by records, and accuracy of series.
+        series: SeriesSettings = SeriesSettings::default() => [group];
+        /// Extrapolation of records by their gradients, for comparison.
+        ///
+        /// The gradients shape the footprints in any case.
+        gradients: bool = true => [];
+        /// Relative change of luminance across an anisotropic footprint that halves it along the gradient; the paper's μ.
+        mu: f32 = 0.5 => [.positive().scaled(&DOWN).with(&[("footprints", "anisotropic")])];
+        /// Root of 1 - cos of the angle between normals at which a footprint ends.
+        normal_tolerance: f32 = 0.4 => [.positive().scaled(&[2.0, 1.0, 0.5])];
+        /// Most passes that shrink footprints at visible seams.
+        passes: u32 = 1 => [.values(&["0", "1", "2", "5"])];
+        /// Smallest relative difference of luminance that counts as visible.
+        threshold: f32 = 0.02 => [.fraction().scaled(&DOWN)];
+        /// Cells of fewer eye samples get no record; cuts, or gathering, light their samples.
+        ///
+        /// A record costs as much as the reconstruction cuts of some hundred samples.
+        least_cell: u32 = 256 => [.at_least(1.0).scaled(&UP)];
+        /// Number of patches, about, of the eye samples without records: sixteen of each share a cut, which is reconstructed
+        /// at the others. The cost of cuts is in proportion to it, whatever the resolution.
+        patches: u32 = 4096 => [is PATCHES];
+        /// Sharing of cuts between neighbours; if off, records and samples all have their own, whatever `patches` says.
+        share: bool = true => [is SHARE];
+        /// Use of the occluder cache by shadow rays of cuts. It is emptied before every group of neighbours.
+        shadows: ShadowSettings = ShadowSettings::default() => [group];
+    }
 }
 
 impl CacheSettings {
@@ -93,31 +100,5 @@ impl CacheSettings {
     /// Whether so many neighbours share a cut.
     pub fn shares(&self, points: usize) -> bool {
         self.share && points >= MIN_SHARED
-    }
-}
-
-impl Default for CacheSettings {
-    fn default() -> CacheSettings {
-        CacheSettings {
-            cut: CutSettings { epsilon: 0.01, ..CutSettings::default() },
-            layers: [
-                LayerSettings { accuracy: 0.3, reach: [1.5, 20.0] },
-                LayerSettings { accuracy: 0.2, reach: [1.5, 40.0] },
-            ],
-            direct: FoundBy::default(),
-            indirect: FoundBy::default(),
-            series: SeriesSettings::default(),
-            footprints: Footprints::default(),
-            probe_rays: 128,
-            gradients: true,
-            mu: 0.5,
-            normal_tolerance: 0.4,
-            passes: 1,
-            threshold: 0.02,
-            patches: 4096,
-            share: true,
-            shadows: ShadowSettings::default(),
-            least_cell: 256,
-        }
     }
 }

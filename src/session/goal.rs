@@ -1,12 +1,11 @@
 //! What a frame is rendered for.
 
 use crate::method::Method;
-use crate::plan::Held;
 use crate::stats::Stopwatch;
 use crate::verify;
 
 /// A method, what its settings are planned for, and how the picture's error is measured.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Goal {
     /// The method and its settings, from which plans start.
     pub method: Method,
@@ -17,7 +16,7 @@ pub struct Goal {
 }
 
 /// Where settings come from.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub enum Wanted {
     /// From the method as it is.
     #[default]
@@ -28,8 +27,8 @@ pub enum Wanted {
         seconds: f64,
         /// Start of the run.
         run: Stopwatch,
-        /// Settings that the plan leaves alone.
-        held: Held,
+        /// Keys of settings that the plan leaves alone.
+        held: Vec<&'static str>,
     },
     /// From a search for a measured error.
     Error {
@@ -37,7 +36,7 @@ pub enum Wanted {
         error: f64,
         /// Most paths at a pixel whose error is measured.
         max_samples: u32,
-        /// Settings that the search leaves alone.
-        held: Held,
+        /// Keys of settings that the search leaves alone.
+        held: Vec<&'static str>,
     },
 }

@@ -78,7 +78,7 @@ impl Session {
         film.metadata.set("partial", if complete { "false" } else { "true" });
         film.metadata.set("render_seconds", seconds);
         film.metadata.set("nonfinite", nonfinite as f64);
-        let since_start = match goal.wanted {
+        let since_start = match &goal.wanted {
             Wanted::Time { run, .. } => run.elapsed(),
             _ => watch.elapsed(),
         };
@@ -145,18 +145,19 @@ impl Session {
         remarks: &mut Vec<Remark>,
     ) -> Result<Made, FrameError> {
         let method = goal.method;
-        let ladder = |held| {
+        let ladder = |held: &[&'static str]| {
             let ladder = Ladder::new(method, held).ok_or(FrameError::Unplannable(method.name()))?;
             Ok(ladder.within(&view.window))
         };
-        match goal.wanted {
+        match &goal.wanted {
             Wanted::AsSet => {
                 let watch = Stopwatch::start();
                 let output = method.render(&self.world, view, control);
                 let seconds = watch.elapsed().wall_seconds;
                 Ok(Made { method, output, seconds, measured: None, plan: Value::Null })
             }
-            Wanted::Time { seconds: asked, run, held } => {
+            Wanted::Time { seconds, run, held } => {
+                let asked = *seconds;
                 let left = || asked - run.elapsed().wall_seconds;
                 let watch = Stopwatch::start();
                 let found = plan::for_time(&self.world, view, &ladder(held)?, left, control)
@@ -183,6 +184,7 @@ impl Session {
                 Ok(Made { method, output, seconds, measured: None, plan })
             }
             Wanted::Error { error, max_samples, held } => {
+                let (error, max_samples) = (*error, *max_samples);
                 let measure = goal.verify.unwrap_or_default();
                 let asked = plan::Asked { error, measure, most_samples: max_samples };
                 let watch = Stopwatch::start();

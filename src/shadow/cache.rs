@@ -12,6 +12,7 @@
 //! clears it ([`OccluderCache::forget`]) at boundaries of the work that do not depend on threads either.
 
 use crate::embree::{Occluder, Ray, TriangleId};
+use crate::setting::settings;
 use glam::Vec3;
 
 /// Margin to edges and ends, in roundings, that a ray must keep.
@@ -20,18 +21,13 @@ const MARGIN: f32 = 64.0 * f32::EPSILON;
 /// Numbers stored of a triangle: a corner, two edges, its largest coordinate and its largest edge component.
 const ROWS: usize = 11;
 
-/// Size of a cache.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OccluderCacheSettings {
-    /// Number of slots; rounded up to a power of two, at most 2^20.
-    pub slots: usize,
-    /// Number of triangles in a slot: 1, 2, 4 or 8 (rounded up).
-    pub ways: usize,
-}
-
-impl Default for OccluderCacheSettings {
-    fn default() -> OccluderCacheSettings {
-        OccluderCacheSettings { slots: 4096, ways: 4 }
+settings! {
+    /// Size of a cache.
+    pub struct OccluderCacheSettings in "Lightcuts" {
+        /// Slots of that cache, rounded up to a power of two.
+        slots: usize = 4096 => [.named("occluder_slots").range(1.0, 1048576.0)];
+        /// Occluders in a slot, rounded up to 1, 2, 4 or 8.
+        ways: usize = 4 => [.named("occluder_ways").range(1.0, 8.0)];
     }
 }
 

@@ -1,19 +1,21 @@
 //! Settings of shadow rays.
 
 use super::OccluderCacheSettings;
+use crate::setting::settings;
 
-/// Use of the occluder cache by a method, for single rays only. It changes the time that a picture takes, and
-/// nothing in the picture.
-///
-/// Packets do not use it: it was never worth its cost where that was measured, and Embree's answers in
-/// coherent packets depend, for a ray in some ten million, on the other rays traced with it, so that leaving
-/// out those that the cache could answer would change a picture now and then.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ShadowSettings {
-    /// True if single rays use it; `None` for the faster choice.
-    pub cached: Option<bool>,
-    /// Size of the cache.
-    pub cache: OccluderCacheSettings,
+settings! {
+    /// Use of the occluder cache by a method, for single rays only. It changes the time that a picture takes, and
+    /// nothing in the picture.
+    ///
+    /// Packets do not use it: it was never worth its cost where that was measured, and Embree's answers in
+    /// coherent packets depend, for a ray in some ten million, on the other rays traced with it, so that leaving
+    /// out those that the cache could answer would change a picture now and then.
+    pub struct ShadowSettings in "Lightcuts" {
+        /// Cache of occluders that single shadow rays test first, for speed; `auto`: where cuts are not shared.
+        cached: Option<bool> = None => [.named("occluder_cache")];
+        /// Size of the cache.
+        cache: OccluderCacheSettings = OccluderCacheSettings::default() => [group];
+    }
 }
 
 impl ShadowSettings {

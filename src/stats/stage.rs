@@ -24,7 +24,7 @@ pub enum Stage {
     Records,
     /// Splatting and adapting records.
     Splat,
-    /// All work per pixel in methods without records.
+    /// Lighting of eye samples by cuts or gathering; all of it in methods without an eye pass.
     Render,
     /// Path-tracing pixels to measure the picture's error.
     Verify,

@@ -1,19 +1,20 @@
 //! Settings of the light pass.
 
-/// Numbers of VPLs to create.
-#[derive(Clone, Copy, Debug)]
-pub struct LightPassSettings {
-    /// Number of points divided among all area lights by power (each gets at least 256), and of directions of
-    /// the environment.
-    pub direct: u32,
-    /// Number of indirect VPLs.
-    pub indirect: u32,
-    /// Seed of the VPLs.
-    pub seed: u32,
-}
+use crate::setting::{JudgedBy, settings};
 
-impl Default for LightPassSettings {
-    fn default() -> LightPassSettings {
-        LightPassSettings { direct: 4096, indirect: 300_000, seed: 0 }
+/// Factors on their numbers that benchmarks try.
+const FEWER: [f64; 4] = [1.0 / 16.0, 0.25, 1.0, 4.0];
+
+settings! {
+    /// Numbers of VPLs to create.
+    pub struct LightPassSettings in "Lightcuts" {
+        /// Virtual point lights on area lights and directions of the environment, about.
+        ///
+        /// Shared out among all area lights by power; each gets at least 256.
+        direct: u32 = 4096 => [.named("direct_vpls").at_least(1.0).scaled(&FEWER).judged_by(JudgedBy::Light)];
+        /// Virtual point lights where light is reflected, about; 0: direct light only.
+        indirect: u32 = 300_000 => [.named("vpls").at_least(0.0).scaled(&FEWER).judged_by(JudgedBy::Light)];
+        /// Seed of the VPLs.
+        seed: u32 = 0;
     }
 }

@@ -39,16 +39,16 @@ fn the_settings_of_lightcuts_reach_the_method_and_the_file() {
         serde_json::from_str(file.metadata().text("settings").unwrap()).unwrap();
     let expected = serde_json::json!({
         "spp": 4, "seed": 0, "max_depth": null, "epsilon": 0.3, "max_cut": 7, "vpls": 300, "direct_vpls": 256,
-        "clamp": 0.0, "compensation": "on", "tree": "agglomerative", "share": "off",
-        "occluder_cache": { "slots": 256, "ways": 2 },
+        "clamp": 0, "compensation": "on", "tree": "agglomerative", "share": "off",
+        "occluder_cache": "auto", "occluder_slots": 256, "occluder_ways": 2,
     });
     assert_eq!(settings, expected);
     sandbox.render("b.exr", &[&coarse[..], &["--threads", "3"]].concat()).expect(0);
     assert_eq!(read_exr(&sandbox.path("b.exr")).unwrap(), file.color().unwrap());
     sandbox.render("c.exr", &[&coarse[..], &["--occluder-cache", "off"]].concat()).expect(0);
     assert_eq!(read_exr(&sandbox.path("c.exr")).unwrap(), file.color().unwrap());
-    let refused = sandbox.render("d.exr", &["--method", "lightcuts", "--occluder-ways", "3"]).expect(2);
-    assert!(refused.stderr.contains("1, 2, 4 or 8"), "{}", refused.stderr);
+    let refused = sandbox.render("d.exr", &["--method", "lightcuts", "--occluder-ways", "9"]).expect(2);
+    assert!(refused.stderr.contains("from 1 to 8"), "{}", refused.stderr);
 }
 
 #[test]

@@ -33,7 +33,8 @@ fn the_table_covers_all_methods_and_renders_nothing_twice() {
         assert_eq!(scene["reference"]["spp"], 8);
         assert!(scene["reference"]["standard_error"].as_f64().unwrap() > 0.0);
         let rows = scene["rows"].as_array().unwrap();
-        for label in ["cache", "cache, anisotropic", "cache, isotropic", "photon-cache", "lightcuts"] {
+        for label in ["reconstruction", "cache, anisotropic", "cache, isotropic", "photon-cache", "lightcuts"]
+        {
             let row = rows.iter().find(|row| row["label"] == label).unwrap();
             assert!(row["total"].as_f64().unwrap() > 0.0 && row["main"] == true, "{row}");
             // Few paths and few samples, but the same scene: of the same brightness.

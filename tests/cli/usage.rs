@@ -30,8 +30,17 @@ fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
     assert!(render(&["--vpls", "9"]).contains("lightcuts"));
     render(&["--method", "lightcuts", "--epsilon", "2"]);
     assert!(render(&["--method", "cache", "--photons", "9"]).contains("photon-cache"));
-    assert!(render(&["--method", "photon-cache", "--vpls", "9"]).contains("--photons"));
-    for wrong in [["--nearest", "1"], ["--gather-rays", "3"], ["--sample-rays", "0"], ["--photons", "-5"]] {
+    assert!(render(&["--method", "photon-cache", "--vpls", "9"]).contains("no such setting"));
+    assert!(render(&["--probe-rays", "9"]).contains("--method cache, photon-cache"));
+    let by_cuts = ["--method", "cache", "--direct", "cuts", "--indirect", "cuts"];
+    assert!(render(&by_cuts).contains("--method reconstruction"));
+    for wrong in [
+        ["--nearest", "1"],
+        ["--gather-rays", "3"],
+        ["--sample-rays", "0"],
+        ["--photons", "-5"],
+        ["--reach", "5,2"],
+    ] {
         render(&["--method", "photon-cache", wrong[0], wrong[1]]);
     }
     render(&["--no-png", "--png", "b.png"]);

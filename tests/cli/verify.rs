@@ -6,7 +6,9 @@ use lightsplat::film::ExrFile;
 #[test]
 fn the_measured_error_is_in_statistics_and_metadata() {
     let sandbox = Sandbox::new();
-    for (method, against) in [("path", "pixels"), ("cache", "eye-samples"), ("lightcuts", "eye-samples")] {
+    for (method, against) in
+        [("path", "pixels"), ("reconstruction", "eye-samples"), ("lightcuts", "eye-samples")]
+    {
         let options =
             ["--method", method, "--verify", "50", "--verify-samples", "256", "--stats", "json", "--no-png"];
         let run = sandbox.render("a.exr", &options).expect(0);
@@ -44,7 +46,8 @@ fn verifying_options_need_verify_and_sensible_numbers() {
     ] {
         sandbox.render("a.exr", wrong).expect(2);
     }
-    let options = ["--method", "cache", "--verify", "20", "--verify-against", "pixels", "--stats", "json"];
+    let options =
+        ["--method", "reconstruction", "--verify", "20", "--verify-against", "pixels", "--stats", "json"];
     let run = sandbox.render("a.exr", &options).expect(0);
     assert!(run.stdout.contains("\"against\":\"pixels\""), "{}", run.stdout);
 }

@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use lightsplat::math::Rgb;
-use lightsplat::method::{Output, cache};
+use lightsplat::method::{Output, Renderer};
 use lightsplat::progress::Control;
 use lightsplat::scene::formats::{LoadOptions, Loaded, load};
 use lightsplat::scene::{Camera, Emission, Fresnel, Lobe, Material, MaterialId, Mesh, Reflectance, Scene};
@@ -186,9 +186,9 @@ pub fn world(SceneAndView { scene, view }: SceneAndView) -> WorldAndView {
     WorldAndView { world: World::new(scene, 2).expect("the scene builds"), view }
 }
 
-/// Renders the picture by the cache; it must be complete.
-pub fn cached(world: &WorldAndView, settings: &cache::Settings) -> Output {
-    let output = cache::render(world, &world.view, settings, &Control::new());
+/// Renders the picture by a method; it must be complete.
+pub fn cached(world: &WorldAndView, settings: &impl Renderer) -> Output {
+    let output = settings.render(world, &world.view, &Control::new());
     assert!(output.complete && output.nonfinite == 0);
     output
 }

@@ -2,14 +2,14 @@
 
 use crate::bench::study::Candidate;
 use crate::eye::Look;
-use crate::method::{Method, cache, lightcuts, photon_cache};
+use crate::method::{Method, cache, lightcuts, photon_cache, reconstruction};
 use crate::radiance_cache::{Footprints, FoundBy};
 
 /// A method's name over several settings, which make a curve of error against time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
-    /// The radiance cache.
-    Cache,
+    /// Reconstruction cuts and the radiance cache.
+    Own,
     /// Lightcuts per pixel, with cuts shared between neighbours.
     Lightcuts,
     /// Lightcuts per pixel as in the paper: one cut a sample.
@@ -41,16 +41,16 @@ const RAYS: [f32; 3] = [0.25, 0.5, 2.0];
 
 /// Returns the positions of the eye samples of all rows.
 pub fn look() -> Look {
-    let cache::Settings { spp, seed, .. } = cache::Settings::default();
+    let reconstruction::Settings { spp, seed, .. } = reconstruction::Settings::default();
     Look::EyeSamples { spp, seed }
 }
 
-/// Returns all rows. Other methods take the eye samples of the cache, lightcuts per pixel its virtual lights
+/// Returns all rows. Other methods take the eye samples of the default, lightcuts per pixel its virtual lights
 /// and cuts too.
 pub fn entries() -> Vec<Entry> {
-    let default = cache::Settings::default();
+    let default = reconstruction::Settings::default();
     let shaped = |footprints| {
-        let mut settings = default;
+        let mut settings = cache::Settings::default();
         settings.cache.footprints = footprints;
         settings.cache.direct = FoundBy::Records;
         settings.cache.indirect = FoundBy::Records;
@@ -79,9 +79,9 @@ pub fn entries() -> Vec<Entry> {
         main: true,
     };
     let mut entries = vec![
-        entry("cache", None, Family::Cache, Method::Cache(default)),
-        entry("cache, anisotropic", Some("LCache2"), Family::Cache, shaped(Footprints::Anisotropic)),
-        entry("cache, isotropic", Some("LCache1"), Family::Cache, shaped(Footprints::Isotropic)),
+        entry("reconstruction", None, Family::Own, Method::Reconstruction(default)),
+        entry("cache, anisotropic", Some("LCache2"), Family::Own, shaped(Footprints::Anisotropic)),
+        entry("cache, isotropic", Some("LCache1"), Family::Own, shaped(Footprints::Isotropic)),
         entry("photon-cache", Some("PM"), Family::PhotonCache, Method::PhotonCache(photons)),
         entry("lightcuts", None, Family::Lightcuts, Method::Lightcuts(cuts)),
         entry("lightcuts, unshared", Some("LC"), Family::Unshared, Method::Lightcuts(unshared)),

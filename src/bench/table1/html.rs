@@ -51,7 +51,7 @@ fn section(scene: &SceneTable, number: usize) -> String {
     text + &pictures(scene, number)
 }
 
-/// Returns other methods as curves, the cache's settings as points.
+/// Returns other methods as curves, the settings of reconstruction cuts and of the cache as points.
 fn curves(scene: &SceneTable, error: impl Fn(&super::Row) -> f64) -> Vec<Series> {
     let of = |family| {
         let rows = scene.rows.iter().filter(move |row| row.family == family);
@@ -69,7 +69,7 @@ fn curves(scene: &SceneTable, error: impl Fn(&super::Row) -> f64) -> Vec<Series>
             points: of(family),
         })
         .collect();
-    series.push(Series { name: String::new(), colour: "#4a7fb5", joined: false, points: of(Family::Cache) });
+    series.push(Series { name: String::new(), colour: "#4a7fb5", joined: false, points: of(Family::Own) });
     series.push(Series { name: String::new(), colour: "#a40", joined: false, points: of(Family::Unshared) });
     series
 }

@@ -27,17 +27,17 @@ pub const CLAIMS: [Claim; 5] = [
     },
     Claim {
         what: "our default (not in the paper) against photon-cache",
-        of: ["cache", "photon-cache"],
+        of: ["reconstruction", "photon-cache"],
         range: Some([6.5, 30.0]),
     },
     Claim {
         what: "our default (not in the paper) against lightcuts per pixel",
-        of: ["cache", "lightcuts, unshared"],
+        of: ["reconstruction", "lightcuts, unshared"],
         range: Some([3.0, 5.7]),
     },
     Claim {
         what: "our default against lightcuts that neighbouring pixels share (neither in the paper)",
-        of: ["cache", "lightcuts"],
+        of: ["reconstruction", "lightcuts"],
         range: None,
     },
 ];

@@ -1,11 +1,11 @@
 //! Builds of the acceleration structure, which are no setting of a method: the default picture, rendered over
 //! each.
 
-use super::knobs::JudgedBy;
 use super::{Candidate, Judge, Sort, StudyError, Sweep};
 use crate::embree::BuildQuality;
 use crate::method::Method;
-use crate::method::cache::Settings;
+use crate::method::reconstruction::Settings;
+use crate::setting::JudgedBy;
 
 /// A choice between builds.
 pub struct Builds {
@@ -33,7 +33,7 @@ impl Judge<'_> {
         let mut levels = Vec::with_capacity(builds.levels.len());
         for &(text, quality) in builds.levels {
             let label = format!("{} {text}", builds.name);
-            let candidate = Candidate { label, method: Method::Cache(Settings::default()) };
+            let candidate = Candidate { label, method: Method::Reconstruction(Settings::default()) };
             let run = self.study.run_over(quality, &mut self.subject, &candidate)?;
             let point = self.judge(&candidate, &candidate.label, Sort::Sweep, &run, true)?;
             levels.push((text.to_owned(), point));

@@ -92,7 +92,7 @@ fn plot(scene: &SceneTrade, sweep: &Sweep) -> String {
     format!(
         "<figure style=\"width:46%\">{}<figcaption>{}: {}</figcaption></figure>\n",
         scatter(SECONDS, y, &series),
-        escaped(sweep.knob),
+        escaped(&sweep.knob),
         escaped(sweep.verdict)
     )
 }

@@ -1,9 +1,9 @@
 //! The trade-off as Markdown.
 
-use super::knobs::JudgedBy;
 use super::verdict::{ERROR_TOLERANCE, TIME_TOLERANCE};
 use super::{Effect, Point, SceneTrade, Trade};
 use crate::bench::study::{figure, optional, seconds};
+use crate::setting::JudgedBy;
 
 /// Heads of [`sweeps`].
 pub const SWEEP_HEADS: [&str; 6] =
@@ -87,7 +87,7 @@ pub fn sweeps(scene: &SceneTrade) -> Vec<Vec<String>> {
         };
         let levels: Vec<String> = sweep.levels.iter().map(level).collect();
         vec![
-            sweep.knob.to_owned(),
+            sweep.knob.clone(),
             judged_by(sweep.judged_by).to_owned(),
             levels.join("; "),
             sweep.error.to_string(),
@@ -119,7 +119,7 @@ pub fn effects(scene: &SceneTrade) -> Vec<Vec<String>> {
         Some(e) => format!("{:.2} ({:.2} to {:.2})", e.factor, e.range[0], e.range[1]),
         None => "-".to_owned(),
     };
-    scene.effects.iter().map(|e| vec![e.knob.to_owned(), text(&e.error), text(&e.time)]).collect()
+    scene.effects.iter().map(|e| vec![e.knob.clone(), text(&e.error), text(&e.time)]).collect()
 }
 
 fn table(heads: &[&str], rows: &[Vec<String>]) -> String {

@@ -1,8 +1,8 @@
-//! The trade-off of each setting of the cache: error against time, one setting at a time and by a designed
-//! sample.
+//! The trade-off of each setting of reconstruction cuts and of the cache: error against time, one setting at a
+//! time and by a designed sample.
 //!
-//! Every knob is swept alone around the defaults; then all are varied together by an Owen-scrambled Sobol
-//! design, whose projection on any one knob is stratified. Three errors are distinguished:
+//! Every knob is swept alone around the defaults; then all are varied together, on the cache, by an
+//! Owen-scrambled Sobol design, whose projection on any one knob is stratified. Three errors are distinguished:
 //!
 //! - from the limit: against lightcuts of a quarter of the error on the same virtual lights, the error added
 //!   by records and cuts;
@@ -24,13 +24,14 @@ mod verdict;
 use super::study::{Candidate, Document, Errors, Noise, Reference, Run, Study, StudyError, Subject};
 use super::{Benchmark, Kind};
 use crate::eye::Look;
-use crate::method::cache::Settings;
+use crate::method::reconstruction::Settings;
 use crate::method::{Method, lightcuts, photon_cache};
-use crate::plan::{DRAFT, FINAL, Held, Ladder, PREVIEW, REFERENCE, options};
+use crate::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
+use crate::setting::JudgedBy;
 use crate::stats::Stage;
 use builds::{BUILDS, Builds};
 use front::{Effect, front};
-use knobs::{JudgedBy, Knob, knobs};
+use knobs::{Knob, knobs};
 use serde::Serialize;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -38,7 +39,7 @@ use verdict::Course;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "trade",
-    about: "What each setting of the cache buys: error against time, and the Pareto front",
+    about: "What each setting buys: error against time, and the Pareto front",
     kind: Kind::Study { scenes: &[], pixels: [256, 256], run },
 };
 
@@ -79,7 +80,7 @@ struct Point {
     light: Option<f64>,
     /// FLIP against the reference of pixels.
     flip: f64,
-    /// True if no other point of the cache is faster and no worse.
+    /// True if no other point of the same methods is faster and no worse.
     on_limit_front: bool,
     on_light_front: bool,
     on_flip_front: bool,
@@ -89,7 +90,7 @@ struct Point {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum Sort {
-    /// The cache's defaults.
+    /// The defaults.
     Default,
     /// A setting of `--quality`.
     Quality,
@@ -104,7 +105,7 @@ enum Sort {
 /// A sweep of one knob.
 #[derive(Serialize)]
 struct Sweep {
-    knob: &'static str,
+    knob: String,
     /// Names of the levels, with the indices of their points.
     levels: Vec<(String, usize)>,
     /// Courses of error and time from coarse to fine.
@@ -118,7 +119,7 @@ struct Sweep {
 /// A knob's effect in the designed sample, on the error of light.
 #[derive(Serialize)]
 struct KnobEffect {
-    knob: &'static str,
+    knob: String,
     error: Option<Effect>,
     time: Option<Effect>,
 }
@@ -158,7 +159,8 @@ fn scene(study: &Study, subject: Subject) -> Result<SceneTrade, StudyError> {
         subject,
         points: Vec::new(),
     };
-    judge.point("cache", "", Sort::Default, Method::Cache(Settings::default()), true)?;
+    let default = Method::Reconstruction(Settings::default());
+    judge.point(default.name(), "", Sort::Default, default, true)?;
     for (label, method) in others() {
         judge.point(label, "", Sort::Other, method, true)?;
     }
@@ -193,9 +195,9 @@ fn limit() -> Candidate {
     Candidate { label: "limit".to_owned(), method: Method::Lightcuts(settings) }
 }
 
-/// Returns the cache at the named levels of the quality scale.
+/// Returns the default method at the named levels of the quality scale.
 fn qualities() -> Vec<(&'static str, Method)> {
-    let ladder = Ladder::new(Method::Cache(Settings::default()), Held::default());
+    let ladder = Ladder::new(Method::Reconstruction(Settings::default()), &[]);
     let named = [("draft", DRAFT), ("preview", PREVIEW), ("final", FINAL), ("reference", REFERENCE)];
     ladder.iter().flat_map(|ladder| named.map(|(name, height)| (name, ladder.at(height)))).collect()
 }
@@ -204,19 +206,19 @@ fn qualities() -> Vec<(&'static str, Method)> {
 fn chosen(names: &[String]) -> Result<(Vec<Knob>, Vec<&'static Builds>), StudyError> {
     let mut knobs = knobs();
     let mut builds: Vec<&Builds> = BUILDS.iter().collect();
-    let plain = |name: &'static str| name.trim_start_matches('-');
-    let known: Vec<&str> =
-        knobs.iter().map(|k| plain(k.name)).chain(builds.iter().map(|b| plain(b.name))).collect();
-    if let Some(name) = names.iter().find(|name| !known.contains(&name.as_str())) {
+    let plain = |name: &str| name.trim_start_matches('-').to_owned();
+    let known: Vec<String> =
+        knobs.iter().map(|k| plain(&k.name)).chain(builds.iter().map(|b| plain(b.name))).collect();
+    if let Some(name) = names.iter().find(|name| !known.contains(name)) {
         return Err(StudyError::Knob { name: name.clone(), known: known.join("; ") });
     }
-    let wanted = |name: &'static str| names.is_empty() || names.iter().any(|n| n == plain(name));
-    knobs.retain(|knob| wanted(knob.name));
+    let wanted = |name: &str| names.is_empty() || names.contains(&plain(name));
+    knobs.retain(|knob| wanted(&knob.name));
     builds.retain(|builds| wanted(builds.name));
     Ok((knobs, builds))
 }
 
-/// Returns the other methods at their defaults, on the cache's eye samples.
+/// Returns the other methods at their defaults, on the same eye samples.
 fn others() -> [(&'static str, Method); 2] {
     let Settings { spp, seed, light, cut, family, .. } = Settings::default();
     let cuts = lightcuts::Settings { spp, seed, light, cut, family, ..Default::default() };
@@ -270,7 +272,7 @@ impl Judge<'_> {
     }
 }
 
-/// Marks the fronts among the cache's own points.
+/// Marks the fronts among the points of the default method and the cache.
 fn mark_fronts(points: &mut [Point]) {
     let own: Vec<usize> = (0..points.len()).filter(|&i| points[i].sort != Sort::Other).collect();
     let flips: Vec<_> = own.iter().map(|&i| (points[i].seconds, points[i].flip)).collect();

@@ -1,12 +1,12 @@
 //! Sweeps of single knobs, and the designed sample of all together.
 
 use super::front::effect;
-use super::knobs::{JudgedBy, Knob};
+use super::knobs::Knob;
 use super::verdict::{ERROR_TOLERANCE, TIME_TOLERANCE, course, verdict};
 use super::{Judge, KnobEffect, Point, Sort, StudyError, Sweep};
-use crate::method::Method;
-use crate::method::cache::Settings;
+use crate::method::{Method, cache};
 use crate::sampling::Sampler;
+use crate::setting::JudgedBy;
 
 /// Seed of the designed sample.
 const DESIGN: u32 = 1;
@@ -16,24 +16,17 @@ impl Judge<'_> {
     pub fn sweep(&mut self, knob: &Knob) -> Result<Sweep, StudyError> {
         let mut levels = Vec::with_capacity(knob.levels.len());
         for level in &knob.levels {
-            let mut settings = Settings::default();
-            (knob.with)(&mut settings);
-            level.apply(&mut settings);
+            let mut method = knob.base;
+            knob.turn(level, &mut method);
             let label = format!("{} {}", knob.name, level.text);
-            let point = self.point(
-                &label,
-                &label,
-                Sort::Sweep,
-                Method::Cache(settings),
-                knob.judged_by != JudgedBy::Flip,
-            )?;
+            let point = self.point(&label, &label, Sort::Sweep, method, knob.judged_by != JudgedBy::Flip)?;
             levels.push((level.text.clone(), point));
         }
-        Ok(self.judged(knob.name, levels, knob.judged_by))
+        Ok(self.judged(&knob.name, levels, knob.judged_by))
     }
 
     /// Judges points from coarse to fine.
-    pub fn judged(&self, knob: &'static str, levels: Vec<(String, usize)>, judged_by: JudgedBy) -> Sweep {
+    pub fn judged(&self, knob: &str, levels: Vec<(String, usize)>, judged_by: JudgedBy) -> Sweep {
         let names: Vec<String> = levels.iter().map(|(text, _)| text.clone()).collect();
         let of = |figure: &dyn Fn(&Point) -> f64| -> Vec<f64> {
             levels.iter().map(|&(_, point)| figure(&self.points[point])).collect()
@@ -41,35 +34,35 @@ impl Judge<'_> {
         let error = course(&of(&|p| p.error(judged_by)), &names, ERROR_TOLERANCE);
         let time = course(&of(&|p| p.seconds), &names, TIME_TOLERANCE);
         let verdict = verdict(&error, &time);
-        Sweep { knob, levels, error, time, verdict, judged_by }
+        Sweep { knob: knob.to_owned(), levels, error, time, verdict, judged_by }
     }
 
-    /// Varies all knobs together that leave the eye samples unchanged.
+    /// Varies all knobs of the cache together that leave the eye samples unchanged.
     pub fn sample(&mut self, knobs: &[Knob]) -> Result<Vec<KnobEffect>, StudyError> {
         let knobs: Vec<&Knob> = knobs.iter().filter(|knob| knob.judged_by != JudgedBy::Flip).collect();
         let mut places = vec![Vec::new(); knobs.len()];
         let (mut errors, mut times) = (Vec::new(), Vec::new());
         for index in 0..self.study.plan.samples {
             let mut sampler = Sampler::new(DESIGN, index);
-            let mut settings = Settings::default();
+            let default = Method::Cache(cache::Settings::default());
+            let mut method = default;
             let mut turned = Vec::new();
             for (knob, places) in knobs.iter().zip(&mut places) {
                 let count = knob.levels.len();
                 let level = ((f64::from(sampler.next_1d()) * count as f64) as usize).min(count - 1);
-                knob.levels[level].apply(&mut settings);
-                if knob.default_level() != Some(level) {
+                knob.turn(&knob.levels[level], &mut method);
+                if knob.level_of(&default) != Some(level) {
                     turned.push(format!("{} {}", knob.name, knob.levels[level].text));
                 }
                 places.push(level as f64 / (count - 1).max(1) as f64);
             }
             let label = format!("sample {index}");
-            let point =
-                self.point(&label, &turned.join("; "), Sort::Sample, Method::Cache(settings), true)?;
+            let point = self.point(&label, &turned.join("; "), Sort::Sample, method, true)?;
             errors.push(self.points[point].light.unwrap_or(0.0));
             times.push(self.points[point].seconds);
         }
         let of = |(knob, places): (&&Knob, &Vec<f64>)| KnobEffect {
-            knob: knob.name,
+            knob: knob.name.clone(),
             error: effect(places, &errors),
             time: effect(places, &times),
         };

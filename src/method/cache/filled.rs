@@ -49,7 +49,7 @@ impl Cache {
     ) -> Cache {
         let settings = source.settings();
         let mut cache = Cache::new(samples, glossy, [settings.found(0), settings.found(1)]);
-        if cache.found == [FoundBy::Samples; 2] {
+        if cache.found == [FoundBy::Cuts; 2] {
             return cache;
         }
         control.begin(Stage::Records, samples.len() as u64);
@@ -108,7 +108,7 @@ impl Cache {
         stats.time(Stage::Splat, || {
             let threshold = settings.threshold;
             let seams = adapt::seams(samples, &self.layers, self.glossy.as_ref(), threshold);
-            let least = [0, 1].map(|l| settings.layers[l].reach[0]);
+            let least = settings.reach.map(|[least, _]| least);
             let changed = adapt::shrink(samples, &mut self.layers, &seams, least);
             for layer in &mut self.layers {
                 layer.resplat(samples, &changed);
@@ -147,8 +147,8 @@ impl Cache {
         let mut jobs = Vec::new();
         // The only layer that records light, and the only one that they leave.
         let (recorded, left) = match self.found {
-            [FoundBy::Records, FoundBy::Samples] => (Some(Origin::Direct), Some(Origin::Indirect)),
-            [FoundBy::Samples, FoundBy::Records] => (Some(Origin::Indirect), Some(Origin::Direct)),
+            [FoundBy::Records, FoundBy::Cuts] => (Some(Origin::Direct), Some(Origin::Indirect)),
+            [FoundBy::Cuts, FoundBy::Records] => (Some(Origin::Indirect), Some(Origin::Direct)),
             _ => (None, None),
         };
         for (i, surface) in samples.points.surfaces.iter().enumerate() {
@@ -168,7 +168,7 @@ impl Cache {
                 }
                 picture.add(samples, i, recorded, reflected);
             }
-            if self.found.contains(&FoundBy::Samples) {
+            if self.found.contains(&FoundBy::Cuts) {
                 jobs.push(Job { sample, lobe_only: false, origin: left, known });
             }
             if self.found.contains(&FoundBy::Records)

@@ -6,15 +6,19 @@ use super::filled::Cache;
 use super::inspect;
 use super::own::{self, Job};
 use super::picture::Picture;
-use crate::eye::{EyePass, EyeSettings};
+use crate::eye::EyePass;
+use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
+use crate::method::ladder::CUTS;
 use crate::method::lights::Lights;
-use crate::method::{Output, counts};
+use crate::method::sampling::method_settings;
+use crate::method::{Move, Output, Renderer, Sampled, counts};
 use crate::progress::Control;
 use crate::radiance_cache::compute::Source;
 use crate::radiance_cache::series::Glossy;
 use crate::radiance_cache::{CacheSettings, FoundBy};
+use crate::setting::{COMPENSATION, Each, INSPECT, Settings as _};
 use crate::stats::{Stage, StageTime, Stats, Stopwatch};
 use crate::view::View;
 use crate::vpl::LightPassSettings;
@@ -23,53 +27,71 @@ use crate::world::World;
 /// Fewer patches than this do not tell how long others take.
 const LEAST_TRIED: usize = 32;
 
-/// What the user may set.
-#[derive(Clone, Copy, Debug)]
-pub struct Settings {
-    /// Eye samples a pixel.
-    pub spp: u32,
-    /// Another seed, other VPLs and eye samples. Overrides that of `light`.
-    pub seed: u32,
-    /// Longest path in edges; `None` for the scene's own limit.
-    pub max_depth: Option<u32>,
-    /// How many VPLs.
-    pub light: LightPassSettings,
-    /// How many records, and how good.
-    pub cache: CacheSettings,
-    /// When the cut of an eye sample is good enough.
-    pub cut: CutSettings,
-    /// Whether short rays find again what clamping takes away.
-    pub compensation: bool,
-    /// How light trees are built.
-    pub family: Family,
-    /// Whether to return the images of [`super::inspect`] too.
-    pub inspect: bool,
+method_settings! {
+    /// Settings of the method.
+    spp = 4, "Records" {
+        /// Numbers of VPLs; their seed is not used.
+        light: LightPassSettings = LightPassSettings::default() => [group];
+        /// Accuracy of the cut of an eye sample.
+        cut: CutSettings = CutSettings::default() => [by Settings::each_of_cut];
+        /// Compensation by short rays for light lost to clamping.
+        compensation: bool = true => [is COMPENSATION];
+        /// Builder of the light trees.
+        family: Family = Family::default() => [group];
+        /// Number and accuracy of records.
+        cache: CacheSettings = CacheSettings::default() => [group];
+        /// Images of [`super::inspect`], beside the picture.
+        inspect: bool = false => [is INSPECT];
+    }
 }
 
 impl Settings {
-    /// Whether all light is found by cuts, none by records.
-    pub fn lights_by_cuts(&self) -> bool {
-        (0..2).all(|layer| self.cache.found(layer) == FoundBy::Samples)
+    /// Visits the settings of cuts; the cap and the clamp are those of records too.
+    fn each_of_cut(&mut self, each: Each) {
+        self.cut.each(each);
+        self.cache.cut.max_cut = self.cut.max_cut;
+        self.cache.cut.clamp = self.cut.clamp;
+    }
+
+    /// True if all light is found by cuts, none by records.
+    fn lights_by_cuts(&self) -> bool {
+        [self.cache.direct, self.cache.indirect] == [FoundBy::Cuts; 2]
     }
 }
 
-impl Default for Settings {
-    fn default() -> Settings {
-        Settings {
-            spp: 4,
-            seed: 0,
-            max_depth: None,
-            light: LightPassSettings::default(),
-            cache: CacheSettings::default(),
-            cut: CutSettings::default(),
-            compensation: true,
-            family: Family::default(),
-            inspect: false,
+impl Renderer for Settings {
+    fn name(&self) -> &'static str {
+        "cache"
+    }
+
+    fn about(&self) -> &'static str {
+        "The radiance cache: records of direct or indirect light, splatted onto the eye samples around them"
+    }
+
+    fn render(&self, world: &World, view: &View, control: &Control) -> Output {
+        render(world, view, self, control)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        match self.lights_by_cuts() {
+            true => {
+                Err("without records, direct and indirect light by cuts are --method reconstruction"
+                    .to_owned())
+            }
+            false => Ok(()),
         }
     }
+
+    fn expected_bytes(&self, window: &Window) -> Option<u64> {
+        Some(EyePass::expected_bytes(window, self.spp))
+    }
+
+    fn ladder(&self) -> &'static [Move] {
+        &CUTS
+    }
 }
 
-/// Renders `window` of the scene's film.
+/// Renders what `view` sees.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     Prepared::new(world, view, settings, control).light(settings, control)
 }
@@ -87,10 +109,7 @@ impl<'w> Prepared<'w> {
     /// By the settings that say how many, and whether surfaces need series.
     pub fn new(world: &'w World, view: &View, settings: &Settings, control: &Control) -> Prepared<'w> {
         let mut stats = Stats::new();
-        let max_depth = world.scene.path_limit(settings.max_depth);
-        let spp = settings.spp.max(1);
-
-        let eye = EyeSettings { spp, seed: settings.seed, max_depth };
+        let eye = settings.sampling().eye(&world.scene);
         control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
         let mut samples = stats.time(Stage::EyePass, || EyePass::trace(world, view, eye, control));
         let glossy = stats.time(Stage::EyePass, || {
@@ -102,7 +121,7 @@ impl<'w> Prepared<'w> {
         counts::eye(&mut stats, &samples.chains);
 
         let light = LightPassSettings { seed: settings.seed, ..settings.light };
-        let lights = Lights::new(world, &light, settings.family, max_depth, control, &mut stats);
+        let lights = Lights::new(world, &light, settings.family, eye.max_depth, control, &mut stats);
         Prepared { world, samples, glossy, lights, stats }
     }
 
@@ -115,7 +134,7 @@ impl<'w> Prepared<'w> {
         let samples = &self.samples;
         let source = source(self.world, &self.lights, settings);
         let watch = Stopwatch::start();
-        let cache = Cache::new(samples, None, [FoundBy::Samples; 2]);
+        let cache = Cache::new(samples, None, [FoundBy::Cuts; 2]);
         let jobs = cache.resolve(samples, &mut Picture::new(samples, false));
         let patches = own::patches(&source, samples, &jobs);
         let mut time = watch.elapsed();
@@ -143,9 +162,9 @@ impl<'w> Prepared<'w> {
         for (job, radiance) in lit.radiance {
             picture.add(&samples, job.sample as usize, job.origin, radiance);
         }
-        stats.count("Cache/samples with own cuts", jobs.len() as u64);
+        stats.count("Shading/tasks by cuts", jobs.len() as u64);
         counts::cuts(&mut stats, "Lightcut", &lit.cuts);
-        if settings.cache.found(1) == FoundBy::Samples {
+        if settings.cache.found(1) == FoundBy::Cuts {
             counts::clamping(&mut stats, &lit.cuts, source.compensation.is_some().then_some(&lit.near));
         }
         lit.shadows.report(&mut stats);

@@ -8,9 +8,12 @@ use crate::film::Image;
 use crate::light_tree::Family;
 use crate::lightcut::{CutCounts, CutSettings, Transfer};
 use crate::math::Rgb;
+use crate::method::ladder::CUTS;
 use crate::method::lights::Lights;
-use crate::method::{Output, counts};
+use crate::method::sampling::method_settings;
+use crate::method::{Move, Output, Renderer, counts};
 use crate::progress::Control;
+use crate::setting::{COMPENSATION, SHARE};
 use crate::shadow::{ShadowCounts, ShadowSettings};
 use crate::stats::{Stage, Stats};
 use crate::view::View;
@@ -18,42 +21,39 @@ use crate::vpl::LightPassSettings;
 use crate::world::World;
 use rayon::prelude::*;
 
-/// What the user may set.
-#[derive(Clone, Copy, Debug)]
-pub struct Settings {
-    /// Eye samples a pixel.
-    pub spp: u32,
-    /// Another seed, other VPLs and eye samples. Overrides that of `light`.
-    pub seed: u32,
-    /// Longest path in edges; `None` for the scene's own limit.
-    pub max_depth: Option<u32>,
-    /// How many VPLs.
-    pub light: LightPassSettings,
-    /// When a cut is good enough.
-    pub cut: CutSettings,
-    /// Whether short rays find again what clamping takes away.
-    pub compensation: bool,
-    /// How light trees are built.
-    pub family: Family,
-    /// Whether neighbouring eye samples share cuts.
-    pub share: bool,
-    /// Which shadow rays ask an occluder cache.
-    pub shadows: ShadowSettings,
+method_settings! {
+    /// Settings of the method.
+    spp = 4, "Lightcuts" {
+        /// Numbers of VPLs; their seed is not used.
+        light: LightPassSettings = LightPassSettings::default() => [group];
+        /// Accuracy of a cut.
+        cut: CutSettings = CutSettings::default() => [group];
+        /// Compensation by short rays for light lost to clamping.
+        compensation: bool = true => [is COMPENSATION];
+        /// Builder of the light trees.
+        family: Family = Family::default() => [group];
+        /// Sharing of cuts between neighbouring eye samples.
+        share: bool = true => [is SHARE];
+        /// Use of the occluder cache by shadow rays.
+        shadows: ShadowSettings = ShadowSettings::default() => [group];
+    }
 }
 
-impl Default for Settings {
-    fn default() -> Settings {
-        Settings {
-            spp: 4,
-            seed: 0,
-            max_depth: None,
-            light: LightPassSettings::default(),
-            cut: CutSettings::default(),
-            compensation: true,
-            family: Family::default(),
-            share: true,
-            shadows: ShadowSettings::default(),
-        }
+impl Renderer for Settings {
+    fn name(&self) -> &'static str {
+        "lightcuts"
+    }
+
+    fn about(&self) -> &'static str {
+        "Lightcuts per pixel: virtual point lights, clustered as far as the expected error allows"
+    }
+
+    fn render(&self, world: &World, view: &View, control: &Control) -> Output {
+        render(world, view, self, control)
+    }
+
+    fn ladder(&self) -> &'static [Move] {
+        &CUTS
     }
 }
 
@@ -67,7 +67,7 @@ pub(super) struct Scenery<'a> {
     pub max_depth: u32,
 }
 
-/// Renders `window` of the scene's film.
+/// Renders what `view` sees.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     let mut stats = Stats::new();
     let max_depth = world.scene.path_limit(settings.max_depth);

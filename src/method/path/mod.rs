@@ -1,12 +1,5 @@
 //! Path tracing: the unbiased reference.
 //!
-//! | setting | default | meaning |
-//! |---|---|---|
-//! | `spp` | 64 | paths a pixel |
-//! | `seed` | 0 | another seed, other noise |
-//! | `max_depth` | the scene's | longest path in edges, counted from the eye |
-//! | `look` | pixels | what a pixel is: its square, or the places of another method's eye samples |
-//!
 //! Use it to know the truth; it converges in any scene whose light can be found by next-event estimation or
 //! by chance, with noise that falls with the square root of the samples. It does not converge in reasonable time
 //! where small lights shine through glass.

@@ -5,7 +5,9 @@ use super::start::{Start, start};
 use crate::eye::Look;
 use crate::film::Image;
 use crate::math::Rgb;
-use crate::method::Output;
+use crate::method::ladder::PATHS;
+use crate::method::sampling::method_settings;
+use crate::method::{Move, Output, Renderer};
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
 use crate::view::View;
@@ -22,22 +24,33 @@ const PASS: u32 = 16;
 /// for the second-level cache.
 const BATCH: u32 = 4;
 
-/// What the user may set.
-#[derive(Clone, Copy, Debug)]
-pub struct Settings {
-    /// Paths a pixel.
-    pub spp: u32,
-    /// Another seed, other noise.
-    pub seed: u32,
-    /// Longest path in edges; `None` for the scene's own limit.
-    pub max_depth: Option<u32>,
-    /// What a pixel is taken to be.
-    pub look: Look,
+method_settings! {
+    /// Settings of the method.
+    spp = 64, "" {
+        /// Value that a pixel is to have.
+        look: Look = Look::Pixels;
+    }
 }
 
-impl Default for Settings {
-    fn default() -> Settings {
-        Settings { spp: 64, seed: 0, max_depth: None, look: Look::Pixels }
+impl Renderer for Settings {
+    fn name(&self) -> &'static str {
+        "path"
+    }
+
+    fn about(&self) -> &'static str {
+        "Unbiased path tracing: slow to converge, the reference"
+    }
+
+    fn render(&self, world: &World, view: &View, control: &Control) -> Output {
+        render(world, view, self, control)
+    }
+
+    fn look(&self) -> Look {
+        self.look
+    }
+
+    fn ladder(&self) -> &'static [Move] {
+        &PATHS
     }
 }
 
@@ -56,7 +69,7 @@ struct Tile {
     nonfinite: u64,
 }
 
-/// Renders `window` of the scene's film.
+/// Renders what `view` sees.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     let mut stats = Stats::new();
     let mut tiles: Vec<Tile> = (0..view.window.tile_count(TILE))

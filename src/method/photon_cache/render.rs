@@ -1,6 +1,7 @@
 //! The picture: eye pass, photons, trees of direct light, the cache, and what it leaves to single samples.
 
-use crate::eye::{EyePass, EyeSettings};
+use crate::eye::EyePass;
+use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::math::Rgb;
@@ -9,7 +10,8 @@ use crate::method::cache::inspect;
 use crate::method::cache::own::{self, Job};
 use crate::method::cache::picture::Picture;
 use crate::method::lights::Lights;
-use crate::method::{Output, counts};
+use crate::method::sampling::method_settings;
+use crate::method::{Output, Renderer, Sampled, counts};
 use crate::photon::density::estimates;
 use crate::photon::indirect_light::{GatherCounts, IndirectLight};
 use crate::photon::own::{SampleGather, reflected};
@@ -17,75 +19,85 @@ use crate::photon::records::FinalGatherSource;
 use crate::photon::strata::Strata;
 use crate::photon::{IrradianceMap, PhotonMap};
 use crate::progress::Control;
+use crate::radiance_cache::CacheSettings;
 use crate::radiance_cache::compute::Source;
 use crate::radiance_cache::series::Glossy;
-use crate::radiance_cache::{CacheSettings, FoundBy};
+use crate::setting::{Each, INSPECT, Settings as _};
 use crate::stats::{Stage, Stats};
 use crate::view::View;
 use crate::vpl::{LightPassSettings, Origin, PhotonSettings};
 use crate::world::World;
 use rayon::prelude::*;
 
-/// What the user may set.
-#[derive(Clone, Copy, Debug)]
-pub struct Settings {
-    /// Eye samples a pixel.
-    pub spp: u32,
-    /// Another seed, other photons and eye samples.
-    pub seed: u32,
-    /// Longest path in edges; `None` for the scene's own limit.
-    pub max_depth: Option<u32>,
-    /// Photons on diffuse surfaces, about.
-    pub photons: u32,
-    /// Photons in an estimate of irradiance: its bias grows with it, its variance falls.
-    pub nearest: usize,
-    /// Rays of a record's final gathering, about.
-    pub rays: u32,
-    /// Rays of a sample that records do not serve.
-    pub own_rays: u32,
-    /// Virtual lights that stand for area lights and the environment, about.
-    pub direct_vpls: u32,
-    /// How many records, and how far each reaches.
-    pub cache: CacheSettings,
-    /// When the cut of an eye sample is good enough.
-    pub cut: CutSettings,
-    /// How light trees are built.
-    pub family: Family,
-    /// Whether to return the images of [`inspect`] too.
-    pub inspect: bool,
-}
-
-impl Default for Settings {
-    fn default() -> Settings {
-        Settings {
-            spp: 4,
-            seed: 0,
-            max_depth: None,
-            photons: 600_000,
-            nearest: 64,
-            rays: 2000,
-            own_rays: 64,
-            direct_vpls: LightPassSettings::default().direct,
-            cache: CacheSettings { indirect: FoundBy::Records, least_cell: 32, ..CacheSettings::default() },
-            cut: CutSettings::default(),
-            family: Family::default(),
-            inspect: false,
-        }
+method_settings! {
+    /// Settings of the method.
+    spp = 4, "Photon map" {
+        /// Photons on diffuse surfaces, about.
+        photons: u32 = 600_000 => [];
+        /// Photons in an estimate of irradiance, at least 16: its bias grows with it, its variance falls.
+        nearest: usize = 64 => [.at_least(16.0)];
+        /// Rays of a record's final gathering, about.
+        rays: u32 = 2000 => [.named("gather_rays").range(16.0, 1e6)];
+        /// Rays of a sample that records do not serve.
+        own_rays: u32 = 64 => [.named("sample_rays").range(1.0, 1e6)];
+        /// Numbers of VPLs, of direct light only.
+        light: LightPassSettings = LightPassSettings { indirect: 0, ..LightPassSettings::default() } => [
+            group without ["vpls"]
+        ];
+        /// Number and reach of records. Cells of 32 samples have as many rays of their own as a record.
+        cache: CacheSettings = CacheSettings { least_cell: 32, ..CacheSettings::default() } => [
+            group without ["indirect"]
+        ];
+        /// Accuracy of the cut of an eye sample.
+        cut: CutSettings = CutSettings::default() => [by Settings::each_of_cut];
+        /// Builder of the light trees.
+        family: Family = Family::default() => [group];
+        /// Images of [`inspect`], beside the picture.
+        inspect: bool = false => [is INSPECT];
     }
 }
 
-/// Renders `window` of the scene's film.
+impl Settings {
+    /// Visits the settings of cuts, less the clamp, which is of indirect virtual lights; records have the same cap.
+    fn each_of_cut(&mut self, each: Each) {
+        self.cut.each(&mut |spec, value| {
+            if spec.key != "clamp" {
+                each(spec, value)
+            }
+        });
+        self.cache.cut.max_cut = self.cut.max_cut;
+    }
+}
+
+impl Renderer for Settings {
+    fn name(&self) -> &'static str {
+        "photon-cache"
+    }
+
+    fn about(&self) -> &'static str {
+        "The same cache, its indirect light by final gathering over a photon map, for comparison"
+    }
+
+    fn render(&self, world: &World, view: &View, control: &Control) -> Output {
+        render(world, view, self, control)
+    }
+
+    fn expected_bytes(&self, window: &Window) -> Option<u64> {
+        Some(EyePass::expected_bytes(window, self.spp))
+    }
+}
+
+/// Renders what `view` sees.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     let mut stats = Stats::new();
-    let max_depth = world.scene.path_limit(settings.max_depth);
-
-    let eye = EyeSettings { spp: settings.spp.max(1), seed: settings.seed, max_depth };
+    let eye = settings.sampling().eye(&world.scene);
+    let max_depth = eye.max_depth;
     control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
     let mut samples = stats.time(Stage::EyePass, || EyePass::trace(world, view, eye, control));
     let glossy = stats.time(Stage::EyePass, || Glossy::find(world, &mut samples, &settings.cache.series));
     counts::eye(&mut stats, &samples.chains);
 
-    let direct = LightPassSettings { direct: settings.direct_vpls, indirect: 0, seed: settings.seed };
+    let direct = LightPassSettings { seed: settings.seed, ..settings.light };
     let lights = Lights::new(world, &direct, settings.family, max_depth, control, &mut stats);
     let direct = Source {
         world,
@@ -122,8 +134,8 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
         picture.add(&samples, job.sample as usize, Some(Origin::Indirect), radiance);
         rays += used;
     }
-    stats.count("Cache/samples with own cuts", direct_jobs.len() as u64);
-    stats.count("Cache/samples with own gatherings", indirect_jobs.len() as u64);
+    stats.count("Shading/tasks by cuts", direct_jobs.len() as u64);
+    stats.count("Shading/tasks by gathering", indirect_jobs.len() as u64);
     stats.count("Gathering/rays of records", rays.record_rays);
     stats.count("Gathering/rays of samples", rays.own_rays);
     stats.count("Gathering/rays followed", rays.followed);

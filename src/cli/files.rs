@@ -1,0 +1,16 @@
+//! Text files.
+
+use super::exit::Failure;
+use super::talk;
+use crate::film::{ImageError, atomic};
+use std::io::Write;
+use std::path::Path;
+
+/// Writes text to a file, whole or not at all.
+pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    atomic::write_atomically(path, |file| file.write_all(text.as_bytes()))
+        .map_err(|source| ImageError::Write { path: path.to_owned(), source })
+        .map_err(Failure::output)?;
+    talk::note(&format!("wrote {}", path.display()));
+    Ok(())
+}

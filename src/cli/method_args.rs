@@ -1,0 +1,229 @@
+//! `--method` and an option for every setting that a method has.
+
+use super::exit::Failure;
+use crate::method::Method;
+use crate::setting::{Choice, Spec};
+use anyhow::anyhow;
+use clap::builder::{PossibleValue, PossibleValuesParser, ValueParser};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
+
+/// The method and the settings that were typed.
+#[derive(Clone, Debug)]
+pub struct MethodArgs {
+    name: String,
+    /// Keys and texts.
+    typed: Vec<(&'static str, String)>,
+}
+
+impl MethodArgs {
+    /// The method, with its defaults for what was not typed. A setting that it has not is an error: it would have no
+    /// effect.
+    pub fn method(&self) -> Result<Method, Failure> {
+        let usage = |text: String| Failure::usage(anyhow!(text));
+        let mut method =
+            Method::named(&self.name).ok_or_else(|| usage(format!("no method {}", self.name)))?;
+        for (key, text) in &self.typed {
+            if !method
+                .set(key, text)
+                .map_err(|error| usage(format!("--{}: {error}", key.replace('_', "-"))))?
+            {
+                let setting = settings().into_iter().find(|setting| setting.spec.key == *key);
+                let of = setting.map_or(String::new(), |setting| setting.of().join(", "));
+                let (option, name) = (key.replace('_', "-"), &self.name);
+                return Err(usage(format!(
+                    "--{option} is a setting of --method {of}; --method {name} has no such setting"
+                )));
+            }
+        }
+        method.check().map_err(usage)?;
+        Ok(method)
+    }
+
+    /// Keys of the settings that were typed.
+    pub fn typed(&self) -> Vec<&'static str> {
+        self.typed.iter().map(|(key, _)| *key).collect()
+    }
+}
+
+impl Args for MethodArgs {
+    fn augment_args(command: Command) -> Command {
+        let names = Method::all().map(|method| PossibleValue::new(method.name()).help(method.about()));
+        let method = Arg::new("method").long("method").help("How to render").help_heading(None::<&str>);
+        let method = method.value_parser(PossibleValuesParser::new(names)).value_name("METHOD");
+        command.arg(method.default_value(Method::default().name())).args(settings().iter().map(Setting::arg))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for MethodArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<MethodArgs, clap::Error> {
+        let text = |key: &str| matches.get_one::<String>(key).cloned();
+        let keys = settings().into_iter().map(|setting| setting.spec.key);
+        let typed = keys.filter_map(|key| Some((key, text(key)?))).collect();
+        Ok(MethodArgs { name: text("method").unwrap_or_default(), typed })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// A setting and the methods that have it.
+struct Setting {
+    spec: &'static Spec,
+    choices: &'static [Choice],
+    /// The methods and their defaults.
+    defaults: Vec<(Method, String)>,
+}
+
+/// All settings of all methods, in the order in which methods have them.
+fn settings() -> Vec<Setting> {
+    let mut all: Vec<Setting> = Vec::new();
+    for method in Method::all() {
+        method.visit(&mut |spec, value| {
+            let default = (method, value.text());
+            match all.iter_mut().find(|setting| setting.spec.key == spec.key) {
+                Some(setting) => setting.defaults.push(default),
+                None => all.push(Setting { spec, choices: value.choices(), defaults: vec![default] }),
+            }
+        });
+    }
+    all
+}
+
+impl Setting {
+    /// Names of the methods that have it.
+    fn of(&self) -> Vec<&'static str> {
+        self.defaults.iter().map(|(method, _)| method.name()).collect()
+    }
+
+    /// The default of most methods, then those of others.
+    fn default(&self) -> String {
+        let count = |text: &str| self.defaults.iter().filter(|(_, other)| other == text).count();
+        // The last of those that are equally many is the one that `max_by_key` finds.
+        let most = self.defaults.iter().rev().map(|(_, text)| text).max_by_key(|text| count(text));
+        let Some(most) = most else { return String::new() };
+        let others = self.defaults.iter().filter(|(_, text)| text != most);
+        let others = others.map(|(method, text)| format!(", {text} for {}", method.name()));
+        most.clone() + &others.collect::<String>()
+    }
+
+    fn arg(&self) -> Arg {
+        let Setting { spec, defaults, .. } = self;
+        let mut help = spec.help();
+        let others: Vec<_> =
+            Method::all().map(|method| method.name()).filter(|n| !self.of().contains(n)).collect();
+        if others.len() >= defaults.len() {
+            help += &format!(" [for {}]", self.of().join(", "));
+        } else if !others.is_empty() {
+            help += &format!(" [not for {}]", others.join(", "));
+        }
+        let default = self.default();
+        if !default.is_empty() && !spec.flag {
+            help += &format!(" [default: {default}]");
+        }
+        let arg = Arg::new(spec.key).long(spec.option()).help(help);
+        let arg = arg.help_heading(Some(spec.heading).filter(|heading| !heading.is_empty()));
+        if spec.flag {
+            return arg.action(ArgAction::Set).num_args(0).default_missing_value("on");
+        }
+        let arg = match spec.placeholder {
+            Some(placeholder) => arg.value_name(placeholder),
+            None => arg.value_name(spec.key.to_uppercase()),
+        };
+        arg.value_parser(self.parser())
+    }
+
+    /// Checks what is typed as the first method does that has it.
+    fn parser(&self) -> ValueParser {
+        if !self.choices.is_empty() {
+            let value = |choice: &Choice| PossibleValue::new(choice.name).help(choice.help());
+            return PossibleValuesParser::new(self.choices.iter().map(value)).into();
+        }
+        let (key, method) = (self.spec.key, self.defaults.first().map(|(method, _)| *method));
+        let parse = move |text: &str| match method {
+            Some(mut method) => method.set(key, text).map(|_| text.to_owned()),
+            None => Ok(text.to_owned()),
+        };
+        parse.into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    /// What stands before and after the table in the README.
+    const MARKS: [&str; 2] =
+        ["<!-- settings: made by UPDATE_README=1 cargo test --lib readme -->\n\n", "\n<!-- -->\n"];
+
+    /// All settings as Markdown.
+    fn table() -> String {
+        let mut text = "| option | methods | default | |\n|---|---|---|---|\n".to_owned();
+        for setting in settings() {
+            let spec = setting.spec;
+            let all = setting.defaults.len() == Method::all().count();
+            let of = if all { "all".to_owned() } else { setting.of().join(", ") };
+            let choices: Vec<_> = setting.choices.iter().map(|choice| choice.name).collect();
+            let value = match (spec.placeholder, spec.flag) {
+                (_, true) => String::new(),
+                (Some(placeholder), _) => format!(" {placeholder}"),
+                _ if choices.is_empty() => " N".to_owned(),
+                _ => format!(" {}", choices.join("\\|")),
+            };
+            let (option, default, help) = (spec.option(), setting.default(), spec.help());
+            text += &format!("| `--{option}{value}` | {of} | {default} | {help} |\n");
+        }
+        text
+    }
+
+    #[test]
+    fn the_readme_lists_the_settings() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
+        let text = fs::read_to_string(path).unwrap();
+        let (before, rest) = text.split_once(MARKS[0]).unwrap();
+        let (found, after) = rest.split_once(MARKS[1]).unwrap();
+        if std::env::var_os("UPDATE_README").is_some() {
+            fs::write(path, [before, MARKS[0], &table(), MARKS[1], after].concat()).unwrap();
+        } else {
+            assert!(found == table(), "out of date: run UPDATE_README=1 cargo test --lib readme");
+        }
+    }
+
+    #[test]
+    fn defaults_of_methods_that_differ_are_all_told() {
+        let all = settings();
+        let told = |key: &str| all.iter().find(|setting| setting.spec.key == key).unwrap().default();
+        assert_eq!(
+            (told("spp"), told("least_cell")),
+            ("4, 64 for path".to_owned(), "256, 32 for photon-cache".to_owned())
+        );
+    }
+
+    fn method(name: &str, typed: &[(&'static str, &str)]) -> Result<Method, String> {
+        let typed = typed.iter().map(|&(key, text)| (key, text.to_owned())).collect();
+        let args = MethodArgs { name: name.to_owned(), typed };
+        args.method().map_err(|failure| failure.to_string())
+    }
+
+    #[test]
+    fn settings_of_other_methods_are_refused_and_whose_they_are_is_said() {
+        let error = method("path", &[("probe_rays", "64")]).unwrap_err();
+        assert!(error.contains("--probe-rays is a setting of --method cache, photon-cache;"), "{error}");
+        assert!(error.contains("--method path has no such setting"), "{error}");
+        for key in ["vpls", "clamp", "compensation", "indirect"] {
+            assert!(method("photon-cache", &[(key, "1")]).is_err(), "{key}");
+        }
+        let by_cuts = method("cache", &[("direct", "cuts"), ("indirect", "cuts")]).unwrap_err();
+        assert!(by_cuts.contains("--method reconstruction"), "{by_cuts}");
+        let cache = method("cache", &[("max_cut", "7"), ("clamp", "0")]).unwrap();
+        let Method::Cache(settings) = cache else { panic!("{cache:?}") };
+        assert_eq!((settings.cut.max_cut, settings.cache.cut.max_cut), (7, 7));
+        assert_eq!((settings.cut.clamp, settings.cache.cut.clamp), (None, None));
+    }
+}

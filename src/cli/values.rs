@@ -1,0 +1,75 @@
+//! Values that options may have.
+
+use clap::ValueEnum;
+use std::str::FromStr;
+
+/// Ways of telling progress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProgressMode {
+    /// A bar on a terminal, nothing elsewhere
+    Auto,
+    /// All talk as one JSON object a line
+    Ndjson,
+    /// None
+    None,
+}
+
+/// `WxH`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Resolution(pub [u32; 2]);
+
+/// Most pixels along a side: what OpenEXR and PNG readers commonly accept.
+const MAX_SIDE: u32 = 1 << 20;
+
+impl FromStr for Resolution {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Resolution, String> {
+        let sides: Option<Vec<u32>> = text.split(['x', 'X', '×']).map(|s| s.trim().parse().ok()).collect();
+        match sides.as_deref() {
+            Some(&[w, h]) if (1..=MAX_SIDE).contains(&w) && (1..=MAX_SIDE).contains(&h) => {
+                Ok(Resolution([w, h]))
+            }
+            _ => Err(format!("expected two sizes from 1 to {MAX_SIDE} like 640x480")),
+        }
+    }
+}
+
+/// `X,Y,W,H`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// First column and row.
+    pub offset: [u32; 2],
+    /// Columns and rows.
+    pub size: [u32; 2],
+}
+
+impl FromStr for Crop {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Crop, String> {
+        let numbers: Option<Vec<u32>> = text.split(',').map(|s| s.trim().parse().ok()).collect();
+        match numbers.as_deref() {
+            Some(&[x, y, w, h]) if w > 0 && h > 0 => Ok(Crop { offset: [x, y], size: [w, h] }),
+            _ => Err("expected first column, first row, width and height like 100,50,64,64".to_owned()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_and_crops_are_parsed_and_refused() {
+        assert_eq!("640x480".parse(), Ok(Resolution([640, 480])));
+        assert_eq!("1X1".parse(), Ok(Resolution([1, 1])));
+        for bad in ["", "640", "0x5", "5x0", "-1x5", "1x2x3", "9999999x1", "axb", "99999999999x1"] {
+            assert!(bad.parse::<Resolution>().is_err(), "{bad}");
+        }
+        assert_eq!("1, 2,3,4".parse(), Ok(Crop { offset: [1, 2], size: [3, 4] }));
+        for bad in ["", "1,2,3", "1,2,0,4", "1,2,3,-4", "1,2,3,4,5"] {
+            assert!(bad.parse::<Crop>().is_err(), "{bad}");
+        }
+    }
+}
