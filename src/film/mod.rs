@@ -1,8 +1,7 @@
 //! The film: images in memory, EXR and PNG files, tone mapping and error metrics.
-
 //!
-//! [`Film`] is what a frame's file holds; [`write_exr`] and [`write_png`] replace a file whole or not at all;
-//! [`metrics`] says how far two pictures are apart, and [`heatmap`] where.
+//! [`Film`] holds the images and attributes of a frame's file; [`write_exr`] and [`write_png`] replace a file
+//! whole or not at all; [`metrics`] measures the difference of two pictures, and [`heatmap`] shows it.
 
 pub mod atomic;
 mod error;

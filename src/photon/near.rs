@@ -35,7 +35,7 @@ pub struct NearSurfaces {
     normal: Vec3x16,
     /// Unit geometric normals on that side.
     geometric: Vec3x16,
-    /// Throughput up to the irradiance's mean radiance.
+    /// Throughput of the ray that hit the surface, times the albedo.
     throughput: Vec3x16,
 }
 

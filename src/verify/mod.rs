@@ -3,7 +3,7 @@
 //! | setting | default | meaning |
 //! |---|---|---|
 //! | `pixels` | - | about how many pixels are traced; all, if the picture has no more |
-//! | `look` | that of the method | a pixel's meaning: the mean over its square, or through the picture's own eye samples |
+//! | `look` | that of the method | a pixel's meaning: mean over its square, or over the picture's own eye samples |
 //! | `seed` | 0 | another seed, other pixels and paths |
 //! | `max_depth` | the scene's | longest path in edges |
 //! | `most_samples` | 4096 | most paths a pixel |

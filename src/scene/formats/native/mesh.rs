@@ -107,7 +107,7 @@ impl Builder<'_> {
         Ok(to_world)
     }
 
-    /// Resolves the materials: without one, those of the OBJ's own MTL files.
+    /// Reads the materials of the OBJ's own MTL files, which are assigned by name.
     fn mtl_materials(&mut self, path: &Path, place: &Place) -> Result<MaterialPlan, SceneError> {
         let names = self.read_mtl(path, place)?;
         let other = self.default_material(place);
