@@ -23,7 +23,7 @@
 #[cfg(test)]
 extern crate self as lightsplat;
 #[cfg(test)]
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/behaviour/common.rs"]
 mod test_scenes;
 
 mod bench;

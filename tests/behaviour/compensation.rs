@@ -1,8 +1,6 @@
 //! Light lost by clamping and recovered by short rays.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::{Vec2, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};

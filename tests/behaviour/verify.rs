@@ -1,8 +1,6 @@
 //! Errors measured by `verify` against known errors.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::{DVec3, Vec3};
 use lightsplat::film::Image;
 use lightsplat::film::Window;

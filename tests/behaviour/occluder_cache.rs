@@ -1,8 +1,6 @@
 //! The occluder cache changes the time of a picture, and none of its pixels.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::Vec3;
 use lightsplat::math::Rgb;
 use lightsplat::method::FoundBy;

@@ -1,8 +1,6 @@
 //! Pictures by lightcuts against closed forms and the path tracer.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::film::Window;
@@ -103,7 +101,7 @@ fn the_eye_sees_through_mirrors() {
     let world = floor_under(|scene| scene.environment = Some(Environment::Constant(sky)));
     let mut scene = staged(world);
     scene.materials[0] = mirror();
-    let world = common::world(scene);
+    let world = crate::common::world(scene);
     for pixel in &lightcuts(&world, &Settings::default()).color.pixels {
         assert!((*pixel - sky).abs().max_element() < 1e-5, "{pixel}");
     }
@@ -117,7 +115,7 @@ fn a_room_of_any_size_looks_the_same() {
         let mut scene = staged(room_with_ball(Some(diffuse(Rgb::splat(0.5)))));
         scene.meshes.iter_mut().flat_map(|m| &mut m.positions).for_each(|p| *p *= s);
         scene.view.camera.origin *= s;
-        lightcuts(&common::world(scene), &settings).color
+        lightcuts(&crate::common::world(scene), &settings).color
     };
     let unit = at_scale(1.0);
     for s in [1e-6, 1e-3, 1e3, 1e6] {

@@ -1,8 +1,6 @@
 //! The path tracer against scenes with solutions in closed form.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::film::Window;

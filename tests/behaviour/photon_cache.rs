@@ -1,8 +1,6 @@
 //! Photon mapping with radiance caching against path tracing, and its invariants.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};

@@ -1,9 +1,7 @@
 //! Known failures of radiance caches: light that leaks through thin walls and sheets, lost contact shadows,
 //! rings and seams.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::{Vec2, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};

@@ -1,8 +1,6 @@
 //! Reflection by sharp lobes of emitters that their sampled directions hardly ever hit.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};

@@ -1,8 +1,6 @@
 //! The radiance cache against lightcuts per pixel over the same virtual lights, and its invariants.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};

@@ -1,9 +1,7 @@
 //! Whole pictures at the limits of the number formats: scene sizes over twelve decades, scenes far from their
 //! origin, films of odd shapes, radiances twenty orders apart.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::film::Window;

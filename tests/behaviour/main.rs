@@ -1,0 +1,18 @@
+//! Behaviour of whole pictures and scenes, a module for each method or property.
+//!
+//! `cargo test --test behaviour cache::` runs those of a module. What takes longer than a few seconds stands in modules
+//! named `slow`, which `make quick` leaves out.
+
+mod cache;
+mod cache_artefacts;
+mod common;
+mod compensation;
+mod extremes;
+mod lightcuts;
+mod occluder_cache;
+mod own_scenes;
+mod path;
+mod photon_cache;
+mod scene_corpus;
+mod sharp_lobes;
+mod verify;
