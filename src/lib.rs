@@ -10,11 +10,13 @@
 //! - [`lightcut`] finds, for each of those, the coarsest clusters whose expected errors stay below what is asked;
 //! - [`compensation`] finds again by short rays what clamping takes from light close by;
 //! - [`gradient`] says how that light changes along the surface, [`hsh`] expands it over the hemisphere;
-//! - [`radiance_cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their footprints;
+//! - [`radiance_cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their
+//!   footprints;
 //! - [`shadow`] answers whether segments are free, by packets of rays, [`sampling`] gives every stage its numbers;
 //! - [`method`] holds the renderers that are compared; [`film`] writes and compares what they return;
 //! - [`setting`] declares settings, of which [`method`] and the command line make the rest;
-//! - [`verify`] measures how wrong a picture is by path-tracing some of its pixels, [`plan`] chooses settings for a time or an error;
+//! - [`verify`] measures how wrong a picture is by path-tracing some of its pixels, [`plan`] chooses settings for a
+//!   time or an error;
 //! - [`mod@bench`] measures how fast the parts are; [`cli`] is the command around it all, [`stats`] what it reports.
 
 #![deny(unsafe_code)]

@@ -26,7 +26,7 @@ pub(super) struct LobeTable {
     channels: usize,
     /// Parameters of the nodes, ascending from 0 to 1.
     nodes: Vec<f32>,
-    /// Coefficients by node, channel and function, in the layout of [`super::Profile`].
+    /// Coefficients by node, channel and function, in the layout of [`super::kernel::Profile`].
     coefficients: Vec<f32>,
 }
 

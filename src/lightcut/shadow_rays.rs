@@ -50,7 +50,7 @@ fn set_origin(rays: &mut Rays16, l: usize, origin: Vec3) {
     (rays.origin_x[l], rays.origin_y[l], rays.origin_z[l]) = (origin.x, origin.y, origin.z);
 }
 
-/// [`crate::shadow::offset`] by comparisons that vector code has.
+/// `shadow::offset` by comparisons that vector code has.
 #[inline(always)]
 fn moved(p: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
     let larger = |a: f32, b: f32| if a > b { a } else { b };

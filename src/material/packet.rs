@@ -21,7 +21,7 @@ pub struct Bsdfs16<'m> {
     smooth: u16,
 }
 
-/// Sampled directions; see [`super::BsdfSample`] for the members.
+/// Sampled directions; see [`super::sample::BsdfSample`] for the members.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BsdfSamples16 {
     /// Unit directions.
