@@ -9,11 +9,11 @@ use std::f32::consts::TAU;
 /// Half the width and depth of the room, and its height.
 const ROOM: Vec3 = Vec3::new(2.4, 2.8, 2.2);
 const PLINTH_HEIGHT: f32 = 0.32;
-/// The mouth of the spot's can; the scene file puts the light here.
+/// Mouth of the spot's can; the scene file puts the light here.
 const SPOT: Vec3 = Vec3::new(-1.75, 2.25, 1.55);
 const SPOT_TARGET: Vec3 = Vec3::new(0.15, 0.95, -0.1);
 
-/// The parts of the scene.
+/// Parts of the scene.
 pub fn parts() -> Vec<Part> {
     let mut scene = Assembly::new();
     room(&mut scene);
@@ -54,7 +54,7 @@ fn plinth_and_knot(scene: &mut Assembly) {
     scene.add_at("knot", &knot, at(0.1, PLINTH_HEIGHT - lowest, -0.2));
 }
 
-/// A tube of radius `tube` along the trefoil that winds twice about the y axis and three times around the
+/// Tube of radius `tube` along the trefoil that winds twice about the y axis and three times around the
 /// core of the torus with radii `major` and `minor`.
 fn trefoil(major: f32, minor: f32, tube: f32, steps: usize, sides: usize) -> Shell {
     // The direction from the torus' core to the curve turns with it and comes back to itself: a frame

@@ -9,7 +9,7 @@ pub fn points(pairs: &[impl Into<Vec2> + Copy]) -> Vec<Vec2> {
     pairs.iter().map(|&p| p.into()).collect()
 }
 
-/// The same times `factor`, a number or one for each coordinate.
+/// Points of an outline or a profile times `factor`, a number or one for each coordinate.
 pub fn scaled<F: Copy>(pairs: &[impl Into<Vec2> + Copy], factor: F) -> Vec<Vec2>
 where
     Vec2: Mul<F, Output = Vec2>,
@@ -27,17 +27,17 @@ pub fn arc(centre: Vec2, radius: f32, from_degrees: f32, to_degrees: f32, segmen
         .collect()
 }
 
-/// A circle about the origin, counter-clockwise.
+/// Circle about the origin, counter-clockwise.
 pub fn circle(radius: f32, segments: usize) -> Vec<Vec2> {
     (0..segments).map(|k| radius * Vec2::from_angle(TAU * k as f32 / segments as f32)).collect()
 }
 
-/// The rectangle between two corners, counter-clockwise.
+/// Rectangle between two corners, counter-clockwise.
 pub fn rectangle(low: Vec2, high: Vec2) -> Vec<Vec2> {
     vec![low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)]
 }
 
-/// The outline of `lobes` overlapping circles of `lobe_radius` around the origin (trefoil, quatrefoil), their
+/// Outline of `lobes` overlapping circles of `lobe_radius` around the origin (trefoil, quatrefoil), their
 /// centres at `distance`, the first at `first_degrees`; counter-clockwise.
 pub fn foil(lobes: usize, distance: f32, lobe_radius: f32, first_degrees: f32, segments: usize) -> Vec<Vec2> {
     let half_sector = 180.0 / lobes as f32;
@@ -57,7 +57,7 @@ pub fn foil(lobes: usize, distance: f32, lobe_radius: f32, first_degrees: f32, s
     outline
 }
 
-/// A pointed arch of two circular arcs that spring vertically at (±half_span, 0) and meet at (0, rise);
+/// Pointed arch of two circular arcs that spring vertically at (±half_span, 0) and meet at (0, rise);
 /// rise = half_span gives the round arch.
 #[derive(Clone, Copy, Debug)]
 pub struct PointedArch {
@@ -68,7 +68,7 @@ pub struct PointedArch {
 }
 
 impl PointedArch {
-    /// The point at `t` along the left half, from the springing (0) to the apex (1), by equal angles.
+    /// Point at `t` along the left half, from the springing (0) to the apex (1), by equal angles.
     pub fn left(&self, t: f32) -> Vec2 {
         let radius = self.radius();
         let apex_angle = (self.rise / radius).clamp(-1.0, 1.0).asin();
@@ -78,12 +78,12 @@ impl PointedArch {
         Vec2::new(radius - self.half_span - radius * cos, radius * sin)
     }
 
-    /// The radius of both arcs.
+    /// Radius of both arcs.
     pub fn radius(&self) -> f32 {
         (self.half_span * self.half_span + self.rise * self.rise) / (2.0 * self.half_span)
     }
 
-    /// The whole curve from the left springing over the apex to the right one, `segments` on each half.
+    /// Whole curve from the left springing over the apex to the right one, `segments` on each half.
     pub fn curve(&self, segments: usize) -> Vec<Vec2> {
         let left = (0..=segments).map(|k| self.left(k as f32 / segments as f32));
         let right = (0..segments).rev().map(|k| {
@@ -93,7 +93,7 @@ impl PointedArch {
         left.chain(right).collect()
     }
 
-    /// The concentric arch `offset` metres further out, for mouldings and orders.
+    /// Concentric arch `offset` metres further out, for mouldings and orders.
     pub fn offset(&self, offset: f32) -> PointedArch {
         let radius = self.radius() + offset;
         let half_span = self.half_span + offset;
@@ -101,7 +101,7 @@ impl PointedArch {
         PointedArch { half_span, rise: (radius * radius - centre * centre).max(0.0).sqrt() }
     }
 
-    /// The outline of an opening: jambs from `sill` (below 0) up to the springing line, then the arch; moved
+    /// Outline of an opening: jambs from `sill` (below 0) up to the springing line, then the arch; moved
     /// by `centre`. Counter-clockwise, starting at the lower right.
     pub fn opening(&self, centre: Vec2, sill: f32, segments: usize) -> Vec<Vec2> {
         let mut outline = vec![Vec2::new(-self.half_span, sill), Vec2::new(self.half_span, sill)];

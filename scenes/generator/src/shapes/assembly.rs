@@ -49,6 +49,13 @@ impl Assembly {
         self.part(name).add(shell, transform);
     }
 
+    /// Appends a copy of `shell` for each of `transforms` to the part called `name`.
+    pub fn add_each(&mut self, name: &str, shell: &Shell, transforms: impl IntoIterator<Item = Affine3A>) {
+        for transform in transforms {
+            self.add_at(name, shell, transform);
+        }
+    }
+
     /// Appends a copy of all parts of `piece` placed by `transform`.
     pub fn place(&mut self, piece: &Assembly, transform: Affine3A) {
         let transform = self.framed_by(transform);

@@ -4,27 +4,27 @@ use super::{Shell, points};
 use earcut::Earcut;
 use glam::Vec2;
 
-/// Which faces of a prism exist.
+/// Faces that a prism has.
 #[derive(Clone, Copy, Debug)]
 pub struct Faces {
-    /// The face at the end of the direction of travel.
+    /// Face at the end of the direction of travel.
     pub front: bool,
-    /// The face at its start.
+    /// Face at its start.
     pub back: bool,
-    /// The sides along the outline.
+    /// Sides along the outline.
     pub rim: bool,
-    /// The sides along the holes.
+    /// Sides along the holes.
     pub reveals: bool,
 }
 
 impl Faces {
-    /// A closed prism.
+    /// Closed prism.
     pub const ALL: Faces = Faces { front: true, back: true, rim: true, reveals: true };
-    /// A wall whose outer edges are hidden.
+    /// Wall whose outer edges are hidden.
     pub const NO_RIM: Faces = Faces { rim: false, ..Faces::ALL };
-    /// A sheet with the reveals of its holes behind it.
+    /// Sheet with the reveals of its holes behind it.
     pub const FRONT: Faces = Faces { back: false, rim: false, ..Faces::ALL };
-    /// A tube.
+    /// Tube.
     pub const NO_ENDS: Faces = Faces { front: false, back: false, ..Faces::ALL };
 }
 
@@ -34,7 +34,7 @@ pub fn extrude(outline: &[impl Into<Vec2> + Copy], holes: &[Vec<Vec2>], depth: f
     extrude_faces(outline, holes, depth, Faces::ALL)
 }
 
-/// The same with only some of the faces.
+/// Extrudes like [`extrude`], with only some of the faces.
 pub fn extrude_faces(
     outline: &[impl Into<Vec2> + Copy],
     holes: &[Vec<Vec2>],

@@ -4,7 +4,7 @@ use super::{Shell, arc, grid};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// The rectangle of `size` about the origin with corners rounded by `radius` in `steps` each,
+/// Rectangle of `size` about the origin with corners rounded by `radius` in `steps` each,
 /// counter-clockwise; 4 (steps + 1) points.
 pub fn rounded_rectangle(size: Vec2, radius: f32, steps: usize) -> Vec<Vec2> {
     let radius = radius.min(0.499 * size.min_element());
@@ -16,7 +16,7 @@ pub fn rounded_rectangle(size: Vec2, radius: f32, steps: usize) -> Vec<Vec2> {
         .collect()
 }
 
-/// The surface through closed `rings` of equally many points, each counter-clockwise seen from where the
+/// Surface through closed `rings` of equally many points, each counter-clockwise seen from where the
 /// stack goes to; `close_start` and `close_end` fill the first and the last by a fan about its middle.
 pub fn loft(rings: &[Vec<Vec3>], close_start: bool, close_end: bool, crease_degrees: f32) -> Shell {
     let mut rows = rings.to_vec();
@@ -30,7 +30,7 @@ pub fn loft(rings: &[Vec<Vec3>], close_start: bool, close_end: bool, crease_degr
     grid(&rows, true, false, crease_degrees)
 }
 
-/// A stack of rounded rectangles upwards along y: `levels` are (inset from `size`, height), with corners
+/// Stack of rounded rectangles upwards along y: `levels` are (inset from `size`, height), with corners
 /// of `radius` less the inset. Closed as asked, with the first level's middle at x = z = 0.
 pub fn stacked(
     size: Vec2,
@@ -50,7 +50,7 @@ pub fn stacked(
     loft(&rings, close_start, close_end, 40.0)
 }
 
-/// The box between `low` and `high` with all edges rounded by `radius` in `steps`.
+/// Box between `low` and `high` with all edges rounded by `radius` in `steps`.
 pub fn rounded_box(low: impl Into<Vec3>, high: impl Into<Vec3>, radius: f32, steps: usize) -> Shell {
     let (low, high) = (low.into(), high.into());
     let size = high - low;
@@ -70,7 +70,7 @@ pub fn rounded_box(low: impl Into<Vec3>, high: impl Into<Vec3>, radius: f32, ste
         .mapped(|p| p + Vec3::new(middle.x, low.y, middle.z))
 }
 
-/// A superellipsoid about the origin, from box (exponents near 0) to ellipsoid (1): `flatness` shapes the
+/// Superellipsoid about the origin, from box (exponents near 0) to ellipsoid (1): `flatness` shapes the
 /// section through the y axis, `squareness` the outline seen from above. Upholstery and pillows.
 ///
 /// Paper: Barr, "Superquadrics and Angle-Preserving Transformations", 1981.
@@ -100,7 +100,7 @@ pub fn superellipsoid(
     grid(&rows, true, false, 80.0)
 }
 
-/// A flat disc about the origin that looks along +y.
+/// Flat disc about the origin that looks along +y.
 pub fn disc(radius: f32, segments: usize) -> Shell {
     let ring: Vec<Vec3> = (0..segments)
         .map(|i| {

@@ -34,11 +34,13 @@ pub use loft::{disc, loft, rounded_box, rounded_rectangle, stacked, superellipso
 pub use part::Part;
 pub use patch::{grid, patch, sheet};
 pub use path::{fillet, helix};
-pub use place::{at, both_sides, mirror_x, mirror_z, moved, posed, standing_on, turned, upright};
-pub use revolve::{cone, cylinder, ellipsoid, lathe, lathe_sector, profile_lathe, ring, torus};
+pub use place::{
+    at, both_sides, feet, mirror_x, mirror_z, moved, posed, standing_on, turned, turns, upright,
+};
+pub use revolve::{cone, cylinder, ellipsoid, lathe, lathe_sector, profile_lathe, ring, spindle, torus};
 pub use rng::Rng;
 pub use shell::Shell;
-pub use solids::{beveled_box, block, frustum, slab};
+pub use solids::{beveled_box, block, frustum, slab, tile};
 pub use spline::{spline, spline3};
 pub use sweep::{Section, pipe, rod, sweep, sweep_along};
 pub use vessel::Vessel;

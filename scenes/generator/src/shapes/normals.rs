@@ -7,7 +7,7 @@ use super::{Part, Shell};
 use glam::{Vec2, Vec3};
 
 impl Shell {
-    /// The shell as a nameless part with normals; corners with equal normal and texture coordinate share a vertex.
+    /// Shell as a nameless part with normals; corners with equal normal and texture coordinate share a vertex.
     pub(super) fn with_normals(&self) -> Part {
         let mut part = Part::default();
         let face_normals: Vec<Vec3> = self.triangles.iter().map(|&t| face_normal(self, t)).collect();
@@ -70,14 +70,14 @@ fn corner_normal(
     sum.normalize_or(own)
 }
 
-/// The angle of `triangle` at `point`.
+/// Angle of `triangle` at `point`.
 fn corner_angle(shell: &Shell, triangle: [u32; 3], point: u32) -> f32 {
     let k = triangle.iter().position(|&i| i == point).unwrap_or(0);
     let [apex, left, right] = [0, 1, 2].map(|j| shell.points[triangle[(k + j) % 3] as usize]);
     (left - apex).normalize_or_zero().dot((right - apex).normalize_or_zero()).clamp(-1.0, 1.0).acos()
 }
 
-/// The faces around every point, in compressed rows.
+/// Faces around every point, in compressed rows.
 struct FacesAroundPoints {
     start: Vec<u32>,
     faces: Vec<u32>,

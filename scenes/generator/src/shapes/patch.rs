@@ -43,7 +43,7 @@ fn row_points(shell: &mut Shell, row: &[Vec3]) -> Vec<u32> {
     row.iter().map(|&p| shell.point(p)).collect()
 }
 
-/// The mean distance between each row and the next (the last to the first).
+/// Mean distance between each row and the next (the last to the first).
 fn lengths_along(rows: &[Vec<Vec3>], columns: usize) -> Vec<f32> {
     (0..rows.len())
         .map(|j| {

@@ -34,7 +34,7 @@ pub fn fillet(path: &[impl Into<Vec3> + Copy], radius: f32, step_degrees: f32) -
     rounded
 }
 
-/// A helix about the y axis through the origin, from height 0, in `steps` segments a turn.
+/// Helix about the y axis through the origin, from height 0, in `steps` segments a turn.
 pub fn helix(radius: f32, pitch: f32, turns: f32, steps: usize) -> Vec<Vec3> {
     let count = (turns * steps as f32).ceil() as usize;
     (0..=count)

@@ -40,12 +40,24 @@ pub fn mirror_z() -> Affine3A {
     Affine3A::from_scale(Vec3::new(1.0, 1.0, -1.0))
 }
 
-/// The south or east side of a building as built, and its mirror image.
+/// South or east side of a building as built, and its mirror image.
 pub fn both_sides() -> [Affine3A; 2] {
     [Affine3A::IDENTITY, mirror_x()]
 }
 
-/// The points of `path` moved by `frame`.
+/// Points of `path` moved by `frame`.
 pub fn moved(path: &[[f32; 3]], frame: Affine3A) -> Vec<Vec3> {
     path.iter().map(|&p| frame.transform_point3(p.into())).collect()
+}
+
+/// `count` equal turns about the y axis.
+pub fn turns(count: usize) -> impl Iterator<Item = Affine3A> {
+    (0..count).map(move |k| turned(360.0 / count as f32 * k as f32, Vec3::ZERO))
+}
+
+/// Places of four feet, at x = ±`half_width` and two values of z.
+pub fn feet(half_width: f32, z: [f32; 2]) -> [Affine3A; 4] {
+    let [near, far] = z;
+    [(-half_width, near), (half_width, near), (-half_width, far), (half_width, far)]
+        .map(|(x, z)| at(x, 0.0, z))
 }

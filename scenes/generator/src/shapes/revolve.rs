@@ -1,6 +1,6 @@
 //! Surfaces of revolution about the y axis.
 
-use super::{Shell, grid, points};
+use super::{Shell, grid, points, spline};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
@@ -11,7 +11,7 @@ pub fn lathe(profile: &[impl Into<Vec2> + Copy], segments: usize) -> Shell {
     turn(&points(profile), segments, false)
 }
 
-/// The part of a lathe between two angles (degrees, from +x towards +z), open along both cuts: half shafts
+/// Part of a lathe between two angles (degrees, from +x towards +z), open along both cuts: half shafts
 /// against a wall.
 pub fn lathe_sector(
     profile: &[impl Into<Vec2> + Copy],
@@ -35,8 +35,18 @@ pub fn lathe_sector(
     grid(&rows, false, false, f32::max(40.0, step + 1.0))
 }
 
-/// Like [`lathe`] for a closed profile that does not touch the axis (rings, rims), given counter-clockwise with
-/// radius to the right and height upwards.
+/// Turned post: the smooth curve through `profile` in `steps` between two points, closed by flat ends.
+pub fn spindle(profile: &[impl Into<Vec2> + Copy], steps: usize, segments: usize) -> Shell {
+    let curve = spline(profile, steps);
+    let on_axis = |p: Option<&Vec2>| p.map(|p| Vec2::new(0.0, p.y));
+    let mut closed: Vec<Vec2> = on_axis(curve.first()).into_iter().collect();
+    closed.extend(&curve);
+    closed.extend(on_axis(curve.last()));
+    lathe(&closed, segments)
+}
+
+/// Turns a closed `profile` that does not touch the axis (rings, rims), given counter-clockwise with radius to the
+/// right and height upwards, in `segments` around the y axis.
 pub fn profile_lathe(profile: &[impl Into<Vec2> + Copy], segments: usize) -> Shell {
     turn(&points(profile), segments, true)
 }
@@ -59,12 +69,12 @@ fn turn(profile: &[Vec2], segments: usize, closed: bool) -> Shell {
     grid(&rows, true, closed, crease)
 }
 
-/// A closed cylinder on the y axis from the origin to `height`.
+/// Closed cylinder on the y axis from the origin to `height`.
 pub fn cylinder(radius: f32, height: f32, segments: usize) -> Shell {
     cone(radius, radius, height, segments)
 }
 
-/// A closed truncated cone on the y axis from the origin; a radius of 0 gives a point.
+/// Closed truncated cone on the y axis from the origin; a radius of 0 gives a point.
 pub fn cone(bottom_radius: f32, top_radius: f32, height: f32, segments: usize) -> Shell {
     let mut profile = vec![Vec2::new(0.0, 0.0)];
     if bottom_radius > 0.0 {
@@ -77,13 +87,13 @@ pub fn cone(bottom_radius: f32, top_radius: f32, height: f32, segments: usize) -
     lathe(&profile, segments)
 }
 
-/// A closed ring of rectangular section (a flange, a hoop) between two heights.
+/// Closed ring of rectangular section (a flange, a hoop) between two heights.
 pub fn ring(inner_radius: f32, outer_radius: f32, low: f32, high: f32, segments: usize) -> Shell {
     let section = [[inner_radius, low], [outer_radius, low], [outer_radius, high], [inner_radius, high]];
     profile_lathe(&section, segments)
 }
 
-/// A ring of round section about the y axis.
+/// Ring of round section about the y axis.
 pub fn torus(major_radius: f32, minor_radius: f32, segments: usize, section_segments: usize) -> Shell {
     let profile: Vec<Vec2> = (0..section_segments)
         .map(|k| {
@@ -94,7 +104,7 @@ pub fn torus(major_radius: f32, minor_radius: f32, segments: usize, section_segm
     profile_lathe(&profile, segments).creased(75.0)
 }
 
-/// An ellipsoid about the origin.
+/// Ellipsoid about the origin.
 pub fn ellipsoid(radii: impl Into<Vec3>, segments: usize, rings: usize) -> Shell {
     let radii = radii.into();
     let profile: Vec<Vec2> = (0..=rings)

@@ -3,7 +3,7 @@
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
-/// A surface with a texture coordinate at every triangle corner.
+/// Surface with a texture coordinate at every triangle corner.
 #[derive(Clone, Debug, Default)]
 pub struct Shell {
     /// Points, shared between the triangles that meet there.
@@ -17,7 +17,7 @@ pub struct Shell {
 }
 
 impl Shell {
-    /// An empty shell with the given crease angle.
+    /// Empty shell with the given crease angle.
     pub fn new(crease_degrees: f32) -> Self {
         Shell { crease_degrees, ..Shell::default() }
     }
@@ -45,13 +45,13 @@ impl Shell {
         self.triangle([a, c, d], [ta, tc, td]);
     }
 
-    /// The shell with another crease angle.
+    /// Shell with another crease angle.
     pub fn creased(mut self, degrees: f32) -> Self {
         self.crease_degrees = degrees;
         self
     }
 
-    /// The shell moved by `transform`; a mirroring transform keeps the outside outside.
+    /// Shell moved by `transform`; a mirroring transform keeps the outside outside.
     pub fn transformed(mut self, transform: Affine3A) -> Self {
         for point in &mut self.points {
             *point = transform.transform_point3(*point);
@@ -59,7 +59,7 @@ impl Shell {
         if Mat3::from(transform.matrix3).determinant() < 0.0 { self.flipped() } else { self }
     }
 
-    /// The shell with inside and outside exchanged.
+    /// Shell with inside and outside exchanged.
     pub fn flipped(mut self) -> Self {
         for (triangle, uvs) in self.triangles.iter_mut().zip(&mut self.uvs) {
             triangle.swap(1, 2);
@@ -68,7 +68,7 @@ impl Shell {
         self
     }
 
-    /// The shell without the flat faces that look along the unit vector `direction`, for things whose back
+    /// Shell without the flat faces that look along the unit vector `direction`, for things whose back
     /// touches a wall; it is then no longer closed.
     pub fn without_faces(mut self, direction: Vec3) -> Self {
         let points = &self.points;
@@ -81,7 +81,7 @@ impl Shell {
         self
     }
 
-    /// The shell with its outside turned towards `point`, judged by the mean of its faces; for open sheets.
+    /// Shell with its outside turned towards `point`, judged by the mean of its faces; for open sheets.
     pub fn facing(self, point: Vec3) -> Self {
         let towards: f64 = self
             .triangles
@@ -94,7 +94,7 @@ impl Shell {
         if towards < 0.0 { self.flipped() } else { self }
     }
 
-    /// The shell with every point moved by `f`, for bending and tapering.
+    /// Shell with every point moved by `f`, for bending and tapering.
     pub fn mapped(mut self, f: impl Fn(Vec3) -> Vec3) -> Self {
         for point in &mut self.points {
             *point = f(*point);

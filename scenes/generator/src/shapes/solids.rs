@@ -1,14 +1,14 @@
 //! Boxes: plain, with bevelled edges, and tapering.
 
-use super::{Shell, grid};
+use super::{Shell, grid, rectangle};
 use glam::{Vec2, Vec3};
 
-/// The box between `low` and `high`, flat shaded.
+/// Box between `low` and `high`, flat shaded.
 pub fn block(low: impl Into<Vec3>, high: impl Into<Vec3>) -> Shell {
     frustum(low, high, Vec2::ONE)
 }
 
-/// A box whose top is its bottom scaled by `taper` in x and z about the middle (a wedge, a hopper, a plinth).
+/// Box whose top is its bottom scaled by `taper` in x and z about the middle (a wedge, a hopper, a plinth).
 pub fn frustum(low: impl Into<Vec3>, high: impl Into<Vec3>, taper: Vec2) -> Shell {
     let (low, high) = (low.into(), high.into());
     let mut shell = Shell::new(0.0);
@@ -30,7 +30,7 @@ pub fn frustum(low: impl Into<Vec3>, high: impl Into<Vec3>, taper: Vec2) -> Shel
     shell
 }
 
-/// The box between `low` and `high` with edges cut at 45° by `bevel` metres (limited to what fits).
+/// Box between `low` and `high` with edges cut at 45° by `bevel` metres (limited to what fits).
 pub fn beveled_box(low: impl Into<Vec3>, high: impl Into<Vec3>, bevel: f32) -> Shell {
     let (low, high) = (low.into(), high.into());
     let cut = bevel.min(0.49 * (high - low).min_element());
@@ -70,7 +70,7 @@ pub fn beveled_box(low: impl Into<Vec3>, high: impl Into<Vec3>, bevel: f32) -> S
     shell
 }
 
-/// A paving slab between two corners in plan (x, z): its top at y = 0 with bevelled edges, and sides down to
+/// Paving slab between two corners in plan (x, z): its top at y = 0 with bevelled edges, and sides down to
 /// `-depth`; without underside.
 pub fn slab(low: Vec2, high: Vec2, depth: f32, bevel: f32) -> Shell {
     let ring = |inset: f32, y: f32| {
@@ -80,6 +80,18 @@ pub fn slab(low: Vec2, high: Vec2, depth: f32, bevel: f32) -> Shell {
     let mut shell = grid(&[ring(0.0, -depth), ring(bevel, 0.0)], true, false, 0.0);
     let top = [4, 5, 6, 7];
     shell.quad(top, top.map(|i: u32| Vec2::new(shell.points[i as usize].x, shell.points[i as usize].z)));
+    shell
+}
+
+/// Tile of `size` about the origin, without its back; `lay` gives the place of a point of its outline at a height above
+/// its bed.
+pub fn tile(size: Vec2, thickness: f32, bevel: f32, lay: impl Fn(Vec2, f32) -> Vec3) -> Shell {
+    let ring = |inset: f32, height: f32| {
+        let h = 0.5 * size - inset;
+        rectangle(-h, h).iter().map(|&p| lay(p, height)).collect::<Vec<Vec3>>()
+    };
+    let mut shell = grid(&[ring(0.0, 0.0), ring(bevel, thickness)], true, false, 10.0);
+    shell.quad([4, 5, 6, 7], [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y].map(|p| p * size));
     shell
 }
 

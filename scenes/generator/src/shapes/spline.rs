@@ -3,14 +3,15 @@
 use glam::{Vec2, Vec3};
 use std::ops::{Add, Mul, Sub};
 
-/// The uniform Catmull-Rom curve through `points` with `steps` segments between neighbours.
+/// Uniform Catmull-Rom curve through `points` with `steps` segments between neighbours.
 pub fn spline(points: &[impl Into<Vec2> + Copy], steps: usize) -> Vec<Vec2> {
     through(&super::points(points), steps)
 }
 
-/// The same in space.
-pub fn spline3(points: &[Vec3], steps: usize) -> Vec<Vec3> {
-    through(points, steps)
+/// Uniform Catmull-Rom curve in space.
+pub fn spline3(points: &[impl Into<Vec3> + Copy], steps: usize) -> Vec<Vec3> {
+    let points: Vec<Vec3> = points.iter().map(|&p| p.into()).collect();
+    through(&points, steps)
 }
 
 fn through<V>(points: &[V], steps: usize) -> Vec<V>

@@ -3,7 +3,7 @@
 use super::{Faces, Shell, circle, extrude::triangulate, grid, points};
 use glam::{Vec2, Vec3};
 
-/// The profile of a sweep, in the plane across the path as someone sees it who travels along: x to the
+/// Profile of a sweep, in the plane across the path as someone sees it who travels along: x to the
 /// right, y up.
 #[derive(Clone, Copy, Debug)]
 pub struct Section<'a> {
@@ -45,7 +45,7 @@ pub fn sweep_along(section: Section, path: &[Vec3], up: Vec3, path_closed: bool,
     shell
 }
 
-/// The profile placed at every point of the path, in the mitre plane there.
+/// Profile placed at every point of the path, in the mitre plane there.
 fn stations(profile: &[Vec2], path: &[Vec3], up: Vec3, closed: bool) -> Vec<Vec<Vec3>> {
     let count = path.len();
     let direction = |k: usize| (path[(k + 1) % count] - path[k % count]).normalize();
@@ -87,7 +87,7 @@ fn rotate_into(v: Vec3, from: Vec3, to: Vec3) -> Vec3 {
     glam::Quat::from_rotation_arc(from, to) * v
 }
 
-/// A round pipe along `path`, closed at the ends.
+/// Round pipe along `path`, closed at the ends.
 pub fn pipe(path: &[impl Into<Vec3> + Copy], radius: f32, segments: usize) -> Shell {
     let path: Vec<Vec3> = path.iter().map(|&p| p.into()).collect();
     let profile = circle(radius, segments);
@@ -98,7 +98,7 @@ pub fn pipe(path: &[impl Into<Vec3> + Copy], radius: f32, segments: usize) -> Sh
     sweep_along(section, &path, up, false, Faces::ALL)
 }
 
-/// A straight round bar between two points, closed at the ends.
+/// Straight round bar between two points, closed at the ends.
 pub fn rod(from: impl Into<Vec3>, to: impl Into<Vec3>, radius: f32, segments: usize) -> Shell {
     pipe(&[from.into(), to.into()], radius, segments)
 }

@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3};
 use proptest::prelude::{prop, prop_assert, proptest};
 
 impl Shell {
-    /// The volume inside, positive where the faces look outwards; meaningful for closed shells only.
+    /// Volume inside, positive where the faces look outwards; meaningful for closed shells only.
     pub fn signed_volume(&self) -> f64 {
         let origin = self.points.first().map_or(glam::DVec3::ZERO, |p| p.as_dvec3());
         self.triangles

@@ -1,26 +1,28 @@
 //! Plates, bowls, bottles, pots: profiles for the lathe.
 
-use super::{Shell, lathe, spline};
+use super::{Shell, lathe, scaled, spline};
 use glam::Vec2;
 
 /// Half section of a vessel that is turned on the lathe; (radius, height) in metres.
 #[derive(Clone, Copy, Debug)]
 pub struct Vessel {
-    /// Outer profile from the foot upwards to the rim.
-    pub outside: &'static [[f32; 2]],
-    /// Thickness of the wall; the inside follows the outside. 0 for a solid, closed at the top.
-    pub wall: f32,
-    /// Segments around.
-    pub segments: usize,
-    /// Curve segments between two points of the profile; 1 keeps its corners.
-    pub steps: usize,
+    outside: &'static [[f32; 2]],
+    wall: f32,
+    segments: usize,
+    steps: usize,
 }
 
 impl Vessel {
-    /// The vessel, scaled by `scale`, standing on y = 0.
+    /// Vessel whose outer profile from the foot upwards to the rim is `outside`, in `segments` around and `steps`
+    /// between two points of the profile (1 keeps its corners). The inside follows the outside at the distance
+    /// `wall`, 0 for a solid that is closed at the top.
+    pub const fn new(outside: &'static [[f32; 2]], wall: f32, segments: usize, steps: usize) -> Self {
+        Vessel { outside, wall, segments, steps }
+    }
+
+    /// Vessel scaled by `scale`, standing on y = 0.
     pub fn turned(&self, scale: f32) -> Shell {
-        let points: Vec<Vec2> = self.outside.iter().map(|p| Vec2::from_array(*p) * scale).collect();
-        let curve = spline(&points, self.steps);
+        let curve = spline(&scaled(self.outside, scale), self.steps);
         let mut profile = vec![Vec2::new(0.0, curve[0].y)];
         profile.extend(curve.iter().map(|p| p.max(Vec2::new(1e-4, f32::MIN))));
         if self.wall > 0.0 {

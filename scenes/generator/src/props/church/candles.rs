@@ -30,9 +30,7 @@ pub fn candle_crown(place: Affine3A, top: f32) -> Assembly {
     let mut crown = Assembly::framed(place);
     let (inner, outer) = (CROWN_RADIUS - 0.015, CROWN_RADIUS + 0.015);
     crown.add("iron", &ring(inner, outer, -0.09, 0.09, 24).creased(15.0));
-    for y in [-0.09, 0.09] {
-        crown.add_at("iron", &torus(CROWN_RADIUS, 0.022, 24, 4), at(0.0, y, 0.0));
-    }
+    crown.add_each("iron", &torus(CROWN_RADIUS, 0.022, 24, 4), [-0.09, 0.09].map(|y| at(0.0, y, 0.0)));
     let knot = Vec3::new(0.0, 2.1, 0.0);
     for k in 0..4 {
         let turn = turned(90.0 * k as f32 + 15.0, Vec3::ZERO);

@@ -8,9 +8,9 @@ const STONE: &str = "furniture_stone";
 #[rustfmt::skip]
 mod section {
     /// Side of a pew in (z, y).
-    pub const PEW_END: [[f32; 2]; 17] = [[-0.26, -0.02], [0.5, -0.02], [0.5, 0.16], [0.42, 0.3], [0.38, 0.6], [0.34, 0.86],
-        [0.33, 1.0], [0.28, 1.06], [0.21, 1.07], [0.16, 1.02], [0.15, 0.92], [0.12, 0.72], [0.05, 0.6], [-0.08, 0.56],
-        [-0.22, 0.58], [-0.27, 0.52], [-0.26, 0.4]];
+    pub const PEW_END: [[f32; 2]; 17] = [[-0.26, -0.02], [0.5, -0.02], [0.5, 0.16], [0.42, 0.3], [0.38, 0.6],
+        [0.34, 0.86], [0.33, 1.0], [0.28, 1.06], [0.21, 1.07], [0.16, 1.02], [0.15, 0.92], [0.12, 0.72],
+        [0.05, 0.6], [-0.08, 0.56], [-0.22, 0.58], [-0.27, 0.52], [-0.26, 0.4]];
     pub const ALTAR_LEG: [[f32; 2]; 6] = [[0.1, 0.1], [0.1, 0.16], [0.06, 0.22], [0.06, 0.8], [0.1, 0.88], [0.1, 0.95]];
     pub const PULPIT: [[f32; 2]; 9] = [[0.5, 0.0], [0.5, 0.15], [0.3, 0.22], [0.2, 0.4], [0.2, 0.95], [0.26, 1.1],
         [0.5, 1.3], [0.76, 1.42], [0.0, 1.42]];
@@ -32,9 +32,7 @@ pub fn pew(near: f32, far: f32) -> Assembly {
     pew.add("wood", &block([near, 0.12, 0.46], [far, 0.16, 0.62]));
     // The outline's depth becomes x.
     let end = extrude(&section::PEW_END, &[], 0.06).mapped(|p| Vec3::new(p.z, p.y, p.x)).flipped();
-    for x in [near - 0.05, far - 0.01] {
-        pew.add_at("wood", &end, at(x, 0.0, 0.0));
-    }
+    pew.add_each("wood", &end, [near - 0.05, far - 0.01].map(|x| at(x, 0.0, 0.0)));
     pew
 }
 
@@ -44,9 +42,8 @@ pub fn altar(foot: Vec3) -> Assembly {
     altar.add(STONE, &beveled_box([-1.25, -0.05, -0.5], [1.25, 0.12, 0.5], 0.03));
     altar.add(STONE, &block([-1.1, 0.1, -0.4], [1.1, 0.95, 0.4]));
     altar.add(STONE, &beveled_box([-1.3, 0.93, -0.5], [1.3, 1.05, 0.5], 0.03));
-    for x in [-1.12, -0.4, 0.4, 1.12] {
-        altar.add_at(STONE, &lathe(&section::ALTAR_LEG, 10), at(x, 0.0, 0.43));
-    }
+    let legs = [-1.12, -0.4, 0.4, 1.12].map(|x| at(x, 0.0, 0.43));
+    altar.add_each(STONE, &lathe(&section::ALTAR_LEG, 10), legs);
     // The cloth lies over the slab and hangs down at both ends, with a few folds.
     altar.add("cloth", &beveled_box([-1.32, 1.035, -0.46], [1.32, 1.062, 0.515], 0.008));
     for side in [-1.0, 1.0] {

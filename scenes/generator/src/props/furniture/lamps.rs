@@ -3,35 +3,33 @@
 use crate::shapes::*;
 use glam::{Affine3A, Quat, Vec2};
 
-/// Upside down about x.
-fn downwards() -> Affine3A {
-    Affine3A::from_quat(Quat::from_rotation_x(std::f32::consts::PI))
-}
+#[rustfmt::skip]
+const VASE: [[f32; 2]; 7] = [[0.06, 0.0], [0.062, 0.012], [0.04, 0.03], [0.075, 0.11], [0.07, 0.17], [0.022, 0.22],
+    [0.018, 0.26]];
 
-/// A round light in or under a ceiling, its top at y = 0: a ring, part `case`, around a disc, part `light`.
+/// Round light in or under a ceiling, its top at y = 0: a ring, part `case`, around a disc, part `light`.
 pub fn downlight(case: &str, light: &str, radius: f32) -> Assembly {
     let mut lamp = Assembly::new();
     lamp.add(case, &ring(radius, 1.3 * radius, -0.018, 0.0, 24));
-    lamp.add_at(light, &disc(radius + 1e-3, 24), at(0.0, -0.006, 0.0) * downwards());
+    let downwards = Affine3A::from_quat(Quat::from_rotation_x(std::f32::consts::PI));
+    lamp.add_at(light, &disc(radius + 1e-3, 24), at(0.0, -0.006, 0.0) * downwards);
     lamp
 }
 
-/// A lamp that hangs by `cord` metres from y = 0, its glowing bulb (part `light`) in an open metal shade.
+/// Lamp that hangs by `cord` metres from y = 0, its glowing bulb (part `light`) in an open metal shade.
 pub fn pendant(light: &str, cord: f32) -> Assembly {
     let mut lamp = Assembly::new();
     lamp.add("lamp_metal", &lathe(&[[0.0, -0.02], [0.05, -0.02], [0.05, 0.0]], 20));
     lamp.add("cord", &rod([0.0, -0.015, 0.0], [0.0, -cord, 0.0], 0.004, 8));
     let outer = spline(&[[0.16, 0.0], [0.15, 0.06], [0.11, 0.125], [0.045, 0.165], [0.03, 0.2]], 2);
-    let mut profile: Vec<Vec2> = outer.iter().rev().map(|p| *p - Vec2::new(0.004, 0.0)).collect();
-    profile.insert(0, Vec2::new(0.0, 0.195));
-    profile.extend(&outer);
-    profile.push(Vec2::new(0.0, 0.2));
+    let inner: Vec<Vec2> = outer.iter().rev().map(|p| *p - Vec2::new(0.004, 0.0)).collect();
+    let profile = [&[Vec2::new(0.0, 0.195)], &inner[..], &outer, &[Vec2::new(0.0, 0.2)]].concat();
     lamp.add_at("shade", &lathe(&profile, 24), at(0.0, -cord - 0.2, 0.0));
     lamp.add_at(light, &ellipsoid([0.042, 0.05, 0.042], 16, 10), at(0.0, -cord - 0.11, 0.0));
     lamp
 }
 
-/// A floor lamp of `height` that throws all its light up: the glowing disc, part `light`, lies in a bowl.
+/// Floor lamp of `height` that throws all its light up: the glowing disc, part `light`, lies in a bowl.
 pub fn uplighter(light: &str, height: f32) -> Assembly {
     let mut lamp = Assembly::new();
     let foot = spline(&[[0.15, 0.0], [0.15, 0.012], [0.06, 0.03], [0.014, 0.05]], 2);
@@ -47,7 +45,7 @@ pub fn uplighter(light: &str, height: f32) -> Assembly {
     lamp
 }
 
-/// A lamp with a cloth shade (part "lamp_shade") open above and below around its bulb (part `light`): on a
+/// Lamp with a cloth shade (part "lamp_shade") open above and below around its bulb (part `light`): on a
 /// turned vase of about 0.3 m, or, with a `pole`, on a foot and that much higher.
 pub fn shaded(light: &str, pole: f32) -> Assembly {
     let mut lamp = Assembly::new();
@@ -56,25 +54,12 @@ pub fn shaded(light: &str, pole: f32) -> Assembly {
         lamp.add_at("lamp_metal", &cylinder(0.012, pole, 14), at(0.0, 0.02, 0.0));
         pole
     } else {
-        let vase = [
-            [0.06, 0.0],
-            [0.062, 0.012],
-            [0.04, 0.03],
-            [0.075, 0.11],
-            [0.07, 0.17],
-            [0.022, 0.22],
-            [0.018, 0.26],
-        ];
-        let mut profile = vec![Vec2::ZERO];
-        profile.extend(spline(&vase, 2));
-        profile.push(Vec2::new(0.0, 0.26));
-        lamp.add("vases", &lathe(&profile, 20));
+        lamp.add("vases", &spindle(&VASE, 2, 20));
         0.25
     };
     let scale = if pole > 0.0 { 1.35 } else { 1.0 };
-    let shade = [[0.095, 0.245], [0.145, 0.0], [0.148, 0.0], [0.098, 0.245], [0.095, 0.245]];
-    let shade: Vec<Vec2> = shade.iter().take(4).map(|p| Vec2::from_array(*p) * scale).collect();
-    lamp.add_at("lamp_shade", &profile_lathe(&shade, 24), at(0.0, base + 0.01, 0.0));
+    let shade = [[0.095, 0.245], [0.145, 0.0], [0.148, 0.0], [0.098, 0.245]];
+    lamp.add_at("lamp_shade", &profile_lathe(&scaled(&shade, scale), 24), at(0.0, base + 0.01, 0.0));
     lamp.add_at("lamp_metal", &cylinder(0.006, 0.06, 8), at(0.0, base - 0.005, 0.0));
     lamp.add_at(light, &ellipsoid([0.035, 0.045, 0.035], 14, 8), at(0.0, base + 0.095, 0.0));
     lamp

@@ -4,13 +4,13 @@ use crate::shapes::*;
 use glam::{Quat, Vec3};
 use std::f32::consts::PI;
 
-const PLANTER: Vessel = Vessel {
-    outside: &[[0.11, 0.0], [0.12, 0.01], [0.15, 0.25], [0.158, 0.255], [0.158, 0.29], [0.15, 0.295]],
-    wall: 0.012,
-    segments: 20,
-    steps: 1,
-};
-/// The turn from leaf to leaf, in degrees.
+const PLANTER: Vessel = Vessel::new(
+    &[[0.11, 0.0], [0.12, 0.01], [0.15, 0.25], [0.158, 0.255], [0.158, 0.29], [0.15, 0.295]],
+    0.012,
+    20,
+    1,
+);
+/// Turn from leaf to leaf, in degrees.
 const GOLDEN_ANGLE: f32 = 137.507_77;
 
 fn planter() -> Assembly {
@@ -20,7 +20,7 @@ fn planter() -> Assembly {
     planter
 }
 
-/// A leaf that starts at the origin along +z, rises, arches over and folds a little along its rib.
+/// Leaf that starts at the origin along +z, rises, arches over and folds a little along its rib.
 fn leaf(length: f32, width: f32, rise: f32, droop: f32) -> Shell {
     patch(4, 6, |u, v| {
         let across = 2.0 * u - 1.0;
@@ -46,7 +46,7 @@ pub fn potted_fern(leaves: usize, seed: u64) -> Assembly {
     plant
 }
 
-/// A stem of `height` with broad stalked leaves all the way up.
+/// Stem of `height` with broad stalked leaves all the way up.
 pub fn potted_rubber_tree(height: f32, leaves: usize, seed: u64) -> Assembly {
     let mut plant = planter();
     let mut rng = Rng::new(seed);

@@ -3,33 +3,17 @@
 use crate::shapes::*;
 use glam::{Vec2, Vec3};
 
-/// A turned leg of `height` and greatest radius `radius`: foot, rings and a tapering vase.
+/// Foot, rings and a tapering vase, as shares of the greatest radius and of the height.
+#[rustfmt::skip]
+const LEG: [[f32; 2]; 15] = [[0.42, 0.0], [0.5, 0.02], [0.5, 0.05], [0.4, 0.07], [0.5, 0.2], [0.8, 0.42], [0.92, 0.52],
+    [0.75, 0.6], [0.5, 0.64], [0.72, 0.66], [0.72, 0.69], [0.5, 0.71], [0.78, 0.74], [1.0, 0.8], [1.0, 1.0]];
+
+/// Turned leg of `height` and greatest radius `radius`.
 pub fn turned_leg(height: f32, radius: f32, segments: usize, steps: usize) -> Shell {
-    let profile = [
-        [0.42, 0.0],
-        [0.5, 0.02],
-        [0.5, 0.05],
-        [0.4, 0.07],
-        [0.5, 0.2],
-        [0.8, 0.42],
-        [0.92, 0.52],
-        [0.75, 0.6],
-        [0.5, 0.64],
-        [0.72, 0.66],
-        [0.72, 0.69],
-        [0.5, 0.71],
-        [0.78, 0.74],
-        [1.0, 0.8],
-        [1.0, 1.0],
-    ];
-    let points: Vec<Vec2> = profile.iter().map(|p| Vec2::new(p[0] * radius, p[1] * height)).collect();
-    let mut outline = vec![Vec2::new(0.0, 0.0)];
-    outline.extend(spline(&points, steps));
-    outline.push(Vec2::new(0.0, height));
-    lathe(&outline, segments).creased(50.0)
+    spindle(&scaled(&LEG, Vec2::new(radius, height)), steps, segments).creased(50.0)
 }
 
-/// A wooden chair, 0.45 m wide: turned legs and stretchers, spindles under a bent rail, all part `wood`,
+/// Wooden chair, 0.45 m wide: turned legs and stretchers, spindles under a bent rail, all part `wood`,
 /// and a cushion, part `cloth`.
 pub fn chair(wood: &str, cloth: &str) -> Assembly {
     let mut chair = Assembly::new();
@@ -60,8 +44,8 @@ fn back(chair: &mut Assembly, wood: &str) {
         let thick = if x.abs() > 0.15 { 0.014 } else { 0.0075 };
         let length = from.distance(to);
         let profile = [[0.7, 0.0], [1.0, 0.3], [1.2, 0.45], [0.9, 0.6], [0.65, 1.0]];
-        let points: Vec<Vec2> = profile.iter().map(|p| Vec2::new(p[0] * thick, p[1] * length)).collect();
-        chair.add_at(wood, &lathe(&spline(&points, 1), 8), standing_on(from, to));
+        let spindle = lathe(&scaled(&profile, Vec2::new(thick, length)), 8);
+        chair.add_at(wood, &spindle, standing_on(from, to));
     }
     // The rail: a board bent about the sitter, thicker in the middle, rounded at both ends.
     let line =
@@ -74,6 +58,5 @@ fn back(chair: &mut Assembly, wood: &str) {
             section.map(|(sin, cos)| centre + ends * Vec3::new(0.0, 0.045 * sin, -0.013 * cos)).collect()
         })
         .collect();
-    let rail = loft(&rings, true, true, 75.0);
-    chair.add(wood, &rail);
+    chair.add(wood, &loft(&rings, true, true, 75.0));
 }

@@ -3,7 +3,7 @@
 use super::pipework::run;
 use super::{BARE, CASING, CONCRETE, PIPES, RED};
 use crate::shapes::*;
-use glam::{Affine3A, Vec3};
+use glam::Affine3A;
 
 /// Half sections along the shaft, and of a cylinder along its own axis.
 #[rustfmt::skip]
@@ -23,10 +23,7 @@ pub fn compressor(place: Affine3A) -> Assembly {
     let mut wheel = Assembly::framed(place * standing_on([0.75, 1.5, 0.0], [2.0, 1.5, 0.0]));
     wheel.add(RED, &profile_lathe(&section::RIM, 56));
     wheel.add(BARE, &lathe(&section::SHAFT, 24));
-    for k in 0..6 {
-        let spoke = rod([0.18, 0.15, 0.0], [1.03, 0.15, 0.0], 0.06, 10);
-        wheel.add_at(RED, &spoke, turned(60.0 * k as f32, Vec3::ZERO));
-    }
+    wheel.add_each(RED, &rod([0.18, 0.15, 0.0], [1.03, 0.15, 0.0], 0.06, 10), turns(6));
     compressor.merge(wheel);
     compressor.add(CASING, &beveled_box([-1.0, 0.3, -0.7], [0.55, 1.9, 0.7], 0.08));
     compressor.add_at(CASING, &ellipsoid([0.75, 0.45, 0.6], 28, 14), at(-0.22, 1.88, 0.0));

@@ -32,7 +32,7 @@ pub fn crane(place: Affine3A, rail: f32, hook: f32) -> Assembly {
 fn girder(crane: &mut Assembly, z: f32, half: f32) {
     let lower = [[-half, 0.05], [-half + 1.2, -0.1], [-half + 2.2, -0.45], [half - 2.2, -0.45]];
     let upper = [[half - 1.2, -0.1], [half, 0.05], [half, 0.55], [-half, 0.55]];
-    let side = [lower, upper].concat().iter().map(|p| Vec2::new(p[0], p[1] + 0.2)).collect::<Vec<_>>();
+    let side: Vec<Vec2> = lower.iter().chain(&upper).map(|&[x, y]| Vec2::new(x, y + 0.2)).collect();
     crane.add_at(PAINT, &extrude(&side, &[], 0.4), at(0.0, 0.0, z - 0.2));
     for k in 0..18 {
         let x = -half + 1.4 + (2.0 * half - 2.8) * k as f32 / 17.0;
@@ -73,9 +73,7 @@ fn trolley(place: Affine3A, hook_height: f32) -> Assembly {
     // The drum lies along z with the rope wound on it.
     let mut drum = Assembly::framed(place * standing_on([0.0, 0.62, -0.8], [0.0, 0.62, 1.0]));
     drum.add(PAINT, &cylinder(0.24, 1.6, 24));
-    for y in [-0.04, 1.6] {
-        drum.add_at(PAINT, &cylinder(0.36, 0.04, 24), at(0.0, y, 0.0));
-    }
+    drum.add_each(PAINT, &cylinder(0.36, 0.04, 24), [-0.04, 1.6].map(|y| at(0.0, y, 0.0)));
     drum.add_at(STEEL, &pipe(&helix(0.255, 0.045, 30.0, 12), 0.02, 4), at(0.0, 0.12, 0.0));
     trolley.merge(drum);
     trolley.add(PAINT, &beveled_box([-0.45, 0.3, 0.85], [0.35, 1.0, 1.22], 0.05));
@@ -96,13 +94,9 @@ fn hook(place: Affine3A, y: f32) -> Assembly {
         hook.add(STEEL, &rod([0.8 * x, y, 0.6 * z], [x, 0.62, z], 0.014, 6));
     }
     let cheek = rectangle(Vec2::new(-0.32, -0.28), Vec2::new(0.32, 0.25));
-    for z in [-0.2, 0.16] {
-        hook.add_at(PAINT, &extrude(&cheek, &[], 0.04), at(0.0, y, z));
-    }
+    hook.add_each(PAINT, &extrude(&cheek, &[], 0.04), [-0.2, 0.16].map(|z| at(0.0, y, z)));
     let mut sheaves = Assembly::framed(place * standing_on([0.0, y, -0.14], [0.0, y, 1.0]));
-    for along in [0.0, 0.16] {
-        sheaves.add_at(STEEL, &cylinder(0.25, 0.1, 20), at(0.0, along, 0.0));
-    }
+    sheaves.add_each(STEEL, &cylinder(0.25, 0.1, 20), [0.0, 0.16].map(|along| at(0.0, along, 0.0)));
     hook.merge(sheaves);
     hook.add(STEEL, &frustum([-0.1, y - 0.5, -0.1], [0.1, y - 0.25, 0.1], Vec2::splat(1.3)));
     let shank = [[0.0, -0.45, 0.0], [0.0, -0.72, 0.0], [0.2, -0.85, 0.0], [0.2, -1.12, 0.0]];

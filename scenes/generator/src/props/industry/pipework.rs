@@ -36,9 +36,7 @@ pub fn flange(part: &str, foot: Vec3, direction: Vec3, radius: f32) -> Assembly 
     flange
         .add(part, &lathe(&[[0.6 * radius, 0.0], [outer, 0.0], [outer, thick], [1.25 * radius, thick]], 12));
     let head = bolt([0.5 * (outer + 1.25 * radius), thick, 0.0], Vec3::Y, 0.26 * radius + 0.012);
-    for k in 0..6 {
-        flange.add_at(part, &head, turned(60.0 * k as f32, Vec3::ZERO));
-    }
+    flange.add_each(part, &head, turns(6));
     flange
 }
 

@@ -24,10 +24,7 @@ pub fn pump(place: Affine3A) -> Assembly {
     // Motor with fins, terminal box and feet; coupling with its guard; volute.
     let mut shaft = Assembly::framed(place * standing_on([-1.1, 0.75, 0.0], [1.0, 0.75, 0.0]));
     shaft.add(GLOSS, &lathe(&section::MOTOR, 28));
-    for k in 0..24 {
-        let fin = block([0.255, 0.2, -0.006], [0.31, 0.84, 0.006]);
-        shaft.add_at(GLOSS, &fin, turned(15.0 * k as f32, Vec3::ZERO));
-    }
+    shaft.add_each(GLOSS, &block([0.255, 0.2, -0.006], [0.31, 0.84, 0.006]), turns(24));
     shaft.add(BARE, &lathe(&section::COUPLING, 16));
     shaft.add_at(RED, &ring(0.17, 0.18, 0.0, 0.26, 20), at(0.0, 0.95, 0.0));
     shaft.add(CASING, &lathe(&section::VOLUTE, 28));

@@ -9,7 +9,8 @@ const STEEL: &str = "bench_steel";
 #[rustfmt::skip]
 mod section {
     pub const DRUM: [[f32; 2]; 14] = [[0.0, 0.03], [0.26, 0.03], [0.28, 0.0], [0.293, 0.02], [0.285, 0.27], [0.3, 0.3],
-        [0.285, 0.33], [0.285, 0.57], [0.3, 0.6], [0.285, 0.63], [0.293, 0.86], [0.28, 0.88], [0.27, 0.85], [0.0, 0.85]];
+        [0.285, 0.33], [0.285, 0.57], [0.3, 0.6], [0.285, 0.63], [0.293, 0.86], [0.28, 0.88], [0.27, 0.85],
+        [0.0, 0.85]];
     pub const GAS_CYLINDER: [[f32; 2]; 12] = [[0.0, 0.0], [0.11, 0.0], [0.115, 0.02], [0.115, 1.25], [0.105, 1.34],
         [0.07, 1.41], [0.035, 1.45], [0.035, 1.5], [0.05, 1.5], [0.05, 1.62], [0.03, 1.66], [0.0, 1.66]];
 }
@@ -90,13 +91,10 @@ pub fn cable_drum(place: Affine3A) -> Assembly {
     for (y, face) in [(0.0, -0.025), (0.94, 1.0)] {
         drum.add(TIMBER, &ring(0.06, radius, y, y + 0.06, 36));
         let plank = block([0.12, face, -0.06], [radius - 0.05, face + 0.025, 0.06]);
-        for k in 0..8 {
-            drum.add_at(TIMBER, &plank, turned(45.0 * k as f32, Vec3::ZERO));
-        }
+        drum.add_each(TIMBER, &plank, turns(8));
     }
-    for k in 0..14 {
-        drum.add_at("drum_cable", &torus(0.55, 0.034, 24, 5), at(0.0, 0.09 + 0.063 * k as f32, 0.0));
-    }
+    let coils = (0..14).map(|k| at(0.0, 0.09 + 0.063 * k as f32, 0.0));
+    drum.add_each("drum_cable", &torus(0.55, 0.034, 24, 5), coils);
     drum
 }
 

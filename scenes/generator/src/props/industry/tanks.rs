@@ -68,10 +68,7 @@ fn manhole(place: Affine3A) -> Assembly {
     let mut manhole = Assembly::framed(place);
     let neck = [[0.3, -0.1], [0.3, 0.16], [0.4, 0.16], [0.4, 0.25], [0.3, 0.27], [0.0, 0.29]];
     manhole.add(SHELL, &lathe(&neck, 28));
-    for k in 0..16 {
-        let head = bolt([0.36, 0.25, 0.0], Vec3::Y, 0.045);
-        manhole.add_at(FRAME, &head, turned(22.5 * k as f32, Vec3::ZERO));
-    }
+    manhole.add_each(FRAME, &bolt([0.36, 0.25, 0.0], Vec3::Y, 0.045), turns(16));
     manhole
 }
 

@@ -67,10 +67,7 @@ fn shaft(axis: Affine3A) -> Assembly {
     shaft.add(CASING, &lathe(&section::TURBINE, 40));
     for (radius, y) in [(1.05, 9.65), (0.95, 10.5), (0.8, 11.4)] {
         shaft.add(CASING, &ring(radius - 0.02, radius + 0.14, y - 0.06, y + 0.06, 40));
-        let head = bolt([radius + 0.07, y + 0.06, 0.0], Vec3::Y, 0.07);
-        for k in 0..28 {
-            shaft.add_at(BARE, &head, turned(360.0 / 28.0 * k as f32, Vec3::ZERO));
-        }
+        shaft.add_each(BARE, &bolt([radius + 0.07, y + 0.06, 0.0], Vec3::Y, 0.07), turns(28));
     }
     shaft
 }

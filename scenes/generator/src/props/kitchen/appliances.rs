@@ -1,44 +1,38 @@
 //! Refrigerator, cooker, extractor hood, kettle and toaster.
 
 use super::{BASE_DEPTH, WORKTOP};
-use crate::props::furniture::{bar_handle, downlight};
+use crate::props::furniture::{bar_handle, downlight, on_end};
 use crate::shapes::*;
-use glam::{Affine3A, Quat, Vec2, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use std::f32::consts::FRAC_PI_2;
 
-fn upright_bar(x: f32, y: f32, z: f32) -> Affine3A {
-    posed(Quat::from_rotation_z(FRAC_PI_2), [x, y, z])
-}
-
-/// A refrigerator with two doors, 0.68 m wide.
+/// Refrigerator with two doors, 0.68 m wide.
 pub fn refrigerator() -> Assembly {
     let mut fridge = Assembly::new();
     fridge.add("fridge", &beveled_box([0.0, 0.06, 0.02], [0.68, 1.88, 0.6], 0.008));
     fridge.add("plinth", &block([0.02, 0.0, 0.04], [0.66, 0.06, 0.57]));
     for (low, high) in [(0.075, 0.63), (0.645, 1.88)] {
-        let leaf = rounded_box([0.0, low, 0.605], [0.68, high, 0.665], 0.014, 4);
-        fridge.add("fridge", &leaf);
+        fridge.add("fridge", &rounded_box([0.0, low, 0.605], [0.68, high, 0.665], 0.014, 4));
     }
-    fridge.add_at("steel", &bar_handle(0.3, 0.045, 0.009), upright_bar(0.62, 0.44, 0.663));
-    fridge.add_at("steel", &bar_handle(0.5, 0.045, 0.009), upright_bar(0.62, 0.98, 0.663));
+    fridge.add_at("steel", &bar_handle(0.3, 0.045, 0.009), on_end([0.62, 0.44, 0.663]));
+    fridge.add_at("steel", &bar_handle(0.5, 0.045, 0.009), on_end([0.62, 0.98, 0.663]));
     fridge
 }
 
-/// A built-in cooker, 0.6 m wide: oven below, gas hob on the worktop.
+/// Built-in cooker, 0.6 m wide: oven below, gas hob on the worktop.
 pub fn cooker() -> Assembly {
     let mut cooker = Assembly::new();
     let top = WORKTOP - 0.035;
     cooker.add("carcass", &block([0.0, 0.1, 0.0], [0.6, top, BASE_DEPTH]));
     cooker.add("plinth", &block(Vec3::ZERO, [0.6, 0.1, BASE_DEPTH - 0.06]));
     let front = BASE_DEPTH + 0.001;
-    let panel = beveled_box([0.003, 0.74, front], [0.597, top - 0.004, front + 0.022], 0.003);
-    cooker.add("steel", &panel);
-    let leaf = beveled_box([0.003, 0.25, front], [0.597, 0.735, front + 0.026], 0.004);
-    cooker.add("steel", &leaf);
+    for (low, high, thick, bevel) in
+        [(0.74, top - 0.004, 0.022, 0.003), (0.25, 0.735, 0.026, 0.004), (0.108, 0.245, 0.022, 0.003)]
+    {
+        cooker.add("steel", &beveled_box([0.003, low, front], [0.597, high, front + thick], bevel));
+    }
     let window = rounded_box([0.07, 0.31, front + 0.02], [0.53, 0.62, front + 0.029], 0.006, 3);
     cooker.add("dark_glass", &window);
-    let drawer = beveled_box([0.003, 0.108, front], [0.597, 0.245, front + 0.022], 0.003);
-    cooker.add("steel", &drawer);
     cooker.add_at("handles", &bar_handle(0.5, 0.045, 0.009), at(0.3, 0.685, front + 0.024));
     let knob = lathe(&[[0.0, 0.0], [0.02, 0.0], [0.018, 0.022], [0.015, 0.025], [0.0, 0.025]], 18);
     for k in 0..5 {
@@ -53,15 +47,12 @@ fn hob(cooker: &mut Assembly) {
     let plate = rounded_box([0.02, WORKTOP + 0.001, 0.06], [0.58, WORKTOP + 0.011, 0.57], 0.004, 3);
     cooker.add("dark_glass", &plate);
     let deck = WORKTOP + 0.011;
-    for (x, z, size) in
-        [(0.16, 0.19, 0.042), (0.44, 0.19, 0.034), (0.16, 0.43, 0.034), (0.44, 0.43, 0.05_f32)]
-    {
+    let burners = [(0.16, 0.19, 0.042), (0.44, 0.19, 0.034), (0.16, 0.43, 0.034), (0.44, 0.43, 0.05)];
+    for (x, z, size) in burners {
         cooker.add_at("steel", &ring(0.8 * size, 1.25 * size, 0.0, 0.008, 24), at(x, deck, z));
-        let cap = spline(
-            &[[0.9, 0.008], [0.95, 0.018], [0.8, 0.024], [0.0, 0.025]].map(|p| Vec2::new(p[0] * size, p[1])),
-            3,
-        );
-        cooker.add_at("hob", &lathe(&cap, 24), at(x, deck, z));
+        let cap = [[0.9, 0.008], [0.95, 0.018], [0.8, 0.024], [0.0, 0.025]];
+        let cap = lathe(&spline(&scaled(&cap, Vec2::new(size, 1.0)), 3), 24);
+        cooker.add_at("hob", &cap, at(x, deck, z));
         // The grate: a square frame on feet, four fingers towards the flame.
         let (half, high) = (0.115, 0.04);
         let frame = rounded_rectangle(Vec2::splat(2.0 * half), 0.02, 3);
@@ -69,8 +60,8 @@ fn hob(cooker: &mut Assembly) {
         let mut grate = closed_wire(&line, 0.005);
         for (dx, dz) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
             let dir = Vec3::new(dx, 0.0, dz);
-            let finger = [dir * half + Vec3::Y * high, dir * 0.35 * half + Vec3::Y * high];
-            grate = grate.joined(&rod(finger[0], finger[1], 0.005, 6));
+            let (tip, root) = (dir * 0.35 * half + Vec3::Y * high, dir * half + Vec3::Y * high);
+            grate = grate.joined(&rod(root, tip, 0.005, 6));
             let corner = Vec3::new(dx + dz, 0.0, dz - dx) * (half - 0.012);
             grate = grate.joined(&rod(corner, corner + Vec3::Y * high, 0.005, 6));
         }
@@ -78,14 +69,13 @@ fn hob(cooker: &mut Assembly) {
     }
 }
 
-/// A wire of square-ish section along a closed line in a horizontal plane.
+/// Wire of square-ish section along a closed line in a horizontal plane.
 fn closed_wire(line: &[Vec3], radius: f32) -> Shell {
-    let section: Vec<Vec2> = circle(radius, 6);
-    let section = Section { points: &section, closed: true, crease_degrees: 65.0 };
+    let section = Section { points: &circle(radius, 6), closed: true, crease_degrees: 65.0 };
     sweep_along(section, line, Vec3::Y, true, Faces::ALL)
 }
 
-/// An extractor hood, 0.6 m wide, its lower edge at y = 0, the chimney up to `height`; two lights.
+/// Extractor hood, 0.6 m wide, its lower edge at y = 0, the chimney up to `height`; two lights.
 pub fn hood(height: f32) -> Assembly {
     let mut hood = Assembly::new();
     let rectangle = |w: f32, d: f32, back: f32, y: f32| {
@@ -103,38 +93,29 @@ pub fn hood(height: f32) -> Assembly {
     for x in [0.16, 0.44] {
         hood.place(&downlight("lamp_metal", "hood_light", 0.025), at(x, 0.012, 0.32));
     }
-    let rail = [
-        Vec3::new(0.02, 0.03, 0.5),
-        Vec3::new(0.02, 0.03, 0.53),
-        Vec3::new(0.58, 0.03, 0.53),
-        Vec3::new(0.58, 0.03, 0.5),
-    ];
+    let rail = [[0.02, 0.03, 0.5], [0.02, 0.03, 0.53], [0.58, 0.03, 0.53], [0.58, 0.03, 0.5]];
     hood.add("handles", &pipe(&fillet(&rail, 0.012, 30.0), 0.006, 8));
     hood
 }
 
-/// A kettle with spout, lid and handle.
+/// Kettle with spout, lid and handle.
 pub fn kettle() -> Assembly {
     let mut kettle = Assembly::new();
     let body =
         spline(&[[0.07, 0.0], [0.095, 0.015], [0.098, 0.06], [0.08, 0.12], [0.05, 0.15], [0.045, 0.155]], 4);
-    let mut profile = vec![Vec2::ZERO];
-    profile.extend(body);
-    profile.extend(points(&[[0.03, 0.168], [0.01, 0.172], [0.0, 0.172]]));
-    kettle.add("pots", &lathe(&profile, 24));
+    let lid = points(&[[0.03, 0.168], [0.01, 0.172], [0.0, 0.172]]);
+    kettle.add("pots", &lathe(&[&[Vec2::ZERO], &body[..], &lid].concat(), 24));
     kettle.add_at("hob", &ellipsoid(Vec3::splat(0.012), 12, 8), at(0.0, 0.18, 0.0));
-    let spout =
-        spline_rings(&[(0.07, 0.06, 0.022), (0.11, 0.09, 0.016), (0.135, 0.14, 0.012), (0.15, 0.15, 0.012)]);
-    kettle.add("pots", &spout);
-    let grip =
-        [[-0.06, 0.13], [-0.075, 0.21], [0.03, 0.23], [0.055, 0.145]].map(|p| Vec3::new(p[0], p[1], 0.0));
+    let spout = [[0.07, 0.06, 0.022], [0.11, 0.09, 0.016], [0.135, 0.14, 0.012], [0.15, 0.15, 0.012]];
+    kettle.add("pots", &tapering(&spout));
+    let grip = [[-0.06, 0.13, 0.0], [-0.075, 0.21, 0.0], [0.03, 0.23, 0.0], [0.055, 0.145, 0.0]];
     kettle.add("hob", &pipe(&fillet(&grip, 0.05, 15.0), 0.008, 10));
     kettle
 }
 
-/// A tapering tube in the plane z = 0 through (x, y, radius).
-fn spline_rings(stations: &[(f32, f32, f32)]) -> Shell {
-    let line: Vec<Vec3> = spline3(&stations.iter().map(|s| Vec3::new(s.0, s.1, s.2)).collect::<Vec<_>>(), 4);
+/// Tapering tube in the plane z = 0 through (x, y, radius).
+fn tapering(stations: &[[f32; 3]]) -> Shell {
+    let line = spline3(stations, 4);
     let rings: Vec<Vec<Vec3>> = (0..line.len())
         .map(|k| {
             let (a, b) = (line[k.saturating_sub(1)], line[(k + 1).min(line.len() - 1)]);
@@ -148,14 +129,13 @@ fn spline_rings(stations: &[(f32, f32, f32)]) -> Shell {
     loft(&rings, true, true, 60.0)
 }
 
-/// A toaster with two slots.
+/// Toaster with two slots.
 pub fn toaster() -> Assembly {
     let mut toaster = Assembly::new();
     let levels = [(0.006, 0.0), (0.0, 0.01), (0.0, 0.13), (0.004, 0.15), (0.014, 0.165), (0.03, 0.172)];
     toaster.add("steel", &stacked(Vec2::new(0.28, 0.16), 0.04, 5, &levels, true, true));
     for z in [-0.028, 0.028] {
-        let slot = rounded_box([-0.09, 0.165, z - 0.011], [0.09, 0.1735, z + 0.011], 0.004, 2);
-        toaster.add("hob", &slot);
+        toaster.add("hob", &rounded_box([-0.09, 0.165, z - 0.011], [0.09, 0.1735, z + 0.011], 0.004, 2));
     }
     toaster.add("hob", &rounded_box([0.135, 0.09, -0.02], [0.165, 0.105, 0.02], 0.005, 3));
     toaster

@@ -2,9 +2,9 @@
 //! x along the wall, z off it.
 
 use super::{BASE_DEPTH, WALL_UNIT, WORKTOP, WORKTOP_DEPTH};
-use crate::props::furniture::{bar_handle, framed_panel, knob};
+use crate::props::furniture::{bar_handle, downlight, framed_panel, knob, on_end};
 use crate::shapes::*;
-use glam::{Quat, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 /// Height of the recessed plinth below base cupboards.
 const PLINTH: f32 = 0.1;
@@ -14,7 +14,7 @@ const SLAB: f32 = 0.035;
 const GAP: f32 = 0.003;
 const FRONT: f32 = 0.02;
 
-/// What closes a unit.
+/// Doors and drawers of a unit.
 #[derive(Clone, Copy, Debug)]
 pub enum Fronts {
     /// One door hinged on the left.
@@ -23,18 +23,18 @@ pub enum Fronts {
     Right,
     /// Two doors.
     Pair,
-    /// A drawer above two doors.
+    /// Drawer above two doors.
     DrawerAndPair,
-    /// A stack of this many drawers.
+    /// Stack of this many drawers.
     Drawers(usize),
 }
 
-/// A base cupboard of `width`.
+/// Base cupboard of `width`.
 pub fn base_unit(width: f32, fronts: Fronts) -> Assembly {
     base_unit_below(width, fronts, 0.0)
 }
 
-/// A base cupboard whose body ends `room` below the worktop, for a basin to hang in.
+/// Base cupboard whose body ends `room` below the worktop, for a basin to hang in.
 pub fn base_unit_below(width: f32, fronts: Fronts, room: f32) -> Assembly {
     let mut unit = Assembly::new();
     let top = WORKTOP - SLAB;
@@ -45,18 +45,16 @@ pub fn base_unit_below(width: f32, fronts: Fronts, room: f32) -> Assembly {
     unit
 }
 
-/// A wall cupboard of `width`, hung at its height, with a light below it: parts "under_case", "under_light".
+/// Wall cupboard of `width`, hung at its height, with a light below it: parts "under_case", "under_light".
 pub fn wall_unit(width: f32, fronts: Fronts, light: bool) -> Assembly {
     let (low, height, depth) = WALL_UNIT;
     let mut unit = Assembly::new();
     unit.add("carcass", &block([0.0, low, 0.0], [width, low + height, depth]));
-    let cornice =
-        beveled_box([-0.002, low + height, 0.0], [width + 0.002, low + height + 0.045, depth + 0.05], 0.012);
-    unit.add("fronts", &cornice);
+    let (top, overhang) = (low + height, [width + 0.002, low + height + 0.045, depth + 0.05]);
+    unit.add("fronts", &beveled_box([-0.002, top, 0.0], overhang, 0.012));
     add_fronts(&mut unit, Vec2::new(0.0, low), Vec2::new(width, height), depth, fronts, false);
     if light {
-        let lamp = crate::props::furniture::downlight("lamp_metal", "under_light", 0.035);
-        unit.place(&lamp, at(0.5 * width, low, 0.6 * depth));
+        unit.place(&downlight("lamp_metal", "under_light", 0.035), at(0.5 * width, low, 0.6 * depth));
     }
     unit
 }
@@ -93,8 +91,7 @@ fn add_door(unit: &mut Assembly, low: Vec2, size: Vec2, depth: f32, hinged_left:
     unit.add_at("fronts", &framed_panel(size - 2.0 * GAP, FRONT, 0.062), place);
     let x = if hinged_left { low.x + size.x - 0.035 } else { low.x + 0.035 };
     let y = if base { low.y + size.y - 0.13 } else { low.y + 0.13 };
-    let stand = posed(Quat::from_rotation_z(std::f32::consts::FRAC_PI_2), [x, y, depth + FRONT]);
-    unit.add_at("handles", &bar_handle(0.13, 0.032, 0.0055), stand);
+    unit.add_at("handles", &bar_handle(0.13, 0.032, 0.0055), on_end([x, y, depth + FRONT]));
 }
 
 fn add_drawer(unit: &mut Assembly, low: Vec2, size: Vec2, depth: f32) {
@@ -103,15 +100,13 @@ fn add_drawer(unit: &mut Assembly, low: Vec2, size: Vec2, depth: f32) {
     unit.add_at("fronts", &framed_panel(size - 2.0 * GAP, FRONT, frame), place);
     let middle = at(low.x + 0.5 * size.x, low.y + 0.5 * size.y, depth + FRONT - 0.004);
     if size.x > 0.7 {
-        for x in [-0.25, 0.25] {
-            unit.add_at("handles", &knob(0.016), middle * at(x * size.x, 0.0, 0.0));
-        }
+        unit.add_each("handles", &knob(0.016), [-0.25, 0.25].map(|x| middle * at(x * size.x, 0.0, 0.0)));
     } else {
         unit.add_at("handles", &bar_handle(0.16, 0.036, 0.0055), middle);
     }
 }
 
-/// A worktop from x = `from` to `to`, with `holes` in (x, depth).
+/// Worktop from x = `from` to `to`, with `holes` in (x, depth).
 pub fn worktop(from: f32, to: f32, holes: &[Vec<Vec2>]) -> Shell {
     // Outline y runs towards the wall, so that the slab grows upwards.
     let flip = |p: &Vec2| Vec2::new(p.x, -p.y);
@@ -121,21 +116,13 @@ pub fn worktop(from: f32, to: f32, holes: &[Vec<Vec2>]) -> Shell {
     slab.transformed(upright([0.0, WORKTOP - SLAB, 0.0], Vec3::X, -Vec3::Z))
 }
 
-/// An open shelf of `width` on two brackets, its upper face at y = 0.
+/// Open shelf of `width` on two brackets, its upper face at y = 0.
 pub fn shelf(width: f32, depth: f32) -> Assembly {
     let mut shelf = Assembly::new();
     shelf.add("wood", &beveled_box([0.0, -0.028, 0.0], [width, 0.0, depth], 0.003));
-    let outline = [
-        [0.0, 0.0],
-        [0.85 * depth, 0.0],
-        [0.8 * depth, -0.02],
-        [0.3 * depth, -0.05],
-        [0.03, -0.15],
-        [0.0, -0.17],
-    ];
-    let bracket = extrude(&outline, &[], 0.014);
-    for x in [0.08, width - 0.08] {
-        shelf.add_at("handles", &bracket, at(x, -0.028, 0.0) * turned(-90.0, Vec3::ZERO));
-    }
+    let top = [[0.0, 0.0], [0.85 * depth, 0.0], [0.8 * depth, -0.02]];
+    let bracket = [top, [[0.3 * depth, -0.05], [0.03, -0.15], [0.0, -0.17]]].concat();
+    let places = [0.08, width - 0.08].map(|x| at(x, -0.028, 0.0) * turned(-90.0, Vec3::ZERO));
+    shelf.add_each("handles", &extrude(&bracket, &[], 0.014), places);
     shelf
 }

@@ -9,29 +9,23 @@ const BASIN: Vec2 = Vec2::new(0.56, 0.38);
 const CORNER: f32 = 0.06;
 const STEPS: usize = 5;
 
-/// The hole the worktop needs for a sink about (x, depth).
+/// Inset from the opening and height over the worktop, from the outer edge of the rim over the lip and down to the
+/// drain.
+#[rustfmt::skip]
+const LEVELS: [[f32; 2]; 9] = [[-0.016, 0.001], [-0.015, 0.003], [-0.004, 0.004], [0.002, 0.0], [0.006, -0.02],
+    [0.014, -0.15], [0.022, -0.168], [0.04, -0.176], [0.15, -0.18]];
+
+/// Hole the worktop needs for a sink about (x, depth).
 pub fn cut_out(centre: Vec2) -> Vec<Vec2> {
     rounded_rectangle(BASIN, CORNER, STEPS).iter().map(|p| centre + *p).collect()
 }
 
-/// The sink about the origin of (x, depth), hanging from the worktop's height; the wall is towards -z.
+/// Sink about the origin of (x, depth), hanging from the worktop's height; the wall is towards -z.
 pub fn sink() -> Assembly {
     let mut sink = Assembly::new();
-    // From the outer edge of the rim over the lip and down to the drain.
-    let levels: [(f32, f32); 9] = [
-        (-0.016, 0.001),
-        (-0.015, 0.003),
-        (-0.004, 0.004),
-        (0.002, 0.0),
-        (0.006, -0.02),
-        (0.014, -0.15),
-        (0.022, -0.168),
-        (0.04, -0.176),
-        (0.15, -0.18),
-    ];
-    let rings: Vec<Vec<Vec3>> = levels
+    let rings: Vec<Vec<Vec3>> = LEVELS
         .iter()
-        .map(|&(inset, y)| {
+        .map(|&[inset, y]| {
             let outline = rounded_rectangle(BASIN - 2.0 * inset, CORNER - inset.min(0.05), STEPS);
             outline.iter().map(|p| Vec3::new(p.x, WORKTOP + y, -p.y)).collect()
         })

@@ -14,26 +14,20 @@
 //!            +---+--------------+ 5.6
 //! ```
 
-mod bedroom;
-mod corridor;
-mod living;
 mod parquet;
-mod plan;
-mod study;
+mod rooms;
+mod walls;
 
 use crate::shapes::*;
 
 /// Height of all rooms.
 const HEIGHT: f32 = 2.7;
 
-/// The parts of the scene.
+/// Parts of the scene.
 pub fn parts() -> Vec<Part> {
     let mut scene = Assembly::new();
-    plan::add(&mut scene);
+    walls::add(&mut scene);
     parquet::add(&mut scene);
-    living::add(&mut scene);
-    corridor::add(&mut scene);
-    bedroom::add(&mut scene);
-    study::add(&mut scene);
+    rooms::add(&mut scene);
     scene.into_parts()
 }

@@ -27,13 +27,7 @@ pub fn add(scene: &mut Assembly) {
     }
 }
 
-/// A plank about the origin, 2 mm above y = 0, open below.
+/// Plank about the origin, 2 mm above y = 0, open below.
 fn plank(size: Vec2) -> Shell {
-    let ring = |inset: f32, y: f32| {
-        let h = 0.5 * size - inset;
-        [(-h.x, h.y), (h.x, h.y), (h.x, -h.y), (-h.x, -h.y)].map(|(x, z)| Vec3::new(x, y, z)).to_vec()
-    };
-    let mut shell = grid(&[ring(0.0, 0.0), ring(0.0012, 0.002)], true, false, 10.0);
-    shell.quad([4, 5, 6, 7], [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y].map(|p| p * size));
-    shell
+    tile(size, 0.002, 0.0012, |p, height| Vec3::new(p.x, height, -p.y))
 }

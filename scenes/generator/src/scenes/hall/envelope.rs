@@ -58,7 +58,7 @@ fn floor(scene: &mut Assembly) {
     }
 }
 
-/// A trapezoidal sheet along x from 0 to `width`, up to `height`, its ribs standing out towards +z.
+/// Trapezoidal sheet along x from 0 to `width`, up to `height`, its ribs standing out towards +z.
 fn profiled_sheet(width: f32, height: f32, pitch: f32, depth: f32) -> Shell {
     let count = (width / pitch).round() as usize;
     let pitch = width / count as f32;

@@ -54,7 +54,7 @@ fn rack(scene: &mut Assembly) {
     }
 }
 
-/// A round duct under the crane girder of the west side, with seams, elbows and outlets.
+/// Round duct under the crane girder of the west side, with seams, elbows and outlets.
 fn duct(scene: &mut Assembly) {
     let (x, y, r) = (-9.6, 5.9, 0.42);
     let (near, far) = (-1.5, END + 2.2);
@@ -76,7 +76,7 @@ fn duct(scene: &mut Assembly) {
     }
 }
 
-/// A tray along the east columns with a bundle of cables that sag a little between its rungs.
+/// Tray along the east columns with a bundle of cables that sag a little between its rungs.
 fn cables(scene: &mut Assembly) {
     let (x, y) = (COLUMN - 0.75, 5.9);
     for side in [-0.2, 0.2] {

@@ -16,9 +16,8 @@ pub fn add(scene: &mut Assembly) {
         scene.merge(crate_box(turned(degrees, [x, 0.13, z]), Vec3::new(size, 0.8 * size, 0.9 * size)));
     }
     scene.merge(crate_box(turned(24.0, [4.55, 1.015, -6.5]), Vec3::new(0.7, 0.55, 0.6)));
-    for k in 0..6 {
-        scene.add_at("gas_cylinders", &gas_cylinder(), at(-9.0 + 0.3 * k as f32, -0.005, -0.75));
-    }
+    let row = (0..6).map(|k| at(-9.0 + 0.3 * k as f32, -0.005, -0.75));
+    scene.add_each("gas_cylinders", &gas_cylinder(), row);
     scene.add("bench_steel", &rod([-9.3, 1.0, -0.55], [-7.2, 1.0, -0.55], 0.02, 8));
     scene.merge(cable_drum(turned(25.0, [4.9, 0.0, -10.6])));
     scene.merge(bench(at(6.6, 0.0, -1.9)));

@@ -43,7 +43,7 @@ pub fn add(scene: &mut Assembly) {
     rafters(scene);
 }
 
-/// A column about the origin, its web across the hall, with the bracket for the crane towards -x.
+/// Column about the origin, its web across the hall, with the bracket for the crane towards -x.
 fn column() -> Assembly {
     let mut column = Assembly::new();
     let section = i_section(0.6, 0.32, 0.03, 0.018);
@@ -73,7 +73,7 @@ fn column() -> Assembly {
     column
 }
 
-/// A parallel truss across the hall about z = 0, of double angles with gussets.
+/// Parallel truss across the hall about z = 0, of double angles with gussets.
 fn truss() -> Assembly {
     let mut truss = Assembly::new();
     let chord = angle_section(0.14, 0.014);

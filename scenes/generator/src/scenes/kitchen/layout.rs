@@ -41,10 +41,8 @@ fn back_run() -> Assembly {
     shelves(&mut run);
     // On the worktop, from left to right.
     for (k, scale) in [1.1, 1.0, 0.9].into_iter().enumerate() {
-        run.place(
-            &tableware::jar("jars", Vec2::new(scale, 1.3 * scale)),
-            at(0.84 + 0.14 * k as f32, WORKTOP, 0.16),
-        );
+        let jar = tableware::jar("jars", Vec2::new(scale, 1.3 * scale));
+        run.place(&jar, at(0.84 + 0.14 * k as f32, WORKTOP, 0.16));
     }
     run.place(&appliances::toaster(), turned(8.0, [1.55, WORKTOP, 0.24]));
     run.place(&tableware::knife_block(), turned(-8.0, [1.95, WORKTOP, 0.18]));
@@ -53,13 +51,11 @@ fn back_run() -> Assembly {
     run.place(&appliances::kettle(), turned(150.0, [2.28, deck, 0.19]));
     run.place(&tableware::pan(), turned(-60.0, [2.28, deck, 0.43]));
     run.add("wood", &rounded_box([2.86, WORKTOP, 0.2], [3.26, WORKTOP + 0.022, 0.48], 0.006, 3));
-    run.add_at("bottles", &tableware::bottle(1.0), at(3.44, WORKTOP, 0.14));
-    run.add_at("bottles", &tableware::bottle(0.85), at(3.54, WORKTOP, 0.2));
+    run.add_at("bottles", &tableware::BOTTLE.turned(1.0), at(3.44, WORKTOP, 0.14));
+    run.add_at("bottles", &tableware::BOTTLE.turned(0.85), at(3.54, WORKTOP, 0.2));
     for k in 0..3 {
-        run.place(
-            &tableware::mug("glaze"),
-            turned(60.0 + 50.0 * k as f32, [3.85 + 0.13 * k as f32, WORKTOP, 0.2]),
-        );
+        let place = turned(60.0 + 50.0 * k as f32, [3.85 + 0.13 * k as f32, WORKTOP, 0.2]);
+        run.place(&tableware::mug("glaze"), place);
     }
     run
 }
@@ -75,15 +71,10 @@ fn shelves(run: &mut Assembly) {
                 (0, _) => run.place(&tableware::mug("crockery"), turned(30.0 * k as f32, [x, y, 0.11])),
                 (_, 0 | 1) => {
                     let stack = if k == 0 { 4 } else { 3 };
-                    for n in 0..stack {
-                        run.add_at(
-                            "glaze",
-                            &tableware::bowl(),
-                            at(x + 0.05 * k as f32, y + 0.013 * n as f32, 0.11),
-                        );
-                    }
+                    let places = (0..stack).map(|n| at(x + 0.05 * k as f32, y + 0.013 * n as f32, 0.11));
+                    run.add_each("glaze", &tableware::BOWL.turned(1.0), places);
                 }
-                (_, 2) => run.add_at("bottles", &tableware::bottle(0.7), at(x + 0.04, y, 0.11)),
+                (_, 2) => run.add_at("bottles", &tableware::BOTTLE.turned(0.7), at(x + 0.04, y, 0.11)),
                 _ => run.place(&tableware::jar("jars", Vec2::new(0.95, 1.2)), at(x, y, 0.11)),
             }
         }
@@ -102,15 +93,13 @@ fn right_run() -> Assembly {
     run.place(&sink::sink(), at(basin.x, 0.0, basin.y));
     run.place(&wall_unit(0.3, Fronts::Right, true), at(2.57, 0.0, 0.0));
     // The draining side: a stack of plates and one of bowls; washing-up liquid by the tap.
-    for k in 0..6 {
-        run.add_at("crockery", &tableware::plate(), at(2.42, WORKTOP + 0.0065 * k as f32, 0.3));
-    }
-    for k in 0..4 {
-        run.add_at("crockery", &tableware::side_plate(), at(2.68, WORKTOP + 0.005 * k as f32, 0.24));
-    }
-    run.add_at("glaze", &tableware::bowl(), at(2.68, WORKTOP + 0.021, 0.24));
-    run.add_at("jars", &tableware::bottle(0.6), at(1.5, WORKTOP, 0.1));
-    run.add_at("tumblers", &tableware::tumbler(), at(1.25, WORKTOP, 0.25));
-    run.add_at("tumblers", &tableware::tumbler(), at(1.16, WORKTOP, 0.31));
+    let plates = (0..6).map(|k| at(2.42, WORKTOP + 0.0065 * k as f32, 0.3));
+    run.add_each("crockery", &tableware::PLATE.turned(1.0), plates);
+    let side_plates = (0..4).map(|k| at(2.68, WORKTOP + 0.005 * k as f32, 0.24));
+    run.add_each("crockery", &tableware::PLATE.turned(0.72), side_plates);
+    run.add_at("glaze", &tableware::BOWL.turned(1.0), at(2.68, WORKTOP + 0.021, 0.24));
+    run.add_at("jars", &tableware::BOTTLE.turned(0.6), at(1.5, WORKTOP, 0.1));
+    let tumblers = [at(1.25, WORKTOP, 0.25), at(1.16, WORKTOP, 0.31)];
+    run.add_each("tumblers", &tableware::TUMBLER.turned(1.0), tumblers);
     run
 }

@@ -11,9 +11,10 @@ mod table;
 use crate::shapes::*;
 use glam::Vec3;
 
-/// The room's extent from the origin.
+/// Room's extent from the origin.
 const ROOM: Vec3 = Vec3::new(4.6, 2.6, 4.2);
-/// The parts of the scene.
+
+/// Parts of the scene.
 pub fn parts() -> Vec<Part> {
     let mut scene = Assembly::new();
     room::add(&mut scene);

@@ -27,16 +27,14 @@ pub fn add(scene: &mut Assembly) {
 
 fn shell(scene: &mut Assembly) {
     let Vec3 { x, y, z } = ROOM;
-    let sheet = |origin: Vec3, u: Vec3, v: Vec3| sheet(origin, u, v);
-    scene.add("floor", &sheet(Vec3::new(0.0, 0.0, z), Vec3::X * x, -Vec3::Z * z));
-    scene.add("ceiling", &sheet(Vec3::new(0.0, y, 0.0), Vec3::X * x, Vec3::Z * z));
+    scene.add("floor", &sheet([0.0, 0.0, z], Vec3::X * x, -Vec3::Z * z));
+    scene.add("ceiling", &sheet([0.0, y, 0.0], Vec3::X * x, Vec3::Z * z));
     scene.add("walls", &sheet(Vec3::ZERO, Vec3::X * x, Vec3::Y * y));
-    scene.add("walls", &sheet(Vec3::new(x, 0.0, z), -Vec3::X * x, Vec3::Y * y));
-    scene.add("walls", &sheet(Vec3::new(0.0, 0.0, z), -Vec3::Z * z, Vec3::Y * y));
+    scene.add("walls", &sheet([x, 0.0, z], -Vec3::X * x, Vec3::Y * y));
+    scene.add("walls", &sheet([0.0, 0.0, z], -Vec3::Z * z, Vec3::Y * y));
     // The right wall, pierced: a prism whose front is the wall and whose reveals go back from it.
-    let faces = Faces { front: true, back: false, rim: false, reveals: true };
     let hole = rectangle(WINDOW.0, WINDOW.1);
-    let wall = extrude_faces(&rectangle(Vec2::ZERO, Vec2::new(z, y)), &[hole], REVEAL, faces);
+    let wall = extrude_faces(&rectangle(Vec2::ZERO, Vec2::new(z, y)), &[hole], REVEAL, Faces::FRONT);
     scene.add_at("walls", &wall, turned(-90.0, [x, 0.0, 0.0]) * at(0.0, 0.0, -REVEAL));
 }
 
@@ -47,24 +45,10 @@ fn floor(scene: &mut Assembly) {
     for j in 0..rows {
         for i in 0..columns {
             let centre = pitch * Vec2::new(i as f32 + 0.5, j as f32 + 0.5);
-            scene.add_at("floor_tiles", &tile(pitch - 0.004, 0.004, 0.0025), lying(centre));
+            let lying = upright([centre.x, 0.0, centre.y], Vec3::X, -Vec3::Z);
+            scene.add_at("floor_tiles", &tile(pitch - 0.004, 0.004, 0.0025, Vec2::extend), lying);
         }
     }
-}
-
-fn lying(centre: Vec2) -> glam::Affine3A {
-    upright([centre.x, 0.0, centre.y], Vec3::X, -Vec3::Z)
-}
-
-/// A tile about the origin that rises from z = 0 to `thickness`, without its back.
-fn tile(size: Vec2, thickness: f32, bevel: f32) -> Shell {
-    let ring = |inset: f32, z: f32| {
-        let h = 0.5 * size - inset;
-        [(-h.x, -h.y), (h.x, -h.y), (h.x, h.y), (-h.x, h.y)].map(|(x, y)| Vec3::new(x, y, z)).to_vec()
-    };
-    let mut shell = grid(&[ring(0.0, 0.0), ring(bevel, thickness)], true, false, 10.0);
-    shell.quad([4, 5, 6, 7], [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y].map(|p| p * size));
-    shell
 }
 
 /// Brick-bonded tiles of 20 x 10 cm on the wall z = 0, cut to `size`, from the origin to the right and up.
@@ -80,13 +64,16 @@ fn tiled_wall(size: Vec2) -> Assembly {
             let extent = Vec2::new(to - from, top - bottom) - gap;
             let centre = Vec3::new(0.5 * (from + to), 0.5 * (bottom + top), 0.001);
             if extent.min_element() > 0.01 {
-                wall.add_at("wall_tiles", &tile(extent, 0.007, 0.002), at(centre.x, centre.y, centre.z));
+                wall.add_at(
+                    "wall_tiles",
+                    &tile(extent, 0.007, 0.002, Vec2::extend),
+                    at(centre.x, centre.y, centre.z),
+                );
             }
             left += pitch.x;
         }
     }
-    let bed = sheet(Vec3::Z * 0.002, Vec3::X * size.x, Vec3::Y * size.y);
-    wall.add("grout", &bed);
+    wall.add("grout", &sheet(Vec3::Z * 0.002, Vec3::X * size.x, Vec3::Y * size.y));
     wall
 }
 
@@ -116,9 +103,8 @@ fn window(scene: &mut Assembly) {
         Vec3::new(0.02 + u * (size.x - 0.04), size.y - 0.03 - 0.4 * v, z)
     });
     window.add("blind", &blind.flipped());
-    window
-        .add("blind", &rod([0.01, size.y - 0.03, -0.035], [size.x - 0.01, size.y - 0.03, -0.035], 0.018, 14));
-    window
-        .add("blind", &rod([0.02, size.y - 0.43, -0.035], [size.x - 0.02, size.y - 0.43, -0.035], 0.008, 8));
+    for (x, y, radius, segments) in [(0.01, size.y - 0.03, 0.018, 14), (0.02, size.y - 0.43, 0.008, 8)] {
+        window.add("blind", &rod([x, y, -0.035], [size.x - x, y, -0.035], radius, segments));
+    }
     scene.place(&window, place);
 }

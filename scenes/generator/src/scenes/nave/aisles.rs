@@ -59,8 +59,6 @@ fn respond() -> Assembly {
     respond.add("piers", &block([-0.14, 0.1, -0.42], [0.1, ARCADE_SPRING + 0.01, 0.42]));
     respond.add_at("piers", &half_shaft(&shaft_profile(0.18, PLINTH, ARCADE_SPRING), 6), at(-0.14, 0.0, 0.0));
     let thin = half_shaft(&thin_shaft_profile(0.08, PLINTH, ARCADE_SPRING), 4);
-    for z in [-0.3, 0.3] {
-        respond.add_at("piers", &thin, at(-0.14, 0.0, z));
-    }
+    respond.add_each("piers", &thin, [-0.3, 0.3].map(|z| at(-0.14, 0.0, z)));
     respond
 }

@@ -17,7 +17,7 @@ const GALLERY_PITCH: f32 = 0.92;
 const GALLERY_SILL: f32 = 9.05;
 const GALLERY_SPRING: f32 = 10.2;
 const GALLERY_ARCH: PointedArch = PointedArch { half_span: 0.36, rise: 0.66 };
-/// How far the gallery reaches behind the wall.
+/// Depth of the gallery behind the wall.
 const GALLERY_DEPTH: f32 = 1.9;
 
 /// Both arcade walls.
@@ -37,7 +37,7 @@ pub fn add(scene: &mut Assembly) {
     }
 }
 
-/// The wall in its local frame: both faces and the reveals of all openings.
+/// Wall in its local frame: both faces and the reveals of all openings.
 fn wall_bay(wall: &mut Assembly) {
     let middle = 0.5 * BAY;
     let arch: Vec<Vec2> = ARCADE.curve(12).iter().map(|p| *p + Vec2::new(middle, ARCADE_SPRING)).collect();

@@ -34,7 +34,7 @@ pub fn add(scene: &mut Assembly) {
     chancel(scene);
 }
 
-/// A slab, its top slightly tilted.
+/// Slab, its top slightly tilted.
 fn worn_slab(low: Vec2, rng: &mut Rng) -> Shell {
     let tilt = Vec2::new(rng.jitter(0.002), rng.jitter(0.002));
     let height = rng.range(-0.002, 0.002);

@@ -25,7 +25,7 @@ const ROWS: usize = 9;
 const PITCH: f32 = 1.15;
 /// z of the westernmost row.
 const FIRST_ROW: f32 = -8.4;
-/// Where the altar stands.
+/// Position of the altar.
 const ALTAR: Vec3 = Vec3::new(0.0, CHANCEL_FLOOR + 0.16, EAST - 1.7);
 /// Height of the hanging candle crowns.
 const CROWN_HEIGHT: f32 = 5.6;

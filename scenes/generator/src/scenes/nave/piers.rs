@@ -20,7 +20,7 @@ pub fn add(scene: &mut Assembly) {
     }
 }
 
-/// The half of a turned shaft that shows towards -x.
+/// Half of a turned shaft that shows towards -x.
 pub fn half_shaft(profile: &[Vec2], segments: usize) -> Shell {
     lathe_sector(profile, 80.0, 280.0, segments)
 }
@@ -37,19 +37,16 @@ fn pier() -> Assembly {
     };
     let shaft = |radius: f32, top: f32| half_shaft(&shaft_profile(radius, PLINTH, top), 6);
     let arcade = shaft(0.26, ARCADE_SPRING);
-    pier.add_at("piers", &arcade, face(90.0, CORE.y, 0.0));
-    pier.add_at("piers", &arcade, face(270.0, CORE.y, 0.0));
+    pier.add_each("piers", &arcade, [90.0, 270.0].map(|degrees| face(degrees, CORE.y, 0.0)));
     pier.add_at("piers", &shaft(0.2, ARCADE_SPRING), face(180.0, CORE.x, 0.0));
     let thin = half_shaft(&thin_shaft_profile(0.085, PLINTH, ARCADE_SPRING), 4);
-    for (degrees, aside) in [(90.0, 0.38), (90.0, -0.38), (270.0, 0.38), (270.0, -0.38)] {
-        pier.add_at("piers", &thin, face(degrees, CORE.y, aside));
+    for degrees in [90.0, 270.0] {
+        pier.add_each("piers", &thin, [0.38, -0.38].map(|aside| face(degrees, CORE.y, aside)));
     }
     // The vaulting shafts, three together.
     pier.add_at("piers", &shaft(0.2, VAULT_SPRING), face(0.0, PIER - NAVE, 0.0));
     let tall = half_shaft(&thin_shaft_profile(0.1, PLINTH, VAULT_SPRING), 5);
-    for aside in [-0.31, 0.31] {
-        pier.add_at("piers", &tall, face(0.0, PIER - NAVE, aside));
-    }
+    pier.add_each("piers", &tall, [-0.31, 0.31].map(|aside| face(0.0, PIER - NAVE, aside)));
     // Shaft rings bind the three at the string course.
     let ring = points(&[[0.12, -0.1], [0.19, -0.07], [0.21, 0.0], [0.19, 0.07], [0.12, 0.1]]);
     for (scale, aside) in [(1.35, 0.0), (0.8, -0.31), (0.8, 0.31)] {
@@ -60,7 +57,7 @@ fn pier() -> Assembly {
     pier
 }
 
-/// The core: a rectangle with notched corners, without ends.
+/// Core: a rectangle with notched corners, without ends.
 fn core(top: f32) -> Shell {
     let notch = 0.12;
     let quadrant = [[CORE.x, CORE.y - notch], [CORE.x - notch, CORE.y - notch], [CORE.x - notch, CORE.y]];

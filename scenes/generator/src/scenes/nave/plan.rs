@@ -18,7 +18,7 @@ pub const NAVE: f32 = 4.5;
 pub const WALL: f32 = 1.0;
 /// x of the axis of the piers.
 pub const PIER: f32 = NAVE + 0.5 * WALL;
-/// The aisle's inner and outer faces.
+/// Aisle's inner and outer faces.
 pub const AISLE: [f32; 2] = [NAVE + WALL, 9.5];
 /// Thickness of the aisle's outer wall.
 pub const AISLE_WALL: f32 = 0.9;
@@ -36,25 +36,25 @@ pub const CROWN: f32 = 18.2;
 pub const TOP: f32 = 19.0;
 /// Floor of the chancel.
 pub const CHANCEL_FLOOR: f32 = 0.48;
-/// Where the chancel steps begin.
+/// z at which the chancel steps begin.
 pub const CHANCEL: f32 = EAST + BAY - 0.9;
 
-/// The opening of an arcade arch, about the middle of the bay at the springing line.
+/// Opening of an arcade arch, about the middle of the bay at the springing line.
 pub const ARCADE: PointedArch = PointedArch { half_span: 1.85, rise: 2.6 };
-/// A clerestory window.
+/// Clerestory window.
 pub const CLERESTORY_WINDOW: Window =
     Window { head: PointedArch { half_span: 1.25, rise: 1.75 }, sill: 12.4, spring: 14.4 };
-/// An aisle window.
+/// Aisle window.
 pub const AISLE_WINDOW: Window =
     Window { head: PointedArch { half_span: 0.8, rise: 1.3 }, sill: 2.3, spring: 5.0 };
-/// A window of the apse.
+/// Window of the apse.
 pub const APSE_WINDOW: Window =
     Window { head: PointedArch { half_span: 0.78, rise: 1.25 }, sill: 3.4, spring: 12.4 };
 
-/// A pointed window: jambs from `sill` to `spring`, then the head.
+/// Pointed window: jambs from `sill` to `spring`, then the head.
 #[derive(Clone, Copy, Debug)]
 pub struct Window {
-    /// The arch at its top.
+    /// Arch at its top.
     pub head: PointedArch,
     /// Height of its foot.
     pub sill: f32,
@@ -74,7 +74,7 @@ pub fn pier_z(bay: usize) -> f32 {
     -(bay as f32) * BAY
 }
 
-/// The local frame of the south wall at `x` in bay `bay`: x runs east along the wall, y up, z outwards.
+/// Local frame of the south wall at `x` in bay `bay`: x runs east along the wall, y up, z outwards.
 pub fn south_wall(x: f32, bay: usize) -> Affine3A {
     upright([x, 0.0, pier_z(bay)], Vec3::NEG_Z, Vec3::Y)
 }

@@ -7,14 +7,14 @@ use glam::{Vec2, Vec3};
 /// Half an arch in the vertical plane through its foot and its crown.
 #[derive(Clone, Copy, Debug)]
 pub struct Rib {
-    /// Where it springs, vertically.
+    /// Point at which it springs, vertically.
     pub foot: Vec3,
-    /// Where it meets its other half.
+    /// Point at which it meets its other half.
     pub crown: Vec3,
 }
 
 impl Rib {
-    /// The point at `t` from foot (0) to crown (1).
+    /// Point at `t` from foot (0) to crown (1).
     pub fn at(&self, t: f32) -> Vec3 {
         let across = Vec3::new(self.crown.x - self.foot.x, 0.0, self.crown.z - self.foot.z);
         let half_span = across.length();
@@ -38,7 +38,7 @@ pub fn web(edge: Rib, rib: Rib, camber: f32, across: usize, along: usize) -> She
     shell.facing(Vec3::new(rib.crown.x, edge.foot.y - 100.0, rib.crown.z))
 }
 
-/// How finely a vault is cut, and how heavy its ribs are.
+/// Fineness of a vault's surfaces and weight of its ribs.
 #[derive(Clone, Copy, Debug)]
 pub struct Detail {
     /// Quadrilaterals across half a web and along it.
@@ -60,7 +60,7 @@ pub struct Detail {
 pub struct Bay {
     /// One corner in plan (x, z).
     pub low: Vec2,
-    /// The opposite corner.
+    /// Opposite corner.
     pub high: Vec2,
     /// Height of the springing.
     pub spring: f32,
@@ -124,14 +124,14 @@ impl Bay {
     }
 }
 
-/// The moulded rib under both halves of an arch; it reaches a little into the web above.
+/// Moulded rib under both halves of an arch; it reaches a little into the web above.
 pub fn whole_arch(halves: [Rib; 2], size: Vec2, segments: usize, roll: usize) -> Shell {
     let mut path = halves[0].points(segments);
     path.extend(halves[1].points(segments).iter().rev().skip(1));
     rib_along(&path, size, roll)
 }
 
-/// A moulded rib below `path`, which starts vertically and bends away from where it starts.
+/// Moulded rib below `path`, which starts vertically and bends away from where it starts.
 pub fn rib_along(path: &[Vec3], size: Vec2, roll: usize) -> Shell {
     let profile = rib_profile(size.x, size.y, roll);
     let section = Section { points: &profile, closed: false, crease_degrees: 35.0 };
@@ -139,7 +139,7 @@ pub fn rib_along(path: &[Vec3], size: Vec2, roll: usize) -> Shell {
     sweep_along(section, path, Vec3::new(outwards.x, 0.0, outwards.z), false, Faces::ALL)
 }
 
-/// An open profile: flat sides, a chamfer and a roll of `roll` facets at the bottom (0: chamfers only).
+/// Open profile: flat sides, a chamfer and a roll of `roll` facets at the bottom (0: chamfers only).
 fn rib_profile(width: f32, depth: f32, roll: usize) -> Vec<Vec2> {
     let half = 0.5 * width;
     if roll == 0 {
@@ -156,7 +156,7 @@ fn rib_profile(width: f32, depth: f32, roll: usize) -> Vec<Vec2> {
     left
 }
 
-/// The carved keystone where the diagonals cross.
+/// Carved keystone where the diagonals cross.
 fn boss(crown: Vec3, radius: f32) -> Shell {
     let profile = [[0.0, -0.62], [0.35, -0.58], [0.45, -0.42], [0.8, -0.4], [1.0, -0.2], [1.0, 0.3]]
         .map(|[r, y]| Vec2::new(r, y - 0.35) * radius * 1.3);

@@ -45,7 +45,7 @@ pub fn add(scene: &mut Assembly) {
     scene.add_at("wood", &ellipsoid(Vec3::splat(0.06), 12, 8), at(0.2, 1.15, 0.5 * WALL - 0.1));
 }
 
-/// A wheel of eight trefoils around a foiled eye.
+/// Wheel of eight trefoils around a foiled eye.
 fn rose_tracery() -> Shell {
     let outline = circle(ROSE_RADIUS + 0.03, 40);
     let mut holes = vec![foil(8, 0.36, 0.2, 0.0, 4)];

@@ -27,7 +27,7 @@ pub fn glazed(window: &Window, middle: f32, thickness: f32, frame: Affine3A) -> 
     glazed
 }
 
-/// A plate with two lancets and a quatrefoil (one lancet where the window is narrow).
+/// Plate with two lancets and a quatrefoil (one lancet where the window is narrow).
 fn tracery(window: &Window) -> Shell {
     let fitted = PointedArch { half_span: window.head.half_span + 0.03, rise: window.head.rise + 0.03 };
     let spring = window.spring;

@@ -11,7 +11,7 @@ const DOOR: Vec2 = Vec2::new(0.9, 2.1);
 const REVEAL: f32 = 0.18;
 const SKIRTING: f32 = 0.12;
 
-/// An inner face of a wall as seen from its room: x runs to the right from the lower left corner.
+/// Inner face of a wall as seen from its room: x runs to the right from the lower left corner.
 struct Face {
     place: Affine3A,
     length: f32,
@@ -19,7 +19,7 @@ struct Face {
     doors: &'static [f32],
 }
 
-/// The face from `x`, `z` that runs to the right after a turn about y by `degrees` from +x.
+/// Face from `x`, `z` that runs to the right after a turn about y by `degrees` from +x.
 fn face(degrees: f32, x: f32, z: f32, length: f32, doors: &'static [f32]) -> Face {
     Face { place: turned(degrees, [x, 0.0, z]), length, doors }
 }
@@ -75,19 +75,13 @@ fn add_board(scene: &mut Assembly, face: &Face, from: f32, to: f32) {
     scene.add_at("trim", &skirting(to - from, SKIRTING), face.place * at(from, 0.0, 0.0));
 }
 
-/// The three inner walls, 0.1 m thick, with their doorways.
+/// Three inner walls, 0.1 m thick, with their doorways.
 fn partitions(scene: &mut Assembly) {
     let wall = |length: f32, door: f32| {
-        let outline = [
-            [0.0, 0.0],
-            [door, 0.0],
-            [door, DOOR.y],
-            [door + DOOR.x, DOOR.y],
-            [door + DOOR.x, 0.0],
-            [length, 0.0],
-            [length, HEIGHT],
-            [0.0, HEIGHT],
-        ];
+        let far = door + DOOR.x;
+        let doorway = [[door, 0.0], [door, DOOR.y], [far, DOOR.y], [far, 0.0]];
+        let outline =
+            [&[[0.0, 0.0]], &doorway[..], &[[length, 0.0], [length, HEIGHT], [0.0, HEIGHT]]].concat();
         extrude(&outline, &[], 0.1)
     };
     scene.add_at("walls", &wall(8.0, 4.3), turned(-90.0, [5.7, 0.0, -2.4]));
@@ -96,54 +90,45 @@ fn partitions(scene: &mut Assembly) {
 }
 
 fn outer_walls(scene: &mut Assembly) {
-    let sheet = |scene: &mut Assembly, part: &str, face: Face| {
-        let flat = sheet(Vec3::ZERO, Vec3::X * face.length, Vec3::Y * HEIGHT);
-        scene.add_at(part, &flat, face.place);
-    };
-    sheet(scene, "walls", face(0.0, 0.0, 0.0, 5.6, &[]));
-    sheet(scene, "walls", face(180.0, 5.6, 4.6, 5.6, &[]));
-    sheet(scene, "walls", face(-90.0, 9.7, -2.4, 8.0, &[]));
-    pierced(scene, "walls", &face(90.0, 0.0, 4.6, 4.6, &[]), Vec2::new(1.0, 0.45), Vec2::new(2.2, 1.9));
-    pierced(
-        scene,
-        "bedroom_wall",
-        &face(0.0, 5.7, -2.4, 4.0, &[]),
-        Vec2::new(1.2, 0.85),
-        Vec2::new(1.8, 1.4),
-    );
-    pierced(scene, "walls", &face(180.0, 9.7, 5.6, 4.0, &[]), Vec2::new(1.1, 0.95), Vec2::new(1.3, 1.25));
+    let plain =
+        [face(0.0, 0.0, 0.0, 5.6, &[]), face(180.0, 5.6, 4.6, 5.6, &[]), face(-90.0, 9.7, -2.4, 8.0, &[])];
+    for Face { place, length, .. } in plain {
+        scene.add_at("walls", &sheet(Vec3::ZERO, Vec3::X * length, Vec3::Y * HEIGHT), place);
+    }
+    let living = face(90.0, 0.0, 4.6, 4.6, &[]);
+    pierced(scene, "walls", &living, Vec2::new(1.0, 0.45), Vec2::new(2.2, 1.9));
+    let bedroom = face(0.0, 5.7, -2.4, 4.0, &[]);
+    pierced(scene, "bedroom_wall", &bedroom, Vec2::new(1.2, 0.85), Vec2::new(1.8, 1.4));
+    let study = face(180.0, 9.7, 5.6, 4.0, &[]);
+    pierced(scene, "walls", &study, Vec2::new(1.1, 0.95), Vec2::new(1.3, 1.25));
 }
 
-/// An outer wall with a window: the opening's lower left corner and size.
+/// Outer wall with a window: the opening's lower left corner and size.
 fn pierced(scene: &mut Assembly, part: &str, face: &Face, corner: Vec2, size: Vec2) {
-    let faces = Faces { front: true, back: false, rim: false, reveals: true };
     let outline = rectangle(Vec2::ZERO, Vec2::new(face.length, HEIGHT));
-    let wall = extrude_faces(&outline, &[rectangle(corner, corner + size)], REVEAL, faces);
+    let wall = extrude_faces(&outline, &[rectangle(corner, corner + size)], REVEAL, Faces::FRONT);
     scene.add_at(part, &wall, face.place * at(0.0, 0.0, -REVEAL));
     scene.place(&window(size), face.place * at(corner.x, corner.y, 0.0));
 }
 
-/// A window of two sashes with a transom; the sky behind it is a sheet of light.
+/// Window of two sashes with a transom; the sky behind it is a sheet of light.
 fn window(size: Vec2) -> Assembly {
     let mut window = Assembly::new();
-    let sky = sheet([0.0, 0.0, -0.15], Vec3::X * size.x, Vec3::Y * size.y);
-    window.add("daylight", &sky);
+    window.add("daylight", &sheet([0.0, 0.0, -0.15], Vec3::X * size.x, Vec3::Y * size.y));
     // Closes the gap between the sheet of light and the wall.
     let back = Vec3::new(-0.06, -0.06, -REVEAL);
     window.add("subfloor", &sheet(back, Vec3::X * (size.x + 0.12), Vec3::Y * (size.y + 0.12)));
     let (bar, transom) = (0.055, 0.3 * size.y);
     let width = 0.5 * (size.x - 3.0 * bar);
-    let pane = |x: f32, y: f32, h: f32| rectangle(Vec2::new(x, y), Vec2::new(x + width, y + h));
     let upper = size.y - transom;
-    let panes = [
-        pane(bar, bar, upper - 1.5 * bar),
-        pane(2.0 * bar + width, bar, upper - 1.5 * bar),
-        pane(bar, upper + 0.5 * bar, transom - 1.5 * bar),
-        pane(2.0 * bar + width, upper + 0.5 * bar, transom - 1.5 * bar),
-    ];
+    let mut panes = Vec::new();
+    for (y, h) in [(bar, upper - 1.5 * bar), (upper + 0.5 * bar, transom - 1.5 * bar)] {
+        for x in [bar, 2.0 * bar + width] {
+            panes.push(rectangle(Vec2::new(x, y), Vec2::new(x + width, y + h)));
+        }
+    }
     window.add_at("trim", &extrude(&rectangle(Vec2::ZERO, size), &panes, 0.05), at(0.0, 0.0, -0.12));
     window.add("trim", &casing(size, 0.08, true));
-    let sill = beveled_box([-0.12, -0.035, -0.1], [size.x + 0.12, 0.003, 0.09], 0.005);
-    window.add("trim", &sill);
+    window.add("trim", &beveled_box([-0.12, -0.035, -0.1], [size.x + 0.12, 0.003, 0.09], 0.005));
     window
 }
