@@ -8,7 +8,8 @@
 //! - [`vpl`] turns lights and photon paths into virtual point lights, [`light_tree`] clusters them;
 //! - [`eye`] follows each pixel through mirrors and glass to the surfaces that scatter light into it;
 //! - [`lightcut`] finds, for each of those, the coarsest clusters whose expected errors stay below what is asked;
-//! - [`compensation`] finds again by short rays what clamping takes from light close by;
+//! - [`bias_compensation`] finds again by short rays what clamping takes from light close by;
+//! - [`shade`] lights those surfaces by cuts and carries their radiance to pixels;
 //! - [`gradient`] says how that light changes along the surface, [`hsh`] expands it over the hemisphere;
 //! - [`radiance_cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their
 //!   footprints;
@@ -29,8 +30,8 @@ extern crate self as lightsplat;
 mod test_scenes;
 
 mod bench;
+mod bias_compensation;
 pub mod cli;
-mod compensation;
 mod embree;
 mod eye;
 pub mod film;
@@ -50,6 +51,7 @@ mod sampling;
 pub mod scene;
 pub mod session;
 pub mod setting;
+mod shade;
 mod shadow;
 pub mod stats;
 pub mod verify;

@@ -9,7 +9,7 @@ mod rays;
 mod sharing;
 mod sharp;
 
-pub use chain::{ChainCounts, EyeSample, trace};
+pub use chain::ChainCounts;
 pub use index::EyeIndex;
 pub use look::{Look, eye_sampler};
 pub use pass::EyePass;

@@ -38,6 +38,7 @@ impl<'w> EyePass<'w> {
     pub fn trace(world: &'w World, view: &View, settings: EyeSettings, control: &Control) -> EyePass<'w> {
         let rays = EyeRays::new(world, view, settings);
         let window = &view.window;
+        let spp = settings.spp.max(1) as f32;
         let mut tiles: Vec<VisibleSurfaces> = (0..window.tile_count(TILE))
             .into_par_iter()
             .filter_map(|tile| {
@@ -61,7 +62,7 @@ impl<'w> EyePass<'w> {
         let mut nonfinite = 0;
         for tile in &mut tiles {
             for (pixel, radiance) in mem::take(&mut tile.emitted) {
-                emitted.pixels[pixel as usize] += radiance;
+                emitted.pixels[pixel as usize] += radiance / spp;
             }
             chains += tile.chains;
             nonfinite += tile.nonfinite;
@@ -71,7 +72,8 @@ impl<'w> EyePass<'w> {
         let (index, order) = EyeIndex::build(geometry.iter().map(|point| point.position));
         let geometry = ordered(geometry, &order);
         let surfaces = ordered(joined(&mut tiles, |tile| mem::take(&mut tile.points.surfaces)), &order);
-        let samples = ordered(joined(&mut tiles, |tile| mem::take(&mut tile.visibility)), &order);
+        let mut samples = ordered(joined(&mut tiles, |tile| mem::take(&mut tile.visibility)), &order);
+        samples.par_iter_mut().for_each(|sample| sample.weight /= spp);
         EyePass {
             points: ShadingPoints { geometry, surfaces },
             index,

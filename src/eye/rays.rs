@@ -28,20 +28,30 @@ pub struct EyeRays<'a, 'w> {
     angle: f32,
 }
 
-/// Surfaces that eye rays have made visible, in the order of the rays, each with one visibility sample.
+/// Surfaces that eye rays have made visible, in the order of the rays, each with one visibility sample. Weights and light are
+/// those of a ray, not of a pixel.
 #[derive(Default)]
 pub struct VisibleSurfaces<'w> {
     /// The surfaces.
     pub points: ShadingPoints<'w>,
     /// Visibility sample of each of them.
     pub visibility: Vec<VisibilitySample>,
-    /// By pixel: light, other than 0, that reaches the eye from emitters, directly or along specular chains; per pixel
-    /// as weights are.
+    /// By pixel: light, other than 0, that reaches the eye from emitters, directly or along specular chains.
     pub emitted: Vec<(u32, Rgb)>,
     /// Rays traced.
     pub chains: ChainCounts,
     /// Radiances that were not finite and left out.
     pub nonfinite: u64,
+}
+
+impl VisibleSurfaces<'_> {
+    /// Forgets surfaces and emitted light, and keeps the memory.
+    pub fn clear(&mut self) {
+        self.points.geometry.clear();
+        self.points.surfaces.clear();
+        self.visibility.clear();
+        self.emitted.clear();
+    }
 }
 
 impl<'a, 'w> EyeRays<'a, 'w> {
@@ -66,10 +76,10 @@ impl<'a, 'w> EyeRays<'a, 'w> {
             {
                 points.geometry.push(geometry);
                 points.surfaces.push(surface);
-                visibility.push(VisibilitySample { pixel, weight: eye.throughput / spp as f32 });
+                visibility.push(VisibilitySample { pixel, weight: eye.throughput });
             }
         };
-        let emitted = trace(self.world, ray, max_depth, &mut sampler, chains, visit) / spp as f32;
+        let emitted = trace(self.world, ray, max_depth, &mut sampler, chains, visit);
         if !emitted.is_finite() {
             found.nonfinite += 1;
         } else if emitted != Rgb::ZERO {

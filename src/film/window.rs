@@ -46,6 +46,27 @@ impl Window {
         (top..bottom).flat_map(move |y| (left..right).map(move |x| [x, y]))
     }
 
+    /// Corners, in rows, of the squares of `size` pixels that tile the film, as far as they have pixels in the window.
+    pub fn film_squares(&self, size: u32) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let corners = |offset: u32, length: u32| {
+            (offset / size..(offset + length).div_ceil(size)).map(move |i| i * size)
+        };
+        let (across, down) = (corners(self.offset[0], self.width), corners(self.offset[1], self.height));
+        down.flat_map(move |y| across.clone().map(move |x| [x, y]))
+    }
+
+    /// Whether a film pixel exists.
+    pub fn on_film(&self, [x, y]: [u32; 2]) -> bool {
+        x < self.film[0] && y < self.film[1]
+    }
+
+    /// Index of a film pixel in the rows of the window, if it is inside.
+    #[inline]
+    pub fn index(&self, [x, y]: [u32; 2]) -> Option<usize> {
+        let (dx, dy) = (x.wrapping_sub(self.offset[0]), y.wrapping_sub(self.offset[1]));
+        (dx < self.width && dy < self.height).then(|| dy as usize * self.width as usize + dx as usize)
+    }
+
     /// Film coordinates of a pixel of the window.
     #[inline]
     pub fn film_pixel(&self, [x, y]: [u32; 2]) -> [u32; 2] {
@@ -66,6 +87,23 @@ mod tests {
             pixels.sort();
             let expected: Vec<[u32; 2]> = (0..width).flat_map(|x| (0..height).map(move |y| [x, y])).collect();
             assert_eq!(pixels, expected);
+        }
+    }
+
+    #[test]
+    fn squares_of_the_film_cover_the_window_once() {
+        for (offset, [width, height]) in [([0, 0], [5, 3]), ([3, 7], [1, 1]), ([15, 16], [17, 33])] {
+            let window = Window { offset, width, height, film: [100, 100] };
+            let mut indices = Vec::new();
+            for [left, top] in window.film_squares(8) {
+                assert!(left % 8 == 0 && top % 8 == 0);
+                let before = indices.len();
+                let pixels = (top..top + 8).flat_map(|y| (left..left + 8).map(move |x| [x, y]));
+                indices.extend(pixels.filter_map(|pixel| window.index(pixel)));
+                assert!(indices.len() > before, "a square outside the window");
+            }
+            indices.sort();
+            assert!(indices.into_iter().eq(0..window.pixel_count() as usize));
         }
     }
 }

@@ -16,7 +16,7 @@ pub struct Transfer<'a> {
     /// Least squared distance that the geometry term divides by.
     pub min_dist_sq: f32,
     /// Whether VPLs on area lights divide by no less than the area that they stand for: what lies closer sees more of
-    /// the light than one point can stand for, and short rays find it (see [`crate::compensation`]).
+    /// the light than one point can stand for, and short rays find it (see [`crate::bias_compensation`]).
     pub patches: bool,
 }
 

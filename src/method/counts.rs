@@ -1,6 +1,6 @@
 //! What stages counted, by the names that methods share.
 
-use crate::compensation::samples::NearCounts;
+use crate::bias_compensation::points::CompensationCounts;
 use crate::eye::ChainCounts;
 use crate::lightcut::CutCounts;
 use crate::stats::Stats;
@@ -24,7 +24,7 @@ pub fn cuts(stats: &mut Stats, group: &str, counts: &CutCounts) {
 }
 
 /// Of what clamping takes from eye samples with such cuts, and short rays find again.
-pub fn clamping(stats: &mut Stats, cuts: &CutCounts, near: Option<&NearCounts>) {
+pub fn clamping(stats: &mut Stats, cuts: &CutCounts, near: Option<&CompensationCounts>) {
     let percent = 100.0 / if cuts.luminance > 0.0 { cuts.luminance } else { 1.0 };
     stats.add("Lightcut/light lost to clamping [%]", percent * cuts.lost);
     if let Some(near) = near {

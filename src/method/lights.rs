@@ -1,9 +1,10 @@
 //! The stages that methods over virtual lights share: the light pass and its trees.
 
-use crate::compensation::Compensation;
+use crate::bias_compensation::Compensation;
 use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::Transfer;
 use crate::progress::Control;
+use crate::shade::ShadingContext;
 use crate::stats::{Stage, Stats};
 use crate::vpl::{LightPassSettings, light_pass, min_dist_sq, near_sq_of_size};
 use crate::world::World;
@@ -44,6 +45,12 @@ impl Lights {
     /// What reaches a point from them; `compensated` where short rays find what is lacking close to lights.
     pub fn transfer(&self, compensated: bool) -> Transfer<'_> {
         Transfer { patches: compensated, ..Transfer::new(&self.trees, self.diagonal) }
+    }
+
+    /// What shading needs of them and the scene; with `compensated` light close to them.
+    pub fn context<'a>(&'a self, world: &'a World, compensated: bool) -> ShadingContext<'a> {
+        let compensation = compensated.then(|| self.compensation(world));
+        ShadingContext { world, transfer: self.transfer(compensated), compensation }
     }
 
     /// What finds it.

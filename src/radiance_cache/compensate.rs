@@ -1,4 +1,4 @@
-//! What records lack of the light of virtual lights close to them (see [`crate::compensation`]).
+//! What records lack of the light of virtual lights close to them (see [`crate::bias_compensation`]).
 //!
 //! Deviations: light is looked up at up to `LOOKUPS` of the points that a record's rays meet, chosen in proportion to
 //! what they may give, and itself lacks what is clamped. Series (light that lobes reflect) are clamped alike and not
@@ -9,14 +9,15 @@
 use super::compute::Source;
 use super::gather::Gathered;
 use super::wave::Pick;
-use crate::compensation::Compensation;
-use crate::compensation::near::{self, Clamped, Near};
+use crate::bias_compensation::Compensation;
+use crate::bias_compensation::short_rays::{self, ClampedPoint, NearSurface};
 use crate::eye::EyePass;
 use crate::lightcut::{
     CoherenceLimit, CutSettings, Lightcut, MIN_SHARED, PacketLightcut, Receiver, ReceiverPacket,
     group_coherent,
 };
 use crate::math::{Frame, LANES, Rgb, luminance};
+use crate::world::SurfacePoint;
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// Rays from each record.
@@ -68,7 +69,7 @@ impl Clamp {
 struct Lookup {
     /// Record of the task.
     record: usize,
-    near: Near,
+    near: NearSurface,
     /// Irradiance at the record for an irradiance of 1 at the point.
     factor: Rgb,
 }
@@ -101,17 +102,16 @@ pub fn add(
     let clamped = |(pick, gathered): (&Pick, &&mut [Gathered; 2])| {
         let i = pick.sample as usize;
         let point = &samples.points.geometry[i];
-        Clamped {
-            position: point.position,
-            geometric_normal: samples.points.surfaces[i].geometric_normal,
-            frame: Frame::from_normal(point.normal),
+        let geometric_normal = samples.points.surfaces[i].geometric_normal;
+        ClampedPoint {
+            point: SurfacePoint { position: point.position, normal: point.normal, geometric_normal },
             bound: if pick.lacks[1] { gathered[1].bound } else { f32::INFINITY },
             direct: pick.lacks[0],
         }
     };
-    let points: Vec<Clamped> = task.iter().zip(gathered.iter()).map(clamped).collect();
+    let points: Vec<ClampedPoint> = task.iter().zip(gathered.iter()).map(clamped).collect();
     let mut met = vec![Vec::new(); points.len()];
-    near::trace(c, &points, RAYS, |record, near| {
+    short_rays::trace(c, &points, RAYS, |record, near| {
         let passed = match samples.points.geometry[task[record].sample as usize].sharing.coat() {
             0 => 1.0,
             coat => world.materials.coat_transmittance(coat, near.cos),
@@ -122,7 +122,7 @@ pub fn add(
             let normal = samples.points.geometry[pick.sample as usize].normal;
             gathered[record][0].compensate(normal, emitted, near.distance);
         }
-        met[record].push(Near { weight: near.weight * passed, ..near });
+        met[record].push(NearSurface { weight: near.weight * passed, ..near });
     });
     let mut lookups = Vec::new();
     for (record, met) in met.iter().enumerate() {
@@ -144,7 +144,7 @@ pub fn add(
 }
 
 /// Chooses at which of the points to look up light, and with what factor it counts.
-fn choose(near: &[Near], record: usize, lookups: &mut Vec<Lookup>) {
+fn choose(near: &[NearSurface], record: usize, lookups: &mut Vec<Lookup>) {
     let total: f32 = near.iter().map(|n| luminance(n.weight)).sum();
     // As if the points met were lit as the record is.
     if total < NEGLIGIBLE * RAYS as f32 * FRAC_1_PI {

@@ -14,7 +14,7 @@ use super::series::SeriesGatherer;
 use super::settings::{CacheSettings, Footprints};
 use super::sight::Sight;
 use super::wave::Pick;
-use crate::compensation::Compensation;
+use crate::bias_compensation::Compensation;
 use crate::eye::EyePass;
 use crate::hsh::Radiance;
 use crate::lightcut::{

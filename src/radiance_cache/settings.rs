@@ -5,9 +5,6 @@ use crate::lightcut::{CutSettings, MIN_SHARED};
 use crate::setting::{DOWN, PATCHES, SHARE, UP, choices, settings};
 use crate::shadow::ShadowSettings;
 
-/// Patches of fewer samples than this would have too few that borrow.
-pub const LEAST_PATCH: usize = 64;
-
 choices! {
     /// Shape of footprints.
     pub enum Footprints {
@@ -87,11 +84,6 @@ settings! {
 }
 
 impl CacheSettings {
-    /// Most of so many samples in a patch.
-    pub fn patch(&self, samples: usize) -> usize {
-        (samples / self.patches.max(1) as usize).max(LEAST_PATCH)
-    }
-
     /// How the light of a layer is found.
     pub fn found(&self, layer: usize) -> FoundBy {
         [self.direct, self.indirect][layer]

@@ -37,6 +37,17 @@ pub fn triangle_meshes(scene: &Scene) -> Vec<TriangleMesh<'_>> {
     meshes.map(|m| TriangleMesh { positions: &m.positions, triangles: &m.triangles }).collect()
 }
 
+/// A surface point that gathers light.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint {
+    /// Position.
+    pub position: Vec3,
+    /// Unit shading normal, on the side that light comes from.
+    pub normal: Vec3,
+    /// Unit geometric normal.
+    pub geometric_normal: Vec3,
+}
+
 /// A point on a surface, hit by a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {

@@ -11,11 +11,11 @@ use crate::lightcut::{
     CutSettings, Lightcut, MIN_SHARED, PacketLightcut, PacketVisibility, Receiver, ReceiverPacket, Visibility,
 };
 use crate::math::{Rgb, luminance};
-use crate::method::cache::own::{Cutters, Job, patches};
 use crate::radiance_cache::CacheSettings;
 use crate::radiance_cache::compute::Source;
 use crate::radiance_cache::layer::Layer;
 use crate::radiance_cache::wave::{Pick, pick};
+use crate::shade::{Gatherers, ShadeSettings, ShadingContext, ShadingTask, patches};
 use crate::vpl::Origin;
 
 /// Points that are lit.
@@ -48,7 +48,7 @@ pub struct Orders<'s> {
     setting: &'s Setting<'s>,
     cache: &'s CacheSettings,
     stretches: Vec<Vec<usize>>,
-    jobs: Vec<Vec<Job>>,
+    tasks: Vec<Vec<ShadingTask>>,
     picks: Vec<Vec<Pick>>,
 }
 
@@ -56,17 +56,18 @@ impl<'s> Orders<'s> {
     pub fn new(setting: &'s Setting<'s>, cache: &'s CacheSettings) -> Orders<'s> {
         let stretches = setting.pixels();
         let mut single = Lightcut::new();
-        let mut jobs = Vec::new();
+        let mut tasks = Vec::new();
         for stretch in &stretches {
             let job = |&sample: &usize| {
                 // What a record is to have found already.
                 let cut = CutSettings { origin: Some(Origin::Indirect), ..CutSettings::default() };
                 let (transfer, reflector) = (setting.transfer(), setting.reflector(sample));
                 let indirect = single.gather(&transfer, setting.world, &reflector, &cut).radiance;
-                let origin = Some(Origin::Direct);
-                Job { sample: sample as u32, lobe_only: false, origin, known: luminance(indirect) }
+                let baseline_luminance = luminance(indirect);
+                let all = ShadingTask::all(sample as u32);
+                ShadingTask { origin: Some(Origin::Direct), baseline_luminance, ..all }
             };
-            jobs.push(stretch.iter().map(job).collect());
+            tasks.push(stretch.iter().map(job).collect());
         }
         let samples = &setting.samples;
         let least = cache.least_cell.max(1) as usize;
@@ -74,7 +75,7 @@ impl<'s> Orders<'s> {
         let layers = [Layer::new(samples), Layer::new(samples)];
         let picks = pick(samples, &layers, |_| [false, true], level, 0);
         let picks = setting.spread(picks.len()).into_iter().map(|s| s.map(|i| picks[i]).collect());
-        Orders { setting, cache, stretches, jobs, picks: picks.collect() }
+        Orders { setting, cache, stretches, tasks, picks: picks.collect() }
     }
 
     /// Number of stretches.
@@ -108,14 +109,16 @@ impl<'s> Orders<'s> {
                 self.cut(&groups, |pick| setting.collector(pick.sample as usize), shared, &cut, rays)
             }
             Order::Samples => {
-                let settings = CacheSettings { share: shared, ..*self.cache };
-                let source = Source { settings: &settings, ..self.source() };
-                let cut = CutSettings { origin: Some(Origin::Direct), ..CutSettings::default() };
-                let (mut cutters, mut lit) = (Cutters::default(), Vec::new());
-                for patch in patches(&source, &setting.samples, &self.jobs[chunk]) {
-                    cutters.light(&source, rays, &setting.samples, &patch, &cut, &mut lit);
+                let settings =
+                    ShadeSettings { cut: CutSettings::default(), share: shared, shadows: self.cache.shadows };
+                let context =
+                    ShadingContext { world: setting.world, transfer: setting.transfer(), compensation: None };
+                let points = &setting.samples.points;
+                let (mut gatherers, mut sum) = (Gatherers::default(), Rgb::ZERO);
+                for patch in patches(points, &self.tasks[chunk], self.cache.patches, setting.world.diagonal) {
+                    gatherers.shade(&context, rays, points, &patch, &settings, |_, s| sum += s.radiance);
                 }
-                lit.into_iter().fold(Rgb::ZERO, |sum, (_, radiance)| sum + radiance)
+                sum
             }
         }
     }

@@ -1,7 +1,5 @@
 //! The cache from its first wave to the pixels, whatever its records are computed from.
 
-use super::own::Job;
-use super::picture::Picture;
 use crate::eye::{EyePass, PointGeometry, PointSurface};
 use crate::lightcut::CutCounts;
 use crate::math::{Rgb, luminance};
@@ -14,6 +12,7 @@ use crate::radiance_cache::record::Record;
 use crate::radiance_cache::series::Glossy;
 use crate::radiance_cache::wave::{Pick, lacking, pick};
 use crate::radiance_cache::{CacheSettings, FoundBy, adapt};
+use crate::shade::{Picture, ShadingTask};
 use crate::stats::{Stage, Stats};
 use crate::vpl::Origin;
 
@@ -142,9 +141,9 @@ impl Cache {
     }
 
     /// Adds what records give to the pixels; the rest is left to cuts.
-    pub fn resolve(&self, samples: &EyePass, picture: &mut Picture) -> Vec<Job> {
+    pub fn resolve(&self, samples: &EyePass, picture: &mut Picture) -> Vec<ShadingTask> {
         let lobes = self.glossy.as_ref().map(|glossy| glossy.lobes(samples, &self.layers));
-        let mut jobs = Vec::new();
+        let mut tasks = Vec::new();
         // The only layer that records light, and the only one that they leave.
         let (recorded, left) = match self.found {
             [FoundBy::Records, FoundBy::Cuts] => (Some(Origin::Direct), Some(Origin::Indirect)),
@@ -152,33 +151,33 @@ impl Cache {
             _ => (None, None),
         };
         for (i, surface) in samples.points.surfaces.iter().enumerate() {
-            let sample = i as u32;
+            let point = i as u32;
             let (base, lobe) = surface.bsdf.split_base(surface.out.dot(samples.points.geometry[i].normal));
-            let mut known = 0.0;
+            let mut baseline_luminance = 0.0;
             if self.wants[i] {
                 if lacking(&self.layers, self.wanted(i), i) != [false; 2] {
-                    jobs.push(Job { sample, lobe_only: false, origin: None, known });
+                    tasks.push(ShadingTask::all(point));
                     continue;
                 }
                 let mean = |l: usize| self.layers[l].sums[i].mean().unwrap_or(Rgb::ZERO);
                 let reflected = lobes.as_ref().map_or(Rgb::ZERO, |lobes| lobes[i]);
-                known = luminance(base * (mean(0) + mean(1)) + reflected);
+                baseline_luminance = luminance(base * (mean(0) + mean(1)) + reflected);
                 for (l, origin) in LAYERS.into_iter().enumerate() {
                     picture.add(samples, i, Some(origin), base * mean(l));
                 }
                 picture.add(samples, i, recorded, reflected);
             }
             if self.found.contains(&FoundBy::Cuts) {
-                jobs.push(Job { sample, lobe_only: false, origin: left, known });
+                tasks.push(ShadingTask { point, lobe_only: false, origin: left, baseline_luminance });
             }
             if self.found.contains(&FoundBy::Records)
                 && lobe.is_some()
                 && samples.points.geometry[i].sharing.bands() == 0
             {
-                jobs.push(Job { sample, lobe_only: true, origin: recorded, known });
+                tasks.push(ShadingTask { point, lobe_only: true, origin: recorded, baseline_luminance });
             }
         }
-        jobs
+        tasks
     }
 }
 

@@ -12,8 +12,6 @@
 
 pub(super) mod filled;
 pub mod inspect;
-pub(crate) mod own;
-pub(super) mod picture;
 mod render;
 
 pub use render::{Prepared, Settings, render};

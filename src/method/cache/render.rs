@@ -4,8 +4,6 @@
 
 use super::filled::Cache;
 use super::inspect;
-use super::own::{self, Job};
-use super::picture::Picture;
 use crate::eye::EyePass;
 use crate::film::Window;
 use crate::light_tree::Family;
@@ -19,6 +17,7 @@ use crate::radiance_cache::compute::Source;
 use crate::radiance_cache::series::Glossy;
 use crate::radiance_cache::{CacheSettings, FoundBy};
 use crate::setting::{COMPENSATION, Each, INSPECT, Settings as _};
+use crate::shade::{Picture, ShadeSettings, ShadingContext, ShadingTask, patches, shade};
 use crate::stats::{Stage, StageTime, Stats, Stopwatch};
 use crate::view::View;
 use crate::vpl::LightPassSettings;
@@ -56,6 +55,11 @@ impl Settings {
     /// True if all light is found by cuts, none by records.
     fn lights_by_cuts(&self) -> bool {
         [self.cache.direct, self.cache.indirect] == [FoundBy::Cuts; 2]
+    }
+
+    /// Settings of the shading stage.
+    fn shading(&self) -> ShadeSettings {
+        ShadeSettings { cut: self.cut, share: self.cache.share, shadows: self.cache.shadows }
     }
 }
 
@@ -132,16 +136,16 @@ impl<'w> Prepared<'w> {
             return None;
         }
         let samples = &self.samples;
-        let source = source(self.world, &self.lights, settings);
+        let context = self.lights.context(self.world, settings.compensation);
         let watch = Stopwatch::start();
         let cache = Cache::new(samples, None, [FoundBy::Cuts; 2]);
-        let jobs = cache.resolve(samples, &mut Picture::new(samples, false));
-        let patches = own::patches(&source, samples, &jobs);
+        let tasks = cache.resolve(samples, &mut Picture::new(samples, false));
+        let patches = patches(&samples.points, &tasks, settings.cache.patches, self.world.diagonal);
         let mut time = watch.elapsed();
         let every = every.min(patches.len() / LEAST_TRIED).max(1);
-        let some: Vec<Vec<Job>> = patches.iter().skip(every / 2).step_by(every).cloned().collect();
+        let some: Vec<Vec<ShadingTask>> = patches.iter().skip(every / 2).step_by(every).cloned().collect();
         let watch = Stopwatch::start();
-        own::light_patches(&source, samples, &some, &settings.cut, &Control::new());
+        shade(&context, &samples.points, &some, &settings.shading(), &Control::new());
         let share = samples_of(&patches) / samples_of(&some).max(1.0);
         let StageTime { wall_seconds, cpu_seconds } = watch.elapsed();
         time += StageTime { wall_seconds: wall_seconds * share, cpu_seconds: cpu_seconds * share };
@@ -151,23 +155,26 @@ impl<'w> Prepared<'w> {
     /// The picture.
     pub fn light(self, settings: &Settings, control: &Control) -> Output {
         let Prepared { world, samples, glossy, lights, mut stats } = self;
-        let source = source(world, &lights, settings);
+        let context = lights.context(world, settings.compensation);
+        let source = source(&context, &settings.cache);
 
         let cache = Cache::complete(&source, &samples, glossy, control, &mut stats);
 
         let mut picture = Picture::new(&samples, settings.inspect);
-        let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
-        control.begin(Stage::Render, jobs.len() as u64);
-        let lit = stats.time(Stage::Render, || own::light(&source, &samples, &jobs, &settings.cut, control));
-        for (job, radiance) in lit.radiance {
-            picture.add(&samples, job.sample as usize, job.origin, radiance);
-        }
-        stats.count("Shading/tasks by cuts", jobs.len() as u64);
-        counts::cuts(&mut stats, "Lightcut", &lit.cuts);
+        let tasks = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
+        control.begin(Stage::Render, tasks.len() as u64);
+        let counts = stats.time(Stage::Render, || {
+            let patches = patches(&samples.points, &tasks, settings.cache.patches, world.diagonal);
+            let shading = shade(&context, &samples.points, &patches, &settings.shading(), control);
+            picture.add_patches(&samples, &shading.patches);
+            shading.counts
+        });
+        stats.count("Shading/tasks by cuts", tasks.len() as u64);
+        counts::cuts(&mut stats, "Lightcut", &counts.cuts);
         if settings.cache.found(1) == FoundBy::Cuts {
-            counts::clamping(&mut stats, &lit.cuts, source.compensation.is_some().then_some(&lit.near));
+            counts::clamping(&mut stats, &counts.cuts, settings.compensation.then_some(&counts.compensation));
         }
-        lit.shadows.report(&mut stats);
+        counts.shadows.report(&mut stats);
         let complete = samples.complete && !control.is_cancelled();
         let (color, mut extra, nonfinite) = picture.finish();
         if settings.inspect {
@@ -177,12 +184,11 @@ impl<'w> Prepared<'w> {
     }
 }
 
-fn source<'a>(world: &'a World, lights: &'a Lights, settings: &'a Settings) -> Source<'a> {
-    let transfer = lights.transfer(settings.compensation);
-    let compensation = settings.compensation.then(|| lights.compensation(world));
-    Source { world, transfer, settings: &settings.cache, compensation }
+fn source<'a>(context: &ShadingContext<'a>, settings: &'a CacheSettings) -> Source<'a> {
+    let ShadingContext { world, transfer, compensation } = *context;
+    Source { world, transfer, settings, compensation }
 }
 
-fn samples_of(patches: &[Vec<Job>]) -> f64 {
+fn samples_of(patches: &[Vec<ShadingTask>]) -> f64 {
     patches.iter().map(Vec::len).sum::<usize>() as f64
 }

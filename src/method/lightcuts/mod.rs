@@ -6,7 +6,7 @@
 //! what the eye sees: light that reaches a visible surface through glass or by a mirror is missing there (what
 //! that surface reflects onto others is not).
 
+mod blocks;
 mod render;
-mod tile;
 
 pub use render::{Settings, render};

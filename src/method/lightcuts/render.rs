@@ -1,12 +1,10 @@
 //! The picture: light pass, trees, then pixels in tiles.
 
-use super::tile::{TILE, Tile, Workspace};
-use crate::compensation::Compensation;
-use crate::compensation::samples::NearCounts;
-use crate::eye::ChainCounts;
+use super::blocks::{TILE, Tile, Tiles};
+use crate::eye::{ChainCounts, EyeRays, EyeSettings, VisibleSurfaces};
 use crate::film::Image;
 use crate::light_tree::Family;
-use crate::lightcut::{CutCounts, CutSettings, Transfer};
+use crate::lightcut::CutSettings;
 use crate::math::Rgb;
 use crate::method::ladder::CUTS;
 use crate::method::lights::Lights;
@@ -14,7 +12,8 @@ use crate::method::sampling::method_settings;
 use crate::method::{Move, Output, Renderer, counts};
 use crate::progress::Control;
 use crate::setting::{COMPENSATION, SHARE};
-use crate::shadow::{ShadowCounts, ShadowSettings};
+use crate::shade::{ShadeSettings, Shader, ShadingCounts};
+use crate::shadow::ShadowSettings;
 use crate::stats::{Stage, Stats};
 use crate::view::View;
 use crate::vpl::LightPassSettings;
@@ -57,71 +56,50 @@ impl Renderer for Settings {
     }
 }
 
-/// What all tiles share.
-pub(super) struct Scenery<'a> {
-    pub world: &'a World,
-    pub view: &'a View,
-    pub settings: &'a Settings,
-    pub transfer: Transfer<'a>,
-    pub compensation: Option<Compensation<'a>>,
-    pub max_depth: u32,
-}
-
 /// Renders what `view` sees.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     let mut stats = Stats::new();
     let max_depth = world.scene.path_limit(settings.max_depth);
-
     let light = LightPassSettings { seed: settings.seed, ..settings.light };
     let lights = Lights::new(world, &light, settings.family, max_depth, control, &mut stats);
-    let transfer = lights.transfer(settings.compensation);
-    let compensation = settings.compensation.then(|| lights.compensation(world));
-    let scenery = Scenery { world, view, settings, transfer, compensation, max_depth };
+    let context = lights.context(world, settings.compensation);
+    let shading = ShadeSettings { cut: settings.cut, share: settings.share, shadows: settings.shadows };
+    let eye = EyeSettings { spp: settings.spp.max(1), seed: settings.seed, max_depth };
+    let tiles = Tiles { rays: EyeRays::new(world, view, eye), window: &view.window, spp: eye.spp };
 
-    // Tiles are aligned to the film, not to the window.
-    let first = view.window.offset.map(|o| o / TILE);
-    let across = (view.window.offset[0] + view.window.width).div_ceil(TILE) - first[0];
-    let down = (view.window.offset[1] + view.window.height).div_ceil(TILE) - first[1];
-    let corner = |i: usize| [(i as u32 % across + first[0]) * TILE, (i as u32 / across + first[1]) * TILE];
-    let mut tiles: Vec<Tile> = (0..across * down).map(|_| Tile::default()).collect();
-    control.begin(Stage::Render, tiles.len() as u64);
-    stats.time(Stage::Render, || {
-        tiles.par_iter_mut().enumerate().for_each_init(
-            || Workspace::new(world, settings),
-            |work, (i, tile)| {
-                if !control.is_cancelled() {
-                    tile.render(&scenery, corner(i), work);
-                    control.advance(1);
-                }
-            },
-        );
+    let corners: Vec<[u32; 2]> = view.window.film_squares(TILE).collect();
+    control.begin(Stage::Render, corners.len() as u64);
+    let workspace = || (Shader::new(&context, &shading), VisibleSurfaces::default());
+    let done: Vec<Option<Tile>> = stats.time(Stage::Render, || {
+        let shade = corners.par_iter().map_init(workspace, |(shader, seen), &corner| {
+            if control.is_cancelled() {
+                return None;
+            }
+            let tile = tiles.shade(corner, shader, seen);
+            control.advance(1);
+            Some(tile)
+        });
+        shade.collect()
     });
 
     let mut color = Image::new(view.window.width, view.window.height);
-    let mut cut_size = Image::new(view.window.width, view.window.height);
-    let mut used = CutCounts::default();
-    let mut near = NearCounts::default();
-    let mut chains = ChainCounts::default();
-    let mut nonfinite = 0;
-    let mut shadows = ShadowCounts::default();
-    for (i, tile) in tiles.iter().enumerate().filter(|(_, tile)| tile.done) {
-        for (k, [x, y]) in scenery.tile_area(corner(i)).pixels().enumerate() {
-            let at = ((y - view.window.offset[1]) * view.window.width + x - view.window.offset[0]) as usize;
-            color.pixels[at] = tile.radiance[k];
-            cut_size.pixels[at] = Rgb::splat(tile.cut_sizes[k]);
+    let mut cut_size = color.clone();
+    let (mut work, mut chains, mut nonfinite) = (ShadingCounts::default(), ChainCounts::default(), 0);
+    for tile in done.iter().flatten() {
+        for &(pixel, radiance, clusters) in &tile.pixels {
+            color.pixels[pixel] = radiance;
+            cut_size.pixels[pixel] = Rgb::splat(clusters);
         }
-        used += tile.counts;
-        near += tile.near;
-        shadows += tile.shadows;
+        work += tile.counts;
         chains += tile.chains;
         nonfinite += tile.nonfinite;
     }
-    stats.count("Rays/shadow packets", used.packets);
-    shadows.report(&mut stats);
-    counts::cuts(&mut stats, "Lightcut", &used);
-    counts::clamping(&mut stats, &used, scenery.compensation.is_some().then_some(&near));
+    stats.count("Rays/shadow packets", work.cuts.packets);
+    work.shadows.report(&mut stats);
+    counts::cuts(&mut stats, "Lightcut", &work.cuts);
+    counts::clamping(&mut stats, &work.cuts, settings.compensation.then_some(&work.compensation));
     counts::eye(&mut stats, &chains);
-    let complete = tiles.iter().all(|t| t.done);
+    let complete = done.iter().all(Option::is_some);
     let extra = vec![("cut".to_owned(), cut_size)];
     Output { color, variance: None, extra, stats, complete, nonfinite }
 }

@@ -7,8 +7,6 @@ use crate::lightcut::CutSettings;
 use crate::math::Rgb;
 use crate::method::cache::filled::Cache;
 use crate::method::cache::inspect;
-use crate::method::cache::own::{self, Job};
-use crate::method::cache::picture::Picture;
 use crate::method::lights::Lights;
 use crate::method::sampling::method_settings;
 use crate::method::{Output, Renderer, Sampled, counts};
@@ -23,6 +21,7 @@ use crate::radiance_cache::CacheSettings;
 use crate::radiance_cache::compute::Source;
 use crate::radiance_cache::series::Glossy;
 use crate::setting::{Each, INSPECT, Settings as _};
+use crate::shade::{Picture, ShadeSettings, ShadingContext, ShadingTask, patches, shade};
 use crate::stats::{Stage, Stats};
 use crate::view::View;
 use crate::vpl::{LightPassSettings, Origin, PhotonSettings};
@@ -99,12 +98,9 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
 
     let direct = LightPassSettings { seed: settings.seed, ..settings.light };
     let lights = Lights::new(world, &direct, settings.family, max_depth, control, &mut stats);
-    let direct = Source {
-        world,
-        transfer: lights.transfer(true),
-        settings: &settings.cache,
-        compensation: Some(lights.compensation(world)),
-    };
+    let context = lights.context(world, true);
+    let ShadingContext { transfer, compensation, .. } = context;
+    let direct = Source { world, transfer, settings: &settings.cache, compensation };
 
     let map = irradiance(world, settings, max_depth, control, &mut stats);
     let light = IndirectLight { world, map: &map };
@@ -112,30 +108,33 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
     let cache = Cache::complete(&source, &samples, glossy, control, &mut stats);
 
     let mut picture = Picture::new(&samples, settings.inspect);
-    let jobs = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
-    let direct_jobs: Vec<Job> = jobs
+    let tasks = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
+    let direct: Vec<ShadingTask> = tasks
         .iter()
-        .filter(|job| job.origin != Some(Origin::Indirect))
-        .map(|job| Job { origin: Some(Origin::Direct), ..*job })
+        .filter(|task| task.origin != Some(Origin::Indirect))
+        .map(|task| ShadingTask { origin: Some(Origin::Direct), ..*task })
         .collect();
-    let indirect_jobs: Vec<&Job> = jobs.iter().filter(|job| job.origin != Some(Origin::Direct)).collect();
-    control.begin(Stage::Render, (direct_jobs.len() + indirect_jobs.len()) as u64);
-    let lit = stats
-        .time(Stage::Render, || own::light(&source.direct, &samples, &direct_jobs, &settings.cut, control));
-    counts::cuts(&mut stats, "Lightcut", &lit.cuts);
-    lit.shadows.report(&mut stats);
-    let gathered =
-        stats.time(Stage::Render, || own_gathers(&source, &samples, &indirect_jobs, settings, control));
+    let indirect: Vec<ShadingTask> =
+        tasks.into_iter().filter(|task| task.origin != Some(Origin::Direct)).collect();
+    control.begin(Stage::Render, (direct.len() + indirect.len()) as u64);
+    let shading =
+        ShadeSettings { cut: settings.cut, share: settings.cache.share, shadows: settings.cache.shadows };
+    let counts = stats.time(Stage::Render, || {
+        let patches = patches(&samples.points, &direct, settings.cache.patches, world.diagonal);
+        let shading = shade(&context, &samples.points, &patches, &shading, control);
+        picture.add_patches(&samples, &shading.patches);
+        shading.counts
+    });
+    counts::cuts(&mut stats, "Lightcut", &counts.cuts);
+    counts.shadows.report(&mut stats);
+    let gathered = stats.time(Stage::Render, || own_gathers(&source, &samples, &indirect, settings, control));
     let mut rays = *source.counts();
-    for (job, radiance) in lit.radiance {
-        picture.add(&samples, job.sample as usize, job.origin, radiance);
-    }
-    for (job, (radiance, used)) in indirect_jobs.iter().zip(gathered) {
-        picture.add(&samples, job.sample as usize, Some(Origin::Indirect), radiance);
+    for (task, (radiance, used)) in indirect.iter().zip(gathered) {
+        picture.add(&samples, task.point as usize, Some(Origin::Indirect), radiance);
         rays += used;
     }
-    stats.count("Shading/tasks by cuts", direct_jobs.len() as u64);
-    stats.count("Shading/tasks by gathering", indirect_jobs.len() as u64);
+    stats.count("Shading/tasks by cuts", direct.len() as u64);
+    stats.count("Shading/tasks by gathering", indirect.len() as u64);
     stats.count("Gathering/rays of records", rays.record_rays);
     stats.count("Gathering/rays of samples", rays.own_rays);
     stats.count("Gathering/rays followed", rays.followed);
@@ -178,18 +177,20 @@ fn irradiance(
 fn own_gathers(
     source: &FinalGatherSource,
     samples: &EyePass,
-    jobs: &[&Job],
+    tasks: &[ShadingTask],
     settings: &Settings,
     control: &Control,
 ) -> Vec<(Rgb, GatherCounts)> {
-    jobs.par_iter()
-        .map(|job| {
+    tasks
+        .par_iter()
+        .map(|task| {
             let mut counts = GatherCounts::default();
             if control.is_cancelled() {
                 return (Rgb::ZERO, counts);
             }
-            let Job { sample, lobe_only, .. } = **job;
-            let task = SampleGather { sample, lobe_only, rays: settings.own_rays, seed: settings.seed };
+            let ShadingTask { point, lobe_only, .. } = *task;
+            let task =
+                SampleGather { sample: point, lobe_only, rays: settings.own_rays, seed: settings.seed };
             let radiance = reflected(&source.light, samples, &task, &mut counts);
             control.advance(1);
             (radiance, counts)

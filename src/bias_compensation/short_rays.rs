@@ -1,11 +1,11 @@
-//! Short rays from up to sixteen points at once, and what they meet.
+//! Short rays from up to sixteen points at once, and the surfaces that they meet.
 
 use super::Compensation;
 use crate::embree::{Hit, Hits16, Ray, Rays16};
-use crate::math::{Frame, Rgb, lanes_in, luminance};
+use crate::math::{Frame, LANES, Rgb, lanes_in, luminance};
 use crate::sampling::{cosine_hemisphere, owen_sobol_2d};
 use crate::shadow;
-use crate::world::Surface;
+use crate::world::{Surface, SurfacePoint};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
@@ -14,25 +14,21 @@ const SEED: u32 = 0x5eed;
 
 /// A point whose virtual lights are limited.
 #[derive(Clone, Copy, Debug)]
-pub struct Clamped {
-    /// Where.
-    pub position: Vec3,
-    /// Unit geometric normal.
-    pub geometric_normal: Vec3,
-    /// Shading frame, z on the side of the light.
-    pub frame: Frame,
+pub struct ClampedPoint {
+    /// Position and normals.
+    pub point: SurfacePoint,
     /// Largest geometry term of an indirect virtual light; none is clamped where it is not positive and finite.
     pub bound: f32,
     /// Whether it lacks light from area lights too.
     pub direct: bool,
 }
 
-/// A point that a ray met, and what light from it would weigh.
+/// A surface that a ray met, and the weight of its light.
 #[derive(Clone, Copy)]
-pub struct Near {
-    /// What it met.
+pub struct NearSurface {
+    /// The surface.
     pub surface: Surface,
-    /// How far away.
+    /// Distance along the ray.
     pub distance: f32,
     /// Cosine of the ray to the normal it started at.
     pub cos: f32,
@@ -44,26 +40,33 @@ pub struct Near {
     pub emitted: Rgb,
 }
 
-/// Calls `met` with the number of a point and what one of its `count` rays met that virtual lights lack; ray by ray, and
-/// within that in order of the points, of which only sixteen count. Returns how many rays were traced.
-pub fn trace(c: &Compensation, points: &[Clamped], count: u32, mut met: impl FnMut(usize, Near)) -> u64 {
-    let points = &points[..points.len().min(16)];
-    let reach_sq = |p: &Clamped| {
+/// Calls `met` with the number of a point and a surface with light that virtual lights lack, for each of `count` rays from
+/// each point; ray by ray, and within that in order of the points, of which only sixteen count. Returns the number of rays
+/// traced.
+pub fn trace(
+    c: &Compensation,
+    points: &[ClampedPoint],
+    count: u32,
+    mut met: impl FnMut(usize, NearSurface),
+) -> u64 {
+    let points = &points[..points.len().min(LANES)];
+    let reach_sq = |p: &ClampedPoint| {
         let clamped = if p.bound > 0.0 && p.bound.is_finite() { p.bound.recip() } else { 0.0 };
-        clamped.max(if p.direct { c.furthest_sq } else { 0.0 })
+        clamped.max(if p.direct { c.max_near_sq } else { 0.0 })
     };
     let valid = (0..points.len()).filter(|&l| reach_sq(&points[l]) > 0.0).fold(0u16, |mask, l| mask | 1 << l);
     if valid == 0 {
         return 0;
     }
+    let frames: Vec<Frame> = points.iter().map(|p| Frame::from_normal(p.point.normal)).collect();
     let mut rays = Rays16::default();
     let mut hits = Hits16::default();
     for index in 0..count {
         let local = cosine_hemisphere(owen_sobol_2d(index, SEED));
         for lane in lanes_in(valid) {
-            let p = &points[lane];
-            let start = shadow::ray_from(p.position, p.geometric_normal, p.frame.to_world(local));
-            rays.set(lane, &Ray { t_far: reach_sq(p).sqrt(), ..start });
+            let SurfacePoint { position, geometric_normal, .. } = points[lane].point;
+            let start = shadow::ray_from(position, geometric_normal, frames[lane].to_world(local));
+            rays.set(lane, &Ray { t_far: reach_sq(&points[lane]).sqrt(), ..start });
         }
         // Alike as far as the points' frames are.
         for lane in lanes_in(c.world.accel.closest_hit16(&rays, valid, true, &mut hits)) {
@@ -74,8 +77,7 @@ pub fn trace(c: &Compensation, points: &[Clamped], count: u32, mut met: impl FnM
                 geometry: hits.geometry[lane],
                 primitive: hits.primitive[lane],
             };
-            let p = &points[lane];
-            if let Some(near) = weighed(c, &hit, p.frame.to_world(local), local.z, p) {
+            if let Some(near) = weighed(c, &hit, frames[lane].to_world(local), local.z, &points[lane]) {
                 met(lane, near);
             }
         }
@@ -83,8 +85,14 @@ pub fn trace(c: &Compensation, points: &[Clamped], count: u32, mut met: impl FnM
     u64::from(valid.count_ones() * count)
 }
 
-/// The point hit, unless it gives nothing that is lacking.
-fn weighed(c: &Compensation, hit: &Hit, direction: Vec3, cos: f32, point: &Clamped) -> Option<Near> {
+/// The surface hit, unless it gives nothing that is lacking.
+fn weighed(
+    c: &Compensation,
+    hit: &Hit,
+    direction: Vec3,
+    cos: f32,
+    point: &ClampedPoint,
+) -> Option<NearSurface> {
     let bound = point.bound;
     let distance = hit.t;
     let dist_sq = distance * distance;
@@ -98,8 +106,14 @@ fn weighed(c: &Compensation, hit: &Hit, direction: Vec3, cos: f32, point: &Clamp
     let out = surface.frame.to_local(-direction);
     // Virtual lights radiate by the cosine to the geometric normal.
     let geometry = cos * surface.normal.dot(direction).abs() / dist_sq;
-    let mut near =
-        Near { surface, distance, cos, normal: surface.frame.normal, weight: Rgb::ZERO, emitted: Rgb::ZERO };
+    let mut near = NearSurface {
+        surface,
+        distance,
+        cos,
+        normal: surface.frame.normal,
+        weight: Rgb::ZERO,
+        emitted: Rgb::ZERO,
+    };
     if surface.frame.normal.dot(direction) > 0.0 {
         near.normal = -near.normal;
     }

@@ -1,6 +1,6 @@
 //! The picture in the making, and if wanted its parts by the light's origin.
 
-use super::inspect::Layers;
+use super::ShadedPatch;
 use crate::eye::EyePass;
 use crate::film::Image;
 use crate::math::Rgb;
@@ -10,28 +10,28 @@ use crate::vpl::Origin;
 pub struct Picture {
     /// All light.
     pub color: Image,
-    /// Direct, indirect, and what is not known apart.
+    /// Direct light, indirect light, and light not known apart.
     parts: Option<[Image; 3]>,
     /// Radiances that were not finite and left out.
     pub nonfinite: u64,
 }
 
 impl Picture {
-    /// Only the emitters in view so far.
-    pub fn new(samples: &EyePass, with_parts: bool) -> Picture {
-        let color = samples.emitted.clone();
+    /// The emitters in view.
+    pub fn new(eye: &EyePass, with_parts: bool) -> Picture {
+        let color = eye.emitted.clone();
         let blank = || Image::new(color.width, color.height);
         let parts = with_parts.then(|| [blank(), blank(), blank()]);
-        Picture { color, parts, nonfinite: samples.nonfinite }
+        Picture { color, parts, nonfinite: eye.nonfinite }
     }
 
-    /// Adds radiance that an eye sample reflects, of one origin or of both.
-    pub fn add(&mut self, samples: &EyePass, sample: usize, origin: Option<Origin>, radiance: Rgb) {
+    /// Adds radiance that a shading point reflects, of one origin or of both.
+    pub fn add(&mut self, eye: &EyePass, point: usize, origin: Option<Origin>, radiance: Rgb) {
         if !radiance.is_finite() {
             self.nonfinite += 1;
             return;
         }
-        for seen in samples.visibility.of(sample) {
+        for seen in eye.visibility.of(point) {
             let light = seen.weight * radiance;
             self.color.pixels[seen.pixel as usize] += light;
             if let Some(parts) = &mut self.parts {
@@ -45,8 +45,15 @@ impl Picture {
         }
     }
 
-    /// The picture, its parts by name, and how many radiances were left out.
-    pub fn finish(self) -> (Image, Layers, u64) {
+    /// Adds the radiance of patches.
+    pub fn add_patches(&mut self, eye: &EyePass, patches: &[ShadedPatch]) {
+        for &(task, radiance) in patches.iter().flatten() {
+            self.add(eye, task.point as usize, task.origin, radiance);
+        }
+    }
+
+    /// The picture, its parts by name, and the number of radiances left out.
+    pub fn finish(self) -> (Image, Vec<(String, Image)>, u64) {
         let names = ["direct", "indirect", "both"].map(str::to_owned);
         let parts = self.parts.map_or(Vec::new(), |parts| names.into_iter().zip(parts).collect());
         (self.color, parts, self.nonfinite)

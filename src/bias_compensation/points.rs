@@ -1,0 +1,241 @@
+//! Light that shading points lack of virtual lights close to them.
+//!
+//! Points of a patch that may lack something trace short rays each. Irradiance is gathered at up to sixteen of the surfaces
+//! that the anchors' rays meet, and interpolated to all other surfaces met from the patch.
+//!
+//! Deviations: light that lobes reflect is not compensated, only that of bases. Cuts limit the luminance that a virtual
+//! light gives, not its geometry term: the same for lights of mean intensity.
+
+use super::short_rays::{self, ClampedPoint, NearSurface};
+use super::{Compensation, choose_evenly};
+use crate::light_tree::LightTrees;
+use crate::lightcut::{
+    CutCounts, CutSettings, PacketCut, PacketLightcut, PacketSum, Receiver, ReceiverPacket, frozen_luminance,
+};
+use crate::math::{Frame, LANES, Rgb, luminance};
+use crate::stats::add_fields;
+use crate::vpl::Origin;
+use crate::world::SurfacePoint;
+use std::f32::consts::PI;
+
+/// Rays from each point.
+const RAYS: u32 = 16;
+
+/// Irradiance lacking, relative to the whole, below which it does not matter.
+const NEGLIGIBLE: f32 = 0.01;
+
+/// Error of the lightcuts at surfaces met, relative to the light of the points.
+const EPSILON: f32 = 0.3;
+
+/// Most clusters in them.
+const MAX_CUT: usize = 600;
+
+/// Most steps towards the total that no cluster of them gives more than ε of.
+const MAX_STEPS: u32 = 8;
+
+/// Share of the luminance to which a VPL is clamped in them: more than elsewhere, since light lost here is lost.
+const CLAMP: f32 = 0.05;
+
+/// Weight of surfaces that face away, relative to those that face alike.
+const ASIDE: f32 = 1e-3;
+
+/// Workspace for the compensation of shading points; one a thread, so that its buffers are allocated once.
+#[derive(Default)]
+pub struct Compensator {
+    /// Surfaces met, with the lanes of the rays.
+    met: Vec<(usize, NearSurface)>,
+    packet: PacketLightcut,
+    receivers: ReceiverPacket<'static>,
+    counts: CompensationCounts,
+}
+
+/// Work done to find light again.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CompensationCounts {
+    /// Short rays.
+    pub rays: u64,
+    /// Cuts at surfaces met.
+    pub cuts: CutCounts,
+    /// Luminance of reflected light that was added to the radiance of points, summed.
+    pub found: f64,
+}
+add_fields!(CompensationCounts { rays, cuts, found });
+
+/// Irradiance at some of the surfaces close to a patch.
+pub struct NearLight {
+    /// Origin of the light that the patch gathers; `None` for both.
+    origin: Option<Origin>,
+    places: Vec<(SurfacePoint, Rgb)>,
+}
+
+impl Compensator {
+    /// Adds the light that the anchors of a patch lack to their `sum` of the light of one origin or of both. Returns the
+    /// light near the patch, unless there is so little that its other points need no compensation.
+    pub fn anchors(
+        &mut self,
+        c: &Compensation,
+        origin: Option<Origin>,
+        receivers: &ReceiverPacket,
+        sum: &mut PacketSum,
+    ) -> Option<NearLight> {
+        self.trace(c, origin, receivers, &sum.limits);
+        let irradiance = mean_irradiance(receivers, &sum.radiance);
+        let mut lacking = [0.0; LANES];
+        for (lane, near) in &self.met {
+            let radiance = irradiance * luminance(near.weight) + luminance(near.emitted);
+            lacking[*lane] += radiance * (PI / RAYS as f32);
+        }
+        if !lacking.iter().any(|&lacking| lacking > NEGLIGIBLE * irradiance) {
+            return None;
+        }
+        let light = NearLight { origin, places: self.gather(c, irradiance) };
+        self.add_met(c, &light, receivers, sum);
+        Some(light)
+    }
+
+    /// Adds the light that further points of the patch lack to their `sum`.
+    pub fn others(
+        &mut self,
+        c: &Compensation,
+        light: &NearLight,
+        receivers: &ReceiverPacket,
+        sum: &mut PacketSum,
+    ) {
+        self.trace(c, light.origin, receivers, &sum.limits);
+        self.add_met(c, light, receivers, sum);
+    }
+
+    /// Work done since this was last asked.
+    pub fn take_counts(&mut self) -> CompensationCounts {
+        let cuts = std::mem::take(&mut self.packet.counts);
+        CompensationCounts { cuts, ..std::mem::take(&mut self.counts) }
+    }
+
+    fn trace(
+        &mut self,
+        c: &Compensation,
+        origin: Option<Origin>,
+        receivers: &ReceiverPacket,
+        limits: &[f32; LANES],
+    ) {
+        let gathers = |of: Origin| origin.is_none_or(|origin| origin == of);
+        let (direct, indirect) = (gathers(Origin::Direct), gathers(Origin::Indirect));
+        let clamped: Vec<ClampedPoint> = (0..receivers.len())
+            .map(|lane| {
+                let r = receivers.get(lane);
+                let base = luminance(r.base_brdf());
+                let bound = if indirect && base > 0.0 { c.bound(limits[lane] / base) } else { f32::INFINITY };
+                let (position, normal) = r.place();
+                let point = SurfacePoint { position, normal, geometric_normal: r.geometric_normal() };
+                ClampedPoint { point, bound, direct: direct && base > 0.0 }
+            })
+            .collect();
+        self.met.clear();
+        let met = &mut self.met;
+        self.counts.rays += short_rays::trace(c, &clamped, RAYS, |lane, near| met.push((lane, near)));
+    }
+
+    /// Irradiance at some of the surfaces met, chosen in proportion to their weights. It is added to points that have the
+    /// irradiance `baseline`, so its error need only be small relative to that.
+    fn gather(&mut self, c: &Compensation, baseline: f32) -> Vec<(SurfacePoint, Rgb)> {
+        // One surface after the other.
+        let mut order: Vec<u32> = (0..self.met.len() as u32).collect();
+        order.sort_by_key(|&i| (self.met[i as usize].1.surface.mesh, self.met[i as usize].0));
+        let total: f32 = self.met.iter().map(|(_, near)| luminance(near.weight)).sum();
+        if !(total > 0.0) {
+            return Vec::new();
+        }
+        let met = |i: u32| &self.met[i as usize].1;
+        let mut places = Vec::with_capacity(LANES);
+        choose_evenly(order.iter().map(|&i| luminance(met(i).weight)), total, LANES, |i, _| {
+            let near = met(order[i]);
+            let (position, geometric_normal) = (near.surface.position, near.surface.normal);
+            places.push((SurfacePoint { position, normal: near.normal, geometric_normal }, Rgb::ZERO));
+        });
+        let receiver = |(p, _): &(SurfacePoint, Rgb)| {
+            Receiver::irradiance(p.position, p.geometric_normal, &Frame::from_normal(p.normal))
+                .with_baseline(baseline)
+        };
+        self.receivers.set(places.iter().map(receiver));
+        let settings =
+            CutSettings { epsilon: EPSILON, max_cut: MAX_CUT, clamp: Some(CLAMP), ..CutSettings::default() };
+        let cut = self.packet.gather(&c.transfer, c.world, &self.receivers, &settings);
+        for (lane, (_, irradiance)) in places.iter_mut().enumerate() {
+            let found = limited(c.transfer.trees, &cut, lane, baseline);
+            *irradiance = if found.is_finite() { found } else { Rgb::ZERO };
+        }
+        places
+    }
+
+    fn add_met(
+        &mut self,
+        c: &Compensation,
+        light: &NearLight,
+        receivers: &ReceiverPacket,
+        sum: &mut PacketSum,
+    ) {
+        let least = 1e-6 * c.world.diagonal;
+        for (lane, near) in &self.met {
+            let r = receivers.get(*lane);
+            let passed = r.coat_transmittance(near.surface.position - r.position());
+            let reflected = near.weight * light.interpolated(near, least * least);
+            let factor = r.base_brdf() * (passed * PI / RAYS as f32);
+            let found = factor * (reflected + near.emitted);
+            if found.is_finite() {
+                sum.radiance[*lane] += found;
+                self.counts.found += f64::from(luminance(factor * reflected));
+            }
+        }
+    }
+}
+
+impl NearLight {
+    /// Mean irradiance of the places, mostly of those close by that face alike.
+    fn interpolated(&self, near: &NearSurface, least_sq: f32) -> Rgb {
+        let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
+        for (place, irradiance) in &self.places {
+            let facing = place.normal.dot(near.normal).max(0.0);
+            let dist_sq = place.position.distance_squared(near.surface.position);
+            let weight = (ASIDE + facing * facing) / (dist_sq + least_sq);
+            sum += *irradiance * weight;
+            weights += weight;
+        }
+        if weights > 0.0 { sum / weights } else { Rgb::ZERO }
+    }
+}
+
+/// Irradiance of a lane by a `cut`, of which no indirect cluster may give more than ε of the light that it
+/// is added to: so coarse a cut leaves clusters whose representative happens to be next to the point.
+fn limited(trees: &LightTrees, cut: &PacketCut, lane: usize, baseline: f32) -> Rgb {
+    let sum = |limit: f32| {
+        let given = cut.clusters.iter().map(|cluster| {
+            let node = &trees.nodes[cluster.node as usize];
+            let given = node.intensity * cluster.responses.get(lane);
+            let most = match node.origin() {
+                Origin::Direct => f32::INFINITY,
+                Origin::Indirect if node.is_leaf() => cut.sum.limits[lane].min(limit),
+                Origin::Indirect => limit,
+            };
+            let y = luminance(given);
+            if y > most { given * (most / y) } else { given }
+        });
+        given.sum::<Rgb>()
+    };
+    let mut irradiance = sum(f32::INFINITY);
+    frozen_luminance(luminance(irradiance) + baseline, MAX_STEPS, |total| {
+        irradiance = sum(EPSILON * total);
+        luminance(irradiance) + baseline
+    });
+    irradiance
+}
+
+/// Mean luminance of the irradiance that would reflect this radiance from the base alone.
+fn mean_irradiance(receivers: &ReceiverPacket, radiance: &[Rgb; LANES]) -> f32 {
+    let irradiance = |lane: usize| {
+        let base = luminance(receivers.get(lane).base_brdf());
+        (base > 0.0).then(|| luminance(radiance[lane]) / base)
+    };
+    let (sum, count) =
+        (0..receivers.len()).filter_map(irradiance).fold((0.0, 0), |(sum, n), e| (sum + e, n + 1));
+    sum / count.max(1) as f32
+}

@@ -1,0 +1,80 @@
+//! Patches: groups of shading points coherent enough to be shaded together.
+
+use super::{ShadeSettings, ShadingTask};
+use crate::eye::{PointGeometry, ShadingPoints};
+use crate::lightcut::{CoherenceLimit, group_coherent};
+use crate::math::{Frame, LANES};
+use glam::Vec3;
+
+/// Smallest patch: below this too few points are interpolated to repay the sixteen anchors.
+const MIN_PATCH: usize = 64;
+
+/// Patches of tasks from a list in which neighbours in space are near each other; about `count` if there is one for each
+/// of the points.
+pub fn patches(
+    points: &ShadingPoints,
+    tasks: &[ShadingTask],
+    count: u32,
+    diagonal: f32,
+) -> Vec<Vec<ShadingTask>> {
+    let max_size = (points.len() / count.max(1) as usize).max(MIN_PATCH);
+    let place = |task: &ShadingTask| place(&points.geometry[task.point as usize]);
+    let bsdf = |task: &ShadingTask| &points.surfaces[task.point as usize].bsdf;
+    let same = |a: &ShadingTask, b: &ShadingTask| {
+        a.lobe_only == b.lobe_only && a.origin == b.origin && bsdf(a).same_lobes(bsdf(b))
+    };
+    let all = tasks.iter().copied();
+    let patches = group_coherent(CoherenceLimit::CLOSE, all, max_size, diagonal, place, same);
+    // A cut costs nearly as much for few points as for sixteen: remnants make do with less coherence.
+    let (mut patches, remnants): (Vec<_>, Vec<_>) =
+        patches.into_iter().partition(|patch| patch.len() >= MIN_PATCH);
+    let remnants = remnants.into_iter().flatten();
+    patches.extend(group_coherent(CoherenceLimit::REMOTE, remnants, MIN_PATCH, diagonal, place, same));
+    patches
+}
+
+/// Groups for shared cuts over all of some points: each takes the first point left and up to fifteen others that are coherent
+/// with it, or it alone if those are too few. Time is quadratic in the number of points.
+pub(super) fn greedy_groups(
+    points: &ShadingPoints,
+    settings: &ShadeSettings,
+    diagonal: f32,
+) -> Vec<Vec<ShadingTask>> {
+    let mut left: Vec<u32> = (0..points.len() as u32).collect();
+    let mut groups = Vec::new();
+    while let Some(&first) = left.first() {
+        let place = |point: u32| place(&points.geometry[point as usize]);
+        let close = |&&point: &&u32| CoherenceLimit::CLOSE.holds(diagonal, place(first), place(point));
+        let mut group: Vec<u32> = left.iter().filter(close).take(LANES).copied().collect();
+        if !settings.shares(group.len()) {
+            group = vec![first];
+        }
+        left.retain(|point| !group.contains(point));
+        groups.push(group.into_iter().map(ShadingTask::all).collect());
+    }
+    groups
+}
+
+/// The tasks of a patch that are its anchors: the outermost, so that light is never extrapolated, and every so many others,
+/// from the middle of each stretch.
+pub(super) fn anchors(points: &ShadingPoints, patch: &[ShadingTask]) -> Vec<bool> {
+    if patch.len() <= LANES {
+        return vec![true; patch.len()];
+    }
+    let point = |task: &ShadingTask| &points.geometry[task.point as usize];
+    let frame = Frame::from_normal(point(&patch[0]).normal);
+    let mut anchors = vec![false; patch.len()];
+    let axes = [frame.tangent, -frame.tangent, frame.bitangent, -frame.bitangent];
+    for axis in axes {
+        let along = |i: &usize| point(&patch[*i]).position.dot(axis);
+        let outermost = (0..patch.len()).max_by(|a, b| along(a).total_cmp(&along(b)));
+        outermost.into_iter().for_each(|i| anchors[i] = true);
+    }
+    let stride = patch.len().div_ceil(LANES - axes.len());
+    anchors.iter_mut().skip(stride / 2).step_by(stride).for_each(|anchor| *anchor = true);
+    anchors
+}
+
+fn place(point: &PointGeometry) -> (Vec3, Vec3) {
+    (point.position, point.normal)
+}

@@ -1,0 +1,66 @@
+//! A thread's part in the shading of a frame.
+
+use super::patches::greedy_groups;
+use super::{Gatherers, ShadeSettings, Shaded, ShadingContext, ShadingTask};
+use crate::bias_compensation::points::CompensationCounts;
+use crate::eye::ShadingPoints;
+use crate::lightcut::CutCounts;
+use crate::shadow::{Engine, ShadowCounts};
+use crate::stats::add_fields;
+
+/// Work done.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ShadingCounts {
+    /// Cuts.
+    pub cuts: CutCounts,
+    /// Their shadow rays.
+    pub shadows: ShadowCounts,
+    /// Compensation of clamped light.
+    pub compensation: CompensationCounts,
+}
+add_fields!(ShadingCounts { cuts, shadows, compensation });
+
+/// Workspaces and shadow rays of one thread.
+pub struct Shader<'c, 'w> {
+    context: &'c ShadingContext<'w>,
+    settings: &'c ShadeSettings,
+    gatherers: Gatherers<'w>,
+    shadows: Engine<'w>,
+}
+
+impl<'c, 'w> Shader<'c, 'w> {
+    /// A thread's workspaces.
+    pub fn new(context: &'c ShadingContext<'w>, settings: &'c ShadeSettings) -> Shader<'c, 'w> {
+        let ShadeSettings { share, shadows, .. } = settings;
+        let shadows = Engine::with(context.world, shadows.for_samples(*share), shadows.cache);
+        Shader { context, settings, gatherers: Gatherers::default(), shadows }
+    }
+
+    /// Forgets the occluders seen, at boundaries of the work that do not depend on the number of threads.
+    pub fn begin_chunk(&mut self) {
+        self.shadows.begin_chunk();
+    }
+
+    /// Shades a patch of tasks that differ in nothing but their points, and calls `shaded` with each.
+    pub fn shade(
+        &mut self,
+        points: &ShadingPoints<'w>,
+        patch: &[ShadingTask],
+        shaded: impl FnMut(ShadingTask, Shaded),
+    ) {
+        self.gatherers.shade(self.context, &self.shadows, points, patch, self.settings, shaded);
+    }
+
+    /// Shades all light of some points, in groups of up to sixteen that share a cut, and calls `shaded` with each.
+    pub fn shade_all(&mut self, points: &ShadingPoints<'w>, mut shaded: impl FnMut(ShadingTask, Shaded)) {
+        for group in greedy_groups(points, self.settings, self.context.world.diagonal) {
+            self.shade(points, &group, &mut shaded);
+        }
+    }
+
+    /// Work done since this was last asked.
+    pub fn take_counts(&mut self) -> ShadingCounts {
+        let (cuts, compensation) = self.gatherers.take_counts();
+        ShadingCounts { cuts, shadows: self.shadows.take_counts(), compensation }
+    }
+}
