@@ -4,7 +4,7 @@ use super::{Image, metrics, tone};
 use crate::math::Rgb;
 use std::f32::consts::TAU;
 
-/// Display bytes of the layer `name` of a picture exposed by `factor`; see `method::cache::inspect` for the
+/// Display bytes of the layer `name` of a picture exposed by `factor`; see `radiance_cache::inspect` for the
 /// names.
 pub fn show(name: &str, layer: &Image, picture: &Image, factor: f32) -> Vec<u8> {
     match name.split('.').next().unwrap_or_default() {

@@ -7,8 +7,8 @@
 //!
 //! Deviations: the record nearest to the sample keeps its place. Leaving it out changes most, yet it knows most.
 
-use super::layer::Layer;
 use super::series::Glossy;
+use super::splat::Layer;
 use crate::eye::EyePass;
 use crate::math::{Rgb, luminance};
 use rayon::prelude::*;

@@ -8,7 +8,7 @@
 
 use super::compute::Source;
 use super::gather::Gathered;
-use super::wave::Pick;
+use super::placement::Pick;
 use crate::bias_compensation::Compensation;
 use crate::bias_compensation::short_rays::{self, ClampedPoint, NearSurface};
 use crate::eye::EyePass;

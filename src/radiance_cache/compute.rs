@@ -7,13 +7,13 @@
 use super::compensate::{self, Clamp, Cutters};
 use super::footprint::Footprint;
 use super::gather::{Gathered, Gatherer};
-use super::layer::Layer;
-use super::occluders::{Hidden, OccluderLog};
+use super::occluder_distance::{Hidden, OccluderLog};
+use super::occlusion_hessian::Sight;
+use super::placement::Pick;
 use super::record::{Facts, Record};
 use super::series::SeriesGatherer;
 use super::settings::{CacheSettings, Footprints};
-use super::sight::Sight;
-use super::wave::Pick;
+use super::splat::Layer;
 use crate::bias_compensation::Compensation;
 use crate::eye::EyePass;
 use crate::hsh::Radiance;

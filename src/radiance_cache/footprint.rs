@@ -7,8 +7,8 @@
 //! Deviations: footprints by second derivatives are at most twice as long as wide, those by gradients about
 //! eleven times (1/0.3²).
 
+use super::occlusion_hessian::Change;
 use super::settings::{CacheSettings, Footprints};
-use super::sight::Change;
 use crate::math::Frame;
 use glam::Vec3;
 

@@ -4,31 +4,33 @@
 //!
 //! - [`record`]: what is stored at a point; [`footprint`]: the ellipse within which it is used;
 //! - [`gather`]: from a converged cut to irradiance, its gradient and the distance to what casts light and shadow;
-//! - [`probe`], [`edges`], [`sight`]: what a record's point sees, and how the edges of occluders change its light
+//! - [`probe`], [`edges`], [`occlusion_hessian`]: what a record's point sees, and how the edges of occluders change its light
 //!   as it moves;
-//! - [`compute`]: the records of one wave, neighbours sharing cuts; [`occluders`]: how far away what hides lights
+//! - [`compute`]: the records of one wave, neighbours sharing cuts; [`occluder_distance`]: how far away what hides lights
 //!   is;
 //! - [`series`]: the same for glossy surfaces: radiance as a series, and what lobes reflect of it;
 //! - [`compensate`]: what clamping near virtual lights took away, found by short rays;
-//! - [`layer`]: the records of direct or of indirect light, and their weighted sums at the eye samples;
-//! - [`wave`]: where records are needed next;
+//! - [`splat`]: the records of direct or of indirect light, and their weighted sums at the eye samples;
+//! - [`placement`]: where records are needed next;
 //! - [`adapt`]: footprints that disagree visibly are shrunk.
 
 pub mod adapt;
 pub mod compensate;
 pub mod compute;
 pub mod edges;
+pub mod fill;
 pub mod footprint;
 pub mod gather;
-pub mod layer;
-pub mod occluders;
+pub mod inspect;
+pub mod occluder_distance;
+pub mod occlusion_hessian;
+pub mod placement;
 pub mod probe;
 pub mod record;
 pub mod series;
 pub mod settings;
-pub mod sight;
+pub mod splat;
 #[cfg(test)]
 mod tests;
-pub mod wave;
 
 pub use settings::{CacheSettings, Footprints, FoundBy};

@@ -8,8 +8,8 @@
 //! normal mirrors to the sample's mirror direction, scaled to reflect as much of uniform light as the sample's
 //! own.
 
-use super::layer::Layer;
 use super::record::Record;
+use super::splat::Layer;
 use crate::eye::{EyePass, PointGeometry, PointSurface};
 use crate::gradient::Incidence;
 use crate::hsh::{Accumulator, Caching, Kernel, MaterialSeries, Radiance, SeriesSettings};

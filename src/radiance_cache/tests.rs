@@ -2,9 +2,9 @@
 //! and a table.
 
 use super::compute::{RecordSource, Source};
-use super::layer::Layer;
+use super::placement::Pick;
 use super::record::Record;
-use super::wave::Pick;
+use super::splat::Layer;
 use super::{CacheSettings, Footprints};
 use crate::eye::{EyePass, EyeSettings};
 use crate::light_tree::{Family, LightTrees};

@@ -13,8 +13,8 @@ use crate::lightcut::{
 use crate::math::{Rgb, luminance};
 use crate::radiance_cache::CacheSettings;
 use crate::radiance_cache::compute::Source;
-use crate::radiance_cache::layer::Layer;
-use crate::radiance_cache::wave::{Pick, pick};
+use crate::radiance_cache::placement::{Pick, pick};
+use crate::radiance_cache::splat::Layer;
 use crate::shade::{Gatherers, ShadeSettings, ShadingContext, ShadingTask, patches};
 use crate::vpl::Origin;
 

@@ -10,8 +10,6 @@
 //! Use it where light is smooth and records are wanted for what else they are good for: they are few, and do not depend
 //! on the pixels. Where only the picture matters, reconstruction cuts take as long and err less.
 
-pub(super) mod filled;
-pub mod inspect;
 mod render;
 
 pub use render::{Prepared, Settings, render};

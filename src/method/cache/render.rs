@@ -2,8 +2,6 @@
 //!
 //! What is seen and what shines is [`Prepared`] first and lit after, so that a plan can try how long lighting takes.
 
-use super::filled::Cache;
-use super::inspect;
 use crate::eye::EyePass;
 use crate::film::Window;
 use crate::light_tree::Family;
@@ -14,6 +12,8 @@ use crate::method::sampling::method_settings;
 use crate::method::{Move, Output, Renderer, Sampled, counts};
 use crate::progress::Control;
 use crate::radiance_cache::compute::Source;
+use crate::radiance_cache::fill::Cache;
+use crate::radiance_cache::inspect;
 use crate::radiance_cache::series::Glossy;
 use crate::radiance_cache::{CacheSettings, FoundBy};
 use crate::setting::{COMPENSATION, Each, INSPECT, Settings as _};
@@ -39,7 +39,7 @@ method_settings! {
         family: Family = Family::default() => [group];
         /// Number and accuracy of records.
         cache: CacheSettings = CacheSettings::default() => [group];
-        /// Images of [`super::inspect`], beside the picture.
+        /// Images of [`inspect`], beside the picture.
         inspect: bool = false => [is INSPECT];
     }
 }

@@ -1,17 +1,17 @@
 //! The cache from its first wave to the pixels, whatever its records are computed from.
 
+use super::adapt::Seam;
+use super::compute::RecordSource;
+use super::placement::{Pick, lacking, pick};
+use super::record::Record;
+use super::series::Glossy;
+use super::splat::Layer;
+use super::{CacheSettings, FoundBy, adapt};
 use crate::eye::{EyePass, PointGeometry, PointSurface};
 use crate::lightcut::CutCounts;
 use crate::math::{Rgb, luminance};
 use crate::method::counts;
 use crate::progress::Control;
-use crate::radiance_cache::adapt::Seam;
-use crate::radiance_cache::compute::RecordSource;
-use crate::radiance_cache::layer::Layer;
-use crate::radiance_cache::record::Record;
-use crate::radiance_cache::series::Glossy;
-use crate::radiance_cache::wave::{Pick, lacking, pick};
-use crate::radiance_cache::{CacheSettings, FoundBy, adapt};
 use crate::shade::{Picture, ShadingTask};
 use crate::stats::{Stage, Stats};
 use crate::vpl::Origin;

@@ -15,12 +15,12 @@
 //! Where a pixel has several eye samples, the last in the order of the index stands for all but in sums and
 //! counts.
 
+use super::adapt::Seam;
+use super::record::Record;
+use super::splat::Layer;
 use crate::eye::EyePass;
 use crate::film::Image;
 use crate::math::{LUMINANCE, Rgb};
-use crate::radiance_cache::adapt::Seam;
-use crate::radiance_cache::layer::Layer;
-use crate::radiance_cache::record::Record;
 use rayon::prelude::*;
 
 /// Layers by name.

@@ -4,7 +4,7 @@
 //! is the overture of Ward's irradiance caching. A wave takes at most one sample of each cell of one level of the
 //! eye samples' index, the one nearest to the middle of what is uncovered there.
 
-use super::layer::Layer;
+use super::splat::Layer;
 use crate::eye::EyePass;
 use glam::Vec3;
 use rayon::prelude::*;
