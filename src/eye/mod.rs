@@ -6,7 +6,6 @@ mod look;
 mod pass;
 mod points;
 mod rays;
-mod sharing;
 mod sharp;
 
 pub use chain::ChainCounts;
@@ -15,4 +14,3 @@ pub use look::{Look, eye_sampler};
 pub use pass::EyePass;
 pub use points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySamples};
 pub use rays::{EyeRays, EyeSettings, VisibleSurfaces};
-pub use sharing::Sharing;

@@ -5,7 +5,6 @@
 //!
 //! Units: positions relative to the scene's centre; weights are per pixel (they include 1/spp).
 
-use super::Sharing;
 use crate::material::Bsdf;
 use crate::math::Rgb;
 use crate::scene::MaterialId;
@@ -22,8 +21,8 @@ pub struct PointGeometry {
     pub spacing: f32,
     /// Unit shading normal on the side of the eye.
     pub normal: Vec3,
-    /// Which records can light it.
-    pub sharing: Sharing,
+    /// Coat that light has to pass to reach the base (see [`Bsdf::coat`]); 0 for none.
+    pub coat: u32,
 }
 
 /// Surface of a shading point: the data that shading reads beside the geometry.

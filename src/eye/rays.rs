@@ -1,8 +1,8 @@
 //! Eye rays one by one: their random numbers, their places in pixels, and the surfaces that they make visible.
 
 use super::chain::{ChainCounts, EyeSample, trace};
+use super::eye_sampler;
 use super::points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySample};
-use super::{Sharing, eye_sampler};
 use crate::math::Rgb;
 use crate::view::View;
 use crate::world::World;
@@ -97,8 +97,7 @@ impl<'a, 'w> EyeRays<'a, 'w> {
         let normal = if front { s.frame.normal } else { -s.frame.normal };
         // Foreshortening is limited, so that grazing samples do not claim whole floors.
         let spacing = self.angle * eye.distance / normal.dot(eye.out).max(0.05).sqrt();
-        let sharing = Sharing::new(eye.bsdf.coat(), 0);
-        let geometry = PointGeometry { position: s.position, spacing, normal, sharing };
+        let geometry = PointGeometry { position: s.position, spacing, normal, coat: eye.bsdf.coat() };
         let surface = PointSurface {
             bsdf: eye.bsdf,
             material: self.world.scene.meshes[s.mesh as usize].material,

@@ -3,7 +3,7 @@
 //! A method is a [`Renderer`]: a struct of settings that says what it is called and renders. [`Method`] is any of them.
 
 pub mod cache;
-pub(crate) mod counts;
+mod counts;
 mod ladder;
 pub mod lightcuts;
 pub mod lights;

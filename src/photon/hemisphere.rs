@@ -7,11 +7,11 @@ use super::indirect_light::{GatherCounts, IndirectLight};
 use super::radiance::IncomingRadiance;
 use super::strata::{BLOCK, Met, Strata};
 use crate::embree::Rays16;
-use crate::eye::PointGeometry;
 use crate::math::{Frame, Rgb};
 use crate::sampling::hash;
 use crate::shadow;
-use glam::{Mat3, Vec2, Vec3};
+use crate::world::SurfacePoint;
+use glam::{Mat3, Vec2};
 
 /// Irradiance gathered at a point.
 #[derive(Clone, Copy, Debug)]
@@ -28,11 +28,11 @@ pub struct GatheredIrradiance {
 
 /// A point at which light is gathered.
 #[derive(Clone, Copy, Debug)]
-pub struct GatherPoint<'a> {
-    /// The point.
-    pub point: &'a PointGeometry,
-    /// Unit geometric normal there.
-    pub geometric_normal: Vec3,
+pub struct GatherPoint {
+    /// Position and normals.
+    pub point: SurfacePoint,
+    /// Coat that the light has to pass; 0 for none.
+    pub coat: u32,
     /// Seed of the directions within the strata.
     pub seed: u32,
     /// Inverse of the minimum distance, to which nearer surfaces are clamped in the gradient.
@@ -47,10 +47,9 @@ pub fn gather(
     met: &mut Met,
     counts: &mut GatherCounts,
 ) -> GatheredIrradiance {
-    let GatherPoint { point, geometric_normal, seed, max_nearness } = *at;
+    let GatherPoint { point, coat, seed, max_nearness } = *at;
     met.clear(strata.len());
     let frame = Frame::from_normal(point.normal);
-    let coat = point.sharing.coat();
     for first_ring in (0..strata.rings).step_by(BLOCK) {
         for first_sector in (0..strata.sectors).step_by(BLOCK) {
             let mut rays = Rays16::default();
@@ -63,7 +62,7 @@ pub fn gather(
                 let local = strata.direction(ring, sector, u);
                 met.direction[strata.place(ring, sector)] = local;
                 let direction = frame.to_world(local);
-                rays.set(lane, &shadow::ray_from(point.position, geometric_normal, direction));
+                rays.set(lane, &shadow::ray_from(point.position, point.geometric_normal, direction));
             }
             let found = light.along16(&rays, u16::MAX, true, block_seed, counts);
             for (lane, IncomingRadiance { radiance, distance, normal }) in found.into_iter().enumerate() {

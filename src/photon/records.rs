@@ -2,25 +2,25 @@
 //!
 //! Papers: Jensen 1996; Krivanek et al. 2005; Herzog et al. 2009, section 7 (the method they call PM).
 //! Deviations: for the series of glossy surfaces, the surface seen in a stratum is a patch that stays in
-//! place as the point moves (as the virtual lights of `cache` do), so that these gradients ignore the edges
+//! place as the point moves (as the virtual lights of lightcuts do), so that these gradients ignore the edges
 //! of occluders.
 
 use super::hemisphere::{GatherPoint, GatheredIrradiance, gather};
 use super::indirect_light::{GatherCounts, IndirectLight};
 use super::strata::{Met, Strata};
-use crate::eye::{EyePass, PointGeometry};
 use crate::gradient::Incidence;
+use crate::hsh::Radiance;
 use crate::lightcut::CutCounts;
 use crate::math::{LUMINANCE, luminance};
-use crate::radiance_cache::compute::{Made, Pair, RecordSource, Source};
-use crate::radiance_cache::footprint::Footprint;
-use crate::radiance_cache::occlusion_hessian::Sight;
-use crate::radiance_cache::placement::Pick;
-use crate::radiance_cache::record::{Facts, Record};
+use crate::radiance_cache::footprint::{Footprint, FootprintLimits};
+use crate::radiance_cache::occlusion_hessian::OcclusionHessian;
+use crate::radiance_cache::record::{Diagnostics, Record};
 use crate::radiance_cache::series::SeriesGatherer;
-use crate::radiance_cache::splat::Layer;
+use crate::radiance_cache::source::{Candidate, LightcutSource, NewRecord, RecordSource};
 use crate::radiance_cache::{CacheSettings, Footprints};
 use crate::sampling::hash;
+use crate::vpl::{DirectIndirect, Origin};
+use crate::world::SurfacePoint;
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -31,7 +31,7 @@ const MIN_COS: f32 = 0.05;
 /// Source of records of indirect light by final gathering.
 pub struct FinalGatherSource<'w> {
     /// Direct light, by cuts.
-    pub direct: Source<'w>,
+    pub direct: LightcutSource<'w>,
     /// Indirect light.
     pub light: IndirectLight<'w>,
     strata: Strata,
@@ -43,7 +43,7 @@ impl<'w> FinalGatherSource<'w> {
     /// Creates a source whose directions of gathering are `strata`; `seed` determines the directions within
     /// them.
     pub fn new(
-        direct: Source<'w>,
+        direct: LightcutSource<'w>,
         light: IndirectLight<'w>,
         strata: Strata,
         seed: u32,
@@ -69,31 +69,25 @@ impl RecordSource for FinalGatherSource<'_> {
         self.direct.settings
     }
 
-    fn records(
-        &self,
-        samples: &EyePass,
-        layers: &[Layer; 2],
-        picks: &[Pick],
-    ) -> (Vec<(Pick, Pair)>, CutCounts) {
-        let direct: Vec<Pick> = picks
+    fn records(&self, candidates: &[Candidate]) -> (Vec<NewRecord>, CutCounts) {
+        let direct: Vec<Candidate> = candidates
             .iter()
-            .filter(|pick| pick.lacks[0])
-            .map(|pick| Pick { lacks: [true, false], ..*pick })
+            .filter(|candidate| candidate.missing.direct)
+            .map(|c| Candidate { missing: DirectIndirect { direct: true, indirect: false }, ..*c })
             .collect();
-        let (mut records, counts) = self.direct.records(samples, layers, &direct);
-        let indirect: Vec<(Pick, Pair, GatherCounts)> = picks
+        let (mut records, counts) = self.direct.records(&direct);
+        let indirect: Vec<(Option<NewRecord>, GatherCounts)> = candidates
             .par_iter()
-            .filter(|pick| pick.lacks[1])
-            .map_init(GatherWorkspace::default, |work, pick| {
+            .filter(|candidate| candidate.missing.indirect)
+            .map_init(GatherWorkspace::default, |work, candidate| {
                 let mut counts = GatherCounts::default();
-                let made = self.indirect(work, samples, pick.sample, &mut counts);
-                (*pick, [None, made], counts)
+                (self.indirect(work, candidate, &mut counts), counts)
             })
             .collect();
         let mut gathered = self.counts();
-        for (pick, pair, used) in indirect {
+        for (new, used) in indirect {
             *gathered += used;
-            records.push((pick, pair));
+            records.extend(new);
         }
         (records, counts)
     }
@@ -103,69 +97,64 @@ impl FinalGatherSource<'_> {
     fn indirect(
         &self,
         work: &mut GatherWorkspace,
-        samples: &EyePass,
-        sample: u32,
+        candidate: &Candidate,
         counts: &mut GatherCounts,
-    ) -> Option<Made> {
-        let point = &samples.points.geometry[sample as usize];
+    ) -> Option<NewRecord> {
+        let &Candidate { sample, point, coat, bands, .. } = candidate;
         let settings = self.settings();
-        let accuracy = settings.accuracy[1];
-        let reach = settings.reach[1].map(|r| r * point.spacing);
-        let geometric_normal = samples.points.surfaces[sample as usize].geometric_normal;
-        let max_nearness = 1.0 / reach[0].max(f32::MIN_POSITIVE);
-        let at = GatherPoint { point, geometric_normal, seed: hash(sample, self.seed), max_nearness };
+        let limits = |distance| FootprintLimits::new(settings, Origin::Indirect, candidate.spacing, distance);
+        let max_nearness = 1.0 / limits(0.0).radii[0].max(f32::MIN_POSITIVE);
+        let at = GatherPoint { point, coat, seed: hash(sample, self.seed), max_nearness };
         let g = gather(&self.light, &self.strata, &at, &mut work.met, counts);
         let luminance = luminance(g.irradiance);
         if !(luminance.is_finite() && g.vector.is_finite() && g.gradient.is_finite()) {
             return None;
         }
+        let GatheredIrradiance { vector, gradient, distance, .. } = g;
         let footprint = if settings.footprints == Footprints::Occlusion {
-            let change = self.sight(point, geometric_normal, sample, &work.met).change(1);
-            let furthest = accuracy * g.distance;
-            Footprint::of_change(&change, luminance, accuracy, furthest, reach, settings)
+            let derivatives = self.hessian(candidate, &work.met).derivatives(Origin::Indirect);
+            Footprint::of_hessian(&derivatives, luminance, &limits(distance))
         } else {
-            let radius = (accuracy * g.distance).clamp(reach[0], reach[1]);
-            Footprint::of_gradient(point.normal, g.gradient * LUMINANCE, luminance, radius, settings)
+            Footprint::of_gradient(point.normal, gradient * LUMINANCE, luminance, &limits(distance))
         };
-        let GatheredIrradiance { vector, gradient, .. } = g;
-        let facts = Facts { sample, cut: self.strata.len() as u32, distance: g.distance, ..Facts::default() };
-        let (position, normal, sharing) = (point.position, point.normal, point.sharing);
-        let record = Record { position, normal, sharing, footprint, vector, gradient, luminance, facts };
-        work.series(&self.strata, point, max_nearness);
-        let [_, series] = work.series.finish();
-        Some(Made { record, series })
+        let diagnostics = Diagnostics { cut: self.strata.len() as u32, distance, ..Diagnostics::default() };
+        let SurfacePoint { position, normal, .. } = point;
+        let record =
+            Record { position, normal, coat, bands, footprint, vector, gradient, luminance, diagnostics };
+        let series = work.series(&self.strata, candidate, max_nearness);
+        Some(NewRecord { origin: Origin::Indirect, sample, record, series })
     }
-}
 
-impl FinalGatherSource<'_> {
-    /// Returns the surfaces visible from the point, with the light found. Its gradient is that of the strata,
-    /// which includes the edges of occluders.
-    fn sight(&self, point: &PointGeometry, geometric_normal: Vec3, seed: u32, met: &Met) -> Sight {
-        let (at, rays) = ((point.position, geometric_normal), self.settings().probe_rays);
-        let mut sight = Sight::new(self.light.world, at, point.normal, rays, seed);
+    /// Second derivatives of the light found. Its gradient is that of the strata, which includes the edges of
+    /// occluders.
+    fn hessian(&self, candidate: &Candidate, met: &Met) -> OcclusionHessian {
+        let rays = self.settings().probe_rays;
+        let mut hessian = OcclusionHessian::new(self.light.world, &candidate.point, rays, candidate.sample);
         let measure = self.strata.measure();
         for (i, &nearness) in met.nearness.iter().enumerate() {
             if nearness > 0.0 {
-                sight.add_patch(1, met.direction[i] / nearness, met.normal[i], met.radiance[i] * measure);
+                let (offset, irradiance) = (met.direction[i] / nearness, met.radiance[i] * measure);
+                hessian.add_patch(Origin::Indirect, offset, met.normal[i], irradiance);
             }
         }
-        sight
+        hessian
     }
 }
 
 impl GatherWorkspace {
-    /// Adds the light found to the series, if the point is to have one.
-    fn series(&mut self, strata: &Strata, point: &PointGeometry, max_nearness: f32) {
-        self.series.begin(point);
-        if self.series.place().is_none() {
-            return;
+    /// Light found, as a series, if the point is to have one.
+    fn series(&mut self, strata: &Strata, candidate: &Candidate, max_nearness: f32) -> Option<Radiance> {
+        self.series.begin(candidate);
+        if !self.series.is_wanted() {
+            return None;
         }
         let met = &self.met;
         for (i, direction) in met.direction.iter().enumerate() {
             let solid_angle = strata.measure() / direction.z.max(MIN_COS);
             let incidence = patch(*direction, met.nearness[i].min(max_nearness), met.normal[i], solid_angle);
-            self.series.add_incidence(1, &incidence, met.radiance[i]);
+            self.series.add_incidence(Origin::Indirect, &incidence, met.radiance[i]);
         }
+        self.series.finish().indirect
     }
 }
 

@@ -6,7 +6,6 @@ use super::indirect_light::{GatherCounts, IndirectLight};
 use super::strata::{Met, Strata};
 use super::{IrradianceMap, PhotonMap};
 use crate::embree::Rays16;
-use crate::eye::{PointGeometry, Sharing};
 use crate::math::{Frame, LANES, Rgb};
 use crate::progress::Control;
 use crate::sampling::{cosine_hemisphere, owen_sobol_2d};
@@ -14,6 +13,7 @@ use crate::scene::DeltaLight;
 use crate::shadow;
 use crate::test_scenes::*;
 use crate::vpl::PhotonSettings;
+use crate::world::SurfacePoint;
 use glam::{Vec2, Vec3};
 
 fn map(world: &WorldAndView, photons: u32) -> PhotonMap {
@@ -106,11 +106,10 @@ fn gathering_agrees_with_plain_sampling() {
     let light = IndirectLight { world: &world, map: &map };
     let mut counts = GatherCounts::default();
     for position in [Vec3::new(0.4, -1.0, 0.1), Vec3::new(-0.6, -1.0, 0.0), Vec3::new(-0.5, -1.0, 0.8)] {
-        let point = PointGeometry { position, spacing: 0.01, normal: Vec3::Y, sharing: Sharing::new(0, 0) };
+        let point = SurfacePoint { position, normal: Vec3::Y, geometric_normal: Vec3::Y };
         let mut met = Met::default();
         let strata = Strata::new(4000);
-        let at =
-            GatherPoint { point: &point, geometric_normal: Vec3::Y, seed: 1, max_nearness: f32::INFINITY };
+        let at = GatherPoint { point, coat: 0, seed: 1, max_nearness: f32::INFINITY };
         let g = gather(&light, &strata, &at, &mut met, &mut counts);
         let frame = Frame::from_normal(Vec3::Y);
         let (mut plain, packets) = (Rgb::ZERO, 4000);

@@ -6,18 +6,16 @@
 //!
 //! Units: b in 1/m².
 
-use super::compute::Source;
-use super::gather::Gathered;
-use super::placement::Pick;
+use super::gather::GatheredLayer;
+use super::source::{Candidate, LightcutSource};
 use crate::bias_compensation::Compensation;
 use crate::bias_compensation::short_rays::{self, ClampedPoint, NearSurface};
-use crate::eye::EyePass;
 use crate::lightcut::{
     CoherenceLimit, CutSettings, Lightcut, MIN_SHARED, PacketLightcut, Receiver, ReceiverPacket,
     group_coherent,
 };
 use crate::math::{Frame, LANES, Rgb, luminance};
-use crate::world::SurfacePoint;
+use crate::vpl::DirectIndirect;
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// Rays from each record.
@@ -92,35 +90,28 @@ pub fn clamp(compensation: &Option<Compensation>, limit: f32) -> Clamp {
 /// Adds what virtual lights lack that were limited, to what the records of a task gather of direct and of indirect light.
 pub fn add(
     c: &Compensation,
-    source: &Source,
+    source: &LightcutSource,
     mut cutters: Cutters,
-    samples: &EyePass,
-    task: &[Pick],
-    gathered: &mut [&mut [Gathered; 2]],
+    task: &[Candidate],
+    gathered: &mut [&mut DirectIndirect<GatheredLayer>],
 ) {
     let world = source.world;
-    let clamped = |(pick, gathered): (&Pick, &&mut [Gathered; 2])| {
-        let i = pick.sample as usize;
-        let point = &samples.points.geometry[i];
-        let geometric_normal = samples.points.surfaces[i].geometric_normal;
-        ClampedPoint {
-            point: SurfacePoint { position: point.position, normal: point.normal, geometric_normal },
-            bound: if pick.lacks[1] { gathered[1].bound } else { f32::INFINITY },
-            direct: pick.lacks[0],
-        }
+    let clamped = |(candidate, gathered): (&Candidate, &&mut DirectIndirect<GatheredLayer>)| ClampedPoint {
+        point: candidate.point,
+        bound: if candidate.missing.indirect { gathered.indirect.bound } else { f32::INFINITY },
+        direct: candidate.missing.direct,
     };
     let points: Vec<ClampedPoint> = task.iter().zip(gathered.iter()).map(clamped).collect();
     let mut met = vec![Vec::new(); points.len()];
     short_rays::trace(c, &points, RAYS, |record, near| {
-        let passed = match samples.points.geometry[task[record].sample as usize].sharing.coat() {
+        let passed = match task[record].coat {
             0 => 1.0,
             coat => world.materials.coat_transmittance(coat, near.cos),
         };
-        let pick = &task[record];
         let emitted = near.emitted * (passed * PI / RAYS as f32);
         if emitted.is_finite() && emitted != Rgb::ZERO {
-            let normal = samples.points.geometry[pick.sample as usize].normal;
-            gathered[record][0].compensate(normal, emitted, near.distance);
+            let normal = task[record].point.normal;
+            gathered[record].direct.compensate(normal, emitted, near.distance);
         }
         met[record].push(NearSurface { weight: near.weight * passed, ..near });
     });
@@ -136,8 +127,8 @@ pub fn add(
         for (lookup, irradiance) in group.iter().zip(irradiance) {
             let found = lookup.factor * irradiance;
             if found.is_finite() {
-                let normal = samples.points.geometry[task[lookup.record].sample as usize].normal;
-                gathered[lookup.record][1].compensate(normal, found, lookup.near.distance);
+                let normal = task[lookup.record].point.normal;
+                gathered[lookup.record].indirect.compensate(normal, found, lookup.near.distance);
             }
         }
     }
@@ -170,7 +161,7 @@ fn choose(near: &[NearSurface], record: usize, lookups: &mut Vec<Lookup>) {
 
 impl Cutters<'_> {
     /// Irradiance at points met, on the side of the records.
-    fn irradiance(&mut self, source: &Source, group: &[Lookup]) -> [Rgb; LANES] {
+    fn irradiance(&mut self, source: &LightcutSource, group: &[Lookup]) -> [Rgb; LANES] {
         let settings = CutSettings {
             epsilon: EPSILON,
             max_cut: source.settings.cut.max_cut.div_ceil(CUT_FRACTION),
@@ -190,5 +181,22 @@ impl Cutters<'_> {
             *irradiance = self.single.gather(transfer, world, &collector, &settings).radiance;
         }
         irradiance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clamps_keep_what_is_within_the_limit() {
+        for (luminance, geometry) in [(0.5, 8.0), (2.0, 0.25), (4.0, 16.0)] {
+            let kept = Clamp::Luminance(2.0).kept(luminance, geometry);
+            assert_eq!(kept * luminance, luminance.min(2.0));
+            let kept = Clamp::Geometry(4.0).kept(luminance, geometry);
+            assert_eq!(kept * geometry, geometry.min(4.0));
+            assert_eq!(Clamp::Luminance(f32::INFINITY).kept(luminance, geometry), 1.0);
+        }
+        assert_eq!((Clamp::Luminance(2.0).bound(), Clamp::Geometry(4.0).bound()), (f32::INFINITY, 4.0));
     }
 }

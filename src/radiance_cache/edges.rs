@@ -172,3 +172,66 @@ fn belonging(plane: Vec3, offset: Option<Vec3>) -> f32 {
     let fall = 1.0 / (1.0 + relative * relative);
     fall * fall
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixtures::candidate;
+    use super::*;
+    use crate::scene::Scene;
+    use crate::world::World;
+
+    /// Probes of an empty scene, then with a surface straight above in every cell for which `height` gives one.
+    fn probes(height: impl Fn(usize) -> Option<f32>) -> Probes {
+        let world = World::new(Scene::default(), 1).expect("the world is built");
+        let mut probes = Probes::trace(&world, &candidate(Vec3::ZERO, Vec3::Z).point, 256, 0);
+        for cell in 0..probes.cells() {
+            if let Some(height) = height(cell) {
+                probes.plane[cell] = Vec3::Z / height;
+                probes.inverse[cell] = probes.direction[cell].z / height;
+            }
+        }
+        probes
+    }
+
+    #[test]
+    fn all_light_goes_to_cells_and_most_to_those_of_its_surface() {
+        let probes = probes(|cell| (cell % SECTORS < 8).then_some(2.0));
+        let mut light = CellLight::new(&probes);
+        for (i, &direction) in probes.direction.iter().enumerate() {
+            let offset = (i % 3 != 0).then(|| direction * (2.0 / direction.z));
+            light.add(&probes, direction, offset, Rgb::ONE);
+        }
+        let total: f32 = light.irradiance.iter().map(|irradiance| irradiance.x).sum();
+        assert!((total - probes.cells() as f32).abs() < 1e-2, "{total}");
+        let mut light = CellLight::new(&probes);
+        // Between sectors 7 and 8, of which only the former sees the surface.
+        let direction = 0.5 * (probes.direction[5 * SECTORS + 7] + probes.direction[5 * SECTORS + 8]);
+        light.add(&probes, direction.normalize(), Some(direction * (2.0 / direction.z)), Rgb::ONE);
+        let on: f32 = (0..probes.rings).map(|ring| light.irradiance[ring * SECTORS + 7].x).sum();
+        assert!(on > 0.999, "{on}");
+    }
+
+    #[test]
+    fn one_plane_has_no_edges_and_a_step_has_them_where_it_is() {
+        let lit = |probes: &Probes| {
+            let mut light = CellLight::new(probes);
+            for (cell, irradiance) in light.irradiance.iter_mut().enumerate() {
+                *irradiance = Rgb::splat(if cell % SECTORS < 8 { 1.0 } else { 0.0 });
+            }
+            light.edges(probes)
+        };
+        let flat = lit(&probes(|_| Some(2.0)));
+        assert_eq!((flat.gradient, flat.hessian), ([Vec2::ZERO; 3], [0.0; 3]));
+        // A lit ceiling at height 2 over one half, behind a black one at height 1 over the other.
+        let step = probes(|cell| Some(if cell % SECTORS < 8 { 2.0 } else { 1.0 }));
+        let found = lit(&step);
+        // Towards the lit half more of it comes out from behind the edge.
+        let middle = step.azimuth(4.0);
+        let towards = found.gradient[0].dot(Vec2::from_angle(middle));
+        // Radiance · (1/1 - 1/2) · ∫cos²θ dθ along the edge, from horizon to horizon: π/2.
+        let radiance = step.cells() as f32 / PI;
+        let expected = radiance * 0.5 * PI * 0.5;
+        assert!((towards / expected - 1.0).abs() < 0.02, "{towards} against {expected}");
+        assert!(found.hessian[0] + found.hessian[2] > 0.0);
+    }
+}

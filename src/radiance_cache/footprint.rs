@@ -7,13 +7,20 @@
 //! Deviations: footprints by second derivatives are at most twice as long as wide, those by gradients about
 //! eleven times (1/0.3²).
 
-use super::occlusion_hessian::Change;
+use super::occlusion_hessian::Derivatives;
 use super::settings::{CacheSettings, Footprints};
 use crate::math::Frame;
+use crate::vpl::Origin;
 use glam::Vec3;
 
-/// How much shorter a footprint is along the normal.
+/// Factor by which a footprint is shorter along the normal than along its shorter axis.
 const NORMAL_SCALE: f32 = 5.0;
+
+/// Smallest ratio of the radius along the gradient to that of the circle of the same area.
+const MIN_SQUEEZE: f32 = 0.3;
+
+/// Largest ratio of the axes of footprints by second derivatives.
+const MAX_ASPECT: f32 = 2.0;
 
 /// The ellipse within which a record is used.
 #[derive(Clone, Copy, Debug)]
@@ -26,58 +33,70 @@ pub struct Footprint {
     pub inverse_normal_tolerance: f32,
 }
 
+/// Bounds of a footprint by the settings of its layer and its surroundings.
+#[derive(Clone, Copy, Debug)]
+pub struct FootprintLimits<'a> {
+    /// Settings of the cache.
+    pub settings: &'a CacheSettings,
+    /// The paper's a.
+    pub accuracy: f32,
+    /// Distance of what casts light and shadow.
+    pub distance: f32,
+    /// Smallest and largest radius.
+    pub radii: [f32; 2],
+}
+
+impl<'a> FootprintLimits<'a> {
+    /// Bounds for a record of light of `origin`, where eye samples lie `spacing` apart.
+    pub fn new(settings: &'a CacheSettings, origin: Origin, spacing: f32, distance: f32) -> Self {
+        let radii = settings.reach[origin as usize].map(|r| r * spacing);
+        FootprintLimits { settings, accuracy: settings.accuracy[origin as usize], distance, radii }
+    }
+}
+
 impl Footprint {
-    /// An ellipse along whose axes second derivatives change the luminance by half the square of `accuracy`,
-    /// relatively; its half-axes are no longer than `furthest`, within `reach`, and the longer one at most twice
-    /// the shorter.
-    pub fn of_change(
-        change: &Change,
-        luminance: f32,
-        accuracy: f32,
-        furthest: f32,
-        reach: [f32; 2],
-        settings: &CacheSettings,
-    ) -> Footprint {
+    /// An ellipse along whose axes second derivatives change the luminance by half the square of the accuracy,
+    /// relatively; its radii are no longer than the accuracy times the distance, and the longer one at most
+    /// `MAX_ASPECT` times the shorter.
+    pub fn of_hessian(light: &Derivatives, luminance: f32, limits: &FootprintLimits) -> Footprint {
+        let FootprintLimits { settings, accuracy, distance, radii: [min, max] } = *limits;
+        let furthest = accuracy * distance;
         let radius = |curvature: f32| {
             let inverse_sq = curvature / (luminance.max(f32::MIN_POSITIVE) * accuracy * accuracy);
             1.0 / (inverse_sq + 1.0 / (furthest * furthest)).sqrt()
         };
-        let [short, long] = change.curvature.map(radius);
-        let short = short.clamp(reach[0], reach[1]);
-        let long = long.min(2.0 * short).clamp(short, reach[1]);
+        let [short, long] = light.curvature.map(radius);
+        let short = short.clamp(min, max);
+        let long = long.min(MAX_ASPECT * short).clamp(short, max);
         Footprint {
-            axes: change.axes,
+            axes: light.axes,
             radii: [short, long],
             inverse_normal_tolerance: 1.0 / settings.normal_tolerance,
         }
     }
 
-    /// An ellipse of the area of a circle of `radius`, short along the gradient of the luminance; a circle unless
-    /// footprints are to be anisotropic.
-    pub fn of_gradient(
-        normal: Vec3,
-        gradient: Vec3,
-        luminance: f32,
-        radius: f32,
-        settings: &CacheSettings,
-    ) -> Footprint {
+    /// An ellipse of the area of a circle whose radius is the accuracy times the distance, short along the gradient
+    /// of the luminance; a circle unless footprints are to be anisotropic.
+    pub fn of_gradient(normal: Vec3, gradient: Vec3, luminance: f32, limits: &FootprintLimits) -> Footprint {
+        let FootprintLimits { settings, accuracy, distance, radii: [min, max] } = *limits;
+        let radius = (accuracy * distance).clamp(min, max);
         let change = radius * gradient.length() / luminance.max(f32::MIN_POSITIVE);
-        let (axis, g) = match gradient.try_normalize() {
+        let (axis, squeeze) = match gradient.try_normalize() {
             Some(axis) if settings.footprints == Footprints::Anisotropic => {
                 let relative = change / settings.mu;
-                (axis, (1.0 / (1.0 + relative * relative)).max(0.3))
+                (axis, (1.0 / (1.0 + relative * relative)).max(MIN_SQUEEZE))
             }
             _ => (Frame::from_normal(normal).tangent, 1.0),
         };
         Footprint {
             axes: [axis, normal.cross(axis)],
-            radii: [radius * g, radius / g],
+            radii: [radius * squeeze, radius / squeeze],
             inverse_normal_tolerance: 1.0 / settings.normal_tolerance,
         }
     }
 
-    /// The largest radius.
-    pub fn reach(&self) -> f32 {
+    /// The larger radius.
+    pub fn max_radius(&self) -> f32 {
         self.radii[0].max(self.radii[1])
     }
 
@@ -89,5 +108,88 @@ impl Footprint {
             offset.dot(self.axes[1]) / r1,
             offset.dot(normal) * NORMAL_SCALE / r0.min(r1),
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Mat3;
+
+    fn limits(settings: &CacheSettings, radii: [f32; 2]) -> FootprintLimits<'_> {
+        FootprintLimits { settings, accuracy: 0.2, distance: 4.0, radii }
+    }
+
+    fn assert_near(a: f32, b: f32) {
+        assert!((a - b).abs() <= 1e-5 * b.abs(), "{a} against {b}");
+    }
+
+    #[test]
+    fn limits_are_those_of_the_layer_in_spacings() {
+        let settings = CacheSettings::default();
+        for origin in Origin::ALL {
+            let limits = FootprintLimits::new(&settings, origin, 0.5, 7.0);
+            assert_eq!((limits.accuracy, limits.distance), (settings.accuracy[origin as usize], 7.0));
+            assert_eq!(limits.radii, settings.reach[origin as usize].map(|r| 0.5 * r));
+        }
+    }
+
+    #[test]
+    fn gradients_squeeze_circles_as_in_equation_12() {
+        let isotropic = CacheSettings { footprints: Footprints::Isotropic, ..CacheSettings::default() };
+        let anisotropic =
+            CacheSettings { footprints: Footprints::Anisotropic, mu: 0.5, ..CacheSettings::default() };
+        // The radius is 0.2 · 4; by so much does light of luminance 2 change across it, relatively.
+        for change in [0.0, 0.1, 0.5, 0.7] {
+            let gradient = Vec3::new(0.6, 0.8, 0.0) * (change * 2.0 / 0.8);
+            let circle = Footprint::of_gradient(Vec3::Z, gradient, 2.0, &limits(&isotropic, [0.1, 9.0]));
+            assert_near(circle.radii[0], 0.8);
+            assert_near(circle.radii[1], 0.8);
+            let ellipse = Footprint::of_gradient(Vec3::Z, gradient, 2.0, &limits(&anisotropic, [0.1, 9.0]));
+            let squeeze = 1.0 / (1.0 + (change / 0.5).powi(2));
+            assert_near(ellipse.radii[0], 0.8 * squeeze.max(0.3));
+            assert_near(ellipse.radii[0] * ellipse.radii[1], 0.64);
+            let [along, across] = ellipse.axes;
+            assert!(change == 0.0 || along.dot(Vec3::new(0.6, 0.8, 0.0)) > 0.999_99);
+            assert!(along.dot(across).abs() < 1e-6 && across.dot(Vec3::Z).abs() < 1e-6);
+            assert_near(across.length(), 1.0);
+            assert_near(ellipse.inverse_normal_tolerance, 2.5);
+        }
+        let steep = Footprint::of_gradient(Vec3::Z, Vec3::X * 1e9, 2.0, &limits(&anisotropic, [0.1, 9.0]));
+        assert_near(steep.radii[1] / steep.radii[0], 1.0 / 0.09);
+        for (radii, radius) in [([1.0, 9.0], 1.0), ([0.1, 0.5], 0.5)] {
+            let clamped = Footprint::of_gradient(Vec3::Z, Vec3::ZERO, 2.0, &limits(&isotropic, radii));
+            assert_near(clamped.radii[0], radius);
+        }
+    }
+
+    #[test]
+    fn second_derivatives_change_light_by_half_the_square_of_the_accuracy_at_the_edge() {
+        let settings = CacheSettings::default();
+        let of = |curvature, distance, radii| {
+            let light = Derivatives { edge_gradient: Mat3::ZERO, axes: [Vec3::Y, Vec3::X], curvature };
+            Footprint::of_hessian(&light, 2.0, &FootprintLimits { distance, ..limits(&settings, radii) })
+        };
+        let free = of([3.0, 1.5], 1e6, [1e-3, 1e3]);
+        assert_eq!(free.axes, [Vec3::Y, Vec3::X]);
+        for (radius, curvature) in free.radii.into_iter().zip([3.0, 1.5]) {
+            assert_near(0.5 * curvature * radius * radius, 0.5 * 0.2 * 0.2 * 2.0);
+        }
+        // Without curvature the distance alone sets the radius; with both, inverse squares add up.
+        assert_near(of([0.0, 0.0], 4.0, [1e-3, 1e3]).radii[1], 0.2 * 4.0);
+        let both = of([3.0, 3.0], 1.0, [1e-3, 1e3]).radii[0];
+        assert_near(1.0 / (both * both), 1.0 / (0.2 * 0.2) + 3.0 / (2.0 * 0.2 * 0.2));
+        let long = of([300.0, 0.0], 4.0, [1e-3, 1e3]);
+        assert_near(long.radii[1], 2.0 * long.radii[0]);
+        assert_eq!(of([300.0, 0.0], 4.0, [0.1, 0.15]).radii, [0.1, 0.15]);
+        assert_eq!(of([0.0, 0.0], 4.0, [0.1, 0.15]).radii, [0.15, 0.15]);
+    }
+
+    #[test]
+    fn offsets_are_scaled_by_the_radii_and_five_times_as_much_along_the_normal() {
+        let footprint =
+            Footprint { axes: [Vec3::X, Vec3::Y], radii: [2.0, 0.5], inverse_normal_tolerance: 1.0 };
+        assert_eq!(footprint.scaled(Vec3::new(3.0, 3.0, 3.0), Vec3::Z), Vec3::new(1.5, 6.0, 30.0));
+        assert_eq!(footprint.max_radius(), 2.0);
     }
 }

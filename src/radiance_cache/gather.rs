@@ -10,19 +10,21 @@
 //! least to a visible light or an occluder, tempered by the harmonic mean of the same, weighted by what each light
 //! gives or would give; occluders are whatever stops a shadow ray, not the nearest.
 
+use super::source::Candidate;
 use crate::light_tree::Node;
-use crate::lightcut::{Receiver, Transfer};
+use crate::lightcut::Transfer;
 use crate::material::Materials;
 use crate::math::{Rgb, luminance};
 use crate::vpl::{Vpl, VplKind};
+use crate::world::SurfacePoint;
 use glam::{Mat3, Vec3};
 
 /// Largest ratio of the distance that sets the footprint to the least one.
-const NEAR_LIMIT: f32 = 2.0;
+const MAX_OVER_LEAST: f32 = 2.0;
 
 /// Sums over the lights of one layer as seen from one point.
 #[derive(Clone, Copy, Debug)]
-pub struct Gathered {
+pub struct GatheredLayer {
     /// Irradiance.
     pub irradiance: Rgb,
     /// Irradiance vector per channel.
@@ -45,9 +47,9 @@ pub struct Gathered {
     pub compensated: f32,
 }
 
-impl Default for Gathered {
-    fn default() -> Gathered {
-        Gathered {
+impl Default for GatheredLayer {
+    fn default() -> GatheredLayer {
+        GatheredLayer {
             irradiance: Rgb::ZERO,
             vector: Mat3::ZERO,
             gradient: Mat3::ZERO,
@@ -62,63 +64,68 @@ impl Default for Gathered {
     }
 }
 
-/// The point that gathers.
-#[derive(Clone, Copy, Debug)]
-pub struct Gatherer<'a> {
-    /// What gathers the irradiance.
-    pub collector: Receiver<'static>,
-    /// Where.
-    pub position: Vec3,
-    /// Unit shading normal.
-    pub normal: Vec3,
-    /// Coat that filters the light.
-    pub coat: u32,
-    /// Of the scene.
-    pub materials: &'a Materials,
+/// Cluster of a cut, as its representative lights the point of a record.
+#[derive(Clone, Copy)]
+pub struct LitCluster<'t> {
+    /// Transfer from the virtual lights.
+    pub transfer: &'t Transfer<'t>,
+    /// The cluster.
+    pub node: &'t Node,
+    /// Its representative.
+    pub vpl: &'t Vpl,
+    /// Irradiance before clamping and coat.
+    pub irradiance: Rgb,
+    /// Share of it that clamping leaves; 1 if it is not clamped.
+    pub kept: f32,
 }
 
-impl Gathered {
-    /// Adds a cluster of the cut: its representative gives the irradiance `contribution`, of which `kept` is left
-    /// after clamping (1: not clamped). Returns the irradiance added.
+impl LitCluster<'_> {
+    /// Least squared distance that the geometry term of the representative divides by.
     #[inline]
-    pub fn add(
-        &mut self,
-        g: &Gatherer,
-        transfer: &Transfer,
-        node: &Node,
-        vpl: &Vpl,
-        contribution: Rgb,
-        kept: f32,
-    ) -> Rgb {
+    pub fn near_sq(&self) -> f32 {
+        self.transfer.near_sq(self.vpl, self.node.kind())
+    }
+}
+
+impl GatheredLayer {
+    /// Adds a cluster of the cut. Returns its irradiance at the point after clamping and coat.
+    #[inline]
+    pub fn add(&mut self, point: &Candidate, materials: &Materials, cluster: &LitCluster) -> Rgb {
+        let &LitCluster { node, vpl, irradiance, kept, .. } = cluster;
+        let SurfacePoint { position, normal, .. } = point.point;
+        let filter = |cos: f32| match point.coat {
+            0 => 1.0,
+            coat => materials.coat_transmittance(coat, cos.min(1.0)),
+        };
         let kind = node.kind();
         if kind == VplKind::Directional {
-            let cos = g.normal.dot(vpl.position);
+            let cos = normal.dot(vpl.position);
             if cos <= 0.0 {
                 return Rgb::ZERO;
             }
-            let passed = contribution * self.filtered(g, cos);
+            let passed = irradiance * filter(cos);
             self.irradiance += passed;
             self.weight += luminance(passed);
             self.vector += outer(vpl.position / cos, passed);
             return passed;
         }
-        let q = vpl.position - g.position;
+        let q = vpl.position - position;
         let dist_sq = q.length_squared();
-        let height = g.normal.dot(q);
+        let height = normal.dot(q);
         if !(height > 0.0) {
             return Rgb::ZERO;
         }
         let distance = dist_sq.sqrt();
-        let filtered = contribution * self.filtered(g, height / distance);
+        let filtered = irradiance * filter(height / distance);
         let passed = filtered * kept;
         self.clamped += luminance(filtered - passed);
         self.irradiance += passed;
         self.weight += luminance(passed);
         self.nearness += luminance(passed) / distance;
         self.least = self.least.min(distance);
-        // Contribution = intensity · height · (the rest); the vector lacks the height.
+        // Irradiance = intensity · height · (the rest); the vector lacks the height.
         self.vector += outer(q / height, passed);
-        if kept < 1.0 || dist_sq <= transfer.near_sq(vpl, kind) {
+        if kept < 1.0 || dist_sq <= cluster.near_sq() {
             return passed;
         }
         let relative = match kind {
@@ -159,12 +166,7 @@ impl Gathered {
     /// though no more than a multiple of the least.
     pub fn distance(&self) -> f32 {
         let mean = if self.nearness > 0.0 { self.weight / self.nearness } else { f32::INFINITY };
-        mean.min(NEAR_LIMIT * self.least)
-    }
-
-    #[inline]
-    fn filtered(&self, g: &Gatherer, cos: f32) -> f32 {
-        if g.coat == 0 { 1.0 } else { g.materials.coat_transmittance(g.coat, cos.min(1.0)) }
+        mean.min(MAX_OVER_LEAST * self.least)
     }
 }
 
@@ -172,4 +174,98 @@ impl Gathered {
 #[inline]
 fn outer(v: Vec3, c: Rgb) -> Mat3 {
     Mat3::from_cols(v * c.x, v * c.y, v * c.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixtures::{MATERIALS, candidate, light};
+    use super::*;
+    use crate::light_tree::LightTrees;
+    use glam::Vec3;
+
+    const INTENSITY: Rgb = Rgb::new(3.0, 1.0, 2.0);
+
+    /// Irradiance of the only light at a point.
+    fn irradiance(transfer: &Transfer, position: Vec3, normal: Vec3) -> Rgb {
+        let node = &transfer.trees.nodes[transfer.trees.roots[0] as usize];
+        let receiver = candidate(position, normal).receiver();
+        INTENSITY * transfer.unshadowed(&receiver, &transfer.trees.vpls[0], node.kind())
+    }
+
+    /// Light gathered from the only light, of which `kept` is left.
+    fn gathered(transfer: &Transfer, position: Vec3, normal: Vec3, kept: f32) -> GatheredLayer {
+        let node = &transfer.trees.nodes[transfer.trees.roots[0] as usize];
+        let vpl = &transfer.trees.vpls[0];
+        let irradiance = irradiance(transfer, position, normal);
+        let cluster = LitCluster { transfer, node, vpl, irradiance, kept };
+        let mut layer = GatheredLayer::default();
+        let passed = layer.add(&candidate(position, normal), &MATERIALS, &cluster);
+        assert_eq!(passed, layer.irradiance);
+        layer
+    }
+
+    fn lights() -> Vec<LightTrees> {
+        let (near, far) = (Vec3::new(0.4, -0.3, 0.9), Vec3::new(-2.0, 1.0, 3.0));
+        let facing = Vec3::new(-0.2, 0.5, -0.8).normalize();
+        vec![
+            light(VplKind::Omni, Vpl::omni(near), INTENSITY),
+            light(VplKind::Omni, Vpl::omni(far), INTENSITY),
+            light(VplKind::Oriented, Vpl::oriented(near, facing), INTENSITY),
+            light(VplKind::Oriented, Vpl::oriented(far, -Vec3::Z), INTENSITY),
+            light(VplKind::Directional, Vpl::directional(far.normalize()), INTENSITY),
+        ]
+    }
+
+    #[test]
+    fn vector_and_gradient_are_those_of_the_irradiance() {
+        let (position, step) = (Vec3::new(0.1, 0.2, -0.3), 2e-3);
+        let normal = Vec3::new(0.1, 0.2, 1.0).normalize();
+        for trees in lights() {
+            let transfer = Transfer::new(&trees, 1.0);
+            let layer = gathered(&transfer, position, normal, 1.0);
+            let here = irradiance(&transfer, position, normal);
+            assert!((layer.irradiance - here).length() < 1e-6 * here.length());
+            for tilted in [normal, Vec3::Z, Vec3::new(-0.2, 0.1, 1.0).normalize()] {
+                let truth = irradiance(&transfer, position, tilted);
+                let found = layer.vector.transpose() * tilted;
+                assert!((found - truth).length() < 1e-5 * truth.length(), "{found} against {truth}");
+            }
+            for along in [normal.any_orthonormal_vector(), normal.cross(normal.any_orthonormal_vector())] {
+                let at = |by: f32| irradiance(&transfer, position + along * by, normal);
+                let truth = (at(step) - at(-step)) / (2.0 * step);
+                let found = layer.gradient.transpose() * along;
+                assert!((found - truth).length() < 2e-3 * here.length(), "{found} against {truth}");
+            }
+        }
+    }
+
+    #[test]
+    fn clamped_and_too_near_lights_have_no_gradient() {
+        let trees = &lights()[2];
+        let transfer = Transfer::new(trees, 1.0);
+        let whole = gathered(&transfer, Vec3::ZERO, Vec3::Z, 1.0);
+        let half = gathered(&transfer, Vec3::ZERO, Vec3::Z, 0.5);
+        assert!((half.irradiance - 0.5 * whole.irradiance).length() < 1e-6);
+        assert!((half.clamped - 0.5 * luminance(whole.irradiance)).abs() < 1e-6);
+        assert!(whole.clamped == 0.0 && whole.gradient != Mat3::ZERO && half.gradient == Mat3::ZERO);
+        let near = Transfer { min_dist_sq: 4.0, ..transfer };
+        assert_eq!(gathered(&near, Vec3::ZERO, Vec3::Z, 1.0).gradient, Mat3::ZERO);
+        // Below the horizon there is no light.
+        assert_eq!(gathered(&transfer, Vec3::ZERO, -Vec3::Z, 1.0).irradiance, Rgb::ZERO);
+    }
+
+    #[test]
+    fn the_distance_is_a_harmonic_mean_near_the_least() {
+        let mut layer = GatheredLayer::default();
+        assert_eq!(layer.distance(), f32::INFINITY);
+        layer.hidden(3.0, 2.0);
+        layer.hidden(1.0, 4.0);
+        assert!((layer.distance() - 4.0 / (3.0 / 2.0 + 1.0 / 4.0)).abs() < 1e-6);
+        layer.hidden(1e-9, 0.5);
+        assert_eq!(layer.distance(), MAX_OVER_LEAST * 0.5);
+        assert_eq!((layer.irradiance, layer.weight), (Rgb::ZERO, 4.0));
+        layer.compensate(Vec3::Z, Rgb::ONE, 0.25);
+        assert_eq!((layer.vector.transpose() * Vec3::Z, layer.gradient), (Rgb::ONE, Mat3::ZERO));
+        assert!((layer.compensated - 1.0).abs() < 1e-6 && (layer.weight - 5.0).abs() < 1e-6);
+    }
 }

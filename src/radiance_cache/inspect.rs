@@ -1,4 +1,4 @@
-//! What the cache did, as images: the paper's figures 2 to 6 and 10 of any scene.
+//! Images of the cache's records: the paper's figures 2 to 6 and 10 of any scene.
 //!
 //! | layer | red, green, blue |
 //! |---|---|
@@ -15,81 +15,99 @@
 //! Where a pixel has several eye samples, the last in the order of the index stands for all but in sums and
 //! counts.
 
-use super::adapt::Seam;
-use super::record::Record;
-use super::splat::Layer;
+use super::fill::CacheFrame;
+use super::record::{Diagnostics, Record};
+use super::store::Records;
 use crate::eye::EyePass;
 use crate::film::Image;
 use crate::math::{LUMINANCE, Rgb};
+use crate::vpl::{DirectIndirect, Origin};
 use rayon::prelude::*;
 
 /// Layers by name.
 pub type Layers = Vec<(String, Image)>;
 
-/// All layers that are known once the cache is complete.
-pub fn layers(samples: &EyePass, layers: &[Layer; 2], seams: &[Vec<Seam>]) -> Layers {
-    let blank = || Image::new(samples.emitted.width, samples.emitted.height);
-    let mut placed = blank();
-    for (l, layer) in layers.iter().enumerate() {
-        for record in &layer.records {
-            pixels(samples, record.facts.sample as usize).for_each(|pixel| placed.pixels[pixel][l] += 1.0);
-        }
-    }
-    let mut weights = blank();
-    for i in 0..samples.len() {
-        let sums = Rgb::new(layers[0].sums[i].weight, layers[1].sums[i].weight, 0.0);
-        pixels(samples, i).for_each(|pixel| weights.pixels[pixel] += sums);
-    }
-    let heaviest: Vec<[Option<u32>; 2]> = (0..samples.index.leaves())
-        .into_par_iter()
-        .flat_map_iter(|leaf| {
-            samples.index.leaf(leaf).map(move |i| [0, 1].map(|l| heaviest(samples, &layers[l], leaf, i)))
-        })
-        .collect();
-    let of = |l: usize, i: usize| heaviest[i][l].map(|id| &layers[l].records[id as usize]);
-    let image = |value: &dyn Fn(usize) -> Option<Rgb>| {
-        let mut image = blank();
-        for i in 0..samples.len() {
-            if let Some(value) = value(i) {
-                pixels(samples, i).for_each(|pixel| image.pixels[pixel] = value);
+impl CacheFrame<'_> {
+    /// All layers but those of the picture's parts; `eye` is the pass that found the targets.
+    pub fn inspect(&self, records: &Records, eye: &EyePass) -> Layers {
+        let mut placed = blank(eye);
+        for origin in Origin::ALL {
+            for &sample in &self.placed[origin] {
+                pixels(eye, sample as usize).for_each(|pixel| placed.pixels[pixel][origin as usize] += 1.0);
             }
         }
-        image
-    };
-    let cut = |i: usize| {
-        let [direct, indirect] = [0, 1].map(|l| of(l, i).map_or(0.0, |r| r.facts.cut as f32));
-        Some(Rgb::new(direct, indirect, 0.0))
-    };
-    let mut found: Layers = [
-        ("records", placed),
-        ("footprint", image(&|i| of(1, i).map(footprint))),
-        ("gradient", image(&|i| of(1, i).map(gradient))),
-        ("weights", weights),
-        ("cut", image(&cut)),
-        ("clamped", image(&|i| of(1, i).map(clamped))),
-    ]
-    .map(|(name, image)| (name.to_owned(), image))
-    .into();
-    for (pass, seams) in (1..).zip(seams) {
-        let mut image = blank();
-        for seam in seams {
-            pixels(samples, seam.sample as usize).for_each(|pixel| image.pixels[pixel][seam.layer] += 1.0);
+        let mut weights = blank(eye);
+        for i in 0..eye.len() {
+            let [direct, indirect] = self.splats.as_ref().map(|splat| splat.sums[i].weight).into_array();
+            let sums = Rgb::new(direct, indirect, 0.0);
+            pixels(eye, i).for_each(|pixel| weights.pixels[pixel] += sums);
         }
-        found.push((format!("seams.{pass}"), image));
+        let heaviest: Vec<DirectIndirect<Option<&Record>>> = (0..eye.index.leaves())
+            .into_par_iter()
+            .flat_map_iter(|leaf| {
+                let heaviest = move |i| DirectIndirect::from_fn(|l| self.heaviest(records, l, leaf, i));
+                eye.index.leaf(leaf).map(heaviest)
+            })
+            .collect();
+        let image = |value: &dyn Fn(&DirectIndirect<Option<&Record>>) -> Option<Rgb>| {
+            let mut image = blank(eye);
+            for (i, heaviest) in heaviest.iter().enumerate() {
+                if let Some(value) = value(heaviest) {
+                    pixels(eye, i).for_each(|pixel| image.pixels[pixel] = value);
+                }
+            }
+            image
+        };
+        let cut = |heaviest: &DirectIndirect<Option<&Record>>| {
+            let [direct, indirect] =
+                heaviest.map(|r| r.map_or(0.0, |r| r.diagnostics.cut as f32)).into_array();
+            Some(Rgb::new(direct, indirect, 0.0))
+        };
+        let mut layers: Layers = [
+            ("records", placed),
+            ("footprint", image(&|heaviest| heaviest.indirect.map(footprint))),
+            ("gradient", image(&|heaviest| heaviest.indirect.map(gradient))),
+            ("weights", weights),
+            ("cut", image(&cut)),
+            ("clamped", image(&|heaviest| heaviest.indirect.map(clamped))),
+        ]
+        .map(|(name, image)| (name.to_owned(), image))
+        .into();
+        for (pass, discontinuities) in (1..).zip(&self.discontinuities) {
+            let mut image = blank(eye);
+            for found in discontinuities {
+                let seam = |pixel: usize| image.pixels[pixel][found.origin as usize] += 1.0;
+                pixels(eye, found.sample as usize).for_each(seam);
+            }
+            layers.push((format!("seams.{pass}"), image));
+        }
+        layers
     }
-    found
+
+    /// The record of a layer that weighs most at a sample of a leaf.
+    fn heaviest<'r>(
+        &self,
+        records: &'r Records,
+        origin: Origin,
+        leaf: usize,
+        sample: usize,
+    ) -> Option<&'r Record> {
+        let (point, bands) = (&self.targets.points.geometry[sample], self.targets.bands[sample]);
+        let weighed = self.splats[origin].lists[leaf].iter().filter_map(|&id| {
+            let record = &records[origin].records[id as usize];
+            record.at(point, bands).map(|(weight, _)| (weight, record))
+        });
+        weighed.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, record)| record)
+    }
+}
+
+fn blank(eye: &EyePass) -> Image {
+    Image::new(eye.emitted.width, eye.emitted.height)
 }
 
 /// Pixels that see a shading point.
-fn pixels(samples: &EyePass, point: usize) -> impl Iterator<Item = usize> {
-    samples.visibility.of(point).iter().map(|seen| seen.pixel as usize)
-}
-
-/// The record of `layer` that weighs most at a sample.
-fn heaviest(samples: &EyePass, layer: &Layer, leaf: usize, sample: usize) -> Option<u32> {
-    let point = &samples.points.geometry[sample];
-    let weight = |&id: &u32| layer.records[id as usize].at(point).map(|(weight, _)| (weight, id));
-    layer.lists[leaf].iter().filter_map(weight).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)
+fn pixels(eye: &EyePass, point: usize) -> impl Iterator<Item = usize> {
+    eye.visibility.of(point).iter().map(|seen| seen.pixel as usize)
 }
 
 fn footprint(record: &Record) -> Rgb {
@@ -102,7 +120,7 @@ fn gradient(record: &Record) -> Rgb {
 }
 
 fn clamped(record: &Record) -> Rgb {
-    let facts = &record.facts;
-    let whole = (record.luminance - facts.compensated + facts.clamped).max(f32::MIN_POSITIVE);
-    Rgb::new(facts.clamped, facts.compensated, 0.0) / whole
+    let Diagnostics { clamped, compensated, .. } = record.diagnostics;
+    let whole = (record.luminance - compensated + clamped).max(f32::MIN_POSITIVE);
+    Rgb::new(clamped, compensated, 0.0) / whole
 }

@@ -2,23 +2,33 @@
 //!
 //! Paper: Herzog et al. 2009, sections 5 (records and footprints), 6 (splatting), 8 of the method (adaptation).
 //!
-//! - [`record`]: what is stored at a point; [`footprint`]: the ellipse within which it is used;
-//! - [`gather`]: from a converged cut to irradiance, its gradient and the distance to what casts light and shadow;
-//! - [`probe`], [`edges`], [`occlusion_hessian`]: what a record's point sees, and how the edges of occluders change its light
-//!   as it moves;
-//! - [`compute`]: the records of one wave, neighbours sharing cuts; [`occluder_distance`]: how far away what hides lights
-//!   is;
-//! - [`series`]: the same for glossy surfaces: radiance as a series, and what lobes reflect of it;
-//! - [`compensate`]: what clamping near virtual lights took away, found by short rays;
-//! - [`splat`]: the records of direct or of indirect light, and their weighted sums at the eye samples;
-//! - [`placement`]: where records are needed next;
-//! - [`adapt`]: footprints that disagree visibly are shrunk.
+//! What a record is:
+//! - [`record`]: irradiance at a point; [`footprint`]: the ellipse within which it is used; [`store`]: the records of
+//!   a layer, which outlive the frame;
+//! - [`series`]: radiance as a series beside irradiance, for glossy surfaces, and its reflection by lobes.
+//!
+//! Where it comes from:
+//! - [`source`]: the points where records are needed, and the sources that compute them; [`compute`]: by lightcuts,
+//!   neighbours sharing them;
+//! - [`gather`]: from a converged cut to irradiance, its gradient and the distance to what casts light and shadow,
+//!   [`occluder_distance`] among it; [`compensate`]: light that clamping near virtual lights took away, found by short
+//!   rays;
+//! - [`probe`], [`edges`], [`occlusion_hessian`]: surfaces around a record, and the change of its light with the motion
+//!   of occluders' edges.
+//!
+//! What a frame does with it:
+//! - [`targets`]: the eye samples as far as records light them; [`splat`]: weighted sums there;
+//! - [`placement`]: points where records are needed next; [`adapt`]: footprints that disagree visibly are shrunk;
+//!   [`fill`]: both, until all is covered;
+//! - [`resolve`]: light of records at the eye samples, and the parts left to cuts; [`inspect`]: images of records.
 
 pub mod adapt;
 pub mod compensate;
 pub mod compute;
 pub mod edges;
 pub mod fill;
+#[cfg(test)]
+mod fixtures;
 pub mod footprint;
 pub mod gather;
 pub mod inspect;
@@ -27,9 +37,13 @@ pub mod occlusion_hessian;
 pub mod placement;
 pub mod probe;
 pub mod record;
+pub mod resolve;
 pub mod series;
 pub mod settings;
+pub mod source;
 pub mod splat;
+pub mod store;
+pub mod targets;
 #[cfg(test)]
 mod tests;
 

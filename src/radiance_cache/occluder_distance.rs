@@ -1,4 +1,4 @@
-//! How far away what hides virtual lights from records is.
+//! Distances from records to the occluders of their virtual lights.
 //!
 //! Paper: Herzog et al. 2009, section 5.1: occluders limit how far a record reaches, as visible lights do.
 //!
@@ -14,7 +14,7 @@ use crate::world::World;
 use glam::Vec3;
 use std::cell::RefCell;
 
-/// Visibility in the scene that notes how far away occluders are.
+/// Visibility in the scene that notes the distances of occluders.
 pub struct OccluderLog<'w> {
     engine: Engine<'w>,
     /// Representative, and the distance to what hides it from each lane, or infinity.
@@ -27,20 +27,20 @@ impl<'w> OccluderLog<'w> {
         OccluderLog { engine: Engine::new(world), log: RefCell::new(Vec::new()) }
     }
 
-    /// What was noted.
-    pub fn sorted(self) -> Hidden {
+    /// Distances noted, sorted.
+    pub fn sorted(self) -> OccluderDistances {
         let mut log = self.log.into_inner();
         log.sort_unstable_by_key(|entry| entry.0);
-        Hidden(log)
+        OccluderDistances(log)
     }
 }
 
-/// What hides lights of a cut, sorted by representative.
-pub struct Hidden(Vec<(u32, F32x16)>);
+/// Distances to what hides lights of a cut, sorted by representative.
+pub struct OccluderDistances(Vec<(u32, F32x16)>);
 
-impl Hidden {
+impl OccluderDistances {
     /// Distance to what hides a representative from a lane; infinite if nothing does.
-    pub fn distance(&self, node: &Node, lane: usize) -> f32 {
+    pub fn get(&self, node: &Node, lane: usize) -> f32 {
         let found = self.0.binary_search_by_key(&(node.representative() as u32), |entry| entry.0);
         found.map_or(f32::INFINITY, |i| self.0[i].1[lane])
     }

@@ -1,5 +1,4 @@
-//! Light on glossy surfaces: records that hold radiance as a series beside irradiance, and what lobes reflect of
-//! it.
+//! Light on glossy surfaces: records that hold radiance as a series beside irradiance, and its reflection by lobes.
 //!
 //! Paper: Herzog et al. 2009, sections 4 and 5.
 //! Deviations: the base of a material reflects irradiance, as it does where there is no lobe; only the lobe needs
@@ -8,159 +7,151 @@
 //! normal mirrors to the sample's mirror direction, scaled to reflect as much of uniform light as the sample's
 //! own.
 
+use super::gather::LitCluster;
 use super::record::Record;
-use super::splat::Layer;
-use crate::eye::{EyePass, PointGeometry, PointSurface};
+use super::settings::CacheSettings;
+use super::source::Candidate;
+use super::splat::Splat;
+use super::store::RecordStore;
+use super::targets::Targets;
+use crate::eye::{PointGeometry, PointSurface, ShadingPoints};
 use crate::gradient::Incidence;
-use crate::hsh::{Accumulator, Caching, Kernel, MaterialSeries, Radiance, SeriesSettings};
-use crate::light_tree::Node;
-use crate::lightcut::Transfer;
+use crate::hsh::{Accumulator, Caching, Kernel, MaterialSeries, Radiance};
 use crate::material::Bsdf;
 use crate::math::{Frame, Rgb};
-use crate::vpl::Vpl;
+use crate::vpl::{DirectIndirect, Origin};
 use crate::world::World;
 use glam::Vec3;
-use rayon::prelude::*;
 
-/// Least cosine of the direction in which a lobe is seen.
-const LEAST_COS: f32 = 0.02;
+/// Smallest cosine of the direction in which a lobe is seen.
+const MIN_COS: f32 = 0.02;
 
 /// Sums the light of records into series, as cuts are read.
 #[derive(Default)]
 pub struct SeriesGatherer {
-    /// Direct and indirect; none before the first series.
-    sums: Vec<Accumulator>,
-    /// Where the record is, if it is to have series.
+    /// Nothing before the first series.
+    sums: Option<DirectIndirect<Accumulator>>,
+    /// Tangent frame and position of the record, if it is to have series.
     place: Option<(Frame, Vec3)>,
 }
 
 impl SeriesGatherer {
-    /// Begins a record at a sample; nothing is summed if irradiance is enough there.
-    pub fn begin(&mut self, point: &PointGeometry) {
-        let bands = point.sharing.bands();
+    /// Begins a record; nothing is summed if irradiance is enough there.
+    pub fn begin(&mut self, candidate: &Candidate) {
+        let bands = usize::from(candidate.bands);
+        let point = &candidate.point;
         self.place = (bands > 0).then(|| (Frame::from_normal(point.normal), point.position));
         if bands > 0 {
-            self.sums.resize_with(2, || Accumulator::new(bands));
-            self.sums.iter_mut().for_each(|sum| sum.reset(bands));
+            let sums = self.sums.get_or_insert_with(|| DirectIndirect::from_fn(|_| Accumulator::new(bands)));
+            sums.direct.reset(bands);
+            sums.indirect.reset(bands);
         }
     }
 
-    /// Adds a visible cluster to a layer; `kept` of it is left after clamping (1: not clamped).
+    /// Adds a visible cluster.
     #[inline]
-    pub fn add(&mut self, layer: usize, transfer: &Transfer, node: &Node, vpl: &Vpl, kept: f32) {
+    pub fn add(&mut self, cluster: &LitCluster) {
         let Some((frame, position)) = &self.place else { return };
-        let kind = node.kind();
-        let found = Incidence::of_vpl(
-            frame,
-            *position,
-            vpl,
-            kind,
-            &transfer.trees.spots,
-            transfer.near_sq(vpl, kind),
-        );
-        if let Some(incidence) = found {
+        let &LitCluster { transfer, node, vpl, kept, .. } = cluster;
+        let spots = &transfer.trees.spots;
+        let incidence = Incidence::of_vpl(frame, *position, vpl, node.kind(), spots, cluster.near_sq());
+        if let Some(incidence) = incidence {
             let incidence = if kept < 1.0 { incidence.held(kept) } else { incidence };
-            self.sums[layer].add(&incidence, node.intensity);
+            self.add_incidence(node.origin(), &incidence, node.intensity);
         }
     }
 
-    /// Where the record is, if it is to have series.
-    pub fn place(&self) -> Option<&(Frame, Vec3)> {
-        self.place.as_ref()
+    /// Whether the record is to have series.
+    pub fn is_wanted(&self) -> bool {
+        self.place.is_some()
     }
 
-    /// Adds light to a layer, in the frame of the place.
+    /// Adds light to a layer, in the tangent frame of the record.
     #[inline]
-    pub fn add_incidence(&mut self, layer: usize, incidence: &Incidence<f32>, intensity: Rgb) {
-        if self.place.is_some() {
-            self.sums[layer].add(incidence, intensity);
+    pub fn add_incidence(&mut self, origin: Origin, incidence: &Incidence<f32>, intensity: Rgb) {
+        if let (Some(_), Some(sums)) = (self.place, &mut self.sums) {
+            sums[origin].add(incidence, intensity);
         }
     }
 
     /// Ends the record: the light of each layer as a series, if it is wanted so.
-    pub fn finish(&mut self) -> [Option<Radiance>; 2] {
-        let mut sums = self.sums.iter_mut();
-        [(); 2].map(|()| self.place.and_then(|_| sums.next()).map(Accumulator::finish))
+    pub fn finish(&mut self) -> DirectIndirect<Option<Radiance>> {
+        match (self.place, &mut self.sums) {
+            (Some(_), Some(sums)) => {
+                DirectIndirect { direct: Some(sums.direct.finish()), indirect: Some(sums.indirect.finish()) }
+            }
+            _ => DirectIndirect::default(),
+        }
     }
 }
 
-/// The glossy surfaces of a scene.
+/// Lobes of a scene's materials as series.
 pub struct Glossy {
     surfaces: MaterialSeries,
 }
 
 impl Glossy {
-    /// Which samples are lit by series, if any; their bands are noted with them.
-    pub fn find(world: &World, samples: &mut EyePass, settings: &SeriesSettings) -> Option<Glossy> {
-        if samples.points.surfaces.iter().all(|surface| surface.bsdf.split_base(1.0).1.is_none()) {
+    /// Series of the lobes of a scene, if there are to be records and any of the points has a lobe broad enough.
+    pub fn new(world: &World, points: &ShadingPoints, settings: &CacheSettings) -> Option<Glossy> {
+        if !settings.cached().any()
+            || points.surfaces.iter().all(|surface| surface.bsdf.split_base(1.0).1.is_none())
+        {
             return None;
         }
-        let surfaces = MaterialSeries::new(&world.scene, &world.materials, settings);
-        for (point, surface) in samples.points.geometry.iter_mut().zip(&samples.points.surfaces) {
-            if surface.bsdf.split_base(1.0).1.is_none() {
-                continue;
-            }
-            if let Caching::Series(bands) = surfaces.caching(surface.material) {
-                point.sharing = point.sharing.with_bands(usize::from(bands));
-            }
-        }
+        let surfaces = MaterialSeries::new(&world.scene, &world.materials, &settings.series);
         surfaces.any_series().then_some(Glossy { surfaces })
     }
 
-    /// What a sample does to the light of records; `None` if its lobe is not to be lit by them.
-    pub fn seen<'a>(&'a self, point: &'a PointGeometry, surface: &'a PointSurface<'a>) -> Option<Seen<'a>> {
-        if point.sharing.bands() == 0 {
-            return None;
+    /// Bands of the series that a surface needs; 0 where it has no lobe, or one too sharp.
+    pub fn bands(&self, surface: &PointSurface) -> u8 {
+        match self.surfaces.caching(surface.material) {
+            Caching::Series(bands) if surface.bsdf.split_base(1.0).1.is_some() => bands,
+            _ => 0,
         }
+    }
+}
+
+impl Targets<'_> {
+    /// Sample as it reflects the light of records; `None` if its lobe is not to be lit by them.
+    pub fn glossy_point(&self, sample: usize) -> Option<GlossyPoint<'_>> {
+        let surfaces = &self.glossy.filter(|_| self.bands[sample] > 0)?.surfaces;
+        let (point, surface) = (&self.points.geometry[sample], &self.points.surfaces[sample]);
         let cos = surface.out.dot(point.normal);
         let (base, lobe) = surface.bsdf.split_base(cos);
         let lobe = lobe?;
         let mirror = 2.0 * cos * point.normal - surface.out;
-        let strength = self.surfaces.profile(surface.material, &lobe, cos.max(LEAST_COS)).strength();
-        Some(Seen { glossy: self, point, surface, base, lobe, mirror, strength, towards: None })
-    }
-
-    /// For each sample, the mean over the records around it of what its lobe reflects, both layers together.
-    pub fn lobes(&self, samples: &EyePass, layers: &[Layer; 2]) -> Vec<Rgb> {
-        let by_leaf: Vec<Vec<Rgb>> = (0..samples.index.leaves())
-            .into_par_iter()
-            .map(|leaf| {
-                let at = |i: usize| match self.seen(&samples.points.geometry[i], &samples.points.surfaces[i])
-                {
-                    Some(mut seen) => seen.mean(&layers[0], leaf) + seen.mean(&layers[1], leaf),
-                    None => Rgb::ZERO,
-                };
-                samples.index.leaf(leaf).map(at).collect()
-            })
-            .collect();
-        by_leaf.concat()
+        let strength = surfaces.profile(surface.material, &lobe, cos.max(MIN_COS)).strength();
+        let bands = self.bands[sample];
+        Some(GlossyPoint { surfaces, point, bands, surface, base, lobe, mirror, strength, towards: None })
     }
 }
 
 /// A sample in the light of one record after another.
-pub struct Seen<'a> {
-    glossy: &'a Glossy,
+pub struct GlossyPoint<'a> {
+    surfaces: &'a MaterialSeries,
     point: &'a PointGeometry,
+    /// Bands of the series that it needs.
+    bands: u8,
     surface: &'a PointSurface<'a>,
     /// BRDF of the base.
     base: Rgb,
     lobe: Bsdf<'a>,
-    /// Unit vector, where the lobe points.
+    /// Unit vector in which the lobe points.
     mirror: Vec3,
-    /// Of the lobe's kernel seen from the sample's own direction.
+    /// Strength of the lobe's kernel seen from the sample's own direction.
     strength: Rgb,
     /// Frame of the last record, and the kernel in it; neighbouring records often have the same.
     towards: Option<(Frame, Kernel, Rgb)>,
 }
 
-impl Seen<'_> {
-    /// What base and lobe reflect of a record's light, given the irradiance extrapolated from it.
+impl GlossyPoint<'_> {
+    /// Radiance by base and lobe of a record's light, given the irradiance extrapolated from it.
     #[inline]
     pub fn radiance(&mut self, record: &Record, series: Option<&Radiance>, irradiance: Rgb) -> Rgb {
         self.base * irradiance + series.map_or(Rgb::ZERO, |series| self.reflected(record, series))
     }
 
-    /// What the lobe reflects.
+    /// Radiance by the lobe.
     fn reflected(&mut self, record: &Record, series: &Radiance) -> Rgb {
         let towards = match self.towards.take() {
             Some(towards) if towards.0.normal == record.normal => towards,
@@ -180,18 +171,17 @@ impl Seen<'_> {
         let frame = Frame::from_normal(normal);
         let cos = normal.dot(self.mirror);
         let out = 2.0 * cos * normal - self.mirror;
-        let surfaces = &self.glossy.surfaces;
-        let profile = surfaces.profile(self.surface.material, &self.lobe, cos.max(LEAST_COS));
+        let profile = self.surfaces.profile(self.surface.material, &self.lobe, cos.max(MIN_COS));
         let kernel = profile.towards(out.dot(frame.tangent), out.dot(frame.bitangent));
         (frame, kernel, ratio(self.strength, profile.strength()))
     }
 
-    /// Mean over the records of a layer that reach the sample, which is in `leaf`.
-    fn mean(&mut self, layer: &Layer, leaf: usize) -> Rgb {
+    /// Mean over the records of a layer that reach the sample, which is in `leaf`, of the radiance by the lobe.
+    pub fn mean(&mut self, store: &RecordStore, splat: &Splat, leaf: usize) -> Rgb {
         let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
-        for &id in &layer.lists[leaf] {
-            let record = &layer.records[id as usize];
-            if let (Some((weight, _)), Some(series)) = (record.at(self.point), layer.series(id)) {
+        for &id in &splat.lists[leaf] {
+            let record = &store.records[id as usize];
+            if let (Some((weight, _)), Some(series)) = (record.at(self.point, self.bands), store.series(id)) {
                 sum += weight * self.reflected(record, series);
                 weights += weight;
             }

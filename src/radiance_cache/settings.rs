@@ -1,9 +1,10 @@
-//! What decides how many records there are, and how far each reaches.
+//! Settings of records: how many there are, and how far each reaches.
 
 use crate::hsh::SeriesSettings;
 use crate::lightcut::{CutSettings, MIN_SHARED};
 use crate::setting::{DOWN, PATCHES, SHARE, UP, choices, settings};
 use crate::shadow::ShadowSettings;
+use crate::vpl::DirectIndirect;
 
 choices! {
     /// Shape of footprints.
@@ -69,7 +70,7 @@ settings! {
         passes: u32 = 1 => [.values(&["0", "1", "2", "5"])];
         /// Smallest relative difference of luminance that counts as visible.
         threshold: f32 = 0.02 => [.fraction().scaled(&DOWN)];
-        /// Cells of fewer eye samples get no record; cuts, or gathering, light their samples.
+        /// Smallest kd-tree cell, in eye samples, that gets a record; cuts, or gathering, light smaller ones.
         ///
         /// A record costs as much as the reconstruction cuts of some hundred samples.
         least_cell: u32 = 256 => [.at_least(1.0).scaled(&UP)];
@@ -84,9 +85,9 @@ settings! {
 }
 
 impl CacheSettings {
-    /// How the light of a layer is found.
-    pub fn found(&self, layer: usize) -> FoundBy {
-        [self.direct, self.indirect][layer]
+    /// Layers whose light is found by records.
+    pub fn cached(&self) -> DirectIndirect<bool> {
+        DirectIndirect { direct: self.direct, indirect: self.indirect }.map(|by| by == FoundBy::Records)
     }
 
     /// Whether so many neighbours share a cut.

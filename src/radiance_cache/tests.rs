@@ -1,10 +1,8 @@
 //! Gradients that include occluders' edges against irradiance summed over all virtual lights, around a ball
 //! and a table.
 
-use super::compute::{RecordSource, Source};
-use super::placement::Pick;
 use super::record::Record;
-use super::splat::Layer;
+use super::source::{Candidate, LightcutSource, RecordSource};
 use super::{CacheSettings, Footprints};
 use crate::eye::{EyePass, EyeSettings};
 use crate::light_tree::{Family, LightTrees};
@@ -12,7 +10,8 @@ use crate::lightcut::{CutSettings, Receiver, Transfer, gather_all};
 use crate::math::{Frame, luminance};
 use crate::progress::Control;
 use crate::test_scenes::*;
-use crate::vpl::{LightPassSettings, Origin, light_pass};
+use crate::vpl::{DirectIndirect, LightPassSettings, Origin, light_pass};
+use crate::world::SurfacePoint;
 use glam::Vec3;
 
 /// Distance of extrapolation; the room is 2 wide.
@@ -46,7 +45,7 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
     let transfer = Transfer::new(&trees, world.diagonal);
     let cut = CutSettings { epsilon: 0.002, max_cut: 20_000, clamp: None, ..CutSettings::default() };
     let cache = CacheSettings { cut, footprints, probe_rays, ..CacheSettings::default() };
-    let source = Source { world, transfer, settings: &cache, compensation: None };
+    let source = LightcutSource { world, transfer, settings: &cache, compensation: None };
 
     // Open floor: neither under the ball or the table nor within a step of a wall, where light varies by its
     // own distance.
@@ -59,19 +58,30 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
             && (table.max_element() - 0.3).abs() > 0.1
     };
     let floor = (0..samples.len()).filter(|&i| open(samples.points.geometry[i].position));
-    let picks: Vec<Pick> =
-        floor.step_by(4).map(|i| Pick { sample: i as u32, lacks: [false, true] }).collect();
-    assert!(picks.len() > 60, "{}", picks.len());
-    let layers = [Layer::new(&samples), Layer::new(&samples)];
-    let (found, _) = source.records(&samples, &layers, &picks);
+    let candidate = |i: usize| {
+        let point = &samples.points.geometry[i];
+        let (position, normal, geometric_normal) = (point.position, point.normal, point.normal);
+        Candidate {
+            sample: i as u32,
+            point: SurfacePoint { position, normal, geometric_normal },
+            spacing: point.spacing,
+            coat: 0,
+            bands: 0,
+            missing: DirectIndirect { direct: false, indirect: true },
+            baseline_luminance: 0.0,
+        }
+    };
+    let candidates: Vec<Candidate> = floor.step_by(4).map(candidate).collect();
+    assert!(candidates.len() > 60, "{}", candidates.len());
+    let (found, _) = source.records(&candidates);
 
     let irradiance = |position: Vec3| {
         let receiver = Receiver::irradiance(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
         luminance(gather_all(&transfer, &world.world, &receiver))
     };
     let (mut error, mut agreement, mut square, mut count) = (0.0, 0.0, 0.0, 0.0);
-    for record in found.iter().filter_map(|(_, pair)| pair[1].as_ref()) {
-        let Record { position, gradient, .. } = record.record;
+    for new in found {
+        let Record { position, gradient, .. } = new.record;
         let here = irradiance(position);
         for step in [Vec3::X, Vec3::Z].map(|axis| axis * STEP) {
             let truth = [-step, step].map(|by| irradiance(position + by));

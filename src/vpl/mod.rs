@@ -8,6 +8,7 @@
 //! irradiance on a facing surface (W/m²) of directional ones.
 
 mod direct;
+mod direct_indirect;
 mod emission;
 mod indirect;
 mod octahedral;
@@ -21,6 +22,7 @@ use crate::light::spot_falloff;
 use crate::math::{Rgb, luminance};
 use glam::Vec3;
 
+pub use direct_indirect::DirectIndirect;
 pub use pass::{LightPass, light_pass};
 pub use photons::{Photon, PhotonCounts, PhotonSettings, trace_photons};
 pub use settings::LightPassSettings;

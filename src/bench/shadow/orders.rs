@@ -12,11 +12,13 @@ use crate::lightcut::{
 };
 use crate::math::{Rgb, luminance};
 use crate::radiance_cache::CacheSettings;
-use crate::radiance_cache::compute::Source;
-use crate::radiance_cache::placement::{Pick, pick};
-use crate::radiance_cache::splat::Layer;
+use crate::radiance_cache::placement::candidates;
+use crate::radiance_cache::source::{Candidate, LightcutSource};
+use crate::radiance_cache::splat::Splat;
+use crate::radiance_cache::store::RecordStore;
+use crate::radiance_cache::targets::Targets;
 use crate::shade::{Gatherers, ShadeSettings, ShadingContext, ShadingTask, patches};
-use crate::vpl::Origin;
+use crate::vpl::{DirectIndirect, Origin};
 
 /// Points that are lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +51,7 @@ pub struct Orders<'s> {
     cache: &'s CacheSettings,
     stretches: Vec<Vec<usize>>,
     tasks: Vec<Vec<ShadingTask>>,
-    picks: Vec<Vec<Pick>>,
+    candidates: Vec<Vec<Candidate>>,
 }
 
 impl<'s> Orders<'s> {
@@ -72,10 +74,11 @@ impl<'s> Orders<'s> {
         let samples = &setting.samples;
         let least = cache.least_cell.max(1) as usize;
         let level = (samples.len() / least).checked_ilog2().unwrap_or(0);
-        let layers = [Layer::new(samples), Layer::new(samples)];
-        let picks = pick(samples, &layers, |_| [false, true], level, 0);
-        let picks = setting.spread(picks.len()).into_iter().map(|s| s.map(|i| picks[i]).collect());
-        Orders { setting, cache, stretches, tasks, picks: picks.collect() }
+        let targets = Targets::new(&samples.points, &samples.index, None);
+        let splats = DirectIndirect::from_fn(|_| Splat::new(&targets, &RecordStore::default()));
+        let all = candidates(&targets, &splats, DirectIndirect { direct: false, indirect: true }, level, 0);
+        let candidates = setting.spread(all.len()).into_iter().map(|s| all[s].to_vec()).collect();
+        Orders { setting, cache, stretches, tasks, candidates }
     }
 
     /// Number of stretches.
@@ -87,7 +90,7 @@ impl<'s> Orders<'s> {
     pub fn points(&self, order: Order) -> usize {
         match order {
             Order::Pixels | Order::Samples => self.stretches.iter().map(Vec::len).sum(),
-            Order::Records => self.picks.iter().map(Vec::len).sum(),
+            Order::Records => self.candidates.iter().map(Vec::len).sum(),
         }
     }
 
@@ -105,8 +108,8 @@ impl<'s> Orders<'s> {
             }
             Order::Records => {
                 let cut = CutSettings { origin: Some(Origin::Indirect), ..self.cache.cut };
-                let groups = self.source().tasks(&setting.samples, &self.picks[chunk]);
-                self.cut(&groups, |pick| setting.collector(pick.sample as usize), shared, &cut, rays)
+                let groups = self.source().groups(&self.candidates[chunk]);
+                self.cut(&groups, Candidate::receiver, shared, &cut, rays)
             }
             Order::Samples => {
                 let settings =
@@ -123,9 +126,9 @@ impl<'s> Orders<'s> {
         }
     }
 
-    fn source(&self) -> Source<'_> {
+    fn source(&self) -> LightcutSource<'_> {
         let (world, transfer) = (self.setting.world, self.setting.transfer());
-        Source { world, transfer, settings: self.cache, compensation: None }
+        LightcutSource { world, transfer, settings: self.cache, compensation: None }
     }
 
     fn cut<'m, T, V: Visibility + PacketVisibility>(

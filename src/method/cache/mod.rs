@@ -11,5 +11,6 @@
 //! on the pixels. Where only the picture matters, reconstruction cuts take as long and err less.
 
 mod render;
+pub(crate) mod resolve;
 
 pub use render::{Prepared, Settings, render};

@@ -2,6 +2,7 @@
 //!
 //! What is seen and what shines is [`Prepared`] first and lit after, so that a plan can try how long lighting takes.
 
+use super::resolve::resolve;
 use crate::eye::EyePass;
 use crate::film::Window;
 use crate::light_tree::Family;
@@ -11,11 +12,12 @@ use crate::method::lights::Lights;
 use crate::method::sampling::method_settings;
 use crate::method::{Move, Output, Renderer, Sampled, counts};
 use crate::progress::Control;
-use crate::radiance_cache::compute::Source;
-use crate::radiance_cache::fill::Cache;
-use crate::radiance_cache::inspect;
+use crate::radiance_cache::CacheSettings;
+use crate::radiance_cache::fill::CacheFrame;
 use crate::radiance_cache::series::Glossy;
-use crate::radiance_cache::{CacheSettings, FoundBy};
+use crate::radiance_cache::source::LightcutSource;
+use crate::radiance_cache::store::Records;
+use crate::radiance_cache::targets::Targets;
 use crate::setting::{COMPENSATION, Each, INSPECT, Settings as _};
 use crate::shade::{Picture, ShadeSettings, ShadingContext, ShadingTask, patches, shade};
 use crate::stats::{Stage, StageTime, Stats, Stopwatch};
@@ -39,7 +41,7 @@ method_settings! {
         family: Family = Family::default() => [group];
         /// Number and accuracy of records.
         cache: CacheSettings = CacheSettings::default() => [group];
-        /// Images of [`inspect`], beside the picture.
+        /// Images of the records, beside the picture; see `radiance_cache::inspect`.
         inspect: bool = false => [is INSPECT];
     }
 }
@@ -54,7 +56,7 @@ impl Settings {
 
     /// True if all light is found by cuts, none by records.
     fn lights_by_cuts(&self) -> bool {
-        [self.cache.direct, self.cache.indirect] == [FoundBy::Cuts; 2]
+        !self.cache.cached().any()
     }
 
     /// Settings of the shading stage.
@@ -104,7 +106,6 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
 pub struct Prepared<'w> {
     world: &'w World,
     samples: EyePass<'w>,
-    glossy: Option<Glossy>,
     lights: Lights,
     stats: Stats,
 }
@@ -115,18 +116,12 @@ impl<'w> Prepared<'w> {
         let mut stats = Stats::new();
         let eye = settings.sampling().eye(&world.scene);
         control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
-        let mut samples = stats.time(Stage::EyePass, || EyePass::trace(world, view, eye, control));
-        let glossy = stats.time(Stage::EyePass, || {
-            (!settings.lights_by_cuts())
-                .then(|| Glossy::find(world, &mut samples, &settings.cache.series))
-                .flatten()
-        });
-
+        let samples = stats.time(Stage::EyePass, || EyePass::trace(world, view, eye, control));
         counts::eye(&mut stats, &samples.chains);
 
         let light = LightPassSettings { seed: settings.seed, ..settings.light };
         let lights = Lights::new(world, &light, settings.family, eye.max_depth, control, &mut stats);
-        Prepared { world, samples, glossy, lights, stats }
+        Prepared { world, samples, lights, stats }
     }
 
     /// What lighting by cuts would take, tried on one patch in `every`, or on more where those would be few;
@@ -138,8 +133,7 @@ impl<'w> Prepared<'w> {
         let samples = &self.samples;
         let context = self.lights.context(self.world, settings.compensation);
         let watch = Stopwatch::start();
-        let cache = Cache::new(samples, None, [FoundBy::Cuts; 2]);
-        let tasks = cache.resolve(samples, &mut Picture::new(samples, false));
+        let tasks: Vec<ShadingTask> = (0..samples.len() as u32).map(ShadingTask::all).collect();
         let patches = patches(&samples.points, &tasks, settings.cache.patches, self.world.diagonal);
         let mut time = watch.elapsed();
         let every = every.min(patches.len() / LEAST_TRIED).max(1);
@@ -154,14 +148,25 @@ impl<'w> Prepared<'w> {
 
     /// The picture.
     pub fn light(self, settings: &Settings, control: &Control) -> Output {
-        let Prepared { world, samples, glossy, lights, mut stats } = self;
+        let Prepared { world, samples, lights, mut stats } = self;
         let context = lights.context(world, settings.compensation);
         let source = source(&context, &settings.cache);
 
-        let cache = Cache::complete(&source, &samples, glossy, control, &mut stats);
+        let mut records = Records::default();
+        let glossy = Glossy::new(world, &samples.points, &settings.cache);
+        let frame = (!settings.lights_by_cuts()).then(|| {
+            let targets = Targets::new(&samples.points, &samples.index, glossy.as_ref());
+            CacheFrame::fill(targets, &mut records, &source, control, &mut stats)
+        });
+        if let Some(frame) = &frame {
+            counts::cuts(&mut stats, "Records", &frame.cuts);
+        }
 
         let mut picture = Picture::new(&samples, settings.inspect);
-        let tasks = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
+        let tasks = stats.time(Stage::Splat, || match &frame {
+            Some(frame) => resolve(&frame.interpolate(&records), &samples, &mut picture),
+            None => (0..samples.len() as u32).map(ShadingTask::all).collect(),
+        });
         control.begin(Stage::Render, tasks.len() as u64);
         let counts = stats.time(Stage::Render, || {
             let patches = patches(&samples.points, &tasks, settings.cache.patches, world.diagonal);
@@ -171,22 +176,22 @@ impl<'w> Prepared<'w> {
         });
         stats.count("Shading/tasks by cuts", tasks.len() as u64);
         counts::cuts(&mut stats, "Lightcut", &counts.cuts);
-        if settings.cache.found(1) == FoundBy::Cuts {
+        if !settings.cache.cached().indirect {
             counts::clamping(&mut stats, &counts.cuts, settings.compensation.then_some(&counts.compensation));
         }
         counts.shadows.report(&mut stats);
         let complete = samples.complete && !control.is_cancelled();
         let (color, mut extra, nonfinite) = picture.finish();
         if settings.inspect {
-            extra.extend(inspect::layers(&samples, &cache.layers, &cache.seams));
+            extra.extend(frame.iter().flat_map(|frame| frame.inspect(&records, &samples)));
         }
         Output { color, variance: None, extra, stats, complete, nonfinite }
     }
 }
 
-fn source<'a>(context: &ShadingContext<'a>, settings: &'a CacheSettings) -> Source<'a> {
+fn source<'a>(context: &ShadingContext<'a>, settings: &'a CacheSettings) -> LightcutSource<'a> {
     let ShadingContext { world, transfer, compensation } = *context;
-    Source { world, transfer, settings, compensation }
+    LightcutSource { world, transfer, settings, compensation }
 }
 
 fn samples_of(patches: &[Vec<ShadingTask>]) -> f64 {

@@ -5,6 +5,7 @@ use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::math::Rgb;
+use crate::method::cache::resolve::resolve;
 use crate::method::lights::Lights;
 use crate::method::sampling::method_settings;
 use crate::method::{Output, Renderer, Sampled, counts};
@@ -16,10 +17,11 @@ use crate::photon::strata::Strata;
 use crate::photon::{IrradianceMap, PhotonMap};
 use crate::progress::Control;
 use crate::radiance_cache::CacheSettings;
-use crate::radiance_cache::compute::Source;
-use crate::radiance_cache::fill::Cache;
-use crate::radiance_cache::inspect;
+use crate::radiance_cache::fill::CacheFrame;
 use crate::radiance_cache::series::Glossy;
+use crate::radiance_cache::source::LightcutSource;
+use crate::radiance_cache::store::Records;
+use crate::radiance_cache::targets::Targets;
 use crate::setting::{Each, INSPECT, Settings as _};
 use crate::shade::{Picture, ShadeSettings, ShadingContext, ShadingTask, patches, shade};
 use crate::stats::{Stage, Stats};
@@ -51,7 +53,7 @@ method_settings! {
         cut: CutSettings = CutSettings::default() => [by Settings::each_of_cut];
         /// Builder of the light trees.
         family: Family = Family::default() => [group];
-        /// Images of [`inspect`], beside the picture.
+        /// Images of the records, beside the picture; see `radiance_cache::inspect`.
         inspect: bool = false => [is INSPECT];
     }
 }
@@ -92,23 +94,33 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
     let eye = settings.sampling().eye(&world.scene);
     let max_depth = eye.max_depth;
     control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
-    let mut samples = stats.time(Stage::EyePass, || EyePass::trace(world, view, eye, control));
-    let glossy = stats.time(Stage::EyePass, || Glossy::find(world, &mut samples, &settings.cache.series));
+    let samples = stats.time(Stage::EyePass, || EyePass::trace(world, view, eye, control));
     counts::eye(&mut stats, &samples.chains);
 
     let direct = LightPassSettings { seed: settings.seed, ..settings.light };
     let lights = Lights::new(world, &direct, settings.family, max_depth, control, &mut stats);
     let context = lights.context(world, true);
     let ShadingContext { transfer, compensation, .. } = context;
-    let direct = Source { world, transfer, settings: &settings.cache, compensation };
+    let direct = LightcutSource { world, transfer, settings: &settings.cache, compensation };
 
     let map = irradiance(world, settings, max_depth, control, &mut stats);
     let light = IndirectLight { world, map: &map };
     let source = FinalGatherSource::new(direct, light, Strata::new(settings.rays), settings.seed);
-    let cache = Cache::complete(&source, &samples, glossy, control, &mut stats);
+    let mut records = Records::default();
+    let glossy = Glossy::new(world, &samples.points, &settings.cache);
+    let frame = settings.cache.cached().any().then(|| {
+        let targets = Targets::new(&samples.points, &samples.index, glossy.as_ref());
+        CacheFrame::fill(targets, &mut records, &source, control, &mut stats)
+    });
+    if let Some(frame) = &frame {
+        counts::cuts(&mut stats, "Records", &frame.cuts);
+    }
 
     let mut picture = Picture::new(&samples, settings.inspect);
-    let tasks = stats.time(Stage::Splat, || cache.resolve(&samples, &mut picture));
+    let tasks = stats.time(Stage::Splat, || match &frame {
+        Some(frame) => resolve(&frame.interpolate(&records), &samples, &mut picture),
+        None => (0..samples.len() as u32).map(ShadingTask::all).collect(),
+    });
     let direct: Vec<ShadingTask> = tasks
         .iter()
         .filter(|task| task.origin != Some(Origin::Indirect))
@@ -142,7 +154,7 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
     let complete = samples.complete && !control.is_cancelled();
     let (color, mut extra, nonfinite) = picture.finish();
     if settings.inspect {
-        extra.extend(inspect::layers(&samples, &cache.layers, &cache.seams));
+        extra.extend(frame.iter().flat_map(|frame| frame.inspect(&records, &samples)));
     }
     Output { color, variance: None, extra, stats, complete, nonfinite }
 }

@@ -43,7 +43,7 @@ method_settings! {
         share: bool = true => [is SHARE];
         /// Use of the occluder cache by shadow rays of cuts.
         shadows: ShadowSettings = ShadowSettings::default() => [group];
-        /// Images of [`cache::inspect`], beside the picture.
+        /// Images of direct and of indirect light, beside the picture.
         inspect: bool = false => [is INSPECT];
     }
 }

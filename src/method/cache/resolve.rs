@@ -1,0 +1,26 @@
+//! Light of records added to the picture, and shading tasks for the rest.
+
+use crate::eye::EyePass;
+use crate::radiance_cache::resolve::{Interpolated, Left};
+use crate::shade::{Picture, ShadingTask};
+use crate::vpl::Origin;
+
+/// Adds the light of records to the picture. Returns tasks for what they leave to cuts.
+pub fn resolve(light: &[Interpolated], eye: &EyePass, picture: &mut Picture) -> Vec<ShadingTask> {
+    let mut tasks = Vec::new();
+    for (point, light) in light.iter().enumerate() {
+        for origin in Origin::ALL {
+            picture.add(eye, point, Some(origin), light.base[origin]);
+        }
+        picture.add(eye, point, light.left.map(|left| left != Left::All).only(), light.lobe);
+        for (part, lobe_only) in [(Left::All, false), (Left::Lobe, true)] {
+            let left = light.left.map(|left| left == part);
+            if left.any() {
+                let (point, origin) = (point as u32, left.only());
+                let baseline_luminance = light.baseline_luminance;
+                tasks.push(ShadingTask { point, lobe_only, origin, baseline_luminance });
+            }
+        }
+    }
+    tasks
+}

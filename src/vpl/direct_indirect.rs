@@ -1,0 +1,84 @@
+//! Pairs of values: one for direct light, one for indirect light.
+
+use super::Origin;
+use std::ops::{Index, IndexMut};
+
+impl Origin {
+    /// All origins.
+    pub const ALL: [Origin; 2] = [Origin::Direct, Origin::Indirect];
+}
+
+/// One value for each origin of light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DirectIndirect<T> {
+    /// Value for direct light.
+    pub direct: T,
+    /// Value for indirect light.
+    pub indirect: T,
+}
+
+impl<T> DirectIndirect<T> {
+    /// Values by origin, that of direct light first.
+    #[inline]
+    pub fn from_fn(mut value: impl FnMut(Origin) -> T) -> DirectIndirect<T> {
+        DirectIndirect { direct: value(Origin::Direct), indirect: value(Origin::Indirect) }
+    }
+
+    /// Function of each value.
+    #[inline]
+    pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> DirectIndirect<U> {
+        DirectIndirect { direct: f(self.direct), indirect: f(self.indirect) }
+    }
+
+    /// References to both.
+    #[inline]
+    pub fn as_ref(&self) -> DirectIndirect<&T> {
+        DirectIndirect { direct: &self.direct, indirect: &self.indirect }
+    }
+
+    /// Both values, that of direct light first.
+    #[inline]
+    pub fn into_array(self) -> [T; 2] {
+        [self.direct, self.indirect]
+    }
+}
+
+impl DirectIndirect<bool> {
+    /// Whether either holds.
+    #[inline]
+    pub fn any(self) -> bool {
+        self.direct || self.indirect
+    }
+
+    /// The one origin for which it holds; `None` if it holds for both or neither.
+    #[inline]
+    pub fn only(self) -> Option<Origin> {
+        match (self.direct, self.indirect) {
+            (true, false) => Some(Origin::Direct),
+            (false, true) => Some(Origin::Indirect),
+            _ => None,
+        }
+    }
+}
+
+impl<T> Index<Origin> for DirectIndirect<T> {
+    type Output = T;
+
+    #[inline]
+    fn index(&self, origin: Origin) -> &T {
+        match origin {
+            Origin::Direct => &self.direct,
+            Origin::Indirect => &self.indirect,
+        }
+    }
+}
+
+impl<T> IndexMut<Origin> for DirectIndirect<T> {
+    #[inline]
+    fn index_mut(&mut self, origin: Origin) -> &mut T {
+        match origin {
+            Origin::Direct => &mut self.direct,
+            Origin::Indirect => &mut self.indirect,
+        }
+    }
+}
