@@ -10,16 +10,18 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = list())]
 pub struct BenchArgs {
-    /// What to measure
+    /// Name of the benchmark
     #[arg(value_parser = PossibleValuesParser::new(REGISTRY.iter().map(|b| b.name)), hide_possible_values = true)]
     pub benchmark: String,
-    /// Scenes: native (.toml) or Mitsuba (.xml); for those that need them. Studies also take names of scenes in --scenes
+    /// Scenes: native (.toml) or Mitsuba (.xml); for those that need them. Studies also take names of scenes
+    /// in --scenes
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
     /// Threads where all are used [default: all processors]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
-    /// Samples of every case, taken in turns; runs of every picture, of which the fastest counts [default: 7; studies: 1]
+    /// Samples of every case, taken in turns; runs of every picture, of which the fastest counts [default: 7;
+    /// studies: 1]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub repeats: Option<u32>,
     /// How long a sample lasts at least, about [default: 0.05]
@@ -46,7 +48,7 @@ pub struct BenchArgs {
 #[derive(Clone, Debug, Default, Args, PartialEq)]
 #[command(next_help_heading = "Studies")]
 pub struct StudyArgs {
-    /// Folder for the page, the table and all that is rendered; what is in it already is not rendered again
+    /// Folder for the page, the table and all that is rendered; pictures already in it are not rendered again
     /// [default: out/NAME]
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
@@ -77,7 +79,7 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What `--help` lists.
+/// Returns the list of benchmarks for `--help`.
 fn list() -> String {
     let line = |b: &Benchmark| format!("  {:<18}{}\n", format!("{}{}", b.name, b.operand()), b.about);
     format!("Benchmarks:\n{}", REGISTRY.iter().map(line).collect::<String>())

@@ -1,4 +1,4 @@
-//! How a run can end, and the exit code that says so.
+//! Exit codes of a run.
 
 use std::fmt;
 
@@ -12,10 +12,10 @@ pub const USAGE: u8 = 2;
 pub const INPUT: u8 = 3;
 /// The result cannot be written.
 pub const OUTPUT: u8 = 4;
-/// Interrupted by a signal; what was done so far is written, marked as partial.
+/// Interrupted by a signal; the partial picture is written, marked as partial.
 pub const INTERRUPTED: u8 = 130;
 
-/// What `--help` says about it.
+/// Text of `--help` about exit codes.
 pub const HELP: &str = "Exit codes: 0 done; 1 rendering failed; 2 wrong command line; 3 invalid scene or \
 picture; 4 the result cannot be written; 130 interrupted (what is rendered so far is written, marked as partial).";
 

@@ -1,4 +1,4 @@
-//! `lightsplat info`: what a scene holds.
+//! `lightsplat info`: content and requirements of a scene.
 
 use super::args::InfoArgs;
 use super::exit::Failure;

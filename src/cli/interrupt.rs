@@ -1,5 +1,6 @@
-//! Ctrl-C, SIGTERM and SIGHUP: the first asks the method to stop and return what it has, the second ends the
-//! process at once. Files are written whole or not at all, so even that loses nothing that was there before.
+//! Ctrl-C, SIGTERM and SIGHUP: the first asks the method to stop and return its partial result, the second
+//! ends the process at once. Files are written whole or not at all, so that even then former files are not
+//! lost.
 
 use super::exit;
 use super::talk;

@@ -1,6 +1,7 @@
-//! The command line: what was typed (`args`) becomes a validated job (`job`) that a command carries out.
+//! The command line: arguments (`args`) become a validated job (`job`) that a command carries out.
 //!
-//! stdout is data (statistics, reports), stderr is talk (progress, warnings, errors). Exit codes are in `exit`.
+//! stdout is data (statistics, reports), stderr is messages (progress, warnings, errors). Exit codes are in
+//! `exit`.
 
 mod args;
 mod bench;
@@ -35,7 +36,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version go to stdout with code 0, the rest to stderr with code 2; if even that cannot
-            // be printed there is nobody to tell.
+            // be printed there is no way to report it.
             let _ = error.print();
             return ExitCode::from(if error.use_stderr() { exit::USAGE } else { exit::SUCCESS });
         }
@@ -52,7 +53,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             talk::error(&failure);
             ExitCode::from(failure.code())
         }
-        // The panic hook has said what and where.
+        // The panic hook has printed message and place.
         Err(_) => {
             talk::error(&Failure::render(anyhow::anyhow!(
                 "an internal error stopped the run; please report it with the lines above"

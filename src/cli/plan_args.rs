@@ -1,4 +1,4 @@
-//! Options of `render` that say what is wanted instead of how.
+//! Options of `render` that set a goal instead of settings.
 
 use super::exit::Failure;
 use crate::method::Method;
@@ -8,7 +8,7 @@ use crate::stats::Stopwatch;
 use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 
-/// Most paths a pixel where its error is measured, unless typed.
+/// Default of the maximum number of paths a pixel where its error is measured.
 const MAX_SAMPLES: u32 = 1 << 16;
 
 /// Named settings.
@@ -25,7 +25,7 @@ pub enum Quality {
 }
 
 impl Quality {
-    /// Where its settings stand on the ladder.
+    /// Level of its settings on the quality scale.
     pub fn height(self) -> f64 {
         match self {
             Quality::Draft => DRAFT,
@@ -43,25 +43,27 @@ pub struct PlanArgs {
     /// Settings by name; those that are typed are held
     #[arg(long, value_enum, conflicts_with_all = ["method", "time", "error"])]
     pub quality: Option<Quality>,
-    /// Plan the settings so that the whole run, from start to written files, takes about this long (10s, 500ms, 2m); only
-    /// --verify comes on top. Settings that are typed are held. They depend on the machine; the run says which they are
+    /// Plan the settings so that the whole run, from start to written files, takes about this long (10s,
+    /// 500ms, 2m); only --verify comes on top. Settings that are typed are held. They depend on the machine;
+    /// the run says which they are
     #[arg(long, value_name = "TIME", value_parser = parse_time, conflicts_with = "error")]
     pub time: Option<f64>,
-    /// Find the cheapest settings whose measured relative RMS error is this or less (like 2%), known in 95 of 100 cases;
-    /// settings that are typed are held. --verify says how many pixels are measured [default: 1000]
+    /// Find the cheapest settings whose measured relative RMS error is this or less (like 2%), known in 95 of
+    /// 100 cases; settings that are typed are held. --verify says how many pixels are measured [default:
+    /// 1000]
     #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
     pub error: Option<f64>,
 }
 
 impl PlanArgs {
-    /// `method`, with what a quality stands for where settings are not `held`.
+    /// Returns `method` with the settings of a quality, except those pinned in `held`.
     pub fn method(&self, method: Method, held: &[&'static str]) -> Method {
         let named = self.quality.zip(Ladder::new(method, held));
         named.map_or(method, |(quality, ladder)| ladder.at(quality.height()))
     }
 
-    /// What settings of `method` are to be planned for, without those `held`; `max_samples` as typed. The run began
-    /// with `run`.
+    /// Returns the goal that settings of `method` are planned for, except those pinned in `held`;
+    /// `max_samples` as given. The run began with `run`.
     pub fn wanted(
         &self,
         method: &Method,

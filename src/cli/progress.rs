@@ -1,4 +1,4 @@
-//! Tells on stderr how far a method has come, from a thread of its own that looks at its [`Control`].
+//! Progress messages on stderr, from a thread of its own that reads the method's [`Control`].
 
 use super::talk;
 use super::values::ProgressMode;
@@ -10,9 +10,9 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How often the bar moves.
+/// Interval between updates of the bar.
 const BAR_INTERVAL: Duration = Duration::from_millis(100);
-/// How often a line is written.
+/// Interval between lines.
 const LINE_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Runs `work` while another thread tells of its progress; all is told when this returns.

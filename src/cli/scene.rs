@@ -1,4 +1,4 @@
-//! Loads the scene a command names, and tells what was noticed on the way.
+//! Loads the scene of a command, and prints the warnings of loading.
 
 use super::exit::Failure;
 use super::talk;

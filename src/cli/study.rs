@@ -54,7 +54,7 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     write(&file("html"), &document.html)
 }
 
-/// What is typed, else the study's own scenes.
+/// Returns the scenes given, else the study's own.
 fn scene_files(args: &BenchArgs, scenes: &[&str]) -> Vec<PathBuf> {
     let folder = args.study.scene_folder.as_deref().unwrap_or(Path::new("scenes"));
     if args.scenes.is_empty() {

@@ -1,4 +1,4 @@
-//! Output: talk on stderr, data on stdout.
+//! Output: messages on stderr, data on stdout.
 
 use super::exit::Failure;
 use super::values::ProgressMode;
@@ -7,7 +7,7 @@ use serde_json::json;
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether stderr speaks NDJSON, one object a line, instead of prose. Set once, before anything is said.
+/// True if stderr is NDJSON, one object a line, instead of prose. Set once, before any message.
 static NDJSON: AtomicBool = AtomicBool::new(false);
 
 /// Chooses prose or NDJSON for the rest of the run.
@@ -20,7 +20,7 @@ pub fn note(text: &str) {
     say("note", text);
 }
 
-/// Something that may make the result differ from what the user expects.
+/// Prints a warning that the result may differ from the user's expectation.
 pub fn warning(text: &str) {
     say("warning", text);
 }

@@ -5,7 +5,8 @@ use crate::eye::Look;
 use crate::method::Method;
 use crate::verify::Settings;
 
-/// What to verify, if that was asked for; `always`, as where settings are planned by it, whether or not.
+/// Returns the settings of the verification, if asked for; `always` (where settings are planned by the error)
+/// even if not.
 pub fn settings(args: &VerifyArgs, method: &Method, always: bool) -> Option<Settings> {
     let defaults = Settings::default();
     if args.verify.is_none() && !always {

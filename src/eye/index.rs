@@ -1,14 +1,15 @@
-//! A balanced kd-tree over eye samples: splatting asks it for the samples in a footprint, and sampling
-//! for cells that spread records evenly.
+//! A balanced kd-tree over eye samples: splatting asks it for the samples in a footprint, and sampling for
+//! cells that spread records evenly.
 //!
-//! Every node splits its samples in halves along the longest side of their box, so that node `i` of level `l` is the
-//! range of samples from `n·i / 2^l` to `n·(i + 1) / 2^l`: no pointers, and the order of the samples is the order in space.
+//! Every node splits its samples in halves along the longest side of their box, so that node `i` of level `l`
+//! is the range of samples from `n·i / 2^l` to `n·(i + 1) / 2^l`: no pointers, and the order of the samples
+//! is the order in space.
 
 use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Most samples in a leaf.
+/// Maximum number of samples in a leaf.
 const LEAF: usize = 32;
 /// Smaller ranges are sorted by one thread.
 const PARALLEL: usize = 8192;
@@ -16,9 +17,9 @@ const PARALLEL: usize = 8192;
 /// A box, empty until something is added.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
-    /// Least coordinates.
+    /// Minimum coordinates.
     pub min: Vec3,
-    /// Largest coordinates.
+    /// Maximum coordinates.
     pub max: Vec3,
 }
 
@@ -45,7 +46,7 @@ pub struct EyeIndex {
 }
 
 impl EyeIndex {
-    /// The hierarchy over `positions`, and the order in which to store what they belong to.
+    /// Builds the hierarchy over `positions`; returns it with the order in which to store the items.
     pub fn build(positions: impl ExactSizeIterator<Item = Vec3>) -> (EyeIndex, Vec<u32>) {
         let mut items: Vec<(Vec3, u32)> = positions.zip(0..).collect();
         let count = items.len();
@@ -71,7 +72,7 @@ impl EyeIndex {
         self.depth
     }
 
-    /// How many leaves.
+    /// Number of leaves.
     pub fn leaves(&self) -> usize {
         1 << self.depth
     }

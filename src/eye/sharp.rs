@@ -1,11 +1,12 @@
-//! Light that sharp lobes reflect from emitters into the eye.
+//! Reflection of emitters by sharp lobes into the eye.
 //!
-//! A sampled direction of the lobe finds large emitters well and small ones hardly ever; points sampled on the emitters the other
-//! way round. Both are combined by multiple importance sampling. Of sixteen points on emitters one, drawn in
-//! proportion to what it would give, is tested for visibility, so that the lobe costs one shadow ray.
+//! A sampled direction of the lobe finds large emitters well and small ones hardly ever; points sampled on
+//! the emitters the other way round. Both are combined by multiple importance sampling. Of sixteen points on
+//! emitters one, drawn in proportion to its unoccluded contribution, is tested for visibility, so that the
+//! lobe costs one shadow ray.
 //!
-//! Papers: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, section 9.2 (power heuristic); Talbot et
-//! al., *Importance Resampling for Global Illumination*, 2005.
+//! Papers: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, section 9.2 (power
+//! heuristic); Talbot et al., *Importance Resampling for Global Illumination*, 2005.
 
 use super::chain::ChainCounts;
 use crate::light::{Receivers16, delta_irradiance};
@@ -22,7 +23,7 @@ const CANDIDATES: f32 = LANES as f32;
 /// Steps between them in the unit square, modulo 1: powers of the plastic number's inverse, which fill it evenly.
 const STEPS: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
 
-/// Where a direction was sampled by a lobe.
+/// Surface at which a lobe sampled a direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Start {
     place: Place,
@@ -57,7 +58,7 @@ impl Start {
         Start { place: Place::new(surface, wo), pdf }
     }
 
-    /// Weight of what the met surface emits, which points sampled on emitters find as well.
+    /// Returns the weight of the emission of the surface hit, which points sampled on emitters find as well.
     pub fn weight_of_area(&self, world: &World, met: &Surface, direction: Vec3) -> f32 {
         let (x, n) = self.place.splat();
         let at = Receivers16 { position: &x, normal: &n };
@@ -88,8 +89,8 @@ pub(super) struct Sharp<'a> {
 }
 
 impl Sharp<'_> {
-    /// Radiance that emitters leave along `wo`: all of that of point, spot and directional lights, the others' as weighed
-    /// against the lobe's own samples.
+    /// Radiance that emitters leave along `wo`: all of that of point, spot and directional lights, the
+    /// others' as weighed against the lobe's own samples.
     pub fn reflected(&self, sampler: &mut Sampler, counts: &mut ChainCounts) -> Rgb {
         self.point_lights(counts) + self.area_lights(sampler, counts)
     }
@@ -149,7 +150,7 @@ impl Sharp<'_> {
         Rgb::ZERO
     }
 
-    /// Whether nothing is in the way to an emitter, whose surface, if it has one, has the given normal.
+    /// True if an emitter, whose surface has the given normal, if any, is visible.
     fn is_free(&self, direction: Vec3, distance: f32, normal: Vec3, counts: &mut ChainCounts) -> bool {
         counts.shadow_rays += 1;
         let Surface { position, normal: own, .. } = *self.surface;

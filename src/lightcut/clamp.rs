@@ -1,21 +1,23 @@
 //! Weak singularities: indirect leaves so close to a point that they outshine everything else.
 //!
 //! Paper: Herzog et al. 2009, Eq. 13: no indirect VPL contributes more than a share of the total's luminance.
-//! Deviations: the total is one in which no single indirect leaf counts for more than a quarter ([`frozen_luminance`]): a
-//! VPL close to the receiver would otherwise set its own limit, and hide the error of all others while the cut is refined.
+//! Deviations: the total is one in which no single indirect leaf counts for more than a quarter
+//! ([`frozen_luminance`]): a VPL close to the receiver would otherwise set its own limit, and hide the error
+//! of all others while the cut is refined.
 
 use super::CutCounts;
 use crate::light_tree::{LightTrees, Node};
 use crate::math::{Rgb, luminance};
 use crate::vpl::Origin;
 
-/// Largest share of the luminance that a single indirect leaf may have in the total that others are judged by.
+/// Maximum share of the total luminance that a single indirect leaf may have and still count in the total
+/// that the others are compared with.
 pub(super) const DOMINANT: f32 = 0.25;
 
 /// The same share, relative to the rest of the total.
 pub(super) const DOMINANT_TO_REST: f32 = DOMINANT / (1.0 - DOMINANT);
 
-/// Most steps towards the frozen luminance of a cut.
+/// Maximum number of steps towards the frozen luminance of a cut.
 const MAX_STEPS: u32 = 12;
 
 /// Indirect leaves, the only nodes that are clamped.
@@ -26,9 +28,10 @@ pub(super) fn is_weak(node: &Node) -> bool {
 
 /// Luminance of a sum whose dominant summands are limited to a share of that luminance, to within 1 %.
 ///
-/// `limited` is the sum's luminance if its summands are limited to their share of a given luminance; the fixed point is
-/// approached from above, from the luminance without limits, in at most `max_steps`. A single dominant summand leaves its share
-/// of the excess each step; only as many together as have the whole converge slower.
+/// `limited` is the sum's luminance if its summands are limited to their share of a given luminance; the
+/// fixed point is approached from above, from the luminance without limits, in at most `max_steps`. A single
+/// dominant summand leaves its share of the excess each step; only as many together as have the whole
+/// converge slower.
 pub fn frozen_luminance(unlimited: f32, max_steps: u32, mut limited: impl FnMut(f32) -> f32) -> f32 {
     let mut frozen = unlimited;
     for _ in 0..max_steps {
@@ -56,8 +59,8 @@ pub(super) struct Unclamped<'a, I> {
 }
 
 impl<I: Iterator<Item = (u32, Rgb)> + Clone> Unclamped<'_, I> {
-    /// The sum in which no weak singularity has more than the share `clamp` of the frozen luminance, and the luminance of
-    /// that share.
+    /// The sum in which no weak singularity has more than the share `clamp` of the frozen luminance, and the
+    /// luminance of that share.
     pub fn clamped(&self, clamp: f32, counts: &mut CutCounts) -> (Rgb, f32) {
         let unclamped = luminance(self.sum) + self.baseline;
         let frozen = frozen_luminance(unclamped, MAX_STEPS, |frozen| {
@@ -70,7 +73,7 @@ impl<I: Iterator<Item = (u32, Rgb)> + Clone> Unclamped<'_, I> {
         (sum, limit)
     }
 
-    /// The sum with the luminance of weak singularities limited, and how many were.
+    /// Returns the sum with the luminance of weak singularities limited, and their number.
     fn limited(&self, limit: f32) -> (Rgb, u64) {
         let (sum, clamped) = self.contributions.clone().fold(
             (self.strong.as_dvec3(), 0),

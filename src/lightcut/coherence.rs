@@ -5,12 +5,12 @@ use glam::Vec3;
 /// Fewer points than this have cuts of their own.
 pub const MIN_SHARED: usize = 4;
 
-/// Limit on how far points that share a cut may differ.
+/// Limit on the differences between points that share a cut.
 #[derive(Clone, Copy, Debug)]
 pub struct CoherenceLimit {
-    /// Least cosine between their normals.
+    /// Minimum cosine between their normals.
     min_cosine: f32,
-    /// Largest distance, relative to the scene's diagonal.
+    /// Maximum distance, relative to the scene's diagonal.
     max_distance: f32,
     /// Number of groups open at once in [`group_coherent`].
     open: usize,
@@ -30,8 +30,8 @@ impl CoherenceLimit {
     }
 }
 
-/// Groups of at most `max_size` items that are each coherent with its first, from a list in which neighbours in space are
-/// near each other; `same` excludes pairs that must not be grouped for other reasons.
+/// Groups of at most `max_size` items that are each coherent with its first, from a list in which neighbours
+/// in space are near each other; `same` excludes pairs that must not be grouped for other reasons.
 pub fn group_coherent<T: Copy>(
     limit: CoherenceLimit,
     items: impl IntoIterator<Item = T>,

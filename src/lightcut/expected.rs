@@ -1,17 +1,20 @@
-//! The error to expect of a cluster, where its upper bound is all that is certain.
+//! Expected error of a cluster, given that only its upper bound is certain.
 //!
 //! A representative errs most by its visibility: half the members hidden makes an error of half the cluster's
-//! unshadowed contribution U, whatever the bound b. And b is a loose measure of U, by a factor that grows with the angle
-//! that the cluster fills, since nearest distance and largest cosines at both ends rarely occur together. For the same
-//! error, √(b·U) needs a fifth fewer clusters than b. U itself would cost a look at every member, but the geometry
-//! term at the box's centre, kept from falling far below the bound's, serves almost as well:
+//! unshadowed contribution U, whatever the bound b. And b is a loose measure of U, by a factor that grows
+//! with the angle that the cluster fills, since minimum distance and maximum cosines at both ends rarely
+//! occur together. For the same error, √(b·U) needs a fifth fewer clusters than b. U itself would require a
+//! visit to every member, but the geometry term at the box's centre, kept from falling far below the bound's,
+//! serves almost as well:
 //!
-//! E = `SCALE` · b · min(1, `SPREAD` · √r), r = (d²min / d²centre) · (`FLOOR` + (1 - `FLOOR`) · cosines at the centre / largest)
+//! E = `SCALE` · b · min(1, `SPREAD` · √r), r = (d²min / d²centre) · (`FLOOR` + (1 - `FLOOR`) · cosines at
+//! the centre / largest)
 //!
-//! `SCALE` sets what ε means: that the relative RMS error of the whole, over points and draws of representatives, stays
-//! below 1.75 ε in every scene. (All points of a picture share their representatives, so one picture's figure scatters:
-//! those of the nave and the hall from 2.3 to 4.0 % at ε = 2 %.) Relative RMS error in % against the full sum and
-//! clusters in single cuts, four seeds, 20,000 VPLs, ε = 2 %, no cap (the last row interpolated between several ε):
+//! `SCALE` sets the meaning of ε: that the relative RMS error of the whole, over points and draws of
+//! representatives, stays below 1.75 ε in every scene. (All points of a picture share their representatives,
+//! so one picture's figure scatters: those of the nave and the hall from 2.3 to 4.0 % at ε = 2 %.) Relative
+//! RMS error in % against the full sum and clusters in single cuts, four seeds, 20,000 VPLs, ε = 2 %, no cap
+//! (the last row interpolated between several ε):
 //!
 //! | | nave | hall | kitchen | cornell | sibenik |
 //! |---|--:|--:|--:|--:|--:|
@@ -19,27 +22,28 @@
 //! | E | 2.80, 842 | 2.75, 774 | 2.51, 575 | 1.25, 271 | 2.01, 475 |
 //! | b, smaller ε | 3.3, 842 | 3.0, 774 | 2.7, 575 | 1.2, 271 | 2.1, 475 |
 //!
-//! What the estimate must not look at is the representative. Its visibility says much about a cluster's error, but to
-//! stop sooner where nothing was seen leaves in the dark what was missed (the nave lost 5 to 9 % of its light), and even
-//! its unshadowed contribution costs 1 %, as clusters with dim representatives are refined less than others.
+//! The estimate must not depend on the representative. Its visibility is strongly correlated with a cluster's
+//! error, but stopping sooner where the representative is hidden misses visible members (the nave lost 5 to
+//! 9 % of its light), and even its unshadowed contribution costs 1 %, as clusters with dim representatives
+//! are refined less than others.
 
 /// Error to expect relative to the bound where that is tight.
 const SCALE: f32 = 1.7;
-/// How far the bound may be above √(bound · centre) before it counts for less.
+/// Ratio of the bound to √(bound · centre) above which it counts for less.
 const SPREAD: f32 = 1.6;
-/// Least product of cosines at the centre, relative to the largest.
+/// Minimum product of cosines at the centre, relative to the maximum.
 const FLOOR: f32 = 0.1;
 
 /// Geometry of a cluster seen from a point: squared distances and products of both ends' cosines.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outlook {
-    /// Least squared distance, as the bound divides by it.
+    /// Minimum squared distance, by which the bound divides.
     pub near_sq: f32,
     /// Squared distance of the centre.
     pub centre_sq: f32,
     /// Receiver's and emitter's cosine towards the centre, each times the distance; negative if averted.
     pub at_centre: [f32; 2],
-    /// The largest cosines.
+    /// Maximum cosines.
     pub largest: [f32; 2],
 }
 

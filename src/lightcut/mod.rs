@@ -1,12 +1,13 @@
-//! Stage 3: a cut through the light trees per point, refined until every cluster's expected error is below the threshold.
+//! Stage 3: a cut through the light trees per point, refined until every cluster's expected error is below
+//! the threshold.
 //!
 //! Paper: Walter et al., *Lightcuts: A Scalable Approach to Illumination*, 2005.
 //!
-//! A [`Receiver`] says what is gathered (reflected radiance or irradiance), [`Transfer`] how much of it one VPL
-//! gives, and [`expected`] how far a cluster is likely to be off. Three workspaces gather the light of all VPLs: [`Lightcut`] at
-//! a single point ([`single`]), [`PacketLightcut`] at up to sixteen neighbours, which share a cut ([`packet`]), and
-//! [`ReconstructionCut`] at the points between such neighbours ([`reconstruction`]). `gather_all` is the exact sum that they
-//! approximate.
+//! A [`Receiver`] defines the quantity gathered (reflected radiance or irradiance), [`Transfer`] the share of
+//! it from one VPL, and [`expected`] the expected error of a cluster. Three workspaces gather the light of
+//! all VPLs: [`Lightcut`] at a single point ([`single`]), [`PacketLightcut`] at up to sixteen neighbours,
+//! which share a cut ([`packet`]), and [`ReconstructionCut`] at the points between such neighbours
+//! ([`reconstruction`]). `gather_all` is the exact sum that they approximate.
 
 mod clamp;
 mod coherence;

@@ -1,7 +1,7 @@
-//! What gathers light at a point: the function a lightcut integrates against, and its upper bound.
+//! Receivers of light at a point: the function that a lightcut integrates against, and its upper bound.
 //!
-//! The weight given to each direction decides what the cut's sum is: BRDF · cosine gives reflected radiance, the
-//! cosine alone irradiance.
+//! The weight of each direction determines the meaning of the cut's sum: BRDF · cosine gives reflected
+//! radiance, the cosine alone irradiance.
 
 use super::OffsetBox;
 use crate::material::{Bsdf, DirectionBound};
@@ -55,7 +55,8 @@ impl<'m> Receiver<'m> {
         Receiver { position, geometric_normal, frame, mirror, wo, material, baseline_luminance: 0.0 }
     }
 
-    /// What collects irradiance on the side of the frame's z axis: a surface that reflects π times as much as is possible.
+    /// Creates a receiver of irradiance on the side of the frame's z axis: a surface that reflects π times
+    /// the physical maximum.
     pub fn irradiance(position: Vec3, geometric_normal: Vec3, frame: &Frame) -> Receiver<'static> {
         let material = Kind::Lambert(Rgb::ONE);
         let baseline_luminance = 0.0;
@@ -91,7 +92,8 @@ impl<'m> Receiver<'m> {
         }
     }
 
-    /// What the coat lets through of light from the direction of `incident`, which need not be of unit length.
+    /// Returns the coat's transmittance for light from the direction of `incident`, which need not be of unit
+    /// length.
     pub fn coat_transmittance(&self, incident: Vec3) -> f32 {
         match &self.material {
             Kind::General(bsdf) if bsdf.coat() != 0 => {
@@ -138,7 +140,7 @@ impl<'m> Receiver<'m> {
         Receiver { position, ..self }
     }
 
-    /// Where it is.
+    /// Position.
     #[inline]
     pub fn position(&self) -> Vec3 {
         self.position
@@ -150,8 +152,7 @@ impl<'m> Receiver<'m> {
         self.geometric_normal
     }
 
-    /// Luminance of what the receiver is known to gather from trees that are left out of the cut:
-    /// errors are judged against the whole.
+    /// Luminance gathered from trees that are left out of the cut: errors are judged against the whole.
     #[inline]
     pub fn baseline_luminance(&self) -> f32 {
         self.baseline_luminance

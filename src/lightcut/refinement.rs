@@ -1,11 +1,12 @@
-//! Steps of the refinement of a cut that single points and packets share: the queue of clusters to split, and the order of
-//! a node's children.
+//! Steps of the refinement of a cut that single points and packets share: the queue of clusters to split, and
+//! the order of a node's children.
 //!
-//! The loops around them are two ([`super::single`], [`super::packet`]), because a packet's are not those of a point for sixteen
-//! lanes. The error of a cluster relative to a single point's total orders clusters once and for all, whatever the total
-//! becomes, so the worst are split in batches against one threshold. The cubic mean over a packet's lanes reorders them as the
-//! lanes' totals change: each is judged again when its turn comes, one after the other, and all once more at the end. And
-//! a point's total is one number in double precision, a packet's are sixteen in single precision, as wide as a vector.
+//! The loops around them are two ([`super::single`], [`super::packet`]), because a packet's are not those of
+//! a point for sixteen lanes. The error of a cluster relative to a single point's total orders clusters once
+//! and for all, whatever the total becomes, so the worst are split in batches against one threshold. The
+//! cubic mean over a packet's lanes reorders them as the lanes' totals change: each is judged again when its
+//! turn comes, one after the other, and all once more at the end. And a point's total is one number in double
+//! precision, a packet's are sixteen in single precision, as wide as a vector.
 
 use crate::light_tree::{LightTrees, Node};
 use std::collections::BinaryHeap;

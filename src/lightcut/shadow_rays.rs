@@ -1,4 +1,4 @@
-//! Shadow rays towards virtual lights: the one place that knows what kinds of lights there are.
+//! Shadow rays towards virtual lights: the one place that distinguishes kinds of lights.
 
 use crate::embree::{Ray, Rays16};
 use crate::math::{LANES, Vec3x16};

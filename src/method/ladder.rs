@@ -1,10 +1,11 @@
-//! Settings that qualities and plans move together: factors on the defaults, from cheap to exact.
+//! The quality scale: settings that qualities and plans move together, as factors on the defaults, from cheap
+//! to exact.
 //!
-//! Every rung halves ε, which cuts cost by its root, and the virtual lights follow: a cut as fine as ε asks is no
-//! use in a tree whose leaves are coarser. The rungs are near the Pareto front of error against time of the knot,
-//! nave and kitchen at 512 x 512.
+//! Every level halves ε, on whose root the cost of cuts depends, and the virtual lights follow: a cut as fine
+//! as ε asks is no use in a tree whose leaves are coarser. The levels are near the Pareto front of error
+//! against time of the knot, nave and kitchen at 512 x 512.
 
-/// Rungs of a ladder.
+/// Number of levels of the scale.
 pub const RUNGS: usize = 9;
 
 /// A setting that moves.
@@ -12,9 +13,9 @@ pub const RUNGS: usize = 9;
 pub struct Move {
     /// Key of the setting.
     pub key: &'static str,
-    /// True if it says how fine cuts are, rather than how many samples, virtual lights and patches there are.
+    /// True if it sets the fineness of cuts, false if the number of samples, virtual lights or patches.
     pub fine: bool,
-    /// Factors on its default, from the cheapest rung to the most exact.
+    /// Factors on its default, from the cheapest level to the most exact.
     pub factors: [f64; RUNGS],
 }
 

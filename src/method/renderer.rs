@@ -1,4 +1,4 @@
-//! What makes settings a method.
+//! The trait of methods.
 
 use super::ladder::Move;
 use super::{Method, Output, Sampled};
@@ -18,13 +18,13 @@ pub trait Renderer: Settings + Sampled {
     /// A line for `--help`.
     fn about(&self) -> &'static str;
 
-    /// Renders what `view` sees, until `control` is cancelled.
+    /// Renders the picture of `view`, until `control` is cancelled.
     fn render(&self, world: &World, view: &View, control: &Control) -> Output;
 
-    /// Refuses settings that contradict each other, and says what to do instead.
+    /// Rejects settings that contradict each other.
     ///
     /// # Errors
-    /// If they do.
+    /// The contradiction and its remedy.
     fn check(&self) -> Result<(), String> {
         Ok(())
     }

@@ -3,7 +3,7 @@
 use crate::eye::EyeSettings;
 use crate::scene::Scene;
 
-/// Which samples a method takes, and how far it follows light.
+/// Samples of a method, and its path length.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampling {
     /// Samples a pixel.

@@ -1,8 +1,9 @@
-//! What a render costs, by a few renders that were smaller or cheaper.
+//! A model of the time of a render, fitted to a few renders that were smaller or cheaper.
 //!
-//! The light pass and its trees take time with the virtual lights, whatever the film. All else takes time with the eye samples:
-//! each one `c · e^(β (h - h₀)) · (n / n₀)^-γ` seconds at height h of the ladder and n samples in all. β is how finer
-//! settings cost, γ how samples get cheaper where they are denser, as neighbours share more.
+//! The light pass and its trees take time with the virtual lights, whatever the film. All else takes time
+//! with the eye samples: each one `c · e^(β (h - h₀)) · (n / n₀)^-γ` seconds at level h of the quality scale
+//! and n samples in all. β is the cost of finer settings, γ the gain by denser samples, as neighbours share
+//! more.
 
 /// Seconds a sample per height: before two heights are known, and the range in which it is believed.
 const BETA: (f64, [f64; 2]) = (0.35, [0.05, 1.4]);
@@ -14,7 +15,7 @@ const LEAST_APART: f64 = 0.5;
 /// A render that was timed. Times are wall-clock seconds.
 #[derive(Clone, Copy, Debug)]
 pub struct Timed {
-    /// Its height on the ladder.
+    /// Its level on the quality scale.
     pub height: f64,
     /// Eye samples.
     pub samples: f64,
@@ -35,7 +36,8 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// From renders, of which the last is the most like what is to come; `None` if there are none.
+    /// Fits the model to renders, of which the last is the most similar to the one planned; `None` if there
+    /// are none.
     pub fn fit(timed: &[Timed]) -> Option<Cost> {
         let last = *timed.last()?;
         let by_sample = |t: &Timed| (t.rest / t.samples).max(f64::MIN_POSITIVE).ln();

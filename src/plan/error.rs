@@ -1,12 +1,14 @@
 //! Settings for an error.
 //!
-//! A search that begins with cheap pictures finds the cheapest settings whose measured error is low enough, all pictures held
-//! to the same traced paths. The error of the picture found is then measured at other pixels by other paths; while
-//! that is not known to be low enough, the settings are raised, a bounded number of times.
+//! A search that begins with cheap pictures finds the cheapest settings whose measured error is low enough,
+//! all pictures compared with the same traced paths. The error of the picture found is then measured at other
+//! pixels by other paths; while that does not meet the goal, the settings are raised, a bounded number of
+//! times.
 //!
-//! A picture meets the error if the upper end of the interval does and the noise of the paths is below it too: what is not known
-//! is not met. Paths that are too noisy to tell are traced anew, four times as many where a pixel had as many as it may. The
-//! steps are held to one set of paths, so that a picture met after several has had as many chances.
+//! A picture meets the goal if both the upper end of the confidence interval and the noise of the paths are
+//! below it. Paths that are too noisy to decide are traced anew, four times as many where a pixel had as many
+//! as it may. The steps are compared with one set of paths, so that a picture met after several has had as
+//! many chances.
 
 use super::ladder::{Ladder, options};
 use crate::eye::Look;
@@ -19,37 +21,40 @@ use crate::verify::{Settings, Truth, Verified};
 use crate::view::View;
 use crate::world::World;
 
-/// How far below the error asked for the search aims: about as much as the interval reaches above its estimate.
+/// Factor on the goal that the search aims at: about as much lower as the interval reaches above its
+/// estimate.
 const AIM: f64 = 0.85;
-/// Steps between rungs.
+/// Number of steps between levels.
 const STEPS: f64 = 2.0;
-/// Where the search begins: cheap pictures cost it little.
+/// Level at which the search begins: cheap pictures cost it little.
 const START: usize = 4;
-/// By how much the logarithm of the error falls with a step, about.
+/// Approximate fall of the logarithm of the error with a step.
 const FALL: f64 = 0.15;
-/// Most steps, besides one, that the search goes up or down by that: seven rungs cost twenty times as much.
+/// Maximum number of steps, besides one, that the search goes up or down by that: seven levels cost twenty
+/// times as much.
 const LEAP: f64 = 3.0;
-/// What is wrong is not how fine settings are if this many steps leave this share of the error.
+/// Number of finer steps after which the search stops if they leave at least `STILL` of the error: something
+/// other than these settings dominates it.
 const STALL: usize = 4;
 /// See [`STALL`].
 const STILL: f64 = 0.93;
-/// By how much of a step settings between one that fails and one that does are finer than where the error is thought to be low enough.
+/// Safety margin, in steps, added to the interpolated step at which the error is predicted to meet the goal.
 const MARGIN: f64 = 0.1;
 /// Part of a step that must be saved for that to be tried.
 const WORTH: f64 = 0.2;
-/// Most times that the settings are raised once the search is over.
+/// Maximum number of times that the settings are raised once the search is over.
 const RAISES: u64 = 4;
 /// Keeps the pixels and paths of the search apart.
 const SEED: u32 = 0x5ea7_c4ed;
 
-/// What is asked.
+/// Goal of the search.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked {
     /// Relative RMS error.
     pub error: f64,
-    /// How it is measured.
+    /// Settings of its measurement.
     pub measure: Settings,
-    /// Most paths a pixel, where those are too noisy to tell.
+    /// Maximum number of paths a pixel, where those are too noisy to decide.
     pub most_samples: u32,
 }
 
@@ -59,23 +64,24 @@ pub struct Found {
     pub method: Method,
     /// The settings as options.
     pub options: String,
-    /// What the search expected of them.
+    /// Error that the search expected of them.
     pub expected: f64,
     /// The picture.
     pub output: Output,
-    /// What rendering it took.
+    /// Time of rendering it.
     pub time: StageTime,
     /// Its error; `None` if measuring was cancelled.
     pub verified: Option<Verified>,
-    /// Whether the error is known to be as low as asked.
+    /// True if the measured error meets the goal.
     pub met: bool,
-    /// How it was measured in the end.
+    /// Settings of its final measurement.
     pub measure: Settings,
     /// Pictures rendered.
     pub renders: u64,
 }
 
-/// Renders `window` as cheaply as meets what is asked; `None` if cancelled before that film was begun.
+/// Renders `window` with the cheapest settings that meet the goal; `None` if cancelled before that film was
+/// begun.
 pub fn for_error(
     world: &World,
     view: &View,
@@ -120,8 +126,8 @@ pub fn for_error(
     }
 }
 
-/// The error of a picture by `truth`, which is traced as `measure` says where there is none, and anew where it cannot tell;
-/// `None` if cancelled.
+/// The error of a picture by `truth`, which is traced as `measure` says where there is none, and anew where
+/// it cannot tell; `None` if cancelled.
 fn judge(
     world: &World,
     view: &View,
@@ -146,7 +152,7 @@ fn judge(
     }
 }
 
-/// What a search came to.
+/// Result of a search.
 struct Searched {
     step: f64,
     /// The error by the paths of the search.
@@ -156,8 +162,8 @@ struct Searched {
     renders: u64,
 }
 
-/// The lowest step that seems to do, or settings between it and the one below that do too; where none is found, the last
-/// that was tried.
+/// The lowest step that seems to do, or settings between it and the one below that do too; where none is
+/// found, the last that was tried.
 fn search(world: &World, view: &View, ladder: &Ladder, asked: &Asked, control: &Control) -> Option<Searched> {
     let measure = Settings { seed: hash(asked.measure.seed, SEED), ..asked.measure };
     let goal = AIM * asked.error;
@@ -214,8 +220,8 @@ fn search(world: &World, view: &View, ladder: &Ladder, asked: &Asked, control: &
     Some(if tried.error <= goal { tried } else { Searched { renders, ..found } })
 }
 
-/// The step at which the error comes down to `goal`, by the line in logarithms from a step that fails to the next, which
-/// does, and a little more; `None` where that saves little.
+/// The step at which the error comes down to `goal`, by the line in logarithms from a step that fails to the
+/// next, which does, and a little more; `None` where that saves little.
 fn between(failed: (usize, f64), met: (f64, f64), goal: f64) -> Option<f64> {
     let part = (failed.1 / goal).ln() / (failed.1 / met.1).ln() + MARGIN;
     let step = failed.0 as f64 + part * (met.0 - failed.0 as f64);

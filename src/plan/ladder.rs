@@ -1,7 +1,7 @@
-//! The ladder: settings from cheap to exact, one number for all of them.
+//! The quality scale: settings from cheap to exact, one number for all of them.
 //!
-//! Heights between the rungs of a method's own table ([`crate::method::Move`]) interpolate its factors geometrically, so
-//! that a plan need not jump.
+//! Values between the levels of a method's own table ([`crate::method::Move`]) interpolate its factors
+//! geometrically, so that a plan need not jump.
 
 use crate::film::Window;
 use crate::method::{Method, Move, RUNGS};
@@ -11,9 +11,9 @@ use crate::stats::available_bytes;
 pub const DRAFT: f64 = 2.0;
 /// ... a preview ...
 pub const PREVIEW: f64 = 3.0;
-/// ... what is worth keeping ...
+/// ... for pictures to keep ...
 pub const FINAL: f64 = 5.0;
-/// ... and what others are held to. Path tracing has no bias, but at the time that this takes more than twice the error.
+/// ... and for references. Path tracing has no bias, but in the time of this more than twice the error.
 pub const REFERENCE: f64 = 7.0;
 
 /// A method's settings by height.
@@ -26,7 +26,8 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// Around the settings of `base`, without those `held`; `None` for a method of which no ladder is known.
+    /// Creates the scale around the settings of `base`, except those pinned in `held`; `None` for a method
+    /// without one.
     pub fn new(base: Method, held: &[&'static str]) -> Option<Ladder> {
         let known = !base.ladder().is_empty();
         known.then(|| Ladder { base, held: held.to_vec(), most_spp: u32::MAX })
@@ -52,7 +53,7 @@ impl Ladder {
         self
     }
 
-    /// The height of the last rung; the first has 0.
+    /// Returns the last level; the first is 0.
     pub fn top(&self) -> f64 {
         (RUNGS - 1) as f64
     }
@@ -72,7 +73,7 @@ impl Ladder {
             let value = match moved.key {
                 "spp" => value.round().clamp(1.0, f64::from(self.most_spp)),
                 _ if factor == 1.0 => base,
-                // Three digits say enough; what is typed again is shorter.
+                // Three significant digits are enough; shorter numbers are easier to type again.
                 _ => format!("{value:.2e}").parse().unwrap_or(base),
             };
             method.set_number(moved.key, 0, value);
@@ -81,7 +82,7 @@ impl Ladder {
     }
 }
 
-/// Options that give the settings of `method` that a ladder moves.
+/// Returns the command-line options of the settings of `method` that the scale moves.
 pub fn options(method: &Method) -> String {
     let option = |moved: &Move| {
         let text = method.text(moved.key)?;
@@ -90,13 +91,13 @@ pub fn options(method: &Method) -> String {
     method.ladder().iter().filter_map(option).collect::<Vec<_>>().join(" ")
 }
 
-/// A factor at `height`, which is kept between the first rung and the last.
+/// Returns a factor at `height`, which is clamped to the first and the last level.
 fn factor(height: f64, factors: &[f64; RUNGS]) -> f64 {
     let height = height.clamp(0.0, (RUNGS - 1) as f64);
     let below = (height as usize).min(RUNGS - 2);
     let (a, b) = (factors[below], factors[below + 1]);
     let part = height - below as f64;
-    // Exact on the rungs, where logarithms would round.
+    // Exact on the levels, where logarithms would round.
     if part == 0.0 { a } else { a * (b / a).powf(part) }
 }
 

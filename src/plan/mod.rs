@@ -1,15 +1,16 @@
-//! Settings planned from what is wanted: a time, or an error.
+//! Settings planned for a goal: a time, or an error.
 //!
-//! | | asked | planned | got |
+//! | | goal | plan | result |
 //! |---|---|---|---|
-//! | [`for_time`] | seconds of the whole run | from a few small renders of the same film and a model of cost, then on the picture itself | the wall clock |
-//! | [`for_error`] | relative RMS error | by renders from cheap to dear held to traced paths | measured on the picture itself, settings raised until it is met |
+//! | [`for_time`] | seconds of the run | by small renders and a model of cost, then on the picture | the wall clock |
+//! | [`for_error`] | relative RMS error | by renders of rising cost compared with paths | measured on the picture |
 //!
-//! Both move along one [`Ladder`] of settings. What the user has typed is held.
+//! Both move along one [`Ladder`] of settings. Settings given by the user are pinned. For an error, settings
+//! are raised until the picture meets it.
 //!
-//! A time's settings depend on the machine and on what else it does: two runs may differ. An error's do not: the
-//! same input gives the same settings and bits. Either way the settings chosen are told, and render the same
-//! picture again when typed.
+//! A time's settings depend on the machine and on its other load: two runs may differ. An error's do not: the
+//! same input gives the same settings and bits. Either way the chosen settings are reported, and give the
+//! same picture again when typed.
 
 mod cost;
 mod error;

@@ -1,11 +1,12 @@
 //! Settings for a time.
 //!
-//! Small renders of the film, cheap ones at two sizes and one near the settings that those suggest, fit the model of
-//! [`super::cost`]; the highest settings that it says fit are taken. Where the cache lights by cuts, the cheap ones only suggest how
-//! many samples and virtual lights there are; once they are there, how fine cuts are is tuned by lighting some patches of the
-//! picture itself ([`super::tune`]). All of it counts towards the time.
+//! Small renders of the film, cheap ones at two sizes and one near the settings that those suggest, fit the
+//! model of [`super::cost`]; the highest settings that fit the time by the model are taken. Where the cache
+//! lights by cuts, the cheap ones only suggest the numbers of samples and virtual lights; once those exist,
+//! the fineness of cuts is tuned by shading some patches of the picture itself ([`super::tune`]). All of it
+//! counts towards the time.
 //!
-//! The plan is as good as the machine is steady: if other work takes the processors later on, the run is late.
+//! The plan assumes a steady machine: if other work takes the processors later on, the run is late.
 
 use super::cost::{Cost, Timed};
 use super::ladder::{Ladder, options};
@@ -17,11 +18,11 @@ use crate::stats::{Stage, StageTime, Stopwatch};
 use crate::view::View;
 use crate::world::World;
 
-/// Share of what is left of the time that the last small render may take.
+/// Share of the remaining time that the last small render may take.
 const PILOT_SHARE: f64 = 0.08;
 /// Share that a trial may take of the time that lighting is thought to take.
 const TRIAL_SHARE: f64 = 0.03;
-/// Most trials of how fine cuts are, once samples and lights go with them.
+/// Maximum number of trials of the fineness of cuts, once samples and lights go with them.
 const TRIALS: usize = 3;
 /// A plan that takes this much longer than there is time is not the best that can be done.
 pub const LATE: f64 = 1.1;
@@ -29,20 +30,20 @@ pub const LATE: f64 = 1.1;
 const LESS: f64 = 0.3;
 /// Rungs by which half the way from samples and lights to cuts may be off.
 const CLOSE: f64 = 0.5;
-/// Most times that samples and lights are chosen.
+/// Maximum number of times that samples and lights are chosen.
 const ROUNDS: u32 = 3;
-/// Share kept back for what the model does not know.
+/// Share reserved for costs outside the model.
 const RESERVE: f64 = 0.02;
-/// Seconds to encode and write a pixel, and add up what it is made of.
+/// Seconds to encode and write a pixel, and to sum up its samples.
 const WRITE: f64 = 5e-7;
-/// How much smaller the first two renders are, along each side.
+/// Divisors of each side of the first two small renders.
 const SCALES: [u32; 2] = [16, 8];
-/// Fewer pixels than this do not tell what others take.
+/// Minimum number of pixels for an estimate of the time of others.
 const LEAST_PIXELS: u64 = 1000;
-/// Steps between rungs that are looked at.
+/// Number of steps between levels that are considered.
 const STEPS: u32 = 16;
 
-/// Settings and what they are thought to take.
+/// Settings and their predicted time.
 pub struct Planned<'w> {
     /// The method with its settings.
     pub method: Method,
@@ -52,17 +53,17 @@ pub struct Planned<'w> {
     pub render_seconds: f64,
     /// Small renders made, and trials of the picture itself.
     pub pilots: u64,
-    /// What is there of the picture, and what it took.
+    /// Prepared part of the picture, and its time.
     prepared: Option<(Box<dyn Prepared + 'w>, StageTime)>,
 }
 
 impl Planned<'_> {
-    /// What has gone into the picture already.
+    /// Returns the time already spent on the picture.
     pub fn spent(&self) -> StageTime {
         self.prepared.as_ref().map_or(StageTime::default(), |(_, time)| *time)
     }
 
-    /// Renders `window`, as planned for, or what is missing.
+    /// Renders `window`, as planned, or its missing part.
     pub fn render(self, world: &World, view: &View, control: &Control) -> Output {
         let lit = self.prepared.and_then(|(prepared, _)| prepared.light(&self.method, control));
         lit.unwrap_or_else(|| self.method.render(world, view, control))
@@ -90,8 +91,8 @@ pub fn for_time<'w>(
     Some(Planned { method, options, render_seconds: seconds, pilots, prepared: None })
 }
 
-/// Plans cuts as fine as trials say, on eye samples and virtual lights that are about as fine. `guess` is where to begin and what that may
-/// take.
+/// Plans cuts as fine as trials allow, on eye samples and virtual lights of about the same level. `guess` is
+/// the level to start from and the time that it may take.
 fn tuned<'w>(
     world: &'w World,
     view: &View,
@@ -139,7 +140,7 @@ fn tuned<'w>(
     None
 }
 
-/// A model of cost, from the first small renders or from all, and how many there were.
+/// Returns a model of cost, from the first small renders or from all, and their number.
 fn small_renders(
     world: &World,
     view: &View,
@@ -206,7 +207,7 @@ fn samples(method: &Method, view: &View) -> f64 {
     view.window.pixel_count() as f64 * f64::from(method.spp())
 }
 
-/// All virtual lights asked for, a few at least so that they can be divided by.
+/// Number of all virtual lights asked for, never 0, since it is a divisor.
 fn vpls(method: &Method) -> f64 {
     ["vpls", "direct_vpls"].iter().filter_map(|key| method.number(key)).sum()
 }

@@ -1,14 +1,15 @@
-//! A height by trials.
+//! A level found by trials.
 //!
-//! The logarithm of time rises with height, nearly along a line between heights that are near. Every trial is made where the
-//! line through what is known says that the time wanted lies, so that the last ones lie close to it.
+//! The logarithm of time rises with the level, nearly linearly over small ranges. Every trial is made where
+//! the line through the former ones predicts the time wanted, so that the last ones are close to it.
 
-/// Slope of the logarithm of time, a rung, before two heights are known, and the range in which it is believed.
+/// Slope of the logarithm of time, a level, before two levels are measured, and the range to which it is
+/// clamped.
 const SLOPE: (f64, [f64; 2]) = (0.35, [0.1, 1.2]);
 /// A trial as near as this, relatively, is near enough.
 const NEAR: f64 = 0.06;
 
-/// A height and what it is thought to take.
+/// A level and its predicted time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuned {
     /// Between 0 and the top.
@@ -19,8 +20,9 @@ pub struct Tuned {
     pub trials: u64,
 }
 
-/// The height up to `top` that takes as long as `wanted()` says, which is asked after every trial, of which there are `most` at most;
-/// `try_at` gives the seconds that a height takes, or `None` where nothing can be said. `start` is tried first.
+/// The height up to `top` that takes as long as `wanted()` says, which is asked after every trial, of which
+/// there are `most` at most; `try_at` gives the seconds that a height takes, or `None` where nothing can be
+/// said. `start` is tried first.
 pub fn tune(
     start: f64,
     top: f64,
@@ -43,7 +45,8 @@ pub fn tune(
     }
 }
 
-/// Where the line from the last trial, through the nearest other, meets `goal`, and the seconds there.
+/// Returns the point where the line from the last trial, through the nearest other, meets `goal`, and the
+/// seconds there.
 fn along(known: &[(f64, f64)], goal: f64, top: f64) -> (f64, f64) {
     let (last, before) = (known[known.len() - 1], &known[..known.len() - 1]);
     // Those close by say nothing of slopes: trials are noisy.
@@ -59,7 +62,7 @@ fn along(known: &[(f64, f64)], goal: f64, top: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// Seconds on a machine that takes `fixed` seconds at least.
+    /// Returns seconds on a machine that takes `fixed` seconds at least.
     fn curve(fixed: f64, slope: f64, height: f64) -> f64 {
         fixed + 0.2 * (slope * height).exp()
     }

@@ -1,8 +1,8 @@
-//! Settings, each declared once: [`settings!`] makes a struct whose fields carry name, text, range, default and the
-//! levels of a benchmark, [`choices!`] an enum that can be one's type.
+//! Settings, each declared once: [`settings!`] makes a struct whose fields carry name, text, range, default
+//! and the levels of a benchmark, [`choices!`] an enum that can be one's type.
 //!
-//! All else is asked of [`Settings::each`]: command-line options and their help, what statistics and files report,
-//! benchmarks, plans, and the table in the README.
+//! All else is derived by [`Settings::each`]: command-line options and their help, reports in statistics and
+//! files, benchmarks, plans, and the table in the README.
 
 mod shared;
 mod spec;
@@ -17,13 +17,13 @@ pub type Each<'a> = &'a mut (dyn FnMut(&'static Spec, &mut dyn Value) + 'a);
 
 /// A struct of settings, or a setting of its own.
 pub trait Settings {
-    /// Visits all settings, groups in place. What one setting implies for others is brought in line afterwards.
+    /// Visits all settings, groups in place. Settings implied by others are adjusted afterwards.
     fn each(&mut self, each: Each);
 
-    /// Sets the setting named `key` from what was typed; false if there is none.
+    /// Sets the setting named `key` from text; returns false if there is none.
     ///
     /// # Errors
-    /// Says what is expected. Nothing is set then.
+    /// A description of the values expected. Nothing is set then.
     fn set(&mut self, key: &str, text: &str) -> Result<bool, String> {
         let mut result = Ok(false);
         self.each(&mut |spec, value| {
@@ -85,7 +85,7 @@ macro_rules! settings {
     };
 }
 
-/// How [`settings!`] visits a field.
+/// Visit of a field by [`settings!`].
 macro_rules! visit {
     ($s:ident $each:ident $heading:ident $field:ident $doc:tt) => {};
     ($s:ident $each:ident $heading:ident $field:ident $doc:tt [group]) => {

@@ -21,7 +21,7 @@ pub struct Spec {
     pub placeholder: Option<&'static str>,
     /// True for an option without a value: typed, it is on.
     pub flag: bool,
-    /// Least and largest number.
+    /// Minimum and maximum.
     range: [f64; 2],
     /// Levels that benchmarks try, if it trades error for time.
     pub levels: Option<Levels>,
@@ -38,18 +38,18 @@ pub struct Levels {
     pub parts: &'static [&'static str],
     /// Settings, by key, that make it matter where it does not by default.
     pub with: &'static [(&'static str, &'static str)],
-    /// The error that shows what it does.
+    /// Error that the knob is judged by.
     pub judged_by: JudgedBy,
 }
 
-/// Errors that show what a setting does.
+/// Errors that show the effect of a setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JudgedBy {
-    /// That against lightcuts of a much smaller error on the same virtual lights: what they and their clamping get
-    /// wrong would hide all else.
+    /// Error against lightcuts of a much smaller error on the same virtual lights: the errors of the lights
+    /// and their clamping would hide all else.
     Limit,
-    /// That of light: the setting changes the virtual lights or how they are clamped.
+    /// Error of light: the setting changes the virtual lights or their clamping.
     Light,
     /// FLIP of whole pictures: the setting changes the eye samples.
     Flip,
@@ -133,7 +133,7 @@ impl Spec {
         Spec { levels, ..self }
     }
 
-    /// With another error that shows what it does than [`JudgedBy::Limit`].
+    /// Sets another error to judge by than [`JudgedBy::Limit`].
     pub const fn judged_by(self, judged_by: JudgedBy) -> Spec {
         let levels = match self.levels {
             Some(levels) => Some(Levels { judged_by, ..levels }),
@@ -152,10 +152,10 @@ impl Spec {
         first_paragraph(self.doc)
     }
 
-    /// Sets `value` to what was typed.
+    /// Sets `value` from text.
     ///
     /// # Errors
-    /// Says what is expected. `value` is as it was then.
+    /// A description of the values expected. `value` is unchanged then.
     pub fn set(&self, value: &mut dyn Value, text: &str) -> Result<(), String> {
         let before = value.text();
         let [low, high] = self.range;

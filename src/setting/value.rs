@@ -1,4 +1,4 @@
-//! Types that a setting may have. Each has a text, which is what a user types, sees in `--help` and finds in reports.
+//! Types that a setting may have. Each has a text, which users type, and which `--help` and reports show.
 
 use super::spec::first_paragraph;
 use serde_json::{Value as Json, json};
@@ -8,10 +8,10 @@ pub trait Value {
     /// The value as it is typed; nothing for one that cannot be typed.
     fn text(&self) -> String;
 
-    /// Takes the value of a text.
+    /// Parses a value from text.
     ///
     /// # Errors
-    /// Says what is expected. The value is as it was then.
+    /// A description of the values expected. The value is unchanged then.
     fn parse(&mut self, text: &str) -> Result<(), String>;
 
     /// All values, where they have names.
@@ -50,7 +50,7 @@ pub trait Value {
 /// A value that has a name.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice {
-    /// What is typed.
+    /// Text to type.
     pub name: &'static str,
     /// Its documentation.
     pub(crate) doc: &'static str,
@@ -112,7 +112,7 @@ impl Value for bool {
     }
 }
 
-/// On, off, or what is faster.
+/// On, off, or the faster choice.
 impl Value for Option<bool> {
     fn text(&self) -> String {
         self.map_or("auto".to_owned(), |on| on.text())
@@ -133,7 +133,7 @@ impl Value for Option<bool> {
     }
 }
 
-/// A number, or what the setting's text says instead.
+/// A number, or the default described in the setting's text.
 impl Value for Option<u32> {
     fn text(&self) -> String {
         self.map_or(String::new(), |number| number.to_string())

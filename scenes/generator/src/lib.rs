@@ -1,7 +1,7 @@
-//! Geometry of lightsplat's own scenes. [`generate`] yields named parts; the scene's TOML file gives every part its
-//! material, so that what a scene looks like stays editable.
+//! Geometry of lightsplat's own scenes. [`generate`] yields named parts; the scene's TOML file assigns a
+//! material to every part, so that the looks of a scene stay editable.
 //!
-//! `shapes` holds what geometry is built with, `props` the things that stand in scenes, `scenes` the plans.
+//! `shapes` holds the primitives of modelling, `props` the objects in scenes, `scenes` the plans.
 
 mod props;
 mod scenes;

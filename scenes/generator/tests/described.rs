@@ -1,5 +1,5 @@
-//! The generated scenes are what their files say: the parts named are the parts made, of the promised size
-//! and the promised share of glossy surface, and made again they are the same.
+//! The generated scenes match their files: the parts named are the parts made, of the promised size and the
+//! promised share of glossy surface, and made again they are the same.
 
 use lightsplat_scenes::{Part, generate};
 use std::collections::{BTreeMap, BTreeSet};
@@ -87,7 +87,7 @@ fn scenes_are_as_large_and_as_glossy_as_promised() {
     }
 }
 
-/// Coincident triangles would be hit in an order that nobody chose.
+/// Coincident triangles would be hit in an arbitrary order.
 #[test]
 fn no_triangle_is_there_twice() {
     for Described { name, parts, .. } in &*DESCRIBED {

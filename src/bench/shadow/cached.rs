@@ -1,4 +1,4 @@
-//! The occluder cache: share of rays saved, and what is gained.
+//! The occluder cache: share of rays saved, and time gained.
 
 use super::MRAYS;
 use super::trace::{Trace, Traces};

@@ -1,8 +1,8 @@
-//! Shadow rays: widths, packings and flags by bare loops over Embree's queries, the engine against them, build
-//! qualities, the occluder cache, and the rays that refinement asks for.
+//! Shadow rays: widths, packings and flags by bare loops over Embree's queries, the engine against them,
+//! build qualities, the occluder cache, and the rays of refinement.
 //!
-//! All segments are those of the scene: from what its camera sees to its virtual lights. One thread and its processor
-//! time.
+//! All segments are those of the scene: from the surfaces that its camera sees to its virtual lights. One
+//! thread and its processor time.
 
 mod cached;
 mod engine;

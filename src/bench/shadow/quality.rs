@@ -1,4 +1,4 @@
-//! Build qualities: what a better hierarchy costs and gains.
+//! Build qualities: cost and gain of better hierarchies.
 
 use super::MRAYS;
 use super::trace::{Traces, count};

@@ -13,7 +13,7 @@ use std::cell::RefCell;
 /// Up to sixteen segments.
 #[derive(Clone)]
 pub struct SegmentPacket {
-    /// Whether they run from neighbouring points to one light.
+    /// True if they run from neighbouring points to one light.
     pub neighbours: bool,
     pub rays: Rays16,
     pub valid: u16,
@@ -24,7 +24,7 @@ pub struct SegmentPacket {
 /// Segments in an order.
 pub struct Trace {
     pub name: &'static str,
-    /// Whether most packets run from neighbouring points to one light.
+    /// True if most packets run from neighbouring points to one light.
     pub neighbours: bool,
     /// By stretches of work in which a cache lives.
     pub chunks: Vec<Vec<SegmentPacket>>,
@@ -38,7 +38,7 @@ impl Trace {
         self.chunks.iter().flatten()
     }
 
-    /// The packets of most: a shared cut's, without the rays of points that share with nobody.
+    /// Coherent packets, of shared cuts, without the rays of points that share with none.
     pub fn bundles(&self) -> impl Iterator<Item = &SegmentPacket> {
         self.packets().filter(|p| p.neighbours == self.neighbours)
     }
@@ -206,7 +206,7 @@ fn refined(setting: &Setting, orders: &Orders, order: Order) -> [Trace; 2] {
     })
 }
 
-/// Visibility in the scene that keeps what it is asked.
+/// Visibility in the scene that records its queries.
 struct Recorder<'a> {
     setting: &'a Setting<'a>,
     packer: RefCell<Packer>,

@@ -1,6 +1,6 @@
-//! The settings that trade error for time, each with its levels from coarse to fine around the default.
+//! Settings that trade error for time, each with its levels from coarse to fine around the default.
 //!
-//! Coarse is what should be faster, fine what should be better, where a setting has such an order.
+//! Coarse levels should be faster, fine ones better, where a setting has such an order.
 
 use crate::method::{Method, cache, reconstruction};
 use crate::setting::{JudgedBy, Levels, Spec, Value};
@@ -13,9 +13,9 @@ pub struct Knob {
     part: usize,
     /// From coarse to fine.
     pub levels: Vec<Level>,
-    /// What is rendered where it is turned alone: it matters there.
+    /// Method rendered where the setting is varied alone, one on which it has an effect.
     pub base: Method,
-    /// The error that shows what it does.
+    /// Error that the knob is judged by.
     pub judged_by: JudgedBy,
 }
 
@@ -82,7 +82,7 @@ pub fn knobs() -> Vec<Knob> {
     knobs
 }
 
-/// Values, or multiples of the default, of which those that come to the same are one.
+/// Values, or multiples of the default, with equal ones merged.
 fn levels_of(spec: &'static Spec, levels: &Levels, value: &mut dyn Value, part: usize) -> Vec<Level> {
     let default = value.numbers().get(part).copied();
     let mut found: Vec<Level> =

@@ -12,7 +12,7 @@ use crate::math::{F32x16, Frame, LANES, LUMINANCE, Vec3x16, lanes_in, luminance}
 use crate::vpl::VplKind;
 use glam::Vec3;
 
-/// Widens boxes by more than the rounding of what is computed from them.
+/// Margin by which boxes are widened: more than the rounding of the values computed from them.
 const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
 impl Transfer<'_> {
@@ -156,14 +156,14 @@ impl ClusterBox {
         ]
     }
 
-    /// Largest cosine to the z axis of a receiver's frame.
+    /// Returns the maximum cosine to the z axis of a receiver's frame.
     #[inline(always)]
     fn max_cos(&self, receivers: &ReceiverPacket, frames: &Frames16, l: usize) -> f32 {
         let [(x, half_x), (y, half_y), (z, half_z)] = self.turned(receivers, frames, l);
         max_cos(x.abs(), half_x, y.abs(), half_y, z + half_z)
     }
 
-    /// Bounds that a lobe needs besides: least cosine to the normal, largest to the mirror direction.
+    /// Returns the bounds for a lobe: minimum cosine to the normal, maximum cosine to the mirror direction.
     fn lobe16(&self, receivers: &ReceiverPacket) -> (F32x16, F32x16) {
         let (mut cos_min, mut cos_mirror) = ([0.0; LANES], [0.0; LANES]);
         for l in 0..LANES {
@@ -177,7 +177,8 @@ impl ClusterBox {
     }
 }
 
-/// Largest cosine to z over a box (see `OffsetBox::max_cos_z`) given by its distances from the z axis.
+/// Returns the maximum cosine to z over a box (see `OffsetBox::max_cos_z`) given by its distances from the z
+/// axis.
 #[inline(always)]
 fn max_cos(x: f32, half_x: f32, y: f32, half_y: f32, z: f32) -> f32 {
     let (near_x, near_y) = (positive(x - half_x), positive(y - half_y));

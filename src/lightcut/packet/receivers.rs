@@ -16,10 +16,10 @@ pub struct ReceiverPacket<'m> {
     pub(in crate::lightcut) valid: u16,
     /// Lanes whose material is not just Lambert.
     pub(in crate::lightcut) general: u16,
-    /// Their materials, if they are alike: else their responses and bounds are computed one by one.
+    /// Their materials, if uniform: else their responses and bounds are computed one by one.
     pub(in crate::lightcut) glossy: Option<AlikeBsdfs16<'m>>,
     pub(in crate::lightcut) position: Vec3x16,
-    /// Largest coordinate of any position.
+    /// Maximum coordinate of any position.
     pub(in crate::lightcut) reach: f32,
     pub(in crate::lightcut) geometric_normal: Vec3x16,
     /// Shading frames.

@@ -7,11 +7,12 @@ use crate::lightcut::refinement::heir_and_other;
 use crate::lightcut::{CutSettings, PacketVisibility, Transfer};
 use crate::math::{F32x16, LANES, Vec3x16};
 
-/// Least luminance of a lane where errors are judged, relative to the brightest lane's.
+/// Minimum luminance of a lane where errors are judged, relative to the brightest lane's.
 const MIN_LUMINANCE: f32 = 1.0 / 256.0;
 
-/// Largest relative error that is told from larger ones; sixteen of its cubes are still finite. No lane counts as
-/// darker than the largest error of a whole tree over this, so that errors have an order before anything lit is found.
+/// Maximum of relative errors; larger ones are clamped to it; sixteen of its cubes are still finite. No lane
+/// counts as darker than the largest error of a whole tree over this, so that errors have an order before any
+/// light is found.
 const MAX_ERROR: f32 = 1e12;
 
 const ZERO: F32x16 = [0.0; LANES];
@@ -34,7 +35,7 @@ pub(super) struct Pass<'a, 't, 'm, V> {
     settings: &'a CutSettings,
     /// Luminance of the cut in each lane, as far as it counts.
     totals: F32x16,
-    /// Largest offence that is tolerated: each lane's error at ε.
+    /// Tolerated offence: each lane's error at ε.
     tolerance: f32,
     /// Luminance below which no lane counts as darker.
     min_total: f32,

@@ -23,7 +23,7 @@ fn neighbours<'m>(
 ) -> Vec<Receiver<'m>> {
     let first = random_receiver(materials, scene, scale, numbers);
     let lambert = materials.at(scene, MaterialId(0), Vec2::ZERO);
-    // In half of the groups two materials that are not alike.
+    // In half of the groups two materials that are not uniform.
     let another = random_receiver(materials, scene, scale, numbers).bsdf().filter(|_| numbers.next() < 0.5);
     let other = another.map_or(lambert, |(bsdf, _)| bsdf);
     (0..count)
@@ -67,7 +67,7 @@ fn lanes_have_the_responses_of_single_points_and_bounds_above_them() {
                         let single = transfer.unshadowed(points.get(lane), &trees.vpls[vpl], node.kind());
                         let response = responses.get(lane);
                         let difference = (response - single).abs();
-                        // Cosines near 0 lose digits, at most these of what a cosine of 1 would give.
+                        // Cosines near 0 lose digits, at most these of the value for a cosine of 1.
                         let offset = trees.vpls[vpl].position - points.get(lane).position();
                         let falloff = match node.kind() {
                             VplKind::Directional => 1.0,
@@ -163,7 +163,7 @@ fn one_lane_clamps_as_a_single_point_does() {
         let single = Lightcut::new().gather(&transfer, &Unoccluded, points.get(lane), &settings).radiance;
         assert!((luminance(*radiance) / luminance(single) - 1.0).abs() < 0.01, "{radiance} {single}");
     }
-    // What random corrections leave besides the leaves may be anything.
+    // The residue of random corrections may be anything.
     let whole = luminance(sum.radiance[0]);
     for share in (0..200).map(|n| 0.01 * n as f32) {
         let light = PacketLight { clusters, strong: Vec3x16::splat(Rgb::splat(-share * whole)) };

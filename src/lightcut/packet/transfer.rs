@@ -32,7 +32,7 @@ impl Transfer<'_> {
         (lit & receivers.valid, responses)
     }
 
-    /// Contributions of a VPL that is no spot to the lanes with alike materials.
+    /// Returns the contributions of a VPL that is no spot to the lanes with uniform materials.
     fn respond(
         &self,
         glossy: &AlikeBsdfs16,

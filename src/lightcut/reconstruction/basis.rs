@@ -7,7 +7,7 @@ use glam::Vec3;
 
 /// Fewer anchors than this are not fitted.
 const MIN_ANCHORS: u32 = 8;
-/// Extent of the anchors along an axis, relative to their largest, below which nothing is fitted along it.
+/// Extent of the anchors along an axis, relative to their largest, below which no slope is fitted along it.
 const MIN_EXTENT: f32 = 1e-3;
 
 /// Values of the three functions, by lane.
@@ -19,10 +19,10 @@ pub(super) struct LinearBasis {
     centre: Vec3,
     /// Value of the constant function.
     constant: f32,
-    /// Largest squared distance of an anchor from the centre.
+    /// Maximum squared distance of an anchor from the centre.
     pub radius_sq: f32,
     axes: [Vec3; 2],
-    /// Least and largest value of the linear functions at the anchors.
+    /// Minimum and maximum of the linear functions at the anchors.
     ranges: [[f32; 2]; 2],
     /// Values at the anchors; 0 in lanes without one.
     pub at_anchors: BasisValues,
@@ -90,7 +90,7 @@ impl LinearBasis {
 fn axes(frame: &Frame, along: impl Fn(Vec3) -> F32x16) -> Option<[Vec3; 2]> {
     let (u, v) = (along(frame.tangent), along(frame.bitangent));
     let (uu, uv, vv) = (dot(&u, &u), dot(&u, &v), dot(&v, &v));
-    // The longer axis first, so that what is left of the other is well conditioned.
+    // The longer axis first, so that the remainder of the other is well conditioned.
     let (first, second, longer) =
         if uu >= vv { (frame.tangent, frame.bitangent, uu) } else { (frame.bitangent, frame.tangent, vv) };
     if !(longer > 0.0) {

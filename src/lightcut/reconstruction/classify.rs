@@ -1,17 +1,23 @@
 //! Classes of the clusters of an anchors' cut.
 //!
-//! ε is the cut's, "share" a cluster's unshadowed luminance relative to the anchors' total, averaged over the anchors, "error" the
-//! root mean square over the anchors of the difference between the fit and the cluster, relative to the total:
+//! ε is the cut's, "share" a cluster's unshadowed luminance relative to the anchors' total, averaged over the
+//! anchors, "error" the root mean square over the anchors of the difference between the fit and the cluster,
+//! relative to the total:
 //!
 //! | threshold | value | meaning |
 //! |---|--:|---|
-//! | `LARGE` | 0.35 | a share above `LARGE` · ε is evaluated with a shadow ray at every point: the shadow of a small occluder is the more visible the more light it takes |
-//! | `SMOOTH` | 0.3 | a cluster that all anchors see is fitted if error ≤ `SMOOTH` · ε · √share: the larger the cluster, the less relative error is tolerated |
-//! | `DOUBT` | 0.2 | the error of a cluster that anchors disagree about counts as at least `DOUBT` · share ... |
-//! | `CERTAIN` | 0.4 | ... and it is sampled with the probability error / (`CERTAIN` · ε), evaluated if that reaches 1 |
-//! | `BRIGHTER` | 2 | a cluster this many times as bright at a point as at any anchor needs a shadow ray even if all anchors see it, and is split if it gives more than ε of the radiance: the anchors were too far from it to know |
-//! | `MAX_CORRECTION` | 0.5 | most luminance of one correction, relative to the point's or the anchors' |
-//! | `MIN_LUMINANCE` | 1/16 | least luminance of an anchor where errors are judged, relative to the brightest |
+//! | `LARGE` | 0.35 | a share above `LARGE` · ε is evaluated with a shadow ray at every point (1) |
+//! | `SMOOTH` | 0.3 | a cluster visible from all anchors is fitted if error ≤ `SMOOTH` · ε · √share (2) |
+//! | `DOUBT` | 0.2 | the error of a cluster visible from some anchors only counts as at least `DOUBT` · share ... |
+//! | `CERTAIN` | 0.4 | ... and it is sampled with probability error / (`CERTAIN` · ε), evaluated if that reaches 1 |
+//! | `BRIGHTER` | 2 | factor over all anchors' brightness from which on a cluster needs a shadow ray at a point (3) |
+//! | `MAX_CORRECTION` | 0.5 | maximum luminance of one correction, relative to the point's or the anchors' |
+//! | `MIN_LUMINANCE` | 1/16 | minimum luminance of an anchor where errors are judged, relative to the brightest |
+//!
+//! 1. The shadow of a small occluder is the more visible the more light it takes.
+//! 2. The larger the cluster, the less relative error is tolerated.
+//! 3. Even if all anchors see it; and it is split if it gives more than ε of the radiance: the anchors were
+//!    too far from it to sample it.
 
 use super::fit::{Interpolant, LinearFit};
 use crate::lightcut::clamp::is_weak;
@@ -75,7 +81,7 @@ struct AtAnchors {
     lit: u16,
     /// Anchors that see it.
     seen: u16,
-    /// Whether enough anchors are lit to judge by.
+    /// True if enough anchors are lit to judge by.
     known: bool,
     /// Unshadowed luminance.
     luminances: F32x16,
@@ -98,7 +104,7 @@ impl<'a, 't, 'm> Anchors<'a, 't, 'm> {
         Anchors { transfer, receivers, sum, epsilon, inverse_totals, luminance }
     }
 
-    /// Class of a cluster, and what is fitted to it by the functions of `interpolant`.
+    /// Returns the class of a cluster, and the linear fit to it by the functions of `interpolant`.
     pub fn classify(&self, cluster: &PacketCluster, interpolant: &Interpolant) -> Class {
         let node = &self.transfer.trees.nodes[cluster.node as usize];
         let at = self.light(cluster);
@@ -107,7 +113,7 @@ impl<'a, 't, 'm> Anchors<'a, 't, 'm> {
             Class::Evaluated(Evaluated { node: cluster.node, shadow_above, split_above })
         };
         if at.lit == 0 {
-            // Below every anchor's horizon, which says nothing about how much of it rises above another point's.
+            // Below every anchor's horizon, which gives no information on the part above another point's.
             return evaluated(0.0, min_split);
         }
         if at.known && at.seen == 0 {

@@ -1,9 +1,9 @@
 //! Linear functions of position, fitted to the light that anchors gather from clusters.
 //!
-//! A cluster of unit intensity gives each anchor an irradiance vector (0 if it is not seen), and the anchor's lobe, if it has
-//! one, reflects some of it. To both, functions of the position on the patch's tangent plane are fitted by
-//! least squares; the sum over the clusters, weighted by their intensities, serves all points of the patch, each
-//! with its own normal and base.
+//! A cluster of unit intensity gives each anchor an irradiance vector (0 if it is not seen), and the anchor's
+//! lobe, if it has one, reflects some of it. To both, functions of the position on the patch's tangent plane
+//! are fitted by least squares; the sum over the clusters, weighted by their intensities, serves all points
+//! of the patch, each with its own normal and base.
 
 use super::basis::{BasisValues, LinearBasis, dot};
 use crate::light_tree::Node;

@@ -41,9 +41,9 @@ impl<V: PacketVisibility> Gathering<'_, '_, '_, V> {
         }
     }
 
-    /// Corrects the fits of sampled clusters, each with its probability. No correction of a point is brighter than half its
-    /// luminance, or the anchors' mean `luminance`: an unlikely cluster that is much brighter at the point than at any anchor
-    /// would be a firefly.
+    /// Corrects the fits of sampled clusters, each with its probability. No correction of a point is brighter
+    /// than half its luminance, or the anchors' mean `luminance`: an unlikely cluster that is much brighter
+    /// at the point than at any anchor would be a firefly.
     pub fn correct(&mut self, clusters: &[Sampled], basis: &BasisValues, start: f32, luminance: f32) {
         let limits = luminances(Rgb::ONE, &self.strong).map(|y| MAX_CORRECTION * y.max(luminance));
         let mut ticket = start;

@@ -1,29 +1,35 @@
-//! Reconstruction cuts: the cut of a few anchor points of a patch of surface, evaluated at the points in between.
+//! Reconstruction cuts: the cut of a few anchor points of a patch of surface, evaluated at the points in
+//! between.
 //!
-//! Paper: Walter et al., *Lightcuts*, 2005, section 5 (reconstruction cuts: clusters on whose light and visibility the
-//! anchors agree are interpolated, others evaluated); cf. Rehfeld and Dachsbacher, *Lightcut Interpolation*, HPG 2016 (cuts, and
-//! per cluster visibility, interpolated from cache records).
+//! Paper: Walter et al., *Lightcuts*, 2005, section 5 (reconstruction cuts: clusters on whose light and
+//! visibility the anchors agree are interpolated, others evaluated); cf. Rehfeld and Dachsbacher, *Lightcut
+//! Interpolation*, HPG 2016 (cuts, and per cluster visibility, interpolated from cache records).
 //!
-//! The anchors share one packet's cut, which is not refined again for the interpolated points, except for clusters much brighter at
-//! such a point than at any anchor. Each of its clusters is classified once for the patch ([`classify`]):
+//! The anchors share one packet's cut, which is not refined again for the interpolated points, except for
+//! clusters much brighter at such a point than at any anchor. Each of its clusters is classified once for the
+//! patch ([`classify`]):
 //!
 //! | class | clusters | at an interpolated point |
 //! |---|---|---|
 //! | dropped | all anchors are in their shadow | nothing |
-//! | fitted | all anchors see them, and their light is smooth over the anchors | a linear function ([`fit`]) |
-//! | evaluated | large, or neither seen nor hidden by all, or not smooth | transfer, a shadow ray unless small and agreed upon |
-//! | sampled | small, and disagreed upon | the linear function, corrected at random ([`gather`]) |
+//! | fitted | visible from all anchors, and smooth over the anchors | a linear function ([`fit`]) |
+//! | evaluated | large, or visible from some anchors only, or not smooth | transfer, and in most cases a shadow ray |
+//! | sampled | small, and visible from some anchors only | the linear function, corrected at random ([`gather`]) |
+//!
+//! A small evaluated cluster on whose visibility the anchors agree needs no shadow ray.
 //!
 //! Deviations:
-//! - One cut for all anchors, where the papers have one each: points in between have no cut to be interpolated or traversed.
-//! - A function linear in position is fitted to each cluster's light at all anchors by least squares, and the sum of the fits
-//!   is evaluated once a point; Walter et al. interpolate each cluster between the nearest anchors.
-//! - The light of clusters that anchors disagree about is corrected stochastically: one is evaluated with a probability in
-//!   proportion to its error, and the error found is divided by the probability, so that the radiance is right on average.
-//!   Walter et al. evaluate every such cluster.
-//! - A correction is capped, which is biased, lest it be seen as a firefly.
-//! - As in both papers, light and shadow that reach none of the anchors are missed: those of a small cluster through a gap, for
-//!   example.
+//! - One cut for all anchors, where the papers have one each: points in between have no cut to be
+//!   interpolated or traversed.
+//! - A function linear in position is fitted to each cluster's light at all anchors by least squares, and the
+//!   sum of the fits is evaluated once a point; Walter et al. interpolate each cluster between the nearest
+//!   anchors.
+//! - The light of clusters that anchors disagree about is corrected stochastically: one is evaluated with a
+//!   probability in proportion to its error, and the error found is divided by the probability, so that the
+//!   radiance is right on average. Walter et al. evaluate every such cluster.
+//! - A correction is capped, which is biased, lest it be visible as a firefly.
+//! - As in both papers, light and shadow that reach none of the anchors are missed: those of a small cluster
+//!   through a gap, for example.
 
 mod basis;
 mod classify;
@@ -39,8 +45,8 @@ use classify::{Anchors, Class, Evaluated, Sampled};
 use fit::Interpolant;
 use gather::Gathering;
 
-/// A cut, classified by the light that its anchors gather from it, and a workspace for its use; one a thread, so that its
-/// buffers are allocated once.
+/// A cut, classified by the light that its anchors gather from it, and a workspace for its use; one a thread,
+/// so that its buffers are allocated once.
 #[derive(Default)]
 pub struct ReconstructionCut {
     evaluated: Vec<Evaluated>,
@@ -84,7 +90,7 @@ impl ReconstructionCut {
                 }
             }
         }
-        // Neighbours in the tree are drawn in turn, so that what is drawn is spread over the lights.
+        // Neighbours in the tree are drawn in turn, so that the draws are spread over the lights.
         self.sampled.sort_unstable_by_key(|sampled| sampled.node);
     }
 

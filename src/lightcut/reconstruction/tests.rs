@@ -80,9 +80,9 @@ fn sampled_clusters_are_right_on_average() {
     }
     let (rays, size) = (reconstruction.counts.rays / starts as u64, cut.clusters.len());
     assert!(rays < (size * LANES / 4) as u64, "{rays} rays for {size} clusters");
-    // What chance leaves of a patch half in shadow is a few times ε; on average, a tenth of it.
+    // The random residue of a patch half in shadow is a few times ε; on average, a tenth of it.
     assert!(squares.sqrt() < 0.06 && squares.sqrt() > 0.001, "{}", squares.sqrt());
-    // Odd lanes lie beyond the last anchors, at the mercy of what no anchor sees.
+    // Odd lanes are beyond the last anchors, dependent on light that no anchor sees.
     let among: Vec<f32> = means.into_iter().step_by(2).collect();
     assert!(rms(&among) < 0.003, "{means:?}");
 }

@@ -1,10 +1,11 @@
-//! The sum over all VPLs, one shadow ray each: what a lightcut approximates, and is tested against.
+//! The sum over all VPLs, one shadow ray each: the reference that a lightcut approximates, and is tested
+//! against.
 
 use crate::lightcut::{Receiver, Transfer, Visibility};
 use crate::math::Rgb;
 use glam::DVec3;
 
-/// What `receiver` gathers from all VPLs. Time is proportional to their number; nothing is clamped.
+/// Gathers the light of all VPLs at `receiver`. Time is proportional to their number; nothing is clamped.
 pub fn gather_all<V: Visibility>(transfer: &Transfer, visibility: &V, receiver: &Receiver) -> Rgb {
     let mut sum = DVec3::ZERO;
     for leaf in transfer.trees.leaves() {

@@ -1,14 +1,14 @@
 //! Bounds of angles over boxes.
 //!
 //! Paper: Walter et al., *Lightcuts*, 2005, section 4.1: the box is turned into the frame of the axis, where
-//! the largest cosine to the axis is at its highest z and least distance from the axis.
+//! the maximum cosine to the axis is at its highest z and minimum distance from the axis.
 //! Deviations: where the whole box lies behind the plane across the axis, the cosine is bounded by a negative
 //! number, not by 0: the cone of the emitters' normals makes use of it.
 
 use crate::math::Frame;
 use glam::Vec3;
 
-/// Widens boxes by more than the rounding of what is computed from them.
+/// Margin by which boxes are widened: more than the rounding of the values computed from them.
 const ROUNDING: f32 = 4.0 * f32::EPSILON;
 
 /// A box of offsets from the receiver, or of unit directions.
@@ -27,7 +27,7 @@ impl OffsetBox {
         OffsetBox { centre, half: half + ROUNDING * (centre.abs() + half) }
     }
 
-    /// Square of the least distance from the origin.
+    /// Square of the minimum distance from the origin.
     #[inline]
     pub fn min_dist_sq(&self) -> f32 {
         (self.centre.abs() - self.half).max(Vec3::ZERO).length_squared()
@@ -57,7 +57,7 @@ impl OffsetBox {
         } else {
             (self.centre.x.abs() + self.half.x, self.centre.y.abs() + self.half.y)
         };
-        // The least positive number stands for 0/0, a box of no size at the origin.
+        // The smallest positive number avoids 0/0 for a box of no size at the origin.
         z / (x * x + y * y + z * z).sqrt().max(f32::MIN_POSITIVE)
     }
 
@@ -73,8 +73,8 @@ impl OffsetBox {
     }
 }
 
-/// No smaller than the positive cosine between some normal in a cone and some direction, if the axis
-/// makes an angle of at least acos(`cos_theta`) with every direction.
+/// Upper bound of the positive cosine between some normal in a cone and some direction, if the axis makes an
+/// angle of at least acos(`cos_theta`) with every direction.
 #[inline]
 pub fn max_cos_to_cone(cos_theta: f32, cos_beta: f32, sin_beta: f32) -> f32 {
     if cos_theta >= cos_beta {

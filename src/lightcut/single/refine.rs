@@ -1,5 +1,5 @@
-//! The refinement: start from the roots, split the clusters with the largest error to expect until none is above the
-//! threshold.
+//! The refinement: start from the roots, split the clusters with the largest expected error until none is
+//! above the threshold.
 
 use super::{CutCluster, Lightcut};
 use crate::light_tree::LightTrees;

@@ -1,8 +1,9 @@
-//! Agreement with Mitsuba 3.9.1: BSDF · cosine at a few directions, and what its delta lobes carry.
+//! Agreement with Mitsuba 3.9.1: BSDF · cosine at a few directions, and the weights of its delta lobes.
 //!
 //! The numbers were printed by running its `scalar_rgb` variant (`load_dict(...).eval(ctx, si, wo)`, with its
-//! `wi` our `wo`): diffuse colour (0.2, 0.5, 0.9), index 1.5 against 1, gold for the conductors with a specular
-//! reflectance of (0.9, 0.8, 0.7) on the rough ones. A wider grid of 920 pairs agreed to 5e-6 throughout.
+//! `wi` our `wo`): diffuse colour (0.2, 0.5, 0.9), index 1.5 against 1, gold for the conductors with a
+//! specular reflectance of (0.9, 0.8, 0.7) on the rough ones. A wider grid of 920 pairs agreed to 5e-6
+//! throughout.
 
 use super::*;
 

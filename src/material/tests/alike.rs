@@ -1,4 +1,4 @@
-//! Sixteen alike materials at once are what each is by itself.
+//! Sixteen uniform materials at once give the same values as each by itself.
 
 use super::*;
 use crate::math::{F32x16, LANES, Vec3x16};

@@ -1,4 +1,4 @@
-//! Samples are distributed as the density says, and their weights are what the BSDF says.
+//! Samples are distributed by the density, and their weights agree with the BSDF.
 
 use super::*;
 use crate::material::sample::BsdfSample;
@@ -65,7 +65,7 @@ fn sampling_follows_the_density() {
                 let mut expected = expected(&bsdf, wo);
                 let total: f64 = expected.iter().sum();
                 assert!(total < 1.0 + 1e-4, "{} at {theta}: density integrates to {total}", material.name);
-                // What is left are delta lobes and facets that send light inwards.
+                // The remainder are delta lobes and facets that send light inwards.
                 expected.push((1.0 - total).max(0.0));
                 expected.iter_mut().for_each(|e| *e *= SAMPLES as f64);
                 let mut observed = vec![0.0; expected.len()];

@@ -19,7 +19,7 @@ pub struct Counts {
     pub shadow_rays: u64,
 }
 
-/// Paths in flight, and what they brought to the eye so far.
+/// Paths in flight, and their contributions so far.
 #[derive(Default)]
 pub(super) struct Batch {
     packets: Vec<Packet>,

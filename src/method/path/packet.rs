@@ -1,4 +1,4 @@
-//! What travels: sixteen paths, and sixteen segments to lights, as structures of arrays.
+//! State of paths in flight: sixteen paths, and sixteen segments to lights, as structures of arrays.
 
 use super::batch::Counts;
 use crate::embree::{Ray, Rays16};
@@ -19,9 +19,9 @@ pub(super) struct Packet {
     pub normal: Vec3x16,
     /// Densities of the edges' directions; infinite where light sampling could not have chosen them.
     pub pdf: F32x16,
-    /// Where the random numbers come from.
+    /// Random number generators.
     pub samplers: Samplers16,
-    /// Which of the batch's results each path adds to.
+    /// Index of the result that each path adds to.
     pub slot: U32x16,
 }
 

@@ -7,7 +7,7 @@ use crate::view::View;
 use crate::world::World;
 use glam::DVec3;
 
-/// Most paths of one pixel that are traced together with those of the others.
+/// Maximum number of paths of one pixel that are traced together with those of the others.
 const TOGETHER: u32 = 64;
 
 /// A pixel whose radiance is wanted.
@@ -19,8 +19,8 @@ pub struct Wanted {
     pub samples: u32,
 }
 
-/// Mean radiance of each pixel over its paths, and how many radiances were not finite and count as 0. Another
-/// `seed` gives independent means.
+/// Computes the mean radiance of each pixel over its paths, and the number of radiances that were not finite
+/// and count as 0. Another `seed` gives independent means.
 pub fn pixel_means(
     world: &World,
     view: &View,

@@ -61,7 +61,7 @@ struct Pixel {
     squares: Rgb,
 }
 
-/// A tile's pixels and what was counted for them.
+/// A tile's pixels and their counts.
 struct Tile {
     pixels: Vec<Pixel>,
     samples: u32,
@@ -69,7 +69,7 @@ struct Tile {
     nonfinite: u64,
 }
 
-/// Renders what `view` sees.
+/// Renders the picture of `view`.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     let mut stats = Stats::new();
     let mut tiles: Vec<Tile> = (0..view.window.tile_count(TILE))

@@ -1,11 +1,12 @@
-//! Sixteen vertices of paths: what they emit, what light reaches them directly, and where the paths go on.
+//! Sixteen vertices of paths: their emission, their direct light, and the next edges.
 //!
 //! Paper: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapters 9 and 10.
 //!
-//! Deviations: a path survives Russian roulette with the square root of its throughput. The throughput itself, from
-//! the second bounce on, ends paths between dark walls so often that the few that then meet the sun are fireflies.
-//! Against the throughput from the third bounce on, the root from the second takes 2 to 7 % less time in a Cornell
-//! box, a glossy knot and a church, at the same variance a sample (the knot: a tenth less).
+//! Deviations: a path survives Russian roulette with the square root of its throughput. The throughput
+//! itself, from the second bounce on, ends paths between dark walls so often that the few that then hit the
+//! sun are fireflies. Against the throughput from the third bounce on, the root from the second takes 2 to
+//! 7 % less time in a Cornell box, a glossy knot and a church, at the same variance a sample (the knot: a
+//! tenth less).
 
 use super::packet::Packet;
 use crate::embree::{Ray, Rays16};
@@ -27,7 +28,7 @@ const PAIRS_BEFORE: u32 = 1;
 const PAIRS_A_VERTEX: u32 = 4;
 
 impl Packet {
-    /// Adds to `results` what the surfaces that the edges have met emit, in the lanes of `found`.
+    /// Adds to `results` the emission of the surfaces that the edges have hit, in the lanes of `found`.
     #[inline]
     pub fn add_emitted(&self, world: &World, surfaces: &Surfaces16, found: u16, results: &mut [Rgb]) {
         let lit = lanes_in(found).filter(|i| world.emitters.is_light(surfaces.mesh[*i]));

@@ -1,6 +1,6 @@
 //! A torus knot on a plinth in a closed room: 2,936 triangles, many glossy. A spot throws the knot's sharp
-//! shadow; the room's other light is a lamp that faces the wall from behind a folding screen, so that most
-//! of what one sees is lit indirectly.
+//! shadow; the room's other light is a lamp that faces the wall from behind a folding screen, so that most of
+//! the visible surfaces are lit indirectly.
 
 use crate::shapes::*;
 use glam::{Affine3A, Quat, Vec3};

@@ -10,7 +10,7 @@ pub struct Section<'a> {
     /// Points, counter-clockwise with x to the right and y up. Of an open profile, the outside is on the
     /// right of the direction in which its points follow each other.
     pub points: &'a [Vec2],
-    /// Whether the last point joins the first; an open profile gives an open sheet.
+    /// True if the last point is joined to the first; an open profile gives an open sheet.
     pub closed: bool,
     /// Faces of the profile that meet at more than this stay sharp.
     pub crease_degrees: f32,

@@ -17,7 +17,7 @@ impl Shell {
             .sum()
     }
 
-    /// Whether every edge is shared by exactly two triangles that run along it in opposite directions.
+    /// True if every edge is shared by exactly two triangles that run along it in opposite directions.
     pub fn is_closed(&self) -> bool {
         let mut edges: Vec<(u32, u32)> =
             self.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();

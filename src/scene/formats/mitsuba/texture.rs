@@ -12,7 +12,7 @@ use crate::scene::material::Reflectance;
 use crate::scene::texture::{Filter, TextureId, Wrap};
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
-/// What Mitsuba's `rgb` variants make of an emissive spectrum of 1 at every wavelength.
+/// RGB value in Mitsuba's `rgb` variants of an emissive spectrum of 1 at every wavelength.
 const EQUAL_ENERGY: DVec3 = DVec3::new(1.204795, 0.94829, 0.908915);
 
 impl Converter<'_> {
@@ -137,7 +137,7 @@ impl Converter<'_> {
         };
         let mut raw = object.boolean("raw", false)?;
         if let Some(gamma) = object.float("gamma")? {
-            // Mitsuba 0.6: 1 means linear, -1 means what the file says.
+            // Mitsuba 0.6: 1 means linear, -1 the encoding stated in the file.
             raw |= gamma == 1.0;
             if gamma != 1.0 && gamma > 0.0 {
                 self.log.warn(

@@ -1,4 +1,4 @@
-//! Lacquered cupboards and drawers with what stands on them; the wall is at z = 0, the middle at x = 0.
+//! Lacquered cupboards and drawers with the objects on them; the wall is at z = 0, the middle at x = 0.
 
 use super::{VASE, bar_handle, casing, framed_panel, knob, on_end, shaded};
 use crate::shapes::*;

@@ -1,4 +1,4 @@
-//! Tables with what lies on them.
+//! Tables with the objects on them.
 
 use super::{BOWL, VASE, chair, framed_panel, knob, pile, shaded, turned_leg};
 use crate::shapes::*;

@@ -76,7 +76,7 @@ fn duvet(half: f32) -> Shell {
     patch(36, 30, |u, v| {
         let across = (2.0 * u - 1.0) * reach;
         let along = from + v * (to + 0.05 + drop - from);
-        // How far past the mattress' edge, sideways and at the foot; the rest falls straight down.
+        // Distance past the mattress' edge, sideways and at the foot; the rest falls straight down.
         let side = (across.abs() - half - 0.03).max(0.0);
         let foot = (along - to - 0.03).max(0.0);
         let x = across.clamp(-half - 0.03, half + 0.03) + 0.16 * side * across.signum();

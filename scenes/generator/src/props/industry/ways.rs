@@ -14,7 +14,7 @@ pub fn grating(part: &str, corner: Vec3, across: Vec3, along: Vec3, pitch: f32) 
     for k in 0..=count {
         let foot = corner + direction * (pitch * k as f32).min(length - 0.003);
         let half = direction * 0.0022;
-        // Open at the bottom and the ends, which nobody sees: three faces a bar.
+        // Open at the bottom and the ends, which are never visible: three faces a bar.
         let ring = [foot - half - Vec3::Y * depth, foot - half, foot + half, foot + half - Vec3::Y * depth];
         let rows = [ring.to_vec(), ring.map(|p| p + across).to_vec()];
         grating.add(part, &grid(&rows, false, false, 20.0).facing(foot + 0.5 * across + Vec3::Y));

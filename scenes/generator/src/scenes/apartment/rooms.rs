@@ -1,4 +1,4 @@
-//! What stands in the rooms.
+//! Furniture of the rooms.
 
 use super::HEIGHT;
 use crate::props::furniture::*;

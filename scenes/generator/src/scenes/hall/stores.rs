@@ -1,4 +1,4 @@
-//! Where drums, crates, gas cylinders, a cable drum and work benches stand.
+//! Positions of drums, crates, gas cylinders, a cable drum and work benches.
 
 use crate::props::industry::{bench, cable_drum, crate_box, drum, gas_cylinder, pallet};
 use crate::shapes::*;

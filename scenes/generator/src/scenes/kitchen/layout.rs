@@ -1,4 +1,4 @@
-//! Where cupboards and appliances stand, and what stands on them.
+//! Positions of cupboards and appliances, and of the objects on them.
 
 use super::ROOM;
 use crate::props::kitchen::cabinets::{Fronts, base_unit, base_unit_below, shelf, wall_unit, worktop};

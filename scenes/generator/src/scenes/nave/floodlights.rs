@@ -1,5 +1,5 @@
-//! Floodlights on the ledge under the clerestory: deep boxes that light the vault and that nobody below can
-//! look into.
+//! Floodlights on the ledge under the clerestory: deep boxes that light the vault and hide their lamps from
+//! below.
 
 use super::plan::{BAY, BAYS, CLERESTORY, NAVE, pier_z};
 use crate::shapes::*;

@@ -49,7 +49,7 @@ pub struct Detail {
     pub transverse: Vec2,
     /// Width and depth of the ribs along the walls.
     pub wall: Vec2,
-    /// Whether the northern wall has ribs too; over an arcade its mouldings take their place.
+    /// True if the northern wall has ribs too; over an arcade its mouldings take their place.
     pub both_walls: bool,
     /// Facets of the roll at the bottom of a rib.
     pub roll: usize,
