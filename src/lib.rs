@@ -1,4 +1,4 @@
-//! lightsplat: global illumination by radiance-cache splatting with lightcuts, and a path-traced reference, over
+//! lightsplat: global illumination by lightcuts, reconstructed or cached, and a path-traced reference, over
 //! Embree 4.
 //!
 //! The pipeline, in the order of the data:

@@ -162,9 +162,13 @@ mod tests {
     const MARKS: [&str; 2] =
         ["<!-- settings: made by UPDATE_README=1 cargo test --lib readme -->\n\n", "\n<!-- -->\n"];
 
-    /// All settings as Markdown.
+    /// Methods and settings as Markdown.
     fn table() -> String {
-        let mut text = "| option | methods | default | |\n|---|---|---|---|\n".to_owned();
+        let mut text = "| `--method` | |\n|---|---|\n".to_owned();
+        for method in Method::all() {
+            text += &format!("| `{}` | {} |\n", method.name(), method.about());
+        }
+        text += "\n| option | methods | default | |\n|---|---|---|---|\n";
         for setting in settings() {
             let spec = setting.spec;
             let all = setting.defaults.len() == Method::all().count();
@@ -183,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn the_readme_lists_the_settings() {
+    fn the_readme_lists_methods_and_settings() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
         let text = fs::read_to_string(path).unwrap();
         let (before, rest) = text.split_once(MARKS[0]).unwrap();

@@ -113,7 +113,7 @@ fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
                 // Penumbrae are steep: at the default accuracy they need the other mode.
                 (settings.cache.accuracy[0], settings.cache.reach[0]) = (0.1, [0.7, 5.0]);
             }
-            let error = rms(&cached(&world, &settings).color, &per_pixel(&world, &settings));
+            let error = rms(&rendered(&world, &settings).color, &per_pixel(&world, &settings));
             assert!(error < limit, "{direct:?} {footprints:?}: {error}");
         }
     }
@@ -125,7 +125,7 @@ fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
     for (direct, limit) in [(FoundBy::Cuts, 0.03), (FoundBy::Records, 0.08)] {
         let mut settings = settings(direct, Footprints::Anisotropic);
         (settings.cache.accuracy[0], settings.cache.reach[0]) = (0.1, [0.7, 5.0]);
-        let output = cached(&world, &settings);
+        let output = rendered(&world, &settings);
         assert!(count(&output, "Cache/records with series").is_some_and(|n| n > 0));
         // No second cut for the lobe: a sample has one cut at most, of its direct light.
         let own = count(&output, "Shading/tasks by cuts");
@@ -146,7 +146,7 @@ fn lent_cuts_agree_with_lightcuts_per_pixel() {
         settings.spp = 4;
         settings.cache.indirect = FoundBy::Cuts;
         settings.cut.epsilon = 0.01;
-        let output = cached(&world, &settings);
+        let output = rendered(&world, &settings);
         let (records, own) = ("Cache/records, indirect", "Shading/tasks by cuts");
         assert_eq!(count(&output, records).unwrap_or(0), 0);
         assert!(count(&output, own).is_some_and(|own| own > 3 * 96 * 96));
@@ -168,7 +168,7 @@ fn layers_by_records_and_by_samples_add_up_in_every_combination() {
             let mut settings = settings(direct, Footprints::Anisotropic);
             settings.cache.indirect = indirect;
             (settings.cache.accuracy[0], settings.cache.reach[0]) = (0.1, [0.7, 5.0]);
-            let picture = cached(&world, &settings).color;
+            let picture = rendered(&world, &settings).color;
             let error = rms(&picture, first.get_or_insert_with(|| per_pixel(&world, &settings)));
             assert!(error < 0.08, "{direct:?} {indirect:?}: {error}");
         }
@@ -177,7 +177,7 @@ fn layers_by_records_and_by_samples_add_up_in_every_combination() {
 
 #[test]
 fn surfaces_without_lobes_make_no_series() {
-    let output = cached(&lit_room(), &settings(FoundBy::Cuts, Footprints::Anisotropic));
+    let output = rendered(&lit_room(), &settings(FoundBy::Cuts, Footprints::Anisotropic));
     assert_eq!(count(&output, "Cache/records with series"), None);
 }
 
@@ -189,7 +189,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
     for (world, settings) in [(lit_room(), records), (glossy_room(), records), (glossy_room(), lent)] {
         let pictures = [1, 2, 4].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| cached(&world, &settings).color.pixels)
+            pool.install(|| rendered(&world, &settings).color.pixels)
         });
         assert!(pictures[0] == pictures[1] && pictures[0] == pictures[2]);
     }
@@ -201,7 +201,7 @@ fn far_fewer_records_than_eye_samples_and_growing_slower() {
     let records = |spp| {
         let mut settings = settings(FoundBy::Cuts, Footprints::Anisotropic);
         settings.spp = spp;
-        count(&cached(&world, &settings), "Cache/records, indirect").unwrap() as f64
+        count(&rendered(&world, &settings), "Cache/records, indirect").unwrap() as f64
     };
     let (one, sixteen) = (records(1), records(16));
     assert!(one < 0.2 * 96.0 * 96.0, "{one} records");

@@ -92,7 +92,7 @@ fn bad_regions(settings: &cache::Settings) -> Vec<&'static str> {
     let world = divided_room();
     let seen = seen(&world);
     let reference = per_pixel(&world, settings);
-    let picture = cached(&world, settings).color;
+    let picture = rendered(&world, settings).color;
     let of = |wanted: &dyn Fn(&Surface) -> bool| errors(&picture, &reference, &seen, wanted);
     let dark = |s: &Surface| s.position.x > 0.0 && s.position.z < 0.3;
     let beside_block = |s: &Surface| {
@@ -162,7 +162,7 @@ fn smooth_light_stays_smooth() {
         (FoundBy::Records, FoundBy::Records, Footprints::Occlusion),
     ] {
         (by.cache.direct, by.cache.indirect, by.cache.footprints) = (direct, indirect, footprints);
-        let picture = cached(&world, &by).color;
+        let picture = rendered(&world, &by).color;
         let ratio = |i: usize| luminance(picture.pixels[i]) / luminance(reference.pixels[i]);
         // In the creases clamping differs too.
         let open = |i: usize| seen[i].position.x.abs().max(seen[i].position.z.abs()) < 0.9;
@@ -182,9 +182,9 @@ fn smooth_light_stays_smooth() {
 fn inspection_changes_nothing_and_its_layers_add_up() {
     let world = divided_room();
     let mut settings = settings(Footprints::Anisotropic);
-    let plain = cached(&world, &settings);
+    let plain = rendered(&world, &settings);
     settings.inspect = true;
-    let inspected = cached(&world, &settings);
+    let inspected = rendered(&world, &settings);
     assert!(plain.extra.is_empty() && plain.color == inspected.color);
     let layer = |name: &str| {
         let found = inspected.extra.iter().find(|(n, _)| n == name);

@@ -187,7 +187,7 @@ pub fn world(SceneAndView { scene, view }: SceneAndView) -> WorldAndView {
 }
 
 /// Renders the picture by a method; it must be complete.
-pub fn cached(world: &WorldAndView, settings: &impl Renderer) -> Output {
+pub fn rendered(world: &WorldAndView, settings: &impl Renderer) -> Output {
     let output = settings.render(world, &world.view, &Control::new());
     assert!(output.complete && output.nonfinite == 0);
     output

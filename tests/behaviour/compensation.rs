@@ -17,12 +17,12 @@ fn outputs(world: &WorldAndView, vpls: u32, compensation: bool) -> Vec<(&'static
     settings.light.indirect = vpls;
     settings.cache.least_cell = 8;
     settings.cache.indirect = FoundBy::Cuts;
-    let lent = cached(world, &settings);
+    let lent = rendered(world, &settings);
     settings.cache.indirect = FoundBy::Records;
-    let records = cached(world, &settings);
+    let records = rendered(world, &settings);
     settings.cache.indirect = FoundBy::Cuts;
     settings.cache.share = false;
-    let alone = cached(world, &settings);
+    let alone = rendered(world, &settings);
     let mut settings = lightcuts::Settings { compensation, ..Default::default() };
     settings.light.indirect = vpls;
     let cuts = lightcuts::render(world, &world.view, &settings, &Control::new());
@@ -104,7 +104,7 @@ fn surfaces_beside_lamps_are_as_bright_as_paths_make_them() {
         let mut settings = reconstruction::Settings { compensation, ..Default::default() };
         settings.light.direct = 256;
         settings.light.indirect = 10_000;
-        let picture = cached(&world, &settings).color;
+        let picture = rendered(&world, &settings).color;
         let squares = picture.pixels.iter().zip(&truth.pixels).map(|(a, b)| luminance(*a - *b).powi(2));
         ((squares.sum::<f32>() / truth.pixels.len() as f32).sqrt(), brightest(&picture))
     };

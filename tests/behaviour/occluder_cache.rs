@@ -77,7 +77,7 @@ fn the_radiance_cache_gives_the_same_bits_with_it_and_without_on_any_number_of_t
             settings.cache.indirect = FoundBy::Records;
             settings.cache.least_cell = 8;
             (settings.cache.share, settings.cache.shadows) = (share, shadows);
-            let [one, three] = [1, 3].map(|threads| on_threads(threads, || cached(&world, &settings)));
+            let [one, three] = [1, 3].map(|threads| on_threads(threads, || rendered(&world, &settings)));
             assert!(one.color == three.color && one.stats.counters().eq(three.stats.counters()));
             let asks = !share && shadows.cached == Some(true);
             assert!(!asks || saved(&one) > 1000, "share {share}: {shadows:?} saved {}", saved(&one));

@@ -81,7 +81,7 @@ fn the_trade_sweeps_knobs_and_finds_the_front() {
     let sweeps = scene["sweeps"].as_array().unwrap();
     assert_eq!(
         sweeps.iter().map(|s| s["knob"].as_str().unwrap()).collect::<Vec<_>>(),
-        ["--epsilon", "--spp", "build quality"]
+        ["--spp", "--epsilon", "build quality"]
     );
     for sweep in sweeps {
         let levels = sweep["levels"].as_array().unwrap();

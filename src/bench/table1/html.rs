@@ -85,7 +85,7 @@ fn pictures(scene: &SceneTable, number: usize) -> String {
     let id = |what: &str| format!("s{number}-{what}");
     let named = |figure: String, id: &str| figure.replacen("<img ", &format!("<img id=\"{id}\" "), 1);
     let mut text =
-        "<h3>Pictures</h3>\n<p>Each with its FLIP against the reference, and the parts where the cache's \
+        "<h3>Pictures</h3>\n<p>Each with its FLIP against the reference, and the parts where the first method's \
                     is largest. Hold the pointer over a picture to see the reference.</p>\n<div>"
             .to_owned();
     text += &named(figure(&shown(reference, exposure), None, "reference", ""), &id("whole"));
