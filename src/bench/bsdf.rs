@@ -6,7 +6,7 @@ use super::{Benchmark, Clock, Context, Kind, Table};
 use crate::material::{Bsdf, DirectionBound, Materials};
 use crate::math::Rgb;
 use crate::sampling::uniform_sphere;
-use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
+use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene};
 use glam::{Vec2, Vec3};
 use std::hint::black_box;
 
@@ -69,7 +69,7 @@ fn run(context: &Context) -> Vec<Table> {
 fn kinds() -> Vec<Material> {
     let constant = |v: f32| Reflectance::Constant(Rgb::splat(v));
     let rough = |alpha, distribution, fresnel, scale| {
-        Some(Lobe::Rough { distribution, alpha, fresnel, scale: constant(scale) })
+        Some(Lobe::Rough { distribution, alpha: Roughness::Constant(alpha), fresnel, scale: constant(scale) })
     };
     let coat = Some(Coat { eta: 1.5, nonlinear: false });
     let dielectric = Fresnel::Dielectric(1.5);

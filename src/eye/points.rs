@@ -7,7 +7,6 @@
 
 use crate::material::Bsdf;
 use crate::math::Rgb;
-use crate::scene::MaterialId;
 use glam::Vec3;
 use std::ops::Range;
 
@@ -30,8 +29,6 @@ pub struct PointGeometry {
 pub struct PointSurface<'w> {
     /// How it scatters; lobes that the chain follows itself are taken out.
     pub bsdf: Bsdf<'w>,
-    /// Material of the mesh.
-    pub material: MaterialId,
     /// Unit geometric normal.
     pub geometric_normal: Vec3,
     /// Unit vector towards the eye, or towards the last mirror or glass before it.

@@ -98,12 +98,7 @@ impl<'a, 'w> EyeRays<'a, 'w> {
         // Foreshortening is limited, so that grazing samples do not claim whole floors.
         let spacing = self.angle * eye.distance / normal.dot(eye.out).max(0.05).sqrt();
         let geometry = PointGeometry { position: s.position, spacing, normal, coat: eye.bsdf.coat() };
-        let surface = PointSurface {
-            bsdf: eye.bsdf,
-            material: self.world.scene.meshes[s.mesh as usize].material,
-            geometric_normal: s.normal,
-            out: eye.out,
-        };
+        let surface = PointSurface { bsdf: eye.bsdf, geometric_normal: s.normal, out: eye.out };
         (s.position.is_finite() && spacing.is_finite()).then_some((geometry, surface))
     }
 }

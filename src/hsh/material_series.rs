@@ -46,7 +46,7 @@ pub enum Caching {
     Irradiance,
     /// A series of so many bands.
     Series(u8),
-    /// Too glossy for records, or several rough lobes: series are made for single ones.
+    /// Too glossy for records, several rough lobes, or textured roughness: series are made for single lobes.
     PerSample,
 }
 
@@ -102,6 +102,9 @@ impl MaterialSeries {
             .iter()
             .zip(&used)
             .map(|(bsdf, lobes)| match lobes[..] {
+                _ if bsdf.is_of_mean_roughness() => {
+                    MaterialEntry::without_series(bsdf, Caching::PerSample, &quadrature)
+                }
                 [] => MaterialEntry::without_series(bsdf, Caching::Irradiance, &quadrature),
                 [lobe] => {
                     let alpha = kinds[lobe.kind].alpha();
@@ -143,8 +146,8 @@ impl MaterialSeries {
     /// Returns the kernel of a material for outgoing directions at `cos_o` > 0 to the normal, at a point
     /// whose BSDF is `bsdf`. Where [`MaterialSeries::caching`] is not a series it is that of the base alone.
     #[inline]
-    pub fn profile(&self, id: MaterialId, bsdf: &Bsdf, cos_o: f32) -> Profile {
-        let surface = &self.materials[id.0 as usize];
+    pub fn profile(&self, bsdf: &Bsdf, cos_o: f32) -> Profile {
+        let surface = &self.materials[bsdf.material().0 as usize];
         let bands = surface.caching.bands().unwrap_or(MAX_BANDS);
         let (mut coefficients, scale) = match surface.lobe {
             Some(lobe) => (self.lobes[lobe.kind].lookup(cos_o), bsdf.lobe_scale(lobe.slot)),

@@ -5,7 +5,7 @@ use crate::light_tree::{Family, LightTrees, Node};
 use crate::material::Materials;
 use crate::math::{Frame, Rgb, lanes_in};
 use crate::sampling::{hash, uniform_sphere};
-use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
+use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene};
 use crate::vpl::{Origin, SpotProfile, Vpl, VplKind, VplSet};
 use glam::{Vec2, Vec3};
 
@@ -31,7 +31,8 @@ impl Numbers {
 pub fn all_materials() -> Scene {
     let constant = |r: f32, g: f32, b: f32| Reflectance::Constant(Rgb::new(r, g, b));
     let rough = |distribution, alpha, fresnel| {
-        Some(Lobe::Rough { distribution, alpha, fresnel, scale: constant(0.7, 0.9, 0.5) })
+        let (alpha, scale) = (Roughness::Constant(alpha), constant(0.7, 0.9, 0.5));
+        Some(Lobe::Rough { distribution, alpha, fresnel, scale })
     };
     let gold = Fresnel::Conductor { eta: Rgb::new(0.14, 0.37, 1.44), k: Rgb::new(3.98, 2.39, 1.6) };
     let (ggx, beckmann) = (Distribution::Ggx, Distribution::Beckmann);

@@ -29,7 +29,7 @@ pub struct DirectionBounds16 {
 }
 
 impl<'m> AlikeBsdfs16<'m> {
-    /// The materials `at(lane)`, each with its `wo` (z >= 0); `None` if they are not alike, or transmit light.
+    /// Takes the materials `at(lane)`, each with its `wo` (z >= 0); `None` if they are not alike, or transmit light.
     pub fn new(at: impl Fn(usize) -> (Bsdf<'m>, Vec3)) -> Option<AlikeBsdfs16<'m>> {
         let first = at(0).0;
         let zero = Vec3x16::default();
@@ -56,7 +56,7 @@ impl<'m> AlikeBsdfs16<'m> {
         Some(all)
     }
 
-    /// [`Bsdf::eval`] times the cosine of `wi`, in all lanes.
+    /// Returns [`Bsdf::eval`] times the cosine of `wi`, in all lanes.
     #[inline]
     pub fn response(&self, wi: &Vec3x16) -> Vec3x16 {
         let mut response = self.base_times(&self.coat_transmittance(&wi.z));
@@ -73,7 +73,7 @@ impl<'m> AlikeBsdfs16<'m> {
         response
     }
 
-    /// [`Bsdf::bound`] in all lanes.
+    /// Returns [`Bsdf::bound`] in all lanes.
     #[inline]
     pub fn bound(&self, bounds: &DirectionBounds16) -> Vec3x16 {
         let cos_max = &bounds.cos_i_max;
@@ -91,7 +91,7 @@ impl<'m> AlikeBsdfs16<'m> {
         most
     }
 
-    /// Share of the light at each cosine that passes the coat; 1 where there is none.
+    /// Returns the share of the light at each cosine that passes the coat; 1 where there is none.
     #[inline]
     pub fn coat_transmittance(&self, cos: &F32x16) -> F32x16 {
         self.model.base.interface.transmittance16(cos)

@@ -16,7 +16,7 @@ use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
 use std::sync::Arc;
 
-/// A base without its colour.
+/// Base without its colour.
 #[derive(Clone, Debug)]
 pub(super) struct BaseModel {
     pub interface: CoatInterface,
@@ -29,7 +29,7 @@ pub(super) struct BaseModel {
     nonlinear: bool,
 }
 
-/// The surface of the coat.
+/// Surface of the coat.
 #[derive(Clone, Debug)]
 pub(super) enum CoatInterface {
     /// There is no coat.
@@ -40,7 +40,7 @@ pub(super) enum CoatInterface {
 }
 
 impl PartialEq for CoatInterface {
-    /// Whether the same light reaches the base.
+    /// True if the same light reaches the base.
     fn eq(&self, other: &CoatInterface) -> bool {
         match (self, other) {
             (CoatInterface::None, CoatInterface::None) => true,
@@ -52,7 +52,7 @@ impl PartialEq for CoatInterface {
 }
 
 impl CoatInterface {
-    /// Share of the light at `cos` > 0 that passes; 1 where there is no coat.
+    /// Returns the share of the light at `cos` > 0 that passes; 1 where there is no coat.
     #[inline]
     pub fn transmittance(&self, cos: f32) -> f32 {
         match self {
@@ -62,7 +62,7 @@ impl CoatInterface {
         }
     }
 
-    /// The largest transmittance at `cos` > 0 or any smaller cosine.
+    /// Returns the maximum transmittance at `cos` > 0 or any smaller cosine.
     #[inline]
     pub fn max_transmittance(&self, cos: f32) -> f32 {
         match self {
@@ -71,7 +71,7 @@ impl CoatInterface {
         }
     }
 
-    /// [`CoatInterface::transmittance`] in all lanes, cosines below the horizon as at it.
+    /// Returns [`CoatInterface::transmittance`] in all lanes, cosines below the horizon as at it.
     #[inline]
     pub fn transmittance16(&self, cos: &F32x16) -> F32x16 {
         let mut passes = [1.0; LANES];
@@ -83,7 +83,7 @@ impl CoatInterface {
         passes
     }
 
-    /// [`CoatInterface::max_transmittance`] in all lanes.
+    /// Returns [`CoatInterface::max_transmittance`] in all lanes.
     #[inline]
     pub fn max_transmittance16(&self, cos: &F32x16) -> F32x16 {
         match self {
@@ -94,7 +94,7 @@ impl CoatInterface {
 }
 
 impl BaseModel {
-    /// The base under `coat`, whose surface is `interface`.
+    /// Makes the base under `coat`, whose surface is `interface`.
     pub fn new(coat: Option<Coat>, interface: CoatInterface) -> BaseModel {
         let (mean_transmittance, internal_reflectance) = match &interface {
             CoatInterface::None => (1.0, 0.0),
@@ -111,7 +111,7 @@ impl BaseModel {
         BaseModel { interface, mean_transmittance, internal_reflectance, factor, nonlinear: coat.nonlinear }
     }
 
-    /// BRDF, less the coat's transmittances by angle.
+    /// Returns the BRDF, less the coat's transmittances by angle.
     #[inline]
     pub fn brdf(&self, albedo: Rgb) -> Rgb {
         if self.internal_reflectance == 0.0 {
@@ -121,14 +121,14 @@ impl BaseModel {
         albedo * self.factor / (1.0 - returned * self.internal_reflectance)
     }
 
-    /// Share of the light from one direction that leaves again, given the coat's transmittance for it.
+    /// Returns the share of the light from one direction that leaves again, given the coat's transmittance for it.
     #[inline]
     pub fn albedo(&self, brdf: Rgb, transmittance: f32) -> Rgb {
         brdf * (PI * transmittance * self.mean_transmittance)
     }
 }
 
-/// A rough dielectric interface over the base.
+/// Rough dielectric interface over the base.
 #[derive(Clone, Debug)]
 pub(super) struct RoughCoat {
     /// Share of the light from a direction outside that enters.
@@ -162,7 +162,7 @@ impl RoughCoat {
     }
 }
 
-/// Light from `wo` that single scattering on the facets refracts to the other side.
+/// Integrates the light from `wo` that single scattering on the facets refracts to the other side.
 fn transmittance(facets: &Microfacets, eta: f32, wo: Vec3, rule: &[(f32, f32)]) -> f32 {
     let mean = facets.mean_over_visible(wo, rule, |h| {
         let cos = wo.dot(h).min(1.0);

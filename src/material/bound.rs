@@ -7,7 +7,7 @@ use super::lobe::FacetBound;
 use crate::math::Rgb;
 use glam::Vec3;
 
-/// What is known of a set of directions towards light. The normal is the one on the side of `wo`: for a
+/// Bounds of a set of directions towards light. The normal is the one on the side of `wo`: for a
 /// two-sided surface seen from behind, the reversed shading normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionBound {
@@ -20,12 +20,12 @@ pub struct DirectionBound {
 }
 
 impl DirectionBound {
-    /// Covers the rounding of the reflectance and of D at the tip of a narrow lobe.
+    /// Factor that covers the rounding of the reflectance and of D at the tip of a narrow lobe.
     pub(super) const WIDER: f32 = 1.000_01;
 }
 
 impl Bsdf<'_> {
-    /// An upper bound, per channel, of `eval(wo, wi)` · cos θ_i over all `wi` within `bound` on the side of `wo`.
+    /// Returns an upper bound, per channel, of `eval(wo, wi)` · cos θ_i over all `wi` within `bound` on the side of `wo`.
     ///
     /// NaN in a bound counts as not knowing. Exact for a Lambertian surface at `cos_i_max`. Delta lobes are not
     /// included, as they are not in `eval`.

@@ -5,10 +5,11 @@
 use super::lobe::{Directions, LobeModel, MAX_LOBES, RoughLobe, mean};
 use super::model::Model;
 use crate::math::Rgb;
+use crate::scene::MaterialId;
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// A material at one point of a surface: textures are looked up, the rest is shared with [`super::Materials`].
+/// Material at one point of a surface: textures are looked up, the rest is shared with [`super::Materials`].
 #[derive(Clone, Copy, Debug)]
 pub struct Bsdf<'m> {
     pub(super) model: &'m Model,
@@ -18,7 +19,7 @@ pub struct Bsdf<'m> {
     pub(super) scales: [Rgb; MAX_LOBES],
 }
 
-/// What depends on `wo` alone.
+/// Direction and the quantities that depend on it alone.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outgoing {
     /// On the side of the normal, so z > 0, unless light may be transmitted.
@@ -32,20 +33,20 @@ pub(super) struct Outgoing {
 }
 
 impl<'m> Bsdf<'m> {
-    /// BSDF for light from `wi` seen from `wo`, which may be on different sides; 0 where no lobe scatters from one to
-    /// the other. Delta lobes are excluded.
+    /// Returns the BSDF for light from `wi` seen from `wo`, which may be on different sides; 0 where no lobe scatters
+    /// from one to the other. Delta lobes are excluded.
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         self.eval_pdf(wo, wi).0
     }
 
-    /// Density with which [`Bsdf::sample`] chooses `wi`, delta lobes excluded.
+    /// Returns the density with which [`Bsdf::sample`] chooses `wi`, delta lobes excluded.
     #[inline]
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         self.eval_pdf(wo, wi).1
     }
 
-    /// [`Bsdf::eval`] and [`Bsdf::pdf`] at once.
+    /// Returns [`Bsdf::eval`] and [`Bsdf::pdf`].
     #[inline]
     pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         let side = self.side(wo);
@@ -71,8 +72,8 @@ impl<'m> Bsdf<'m> {
         self.model.delta_lobes
     }
 
-    /// The BSDF without its sharp lobes, and these alone, if there are any: rough lobes of α ≤ 0.1, which eye paths
-    /// follow by sampling them.
+    /// Returns the BSDF without its sharp lobes, and these alone, if there are any: rough lobes of α ≤ 0.1, which
+    /// eye paths follow by sampling them.
     #[inline]
     pub fn split_sharp_lobes(&self) -> Option<(Self, Self)> {
         if !self.model.smooth_lobes || !self.any_lobe(LobeModel::is_sharp) {
@@ -86,19 +87,19 @@ impl<'m> Bsdf<'m> {
         Some((rest, sharp))
     }
 
-    /// Whether the material is Lambertian and nothing else.
+    /// True if the material is Lambertian and nothing else.
     #[inline]
     pub(super) fn is_lambert(&self) -> bool {
         self.model.lambert
     }
 
-    /// Which coat lies on the base (see [`super::Materials::coat_transmittance`]); 0 for none.
+    /// Returns the number of the coat on the base (see [`super::Materials::coat_transmittance`]); 0 for none.
     #[inline]
     pub fn coat(&self) -> u32 {
         self.model.coat
     }
 
-    /// Base and lobes apart, where both are smooth functions of direction: the BRDF of the base for light that has
+    /// Splits base and lobes, where both are smooth functions of direction: the BRDF of the base for light that has
     /// passed the coat on its way in, seen from the cosine `cos_out`; and the rest, if it reflects anything.
     #[inline]
     pub fn split_base(&self, cos_out: f32) -> (Rgb, Option<Self>) {
@@ -106,25 +107,36 @@ impl<'m> Bsdf<'m> {
         (base, self.has_smooth_lobe().then_some(Bsdf { base: Rgb::ZERO, ..*self }))
     }
 
-    /// The albedo, if the material is Lambertian and nothing else.
+    /// Returns the albedo, if the material is Lambertian and nothing else.
     #[inline]
     pub fn lambert_albedo(&self) -> Option<Rgb> {
         self.is_lambert().then(|| self.base * PI)
     }
 
-    /// Whether the side away from the normal behaves as the front does.
+    /// True if the side away from the normal behaves as the front does.
     #[inline]
     pub fn two_sided(&self) -> bool {
         self.model.two_sided
     }
 
-    /// Whether the lobes agree but for their factors.
+    /// Returns the material's id in the scene.
+    #[inline]
+    pub fn material(&self) -> MaterialId {
+        self.model.material
+    }
+
+    /// True of [`super::Materials::average`] where the roughness is textured.
+    pub fn is_of_mean_roughness(&self) -> bool {
+        self.model.levels.is_some()
+    }
+
+    /// True if the lobes agree but for their factors.
     #[inline]
     pub fn same_lobes(&self, other: &Bsdf) -> bool {
         self.model.lobe_list == other.model.lobe_list
     }
 
-    /// Slot and model of each rough lobe that reflects anything and that the eye does not follow.
+    /// Lists slot and model of each rough lobe that reflects anything and that the eye does not follow.
     pub fn dull_lobes(&self) -> impl Iterator<Item = (usize, &'m RoughLobe)> {
         let lobes = self.model.lobes.iter().zip(self.scales).enumerate();
         lobes.filter_map(|(slot, (lobe, scale))| match lobe {
@@ -133,25 +145,25 @@ impl<'m> Bsdf<'m> {
         })
     }
 
-    /// BRDF of the base, to be multiplied by [`Bsdf::coat_transmittance`] of either direction.
+    /// Returns the BRDF of the base, to be multiplied by [`Bsdf::coat_transmittance`] of either direction.
     #[inline]
     pub fn base_brdf(&self) -> Rgb {
         self.base
     }
 
-    /// Factor on the lobe in a slot below [`MAX_LOBES`].
+    /// Returns the factor on the lobe in a slot below [`MAX_LOBES`].
     #[inline]
     pub fn lobe_scale(&self, slot: usize) -> Rgb {
         self.scales[slot]
     }
 
-    /// Share of the light at `cos` > 0 that passes the coat; 1 where there is none.
+    /// Returns the share of the light at `cos` > 0 that passes the coat; 1 where there is none.
     #[inline]
     pub fn coat_transmittance(&self, cos: f32) -> f32 {
         self.model.base.interface.transmittance(cos)
     }
 
-    /// Share of the flux arriving from `wi` that a virtual light in this place radiates diffusely, to the side
+    /// Returns the share of the flux from `wi` that a virtual light in this place radiates diffusely, to the side
     /// of `wi`: what the base reflects (through the coat, if there is one, in and out) and what those lobes reflect
     /// that are rough enough to pass for diffuse.
     ///
@@ -171,7 +183,7 @@ impl<'m> Bsdf<'m> {
         albedo
     }
 
-    /// Whether a lobe that scatters anything is of a kind.
+    /// True if `is_such` of a lobe that scatters anything.
     #[inline(always)]
     fn any_lobe(&self, is_such: impl Fn(&LobeModel) -> bool) -> bool {
         let mut found = false;
@@ -186,13 +198,13 @@ impl<'m> Bsdf<'m> {
         self.model.smooth_lobes && self.any_lobe(|lobe| !lobe.is_delta())
     }
 
-    /// Factor that turns the z of directions to the side of the normal: -1 if a two-sided surface is seen from behind.
+    /// Returns the factor that turns the z of directions to the side of the normal: -1 if a two-sided surface is seen from behind.
     #[inline]
     pub(super) fn side(&self, wo: Vec3) -> f32 {
         if wo.z < 0.0 && self.model.two_sided && !self.model.transmits { -1.0 } else { 1.0 }
     }
 
-    /// What [`Bsdf::eval_pdf_layered`] and sampling need to know about `wo`.
+    /// Computes the part of [`Bsdf::eval_pdf_layered`] and of sampling that depends on `wo` alone.
     #[inline(always)]
     pub(super) fn outgoing(&self, wo: Vec3) -> Outgoing {
         let transmittance = self.coat_transmittance(wo.z);
@@ -212,7 +224,7 @@ impl<'m> Bsdf<'m> {
         Outgoing { wo, transmittance, base_probability, probabilities }
     }
 
-    /// Probabilities of sampling the base, whose albedo is `base`, and each lobe.
+    /// Computes the probabilities of sampling the base, whose albedo is `base`, and each lobe.
     #[inline(never)]
     fn probabilities(&self, base: f32, wo: Vec3, transmittance: f32) -> (f32, [f32; MAX_LOBES]) {
         let mut weights = [0.0; MAX_LOBES];
@@ -245,7 +257,7 @@ impl<'m> Bsdf<'m> {
         }
     }
 
-    /// Base alone.
+    /// Returns value and density of the base alone.
     #[inline(always)]
     fn eval_pdf_base(&self, outgoing: &Outgoing, wi: Vec3) -> (Rgb, f32) {
         if outgoing.base_probability == 0.0 || wi.z < 0.0 {
@@ -255,7 +267,7 @@ impl<'m> Bsdf<'m> {
         (self.base * transmittance, outgoing.base_probability * wi.z * FRAC_1_PI)
     }
 
-    /// Base and lobes.
+    /// Returns value and density of base and lobes.
     #[inline]
     pub(super) fn eval_pdf_between(&self, outgoing: &Outgoing, directions: &Directions) -> (Rgb, f32) {
         let (mut value, mut pdf) = self.eval_pdf_base(outgoing, directions.wi);

@@ -7,7 +7,7 @@
 use crate::math::{F32x16, LANES, Rgb, Vec3x16};
 use crate::scene::Fresnel;
 
-/// What a smooth dielectric interface does to a ray.
+/// Reflection and refraction of a ray at a smooth dielectric interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Interface {
     /// Share of the power that is reflected.
@@ -37,13 +37,13 @@ pub(super) fn interface(cos_i: f32, eta: f32) -> Interface {
     Interface { reflectance: 0.5 * (r_s * r_s + r_p * r_p), cos_t, eta: eta_it }
 }
 
-/// Reflectance of a dielectric seen from the side of the normal.
+/// Returns the reflectance of a dielectric seen from the side of the normal.
 #[inline]
 pub(super) fn dielectric(cos_i: f32, eta: f32) -> f32 {
     interface(cos_i, eta).reflectance
 }
 
-/// Reflectance of a conductor of index `eta + i k`.
+/// Returns the reflectance of a conductor of index `eta + i k`.
 #[inline]
 pub(super) fn conductor(cos_i: f32, eta: Rgb, k: Rgb) -> Rgb {
     let cos_i = cos_i.clamp(0.0, 1.0);
@@ -73,8 +73,8 @@ fn conductor_channel(cos_i: f32, eta: f32, k: f32) -> f32 {
     (0.5 * (r_s + r_p)).clamp(0.0, 1.0)
 }
 
-/// Cosine-weighted average of the reflectance over the hemisphere, for light on the side where `eta` is the
-/// far index over the near one: the fits that Mitsuba's `plastic` uses, good to 0.2 % for common indices.
+/// Returns the cosine-weighted average of the reflectance over the hemisphere, for light on the side where `eta` is
+/// the far index over the near one: the fits that Mitsuba's `plastic` uses, good to 0.2 % for common indices.
 pub(super) fn diffuse_reflectance(eta: f32) -> f32 {
     let inv = 1.0 / eta;
     if eta < 1.0 {
@@ -88,7 +88,7 @@ pub(super) fn diffuse_reflectance(eta: f32) -> f32 {
 }
 
 impl Fresnel {
-    /// Reflectance for light at `cos_i` to the (micro)surface's normal, on its front side.
+    /// Returns the reflectance for light at `cos_i` to the (micro)surface's normal, on its front side.
     #[inline]
     pub(super) fn reflectance(&self, cos_i: f32) -> Rgb {
         match *self {
@@ -98,7 +98,7 @@ impl Fresnel {
         }
     }
 
-    /// [`Fresnel::reflectance`] in all lanes.
+    /// Returns [`Fresnel::reflectance`] in all lanes.
     #[inline]
     pub(super) fn reflectance16(&self, cos_i: &F32x16) -> Vec3x16 {
         match *self {
@@ -123,7 +123,7 @@ impl Fresnel {
         }
     }
 
-    /// The largest reflectance at any cosine >= `cos_min`, given that at normal incidence.
+    /// Returns the maximum reflectance at any cosine >= `cos_min`, given that at normal incidence.
     ///
     /// A dielectric's grows towards grazing. A conductor's may first fall from its value at normal incidence,
     /// then rises to 1, so the larger of the ends bounds it.

@@ -18,10 +18,10 @@ use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
 const FRAC_1_SQRT_PI: f32 = 0.564_189_6;
-/// Smoother surfaces are given this roughness; a perfect mirror is a material of its own.
+/// Roughness given to smoother surfaces; a perfect mirror is a lobe of its own.
 pub(super) const MIN_ALPHA: f32 = 1e-4;
 
-/// A distribution of given roughness.
+/// Distribution of given roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Microfacets {
     pub distribution: Distribution,
@@ -35,13 +35,13 @@ impl Microfacets {
         Microfacets { distribution, alpha, alpha_sq: alpha * alpha }
     }
 
-    /// D: area of facets with unit normal `h` per area and solid angle.
+    /// Returns D, the area of facets with unit normal `h` per area and solid angle.
     #[inline]
     pub fn density(&self, h: Vec3) -> f32 {
         self.density_from(h.x * h.x + h.y * h.y, h.z * h.z)
     }
 
-    /// D from the squared sine and cosine of the facet's inclination.
+    /// Returns D from the squared sine and cosine of the facet's inclination.
     #[inline]
     pub fn density_from(&self, sin_sq: f32, cos_sq: f32) -> f32 {
         let a2 = self.alpha_sq;
@@ -63,7 +63,7 @@ impl Microfacets {
         }
     }
 
-    /// The largest D at any inclination whose squared sine is at least `sin_sq`.
+    /// Returns the maximum D at any inclination whose squared sine is at least `sin_sq`.
     #[inline]
     pub fn max_density(&self, sin_sq: f32) -> f32 {
         let a2 = self.alpha_sq;
@@ -77,7 +77,7 @@ impl Microfacets {
         self.density_from(sin_sq, 1.0 - sin_sq)
     }
 
-    /// [`Microfacets::density_from`] in all lanes.
+    /// Returns [`Microfacets::density_from`] in all lanes.
     #[inline]
     pub fn density16(&self, sin_sq: &F32x16, cos_sq: &F32x16) -> F32x16 {
         let mut density = [0.0; LANES];
@@ -87,7 +87,7 @@ impl Microfacets {
         density
     }
 
-    /// [`Microfacets::max_density`] in all lanes.
+    /// Returns [`Microfacets::max_density`] in all lanes.
     #[inline]
     pub fn max_density16(&self, sin_sq: &F32x16) -> F32x16 {
         let mut density = [0.0; LANES];
@@ -97,7 +97,7 @@ impl Microfacets {
         density
     }
 
-    /// G1 / (2 cos θ) of the BSDF for a direction at `cos` > 0.
+    /// Returns G1 / (2 cos θ) of the BSDF for a direction at `cos` > 0.
     #[inline]
     pub fn v1(&self, cos: f32) -> f32 {
         let sin_sq = (1.0 - cos * cos).max(0.0);
@@ -114,7 +114,7 @@ impl Microfacets {
         }
     }
 
-    /// G1 / (2 cos θ) that normalises the density of visible normals.
+    /// Returns the G1 / (2 cos θ) that normalises the density of visible normals.
     #[inline]
     pub fn v1_exact(&self, cos: f32) -> f32 {
         match self.distribution {
@@ -131,7 +131,7 @@ impl Microfacets {
         }
     }
 
-    /// An upper bound of G1 at any cosine in `0..=cos_max`.
+    /// Returns an upper bound of G1 at any cosine in `0..=cos_max`.
     #[inline]
     pub fn max_g1(&self, cos_max: f32) -> f32 {
         let g1 = 2.0 * cos_max * self.v1(cos_max);
@@ -142,7 +142,7 @@ impl Microfacets {
         }
     }
 
-    /// A facet normal seen from `wo` (`wo.z` > 0), with density D(h) G1(wo) (wo·h) / cos θ_o.
+    /// Samples a facet normal seen from `wo` (`wo.z` > 0), with density D(h) G1(wo) (wo·h) / cos θ_o.
     #[inline]
     pub fn sample_visible(&self, wo: Vec3, u: Vec2) -> Vec3 {
         let stretched = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalize();
@@ -155,7 +155,7 @@ impl Microfacets {
         }
     }
 
-    /// Mean of `f(h)` over the facet normals seen from `wo`, by a product rule of `nodes` (even) nodes each
+    /// Integrates the mean of `f(h)` over the facet normals seen from `wo`, by a product rule of `nodes` (even) nodes each
     /// way; `wo` is in the xz plane and `f` symmetric about it, so one half is enough.
     pub fn mean_over_visible(&self, wo: Vec3, rule: &[(f32, f32)], f: impl Fn(Vec3) -> Rgb) -> Rgb {
         let stretched = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalize();
@@ -177,7 +177,7 @@ impl Microfacets {
         sum
     }
 
-    /// A visible normal of the unit hemisphere seen from `stretched`, unstretched.
+    /// Samples a visible normal of the unit hemisphere seen from `stretched`, unstretched.
     #[inline]
     fn visible_ggx_normal(&self, stretched: Vec3, u: Vec2) -> Vec3 {
         let across = Vec3::new(-stretched.y, stretched.x, 0.0).try_normalize().unwrap_or(Vec3::Y);
@@ -191,7 +191,7 @@ impl Microfacets {
         Vec3::new(self.alpha * n.x, self.alpha * n.y, n.z.max(0.0)).try_normalize().unwrap_or(Vec3::Z)
     }
 
-    /// The normal of a facet whose slopes along and across the view are given for unit roughness.
+    /// Returns the normal of a facet whose slopes along and across the view are given for unit roughness.
     #[inline]
     fn normal_from_slopes(&self, stretched: Vec3, along: f32, across: f32) -> Vec3 {
         let sin = (stretched.x * stretched.x + stretched.y * stretched.y).sqrt();
@@ -202,13 +202,13 @@ impl Microfacets {
     }
 }
 
-/// Slope across the view of a facet of unit roughness; being visible does not depend on it.
+/// Samples the slope across the view of a facet of unit roughness; being visible does not depend on it.
 #[inline]
 fn gaussian_slope(u: f32) -> f32 {
     erf_inv(2.0 * u.clamp(1e-7, 1.0 - 1e-7) - 1.0)
 }
 
-/// Slope along the viewing direction of a visible facet of unit roughness: distributed as
+/// Samples the slope along the viewing direction of a visible facet of unit roughness: distributed as
 /// (cos θ - x sin θ)⁺ exp(-x²), inverted by Newton's method within a bracket.
 fn visible_gaussian_slope(stretched: Vec3, u: f32) -> f32 {
     let cos = stretched.z;
@@ -245,14 +245,14 @@ fn visible_gaussian_slope(stretched: Vec3, u: f32) -> f32 {
     x.clamp(-4.5, 4.5)
 }
 
-/// exp(x²) erfc(x) for x >= 0, to 1.5e-7 of erfc.
+/// Returns exp(x²) erfc(x) for x >= 0, to 1.5e-7 of erfc.
 #[inline]
 fn scaled_erfc(x: f32) -> f32 {
     let t = 1.0 / (1.0 + 0.327_591_1 * x);
     t * (0.254_829_6 + t * (-0.284_496_73 + t * (1.421_413_7 + t * (-1.453_152 + t * 1.061_405_4))))
 }
 
-/// Inverse of the error function on (-1, 1), single precision.
+/// Returns the inverse of the error function on (-1, 1), single precision.
 #[inline]
 fn erf_inv(x: f32) -> f32 {
     let w = -((1.0 - x) * (1.0 + x)).ln();

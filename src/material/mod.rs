@@ -18,6 +18,7 @@ mod lobe;
 mod microfacet;
 mod model;
 mod packet;
+mod roughness;
 mod sample;
 mod table;
 

@@ -7,26 +7,27 @@ use super::lobe::{
     max_reflectance_table,
 };
 use super::microfacet::Microfacets;
+use super::roughness::{self, Level, Levels};
 use super::table::AngleTable;
-use crate::math::Rgb;
-use crate::scene::{Fresnel, Lobe, Material, MaterialId, Reflectance, Scene, TextureId};
-use glam::{DVec3, Vec2};
+use crate::math::{Rgb, luminance};
+use crate::scene::{Fresnel, Lobe, Material, MaterialId, Reflectance, Scene, Texture, TextureId};
+use glam::Vec2;
 use std::sync::Arc;
 
-const BLACK: Reflectance = Reflectance::Constant(Rgb::ZERO);
-
-/// The scene's materials, ready to be looked up at points.
+/// Materials of a scene, ready to be looked up at points.
 #[derive(Clone, Debug)]
 pub struct Materials {
+    /// Materials by their id, then further models for levels of textured roughness.
     models: Vec<Model>,
+    count: usize,
     /// Every coat that differs from others; the first is none.
     coats: Vec<CoatInterface>,
 }
 
-/// One material.
+/// Material without its textures' values.
 #[derive(Clone, Debug)]
 pub(super) struct Model {
-    /// Whether the back behaves as the front; never so where an interface has two sides of its own.
+    /// True if the back behaves as the front, unless an interface has two sides of its own.
     pub two_sided: bool,
     pub base: BaseModel,
     /// Number of the coat on it; 0 for none.
@@ -34,20 +35,24 @@ pub(super) struct Model {
     pub lobes: Vec<LobeModel>,
     /// Number of the list of lobes: equal where lobes agree but for their factors.
     pub lobe_list: u32,
-    /// Whether it is Lambertian and nothing else.
+    /// True if it is Lambertian and nothing else.
     pub lambert: bool,
-    /// Whether some lobe scatters into more than isolated directions.
+    /// True if some lobe scatters into more than isolated directions.
     pub smooth_lobes: bool,
-    /// Whether some lobe scatters into isolated directions.
+    /// True if some lobe scatters into isolated directions.
     pub delta_lobes: bool,
-    /// Whether light may go to the other side.
+    /// True if light may go to the other side.
     pub transmits: bool,
+    /// Material of the scene.
+    pub material: MaterialId,
+    /// Models to look up instead, if the roughness is textured.
+    pub levels: Option<Levels>,
     source: Colours<Reflectance>,
-    /// Where nothing is textured, what `at` returns.
+    /// The colours, if nothing is textured.
     constant: Option<Colours<Rgb>>,
 }
 
-/// The colours of a material.
+/// Colours of a material.
 #[derive(Clone, Copy, Debug)]
 struct Colours<T> {
     /// Albedo or BRDF of the base.
@@ -60,60 +65,75 @@ impl Materials {
     /// Prepares every material of the scene.
     pub fn new(scene: &Scene) -> Materials {
         let mut tables = Tables::default();
-        let mut models: Vec<Model> = scene.materials.iter().map(|m| Model::new(m, &mut tables)).collect();
+        let textures = &scene.textures;
+        let ids = || scene.materials.iter().zip((0..).map(MaterialId));
+        let mut models: Vec<Model> =
+            ids().map(|(material, id)| Model::new(material, id, textures, None, &mut tables)).collect();
+        for (material, id) in ids() {
+            let Some(levels) = Levels::of(material, textures, models.len()) else { continue };
+            for level in levels.all() {
+                let level = Some((levels.texture, level));
+                models.push(Model::new(material, id, textures, level, &mut tables));
+            }
+            let model = &mut models[id.0 as usize];
+            (model.levels, model.constant) = (Some(levels), None);
+        }
         let mut coats = vec![CoatInterface::None];
         let mut lobe_lists: Vec<Vec<LobeModel>> = Vec::new();
         for model in &mut models {
             model.coat = number(&mut coats, &model.base.interface);
             model.lobe_list = number(&mut lobe_lists, &model.lobes);
         }
-        Materials { models, coats }
+        Materials { models, count: scene.materials.len(), coats }
     }
 
-    /// Number of materials.
+    /// Returns the number of materials.
     pub fn count(&self) -> usize {
-        self.models.len()
+        self.count
     }
 
-    /// Share of the light at the cosine `cos` > 0 that passes the coat of the given number (see [`Bsdf::coat`]).
+    /// Returns the share of the light at the cosine `cos` > 0 that passes the coat of the given number (see
+    /// [`Bsdf::coat`]).
     #[inline]
     pub fn coat_transmittance(&self, coat: u32, cos: f32) -> f32 {
         self.coats.get(coat as usize).map_or(1.0, |coat| coat.transmittance(cos))
     }
 
-    /// The material at texture coordinates `uv`. `scene` must be the one the materials were made from.
+    /// Returns the material at texture coordinates `uv`. `scene` must be the one the materials were made from.
     #[inline]
     pub fn at(&self, scene: &Scene, id: MaterialId, uv: Vec2) -> Bsdf<'_> {
         self.at_coordinates(scene, id, || uv)
     }
 
-    /// [`Materials::at`] texture coordinates that are only asked for where there is a texture.
+    /// Returns the material at texture coordinates that are only asked for where there is a texture.
     #[inline]
     pub fn at_coordinates(&self, scene: &Scene, id: MaterialId, uv: impl FnOnce() -> Vec2) -> Bsdf<'_> {
         let model = &self.models[id.0 as usize];
-        let colours = match model.constant {
-            Some(colours) => colours,
-            None => {
-                let uv = uv();
-                model.colours(|id| scene.textures.get(id.0 as usize).map_or(Rgb::ONE, |t| t.lookup(uv)))
-            }
-        };
+        match &model.constant {
+            Some(colours) => Bsdf { model, base: colours.base, scales: colours.scales },
+            None => self.textured(model, scene, uv()),
+        }
+    }
+
+    fn textured<'m>(&'m self, mut model: &'m Model, scene: &Scene, uv: Vec2) -> Bsdf<'m> {
+        let texel = |id: TextureId| scene.textures.get(id.0 as usize).map_or(Rgb::ONE, |t| t.lookup(uv));
+        if let Some(levels) = &model.levels {
+            model = &self.models[levels.model(luminance(texel(levels.texture)))];
+        }
+        let colours = model.constant.unwrap_or_else(|| model.colours(texel));
         Bsdf { model, base: colours.base, scales: colours.scales }
     }
 
-    /// The material with every texture replaced by its mean.
+    /// Returns the material with every texture replaced by its mean.
     pub fn average(&self, scene: &Scene, id: MaterialId) -> Bsdf<'_> {
         let model = &self.models[id.0 as usize];
-        let colours = model.colours(|id| {
-            let texels = scene.textures.get(id.0 as usize).map_or(&[][..], |t| &t.texels);
-            let sum = texels.iter().fold(DVec3::ZERO, |sum, t| sum + t.as_dvec3());
-            if texels.is_empty() { Rgb::ONE } else { (sum / texels.len() as f64).as_vec3() }
-        });
+        let colours =
+            model.colours(|id| scene.textures.get(id.0 as usize).map_or(Rgb::ONE, |texture| texture.mean()));
         Bsdf { model, base: colours.base, scales: colours.scales }
     }
 }
 
-/// Place of `item` among `known`, to which it is added if it is not there.
+/// Returns the place of `item` among `known`, to which it is added if it is not there.
 fn number<T: PartialEq + Clone>(known: &mut Vec<T>, item: &T) -> u32 {
     let at = known.iter().position(|k| k == item).unwrap_or_else(|| {
         known.push(item.clone());
@@ -150,8 +170,15 @@ impl Tables {
 }
 
 impl Model {
-    fn new(material: &Material, tables: &mut Tables) -> Model {
-        let mut source = Colours { base: material.diffuse, scales: [BLACK; MAX_LOBES] };
+    /// Prepares a material; if its roughness is textured, for a level of it, or for the texture's mean.
+    fn new(
+        material: &Material,
+        id: MaterialId,
+        textures: &[Texture],
+        level: Option<(TextureId, Level)>,
+        tables: &mut Tables,
+    ) -> Model {
+        let mut source = Colours { base: material.diffuse, scales: [Reflectance::BLACK; MAX_LOBES] };
         let mut lobes = Vec::new();
         let mut add = |lobe, scale| {
             if let Some(slot) = source.scales.get_mut(lobes.len()) {
@@ -159,10 +186,15 @@ impl Model {
                 lobes.push(lobe);
             }
         };
+        let mut coat_facets = None;
         for lobe in &material.lobes {
             match *lobe {
                 Lobe::Rough { distribution, alpha, fresnel, scale } => {
-                    let facets = Microfacets::new(distribution, alpha);
+                    let facets =
+                        |level| Microfacets::new(distribution, roughness::alpha(&alpha, level, textures));
+                    let coat_level = level.map(|(texture, level)| (texture, level.of_coat()));
+                    coat_facets = coat_facets.or_else(|| Some(facets(coat_level)));
+                    let facets = facets(level);
                     let lobe = RoughLobe { facets, fresnel, max_reflectance: None, albedo: None };
                     add(LobeModel::Rough(lobe), scale);
                 }
@@ -176,16 +208,12 @@ impl Model {
         }
         let transmits = lobes.iter().any(LobeModel::transmits);
         // Nothing could lie beneath an interface that light passes.
-        let black = material.diffuse == BLACK || transmits;
+        let black = material.diffuse == Reflectance::BLACK || transmits;
         if black {
-            source.base = BLACK;
+            source.base = Reflectance::BLACK;
         }
         let coat = material.coat.filter(|_| !black);
-        let facets = lobes.iter().find_map(|lobe| match lobe {
-            LobeModel::Rough(rough) => Some(rough.facets),
-            _ => None,
-        });
-        let interface = match (coat, facets) {
+        let interface = match (coat, coat_facets) {
             (None, _) => CoatInterface::None,
             (Some(coat), Some(facets)) => CoatInterface::Rough(tables.coat(facets, coat.eta)),
             (Some(coat), None) => CoatInterface::Smooth(coat.eta),
@@ -211,21 +239,22 @@ impl Model {
             delta_lobes: lobes.iter().any(LobeModel::is_delta),
             transmits,
             lobes,
+            material: id,
+            levels: None,
             source,
             constant: None,
         };
-        let textured = |r: &Reflectance| matches!(r, Reflectance::Textured { .. });
-        if !textured(&source.base) && !source.scales.iter().any(textured) {
+        if !source.base.is_textured() && !source.scales.iter().any(Reflectance::is_textured) {
             model.constant = Some(model.colours(|_| Rgb::ONE));
         }
         model
     }
 
-    /// The colours where each texture has the value `texel` of it.
+    /// Returns the colours where each texture has the value `texel` of it.
     fn colours(&self, texel: impl Fn(TextureId) -> Rgb) -> Colours<Rgb> {
-        let value = |reflectance| match reflectance {
+        let value = |reflectance: Reflectance| match reflectance {
             Reflectance::Constant(value) => value,
-            Reflectance::Textured { texture, scale } => (texel(texture) * scale).max(Rgb::ZERO),
+            textured => textured.value(&texel).max(Rgb::ZERO),
         };
         Colours { base: self.base.brdf(value(self.source.base)), scales: self.source.scales.map(value) }
     }

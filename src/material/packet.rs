@@ -37,7 +37,7 @@ pub struct BsdfSamples16 {
 }
 
 impl<'m> Bsdfs16<'m> {
-    /// The materials `at(lane)`, seen from `wo`.
+    /// Takes the materials `at(lane)`, seen from `wo`.
     #[inline]
     pub fn new(wo: Vec3x16, at: impl FnMut(usize) -> Bsdf<'m>) -> Bsdfs16<'m> {
         let lanes: [Bsdf; LANES] = std::array::from_fn(at);
@@ -56,13 +56,13 @@ impl<'m> Bsdfs16<'m> {
         Bsdfs16 { lanes, wo, base, side, layered, smooth }
     }
 
-    /// Lanes that scatter into more than isolated directions.
+    /// Returns the lanes that scatter into more than isolated directions.
     #[inline]
     pub fn smooth(&self) -> u16 {
         self.smooth
     }
 
-    /// [`Bsdf::eval_pdf`] in all lanes; those not in `wanted` may be left at anything.
+    /// Returns [`Bsdf::eval_pdf`] in all lanes; those not in `wanted` may be left at anything.
     #[inline]
     pub fn eval_pdf(&self, wi: &Vec3x16, wanted: u16) -> (Vec3x16, F32x16) {
         let (mut value, mut pdf) = (Vec3x16::default(), [0.0; LANES]);
@@ -80,7 +80,7 @@ impl<'m> Bsdfs16<'m> {
         (value, pdf)
     }
 
-    /// [`Bsdf::sample`] in all lanes; those not in `wanted` may be left at anything.
+    /// Returns [`Bsdf::sample`] in all lanes; those not in `wanted` may be left at anything.
     #[inline]
     pub fn sample(&self, u_lobe: &F32x16, u: &Vec2x16, wanted: u16) -> BsdfSamples16 {
         let mut s = BsdfSamples16::default();
@@ -108,7 +108,7 @@ impl<'m> Bsdfs16<'m> {
 }
 
 impl BsdfSamples16 {
-    /// Lanes where the path goes on.
+    /// Returns the lanes where the path goes on.
     #[inline]
     pub fn going_on(&self) -> u16 {
         mask_of(&self.goes_on)

@@ -8,7 +8,7 @@ use crate::sampling::cosine_hemisphere;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// A sampled direction.
+/// Sampled direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BsdfSample {
     /// Unit direction, away from the surface.
@@ -17,21 +17,21 @@ pub struct BsdfSample {
     pub weight: Rgb,
     /// Density per solid angle; for a delta lobe, the probability of having chosen it.
     pub pdf: f32,
-    /// Whether the lobe scatters into this direction only.
+    /// True if the lobe scatters into this direction only.
     pub delta: bool,
     /// Index of refraction on the side of `wi` over that on the side of `wo`; 1 unless refracted.
     pub eta: f32,
 }
 
 impl BsdfSample {
-    /// The direction of a delta lobe that has been chosen with probability 1.
+    /// Makes the sample of a delta lobe that has been chosen with probability 1.
     #[inline]
     pub(super) fn delta(wi: Vec3, weight: Rgb, eta: f32) -> BsdfSample {
         BsdfSample { wi, weight, pdf: 1.0, delta: true, eta }
     }
 }
 
-/// The directions in which light goes on without being spread, all of them, for following specular chains
+/// Directions in which light goes on without being spread, all of them, for following specular chains
 /// without chance: each weight is what the lobe carries, each pdf is 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeltaLobes {
@@ -82,7 +82,7 @@ impl Bsdf<'_> {
         (pdf > 0.0).then_some(BsdfSample { weight: sample.weight / pdf, pdf, ..sample })
     }
 
-    /// Slot of the lobe that `u_lobe`, beyond the base's probability, picks.
+    /// Returns the slot of the lobe that `u_lobe`, beyond the base's probability, picks.
     #[inline]
     fn pick(&self, outgoing: &Outgoing, u_lobe: f32) -> Option<usize> {
         let last = self.model.lobes.len().checked_sub(1)?;
@@ -96,7 +96,7 @@ impl Bsdf<'_> {
         Some(last)
     }
 
-    /// Every delta lobe as seen from `wo`.
+    /// Returns every delta lobe as seen from `wo`.
     pub fn delta_lobes(&self, wo: Vec3) -> DeltaLobes {
         let side = self.side(wo);
         let wo = Vec3::new(wo.x, wo.y, wo.z * side);

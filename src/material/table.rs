@@ -6,10 +6,10 @@ use rayon::prelude::*;
 use std::array;
 use std::ops::{Add, Mul, Sub};
 
-/// Entries of a table, evenly spaced in cos θ from 0 to 1.
+/// Number of entries of a table, evenly spaced in cos θ from 0 to 1.
 pub(super) const ANGLES: usize = 64;
 
-/// A function of cos θ, linear between its entries.
+/// Function of cos θ, linear between its entries.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AngleTable<T>(pub [T; ANGLES]);
 
@@ -20,7 +20,7 @@ impl<T: Copy + Send + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>> 
         AngleTable(array::from_fn(|i| values[i]))
     }
 
-    /// The value at `cos` in 0..=1.
+    /// Returns the value at `cos` in 0..=1.
     #[inline]
     pub fn lookup(&self, cos: f32) -> T {
         let x = cos.clamp(0.0, 1.0) * (ANGLES - 1) as f32;
@@ -29,13 +29,13 @@ impl<T: Copy + Send + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>> 
         a + (b - a) * (x - i as f32)
     }
 
-    /// The entry at or next below `cos`.
+    /// Returns the entry at or next below `cos`.
     #[inline]
     pub fn floor(&self, cos: f32) -> T {
         self.0[((cos * (ANGLES - 1) as f32) as usize).min(ANGLES - 1)]
     }
 
-    /// Cosine-weighted mean over the hemisphere, exact for the interpolant.
+    /// Returns the cosine-weighted mean over the hemisphere, exact for the interpolant.
     pub fn mean(&self) -> T {
         let step = 1.0 / (ANGLES - 1) as f32;
         let cell = |i: usize| {
@@ -48,13 +48,13 @@ impl<T: Copy + Send + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>> 
     }
 }
 
-/// Unit vector at entry `i`'s angle, in the xz plane and just off the horizon.
+/// Returns the unit vector at entry `i`'s angle, in the xz plane and just off the horizon.
 pub(super) fn direction(i: usize) -> Vec3 {
     let cos = (i as f32 / (ANGLES - 1) as f32).max(1e-6);
     Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos)
 }
 
-/// Nodes and weights of quadrature on [0, 1].
+/// Returns nodes and weights of quadrature on [0, 1].
 pub(super) fn rule(nodes: usize) -> Vec<(f32, f32)> {
     gauss_legendre(nodes).iter().map(|&(x, weight)| (x as f32, weight as f32)).collect()
 }

@@ -9,8 +9,8 @@ mod sampling;
 use super::*;
 use crate::math::Rgb;
 use crate::scene::{
-    Coat, Distribution, Filter, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene, Texture, TextureId,
-    Wrap,
+    Coat, Distribution, Filter, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene, Texture,
+    TextureId, Wrap,
 };
 use glam::{Mat3, Vec2, Vec3};
 
@@ -62,21 +62,23 @@ fn plastic(nonlinear: bool) -> Material {
 
 fn rough_plastic(distribution: Distribution, alpha: f32, nonlinear: bool) -> Material {
     let fresnel = Fresnel::Dielectric(1.5);
-    let lobe = Lobe::Rough { distribution, alpha, fresnel, scale: constant(Rgb::ONE) };
+    let lobe = Lobe::Rough { distribution, alpha: alpha.into(), fresnel, scale: constant(Rgb::ONE) };
     let name = format!("roughplastic_{}_{alpha}_{}", label(distribution), u8::from(nonlinear));
     material(&name, PAINT, Some(Coat { eta: 1.5, nonlinear }), lobe)
 }
 
 fn rough_conductor(distribution: Distribution, alpha: f32, scale: Rgb) -> Material {
-    let lobe = Lobe::Rough { distribution, alpha, fresnel: GOLD, scale: constant(scale) };
+    let lobe = Lobe::Rough { distribution, alpha: alpha.into(), fresnel: GOLD, scale: constant(scale) };
     let name = format!("roughconductor_{}_{alpha}", label(distribution));
     material(&name, Rgb::ZERO, None, lobe)
 }
 
 fn glossy(diffuse: Rgb, specular: f32, alpha: f32) -> Material {
     let scale = constant(Rgb::splat(specular));
-    let lobe = Lobe::Rough { distribution: Distribution::Ggx, alpha, fresnel: Fresnel::One, scale };
-    material(&format!("glossy_{alpha}"), diffuse, None, lobe)
+    let name = format!("glossy_{alpha}");
+    let (distribution, alpha) = (Distribution::Ggx, Roughness::Constant(alpha));
+    let lobe = Lobe::Rough { distribution, alpha, fresnel: Fresnel::One, scale };
+    material(&name, diffuse, None, lobe)
 }
 
 fn mirror(fresnel: Fresnel) -> Material {
@@ -124,7 +126,7 @@ fn smooth_materials() -> Vec<Material> {
 fn layered() -> Material {
     let rough = |alpha, fresnel, scale| {
         let scale = constant(scale);
-        Lobe::Rough { distribution: Distribution::Ggx, alpha, fresnel, scale }
+        Lobe::Rough { distribution: Distribution::Ggx, alpha: Roughness::Constant(alpha), fresnel, scale }
     };
     let mirror = Lobe::Mirror { fresnel: Fresnel::Dielectric(1.5), scale: constant(Rgb::splat(0.4)) };
     let lobes =
@@ -135,7 +137,7 @@ fn layered() -> Material {
 /// Least roughness of the rough lobes; infinite without any.
 fn min_alpha(material: &Material) -> f32 {
     let alphas = material.lobes.iter().filter_map(|lobe| match lobe {
-        Lobe::Rough { alpha, .. } => Some(*alpha),
+        Lobe::Rough { alpha: Roughness::Constant(alpha), .. } => Some(*alpha),
         _ => None,
     });
     alphas.fold(f32::INFINITY, f32::min)
@@ -191,6 +193,39 @@ fn textures_are_looked_up_where_they_are_and_only_there() {
         assert!(expected.min_element() > 0.0);
         assert!((red - expected * Rgb::X).length() < 1e-6, "{id}: {red} {expected}");
         assert!((green - expected * Rgb::Y).length() < 1e-6, "{id}: {green} {expected}");
+    }
+}
+
+#[test]
+fn textured_roughness_is_that_of_the_place() {
+    // Red is smoother than green: luminances of .2126 and .7152.
+    let textured = Roughness::Textured { texture: TextureId(0), scale: 0.9 };
+    for (index, constant) in
+        [rough_conductor(Distribution::Beckmann, 0.5, Rgb::ONE), rough_plastic(Distribution::Ggx, 0.5, true)]
+            .into_iter()
+            .enumerate()
+    {
+        let with = |roughness| {
+            let mut material = constant.clone();
+            if let [Lobe::Rough { alpha, .. }] = &mut material.lobes[..] {
+                *alpha = roughness;
+            }
+            material
+        };
+        let scene = scene(vec![lambert(PAINT), with(textured)]);
+        let materials = Materials::new(&scene);
+        assert_eq!(materials.count(), 2);
+        assert!(materials.average(&scene, MaterialId(1)).is_of_mean_roughness());
+        for (u, texel) in [(0.25, 0.2126), (0.75, 0.7152)] {
+            let bsdf = materials.at(&scene, MaterialId(1), Vec2::new(u, 0.5));
+            assert_eq!(bsdf.material(), MaterialId(1));
+            let (_, lobe) = bsdf.dull_lobes().next().unwrap();
+            assert!((lobe.alpha() / (0.9 * texel) - 1.0).abs() < 0.0115, "{index} {u}: {}", lobe.alpha());
+            let (wo, wi) = (direction(0.9, 0.0), direction(0.7, 2.8));
+            let exact = with_bsdf(&with(Roughness::Constant(0.9 * texel)), |b| b.eval(wo, wi));
+            let error = (bsdf.eval(wo, wi) / exact - 1.0).abs().max_element();
+            assert!(error < 0.03, "{index} {u}: {error}");
+        }
     }
 }
 

@@ -40,7 +40,6 @@ impl Floor {
         let (index, order) = EyeIndex::build(positions.iter().copied());
         let surface = PointSurface {
             bsdf: MATERIALS.at(&SCENE, MaterialId(0), Vec2::ZERO),
-            material: MaterialId(0),
             geometric_normal: Vec3::Z,
             out: Vec3::Z,
         };

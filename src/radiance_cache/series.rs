@@ -104,7 +104,7 @@ impl Glossy {
 
     /// Bands of the series that a surface needs; 0 where it has no lobe, or one too sharp.
     pub fn bands(&self, surface: &PointSurface) -> u8 {
-        match self.surfaces.caching(surface.material) {
+        match self.surfaces.caching(surface.bsdf.material()) {
             Caching::Series(bands) if surface.bsdf.split_base(1.0).1.is_some() => bands,
             _ => 0,
         }
@@ -120,9 +120,9 @@ impl Targets<'_> {
         let (base, lobe) = surface.bsdf.split_base(cos);
         let lobe = lobe?;
         let mirror = 2.0 * cos * point.normal - surface.out;
-        let strength = surfaces.profile(surface.material, &lobe, cos.max(MIN_COS)).strength();
+        let strength = surfaces.profile(&lobe, cos.max(MIN_COS)).strength();
         let bands = self.bands[sample];
-        Some(GlossyPoint { surfaces, point, bands, surface, base, lobe, mirror, strength, towards: None })
+        Some(GlossyPoint { surfaces, point, bands, base, lobe, mirror, strength, towards: None })
     }
 }
 
@@ -132,7 +132,6 @@ pub struct GlossyPoint<'a> {
     point: &'a PointGeometry,
     /// Bands of the series that it needs.
     bands: u8,
-    surface: &'a PointSurface<'a>,
     /// BRDF of the base.
     base: Rgb,
     lobe: Bsdf<'a>,
@@ -171,7 +170,7 @@ impl GlossyPoint<'_> {
         let frame = Frame::from_normal(normal);
         let cos = normal.dot(self.mirror);
         let out = 2.0 * cos * normal - self.mirror;
-        let profile = self.surfaces.profile(self.surface.material, &self.lobe, cos.max(MIN_COS));
+        let profile = self.surfaces.profile(&self.lobe, cos.max(MIN_COS));
         let kernel = profile.towards(out.dot(frame.tangent), out.dot(frame.bitangent));
         (frame, kernel, ratio(self.strength, profile.strength()))
     }

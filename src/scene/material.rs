@@ -6,23 +6,52 @@
 
 use super::texture::TextureId;
 use crate::math::Rgb;
+use std::ops::Mul;
 
 /// Index into [`super::Scene::materials`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct MaterialId(pub u32);
 
-/// A reflectance that may vary over the surface.
+/// Colour or number that may vary over the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reflectance {
+pub enum Parameter<T> {
     /// The same everywhere.
-    Constant(Rgb),
-    /// The texture's value times `scale`.
+    Constant(T),
+    /// The texture's value times `scale`; a number takes the luminance of each texel.
     Textured {
         /// Which texture.
         texture: TextureId,
         /// Factor on every texel.
-        scale: Rgb,
+        scale: T,
     },
+}
+
+/// Share of the light that is scattered, per channel.
+pub type Reflectance = Parameter<Rgb>;
+
+/// Microfacet roughness α.
+pub type Roughness = Parameter<f32>;
+
+impl<T: Copy + Mul<Output = T>> Parameter<T> {
+    /// Returns the parameter where each texture has the value `texel` of it.
+    #[inline]
+    pub fn value(&self, texel: impl FnOnce(TextureId) -> T) -> T {
+        match *self {
+            Parameter::Constant(value) => value,
+            Parameter::Textured { texture, scale } => texel(texture) * scale,
+        }
+    }
+
+    /// True if it varies over the surface.
+    pub fn is_textured(&self) -> bool {
+        matches!(self, Parameter::Textured { .. })
+    }
+}
+
+impl<T> From<T> for Parameter<T> {
+    fn from(value: T) -> Parameter<T> {
+        Parameter::Constant(value)
+    }
 }
 
 impl Reflectance {
@@ -36,7 +65,7 @@ impl Default for Reflectance {
     }
 }
 
-/// A material: base + lobes, seen from one side or two. The default is black.
+/// Material: base and lobes, seen from one side or two. The default is black.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Material {
     /// Name for reports.
@@ -48,12 +77,12 @@ pub struct Material {
     pub diffuse: Reflectance,
     /// Dielectric interface over the base, as rough as the first rough lobe.
     pub coat: Option<Coat>,
-    /// What scatters besides the base: up to three, of which [`Lobe::Dielectric`] counts for two. More are ignored.
+    /// Lobes besides the base: up to three, of which [`Lobe::Dielectric`] counts for two. More are ignored.
     pub lobes: Vec<Lobe>,
 }
 
 impl Material {
-    /// Every colour that may be textured.
+    /// Returns every colour.
     pub(super) fn reflectances_mut(&mut self) -> Vec<&mut Reflectance> {
         let mut all = vec![&mut self.diffuse];
         for lobe in &mut self.lobes {
@@ -67,38 +96,38 @@ impl Material {
         all
     }
 
-    /// Whether any colour is textured.
+    /// True if any parameter is textured.
     pub fn is_textured(&self) -> bool {
-        let textured = |r: &Reflectance| matches!(r, Reflectance::Textured { .. });
-        textured(&self.diffuse)
+        self.diffuse.is_textured()
             || self.lobes.iter().any(|lobe| match lobe {
-                Lobe::Rough { scale, .. } | Lobe::Mirror { scale, .. } => textured(scale),
+                Lobe::Rough { alpha, scale, .. } => alpha.is_textured() || scale.is_textured(),
+                Lobe::Mirror { scale, .. } => scale.is_textured(),
                 Lobe::Dielectric { reflectance, transmittance, .. } => {
-                    textured(reflectance) || textured(transmittance)
+                    reflectance.is_textured() || transmittance.is_textured()
                 }
             })
     }
 }
 
-/// A smooth or rough dielectric interface over the Lambert base, as Mitsuba's `plastic` and
+/// Smooth or rough dielectric interface over the Lambert base, as Mitsuba's `plastic` and
 /// `roughplastic` define it: the base is attenuated by the transmittance in and out and by internal reflection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coat {
     /// Interior over exterior index of refraction.
     pub eta: f32,
-    /// Whether internal scattering shifts the base's colour (`1 - albedo * F_dr` per channel) or not (`1 - F_dr`).
+    /// True if internal scattering shifts the base's colour (`1 - albedo * F_dr` per channel) or not (`1 - F_dr`).
     pub nonlinear: bool,
 }
 
-/// The part of a material that is not the Lambert base.
+/// Part of a material besides the Lambert base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lobe {
     /// Isotropic microfacet reflection.
     Rough {
         /// Microfacet distribution.
         distribution: Distribution,
-        /// Roughness α.
-        alpha: f32,
+        /// Roughness.
+        alpha: Roughness,
         /// Reflectance of a facet.
         fresnel: Fresnel,
         /// Factor on the lobe.

@@ -19,7 +19,9 @@ use std::path::PathBuf;
 
 pub use camera::{Camera, Cameras};
 pub use light::{DeltaLight, Environment, EnvironmentMap};
-pub use material::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance};
+pub use material::{
+    Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Parameter, Reflectance, Roughness,
+};
 pub use mesh::{Emission, Mesh};
 pub use requirements::Requirements;
 pub use texture::{Filter, Texture, TextureId, Wrap};

@@ -5,6 +5,7 @@
 
 use super::material::{Lobe, Material, Reflectance};
 use super::{DeltaLight, Environment, Scene};
+use crate::math::luminance;
 use glam::DVec3;
 use serde::Serialize;
 use std::fmt;
@@ -128,7 +129,7 @@ impl Requirements {
             reflects |= stores_light(material);
         }
         for (material, _) in scene.materials.iter().zip(&used).filter(|(_, used)| **used) {
-            r.count(material);
+            r.count(material, scene);
         }
         r.specular_chains = r.materials.mirror + r.materials.glass + r.materials.plastic > 0;
         r.glossy = r.materials.glossy + r.materials.rough_plastic > 0;
@@ -158,7 +159,7 @@ impl Requirements {
         r
     }
 
-    fn count(&mut self, material: &Material) {
+    fn count(&mut self, material: &Material, scene: &Scene) {
         self.two_sided |= material.two_sided && !is_glass(material);
         let kinds = &mut self.materials;
         let kind = match (material.lobes.first(), &material.coat) {
@@ -172,7 +173,11 @@ impl Requirements {
         *kind += 1;
         for lobe in &material.lobes {
             if let Lobe::Rough { alpha, .. } = lobe {
-                self.smallest_alpha = Some(self.smallest_alpha.map_or(*alpha, |a| a.min(*alpha)));
+                let alpha = alpha.value(|id| {
+                    let texels = scene.textures.get(id.0 as usize).map_or(&[][..], |t| &t.texels);
+                    texels.iter().map(|texel| luminance(*texel)).reduce(f32::min).unwrap_or(1.0)
+                });
+                self.smallest_alpha = Some(self.smallest_alpha.map_or(alpha, |a| a.min(alpha)));
             }
         }
     }

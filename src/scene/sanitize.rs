@@ -9,7 +9,7 @@
 
 use super::draft::{Draft, DraftMesh};
 use super::formats::error::{Place, SceneError};
-use super::material::{Fresnel, Lobe, Material, Reflectance};
+use super::material::{Fresnel, Lobe, Material, Reflectance, Roughness};
 use super::{DeltaLight, Environment, Texture, recentre};
 use crate::math::Rgb;
 use glam::{DVec3, Vec2, Vec3};
@@ -204,10 +204,18 @@ fn check_material(
     for lobe in &mut material.lobes {
         match lobe {
             Lobe::Rough { alpha, .. } => {
-                if !alpha.is_finite() || *alpha < 0.0 {
-                    return wrong(format!("its roughness is {alpha}"), "give 0 to 1");
+                let (Roughness::Constant(value) | Roughness::Textured { scale: value, .. }) = alpha;
+                if !value.is_finite() || *value < 0.0 {
+                    return wrong(format!("its roughness is {value}"), "give 0 to 1");
                 }
-                *alpha = alpha.max(MIN_ALPHA);
+                match alpha {
+                    Roughness::Constant(value) => *value = value.max(MIN_ALPHA),
+                    Roughness::Textured { texture, scale } => {
+                        if let Some(texture) = textures.get_mut(texture.0 as usize) {
+                            clamp_texels(texture, Rgb::splat(*scale), report);
+                        }
+                    }
+                }
             }
             Lobe::Mirror { .. } => {}
             Lobe::Dielectric { eta, .. } => etas.push(*eta),

@@ -1,7 +1,7 @@
 //! Image textures, stored as linear colour.
 
 use crate::math::Rgb;
-use glam::{Mat3, Vec2};
+use glam::{DVec3, Mat3, Vec2};
 
 /// Index into [`super::Scene::textures`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -47,7 +47,7 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// The colour at texture coordinates `uv`.
+    /// Returns the colour at texture coordinates `uv`.
     pub fn lookup(&self, uv: Vec2) -> Rgb {
         let uv = self.to_uv.transform_point2(uv);
         let (x, y) = (uv.x * self.width as f32, (1.0 - uv.y) * self.height as f32);
@@ -63,6 +63,15 @@ impl Texture {
                 top.lerp(bottom, fy)
             }
         }
+    }
+
+    /// Returns the mean of the texels; white without any.
+    pub fn mean(&self) -> Rgb {
+        if self.texels.is_empty() {
+            return Rgb::ONE;
+        }
+        let sum = self.texels.iter().fold(DVec3::ZERO, |sum, t| sum + t.as_dvec3());
+        (sum / self.texels.len() as f64).as_vec3()
     }
 
     #[inline]

@@ -74,7 +74,7 @@ fn glossy_room() -> WorldAndView {
     room_with_ball(|scene, _| {
         let rough = |fresnel, base, coat| {
             let scale = Reflectance::Constant(Rgb::splat(0.9));
-            let lobe = Lobe::Rough { distribution: Distribution::Ggx, alpha: 0.5, fresnel, scale };
+            let lobe = Lobe::Rough { distribution: Distribution::Ggx, alpha: 0.5.into(), fresnel, scale };
             Material { lobes: vec![lobe], coat, ..diffuse(Rgb::splat(base)) }
         };
         let plastic = rough(Fresnel::Dielectric(1.5), 0.4, Some(Coat { eta: 1.5, nonlinear: false }));

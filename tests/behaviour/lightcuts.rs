@@ -75,7 +75,7 @@ fn pictures_agree_with_path_tracing() {
     let glossy = Material {
         lobes: vec![Lobe::Rough {
             distribution: lightsplat::scene::Distribution::Ggx,
-            alpha: 0.4,
+            alpha: 0.4.into(),
             fresnel: lightsplat::scene::Fresnel::One,
             scale: lightsplat::scene::Reflectance::Constant(Rgb::splat(0.3)),
         }],
@@ -187,7 +187,7 @@ fn a_cancelled_picture_says_so() {
 fn polished_metal_is_followed_from_the_eye() {
     let facets = |alpha| Lobe::Rough {
         distribution: lightsplat::scene::Distribution::Ggx,
-        alpha,
+        alpha: lightsplat::scene::Roughness::Constant(alpha),
         fresnel: lightsplat::scene::Fresnel::One,
         scale: lightsplat::scene::Reflectance::Constant(Rgb::splat(0.8)),
     };

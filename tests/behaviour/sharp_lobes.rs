@@ -15,7 +15,7 @@ fn below_lamps() -> SceneAndView {
     let mut scene = scene(camera(Vec3::new(0.0, 1.0, 1.5), Vec3::ZERO, 0.4), [SIZE, SIZE]);
     let lobe = Lobe::Rough {
         distribution: Distribution::Ggx,
-        alpha: 0.1,
+        alpha: 0.1.into(),
         fresnel: Fresnel::One,
         scale: Reflectance::Constant(Rgb::new(0.9, 0.7, 0.5)),
     };

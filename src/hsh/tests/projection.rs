@@ -25,7 +25,8 @@ fn lambert(albedo: f32) -> Material {
 }
 
 fn rough(alpha: f32, fresnel: Fresnel, albedo: f32, coat: Option<Coat>) -> Material {
-    let lobe = Lobe::Rough { distribution: Distribution::Ggx, alpha, fresnel, scale: constant(1.0) };
+    let (distribution, alpha) = (Distribution::Ggx, alpha.into());
+    let lobe = Lobe::Rough { distribution, alpha, fresnel, scale: constant(1.0) };
     Material { coat, lobes: vec![lobe], ..lambert(albedo) }
 }
 
@@ -142,7 +143,7 @@ fn kernels_are_projections_from_any_azimuth() {
                     *sum += value * *solid_angle * h;
                 }
             }
-            let profile = surfaces.profile(id, &bsdf, wo.z as f32);
+            let profile = surfaces.profile(&bsdf, wo.z as f32);
             let kernel = profile.towards(wo.x as f32, wo.y as f32);
             let mut error_sq = DVec3::ZERO;
             for k in 0..MAX_FUNCTIONS {
@@ -222,7 +223,7 @@ fn smooth_light_is_reflected_within_the_product_of_what_both_series_leave_out() 
             let light_left = (light_norm_sq - kept).max(0.0).sqrt();
             for (inclination, azimuth) in [(0.0, 0.0), (0.5, -2.7), (1.0, 2.0), (1.3, 3.5)] {
                 let wo = outgoing(inclination, azimuth);
-                let kernel = surfaces.profile(id, &bsdf, wo.z as f32).towards(wo.x as f32, wo.y as f32);
+                let kernel = surfaces.profile(&bsdf, wo.z as f32).towards(wo.x as f32, wo.y as f32);
                 let (mut expected, mut norm_sq, mut left_sq) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
                 for ((wi, solid_angle), values) in directions.iter().zip(&values) {
                     let value = bsdf.eval(wo.as_vec3(), wi.as_vec3()).as_dvec3() * wi.z;
@@ -282,7 +283,7 @@ fn hundreds_of_virtual_lights_are_reflected_as_by_the_brdf() {
                     let value = bsdf.eval(wo.as_vec3(), wi) * (wi.z * incidence.factor) * *intensity;
                     sum + value.as_dvec3()
                 });
-                let kernel = surfaces.profile(id, &bsdf, wo.z as f32).towards(wo.x as f32, wo.y as f32);
+                let kernel = surfaces.profile(&bsdf, wo.z as f32).towards(wo.x as f32, wo.y as f32);
                 let value = light.reflected(&kernel).at(0.0, 0.0).as_dvec3();
                 let error = ((value - expected) / expected).abs().max_element();
                 assert!(error < 0.05, "{i} {inclination}: {value} {expected}");
@@ -336,14 +337,14 @@ fn each_material_gets_the_records_it_needs() {
     // One table serves the lobe of α = 0.5 with and without a base.
     assert_eq!(surfaces.tables(), 4);
     // Bases alone, of irradiance materials too, are reflected as well as a series can.
-    let (id, bsdf) = (MaterialId(1), materials.at(&scene, MaterialId(1), Vec2::ZERO));
+    let bsdf = materials.at(&scene, MaterialId(1), Vec2::ZERO);
     let mut accumulator = Accumulator::new(3);
     let mut expected = 0.0;
     for (wi, solid_angle) in hemisphere() {
         accumulator.add(&from(wi), Rgb::splat(solid_angle as f32));
         expected += f64::from(bsdf.eval(Vec3::Z, wi.as_vec3()).x) * wi.z * solid_angle;
     }
-    let value = accumulator.finish().reflected(&surfaces.profile(id, &bsdf, 1.0).towards(0.0, 0.0)).value.x;
+    let value = accumulator.finish().reflected(&surfaces.profile(&bsdf, 1.0).towards(0.0, 0.0)).value.x;
     assert!((f64::from(value) / expected - 1.0).abs() < 1e-3, "{value} {expected}");
 }
 
@@ -372,7 +373,7 @@ fn textures_scale_base_and_lobe_at_each_point() {
             let expected = directions.iter().fold(DVec3::ZERO, |sum, (wi, solid_angle)| {
                 sum + bsdf.eval(wo.as_vec3(), wi.as_vec3()).as_dvec3() * wi.z * *solid_angle / PI
             });
-            let kernel = surfaces.profile(id, &bsdf, wo.z as f32).towards(wo.x as f32, wo.y as f32);
+            let kernel = surfaces.profile(&bsdf, wo.z as f32).towards(wo.x as f32, wo.y as f32);
             let value = light.reflected(&kernel).at(0.0, 0.0).as_dvec3();
             let error = (value - expected).abs().max_element();
             assert!(error < 2e-3 * expected.max_element(), "{i} {u}: {value} {expected}");

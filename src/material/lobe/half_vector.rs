@@ -17,7 +17,7 @@ const SLACK: f32 = 5e-7;
 /// Squared length of the sum of two unit directions below which they are opposite and no facet is seen.
 const MIN_SUM_SQ: f32 = 1e-20;
 
-/// A pair of directions.
+/// Pair of directions.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::material) struct Directions {
     pub wo: Vec3,
@@ -27,7 +27,7 @@ pub(in crate::material) struct Directions {
 }
 
 impl Directions {
-    /// `None` where both are grazing and opposite: no facet is seen at all.
+    /// Returns `None` where both are grazing and opposite: no facet is seen at all.
     #[inline]
     pub fn new(wo: Vec3, wi: Vec3) -> Option<Directions> {
         let sum = wo + wi;
@@ -36,7 +36,7 @@ impl Directions {
     }
 }
 
-/// Sixteen pairs of directions.
+/// Pairs of directions, in sixteen lanes.
 pub(in crate::material) struct Directions16<'a> {
     pub wi: &'a Vec3x16,
     /// Squared sines of the facet normals' inclinations; 0, as the cosines, where no facet is seen.
@@ -70,16 +70,16 @@ impl Directions16<'_> {
 pub(in crate::material) struct FacetBound {
     /// Cosine of `wo`, at most 1.
     pub cos_o: f32,
-    /// Largest cosine of a direction.
+    /// Maximum cosine of a direction.
     pub cos_max: f32,
-    /// Least squared sine of the facet normal's inclination.
+    /// Minimum squared sine of the facet normal's inclination.
     pub sin_sq: f32,
-    /// Least cosine between `wo` and the facet normal.
+    /// Minimum cosine between `wo` and the facet normal.
     pub cos_d: f32,
 }
 
 impl FacetBound {
-    /// `cos_max` is that of the bound, at most 1 and above 0.
+    /// Bounds the facets; `cos_max` is that of the bound, at most 1 and above 0.
     #[inline]
     pub fn new(cos_o: f32, cos_max: f32, bound: &DirectionBound) -> FacetBound {
         let cos_o = cos_o.min(1.0);
@@ -117,7 +117,7 @@ impl FacetBounds16<'_> {
     }
 }
 
-/// The least squared sine of the facet normal's inclination.
+/// Returns the minimum squared sine of the facet normal's inclination.
 #[inline(always)]
 fn min_sin_sq(cos_o: f32, cos_i_min: f32, cos_i_max: f32, cos_mirror: f32) -> f32 {
     let at = |cos_i: f32| {
@@ -132,7 +132,7 @@ fn min_sin_sq(cos_o: f32, cos_i_min: f32, cos_i_max: f32, cos_mirror: f32) -> f3
     by_cosines.max(by_mirror).max(0.0)
 }
 
-/// The least cosine between `wo` and the facet normal.
+/// Returns the minimum cosine between `wo` and the facet normal.
 #[inline(always)]
 fn min_cos(cos_o: f32, cos_i_min: f32, cos_mirror: f32) -> f32 {
     let product = cos_o * cos_i_min;

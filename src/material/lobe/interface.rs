@@ -7,7 +7,7 @@ use crate::material::sample::BsdfSample;
 use crate::math::Rgb;
 use glam::Vec3;
 
-/// One of the two ways on from an interface.
+/// Interface, of which one of the two ways on is this lobe's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::material) struct Interface {
     /// Index of refraction behind the normal over that in front.
@@ -15,7 +15,7 @@ pub(in crate::material) struct Interface {
     pub passage: Passage,
 }
 
-/// Which way light goes on.
+/// Way on from an interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::material) enum Passage {
     Reflection,
@@ -53,7 +53,7 @@ impl Interface {
         }
     }
 
-    /// Factor on radiance.
+    /// Returns the factor on radiance.
     #[inline]
     fn weight(&self, scale: Rgb, interface: &fresnel::Interface) -> Rgb {
         match self.passage {

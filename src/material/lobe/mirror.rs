@@ -5,7 +5,7 @@ use crate::math::Rgb;
 use crate::scene::Fresnel;
 use glam::Vec3;
 
-/// A mirror of given reflectance by angle.
+/// Mirror of given reflectance by angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::material) struct Mirror {
     pub fresnel: Fresnel,
@@ -18,14 +18,14 @@ impl Mirror {
         (wo.z > 0.0).then(|| BsdfSample::delta(reflect(wo), self.weight(scale, wo.z), 1.0))
     }
 
-    /// Share of the light at the cosine `cos` that is reflected.
+    /// Returns the share of the light at the cosine `cos` that is reflected.
     #[inline]
     pub fn weight(&self, scale: Rgb, cos: f32) -> Rgb {
         if cos > 0.0 { scale * self.fresnel.reflectance(cos) } else { Rgb::ZERO }
     }
 }
 
-/// Reflection about the shading normal.
+/// Reflects about the shading normal.
 #[inline]
 pub(super) fn reflect(wo: Vec3) -> Vec3 {
     Vec3::new(-wo.x, -wo.y, wo.z)

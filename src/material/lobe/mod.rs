@@ -19,10 +19,10 @@ use super::sample::BsdfSample;
 use crate::math::{F32x16, LANES, Rgb, Vec3x16};
 use glam::{Vec2, Vec3};
 
-/// Lobes of a BSDF at most.
-pub const MAX_LOBES: usize = 3;
+/// Maximum number of lobes of a BSDF.
+pub(super) const MAX_LOBES: usize = 3;
 
-/// A lobe without its factor.
+/// Lobe without its factor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum LobeModel {
     Rough(RoughLobe),
@@ -30,7 +30,7 @@ pub(super) enum LobeModel {
     Interface(Interface),
 }
 
-/// Sixteen points' data of a lobe.
+/// Data of a lobe at sixteen points.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LobeLanes {
     /// Factors; zero where nothing is reflected.
@@ -54,13 +54,14 @@ impl LobeModel {
         matches!(self, LobeModel::Interface(_))
     }
 
-    /// True if eye paths follow the lobe by sampling it, as they do a mirror.
+    /// True if eye paths follow the lobe by sampling it, as they do a mirror: light cuts would show single virtual
+    /// lights in it. The place, too, for lobes that scatter light across the surface, as cuts gather on one side.
     #[inline]
     pub fn is_sharp(&self) -> bool {
         matches!(self, LobeModel::Rough(rough) if rough.is_sharp())
     }
 
-    /// Value and density; the latter times `probability`, that of choosing the lobe.
+    /// Returns value and density; the latter times `probability`, that of choosing the lobe.
     #[inline(always)]
     pub fn eval_pdf(&self, scale: Rgb, probability: f32, directions: &Directions) -> (Rgb, f32) {
         match self {
@@ -69,7 +70,7 @@ impl LobeModel {
         }
     }
 
-    /// A direction in proportion to the lobe, if it is not a delta lobe and the facet chosen does not send the light
+    /// Samples a direction in proportion to the lobe, if it is not a delta lobe and the facet chosen does not send the light
     /// into the surface.
     #[inline]
     pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
@@ -79,7 +80,7 @@ impl LobeModel {
         }
     }
 
-    /// The direction in which a delta lobe sends light from `wo`, with probability 1.
+    /// Returns the direction in which a delta lobe sends light from `wo`, with probability 1.
     #[inline(always)]
     pub fn delta(&self, scale: Rgb, wo: Vec3) -> Option<BsdfSample> {
         match self {
@@ -89,7 +90,7 @@ impl LobeModel {
         }
     }
 
-    /// Share of the light from `wo` that the lobe scatters, as far as it is known: a weight for choosing among lobes.
+    /// Estimates the share of the light from `wo` that the lobe scatters, a weight for choosing among lobes.
     /// `transmittance` is the coat's for `wo`.
     #[inline(always)]
     pub fn sampling_weight(&self, scale: Rgb, wo: Vec3, transmittance: f32) -> f32 {
@@ -100,7 +101,7 @@ impl LobeModel {
         }
     }
 
-    /// Albedo for light at the cosine `cos` > 0, where the lobe is wide enough to pass for diffuse.
+    /// Returns the albedo for light at the cosine `cos` > 0, where the lobe is wide enough to pass for diffuse.
     #[inline]
     pub fn diffuse_albedo(&self, scale: Rgb, cos: f32) -> Option<Rgb> {
         match self {
@@ -109,7 +110,7 @@ impl LobeModel {
         }
     }
 
-    /// Upper bound of value times cosine.
+    /// Returns an upper bound of value times cosine.
     #[inline(always)]
     pub fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
         match self {
@@ -154,7 +155,7 @@ impl LobeLanes {
     }
 }
 
-/// Mean of the channels.
+/// Returns the mean of the channels.
 #[inline]
 pub(super) fn mean(c: Rgb) -> f32 {
     (c.x + c.y + c.z) * (1.0 / 3.0)

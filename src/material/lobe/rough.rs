@@ -24,12 +24,12 @@ pub(in crate::material) const DIFFUSE_ALPHA: f32 = 0.05;
 /// says more than a sum over virtual lights, each of which would show as a highlight.
 const SHARP_ALPHA: f32 = 0.1;
 
-/// A rough reflection lobe without its factor. Two are equal if roughness and Fresnel reflectance agree.
+/// Rough reflection lobe without its factor. Two are equal if roughness and Fresnel reflectance agree.
 #[derive(Clone, Debug)]
 pub struct RoughLobe {
     pub(in crate::material) facets: Microfacets,
     pub(in crate::material) fresnel: Fresnel,
-    /// Largest reflectance of a conductor by the least cosine: its formula costs more than the rest of a bound.
+    /// Maximum reflectance of a conductor by the least cosine: its formula costs more than the rest of a bound.
     pub(in crate::material) max_reflectance: Option<Arc<AngleTable<Rgb>>>,
     /// Albedo by angle, where something asks for it.
     pub(in crate::material) albedo: Option<Arc<AngleTable<Rgb>>>,
@@ -42,18 +42,18 @@ impl PartialEq for RoughLobe {
 }
 
 impl RoughLobe {
-    /// Roughness α.
+    /// Returns the roughness α.
     pub fn alpha(&self) -> f32 {
         self.facets.alpha
     }
 
-    /// Value in 1/sr for directions with z > 0.
+    /// Returns the value in 1/sr for directions with z > 0.
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         Directions::new(wo, wi).map_or(Rgb::ZERO, |d| self.eval_pdf(Rgb::ONE, 1.0, &d).0)
     }
 
-    /// Whether the eye follows the lobe.
+    /// True if eye paths follow the lobe.
     #[inline]
     pub fn is_sharp(&self) -> bool {
         self.facets.alpha <= SHARP_ALPHA
@@ -144,13 +144,13 @@ impl RoughLobe {
     }
 }
 
-/// Albedo by angle.
+/// Tabulates the albedo by angle.
 pub(in crate::material) fn albedo_table(facets: &Microfacets, fresnel: &Fresnel) -> AngleTable<Rgb> {
     let rule = rule(32);
     AngleTable::new(|wo| albedo(facets, fresnel, wo, &rule))
 }
 
-/// Largest reflectance at any cosine >= each entry's, so that [`AngleTable::floor`] bounds it.
+/// Tabulates the largest reflectance at any cosine >= each entry's, so that [`AngleTable::floor`] bounds it.
 pub(in crate::material) fn max_reflectance_table(fresnel: &Fresnel) -> AngleTable<Rgb> {
     let normal = fresnel.reflectance(1.0);
     AngleTable(std::array::from_fn(|i| {
@@ -159,7 +159,7 @@ pub(in crate::material) fn max_reflectance_table(fresnel: &Fresnel) -> AngleTabl
     }))
 }
 
-/// Light from `wo`, in the xz plane, that single scattering on the facets reflects back to its side.
+/// Integrates the light from `wo`, in the xz plane, that single scattering on the facets reflects back to its side.
 pub(in crate::material) fn albedo(
     facets: &Microfacets,
     fresnel: &Fresnel,

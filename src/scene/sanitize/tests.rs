@@ -110,7 +110,7 @@ fn reflectances_must_not_create_energy() {
 
     let lobe = |fresnel, scale| Lobe::Rough {
         distribution: Distribution::Ggx,
-        alpha: 0.0,
+        alpha: 0.0.into(),
         fresnel,
         scale: Reflectance::Constant(Rgb::splat(scale)),
     };
@@ -119,7 +119,7 @@ fn reflectances_must_not_create_energy() {
     assert!(sanitize(&mut draft(vec![], vec![glossy(Fresnel::Dielectric(1.5), 1.0)])).is_ok());
     let mut d = draft(vec![], vec![glossy(Fresnel::One, 0.5)]);
     sanitize(&mut d).unwrap();
-    assert!(matches!(d.materials[0].lobes[..], [Lobe::Rough { alpha, .. }] if alpha == MIN_ALPHA));
+    assert!(matches!(d.materials[0].lobes[..], [Lobe::Rough { alpha, .. }] if alpha == MIN_ALPHA.into()));
 
     let coated = |eta| Material { coat: Some(Coat { eta, nonlinear: false }), ..grey() };
     for eta in [0.0, -1.5, f32::NAN] {

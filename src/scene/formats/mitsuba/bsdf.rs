@@ -5,10 +5,12 @@
 
 use super::Converter;
 use super::tree::Object;
-use crate::math::Rgb;
+use crate::math::{Rgb, luminance};
 use crate::scene::formats::constants;
 use crate::scene::formats::error::{Place, SceneError};
-use crate::scene::material::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance};
+use crate::scene::material::{
+    Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness,
+};
 use std::rc::Rc;
 
 impl Converter<'_> {
@@ -212,7 +214,8 @@ impl Converter<'_> {
         let what = format!("the bsdf \"{}\" is not modelled", bsdf.plugin);
         self.log.warn(&bsdf.place, what, format!("a GGX lobe of alpha {alpha:.4} stands in"))?;
         let alpha = alpha as f32;
-        let lobe = Lobe::Rough { distribution: Distribution::Ggx, alpha, fresnel: Fresnel::One, scale };
+        let (distribution, alpha) = (Distribution::Ggx, alpha.into());
+        let lobe = Lobe::Rough { distribution, alpha, fresnel: Fresnel::One, scale };
         Ok(Material { name, diffuse, lobes: vec![lobe], ..Material::default() })
     }
 
@@ -233,27 +236,35 @@ impl Converter<'_> {
         bsdf.ignore(&["sample_visible"]);
         let alpha = if bsdf.has("alpha_u") || bsdf.has("alpha_v") {
             let (u, v) = (self.alpha(bsdf, "alpha_u")?, self.alpha(bsdf, "alpha_v")?);
-            if u != v {
-                self.log.warn(
-                    &bsdf.place,
-                    "anisotropic roughness is not modelled",
-                    "the geometric mean is used",
-                )?;
+            match (u, v) {
+                _ if u == v => u,
+                (Roughness::Constant(u), Roughness::Constant(v)) => {
+                    let fallback = "the geometric mean is used";
+                    self.log.warn(&bsdf.place, "anisotropic roughness is not modelled", fallback)?;
+                    Roughness::Constant((u * v).sqrt())
+                }
+                _ => {
+                    let fallback = "that along u is used both ways";
+                    self.log.warn(&bsdf.place, "anisotropic roughness is not modelled", fallback)?;
+                    u
+                }
             }
-            (u * v).sqrt()
         } else {
             self.alpha(bsdf, "alpha")?
         };
-        Ok(Lobe::Rough { distribution, alpha: alpha as f32, fresnel, scale })
+        Ok(Lobe::Rough { distribution, alpha, fresnel, scale })
     }
 
-    fn alpha(&mut self, bsdf: &Object, name: &str) -> Result<f64, SceneError> {
-        if let Some(texture) = self.document.named(bsdf, name)? {
-            texture.properties.iter().for_each(|p| p.used.set(true));
-            self.log.warn(&texture.place, "textured roughness is not modelled", "alpha 0.1 stands in")?;
-            return Ok(0.1);
-        }
-        bsdf.positive(name, 0.1)
+    fn alpha(&mut self, bsdf: &Object, name: &str) -> Result<Roughness, SceneError> {
+        let Some(texture) = self.document.named(bsdf, name)? else {
+            return Ok(Roughness::Constant(bsdf.positive(name, 0.1)? as f32));
+        };
+        Ok(match self.texture(&texture, 0)? {
+            Reflectance::Constant(colour) => Roughness::Constant(luminance(colour)),
+            Reflectance::Textured { texture, scale } => {
+                Roughness::Textured { texture, scale: luminance(scale) }
+            }
+        })
     }
 
     /// Interior over exterior.

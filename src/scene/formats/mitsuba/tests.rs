@@ -1,6 +1,6 @@
 use crate::math::Rgb;
 use crate::scene::formats::{Level, LoadOptions, Loaded, load};
-use crate::scene::{DeltaLight, Distribution, Environment, Fresnel, Lobe, Reflectance};
+use crate::scene::{DeltaLight, Distribution, Environment, Fresnel, Lobe, Reflectance, Roughness};
 use glam::{DVec3, Vec3};
 use std::fs;
 
@@ -33,7 +33,10 @@ fn defaults_are_mitsubas() {
     let (m, _) = bsdf("<bsdf type=\"roughplastic\"/>");
     assert!(matches!(m.coat, Some(c) if (c.eta - 1.49 / 1.000277).abs() < 1e-6 && !c.nonlinear));
     assert_eq!(m.diffuse, Reflectance::Constant(Rgb::splat(0.5)));
-    assert!(matches!(m.lobes[..], [Lobe::Rough { distribution: Distribution::Beckmann, alpha: 0.1, .. }]));
+    assert!(matches!(
+        m.lobes[..],
+        [Lobe::Rough { distribution: Distribution::Beckmann, alpha: Roughness::Constant(0.1), .. }]
+    ));
     assert!(!m.two_sided);
     let (m, _) = bsdf("<bsdf type=\"dielectric\"/>");
     assert!(matches!(m.lobes[..], [Lobe::Dielectric { eta, .. }] if (eta - 1.5046 / 1.000277).abs() < 1e-6));
@@ -99,7 +102,12 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
     }
     let (phong, _) = bsdf("<bsdf type=\"phong\"><float name=\"exponent\" value=\"98\"/></bsdf>");
     assert!(
-        matches!(phong.lobes[..], [Lobe::Rough { alpha, .. }] if (alpha - (2.0f32 / 100.0).sqrt()).abs() < 1e-6)
+        matches!(phong.lobes[..], [Lobe::Rough { alpha: Roughness::Constant(alpha), .. }] if (alpha - (2.0f32 / 100.0).sqrt()).abs() < 1e-6)
+    );
+    let checkers = "<texture name=\"alpha\" type=\"checkerboard\"/>";
+    let (rough, warnings) = bsdf(&format!("<bsdf type=\"roughconductor\">{checkers}</bsdf>"));
+    assert!(
+        matches!(rough.lobes[..], [Lobe::Rough { alpha: Roughness::Textured { .. }, .. }]) && warnings == 0
     );
     let (mask, _) = bsdf(&format!("<bsdf type=\"mask\">{nested}</bsdf>"));
     assert_eq!(mask.diffuse, Reflectance::Constant(Rgb::splat(0.3)));

@@ -10,15 +10,16 @@
 //! | mirror | reflectance |
 //! | glass | ior, reflectance, transmittance |
 //!
-//! Defaults: ior 1.5, alpha 0.1, specular 1, distribution "ggx".
+//! Defaults: ior 1.5, alpha 0.1, specular 1, distribution "ggx". Colours and alpha may be pictures; alpha's are
+//! read as they are, without a transfer function.
 
 use super::Builder;
-use super::text::{ColourText, FilterText, MaterialText, TextureText, WrapText};
+use super::text::{ColourText, FilterText, MaterialText, NumberText, TextureText, WrapText};
 use crate::math::Rgb;
 use crate::scene::formats::constants;
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::plan::{Image, TexturePlan};
-use crate::scene::material::{Coat, Distribution, Fresnel, Lobe, Material, Reflectance};
+use crate::scene::material::{Coat, Distribution, Fresnel, Lobe, Material, Reflectance, Roughness};
 use crate::scene::texture::{Filter, TextureId, Wrap};
 use glam::{DVec3, Mat3, Vec2};
 use toml::Spanned;
@@ -56,7 +57,7 @@ impl Builder<'_> {
             "glossy" => {
                 let diffuse = self.colour(&need(&text.diffuse, "diffuse")?, place)?;
                 let scale = self.colour(&need(&text.specular, "specular")?, place)?;
-                (diffuse, None, Some(rough(text, Fresnel::One, scale, place)?))
+                (diffuse, None, Some(self.rough(text, Fresnel::One, scale, place)?))
             }
             "plastic" | "roughplastic" => {
                 let diffuse = self.colour(&need(&text.diffuse, "diffuse")?, place)?;
@@ -64,7 +65,7 @@ impl Builder<'_> {
                 let fresnel = Fresnel::Dielectric(ior);
                 let lobe = match text.kind.as_str() {
                     "plastic" => Lobe::Mirror { fresnel, scale },
-                    _ => rough(text, fresnel, scale, place)?,
+                    _ => self.rough(text, fresnel, scale, place)?,
                 };
                 let coat = Coat { eta: ior, nonlinear: text.nonlinear.unwrap_or(false) };
                 (diffuse, Some(coat), Some(lobe))
@@ -73,8 +74,8 @@ impl Builder<'_> {
                 let scale = self.colour(&text.specular.clone().unwrap_or(one()), place)?;
                 let fresnel = conductor(text, place)?;
                 let lobe = match text.alpha {
-                    None | Some(0.0) => Lobe::Mirror { fresnel, scale },
-                    Some(_) => rough(text, fresnel, scale, place)?,
+                    None | Some(NumberText::Number(0.0)) => Lobe::Mirror { fresnel, scale },
+                    Some(_) => self.rough(text, fresnel, scale, place)?,
                 };
                 (Reflectance::BLACK, None, Some(lobe))
             }
@@ -97,21 +98,55 @@ impl Builder<'_> {
             ColourText::Rgb(rgb) => Reflectance::Constant(DVec3::from(*rgb).as_vec3()),
             ColourText::Grey(grey) => Reflectance::Constant(Rgb::splat(*grey as f32)),
             ColourText::Picture(file) => {
-                let plain = TextureText {
-                    file: file.clone(),
-                    wrap: None,
-                    filter: None,
-                    raw: false,
-                    scale: None,
-                    tiles: None,
-                };
-                self.texture(&plain, place)
+                self.texture(&TextureText { file: file.clone(), ..TextureText::default() }, place)
             }
             ColourText::Texture(texture) => self.texture(texture, place),
         })
     }
 
+    fn rough(
+        &mut self,
+        text: &MaterialText,
+        fresnel: Fresnel,
+        scale: Reflectance,
+        place: &Place,
+    ) -> Result<Lobe, SceneError> {
+        let alpha = match text.alpha.clone().unwrap_or(NumberText::Number(0.1)) {
+            NumberText::Number(alpha) => {
+                if !(alpha > 0.0 && alpha <= 4.0) {
+                    let what = format!("the roughness of \"{}\" is {alpha}", text.name);
+                    return Err(SceneError::value(place, what, "give a number above 0, usually up to 1"));
+                }
+                Roughness::Constant(alpha as f32)
+            }
+            NumberText::Picture(file) => {
+                self.roughness(TextureText { file, ..TextureText::default() }, place)
+            }
+            NumberText::Texture(texture) => self.roughness(texture, place),
+        };
+        let distribution = match text.distribution.as_deref() {
+            None | Some("ggx") => Distribution::Ggx,
+            Some("beckmann") => Distribution::Beckmann,
+            Some(other) => {
+                let what = format!("unknown distribution \"{other}\"");
+                return Err(SceneError::value(place, what, "use ggx or beckmann"));
+            }
+        };
+        Ok(Lobe::Rough { distribution, alpha, fresnel, scale })
+    }
+
+    fn roughness(&mut self, text: TextureText, place: &Place) -> Roughness {
+        let scale = text.scale.unwrap_or(1.0) as f32;
+        let texture = self.texture_id(&TextureText { raw: true, ..text }, place);
+        Roughness::Textured { texture, scale }
+    }
+
     pub(super) fn texture(&mut self, text: &TextureText, place: &Place) -> Reflectance {
+        let scale = Rgb::splat(text.scale.unwrap_or(1.0) as f32);
+        Reflectance::Textured { texture: self.texture_id(text, place), scale }
+    }
+
+    fn texture_id(&mut self, text: &TextureText, place: &Place) -> TextureId {
         let wrap = match text.wrap {
             None | Some(WrapText::Repeat) => Wrap::Repeat,
             Some(WrapText::Mirror) => Wrap::Mirror,
@@ -132,8 +167,7 @@ impl Builder<'_> {
             self.textures.push(TexturePlan { place: place.clone(), image, filter, wrap, to_uv });
             self.textures.len() - 1
         });
-        let scale = Rgb::splat(text.scale.unwrap_or(1.0) as f32);
-        Reflectance::Textured { texture: TextureId(at as u32), scale }
+        TextureId(at as u32)
     }
 }
 
@@ -171,28 +205,6 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
         }
         None => Ok(()),
     }
-}
-
-fn rough(
-    text: &MaterialText,
-    fresnel: Fresnel,
-    scale: Reflectance,
-    place: &Place,
-) -> Result<Lobe, SceneError> {
-    let alpha = text.alpha.unwrap_or(0.1);
-    if !(alpha > 0.0 && alpha <= 4.0) {
-        let what = format!("the roughness of \"{}\" is {alpha}", text.name);
-        return Err(SceneError::value(place, what, "give a number above 0, usually up to 1"));
-    }
-    let distribution = match text.distribution.as_deref() {
-        None | Some("ggx") => Distribution::Ggx,
-        Some("beckmann") => Distribution::Beckmann,
-        Some(other) => {
-            let what = format!("unknown distribution \"{other}\"");
-            return Err(SceneError::value(place, what, "use ggx or beckmann"));
-        }
-    };
-    Ok(Lobe::Rough { distribution, alpha: alpha as f32, fresnel, scale })
 }
 
 fn conductor(text: &MaterialText, place: &Place) -> Result<Fresnel, SceneError> {

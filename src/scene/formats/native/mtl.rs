@@ -100,7 +100,7 @@ impl Builder<'_> {
         let room = (Rgb::ONE - kd.min(Rgb::ONE)).max(Rgb::ZERO);
         let lobe = Lobe::Rough {
             distribution: Distribution::Ggx,
-            alpha: (2.0 / (source.exponent + 2.0)).sqrt(),
+            alpha: (2.0 / (source.exponent + 2.0)).sqrt().into(),
             fresnel: Fresnel::One,
             scale: Reflectance::Constant(ks.min(room)),
         };
@@ -114,8 +114,6 @@ impl Builder<'_> {
     fn mtl_texture(&mut self, name: &str, file: &Path) -> Reflectance {
         let beside = file.parent().unwrap_or(Path::new("")).join(name.replace('\\', "/"));
         let relative = beside.strip_prefix(&self.folder).unwrap_or(&beside).to_string_lossy().into_owned();
-        let text =
-            TextureText { file: relative, wrap: None, filter: None, raw: false, scale: None, tiles: None };
-        self.texture(&text, &Place::file(file))
+        self.texture(&TextureText { file: relative, ..TextureText::default() }, &Place::file(file))
     }
 }

@@ -1,5 +1,5 @@
 use crate::scene::formats::{Level, LoadOptions, Loaded, load};
-use crate::scene::{DeltaLight, Environment, Fresnel, Lobe, Reflectance};
+use crate::scene::{DeltaLight, Environment, Fresnel, Lobe, Reflectance, Roughness, TextureId};
 use glam::{DVec3, Vec3};
 use std::fs;
 
@@ -65,7 +65,7 @@ fn every_kind_of_material_light_and_step_is_read() {
         scene.materials[4].lobes[..],
         [Lobe::Mirror { fresnel: Fresnel::Conductor { .. }, .. }]
     ));
-    assert!(matches!(scene.materials[5].lobes[..], [Lobe::Rough { alpha: 0.2, .. }]));
+    assert!(matches!(scene.materials[5].lobes[..], [Lobe::Rough { alpha: Roughness::Constant(0.2), .. }]));
     assert!(matches!(scene.materials[7].lobes[..], [Lobe::Dielectric { eta: 1.6, .. }]));
     // Scaled, then laid down facing -y, then moved by 1 along z and 10 along x.
     let corner = scene.meshes[0].positions[0].as_dvec3() + scene.centre;
@@ -134,7 +134,11 @@ fn an_obj_brings_its_mtl_materials() {
         scene.meshes.iter().map(|m| scene.materials[m.material.0 as usize].name.as_str()).collect();
     assert_eq!(names, ["red", "shiny", "default"]);
     let shiny = &scene.materials[scene.meshes[1].material.0 as usize];
-    let [Lobe::Rough { alpha, scale: Reflectance::Constant(scale), .. }] = shiny.lobes[..] else { panic!() };
+    let [Lobe::Rough { alpha: Roughness::Constant(alpha), scale: Reflectance::Constant(scale), .. }] =
+        shiny.lobes[..]
+    else {
+        panic!()
+    };
     assert!((alpha - (2.0f32 / 100.0).sqrt()).abs() < 1e-6);
     assert!((scale - Vec3::new(0.5, 0.5, 0.6)).length() < 1e-6, "dimmed: {scale}");
     assert_eq!(loaded.warnings.len(), 1, "{:?}", loaded.warnings);
@@ -172,11 +176,14 @@ fn pictures_stand_upright_on_a_rectangle() {
     let image = image::RgbImage::from_fn(2, 2, |_, y| image::Rgb([if y == 0 { 255 } else { 0 }; 3]));
     image.write_to(&mut png, image::ImageFormat::Png).unwrap();
     let material = "[[material]]\nname = \"p\"\nkind = \"diffuse\"\nreflectance = { file = \"p.png\", wrap = \"clamp\" }\n";
-    let text = format!("{HEAD}{material}[[mesh]]\nshape = \"rectangle\"\nmaterial = \"p\"\n");
+    let rough = "[[material]]\nname = \"q\"\nkind = \"conductor\"\npreset = \"Au\"\nalpha = { file = \"p.png\", scale = 0.5 }\n";
+    let text = format!("{HEAD}{material}{rough}[[mesh]]\nshape = \"rectangle\"\nmaterial = \"p\"\n");
     let loaded = load_with(&text, &[("p.png", png.get_ref())]).unwrap();
     let mesh = &loaded.scene.meshes[0];
     for (position, uv) in mesh.positions.iter().zip(&mesh.uvs) {
         let expected = if position.y > 0.0 { 1.0 } else { 0.0 };
         assert_eq!(loaded.scene.textures[0].lookup(*uv).x, expected, "{position}");
     }
+    let [Lobe::Rough { alpha, .. }] = loaded.scene.materials[1].lobes[..] else { panic!() };
+    assert_eq!(alpha, Roughness::Textured { texture: TextureId(1), scale: 0.5 });
 }

@@ -59,7 +59,7 @@ pub(super) struct MaterialText {
     pub diffuse: Option<ColourText>,
     pub specular: Option<ColourText>,
     pub transmittance: Option<ColourText>,
-    pub alpha: Option<f64>,
+    pub alpha: Option<NumberText>,
     pub distribution: Option<String>,
     pub ior: Option<f64>,
     pub nonlinear: Option<bool>,
@@ -78,7 +78,16 @@ pub(super) enum ColourText {
     Texture(TextureText),
 }
 
+/// A number, or the name of a picture with or without how to read it.
 #[derive(Clone, Debug, Deserialize)]
+#[serde(untagged, expecting = "expected a number, a picture's name or { file = \"...\" }")]
+pub(super) enum NumberText {
+    Number(f64),
+    Picture(String),
+    Texture(TextureText),
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TextureText {
     pub file: String,
