@@ -1,20 +1,24 @@
-//! Light that clamping takes from virtual lights close to a point, found again by short rays.
+//! Bias compensation: energy lost by clamping virtual lights close to a point, recovered by short rays.
 //!
 //! Paper: Kollig and Keller, *Illumination in the Presence of Weak Singularities*, 2004; Herzog et al. 2009,
-//! section 6.3 and Eq. 13. Virtual lights count with min(G, b) of their geometry term G = cosθ_x cosθ_y / r²; the
-//! rest, max(0, G - b), is integrated over directions instead: E = π/N Σ max(0, 1 - b/G) L over N directions
-//! distributed by the cosine. G exceeds b only where r < b^(-1/2), so rays end there and are cheap.
+//! section 6.3 and Eq. 13. Virtual lights count with min(G, b) of their geometry term G = cosθ_x cosθ_y / r²;
+//! the rest, max(0, G - b), is integrated over directions instead: E = π/N Σ max(0, 1 - b/G) L over N
+//! directions distributed by the cosine. G exceeds b only where r < b^(-1/2), so rays end there and are
+//! cheap.
 //!
-//! [`short_rays`] traces them, [`points`] adds the light that shading points lack, and [`records`] that of cache records.
+//! [`short_rays`] traces them, [`points`] adds the compensation of shading points, and [`records`] that of
+//! cache records.
 //!
-//! Virtual lights on area lights count with cosθ_x cosθ_y / max(r², A), A the area that they stand for (to within a
-//! factor of 2, see [`crate::vpl::size_of_area`]); rays that meet the light at r find max(0, 1 - r²/A) of its radiance.
+//! Virtual lights on area lights count with cosθ_x cosθ_y / max(r², A), A the area that they represent (to
+//! within a factor of 2, see [`crate::vpl::size_of_area`]); rays that hit the light at r find max(0, 1 -
+//! r²/A) of its radiance.
 //!
-//! Deviations: light of the second kind is not in the paper, which limits no direct light. b comes from the mean
-//! intensity of all indirect virtual lights, so one that is much brighter than the mean may give more than the limit.
-//! Every point is compensated, also where no light of its cut happens to be clamped: the two parts complement each
-//! other on average only. All points use the same directions, in frames of their own, so that their errors are alike
-//! and not seen between them. Where a longest path is set, paths over surfaces that rays meet may have an edge more.
+//! Deviations: light of the second kind is not in the paper, which limits no direct light. b comes from the
+//! mean intensity of all indirect virtual lights, so one that is much brighter than the mean may give more
+//! than the limit. Every point is compensated, also where no light of its cut happens to be clamped: the two
+//! parts complement each other on average only. All points use the same directions, in frames of their own,
+//! so that their errors are similar and no noise is visible between them. Where the path length is limited,
+//! paths over surfaces that rays hit may have an edge more.
 //!
 //! Units: b in 1/m².
 
@@ -53,8 +57,8 @@ impl<'a> Compensation<'a> {
     }
 }
 
-/// Calls `chosen` with items chosen evenly along the sum of their weights, in `strata` equal parts of the `total`, and
-/// the sum of the parts that each stands for.
+/// Calls `chosen` with items chosen evenly along the sum of their weights, in `strata` equal parts of the
+/// `total`, and the sum of the parts that each represents.
 fn choose_evenly(
     weights: impl IntoIterator<Item = f32>,
     total: f32,

@@ -1,10 +1,10 @@
 //! Light that shading points lack of virtual lights close to them.
 //!
-//! Points of a patch that may lack something trace short rays each. Irradiance is gathered at up to sixteen of the surfaces
-//! that the anchors' rays meet, and interpolated to all other surfaces met from the patch.
+//! Points of a patch that may lack something trace short rays each. Irradiance is gathered at up to sixteen
+//! of the surfaces that the anchors' rays meet, and interpolated to all other surfaces met from the patch.
 //!
-//! Deviations: light that lobes reflect is not compensated, only that of bases. Cuts limit the luminance that a virtual
-//! light gives, not its geometry term: the same for lights of mean intensity.
+//! Deviations: light that lobes reflect is not compensated, only that of bases. Cuts limit the luminance that
+//! a virtual light gives, not its geometry term: the same for lights of mean intensity.
 
 use super::short_rays::{self, ClampedPoint, NearSurface};
 use super::{Compensation, choose_evenly};
@@ -27,16 +27,16 @@ const NEGLIGIBLE: f32 = 0.01;
 /// Error of the lightcuts at surfaces met, relative to the light of the points.
 const EPSILON: f32 = 0.3;
 
-/// Most clusters in them.
+/// Maximum number of clusters in them.
 const MAX_CUT: usize = 600;
 
-/// Most steps towards the total that no cluster of them gives more than ε of.
+/// Maximum number of steps towards the total of which no cluster gives more than ε.
 const MAX_STEPS: u32 = 8;
 
 /// Share of the luminance to which a VPL is clamped in them: more than elsewhere, since light lost here is lost.
 const CLAMP: f32 = 0.05;
 
-/// Weight of surfaces that face away, relative to those that face alike.
+/// Weight of surfaces that face away, relative to those of the same orientation.
 const ASIDE: f32 = 1e-3;
 
 /// Workspace for the compensation of shading points; one a thread, so that its buffers are allocated once.
@@ -69,8 +69,9 @@ pub struct NearLight {
 }
 
 impl Compensator {
-    /// Adds the light that the anchors of a patch lack to their `sum` of the light of one origin or of both. Returns the
-    /// light near the patch, unless there is so little that its other points need no compensation.
+    /// Adds the light that the anchors of a patch lack to their `sum` of the light of one origin or of both.
+    /// Returns the light near the patch, unless there is so little that its other points need no
+    /// compensation.
     pub fn anchors(
         &mut self,
         c: &Compensation,
@@ -135,8 +136,8 @@ impl Compensator {
         self.counts.rays += short_rays::trace(c, &clamped, RAYS, |lane, near| met.push((lane, near)));
     }
 
-    /// Irradiance at some of the surfaces met, chosen in proportion to their weights. It is added to points that have the
-    /// irradiance `baseline`, so its error need only be small relative to that.
+    /// Irradiance at some of the surfaces met, chosen in proportion to their weights. It is added to points
+    /// that have the irradiance `baseline`, so its error need only be small relative to that.
     fn gather(&mut self, c: &Compensation, baseline: f32) -> Vec<(SurfacePoint, Rgb)> {
         // One surface after the other.
         let mut order: Vec<u32> = (0..self.met.len() as u32).collect();
@@ -190,7 +191,7 @@ impl Compensator {
 }
 
 impl NearLight {
-    /// Mean irradiance of the places, mostly of those close by that face alike.
+    /// Returns the mean irradiance of the points, weighted towards those close by of the same orientation.
     fn interpolated(&self, near: &NearSurface, least_sq: f32) -> Rgb {
         let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
         for (place, irradiance) in &self.places {

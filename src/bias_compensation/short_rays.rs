@@ -17,9 +17,10 @@ const SEED: u32 = 0x5eed;
 pub struct ClampedPoint {
     /// Position and normals.
     pub point: SurfacePoint,
-    /// Largest geometry term of an indirect virtual light; none is clamped where it is not positive and finite.
+    /// Maximum geometry term of an indirect virtual light; none is clamped where it is not positive and
+    /// finite.
     pub bound: f32,
-    /// Whether it lacks light from area lights too.
+    /// True if light from area lights is to be compensated too.
     pub direct: bool,
 }
 
@@ -40,9 +41,9 @@ pub struct NearSurface {
     pub emitted: Rgb,
 }
 
-/// Calls `met` with the number of a point and a surface with light that virtual lights lack, for each of `count` rays from
-/// each point; ray by ray, and within that in order of the points, of which only sixteen count. Returns the number of rays
-/// traced.
+/// Calls `met` with the number of a point and a surface with light that virtual lights lack, for each of
+/// `count` rays from each point; ray by ray, and within that in order of the points, of which only sixteen
+/// count. Returns the number of rays traced.
 pub fn trace(
     c: &Compensation,
     points: &[ClampedPoint],

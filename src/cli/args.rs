@@ -1,4 +1,4 @@
-//! What can be typed. Every option is documented here and nowhere else: `--help` is made of it.
+//! Arguments of the command line. Every option is documented here and nowhere else: `--help` is made of it.
 
 use super::bench_args::BenchArgs;
 use super::exit;
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 #[derive(Debug, Parser)]
 #[command(name = "lightsplat", version, about, after_help = exit::HELP, arg_required_else_help = true)]
 pub struct Cli {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -73,7 +73,7 @@ pub struct RenderArgs {
     /// Fail on anything in the scene that is not modelled, instead of warning
     #[arg(long)]
     pub strict: bool,
-    /// What is wanted instead of how.
+    /// The goal: quality, time or error.
     #[command(flatten)]
     pub plan: PlanArgs,
     /// Measuring the error.
@@ -92,7 +92,7 @@ pub struct VerifyArgs {
     /// the interval that covers it in 95 of 100 cases
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..))]
     pub verify: Option<u32>,
-    /// What the picture is held to be [default: what the method computes: pixels for path, else eye-samples]
+    /// Meaning of a pixel's value [default: that of the method: pixels for path, else eye-samples]
     #[arg(long, value_enum, requires = "measured")]
     pub verify_against: Option<VerifyAgainst>,
     /// Most paths a pixel [default: 4096]; how many pixels would need more to be known to 1 % is reported
@@ -100,7 +100,7 @@ pub struct VerifyArgs {
     pub verify_samples: Option<u32>,
 }
 
-/// What a pixel's value is meant to be.
+/// Meaning of a pixel's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum VerifyAgainst {
     /// The mean radiance over the pixel: an edge that few samples cannot resolve counts as error
@@ -156,7 +156,7 @@ pub enum StatsFormat {
     Json,
 }
 
-/// What a heatmap may show.
+/// Errors that a heatmap can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum HeatmapError {
     /// Perceived difference, 0 to 1

@@ -12,18 +12,18 @@ use anyhow::anyhow;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// What to render, how, and where to.
+/// A validated render: scene, method and output files.
 #[derive(Debug)]
 pub struct RenderJob {
     /// Scene file.
     pub scene: PathBuf,
-    /// Whether what is not modelled is an error.
+    /// True if features that are not modelled are errors.
     pub strict: bool,
     /// OpenEXR file; its folder has been found writable.
     pub output: PathBuf,
     /// PNG file and its exposure.
     pub png: Option<(PathBuf, Exposure)>,
-    /// How to render it, and how its error is measured.
+    /// Method, planned goal, and verification of the error.
     pub goal: Goal,
     /// Number of threads.
     pub threads: usize,
@@ -36,7 +36,7 @@ pub struct RenderJob {
 }
 
 impl RenderJob {
-    /// Checks what was typed, and that the results can be written where they are wanted. The run began with `run`.
+    /// Checks the arguments, and that the results can be written to their paths. The run began with `run`.
     pub fn new(args: RenderArgs, run: Stopwatch) -> Result<RenderJob, Failure> {
         let held = args.method.typed();
         let method = args.plan.method(args.method.method()?, &held);

@@ -16,8 +16,8 @@ pub struct MethodArgs {
 }
 
 impl MethodArgs {
-    /// The method, with its defaults for what was not typed. A setting that it has not is an error: it would have no
-    /// effect.
+    /// Returns the method, with its defaults for options not given. A setting of other methods is an error:
+    /// it would have no effect.
     pub fn method(&self) -> Result<Method, Failure> {
         let usage = |text: String| Failure::usage(anyhow!(text));
         let mut method =
@@ -138,7 +138,7 @@ impl Setting {
         arg.value_parser(self.parser())
     }
 
-    /// Checks what is typed as the first method does that has it.
+    /// Checks a value by the first method that has the setting.
     fn parser(&self) -> ValueParser {
         if !self.choices.is_empty() {
             let value = |choice: &Choice| PossibleValue::new(choice.name).help(choice.help());
@@ -158,7 +158,7 @@ mod tests {
     use super::*;
     use std::fs;
 
-    /// What stands before and after the table in the README.
+    /// Marks before and after the table in the README.
     const MARKS: [&str; 2] =
         ["<!-- settings: made by UPDATE_README=1 cargo test --lib readme -->\n\n", "\n<!-- -->\n"];
 

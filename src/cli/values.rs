@@ -18,7 +18,7 @@ pub enum ProgressMode {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Resolution(pub [u32; 2]);
 
-/// Most pixels along a side: what OpenEXR and PNG readers commonly accept.
+/// Maximum number of pixels along a side: the limit that OpenEXR and PNG readers commonly accept.
 const MAX_SIDE: u32 = 1 << 20;
 
 impl FromStr for Resolution {

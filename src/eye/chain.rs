@@ -1,14 +1,15 @@
 //! From a pixel through mirrors and glass to the surfaces that scatter light into it.
 //!
-//! Paper: Herzog et al. 2009, section 4: specular chains are followed by the eye pass, and what scatters
-//! smoothly at their ends is an eye sample for the lightcut or the cache.
+//! Paper: Herzog et al. 2009, section 4: specular chains are followed by the eye pass, and the smoothly
+//! scattering surface at their ends is shaded by the lightcut or the cache.
 //!
-//! Both branches at glass are followed, so that the picture has no noise from choosing; a branch that carries
-//! little goes on by Russian roulette.
+//! Both branches at glass are followed, so that the picture has no noise from choosing; a branch of small
+//! throughput is subject to Russian roulette.
 //!
-//! Deviations: sharp rough lobes are followed as well, in one sampled direction a sample: virtual lights would show in
-//! them one by one, and what they reflect of each other is beyond virtual lights altogether. This brings noise,
-//! which falls with the samples a pixel. What emitters give to the lobe is sampled from them as well (`sharp`).
+//! Deviations: sharp rough lobes are followed as well, in one sampled direction a sample: virtual lights
+//! would be visible in them one by one, and reflections of such lobes in each other cannot be represented by
+//! virtual lights at all. This brings noise, which falls with the samples a pixel. Emitters are sampled for
+//! the lobe as well (`sharp`).
 
 use super::sharp::{Sharp, Start};
 use crate::embree::Ray;
@@ -31,7 +32,7 @@ const ROULETTE_THROUGHPUT: f32 = 0.05;
 pub struct EyeSample<'w> {
     /// The surface.
     pub surface: Surface,
-    /// How it scatters; lobes that the chain follows itself are taken out.
+    /// BSDF of the surface, without the lobes that the chain follows itself.
     pub bsdf: Bsdf<'w>,
     /// Unit vector back along the ray.
     pub out: Vec3,
@@ -62,7 +63,7 @@ struct Branch {
     depth: u32,
     /// Length of the chain up to the ray's origin.
     distance: f32,
-    /// Where a sharp lobe sampled the ray.
+    /// Start of the ray, if a sharp lobe sampled it.
     start: Option<Start>,
 }
 

@@ -1,4 +1,4 @@
-//! Eye samples: what a pixel sees, through mirrors and glass.
+//! Eye samples: surfaces visible in a pixel, directly or through mirrors and glass.
 
 mod chain;
 mod index;

@@ -98,7 +98,7 @@ impl<'w> EyePass<'w> {
         self.points.len()
     }
 
-    /// Whether nothing is seen.
+    /// True if no surface is visible.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }

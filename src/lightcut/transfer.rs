@@ -13,10 +13,11 @@ use crate::vpl::{Vpl, VplKind, min_dist_sq, near_sq_of_size};
 pub struct Transfer<'a> {
     /// All VPLs and their clusters.
     pub trees: &'a LightTrees,
-    /// Least squared distance that the geometry term divides by.
+    /// Minimum squared distance that the geometry term divides by.
     pub min_dist_sq: f32,
-    /// Whether VPLs on area lights divide by no less than the area that they stand for: what lies closer sees more of
-    /// the light than one point can stand for, and short rays find it (see [`crate::bias_compensation`]).
+    /// True if VPLs on area lights divide by no less than the area that they represent: a closer point sees
+    /// more of the light than one VPL can represent, and short rays recover the rest (see
+    /// [`crate::bias_compensation`]).
     pub patches: bool,
 }
 
@@ -26,7 +27,7 @@ impl<'a> Transfer<'a> {
         Transfer { trees, min_dist_sq: min_dist_sq(diagonal), patches: false }
     }
 
-    /// Least squared distance that the geometry term of a VPL divides by.
+    /// Minimum squared distance that the geometry term of a VPL divides by.
     #[inline]
     pub fn near_sq(&self, vpl: &Vpl, kind: VplKind) -> f32 {
         match kind {

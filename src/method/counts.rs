@@ -1,4 +1,4 @@
-//! What stages counted, by the names that methods share.
+//! Counts of the stages, under the names that methods share.
 
 use crate::bias_compensation::points::CompensationCounts;
 use crate::eye::ChainCounts;
@@ -23,7 +23,7 @@ pub fn cuts(stats: &mut Stats, group: &str, counts: &CutCounts) {
     stats.add(&format!("{group}/mean cut"), counts.clusters as f64 / counts.cuts.max(1) as f64);
 }
 
-/// Of what clamping takes from eye samples with such cuts, and short rays find again.
+/// Reports the counts of clamping in eye samples' cuts, and of its compensation.
 pub fn clamping(stats: &mut Stats, cuts: &CutCounts, near: Option<&CompensationCounts>) {
     let percent = 100.0 / if cuts.luminance > 0.0 { cuts.luminance } else { 1.0 };
     stats.add("Lightcut/light lost to clamping [%]", percent * cuts.lost);

@@ -13,7 +13,8 @@ use crate::world::World;
 pub struct Lights {
     /// The trees over them.
     pub trees: LightTrees,
-    /// Squared distance below which a point cannot stand for the patch around it, by mesh; 0 where none shines.
+    /// Squared distance below which a point cannot represent the patch around it, by mesh; 0 for meshes that
+    /// do not emit.
     near_sq: Vec<f32>,
     diagonal: f32,
 }
@@ -42,18 +43,19 @@ impl Lights {
         Lights { trees, near_sq: found.sizes.iter().map(near_sq).collect(), diagonal: world.diagonal }
     }
 
-    /// What reaches a point from them; `compensated` where short rays find what is lacking close to lights.
+    /// Returns the transfer of their light to a point; `compensated` where short rays compensate clamping
+    /// close to lights.
     pub fn transfer(&self, compensated: bool) -> Transfer<'_> {
         Transfer { patches: compensated, ..Transfer::new(&self.trees, self.diagonal) }
     }
 
-    /// What shading needs of them and the scene; with `compensated` light close to them.
+    /// Returns the inputs of shading; with `compensated` for light close to virtual lights too.
     pub fn context<'a>(&'a self, world: &'a World, compensated: bool) -> ShadingContext<'a> {
         let compensation = compensated.then(|| self.compensation(world));
         ShadingContext { world, transfer: self.transfer(compensated), compensation }
     }
 
-    /// What finds it.
+    /// Returns the inputs of its compensation.
     pub fn compensation<'a>(&'a self, world: &'a World) -> Compensation<'a> {
         Compensation::new(world, self.transfer(true), &self.near_sq)
     }

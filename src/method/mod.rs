@@ -1,6 +1,7 @@
 //! The renderers compared, one folder each; they share every stage they can.
 //!
-//! A method is a [`Renderer`]: a struct of settings that says what it is called and renders. [`Method`] is any of them.
+//! A method is a [`Renderer`]: a struct of settings with a name and a render function. [`Method`] is any of
+//! them.
 
 pub mod cache;
 mod counts;

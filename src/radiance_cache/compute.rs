@@ -1,8 +1,8 @@
 //! Records by lightcuts.
 //!
-//! Records that lie close together share a cut, as neighbouring pixels do: its shadow rays are coherent.
-//! A record that lacks one layer only cuts only that layer's trees, judged against what the other is known to
-//! give, so that each layer masks the other's errors (Herzog et al. 2009, section 6).
+//! Records close together share a cut, as neighbouring pixels do: its shadow rays are coherent. A record that
+//! lacks one layer only cuts only that layer's trees, judged against the light of the other layer, so that
+//! each layer masks the other's errors (Herzog et al. 2009, section 6).
 
 use super::compensate::{self, Clamp, Cutters};
 use super::footprint::{Footprint, FootprintLimits};
@@ -50,7 +50,7 @@ struct GatheredLight {
     layers: DirectIndirect<GatheredLayer>,
     /// Light as series, where the surface needs it so.
     series: DirectIndirect<Option<Radiance>>,
-    /// How light changes over the surface, if footprints are to know of occluders' edges.
+    /// Change of the light over the surface, if footprints are to include occluders' edges.
     hessian: Option<Box<OcclusionHessian>>,
 }
 
@@ -76,7 +76,7 @@ impl LightcutSource<'_> {
         group_coherent(CoherenceLimit::CLOSE, candidates, LANES, self.world.diagonal, place, same)
     }
 
-    /// Whether footprints depend on the distances of occluders; the distances of probe rays replace those.
+    /// True if footprints depend on the distances of occluders; the distances of probe rays replace those.
     fn needs_occluders(&self) -> bool {
         self.settings.footprints != Footprints::Occlusion
     }

@@ -2,7 +2,7 @@
 //!
 //! Paper: Herzog et al. 2009, sections 5.2 and 6.
 //!
-//! The records themselves outlive the frame (see [`super::store`]); what is kept here depends on its eye samples.
+//! The records themselves outlive the frame (see [`super::store`]); this part depends on its eye samples.
 
 use super::adapt::{self, Discontinuity};
 use super::placement::candidates;
@@ -28,15 +28,15 @@ pub struct CacheFrame<'a> {
     pub(super) splats: DirectIndirect<Splat>,
     /// Eye samples at which records were computed.
     pub(super) placed: DirectIndirect<Vec<u32>>,
-    /// Where records disagreed before each pass of adaptation.
+    /// Discontinuities between records before each pass of adaptation.
     pub(super) discontinuities: Vec<Vec<Discontinuity>>,
     /// Counts of the cuts of records.
     pub cuts: CutCounts,
 }
 
 impl<'a> CacheFrame<'a> {
-    /// Adds records from `source` until the eye samples are covered, shrinks their footprints and covers what that
-    /// has bared.
+    /// Adds records from `source` until the eye samples are covered, shrinks their footprints and covers the
+    /// samples that are uncovered by that.
     pub fn fill(
         targets: Targets<'a>,
         records: &mut Records,
@@ -137,8 +137,8 @@ impl<'a> CacheFrame<'a> {
     }
 }
 
-/// Means over a layer's records: clusters or rays, anisotropy, and radius (of the circle of the same area) over the
-/// distance of what casts light and shadow.
+/// Reports means over a layer's records: clusters or rays, anisotropy, and radius (of the circle of the same
+/// area) over the distance of the geometry that casts light and shadow.
 fn shapes(records: &[Record], layer: &str, stats: &mut Stats) {
     let mut mean = |what: &str, of: &dyn Fn(&Record) -> f32| {
         let values = records.iter().map(|r| f64::from(of(r))).filter(|value| value.is_finite());

@@ -3,16 +3,16 @@
 //! | layer | red, green, blue |
 //! |---|---|
 //! | `direct`, `indirect` | radiance of that origin, through the pixel |
-//! | `both` | radiance of samples whose own cut held either; `direct` + `indirect` + `both` + emitters in view = the picture |
+//! | `both` | radiance of samples whose cut held both origins; parts + emitters in view = the picture |
 //! | `records` | number of records placed in the pixel: direct, indirect, 0 |
-//! | `footprint` | long over short radius of the indirect record that weighs most; both radii |
+//! | `footprint` | long over short radius of the indirect record of the largest weight; both radii |
 //! | `gradient` | gradient of that record's luminance over its luminance, 1/m: x, y, z |
 //! | `weights` | sum of weights: direct, indirect, 0 |
-//! | `cut` | clusters in the cut of the record that weighs most: direct, indirect, 0 |
-//! | `clamped` | share of that indirect record's light taken by clamping, share given back, 0 |
+//! | `cut` | clusters in the cut of the record of the largest weight: direct, indirect, 0 |
+//! | `clamped` | share of that indirect record's light lost by clamping, share recovered, 0 |
 //! | `seams.1`, `seams.2`, ... | eye samples at visible seams before each pass: direct, indirect, 0 |
 //!
-//! Where a pixel has several eye samples, the last in the order of the index stands for all but in sums and
+//! Where a pixel has several eye samples, the last in the order of the index represents all but in sums and
 //! counts.
 
 use super::fill::CacheFrame;

@@ -2,21 +2,21 @@
 //!
 //! Paper: Herzog et al. 2009, sections 5 (records and footprints), 6 (splatting), 8 of the method (adaptation).
 //!
-//! What a record is:
+//! Contents of a record:
 //! - [`record`]: irradiance at a point; [`footprint`]: the ellipse within which it is used; [`store`]: the records of
 //!   a layer, which outlive the frame;
 //! - [`series`]: radiance as a series beside irradiance, for glossy surfaces, and its reflection by lobes.
 //!
-//! Where it comes from:
+//! Computation:
 //! - [`source`]: the points where records are needed, and the sources that compute them; [`compute`]: by lightcuts,
 //!   neighbours sharing them;
-//! - [`gather`]: from a converged cut to irradiance, its gradient and the distance to what casts light and shadow,
-//!   [`occluder_distance`] among it; [`compensate`]: light that clamping near virtual lights took away, found by short
-//!   rays;
+//! - [`gather`]: from a converged cut to irradiance, its gradient and the distance of the geometry that casts light and
+//!   shadow, [`occluder_distance`] included; [`compensate`]: light lost by clamping near virtual lights, recovered by
+//!   short rays;
 //! - [`probe`], [`edges`], [`occlusion_hessian`]: surfaces around a record, and the change of its light with the motion
 //!   of occluders' edges.
 //!
-//! What a frame does with it:
+//! Use in a frame:
 //! - [`targets`]: the eye samples as far as records light them; [`splat`]: weighted sums there;
 //! - [`placement`]: points where records are needed next; [`adapt`]: footprints that disagree visibly are shrunk;
 //!   [`fill`]: both, until all is covered;

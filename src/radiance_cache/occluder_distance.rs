@@ -1,8 +1,8 @@
 //! Distances from records to the occluders of their virtual lights.
 //!
-//! Paper: Herzog et al. 2009, section 5.1: occluders limit how far a record reaches, as visible lights do.
+//! Paper: Herzog et al. 2009, section 5.1: occluders limit the reach of a record, as visible lights do.
 //!
-//! Deviations: an occluder is whatever stopped the shadow ray, not the nearest.
+//! Deviations: the occluder is the one that stopped the shadow ray, not the nearest.
 
 use crate::embree::Occluders16;
 use crate::light_tree::Node;
@@ -17,7 +17,7 @@ use std::cell::RefCell;
 /// Visibility in the scene that notes the distances of occluders.
 pub struct OccluderLog<'w> {
     engine: Engine<'w>,
-    /// Representative, and the distance to what hides it from each lane, or infinity.
+    /// Representative, and the distance to its occluder from each lane, or infinity.
     log: RefCell<Vec<(u32, F32x16)>>,
 }
 
@@ -35,11 +35,11 @@ impl<'w> OccluderLog<'w> {
     }
 }
 
-/// Distances to what hides lights of a cut, sorted by representative.
+/// Distances to the occluders of a cut's lights, sorted by representative.
 pub struct OccluderDistances(Vec<(u32, F32x16)>);
 
 impl OccluderDistances {
-    /// Distance to what hides a representative from a lane; infinite if nothing does.
+    /// Returns the distance from a lane to the occluder of a representative; infinite if there is none.
     pub fn get(&self, node: &Node, lane: usize) -> f32 {
         let found = self.0.binary_search_by_key(&(node.representative() as u32), |entry| entry.0);
         found.map_or(f32::INFINITY, |i| self.0[i].1[lane])

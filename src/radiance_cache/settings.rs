@@ -1,4 +1,4 @@
-//! Settings of records: how many there are, and how far each reaches.
+//! Settings of records: their number, and their reach.
 
 use crate::hsh::SeriesSettings;
 use crate::lightcut::{CutSettings, MIN_SHARED};
@@ -52,7 +52,8 @@ settings! {
         accuracy: [f32; 2] = [0.3, 0.2] => [
             .positive().placeholder("DIRECT,INDIRECT").scaled(&DOWN).parts(&["direct", "indirect"]).with(RECORDS)
         ];
-        /// Least and largest radius of footprints, in spacings of eye samples, of all or of direct and of indirect light.
+        /// Least and largest radius of footprints, in spacings of eye samples, of all or of direct and of indirect
+        /// light.
         reach: [[f32; 2]; 2] = [[1.5, 20.0], [1.5, 40.0]] => [
             .positive().placeholder("LEAST,LARGEST").scaled(&DOWN).parts(&["", "", "least", "largest"])
         ];
@@ -62,7 +63,8 @@ settings! {
         ///
         /// The gradients shape the footprints in any case.
         gradients: bool = true => [];
-        /// Relative change of luminance across an anisotropic footprint that halves it along the gradient; the paper's μ.
+        /// Relative change of luminance across an anisotropic footprint that halves it along the gradient; the
+        /// paper's μ.
         mu: f32 = 0.5 => [.positive().scaled(&DOWN).with(&[("footprints", "anisotropic")])];
         /// Root of 1 - cos of the angle between normals at which a footprint ends.
         normal_tolerance: f32 = 0.4 => [.positive().scaled(&[2.0, 1.0, 0.5])];
@@ -74,8 +76,8 @@ settings! {
         ///
         /// A record costs as much as the reconstruction cuts of some hundred samples.
         least_cell: u32 = 256 => [.at_least(1.0).scaled(&UP)];
-        /// Number of patches, about, of the eye samples without records: sixteen of each share a cut, which is reconstructed
-        /// at the others. The cost of cuts is in proportion to it, whatever the resolution.
+        /// Number of patches, about, of the eye samples without records: sixteen of each share a cut, which is
+        /// reconstructed at the others. The cost of cuts is in proportion to it, whatever the resolution.
         patches: u32 = 4096 => [is PATCHES];
         /// Sharing of cuts between neighbours; if off, records and samples all have their own, whatever `patches` says.
         share: bool = true => [is SHARE];
@@ -90,7 +92,7 @@ impl CacheSettings {
         DirectIndirect { direct: self.direct, indirect: self.indirect }.map(|by| by == FoundBy::Records)
     }
 
-    /// Whether so many neighbours share a cut.
+    /// True if so many neighbours share a cut.
     pub fn shares(&self, points: usize) -> bool {
         self.share && points >= MIN_SHARED
     }

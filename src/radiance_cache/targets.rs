@@ -15,7 +15,7 @@ pub struct Targets<'a> {
     pub glossy: Option<&'a Glossy>,
     /// Bands of the series that each point needs; 0 where irradiance is enough.
     pub bands: Vec<u8>,
-    /// Whether records can light a point: it has a base, or a lobe broad enough for a series.
+    /// True if records can light the point: it has a base, or a lobe broad enough for a series.
     pub cacheable: Vec<bool>,
 }
 

@@ -1,21 +1,21 @@
-//! What a frame is rendered for.
+//! The goal of a frame.
 
 use crate::method::Method;
 use crate::stats::Stopwatch;
 use crate::verify;
 
-/// A method, what its settings are planned for, and how the picture's error is measured.
+/// A method, the goal that its settings are planned for, and the verification of the picture's error.
 #[derive(Clone, Debug, Default)]
 pub struct Goal {
     /// The method and its settings, from which plans start.
     pub method: Method,
-    /// What settings are planned for.
+    /// Goal that settings are planned for.
     pub wanted: Wanted,
-    /// How the error of the picture is measured, if it is.
+    /// Settings of the verification of the picture's error, if any.
     pub verify: Option<verify::Settings>,
 }
 
-/// Where settings come from.
+/// Source of settings.
 #[derive(Clone, Debug, Default)]
 pub enum Wanted {
     /// From the method as it is.
@@ -34,7 +34,7 @@ pub enum Wanted {
     Error {
         /// Relative RMS error.
         error: f64,
-        /// Most paths at a pixel whose error is measured.
+        /// Maximum number of paths at a pixel whose error is measured.
         max_samples: u32,
         /// Keys of settings that the search leaves alone.
         held: Vec<&'static str>,

@@ -29,7 +29,7 @@ use crate::stats::{Stage, Stats};
 use crate::world::World;
 use std::path::{Path, PathBuf};
 
-/// A scene made ready, with what its file says besides.
+/// A scene prepared for rendering, with the cameras of its file.
 pub struct Session {
     /// The scene, its acceleration structure, materials and emitters.
     pub world: World,
@@ -67,7 +67,7 @@ impl Session {
         Session::of(loaded, path, stats)
     }
 
-    /// Makes a loaded scene ready on the threads of the current pool; `stats` holds what loading it took.
+    /// Prepares a loaded scene on the threads of the current pool; `stats` holds the time of loading it.
     pub fn of(loaded: Loaded, path: &Path, mut stats: Stats) -> Result<Session, OpenError> {
         let Loaded { scene, cameras, hash, .. } = loaded;
         let path = path.to_owned();

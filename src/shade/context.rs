@@ -24,14 +24,14 @@ pub struct ShadingContext<'a> {
 pub struct ShadeSettings {
     /// Error and size of cuts.
     pub cut: CutSettings,
-    /// Whether neighbours share cuts.
+    /// True if neighbours share cuts.
     pub share: bool,
     /// Shadow rays that ask an occluder cache.
     pub shadows: ShadowSettings,
 }
 
 impl ShadeSettings {
-    /// Whether so many points share a cut.
+    /// True if so many points share a cut.
     pub fn shares(&self, points: usize) -> bool {
         self.share && points >= MIN_SHARED
     }
@@ -42,7 +42,7 @@ impl ShadeSettings {
 pub struct ShadingTask {
     /// Number of the point.
     pub point: u32,
-    /// Whether only the light that the lobe on the base reflects is wanted.
+    /// True if only the light reflected by the lobe on the base is wanted.
     pub lobe_only: bool,
     /// Origin of the light; `None` for both.
     pub origin: Option<Origin>,

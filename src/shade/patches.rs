@@ -9,8 +9,8 @@ use glam::Vec3;
 /// Smallest patch: below this too few points are interpolated to repay the sixteen anchors.
 const MIN_PATCH: usize = 64;
 
-/// Patches of tasks from a list in which neighbours in space are near each other; about `count` if there is one for each
-/// of the points.
+/// Patches of tasks from a list in which neighbours in space are near each other; about `count` if there is
+/// one for each of the points.
 pub fn patches(
     points: &ShadingPoints,
     tasks: &[ShadingTask],
@@ -33,8 +33,8 @@ pub fn patches(
     patches
 }
 
-/// Groups for shared cuts over all of some points: each takes the first point left and up to fifteen others that are coherent
-/// with it, or it alone if those are too few. Time is quadratic in the number of points.
+/// Groups for shared cuts over all of some points: each takes the first point left and up to fifteen others
+/// that are coherent with it, or it alone if those are too few. Time is quadratic in the number of points.
 pub(super) fn greedy_groups(
     points: &ShadingPoints,
     settings: &ShadeSettings,
@@ -55,8 +55,8 @@ pub(super) fn greedy_groups(
     groups
 }
 
-/// The tasks of a patch that are its anchors: the outermost, so that light is never extrapolated, and every so many others,
-/// from the middle of each stretch.
+/// The tasks of a patch that are its anchors: the outermost, so that light is never extrapolated, and every
+/// so many others, from the middle of each stretch.
 pub(super) fn anchors(points: &ShadingPoints, patch: &[ShadingTask]) -> Vec<bool> {
     if patch.len() <= LANES {
         return vec![true; patch.len()];

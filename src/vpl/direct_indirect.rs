@@ -44,7 +44,7 @@ impl<T> DirectIndirect<T> {
 }
 
 impl DirectIndirect<bool> {
-    /// Whether either holds.
+    /// True if either holds.
     #[inline]
     pub fn any(self) -> bool {
         self.direct || self.indirect

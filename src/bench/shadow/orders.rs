@@ -1,10 +1,10 @@
-//! The refinements that methods run, over stretches of a scene's eye samples, with whatever visibility.
+//! The refinements of the methods, over stretches of a scene's eye samples, with any visibility.
 //!
-//! Lightcuts per pixel; the cache's eye samples, lit by direct light, whose neighbours are lent cuts; and its records,
-//! of indirect light. All in the order of the method, each point by itself or neighbours together.
+//! Lightcuts per pixel; the cache's eye samples with direct light by reconstruction cuts; and its records, of
+//! indirect light. All in the order of the method, each point by itself or neighbours together.
 //!
-//! Records are those of the first wave of the finest level, as if there were no coarser ones: its records lie as close
-//! as any.
+//! Records are those of the first wave of the finest level, as if there were no coarser ones: its records are
+//! as close together as any.
 
 use crate::bench::setting::Setting;
 use crate::lightcut::{
@@ -61,7 +61,7 @@ impl<'s> Orders<'s> {
         let mut tasks = Vec::new();
         for stretch in &stretches {
             let job = |&sample: &usize| {
-                // What a record is to have found already.
+                // The baseline luminance of a record.
                 let cut = CutSettings { origin: Some(Origin::Indirect), ..CutSettings::default() };
                 let (transfer, reflector) = (setting.transfer(), setting.reflector(sample));
                 let indirect = single.gather(&transfer, setting.world, &reflector, &cut).radiance;
@@ -94,7 +94,7 @@ impl<'s> Orders<'s> {
         }
     }
 
-    /// Lights the points of a stretch. Returns the sum of what they reflect.
+    /// Shades the points of a stretch. Returns the sum of the reflected radiance.
     pub fn light<V>(&self, order: Order, chunk: usize, shared: bool, rays: &V) -> Rgb
     where
         V: Visibility + PacketVisibility,

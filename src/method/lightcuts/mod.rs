@@ -3,8 +3,8 @@
 //! Paper: Walter et al., *Lightcuts*, 2005; "LC" in Herzog et al. 2009, section 6, over direct and indirect VPLs.
 //!
 //! Use it where a picture without noise is wanted and a small, smooth error is not in the way. Not for caustics on
-//! what the eye sees: light that reaches a visible surface through glass or by a mirror is missing there (what
-//! that surface reflects onto others is not).
+//! visible surfaces: light that reaches such a surface through glass or by a mirror is missing there (its
+//! reflection onto others is not).
 
 mod blocks;
 mod render;

@@ -1,4 +1,4 @@
-//! The picture: eye pass, photons, trees of direct light, the cache, and what it leaves to single samples.
+//! The picture: eye pass, photons, trees of direct light, the cache, and the rest by single samples.
 
 use crate::eye::EyePass;
 use crate::film::Window;
@@ -88,7 +88,7 @@ impl Renderer for Settings {
     }
 }
 
-/// Renders what `view` sees.
+/// Renders the picture of `view`.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     let mut stats = Stats::new();
     let eye = settings.sampling().eye(&world.scene);
