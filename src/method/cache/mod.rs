@@ -13,4 +13,4 @@
 mod render;
 pub(crate) mod resolve;
 
-pub use render::{Prepared, Settings, render};
+pub use render::{Settings, render};
