@@ -1,7 +1,7 @@
-//! Shading points and visibility samples: where light is wanted, and what it adds to which pixel.
+//! Shading points and visibility samples: points to be shaded, and their contributions to pixels.
 //!
-//! A shading point is lit once; any number of visibility samples carry its radiance to pixels. Neither a camera nor
-//! a pixel is known to a shading point, so that points can be merged and records reused over views.
+//! A shading point is shaded once; any number of visibility samples add its radiance to pixels. A shading
+//! point does not depend on camera or pixels, so that points can be merged and records reused over views.
 //!
 //! Units: positions relative to the scene's centre; weights are per pixel (they include 1/spp).
 
@@ -27,7 +27,7 @@ pub struct PointGeometry {
 /// Surface of a shading point: the data that shading reads beside the geometry.
 #[derive(Clone, Copy, Debug)]
 pub struct PointSurface<'w> {
-    /// How it scatters; lobes that the chain follows itself are taken out.
+    /// BSDF of the surface, without the lobes that the chain follows itself.
     pub bsdf: Bsdf<'w>,
     /// Unit geometric normal.
     pub geometric_normal: Vec3,
@@ -50,7 +50,7 @@ impl ShadingPoints<'_> {
         self.geometry.len()
     }
 
-    /// Whether there is no point.
+    /// True if there is no point.
     pub fn is_empty(&self) -> bool {
         self.geometry.is_empty()
     }
@@ -61,7 +61,7 @@ impl ShadingPoints<'_> {
 pub struct VisibilitySample {
     /// Pixel of the window, in rows.
     pub pixel: u32,
-    /// What the pixel's colour gains per radiance leaving the point along its `out`.
+    /// Weight of the radiance leaving the point along its `out` in the pixel's colour.
     pub weight: Rgb,
 }
 

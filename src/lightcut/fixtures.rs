@@ -57,7 +57,7 @@ pub fn all_materials() -> Scene {
     Scene { materials, ..Scene::default() }
 }
 
-/// VPLs in a few groups of very different size, some flat as walls, some with all normals alike.
+/// VPLs in a few groups of very different size, some flat as walls, some with equal normals.
 fn grouped(n: usize, kind: VplKind, scale: f32, numbers: &mut Numbers) -> VplSet {
     let mut set = VplSet::new(kind, Origin::Indirect);
     while set.len() < n {

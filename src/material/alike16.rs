@@ -20,16 +20,17 @@ pub struct AlikeBsdfs16<'m> {
 /// Bounds of the directions towards light, by lane; see [`super::DirectionBound`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DirectionBounds16 {
-    /// Largest cosine to the normal, at most 1.
+    /// Maximum cosine to the normal, at most 1.
     pub cos_i_max: F32x16,
-    /// Least cosine to the normal.
+    /// Minimum cosine to the normal.
     pub cos_i_min: F32x16,
-    /// Largest cosine to the mirror direction of `wo`.
+    /// Maximum cosine to the mirror direction of `wo`.
     pub cos_mirror_max: F32x16,
 }
 
 impl<'m> AlikeBsdfs16<'m> {
-    /// Takes the materials `at(lane)`, each with its `wo` (z >= 0); `None` if they are not alike, or transmit light.
+    /// Takes the materials `at(lane)`, each with its `wo` (z >= 0); `None` if they are not uniform, or
+    /// transmit light.
     pub fn new(at: impl Fn(usize) -> (Bsdf<'m>, Vec3)) -> Option<AlikeBsdfs16<'m>> {
         let first = at(0).0;
         let zero = Vec3x16::default();

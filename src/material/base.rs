@@ -24,7 +24,7 @@ pub(super) struct BaseModel {
     mean_transmittance: f32,
     /// Share of the base's light that the coat sends back inside.
     internal_reflectance: f32,
-    /// BRDF over albedo, less the transmittances by angle and what internal reflection adds.
+    /// BRDF over albedo, without the transmittances by angle and the gain of internal reflection.
     factor: f32,
     nonlinear: bool,
 }
@@ -133,7 +133,7 @@ impl BaseModel {
 pub(super) struct RoughCoat {
     /// Share of the light from a direction outside that enters.
     transmittance: AngleTable<f32>,
-    /// The largest transmittance at this or any smaller cosine.
+    /// Maximum transmittance at this or any smaller cosine.
     max_transmittance: AngleTable<f32>,
     mean_transmittance: f32,
     internal_reflectance: f32,

@@ -25,10 +25,11 @@ impl DirectionBound {
 }
 
 impl Bsdf<'_> {
-    /// Returns an upper bound, per channel, of `eval(wo, wi)` · cos θ_i over all `wi` within `bound` on the side of `wo`.
+    /// Returns an upper bound, per channel, of `eval(wo, wi)` · cos θ_i over all `wi` within `bound` on the
+    /// side of `wo`.
     ///
-    /// NaN in a bound counts as not knowing. Exact for a Lambertian surface at `cos_i_max`. Delta lobes are not
-    /// included, as they are not in `eval`.
+    /// NaN in a bound counts as not knowing. Exact for a Lambertian surface at `cos_i_max`. Delta lobes are
+    /// not included, as they are not in `eval`.
     #[inline]
     pub fn bound(&self, wo: Vec3, bound: &DirectionBound) -> Rgb {
         let cos_max = bound.cos_i_max.min(1.0);

@@ -155,8 +155,8 @@ impl Microfacets {
         }
     }
 
-    /// Integrates the mean of `f(h)` over the facet normals seen from `wo`, by a product rule of `nodes` (even) nodes each
-    /// way; `wo` is in the xz plane and `f` symmetric about it, so one half is enough.
+    /// Integrates the mean of `f(h)` over the facet normals seen from `wo`, by a product rule of `nodes`
+    /// (even) nodes each way; `wo` is in the xz plane and `f` symmetric about it, so one half is enough.
     pub fn mean_over_visible(&self, wo: Vec3, rule: &[(f32, f32)], f: impl Fn(Vec3) -> Rgb) -> Rgb {
         let stretched = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalize();
         let half = &rule[..rule.len() / 2];

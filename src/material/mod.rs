@@ -1,13 +1,13 @@
-//! What a surface does to light: [`Materials`] holds what is computed once a scene, [`Bsdf`] is a material at
+//! Scattering at surfaces: [`Materials`] holds the values computed once a scene, [`Bsdf`] is a material at
 //! one point, to be evaluated, sampled and bounded.
 //!
 //! Every material is a Lambert base, perhaps under a dielectric coat, and up to three lobes (see
-//! [`crate::scene::Material`]); definitions are Mitsuba 3's `diffuse`, `plastic`, `roughplastic`, `conductor`,
-//! `roughconductor`, `dielectric` and `twosided`, so that pictures agree with its references. [`Bsdf`] adds up base
-//! and lobes; what a lobe does by itself is in its file under `lobe`.
+//! [`crate::scene::Material`]); definitions are Mitsuba 3's `diffuse`, `plastic`, `roughplastic`,
+//! `conductor`, `roughconductor`, `dielectric` and `twosided`, so that pictures agree with its references.
+//! [`Bsdf`] adds up base and lobes; each lobe by itself is in its file under `lobe`.
 //!
 //! All directions are in the local shading frame (z = shading normal), point away from the surface and have
-//! unit length: `wo` towards the eye (or wherever the path came from), `wi` towards the light.
+//! unit length: `wo` towards the eye (or the previous vertex of the path), `wi` towards the light.
 
 mod alike16;
 mod base;

@@ -1,4 +1,4 @@
-//! Materials made ready for evaluation: what does not depend on the point is computed once a scene.
+//! Materials prepared for evaluation: values that do not depend on the point are computed once a scene.
 
 use super::base::{BaseModel, CoatInterface, RoughCoat};
 use super::bsdf::Bsdf;

@@ -1,9 +1,10 @@
-//! Textured roughness: a model for each level of it, so that whatever is tabulated by roughness is what it is for a
-//! constant one, and constant ones pay nothing.
+//! Textured roughness: a model for each level of it, so that tables by roughness are the same as for a
+//! constant one, and constant ones cost nothing more.
 //!
-//! Deviations: a level stands for values within 1.1 % of its own, which is less than half a step of an 8-bit picture
-//! at 0.5 in a texture of α² or of one at 0.18 in one of α; the coat's tables are made for every eighth level. Values
-//! below 1/1024 count as such. Textures of other lobes' roughness count by their means.
+//! Deviations: a level represents values within 1.1 % of its own, which is less than half a step of an 8-bit
+//! picture at 0.5 in a texture of α² or of one at 0.18 in one of α; the coat's tables are made for every
+//! eighth level. Values below 1/1024 are clamped to it. Textures of other lobes' roughness are replaced by
+//! their means.
 
 use crate::math::luminance;
 use crate::scene::{Lobe, Material, Roughness, Texture, TextureId};
@@ -33,7 +34,7 @@ impl Level {
         (self.0 as f32 / LEVELS_PER_OCTAVE as f32).exp2()
     }
 
-    /// Returns the level that stands for this one where coats are concerned.
+    /// Returns the level whose coat tables this one uses.
     pub fn of_coat(self) -> Level {
         Level((self.0 as f32 / COAT_STEP as f32).round() as i32 * COAT_STEP)
     }

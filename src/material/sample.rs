@@ -1,5 +1,5 @@
-//! Choosing directions in proportion to what they carry: base or lobe by their expected shares of the light,
-//! cosine-weighted for the base, by its own rule for a lobe.
+//! Sampling of directions in proportion to their contribution: base or lobe by their expected shares of the
+//! light, cosine-weighted for the base, by its own rule for a lobe.
 
 use super::bsdf::{Bsdf, Outgoing};
 use super::lobe::MAX_LOBES;
@@ -31,8 +31,8 @@ impl BsdfSample {
     }
 }
 
-/// Directions in which light goes on without being spread, all of them, for following specular chains
-/// without chance: each weight is what the lobe carries, each pdf is 1.
+/// All directions in which light continues without being spread, for following specular chains
+/// deterministically: each weight is the lobe's reflectance or transmittance, each pdf is 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeltaLobes {
     /// As by a mirror.

@@ -1,4 +1,4 @@
-//! Properties of every kind of material, and what the tests share.
+//! Properties of every kind of material, and shared test helpers.
 
 mod agreement;
 mod alike;
@@ -134,7 +134,7 @@ fn layered() -> Material {
     Material { name: "layered".into(), diffuse: constant(PAINT * 0.3), lobes, ..Material::default() }
 }
 
-/// Least roughness of the rough lobes; infinite without any.
+/// Minimum roughness of the rough lobes; infinite without any.
 fn min_alpha(material: &Material) -> f32 {
     let alphas = material.lobes.iter().filter_map(|lobe| match lobe {
         Lobe::Rough { alpha: Roughness::Constant(alpha), .. } => Some(*alpha),

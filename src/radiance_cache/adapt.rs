@@ -1,11 +1,12 @@
 //! Adaptation: footprints that disagree visibly are shrunk.
 //!
-//! Paper: Herzog et al. 2009, section 5.2: at each eye sample one contribution after the other is left out; where
-//! that changes the luminance visibly, the record's footprint is shrunk until it excludes the sample. On glossy
-//! surfaces lit by series, luminance is that of what is reflected to the eye, elsewhere that of the irradiance.
-//! The change is judged against the sum of both layers, so that each masks the other.
+//! Paper: Herzog et al. 2009, section 5.2: at each eye sample one contribution after the other is left out;
+//! where that changes the luminance visibly, the record's footprint is shrunk until it excludes the sample.
+//! On glossy surfaces lit by series, luminance is that of the radiance reflected to the eye, elsewhere that
+//! of the irradiance. The change is judged against the sum of both layers, so that each masks the other.
 //!
-//! Deviations: the record nearest to the sample keeps its place. Leaving it out changes most, yet it knows most.
+//! Deviations: the record nearest to the sample is kept. Leaving it out changes most, yet it is the most
+//! accurate.
 
 use super::settings::CacheSettings;
 use super::splat::Splat;
@@ -212,7 +213,7 @@ mod tests {
             let record = &records.direct.records[d.record as usize];
             assert!(record.delta(&floor.points.geometry[d.sample as usize], 0) > 0.999);
         }
-        // What has changed is in marked leaves.
+        // All changes are in marked leaves.
         splats.direct.renew(&targets, &records.direct, &changed);
         assert_eq!(splats.direct.sums, Splat::new(&targets, &records.direct).sums);
         assert!(changed.contains(&true) && changed.contains(&false));

@@ -1,8 +1,9 @@
-//! What records lack of the light of virtual lights close to them (see [`crate::bias_compensation`]).
+//! Compensation at records of the light clamped from virtual lights close to them (see
+//! [`crate::bias_compensation`]).
 //!
-//! Deviations: light is looked up at up to `LOOKUPS` of the points that a record's rays meet, chosen in proportion to
-//! what they may give, and itself lacks what is clamped. Series (light that lobes reflect) are clamped alike and not
-//! compensated.
+//! Deviations: light is gathered at up to `LOOKUPS` of the points hit by a record's rays, chosen in
+//! proportion to their possible contribution, and is itself clamped without compensation. Series (light
+//! reflected by lobes) are clamped too and not compensated.
 //!
 //! Units: b in 1/m².
 
@@ -21,7 +22,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 /// Rays from each record.
 const RAYS: u32 = 32;
 
-/// Most lightcuts at points that rays of one record meet.
+/// Maximum number of lightcuts at points hit by rays of one record.
 const LOOKUPS: usize = 2;
 
 /// A record's light may change by less than about this without lightcuts to find it.
@@ -30,10 +31,10 @@ const NEGLIGIBLE: f32 = 5e-3;
 /// Error bound of those lightcuts; their share in a record's light is small.
 const EPSILON: f32 = 0.1;
 
-/// Most clusters in those lightcuts, as a fraction of a record's.
+/// Divisor of a record's maximum number of clusters that gives the maximum in those lightcuts.
 const CUT_FRACTION: usize = 8;
 
-/// How the contribution of an indirect virtual light is limited.
+/// Limit of the contribution of an indirect virtual light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clamp {
     /// Its luminance is at most this.
@@ -53,7 +54,7 @@ impl Clamp {
         if value > limit { limit / value } else { 1.0 }
     }
 
-    /// The largest geometry term, infinite if that is not what is limited.
+    /// Returns the maximum geometry term, infinite if another quantity is limited.
     pub fn bound(self) -> f32 {
         match self {
             Clamp::Luminance(_) => f32::INFINITY,
@@ -72,7 +73,7 @@ struct Lookup {
     factor: Rgb,
 }
 
-/// What a thread computes cuts with.
+/// Workspaces of a thread's cuts.
 pub struct Cutters<'a> {
     /// For one point.
     pub single: &'a mut Lightcut,
@@ -82,12 +83,12 @@ pub struct Cutters<'a> {
     pub points: &'a mut ReceiverPacket<'static>,
 }
 
-/// How indirect leaves are clamped where none may give more than the luminance `limit`.
+/// Returns the clamp of indirect leaves, none of which may give more than the luminance `limit`.
 pub fn clamp(compensation: &Option<Compensation>, limit: f32) -> Clamp {
     compensation.as_ref().map_or(Clamp::Luminance(limit), |c| Clamp::Geometry(c.bound(limit)))
 }
 
-/// Adds what virtual lights lack that were limited, to what the records of a task gather of direct and of indirect light.
+/// Adds the compensation of clamped virtual lights to the direct and indirect light of a task's records.
 pub fn add(
     c: &Compensation,
     source: &LightcutSource,
@@ -119,7 +120,7 @@ pub fn add(
     for (record, met) in met.iter().enumerate() {
         choose(met, record, &mut lookups);
     }
-    // What records met on one wall, then what they met on another: neighbours look up light side by side.
+    // Sorted by the mesh hit: neighbours gather light side by side.
     lookups.sort_by_key(|lookup| (lookup.near.surface.mesh, lookup.record));
     let place = |lookup: &Lookup| (lookup.near.surface.position, lookup.near.normal);
     for group in group_coherent(CoherenceLimit::CLOSE, lookups, LANES, world.diagonal, place, |_, _| true) {
@@ -134,14 +135,14 @@ pub fn add(
     }
 }
 
-/// Chooses at which of the points to look up light, and with what factor it counts.
+/// Chooses the points at which to gather light, and the factors of their contributions.
 fn choose(near: &[NearSurface], record: usize, lookups: &mut Vec<Lookup>) {
     let total: f32 = near.iter().map(|n| luminance(n.weight)).sum();
     // As if the points met were lit as the record is.
     if total < NEGLIGIBLE * RAYS as f32 * FRAC_1_PI {
         return;
     }
-    // Evenly spaced along the sum of the weights: each choice stands for an equal share of it.
+    // Evenly spaced along the sum of the weights: each choice represents an equal share of it.
     let share = total / LOOKUPS as f32;
     let (mut reached, mut next) = (0.0, 0.5 * share);
     for &near in near {

@@ -1,17 +1,17 @@
-//! How irradiance changes where occluders hide and reveal what is behind them.
+//! Derivatives of irradiance due to occluders that hide and reveal their background.
 //!
-//! As the receiver moves by δ, the edge of an occluder at distance z_c moves before its background at z_d by the
-//! angle (1/z_c - 1/z_d) δ, and a sliver of background appears or goes. Its radiance times its cosine is what
-//! gradients with visibility held leave out; the light of the occluder itself is among what they hold. Continuous
-//! surfaces, smooth or creased, have no such edges.
+//! As the receiver moves by δ, the edge of an occluder at distance z_c moves before its background at z_d by
+//! the angle (1/z_c - 1/z_d) δ, and a sliver of background appears or goes. Its radiance times its cosine is
+//! the term missing from gradients of constant visibility; the light of the occluder itself is part of those.
+//! Continuous surfaces, smooth or creased, have no such edges.
 //!
-//! Paper: Ward and Heckbert 1992 and Krivanek et al. 2005 for the integrals along cells' boundaries; Schwarzhaupt,
-//! Jensen and Jarosz, *Practical Hessian-Based Error Control for Irradiance Caching*, 2012, for the use of both
-//! derivatives.
+//! Paper: Ward and Heckbert 1992 and Krivanek et al. 2005 for the integrals along cells' boundaries;
+//! Schwarzhaupt, Jensen and Jarosz, *Practical Hessian-Based Error Control for Irradiance Caching*, 2012, for
+//! the use of both derivatives.
 //!
-//! Deviations: radiance comes from the cut's clusters, spread over the cells whose surface they lie on, not from
-//! shading what the rays meet. Second derivatives are an upper estimate: the background's radiance is taken to
-//! change by all of itself within one cell.
+//! Deviations: radiance comes from the cut's clusters, spread over the cells of the surface they lie on, not
+//! from shading the hits of the rays. Second derivatives are an upper estimate: the background's radiance is
+//! taken to change by all of itself within one cell.
 
 use super::probe::{Probes, SECTORS};
 use crate::math::{Rgb, luminance};
@@ -82,7 +82,7 @@ impl CellLight {
         }
     }
 
-    /// What the edges between cells contribute.
+    /// Sums the contributions of the edges between cells.
     pub fn edges(&self, probes: &Probes) -> EdgeDerivatives {
         let mut sum = EdgeDerivatives::default();
         let rings = probes.rings as f32;
@@ -115,7 +115,7 @@ impl CellLight {
         sum
     }
 
-    /// Adds what an edge contributes.
+    /// Adds the contribution of an edge.
     #[inline]
     fn add_edge(&self, probes: &Probes, edge: &Edge, sum: &mut EdgeDerivatives) {
         let &Edge { cells: [a, b], across, length, width } = edge;
@@ -157,7 +157,7 @@ fn parallax(probes: &Probes, a: usize, b: usize) -> f32 {
     }
 }
 
-/// Whether a light may lie on the surface of `plane` (see [`Probes::plane`]): 1 if it does.
+/// Tests whether a light may lie on the surface of `plane` (see [`Probes::plane`]): 1 if it does.
 #[inline]
 fn belonging(plane: Vec3, offset: Option<Vec3>) -> f32 {
     let Some(offset) = offset else {

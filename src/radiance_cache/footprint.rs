@@ -19,7 +19,7 @@ const NORMAL_SCALE: f32 = 5.0;
 /// Smallest ratio of the radius along the gradient to that of the circle of the same area.
 const MIN_SQUEEZE: f32 = 0.3;
 
-/// Largest ratio of the axes of footprints by second derivatives.
+/// Maximum ratio of the axes of footprints by second derivatives.
 const MAX_ASPECT: f32 = 2.0;
 
 /// The ellipse within which a record is used.
@@ -40,9 +40,9 @@ pub struct FootprintLimits<'a> {
     pub settings: &'a CacheSettings,
     /// The paper's a.
     pub accuracy: f32,
-    /// Distance of what casts light and shadow.
+    /// Distance of the geometry that casts light and shadow.
     pub distance: f32,
-    /// Smallest and largest radius.
+    /// Minimum and maximum radius.
     pub radii: [f32; 2],
 }
 

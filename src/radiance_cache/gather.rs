@@ -1,14 +1,14 @@
 //! From a converged cut to the contents of a record.
 //!
-//! Paper: Herzog et al. 2009, Eqs. 7 to 10 and section 5.1; Krivanek et al. 2005 for the gradient of one light.
-//! With q from the record to a virtual light of normal n_y and a = -n_y·q, an unoccluded light of unit intensity
-//! gives the irradiance vector a q/|q|⁴ and the tangential gradient (n·q)(n_y + 4 a q/|q|²)/|q|⁴; an omni light
-//! q/|q|³ and 3 (n·q) q/|q|⁵; a directional light its direction and no gradient.
+//! Paper: Herzog et al. 2009, Eqs. 7 to 10 and section 5.1; Krivanek et al. 2005 for the gradient of one
+//! light. With q from the record to a virtual light of normal n_y and a = -n_y·q, an unoccluded light of unit
+//! intensity gives the irradiance vector a q/|q|⁴ and the tangential gradient (n·q)(n_y + 4 a q/|q|²)/|q|⁴;
+//! an omni light q/|q|³ and 3 (n·q) q/|q|⁵; a directional light its direction and no gradient.
 //!
-//! Deviations: a clamped light has no gradient, and lights nearer than the least distance neither. The falloff
+//! Deviations: a clamped light has no gradient, nor have lights nearer than the minimum distance. The falloff
 //! of a spot light's cone is taken as constant. The distance that sets the footprint is the paper's, the
-//! least to a visible light or an occluder, tempered by the harmonic mean of the same, weighted by what each light
-//! gives or would give; occluders are whatever stops a shadow ray, not the nearest.
+//! minimum to a visible light or an occluder, tempered by the harmonic mean of the same, weighted by each
+//! light's unoccluded contribution; the occluder is the one that stopped the shadow ray, not the nearest.
 
 use super::source::Candidate;
 use crate::light_tree::Node;
@@ -19,7 +19,7 @@ use crate::vpl::{Vpl, VplKind};
 use crate::world::SurfacePoint;
 use glam::{Mat3, Vec3};
 
-/// Largest ratio of the distance that sets the footprint to the least one.
+/// Maximum ratio of the distance that sets the footprint to the minimum one.
 const MAX_OVER_LEAST: f32 = 2.0;
 
 /// Sums over the lights of one layer as seen from one point.
@@ -33,11 +33,11 @@ pub struct GatheredLayer {
     pub gradient: Mat3,
     /// Sum of the luminances of all lights, hidden or not.
     pub weight: f32,
-    /// Sum of the same over the distance to the light or to what hides it.
+    /// Sum of the same over the distance to the light or to its occluder.
     pub nearness: f32,
-    /// Least of those distances.
+    /// Minimum of those distances.
     pub least: f32,
-    /// Largest geometry term that a clamped light counts with; infinite if that is not how they are clamped.
+    /// Maximum geometry term of a clamped light; infinite if another quantity is clamped.
     pub bound: f32,
     /// Clusters in the cut, of all layers.
     pub cut: u32,
@@ -80,7 +80,7 @@ pub struct LitCluster<'t> {
 }
 
 impl LitCluster<'_> {
-    /// Least squared distance that the geometry term of the representative divides by.
+    /// Returns the minimum squared distance that the geometry term of the representative divides by.
     #[inline]
     pub fn near_sq(&self) -> f32 {
         self.transfer.near_sq(self.vpl, self.node.kind())
@@ -162,8 +162,8 @@ impl GatheredLayer {
         self.least = self.least.min(distance);
     }
 
-    /// The distance that sets how far the record reaches: the harmonic mean over all lights, visible or not,
-    /// though no more than a multiple of the least.
+    /// Returns the distance that sets the reach of the record: the harmonic mean over all lights, visible or
+    /// not, but at most a multiple of the minimum.
     pub fn distance(&self) -> f32 {
         let mean = if self.nearness > 0.0 { self.weight / self.nearness } else { f32::INFINITY };
         mean.min(MAX_OVER_LEAST * self.least)

@@ -52,7 +52,7 @@ impl OcclusionHessian {
         OcclusionHessian { position: point.position, probes, layers }
     }
 
-    /// Harmonic mean distance of what is seen.
+    /// Returns the harmonic mean distance of the visible surfaces.
     pub fn distance(&self) -> f32 {
         self.probes.harmonic_mean()
     }
@@ -181,7 +181,8 @@ mod tests {
                 let truth = (at(step) - 2.0 * at(0.0) + at(-step)) / (step * step);
                 assert!((curvature - truth.abs()).abs() < 0.01 * luminance(here), "{curvature} {truth}");
             }
-            // A patch of surface in the place of an oriented light, giving as much, changes alike.
+            // A patch of surface in place of an oriented light of the same contribution has the same
+            // derivatives.
             if kind == VplKind::Oriented {
                 let mut patch = OcclusionHessian::new(&world, &point, 64, 0);
                 let local = |v: Vec3| patch.probes.frame.to_local(v);

@@ -1,8 +1,8 @@
-//! Candidates for records: uncovered eye samples, spread evenly over the surfaces seen.
+//! Candidates for records: uncovered eye samples, spread evenly over the visible surfaces.
 //!
-//! Paper: Herzog et al. 2009, section 6 (records are computed where no record contributes); the coarse beginning
-//! is the overture of Ward's irradiance caching. Each step takes at most one sample of each cell of one level of the
-//! eye samples' index, the one nearest to the middle of what is uncovered there.
+//! Paper: Herzog et al. 2009, section 6 (records are computed where no record contributes); the coarse
+//! beginning is the overture of Ward's irradiance caching. Each step takes at most one sample of each cell of
+//! one level of the eye samples' index, the one nearest to the middle of the uncovered samples there.
 
 use super::source::Candidate;
 use super::splat::Splat;
@@ -26,8 +26,8 @@ pub fn missing(
     })
 }
 
-/// The candidates of every other cell of `level` (`parity` 0 or 1): siblings take turns, so that what one needs
-/// may be covered already by the other's record.
+/// Returns the candidates of every other cell of `level` (`parity` 0 or 1): siblings take turns, so that the
+/// need of one may be covered already by the other's record.
 pub fn candidates(
     targets: &Targets,
     splats: &DirectIndirect<Splat>,
@@ -152,7 +152,7 @@ mod tests {
         let direct = all(one(Origin::Direct));
         assert!(direct.len() == 512 && direct.iter().all(|c| c.point.position.x > 0.5));
         assert_eq!(all(one(Origin::Indirect)).len(), 1024);
-        // The middle of what is uncovered, not of the cell.
+        // The middle of the uncovered samples, not of the cell.
         let coarse = candidates(&targets, &splats, one(Origin::Direct), 0, 0);
         assert!(coarse.len() == 1 && (coarse[0].point.position - Vec3::new(0.75, 0.5, 0.0)).length() < 0.04);
     }

@@ -18,7 +18,7 @@ use std::f32::consts::TAU;
 
 /// Sectors of each ring: one packet of rays.
 pub const SECTORS: usize = 16;
-/// Most rings from the normal to the horizon.
+/// Maximum number of rings from the normal to the horizon.
 const MAX_RINGS: u32 = 256;
 
 /// Surface seen in each cell; cell `ring · SECTORS + sector`.

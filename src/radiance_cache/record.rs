@@ -1,11 +1,11 @@
-//! A cache record: irradiance at a point, how it changes nearby, and the footprint within which that is believed.
+//! A cache record: irradiance at a point, its derivatives, and the footprint within which it is extrapolated.
 //!
 //! Paper: Herzog et al. 2009, section 5, Eqs. 5, 6, 11 and 12.
 //! Units: irradiance in W/m², gradients in W/m³.
 //!
-//! Deviations: the irradiance is kept as a vector, whose product with a normal is exact for every normal until the
-//! horizon clips a light, and which stands for the rotational gradient. The weight 1/δ - 1 (δ = 1 at the
-//! footprint's edge) is that of Eq. 11 less its value there, so that it does not jump.
+//! Deviations: the irradiance is kept as a vector, whose product with a normal is exact for every normal
+//! until the horizon clips a light, and which replaces the rotational gradient. The weight 1/δ - 1 (δ = 1 at
+//! the footprint's edge) is that of Eq. 11 less its value there, so that it does not jump.
 
 use super::footprint::Footprint;
 use crate::eye::PointGeometry;
@@ -15,7 +15,7 @@ use glam::{Mat3, Vec3};
 /// Sine of the angle by which a point may lie behind the plane of a record that lights it.
 const BEHIND: f32 = 0.1;
 
-/// Largest factor between the extrapolated luminance and the record's own.
+/// Maximum factor between the extrapolated luminance and the record's own.
 const EXTRAPOLATION: f32 = 3.0;
 
 /// Smallest δ that weights are computed for, which limits the weight at the record itself.
@@ -50,7 +50,7 @@ pub struct Record {
 pub struct Diagnostics {
     /// Clusters in its cut, or rays of its gathering.
     pub cut: u32,
-    /// Distance of what casts light and shadow.
+    /// Distance of the geometry that casts light and shadow.
     pub distance: f32,
     /// Luminance of the irradiance that clamping took away.
     pub clamped: f32,
@@ -182,7 +182,7 @@ mod tests {
         let (_, irradiance) = record.at(&at, 0).unwrap();
         let expected = Rgb::new(0.96 + 0.5 * 0.28, 2.0 * 0.96 + 0.25 * 0.8 - 0.2, 4.0 * 0.96);
         assert!((irradiance - expected).length() < 1e-5, "{irradiance} against {expected}");
-        // Three times the record's own luminance is the most that is believed, a third the least.
+        // The extrapolation is clamped to between a third of the record's own luminance and three times it.
         for (factor, believed) in [(2.98, true), (3.02, false), (0.34, true), (0.33, false)] {
             let change = (factor - 1.0) * record.luminance;
             record.gradient = Mat3::from_cols(Vec3::X, Vec3::X, Vec3::X) * change;

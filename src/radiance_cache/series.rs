@@ -61,7 +61,7 @@ impl SeriesGatherer {
         }
     }
 
-    /// Whether the record is to have series.
+    /// True if the record is to have series.
     pub fn is_wanted(&self) -> bool {
         self.place.is_some()
     }

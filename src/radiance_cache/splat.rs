@@ -100,7 +100,7 @@ fn by_leaf<'a>(sums: &'a mut [Sum], index: &EyeIndex, marked: &[bool]) -> Vec<(u
         .collect()
 }
 
-/// Adds what records give at the samples of a leaf.
+/// Adds the contributions of records at the samples of a leaf.
 fn add(targets: &Targets, leaf: usize, records: &[Record], ids: &[u32], sums: &mut [Sum]) {
     for &id in ids {
         let record = &records[id as usize];

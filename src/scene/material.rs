@@ -1,8 +1,8 @@
-//! How a surface scatters: a Lambert base, up to three lobes above it, and an optional clear coat.
+//! Scattering of a surface: a Lambert base, up to three lobes above it, and an optional clear coat.
 //!
-//! Every material of the supported formats is one of these combinations, so a stage that handles base,
-//! lobes and coat handles them all: `plastic` is a base under a coat with a mirror lobe, `roughplastic`
-//! the same with a rough lobe, `conductor` a mirror lobe alone.
+//! Every material of the supported formats is one of these combinations, so a stage that handles base, lobes
+//! and coat handles them all: `plastic` is a base under a coat with a mirror lobe, `roughplastic` the same
+//! with a rough lobe, `conductor` a mirror lobe alone.
 
 use super::texture::TextureId;
 use crate::math::Rgb;
@@ -19,7 +19,7 @@ pub enum Parameter<T> {
     Constant(T),
     /// The texture's value times `scale`; a number takes the luminance of each texel.
     Textured {
-        /// Which texture.
+        /// Index of the texture.
         texture: TextureId,
         /// Factor on every texel.
         scale: T,

@@ -7,7 +7,7 @@ use glam::{DVec3, Mat3, Vec2};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TextureId(pub u32);
 
-/// How texels are joined.
+/// Interpolation between texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
     /// Linear between the centres of the four nearest texels.
@@ -16,7 +16,7 @@ pub enum Filter {
     Nearest,
 }
 
-/// What lies outside [0, 1]².
+/// Extension of the texture beyond [0, 1]².
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
     /// The image again.
@@ -38,9 +38,9 @@ pub struct Texture {
     pub height: usize,
     /// Linear colour, row-major, top row first.
     pub texels: Vec<Rgb>,
-    /// How texels are joined.
+    /// Interpolation between texels.
     pub filter: Filter,
-    /// What lies outside [0, 1]².
+    /// Extension of the texture beyond [0, 1]².
     pub wrap: Wrap,
     /// Applied to the texture coordinates (homogeneous) first.
     pub to_uv: Mat3,

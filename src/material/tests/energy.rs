@@ -12,7 +12,7 @@ fn albedo_by_sampling(bsdf: &Bsdf, wo: Vec3, seed: u64) -> Rgb {
         let at = |cell: usize, jitter: f32| (cell as f32 + jitter) / N as f32;
         let u = Vec2::new(at(y, random.next()), at(z, random.next()));
         if let Some(s) = bsdf.sample(wo, at(x, random.next()), u) {
-            // Flux, not radiance: what refraction does to the solid angle cancels.
+            // Flux, not radiance: the change of the solid angle by refraction cancels.
             sum += (s.weight * s.eta * s.eta).as_dvec3();
         }
     }

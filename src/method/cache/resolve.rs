@@ -5,7 +5,7 @@ use crate::radiance_cache::resolve::{Interpolated, Left};
 use crate::shade::{Picture, ShadingTask};
 use crate::vpl::Origin;
 
-/// Adds the light of records to the picture. Returns tasks for what they leave to cuts.
+/// Adds the light of records to the picture. Returns tasks for the rest, which is shaded by cuts.
 pub fn resolve(light: &[Interpolated], eye: &EyePass, picture: &mut Picture) -> Vec<ShadingTask> {
     let mut tasks = Vec::new();
     for (point, light) in light.iter().enumerate() {
