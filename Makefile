@@ -3,7 +3,7 @@
 CARGO ?= cargo
 TARGET_DIR := $(or $(CARGO_TARGET_DIR),target)
 
-.PHONY: help setup build demo test lint doc
+.PHONY: help setup build demo test quick lint doc
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
@@ -22,6 +22,9 @@ demo: build ## render a first scene to out/
 
 test: setup ## every test
 	$(CARGO) test --workspace --locked
+
+quick: setup ## the tests that take seconds, not minutes
+	$(CARGO) test --workspace --locked -- --skip slow
 
 lint: setup ## format and clippy, warnings denied
 	$(CARGO) fmt --all --check

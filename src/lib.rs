@@ -1,24 +1,24 @@
 //! lightsplat: global illumination by lightcuts, reconstructed or cached, and a path-traced reference, over
 //! Embree 4.
 //!
-//! The pipeline, in the order of the data:
+//! [`session`] is the API: a scene held ready, and frames rendered of it. The pipeline behind it, in the order of the data:
 //!
-//! - [`scene::formats`] reads a scene file, sanitises and recentres it; [`scene`] is what results;
+//! - [`scene::formats`] reads a scene file, sanitises and recentres it; [`scene`] is the result;
 //! - [`world`] makes it ready: [`embree`] for rays, [`material`] for scattering, [`light`] for emitters;
+//! - [`view`] says from where it is seen and which part of the [`film`] is rendered;
 //! - [`vpl`] turns lights and photon paths into virtual point lights, [`light_tree`] clusters them;
-//! - [`eye`] follows each pixel through mirrors and glass to the surfaces that scatter light into it;
-//! - [`lightcut`] finds, for each of those, the coarsest clusters whose expected errors stay below what is asked;
-//! - [`bias_compensation`] finds again by short rays what clamping takes from light close by;
-//! - [`shade`] lights those surfaces by cuts and carries their radiance to pixels;
-//! - [`gradient`] says how that light changes along the surface, [`hsh`] expands it over the hemisphere;
-//! - [`radiance_cache`] keeps what cuts found as records, splats them onto the eye samples around and adapts their
-//!   footprints;
-//! - [`shadow`] answers whether segments are free, by packets of rays, [`sampling`] gives every stage its numbers;
-//! - [`method`] holds the renderers that are compared; [`film`] writes and compares what they return;
-//! - [`setting`] declares settings, of which [`method`] and the command line make the rest;
-//! - [`verify`] measures how wrong a picture is by path-tracing some of its pixels, [`plan`] chooses settings for a
-//!   time or an error;
-//! - [`mod@bench`] measures how fast the parts are; [`cli`] is the command around it all, [`stats`] what it reports.
+//! - [`eye`] follows each pixel through mirrors and glass to the points that scatter light into it;
+//! - [`lightcut`] finds, for each of those, the coarsest clusters whose expected errors stay below the threshold, or
+//!   reconstructs its light from the cut of its neighbours;
+//! - [`bias_compensation`] finds by short rays the light that clamping takes away close by;
+//! - [`shade`] lights points by these, [`method`] holds the renderers that are compared;
+//! - [`gradient`] differentiates that light along a surface, [`hsh`] expands it over the hemisphere;
+//! - [`radiance_cache`] keeps it as records, splats them onto the points around and adapts their footprints;
+//! - [`photon`] finds indirect light by photons and final gathering instead, for comparison;
+//! - [`shadow`] answers whether segments are free, by packets of rays; [`sampling`] gives every stage its numbers;
+//! - [`verify`] measures the error of a picture by path-tracing some of its pixels, [`plan`] chooses settings for a time or an
+//!   error, each of which [`setting`] declares once;
+//! - [`mod@bench`] measures how fast the parts are; [`cli`] is the command around it all, [`stats`] its reports.
 
 #![deny(unsafe_code)]
 

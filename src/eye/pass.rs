@@ -97,11 +97,6 @@ impl<'w> EyePass<'w> {
     pub fn len(&self) -> usize {
         self.points.len()
     }
-
-    /// True if no surface is visible.
-    pub fn is_empty(&self) -> bool {
-        self.points.is_empty()
-    }
 }
 
 /// One part of all tiles in one array; the tiles' are freed one by one.

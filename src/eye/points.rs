@@ -49,11 +49,6 @@ impl ShadingPoints<'_> {
     pub fn len(&self) -> usize {
         self.geometry.len()
     }
-
-    /// True if there is no point.
-    pub fn is_empty(&self) -> bool {
-        self.geometry.is_empty()
-    }
 }
 
 /// A share of a shading point's radiance that reaches a pixel.

@@ -3,7 +3,9 @@
 //! Units: radiance; its derivatives are per metre (or whatever unit the scene has).
 
 use super::CHANNELS;
-use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
+#[cfg(test)]
+use super::basis::index;
+use super::basis::{MAX_BANDS, MAX_FUNCTIONS};
 use super::kernel::Kernel;
 use crate::math::{F32x8, Rgb, WIDTH};
 
@@ -29,6 +31,7 @@ pub struct Reflected {
     pub gradient: [Rgb; 2],
 }
 
+#[cfg(test)]
 impl Reflected {
     /// Extrapolates by motion along the tangents; negative values are clamped to 0.
     #[inline]
@@ -55,11 +58,6 @@ impl Radiance {
         usize::from(self.bands)
     }
 
-    /// Bytes on the heap.
-    pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.coefficients)
-    }
-
     /// Returns the same light without change along the surface.
     pub fn without_gradients(mut self) -> Radiance {
         let values = CHANNELS * stride(self.bands());
@@ -72,7 +70,7 @@ impl Radiance {
         self.coefficients[block * stride(self.bands()) + k] = coefficient;
     }
 
-    #[inline]
+    #[cfg(test)]
     fn get(&self, block: usize, k: usize) -> f32 {
         self.coefficients[block * stride(self.bands()) + k]
     }
@@ -113,12 +111,14 @@ impl Radiance {
     }
 
     /// Returns the irradiance: exact from two bands on.
+    #[cfg(test)]
     pub fn irradiance(&self) -> Reflected {
         self.reflected(&Kernel::cosine(self.bands()))
     }
 
     /// Returns the same light in a frame whose tangents are turned by `angle` about the normal, from u
     /// towards v.
+    #[cfg(test)]
     pub fn turned(&self, angle: f32) -> Radiance {
         let mut turned = self.clone();
         for block in 0..BLOCKS {

@@ -5,10 +5,11 @@ use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::{Footprints, FoundBy};
-use lightsplat::method::{Output, cache, lightcuts, reconstruction};
+use lightsplat::method::{Output, cache, reconstruction};
 use lightsplat::progress::Control;
 use lightsplat::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
 use lightsplat::stats::{Counter, Stage};
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 fn settings(direct: FoundBy, footprints: Footprints) -> cache::Settings {
@@ -95,12 +96,16 @@ fn room_with_ball(materials: impl FnOnce(&mut Scene, MaterialId) -> [MaterialId;
     world(scene)
 }
 
-fn per_pixel(world: &WorldAndView, like: &cache::Settings) -> Image {
-    let mut settings =
-        lightcuts::Settings { light: like.light, spp: like.spp, ..lightcuts::Settings::default() };
-    settings.cut.epsilon = 0.005;
-    settings.compensation = like.compensation;
-    lightcuts::render(world, &world.view, &settings, &Control::new()).color
+/// The lit room by lightcuts per pixel with the light of [`settings`], rendered once.
+fn lit_reference() -> &'static Image {
+    static REFERENCE: OnceLock<Image> = OnceLock::new();
+    REFERENCE.get_or_init(|| per_pixel(&lit_room(), &settings(FoundBy::Cuts, Footprints::Isotropic)))
+}
+
+/// The same of the glossy room.
+fn glossy_reference() -> &'static Image {
+    static REFERENCE: OnceLock<Image> = OnceLock::new();
+    REFERENCE.get_or_init(|| per_pixel(&glossy_room(), &settings(FoundBy::Cuts, Footprints::Isotropic)))
 }
 
 #[test]
@@ -113,7 +118,7 @@ fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
                 // Penumbrae are steep: at the default accuracy they need the other mode.
                 (settings.cache.accuracy[0], settings.cache.reach[0]) = (0.1, [0.7, 5.0]);
             }
-            let error = rms(&rendered(&world, &settings).color, &per_pixel(&world, &settings));
+            let error = rms(&rendered(&world, &settings).color, lit_reference());
             assert!(error < limit, "{direct:?} {footprints:?}: {error}");
         }
     }
@@ -130,17 +135,17 @@ fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
         // No second cut for the lobe: a sample has one cut at most, of its direct light.
         let own = count(&output, "Shading/tasks by cuts");
         assert!(own.is_some_and(|own| own <= 96 * 96), "{own:?}");
-        let exact = per_pixel(&world, &settings);
-        let error = rms(&output.color, &exact);
+        let exact = glossy_reference();
+        let error = rms(&output.color, exact);
         assert!(error < limit, "{direct:?}: {error}");
         let mean = |image: &Image| image.pixels.iter().map(|p| luminance(*p)).sum::<f32>();
-        let bias = mean(&output.color) / mean(&exact);
+        let bias = mean(&output.color) / mean(exact);
         assert!((bias - 1.0).abs() < 0.01, "{direct:?}: {bias}");
     }
 }
 
 #[test]
-fn lent_cuts_agree_with_lightcuts_per_pixel() {
+fn reconstruction_cuts_agree_with_lightcuts_per_pixel() {
     for world in [lit_room(), glossy_room()] {
         let mut settings = settings(FoundBy::Cuts, Footprints::Occlusion);
         settings.spp = 4;
@@ -162,14 +167,13 @@ fn lent_cuts_agree_with_lightcuts_per_pixel() {
 #[test]
 fn layers_by_records_and_by_samples_add_up_in_every_combination() {
     let world = glossy_room();
-    let mut first = None;
     for direct in [FoundBy::Cuts, FoundBy::Records] {
         for indirect in [FoundBy::Cuts, FoundBy::Records] {
             let mut settings = settings(direct, Footprints::Anisotropic);
             settings.cache.indirect = indirect;
             (settings.cache.accuracy[0], settings.cache.reach[0]) = (0.1, [0.7, 5.0]);
             let picture = rendered(&world, &settings).color;
-            let error = rms(&picture, first.get_or_insert_with(|| per_pixel(&world, &settings)));
+            let error = rms(&picture, glossy_reference());
             assert!(error < 0.08, "{direct:?} {indirect:?}: {error}");
         }
     }

@@ -2,8 +2,9 @@
 #![allow(dead_code, missing_docs)]
 
 use glam::Vec3;
+use lightsplat::film::Image;
 use lightsplat::math::Rgb;
-use lightsplat::method::{Output, Renderer};
+use lightsplat::method::{Output, Renderer, cache, lightcuts};
 use lightsplat::progress::Control;
 use lightsplat::scene::formats::{LoadOptions, Loaded, load};
 use lightsplat::scene::{Camera, Emission, Fresnel, Lobe, Material, MaterialId, Mesh, Reflectance, Scene};
@@ -184,6 +185,15 @@ pub fn sphere(centre: Vec3, radius: f32, n: u32, material: MaterialId) -> Mesh {
 
 pub fn world(SceneAndView { scene, view }: SceneAndView) -> WorldAndView {
     WorldAndView { world: World::new(scene, 2).expect("the scene builds"), view }
+}
+
+/// The picture by lightcuts per pixel over the same virtual lights, at a quarter of the default error.
+pub fn per_pixel(world: &WorldAndView, like: &cache::Settings) -> Image {
+    let mut settings =
+        lightcuts::Settings { light: like.light, spp: like.spp, ..lightcuts::Settings::default() };
+    (settings.cut.epsilon, settings.cut.max_cut) = (0.005, 10_000);
+    settings.compensation = like.compensation;
+    lightcuts::render(world, &world.view, &settings, &Control::new()).color
 }
 
 /// Renders the picture by a method; it must be complete.

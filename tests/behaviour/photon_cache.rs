@@ -102,8 +102,21 @@ fn scenes_without_light_or_without_surfaces_are_black() {
 fn what_it_took_is_counted() {
     let world = boxed_room();
     let output = render(&world, &world.view, &small(), &Control::new());
-    for name in ["Photons/total", "Cache/records, indirect", "Gathering/rays of records"] {
-        let Some(Counter::Count(n)) = output.stats.get(name) else { panic!("no {name}") };
-        assert!(n > 0, "{name}");
-    }
+    let [photons, records, of_records, of_samples, samples] = [
+        "Photons/total",
+        "Cache/records, indirect",
+        "Gathering/rays of records",
+        "Gathering/rays of samples",
+        "Shading/tasks by gathering",
+    ]
+    .map(|name| match output.stats.get(name) {
+        Some(Counter::Count(n)) => n as f64,
+        other => panic!("{name}: {other:?}"),
+    });
+    assert!((0.8..1.25).contains(&(photons / 30_000.0)), "{photons} photons");
+    assert!(
+        (0.8..1.25).contains(&(of_records / (500.0 * records))),
+        "{of_records} rays of {records} records"
+    );
+    assert_eq!(of_samples, 64.0 * samples);
 }
