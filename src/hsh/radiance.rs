@@ -34,7 +34,7 @@ pub struct Reflected {
 #[cfg(test)]
 impl Reflected {
     /// Extrapolates by motion along the tangents; negative values are clamped to 0.
-    #[inline]
+    #[cfg(test)]
     pub fn at(&self, along_u: f32, along_v: f32) -> Rgb {
         (self.value + self.gradient[0] * along_u + self.gradient[1] * along_v).max(Rgb::ZERO)
     }
