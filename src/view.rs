@@ -4,9 +4,9 @@
 //! lights and its cache records serve any number of views.
 
 use crate::embree::Ray;
-use crate::film::Window;
+use crate::film::{CameraMatrices, Window};
 use crate::scene::{Camera, Cameras};
-use glam::Vec2;
+use glam::{DVec3, Vec2, Vec3};
 
 /// Most pixels rendered at once: 16384 by 65536. More would exhaust the memory of most machines.
 const MAX_PIXELS: u64 = 1 << 30;
@@ -98,6 +98,27 @@ impl View {
         Ray { origin: camera.origin, t_near: camera.near / cos, direction, t_far: camera.far / cos }
     }
 
+    /// Matrices to the camera and the film from the coordinates of the scene's file, which has the scene's `centre` there.
+    pub fn matrices(&self, centre: DVec3) -> CameraMatrices {
+        let camera = &self.camera;
+        let origin = centre + camera.origin.as_dvec3();
+        let axes = [camera.right, camera.up, camera.forward].map(Vec3::as_dvec3);
+        // Rows: what the world's axes and its origin become.
+        let basis = [DVec3::X, DVec3::Y, DVec3::Z, -origin].map(|v| axes.map(|axis| v.dot(axis)));
+        let [width, height] = self.window.film.map(f64::from);
+        let scale = 0.5 / f64::from(camera.tan_half_x);
+        let (mut world_to_camera, mut world_to_ndc) = ([0.0; 16], [0.0; 16]);
+        for (row, [x, y, z]) in basis.into_iter().enumerate() {
+            let w = if row == 3 { 1.0 } else { 0.0 };
+            let ndc = [0.5 * z + scale * x, 0.5 * z - scale * width / height * y, w, z];
+            for (column, (to_camera, to_ndc)) in [x, y, z, w].into_iter().zip(ndc).enumerate() {
+                world_to_camera[4 * row + column] = to_camera as f32;
+                world_to_ndc[4 * row + column] = to_ndc as f32;
+            }
+        }
+        CameraMatrices { world_to_camera, world_to_ndc }
+    }
+
     /// Angle between neighbouring pixels at the film's centre, in radians.
     pub fn pixel_angle(&self) -> f32 {
         2.0 * self.camera.tan_half_x / self.window.film[0] as f32
@@ -107,7 +128,6 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
 
     fn cameras() -> Cameras {
         let path = (0..3).map(|i| Camera { origin: Vec3::X * i as f32, ..Camera::default() }).collect();
@@ -133,6 +153,33 @@ mod tests {
         assert_eq!(crop, FramingError::Crop { film: [8, 4] });
         let large = error(Framing { resolution: Some([1 << 16, 1 << 16]), ..Framing::default() });
         assert_eq!(large, FramingError::Pixels { pixels: 1 << 32 });
+    }
+
+    #[test]
+    fn points_on_a_ray_are_projected_to_its_pixel() {
+        let (forward, right) = (Vec3::new(0.6, 0.0, -0.8), Vec3::new(0.8, 0.0, 0.6));
+        let (origin, up) = (Vec3::new(3.0, -2.0, 1.0), Vec3::Y);
+        let camera = Camera { origin, forward, right, up, tan_half_x: 0.7, ..Camera::default() };
+        let view = View::whole(camera, [40, 30]);
+        let centre = DVec3::new(100.0, -50.0, 25.0);
+        let matrices = view.matrices(centre);
+        // Row vectors: each row of the matrix is scaled by one coordinate.
+        let product = |p: DVec3, m: &[f32; 16]| -> [f64; 4] {
+            let p = [p.x, p.y, p.z, 1.0];
+            std::array::from_fn(|column| (0..4).map(|row| p[row] * f64::from(m[4 * row + column])).sum())
+        };
+        for (pixel, distance) in [([0, 0], 2.0), ([31, 7], 5.0), ([20, 29], 0.5)] {
+            let direction = view.primary_ray(pixel, Vec2::splat(0.5)).direction;
+            let point = centre + (origin + direction * distance).as_dvec3();
+            let [x, y, z, w] = product(point, &matrices.world_to_camera);
+            let depth = f64::from(distance * direction.dot(forward));
+            assert!((z - depth).abs() < 1e-4 && w == 1.0, "{z} {depth}");
+            assert!(((x * x + y * y + z * z).sqrt() - f64::from(distance)).abs() < 1e-4);
+            let [x, y, z, w] = product(point, &matrices.world_to_ndc);
+            assert!((x / w * 40.0 - f64::from(pixel[0]) - 0.5).abs() < 5e-3, "{x} {w}");
+            assert!((y / w * 30.0 - f64::from(pixel[1]) - 0.5).abs() < 5e-3, "{y} {w}");
+            assert!((z / w * depth - 1.0).abs() < 1e-3);
+        }
     }
 
     #[test]

@@ -97,20 +97,20 @@ fn write(job: &RenderJob, mut film: Film) -> Result<(), Failure> {
     write_exr(&job.output, &film).map_err(Failure::output)?;
     if let Some((path, factor)) = png {
         write_png(path, &film.color, factor).map_err(Failure::output)?;
-        if job.goal.method.text("inspect").is_some_and(|text| text == "on") {
-            write_layers(path, &film, factor)?;
-        }
+        write_layers(path, &film, factor)?;
     }
     talk::note(&said);
     Ok(())
 }
 
-/// Writes every layer as a PNG file named after the picture's.
+/// Writes every layer that is meant to be shown as a PNG file named after the picture's.
 fn write_layers(picture: &Path, film: &Film, factor: f32) -> Result<(), Failure> {
-    for (name, layer) in &film.layers {
-        let path = picture.with_extension(format!("{name}.png"));
-        let bytes = false_colour::show(name, layer, &film.color, factor);
-        write_srgb8(&path, [layer.width, layer.height], &bytes).map_err(Failure::output)?;
+    for layer in &film.layers {
+        if let Some(bytes) = false_colour::show(layer, &film.color, factor) {
+            let path = picture.with_extension(format!("{}.png", layer.name));
+            let size = [film.window.width, film.window.height];
+            write_srgb8(&path, size, &bytes).map_err(Failure::output)?;
+        }
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Reads the colours of any flat OpenEXR file: half, float or integer channels, layered names, several parts.
 
 use super::exr_write::PREFIX;
-use super::{Image, ImageError, Metadata, Value};
+use super::{CameraMatrices, Image, ImageError, Metadata, Value};
 use crate::film::Window;
 use crate::math::Rgb;
 use ::exr::meta::header::Header;
@@ -12,6 +12,11 @@ use ::exr::prelude::{
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
+
+/// Names of a picture's channels.
+const COLOR: [[&str; 3]; 2] = [["R", "G", "B"], ["Y"; 3]];
+/// Names of a layer's channels.
+const LAYER: [[&str; 3]; 3] = [["R", "G", "B"], ["X", "Y", "Z"], ["Y"; 3]];
 
 /// An OpenEXR file in memory.
 #[derive(Clone, Debug)]
@@ -45,25 +50,26 @@ impl ExrFile {
     /// The picture's colour: `R`, `G`, `B` where there are such channels, else the luminance `Y` as grey,
     /// else the colours of the only layer that has any.
     pub fn color(&self) -> Result<Image, ImageError> {
-        if let Some(image) = self.find("")? {
+        if let Some(image) = self.find("", &COLOR)? {
             return Ok(image);
         }
         let layers = self.layers();
         match layers.as_slice() {
             [only] => self.layer(only),
-            _ => Err(self.no_color("colour (R, G, B or Y)".to_owned())),
+            _ => Err(self.missing("colour (R, G, B or Y)".to_owned())),
         }
     }
 
-    /// The colours of layer `name`: the channels `name.R`, `name.G`, `name.B`, or a part of that name.
+    /// The values of layer `name`: the channels `name.R`, `name.G`, `name.B`, or X, Y, Z, or a part of that name; the one
+    /// channel `name.Y` or `name` as grey.
     pub fn layer(&self, name: &str) -> Result<Image, ImageError> {
-        self.find(name)?.ok_or_else(|| self.no_color(format!("layer `{name}`")))
+        self.find(name, &LAYER)?.ok_or_else(|| self.missing(format!("layer `{name}`")))
     }
 
     /// The names of all layers that have a colour, in the file's order; "" stands for the picture's own.
     pub fn layers(&self) -> Vec<String> {
         let mut names = Vec::new();
-        for name in self.channel_names() {
+        for name in self.channels() {
             let layer = match name.rsplit_once('.') {
                 Some((layer, "R" | "Y")) => layer,
                 None if name == "R" || name == "Y" => "",
@@ -90,6 +96,14 @@ impl ExrFile {
         }
     }
 
+    /// The camera that took the picture, where the file states it.
+    pub fn camera(&self) -> Option<CameraMatrices> {
+        let attributes = &self.parts.layer_data.first()?.attributes;
+        let (world_to_camera, world_to_ndc) =
+            attributes.world_to_camera.zip(attributes.world_to_normalized_device)?;
+        Some(CameraMatrices { world_to_camera, world_to_ndc })
+    }
+
     /// What we wrote about the picture, sorted by key; empty for files of other programs.
     pub fn metadata(&self) -> Metadata {
         let attributes = self.parts.layer_data.first().map(|part| &part.attributes.other);
@@ -111,22 +125,37 @@ impl ExrFile {
         metadata
     }
 
-    fn find(&self, layer: &str) -> Result<Option<Image>, ImageError> {
+    /// The names of all channels, in the file's order, with those of their parts.
+    pub fn channels(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        for part in &self.parts.layer_data {
+            let own = part_name(part);
+            for channel in &part.channel_data.list {
+                let name = text(&channel.name);
+                names.push(if own.is_empty() { name } else { format!("{own}.{name}") });
+            }
+        }
+        names
+    }
+
+    /// The channels of `layer` by the first of these names that it has all of, or the one channel that is named as it is.
+    fn find(&self, layer: &str, names: &[[&str; 3]]) -> Result<Option<Image>, ImageError> {
         let prefix = if layer.is_empty() { String::new() } else { format!("{layer}.") };
         for part in &self.parts.layer_data {
             let own = part_name(part);
-            let channel = |component: &str| {
-                let wanted = format!("{prefix}{component}");
+            let channel = |wanted: &str| {
                 part.channel_data.list.iter().find(|c| {
                     let name = text(&c.name);
                     name == wanted || (!own.is_empty() && format!("{own}.{name}") == wanted)
                 })
             };
-            if let [Some(r), Some(g), Some(b)] = [channel("R"), channel("G"), channel("B")] {
-                return self.join(part.size, [r, g, b]).map(Some);
+            for names in names {
+                if let [Some(a), Some(b), Some(c)] = names.map(|name| channel(&format!("{prefix}{name}"))) {
+                    return self.join(part.size, [a, b, c]).map(Some);
+                }
             }
-            if let Some(y) = channel("Y") {
-                return self.join(part.size, [y, y, y]).map(Some);
+            if let Some(scalar) = channel(layer) {
+                return self.join(part.size, [scalar; 3]).map(Some);
             }
         }
         Ok(None)
@@ -148,20 +177,8 @@ impl ExrFile {
         Ok(Image { width: columns, height: rows, pixels })
     }
 
-    fn channel_names(&self) -> Vec<String> {
-        let mut names = Vec::new();
-        for part in &self.parts.layer_data {
-            let own = part_name(part);
-            for channel in &part.channel_data.list {
-                let name = text(&channel.name);
-                names.push(if own.is_empty() { name } else { format!("{own}.{name}") });
-            }
-        }
-        names
-    }
-
-    fn no_color(&self, wanted: String) -> ImageError {
-        ImageError::NoColor { path: self.path.clone(), wanted, channels: self.channel_names() }
+    fn missing(&self, wanted: String) -> ImageError {
+        ImageError::NoColor { path: self.path.clone(), wanted, channels: self.channels() }
     }
 }
 

@@ -4,7 +4,7 @@ use super::*;
 use crate::film::Window;
 use crate::math::Rgb;
 use ::exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, ImageAttributes, Layer,
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, ImageAttributes, Layer as ExrLayer,
     LayerAttributes, Text, Vec2, WritableImage, f16,
 };
 use std::path::Path;
@@ -25,7 +25,14 @@ fn a_film_comes_back_bit_by_bit_with_its_layers_window_and_metadata() {
     film.window = Window { film: [100, 60], offset: [11, 7], width: 37, height: 21 };
     let mut variance = ramp(37, 21);
     variance.pixels.reverse();
-    film.layers.push(("variance".to_owned(), variance.clone()));
+    film.layers.push(Layer::color("variance", variance.clone()));
+    film.layers.push(Layer::vector("normal", film.color.clone()));
+    film.layers.push(Layer::scalar("depth.Z", variance.map(|p| p.y)));
+    film.layers.push(Layer::id("objectId", Image { width: 37, height: 21, pixels: (0..37 * 21).collect() }));
+    film.camera = Some(CameraMatrices {
+        world_to_camera: std::array::from_fn(|i| i as f32),
+        world_to_ndc: std::array::from_fn(|i| -(i as f32)),
+    });
     film.metadata.set("method", "path");
     film.metadata.set("scene", "Kathédrale — ναός");
     film.metadata.set("settings", "x".repeat(5000));
@@ -37,7 +44,14 @@ fn a_film_comes_back_bit_by_bit_with_its_layers_window_and_metadata() {
     assert_eq!(file.color().unwrap(), film.color);
     assert_eq!(file.layer("variance").unwrap(), variance);
     assert_eq!(file.layers(), ["", "variance"]);
+    assert_eq!(file.layer("normal").unwrap(), film.color);
+    assert_eq!(file.layer("depth.Z").unwrap(), variance.map(|p| Rgb::splat(p.y)));
+    assert_eq!(file.layer("objectId").unwrap().pixels[500], Rgb::splat(500.0));
+    let names = ["B", "G", "R", "depth.Z", "normal.X", "normal.Y", "normal.Z", "objectId"];
+    let variance = ["variance.B", "variance.G", "variance.R"];
+    assert_eq!(file.channels(), [&names[..], &variance].concat());
     assert_eq!(file.window(), film.window);
+    assert_eq!(file.camera(), film.camera);
     let metadata = file.metadata();
     assert_eq!(metadata.iter().count(), 5);
     for (key, value) in film.metadata.iter() {
@@ -62,7 +76,7 @@ fn a_film_whose_images_differ_in_size_is_refused_and_the_old_file_kept() {
     let path = folder.path().join("film.exr");
     std::fs::write(&path, "old").unwrap();
     let mut film = Film::new(ramp(4, 4));
-    film.layers.push(("variance".to_owned(), ramp(4, 5)));
+    film.layers.push(Layer::color("variance", ramp(4, 5)));
     assert!(matches!(write_exr(&path, &film), Err(ImageError::Size { .. })));
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
 }
@@ -71,7 +85,7 @@ fn a_film_whose_images_differ_in_size_is_refused_and_the_old_file_kept() {
 fn foreign(path: &Path, part: Option<&str>, channels: Vec<(&str, FlatSamples)>) {
     let list = channels.into_iter().map(|(name, samples)| AnyChannel::new(name, samples)).collect();
     let attributes = LayerAttributes { layer_name: part.map(Text::from), ..LayerAttributes::default() };
-    let layer = Layer::new(Vec2(2, 2), attributes, Encoding::default(), AnyChannels::sort(list));
+    let layer = ExrLayer::new(Vec2(2, 2), attributes, Encoding::default(), AnyChannels::sort(list));
     ExrImage::new(ImageAttributes::with_size((2, 2)), layer).write().to_file(path).unwrap();
 }
 

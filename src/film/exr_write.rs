@@ -1,12 +1,12 @@
 //! OpenEXR files: one part, 32-bit float, layers as dotted channels, metadata as attributes.
 //!
-//! The colour is `R`, `G`, `B`; layer `variance` is `variance.R` and so on. A cropped picture has its window
-//! as data window within the whole film as display window. Compression is RLE: lossless, and on rendered floats within 3 % of ZIP in size at a tenth of its time.
+//! The colour is `R`, `G`, `B`; for layers see [`super::layer`]. A cropped picture has its window as data window within
+//! the whole film as display window. Compression is RLE: lossless, and on rendered floats within 3 % of ZIP in size at a
+//! tenth of its time.
 //!
 //! Units: radiance W/(sr m²), linear, Rec. 709 primaries (stated in the file).
 
-use super::{Film, ImageError, Metadata, Value, atomic};
-use crate::math::Rgb;
+use super::{Film, ImageError, Metadata, Pixels, Value, atomic};
 use ::exr::prelude::*;
 use std::io;
 use std::path::Path;
@@ -21,20 +21,15 @@ pub(super) const PREFIX: &str = "lightsplat.";
 pub fn write_exr(path: &Path, film: &Film) -> std::result::Result<(), ImageError> {
     film.check_sizes()?;
     let window = film.window;
-    let channel = |name: String, image: &super::Image, component: fn(&Rgb) -> f32| {
-        let finite = |x: f32| {
-            debug_assert!(x.is_finite(), "{name} is not finite");
-            if x.is_finite() { x } else { 0.0 }
-        };
-        let samples = image.pixels.iter().map(|p| finite(component(p))).collect();
-        AnyChannel::new(Text::from_slice_unchecked(name.as_bytes()), FlatSamples::F32(samples))
-    };
     let mut channels = SmallVec::new();
-    for (layer, image) in film.images() {
-        let prefix = if layer.is_empty() { String::new() } else { format!("{layer}.") };
-        channels.push(channel(format!("{prefix}R"), image, |p| p.x));
-        channels.push(channel(format!("{prefix}G"), image, |p| p.y));
-        channels.push(channel(format!("{prefix}B"), image, |p| p.z));
+    push(&mut channels, "", ["R", "G", "B"], &film.color);
+    for layer in &film.layers {
+        match &layer.pixels {
+            Pixels::Color(image) => push(&mut channels, &layer.name, ["R", "G", "B"], image),
+            Pixels::Vector(image) => push(&mut channels, &layer.name, ["X", "Y", "Z"], image),
+            Pixels::Scalar(image) => channels.push(floats(&layer.name, image.pixels.iter().copied())),
+            Pixels::Id(image) => channels.push(channel(&layer.name, FlatSamples::U32(image.pixels.clone()))),
+        }
     }
     let encoding = Encoding {
         compression: Compression::RLE,
@@ -55,8 +50,35 @@ pub fn write_exr(path: &Path, film: &Film) -> std::result::Result<(), ImageError
         .map_err(|source| ImageError::Write { path: path.to_owned(), source })
 }
 
+/// Appends the three channels of a layer of that name.
+fn push(
+    channels: &mut SmallVec<[AnyChannel<FlatSamples>; 4]>,
+    layer: &str,
+    names: [&str; 3],
+    image: &super::Image,
+) {
+    for (i, name) in names.into_iter().enumerate() {
+        let name = if layer.is_empty() { name.to_owned() } else { format!("{layer}.{name}") };
+        channels.push(floats(&name, image.pixels.iter().map(|pixel| pixel[i])));
+    }
+}
+
+fn floats(name: &str, values: impl Iterator<Item = f32>) -> AnyChannel<FlatSamples> {
+    let finite = |x: f32| {
+        debug_assert!(x.is_finite(), "{name} is not finite");
+        if x.is_finite() { x } else { 0.0 }
+    };
+    channel(name, FlatSamples::F32(values.map(finite).collect()))
+}
+
+fn channel(name: &str, samples: FlatSamples) -> AnyChannel<FlatSamples> {
+    AnyChannel::new(Text::from_slice_unchecked(name.as_bytes()), samples)
+}
+
 fn attributes(film: &Film) -> LayerAttributes {
     let mut attributes = LayerAttributes {
+        world_to_camera: film.camera.map(|camera| camera.world_to_camera),
+        world_to_normalized_device: film.camera.map(|camera| camera.world_to_ndc),
         layer_position: Vec2(film.window.offset[0] as i32, film.window.offset[1] as i32),
         software_name: Some(Text::from(concat!("lightsplat ", env!("CARGO_PKG_VERSION")))),
         ..LayerAttributes::default()

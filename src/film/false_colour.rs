@@ -1,20 +1,22 @@
 //! Layers of data as pictures: numbers in magma colours, directions as hues, points over the picture.
 
-use super::{Image, metrics, tone};
+use super::{Image, Layer, Pixels, Preview, metrics, tone};
 use crate::math::Rgb;
 use std::f32::consts::TAU;
 
-/// Display bytes of the layer `name` of a picture exposed by `factor`; see `radiance_cache::inspect` for the
-/// names.
-pub fn show(name: &str, layer: &Image, picture: &Image, factor: f32) -> Vec<u8> {
-    match name.split('.').next().unwrap_or_default() {
-        "records" | "seams" => points(layer, picture, factor),
-        "gradient" => hues(layer),
-        "footprint" => numbers(layer, |p| p.x - 1.0),
-        "weights" | "cut" => numbers(layer, |p| p.x + p.y),
-        "clamped" => numbers(layer, |p| p.x),
-        _ => tone::to_srgb8(layer, factor),
-    }
+/// Display bytes of a layer of a picture exposed by `factor`, if it is meant to be shown.
+pub fn show(layer: &Layer, picture: &Image, factor: f32) -> Option<Vec<u8>> {
+    let preview = layer.preview?;
+    Some(match (&layer.pixels, preview) {
+        (Pixels::Color(image) | Pixels::Vector(image), Preview::Exposed) => tone::to_srgb8(image, factor),
+        (Pixels::Color(image) | Pixels::Vector(image), Preview::Marks) => points(image, picture, factor),
+        (Pixels::Color(image) | Pixels::Vector(image), Preview::Hues) => hues(image),
+        (Pixels::Color(image) | Pixels::Vector(image), Preview::Magma { weights, offset }) => {
+            numbers(image.pixels.iter().map(|p| p.dot(weights) - offset))
+        }
+        (Pixels::Scalar(image), _) => numbers(image.pixels.iter().copied()),
+        (Pixels::Id(image), _) => numbers(image.pixels.iter().map(|&id| id as f32)),
+    })
 }
 
 /// Red where the first, green where the second channel is above 0, over the picture at half its brightness.
@@ -33,9 +35,9 @@ fn points(layer: &Image, picture: &Image, factor: f32) -> Vec<u8> {
 }
 
 /// Magma colours from 0 to the 99th percentile of the positive values.
-fn numbers(layer: &Image, value: impl Fn(&Rgb) -> f32) -> Vec<u8> {
+fn numbers(values: impl Iterator<Item = f32>) -> Vec<u8> {
     let lut = metrics::magma();
-    let values: Vec<f32> = layer.pixels.iter().map(value).collect();
+    let values: Vec<f32> = values.collect();
     let mut positive: Vec<f32> = values.iter().copied().filter(|v| *v > 0.0 && v.is_finite()).collect();
     positive.sort_by(f32::total_cmp);
     let largest = positive.get(positive.len() * 99 / 100).copied().unwrap_or(1.0);
@@ -64,33 +66,45 @@ fn hues(layer: &Image) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    fn layer(pixels: &[Rgb]) -> Image {
+    fn image(pixels: &[Rgb]) -> Image {
         Image { width: pixels.len() as u32, height: 1, pixels: pixels.to_vec() }
+    }
+
+    fn shown(pixels: &[Rgb], preview: Preview, picture: &Image) -> Vec<u8> {
+        show(&Layer::color("any", image(pixels)).shown(preview), picture, 1.0).unwrap()
     }
 
     #[test]
     fn points_are_drawn_over_the_darkened_picture() {
-        let picture = layer(&[Rgb::ONE; 3]);
-        let marks = layer(&[Rgb::ZERO, Rgb::X, Rgb::Y]);
-        let shown = show("records", &marks, &picture, 1.0);
-        assert_eq!(shown, [127, 127, 127, 255, 127, 0, 127, 255, 0]);
+        let picture = image(&[Rgb::ONE; 3]);
+        let marked = shown(&[Rgb::ZERO, Rgb::X, Rgb::Y], Preview::Marks, &picture);
+        assert_eq!(marked, [127, 127, 127, 255, 127, 0, 127, 255, 0]);
     }
 
     #[test]
     fn numbers_rise_through_magma_and_nothing_breaks_on_nan() {
         let magma = metrics::magma();
-        let cuts = layer(&[Rgb::ZERO, Rgb::new(300.0, 100.0, 0.0), Rgb::splat(f32::NAN)]);
-        assert_eq!(show("cut", &cuts, &cuts, 1.0), [magma[0], magma[255], magma[0]].concat());
-        let flat = layer(&[Rgb::ZERO; 2]);
-        assert_eq!(show("seams.2", &flat, &flat, 1.0), [0; 6]);
-        assert_eq!(show("gradient", &flat, &flat, 1.0), [0; 6]);
+        let cuts = [Rgb::ZERO, Rgb::new(300.0, 100.0, 7.0), Rgb::splat(f32::NAN)];
+        let sum = Preview::Magma { weights: Rgb::new(1.0, 1.0, 0.0), offset: 0.0 };
+        assert_eq!(shown(&cuts, sum, &image(&cuts)), [magma[0], magma[255], magma[0]].concat());
+        let sizes = Layer::scalar("cut", image(&cuts).map(|p| p.x)).shown(sum);
+        assert_eq!(show(&sizes, &image(&cuts), 1.0).unwrap(), [magma[0], magma[255], magma[0]].concat());
+        let flat = [Rgb::ZERO; 2];
+        assert_eq!(shown(&flat, Preview::Marks, &image(&flat)), [0; 6]);
+        assert_eq!(shown(&flat, Preview::Hues, &image(&flat)), [0; 6]);
     }
 
     #[test]
     fn opposite_gradients_differ_in_hue() {
-        let g = layer(&[Rgb::X, -Rgb::X, Rgb::Z]);
-        let shown = show("gradient", &g, &g, 1.0);
+        let g = [Rgb::X, -Rgb::X, Rgb::Z];
+        let shown = shown(&g, Preview::Hues, &image(&g));
         assert_ne!(shown[..3], shown[3..6]);
         assert_ne!(shown[..3], shown[6..]);
+    }
+
+    #[test]
+    fn layers_are_not_shown_unasked() {
+        let picture = image(&[Rgb::ONE]);
+        assert_eq!(show(&Layer::color("variance", picture.clone()), &picture, 1.0), None);
     }
 }

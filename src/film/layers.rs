@@ -1,6 +1,6 @@
 //! What a picture file holds: named layers over one window of the film, and what is known about them.
 
-use super::{Image, ImageError};
+use super::{Image, ImageError, Layer};
 use crate::film::Window;
 
 /// The picture of one frame with everything that is written beside the colour.
@@ -10,29 +10,35 @@ pub struct Film {
     pub window: Window,
     /// Radiance by pixel.
     pub color: Image,
-    /// Further images; layer `name` becomes the channels `name.R`, `name.G`, `name.B`.
-    pub layers: Vec<(String, Image)>,
+    /// Further images.
+    pub layers: Vec<Layer>,
+    /// The camera that took the picture, if there was one.
+    pub camera: Option<CameraMatrices>,
     /// How the picture came about.
     pub metadata: Metadata,
+}
+
+/// The standard attributes `worldToCamera` and `worldToNDC` of OpenEXR: matrices in rows, for row vectors that they
+/// are multiplied to from the right, as Imath defines it. The world is the scene file's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraMatrices {
+    /// To coordinates about the camera: x to the right, y up, z forward.
+    pub world_to_camera: [f32; 16],
+    /// To the film, once divided by the fourth coordinate: x and y from 0 to 1, from the top left to the bottom right
+    /// corner; z is the inverse of the depth.
+    pub world_to_ndc: [f32; 16],
 }
 
 impl Film {
     /// A film of one complete image.
     pub fn new(color: Image) -> Film {
         let window = Window::whole([color.width, color.height]);
-        Film { window, color, layers: Vec::new(), metadata: Metadata::default() }
-    }
-
-    /// All images with their layer names; the colour's is empty.
-    pub fn images(&self) -> impl Iterator<Item = (&str, &Image)> {
-        let layers = self.layers.iter().map(|(name, image)| (name.as_str(), image));
-        std::iter::once(("", &self.color)).chain(layers)
+        Film { window, color, layers: Vec::new(), camera: None, metadata: Metadata::default() }
     }
 
     /// Replaces every channel that is not finite by 0 in all images and says how many there were.
     pub fn remove_nonfinite(&mut self) -> u64 {
-        let layers = self.layers.iter_mut().map(|(_, image)| image);
-        std::iter::once(&mut self.color).chain(layers).map(Image::remove_nonfinite).sum()
+        self.color.remove_nonfinite() + self.layers.iter_mut().map(Layer::remove_nonfinite).sum::<u64>()
     }
 
     /// Fails unless every image has the window's size and the window lies on the film.
@@ -42,11 +48,11 @@ impl Film {
             let what = "the rendered window does not lie on the film".to_owned();
             return Err(ImageError::Size { what, sizes: [window, self.window.film] });
         }
-        for (name, image) in self.images() {
-            if [image.width, image.height] != window || image.pixels.len() as u64 != self.window.pixel_count()
-            {
+        let layers = self.layers.iter().map(|layer| (layer.name.as_str(), layer.size()));
+        for (name, (size, count)) in std::iter::once(("", self.color.size())).chain(layers) {
+            if size != window || count as u64 != self.window.pixel_count() {
                 let what = format!("layer `{name}` and the film's window differ in size");
-                return Err(ImageError::Size { what, sizes: [[image.width, image.height], window] });
+                return Err(ImageError::Size { what, sizes: [size, window] });
             }
         }
         Ok(())
@@ -124,17 +130,22 @@ impl Metadata {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::Pixels;
     use crate::math::Rgb;
 
     #[test]
     fn nonfinite_channels_are_counted_once_each_in_every_layer() {
         let mut film = Film::new(Image::new(2, 1));
         film.color.pixels[0] = Rgb::new(f32::NAN, 1.0, f32::INFINITY);
-        film.layers.push(("variance".to_owned(), Image::new(2, 1)));
-        film.layers[0].1.pixels[1] = Rgb::new(2.0, f32::NEG_INFINITY, 3.0);
-        assert_eq!(film.remove_nonfinite(), 3);
+        let variance = film.color.map(|_| Rgb::new(2.0, f32::NEG_INFINITY, 3.0));
+        film.layers.push(Layer::color("variance", variance));
+        film.layers.push(Layer::scalar("depth.Z", film.color.map(|p| p.z)));
+        film.layers.push(Layer::id("objectId", film.color.map(|_| u32::MAX)));
+        assert_eq!(film.remove_nonfinite(), 5);
         assert_eq!(film.color.pixels[0], Rgb::new(0.0, 1.0, 0.0));
-        assert_eq!(film.layers[0].1.pixels[1], Rgb::new(2.0, 0.0, 3.0));
+        assert_eq!(film.layers[0].triples().unwrap().pixels, [Rgb::new(2.0, 0.0, 3.0); 2]);
+        assert_eq!(film.layers[1].pixels, Pixels::Scalar(film.color.map(|_| 0.0)));
+        assert_eq!(film.layers[2].pixels, Pixels::Id(film.color.map(|_| u32::MAX)));
         assert_eq!(film.remove_nonfinite(), 0);
     }
 
@@ -142,7 +153,7 @@ mod tests {
     fn unlike_sizes_are_refused() {
         let mut film = Film::new(Image::new(3, 2));
         film.check_sizes().unwrap();
-        film.layers.push(("variance".to_owned(), Image::new(2, 3)));
+        film.layers.push(Layer::color("variance", Image::new(2, 3)));
         assert!(film.check_sizes().unwrap_err().to_string().contains("variance"));
         film.layers.clear();
         film.window.offset[0] = 1;

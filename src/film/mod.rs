@@ -11,6 +11,7 @@ mod exr_tests;
 mod exr_write;
 pub mod false_colour;
 pub mod heatmap;
+mod layer;
 mod layers;
 pub mod metrics;
 mod png;
@@ -20,22 +21,35 @@ mod window;
 pub use error::ImageError;
 pub use exr_read::{ExrFile, read_exr};
 pub use exr_write::write_exr;
-pub use layers::{Film, Metadata, Value};
+pub use layer::{Layer, Pixels, Preview};
+pub use layers::{CameraMatrices, Film, Metadata, Value};
 pub use png::{write_png, write_srgb8};
 pub use tone::Exposure;
 pub use window::Window;
 
 use crate::math::Rgb;
 
-/// A colour image, row-major, top row first.
+/// An image, of linear colours if nothing else is said; row-major, top row first.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Image {
+pub struct Image<T = Rgb> {
     /// Columns.
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// `width * height` linear colours.
-    pub pixels: Vec<Rgb>,
+    /// `width * height` values.
+    pub pixels: Vec<T>,
+}
+
+impl<T> Image<T> {
+    /// The same image with another value at each pixel.
+    pub fn map<U>(&self, value: impl FnMut(&T) -> U) -> Image<U> {
+        Image { width: self.width, height: self.height, pixels: self.pixels.iter().map(value).collect() }
+    }
+
+    /// Width and height, and the number of values held.
+    fn size(&self) -> ([u32; 2], usize) {
+        ([self.width, self.height], self.pixels.len())
+    }
 }
 
 impl Image {
@@ -46,8 +60,12 @@ impl Image {
 
     /// Replaces every channel that is not finite by 0 and returns their number.
     pub fn remove_nonfinite(&mut self) -> u64 {
-        let channels = self.pixels.iter_mut().flat_map(|pixel| pixel.as_mut());
-        let bad = channels.filter(|channel| !channel.is_finite());
-        bad.map(|channel| *channel = 0.0).count() as u64
+        remove_nonfinite(self.pixels.iter_mut().flat_map(|pixel| pixel.as_mut()))
     }
+}
+
+/// Replaces every number that is not finite by 0 and returns their number.
+fn remove_nonfinite<'a>(numbers: impl Iterator<Item = &'a mut f32>) -> u64 {
+    let bad = numbers.filter(|number| !number.is_finite());
+    bad.map(|number| *number = 0.0).count() as u64
 }

@@ -1,6 +1,6 @@
 //! What every method returns.
 
-use crate::film::Image;
+use crate::film::{Image, Layer};
 use crate::stats::Stats;
 
 /// The result of rendering one frame. All images have the size of the rendered window.
@@ -10,8 +10,8 @@ pub struct Output {
     pub color: Image,
     /// Variance of the pixel mean in `color`, per channel, where the method can estimate it.
     pub variance: Option<Image>,
-    /// Further images by layer name; the film writes them as `name.R`, `name.G`, `name.B`.
-    pub extra: Vec<(String, Image)>,
+    /// Further images.
+    pub extra: Vec<Layer>,
     /// What was counted and timed.
     pub stats: Stats,
     /// False if the method was cancelled: the picture is partial.

@@ -19,17 +19,14 @@ use super::fill::CacheFrame;
 use super::record::{Diagnostics, Record};
 use super::store::Records;
 use crate::eye::EyePass;
-use crate::film::Image;
+use crate::film::{Image, Layer, Preview};
 use crate::math::{LUMINANCE, Rgb};
 use crate::vpl::{DirectIndirect, Origin};
 use rayon::prelude::*;
 
-/// Layers by name.
-pub type Layers = Vec<(String, Image)>;
-
 impl CacheFrame<'_> {
     /// All layers but those of the picture's parts; `eye` is the pass that found the targets.
-    pub fn inspect(&self, records: &Records, eye: &EyePass) -> Layers {
+    pub fn inspect(&self, records: &Records, eye: &EyePass) -> Vec<Layer> {
         let mut placed = blank(eye);
         for origin in Origin::ALL {
             for &sample in &self.placed[origin] {
@@ -63,23 +60,24 @@ impl CacheFrame<'_> {
                 heaviest.map(|r| r.map_or(0.0, |r| r.diagnostics.cut as f32)).into_array();
             Some(Rgb::new(direct, indirect, 0.0))
         };
-        let mut layers: Layers = [
-            ("records", placed),
-            ("footprint", image(&|heaviest| heaviest.indirect.map(footprint))),
-            ("gradient", image(&|heaviest| heaviest.indirect.map(gradient))),
-            ("weights", weights),
-            ("cut", image(&cut)),
-            ("clamped", image(&|heaviest| heaviest.indirect.map(clamped))),
-        ]
-        .map(|(name, image)| (name.to_owned(), image))
-        .into();
+        let sum = Preview::Magma { weights: Rgb::new(1.0, 1.0, 0.0), offset: 0.0 };
+        let first = |offset| Preview::Magma { weights: Rgb::X, offset };
+        let of_indirect = |value: fn(&Record) -> Rgb| image(&|heaviest| heaviest.indirect.map(value));
+        let mut layers = vec![
+            Layer::color("records", placed).shown(Preview::Marks),
+            Layer::color("footprint", of_indirect(footprint)).shown(first(1.0)),
+            Layer::vector("gradient", of_indirect(gradient)).shown(Preview::Hues),
+            Layer::color("weights", weights).shown(sum),
+            Layer::color("cut", image(&cut)).shown(sum),
+            Layer::color("clamped", of_indirect(clamped)).shown(first(0.0)),
+        ];
         for (pass, discontinuities) in (1..).zip(&self.discontinuities) {
             let mut image = blank(eye);
             for found in discontinuities {
                 let seam = |pixel: usize| image.pixels[pixel][found.origin as usize] += 1.0;
                 pixels(eye, found.sample as usize).for_each(seam);
             }
-            layers.push((format!("seams.{pass}"), image));
+            layers.push(Layer::color(format!("seams.{pass}"), image).shown(Preview::Marks));
         }
         layers
     }

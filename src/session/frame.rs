@@ -1,11 +1,12 @@
 //! A rendered frame: the picture and all that is reported about it.
 
 use crate::film::metrics::rel_mse_of_variance;
-use crate::film::{Film, Image, Metadata};
+use crate::film::{Film, Image, Layer, Metadata};
 use crate::math::Rgb;
 use crate::method::{Method, Output};
 use crate::stats::Stats;
 use crate::view::View;
+use glam::DVec3;
 use serde_json::Value;
 
 /// A rendered frame.
@@ -43,15 +44,16 @@ impl Frame {
 }
 
 /// The film of a method's output, without channels that are not finite, whose number is returned.
-pub(super) fn film(output: Output, view: &View) -> (Film, u64) {
+pub(super) fn film(output: Output, view: &View, centre: DVec3) -> (Film, u64) {
     let mut metadata = Metadata::default();
     if let Some(variance) = &output.variance {
         metadata.set("standard_error", root_mean(variance));
         metadata.set("relative_mse_of_noise", rel_mse_of_variance(variance, &output.color));
     }
-    let variance = output.variance.map(|image| ("variance".to_owned(), image));
+    let variance = output.variance.map(|image| Layer::color("variance", image));
     let layers = variance.into_iter().chain(output.extra).collect();
-    let mut film = Film { window: view.window, color: output.color, layers, metadata };
+    let camera = Some(view.matrices(centre));
+    let mut film = Film { window: view.window, color: output.color, layers, camera, metadata };
     let nonfinite = film.remove_nonfinite();
     (film, nonfinite)
 }

@@ -65,7 +65,7 @@ impl Session {
 
         let complete = output.complete;
         let nonfinite_samples = output.nonfinite;
-        let (mut film, nonfinite_channels) = frame::film(output, view);
+        let (mut film, nonfinite_channels) = frame::film(output, view, self.world.scene.centre);
         for (n, what) in [(nonfinite_samples, "samples"), (nonfinite_channels, "channels of the picture")] {
             if n > 0 {
                 remarks.push(Remark::Warning(format!(

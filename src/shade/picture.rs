@@ -2,7 +2,7 @@
 
 use super::ShadedPatch;
 use crate::eye::EyePass;
-use crate::film::Image;
+use crate::film::{Image, Layer, Preview};
 use crate::math::Rgb;
 use crate::vpl::Origin;
 
@@ -52,10 +52,10 @@ impl Picture {
         }
     }
 
-    /// The picture, its parts by name, and the number of radiances left out.
-    pub fn finish(self) -> (Image, Vec<(String, Image)>, u64) {
-        let names = ["direct", "indirect", "both"].map(str::to_owned);
-        let parts = self.parts.map_or(Vec::new(), |parts| names.into_iter().zip(parts).collect());
-        (self.color, parts, self.nonfinite)
+    /// The picture, its parts, and the number of radiances that were left out.
+    pub fn finish(self) -> (Image, Vec<Layer>, u64) {
+        let parts = ["direct", "indirect", "both"].into_iter().zip(self.parts.into_iter().flatten());
+        let parts = parts.map(|(name, image)| Layer::color(name, image).shown(Preview::Exposed));
+        (self.color, parts.collect(), self.nonfinite)
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::common::*;
 use glam::{Vec2, Vec3};
-use lightsplat::film::Image;
+use lightsplat::film::{Image, Layer};
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::cache;
 use lightsplat::method::{Footprints, FoundBy};
@@ -176,8 +176,8 @@ fn inspection_changes_nothing_and_its_layers_add_up() {
     let inspected = rendered(&world, &settings);
     assert!(plain.extra.is_empty() && plain.color == inspected.color);
     let layer = |name: &str| {
-        let found = inspected.extra.iter().find(|(n, _)| n == name);
-        &found.unwrap_or_else(|| panic!("no layer {name}")).1
+        let found = inspected.extra.iter().find(|layer| layer.name == name);
+        found.and_then(Layer::triples).unwrap_or_else(|| panic!("no layer {name}"))
     };
     for (i, whole) in inspected.color.pixels.iter().enumerate() {
         let pixel = [i as u32 % SIZE, i as u32 / SIZE];

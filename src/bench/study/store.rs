@@ -6,7 +6,7 @@
 //! missing.
 
 use super::StudyError;
-use crate::film::{ExrFile, Film, Image, write_exr};
+use crate::film::{ExrFile, Film, Image, Layer, write_exr};
 use serde_json::Value;
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
@@ -57,7 +57,7 @@ impl Store {
     /// Stores a picture.
     pub fn save(&self, name: &str, key: &Value, kept: &Kept) -> Result<(), StudyError> {
         let mut film = Film::new(kept.color.clone());
-        film.layers.clone_from(&kept.layers);
+        film.layers.extend(kept.layers.iter().map(|(name, image)| Layer::color(name, image.clone())));
         film.remove_nonfinite();
         film.metadata.set("key", key.to_string());
         film.metadata.set("facts", kept.facts.to_string());

@@ -2,10 +2,9 @@
 
 use super::blocks::{TILE, Tile, Tiles};
 use crate::eye::{ChainCounts, EyeRays, EyeSettings, VisibleSurfaces};
-use crate::film::Image;
+use crate::film::{Image, Layer};
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
-use crate::math::Rgb;
 use crate::method::ladder::CUTS;
 use crate::method::lights::Lights;
 use crate::method::sampling::method_settings;
@@ -83,12 +82,12 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
     });
 
     let mut color = Image::new(view.window.width, view.window.height);
-    let mut cut_size = color.clone();
+    let mut cut_size = color.map(|_| 0.0);
     let (mut work, mut chains, mut nonfinite) = (ShadingCounts::default(), ChainCounts::default(), 0);
     for tile in done.iter().flatten() {
         for &(pixel, radiance, clusters) in &tile.pixels {
             color.pixels[pixel] = radiance;
-            cut_size.pixels[pixel] = Rgb::splat(clusters);
+            cut_size.pixels[pixel] = clusters;
         }
         work += tile.counts;
         chains += tile.chains;
@@ -100,6 +99,6 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
     counts::clamping(&mut stats, &work.cuts, settings.compensation.then_some(&work.compensation));
     counts::eye(&mut stats, &chains);
     let complete = done.iter().all(Option::is_some);
-    let extra = vec![("cut".to_owned(), cut_size)];
+    let extra = vec![Layer::scalar("cut", cut_size)];
     Output { color, variance: None, extra, stats, complete, nonfinite }
 }
