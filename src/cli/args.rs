@@ -4,8 +4,9 @@ use super::bench_args::BenchArgs;
 use super::exit;
 use super::method_args::MethodArgs;
 use super::plan_args::PlanArgs;
-use super::values::{Crop, ProgressMode, Resolution};
+use super::values::{Crop, ProgressMode, Resolution, feature};
 use crate::film::Exposure;
+use crate::session::Feature;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -64,6 +65,9 @@ pub struct RenderArgs {
     /// Exposure of the PNG in stops, or `auto`: the 90th percentile of luminance becomes 0.8
     #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
     pub exposure: Exposure,
+    /// Layers to write beside the colour, about the surfaces seen, through mirrors and glass
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = feature())]
+    pub aov: Vec<Feature>,
     /// Print counters and stage times to standard output
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub stats: Option<StatsFormat>,

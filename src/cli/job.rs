@@ -59,7 +59,7 @@ impl RenderJob {
             strict: args.strict,
             output: args.output,
             png: png.map(|path| (path, args.exposure)),
-            goal: Goal { method, wanted, verify },
+            goal: Goal { method, wanted, features: args.aov.into_iter().collect(), verify },
             threads: threads::count(args.threads),
             framing: Framing {
                 frame: args.frame,

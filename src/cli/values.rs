@@ -1,6 +1,8 @@
 //! Values that options may have.
 
+use crate::session::Feature;
 use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::str::FromStr;
 
 /// Ways of telling progress.
@@ -12,6 +14,11 @@ pub enum ProgressMode {
     Ndjson,
     /// None
     None,
+}
+
+/// A feature by its name.
+pub fn feature() -> impl TypedValueParser<Value = Feature> {
+    PossibleValuesParser::new(Feature::ALL.map(Feature::name)).try_map(|name| name.parse::<Feature>())
 }
 
 /// `WxH`.

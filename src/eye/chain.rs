@@ -27,12 +27,23 @@ const PENDING: usize = 32;
 /// Below this throughput a branch survives only with probability throughput / threshold.
 const ROULETTE_THROUGHPUT: f32 = 0.05;
 
-/// A surface point that scatters light into a pixel.
+/// The end of an edge of a chain.
+pub enum Met<'w> {
+    /// A surface.
+    Surface(Vertex<'w>),
+    /// None; with the share of radiance from there that reaches the eye.
+    Nothing {
+        /// That share.
+        throughput: Rgb,
+    },
+}
+
+/// A surface point that a chain has met.
 #[derive(Clone, Copy, Debug)]
-pub struct EyeSample<'w> {
+pub struct Vertex<'w> {
     /// The surface.
     pub surface: Surface,
-    /// BSDF of the surface, without the lobes that the chain follows itself.
+    /// BSDF less the lobes that are rough but so sharp that the chain follows them itself.
     pub bsdf: Bsdf<'w>,
     /// Unit vector back along the ray.
     pub out: Vec3,
@@ -42,7 +53,12 @@ pub struct EyeSample<'w> {
     pub depth: u32,
     /// Their length in all.
     pub distance: f32,
+    /// Whether one of the directions on the way was sampled, not that of a mirror or of refraction.
+    pub sampled: bool,
 }
+
+/// Name of the counter of [`ChainCounts::overflow`].
+pub const DROPPED_BRANCHES: &str = "Eye/branches dropped";
 
 /// Rays traced by eye chains.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,23 +81,25 @@ struct Branch {
     distance: f32,
     /// Start of the ray, if a sharp lobe sampled it.
     start: Option<Start>,
+    /// Whether this or an earlier direction was sampled.
+    sampled: bool,
 }
 
-/// Follows `ray` and calls `visit` for every surface with a smooth part; returns the radiance emitted into the ray
-/// by surfaces and the environment, directly or along specular chains of at most `max_depth` edges.
+/// Follows `ray` and calls `visit` for the end of every edge; returns the radiance emitted into the ray by surfaces
+/// and the environment, directly or along specular chains of at most `max_depth` edges.
 pub fn trace<'w>(
     world: &'w World,
     ray: Ray,
     max_depth: u32,
     sampler: &mut Sampler,
     counts: &mut ChainCounts,
-    mut visit: impl FnMut(EyeSample<'w>),
+    mut visit: impl FnMut(Met<'w>),
 ) -> Rgb {
     let mut emitted = Rgb::ZERO;
     let mut pending: [Option<Branch>; PENDING] = [const { None }; PENDING];
     let mut waiting = 0;
-    let mut current =
-        Some(Branch { ray, throughput: Rgb::ONE, eta_sq: 1.0, depth: 1, distance: 0.0, start: None });
+    let (throughput, eta_sq, depth, distance) = (Rgb::ONE, 1.0, 1, 0.0);
+    let mut current = Some(Branch { ray, throughput, eta_sq, depth, distance, start: None, sampled: false });
     while let Some(branch) = current.take().or_else(|| {
         waiting = usize::checked_sub(waiting, 1)?;
         pending[waiting].take()
@@ -89,6 +107,7 @@ pub fn trace<'w>(
         counts.rays += 1;
         let out = -branch.ray.direction;
         let Some(surface) = world.intersect(&branch.ray) else {
+            visit(Met::Nothing { throughput: branch.throughput });
             if let Some(environment) = &world.emitters.environment {
                 let direction = branch.ray.direction;
                 let radiance = match branch.start {
@@ -113,10 +132,9 @@ pub fn trace<'w>(
             Some((bsdf, sharp)) => (bsdf, Some(sharp)),
             None => (whole, None),
         };
-        if bsdf.has_smooth() {
-            let Branch { throughput, depth, .. } = branch;
-            visit(EyeSample { surface, bsdf, out, throughput, depth, distance });
-        }
+        let Branch { throughput, depth, .. } = branch;
+        let sampled = branch.sampled;
+        visit(Met::Surface(Vertex { surface, bsdf, out, throughput, depth, distance, sampled }));
         if branch.depth >= max_depth || !(bsdf.has_delta() || sharp.is_some()) {
             continue;
         }
@@ -141,7 +159,8 @@ pub fn trace<'w>(
             let direction = surface.frame.to_world(lobe.wi);
             let ray = shadow::ray_from(surface.position, surface.normal, direction);
             let start = (!lobe.delta).then(|| Start::new(&surface, wo, lobe.pdf));
-            let next = Branch { ray, throughput, eta_sq, depth: branch.depth + 1, distance, start };
+            let (depth, sampled) = (branch.depth + 1, branch.sampled || !lobe.delta);
+            let next = Branch { ray, throughput, eta_sq, depth, distance, start, sampled };
             if current.is_none() {
                 current = Some(next);
             } else if waiting < PENDING {

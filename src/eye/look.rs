@@ -17,12 +17,37 @@ pub enum Look {
     },
 }
 
-/// The random numbers of eye sample `sample` of `spp` in the film's pixel, and its place in the pixel. A
-/// single sample looks through the pixel's centre, which keeps edges straight.
+impl Look {
+    /// The random numbers of sample `sample` in the film's pixel, and its place in the pixel. Eye samples are taken in
+    /// turn; elsewhere `seed` chooses.
+    #[inline]
+    pub fn eye_sampler(self, pixel: [u32; 2], seed: u32, sample: u32) -> (Sampler, Vec2) {
+        match self {
+            Look::Pixels => {
+                let mut sampler = Sampler::new(pixel_seed(pixel, seed), sample);
+                let jitter = sampler.next_2d();
+                (sampler, jitter)
+            }
+            Look::EyeSamples { spp, seed } => {
+                let spp = spp.max(1);
+                eye_sampler(pixel, seed, sample % spp, spp)
+            }
+        }
+    }
+}
+
+/// Seed of the random numbers in a pixel. The pixel is given by the film's own coordinates, so that a crop repeats the
+/// whole picture's pixels.
 #[inline]
-pub fn eye_sampler([x, y]: [u32; 2], seed: u32, sample: u32, spp: u32) -> (Sampler, Vec2) {
-    // The film's own coordinates, so that a crop repeats the whole picture's pixels.
-    let mut sampler = Sampler::new(hash(hash(x, y), seed), sample);
+pub fn pixel_seed([x, y]: [u32; 2], seed: u32) -> u32 {
+    hash(hash(x, y), seed)
+}
+
+/// The random numbers of eye sample `sample` of `spp` in the film's pixel, and its place in the pixel. A single sample
+/// looks through the pixel's centre, which keeps edges straight.
+#[inline]
+pub fn eye_sampler(pixel: [u32; 2], seed: u32, sample: u32, spp: u32) -> (Sampler, Vec2) {
+    let mut sampler = Sampler::new(pixel_seed(pixel, seed), sample);
     let jitter = if spp > 1 { sampler.next_2d() } else { Vec2::splat(0.5) };
     (sampler, jitter)
 }

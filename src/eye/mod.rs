@@ -1,16 +1,20 @@
 //! Eye samples: surfaces visible in a pixel, directly or through mirrors and glass.
 
 mod chain;
+mod features;
 mod index;
 mod look;
 mod pass;
 mod points;
 mod rays;
 mod sharp;
+#[cfg(test)]
+mod tests;
 
-pub use chain::ChainCounts;
+pub use chain::{ChainCounts, DROPPED_BRANCHES};
+pub use features::{Feature, FeatureSettings, Features, UnknownFeature, features};
 pub use index::EyeIndex;
-pub use look::{Look, eye_sampler};
+pub use look::{Look, eye_sampler, pixel_seed};
 pub use pass::EyePass;
 pub use points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySamples};
 pub use rays::{EyeRays, EyeSettings, VisibleSurfaces};

@@ -1,6 +1,6 @@
 //! Eye rays one by one: their random numbers, their places in pixels, and the surfaces that they make visible.
 
-use super::chain::{ChainCounts, EyeSample, trace};
+use super::chain::{ChainCounts, Met, Vertex, trace};
 use super::eye_sampler;
 use super::points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySample};
 use crate::math::Rgb;
@@ -70,13 +70,15 @@ impl<'a, 'w> EyeRays<'a, 'w> {
         let (mut sampler, jitter) = eye_sampler(film_pixel, seed, sample, spp);
         let ray = self.view.primary_ray(film_pixel, jitter);
         let VisibleSurfaces { points, visibility, chains, .. } = found;
-        let visit = |eye: EyeSample<'w>| {
-            if eye.depth < max_depth
-                && let Some((geometry, surface)) = self.shading_point(&eye)
+        let visit = |met: Met<'w>| {
+            if let Met::Surface(vertex) = met
+                && vertex.bsdf.has_smooth()
+                && vertex.depth < max_depth
+                && let Some((geometry, surface)) = self.shading_point(&vertex)
             {
                 points.geometry.push(geometry);
                 points.surfaces.push(surface);
-                visibility.push(VisibilitySample { pixel, weight: eye.throughput });
+                visibility.push(VisibilitySample { pixel, weight: vertex.throughput });
             }
         };
         let emitted = trace(self.world, ray, max_depth, &mut sampler, chains, visit);
@@ -88,7 +90,7 @@ impl<'a, 'w> EyeRays<'a, 'w> {
     }
 
     /// The shading point at a visible surface, or `None` if it cannot be lit.
-    fn shading_point(&self, eye: &EyeSample<'w>) -> Option<(PointGeometry, PointSurface<'w>)> {
+    fn shading_point(&self, eye: &Vertex<'w>) -> Option<(PointGeometry, PointSurface<'w>)> {
         let s = &eye.surface;
         let front = s.frame.normal.dot(eye.out) > 0.0;
         if !front && !eye.bsdf.two_sided() {

@@ -68,11 +68,14 @@ impl ExrFile {
 
     /// The names of all layers that have a colour, in the file's order; "" stands for the picture's own.
     pub fn layers(&self) -> Vec<String> {
-        let mut names = Vec::new();
-        for name in self.channels() {
+        let (mut names, channels) = (Vec::new(), self.channels());
+        // Y beside X is a coordinate, not a luminance.
+        let is_vector = |layer: &str| channels.iter().any(|name| *name == format!("{layer}.X"));
+        for name in &channels {
             let layer = match name.rsplit_once('.') {
-                Some((layer, "R" | "Y")) => layer,
-                None if name == "R" || name == "Y" => "",
+                Some((layer, "R")) => layer,
+                Some((layer, "Y")) if !is_vector(layer) => layer,
+                None if matches!(name.as_str(), "R" | "Y") => "",
                 _ => continue,
             };
             if !names.iter().any(|known| known == layer) {

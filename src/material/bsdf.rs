@@ -183,6 +183,19 @@ impl<'m> Bsdf<'m> {
         albedo
     }
 
+    /// Share of the light from `wo` that is scattered, delta lobes excluded.
+    pub fn albedo(&self, wo: Vec3) -> Rgb {
+        let cos = wo.z * self.side(wo);
+        if !(cos > 0.0) {
+            return Rgb::ZERO;
+        }
+        let mut albedo = self.model.base.albedo(self.base, self.coat_transmittance(cos));
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            albedo += lobe.albedo(self.scales[slot], cos);
+        }
+        albedo
+    }
+
     /// True if `is_such` of a lobe that scatters anything.
     #[inline(always)]
     fn any_lobe(&self, is_such: impl Fn(&LobeModel) -> bool) -> bool {

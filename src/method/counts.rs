@@ -1,7 +1,7 @@
 //! Counts of the stages, under the names that methods share.
 
 use crate::bias_compensation::points::CompensationCounts;
-use crate::eye::ChainCounts;
+use crate::eye::{ChainCounts, DROPPED_BRANCHES};
 use crate::lightcut::CutCounts;
 use crate::stats::Stats;
 
@@ -9,7 +9,7 @@ use crate::stats::Stats;
 pub fn eye(stats: &mut Stats, counts: &ChainCounts) {
     stats.count("Rays/closest hit", counts.rays);
     stats.count("Eye/shadow rays", counts.shadow_rays);
-    stats.count("Eye/branches dropped", counts.overflow);
+    stats.count(DROPPED_BRANCHES, counts.overflow);
 }
 
 /// Of lightcuts, in a group of counters.

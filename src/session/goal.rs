@@ -1,5 +1,6 @@
 //! The goal of a frame.
 
+use crate::eye::Features;
 use crate::method::Method;
 use crate::stats::Stopwatch;
 use crate::verify;
@@ -11,6 +12,8 @@ pub struct Goal {
     pub method: Method,
     /// Goal that settings are planned for.
     pub wanted: Wanted,
+    /// Features of the surfaces seen that are wanted beside the colour.
+    pub features: Features,
     /// Settings of the verification of the picture's error, if any.
     pub verify: Option<verify::Settings>,
 }

@@ -22,6 +22,8 @@ pub use frame::{Frame, Remark};
 pub use goal::{Goal, Wanted};
 pub use render::FrameError;
 
+pub use crate::eye::{Feature, Features, UnknownFeature};
+
 use crate::embree::{BuildQuality, EmbreeError};
 use crate::scene::Cameras;
 use crate::scene::formats::{LoadOptions, Loaded, SceneError, load};

@@ -3,11 +3,12 @@
 use super::frame::{self, Frame, Remark};
 use super::goal::{Goal, Wanted};
 use super::{Session, report};
-use crate::film::Image;
+use crate::eye::{DROPPED_BRANCHES, FeatureSettings, Features, features};
+use crate::film::{Image, Layer};
 use crate::method::{Method, Output};
 use crate::plan::{self, LATE, Ladder};
 use crate::progress::Control;
-use crate::stats::{Stage, Stats, Stopwatch, available_bytes};
+use crate::stats::{Counter, Stage, Stats, Stopwatch, available_bytes};
 use crate::verify::{self, Verified, verify};
 use crate::view::View;
 use serde_json::{Value, json};
@@ -60,8 +61,18 @@ impl Session {
         let mut stats = Stats::new();
         let mut remarks = Vec::new();
         let made = self.make(view, goal, control, &mut stats, &mut remarks)?;
-        let Made { method, output, seconds, measured, plan } = made;
+        let Made { method, mut output, seconds, measured, plan } = made;
         stats.merge(&output.stats);
+        if let Some(Counter::Count(dropped @ 1..)) = stats.get(DROPPED_BRANCHES) {
+            remarks.push(Remark::Warning(format!(
+                "{dropped} branches of eye paths were dropped, because too many mirrors and panes of glass follow each \
+                 other: their light is missing"
+            )));
+        }
+        if !goal.features.is_empty() {
+            let layers = stats.time(Stage::EyePass, || self.features(view, &method, goal.features, control));
+            output.extra.extend(layers);
+        }
 
         let complete = output.complete;
         let nonfinite_samples = output.nonfinite;
@@ -110,6 +121,12 @@ impl Session {
             "plan": plan,
         });
         Ok(Frame { film, method, stats, facts, remarks, complete, unverified })
+    }
+
+    /// The features wanted, of the surfaces that the method's eye samples see.
+    fn features(&self, view: &View, method: &Method, wanted: Features, control: &Control) -> Vec<Layer> {
+        let settings = FeatureSettings { look: method.look(), spp: method.spp(), seed: method.seed() };
+        features(&self.world, view, &settings, wanted, control)
     }
 
     /// States the scene, the method and its settings.

@@ -150,3 +150,88 @@ fn a_process_killed_while_it_writes_leaves_the_old_files_whole() {
     assert_eq!(killed.code, None, "{}", killed.stderr);
     assert_eq!((read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))), before);
 }
+
+/// All features, by the names of their channels.
+const FEATURES: [&str; 16] = [
+    "A",
+    "albedo.B",
+    "albedo.G",
+    "albedo.R",
+    "depth.Z",
+    "geometricNormal.X",
+    "geometricNormal.Y",
+    "geometricNormal.Z",
+    "materialId",
+    "normal.X",
+    "normal.Y",
+    "normal.Z",
+    "objectId",
+    "position.X",
+    "position.Y",
+    "position.Z",
+];
+
+#[test]
+fn features_are_written_by_every_method_and_agree_with_the_cameras_matrices() {
+    let sandbox = Sandbox::new();
+    let all = "alpha,albedo,depth,normal,geometric-normal,material,object,position";
+    let methods: [(&str, &[&str]); 4] = [
+        ("path", &[]),
+        ("reconstruction", &["--vpls", "300"]),
+        ("lightcuts", &["--vpls", "300"]),
+        ("photon-cache", &["--photons", "1000", "--gather-rays", "64"]),
+    ];
+    let mut albedos = Vec::new();
+    for (method, more) in methods {
+        let options = [&["--method", method, "--no-png", "--aov", all], more].concat();
+        sandbox.render("a.exr", &options).expect(0);
+        let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
+        let channels = file.channels();
+        assert!(FEATURES.iter().all(|name| channels.iter().any(|channel| channel == name)), "{channels:?}");
+        let layer = |name: &str| file.layer(name).unwrap().pixels;
+        let (position, depth, alpha) = (layer("position"), layer("depth.Z"), layer("A"));
+        let camera = file.camera().unwrap();
+        let product = |p: [f32; 3], matrix: &[f32; 16]| -> [f32; 4] {
+            let p = [p[0], p[1], p[2], 1.0];
+            std::array::from_fn(|column| (0..4).map(|row| p[row] * matrix[4 * row + column]).sum())
+        };
+        let mut floor = 0;
+        for i in (0..24 * 16).filter(|&i| alpha[i].x == 1.0) {
+            // The floor is seen squarely enough for the mean position to lie in the pixel.
+            if layer("objectId")[i].x != 1.0 || layer("normal")[i].y < 0.999 {
+                continue;
+            }
+            floor += 1;
+            let [x, y, _, w] = product(position[i].to_array(), &camera.world_to_ndc);
+            let (column, row) = ((x / w * 24.0) as usize, (y / w * 16.0) as usize);
+            assert_eq!((column, row), (i % 24, i / 24), "{method}");
+            let [_, _, z, _] = product(position[i].to_array(), &camera.world_to_camera);
+            assert!((z / depth[i].x - 1.0).abs() < 0.1, "{z} {}", depth[i].x);
+            assert!(position[i].y.abs() < 1e-4);
+            let albedo = layer("albedo")[i];
+            assert!((albedo.x - 0.6).abs() < 1e-4 && (albedo.z - 0.4).abs() < 1e-4, "{albedo}");
+            assert_eq!(layer("materialId")[i].x, 1.0);
+        }
+        assert!(floor > 60, "{floor}");
+        albedos.push(layer("albedo"));
+        sandbox.run(&["compare", "a.exr", "a.exr"]).expect(0);
+    }
+    // All other methods look through the same eye samples.
+    assert!(albedos[1] == albedos[2] && albedos[2] == albedos[3]);
+}
+
+#[test]
+fn inspection_writes_its_layers_as_pictures_for_both_caches() {
+    for (method, more) in [("cache", "--vpls"), ("photon-cache", "--photons")] {
+        let sandbox = Sandbox::new();
+        let options = ["--method", method, more, "1000", "--inspect", "--passes", "1"];
+        let more: &[&str] = if method == "cache" { &[] } else { &["--gather-rays", "64"] };
+        sandbox.render("a.exr", &[&options, more].concat()).expect(0);
+        let files = sandbox.files();
+        for layer in ["direct", "indirect", "records", "footprint", "gradient", "weights", "seams.1"] {
+            assert!(files.contains(&format!("a.{layer}.png")), "{method}: {files:?}");
+        }
+        let layers = ExrFile::read(&sandbox.path("a.exr")).unwrap().channels();
+        assert!(layers.iter().any(|name| name == "gradient.X"), "{layers:?}");
+    }
+}

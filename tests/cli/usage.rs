@@ -43,6 +43,7 @@ fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
     ] {
         render(&["--method", "photon-cache", wrong[0], wrong[1]]);
     }
+    assert!(render(&["--aov", "albedo,normals"]).contains("geometric-normal"));
     render(&["--no-png", "--png", "b.png"]);
     assert!(render(&["--crop", "20,0,5,5"]).contains("24x16"));
     assert!(render(&["--frame", "0"]).contains("0 frames"));

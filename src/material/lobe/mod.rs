@@ -101,6 +101,14 @@ impl LobeModel {
         }
     }
 
+    /// Albedo for light at the cosine `cos` > 0; 0 for delta lobes.
+    pub fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
+        match self {
+            LobeModel::Rough(rough) => rough.mean_reflectance(scale, cos),
+            LobeModel::Mirror(_) | LobeModel::Interface(_) => Rgb::ZERO,
+        }
+    }
+
     /// Returns the albedo for light at the cosine `cos` > 0, where the lobe is wide enough to pass for diffuse.
     #[inline]
     pub fn diffuse_albedo(&self, scale: Rgb, cos: f32) -> Option<Rgb> {

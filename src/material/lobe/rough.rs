@@ -87,6 +87,12 @@ impl RoughLobe {
         }
     }
 
+    /// Albedo for light at the cosine `cos` > 0; where none is tabulated, that of a mirror.
+    pub(super) fn mean_reflectance(&self, scale: Rgb, cos: f32) -> Rgb {
+        let tabulated = self.albedo.as_ref().map(|table| table.lookup(cos));
+        scale * tabulated.unwrap_or_else(|| self.fresnel.reflectance(cos.min(1.0)))
+    }
+
     #[inline]
     pub(super) fn diffuse_albedo(&self, scale: Rgb, cos: f32) -> Option<Rgb> {
         let table = self.albedo.as_ref().filter(|_| self.facets.alpha >= DIFFUSE_ALPHA)?;

@@ -2,9 +2,9 @@
 
 use super::batch::Batch;
 use crate::embree::Rays16;
-use crate::eye::{Look, eye_sampler};
+use crate::eye::{Look, pixel_seed};
 use crate::math::LANES;
-use crate::sampling::{Samplers16, hash};
+use crate::sampling::Samplers16;
 use crate::view::View;
 
 /// A path to start.
@@ -31,8 +31,8 @@ pub(super) fn start(batch: &mut Batch, mut paths: impl Iterator<Item = Start>, v
         if count == 0 {
             return;
         }
-        for (i, Start { pixel: [x, y], sample, seed }) in starts.into_iter().enumerate() {
-            samplers.seed[i] = hash(hash(x, y), seed);
+        for (i, Start { pixel, sample, seed }) in starts.into_iter().enumerate() {
+            samplers.seed[i] = pixel_seed(pixel, seed);
             samplers.index[i] = sample;
         }
         let anywhere = samplers.point(1);
@@ -40,10 +40,7 @@ pub(super) fn start(batch: &mut Batch, mut paths: impl Iterator<Item = Start>, v
         for (i, path) in starts.into_iter().enumerate() {
             let jitter = match look {
                 Look::Pixels => anywhere.get(i),
-                Look::EyeSamples { spp, seed } => {
-                    let spp = spp.max(1);
-                    eye_sampler(path.pixel, seed, path.sample % spp, spp).1
-                }
+                Look::EyeSamples { .. } => look.eye_sampler(path.pixel, path.seed, path.sample).1,
             };
             rays.set(i, &view.primary_ray(path.pixel, jitter));
         }

@@ -1,0 +1,264 @@
+//! Chains through mirrors and glass, visibility samples and features, against closed forms.
+
+use super::chain::{ChainCounts, Met, Vertex, trace};
+use super::{EyePass, EyeSettings, Feature, FeatureSettings, Features, Look, features};
+use crate::film::{Layer, Pixels};
+use crate::math::Rgb;
+use crate::progress::Control;
+use crate::sampling::Sampler;
+use crate::scene::{Camera, MaterialId, Mesh};
+use crate::test_scenes::*;
+use glam::{DVec3, Vec2, Vec3};
+
+/// The index of refraction at which an interface reflects a quarter of what falls on it squarely.
+const ETA: f32 = 3.0;
+
+/// A scene seen from the origin along -z.
+fn seen_from_origin(resolution: [u32; 2]) -> SceneAndView {
+    scene(Camera { tan_half_x: 0.5, ..Camera::default() }, resolution)
+}
+
+/// A large square at `z` that faces +z.
+fn wall(z: f32, material: MaterialId) -> Mesh {
+    quad(Vec3::new(-50.0, -50.0, z), Vec3::X * 100.0, Vec3::Y * 100.0, material)
+}
+
+/// A large square at `z` that faces -z.
+fn back_wall(z: f32, material: MaterialId) -> Mesh {
+    quad(Vec3::new(-50.0, -50.0, z), Vec3::Y * 100.0, Vec3::X * 100.0, material)
+}
+
+/// Surfaces that a ray nearly along -z meets, and what was counted.
+fn chain(world: &WorldAndView, max_depth: u32, seed: u32) -> (Vec<Vertex<'_>>, ChainCounts) {
+    let [width, height] = world.view.window.film;
+    let ray = world.view.primary_ray([width / 2, height / 2], Vec2::splat(1e-3));
+    let (mut vertices, mut counts) = (Vec::new(), ChainCounts::default());
+    trace(world, ray, max_depth, &mut Sampler::new(seed, 0), &mut counts, |met| {
+        if let Met::Surface(vertex) = met {
+            vertices.push(vertex);
+        }
+    });
+    (vertices, counts)
+}
+
+#[test]
+fn mirrors_pass_all_light_on_until_the_chain_is_too_long() {
+    let mut scene = seen_from_origin([64, 64]);
+    let mirror = add_material(&mut scene, mirror());
+    let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+    // From the mirror in front to the one behind, which faces it, and so on; the grey wall is out of sight.
+    scene.meshes.push(wall(-1.0, mirror));
+    scene.meshes.push(back_wall(2.0, mirror));
+    scene.meshes.push(wall(-9.0, grey));
+    let world = world(scene);
+    let (vertices, counts) = chain(&world, 6, 0);
+    assert_eq!(vertices.iter().map(|v| v.surface.mesh).collect::<Vec<_>>(), [0, 1, 0, 1, 0, 1]);
+    for (i, vertex) in vertices.iter().enumerate() {
+        assert_eq!((vertex.depth, vertex.throughput, vertex.sampled), (i as u32 + 1, Rgb::ONE, false));
+        let unfolded = 1.0 + 3.0 * i as f32;
+        assert!((vertex.distance - unfolded).abs() < 1e-3 * unfolded, "{}", vertex.distance);
+    }
+    assert_eq!((counts.rays, counts.overflow), (6, 0));
+}
+
+#[test]
+fn glass_splits_light_by_fresnels_equations() {
+    let mut scene = seen_from_origin([64, 64]);
+    let glass = add_material(&mut scene, glass(ETA));
+    let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+    scene.meshes.extend([wall(-1.0, glass), wall(-3.0, grey), back_wall(2.0, grey)]);
+    let world = world(scene);
+    let (vertices, counts) = chain(&world, 2, 0);
+    let share = |mesh: u32| vertices.iter().find(|v| v.surface.mesh == mesh).unwrap().throughput.x;
+    let reflected = ((ETA - 1.0) / (ETA + 1.0)).powi(2);
+    assert!((share(2) - reflected).abs() < 1e-4, "{}", share(2));
+    // Radiance is compressed in the denser medium.
+    assert!((share(1) * ETA * ETA - (1.0 - reflected)).abs() < 1e-4, "{}", share(1));
+    assert_eq!((vertices.len(), counts.rays), (3, 3));
+}
+
+#[test]
+fn a_pane_lets_through_and_reflects_what_the_series_of_its_reflections_adds_up_to() {
+    let mut scene = seen_from_origin([64, 64]);
+    let glass = add_material(&mut scene, glass(ETA));
+    let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+    let pane = [wall(-1.0, glass), back_wall(-1.5, glass)];
+    scene.meshes.extend(pane.into_iter().chain([wall(-3.0, grey), back_wall(2.0, grey)]));
+    let world = world(scene);
+    let chains = 4000;
+    let mut shares = [0.0; 4];
+    for seed in 0..chains {
+        for vertex in chain(&world, 64, seed).0 {
+            shares[vertex.surface.mesh as usize] += vertex.throughput.x / chains as f32;
+        }
+    }
+    let r = ((ETA - 1.0) / (ETA + 1.0)).powi(2);
+    let through = (1.0 - r).powi(2) / (1.0 - r * r);
+    assert!((shares[2] - through).abs() < 0.005, "{shares:?} {through}");
+    assert!((shares[3] - (1.0 - through)).abs() < 0.005, "{shares:?} {through}");
+}
+
+#[test]
+fn branches_beyond_those_that_can_wait_are_counted() {
+    let mut scene = seen_from_origin([64, 64]);
+    // Each interface reflects little, so that there is something left to reflect after many of them.
+    let glass = add_material(&mut scene, glass(1.33));
+    for i in 0..400 {
+        scene.meshes.push(if i % 2 == 0 {
+            wall(-1.0 - i as f32, glass)
+        } else {
+            back_wall(-1.0 - i as f32, glass)
+        });
+    }
+    let world = world(scene);
+    let overflow = |max_depth| (0..200).map(|seed| chain(&world, max_depth, seed).1.overflow).sum::<u64>();
+    assert_eq!(overflow(20), 0);
+    assert!(overflow(u32::MAX) > 0);
+}
+
+#[test]
+fn visibility_samples_carry_the_whole_light_of_each_pixel() {
+    let (mut scene, _) = lit_room(camera(Vec3::new(0.0, 0.0, 0.9), Vec3::ZERO, 0.8), 20);
+    let glass = add_material(&mut scene, glass(1.5));
+    scene.meshes.push(sphere(Vec3::new(0.2, -0.3, -0.2), 0.3, 16, glass));
+    let world = world(scene);
+    let pass = |spp| {
+        let settings = EyeSettings { spp, seed: 1, max_depth: 32 };
+        EyePass::trace(&world, &world.view, settings, &Control::new())
+    };
+    let pass = pass(64);
+    let mut sums = vec![Rgb::ZERO; 400];
+    let mut samples = 0;
+    for point in 0..pass.len() {
+        for sample in pass.visibility.of(point) {
+            sums[sample.pixel as usize] += sample.weight;
+            samples += 1;
+        }
+    }
+    assert_eq!(samples, pass.len());
+    // Only Russian roulette leaves noise, and only where there is glass.
+    let exact = sums.iter().filter(|sum| (**sum - Rgb::ONE).abs().max_element() < 1e-4).count();
+    assert!(exact > 200 && exact < 400, "{exact}");
+    let mean = sums.iter().sum::<Rgb>() / 400.0;
+    assert!((mean - Rgb::ONE).abs().max_element() < 0.01, "{mean}");
+}
+
+fn all_features(world: &WorldAndView, spp: u32) -> Vec<Layer> {
+    let settings = FeatureSettings { look: Look::EyeSamples { spp, seed: 0 }, spp, seed: 0 };
+    let wanted = Feature::ALL.into_iter().collect();
+    features(world, &world.view, &settings, wanted, &Control::new())
+}
+
+/// Values of a layer, the first of three where there are no more.
+fn values(layers: &[Layer], name: &str) -> Vec<Vec3> {
+    let layer = layers.iter().find(|layer| layer.name == name).unwrap_or_else(|| panic!("no layer {name}"));
+    match &layer.pixels {
+        Pixels::Color(image) | Pixels::Vector(image) => image.pixels.clone(),
+        Pixels::Scalar(image) => image.pixels.iter().map(|&x| Vec3::X * x).collect(),
+        Pixels::Id(image) => image.pixels.iter().map(|&id| Vec3::X * id as f32).collect(),
+    }
+}
+
+fn assert_near(found: Vec3, expected: Vec3) {
+    assert!((found - expected).abs().max_element() <= 1e-4 * (1.0 + expected.length()), "{found} {expected}");
+}
+
+#[test]
+fn a_plane_half_in_view_has_its_own_features_and_the_rest_none() {
+    let mut scene = seen_from_origin([8, 4]);
+    scene.centre = DVec3::new(1000.0, -7.0, 0.25);
+    let _unseen = add_material(&mut scene, diffuse(Rgb::ONE));
+    let red = add_material(&mut scene, diffuse(Rgb::new(0.8, 0.1, 0.2)));
+    scene.meshes.push(wall(60.0, red));
+    scene.meshes.push(quad(Vec3::new(0.0, -50.0, -4.0), Vec3::X * 50.0, Vec3::Y * 100.0, red));
+    let world = world(scene);
+    let layers = all_features(&world, 1);
+    let of = |name| values(&layers, name);
+    for (i, position) in of("position").into_iter().enumerate() {
+        let (x, y) = (i % 8, i / 8);
+        if x < 4 {
+            assert_eq!(of("depth.Z")[i].x, 1e10);
+            for name in ["albedo", "normal", "geometricNormal", "position", "materialId", "objectId", "A"] {
+                assert_eq!(of(name)[i], Vec3::ZERO, "{name}");
+            }
+            continue;
+        }
+        // The film is 4 wide at a distance of 4.
+        let on_plane = Vec3::new((x as f32 + 0.5 - 4.0) * 0.5, (1.5 - y as f32) * 0.5, -4.0);
+        assert_near(position, Vec3::new(1000.0, -7.0, 0.25) + on_plane);
+        assert_near(of("albedo")[i], Rgb::new(0.8, 0.1, 0.2));
+        assert_near(of("normal")[i], Vec3::Z);
+        assert_near(of("geometricNormal")[i], Vec3::Z);
+        assert_near(of("depth.Z")[i], Vec3::X * 4.0);
+        assert_eq!([of("materialId")[i].x, of("objectId")[i].x, of("A")[i].x], [2.0, 2.0, 1.0]);
+    }
+}
+
+#[test]
+fn a_pixel_on_an_edge_averages_what_can_be_averaged() {
+    let mut scene = seen_from_origin([1, 1]);
+    let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+    scene.meshes.push(quad(Vec3::new(0.0, -50.0, -4.0), Vec3::X * 50.0, Vec3::Y * 100.0, grey));
+    let layers = all_features(&world(scene), 16);
+    let of = |name| values(&layers, name)[0];
+    // Sixteen stratified samples: eight to the left, eight to the right.
+    assert_eq!(of("A").x, 0.5);
+    assert_near(of("normal"), Vec3::Z * 0.5);
+    assert_near(of("albedo"), Rgb::splat(0.25));
+    assert_near(of("depth.Z"), Vec3::X * 4.0);
+    assert_eq!((of("materialId").x, of("objectId").x, of("position").z), (1.0, 1.0, -4.0));
+}
+
+#[test]
+fn a_mirror_shows_the_features_of_what_is_seen_in_it() {
+    let mut scene = seen_from_origin([5, 3]);
+    let mirror = add_material(&mut scene, mirror());
+    let red = add_material(&mut scene, diffuse(Rgb::new(0.8, 0.1, 0.2)));
+    scene.meshes.extend([wall(-2.0, mirror), back_wall(3.0, red)]);
+    let layers = all_features(&world(scene), 4);
+    for i in 0..15 {
+        let of = |name| values(&layers, name)[i];
+        assert_near(of("albedo"), Rgb::new(0.8, 0.1, 0.2));
+        assert_near(of("normal"), -Vec3::Z);
+        assert_near(of("depth.Z"), Vec3::X * 7.0);
+        assert!((of("position").z - 3.0).abs() < 1e-5);
+        assert_eq!([of("materialId").x, of("objectId").x, of("A").x], [2.0, 2.0, 1.0]);
+    }
+}
+
+#[test]
+fn glass_shows_what_most_light_comes_from_and_itself_before_the_sky() {
+    let features_behind = |with_wall: bool| {
+        let mut scene = seen_from_origin([1, 1]);
+        let glass = add_material(&mut scene, glass(1.5));
+        let (red, blue) = (Rgb::new(0.8, 0.1, 0.2), Rgb::new(0.0, 0.2, 0.9));
+        let [red, blue] = [red, blue].map(|colour| add_material(&mut scene, diffuse(colour)));
+        scene.meshes.extend([wall(-2.0, glass), back_wall(-2.5, glass), back_wall(3.0, blue)]);
+        if with_wall {
+            scene.meshes.push(wall(-6.0, red));
+        }
+        all_features(&world(scene), 1)
+    };
+    let behind = features_behind(true);
+    assert_eq!(values(&behind, "objectId")[0].x, 4.0);
+    assert_near(values(&behind, "normal")[0], Vec3::Z);
+    // The red wall by the light let through, the blue one by that reflected.
+    let albedo = values(&behind, "albedo")[0];
+    assert!(albedo.x > 0.6 && albedo.x < 0.8 && albedo.z > 0.18 && albedo.z < 0.3, "{albedo}");
+    let sky = features_behind(false);
+    assert_eq!([values(&sky, "objectId")[0].x, values(&sky, "A")[0].x], [1.0, 1.0]);
+    assert_near(values(&sky, "depth.Z")[0], Vec3::X * 2.0);
+}
+
+#[test]
+fn only_what_is_wanted_is_made() {
+    let (scene, _) = lit_room(camera(Vec3::new(0.0, 0.0, 0.9), Vec3::ZERO, 0.8), 4);
+    let world = world(scene);
+    let settings = FeatureSettings { look: Look::Pixels, spp: 2, seed: 0 };
+    let layers = |wanted: Features| features(&world, &world.view, &settings, wanted, &Control::new());
+    let wanted = ["depth".parse(), "albedo".parse()].into_iter().map(Result::unwrap).collect();
+    assert_eq!(layers(wanted).iter().map(|l| l.name.as_str()).collect::<Vec<_>>(), ["albedo", "depth.Z"]);
+    assert!(layers(Features::default()).is_empty());
+    let error = "normals".parse::<Feature>().unwrap_err().to_string();
+    assert!(error.contains("`normals`") && error.contains("geometric-normal, position"), "{error}");
+}
