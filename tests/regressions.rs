@@ -65,7 +65,7 @@ fn compensation_makes_no_fireflies_in_creases() {
 #[test]
 fn every_method_with_records_returns_the_layers_of_inspection() {
     let world = own("cornell");
-    let layers = |output: Output| output.extra.iter().map(|layer| layer.0.clone()).collect::<Vec<_>>();
+    let layers = |output: Output| output.extra.iter().map(|layer| layer.name.clone()).collect::<Vec<_>>();
     let mut records = cache::Settings { spp: 1, inspect: true, ..Default::default() };
     records.light.indirect = 3000;
     let photons = photon_cache::Settings { spp: 1, inspect: true, photons: 3000, ..Default::default() };
