@@ -1,4 +1,5 @@
-//! The stages that methods over virtual lights share: the light pass and its trees.
+//! Virtual lights of a scene, which methods over them share: the light pass, its trees, and the store that keeps them from
+//! frame to frame.
 
 use crate::bias_compensation::Compensation;
 use crate::light_tree::{Family, LightTrees};
@@ -8,8 +9,47 @@ use crate::shade::ShadingContext;
 use crate::stats::{Stage, Stats};
 use crate::vpl::{LightPassSettings, light_pass, min_dist_sq, near_sq_of_size};
 use crate::world::World;
+use std::sync::{Arc, Mutex, PoisonError};
 
-/// A scene's virtual lights.
+/// Facts that virtual lights depend on, besides the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightsWanted {
+    /// Numbers of VPLs and the seed.
+    pub pass: LightPassSettings,
+    /// Builder of the trees.
+    pub family: Family,
+    /// Longest path in edges.
+    pub max_depth: u32,
+}
+
+/// Virtual lights kept from frame to frame: those made last, for as long as the same are wanted.
+#[derive(Default)]
+pub struct LightStore(Mutex<Option<(LightsWanted, Arc<Lights>)>>);
+
+impl LightStore {
+    /// Returns the lights of `world`, made anew if others were made last. Lights are not kept if `control` is
+    /// cancelled while they are made.
+    pub fn get(
+        &self,
+        world: &World,
+        wanted: LightsWanted,
+        control: &Control,
+        stats: &mut Stats,
+    ) -> Arc<Lights> {
+        // The lights are complete when they are stored: a panic elsewhere cannot have left them half-made.
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((made_for, lights)) = &*kept
+            && *made_for == wanted
+        {
+            return Arc::clone(lights);
+        }
+        let lights = Arc::new(Lights::new(world, &wanted, control, stats));
+        *kept = (!control.is_cancelled()).then(|| (wanted, Arc::clone(&lights)));
+        lights
+    }
+}
+
+/// Virtual lights of a scene.
 pub struct Lights {
     /// The trees over them.
     pub trees: LightTrees,
@@ -20,42 +60,35 @@ pub struct Lights {
 }
 
 impl Lights {
-    /// Makes them for paths of at most `max_depth` edges; stops early if `control` is cancelled.
-    pub fn new(
-        world: &World,
-        settings: &LightPassSettings,
-        family: Family,
-        max_depth: u32,
-        control: &Control,
-        stats: &mut Stats,
-    ) -> Lights {
-        control.begin(Stage::LightPass, u64::from(settings.indirect));
-        let found = stats.time(Stage::LightPass, || light_pass(world, settings, max_depth, control));
+    /// Makes them; stops early if `control` is cancelled.
+    fn new(world: &World, wanted: &LightsWanted, control: &Control, stats: &mut Stats) -> Lights {
+        control.begin(Stage::LightPass, u64::from(wanted.pass.indirect));
+        let pass = || light_pass(world, &wanted.pass, wanted.max_depth, control);
+        let found = stats.time(Stage::LightPass, pass);
         stats.count("VPLs/total", found.len() as u64);
         stats.count("VPLs/photon paths", found.photons.paths);
         stats.count("Rays/closest hit", found.photons.rays);
 
         control.begin(Stage::Tree, 0);
-        let build = || LightTrees::build(&found.sets, found.spots, world.diagonal, family);
+        let build = || LightTrees::build(&found.sets, found.spots, world.diagonal, wanted.family);
         let trees = stats.time(Stage::Tree, build);
         let least_sq = min_dist_sq(world.diagonal);
         let near_sq = |&size: &u32| if size > 0 { near_sq_of_size(size, least_sq) } else { 0.0 };
         Lights { trees, near_sq: found.sizes.iter().map(near_sq).collect(), diagonal: world.diagonal }
     }
 
-    /// Returns the transfer of their light to a point; `compensated` where short rays compensate clamping
-    /// close to lights.
+    /// Transfer from the lights to a point; `compensated` where short rays find the light lost close to them.
     pub fn transfer(&self, compensated: bool) -> Transfer<'_> {
         Transfer { patches: compensated, ..Transfer::new(&self.trees, self.diagonal) }
     }
 
-    /// Returns the inputs of shading; with `compensated` for light close to virtual lights too.
+    /// Context for shading by the lights; with `compensated`, light lost close to them is found by short rays.
     pub fn context<'a>(&'a self, world: &'a World, compensated: bool) -> ShadingContext<'a> {
         let compensation = compensated.then(|| self.compensation(world));
         ShadingContext { world, transfer: self.transfer(compensated), compensation }
     }
 
-    /// Returns the inputs of its compensation.
+    /// Compensation for light lost close to the lights.
     pub fn compensation<'a>(&'a self, world: &'a World) -> Compensation<'a> {
         Compensation::new(world, self.transfer(true), &self.near_sq)
     }

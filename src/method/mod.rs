@@ -7,7 +7,7 @@ pub mod cache;
 mod counts;
 mod ladder;
 pub mod lightcuts;
-pub mod lights;
+mod lights;
 pub mod output;
 pub mod path;
 pub mod photon_cache;
@@ -17,6 +17,7 @@ mod renderer;
 mod sampling;
 
 pub use ladder::{Move, RUNGS};
+pub use lights::LightStore;
 pub use output::Output;
 pub use registry::Method;
 pub use renderer::{Prepared, Renderer};

@@ -1,6 +1,7 @@
 //! The trait of methods.
 
 use super::ladder::Move;
+use super::lights::LightStore;
 use super::{Method, Output, Sampled};
 use crate::eye::Look;
 use crate::film::Window;
@@ -19,7 +20,9 @@ pub trait Renderer: Settings + Sampled {
     fn about(&self) -> &'static str;
 
     /// Renders the picture of `view`, until `control` is cancelled.
-    fn render(&self, world: &World, view: &View, control: &Control) -> Output;
+    ///
+    /// `lights` keeps virtual lights from frame to frame.
+    fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output;
 
     /// Rejects settings that contradict each other.
     ///

@@ -13,7 +13,7 @@
 use super::ladder::{Ladder, options};
 use crate::eye::Look;
 use crate::film::Image;
-use crate::method::{Method, Output};
+use crate::method::{LightStore, Method, Output};
 use crate::progress::Control;
 use crate::sampling::hash;
 use crate::stats::{StageTime, Stopwatch};
@@ -120,7 +120,7 @@ pub fn for_error(
         // From between two steps to the upper one, or the next.
         step = (step.floor() + if over { 2.0 } else { 1.0 }).min(top);
         let watch = Stopwatch::start();
-        output = ladder.at(step / STEPS).render(world, view, control);
+        output = ladder.at(step / STEPS).render(world, &LightStore::default(), view, control);
         time = watch.elapsed();
         raises += 1;
     }
@@ -172,7 +172,7 @@ fn search(world: &World, view: &View, ladder: &Ladder, asked: &Asked, control: &
     let mut renders = 0;
     let mut attempt = |step: f64| {
         let watch = Stopwatch::start();
-        let output = ladder.at(step / STEPS).render(world, view, control);
+        let output = ladder.at(step / STEPS).render(world, &LightStore::default(), view, control);
         let time = watch.elapsed();
         if !output.complete {
             return None;

@@ -12,7 +12,7 @@ use super::cost::{Cost, Timed};
 use super::ladder::{Ladder, options};
 use super::smaller;
 use super::tune::tune;
-use crate::method::{Method, Output, Prepared};
+use crate::method::{LightStore, Method, Output, Prepared};
 use crate::progress::Control;
 use crate::stats::{Stage, StageTime, Stopwatch};
 use crate::view::View;
@@ -66,7 +66,7 @@ impl Planned<'_> {
     /// Renders `window`, as planned, or its missing part.
     pub fn render(self, world: &World, view: &View, control: &Control) -> Output {
         let lit = self.prepared.and_then(|(prepared, _)| prepared.light(&self.method, control));
-        lit.unwrap_or_else(|| self.method.render(world, view, control))
+        lit.unwrap_or_else(|| self.method.render(world, &LightStore::default(), view, control))
     }
 }
 
@@ -153,7 +153,7 @@ fn small_renders(
     let mut time = |height: f64, small: View| -> Option<Cost> {
         let method = ladder.at(height);
         let watch = Stopwatch::start();
-        let output = method.render(world, &small, control);
+        let output = method.render(world, &LightStore::default(), &small, control);
         if !output.complete {
             return None;
         }

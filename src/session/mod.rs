@@ -25,6 +25,7 @@ pub use render::FrameError;
 pub use crate::eye::{Feature, Features, UnknownFeature};
 
 use crate::embree::{BuildQuality, EmbreeError};
+use crate::method::LightStore;
 use crate::scene::Cameras;
 use crate::scene::formats::{LoadOptions, Loaded, SceneError, load};
 use crate::stats::{Stage, Stats};
@@ -41,6 +42,8 @@ pub struct Session {
     pub hash: u64,
     /// Times of loading and building.
     pub stats: Stats,
+    /// Virtual lights of the last frame.
+    lights: LightStore,
     /// The scene's file.
     path: PathBuf,
 }
@@ -74,7 +77,7 @@ impl Session {
         let Loaded { scene, cameras, hash, .. } = loaded;
         let path = path.to_owned();
         match stats.time(Stage::Build, || World::new(scene, rayon::current_num_threads())) {
-            Ok(world) => Ok(Session { world, cameras, hash, stats, path }),
+            Ok(world) => Ok(Session { world, cameras, hash, stats, lights: LightStore::default(), path }),
             Err(source) => Err(OpenError::Build { path, source }),
         }
     }
@@ -83,5 +86,39 @@ impl Session {
     pub fn rebuild(&mut self, quality: BuildQuality) -> Result<(), OpenError> {
         let rebuilt = self.world.rebuild(quality);
         rebuilt.map_err(|source| OpenError::Build { path: self.path.clone(), source })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::{Method, reconstruction};
+    use crate::progress::Control;
+    use crate::stats::Counter;
+    use crate::view::{Framing, View};
+
+    #[test]
+    fn frames_of_a_session_share_lights_and_each_is_as_if_alone() {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell.toml");
+        let open = || Session::open(&scene, &LoadOptions::default()).unwrap();
+        let mut settings = reconstruction::Settings { spp: 1, ..Default::default() };
+        settings.light.indirect = 2000;
+        let goal = |settings| Goal { method: Method::Reconstruction(settings), ..Goal::default() };
+        let framing = |crop| Framing { resolution: Some([32, 32]), crop, ..Framing::default() };
+        let session = open();
+        let frame = |session: &Session, settings, crop| {
+            let view = View::new(&session.cameras, &framing(crop)).unwrap();
+            session.frame(&view, &goal(settings), &Control::new()).unwrap()
+        };
+        let lights = |frame: &Frame| frame.stats.get("VPLs/total");
+        let first = frame(&session, settings, None);
+        assert!(matches!(lights(&first), Some(Counter::Count(n)) if n > 2000));
+        let crop = Some([[5, 7], [20, 10]]);
+        let second = frame(&session, settings, crop);
+        assert_eq!(lights(&second), None);
+        assert_eq!(second.film.color, frame(&open(), settings, crop).film.color);
+        // Other lights are made where others are wanted.
+        settings.light.indirect = 3000;
+        assert!(lights(&frame(&session, settings, None)).is_some());
     }
 }

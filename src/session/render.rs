@@ -169,7 +169,7 @@ impl Session {
         match &goal.wanted {
             Wanted::AsSet => {
                 let watch = Stopwatch::start();
-                let output = method.render(&self.world, view, control);
+                let output = method.render(&self.world, &self.lights, view, control);
                 let seconds = watch.elapsed().wall_seconds;
                 Ok(Made { method, output, seconds, measured: None, plan: Value::Null })
             }

@@ -18,3 +18,9 @@ settings! {
         seed: u32 = 0;
     }
 }
+
+impl PartialEq for LightPassSettings {
+    fn eq(&self, other: &LightPassSettings) -> bool {
+        (self.direct, self.indirect, self.seed) == (other.direct, other.indirect, other.seed)
+    }
+}

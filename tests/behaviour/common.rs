@@ -4,7 +4,7 @@
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::Rgb;
-use lightsplat::method::{Output, Renderer, cache, lightcuts};
+use lightsplat::method::{LightStore, Output, Renderer, cache, lightcuts};
 use lightsplat::progress::Control;
 use lightsplat::scene::formats::{LoadOptions, Loaded, load};
 use lightsplat::scene::{Camera, Emission, Fresnel, Lobe, Material, MaterialId, Mesh, Reflectance, Scene};
@@ -198,7 +198,7 @@ pub fn per_pixel(world: &WorldAndView, like: &cache::Settings) -> Image {
 
 /// Renders the picture by a method; it must be complete.
 pub fn rendered(world: &WorldAndView, settings: &impl Renderer) -> Output {
-    let output = settings.render(world, &world.view, &Control::new());
+    let output = settings.render(world, &LightStore::default(), &world.view, &Control::new());
     assert!(output.complete && output.nonfinite == 0);
     output
 }

@@ -6,7 +6,7 @@ use super::{Study, StudyError, Subject};
 use crate::embree::BuildQuality;
 use crate::eye::Look;
 use crate::film::Image;
-use crate::method::Method;
+use crate::method::{LightStore, Method};
 use crate::stats::{Stage, Stopwatch};
 use serde_json::{Value, json};
 
@@ -103,7 +103,12 @@ impl Study<'_> {
     fn render(&self, subject: &Subject, candidate: &Candidate) -> Result<Run, StudyError> {
         let mut best: Option<Run> = None;
         for _ in 0..self.plan.repeats.max(1) {
-            let output = candidate.method.render(&subject.session.world, &subject.view, self.control);
+            let output = candidate.method.render(
+                &subject.session.world,
+                &LightStore::default(),
+                &subject.view,
+                self.control,
+            );
             if !output.complete {
                 return Err(StudyError::Interrupted);
             }

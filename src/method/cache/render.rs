@@ -6,7 +6,7 @@ use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::ladder::CUTS;
-use crate::method::lights::Lights;
+use crate::method::lights::{LightStore, LightsWanted};
 use crate::method::sampling::method_settings;
 use crate::method::{Move, Output, Renderer, Sampled, counts};
 use crate::progress::Control;
@@ -69,8 +69,8 @@ impl Renderer for Settings {
         "The radiance cache: records of direct or indirect light, splatted onto the eye samples around them"
     }
 
-    fn render(&self, world: &World, view: &View, control: &Control) -> Output {
-        render(world, view, self, control)
+    fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
+        render_by(world, lights, view, self, control)
     }
 
     fn check(&self) -> Result<(), String> {
@@ -94,14 +94,25 @@ impl Renderer for Settings {
 
 /// Renders what `view` sees.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
+    settings.render(world, &LightStore::default(), view, control)
+}
+
+fn render_by(
+    world: &World,
+    lights: &LightStore,
+    view: &View,
+    settings: &Settings,
+    control: &Control,
+) -> Output {
     let mut stats = Stats::new();
     let eye = settings.sampling().eye(&world.scene);
     control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
     let samples = stats.time(Stage::EyePass, || EyePass::trace(world, view, eye, control));
     counts::eye(&mut stats, &samples.chains);
 
-    let light = LightPassSettings { seed: settings.seed, ..settings.light };
-    let lights = Lights::new(world, &light, settings.family, eye.max_depth, control, &mut stats);
+    let pass = LightPassSettings { seed: settings.seed, ..settings.light };
+    let wanted = LightsWanted { pass, family: settings.family, max_depth: eye.max_depth };
+    let lights = lights.get(world, wanted, control, &mut stats);
     let context = lights.context(world, settings.compensation);
     let ShadingContext { transfer, compensation, .. } = context;
     let source = LightcutSource { world, transfer, settings: &settings.cache, compensation };

@@ -6,7 +6,7 @@ use crate::film::{Image, Layer};
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::ladder::CUTS;
-use crate::method::lights::Lights;
+use crate::method::lights::{LightStore, LightsWanted};
 use crate::method::sampling::method_settings;
 use crate::method::{Move, Output, Renderer, counts};
 use crate::progress::Control;
@@ -46,8 +46,8 @@ impl Renderer for Settings {
         "Lightcuts per pixel: virtual point lights, clustered as far as the expected error allows"
     }
 
-    fn render(&self, world: &World, view: &View, control: &Control) -> Output {
-        render(world, view, self, control)
+    fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
+        render_by(world, lights, view, self, control)
     }
 
     fn ladder(&self) -> &'static [Move] {
@@ -57,10 +57,21 @@ impl Renderer for Settings {
 
 /// Renders what `view` sees.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
+    settings.render(world, &LightStore::default(), view, control)
+}
+
+fn render_by(
+    world: &World,
+    lights: &LightStore,
+    view: &View,
+    settings: &Settings,
+    control: &Control,
+) -> Output {
     let mut stats = Stats::new();
     let max_depth = world.scene.path_limit(settings.max_depth);
-    let light = LightPassSettings { seed: settings.seed, ..settings.light };
-    let lights = Lights::new(world, &light, settings.family, max_depth, control, &mut stats);
+    let pass = LightPassSettings { seed: settings.seed, ..settings.light };
+    let lights =
+        lights.get(world, LightsWanted { pass, family: settings.family, max_depth }, control, &mut stats);
     let context = lights.context(world, settings.compensation);
     let shading = ShadeSettings { cut: settings.cut, share: settings.share, shadows: settings.shadows };
     let eye = EyeSettings { spp: settings.spp.max(1), seed: settings.seed, max_depth };

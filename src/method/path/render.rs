@@ -7,7 +7,7 @@ use crate::film::Image;
 use crate::math::Rgb;
 use crate::method::ladder::PATHS;
 use crate::method::sampling::method_settings;
-use crate::method::{Move, Output, Renderer};
+use crate::method::{LightStore, Move, Output, Renderer};
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
 use crate::view::View;
@@ -41,7 +41,7 @@ impl Renderer for Settings {
         "Unbiased path tracing: slow to converge, the reference"
     }
 
-    fn render(&self, world: &World, view: &View, control: &Control) -> Output {
+    fn render(&self, world: &World, _lights: &LightStore, view: &View, control: &Control) -> Output {
         render(world, view, self, control)
     }
 

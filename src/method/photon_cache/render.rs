@@ -6,7 +6,7 @@ use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::math::Rgb;
 use crate::method::cache::resolve::resolve;
-use crate::method::lights::Lights;
+use crate::method::lights::{LightStore, LightsWanted};
 use crate::method::sampling::method_settings;
 use crate::method::{Output, Renderer, Sampled, counts};
 use crate::photon::density::estimates;
@@ -79,8 +79,8 @@ impl Renderer for Settings {
         "The same cache, its indirect light by final gathering over a photon map, for comparison"
     }
 
-    fn render(&self, world: &World, view: &View, control: &Control) -> Output {
-        render(world, view, self, control)
+    fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
+        render_by(world, lights, view, self, control)
     }
 
     fn expected_bytes(&self, window: &Window) -> Option<u64> {
@@ -90,6 +90,16 @@ impl Renderer for Settings {
 
 /// Renders the picture of `view`.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
+    settings.render(world, &LightStore::default(), view, control)
+}
+
+fn render_by(
+    world: &World,
+    lights: &LightStore,
+    view: &View,
+    settings: &Settings,
+    control: &Control,
+) -> Output {
     let mut stats = Stats::new();
     let eye = settings.sampling().eye(&world.scene);
     let max_depth = eye.max_depth;
@@ -97,8 +107,9 @@ pub fn render(world: &World, view: &View, settings: &Settings, control: &Control
     let samples = stats.time(Stage::EyePass, || EyePass::trace(world, view, eye, control));
     counts::eye(&mut stats, &samples.chains);
 
-    let direct = LightPassSettings { seed: settings.seed, ..settings.light };
-    let lights = Lights::new(world, &direct, settings.family, max_depth, control, &mut stats);
+    let pass = LightPassSettings { seed: settings.seed, ..settings.light };
+    let lights =
+        lights.get(world, LightsWanted { pass, family: settings.family, max_depth }, control, &mut stats);
     let context = lights.context(world, true);
     let ShadingContext { transfer, compensation, .. } = context;
     let direct = LightcutSource { world, transfer, settings: &settings.cache, compensation };

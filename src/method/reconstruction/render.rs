@@ -4,41 +4,49 @@
 
 use super::Settings;
 use crate::eye::EyePass;
-use crate::method::lights::Lights;
-use crate::method::{Output, Sampled, counts};
+use crate::method::lights::{LightStore, Lights, LightsWanted};
+use crate::method::{Output, Renderer, Sampled, counts};
 use crate::progress::Control;
 use crate::shade::{Picture, ShadingTask, patches, shade};
 use crate::stats::{Stage, StageTime, Stats, Stopwatch};
 use crate::view::View;
 use crate::vpl::LightPassSettings;
 use crate::world::World;
+use std::sync::Arc;
 
 /// Fewer patches than this do not tell how long others take.
 const MIN_TRIED: usize = 32;
 
 /// Renders what `view` sees.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
-    Prepared::new(world, view, settings, control).light(settings, control)
+    settings.render(world, &LightStore::default(), view, control)
 }
 
 /// Shading points and virtual lights: all of the picture but its shading.
 pub struct Prepared<'w> {
     world: &'w World,
     eye: EyePass<'w>,
-    lights: Lights,
+    lights: Arc<Lights>,
     stats: Stats,
 }
 
 impl<'w> Prepared<'w> {
     /// The eye pass and the light pass by the settings that say how many.
-    pub fn new(world: &'w World, view: &View, settings: &Settings, control: &Control) -> Prepared<'w> {
+    pub fn new(
+        world: &'w World,
+        lights: &LightStore,
+        view: &View,
+        settings: &Settings,
+        control: &Control,
+    ) -> Prepared<'w> {
         let mut stats = Stats::new();
         let rays = settings.sampling().eye(&world.scene);
         control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
         let eye = stats.time(Stage::EyePass, || EyePass::trace(world, view, rays, control));
         counts::eye(&mut stats, &eye.chains);
-        let light = LightPassSettings { seed: settings.seed, ..settings.light };
-        let lights = Lights::new(world, &light, settings.family, rays.max_depth, control, &mut stats);
+        let pass = LightPassSettings { seed: settings.seed, ..settings.light };
+        let wanted = LightsWanted { pass, family: settings.family, max_depth: rays.max_depth };
+        let lights = lights.get(world, wanted, control, &mut stats);
         Prepared { world, eye, lights, stats }
     }
 

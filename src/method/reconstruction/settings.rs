@@ -1,13 +1,13 @@
 //! Settings of the method.
 
-use super::{Prepared, render};
+use super::Prepared;
 use crate::eye::EyePass;
 use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::ladder::CUTS;
 use crate::method::sampling::method_settings;
-use crate::method::{self, Method, Move, Output, Renderer};
+use crate::method::{self, LightStore, Method, Move, Output, Renderer};
 use crate::progress::Control;
 use crate::radiance_cache::CacheSettings;
 use crate::setting::{COMPENSATION, PATCHES, SHARE};
@@ -55,8 +55,8 @@ impl Renderer for Settings {
         "Reconstruction cuts: a few eye samples of each patch share a lightcut, from which the others are lit"
     }
 
-    fn render(&self, world: &World, view: &View, control: &Control) -> Output {
-        render(world, view, self, control)
+    fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
+        Prepared::new(world, lights, view, self, control).light(self, control)
     }
 
     fn expected_bytes(&self, window: &Window) -> Option<u64> {
@@ -77,7 +77,7 @@ impl Renderer for Settings {
         view: &View,
         control: &Control,
     ) -> Option<Box<dyn method::Prepared + 'w>> {
-        Some(Box::new(Prepared::new(world, view, self, control)))
+        Some(Box::new(Prepared::new(world, &LightStore::default(), view, self, control)))
     }
 }
 
