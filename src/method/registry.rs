@@ -1,6 +1,6 @@
 //! All methods. A new one is a folder and a line here.
 
-use super::{Renderer, cache, lightcuts, path, photon_cache, reconstruction};
+use super::{Renderer, reconstruction};
 use crate::setting::Each;
 use serde_json::Value as Json;
 use std::ops::{Deref, DerefMut};
@@ -10,13 +10,13 @@ macro_rules! methods {
         /// Any of the methods, with its settings.
         #[derive(Clone, Copy, Debug)]
         pub enum Method {
-            $($(#[$about])+ $Variant($folder::Settings),)+
+            $($(#[$about])+ $Variant(super::$folder::Settings),)+
         }
 
         impl Method {
             /// All methods, with their defaults.
             pub fn all() -> impl Iterator<Item = Method> {
-                [$(Method::$Variant($folder::Settings::default()),)+].into_iter()
+                [$(Method::$Variant(super::$folder::Settings::default()),)+].into_iter()
             }
         }
 
