@@ -1,7 +1,7 @@
 //! The view of a scene: from where it is seen, and which part of the film is rendered.
 //!
-//! Every method takes a view beside the world; nothing in a [`crate::world::World`] depends on it, so that one world, its
-//! lights and its cache records serve any number of views.
+//! Every method takes a view beside the world; nothing in a [`crate::world::World`] depends on it, so that one
+//! world, its lights and its cache records serve any number of views.
 
 use crate::embree::Ray;
 use crate::film::{CameraMatrices, Window};
@@ -98,7 +98,8 @@ impl View {
         Ray { origin: camera.origin, t_near: camera.near / cos, direction, t_far: camera.far / cos }
     }
 
-    /// Matrices to the camera and the film from the coordinates of the scene's file, which has the scene's `centre` there.
+    /// Matrices to the camera and the film from the coordinates of the scene's file, which has the scene's `centre`
+    /// there.
     pub fn matrices(&self, centre: DVec3) -> CameraMatrices {
         let camera = &self.camera;
         let origin = centre + camera.origin.as_dvec3();

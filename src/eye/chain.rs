@@ -53,7 +53,7 @@ pub struct Vertex<'w> {
     pub depth: u32,
     /// Their length in all.
     pub distance: f32,
-    /// Whether one of the directions on the way was sampled, not that of a mirror or of refraction.
+    /// True if one of the directions on the way was sampled, not that of a mirror or of refraction.
     pub sampled: bool,
 }
 
@@ -81,7 +81,7 @@ struct Branch {
     distance: f32,
     /// Start of the ray, if a sharp lobe sampled it.
     start: Option<Start>,
-    /// Whether this or an earlier direction was sampled.
+    /// True if this or an earlier direction was sampled.
     sampled: bool,
 }
 

@@ -12,9 +12,10 @@
 //! | alpha | `A` | share of samples that meet a surface |
 //!
 //! A sample's features are those of the surface that most of its light comes from: where mirrors or smooth glass are
-//! met, the surfaces seen in or behind them, to which distances are added up. Where most comes from the environment, they
-//! are those of the first mirror or glass. Its albedo is the sum over all surfaces seen, by their shares of the light:
-//! the Fresnel blend that Open Image Denoise asks for. Rough lobes count as reflecting, however sharp they are.
+//! met, the surfaces seen in or behind them, to which distances are added up. Where most comes from the environment,
+//! they are those of the first mirror or glass. Its albedo is the sum over all surfaces seen, by their shares of the
+//! light: the Fresnel blend that Open Image Denoise asks for. Rough lobes count as reflecting, however sharp they
+//! are.
 //!
 //! Positions are averaged over the samples that meet a surface, albedo and normals over all.
 
@@ -95,12 +96,12 @@ impl Feature {
 pub struct Features(u8);
 
 impl Features {
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// Whether a feature is one of them.
+    /// True if a feature is one of them.
     pub fn contains(self, feature: Feature) -> bool {
         self.0 & 1 << feature as u8 != 0
     }
@@ -131,7 +132,7 @@ impl FromStr for Feature {
 /// The eye samples whose features are wanted: those of a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct FeatureSettings {
-    /// What a pixel is taken to be.
+    /// Estimand of a pixel.
     pub look: Look,
     /// Eye samples a pixel; the first few are enough.
     pub spp: u32,
@@ -207,7 +208,7 @@ struct Pixel {
     nearest: Option<Nearest>,
 }
 
-/// What is not averaged, of the nearest sample.
+/// Features of the nearest sample, where they are not averaged.
 #[derive(Clone, Copy, Debug)]
 struct Nearest {
     depth: f32,

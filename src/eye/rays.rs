@@ -28,8 +28,8 @@ pub struct EyeRays<'a, 'w> {
     angle: f32,
 }
 
-/// Surfaces that eye rays have made visible, in the order of the rays, each with one visibility sample. Weights and light are
-/// those of a ray, not of a pixel.
+/// Surfaces that eye rays have made visible, in the order of the rays, each with one visibility sample. Weights and
+/// light are those of a ray, not of a pixel.
 #[derive(Default)]
 pub struct VisibleSurfaces<'w> {
     /// The surfaces.
@@ -63,8 +63,8 @@ impl<'a, 'w> EyeRays<'a, 'w> {
         EyeRays { world, view, settings, angle }
     }
 
-    /// Follows eye ray `sample` of the film's pixel `film_pixel` and appends what it makes visible to `found`, where the
-    /// pixel has the number `pixel`.
+    /// Follows eye ray `sample` of the film's pixel `film_pixel` and appends what it makes visible to `found`, where
+    /// the pixel has the number `pixel`.
     pub fn trace(&self, film_pixel: [u32; 2], sample: u32, pixel: u32, found: &mut VisibleSurfaces<'w>) {
         let EyeSettings { spp, seed, max_depth } = self.settings;
         let (mut sampler, jitter) = eye_sampler(film_pixel, seed, sample, spp);

@@ -60,8 +60,8 @@ impl ExrFile {
         }
     }
 
-    /// The values of layer `name`: the channels `name.R`, `name.G`, `name.B`, or X, Y, Z, or a part of that name; the one
-    /// channel `name.Y` or `name` as grey.
+    /// The values of layer `name`: the channels `name.R`, `name.G`, `name.B`, or X, Y, Z, or a part of that name;
+    /// the one channel `name.Y` or `name` as grey.
     pub fn layer(&self, name: &str) -> Result<Image, ImageError> {
         self.find(name, &LAYER)?.ok_or_else(|| self.missing(format!("layer `{name}`")))
     }
@@ -141,7 +141,8 @@ impl ExrFile {
         names
     }
 
-    /// The channels of `layer` by the first of these names that it has all of, or the one channel that is named as it is.
+    /// The channels of `layer` by the first of these names that it has all of, or the one channel that is named as
+    /// it is.
     fn find(&self, layer: &str, names: &[[&str; 3]]) -> Result<Option<Image>, ImageError> {
         let prefix = if layer.is_empty() { String::new() } else { format!("{layer}.") };
         for part in &self.parts.layer_data {

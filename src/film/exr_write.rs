@@ -1,8 +1,8 @@
 //! OpenEXR files: one part, 32-bit float, layers as dotted channels, metadata as attributes.
 //!
-//! The colour is `R`, `G`, `B`; for layers see [`super::layer`]. A cropped picture has its window as data window within
-//! the whole film as display window. Compression is RLE: lossless, and on rendered floats within 3 % of ZIP in size at a
-//! tenth of its time.
+//! The colour is `R`, `G`, `B`; for layers see [`super::layer`]. A cropped picture has its window as data window
+//! within the whole film as display window. Compression is RLE: lossless, and on rendered floats within 3 % of ZIP
+//! in size at a tenth of its time.
 //!
 //! Units: radiance W/(sr m²), linear, Rec. 709 primaries (stated in the file).
 

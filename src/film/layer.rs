@@ -17,7 +17,7 @@ pub struct Layer {
     pub name: String,
     /// Values by pixel.
     pub pixels: Pixels,
-    /// How the layer is shown as a picture of its own, if it is meant to be.
+    /// Display as a picture of its own, if the layer is meant to have one.
     pub preview: Option<Preview>,
 }
 
@@ -34,7 +34,7 @@ pub enum Pixels {
     Id(Image<u32>),
 }
 
-/// How a layer is shown.
+/// Display of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preview {
     /// As radiance, exposed as the picture is.
@@ -47,7 +47,7 @@ pub enum Preview {
     Magma {
         /// Weights of the channels.
         weights: Rgb,
-        /// What is taken off.
+        /// Offset taken off the sum.
         offset: f32,
     },
 }
