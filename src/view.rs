@@ -8,7 +8,7 @@ use crate::film::{CameraMatrices, Window};
 use crate::scene::{Camera, Cameras};
 use glam::{DVec3, Vec2, Vec3};
 
-/// Most pixels rendered at once: 16384 by 65536. More would exhaust the memory of most machines.
+/// Maximum number of pixels rendered at once: 16384 by 65536. More would exhaust the memory of most machines.
 const MAX_PIXELS: u64 = 1 << 30;
 
 /// A camera and the part of its film to render.
@@ -104,7 +104,7 @@ impl View {
         let camera = &self.camera;
         let origin = centre + camera.origin.as_dvec3();
         let axes = [camera.right, camera.up, camera.forward].map(Vec3::as_dvec3);
-        // Rows: what the world's axes and its origin become.
+        // Rows: images of the world's axes and of its origin.
         let basis = [DVec3::X, DVec3::Y, DVec3::Z, -origin].map(|v| axes.map(|axis| v.dot(axis)));
         let [width, height] = self.window.film.map(f64::from);
         let scale = 0.5 / f64::from(camera.tan_half_x);

@@ -33,7 +33,7 @@ pub enum Met<'w> {
     Surface(Vertex<'w>),
     /// None; with the share of radiance from there that reaches the eye.
     Nothing {
-        /// That share.
+        /// Share of the light.
         throughput: Rgb,
     },
 }

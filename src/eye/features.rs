@@ -1,9 +1,9 @@
-//! Features: what a picture shows where, for denoisers and compositing.
+//! Features: properties of the visible surfaces by pixel, for denoisers and compositing.
 //!
 //! | feature | layer | value of a pixel |
 //! |---|---|---|
 //! | albedo | `albedo.R`, `.G`, `.B` | mean share of light that is reflected, through mirrors and glass |
-//! | normal | `normal.X`, `.Y`, `.Z` | mean unit shading normal towards the viewer, in world space; 0 where nothing is |
+//! | normal | `normal.X`, `.Y`, `.Z` | mean unit shading normal towards the viewer, in world space; 0 if none |
 //! | geometric-normal | `geometricNormal.X`, ... | the same of the triangles |
 //! | position | `position.X`, ... | mean position in the coordinates of the scene's file |
 //! | depth | `depth.Z` | distance along the camera's axis, of the nearest sample; 10^10 where nothing is |
@@ -33,7 +33,7 @@ use std::str::FromStr;
 /// Pixels along the edge of the square that one task looks through.
 const TILE: u32 = 16;
 
-/// Most samples a pixel: features have little noise.
+/// Maximum number of samples a pixel: features have little noise.
 const MAX_SAMPLES: u32 = 16;
 
 /// Longest chain of mirrors and glass in edges.
@@ -269,7 +269,7 @@ impl<'w> Seen<'w> {
                     (self.share, self.main) = (throughput.max_element(), None);
                 }
             }
-            // Sharp rough lobes count where they are; what they reflect does not.
+            // Sharp rough lobes count as surfaces; their reflection is not followed.
             Met::Surface(vertex) if !vertex.sampled => {
                 self.first = self.first.or(Some(vertex));
                 let whole = world.bsdf(&vertex.surface);

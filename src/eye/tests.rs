@@ -10,7 +10,7 @@ use crate::scene::{Camera, MaterialId, Mesh};
 use crate::test_scenes::*;
 use glam::{DVec3, Vec2, Vec3};
 
-/// The index of refraction at which an interface reflects a quarter of what falls on it squarely.
+/// Index of refraction of an interface that reflects a quarter of the light at normal incidence.
 const ETA: f32 = 3.0;
 
 /// A scene seen from the origin along -z.
@@ -28,7 +28,7 @@ fn back_wall(z: f32, material: MaterialId) -> Mesh {
     quad(Vec3::new(-50.0, -50.0, z), Vec3::Y * 100.0, Vec3::X * 100.0, material)
 }
 
-/// Surfaces that a ray nearly along -z meets, and what was counted.
+/// Returns the surfaces hit by a ray nearly along -z, and the counts.
 fn chain(world: &WorldAndView, max_depth: u32, seed: u32) -> (Vec<Vertex<'_>>, ChainCounts) {
     let [width, height] = world.view.window.film;
     let ray = world.view.primary_ray([width / 2, height / 2], Vec2::splat(1e-3));

@@ -66,7 +66,7 @@ impl ExrFile {
         self.find(name, &LAYER)?.ok_or_else(|| self.missing(format!("layer `{name}`")))
     }
 
-    /// The names of all layers that have a colour, in the file's order; "" stands for the picture's own.
+    /// Returns the names of all layers that have a colour, in the file's order; "" is the picture's own.
     pub fn layers(&self) -> Vec<String> {
         let (mut names, channels) = (Vec::new(), self.channels());
         // Y beside X is a coordinate, not a luminance.
@@ -107,7 +107,7 @@ impl ExrFile {
         Some(CameraMatrices { world_to_camera, world_to_ndc })
     }
 
-    /// What we wrote about the picture, sorted by key; empty for files of other programs.
+    /// Returns the metadata that this program wrote, sorted by key; empty for files of other programs.
     pub fn metadata(&self) -> Metadata {
         let attributes = self.parts.layer_data.first().map(|part| &part.attributes.other);
         let mut facts: Vec<(String, Value)> = attributes

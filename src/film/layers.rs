@@ -1,4 +1,4 @@
-//! What a picture file holds: named layers over one window of the film, and what is known about them.
+//! Content of a picture file: named layers over one window of the film, and metadata.
 
 use super::{Image, ImageError, Layer};
 use crate::film::Window;
@@ -14,7 +14,7 @@ pub struct Film {
     pub layers: Vec<Layer>,
     /// The camera that took the picture, if there was one.
     pub camera: Option<CameraMatrices>,
-    /// How the picture came about.
+    /// Metadata: settings, statistics and scene of the picture.
     pub metadata: Metadata,
 }
 
@@ -36,7 +36,7 @@ impl Film {
         Film { window, color, layers: Vec::new(), camera: None, metadata: Metadata::default() }
     }
 
-    /// Replaces every channel that is not finite by 0 in all images and says how many there were.
+    /// Replaces every channel that is not finite by 0 in all images and returns their number.
     pub fn remove_nonfinite(&mut self) -> u64 {
         self.color.remove_nonfinite() + self.layers.iter_mut().map(Layer::remove_nonfinite).sum::<u64>()
     }
@@ -91,7 +91,7 @@ impl From<f64> for Value {
 }
 
 impl Metadata {
-    /// Sets `key`, replacing what it held.
+    /// Sets the value of `key`.
     pub fn set(&mut self, key: &str, value: impl Into<Value>) {
         let value = value.into();
         match self.0.iter_mut().find(|(present, _)| present == key) {
@@ -100,12 +100,12 @@ impl Metadata {
         }
     }
 
-    /// What `key` holds.
+    /// Returns the value of `key`.
     pub fn get(&self, key: &str) -> Option<&Value> {
         self.0.iter().find(|(present, _)| present == key).map(|(_, value)| value)
     }
 
-    /// What `key` holds, if that is words.
+    /// Returns the value of `key`, if it is text.
     pub fn text(&self, key: &str) -> Option<&str> {
         match self.get(key) {
             Some(Value::Text(text)) => Some(text),
@@ -113,7 +113,7 @@ impl Metadata {
         }
     }
 
-    /// What `key` holds, if that is a number.
+    /// Returns the value of `key`, if it is a number.
     pub fn number(&self, key: &str) -> Option<f64> {
         match self.get(key) {
             Some(Value::Number(number)) => Some(*number),

@@ -55,7 +55,7 @@ impl Window {
         down.flat_map(move |y| across.clone().map(move |x| [x, y]))
     }
 
-    /// Whether a film pixel exists.
+    /// True if a film pixel exists.
     pub fn on_film(&self, [x, y]: [u32; 2]) -> bool {
         x < self.film[0] && y < self.film[1]
     }

@@ -211,7 +211,8 @@ impl<'m> Bsdf<'m> {
         self.model.smooth_lobes && self.any_lobe(|lobe| !lobe.is_delta())
     }
 
-    /// Returns the factor that turns the z of directions to the side of the normal: -1 if a two-sided surface is seen from behind.
+    /// Returns the factor that turns the z of directions to the side of the normal: -1 if a two-sided surface
+    /// is seen from behind.
     #[inline]
     pub(super) fn side(&self, wo: Vec3) -> f32 {
         if wo.z < 0.0 && self.model.two_sided && !self.model.transmits { -1.0 } else { 1.0 }

@@ -1,5 +1,5 @@
-//! Virtual lights of a scene, which methods over them share: the light pass, its trees, and the store that keeps them from
-//! frame to frame.
+//! Virtual lights of a scene, which methods over them share: the light pass, its trees, and the store that
+//! keeps them from frame to frame.
 
 use crate::bias_compensation::Compensation;
 use crate::light_tree::{Family, LightTrees};

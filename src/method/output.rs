@@ -1,4 +1,4 @@
-//! What every method returns.
+//! Results of a method.
 
 use crate::film::{Image, Layer};
 use crate::stats::Stats;
@@ -12,7 +12,7 @@ pub struct Output {
     pub variance: Option<Image>,
     /// Further images.
     pub extra: Vec<Layer>,
-    /// What was counted and timed.
+    /// Counters and times.
     pub stats: Stats,
     /// False if the method was cancelled: the picture is partial.
     pub complete: bool,

@@ -19,25 +19,25 @@ pub struct Frame {
     pub stats: Stats,
     /// Facts about the frame for programs: scene, method, settings, window, errors, plan.
     pub facts: Value,
-    /// What people should be told.
+    /// Remarks for the user.
     pub remarks: Vec<Remark>,
     /// False if rendering was cancelled: the picture is partial.
     pub complete: bool,
-    /// Whether measuring the picture's error was cancelled.
+    /// True if measuring the picture's error was cancelled.
     pub unverified: bool,
 }
 
 /// Something that people should be told about a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Remark {
-    /// What was chosen on the way.
+    /// A note, for example on a choice made.
     Note(String),
-    /// What may make the result differ from what is expected.
+    /// A warning that the result may differ from the expected one.
     Warning(String),
 }
 
 impl Frame {
-    /// Whether there is nothing in the picture.
+    /// True if the picture is black.
     pub fn is_black(&self) -> bool {
         self.film.color.pixels.iter().all(|p| *p == Rgb::ZERO)
     }

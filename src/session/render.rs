@@ -42,14 +42,15 @@ struct Made {
     output: Output,
     /// Seconds that it took to render.
     seconds: f64,
-    /// How the error was measured and what it is, unless that was cancelled, where settings were planned by it.
+    /// Settings and result of the measurement of the error, where settings were planned by it; no result if
+    /// cancelled.
     measured: Option<(verify::Settings, Option<Verified>)>,
-    /// What was asked, planned and got; null if nothing was planned.
+    /// Goal, plan and result; null if nothing was planned.
     plan: Value,
 }
 
 impl Session {
-    /// Renders what `view` sees as `goal` says. A frame that was cancelled halfway is partial, not an error.
+    /// Renders the picture of `view` for `goal`. A frame that was cancelled halfway is partial, not an error.
     pub fn frame(&self, view: &View, goal: &Goal, control: &Control) -> Result<Frame, FrameError> {
         if let (Some(needed), Some(available)) = (goal.method.expected_bytes(&view.window), available_bytes())
             && needed > available

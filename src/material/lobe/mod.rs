@@ -1,8 +1,10 @@
-//! Lobes: how a surface scatters besides its Lambertian base. One file a lobe holds everything about it: value and
-//! sampling density, sampling, albedo, the upper bound for clusters of lights, and value and bound in sixteen lanes.
+//! Lobes: the scattering of a surface besides its Lambertian base. One file a lobe holds everything about it:
+//! value and sampling density, sampling, albedo, the upper bound for clusters of lights, and value and bound
+//! in sixteen lanes.
 //!
-//! A [`LobeModel`] is what all points of a material share. The lobe's factor, which may be textured, comes with each
-//! call as `scale`. The dispatch in this file is the only code that knows which lobes there are.
+//! A [`LobeModel`] is the part of a lobe that all points of a material share. The lobe's factor, which may be
+//! textured, comes with each call as `scale`. The dispatch in this file is the only code that enumerates the
+//! lobes.
 
 mod half_vector;
 mod interface;
@@ -70,8 +72,8 @@ impl LobeModel {
         }
     }
 
-    /// Samples a direction in proportion to the lobe, if it is not a delta lobe and the facet chosen does not send the light
-    /// into the surface.
+    /// Samples a direction in proportion to the lobe, if it is not a delta lobe and the facet chosen does not
+    /// send the light into the surface.
     #[inline]
     pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
         match self {

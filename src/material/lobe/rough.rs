@@ -16,8 +16,8 @@ use crate::scene::Fresnel;
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
-/// Lobes at least this rough count as diffuse where a surface becomes a virtual light: among polished metals most of
-/// the light would otherwise be lost, which is worse than its spreading too widely.
+/// Minimum roughness of lobes that count as diffuse where a surface becomes a virtual light: among polished
+/// metals most of the light would otherwise be lost, which is worse than its spreading too widely.
 pub(in crate::material) const DIFFUSE_ALPHA: f32 = 0.05;
 
 /// Lobes up to this rough are followed from the eye like mirrors, by a sampled direction: light sampled along them

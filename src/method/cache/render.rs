@@ -1,4 +1,4 @@
-//! The picture: eye pass, light pass, trees, the cache, and what it leaves to cuts.
+//! The picture: eye pass, light pass, trees, the cache, and the rest by cuts.
 
 use super::resolve::resolve;
 use crate::eye::EyePass;
@@ -92,7 +92,7 @@ impl Renderer for Settings {
     }
 }
 
-/// Renders what `view` sees.
+/// Renders the picture of `view`.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     settings.render(world, &LightStore::default(), view, control)
 }

@@ -55,7 +55,7 @@ impl Renderer for Settings {
     }
 }
 
-/// Renders what `view` sees.
+/// Renders the picture of `view`.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     settings.render(world, &LightStore::default(), view, control)
 }

@@ -1,6 +1,6 @@
 //! The picture: eye pass, light pass, trees, then patches of shading points.
 //!
-//! All but the shading is [`Prepared`] first, so that a plan can try how long shading takes.
+//! All but the shading is [`Prepared`] first, so that a plan can measure the time of shading.
 
 use super::Settings;
 use crate::eye::EyePass;
@@ -14,10 +14,10 @@ use crate::vpl::LightPassSettings;
 use crate::world::World;
 use std::sync::Arc;
 
-/// Fewer patches than this do not tell how long others take.
+/// Minimum number of patches for an estimate of the time of all.
 const MIN_TRIED: usize = 32;
 
-/// Renders what `view` sees.
+/// Renders the picture of `view`.
 pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
     settings.render(world, &LightStore::default(), view, control)
 }
@@ -31,7 +31,7 @@ pub struct Prepared<'w> {
 }
 
 impl<'w> Prepared<'w> {
-    /// The eye pass and the light pass by the settings that say how many.
+    /// Runs the eye pass and the light pass by the settings of their numbers.
     pub fn new(
         world: &'w World,
         lights: &LightStore,
