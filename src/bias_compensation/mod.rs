@@ -6,8 +6,8 @@
 //! directions distributed by the cosine. G exceeds b only where r < b^(-1/2), so rays end there and are
 //! cheap.
 //!
-//! [`short_rays`] traces them, [`points`] adds the compensation of shading points, and [`records`] that of
-//! cache records.
+//! [`short_rays`] traces them, [`points`] adds the compensation of shading points; that of cache records is in
+//! the radiance cache, which also needs its gradients.
 //!
 //! Virtual lights on area lights count with cosθ_x cosθ_y / max(r², A), A the area that they represent (to
 //! within a factor of 2, see [`crate::vpl::size_of_area`]); rays that hit the light at r find max(0, 1 -

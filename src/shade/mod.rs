@@ -2,7 +2,7 @@
 //! reconstruction cuts.
 //!
 //! A [`ShadingTask`] names a point and the part of its light that is wanted. Tasks are grouped into patches
-//! that are shaded together ([`patches`]); a [`Shader`], one a thread, gathers the light of one patch after
+//! that are shaded together ([`patches()`]); a [`Shader`], one a thread, gathers the light of one patch after
 //! the other ([`Gatherers`]): a cut for each point if the patch is small, one for up to sixteen, else one for
 //! sixteen anchors and reconstruction cuts between them; and short rays find again the light that clamping
 //! takes. [`shade`] does so for all patches of a frame in parallel, and a [`Picture`] adds the radiance to
