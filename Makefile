@@ -24,7 +24,7 @@ test: setup ## every test
 	$(CARGO) test --workspace --locked
 
 quick: setup ## the tests that take seconds, not minutes
-	$(CARGO) test --workspace --locked -- --skip slow
+	$(CARGO) test --workspace --locked -- --skip slow_
 
 lint: setup ## format and clippy, warnings denied
 	$(CARGO) fmt --all --check

@@ -127,3 +127,72 @@ fn weighed(
     let most = near.weight + near.emitted;
     (luminance(most) > 0.0 && most.is_finite()).then_some(near)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light_tree::{Family, LightTrees};
+    use crate::lightcut::Transfer;
+    use crate::test_scenes::{add_material, camera, diffuse, emitting, quad, scene, world};
+    use crate::world::World;
+    use std::f32::consts::PI;
+
+    const ALBEDO: f32 = 0.6;
+    const RADIANCE: f32 = 3.0;
+    /// Height of the ceiling over the point.
+    const HEIGHT: f32 = 0.5;
+
+    /// A wide ceiling that shines down, and nothing else.
+    fn ceiling() -> World {
+        let mut scene = scene(camera(Vec3::ZERO, Vec3::Z, 1.0), [1, 1]);
+        let grey = add_material(&mut scene, diffuse(Rgb::splat(ALBEDO)));
+        let corner = Vec3::new(-50.0, -50.0, HEIGHT);
+        let down = quad(corner, Vec3::Y * 100.0, Vec3::X * 100.0, grey);
+        scene.meshes.push(emitting(down, Rgb::splat(RADIANCE)));
+        world(scene).world
+    }
+
+    /// Estimates of the reflected and of the emitted light that a point below the ceiling lacks, by π/N Σ.
+    fn lacking(bound: f32, near_sq: f32) -> [f32; 2] {
+        const RAYS: u32 = 4096;
+        let world = ceiling();
+        let trees = LightTrees::build(&[], Vec::new(), world.diagonal, Family::default());
+        let near = [near_sq];
+        let c = Compensation::new(&world, Transfer::new(&trees, world.diagonal), &near);
+        let point = SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, geometric_normal: Vec3::Z };
+        let mut sums = [0.0; 2];
+        let clamped = ClampedPoint { point, bound, direct: near_sq > 0.0 };
+        trace(&c, &[clamped], RAYS, |_, near| {
+            sums[0] += luminance(near.weight);
+            sums[1] += luminance(near.emitted);
+        });
+        sums.map(|sum| sum * PI / RAYS as f32)
+    }
+
+    /// Under a ceiling at height h, G = cos⁴θ/h² and cos²θ is uniform, so that the mean of max(0, 1 - b/G) is
+    /// (1 - √b h)².
+    #[test]
+    fn the_part_of_the_geometry_term_above_the_bound_comes_back() {
+        for root in [0.1f32, 0.4, 0.8] {
+            let bound = (root / HEIGHT).powi(2);
+            let expected = ALBEDO * (1.0 - root).powi(2);
+            let [reflected, emitted] = lacking(bound, 0.0);
+            assert!((reflected - expected).abs() < 0.01 * ALBEDO, "{root}: {reflected} for {expected}");
+            assert_eq!(emitted, 0.0);
+        }
+        // Nothing lies as near as b^(-1/2).
+        assert_eq!(lacking(1.01 / (HEIGHT * HEIGHT), 0.0), [0.0; 2]);
+    }
+
+    /// With r² = h²/cos²θ the mean of max(0, 1 - r²/A) is 1 - a + a ln a, a = h²/A.
+    #[test]
+    fn light_from_emitters_nearer_than_their_patches_comes_back() {
+        for a in [0.05f32, 0.3, 0.9] {
+            let expected = PI * RADIANCE * (1.0 - a + a * a.ln());
+            let [reflected, emitted] = lacking(f32::INFINITY, HEIGHT * HEIGHT / a);
+            assert!((emitted - expected).abs() < 0.01 * PI * RADIANCE, "{a}: {emitted} for {expected}");
+            assert_eq!(reflected, 0.0);
+        }
+        assert_eq!(lacking(f32::INFINITY, 0.99 * HEIGHT * HEIGHT), [0.0; 2]);
+    }
+}

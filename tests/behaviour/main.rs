@@ -1,7 +1,7 @@
 //! Behaviour of whole pictures and scenes, a module for each method or property.
 //!
 //! `cargo test --test behaviour cache::` runs those of a module. Tests that take longer than a few seconds
-//! are in modules named `slow`, which `make quick` leaves out.
+//! are in modules named `slow_...`, which `make quick` leaves out.
 
 mod cache;
 mod cache_artefacts;

@@ -5,7 +5,7 @@ mod compare;
 mod interrupt;
 mod output;
 mod plan;
-mod study;
+mod slow_studies;
 mod usage;
 mod verify;
 

@@ -1,8 +1,8 @@
 //! Tests on public scenes that are no part of the project: they are searched for in `$LIGHTSPLAT_SHARED` and
 //! beside the checkout, and where they are absent the tests are skipped with a message.
 
-mod reference;
 mod scenes;
+mod slow_references;
 
 use std::path::PathBuf;
 
