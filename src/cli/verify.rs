@@ -1,8 +1,8 @@
 //! `render --verify`: how the error of a picture is measured.
 
 use super::args::{VerifyAgainst, VerifyArgs};
-use crate::eye::Look;
 use crate::method::Method;
+use crate::paths::Look;
 use crate::verify::Settings;
 
 /// Returns the settings of the verification, if asked for; `always` (where settings are planned by the error)

@@ -19,10 +19,10 @@
 //!
 //! Positions are averaged over the samples that meet a surface, albedo and normals over all.
 
-use super::Look;
 use super::chain::{ChainCounts, Met, Vertex, trace};
 use crate::film::{Image, Layer};
 use crate::math::Rgb;
+use crate::paths::Look;
 use crate::progress::Control;
 use crate::view::View;
 use crate::world::World;

@@ -3,7 +3,6 @@
 mod chain;
 mod features;
 mod index;
-mod look;
 mod pass;
 mod points;
 mod rays;
@@ -14,7 +13,6 @@ mod tests;
 pub use chain::{ChainCounts, DROPPED_BRANCHES};
 pub use features::{Feature, FeatureSettings, Features, UnknownFeature, features};
 pub use index::EyeIndex;
-pub use look::{Look, eye_sampler, pixel_seed};
 pub use pass::EyePass;
 pub use points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySamples};
 pub use rays::{EyeRays, EyeSettings, VisibleSurfaces};

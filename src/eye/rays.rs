@@ -1,9 +1,9 @@
 //! Eye rays one by one: their random numbers, their places in pixels, and the surfaces that they make visible.
 
 use super::chain::{ChainCounts, Met, Vertex, trace};
-use super::eye_sampler;
 use super::points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySample};
 use crate::math::Rgb;
+use crate::paths::eye_sampler;
 use crate::view::View;
 use crate::world::World;
 

@@ -24,9 +24,9 @@ pub use renderer::{Prepared, Renderer};
 pub use sampling::{Sampled, Sampling};
 
 // Parts of the methods' settings.
-pub use crate::eye::Look;
 pub use crate::light_tree::Family;
 pub use crate::lightcut::CutSettings;
+pub use crate::paths::Look;
 pub use crate::radiance_cache::{CacheSettings, Footprints, FoundBy};
 pub use crate::shadow::{OccluderCacheSettings, ShadowSettings};
 pub use crate::vpl::LightPassSettings;

@@ -3,8 +3,8 @@
 use super::ladder::Move;
 use super::lights::LightStore;
 use super::{Method, Output, Sampled};
-use crate::eye::Look;
 use crate::film::Window;
+use crate::paths::Look;
 use crate::progress::Control;
 use crate::setting::Settings;
 use crate::stats::StageTime;

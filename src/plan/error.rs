@@ -11,9 +11,9 @@
 //! many chances.
 
 use super::ladder::{Ladder, options};
-use crate::eye::Look;
 use crate::film::Image;
 use crate::method::{LightStore, Method, Output};
+use crate::paths::Look;
 use crate::progress::Control;
 use crate::sampling::hash;
 use crate::stats::{StageTime, Stopwatch};

@@ -1,8 +1,8 @@
 //! Reports of a frame: its plan and its measured error, for statistics, metadata and people.
 
 use super::frame::Remark;
-use crate::eye::Look;
 use crate::film::Metadata;
+use crate::paths::Look;
 use crate::stats::Stats;
 use crate::verify::{Estimate, Settings, Verified};
 use serde_json::{Value, json};

@@ -23,9 +23,9 @@ mod measure;
 mod picks;
 mod trace;
 
-use crate::eye::Look;
 use crate::film::Image;
 use crate::method::Method;
+use crate::paths::Look;
 use crate::progress::Control;
 use crate::stats::Stage;
 use crate::view::View;

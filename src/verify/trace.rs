@@ -3,9 +3,9 @@
 use super::Settings;
 use super::measure::{MEANS, Measured};
 use super::picks::Pick;
-use crate::eye::Look;
 use crate::film::Image;
 use crate::method::path::{Counts, Wanted, pixel_means};
+use crate::paths::Look;
 use crate::progress::Control;
 use crate::sampling::hash;
 use crate::view::View;

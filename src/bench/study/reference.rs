@@ -7,11 +7,11 @@
 
 use super::store::Kept;
 use super::{Study, StudyError, Subject};
-use crate::eye::Look;
 use crate::film::metrics::{flip_map, psnr, rel_mse_of_variance};
 use crate::film::{Image, tone};
 use crate::math::Rgb;
 use crate::method::path;
+use crate::paths::Look;
 use crate::stats::Stopwatch;
 use serde::Serialize;
 use serde_json::json;

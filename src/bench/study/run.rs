@@ -4,9 +4,9 @@ use super::reference::{Reference, reference};
 use super::store::{Kept, program};
 use super::{Study, StudyError, Subject};
 use crate::embree::BuildQuality;
-use crate::eye::Look;
 use crate::film::Image;
 use crate::method::{LightStore, Method};
+use crate::paths::Look;
 use crate::stats::{Stage, Stopwatch};
 use serde_json::{Value, json};
 

@@ -1,8 +1,8 @@
 //! Rows of the table. Settings are the methods' own defaults but for the exceptions stated here.
 
 use crate::bench::study::Candidate;
-use crate::eye::Look;
 use crate::method::{Method, cache, lightcuts, photon_cache, reconstruction};
+use crate::paths::Look;
 use crate::radiance_cache::{Footprints, FoundBy};
 
 /// A method's name over several settings, which make a curve of error against time.

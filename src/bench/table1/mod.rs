@@ -27,8 +27,8 @@ mod row;
 
 use super::study::{Document, Errors, Noise, Reference, Run, Study, StudyError};
 use super::{Benchmark, Kind};
-use crate::eye::Look;
 use crate::film::Image;
+use crate::paths::Look;
 use entries::{Entry, Family, OPPONENTS, entries, look};
 use equal::{Speed, speed};
 use row::{Row, Versus};

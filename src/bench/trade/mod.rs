@@ -23,9 +23,9 @@ mod verdict;
 
 use super::study::{Candidate, Document, Errors, Noise, Reference, Run, Study, StudyError, Subject};
 use super::{Benchmark, Kind};
-use crate::eye::Look;
 use crate::method::reconstruction::Settings;
 use crate::method::{Method, lightcuts, photon_cache};
+use crate::paths::Look;
 use crate::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
 use crate::setting::JudgedBy;
 use crate::stats::Stage;

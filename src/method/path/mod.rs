@@ -8,13 +8,9 @@
 //! sampling are joined by the power heuristic. The variance beside the picture is the sample variance over
 //! the number of samples: an estimate on the safe side, since stratification makes the true one smaller.
 
-mod batch;
-mod packet;
 mod pixels;
 mod render;
-mod start;
-mod vertex;
 
-pub use batch::Counts;
+pub use crate::paths::Counts;
 pub use pixels::{Wanted, pixel_means};
 pub use render::{Settings, render};

@@ -1,8 +1,6 @@
 //! Single pixels, each with as many paths as are wanted for it.
 
-use super::batch::{Batch, Counts};
-use super::start::{Start, start};
-use crate::eye::Look;
+use crate::paths::{Batch, Counts, Look, Start, start};
 use crate::view::View;
 use crate::world::World;
 use glam::DVec3;

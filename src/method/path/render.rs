@@ -1,13 +1,11 @@
 //! The picture: pixels in tiles, samples in passes.
 
-use super::batch::{Batch, Counts};
-use super::start::{Start, start};
-use crate::eye::Look;
 use crate::film::Image;
 use crate::math::Rgb;
 use crate::method::ladder::PATHS;
 use crate::method::sampling::method_settings;
 use crate::method::{LightStore, Move, Output, Renderer};
+use crate::paths::{Batch, Counts, Look, Start, start};
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
 use crate::view::View;

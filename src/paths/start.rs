@@ -1,15 +1,15 @@
 //! The first edges of paths: through which place of which pixel they go.
 
 use super::batch::Batch;
+use super::look::{Look, pixel_seed};
 use crate::embree::Rays16;
-use crate::eye::{Look, pixel_seed};
 use crate::math::LANES;
 use crate::sampling::Samplers16;
 use crate::view::View;
 
 /// A path to start.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Start {
+pub struct Start {
     /// Pixel of the film.
     pub pixel: [u32; 2],
     /// Number of the sample in its pixel.
@@ -19,7 +19,7 @@ pub(super) struct Start {
 }
 
 /// Adds `paths` to the batch, in order. With [`Look::EyeSamples`] they take the eye samples' places in turn.
-pub(super) fn start(batch: &mut Batch, mut paths: impl Iterator<Item = Start>, view: &View, look: Look) {
+pub fn start(batch: &mut Batch, mut paths: impl Iterator<Item = Start>, view: &View, look: Look) {
     loop {
         let mut samplers = Samplers16::default();
         let mut starts = [Start { pixel: [0; 2], sample: 0, seed: 0 }; LANES];

@@ -21,7 +21,7 @@ pub struct Counts {
 
 /// Paths in flight, and their contributions so far.
 #[derive(Default)]
-pub(super) struct Batch {
+pub struct Batch {
     packets: Vec<Packet>,
     /// Paths in the packets; they fill the lanes from the first on.
     count: usize,
