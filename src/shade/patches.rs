@@ -33,26 +33,30 @@ pub fn patches(
     patches
 }
 
-/// Groups for shared cuts over all of some points: each takes the first point left and up to fifteen others
-/// that are coherent with it, or it alone if those are too few. Time is quadratic in the number of points.
-pub(super) fn greedy_groups(
+/// Moves a group for a shared cut out of the points `left`, in order: the first of them and up to fifteen others that
+/// are coherent with it, or it alone if those are too few. False if no point is left.
+pub(super) fn next_group(
     points: &ShadingPoints,
     settings: &ShadeSettings,
     diagonal: f32,
-) -> Vec<Vec<ShadingTask>> {
-    let mut left: Vec<u32> = (0..points.len() as u32).collect();
-    let mut groups = Vec::new();
-    while let Some(&first) = left.first() {
-        let place = |point: u32| place(&points.geometry[point as usize]);
-        let close = |&&point: &&u32| CoherenceLimit::CLOSE.holds(diagonal, place(first), place(point));
-        let mut group: Vec<u32> = left.iter().filter(close).take(LANES).copied().collect();
-        if !settings.shares(group.len()) {
-            group = vec![first];
+    left: &mut Vec<u32>,
+    group: &mut Vec<ShadingTask>,
+) -> bool {
+    group.clear();
+    let Some(&first) = left.first() else { return false };
+    let place = |point: u32| place(&points.geometry[point as usize]);
+    left.retain(|&point| {
+        let joins = group.len() < LANES && CoherenceLimit::CLOSE.holds(diagonal, place(first), place(point));
+        if joins {
+            group.push(ShadingTask::all(point));
         }
-        left.retain(|point| !group.contains(point));
-        groups.push(group.into_iter().map(ShadingTask::all).collect());
+        !joins
+    });
+    if !settings.shares(group.len()) {
+        left.extend(group.drain(1..).map(|task| task.point));
+        left.sort_unstable();
     }
-    groups
+    true
 }
 
 /// The tasks of a patch that are its anchors: the outermost, so that light is never extrapolated, and every

@@ -1,12 +1,13 @@
 //! A thread's part in the shading of a frame.
 
-use super::patches::greedy_groups;
+use super::patches::next_group;
 use super::{Gatherers, ShadeSettings, Shaded, ShadingContext, ShadingTask};
 use crate::bias_compensation::points::CompensationCounts;
 use crate::eye::ShadingPoints;
 use crate::lightcut::CutCounts;
 use crate::shadow::{Engine, ShadowCounts};
 use crate::stats::add_fields;
+use std::mem::take;
 
 /// Work done.
 #[derive(Clone, Copy, Debug, Default)]
@@ -26,6 +27,9 @@ pub struct Shader<'c, 'w> {
     settings: &'c ShadeSettings,
     gatherers: Gatherers<'w>,
     shadows: Engine<'w>,
+    /// Points that have no group yet, and the group in the making.
+    left: Vec<u32>,
+    group: Vec<ShadingTask>,
 }
 
 impl<'c, 'w> Shader<'c, 'w> {
@@ -33,7 +37,8 @@ impl<'c, 'w> Shader<'c, 'w> {
     pub fn new(context: &'c ShadingContext<'w>, settings: &'c ShadeSettings) -> Shader<'c, 'w> {
         let ShadeSettings { share, shadows, .. } = settings;
         let shadows = Engine::with(context.world, shadows.for_samples(*share), shadows.cache);
-        Shader { context, settings, gatherers: Gatherers::default(), shadows }
+        let (left, group) = Default::default();
+        Shader { context, settings, gatherers: Gatherers::default(), shadows, left, group }
     }
 
     /// Forgets the occluders seen, at boundaries of the work that do not depend on the number of threads.
@@ -53,9 +58,14 @@ impl<'c, 'w> Shader<'c, 'w> {
 
     /// Shades all light of some points, in groups of up to sixteen that share a cut, and calls `shaded` with each.
     pub fn shade_all(&mut self, points: &ShadingPoints<'w>, mut shaded: impl FnMut(ShadingTask, Shaded)) {
-        for group in greedy_groups(points, self.settings, self.context.world.diagonal) {
+        let (mut left, mut group) = (take(&mut self.left), take(&mut self.group));
+        left.clear();
+        left.extend(0..points.len() as u32);
+        let diagonal = self.context.world.diagonal;
+        while next_group(points, self.settings, diagonal, &mut left, &mut group) {
             self.shade(points, &group, &mut shaded);
         }
+        (self.left, self.group) = (left, group);
     }
 
     /// Work done since this was last asked.
