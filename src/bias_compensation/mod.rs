@@ -59,7 +59,7 @@ impl<'a> Compensation<'a> {
 
 /// Calls `chosen` with items chosen evenly along the sum of their weights, in `strata` equal parts of the
 /// `total`, and the sum of the parts that each represents.
-fn choose_evenly(
+pub fn choose_evenly(
     weights: impl IntoIterator<Item = f32>,
     total: f32,
     strata: usize,

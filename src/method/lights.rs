@@ -4,6 +4,7 @@
 use crate::bias_compensation::Compensation;
 use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::Transfer;
+use crate::method::Sampling;
 use crate::progress::Control;
 use crate::shade::ShadingContext;
 use crate::stats::{Stage, Stats};
@@ -20,6 +21,15 @@ pub struct LightsWanted {
     pub family: Family,
     /// Longest path in edges.
     pub max_depth: u32,
+}
+
+impl LightsWanted {
+    /// Lights by the builder and the numbers of `settings`, with the seed and the path limit of the eye samples.
+    pub fn new(world: &World, sampling: Sampling, settings: (LightPassSettings, Family)) -> LightsWanted {
+        let (numbers, family) = settings;
+        let pass = LightPassSettings { seed: sampling.seed, ..numbers };
+        LightsWanted { pass, family, max_depth: world.scene.path_limit(sampling.max_depth) }
+    }
 }
 
 /// Virtual lights kept from frame to frame: those made last, for as long as the same are wanted.

@@ -11,6 +11,7 @@ mod lights;
 pub mod output;
 pub mod path;
 pub mod photon_cache;
+mod prepared;
 pub mod reconstruction;
 mod registry;
 mod renderer;
@@ -19,8 +20,9 @@ mod sampling;
 pub use ladder::{Move, RUNGS};
 pub use lights::LightStore;
 pub use output::Output;
+pub use prepared::Prepared;
 pub use registry::Method;
-pub use renderer::{Prepared, Renderer};
+pub use renderer::{Renderer, render};
 pub use sampling::{Sampled, Sampling};
 
 // Parts of the methods' settings.

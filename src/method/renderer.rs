@@ -2,7 +2,7 @@
 
 use super::ladder::Move;
 use super::lights::LightStore;
-use super::{Method, Output, Sampled};
+use super::{Output, Prepared, Sampled};
 use crate::film::Window;
 use crate::paths::Look;
 use crate::progress::Control;
@@ -53,23 +53,24 @@ pub trait Renderer: Settings + Sampled {
         false
     }
 
-    /// Makes all of the picture but its lighting.
-    fn prepare<'w>(
-        &self,
-        _world: &'w World,
-        _view: &View,
-        _control: &Control,
-    ) -> Option<Box<dyn Prepared + 'w>> {
+    /// Makes all of the picture but its lighting, where that can be tried on a part of it.
+    fn prepare<'w>(&self, _world: &'w World, _view: &View, _control: &Control) -> Option<Prepared<'w>> {
+        None
+    }
+
+    /// Time that lighting a prepared picture would take, by one patch in `every`, or more where those would be few;
+    /// `None` where there is none to light.
+    fn lighting_time(&self, _world: &World, _prepared: &Prepared, _every: usize) -> Option<StageTime> {
+        None
+    }
+
+    /// The prepared picture, lit.
+    fn light(&self, _world: &World, _prepared: Prepared, _control: &Control) -> Option<Output> {
         None
     }
 }
 
-/// A picture that lacks but the lighting.
-pub trait Prepared {
-    /// Time that the lighting would take with the settings of `method`, by one patch in `every`, or more where those
-    /// would be few; `None` for another method than it was made for.
-    fn lighting_time(&self, method: &Method, every: usize) -> Option<StageTime>;
-
-    /// The picture, lit with the settings of `method`; `None` for another method than it was made for.
-    fn light(self: Box<Self>, method: &Method, control: &Control) -> Option<Output>;
+/// Renders one picture of `view`, by virtual lights of its own.
+pub fn render(world: &World, view: &View, settings: &impl Renderer, control: &Control) -> Output {
+    settings.render(world, &LightStore::default(), view, control)
 }

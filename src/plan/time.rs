@@ -54,7 +54,7 @@ pub struct Planned<'w> {
     /// Small renders made, and trials of the picture itself.
     pub pilots: u64,
     /// Prepared part of the picture, and its time.
-    prepared: Option<(Box<dyn Prepared + 'w>, StageTime)>,
+    prepared: Option<(Prepared<'w>, StageTime)>,
 }
 
 impl Planned<'_> {
@@ -65,7 +65,7 @@ impl Planned<'_> {
 
     /// Renders `window`, as planned, or its missing part.
     pub fn render(self, world: &World, view: &View, control: &Control) -> Output {
-        let lit = self.prepared.and_then(|(prepared, _)| prepared.light(&self.method, control));
+        let lit = self.prepared.and_then(|(prepared, _)| self.method.light(world, prepared, control));
         lit.unwrap_or_else(|| self.method.render(world, &LightStore::default(), view, control))
     }
 }
@@ -116,7 +116,7 @@ fn tuned<'w>(
         let lighting = (seconds - spent.wall_seconds).max(0.0);
         let every = (lighting / (TRIAL_SHARE * usable()).max(1e-9)).ceil().clamp(1.0, 64.0) as usize;
         let mut try_at = |fine: f64| {
-            let time = there.lighting_time(&ladder.between(coarse, fine), every)?;
+            let time = ladder.between(coarse, fine).lighting_time(world, &there, every)?;
             tried += time;
             Some(time.cpu_seconds * tried.wall_seconds / tried.cpu_seconds.max(f64::MIN_POSITIVE))
         };

@@ -9,8 +9,8 @@
 
 use super::gather::GatheredLayer;
 use super::source::{Candidate, LightcutSource};
-use crate::bias_compensation::Compensation;
 use crate::bias_compensation::short_rays::{self, ClampedPoint, NearSurface};
+use crate::bias_compensation::{Compensation, choose_evenly};
 use crate::lightcut::{
     CoherenceLimit, CutSettings, Lightcut, MIN_SHARED, PacketLightcut, Receiver, ReceiverPacket,
     group_coherent,
@@ -96,7 +96,7 @@ pub fn add(
     task: &[Candidate],
     gathered: &mut [&mut DirectIndirect<GatheredLayer>],
 ) {
-    let world = source.world;
+    let world = source.context.world;
     let clamped = |(candidate, gathered): (&Candidate, &&mut DirectIndirect<GatheredLayer>)| ClampedPoint {
         point: candidate.point,
         bound: if candidate.missing.indirect { gathered.indirect.bound } else { f32::INFINITY },
@@ -142,22 +142,11 @@ fn choose(near: &[NearSurface], record: usize, lookups: &mut Vec<Lookup>) {
     if total < NEGLIGIBLE * RAYS as f32 * FRAC_1_PI {
         return;
     }
-    // Evenly spaced along the sum of the weights: each choice represents an equal share of it.
-    let share = total / LOOKUPS as f32;
-    let (mut reached, mut next) = (0.0, 0.5 * share);
-    for &near in near {
-        let weight = luminance(near.weight);
-        reached += weight;
-        let mut chosen = 0.0;
-        while next < reached {
-            chosen += share;
-            next += share;
-        }
-        if chosen > 0.0 {
-            let factor = near.weight * (chosen / weight * PI / RAYS as f32);
-            lookups.push(Lookup { record, near, factor });
-        }
-    }
+    choose_evenly(near.iter().map(|n| luminance(n.weight)), total, LOOKUPS, |i, chosen| {
+        let near = near[i];
+        let factor = near.weight * (chosen / luminance(near.weight) * PI / RAYS as f32);
+        lookups.push(Lookup { record, near, factor });
+    });
 }
 
 impl Cutters<'_> {
@@ -172,7 +161,7 @@ impl Cutters<'_> {
             let s = &lookup.near.surface;
             Receiver::irradiance(s.position, s.normal, &Frame::from_normal(lookup.near.normal))
         });
-        let (transfer, world) = (&source.transfer, source.world);
+        let (transfer, world) = (&source.context.transfer, source.context.world);
         if group.len() >= MIN_SHARED {
             self.points.set(collectors);
             return self.group.gather(transfer, world, self.points, &settings).sum.radiance;

@@ -73,7 +73,7 @@ impl LightcutSource<'_> {
         let place = |candidate: &Candidate| (candidate.point.position, candidate.point.normal);
         let same = |a: &Candidate, b: &Candidate| a.missing == b.missing;
         let candidates = candidates.iter().copied();
-        group_coherent(CoherenceLimit::CLOSE, candidates, LANES, self.world.diagonal, place, same)
+        group_coherent(CoherenceLimit::CLOSE, candidates, LANES, self.context.world.diagonal, place, same)
     }
 
     /// True if footprints depend on the distances of occluders; the distances of probe rays replace those.
@@ -90,15 +90,15 @@ impl LightcutSource<'_> {
         let PointCut { candidate, receiver, occluders, clamp, size, clusters } = cut;
         let rays = self.settings.probe_rays;
         let hessian = (!self.needs_occluders())
-            .then(|| OcclusionHessian::new(self.world, &candidate.point, rays, candidate.sample));
+            .then(|| OcclusionHessian::new(self.context.world, &candidate.point, rays, candidate.sample));
         let layer = GatheredLayer { cut: size as u32, bound: clamp.bound(), ..GatheredLayer::default() };
         let layers = DirectIndirect { direct: layer, indirect: layer };
         let mut light =
             GatheredLight { layers, series: DirectIndirect::default(), hessian: hessian.map(Box::new) };
         series.begin(candidate);
         for (node, response) in clusters {
-            let node = &self.transfer.trees.nodes[node as usize];
-            let vpl = &self.transfer.trees.vpls[node.representative()];
+            let node = &self.context.transfer.trees.nodes[node as usize];
+            let vpl = &self.context.transfer.trees.vpls[node.representative()];
             let weak = node.is_leaf() && node.origin() == Origin::Indirect;
             // The receiver of irradiance is grey: its response is the geometry term.
             let kept = |irradiance: Rgb, response: Rgb| match weak {
@@ -107,7 +107,7 @@ impl LightcutSource<'_> {
             };
             if response == Rgb::ZERO {
                 let Some((distances, lane)) = occluders else { continue };
-                let unshadowed = self.transfer.unshadowed(receiver, vpl, node.kind());
+                let unshadowed = self.context.transfer.unshadowed(receiver, vpl, node.kind());
                 let hidden = node.intensity * unshadowed;
                 if luminance(hidden) > 0.0 {
                     let luminance = kept(hidden, unshadowed) * luminance(hidden);
@@ -117,9 +117,9 @@ impl LightcutSource<'_> {
             }
             let irradiance = node.intensity * response;
             let kept = kept(irradiance, response);
-            let cluster = LitCluster { transfer: &self.transfer, node, vpl, irradiance, kept };
+            let cluster = LitCluster { transfer: &self.context.transfer, node, vpl, irradiance, kept };
             series.add(&cluster);
-            let passed = light.layers[node.origin()].add(candidate, &self.world.materials, &cluster);
+            let passed = light.layers[node.origin()].add(candidate, &self.context.world.materials, &cluster);
             if let Some(hessian) = &mut light.hessian {
                 hessian.add(&cluster, passed);
             }
@@ -180,7 +180,7 @@ impl<'w> Workspace<'w> {
     fn new(s: &LightcutSource<'w>) -> Workspace<'w> {
         let shadows = s.settings.shadows;
         Workspace {
-            shadows: Engine::with(s.world, shadows.for_records(), shadows.cache),
+            shadows: Engine::with(s.context.world, shadows.for_records(), shadows.cache),
             single: Lightcut::new(),
             group: PacketLightcut::new(),
             points: ReceiverPacket::new(),
@@ -199,7 +199,7 @@ impl<'w> Workspace<'w> {
             self.points.set(group.iter().map(Candidate::receiver));
             self.shared(s, group, &cut)
         };
-        if let Some(c) = &s.compensation {
+        if let Some(c) = &s.context.compensation {
             let cutters =
                 Cutters { single: &mut self.single, group: &mut self.group, points: &mut self.points };
             let mut gathered: Vec<_> = light.iter_mut().map(|light| &mut light.layers).collect();
@@ -223,17 +223,17 @@ impl<'w> Workspace<'w> {
     /// Light at a point by a cut of its own.
     fn alone(&mut self, s: &LightcutSource, candidate: &Candidate, cut: &CutSettings) -> GatheredLight {
         let receiver = &candidate.receiver();
-        let rays = s.needs_occluders().then(|| OccluderLog::new(s.world));
+        let rays = s.needs_occluders().then(|| OccluderLog::new(s.context.world));
         let cut = match &rays {
-            Some(rays) => self.single.gather(&s.transfer, rays, receiver, cut),
-            None => self.single.gather(&s.transfer, &self.shadows, receiver, cut),
+            Some(rays) => self.single.gather(&s.context.transfer, rays, receiver, cut),
+            None => self.single.gather(&s.context.transfer, &self.shadows, receiver, cut),
         };
         let occluders = rays.map(OccluderLog::sorted);
         let cut = PointCut {
             candidate,
             receiver,
             occluders: occluders.as_ref().map(|distances| (distances, 0)),
-            clamp: compensate::clamp(&s.compensation, cut.limit),
+            clamp: compensate::clamp(&s.context.compensation, cut.limit),
             size: cut.clusters.len(),
             clusters: cut.clusters.iter().map(|cluster| (cluster.node, cluster.response)),
         };
@@ -242,10 +242,10 @@ impl<'w> Workspace<'w> {
 
     /// Light at several points, which have been set, by one cut.
     fn shared(&mut self, s: &LightcutSource, group: &[Candidate], cut: &CutSettings) -> Vec<GatheredLight> {
-        let rays = s.needs_occluders().then(|| OccluderLog::new(s.world));
+        let rays = s.needs_occluders().then(|| OccluderLog::new(s.context.world));
         let cut = match &rays {
-            Some(rays) => self.group.gather(&s.transfer, rays, &self.points, cut),
-            None => self.group.gather(&s.transfer, &self.shadows, &self.points, cut),
+            Some(rays) => self.group.gather(&s.context.transfer, rays, &self.points, cut),
+            None => self.group.gather(&s.context.transfer, &self.shadows, &self.points, cut),
         };
         let occluders = rays.map(OccluderLog::sorted);
         let series = &mut self.series;
@@ -254,7 +254,7 @@ impl<'w> Workspace<'w> {
                 candidate,
                 receiver: self.points.get(lane),
                 occluders: occluders.as_ref().map(|distances| (distances, lane)),
-                clamp: compensate::clamp(&s.compensation, cut.sum.limits[lane]),
+                clamp: compensate::clamp(&s.context.compensation, cut.sum.limits[lane]),
                 size: cut.clusters.len(),
                 clusters: cut.clusters.iter().map(|cluster| (cluster.node, cluster.responses.get(lane))),
             };

@@ -2,12 +2,12 @@
 
 use super::record::Record;
 use super::settings::CacheSettings;
-use crate::bias_compensation::Compensation;
 use crate::hsh::Radiance;
-use crate::lightcut::{CutCounts, Receiver, Transfer};
+use crate::lightcut::{CutCounts, Receiver};
 use crate::math::Frame;
+use crate::shade::ShadingContext;
 use crate::vpl::{DirectIndirect, Origin};
-use crate::world::{SurfacePoint, World};
+use crate::world::SurfacePoint;
 
 /// Point at which to compute records.
 #[derive(Clone, Copy, Debug)]
@@ -61,12 +61,8 @@ pub trait RecordSource: Sync {
 /// Source of records by lightcuts.
 #[derive(Clone, Copy)]
 pub struct LightcutSource<'a> {
-    /// The scene.
-    pub world: &'a World,
-    /// Transfer from its virtual lights.
-    pub transfer: Transfer<'a>,
+    /// The scene and its virtual lights.
+    pub context: ShadingContext<'a>,
     /// Settings of the cache.
     pub settings: &'a CacheSettings,
-    /// Bias compensation of clamped light; `None` for none.
-    pub compensation: Option<Compensation<'a>>,
 }

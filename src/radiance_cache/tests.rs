@@ -9,6 +9,7 @@ use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::{CutSettings, Receiver, Transfer, gather_all};
 use crate::math::{Frame, luminance};
 use crate::progress::Control;
+use crate::shade::ShadingContext;
 use crate::test_scenes::*;
 use crate::vpl::{DirectIndirect, LightPassSettings, Origin, light_pass};
 use crate::world::SurfacePoint;
@@ -45,7 +46,8 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
     let transfer = Transfer::new(&trees, world.diagonal);
     let cut = CutSettings { epsilon: 0.002, max_cut: 20_000, clamp: None, ..CutSettings::default() };
     let cache = CacheSettings { cut, footprints, probe_rays, ..CacheSettings::default() };
-    let source = LightcutSource { world, transfer, settings: &cache, compensation: None };
+    let source =
+        LightcutSource { context: ShadingContext { world, transfer, compensation: None }, settings: &cache };
 
     // Open floor: neither under the ball or the table nor within a step of a wall, where light varies by its
     // own distance.

@@ -7,7 +7,7 @@ use crate::progress::Control;
 use rayon::prelude::*;
 
 /// Radiance of the points of a patch.
-pub type ShadedPatch = Vec<(ShadingTask, Rgb)>;
+type ShadedPatch = Vec<(ShadingTask, Rgb)>;
 
 /// Radiance of shading points.
 #[derive(Default)]

@@ -16,7 +16,7 @@ mod picture;
 mod shader;
 
 pub use context::{ShadeSettings, ShadingContext, ShadingTask};
-pub use frame::{ShadedPatch, shade};
+pub use frame::shade;
 pub use gatherers::{Gatherers, Shaded};
 pub use patches::patches;
 pub use picture::Picture;

@@ -1,9 +1,10 @@
 //! The picture in the making, and if wanted its parts by the light's origin.
 
-use super::ShadedPatch;
+use super::{ShadeSettings, ShadingContext, ShadingCounts, ShadingTask, patches, shade};
 use crate::eye::EyePass;
 use crate::film::{Image, Layer, Preview};
 use crate::math::Rgb;
+use crate::progress::Control;
 use crate::vpl::Origin;
 
 /// Sums at each pixel.
@@ -45,11 +46,22 @@ impl Picture {
         }
     }
 
-    /// Adds the radiance of patches.
-    pub fn add_patches(&mut self, eye: &EyePass, patches: &[ShadedPatch]) {
-        for &(task, radiance) in patches.iter().flatten() {
+    /// Adds the light of `tasks`, shaded in patches, of which there are about `count` if there is a task for each point.
+    pub fn shade<'w>(
+        &mut self,
+        context: &ShadingContext<'w>,
+        eye: &EyePass<'w>,
+        tasks: &[ShadingTask],
+        count: u32,
+        settings: &ShadeSettings,
+        control: &Control,
+    ) -> ShadingCounts {
+        let patches = patches(&eye.points, tasks, count, context.world.diagonal);
+        let shading = shade(context, &eye.points, &patches, settings, control);
+        for &(task, radiance) in shading.patches.iter().flatten() {
             self.add(eye, task.point as usize, task.origin, radiance);
         }
+        shading.counts
     }
 
     /// The picture, its parts, and the number of radiances that were left out.

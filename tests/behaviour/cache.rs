@@ -4,6 +4,7 @@ use crate::common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::render;
 use lightsplat::method::{Footprints, FoundBy};
 use lightsplat::method::{Output, cache, reconstruction};
 use lightsplat::progress::Control;
@@ -56,7 +57,7 @@ fn cancelling_ends_the_lighting_before_all_is_lit() {
                 }
             }
         });
-        let output = reconstruction::render(&world, &world.view, &settings, &control);
+        let output = render(&world, &world.view, &settings, &control);
         done.store(true, Ordering::Relaxed);
         output
     });

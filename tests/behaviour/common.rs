@@ -4,6 +4,7 @@
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::Rgb;
+use lightsplat::method::render;
 use lightsplat::method::{LightStore, Output, Renderer, cache, lightcuts};
 use lightsplat::progress::Control;
 use lightsplat::scene::formats::{LoadOptions, Loaded, load};
@@ -193,7 +194,7 @@ pub fn per_pixel(world: &WorldAndView, like: &cache::Settings) -> Image {
         lightcuts::Settings { light: like.light, spp: like.spp, ..lightcuts::Settings::default() };
     (settings.cut.epsilon, settings.cut.max_cut) = (0.005, 10_000);
     settings.compensation = like.compensation;
-    lightcuts::render(world, &world.view, &settings, &Control::new()).color
+    render(world, &world.view, &settings, &Control::new()).color
 }
 
 /// Renders the picture by a method; it must be complete.

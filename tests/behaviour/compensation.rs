@@ -5,6 +5,7 @@ use glam::{Vec2, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::FoundBy;
+use lightsplat::method::render;
 use lightsplat::method::{Output, cache, lightcuts, path, reconstruction};
 use lightsplat::progress::Control;
 use lightsplat::stats::Counter;
@@ -25,7 +26,7 @@ fn outputs(world: &WorldAndView, vpls: u32, compensation: bool) -> Vec<(&'static
     let alone = rendered(world, &settings);
     let mut settings = lightcuts::Settings { compensation, ..Default::default() };
     settings.light.indirect = vpls;
-    let cuts = lightcuts::render(world, &world.view, &settings, &Control::new());
+    let cuts = render(world, &world.view, &settings, &Control::new());
     vec![("lent", lent), ("records", records), ("alone", alone), ("lightcuts", cuts)]
 }
 
@@ -68,7 +69,7 @@ fn creases_are_as_bright_as_paths_make_them() {
     };
     // Few virtual lights: much is clamped.
     let paths = path::Settings { spp: 256, ..Default::default() };
-    let truth = of(&path::render(&world, &world.view, &paths, &Control::new()).color);
+    let truth = of(&render(&world, &world.view, &paths, &Control::new()).color);
     for ((name, with), (_, without)) in outputs(&world, 3000, true).iter().zip(&outputs(&world, 3000, false))
     {
         let (ratio, lacking) = (of(&with.color) / truth, of(&without.color) / truth);
@@ -98,7 +99,7 @@ fn surfaces_beside_lamps_are_as_bright_as_paths_make_them() {
     scene.meshes.push(emitting(window, Rgb::ONE));
     let world = world(scene);
     let paths = path::Settings { spp: 64, ..Default::default() }; // noise: .02
-    let truth = path::render(&world, &world.view, &paths, &Control::new()).color;
+    let truth = render(&world, &world.view, &paths, &Control::new()).color;
     let brightest = |image: &Image| image.pixels.iter().map(|p| p.max_element()).fold(0.0, f32::max);
     let error = |compensation: bool| {
         let mut settings = reconstruction::Settings { compensation, ..Default::default() };

@@ -7,19 +7,20 @@ use lightsplat::film::Image;
 use lightsplat::film::Window;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::LightPassSettings;
+use lightsplat::method::render;
 use lightsplat::method::{Output, lightcuts, path};
 use lightsplat::progress::Control;
 use std::path::Path;
 
 fn by_path(world: &WorldAndView, spp: u32) -> Output {
     let settings = path::Settings { spp, ..path::Settings::default() };
-    path::render(world, &world.view, &settings, &Control::new())
+    render(world, &world.view, &settings, &Control::new())
 }
 
 fn by_lightcuts(world: &WorldAndView) -> Output {
     let light = LightPassSettings { direct: 256, indirect: 2000, ..LightPassSettings::default() };
     let settings = lightcuts::Settings { spp: 1, light, ..lightcuts::Settings::default() };
-    lightcuts::render(world, &world.view, &settings, &Control::new())
+    render(world, &world.view, &settings, &Control::new())
 }
 
 fn mean(image: &Image) -> f32 {

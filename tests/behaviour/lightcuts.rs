@@ -6,7 +6,8 @@ use lightsplat::film::Image;
 use lightsplat::film::Window;
 use lightsplat::math::Rgb;
 use lightsplat::method::LightPassSettings;
-use lightsplat::method::lightcuts::{Settings, render};
+use lightsplat::method::lightcuts::Settings;
+use lightsplat::method::render;
 use lightsplat::method::{Output, path};
 use lightsplat::progress::Control;
 use lightsplat::scene::{DeltaLight, Environment, Lobe, Material, Scene};
@@ -22,7 +23,7 @@ fn lightcuts(world: &WorldAndView, settings: &Settings) -> Output {
 
 fn reference(world: &WorldAndView, spp: u32) -> Output {
     let settings = path::Settings { spp, ..path::Settings::default() };
-    path::render(world, &world.view, &settings, &Control::new())
+    render(world, &world.view, &settings, &Control::new())
 }
 
 /// A floor seen from above under one light.

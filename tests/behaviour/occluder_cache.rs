@@ -5,6 +5,7 @@ use glam::Vec3;
 use lightsplat::math::Rgb;
 use lightsplat::method::FoundBy;
 use lightsplat::method::LightPassSettings;
+use lightsplat::method::render;
 use lightsplat::method::{OccluderCacheSettings, ShadowSettings};
 use lightsplat::method::{Output, cache, lightcuts};
 use lightsplat::progress::Control;
@@ -53,7 +54,7 @@ fn lightcuts_give_the_same_bits_with_it_and_without_on_any_number_of_threads() {
         let mut first: Option<Output> = None;
         for shadows in uses() {
             let settings = lightcuts::Settings { light: LIGHT, share, shadows, ..Default::default() };
-            let render = || lightcuts::render(&world, &window, &settings, &Control::new());
+            let render = || render(&world, &window, &settings, &Control::new());
             let [one, three] = [1, 3].map(|threads| on_threads(threads, render));
             assert!(one.color == three.color && one.stats.counters().eq(three.stats.counters()));
             // Where cuts are shared, few rays are single.

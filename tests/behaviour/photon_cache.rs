@@ -5,7 +5,8 @@ use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::path;
-use lightsplat::method::photon_cache::{Settings, render};
+use lightsplat::method::photon_cache::Settings;
+use lightsplat::method::render;
 use lightsplat::progress::Control;
 use lightsplat::stats::Counter;
 
@@ -50,7 +51,7 @@ fn it_converges_to_the_path_tracer_as_photons_and_rays_grow() {
     let world = boxed_room();
     let window = world.view;
     let paths = path::Settings { spp: 1024, ..path::Settings::default() };
-    let reference = blocks(&path::render(&world, &window, &paths, &Control::new()).color);
+    let reference = blocks(&render(&world, &window, &paths, &Control::new()).color);
     let mean = reference.iter().sum::<f64>() / reference.len() as f64;
     let errors = [(3_000, 100), (100_000, 2000)].map(|(photons, rays)| {
         let found = blocks(&picture(&world, &Settings { photons, rays, spp: 4, ..small() }));

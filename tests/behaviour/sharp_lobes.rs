@@ -4,6 +4,7 @@ use crate::common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::render;
 use lightsplat::method::{lightcuts, path};
 use lightsplat::progress::Control;
 use lightsplat::scene::{Distribution, Environment, Fresnel, Lobe, Material, Reflectance};
@@ -32,12 +33,12 @@ fn below_lamps() -> SceneAndView {
 
 fn of_paths(scene: &SceneAndView, spp: u32) -> Image {
     let settings = path::Settings { spp, ..Default::default() };
-    path::render(&world(scene.clone()), &scene.view, &settings, &Control::new()).color
+    render(&world(scene.clone()), &scene.view, &settings, &Control::new()).color
 }
 
 fn of_cuts(scene: &SceneAndView) -> Image {
     let settings = lightcuts::Settings { spp: 4, ..Default::default() };
-    lightcuts::render(&world(scene.clone()), &scene.view, &settings, &Control::new()).color
+    render(&world(scene.clone()), &scene.view, &settings, &Control::new()).color
 }
 
 /// Mean luminance over that of the reference, and root mean square difference over that mean.

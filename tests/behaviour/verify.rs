@@ -9,6 +9,7 @@ use lightsplat::math::Rgb;
 use lightsplat::method::Family;
 use lightsplat::method::Look;
 use lightsplat::method::path::{Counts, Wanted, pixel_means};
+use lightsplat::method::render;
 use lightsplat::method::{lightcuts, path, reconstruction};
 use lightsplat::progress::Control;
 use lightsplat::verify::{Estimate, Settings, Verified, verify};
@@ -85,7 +86,7 @@ fn width(estimate: Estimate) -> f64 {
 fn a_path_traced_picture_has_the_error_that_its_own_variance_states() {
     let world = lit_room();
     let settings = path::Settings { spp: 64, ..path::Settings::default() };
-    let output = path::render(&world, &world.view, &settings, &Control::new());
+    let output = render(&world, &world.view, &settings, &Control::new());
     let noise = rel_mse_of_variance(&output.variance.unwrap(), &output.color).sqrt();
     let found = check(&world, &output.color, &Settings { pixels: 600, ..Settings::default() });
     // The variance is a conservative estimate, since samples are stratified.
@@ -105,21 +106,21 @@ fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
     }
     let world = world(scene);
     let one = lightcuts::Settings { spp: 1, ..Default::default() };
-    let picture = lightcuts::render(&world, &world.view, &one, &Control::new());
+    let picture = render(&world, &world.view, &one, &Control::new());
     let at =
         |look: Look| check(&world, &picture.color, &Settings { pixels: 700, look, ..Settings::default() });
     let light = at(Look::EyeSamples { spp: 1, seed: 0 });
     assert_eq!((light.relative_rms.high, light.relative_bias.value), (0.0, 0.0), "{light:?}");
     let all = at(Look::Pixels);
     let exact = path::Settings { spp: 4096, ..path::Settings::default() };
-    let exact = path::render(&world, &world.view, &exact, &Control::new()).color;
+    let exact = render(&world, &world.view, &exact, &Control::new()).color;
     let rms = rel_mse(&picture.color, &exact, 0.0).sqrt();
     assert!(rms > 0.1 && all.relative_rms.covers(rms), "{rms} {all:?}");
 
     // Errors at several eye samples with positions of their own are found as well, and differ from those of
     // another seed.
     let four = lightcuts::Settings { spp: 4, seed: 3, ..Default::default() };
-    let picture = lightcuts::render(&world, &world.view, &four, &Control::new());
+    let picture = render(&world, &world.view, &four, &Control::new());
     let at =
         |look: Look| check(&world, &picture.color, &Settings { pixels: 700, look, ..Settings::default() });
     assert!(at(Look::EyeSamples { spp: 4, seed: 3 }).relative_rms.high < 1e-6);
@@ -132,7 +133,7 @@ fn crops_threads_and_seeds() {
     let window = Window { offset: [10, 5], width: 20, height: 16, ..world.view.window };
     let view = View { window, ..world.view };
     let settings = path::Settings { spp: 16, ..path::Settings::default() };
-    let image = path::render(&world, &view, &settings, &Control::new()).color;
+    let image = render(&world, &view, &settings, &Control::new()).color;
     let settings = Settings { pixels: 100, most_samples: 256, ..Settings::default() };
     let run = |threads: usize, settings: &Settings| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -229,28 +230,24 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
         let few_paths = path::Settings { spp: 64, ..Default::default() };
         let pairs = match name {
             "cornell" | "kitchen" => vec![
-                ("reconstruction", reconstruction::render(&world, &world.view, &cached, &control).color, eye),
-                (
-                    "reconstruction, few VPLs",
-                    reconstruction::render(&world, &world.view, &few, &control).color,
-                    eye,
-                ),
+                ("reconstruction", render(&world, &world.view, &cached, &control).color, eye),
+                ("reconstruction, few VPLs", render(&world, &world.view, &few, &control).color, eye),
             ],
             "knot" => vec![
-                ("reconstruction", reconstruction::render(&world, &world.view, &cached, &control).color, eye),
-                ("path, 64 spp", path::render(&world, &world.view, &few_paths, &control).color, Look::Pixels),
+                ("reconstruction", render(&world, &world.view, &cached, &control).color, eye),
+                ("path, 64 spp", render(&world, &world.view, &few_paths, &control).color, Look::Pixels),
             ],
             "nave" => vec![
-                ("reconstruction", reconstruction::render(&world, &world.view, &cached, &control).color, eye),
+                ("reconstruction", render(&world, &world.view, &cached, &control).color, eye),
                 (
                     "reconstruction, pixels",
-                    reconstruction::render(&world, &world.view, &cached, &control).color,
+                    render(&world, &world.view, &cached, &control).color,
                     Look::Pixels,
                 ),
             ],
             _ => vec![
-                ("lightcuts", lightcuts::render(&world, &world.view, &cuts, &control).color, eye),
-                ("path, 64 spp", path::render(&world, &world.view, &few_paths, &control).color, Look::Pixels),
+                ("lightcuts", render(&world, &world.view, &cuts, &control).color, eye),
+                ("path, 64 spp", render(&world, &world.view, &few_paths, &control).color, Look::Pixels),
             ],
         };
         let mut traced: Vec<(Look, Vec<Image>)> = Vec::new();

@@ -114,8 +114,7 @@ impl<'s> Orders<'s> {
             Order::Samples => {
                 let settings =
                     ShadeSettings { cut: CutSettings::default(), share: shared, shadows: self.cache.shadows };
-                let context =
-                    ShadingContext { world: setting.world, transfer: setting.transfer(), compensation: None };
+                let context = self.context();
                 let points = &setting.samples.points;
                 let (mut gatherers, mut sum) = (Gatherers::default(), Rgb::ZERO);
                 for patch in patches(points, &self.tasks[chunk], self.cache.patches, setting.world.diagonal) {
@@ -126,9 +125,12 @@ impl<'s> Orders<'s> {
         }
     }
 
+    fn context(&self) -> ShadingContext<'_> {
+        ShadingContext { world: self.setting.world, transfer: self.setting.transfer(), compensation: None }
+    }
+
     fn source(&self) -> LightcutSource<'_> {
-        let (world, transfer) = (self.setting.world, self.setting.transfer());
-        LightcutSource { world, transfer, settings: self.cache, compensation: None }
+        LightcutSource { context: self.context(), settings: self.cache }
     }
 
     fn cut<'m, T, V: Visibility + PacketVisibility>(

@@ -11,6 +11,7 @@ use crate::film::metrics::{flip_map, psnr, rel_mse_of_variance};
 use crate::film::{Image, tone};
 use crate::math::Rgb;
 use crate::method::path;
+use crate::method::render;
 use crate::paths::Look;
 use crate::stats::Stopwatch;
 use serde::Serialize;
@@ -125,7 +126,7 @@ impl Progress {
             // Seed 0 is the default of all methods, none of which should share random numbers with its
             // reference.
             let settings = path::Settings { spp, seed: 1 + 2 * self.rounds + half, max_depth: None, look };
-            let output = path::render(&subject.session.world, &subject.view, &settings, study.control);
+            let output = render(&subject.session.world, &subject.view, &settings, study.control);
             if !output.complete {
                 return Err(StudyError::Interrupted);
             }

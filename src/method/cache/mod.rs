@@ -16,4 +16,4 @@
 mod render;
 pub(crate) mod resolve;
 
-pub use render::{Settings, render};
+pub use render::Settings;

@@ -6,9 +6,9 @@ use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::ladder::CUTS;
-use crate::method::lights::{LightStore, LightsWanted};
+use crate::method::lights::LightStore;
 use crate::method::sampling::method_settings;
-use crate::method::{Move, Output, Renderer, Sampled, counts};
+use crate::method::{Move, Output, Prepared, Renderer, Sampled, counts};
 use crate::progress::Control;
 use crate::radiance_cache::CacheSettings;
 use crate::radiance_cache::fill::CacheFrame;
@@ -17,8 +17,8 @@ use crate::radiance_cache::source::LightcutSource;
 use crate::radiance_cache::store::Records;
 use crate::radiance_cache::targets::Targets;
 use crate::setting::{COMPENSATION, Each, INSPECT, Settings as _};
-use crate::shade::{Picture, ShadeSettings, ShadingContext, patches, shade};
-use crate::stats::{Stage, Stats};
+use crate::shade::{Picture, ShadeSettings};
+use crate::stats::Stage;
 use crate::view::View;
 use crate::vpl::LightPassSettings;
 use crate::world::World;
@@ -70,7 +70,37 @@ impl Renderer for Settings {
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
-        render_by(world, lights, view, self, control)
+        let wanted = (self.light, self.family);
+        let Prepared { eye: samples, lights, mut stats } =
+            Prepared::new(world, lights, view, self.sampling(), wanted, control);
+        let context = lights.context(world, self.compensation);
+        let source = LightcutSource { context, settings: &self.cache };
+
+        let mut records = Records::default();
+        let glossy = Glossy::new(world, &samples.points, &self.cache);
+        let targets = Targets::new(&samples.points, &samples.index, glossy.as_ref());
+        let frame = CacheFrame::fill(targets, &mut records, &source, control, &mut stats);
+        counts::cuts(&mut stats, "Records", &frame.cuts);
+
+        let mut picture = Picture::new(&samples, self.inspect);
+        let tasks =
+            stats.time(Stage::Splat, || resolve(&frame.interpolate(&records), &samples, &mut picture));
+        control.begin(Stage::Render, tasks.len() as u64);
+        let counts = stats.time(Stage::Render, || {
+            picture.shade(&context, &samples, &tasks, self.cache.patches, &self.shading(), control)
+        });
+        stats.count("Shading/tasks by cuts", tasks.len() as u64);
+        counts::cuts(&mut stats, "Lightcut", &counts.cuts);
+        if !self.cache.cached().indirect {
+            counts::clamping(&mut stats, &counts.cuts, self.compensation.then_some(&counts.compensation));
+        }
+        counts.shadows.report(&mut stats);
+        let complete = samples.complete && !control.is_cancelled();
+        let (color, mut extra, nonfinite) = picture.finish();
+        if self.inspect {
+            extra.extend(frame.inspect(&records, &samples));
+        }
+        Output { color, variance: None, extra, stats, complete, nonfinite }
     }
 
     fn check(&self) -> Result<(), String> {
@@ -90,58 +120,4 @@ impl Renderer for Settings {
     fn ladder(&self) -> &'static [Move] {
         &CUTS
     }
-}
-
-/// Renders the picture of `view`.
-pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
-    settings.render(world, &LightStore::default(), view, control)
-}
-
-fn render_by(
-    world: &World,
-    lights: &LightStore,
-    view: &View,
-    settings: &Settings,
-    control: &Control,
-) -> Output {
-    let mut stats = Stats::new();
-    let eye = settings.sampling().eye(&world.scene);
-    control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
-    let samples = stats.time(Stage::EyePass, || EyePass::trace(world, view, eye, control));
-    counts::eye(&mut stats, &samples.chains);
-
-    let pass = LightPassSettings { seed: settings.seed, ..settings.light };
-    let wanted = LightsWanted { pass, family: settings.family, max_depth: eye.max_depth };
-    let lights = lights.get(world, wanted, control, &mut stats);
-    let context = lights.context(world, settings.compensation);
-    let ShadingContext { transfer, compensation, .. } = context;
-    let source = LightcutSource { world, transfer, settings: &settings.cache, compensation };
-
-    let mut records = Records::default();
-    let glossy = Glossy::new(world, &samples.points, &settings.cache);
-    let targets = Targets::new(&samples.points, &samples.index, glossy.as_ref());
-    let frame = CacheFrame::fill(targets, &mut records, &source, control, &mut stats);
-    counts::cuts(&mut stats, "Records", &frame.cuts);
-
-    let mut picture = Picture::new(&samples, settings.inspect);
-    let tasks = stats.time(Stage::Splat, || resolve(&frame.interpolate(&records), &samples, &mut picture));
-    control.begin(Stage::Render, tasks.len() as u64);
-    let counts = stats.time(Stage::Render, || {
-        let patches = patches(&samples.points, &tasks, settings.cache.patches, world.diagonal);
-        let shading = shade(&context, &samples.points, &patches, &settings.shading(), control);
-        picture.add_patches(&samples, &shading.patches);
-        shading.counts
-    });
-    stats.count("Shading/tasks by cuts", tasks.len() as u64);
-    counts::cuts(&mut stats, "Lightcut", &counts.cuts);
-    if !settings.cache.cached().indirect {
-        counts::clamping(&mut stats, &counts.cuts, settings.compensation.then_some(&counts.compensation));
-    }
-    counts.shadows.report(&mut stats);
-    let complete = samples.complete && !control.is_cancelled();
-    let (color, mut extra, nonfinite) = picture.finish();
-    if settings.inspect {
-        extra.extend(frame.inspect(&records, &samples));
-    }
-    Output { color, variance: None, extra, stats, complete, nonfinite }
 }

@@ -9,4 +9,4 @@
 mod blocks;
 mod render;
 
-pub use render::{Settings, render};
+pub use render::Settings;

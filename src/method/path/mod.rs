@@ -13,4 +13,4 @@ mod render;
 
 pub use crate::paths::Counts;
 pub use pixels::{Wanted, pixel_means};
-pub use render::{Settings, render};
+pub use render::Settings;

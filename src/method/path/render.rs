@@ -40,7 +40,45 @@ impl Renderer for Settings {
     }
 
     fn render(&self, world: &World, _lights: &LightStore, view: &View, control: &Control) -> Output {
-        render(world, view, self, control)
+        let mut stats = Stats::new();
+        let mut tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
+            .map(|_| Tile { pixels: Vec::new(), samples: 0, counts: Counts::default(), nonfinite: 0 })
+            .collect();
+        let passes = self.spp.div_ceil(PASS);
+        control.begin(Stage::Render, passes as u64 * tiles.len() as u64);
+        stats.time(Stage::Render, || {
+            for pass in 0..passes {
+                let end = ((pass + 1) * PASS).min(self.spp);
+                tiles.par_iter_mut().enumerate().for_each(|(i, tile)| {
+                    if !control.is_cancelled() {
+                        tile.render(world, view, self, i, end);
+                        control.advance(1);
+                    }
+                });
+            }
+        });
+        let mut color = Image::new(view.window.width, view.window.height);
+        let mut variance = Image::new(view.window.width, view.window.height);
+        let (mut rays, mut shadow_rays, mut nonfinite, mut paths) = (0, 0, 0, 0);
+        for (i, tile) in tiles.iter().enumerate() {
+            let n = tile.samples as f32;
+            for (pixel, [x, y]) in tile.pixels.iter().zip(view.window.tile(i, TILE)) {
+                let at = (y * view.window.width + x) as usize;
+                color.pixels[at] = pixel.mean;
+                variance.pixels[at] = if n > 1.0 { pixel.squares / (n * (n - 1.0)) } else { Rgb::ZERO };
+            }
+            paths += tile.samples as u64 * tile.pixels.len() as u64;
+            rays += tile.counts.rays;
+            shadow_rays += tile.counts.shadow_rays;
+            nonfinite += tile.nonfinite;
+        }
+        stats.count("Paths/total", paths);
+        stats.count("Rays/closest hit", rays);
+        stats.count("Rays/shadow", shadow_rays);
+        let complete = tiles.iter().all(|t| t.samples == self.spp);
+        // With a single sample there is no spread to measure.
+        let variance = (self.spp > 1).then_some(variance);
+        Output { color, variance, extra: Vec::new(), stats, complete, nonfinite }
     }
 
     fn look(&self) -> Look {
@@ -65,49 +103,6 @@ struct Tile {
     samples: u32,
     counts: Counts,
     nonfinite: u64,
-}
-
-/// Renders the picture of `view`.
-pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
-    let mut stats = Stats::new();
-    let mut tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
-        .map(|_| Tile { pixels: Vec::new(), samples: 0, counts: Counts::default(), nonfinite: 0 })
-        .collect();
-    let passes = settings.spp.div_ceil(PASS);
-    control.begin(Stage::Render, passes as u64 * tiles.len() as u64);
-    stats.time(Stage::Render, || {
-        for pass in 0..passes {
-            let end = ((pass + 1) * PASS).min(settings.spp);
-            tiles.par_iter_mut().enumerate().for_each(|(i, tile)| {
-                if !control.is_cancelled() {
-                    tile.render(world, view, settings, i, end);
-                    control.advance(1);
-                }
-            });
-        }
-    });
-    let mut color = Image::new(view.window.width, view.window.height);
-    let mut variance = Image::new(view.window.width, view.window.height);
-    let (mut rays, mut shadow_rays, mut nonfinite, mut paths) = (0, 0, 0, 0);
-    for (i, tile) in tiles.iter().enumerate() {
-        let n = tile.samples as f32;
-        for (pixel, [x, y]) in tile.pixels.iter().zip(view.window.tile(i, TILE)) {
-            let at = (y * view.window.width + x) as usize;
-            color.pixels[at] = pixel.mean;
-            variance.pixels[at] = if n > 1.0 { pixel.squares / (n * (n - 1.0)) } else { Rgb::ZERO };
-        }
-        paths += tile.samples as u64 * tile.pixels.len() as u64;
-        rays += tile.counts.rays;
-        shadow_rays += tile.counts.shadow_rays;
-        nonfinite += tile.nonfinite;
-    }
-    stats.count("Paths/total", paths);
-    stats.count("Rays/closest hit", rays);
-    stats.count("Rays/shadow", shadow_rays);
-    let complete = tiles.iter().all(|t| t.samples == settings.spp);
-    // With a single sample there is no spread to measure.
-    let variance = (settings.spp > 1).then_some(variance);
-    Output { color, variance, extra: Vec::new(), stats, complete, nonfinite }
 }
 
 impl Tile {

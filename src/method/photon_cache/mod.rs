@@ -10,4 +10,4 @@
 
 mod render;
 
-pub use render::{Settings, render};
+pub use render::Settings;

@@ -6,9 +6,9 @@ use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::math::Rgb;
 use crate::method::cache::resolve::resolve;
-use crate::method::lights::{LightStore, LightsWanted};
+use crate::method::lights::LightStore;
 use crate::method::sampling::method_settings;
-use crate::method::{Output, Renderer, Sampled, counts};
+use crate::method::{Output, Prepared, Renderer, Sampled, counts};
 use crate::photon::density::estimates;
 use crate::photon::indirect_light::{GatherCounts, IndirectLight};
 use crate::photon::own::{SampleGather, reflected};
@@ -23,7 +23,7 @@ use crate::radiance_cache::source::LightcutSource;
 use crate::radiance_cache::store::Records;
 use crate::radiance_cache::targets::Targets;
 use crate::setting::{Each, INSPECT, Settings as _};
-use crate::shade::{Picture, ShadeSettings, ShadingContext, ShadingTask, patches, shade};
+use crate::shade::{Picture, ShadeSettings, ShadingTask};
 use crate::stats::{Stage, Stats};
 use crate::view::View;
 use crate::vpl::{LightPassSettings, Origin, PhotonSettings};
@@ -80,7 +80,62 @@ impl Renderer for Settings {
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
-        render_by(world, lights, view, self, control)
+        let wanted = (self.light, self.family);
+        let Prepared { eye: samples, lights, mut stats } =
+            Prepared::new(world, lights, view, self.sampling(), wanted, control);
+        let context = lights.context(world, true);
+        let direct = LightcutSource { context, settings: &self.cache };
+
+        let map = irradiance(world, self, control, &mut stats);
+        let light = IndirectLight { world, map: &map };
+        let source = FinalGatherSource::new(direct, light, Strata::new(self.rays), self.seed);
+        let mut records = Records::default();
+        let glossy = Glossy::new(world, &samples.points, &self.cache);
+        let frame = self.cache.cached().any().then(|| {
+            let targets = Targets::new(&samples.points, &samples.index, glossy.as_ref());
+            CacheFrame::fill(targets, &mut records, &source, control, &mut stats)
+        });
+        if let Some(frame) = &frame {
+            counts::cuts(&mut stats, "Records", &frame.cuts);
+        }
+
+        let mut picture = Picture::new(&samples, self.inspect);
+        let tasks = stats.time(Stage::Splat, || match &frame {
+            Some(frame) => resolve(&frame.interpolate(&records), &samples, &mut picture),
+            None => (0..samples.len() as u32).map(ShadingTask::all).collect(),
+        });
+        let direct: Vec<ShadingTask> = tasks
+            .iter()
+            .filter(|task| task.origin != Some(Origin::Indirect))
+            .map(|task| ShadingTask { origin: Some(Origin::Direct), ..*task })
+            .collect();
+        let indirect: Vec<ShadingTask> =
+            tasks.into_iter().filter(|task| task.origin != Some(Origin::Direct)).collect();
+        control.begin(Stage::Render, (direct.len() + indirect.len()) as u64);
+        let shading = ShadeSettings { cut: self.cut, share: self.cache.share, shadows: self.cache.shadows };
+        let counts = stats.time(Stage::Render, || {
+            picture.shade(&context, &samples, &direct, self.cache.patches, &shading, control)
+        });
+        counts::cuts(&mut stats, "Lightcut", &counts.cuts);
+        counts.shadows.report(&mut stats);
+        let gathered = stats.time(Stage::Render, || own_gathers(&source, &samples, &indirect, self, control));
+        let mut rays = *source.counts();
+        for (task, (radiance, used)) in indirect.iter().zip(gathered) {
+            picture.add(&samples, task.point as usize, Some(Origin::Indirect), radiance);
+            rays += used;
+        }
+        stats.count("Shading/tasks by cuts", direct.len() as u64);
+        stats.count("Shading/tasks by gathering", indirect.len() as u64);
+        stats.count("Gathering/rays of records", rays.record_rays);
+        stats.count("Gathering/rays of samples", rays.own_rays);
+        stats.count("Gathering/rays followed", rays.followed);
+        stats.count("Gathering/near surfaces", rays.near);
+        let complete = samples.complete && !control.is_cancelled();
+        let (color, mut extra, nonfinite) = picture.finish();
+        if self.inspect {
+            extra.extend(frame.iter().flat_map(|frame| frame.inspect(&records, &samples)));
+        }
+        Output { color, variance: None, extra, stats, complete, nonfinite }
     }
 
     fn expected_bytes(&self, window: &Window) -> Option<u64> {
@@ -88,98 +143,10 @@ impl Renderer for Settings {
     }
 }
 
-/// Renders the picture of `view`.
-pub fn render(world: &World, view: &View, settings: &Settings, control: &Control) -> Output {
-    settings.render(world, &LightStore::default(), view, control)
-}
-
-fn render_by(
-    world: &World,
-    lights: &LightStore,
-    view: &View,
-    settings: &Settings,
-    control: &Control,
-) -> Output {
-    let mut stats = Stats::new();
-    let eye = settings.sampling().eye(&world.scene);
-    let max_depth = eye.max_depth;
-    control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
-    let samples = stats.time(Stage::EyePass, || EyePass::trace(world, view, eye, control));
-    counts::eye(&mut stats, &samples.chains);
-
-    let pass = LightPassSettings { seed: settings.seed, ..settings.light };
-    let lights =
-        lights.get(world, LightsWanted { pass, family: settings.family, max_depth }, control, &mut stats);
-    let context = lights.context(world, true);
-    let ShadingContext { transfer, compensation, .. } = context;
-    let direct = LightcutSource { world, transfer, settings: &settings.cache, compensation };
-
-    let map = irradiance(world, settings, max_depth, control, &mut stats);
-    let light = IndirectLight { world, map: &map };
-    let source = FinalGatherSource::new(direct, light, Strata::new(settings.rays), settings.seed);
-    let mut records = Records::default();
-    let glossy = Glossy::new(world, &samples.points, &settings.cache);
-    let frame = settings.cache.cached().any().then(|| {
-        let targets = Targets::new(&samples.points, &samples.index, glossy.as_ref());
-        CacheFrame::fill(targets, &mut records, &source, control, &mut stats)
-    });
-    if let Some(frame) = &frame {
-        counts::cuts(&mut stats, "Records", &frame.cuts);
-    }
-
-    let mut picture = Picture::new(&samples, settings.inspect);
-    let tasks = stats.time(Stage::Splat, || match &frame {
-        Some(frame) => resolve(&frame.interpolate(&records), &samples, &mut picture),
-        None => (0..samples.len() as u32).map(ShadingTask::all).collect(),
-    });
-    let direct: Vec<ShadingTask> = tasks
-        .iter()
-        .filter(|task| task.origin != Some(Origin::Indirect))
-        .map(|task| ShadingTask { origin: Some(Origin::Direct), ..*task })
-        .collect();
-    let indirect: Vec<ShadingTask> =
-        tasks.into_iter().filter(|task| task.origin != Some(Origin::Direct)).collect();
-    control.begin(Stage::Render, (direct.len() + indirect.len()) as u64);
-    let shading =
-        ShadeSettings { cut: settings.cut, share: settings.cache.share, shadows: settings.cache.shadows };
-    let counts = stats.time(Stage::Render, || {
-        let patches = patches(&samples.points, &direct, settings.cache.patches, world.diagonal);
-        let shading = shade(&context, &samples.points, &patches, &shading, control);
-        picture.add_patches(&samples, &shading.patches);
-        shading.counts
-    });
-    counts::cuts(&mut stats, "Lightcut", &counts.cuts);
-    counts.shadows.report(&mut stats);
-    let gathered = stats.time(Stage::Render, || own_gathers(&source, &samples, &indirect, settings, control));
-    let mut rays = *source.counts();
-    for (task, (radiance, used)) in indirect.iter().zip(gathered) {
-        picture.add(&samples, task.point as usize, Some(Origin::Indirect), radiance);
-        rays += used;
-    }
-    stats.count("Shading/tasks by cuts", direct.len() as u64);
-    stats.count("Shading/tasks by gathering", indirect.len() as u64);
-    stats.count("Gathering/rays of records", rays.record_rays);
-    stats.count("Gathering/rays of samples", rays.own_rays);
-    stats.count("Gathering/rays followed", rays.followed);
-    stats.count("Gathering/near surfaces", rays.near);
-    let complete = samples.complete && !control.is_cancelled();
-    let (color, mut extra, nonfinite) = picture.finish();
-    if settings.inspect {
-        extra.extend(frame.iter().flat_map(|frame| frame.inspect(&records, &samples)));
-    }
-    Output { color, variance: None, extra, stats, complete, nonfinite }
-}
-
 /// Traces the photons and estimates irradiance from them.
-fn irradiance(
-    world: &World,
-    settings: &Settings,
-    max_depth: u32,
-    control: &Control,
-    stats: &mut Stats,
-) -> IrradianceMap {
+fn irradiance(world: &World, settings: &Settings, control: &Control, stats: &mut Stats) -> IrradianceMap {
     // One edge is the eye's, one that of the gathering.
-    let max_edges = max_depth.saturating_sub(2);
+    let max_edges = world.scene.path_limit(settings.max_depth).saturating_sub(2);
     let wanted = PhotonSettings { photons: settings.photons, max_edges, seed: settings.seed };
     control.begin(Stage::LightPass, u64::from(settings.photons));
     let photons = stats.time(Stage::LightPass, || PhotonMap::new(world, &wanted, control));

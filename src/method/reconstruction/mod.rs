@@ -12,5 +12,4 @@
 mod render;
 mod settings;
 
-pub use render::{Prepared, render};
 pub use settings::Settings;

@@ -1,13 +1,13 @@
 //! Settings of the method.
 
-use super::Prepared;
+use super::render::{light, lighting_time};
 use crate::eye::EyePass;
 use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::ladder::CUTS;
 use crate::method::sampling::method_settings;
-use crate::method::{self, LightStore, Method, Move, Output, Renderer};
+use crate::method::{LightStore, Move, Output, Prepared, Renderer, Sampled};
 use crate::progress::Control;
 use crate::radiance_cache::CacheSettings;
 use crate::setting::{COMPENSATION, PATCHES, SHARE};
@@ -40,6 +40,17 @@ method_settings! {
 }
 
 impl Settings {
+    /// All of the picture but its lighting.
+    fn prepared<'w>(
+        &self,
+        world: &'w World,
+        lights: &LightStore,
+        view: &View,
+        control: &Control,
+    ) -> Prepared<'w> {
+        Prepared::new(world, lights, view, self.sampling(), (self.light, self.family), control)
+    }
+
     /// Settings of the shading stage.
     pub(super) fn shading(&self) -> ShadeSettings {
         ShadeSettings { cut: self.cut, share: self.share, shadows: self.shadows }
@@ -56,7 +67,7 @@ impl Renderer for Settings {
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
-        Prepared::new(world, lights, view, self, control).light(self, control)
+        light(self, world, self.prepared(world, lights, view, control), control)
     }
 
     fn expected_bytes(&self, window: &Window) -> Option<u64> {
@@ -71,24 +82,15 @@ impl Renderer for Settings {
         true
     }
 
-    fn prepare<'w>(
-        &self,
-        world: &'w World,
-        view: &View,
-        control: &Control,
-    ) -> Option<Box<dyn method::Prepared + 'w>> {
-        Some(Box::new(Prepared::new(world, &LightStore::default(), view, self, control)))
-    }
-}
-
-impl method::Prepared for Prepared<'_> {
-    fn lighting_time(&self, method: &Method, every: usize) -> Option<StageTime> {
-        let Method::Reconstruction(settings) = method else { return None };
-        Some(self.lighting_time(settings, every))
+    fn prepare<'w>(&self, world: &'w World, view: &View, control: &Control) -> Option<Prepared<'w>> {
+        Some(self.prepared(world, &LightStore::default(), view, control))
     }
 
-    fn light(self: Box<Self>, method: &Method, control: &Control) -> Option<Output> {
-        let Method::Reconstruction(settings) = method else { return None };
-        Some((*self).light(settings, control))
+    fn lighting_time(&self, world: &World, prepared: &Prepared, every: usize) -> Option<StageTime> {
+        Some(lighting_time(self, world, prepared, every))
+    }
+
+    fn light(&self, world: &World, prepared: Prepared, control: &Control) -> Option<Output> {
+        Some(light(self, world, prepared, control))
     }
 }
