@@ -7,6 +7,7 @@
 
 mod bounds;
 mod bsdf;
+mod document;
 pub mod export;
 mod hsh;
 mod measure;
@@ -23,7 +24,7 @@ pub use report::{Report, Row, Spread, Table};
 
 use crate::session::Session;
 use std::path::PathBuf;
-use study::{Document, Study, StudyError};
+use study::{Results, Study, StudyError};
 
 /// A benchmark that can be chosen by name.
 pub struct Benchmark {
@@ -51,7 +52,7 @@ pub enum Kind {
         /// Default width and height of the pictures.
         pixels: [u32; 2],
         /// Function that studies scene files.
-        run: fn(&Study, &[PathBuf]) -> Result<Document, StudyError>,
+        run: fn(&Study, &[PathBuf]) -> Result<Results, StudyError>,
     },
 }
 

@@ -46,12 +46,13 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     };
     let pool = threads::pool(plan.threads)?;
     let study = Study::new(plan, &control, &|what| talk::note(what)).map_err(failure)?;
-    let document = pool.install(|| run(&study, &files)).map_err(failure)?;
-    talk::print(&document.markdown)?;
+    let results = pool.install(|| run(&study, &files)).map_err(failure)?;
+    let markdown = results.document.markdown();
+    talk::print(&markdown)?;
     let file = |extension: &str| folder.join(name).with_extension(extension);
-    write(&file("json"), &format!("{:#}\n", document.json))?;
-    write(&file("md"), &document.markdown)?;
-    write(&file("html"), &document.html)
+    write(&file("json"), &format!("{:#}\n", results.json))?;
+    write(&file("md"), &markdown)?;
+    write(&file("html"), &results.document.html())
 }
 
 /// Returns the scenes given, else the study's own.

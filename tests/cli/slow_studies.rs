@@ -102,7 +102,8 @@ fn the_trade_sweeps_knobs_and_finds_the_front() {
     let sorts = ["default", "quality", "sample", "other"].map(sorted);
     assert_eq!(sorts, [1, 4, 4, 2]);
     let figures = |point: &Value| [point["seconds"].as_f64().unwrap(), point["flip"].as_f64().unwrap()];
-    let front: Vec<&Value> = points.iter().filter(|point| point["on_flip_front"] == true).collect();
+    let front: Vec<&Value> =
+        points.iter().filter(|point| point["fronts"].as_array().unwrap().contains(&"flip".into())).collect();
     assert!(!front.is_empty());
     for point in points.iter().filter(|point| point["sort"] != "other") {
         let [seconds, flip] = figures(point);

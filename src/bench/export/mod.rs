@@ -1,19 +1,17 @@
 //! Export formats of reports, one a file.
 
 mod csv;
-mod html;
 mod json;
-mod markdown;
 mod plot;
 mod terminal;
 
 use super::Report;
+use super::document::{Document, Grid};
 
-pub(super) use html::escaped;
 pub use terminal::terminal;
 
 /// Writers of all file formats, in the order of their options on the command line.
-pub const WRITERS: [fn(&Report) -> String; 4] = [json::json, csv::csv, markdown::markdown, html::html];
+pub const WRITERS: [fn(&Report) -> String; 4] = [json::json, csv::csv, markdown, html];
 
 /// Returns the headline of a report.
 fn headline(report: &Report) -> String {
@@ -21,6 +19,31 @@ fn headline(report: &Report) -> String {
         Some(scene) => format!("{} on {scene}", report.benchmark),
         None => report.benchmark.clone(),
     }
+}
+
+/// Markdown tables.
+fn markdown(report: &Report) -> String {
+    document(report).markdown()
+}
+
+/// One self-contained page: tables, and their ratios as bars.
+fn html(report: &Report) -> String {
+    document(report).html()
+}
+
+/// The report for people, a section a table.
+fn document(report: &Report) -> Document {
+    let mut document = Document::new(headline(report));
+    document.facts(&report.facts);
+    for table in &report.tables {
+        document.heading(2, &table.title);
+        document.text(&table.about);
+        document.figure(plot::bars(table));
+        let rows = table.rows.iter().map(|row| table.cells(row)).collect();
+        document.grid(Grid { names: table.labels.len(), heads: table.heads(), rows, ..Grid::default() });
+        table.warnings.iter().for_each(|warning| document.warning(warning));
+    }
+    document
 }
 
 #[cfg(test)]
@@ -71,7 +94,7 @@ mod tests {
 
     #[test]
     fn markdown_escapes_bars_and_terminal_aligns() {
-        let text = markdown::markdown(&report());
+        let text = markdown(&report());
         assert!(text.contains("| one | a\\|b | 1.00 | 0.90 .. 1.10 | 2.00 |"), "{text}");
         let text = terminal(&report());
         let column = |start: &str| text.lines().find(|l| l.contains(start)).and_then(|l| l.find("a|b"));
@@ -81,7 +104,7 @@ mod tests {
 
     #[test]
     fn html_is_self_contained_and_escaped() {
-        let text = html::html(&report());
+        let text = html(&report());
         assert!(text.contains("&lt;nave &amp; aisle&gt;") && !text.contains("<nave"));
         assert!(text.contains("<svg") && text.contains("</html>") && !text.contains("http"), "{text}");
         let doubled = text.matches("class=\"bar\"").count();

@@ -1,7 +1,7 @@
 //! Ratios as bars, in SVG.
 
-use super::html::escaped;
 use crate::bench::Table;
+use crate::bench::document::svg_text;
 
 const BAR: f64 = 18.0;
 const STEP: f64 = 24.0;
@@ -19,12 +19,7 @@ pub fn bars(table: &Table) -> String {
         let top = 4.0 + STEP * i as f64;
         let middle = top + 0.5 * BAR;
         let ratio = &row.ratio;
-        svg += &format!(
-            "<text x=\"{:.1}\" y=\"{:.1}\" class=\"label\">{}</text>\n",
-            LABELS - 8.0,
-            middle + 4.0,
-            escaped(&row.labels.join(", "))
-        );
+        svg += &svg_text(LABELS - 8.0, middle + 4.0, "end", &row.labels.join(", "));
         svg += &format!(
             "<rect class=\"bar\" x=\"{LABELS}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{BAR}\"/>\n",
             x(ratio.median) - LABELS
@@ -35,12 +30,8 @@ pub fn bars(table: &Table) -> String {
             x(ratio.high),
             middle - 4.0
         );
-        svg += &format!(
-            "<text x=\"{:.1}\" y=\"{:.1}\">{:.2}</text>\n",
-            x(ratio.high.max(ratio.median)) + 6.0,
-            middle + 4.0,
-            ratio.median
-        );
+        let right = x(ratio.high.max(ratio.median)) + 6.0;
+        svg += &svg_text(right, middle + 4.0, "start", &format!("{:.2}", ratio.median));
     }
     svg += &format!("<path class=\"one\" d=\"M{0:.1} 0V{height}\"/>\n</svg>\n", x(1.0));
     svg

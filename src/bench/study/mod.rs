@@ -26,6 +26,7 @@ pub(super) use run::Candidate;
 pub(super) use store::program;
 pub use subject::file_of;
 
+use super::document::Document;
 use crate::film::ImageError;
 use crate::progress::Control;
 use crate::session::OpenError;
@@ -43,14 +44,12 @@ pub struct Study<'a> {
     store: Store,
 }
 
-/// A study's result in three formats with the same content.
-pub struct Document {
-    /// JSON, for programs.
+/// A study's results.
+pub struct Results {
+    /// All figures, for programs.
     pub json: serde_json::Value,
-    /// Markdown, for people and terminals.
-    pub markdown: String,
-    /// HTML: one self-contained page.
-    pub html: String,
+    /// The same for people.
+    pub document: Document,
 }
 
 /// Options of a study that the command line sets.

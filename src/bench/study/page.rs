@@ -1,41 +1,10 @@
-//! Parts of self-contained HTML pages: embedded pictures, tables.
+//! Pictures embedded in pages.
 
-use crate::bench::export::escaped;
+use crate::bench::document::escaped;
 use crate::film::{Image, heatmap, tone};
 use ::image::codecs::jpeg::JpegEncoder;
 use ::image::codecs::png::PngEncoder;
 use ::image::{ExtendedColorType, ImageEncoder};
-
-/// Style sheet of the pages.
-pub const STYLE: &str = "body{font:15px system-ui,sans-serif;max-width:80em;margin:2em auto;padding:0 1em;color:#222}\
-table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:1em 0;font-size:13px}\
-th,td{padding:.15em .6em;text-align:right;border-bottom:1px solid #ddd}td:first-child,th:first-child{text-align:left}\
-.wide{overflow-x:auto}figure{display:inline-block;margin:.4em .6em .4em 0;vertical-align:top}\
-figcaption{font-size:13px;max-width:22em}img{display:block}.zoom{image-rendering:pixelated;width:200px;height:200px}\
-svg{max-width:100%;height:auto}svg text{font:12px system-ui,sans-serif;fill:#222}.minor{color:#888}\
-.axis{stroke:#888;fill:none}.grid{stroke:#e5e5e5;fill:none}.warning{color:#a40}";
-
-/// Returns a whole page.
-pub fn page(title: &str, body: &str) -> String {
-    let title = escaped(title);
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{title}</title>\n\
-         <style>{STYLE}</style></head>\n<body>\n<h1>{title}</h1>\n{body}</body>\n</html>\n"
-    )
-}
-
-/// Returns a table; `minor` selects the rows shown in grey.
-pub fn table(heads: &[String], rows: &[Vec<String>], minor: impl Fn(usize) -> bool) -> String {
-    let cells = |cells: &[String], tag: &str| -> String {
-        cells.iter().map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell))).collect()
-    };
-    let mut text = format!("<div class=\"wide\"><table>\n<tr>{}</tr>\n", cells(heads, "th"));
-    for (i, row) in rows.iter().enumerate() {
-        let class = if minor(i) { " class=\"minor\"" } else { "" };
-        text += &format!("<tr{class}>{}</tr>\n", cells(row, "td"));
-    }
-    text + "</table></div>\n"
-}
 
 /// Returns a picture with a caption; if there is a second picture, it shows while the pointer is over the
 /// first.

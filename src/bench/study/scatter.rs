@@ -1,6 +1,6 @@
 //! Scatter plots over two logarithmic axes, in SVG.
 
-use crate::bench::export::escaped;
+use crate::bench::document::{escaped, svg_text};
 
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 420.0;
@@ -42,27 +42,14 @@ pub fn scatter(x_name: &str, y_name: &str, series: &[Series]) -> String {
     let mut svg = format!("<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" role=\"img\">\n");
     for tick in ticks(x0, x1) {
         svg += &format!("<path class=\"grid\" d=\"M{0:.1} {ABOVE}V{bottom}\"/>", x(tick));
-        svg += &format!(
-            "<text x=\"{:.1}\" y=\"{}\" text-anchor=\"middle\">{tick}</text>\n",
-            x(tick),
-            bottom + 16.0
-        );
+        svg += &svg_text(x(tick), bottom + 16.0, "middle", &tick.to_string());
     }
     for tick in ticks(y0, y1) {
         svg += &format!("<path class=\"grid\" d=\"M{LEFT} {0:.1}H{right}\"/>", y(tick));
-        svg += &format!(
-            "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{tick}</text>\n",
-            LEFT - 6.0,
-            y(tick) + 4.0
-        );
+        svg += &svg_text(LEFT - 6.0, y(tick) + 4.0, "end", &tick.to_string());
     }
     svg += &format!("<path class=\"axis\" d=\"M{LEFT} {ABOVE}V{bottom}H{right}\"/>\n");
-    let middle = 0.5 * (LEFT + right);
-    svg += &format!(
-        "<text x=\"{middle}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-        HEIGHT - 10.0,
-        escaped(x_name)
-    );
+    svg += &svg_text(0.5 * (LEFT + right), HEIGHT - 10.0, "middle", x_name);
     let centre = 0.5 * (ABOVE + bottom);
     svg += &format!(
         "<text transform=\"translate(14 {centre}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
@@ -83,19 +70,14 @@ pub fn scatter(x_name: &str, y_name: &str, series: &[Series]) -> String {
                 escaped(name)
             );
             if !series.joined && !name.is_empty() && series.name.is_empty() {
-                svg += &format!("<text x=\"{:.1}\" y=\"{:.1}\">{}</text>", px + 7.0, py + 4.0, escaped(name));
+                svg += &svg_text(px + 7.0, py + 4.0, "start", name);
             }
             svg.push('\n');
         }
         if !series.name.is_empty() {
-            svg += &format!(
-                "<circle cx=\"{}\" cy=\"{legend}\" r=\"4\" fill=\"{}\"/><text x=\"{}\" y=\"{}\">{}</text>\n",
-                right + 12.0,
-                series.colour,
-                right + 20.0,
-                legend + 4.0,
-                escaped(&series.name)
-            );
+            let colour = series.colour;
+            svg += &format!("<circle cx=\"{}\" cy=\"{legend}\" r=\"4\" fill=\"{colour}\"/>", right + 12.0);
+            svg += &svg_text(right + 20.0, legend + 4.0, "start", &series.name);
             legend += 18.0;
         }
     }

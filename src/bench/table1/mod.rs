@@ -18,14 +18,13 @@
 //! errors of light without the aliasing of few eye samples a pixel; and against lightcuts per pixel on the
 //! same eye samples and virtual lights, where clamping does not show either.
 
+mod document;
 mod entries;
 mod equal;
-mod html;
-mod markdown;
 mod paper;
 mod row;
 
-use super::study::{Document, Errors, Noise, Reference, Run, Study, StudyError};
+use super::study::{Errors, Noise, Reference, Results, Run, Study, StudyError};
 use super::{Benchmark, Kind};
 use crate::film::Image;
 use crate::paths::Look;
@@ -74,7 +73,7 @@ struct Pictures {
     rows: Vec<Image>,
 }
 
-fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
+fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     let mut table = Table1 { facts: study.facts(), scenes: Vec::new() };
     for path in scenes {
         let subject = study.subject(path)?;
@@ -96,11 +95,7 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
             },
         });
     }
-    Ok(Document {
-        json: serde_json::json!(table),
-        markdown: markdown::markdown(&table),
-        html: html::html(&table),
-    })
+    Ok(Results { json: serde_json::json!(table), document: document::document(&table) })
 }
 
 fn rows(

@@ -14,14 +14,13 @@
 //! not in the designed sample.
 
 mod builds;
+mod document;
 mod front;
-mod html;
 mod knobs;
-mod markdown;
 mod sweep;
 mod verdict;
 
-use super::study::{Candidate, Document, Errors, Noise, Reference, Run, Study, StudyError, Subject};
+use super::study::{Candidate, Errors, Noise, Reference, Results, Run, Study, StudyError, Subject};
 use super::{Benchmark, Kind};
 use crate::method::reconstruction::Settings;
 use crate::method::{Method, lightcuts, photon_cache};
@@ -42,6 +41,9 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
     about: "What each setting buys: error against time, and the Pareto front",
     kind: Kind::Study { scenes: &[], pixels: [256, 256], run },
 };
+
+/// Errors that fronts are drawn for.
+const ERRORS: [JudgedBy; 3] = [JudgedBy::Limit, JudgedBy::Light, JudgedBy::Flip];
 
 /// All results.
 #[derive(Serialize)]
@@ -80,10 +82,8 @@ struct Point {
     light: Option<f64>,
     /// FLIP against the reference of pixels.
     flip: f64,
-    /// True if no other point of the same methods is faster and no worse.
-    on_limit_front: bool,
-    on_light_front: bool,
-    on_flip_front: bool,
+    /// Errors by which no other point of the same methods is faster and no worse.
+    fronts: Vec<JudgedBy>,
 }
 
 /// Reason for which a picture was rendered.
@@ -124,7 +124,7 @@ struct KnobEffect {
     time: Option<Effect>,
 }
 
-fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
+fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     // Names are checked before anything is rendered.
     chosen(&study.plan.knobs)?;
     let mut trade = Trade { facts: study.facts(), scenes: Vec::new() };
@@ -132,11 +132,7 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Document, StudyError> {
         let subject = study.subject(path)?;
         trade.scenes.push(scene(study, subject)?);
     }
-    Ok(Document {
-        json: serde_json::json!(trade),
-        markdown: markdown::markdown(&trade),
-        html: html::html(&trade),
-    })
+    Ok(Results { json: serde_json::json!(trade), document: document::document(&trade) })
 }
 
 /// Renders points and judges them.
@@ -264,9 +260,7 @@ impl Judge<'_> {
             limit,
             light,
             flip: Errors::against(&run.color, &self.reference)?.flip,
-            on_limit_front: false,
-            on_light_front: false,
-            on_flip_front: false,
+            fronts: Vec::new(),
         });
         Ok(self.points.len() - 1)
     }
@@ -274,21 +268,16 @@ impl Judge<'_> {
 
 /// Marks the fronts among the points of the default method and the cache.
 fn mark_fronts(points: &mut [Point]) {
-    let own: Vec<usize> = (0..points.len()).filter(|&i| points[i].sort != Sort::Other).collect();
-    let flips: Vec<_> = own.iter().map(|&i| (points[i].seconds, points[i].flip)).collect();
-    for (&i, on) in own.iter().zip(front(&flips)) {
-        points[i].on_flip_front = on;
-    }
-    let limited: Vec<usize> = own.iter().copied().filter(|&i| points[i].limit.is_some()).collect();
-    let limits: Vec<_> =
-        limited.iter().map(|&i| (points[i].seconds, points[i].error(JudgedBy::Limit))).collect();
-    for (&i, on) in limited.iter().zip(front(&limits)) {
-        points[i].on_limit_front = on;
-    }
-    let lit: Vec<usize> = own.into_iter().filter(|&i| points[i].light.is_some()).collect();
-    let lights: Vec<_> = lit.iter().map(|&i| (points[i].seconds, points[i].light.unwrap_or(0.0))).collect();
-    for (&i, on) in lit.iter().zip(front(&lights)) {
-        points[i].on_light_front = on;
+    for error in ERRORS {
+        let own = |point: &Point| (point.seconds, point.error(error).filter(|_| point.sort != Sort::Other));
+        let places = points.iter().map(own).enumerate();
+        let (judged, figures): (Vec<usize>, Vec<(f64, f64)>) =
+            places.filter_map(|(i, (seconds, error))| Some((i, (seconds, error?)))).unzip();
+        for (i, on) in judged.into_iter().zip(front(&figures)) {
+            if on {
+                points[i].fronts.push(error);
+            }
+        }
     }
 }
 
@@ -300,20 +289,20 @@ impl SceneTrade {
     }
 
     /// Returns the points on a front, fastest first.
-    fn front(&self, on: fn(&Point) -> bool) -> Vec<&Point> {
-        let mut points: Vec<&Point> = self.points.iter().filter(|point| on(point)).collect();
+    fn front(&self, error: JudgedBy) -> Vec<&Point> {
+        let mut points: Vec<&Point> = self.points.iter().filter(|p| p.fronts.contains(&error)).collect();
         points.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
         points
     }
 }
 
 impl Point {
-    /// Returns one of its errors; 0 where it has none of that sort.
-    fn error(&self, judged_by: JudgedBy) -> f64 {
+    /// Returns one of its errors.
+    fn error(&self, judged_by: JudgedBy) -> Option<f64> {
         match judged_by {
-            JudgedBy::Limit => self.limit.unwrap_or(0.0),
-            JudgedBy::Light => self.light.unwrap_or(0.0),
-            JudgedBy::Flip => self.flip,
+            JudgedBy::Limit => self.limit,
+            JudgedBy::Light => self.light,
+            JudgedBy::Flip => Some(self.flip),
         }
     }
 }

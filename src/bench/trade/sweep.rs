@@ -31,7 +31,7 @@ impl Judge<'_> {
         let of = |figure: &dyn Fn(&Point) -> f64| -> Vec<f64> {
             levels.iter().map(|&(_, point)| figure(&self.points[point])).collect()
         };
-        let error = course(&of(&|p| p.error(judged_by)), &names, ERROR_TOLERANCE);
+        let error = course(&of(&|p| p.error(judged_by).unwrap_or(0.0)), &names, ERROR_TOLERANCE);
         let time = course(&of(&|p| p.seconds), &names, TIME_TOLERANCE);
         let verdict = verdict(&error, &time);
         Sweep { knob: knob.to_owned(), levels, error, time, verdict, judged_by }
