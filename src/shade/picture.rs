@@ -46,7 +46,7 @@ impl Picture {
         }
     }
 
-    /// Adds the light of `tasks`, shaded in patches, of which there are about `count` if there is a task for each point.
+    /// Adds the light of `tasks`, shaded in patches: about `count` of them if there is a task for each point.
     pub fn shade<'w>(
         &mut self,
         context: &ShadingContext<'w>,
