@@ -1,9 +1,10 @@
 //! Chains through mirrors and glass, visibility samples and features, against closed forms.
 
 use super::chain::{ChainCounts, Met, Vertex, trace};
-use super::{EyePass, EyeSettings, Feature, FeatureSettings, Features, Look, features};
+use super::{EyePass, EyeSettings, Feature, FeatureSettings, Features, features};
 use crate::film::{Layer, Pixels};
 use crate::math::Rgb;
+use crate::paths::Look;
 use crate::progress::Control;
 use crate::sampling::Sampler;
 use crate::scene::{Camera, MaterialId, Mesh};
