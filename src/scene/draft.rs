@@ -23,6 +23,14 @@ pub(crate) struct DraftCamera {
     pub far: f64,
 }
 
+/// Cameras, and the size of their film.
+#[derive(Clone, Debug)]
+pub(crate) struct Shot {
+    pub camera: DraftCamera,
+    pub path: Vec<DraftCamera>,
+    pub resolution: [u32; 2],
+}
+
 /// A mesh in world coordinates.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DraftMesh {
@@ -44,9 +52,7 @@ pub(crate) struct DraftMesh {
 pub(crate) struct Draft {
     pub name: String,
     pub sources: Vec<PathBuf>,
-    pub camera: DraftCamera,
-    pub camera_path: Vec<DraftCamera>,
-    pub resolution: [u32; 2],
+    pub shot: Shot,
     pub max_depth: Option<u32>,
     pub meshes: Vec<DraftMesh>,
     pub materials: Vec<Material>,

@@ -14,7 +14,7 @@ pub(crate) fn centre(draft: &Draft) -> DVec3 {
         used.filter_map(|&i| mesh.positions.get(i as usize).copied())
     });
     let of_triangles = middle(corners);
-    let others = draft.lights.iter().map(|l| l.1).chain([draft.camera.origin]);
+    let others = draft.lights.iter().map(|l| l.1).chain([draft.shot.camera.origin]);
     of_triangles.or_else(|| middle(others)).unwrap_or(DVec3::ZERO)
 }
 
@@ -46,9 +46,9 @@ pub(crate) fn recentre(draft: Draft, centre: DVec3) -> (Scene, Cameras) {
         emission: m.emission,
     };
     let cameras = Cameras {
-        still: camera(&draft.camera),
-        path: draft.camera_path.iter().map(camera).collect(),
-        resolution: draft.resolution,
+        still: camera(&draft.shot.camera),
+        path: draft.shot.path.iter().map(camera).collect(),
+        resolution: draft.shot.resolution,
     };
     let scene = Scene {
         name: draft.name,

@@ -196,9 +196,7 @@ fn check_material(
     report: &mut SanitizeReport,
 ) -> Result<(), SceneError> {
     let name = material.name.clone();
-    let wrong = |what: String, remedy: &str| {
-        Err(SceneError::value(place, format!("material \"{name}\": {what}"), remedy))
-    };
+    let wrong = |what: String, remedy: &str| Err(place.wrong(format!("material \"{name}\": {what}"), remedy));
     let positive = |v: f32| v.is_finite() && v > 0.0;
     let mut etas = Vec::from_iter(material.coat.map(|coat| coat.eta));
     for lobe in &mut material.lobes {
@@ -266,7 +264,7 @@ fn check_sum(material: &Material, place: &Place) -> Result<(), SceneError> {
     if lobes != Rgb::ZERO && (base + lobes).max_element() > 1.0 + ALBEDO_SLACK {
         let what =
             format!("material \"{}\": diffuse {base} and specular {lobes} exceed 1 together", material.name);
-        return Err(SceneError::value(place, what, "lower one of them"));
+        return Err(place.wrong(what, "lower one of them"));
     }
     Ok(())
 }
@@ -289,11 +287,7 @@ fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), Sc
     let place = main_file(&draft.sources);
     let check = |light: Rgb, what: &str| match light.is_finite() && light.min_element() >= 0.0 {
         true => Ok(()),
-        false => Err(SceneError::value(
-            &place,
-            format!("{what} {light} is negative or no number"),
-            "give 0 or more",
-        )),
+        false => Err(place.wrong(format!("{what} {light} is negative or no number"), "give 0 or more")),
     };
     for mesh in &mut draft.meshes {
         let Some(emission) = mesh.emission else { continue };
@@ -312,7 +306,7 @@ fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), Sc
     for (light, position) in &draft.lights {
         check(power(light), "a light's intensity")?;
         if !position.is_finite() {
-            return Err(SceneError::value(&place, "a light's position is no number", "correct it"));
+            return Err(place.wrong("a light's position is no number", "correct it"));
         }
     }
     let before = draft.lights.len();

@@ -22,6 +22,11 @@ impl Place {
     pub fn line(path: &Path, line: u32) -> Place {
         Place { path: path.to_owned(), line: Some(line) }
     }
+
+    /// Returns the error of a wrong value here.
+    pub(crate) fn wrong(&self, what: impl Into<String>, remedy: impl Into<String>) -> SceneError {
+        SceneError::Value { place: self.clone(), what: what.into(), remedy: remedy.into() }
+    }
 }
 
 impl fmt::Display for Place {
@@ -129,11 +134,6 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// Returns the error of a wrong value.
-    pub(crate) fn value(place: &Place, what: impl Into<String>, remedy: impl Into<String>) -> SceneError {
-        SceneError::Value { place: place.clone(), what: what.into(), remedy: remedy.into() }
-    }
-
     /// Returns the error of a wrong mesh file.
     pub(crate) fn mesh(place: Place, what: impl Into<String>) -> SceneError {
         SceneError::Mesh { place, what: what.into() }

@@ -7,11 +7,11 @@ use super::error::{Place, SceneError};
 use super::mesh::{self, Placement, RawMesh};
 use super::picture::{self, Picture};
 use crate::math::Rgb;
-use crate::scene::draft::{Draft, DraftCamera, DraftMesh};
+use crate::scene::draft::{Draft, DraftMesh, Shot};
 use crate::scene::light::{DeltaLight, Environment, EnvironmentMap};
 use crate::scene::material::{Material, MaterialId};
 use crate::scene::mesh::Emission;
-use crate::scene::texture::{Filter, Texture, Wrap};
+use crate::scene::texture::{Filter, Texture, TextureId, Wrap};
 use glam::{DMat3, DMat4, DVec3, Mat3};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -24,10 +24,14 @@ pub(crate) struct Plan {
     /// The description's own files, main file first, with the hash of their bytes.
     pub sources: Vec<(PathBuf, u64)>,
     pub generator: Option<String>,
-    pub camera: DraftCamera,
-    pub camera_path: Vec<DraftCamera>,
-    pub resolution: [u32; 2],
+    pub shot: Shot,
     pub max_depth: Option<u32>,
+    pub contents: Contents,
+}
+
+/// All but the cameras of a description, in the making.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Contents {
     pub meshes: Vec<MeshPlan>,
     pub materials: Vec<Material>,
     /// Place in the files where each material is described.
@@ -35,6 +39,27 @@ pub(crate) struct Plan {
     pub textures: Vec<TexturePlan>,
     pub lights: Vec<(DeltaLight, DVec3)>,
     pub environment: Option<EnvironmentPlan>,
+}
+
+impl Contents {
+    /// Adds a material that is described at `place`.
+    pub fn add_material(&mut self, material: Material, place: Place) -> MaterialId {
+        self.materials.push(material);
+        self.material_places.push(place);
+        MaterialId(self.materials.len() as u32 - 1)
+    }
+
+    /// Adds a texture; the same one asked for twice is read and stored once.
+    pub fn add_texture(&mut self, plan: TexturePlan) -> TextureId {
+        let same = |t: &TexturePlan| {
+            t.image == plan.image && t.filter == plan.filter && t.wrap == plan.wrap && t.to_uv == plan.to_uv
+        };
+        let at = self.textures.iter().position(same).unwrap_or_else(|| {
+            self.textures.push(plan);
+            self.textures.len() - 1
+        });
+        TextureId(at as u32)
+    }
 }
 
 /// A mesh to be read or tessellated.
@@ -106,14 +131,14 @@ enum Done {
 impl Plan {
     /// Opens every file; returns the scene and the hash over the bytes of all its files.
     pub fn realise(self) -> Result<(Draft, u64), SceneError> {
-        let files = self.tasks();
+        let files = self.contents.tasks();
         let outcomes: Vec<Result<(u64, Vec<Done>), SceneError>> =
             files.par_iter().map(|(path, tasks)| carry_out(path, tasks)).collect();
 
         let mut sources: Vec<PathBuf> = self.sources.iter().map(|s| s.0.clone()).collect();
         let mut hashes: Vec<u64> = self.sources.iter().map(|s| s.1).collect();
-        let mut meshes: Vec<Vec<DraftMesh>> = vec![Vec::new(); self.meshes.len()];
-        let mut pictures: Vec<Option<Picture>> = vec![None; self.textures.len()];
+        let mut meshes: Vec<Vec<DraftMesh>> = vec![Vec::new(); self.contents.meshes.len()];
+        let mut pictures: Vec<Option<Picture>> = vec![None; self.contents.textures.len()];
         let mut sky = None;
         for ((path, _), outcome) in files.iter().zip(outcomes) {
             let (hash, done) = outcome?;
@@ -127,13 +152,15 @@ impl Plan {
                 }
             }
         }
-        for (plan, made) in self.meshes.iter().zip(&mut meshes) {
+        let contents = self.contents;
+        for (plan, made) in contents.meshes.iter().zip(&mut meshes) {
             if let Geometry::Ready(raw) = &plan.geometry {
                 *made = finish_mesh(plan, raw.clone());
             }
         }
-        let textures = self.textures.into_iter().zip(pictures).filter_map(|(t, p)| texture(t, p)).collect();
-        let environment = match (self.environment, sky) {
+        let textures =
+            contents.textures.into_iter().zip(pictures).filter_map(|(t, p)| texture(t, p)).collect();
+        let environment = match (contents.environment, sky) {
             (Some(EnvironmentPlan::Constant(radiance)), _) => Some(Environment::Constant(radiance)),
             (Some(EnvironmentPlan::Map { scale, to_world, .. }), Some(picture)) => {
                 Some(Environment::Map(environment_map(picture, scale, &to_world)))
@@ -143,21 +170,21 @@ impl Plan {
         let draft = Draft {
             name: self.name,
             sources,
-            camera: self.camera,
-            camera_path: self.camera_path,
-            resolution: self.resolution,
+            shot: self.shot,
             max_depth: self.max_depth,
             meshes: meshes.into_iter().flatten().collect(),
-            materials: self.materials,
-            material_places: self.material_places,
+            materials: contents.materials,
+            material_places: contents.material_places,
             textures,
-            lights: self.lights,
+            lights: contents.lights,
             environment,
         };
         let bytes: Vec<u8> = hashes.iter().flat_map(|h| h.to_le_bytes()).collect();
         Ok((draft, fnv1a(&bytes)))
     }
+}
 
+impl Contents {
     /// Returns the tasks of each file, files by first mention.
     fn tasks(&self) -> Vec<(&Path, Vec<Task<'_>>)> {
         let mut files: Vec<(&Path, Vec<Task>)> = Vec::new();

@@ -25,7 +25,7 @@ impl Object {
     ) -> Result<Option<T>, SceneError> {
         let Some(property) = self.property(name) else { return Ok(None) };
         let what = || format!("\"{name}\" of {} \"{}\" has the wrong type", self.tag, self.plugin);
-        let wrong = || SceneError::value(&property.place, what(), format!("give a <{kind}>"));
+        let wrong = || property.place.wrong(what(), format!("give a <{kind}>"));
         get(&property.value).map(Some).ok_or_else(wrong)
     }
 
@@ -68,7 +68,7 @@ impl Object {
         let value = self.float(name)?.unwrap_or(default);
         match self.property(name) {
             Some(p) if value <= 0.0 => {
-                Err(SceneError::value(&p.place, format!("{name} is {value}"), "give a number above 0"))
+                Err(p.place.wrong(format!("{name} is {value}"), "give a number above 0"))
             }
             _ => Ok(value),
         }

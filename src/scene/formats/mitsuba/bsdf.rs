@@ -7,7 +7,7 @@ use super::Converter;
 use super::tree::Object;
 use crate::math::{Rgb, luminance};
 use crate::scene::formats::constants;
-use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::formats::error::SceneError;
 use crate::scene::material::{
     Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness,
 };
@@ -22,38 +22,32 @@ impl Converter<'_> {
     ) -> Result<MaterialId, SceneError> {
         let Some(bsdf) = bsdf else {
             let slot = usize::from(emits);
-            if let Some(id) = self.parts.default_materials[slot] {
+            if let Some(id) = self.default_materials[slot] {
                 return Ok(id);
             }
             let albedo = Rgb::splat(if emits { 0.0 } else { 0.5 });
             let material = diffuse("default".into(), Reflectance::Constant(albedo));
-            let id = self.add_material(material, self.document.root.place.clone());
-            self.parts.default_materials[slot] = Some(id);
+            let id = self.contents.add_material(material, self.document.root.place.clone());
+            self.default_materials[slot] = Some(id);
             return Ok(id);
         };
         // The document keeps every object, so the address is its identity.
         let key = Rc::as_ptr(bsdf);
-        if let Some((_, id)) = self.parts.material_of.iter().find(|(object, _)| *object == key) {
+        if let Some((_, id)) = self.material_of.iter().find(|(object, _)| *object == key) {
             return Ok(*id);
         }
         let mut material = self.material(bsdf, 0)?;
         if let Some(id) = &bsdf.id {
             material.name = id.clone();
         }
-        let id = self.add_material(material, bsdf.place.clone());
-        self.parts.material_of.push((key, id));
+        let id = self.contents.add_material(material, bsdf.place.clone());
+        self.material_of.push((key, id));
         Ok(id)
-    }
-
-    fn add_material(&mut self, material: Material, place: Place) -> MaterialId {
-        self.parts.materials.push(material);
-        self.parts.material_places.push(place);
-        MaterialId(self.parts.materials.len() as u32 - 1)
     }
 
     fn material(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         if depth > 8 {
-            return Err(SceneError::value(&bsdf.place, "bsdfs refer to each other", "break the circle"));
+            return Err(bsdf.place.wrong("bsdfs refer to each other", "break the circle"));
         }
         let name = bsdf.id.clone().unwrap_or_else(|| match bsdf.place.line {
             Some(line) => format!("{}:{line}", bsdf.plugin),
@@ -121,7 +115,7 @@ impl Converter<'_> {
         let nested = self.tagged(bsdf, "bsdf")?;
         let Some(first) = nested.first() else {
             let what = format!("the bsdf \"{}\" holds no other", bsdf.plugin);
-            return Err(SceneError::value(&bsdf.place, what, "nest a <bsdf> or a <ref> to one"));
+            return Err(bsdf.place.wrong(what, "nest a <bsdf> or a <ref> to one"));
         };
         if let (Some(second), "twosided") = (nested.get(1), bsdf.plugin.as_str()) {
             self.log.warn(&second.place, "different sides are not modelled", "the first bsdf is on both")?;
@@ -160,11 +154,7 @@ impl Converter<'_> {
                 Some(preset) => {
                     let unknown = || {
                         let what = format!("unknown conductor \"{preset}\"");
-                        SceneError::value(
-                            &bsdf.place,
-                            what,
-                            format!("use one of {}", constants::conductor_names()),
-                        )
+                        bsdf.place.wrong(what, format!("use one of {}", constants::conductor_names()))
                     };
                     let (eta, k) = constants::conductor(preset).ok_or_else(unknown)?;
                     Fresnel::Conductor { eta, k }
@@ -230,7 +220,7 @@ impl Converter<'_> {
             }
             Some(other) => {
                 let what = format!("unknown distribution \"{other}\"");
-                return Err(SceneError::value(&bsdf.place, what, "use beckmann or ggx"));
+                return Err(bsdf.place.wrong(what, "use beckmann or ggx"));
             }
         };
         bsdf.ignore(&["sample_visible"]);
@@ -281,7 +271,7 @@ impl Converter<'_> {
         };
         let unknown = || {
             let what = format!("no index of refraction is known for \"{material}\"");
-            SceneError::value(&bsdf.place, what, "give the number")
+            bsdf.place.wrong(what, "give the number")
         };
         constants::index_of_refraction(&material).ok_or_else(unknown)
     }

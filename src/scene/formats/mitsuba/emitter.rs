@@ -44,7 +44,7 @@ impl Converter<'_> {
                 let intensity = self.emissive_colour(emitter, "intensity")?.unwrap_or(Rgb::ONE);
                 let at = to_world.unwrap_or(DMat4::IDENTITY).transform_point3(DVec3::ZERO);
                 let position = emitter.vector("position")?.unwrap_or(at);
-                self.parts.lights.push((DeltaLight::Point { position: Vec3::ZERO, intensity }, position));
+                self.contents.lights.push((DeltaLight::Point { position: Vec3::ZERO, intensity }, position));
             }
             "spot" => self.spot(emitter, to_world.unwrap_or(DMat4::IDENTITY))?,
             "directional" => {
@@ -52,7 +52,7 @@ impl Converter<'_> {
                 let along = to_world.unwrap_or(DMat4::IDENTITY).transform_vector3(DVec3::Z);
                 let direction = emitter.vector("direction")?.unwrap_or(along);
                 let direction = self.unit(emitter, direction)?;
-                self.parts.lights.push((DeltaLight::Directional { direction, irradiance }, DVec3::ZERO));
+                self.contents.lights.push((DeltaLight::Directional { direction, irradiance }, DVec3::ZERO));
             }
             "constant" => {
                 let radiance = self.emissive_colour(emitter, "radiance")?.unwrap_or(Rgb::ONE);
@@ -80,11 +80,7 @@ impl Converter<'_> {
         let inner = emitter.float("beam_width")?.unwrap_or(0.75 * outer);
         if !(0.0..=outer).contains(&inner) || outer > 180.0 {
             let what = format!("beam_width {inner} and cutoff_angle {outer} make no cone");
-            return Err(SceneError::value(
-                &emitter.place,
-                what,
-                "keep 0 <= beam_width <= cutoff_angle <= 180",
-            ));
+            return Err(emitter.place.wrong(what, "keep 0 <= beam_width <= cutoff_angle <= 180"));
         }
         let direction = self.unit(emitter, to_world.transform_vector3(DVec3::Z))?;
         let position = to_world.transform_point3(DVec3::ZERO);
@@ -95,7 +91,7 @@ impl Converter<'_> {
             inner_angle: inner.to_radians() as f32,
             outer_angle: outer.to_radians() as f32,
         };
-        self.parts.lights.push((light, position));
+        self.contents.lights.push((light, position));
         Ok(())
     }
 
@@ -103,10 +99,10 @@ impl Converter<'_> {
     fn rotation(&mut self, emitter: &Object, m: DMat4) -> Result<DMat4, SceneError> {
         let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|a| a.truncate());
         let [Some(a), Some(b), Some(c)] = [x, y, z].map(|a| a.try_normalize()) else {
-            return Err(SceneError::value(&emitter.place, "to_world is singular", "use a rotation"));
+            return Err(emitter.place.wrong("to_world is singular", "use a rotation"));
         };
         if a.dot(b).abs().max(b.dot(c).abs()).max(c.dot(a).abs()) > 1e-4 {
-            return Err(SceneError::value(&emitter.place, "to_world shears", "use a rotation"));
+            return Err(emitter.place.wrong("to_world shears", "use a rotation"));
         }
         if [x, y, z].iter().any(|a| (a.length() - 1.0).abs() > 1e-4) {
             self.log.warn(
@@ -119,17 +115,16 @@ impl Converter<'_> {
     }
 
     fn unit(&self, emitter: &Object, direction: DVec3) -> Result<Vec3, SceneError> {
-        let none =
-            || SceneError::value(&emitter.place, "the emitter has no direction", "give one that is not zero");
+        let none = || emitter.place.wrong("the emitter has no direction", "give one that is not zero");
         Ok(direction.try_normalize().ok_or_else(none)?.as_vec3())
     }
 
     fn environment(&mut self, emitter: &Object, plan: EnvironmentPlan) -> Result<(), SceneError> {
-        if self.parts.environment.is_some() {
+        if self.contents.environment.is_some() {
             let what = "the scene has more than one environment";
-            return Err(SceneError::value(&emitter.place, what, "leave one"));
+            return Err(emitter.place.wrong(what, "leave one"));
         }
-        self.parts.environment = Some(plan);
+        self.contents.environment = Some(plan);
         Ok(())
     }
 }

@@ -16,11 +16,9 @@ mod texture;
 mod tree;
 mod value;
 
-use super::error::{Log, Place, SceneError};
-use super::plan::{EnvironmentPlan, MeshPlan, Plan, TexturePlan};
-use crate::scene::light::DeltaLight;
-use crate::scene::material::{Material, MaterialId};
-use glam::DVec3;
+use super::error::{Log, SceneError};
+use super::plan::{Contents, Plan};
+use crate::scene::material::MaterialId;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use tree::{Document, Object};
@@ -29,29 +27,22 @@ use tree::{Document, Object};
 pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     let document = Document::read(path)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let mut converter = Converter { document: &document, folder, log, parts: Parts::default() };
+    let mut converter = Converter {
+        document: &document,
+        folder,
+        log,
+        contents: Contents::default(),
+        material_of: Vec::new(),
+        default_materials: [None; 2],
+    };
     converter.scene()?;
-    let shot = converter.shot()?;
-    let parts = converter.parts;
+    let (shot, max_depth) = converter.shot()?;
+    let contents = converter.contents;
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let folder_name = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
     // Scene files are usually called scene.xml; then the folder's name is used.
     let name = if stem == "scene" { folder_name.unwrap_or(stem) } else { stem };
-    Ok(Plan {
-        name,
-        sources: document.sources,
-        generator: None,
-        camera: shot.camera,
-        camera_path: Vec::new(),
-        resolution: shot.resolution,
-        max_depth: shot.max_depth,
-        meshes: parts.meshes,
-        materials: parts.materials,
-        material_places: parts.material_places,
-        textures: parts.textures,
-        lights: parts.lights,
-        environment: parts.environment,
-    })
+    Ok(Plan { name, sources: document.sources, generator: None, shot, max_depth, contents })
 }
 
 struct Converter<'a> {
@@ -59,21 +50,10 @@ struct Converter<'a> {
     /// Folder that file names are relative to.
     folder: PathBuf,
     log: &'a mut Log,
-    parts: Parts,
-}
-
-/// Parts converted so far.
-#[derive(Default)]
-struct Parts {
-    meshes: Vec<MeshPlan>,
-    materials: Vec<Material>,
-    material_places: Vec<Place>,
+    contents: Contents,
     /// Source of each material: the bsdf object and its wrapping.
     material_of: Vec<(*const Object, MaterialId)>,
     default_materials: [Option<MaterialId>; 2],
-    textures: Vec<TexturePlan>,
-    lights: Vec<(DeltaLight, DVec3)>,
-    environment: Option<EnvironmentPlan>,
 }
 
 impl Converter<'_> {
@@ -96,7 +76,7 @@ impl Converter<'_> {
     fn file(&self, object: &Object, name: &str) -> Result<PathBuf, SceneError> {
         let missing = || {
             let what = format!("{} \"{}\" names no file", object.tag, object.plugin);
-            SceneError::value(&object.place, what, format!("add <string name=\"{name}\" value=\"...\"/>"))
+            object.place.wrong(what, format!("add <string name=\"{name}\" value=\"...\"/>"))
         };
         // Descriptions written on Windows name files with backslashes.
         let file = object.string(name)?.ok_or_else(missing)?.replace('\\', "/");

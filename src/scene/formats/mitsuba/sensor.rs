@@ -2,19 +2,13 @@
 
 use super::Converter;
 use super::tree::Object;
-use crate::scene::draft::DraftCamera;
+use crate::scene::draft::{DraftCamera, Shot};
 use crate::scene::formats::error::{Place, SceneError};
 use glam::{DMat4, DVec3};
 
-/// Camera, film size and maximum path length.
-pub(super) struct Shot {
-    pub camera: DraftCamera,
-    pub resolution: [u32; 2],
-    pub max_depth: Option<u32>,
-}
-
 impl Converter<'_> {
-    pub(super) fn shot(&mut self) -> Result<Shot, SceneError> {
+    /// The camera with its film, and the longest path.
+    pub(super) fn shot(&mut self) -> Result<(Shot, Option<u32>), SceneError> {
         let root = &self.document.root;
         let integrators = self.tagged(root, "integrator")?;
         let max_depth = match integrators.first() {
@@ -24,7 +18,7 @@ impl Converter<'_> {
         let sensors = self.tagged(root, "sensor")?;
         let Some(sensor) = sensors.first() else {
             let remedy = "add <sensor type=\"perspective\"> with a to_world transform";
-            return Err(SceneError::value(&root.place, "the scene has no sensor", remedy));
+            return Err(root.place.wrong("the scene has no sensor", remedy));
         };
         if let Some(second) = sensors.get(1) {
             self.log.warn(&second.place, "there is more than one sensor", "the first is used")?;
@@ -37,7 +31,7 @@ impl Converter<'_> {
             }
             other => {
                 let what = format!("the sensor \"{other}\" is not modelled");
-                return Err(SceneError::value(&sensor.place, what, "use type=\"perspective\""));
+                return Err(sensor.place.wrong(what, "use type=\"perspective\""));
             }
         }
         let resolution = self.film(sensor)?;
@@ -48,7 +42,7 @@ impl Converter<'_> {
         let far = sensor.positive("far_clip", 1e4)?;
         if near >= far {
             let what = format!("near_clip {near} is not below far_clip {far}");
-            return Err(SceneError::value(&sensor.place, what, "swap them"));
+            return Err(sensor.place.wrong(what, "swap them"));
         }
         for offset in ["principal_point_offset_x", "principal_point_offset_y"] {
             if sensor.float(offset)?.is_some_and(|v| v != 0.0) {
@@ -59,7 +53,7 @@ impl Converter<'_> {
         self.tagged(sensor, "sampler")?;
         let camera = self.camera(&sensor.place, &to_world, tan_half_x, near, far)?;
         sensor.report_unused(self.log)?;
-        Ok(Shot { camera, resolution, max_depth })
+        Ok((Shot { camera, path: Vec::new(), resolution }, max_depth))
     }
 
     /// Mitsuba's camera looks along +z with +x to the left.
@@ -72,7 +66,7 @@ impl Converter<'_> {
         far: f64,
     ) -> Result<DraftCamera, SceneError> {
         let axes = [DVec3::NEG_X, DVec3::Y, DVec3::Z].map(|a| to_world.transform_vector3(a));
-        let singular = || SceneError::value(place, "the sensor's to_world is singular", "use a rotation");
+        let singular = || place.wrong("the sensor's to_world is singular", "use a rotation");
         let [right, up, forward] = axes.map(|a| a.try_normalize());
         let (right, up, forward) =
             (right.ok_or_else(singular)?, up.ok_or_else(singular)?, forward.ok_or_else(singular)?);
@@ -80,7 +74,7 @@ impl Converter<'_> {
             self.log.warn(place, "the sensor's to_world scales", "the scale is left out")?;
         }
         if right.dot(up).abs().max(up.dot(forward).abs()).max(forward.dot(right).abs()) > 1e-3 {
-            return Err(SceneError::value(place, "the sensor's to_world shears", "use a rotation"));
+            return Err(place.wrong("the sensor's to_world shears", "use a rotation"));
         }
         let origin = to_world.transform_point3(DVec3::ZERO);
         Ok(DraftCamera { origin, forward, right, up, tan_half_x, near, far })
@@ -93,7 +87,7 @@ impl Converter<'_> {
             let value = film.integer(name)?.unwrap_or(default);
             let fits = u32::try_from(value).ok().filter(|v| (1..=65536).contains(v));
             let what = format!("the film's {name} is {value}");
-            fits.ok_or_else(|| SceneError::value(&film.place, what, "give 1 to 65536"))
+            fits.ok_or_else(|| film.place.wrong(what, "give 1 to 65536"))
         };
         let resolution = [size("width", 768)?, size("height", 576)?];
         for crop in ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"] {
@@ -118,7 +112,7 @@ impl Converter<'_> {
 
 /// Horizontal field of view, radians.
 fn horizontal_fov(sensor: &Object, aspect: f64) -> Result<f64, SceneError> {
-    let wrong = |what: String, remedy: &str| SceneError::value(&sensor.place, what, remedy);
+    let wrong = |what: String, remedy: &str| sensor.place.wrong(what, remedy);
     let (fov, axis) = match (sensor.float("fov")?, sensor.property("focal_length")) {
         (Some(_), Some(_)) => {
             return Err(wrong("both fov and focal_length are given".into(), "leave one out"));

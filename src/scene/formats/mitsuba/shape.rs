@@ -23,8 +23,7 @@ impl Converter<'_> {
             }
             "serialized" => {
                 let index = shape.integer("shape_index")?.unwrap_or(0);
-                let negative =
-                    || SceneError::value(&shape.place, format!("shape_index is {index}"), "give 0 or more");
+                let negative = || shape.place.wrong(format!("shape_index is {index}"), "give 0 or more");
                 let index = usize::try_from(index).map_err(|_| negative())?;
                 Geometry::Serialized(self.file(shape, "filename")?, index)
             }
@@ -78,7 +77,7 @@ impl Converter<'_> {
         });
         let place = shape.place.clone();
         let material = MaterialPlan::One(material);
-        self.parts.meshes.push(MeshPlan { place, name, geometry, placement, material, emission });
+        self.contents.meshes.push(MeshPlan { place, name, geometry, placement, material, emission });
         Ok(())
     }
 
@@ -88,6 +87,6 @@ impl Converter<'_> {
     }
 
     fn is_textured(&self, id: MaterialId) -> bool {
-        self.parts.materials.get(id.0 as usize).is_some_and(Material::is_textured)
+        self.contents.materials.get(id.0 as usize).is_some_and(Material::is_textured)
     }
 }

@@ -9,7 +9,7 @@ use crate::scene::formats::error::SceneError;
 use crate::scene::formats::picture::Picture;
 use crate::scene::formats::plan::{Image, TexturePlan};
 use crate::scene::material::Reflectance;
-use crate::scene::texture::{Filter, TextureId, Wrap};
+use crate::scene::texture::{Filter, Wrap};
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
 /// RGB value in Mitsuba's `rgb` variants of an emissive spectrum of 1 at every wavelength.
@@ -44,7 +44,7 @@ impl Converter<'_> {
             }
             _ => {
                 let what = format!("\"{name}\" of {} \"{}\" is no colour", object.tag, object.plugin);
-                return Err(SceneError::value(&property.place, what, "give an <rgb> or a <texture>"));
+                return Err(property.place.wrong(what, "give an <rgb> or a <texture>"));
             }
         };
         Ok(Some(value::rgb(colour)))
@@ -70,10 +70,10 @@ impl Converter<'_> {
     pub(super) fn texture(&mut self, object: &Object, depth: u32) -> Result<Reflectance, SceneError> {
         if object.tag != "texture" {
             let what = format!("a <{}> stands where a texture is expected", object.tag);
-            return Err(SceneError::value(&object.place, what, "give a <texture>"));
+            return Err(object.place.wrong(what, "give a <texture>"));
         }
         if depth > 8 {
-            return Err(SceneError::value(&object.place, "textures refer to each other", "break the circle"));
+            return Err(object.place.wrong("textures refer to each other", "break the circle"));
         }
         let reflectance = match object.plugin.as_str() {
             "bitmap" => self.bitmap(object)?,
@@ -104,7 +104,7 @@ impl Converter<'_> {
         };
         let nested = self.tagged(object, "texture")?;
         let Some(nested) = nested.first() else {
-            return Err(SceneError::value(&object.place, "nothing to scale", "nest a <texture>"));
+            return Err(object.place.wrong("nothing to scale", "nest a <texture>"));
         };
         Ok(match self.texture(nested, depth + 1)? {
             Reflectance::Constant(colour) => Reflectance::Constant(colour * factor),
@@ -157,8 +157,13 @@ impl Converter<'_> {
         }
         let to_uv = self.to_uv(object)?;
         let place = object.place.clone();
-        let texture =
-            self.add_texture(TexturePlan { place, image: Image::File { path, raw }, filter, wrap, to_uv });
+        let texture = self.contents.add_texture(TexturePlan {
+            place,
+            image: Image::File { path, raw },
+            filter,
+            wrap,
+            to_uv,
+        });
         Ok(Reflectance::Textured { texture, scale: Rgb::ONE })
     }
 
@@ -166,15 +171,13 @@ impl Converter<'_> {
     fn checkerboard(&mut self, object: &Object) -> Result<Reflectance, SceneError> {
         let mut texel = |name: &str, default: f32| match self.reflectance(object, name, default)? {
             Reflectance::Constant(colour) => Ok(colour),
-            Reflectance::Textured { .. } => Err(SceneError::value(
-                &object.place,
-                "a checkerboard of textures",
-                "give its colours as <rgb>",
-            )),
+            Reflectance::Textured { .. } => {
+                Err(object.place.wrong("a checkerboard of textures", "give its colours as <rgb>"))
+            }
         };
         let (even, odd) = (texel("color0", 0.4)?, texel("color1", 0.2)?);
         let picture = Picture { width: 2, height: 2, texels: vec![even, odd, odd, even] };
-        let texture = self.add_texture(TexturePlan {
+        let texture = self.contents.add_texture(TexturePlan {
             place: object.place.clone(),
             image: Image::Ready("checkerboard".into(), picture),
             filter: Filter::Nearest,
@@ -196,19 +199,6 @@ impl Converter<'_> {
         let to_uv = to_uv * DMat3::from_translation(offset) * DMat3::from_scale(scale);
         let flip = DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::new(0.0, 1.0, 1.0));
         Ok((flip * to_uv * flip).as_mat3())
-    }
-
-    /// The same texture asked for twice is read and stored once.
-    pub(super) fn add_texture(&mut self, plan: TexturePlan) -> TextureId {
-        let textures = &mut self.parts.textures;
-        let same = |t: &TexturePlan| {
-            t.image == plan.image && t.filter == plan.filter && t.wrap == plan.wrap && t.to_uv == plan.to_uv
-        };
-        let at = textures.iter().position(same).unwrap_or_else(|| {
-            textures.push(plan);
-            textures.len() - 1
-        });
-        TextureId(at as u32)
     }
 }
 

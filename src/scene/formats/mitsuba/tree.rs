@@ -145,7 +145,7 @@ impl Builder {
             let place = self.place(path, &root);
             if root.attribute("version").is_none() {
                 let remedy = "give it one, e.g. <scene version=\"3.0.0\">";
-                return Err(SceneError::value(&place, "the scene has no version", remedy));
+                return Err(place.wrong("the scene has no version", remedy));
             }
             for node in root.children() {
                 self.node(path, &node, parent, depth + 1)?;
@@ -180,17 +180,13 @@ impl Builder {
     ) -> Result<(), SceneError> {
         let place = self.place(path, node);
         if depth > MAX_DEPTH {
-            return Err(SceneError::value(
-                &place,
-                "elements or includes nested too deeply",
-                "flatten the file",
-            ));
+            return Err(place.wrong("elements or includes nested too deeply", "flatten the file"));
         }
         let attributes = self.attributes(node, &place)?;
         let get = |name: &str| attributes.get(name).map(String::as_str);
         let need = |name: &str| {
             let what = format!("<{}> lacks the attribute \"{name}\"", node.tag_name().name());
-            get(name).ok_or_else(|| SceneError::value(&place, what, format!("add {name}=\"...\"")))
+            get(name).ok_or_else(|| place.wrong(what, format!("add {name}=\"...\"")))
         };
         let folder = path.parent().unwrap_or(Path::new(""));
         match node.tag_name().name() {
@@ -236,7 +232,7 @@ impl Builder {
                     && let Some(other) = self.ids.insert(id.clone(), object.clone())
                 {
                     let what = format!("the id \"{id}\" is already taken at {}", other.place);
-                    return Err(SceneError::value(&place, what, "rename one of them"));
+                    return Err(place.wrong(what, "rename one of them"));
                 }
                 parent.children.push(Child {
                     target: Target::Own(object),

@@ -27,15 +27,11 @@ type Attributes = BTreeMap<String, String>;
 /// Parses the value of a property element such as `<float name="alpha" value="0.1"/>`.
 pub(super) fn parse(tag: &str, attributes: &Attributes, place: &Place) -> Result<Value, SceneError> {
     let text = || {
-        let missing = || SceneError::value(place, format!("<{tag}> has no value"), "add value=\"...\"");
+        let missing = || place.wrong(format!("<{tag}> has no value"), "add value=\"...\"");
         attributes.get("value").map(|v| v.trim()).ok_or_else(missing)
     };
     let unreadable = |text: &str| {
-        SceneError::value(
-            place,
-            format!("cannot read <{tag}> value \"{text}\""),
-            format!("write a valid {tag}"),
-        )
+        place.wrong(format!("cannot read <{tag}> value \"{text}\""), format!("write a valid {tag}"))
     };
     Ok(match tag {
         "boolean" => match text()?.to_ascii_lowercase().as_str() {
@@ -55,7 +51,7 @@ pub(super) fn parse(tag: &str, attributes: &Attributes, place: &Place) -> Result
         }
         "spectrum" if attributes.contains_key("filename") => {
             let remedy = "write the samples into value=\"wavelength:value, ...\"";
-            return Err(SceneError::value(place, "spectra in files are not read", remedy));
+            return Err(place.wrong("spectra in files are not read", remedy));
         }
         "spectrum" => {
             let text = text()?;
@@ -72,11 +68,11 @@ pub(super) fn parse(tag: &str, attributes: &Attributes, place: &Place) -> Result
         }
         "translate" | "rotate" | "scale" | "lookat" | "lookAt" | "matrix" => {
             let what = format!("<{tag}> stands outside a <transform>");
-            return Err(SceneError::value(place, what, "put it inside <transform name=\"to_world\">"));
+            return Err(place.wrong(what, "put it inside <transform name=\"to_world\">"));
         }
         _ => {
             let what = format!("unknown element <{tag}>");
-            return Err(SceneError::value(place, what, "use an element of Mitsuba's scene format"));
+            return Err(place.wrong(what, "use an element of Mitsuba's scene format"));
         }
     })
 }
@@ -107,11 +103,7 @@ fn colour(text: &str) -> Option<DVec3> {
 /// Parses `x`, `y`, `z`, each `default` where left out, or all in `value`.
 fn vector(attributes: &Attributes, default: f64, place: &Place) -> Result<DVec3, SceneError> {
     let unreadable = |text: &str| {
-        SceneError::value(
-            place,
-            format!("cannot read the vector \"{text}\""),
-            "write one or three finite numbers",
-        )
+        place.wrong(format!("cannot read the vector \"{text}\""), "write one or three finite numbers")
     };
     if let Some(text) = attributes.get("value") {
         return match numbers(text).as_deref() {
@@ -136,13 +128,13 @@ pub(super) fn transform(operations: &[(String, Attributes, Place)]) -> Result<Va
     if !matrix.is_finite() {
         let place =
             operations.last().map(|o| o.2.clone()).unwrap_or(Place { path: Default::default(), line: None });
-        return Err(SceneError::value(&place, "the transform is not finite", "correct its numbers"));
+        return Err(place.wrong("the transform is not finite", "correct its numbers"));
     }
     Ok(Value::Transform(matrix))
 }
 
 fn operation(tag: &str, attributes: &Attributes, place: &Place) -> Result<DMat4, SceneError> {
-    let bad = |what: String, remedy: &str| SceneError::value(place, what, remedy);
+    let bad = |what: String, remedy: &str| place.wrong(what, remedy);
     let need = |name: &str| {
         let missing = || bad(format!("<{tag}> lacks the attribute \"{name}\""), "add it");
         attributes.get(name).map(String::as_str).ok_or_else(missing)

@@ -6,16 +6,9 @@
 
 use super::text::{CameraText, KeyText, SceneText};
 use super::{Builder, finite};
-use crate::scene::draft::DraftCamera;
+use crate::scene::draft::{DraftCamera, Shot};
 use crate::scene::formats::error::{Place, SceneError};
 use glam::DVec3;
-
-/// Cameras, and the size of their film.
-pub(super) struct Shot {
-    pub camera: DraftCamera,
-    pub path: Vec<DraftCamera>,
-    pub resolution: [u32; 2],
-}
 
 /// A key: eye and target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +34,7 @@ impl Builder<'_> {
         let resolution = *scene.resolution.get_ref();
         if resolution.iter().any(|r| !(1..=65536).contains(r)) {
             let what = format!("the resolution is {} x {}", resolution[0], resolution[1]);
-            return Err(SceneError::value(&place, what, "give 1 to 65536 each"));
+            return Err(place.wrong(what, "give 1 to 65536 each"));
         }
         let place = self.file.place(scene.camera.span());
         let text = scene.camera.get_ref();
@@ -55,7 +48,7 @@ impl Builder<'_> {
             let keys: Vec<Key> = walk.keys.iter().map(|k| key(k, &place)).collect::<Result<_, _>>()?;
             if walk.frames == 0 || walk.frames > 1 << 20 || keys.is_empty() {
                 let what = format!("a path of {} frames through {} keys", walk.frames, keys.len());
-                return Err(SceneError::value(&place, what, "give at least one of each"));
+                return Err(place.wrong(what, "give at least one of each"));
             }
             for frame in 0..walk.frames {
                 let t = frame as f64 / (walk.frames.max(2) - 1) as f64;
@@ -67,7 +60,7 @@ impl Builder<'_> {
 
     fn tan_half_x(&self, text: &CameraText, resolution: [u32; 2], place: &Place) -> Result<f64, SceneError> {
         if !(text.fov > 0.0 && text.fov < 180.0) {
-            return Err(SceneError::value(place, format!("fov is {}", text.fov), "give 0 to 180 degrees"));
+            return Err(place.wrong(format!("fov is {}", text.fov), "give 0 to 180 degrees"));
         }
         let tan = (0.5 * text.fov.to_radians()).tan();
         match text.fov_axis.as_ref().map(|a| (a.get_ref().as_str(), a.span())) {
@@ -75,7 +68,7 @@ impl Builder<'_> {
             Some(("y", _)) => Ok(tan * f64::from(resolution[0]) / f64::from(resolution[1])),
             Some((other, span)) => {
                 let what = format!("unknown fov_axis \"{other}\"");
-                Err(SceneError::value(&self.file.place(span), what, "use x or y"))
+                Err(self.file.place(span).wrong(what, "use x or y"))
             }
         }
     }
@@ -92,11 +85,11 @@ fn camera(text: &CameraText, key: Key, tan_half_x: f64, place: &Place) -> Result
     let right = forward.and_then(|f| f.cross(up).try_normalize());
     let (Some(forward), Some(right)) = (forward, right) else {
         let what = "the camera looks nowhere, or along its up vector";
-        return Err(SceneError::value(place, what, "move target away from origin, or turn up"));
+        return Err(place.wrong(what, "move target away from origin, or turn up"));
     };
     let (near, far) = (text.near.unwrap_or(0.0), text.far.unwrap_or(f64::INFINITY));
     if !(near >= 0.0 && near < far) {
-        return Err(SceneError::value(place, format!("near is {near}, far {far}"), "keep 0 <= near < far"));
+        return Err(place.wrong(format!("near is {near}, far {far}"), "keep 0 <= near < far"));
     }
     Ok(DraftCamera { origin: key.origin, forward, right, up: right.cross(forward), tan_half_x, near, far })
 }

@@ -13,13 +13,8 @@ impl Builder<'_> {
         let place = self.file.place(text.span());
         let text = text.get_ref();
         let need = |value: Option<[f64; 3]>, key: &str| {
-            let missing = || {
-                SceneError::value(
-                    &place,
-                    format!("the {} light lacks {key}", text.kind),
-                    format!("add {key} = [...]"),
-                )
-            };
+            let missing =
+                || place.wrong(format!("the {} light lacks {key}", text.kind), format!("add {key} = [...]"));
             finite(value.ok_or_else(missing)?, key, &place)
         };
         let given = [
@@ -37,16 +32,12 @@ impl Builder<'_> {
             "directional" => &["direction", "irradiance"],
             other => {
                 let what = format!("unknown kind of light \"{other}\"");
-                return Err(SceneError::value(&place, what, "use point, spot or directional"));
+                return Err(place.wrong(what, "use point, spot or directional"));
             }
         };
         if let Some((key, _)) = given.iter().find(|(key, is_given)| *is_given && !known.contains(key)) {
             let what = format!("{key} means nothing for a {} light", text.kind);
-            return Err(SceneError::value(
-                &place,
-                what,
-                format!("leave it out; known are {}", known.join(", ")),
-            ));
+            return Err(place.wrong(what, format!("leave it out; known are {}", known.join(", "))));
         }
         let light = match text.kind.as_str() {
             "point" => {
@@ -61,11 +52,7 @@ impl Builder<'_> {
                 let inner = text.inner_angle.unwrap_or(0.75 * outer);
                 if !(0.0 <= inner && inner <= outer && outer > 0.0 && outer <= 180.0) {
                     let what = format!("inner_angle {inner} and outer_angle {outer} make no cone");
-                    return Err(SceneError::value(
-                        &place,
-                        what,
-                        "keep 0 <= inner_angle <= outer_angle <= 180",
-                    ));
+                    return Err(place.wrong(what, "keep 0 <= inner_angle <= outer_angle <= 180"));
                 }
                 let [inner_angle, outer_angle] = [inner, outer].map(|a| a.to_radians() as f32);
                 let light =
@@ -78,7 +65,7 @@ impl Builder<'_> {
                 (DeltaLight::Directional { direction, irradiance }, DVec3::ZERO)
             }
         };
-        self.lights.push(light);
+        self.contents.lights.push(light);
         Ok(())
     }
 
@@ -96,13 +83,13 @@ impl Builder<'_> {
             }
             _ => {
                 let remedy = "give radiance alone, or file with scale and rotate_y";
-                Err(SceneError::value(&place, "the environment has no single source", remedy))
+                Err(place.wrong("the environment has no single source", remedy))
             }
         }
     }
 }
 
 fn unit(direction: DVec3, place: &Place) -> Result<Vec3, SceneError> {
-    let none = || SceneError::value(place, "the light has no direction", "give one that is not zero");
+    let none = || place.wrong("the light has no direction", "give one that is not zero");
     Ok(direction.try_normalize().ok_or_else(none)?.as_vec3())
 }

@@ -33,10 +33,10 @@ impl Builder<'_> {
         let two_sided = text.two_sided.unwrap_or(true);
         let lobes = Vec::from_iter(lobe);
         let material = Material { name: text.name.clone(), two_sided, diffuse, coat, lobes };
-        let id = self.add_material(material, place.clone());
+        let id = self.contents.add_material(material, place.clone());
         if self.material_ids.insert(text.name.clone(), id).is_some() {
             let what = format!("there are two materials called \"{}\"", text.name);
-            return Err(SceneError::value(&place, what, "rename one"));
+            return Err(place.wrong(what, "rename one"));
         }
         Ok(())
     }
@@ -48,7 +48,7 @@ impl Builder<'_> {
     ) -> Result<(Reflectance, Option<Coat>, Option<Lobe>), SceneError> {
         let need = |colour: &Option<ColourText>, key: &str| {
             let what = || format!("the material \"{}\" lacks {key}", text.name);
-            colour.clone().ok_or_else(|| SceneError::value(place, what(), format!("add {key} = ...")))
+            colour.clone().ok_or_else(|| place.wrong(what(), format!("add {key} = ...")))
         };
         let one = || ColourText::Grey(1.0);
         let ior = text.ior.unwrap_or(1.5) as f32;
@@ -115,7 +115,7 @@ impl Builder<'_> {
             NumberText::Number(alpha) => {
                 if !(alpha > 0.0 && alpha <= 4.0) {
                     let what = format!("the roughness of \"{}\" is {alpha}", text.name);
-                    return Err(SceneError::value(place, what, "give a number above 0, usually up to 1"));
+                    return Err(place.wrong(what, "give a number above 0, usually up to 1"));
                 }
                 Roughness::Constant(alpha as f32)
             }
@@ -129,7 +129,7 @@ impl Builder<'_> {
             Some("beckmann") => Distribution::Beckmann,
             Some(other) => {
                 let what = format!("unknown distribution \"{other}\"");
-                return Err(SceneError::value(place, what, "use ggx or beckmann"));
+                return Err(place.wrong(what, "use ggx or beckmann"));
             }
         };
         Ok(Lobe::Rough { distribution, alpha, fresnel, scale })
@@ -159,15 +159,7 @@ impl Builder<'_> {
         let tiles = text.tiles.unwrap_or([1.0, 1.0]).map(|t| t as f32);
         let to_uv = Mat3::from_scale(Vec2::from(tiles));
         let image = Image::File { path: self.folder.join(&text.file), raw: text.raw };
-        let known = self
-            .textures
-            .iter()
-            .position(|t| t.image == image && t.filter == filter && t.wrap == wrap && t.to_uv == to_uv);
-        let at = known.unwrap_or_else(|| {
-            self.textures.push(TexturePlan { place: place.clone(), image, filter, wrap, to_uv });
-            self.textures.len() - 1
-        });
-        TextureId(at as u32)
+        self.contents.add_texture(TexturePlan { place: place.clone(), image, filter, wrap, to_uv })
     }
 }
 
@@ -182,7 +174,7 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
         "glass" => &["ior", "reflectance", "transmittance"],
         other => {
             let remedy = "use diffuse, glossy, plastic, roughplastic, conductor, mirror or glass";
-            return Err(SceneError::value(place, format!("unknown kind of material \"{other}\""), remedy));
+            return Err(place.wrong(format!("unknown kind of material \"{other}\""), remedy));
         }
     };
     let given = [
@@ -201,7 +193,7 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
     match given.iter().find(|(key, is_given)| *is_given && !known.contains(key)) {
         Some((key, _)) => {
             let what = format!("{key} means nothing for a {} material", text.kind);
-            Err(SceneError::value(place, what, format!("leave it out; known are {}", known.join(", "))))
+            Err(place.wrong(what, format!("leave it out; known are {}", known.join(", "))))
         }
         None => Ok(()),
     }
@@ -212,7 +204,7 @@ fn conductor(text: &MaterialText, place: &Place) -> Result<Fresnel, SceneError> 
         (Some(preset), None, None) => {
             let unknown = || {
                 let remedy = format!("use one of {}", constants::conductor_names());
-                SceneError::value(place, format!("unknown conductor \"{preset}\""), remedy)
+                place.wrong(format!("unknown conductor \"{preset}\""), remedy)
             };
             let (eta, k) = constants::conductor(preset).ok_or_else(unknown)?;
             Ok(Fresnel::Conductor { eta, k })
@@ -222,7 +214,7 @@ fn conductor(text: &MaterialText, place: &Place) -> Result<Fresnel, SceneError> 
         }
         _ => {
             let what = format!("the conductor \"{}\" is not determined", text.name);
-            Err(SceneError::value(place, what, "give either preset, or eta and k"))
+            Err(place.wrong(what, "give either preset, or eta and k"))
         }
     }
 }

@@ -27,7 +27,7 @@ impl Builder<'_> {
             }
             (None, Geometry::Obj(path)) => self.mtl_materials(path, &place)?,
             (None, _) => {
-                return Err(SceneError::value(&place, "the mesh has no material", "add material = \"...\""));
+                return Err(place.wrong("the mesh has no material", "add material = \"...\""));
             }
         };
         let emission = match text.emission {
@@ -45,7 +45,7 @@ impl Builder<'_> {
             v_down: text.shape.as_deref() == Some("sphere"),
             needs_uv: false,
         };
-        self.meshes.push(MeshPlan { place, name, geometry, placement, material, emission });
+        self.contents.meshes.push(MeshPlan { place, name, geometry, placement, material, emission });
         Ok(())
     }
 
@@ -71,7 +71,7 @@ impl Builder<'_> {
                     Some("serialized") => Geometry::Serialized(path, text.index.unwrap_or(0)),
                     _ => {
                         let what = format!("unknown kind of mesh file \"{file}\"");
-                        return Err(SceneError::value(place, what, "use .obj, .ply or .serialized"));
+                        return Err(place.wrong(what, "use .obj, .ply or .serialized"));
                     }
                 };
                 Ok((name, geometry))
@@ -85,16 +85,12 @@ impl Builder<'_> {
                     "cylinder" => shapes::cylinder(DVec3::ZERO, DVec3::Z, 1.0),
                     other => {
                         let remedy = "use rectangle, cube, sphere, disk or cylinder";
-                        return Err(SceneError::value(place, format!("unknown shape \"{other}\""), remedy));
+                        return Err(place.wrong(format!("unknown shape \"{other}\""), remedy));
                     }
                 };
                 Ok((shape.clone(), Geometry::Ready(raw)))
             }
-            _ => Err(SceneError::value(
-                place,
-                "the mesh has no single source",
-                "give one of part, file or shape",
-            )),
+            _ => Err(place.wrong("the mesh has no single source", "give one of part, file or shape")),
         }
     }
 
@@ -121,7 +117,7 @@ fn matrix(step: &StepText, place: &Place) -> Result<DMat4, SceneError> {
         (Some(ScaleText::Axes(s)), None, None, None) => DMat4::from_scale(DVec3::from(*s)),
         (None, Some(rotate), None, None) => {
             let axis = DVec3::from(rotate.axis).try_normalize();
-            let zero = || SceneError::value(place, "the rotation's axis is zero", "give a direction");
+            let zero = || place.wrong("the rotation's axis is zero", "give a direction");
             DMat4::from_axis_angle(axis.ok_or_else(zero)?, rotate.angle.to_radians())
         }
         (None, None, Some(by), None) => DMat4::from_translation(DVec3::from(by)),
@@ -129,12 +125,12 @@ fn matrix(step: &StepText, place: &Place) -> Result<DMat4, SceneError> {
         _ => {
             let remedy =
                 "write { scale = 2.0 }, { rotate = { ... } }, { translate = [...] } or { matrix = [...] }";
-            return Err(SceneError::value(place, "a transform step does not say one thing", remedy));
+            return Err(place.wrong("a transform step does not say one thing", remedy));
         }
     };
     match matrix.is_finite() {
         true => Ok(matrix),
-        false => Err(SceneError::value(place, "a transform step is not finite", "write finite numbers")),
+        false => Err(place.wrong("a transform step is not finite", "write finite numbers")),
     }
 }
 

@@ -43,9 +43,8 @@ mod mtl;
 mod text;
 
 use super::error::{Log, Place, SceneError};
-use super::plan::{MeshPlan, Plan, TexturePlan, fnv1a, read_file};
-use crate::scene::light::DeltaLight;
-use crate::scene::material::{Material, MaterialId};
+use super::plan::{Contents, Plan, fnv1a, read_file};
+use crate::scene::material::MaterialId;
 use glam::DVec3;
 use lightsplat_scenes::Part;
 use std::collections::BTreeMap;
@@ -77,7 +76,7 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     for light in &scene.light {
         builder.light(light)?;
     }
-    let environment = scene.environment.as_ref().map(|e| builder.environment(e)).transpose()?;
+    builder.contents.environment = scene.environment.as_ref().map(|e| builder.environment(e)).transpose()?;
     let shot = builder.shot(&scene)?;
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let mut sources = vec![(path.to_owned(), hash)];
@@ -86,16 +85,9 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
         name: scene.name.unwrap_or(stem),
         sources,
         generator: scene.generator.map(|g| g.into_inner()),
-        camera: shot.camera,
-        camera_path: shot.path,
-        resolution: shot.resolution,
+        shot,
         max_depth: scene.max_depth,
-        meshes: builder.meshes,
-        materials: builder.materials,
-        material_places: builder.material_places,
-        textures: builder.textures,
-        lights: builder.lights,
-        environment,
+        contents: builder.contents,
     })
 }
 
@@ -124,11 +116,7 @@ struct Builder<'a> {
     /// Files read on the way (MTL), with their hashes.
     sources: Vec<(PathBuf, u64)>,
     material_ids: BTreeMap<String, MaterialId>,
-    materials: Vec<Material>,
-    material_places: Vec<Place>,
-    textures: Vec<TexturePlan>,
-    meshes: Vec<MeshPlan>,
-    lights: Vec<(DeltaLight, DVec3)>,
+    contents: Contents,
 }
 
 impl<'a> Builder<'a> {
@@ -150,11 +138,7 @@ impl<'a> Builder<'a> {
             parts,
             sources: Vec::new(),
             material_ids: BTreeMap::new(),
-            materials: Vec::new(),
-            material_places: Vec::new(),
-            textures: Vec::new(),
-            meshes: Vec::new(),
-            lights: Vec::new(),
+            contents: Contents::default(),
         })
     }
 
@@ -169,18 +153,12 @@ impl<'a> Builder<'a> {
             _ => Ok(()),
         }
     }
-
-    fn add_material(&mut self, material: Material, place: Place) -> MaterialId {
-        self.materials.push(material);
-        self.material_places.push(place);
-        MaterialId(self.materials.len() as u32 - 1)
-    }
 }
 
 /// Returns a finite vector, or an error at `place` that names `what`.
 fn finite(v: [f64; 3], what: &str, place: &Place) -> Result<DVec3, SceneError> {
     let v = DVec3::from(v);
-    let wrong = || SceneError::value(place, format!("{what} is not finite"), "write finite numbers");
+    let wrong = || place.wrong(format!("{what} is not finite"), "write finite numbers");
     v.is_finite().then_some(v).ok_or_else(wrong)
 }
 

@@ -34,7 +34,7 @@ impl Builder<'_> {
             }
             for source in mtl::read(&bytes, &file)? {
                 let material = self.convert_mtl(&source, &file)?;
-                let id = self.add_material(material, source.place);
+                let id = self.contents.add_material(material, source.place);
                 ids.insert(source.name, id);
             }
         }
@@ -53,7 +53,7 @@ impl Builder<'_> {
         let grey = Reflectance::Constant(Rgb::splat(0.5));
         let material =
             Material { name: "default".into(), two_sided: true, diffuse: grey, ..Material::default() };
-        self.add_material(material, place.clone())
+        self.contents.add_material(material, place.clone())
     }
 
     fn convert_mtl(&mut self, source: &ClassicMaterial, file: &Path) -> Result<Material, SceneError> {
