@@ -5,6 +5,7 @@
 //! replacement; under [`LoadOptions::strict`] the first of them is an error. Whatever the bytes, reading ends
 //! in a scene or a [`SceneError`].
 
+mod check;
 mod constants;
 pub(crate) mod error;
 mod mesh;

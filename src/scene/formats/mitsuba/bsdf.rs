@@ -6,6 +6,7 @@
 use super::Converter;
 use super::tree::Object;
 use crate::math::{Rgb, luminance};
+use crate::scene::formats::check;
 use crate::scene::formats::constants;
 use crate::scene::formats::error::SceneError;
 use crate::scene::material::{
@@ -152,11 +153,7 @@ impl Converter<'_> {
             match preset.as_deref() {
                 None | Some("none") => Fresnel::One,
                 Some(preset) => {
-                    let unknown = || {
-                        let what = format!("unknown conductor \"{preset}\"");
-                        bsdf.place.wrong(what, format!("use one of {}", constants::conductor_names()))
-                    };
-                    let (eta, k) = constants::conductor(preset).ok_or_else(unknown)?;
+                    let (eta, k) = check::conductor(preset, &bsdf.place)?;
                     Fresnel::Conductor { eta, k }
                 }
             }

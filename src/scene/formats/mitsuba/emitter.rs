@@ -3,6 +3,7 @@
 use super::Converter;
 use super::tree::Object;
 use crate::math::Rgb;
+use crate::scene::formats::check;
 use crate::scene::formats::error::SceneError;
 use crate::scene::formats::plan::EnvironmentPlan;
 use crate::scene::light::DeltaLight;
@@ -51,7 +52,7 @@ impl Converter<'_> {
                 let irradiance = self.emissive_colour(emitter, "irradiance")?.unwrap_or(Rgb::ONE);
                 let along = to_world.unwrap_or(DMat4::IDENTITY).transform_vector3(DVec3::Z);
                 let direction = emitter.vector("direction")?.unwrap_or(along);
-                let direction = self.unit(emitter, direction)?;
+                let direction = check::unit(direction, &emitter.place)?;
                 self.contents.lights.push((DeltaLight::Directional { direction, irradiance }, DVec3::ZERO));
             }
             "constant" => {
@@ -78,19 +79,11 @@ impl Converter<'_> {
         let intensity = self.emissive_colour(emitter, "intensity")?.unwrap_or(Rgb::ONE);
         let outer = emitter.positive("cutoff_angle", 20.0)?;
         let inner = emitter.float("beam_width")?.unwrap_or(0.75 * outer);
-        if !(0.0..=outer).contains(&inner) || outer > 180.0 {
-            let what = format!("beam_width {inner} and cutoff_angle {outer} make no cone");
-            return Err(emitter.place.wrong(what, "keep 0 <= beam_width <= cutoff_angle <= 180"));
-        }
-        let direction = self.unit(emitter, to_world.transform_vector3(DVec3::Z))?;
+        let names = ["beam_width", "cutoff_angle"];
+        let [inner_angle, outer_angle] = check::cone(names, [inner, outer], &emitter.place)?;
+        let direction = check::unit(to_world.transform_vector3(DVec3::Z), &emitter.place)?;
         let position = to_world.transform_point3(DVec3::ZERO);
-        let light = DeltaLight::Spot {
-            position: Vec3::ZERO,
-            direction,
-            intensity,
-            inner_angle: inner.to_radians() as f32,
-            outer_angle: outer.to_radians() as f32,
-        };
+        let light = DeltaLight::Spot { position: Vec3::ZERO, direction, intensity, inner_angle, outer_angle };
         self.contents.lights.push((light, position));
         Ok(())
     }
@@ -112,11 +105,6 @@ impl Converter<'_> {
             )?;
         }
         Ok(DMat4::from_cols(a.extend(0.0), b.extend(0.0), c.extend(0.0), DVec3::ZERO.extend(1.0)))
-    }
-
-    fn unit(&self, emitter: &Object, direction: DVec3) -> Result<Vec3, SceneError> {
-        let none = || emitter.place.wrong("the emitter has no direction", "give one that is not zero");
-        Ok(direction.try_normalize().ok_or_else(none)?.as_vec3())
     }
 
     fn environment(&mut self, emitter: &Object, plan: EnvironmentPlan) -> Result<(), SceneError> {

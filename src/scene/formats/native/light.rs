@@ -2,7 +2,8 @@
 
 use super::text::{EnvironmentText, LightText};
 use super::{Builder, finite};
-use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::formats::check;
+use crate::scene::formats::error::SceneError;
 use crate::scene::formats::plan::EnvironmentPlan;
 use crate::scene::light::DeltaLight;
 use glam::{DMat4, DVec3, Vec3};
@@ -35,10 +36,7 @@ impl Builder<'_> {
                 return Err(place.wrong(what, "use point, spot or directional"));
             }
         };
-        if let Some((key, _)) = given.iter().find(|(key, is_given)| *is_given && !known.contains(key)) {
-            let what = format!("{key} means nothing for a {} light", text.kind);
-            return Err(place.wrong(what, format!("leave it out; known are {}", known.join(", "))));
-        }
+        check::keys(&format!("{} light", text.kind), known, &given, &place)?;
         let light = match text.kind.as_str() {
             "point" => {
                 let intensity = need(text.intensity, "intensity")?.as_vec3();
@@ -46,21 +44,18 @@ impl Builder<'_> {
             }
             "spot" => {
                 let position = need(text.position, "position")?;
-                let direction = unit(need(text.target, "target")? - position, &place)?;
+                let direction = check::unit(need(text.target, "target")? - position, &place)?;
                 let intensity = need(text.intensity, "intensity")?.as_vec3();
                 let outer = text.outer_angle.unwrap_or(20.0);
                 let inner = text.inner_angle.unwrap_or(0.75 * outer);
-                if !(0.0 <= inner && inner <= outer && outer > 0.0 && outer <= 180.0) {
-                    let what = format!("inner_angle {inner} and outer_angle {outer} make no cone");
-                    return Err(place.wrong(what, "keep 0 <= inner_angle <= outer_angle <= 180"));
-                }
-                let [inner_angle, outer_angle] = [inner, outer].map(|a| a.to_radians() as f32);
+                let names = ["inner_angle", "outer_angle"];
+                let [inner_angle, outer_angle] = check::cone(names, [inner, outer], &place)?;
                 let light =
                     DeltaLight::Spot { position: Vec3::ZERO, direction, intensity, inner_angle, outer_angle };
                 (light, position)
             }
             _ => {
-                let direction = unit(need(text.direction, "direction")?, &place)?;
+                let direction = check::unit(need(text.direction, "direction")?, &place)?;
                 let irradiance = need(text.irradiance, "irradiance")?.as_vec3();
                 (DeltaLight::Directional { direction, irradiance }, DVec3::ZERO)
             }
@@ -87,9 +82,4 @@ impl Builder<'_> {
             }
         }
     }
-}
-
-fn unit(direction: DVec3, place: &Place) -> Result<Vec3, SceneError> {
-    let none = || place.wrong("the light has no direction", "give one that is not zero");
-    Ok(direction.try_normalize().ok_or_else(none)?.as_vec3())
 }

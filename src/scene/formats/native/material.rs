@@ -16,7 +16,7 @@
 use super::Builder;
 use super::text::{ColourText, FilterText, MaterialText, NumberText, TextureText, WrapText};
 use crate::math::Rgb;
-use crate::scene::formats::constants;
+use crate::scene::formats::check;
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::plan::{Image, TexturePlan};
 use crate::scene::material::{Coat, Distribution, Fresnel, Lobe, Material, Reflectance, Roughness};
@@ -190,23 +190,13 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
         ("eta", text.eta.is_some()),
         ("k", text.k.is_some()),
     ];
-    match given.iter().find(|(key, is_given)| *is_given && !known.contains(key)) {
-        Some((key, _)) => {
-            let what = format!("{key} means nothing for a {} material", text.kind);
-            Err(place.wrong(what, format!("leave it out; known are {}", known.join(", "))))
-        }
-        None => Ok(()),
-    }
+    check::keys(&format!("{} material", text.kind), known, &given, place)
 }
 
 fn conductor(text: &MaterialText, place: &Place) -> Result<Fresnel, SceneError> {
     match (&text.preset, text.eta, text.k) {
         (Some(preset), None, None) => {
-            let unknown = || {
-                let remedy = format!("use one of {}", constants::conductor_names());
-                place.wrong(format!("unknown conductor \"{preset}\""), remedy)
-            };
-            let (eta, k) = constants::conductor(preset).ok_or_else(unknown)?;
+            let (eta, k) = check::conductor(preset, place)?;
             Ok(Fresnel::Conductor { eta, k })
         }
         (None, Some(eta), Some(k)) => {
