@@ -5,7 +5,6 @@
 
 use super::{Row, Settings, Spread, Table};
 use rustix::time::{ClockId, clock_gettime};
-use std::fmt;
 
 /// Clock by which a benchmark is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,48 +58,6 @@ impl<'a> Case<'a> {
     }
 }
 
-/// Reasons to doubt a figure.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Warning {
-    /// Some samples are far from the median.
-    Outliers {
-        /// Labels of the case.
-        case: String,
-        /// Number of such samples.
-        count: usize,
-    },
-    /// The quartiles of the ratio are far apart.
-    Unsteady {
-        /// Labels of the case.
-        case: String,
-        /// Distance of the quartiles over the median.
-        spread: f64,
-    },
-    /// The work is too short for the clock's resolution.
-    Short {
-        /// Labels of the case.
-        case: String,
-    },
-}
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Warning::Outliers { case, count } => {
-                write!(f, "{case}: {count} outliers; is something else running? More --repeats help")
-            }
-            Warning::Unsteady { case, spread } => write!(
-                f,
-                "{case}: the middle half of the ratios spreads over {:.0} %; try longer --seconds or a quieter machine",
-                100.0 * spread
-            ),
-            Warning::Short { case } => {
-                write!(f, "{case}: there is next to nothing to do; try a larger scene")
-            }
-        }
-    }
-}
-
 /// Distance from the median, in median deviations, beyond which a sample is an outlier.
 const OUTLYING: f64 = 10.0 * 1.4826;
 /// Relative distance of a ratio's quartiles beyond which it is unsteady.
@@ -144,15 +101,19 @@ pub(super) fn alternate(
         .map(|(i, case)| {
             let ratios: Vec<f64> = rates[i].iter().zip(&rates[case.against]).map(|(a, b)| a / b).collect();
             let ratio = Spread::of(&ratios);
-            let name = case.labels.join(", ");
-            let outliers = outliers(&ratios);
-            if short[i] {
-                warnings.push(Warning::Short { case: name }.to_string());
+            let doubt = if short[i] {
+                Some("there is next to nothing to do; try a larger scene".to_owned())
             } else if ratio.relative() > UNSTEADY {
-                warnings.push(Warning::Unsteady { case: name, spread: ratio.relative() }.to_string());
-            } else if outliers > 0 {
-                warnings.push(Warning::Outliers { case: name, count: outliers }.to_string());
-            }
+                let spread = 100.0 * ratio.relative();
+                Some(format!(
+                    "the middle half of the ratios spreads over {spread:.0} %; try longer --seconds or a quieter machine"
+                ))
+            } else {
+                let count = outliers(&ratios);
+                let text = format!("{count} outliers; is something else running? More --repeats help");
+                (count > 0).then_some(text)
+            };
+            warnings.extend(doubt.map(|doubt| format!("{}: {doubt}", case.labels.join(", "))));
             let rate = Spread::of(&rates[i]);
             Row { labels: case.labels, ratio, rate, samples: rates[i].clone(), figures: case.figures }
         })

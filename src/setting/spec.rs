@@ -24,7 +24,7 @@ pub struct Spec {
     /// Minimum and maximum.
     range: [f64; 2],
     /// Levels that benchmarks try, if it trades error for time.
-    pub levels: Option<Levels>,
+    levels: Levels,
 }
 
 /// Levels of a setting from coarse, which should be faster, to fine, which should be better.
@@ -62,7 +62,7 @@ impl Spec {
     /// A setting of any value, which no benchmark varies.
     pub const fn new(key: &'static str, doc: &'static str, heading: &'static str) -> Spec {
         let range = [f64::MIN, f64::MAX];
-        Spec { key, doc, heading, placeholder: None, flag: false, range, levels: None }
+        Spec { key, doc, heading, placeholder: None, flag: false, range, levels: NO_LEVELS }
     }
 
     /// Under another name than the field's.
@@ -107,39 +107,32 @@ impl Spec {
 
     /// Varied by benchmarks, by factors on its default.
     pub const fn scaled(self, factors: &'static [f64]) -> Spec {
-        Spec { levels: Some(Levels { factors, ..NO_LEVELS }), ..self }
+        Spec { levels: Levels { factors, ..self.levels }, ..self }
     }
 
     /// Varied by benchmarks, over values as they are typed.
     pub const fn values(self, values: &'static [&'static str]) -> Spec {
-        Spec { levels: Some(Levels { values, ..NO_LEVELS }), ..self }
+        Spec { levels: Levels { values, ..self.levels }, ..self }
     }
 
     /// With names for its numbers; those without are not varied.
     pub const fn parts(self, parts: &'static [&'static str]) -> Spec {
-        let levels = match self.levels {
-            Some(levels) => Some(Levels { parts, ..levels }),
-            None => None,
-        };
-        Spec { levels, ..self }
+        Spec { levels: Levels { parts, ..self.levels }, ..self }
     }
 
     /// Varied while other settings have values that make it matter.
     pub const fn with(self, with: &'static [(&'static str, &'static str)]) -> Spec {
-        let levels = match self.levels {
-            Some(levels) => Some(Levels { with, ..levels }),
-            None => None,
-        };
-        Spec { levels, ..self }
+        Spec { levels: Levels { with, ..self.levels }, ..self }
     }
 
     /// Sets another error to judge by than [`JudgedBy::Limit`].
     pub const fn judged_by(self, judged_by: JudgedBy) -> Spec {
-        let levels = match self.levels {
-            Some(levels) => Some(Levels { judged_by, ..levels }),
-            None => None,
-        };
-        Spec { levels, ..self }
+        Spec { levels: Levels { judged_by, ..self.levels }, ..self }
+    }
+
+    /// Levels that benchmarks try; `None` if it does not trade error for time.
+    pub fn levels(&self) -> Option<&Levels> {
+        Some(&self.levels).filter(|levels| !levels.factors.is_empty() || !levels.values.is_empty())
     }
 
     /// Name of the option, without its two dashes.

@@ -55,7 +55,7 @@ pub fn knobs() -> Vec<Knob> {
     for method in [reconstruction, Method::Cache(cache::Settings::default())] {
         let known = knobs.len();
         method.visit(&mut |spec, value| {
-            let Some(levels) = spec.levels else { return };
+            let Some(levels) = spec.levels() else { return };
             if knobs[..known].iter().any(|knob| knob.key == spec.key) {
                 return;
             }
@@ -72,7 +72,7 @@ pub fn knobs() -> Vec<Knob> {
                     name: format!("--{}{comma}{label}", spec.option()),
                     key: spec.key,
                     part,
-                    levels: levels_of(spec, &levels, value, part),
+                    levels: levels_of(spec, levels, value, part),
                     base,
                     judged_by: levels.judged_by,
                 });

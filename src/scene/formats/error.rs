@@ -27,6 +27,16 @@ impl Place {
     pub(crate) fn wrong(&self, what: impl Into<String>, remedy: impl Into<String>) -> SceneError {
         SceneError::Value { place: self.clone(), what: what.into(), remedy: remedy.into() }
     }
+
+    /// Returns the error of a name used here that is not defined.
+    pub(crate) fn undefined(&self, kind: &'static str, name: &str) -> SceneError {
+        SceneError::Reference { place: self.clone(), kind, name: name.to_owned() }
+    }
+
+    /// Returns the error of text that is not well-formed here.
+    pub(crate) fn malformed(&self, message: impl Into<String>) -> SceneError {
+        SceneError::Syntax { place: self.clone(), message: message.into() }
+    }
 }
 
 impl fmt::Display for Place {

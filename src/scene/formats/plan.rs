@@ -222,6 +222,27 @@ pub(crate) fn read_file(path: &Path, from: &Place) -> Result<Vec<u8>, SceneError
     std::fs::read(path).map_err(fail)
 }
 
+/// Reads a description's own file, to which `from` refers; returns its text and the hash of its bytes.
+pub(crate) fn read_text(path: &Path, from: &Place) -> Result<(String, u64), SceneError> {
+    let bytes = read_file(path, from)?;
+    let hash = fnv1a(&bytes);
+    let text = String::from_utf8(bytes).map_err(|e| {
+        let line = e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
+        Place::line(path, line as u32 + 1).malformed("the text is not UTF-8")
+    })?;
+    Ok((text, hash))
+}
+
+/// Returns the folder of a file.
+pub(crate) fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+/// Returns a file's name without its folder and extension.
+pub(crate) fn stem_of(path: &Path) -> String {
+    path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
 fn carry_out(path: &Path, tasks: &[Task]) -> Result<(u64, Vec<Done>), SceneError> {
     let from = match tasks.first() {
         Some(Task::Mesh(_, plan)) => &plan.place,

@@ -1,5 +1,6 @@
 use super::*;
 use crate::scene::draft::DraftCamera;
+use crate::scene::draft::Shot;
 use crate::scene::material::{Coat, Distribution, MaterialId};
 use crate::scene::mesh::Emission;
 use crate::scene::texture::{Filter, TextureId, Wrap};
@@ -22,9 +23,7 @@ fn draft(meshes: Vec<DraftMesh>, materials: Vec<Material>) -> Draft {
     Draft {
         name: "t".into(),
         sources: vec!["t.toml".into()],
-        camera,
-        camera_path: vec![],
-        resolution: [1, 1],
+        shot: Shot { camera, path: vec![], resolution: [1, 1] },
         max_depth: None,
         meshes,
         materials,

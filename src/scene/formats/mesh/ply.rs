@@ -28,17 +28,8 @@ enum Format {
     BigEndian,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
-}
+/// Reads a binary number of some type.
+type Scalar = fn(&mut Binary) -> Result<f64, String>;
 
 #[derive(Debug)]
 struct Header {
@@ -120,16 +111,17 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), (u32, String)> {
     }
 }
 
+/// The reader of a type by its name.
 fn scalar(name: &str) -> Option<Scalar> {
     Some(match name {
-        "char" | "int8" => Scalar::I8,
-        "uchar" | "uint8" => Scalar::U8,
-        "short" | "int16" => Scalar::I16,
-        "ushort" | "uint16" => Scalar::U16,
-        "int" | "int32" => Scalar::I32,
-        "uint" | "uint32" => Scalar::U32,
-        "float" | "float32" => Scalar::F32,
-        "double" | "float64" => Scalar::F64,
+        "char" | "int8" => |binary| Ok(f64::from(i8::from_le_bytes(binary.take()?))),
+        "uchar" | "uint8" => |binary| Ok(f64::from(u8::from_le_bytes(binary.take()?))),
+        "short" | "int16" => |binary| Ok(f64::from(i16::from_le_bytes(binary.take()?))),
+        "ushort" | "uint16" => |binary| Ok(f64::from(u16::from_le_bytes(binary.take()?))),
+        "int" | "int32" => |binary| Ok(f64::from(i32::from_le_bytes(binary.take()?))),
+        "uint" | "uint32" => |binary| Ok(f64::from(u32::from_le_bytes(binary.take()?))),
+        "float" | "float32" => |binary| Ok(f64::from(f32::from_le_bytes(binary.take()?))),
+        "double" | "float64" => |binary| Ok(f64::from_le_bytes(binary.take()?)),
         _ => return None,
     })
 }
@@ -185,16 +177,7 @@ impl Binary<'_> {
 
 impl Values for Binary<'_> {
     fn next(&mut self, scalar: Scalar) -> Result<f64, String> {
-        Ok(match scalar {
-            Scalar::I8 => f64::from(i8::from_le_bytes(self.take()?)),
-            Scalar::U8 => f64::from(u8::from_le_bytes(self.take()?)),
-            Scalar::I16 => f64::from(i16::from_le_bytes(self.take()?)),
-            Scalar::U16 => f64::from(u16::from_le_bytes(self.take()?)),
-            Scalar::I32 => f64::from(i32::from_le_bytes(self.take()?)),
-            Scalar::U32 => f64::from(u32::from_le_bytes(self.take()?)),
-            Scalar::F32 => f64::from(f32::from_le_bytes(self.take()?)),
-            Scalar::F64 => f64::from_le_bytes(self.take()?),
-        })
+        scalar(self)
     }
 }
 

@@ -17,7 +17,7 @@ mod tree;
 mod value;
 
 use super::error::{Log, SceneError};
-use super::plan::{Contents, Plan};
+use super::plan::{Contents, Plan, folder_of, stem_of};
 use crate::scene::material::MaterialId;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -26,7 +26,7 @@ use tree::{Document, Object};
 /// Reads the description at `path`.
 pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     let document = Document::read(path)?;
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let folder = folder_of(path).to_owned();
     let mut converter = Converter {
         document: &document,
         folder,
@@ -38,7 +38,7 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     converter.scene()?;
     let (shot, max_depth) = converter.shot()?;
     let contents = converter.contents;
-    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem = stem_of(path);
     let folder_name = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
     // Scene files are usually called scene.xml; then the folder's name is used.
     let name = if stem == "scene" { folder_name.unwrap_or(stem) } else { stem };
@@ -81,7 +81,7 @@ impl Converter<'_> {
         // Descriptions written on Windows name files with backslashes.
         let file = object.string(name)?.ok_or_else(missing)?.replace('\\', "/");
         let beside_main = self.folder.join(&file);
-        let beside_own = object.place.path.parent().unwrap_or(Path::new("")).join(&file);
+        let beside_own = folder_of(&object.place.path).join(&file);
         Ok(if !beside_main.exists() && beside_own.exists() { beside_own } else { beside_main })
     }
 

@@ -4,7 +4,7 @@ use super::Converter;
 use super::tree::Object;
 use crate::scene::formats::error::SceneError;
 use crate::scene::formats::mesh::{Normals, Placement, shapes};
-use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan};
+use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan, stem_of};
 use crate::scene::material::{Material, MaterialId};
 use glam::{DMat4, DVec3};
 
@@ -67,12 +67,8 @@ impl Converter<'_> {
         shape.ignore(&["collapse", "silhouette_sampling_weight", "max_smooth_angle"]);
         shape.report_unused(self.log)?;
         let name = shape.id.clone().unwrap_or_else(|| match &geometry {
-            Geometry::Obj(path) | Geometry::Ply(path) => {
-                path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
-            }
-            Geometry::Serialized(path, index) => {
-                format!("{}@{index}", path.file_stem().map(|s| s.to_string_lossy()).unwrap_or_default())
-            }
+            Geometry::Obj(path) | Geometry::Ply(path) => stem_of(path),
+            Geometry::Serialized(path, index) => format!("{}@{index}", stem_of(path)),
             Geometry::Ready(_) => shape.plugin.clone(),
         });
         let place = shape.place.clone();

@@ -3,7 +3,7 @@
 
 use super::value::{self, Value};
 use crate::scene::formats::error::{Place, SceneError};
-use crate::scene::formats::plan::{fnv1a, read_file};
+use crate::scene::formats::plan::{folder_of, read_text};
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -23,6 +23,13 @@ pub(super) struct Object {
     pub place: Place,
     pub properties: Vec<Property>,
     pub children: Vec<Child>,
+}
+
+impl Object {
+    fn new(tag: &str, plugin: &str, id: Option<&str>, place: Place) -> Object {
+        let (tag, plugin, id) = (tag.to_owned(), plugin.to_owned(), id.map(str::to_owned));
+        Object { tag, plugin, id, place, properties: Vec::new(), children: Vec::new() }
+    }
 }
 
 /// A named value.
@@ -65,14 +72,7 @@ pub(super) struct Document {
 impl Document {
     pub fn read(path: &Path) -> Result<Document, SceneError> {
         let mut builder = Builder::default();
-        let mut root = Object {
-            tag: "scene".into(),
-            plugin: "scene".into(),
-            id: None,
-            place: Place::file(path),
-            properties: Vec::new(),
-            children: Vec::new(),
-        };
+        let mut root = Object::new("scene", "scene", None, Place::file(path));
         builder.file(path, &Place::file(path), &mut root, None, 0)?;
         Ok(Document { root, ids: builder.ids, sources: builder.sources })
     }
@@ -82,8 +82,7 @@ impl Document {
         match &child.target {
             Target::Own(object) => Ok(object.clone()),
             Target::Reference(id) => {
-                let place = child.place.clone();
-                let missing = || SceneError::Reference { place, kind: "object", name: id.clone() };
+                let missing = || child.place.undefined("object", id);
                 self.ids.get(id).cloned().ok_or_else(missing)
             }
         }
@@ -127,19 +126,10 @@ impl Builder {
         name: Option<String>,
         depth: usize,
     ) -> Result<(), SceneError> {
-        let bytes = read_file(path, from)?;
-        self.sources.push((path.to_owned(), fnv1a(&bytes)));
-        let text = String::from_utf8(bytes).map_err(|e| {
-            let line = e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
-            SceneError::Syntax {
-                place: Place::line(path, line as u32 + 1),
-                message: "the text is not UTF-8".into(),
-            }
-        })?;
-        let document = roxmltree::Document::parse(&text).map_err(|e| SceneError::Syntax {
-            place: Place::line(path, e.pos().row),
-            message: e.to_string(),
-        })?;
+        let (text, hash) = read_text(path, from)?;
+        self.sources.push((path.to_owned(), hash));
+        let parsed = roxmltree::Document::parse(&text);
+        let document = parsed.map_err(|e| Place::line(path, e.pos().row).malformed(e.to_string()))?;
         let root = document.root_element();
         if root.tag_name().name() == "scene" {
             let place = self.place(path, &root);
@@ -188,7 +178,12 @@ impl Builder {
             let what = format!("<{}> lacks the attribute \"{name}\"", node.tag_name().name());
             get(name).ok_or_else(|| place.wrong(what, format!("add {name}=\"...\"")))
         };
-        let folder = path.parent().unwrap_or(Path::new(""));
+        let child = |target: Target| Child {
+            target,
+            name: given_name.as_deref().or(get("name")).map(snake_case),
+            place: place.clone(),
+            used: Cell::new(false),
+        };
         match node.tag_name().name() {
             "default" => {
                 let (name, value) = (need("name")?.to_owned(), need("value")?.to_owned());
@@ -196,34 +191,21 @@ impl Builder {
             }
             "include" => {
                 let name = get("name").map(str::to_owned);
-                self.file(&folder.join(need("filename")?), &place, parent, name, depth + 1)?;
+                self.file(&folder_of(path).join(need("filename")?), &place, parent, name, depth + 1)?;
             }
             "alias" => {
                 let id = need("id")?;
-                let missing =
-                    || SceneError::Reference { place: place.clone(), kind: "object", name: id.to_owned() };
-                let object = self.ids.get(id).cloned().ok_or_else(missing)?;
+                let object = self.ids.get(id).cloned().ok_or_else(|| place.undefined("object", id))?;
                 self.ids.insert(need("as")?.to_owned(), object);
             }
-            "ref" => parent.children.push(Child {
-                target: Target::Reference(need("id")?.to_owned()),
-                name: given_name.as_deref().or(get("name")).map(snake_case),
-                place: place.clone(),
-                used: Cell::new(false),
-            }),
+            "ref" => parent.children.push(child(Target::Reference(need("id")?.to_owned()))),
             "path" => {
                 // A folder to search; file names here are relative to the file that holds them.
                 need("value")?;
             }
             tag if is_object(tag) || (tag == "spectrum" && get("type").is_some()) => {
-                let mut object = Object {
-                    tag: if tag == "spectrum" { "texture".into() } else { tag.to_owned() },
-                    plugin: need("type")?.to_owned(),
-                    id: get("id").map(str::to_owned),
-                    place: place.clone(),
-                    properties: Vec::new(),
-                    children: Vec::new(),
-                };
+                let kind = if tag == "spectrum" { "texture" } else { tag };
+                let mut object = Object::new(kind, need("type")?, get("id"), place.clone());
                 for child in node.children() {
                     self.node(path, &child, &mut object, depth + 1)?;
                 }
@@ -234,12 +216,7 @@ impl Builder {
                     let what = format!("the id \"{id}\" is already taken at {}", other.place);
                     return Err(place.wrong(what, "rename one of them"));
                 }
-                parent.children.push(Child {
-                    target: Target::Own(object),
-                    name: given_name.as_deref().or(get("name")).map(snake_case),
-                    place: place.clone(),
-                    used: Cell::new(false),
-                });
+                parent.children.push(child(Target::Own(object)));
             }
             tag => {
                 let value = if tag == "transform" {
@@ -292,8 +269,7 @@ impl Builder {
             let known = self.parameters.iter().filter(|(name, _)| from[1..].starts_with(name.as_str()));
             let Some((name, value)) = known.max_by_key(|(name, _)| name.len()) else {
                 let name = from[1..].split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("");
-                let name = format!("${name}");
-                return Err(SceneError::Reference { place: place.clone(), kind: "parameter", name });
+                return Err(place.undefined("parameter", &format!("${name}")));
             };
             out.push_str(value);
             rest = &from[1 + name.len()..];

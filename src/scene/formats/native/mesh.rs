@@ -4,7 +4,7 @@ use super::text::{MeshText, ScaleText, StepText};
 use super::{Builder, finite};
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::mesh::{Normals, Placement, RawMesh, shapes};
-use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan};
+use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan, stem_of};
 use crate::scene::mesh::Emission;
 use glam::{DMat4, DVec3};
 use lightsplat_scenes::Part;
@@ -18,11 +18,7 @@ impl Builder<'_> {
         let (name, geometry) = self.geometry(text, &place)?;
         let material = match (&text.material, &geometry) {
             (Some(name), _) => {
-                let unknown = || SceneError::Reference {
-                    place: self.file.place(name.span()),
-                    kind: "material",
-                    name: name.get_ref().clone(),
-                };
+                let unknown = || self.file.place(name.span()).undefined("material", name.get_ref());
                 MaterialPlan::One(*self.material_ids.get(name.get_ref()).ok_or_else(unknown)?)
             }
             (None, Geometry::Obj(path)) => self.mtl_materials(path, &place)?,
@@ -52,18 +48,14 @@ impl Builder<'_> {
     fn geometry(&mut self, text: &MeshText, place: &Place) -> Result<(String, Geometry), SceneError> {
         match (&text.part, &text.file, &text.shape) {
             (Some(part), None, None) => {
-                let unknown = || SceneError::Reference {
-                    place: place.clone(),
-                    kind: "generated part",
-                    name: part.clone(),
-                };
+                let unknown = || place.undefined("generated part", part);
                 let at = self.parts.iter().position(|p| p.name == *part).ok_or_else(unknown)?;
                 self.part_used[at] = true;
                 Ok((part.clone(), Geometry::Ready(raw_part(&self.parts[at]))))
             }
             (None, Some(file), None) => {
                 let path = self.folder.join(file);
-                let name = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+                let name = stem_of(&path);
                 let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
                 let geometry = match extension.as_deref() {
                     Some("obj") => Geometry::Obj(path),

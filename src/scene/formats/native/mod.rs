@@ -43,7 +43,7 @@ mod mtl;
 mod text;
 
 use super::error::{Log, Place, SceneError};
-use super::plan::{Contents, Plan, fnv1a, read_file};
+use super::plan::{Contents, Plan, folder_of, read_text, stem_of};
 use crate::scene::material::MaterialId;
 use glam::DVec3;
 use lightsplat_scenes::Part;
@@ -54,16 +54,11 @@ use text::SceneText;
 
 /// Reads the description at `path`.
 pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
-    let bytes = read_file(path, &Place::file(path))?;
-    let hash = fnv1a(&bytes);
-    let text = String::from_utf8(bytes).map_err(|_| SceneError::Syntax {
-        place: Place::file(path),
-        message: "the text is not UTF-8".into(),
-    })?;
+    let (text, hash) = read_text(path, &Place::file(path))?;
     let file = File { path, text: &text };
-    let scene: SceneText = toml::from_str(&text).map_err(|e| SceneError::Syntax {
-        place: e.span().map_or(Place::file(path), |span| file.place(span)),
-        message: e.message().to_owned(),
+    let scene: SceneText = toml::from_str(&text).map_err(|e| {
+        let place = e.span().map_or(Place::file(path), |span| file.place(span));
+        place.malformed(e.message())
     })?;
     let mut builder = Builder::new(file, log, &scene)?;
     for material in &scene.material {
@@ -78,11 +73,10 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     }
     builder.contents.environment = scene.environment.as_ref().map(|e| builder.environment(e)).transpose()?;
     let shot = builder.shot(&scene)?;
-    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let mut sources = vec![(path.to_owned(), hash)];
     sources.append(&mut builder.sources);
     Ok(Plan {
-        name: scene.name.unwrap_or(stem),
+        name: scene.name.unwrap_or_else(|| stem_of(path)),
         sources,
         generator: scene.generator.map(|g| g.into_inner()),
         shot,
@@ -123,16 +117,12 @@ impl<'a> Builder<'a> {
     fn new(file: File<'a>, log: &'a mut Log, scene: &SceneText) -> Result<Builder<'a>, SceneError> {
         let mut parts = Vec::new();
         if let Some(name) = &scene.generator {
-            let unknown = || SceneError::Reference {
-                place: file.place(name.span()),
-                kind: "generator",
-                name: name.get_ref().clone(),
-            };
+            let unknown = || file.place(name.span()).undefined("generator", name.get_ref());
             parts = lightsplat_scenes::generate(name.get_ref()).ok_or_else(unknown)?;
         }
         Ok(Builder {
             file,
-            folder: file.path.parent().unwrap_or(Path::new("")).to_owned(),
+            folder: folder_of(file.path).to_owned(),
             log,
             part_used: vec![false; parts.len()],
             parts,

@@ -10,7 +10,7 @@ use crate::math::Rgb;
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::mesh::mtl::{self, ClassicMaterial};
 use crate::scene::formats::mesh::obj;
-use crate::scene::formats::plan::{fnv1a, read_file};
+use crate::scene::formats::plan::{fnv1a, folder_of, read_file};
 use crate::scene::material::{Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -25,7 +25,7 @@ impl Builder<'_> {
         let mut ids = BTreeMap::new();
         let text = read_file(path, place)?;
         let from = Place::file(path);
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let folder = folder_of(path);
         for library in obj::material_libraries(&text) {
             let file = folder.join(library.replace('\\', "/"));
             let bytes = read_file(&file, &from)?;
@@ -112,7 +112,7 @@ impl Builder<'_> {
     }
 
     fn mtl_texture(&mut self, name: &str, file: &Path) -> Reflectance {
-        let beside = file.parent().unwrap_or(Path::new("")).join(name.replace('\\', "/"));
+        let beside = folder_of(file).join(name.replace('\\', "/"));
         let relative = beside.strip_prefix(&self.folder).unwrap_or(&beside).to_string_lossy().into_owned();
         self.texture(&TextureText { file: relative, ..TextureText::default() }, &Place::file(file))
     }
