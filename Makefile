@@ -8,8 +8,9 @@ TARGET_DIR := $(or $(CARGO_TARGET_DIR),target)
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
 
-setup: ## install what a build needs: a C++ compiler and Embree 4
+setup: ## install what a build needs, a C++ compiler and Embree 4, and the denoiser if it can be had
 	@vendor-bindings/embree4-sys/setup.sh
+	@vendor-bindings/oidn/setup.sh || echo "setup: going on without the denoiser: pictures stay noisy" >&2
 
 build: setup ## target/release/lightsplat
 	$(CARGO) build --release --locked

@@ -12,25 +12,8 @@ readonly SHA256=2cd0f7d5c6342e6247e31f700761689cae7829454d8c6de0c41e62124a023e1f
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 readonly root
 
-say() { echo "setup: $*" >&2; }
-die() {
-  say "$*"
-  exit 1
-}
-
-# apt_install PACKAGE...: false where that is not possible without asking for a password.
-apt_install() {
-  command -v apt-get >/dev/null || return 1
-  local as_root=()
-  if [[ $(id -u) != 0 ]]; then
-    sudo -n true 2>/dev/null || return 1
-    as_root=(sudo -n)
-  fi
-  say "installing $*"
-  # The lists of a fresh container are empty; of those that fail to load the others may do.
-  "${as_root[@]}" apt-get update -qq >&2 || true
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >&2
-}
+# shellcheck source=../fetch.sh
+source "$root/vendor-bindings/fetch.sh"
 
 # The build script is the one judge of where Embree is. True if it finds one.
 embree_is_found() {
@@ -51,22 +34,11 @@ install_system_embree() {
 }
 
 fetch_redistributable() {
-  [[ $(uname -sm) == "Linux x86_64" ]] || die "there is no redistributable Embree for $(uname -sm):" \
-    "build Embree 4.3 or later and set EMBREE_DIR to where it is installed"
-  python3 -m pip --version >/dev/null 2>&1 || apt_install python3-pip ||
-    die "python3 with pip is needed to fetch Embree: install it, or Embree 4.3 or later"
-
   # Beside its destination, so that the last step is one rename.
   work=$(mktemp -d "$root/.embree.XXXXXX.tmp")
   trap 'rm -rf "$work"' EXIT
-  say "fetching $REQUIREMENT"
-  # The tags are the wheel's, whatever Python runs pip.
-  python3 -m pip download --quiet --no-deps --only-binary=:all: --platform manylinux_2_28_x86_64 \
-    --implementation cp --python-version 3.11 --abi cp311 --dest "$work" "$REQUIREMENT" >&2 ||
-    die "pip could not fetch $REQUIREMENT: is the network there?"
-  echo "$SHA256  $work/$WHEEL" | sha256sum --check --status ||
-    die "$REQUIREMENT is not the file that was expected (SHA-256 $SHA256)"
-  python3 -m zipfile -e "$work/$WHEEL" "$work/wheel"
+  fetch_wheel "Embree 4.3 or later" "$REQUIREMENT" "$WHEEL" "$SHA256" "$work" \
+    --platform manylinux_2_28_x86_64 --implementation cp --python-version 3.11 --abi cp311
   cp "$work"/wheel/embreex-*.dist-info/licenses/* "$work/wheel/embreex.libs/"
   chmod 755 "$work/wheel/embreex.libs"
   rm -rf "$root/.embree"
