@@ -5,10 +5,7 @@ use super::{CameraMatrices, Image, ImageError, Metadata, Value};
 use crate::film::Window;
 use crate::math::Rgb;
 use ::exr::meta::header::Header;
-use ::exr::prelude::{
-    AnyChannel, AttributeValue, Error, FlatImage, FlatSamples, Layer, ReadChannels, ReadLayers, Text, Vec2,
-    read,
-};
+use ::exr::prelude::{AttributeValue, Error, FlatImage, Layer, ReadChannels, ReadLayers, Text, Vec2, read};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -21,8 +18,17 @@ const LAYER: [[&str; 3]; 3] = [["R", "G", "B"], ["X", "Y", "Z"], ["Y"; 3]];
 /// An OpenEXR file in memory.
 #[derive(Clone, Debug)]
 pub struct ExrFile {
-    path: PathBuf,
-    parts: FlatImage,
+    pub(super) path: PathBuf,
+    pub(super) parts: FlatImage,
+}
+
+/// Place of three channels, which may be the same, in a file.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    /// Number of the part.
+    pub part: usize,
+    /// Numbers of the channels in it.
+    pub channels: [usize; 3],
 }
 
 impl ExrFile {
@@ -48,22 +54,26 @@ impl ExrFile {
     }
 
     /// The picture's colour: `R`, `G`, `B` where there are such channels, else the luminance `Y` as grey,
-    /// else the colours of the only layer that has any.
+    /// else the colours of the only layer that has any, or of Blender's `Combined`.
     pub fn color(&self) -> Result<Image, ImageError> {
-        if let Some(image) = self.find("", &COLOR)? {
-            return Ok(image);
-        }
-        let layers = self.layers();
-        match layers.as_slice() {
-            [only] => self.layer(only),
-            _ => Err(self.missing("colour (R, G, B or Y)".to_owned())),
-        }
+        self.join(self.color_place()?)
+    }
+
+    /// Place of [`ExrFile::color`].
+    pub(super) fn color_place(&self) -> Result<Place, ImageError> {
+        let layer = || {
+            let layers = self.layers();
+            let combined = |layer: &&String| layer.rsplit('.').next() == Some("Combined");
+            let only = layers.first().filter(|_| layers.len() == 1);
+            self.find(only.or_else(|| layers.iter().find(combined))?, &LAYER)
+        };
+        self.find("", &COLOR).or_else(layer).ok_or_else(|| self.missing("colour (R, G, B or Y)".to_owned()))
     }
 
     /// The values of layer `name`: the channels `name.R`, `name.G`, `name.B`, or X, Y, Z, or a part of that name;
     /// the one channel `name.Y` or `name` as grey.
     pub fn layer(&self, name: &str) -> Result<Image, ImageError> {
-        self.find(name, &LAYER)?.ok_or_else(|| self.missing(format!("layer `{name}`")))
+        self.join(self.find(name, &LAYER).ok_or_else(|| self.missing(format!("layer `{name}`")))?)
     }
 
     /// Returns the names of all layers that have a colour, in the file's order; "" is the picture's own.
@@ -143,31 +153,31 @@ impl ExrFile {
 
     /// The channels of `layer` by the first of these names that it has all of, or the one channel that is named as
     /// it is.
-    fn find(&self, layer: &str, names: &[[&str; 3]]) -> Result<Option<Image>, ImageError> {
+    fn find(&self, layer: &str, names: &[[&str; 3]]) -> Option<Place> {
         let prefix = if layer.is_empty() { String::new() } else { format!("{layer}.") };
-        for part in &self.parts.layer_data {
+        self.parts.layer_data.iter().enumerate().find_map(|(index, part)| {
             let own = part_name(part);
             let channel = |wanted: &str| {
-                part.channel_data.list.iter().find(|c| {
+                part.channel_data.list.iter().position(|c| {
                     let name = text(&c.name);
                     name == wanted || (!own.is_empty() && format!("{own}.{name}") == wanted)
                 })
             };
-            for names in names {
-                if let [Some(a), Some(b), Some(c)] = names.map(|name| channel(&format!("{prefix}{name}"))) {
-                    return self.join(part.size, [a, b, c]).map(Some);
-                }
-            }
-            if let Some(scalar) = channel(layer) {
-                return self.join(part.size, [scalar; 3]).map(Some);
-            }
-        }
-        Ok(None)
+            let three =
+                names.iter().find_map(|names| match names.map(|name| channel(&format!("{prefix}{name}"))) {
+                    [Some(a), Some(b), Some(c)] => Some([a, b, c]),
+                    _ => None,
+                });
+            let channels = three.or_else(|| channel(layer).map(|scalar| [scalar; 3]))?;
+            Some(Place { part: index, channels })
+        })
     }
 
-    fn join(&self, size: Vec2<usize>, channels: [&AnyChannel<FlatSamples>; 3]) -> Result<Image, ImageError> {
+    fn join(&self, place: Place) -> Result<Image, ImageError> {
         let decode = |reason: String| ImageError::Decode { path: self.path.clone(), reason };
-        let [width, height] = [size.0, size.1];
+        let part = &self.parts.layer_data[place.part];
+        let channels = place.channels.map(|index| &part.channel_data.list[index]);
+        let [width, height] = [part.size.0, part.size.1];
         for channel in channels {
             if channel.sampling != Vec2(1, 1) || channel.sample_data.len() != width * height {
                 return Err(decode(format!("channel {} is subsampled", text(&channel.name))));
@@ -212,6 +222,6 @@ fn part_name<C>(part: &Layer<C>) -> String {
     part.attributes.layer_name.as_ref().map(text).unwrap_or_default()
 }
 
-fn text(text: &Text) -> String {
+pub(super) fn text(text: &Text) -> String {
     String::from_utf8_lossy(text.as_slice()).into_owned()
 }

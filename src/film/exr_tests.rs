@@ -119,6 +119,57 @@ fn halves_integers_layers_parts_and_luminance_are_read() {
 }
 
 #[test]
+fn a_colour_replaced_leaves_channels_of_any_type_and_foreign_attributes_as_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    let half = || FlatSamples::F16(vec![f16::from_f32(0.5); 4]);
+    let mut channels = ["R", "G", "B"].map(|name| (name, half())).to_vec();
+    channels.extend([
+        ("Z", half()),
+        ("id", FlatSamples::U32(vec![u32::MAX; 4])),
+        ("variance.R", floats(2.0)),
+    ]);
+    foreign(&path, Some("view"), channels);
+    let mut file = ExrFile::read(&path).unwrap();
+    file.replace_color(&ramp(2, 2), Some("noisy")).unwrap();
+    file.rename_layer("variance", "noisy.variance");
+    file.set("denoised", "yes");
+    file.rename_fact("denoised", "cleaned");
+    assert!(matches!(file.replace_color(&ramp(4, 1), None), Err(ImageError::Size { .. })));
+    file.write(&path).unwrap();
+
+    let file = ExrFile::read(&path).unwrap();
+    assert_eq!(file.color().unwrap(), ramp(2, 2));
+    assert_eq!(file.layer("noisy").unwrap().pixels, [Rgb::splat(0.5); 4]);
+    let names = ["B", "G", "R", "Z", "id", "noisy.B", "noisy.G", "noisy.R", "noisy.variance.R"];
+    assert_eq!(file.channels(), names.map(|name| format!("view.{name}")));
+    let list = &file.parts.layer_data[0].channel_data.list;
+    assert_eq!((&list[3].sample_data, &list[5].sample_data), (&half(), &half()));
+    assert_eq!(list[4].sample_data, FlatSamples::U32(vec![u32::MAX; 4]));
+    assert_eq!(file.metadata().iter().count(), 1);
+    assert_eq!(file.metadata().text("cleaned"), Some("yes"));
+}
+
+#[test]
+fn grey_and_layered_colours_are_replaced_where_they_stand() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    let new = Image { width: 2, height: 2, pixels: vec![Rgb::splat(3.0); 4] };
+    let replaced = |channels: Vec<(&str, FlatSamples)>, kept| {
+        foreign(&path, None, channels);
+        let mut file = ExrFile::read(&path).unwrap();
+        file.replace_color(&new, kept).unwrap();
+        (file.channels(), file.color().unwrap().pixels[0])
+    };
+    let (channels, color) = replaced(vec![("Y", floats(6.0))], Some("noisy"));
+    assert_eq!(channels, ["Y", "noisy.Y"]);
+    assert!((color - Rgb::splat(3.0)).abs().max_element() < 1e-5);
+    let blender = ["A.Combined.R", "A.Combined.G", "A.Combined.B", "A.Normal.R", "A.Normal.G", "A.Normal.B"];
+    let (channels, color) = replaced(blender.map(|name| (name, floats(1.0))).to_vec(), None);
+    assert_eq!((channels.len(), color), (6, Rgb::splat(3.0)));
+}
+
+#[test]
 fn what_has_no_colour_is_an_error_that_lists_the_channels() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.exr");

@@ -89,17 +89,26 @@ fn attributes(film: &Film) -> LayerAttributes {
 
 fn add(attributes: &mut LayerAttributes, metadata: &Metadata) {
     for (key, value) in metadata.iter() {
-        let value = match value {
-            // OpenEXR strings are UTF-8; the crate's checked constructors know Latin-1 only.
-            Value::Text(text) => AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes())),
-            Value::Number(number) => AttributeValue::F64(*number),
-        };
-        let name = format!("{PREFIX}{key}");
-        attributes.other.insert(Text::from_slice_unchecked(name.as_bytes()), value);
+        set(attributes, key, value);
     }
 }
 
-fn into_io(error: Error) -> io::Error {
+/// Sets the attribute of a fact.
+pub(super) fn set(attributes: &mut LayerAttributes, key: &str, value: &Value) {
+    let value = match value {
+        // OpenEXR strings are UTF-8; the crate's checked constructors know Latin-1 only.
+        Value::Text(text) => AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes())),
+        Value::Number(number) => AttributeValue::F64(*number),
+    };
+    attributes.other.insert(name_of(key), value);
+}
+
+/// Name of the attribute of a fact.
+pub(super) fn name_of(key: &str) -> Text {
+    Text::from_slice_unchecked(format!("{PREFIX}{key}").as_bytes())
+}
+
+pub(super) fn into_io(error: Error) -> io::Error {
     match error {
         Error::Io(error) => error,
         other => io::Error::other(other.to_string()),

@@ -5,6 +5,7 @@
 
 pub mod atomic;
 mod error;
+mod exr_edit;
 mod exr_read;
 #[cfg(test)]
 mod exr_tests;

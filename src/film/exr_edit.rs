@@ -1,0 +1,76 @@
+//! Changes of an OpenEXR file in memory that leave all else in it as it is: parts, channels of any type, attributes.
+
+use super::exr_read::text;
+use super::exr_write::{into_io, name_of, set};
+use super::{ExrFile, Image, ImageError, Value, atomic};
+use crate::math::luminance;
+use ::exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Text, WritableImage};
+use std::path::Path;
+
+impl ExrFile {
+    /// Puts an image of the same size in the place of [`ExrFile::color`], which becomes layer `kept`, if named.
+    pub fn replace_color(&mut self, image: &Image, kept: Option<&str>) -> Result<(), ImageError> {
+        let size = self.color()?.size();
+        if image.size() != size {
+            let what = format!("the colour of {} and its replacement differ in size", self.path.display());
+            return Err(ImageError::Size { what, sizes: [image.size().0, size.0] });
+        }
+        let place = self.color_place()?;
+        let channels = &mut self.parts.layer_data[place.part].channel_data;
+        let mut list = std::mem::take(&mut channels.list);
+        let is_grey = place.channels[0] == place.channels[1];
+        for (k, index) in place.channels.into_iter().enumerate().take(if is_grey { 1 } else { 3 }) {
+            let samples = image.pixels.iter().map(|p| if is_grey { luminance(*p) } else { p[k] }).collect();
+            let new = AnyChannel::new(list[index].name.clone(), FlatSamples::F32(samples));
+            let mut old = std::mem::replace(&mut list[index], new);
+            if let Some(layer) = kept {
+                let name = text(&old.name);
+                old.name = name_in(layer, name.rsplit('.').next().unwrap_or(&name));
+                list.push(old);
+            }
+        }
+        *channels = AnyChannels::sort(list);
+        Ok(())
+    }
+
+    /// Renames the layer `from` to `to`, where there is one.
+    pub fn rename_layer(&mut self, from: &str, to: &str) {
+        for part in &mut self.parts.layer_data {
+            let mut list = std::mem::take(&mut part.channel_data.list);
+            for channel in &mut list {
+                if let Some((layer, own)) = text(&channel.name).rsplit_once('.')
+                    && layer == from
+                {
+                    channel.name = name_in(to, own);
+                }
+            }
+            part.channel_data = AnyChannels::sort(list);
+        }
+    }
+
+    /// Sets a fact of [`ExrFile::metadata`].
+    pub fn set(&mut self, key: &str, value: impl Into<Value>) {
+        if let Some(part) = self.parts.layer_data.first_mut() {
+            set(&mut part.attributes, key, &value.into());
+        }
+    }
+
+    /// Gives a fact another key, where there is one.
+    pub fn rename_fact(&mut self, from: &str, to: &str) {
+        let Some(part) = self.parts.layer_data.first_mut() else { return };
+        if let Some(value) = part.attributes.other.remove(&name_of(from)) {
+            part.attributes.other.insert(name_of(to), value);
+        }
+    }
+
+    /// Writes the file to `path`, whole or not at all.
+    pub fn write(&self, path: &Path) -> Result<(), ImageError> {
+        atomic::write_atomically(path, |file| self.parts.write().to_buffered(file).map_err(into_io))
+            .map_err(|source| ImageError::Write { path: path.to_owned(), source })
+    }
+}
+
+/// Name of a layer's channel.
+fn name_in(layer: &str, channel: &str) -> Text {
+    Text::from_slice_unchecked(format!("{layer}.{channel}").as_bytes())
+}
