@@ -34,10 +34,8 @@ pub struct Device {
 /// A picture and its guides.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<'a> {
-    /// Columns.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
+    /// Columns and rows.
+    pub size: [usize; 2],
     /// Linear radiance by pixel, of any magnitude, finite and not negative.
     pub color: &'a [[f32; 3]],
     /// Share of light reflected by the surfaces seen, 0 to 1.
@@ -96,28 +94,28 @@ impl Device {
     /// # Errors
     /// If an image has not as many pixels as the picture, or the library fails, for lack of memory for example.
     pub fn denoise(&self, picture: &Picture) -> Result<Vec<[f32; 3]>, Error> {
-        let Picture { width, height, color, albedo, .. } = *picture;
+        let Picture { size, color, albedo, .. } = *picture;
         let normal = picture.normal.filter(|_| albedo.is_some());
         let inputs = [(c"color", Some(color)), (c"albedo", albedo), (c"normal", normal)];
         for (name, image) in inputs {
             if let Some(image) = image
-                && Some(image.len()) != width.checked_mul(height)
+                && Some(image.len()) != size[0].checked_mul(size[1])
             {
-                let (image, pixels) = (name.to_str().unwrap_or_default(), image.len());
-                return Err(Error::Size { image, pixels, width, height });
+                let (name, pixels) = (name.to_str().unwrap_or_default(), image.len());
+                return Err(Error::Size { image: name, size: [pixels, 1], picture: size });
             }
         }
         let mut output = vec![[0.0; 3]; color.len()];
         // SAFETY: the device is alive and the name NUL-terminated.
-        let filter =
-            Filter { api: self.api, handle: unsafe { (self.api.new_filter)(self.handle, c"RT".as_ptr()) } };
+        let handle = unsafe { (self.api.new_filter)(self.handle, c"RT".as_ptr()) };
+        let filter = Filter { api: self.api, handle };
         self.check("making its filter")?;
         for (name, image) in inputs {
             if let Some(image) = image {
-                filter.set_image(name, image.as_ptr().cast_mut().cast(), [width, height]);
+                filter.set_image(name, image.as_ptr().cast_mut().cast(), size);
             }
         }
-        filter.set_image(c"output", output.as_mut_ptr().cast(), [width, height]);
+        filter.set_image(c"output", output.as_mut_ptr().cast(), size);
         filter.set_bool(c"hdr", true);
         filter.set_bool(c"cleanAux", picture.clean_guides && normal.is_some());
         // SAFETY: the filter is alive. Its images have the size that it was told, and live as long as this function,

@@ -33,16 +33,14 @@ pub enum Error {
         /// The library's explanation.
         message: String,
     },
-    /// An image has another number of pixels than the picture's size says.
-    #[error("the {image} has {pixels} pixels, and not {width}x{height}")]
+    /// An image has not the picture's size.
+    #[error("the {image} has {}x{} pixels, and the picture {}x{}", size[0], size[1], picture[0], picture[1])]
     Size {
         /// Name of the image.
         image: &'static str,
-        /// Its pixels.
-        pixels: usize,
-        /// Columns of the picture.
-        width: usize,
-        /// Rows of the picture.
-        height: usize,
+        /// Its columns and rows; pixels in one row where no more is known.
+        size: [usize; 2],
+        /// Columns and rows of the picture.
+        picture: [usize; 2],
     },
 }

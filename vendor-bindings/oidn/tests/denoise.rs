@@ -33,7 +33,7 @@ fn noisy(width: usize, height: usize, mean: f32) -> Vec<[f32; 3]> {
 }
 
 fn plain(width: usize, height: usize, color: &[[f32; 3]]) -> Picture<'_> {
-    Picture { width, height, color, albedo: None, normal: None, clean_guides: false }
+    Picture { size: [width, height], color, albedo: None, normal: None, clean_guides: false }
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn images_of_another_size_are_refused() {
     let Some(device) = device(1) else { return };
     let (color, albedo) = (vec![[0.5; 3]; 12], vec![[0.5; 3]; 11]);
     let picture = Picture { albedo: Some(&albedo), ..plain(4, 3, &color) };
-    assert!(matches!(device.denoise(&picture), Err(Error::Size { image: "albedo", pixels: 11, .. })));
+    assert!(matches!(device.denoise(&picture), Err(Error::Size { image: "albedo", size: [11, 1], .. })));
     assert!(matches!(device.denoise(&plain(5, 3, &color)), Err(Error::Size { image: "color", .. })));
     assert!(device.denoise(&plain(0, 0, &[])).is_ok_and(|clean| clean.is_empty()));
 }
