@@ -19,6 +19,7 @@
 //! - [`photon`] finds indirect light by photons and final gathering instead, for comparison;
 //! - [`shadow`] answers whether segments are free, by packets of rays; [`sampling`] gives every stage its
 //!   numbers;
+//! - [`denoise`] takes the noise off a picture, by Open Image Denoise where that is there;
 //! - [`verify`] measures the error of a picture by path-tracing some of its pixels, [`plan`] chooses settings
 //!   for a time or an error, each of which [`setting`] declares once;
 //! - [`mod@bench`] measures how fast the parts are; [`cli`] is the command around it all, [`stats`] its
@@ -36,6 +37,7 @@ mod test_scenes;
 mod bench;
 mod bias_compensation;
 pub mod cli;
+mod denoise;
 mod embree;
 mod eye;
 pub mod film;

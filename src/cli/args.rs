@@ -1,14 +1,15 @@
 //! Arguments of the command line. Every option is documented here and nowhere else: `--help` is made of it.
 
 use super::bench_args::BenchArgs;
-use super::exit;
+use super::exit::{self, Failure};
 use super::method_args::MethodArgs;
 use super::plan_args::PlanArgs;
 use super::values::{Crop, ProgressMode, Resolution, feature};
 use crate::film::Exposure;
-use crate::session::Feature;
+use crate::session::{Feature, Goal};
+use anyhow::anyhow;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Global illumination by lightcuts over Intel Embree, with a path-traced reference.
 #[derive(Debug, Parser)]
@@ -26,6 +27,8 @@ pub enum Command {
     Render(Box<RenderArgs>),
     /// Say what a scene holds and requires
     Info(InfoArgs),
+    /// Take the noise off a picture that is there
+    Denoise(DenoiseFileArgs),
     /// Measure how far a picture is from a reference, and show where
     Compare(CompareArgs),
     /// Measure how fast parts of the renderer are, ratios first
@@ -56,18 +59,15 @@ pub struct RenderArgs {
     /// Frame of the scene's camera path, counted from 0, instead of its still camera
     #[arg(long)]
     pub frame: Option<usize>,
-    /// Tone-mapped picture to write [default: beside the OpenEXR file, named .png]
-    #[arg(long, value_name = "FILE.png")]
-    pub png: Option<PathBuf>,
-    /// Do not write a tone-mapped picture
-    #[arg(long, conflicts_with_all = ["png", "exposure"])]
-    pub no_png: bool,
-    /// Exposure of the PNG in stops, or `auto`: the 90th percentile of luminance becomes 0.8
-    #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
-    pub exposure: Exposure,
+    /// The tone-mapped picture.
+    #[command(flatten)]
+    pub png: PngArgs,
     /// Layers to write beside the colour, about the surfaces seen, through mirrors and glass
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = feature())]
     pub aov: Vec<Feature>,
+    /// Denoising.
+    #[command(flatten)]
+    pub denoise: DenoiseArgs,
     /// Print counters and stage times to standard output
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub stats: Option<StatsFormat>,
@@ -83,6 +83,77 @@ pub struct RenderArgs {
     /// Measuring the error.
     #[command(flatten)]
     pub verify: VerifyArgs,
+}
+
+/// Options of the tone-mapped picture beside an OpenEXR file.
+#[derive(Clone, Debug, Default, Args)]
+pub struct PngArgs {
+    /// Tone-mapped picture to write [default: beside the OpenEXR file, named .png]
+    #[arg(long, value_name = "FILE.png")]
+    png: Option<PathBuf>,
+    /// Do not write a tone-mapped picture
+    #[arg(long, conflicts_with_all = ["png", "exposure"])]
+    no_png: bool,
+    /// Exposure of the PNG in stops, or `auto`: the 90th percentile of luminance becomes 0.8
+    #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
+    pub exposure: Exposure,
+}
+
+impl PngArgs {
+    /// File of the tone-mapped picture beside `exr`, if it is wanted.
+    pub fn file(&self, exr: &Path) -> Option<PathBuf> {
+        if self.no_png {
+            return None;
+        }
+        Some(self.png.clone().unwrap_or_else(|| exr.with_extension("png")))
+    }
+}
+
+/// Options of `render` that denoise the picture.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub struct DenoiseArgs {
+    /// Take the noise off the picture by Open Image Denoise 2, guided by albedo and normals through mirrors and glass;
+    /// a picture without it and a warning where the library is missing
+    #[arg(long, overrides_with = "no_denoise")]
+    denoise: bool,
+    /// Leave the noise in the picture, the default
+    #[arg(long, overrides_with = "denoise")]
+    no_denoise: bool,
+    /// Keep the picture as it was before denoising as layer `noisy`
+    #[arg(long)]
+    pub keep_noisy: bool,
+}
+
+impl DenoiseArgs {
+    /// True if the picture is to be denoised.
+    pub fn denoise(&self) -> Result<bool, Failure> {
+        let denoise = self.denoise || (Goal::default().denoise && !self.no_denoise);
+        if self.keep_noisy && !denoise {
+            return Err(Failure::usage(anyhow!("--keep-noisy goes with --denoise")));
+        }
+        Ok(denoise)
+    }
+}
+
+/// Options of `denoise`.
+#[derive(Debug, Args)]
+#[command(after_help = exit::HELP)]
+pub struct DenoiseFileArgs {
+    /// Picture to denoise (OpenEXR), guided by its layers of albedo and normals where it has them, by the names that
+    /// this program, Blender, Mitsuba, pbrt or Arnold give them
+    pub input: PathBuf,
+    /// Picture to write: all that the other holds, its colour denoised [default: named .denoised.exr]
+    #[arg(short, long, value_name = "FILE.exr")]
+    pub output: Option<PathBuf>,
+    /// Keep the colour as it was as layer `noisy`
+    #[arg(long)]
+    pub keep_noisy: bool,
+    /// Threads to use [default: all processors]; the picture is the same for any number
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub threads: Option<u32>,
+    /// The tone-mapped picture.
+    #[command(flatten)]
+    pub png: PngArgs,
 }
 
 /// Options that measure the picture's error.

@@ -42,24 +42,22 @@ impl RenderJob {
         let method = args.plan.method(args.method.method()?, &held);
         let verify = verify::settings(&args.verify, &method, args.plan.error.is_some());
         let wanted = args.plan.wanted(&method, held, args.verify.verify_samples, run)?;
-        named(&args.output, "exr", "--output")?;
-        let png = match (args.no_png, args.png) {
-            (true, _) => None,
-            (false, Some(path)) => Some(path),
-            (false, None) => Some(args.output.with_extension("png")),
-        };
-        if let Some(path) = &png {
-            named(path, "png", "--png")?;
-        }
-        for path in std::iter::once(&args.output).chain(&png) {
-            atomic::check_writable(path).map_err(Failure::output)?;
-        }
+        let denoise = args.denoise.denoise()?;
+        let png = args.png.file(&args.output);
+        check_outputs(&args.output, png.as_deref())?;
         Ok(RenderJob {
             scene: args.scene,
             strict: args.strict,
             output: args.output,
-            png: png.map(|path| (path, args.exposure)),
-            goal: Goal { method, wanted, features: args.aov.into_iter().collect(), verify },
+            png: png.map(|path| (path, args.png.exposure)),
+            goal: Goal {
+                method,
+                wanted,
+                features: args.aov.into_iter().collect(),
+                denoise,
+                keep_noisy: args.denoise.keep_noisy,
+                verify,
+            },
             threads: threads::count(args.threads),
             framing: Framing {
                 frame: args.frame,
@@ -70,6 +68,18 @@ impl RenderJob {
             progress: args.progress,
         })
     }
+}
+
+/// Checks names of a picture's files, and that they can be written.
+pub fn check_outputs(exr: &Path, png: Option<&Path>) -> Result<(), Failure> {
+    named(exr, "exr", "--output")?;
+    if let Some(path) = png {
+        named(path, "png", "--png")?;
+    }
+    for path in std::iter::once(exr).chain(png) {
+        atomic::check_writable(path).map_err(Failure::output)?;
+    }
+    Ok(())
 }
 
 fn named(path: &Path, extension: &str, option: &str) -> Result<(), Failure> {

@@ -7,6 +7,7 @@ mod args;
 mod bench;
 mod bench_args;
 mod compare;
+mod denoise;
 mod exit;
 mod files;
 mod info;
@@ -44,6 +45,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let outcome = catch_unwind(AssertUnwindSafe(|| match cli.command {
         Command::Render(args) => render::run(*args),
         Command::Info(args) => info::run(args),
+        Command::Denoise(args) => denoise::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
     }));

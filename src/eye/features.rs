@@ -101,6 +101,11 @@ impl Features {
         self.0 == 0
     }
 
+    /// These and another.
+    pub fn with(self, feature: Feature) -> Features {
+        Features(self.0 | 1 << feature as u8)
+    }
+
     /// True if a feature is one of them.
     pub fn contains(self, feature: Feature) -> bool {
         self.0 & 1 << feature as u8 != 0
@@ -109,7 +114,7 @@ impl Features {
 
 impl FromIterator<Feature> for Features {
     fn from_iter<I: IntoIterator<Item = Feature>>(features: I) -> Features {
-        Features(features.into_iter().fold(0, |set, feature| set | 1 << feature as u8))
+        features.into_iter().fold(Features::default(), Features::with)
     }
 }
 

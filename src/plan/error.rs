@@ -12,7 +12,7 @@
 
 use super::ladder::{Ladder, options};
 use crate::film::Image;
-use crate::method::{LightStore, Method, Output};
+use crate::method::{Method, Output};
 use crate::paths::Look;
 use crate::progress::Control;
 use crate::sampling::hash;
@@ -48,14 +48,16 @@ const RAISES: u64 = 4;
 const SEED: u32 = 0x5ea7_c4ed;
 
 /// Goal of the search.
-#[derive(Clone, Copy, Debug)]
-pub struct Asked {
+#[derive(Clone, Copy)]
+pub struct Asked<'a> {
     /// Relative RMS error.
     pub error: f64,
     /// Settings of its measurement.
     pub measure: Settings,
     /// Maximum number of paths a pixel, where those are too noisy to decide.
     pub most_samples: u32,
+    /// Renders the picture of a method, as it is to be kept.
+    pub render: &'a dyn Fn(&Method) -> Output,
 }
 
 /// A picture and its error.
@@ -120,7 +122,7 @@ pub fn for_error(
         // From between two steps to the upper one, or the next.
         step = (step.floor() + if over { 2.0 } else { 1.0 }).min(top);
         let watch = Stopwatch::start();
-        output = ladder.at(step / STEPS).render(world, &LightStore::default(), view, control);
+        output = (asked.render)(&ladder.at(step / STEPS));
         time = watch.elapsed();
         raises += 1;
     }
@@ -172,7 +174,7 @@ fn search(world: &World, view: &View, ladder: &Ladder, asked: &Asked, control: &
     let mut renders = 0;
     let mut attempt = |step: f64| {
         let watch = Stopwatch::start();
-        let output = ladder.at(step / STEPS).render(world, &LightStore::default(), view, control);
+        let output = (asked.render)(&ladder.at(step / STEPS));
         let time = watch.elapsed();
         if !output.complete {
             return None;

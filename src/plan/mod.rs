@@ -26,7 +26,7 @@ pub use ladder::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
 pub use time::{LATE, for_time};
 
 /// The same view on a film `scale` times smaller along each side.
-fn smaller(view: &View, scale: u32) -> View {
+pub fn smaller(view: &View, scale: u32) -> View {
     let window = &view.window;
     let side = |n: u32| n.div_ceil(scale).max(1);
     let film = window.film.map(side);

@@ -1,5 +1,6 @@
 //! A rendered frame: the picture and all that is reported about it.
 
+use crate::denoise::NOISY_VARIANCE;
 use crate::film::metrics::rel_mse_of_variance;
 use crate::film::{Film, Image, Layer, Metadata};
 use crate::math::Rgb;
@@ -43,14 +44,16 @@ impl Frame {
     }
 }
 
-/// The film of a method's output, without channels that are not finite, whose number is returned.
-pub(super) fn film(output: Output, view: &View, centre: DVec3) -> (Film, u64) {
+/// The film of a method's output, without channels that are not finite, whose number is returned. The variance is that
+/// of the noisy picture if `denoised`.
+pub(super) fn film(output: Output, view: &View, centre: DVec3, denoised: bool) -> (Film, u64) {
+    let (layer, of) = if denoised { (NOISY_VARIANCE, "noisy_") } else { ("variance", "") };
     let mut metadata = Metadata::default();
     if let Some(variance) = &output.variance {
-        metadata.set("standard_error", root_mean(variance));
-        metadata.set("relative_mse_of_noise", rel_mse_of_variance(variance, &output.color));
+        metadata.set(&format!("{of}standard_error"), root_mean(variance));
+        metadata.set(&format!("{of}relative_mse_of_noise"), rel_mse_of_variance(variance, &output.color));
     }
-    let variance = output.variance.map(|image| Layer::color("variance", image));
+    let variance = output.variance.map(|image| Layer::color(layer, image));
     let layers = variance.into_iter().chain(output.extra).collect();
     let camera = Some(view.matrices(centre));
     let mut film = Film { window: view.window, color: output.color, layers, camera, metadata };

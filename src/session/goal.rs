@@ -14,6 +14,10 @@ pub struct Goal {
     pub wanted: Wanted,
     /// Features of the surfaces seen that are wanted beside the colour.
     pub features: Features,
+    /// True if the picture is to be denoised.
+    pub denoise: bool,
+    /// True if the picture before denoising is kept as layer `noisy`.
+    pub keep_noisy: bool,
     /// Settings of the verification of the picture's error, if any.
     pub verify: Option<verify::Settings>,
 }

@@ -13,6 +13,7 @@
 //! The session holds what all frames share; a [`Goal`] says how a frame is rendered, or what its settings are to be
 //! planned for, and how its error is measured; a [`Frame`] holds the picture and all that is reported about it.
 
+mod finish;
 mod frame;
 mod goal;
 mod render;

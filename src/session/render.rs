@@ -1,11 +1,12 @@
 //! A frame, from its goal to its facts.
 
+use super::finish::Finish;
 use super::frame::{self, Frame, Remark};
 use super::goal::{Goal, Wanted};
 use super::{Session, report};
-use crate::eye::{DROPPED_BRANCHES, FeatureSettings, Features, features};
-use crate::film::{Image, Layer};
-use crate::method::{Method, Output};
+use crate::eye::DROPPED_BRANCHES;
+use crate::film::Image;
+use crate::method::{LightStore, Method, Output};
 use crate::plan::{self, LATE, Ladder};
 use crate::progress::Control;
 use crate::stats::{Counter, Stage, Stats, Stopwatch, available_bytes};
@@ -61,8 +62,9 @@ impl Session {
         let watch = Stopwatch::start();
         let mut stats = Stats::new();
         let mut remarks = Vec::new();
-        let made = self.make(view, goal, control, &mut stats, &mut remarks)?;
-        let Made { method, mut output, seconds, measured, plan } = made;
+        let finish = Finish::new(&self.world, view, goal, control);
+        let made = self.make(view, goal, &finish, control, &mut stats, &mut remarks)?;
+        let Made { method, output, seconds, measured, plan } = made;
         stats.merge(&output.stats);
         if let Some(Counter::Count(dropped @ 1..)) = stats.get(DROPPED_BRANCHES) {
             remarks.push(Remark::Warning(format!(
@@ -70,14 +72,15 @@ impl Session {
                  other: their light is missing"
             )));
         }
-        if !goal.features.is_empty() {
-            let layers = stats.time(Stage::EyePass, || self.features(view, &method, goal.features, control));
-            output.extra.extend(layers);
+        if let Some(error) = finish.failure() {
+            remarks.push(Remark::Warning(format!("the picture is not denoised: {error}")));
         }
 
         let complete = output.complete;
         let nonfinite_samples = output.nonfinite;
-        let (mut film, nonfinite_channels) = frame::film(output, view, self.world.scene.centre);
+        let denoised_by = finish.denoised_by().filter(|_| complete);
+        let (mut film, nonfinite_channels) =
+            frame::film(output, view, self.world.scene.centre, denoised_by.is_some());
         for (n, what) in [(nonfinite_samples, "samples"), (nonfinite_channels, "channels of the picture")] {
             if n > 0 {
                 remarks.push(Remark::Warning(format!(
@@ -90,6 +93,9 @@ impl Session {
         film.metadata.set("partial", if complete { "false" } else { "true" });
         film.metadata.set("render_seconds", seconds);
         film.metadata.set("nonfinite", nonfinite as f64);
+        if goal.denoise {
+            film.metadata.set("denoised", denoised_by.as_deref().unwrap_or("false"));
+        }
         let since_start = match &goal.wanted {
             Wanted::Time { run, .. } => run.elapsed(),
             _ => watch.elapsed(),
@@ -116,18 +122,13 @@ impl Session {
             "window": { "film": window.film, "offset": window.offset, "size": [window.width, window.height] },
             "complete": complete,
             "nonfinite": nonfinite,
+            "denoised": denoised_by,
             "standard_error": film.metadata.number("standard_error"),
             "relative_mse_of_noise": film.metadata.number("relative_mse_of_noise"),
             "verified": verified,
             "plan": plan,
         });
         Ok(Frame { film, method, stats, facts, remarks, complete, unverified })
-    }
-
-    /// The features wanted, of the surfaces that the method's eye samples see.
-    fn features(&self, view: &View, method: &Method, wanted: Features, control: &Control) -> Vec<Layer> {
-        let settings = FeatureSettings { look: method.look(), spp: method.spp(), seed: method.seed() };
-        features(&self.world, view, &settings, wanted, control)
     }
 
     /// States the scene, the method and its settings.
@@ -153,11 +154,12 @@ impl Session {
         stats.time(Stage::Verify, || verify(&self.world, view, image, settings, control))
     }
 
-    /// The picture by the goal's settings, or by those planned for it.
+    /// The finished picture by the goal's settings, or by those planned for it.
     fn make(
         &self,
         view: &View,
         goal: &Goal,
+        finish: &Finish,
         control: &Control,
         stats: &mut Stats,
         remarks: &mut Vec<Remark>,
@@ -170,19 +172,21 @@ impl Session {
         match &goal.wanted {
             Wanted::AsSet => {
                 let watch = Stopwatch::start();
-                let output = method.render(&self.world, &self.lights, view, control);
+                let mut output = method.render(&self.world, &self.lights, view, control);
+                finish.apply(&method, &mut output);
                 let seconds = watch.elapsed().wall_seconds;
                 Ok(Made { method, output, seconds, measured: None, plan: Value::Null })
             }
             Wanted::Time { seconds, run, held } => {
                 let asked = *seconds;
-                let left = || asked - run.elapsed().wall_seconds;
                 let watch = Stopwatch::start();
+                let finishing = finish.expected_seconds(&method);
+                let left = || asked - finishing - run.elapsed().wall_seconds;
                 let found = plan::for_time(&self.world, view, &ladder(held)?, left, control)
                     .ok_or(FrameError::Interrupted)?;
                 let spent = found.spent();
                 stats.add_time(Stage::Plan, watch.elapsed().without(spent));
-                let planned = run.elapsed().wall_seconds + found.render_seconds;
+                let planned = run.elapsed().wall_seconds + found.render_seconds + finishing;
                 let in_reach = planned <= asked * LATE;
                 remarks.extend(report::of_time(asked, planned, in_reach, &found.options));
                 stats.add("Plan/time asked [s]", asked);
@@ -197,14 +201,20 @@ impl Session {
                 });
                 let method = found.method;
                 let watch = Stopwatch::start();
-                let output = found.render(&self.world, view, control);
+                let mut output = found.render(&self.world, view, control);
+                finish.apply(&method, &mut output);
                 let seconds = spent.wall_seconds + watch.elapsed().wall_seconds;
                 Ok(Made { method, output, seconds, measured: None, plan })
             }
             Wanted::Error { error, max_samples, held } => {
                 let (error, max_samples) = (*error, *max_samples);
                 let measure = goal.verify.unwrap_or_default();
-                let asked = plan::Asked { error, measure, most_samples: max_samples };
+                let render = |method: &Method| {
+                    let mut output = method.render(&self.world, &LightStore::default(), view, control);
+                    finish.apply(method, &mut output);
+                    output
+                };
+                let asked = plan::Asked { error, measure, most_samples: max_samples, render: &render };
                 let watch = Stopwatch::start();
                 let found = plan::for_error(&self.world, view, &ladder(held)?, &asked, control)
                     .ok_or(FrameError::Interrupted)?;

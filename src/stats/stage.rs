@@ -26,6 +26,8 @@ pub enum Stage {
     Splat,
     /// Lighting of eye samples by cuts or gathering; all of it in methods without an eye pass.
     Render,
+    /// Denoising the picture.
+    Denoise,
     /// Path-tracing pixels to measure the picture's error.
     Verify,
     /// Encoding and writing the pictures.
@@ -36,7 +38,7 @@ pub enum Stage {
 
 impl Stage {
     /// All stages, in order.
-    pub const ALL: [Stage; 12] = [
+    pub const ALL: [Stage; 13] = [
         Stage::Load,
         Stage::Build,
         Stage::Plan,
@@ -46,6 +48,7 @@ impl Stage {
         Stage::Records,
         Stage::Splat,
         Stage::Render,
+        Stage::Denoise,
         Stage::Verify,
         Stage::Write,
         Stage::Total,
@@ -63,6 +66,7 @@ impl Stage {
             Stage::Records => "records",
             Stage::Splat => "splat",
             Stage::Render => "render",
+            Stage::Denoise => "denoise",
             Stage::Verify => "verify",
             Stage::Write => "write",
             Stage::Total => "total",

@@ -7,6 +7,7 @@ mod cache;
 mod cache_artefacts;
 mod common;
 mod compensation;
+mod denoise;
 mod extremes;
 mod lightcuts;
 mod occluder_cache;

@@ -2,6 +2,7 @@
 
 mod bench;
 mod compare;
+mod denoise;
 mod interrupt;
 mod output;
 mod plan;

@@ -1,0 +1,69 @@
+//! `lightsplat denoise`: takes the noise off a picture in a file; all else in the file stays.
+
+use super::args::DenoiseFileArgs;
+use super::exit::Failure;
+use super::job::check_outputs;
+use super::{talk, threads};
+use crate::denoise::{Denoiser, Guides, NOISY, NOISY_VARIANCE, guides};
+use crate::film::{ExrFile, Image, ImageError, write_png};
+use anyhow::anyhow;
+use std::fs::canonicalize;
+
+/// Runs the command.
+pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
+    let input = &args.input;
+    let output = args.output.clone().unwrap_or_else(|| input.with_extension("denoised.exr"));
+    let png = args.png.file(&output);
+    check_outputs(&output, png.as_deref())?;
+    if canonicalize(input).is_ok_and(|input| canonicalize(&output).is_ok_and(|output| input == output)) {
+        let message = "--output is the picture to denoise, which would be lost: name another file";
+        return Err(Failure::usage(anyhow!(message)));
+    }
+    let mut file = ExrFile::read(input).map_err(Failure::input)?;
+    if let Some(library) = file.metadata().text("denoised").filter(|library| *library != "false") {
+        return Err(Failure::input(anyhow!("{} has been denoised before, by {library}", input.display())));
+    }
+    let color = file.color().map_err(Failure::input)?;
+    let channels = file.channels();
+    let guide = |names: &[&str]| -> Result<Option<(String, Image)>, ImageError> {
+        guides::layer(&channels, names).map(|name| file.layer(&name).map(|image| (name, image))).transpose()
+    };
+    let albedo = guide(&guides::ALBEDO).map_err(Failure::input)?;
+    // Without albedo the library has no use for it.
+    let normal = if albedo.is_some() { guide(&guides::NORMAL).map_err(Failure::input)? } else { None };
+    let found = Guides {
+        albedo: albedo.as_ref().map(|(_, image)| image),
+        normal: normal.as_ref().map(|(_, image)| image),
+        // Those of other renderers may have noise, in blurred reflections above all.
+        noise_free: file.metadata().text("method").is_some(),
+    };
+    let (library, clean) = threads::pool(threads::count(args.threads))?
+        .install(|| {
+            let denoiser = Denoiser::load()?;
+            Ok((denoiser.name(), denoiser.denoise(&color, &found)?))
+        })
+        .map_err(|error: crate::denoise::DenoiseError| Failure::render(error))?;
+    let guided_by: Vec<&str> =
+        [&albedo, &normal].into_iter().flatten().map(|(name, _)| name.as_str()).collect();
+
+    file.replace_color(&clean, args.keep_noisy.then_some(NOISY)).map_err(Failure::input)?;
+    file.rename_layer("variance", NOISY_VARIANCE);
+    for fact in ["standard_error", "relative_mse_of_noise"] {
+        file.rename_fact(fact, &format!("noisy_{fact}"));
+    }
+    file.set("denoised", library.as_str());
+    let mut said = format!("wrote {}", output.display());
+    let exposed = png.map(|path| (path, args.png.exposure.factor(&clean)));
+    if let Some((path, factor)) = &exposed {
+        file.set("png_exposure", f64::from(factor.log2()));
+        said += &format!(" and {} (exposure {:+.2} EV)", path.display(), factor.log2());
+    }
+    file.write(&output).map_err(Failure::output)?;
+    if let Some((path, factor)) = &exposed {
+        write_png(path, &clean, *factor).map_err(Failure::output)?;
+    }
+    let guided_by = if guided_by.is_empty() { "no layer".to_owned() } else { guided_by.join(" and ") };
+    talk::note(&format!("denoised by {library}, guided by {guided_by}"));
+    talk::note(&said);
+    Ok(())
+}

@@ -1,0 +1,122 @@
+//! `render --denoise` and `denoise`: with the library, left out where it is missing, and without.
+
+use super::{Finished, Sandbox, read};
+use lightsplat::film::{ExrFile, Image};
+
+/// Renders the room with few paths.
+fn noisy(sandbox: &Sandbox, name: &str, more: &[&str]) -> Finished {
+    let base = ["render", "room.xml", "-o", name, "--method", "path", "--spp", "2"];
+    sandbox.run(&[&base, more].concat())
+}
+
+/// Renders the room denoised; `None` where there is no library.
+fn denoised(sandbox: &Sandbox, name: &str, more: &[&str]) -> Option<Finished> {
+    let run = noisy(sandbox, name, &[&["--denoise"], more].concat()).expect(0);
+    if run.stderr.contains("not denoised") {
+        eprintln!("skipped: {}", run.stderr);
+        return None;
+    }
+    Some(run)
+}
+
+fn file(sandbox: &Sandbox, name: &str) -> ExrFile {
+    ExrFile::read(&sandbox.path(name)).unwrap()
+}
+
+fn color(sandbox: &Sandbox, name: &str) -> Image {
+    file(sandbox, name).color().unwrap()
+}
+
+/// Runs a command with a folder in `OIDN_DIR` that is empty.
+fn without_library(sandbox: &Sandbox, arguments: &[&str]) -> Finished {
+    let folder = sandbox.path("empty");
+    std::fs::create_dir_all(&folder).unwrap();
+    Finished::from(sandbox.command(arguments).env("OIDN_DIR", &folder).output().unwrap())
+}
+
+#[test]
+fn a_missing_library_is_a_warning_with_its_remedy_and_a_noisy_picture_that_says_so() {
+    let sandbox = Sandbox::new();
+    sandbox.render("plain.exr", &[]).expect(0);
+    let render = Sandbox::path_tracing(
+        "4",
+        &["--resolution", "24x16", "--denoise", "--keep-noisy", "--stats", "json"],
+    );
+    let run = without_library(&sandbox, &render).expect(0);
+    for part in ["warning: the picture is not denoised", "OIDN_DIR=", "make setup"] {
+        assert!(run.stderr.contains(part), "{}", run.stderr);
+    }
+    let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+    assert!(report["run"]["denoised"].is_null() && report["times"]["denoise"].is_null());
+    let picture = file(&sandbox, "a.exr");
+    assert_eq!(picture.metadata().text("denoised"), Some("false"));
+    assert_eq!(picture.color().unwrap(), color(&sandbox, "plain.exr"));
+    assert_eq!(picture.layers(), ["", "variance"]);
+
+    let run = without_library(&sandbox, &["denoise", "a.exr", "-o", "b.exr"]).expect(1);
+    assert!(run.stderr.contains("make setup"), "{}", run.stderr);
+    assert!(!sandbox.path("b.exr").exists() && !sandbox.path("b.png").exists());
+}
+
+#[test]
+fn a_denoised_picture_says_by_what_keeps_what_is_asked_and_is_nearer_to_the_truth() {
+    let sandbox = Sandbox::new();
+    let verify = ["--verify", "300", "--stats", "json", "--threads", "2"];
+    let Some(run) = denoised(&sandbox, "a.exr", &[&verify[..], &["--keep-noisy"]].concat()) else { return };
+    let plain = noisy(&sandbox, "plain.exr", &verify).expect(0);
+    let [report, plain] =
+        [&run.stdout, &plain.stdout].map(|text| serde_json::from_str::<serde_json::Value>(text).unwrap());
+    let library = report["run"]["denoised"].as_str().unwrap();
+    assert!(library.starts_with("Open Image Denoise 2."), "{library}");
+    assert!(report["times"]["denoise"]["wall_seconds"].as_f64().unwrap() > 0.0);
+    let rms =
+        |report: &serde_json::Value| report["run"]["verified"]["relative_rms"]["value"].as_f64().unwrap();
+    assert!(rms(&report) < 0.7 * rms(&plain), "{} {}", rms(&report), rms(&plain));
+
+    let picture = file(&sandbox, "a.exr");
+    assert_eq!(picture.metadata().text("denoised"), Some(library));
+    assert_eq!(picture.layers(), ["", "noisy", "noisy.variance"]);
+    assert_eq!(picture.layer("noisy").unwrap(), color(&sandbox, "plain.exr"));
+    assert_eq!(picture.metadata().number("standard_error"), None);
+    assert!(picture.metadata().number("noisy_standard_error").unwrap() > 0.0);
+    for threads in ["1", "4"] {
+        denoised(&sandbox, "b.exr", &["--threads", threads, "--no-png"]).unwrap();
+        assert_eq!(color(&sandbox, "b.exr"), picture.color().unwrap());
+    }
+    let off = noisy(&sandbox, "c.exr", &["--denoise", "--no-denoise", "--stats", "json"]).expect(0);
+    assert!(off.stdout.contains("\"denoised\":null"));
+    assert!(noisy(&sandbox, "c.exr", &["--keep-noisy"]).expect(2).stderr.contains("--denoise"));
+}
+
+#[test]
+fn a_file_is_denoised_as_its_render_would_be_and_keeps_all_else() {
+    let sandbox = Sandbox::new();
+    let aovs = ["--aov", "albedo,normal,depth,material,alpha", "--crop", "3,2,20,13"];
+    noisy(&sandbox, "plain.exr", &aovs).expect(0);
+    let before = read(&sandbox.path("plain.exr"));
+    if denoised(&sandbox, "render.exr", &aovs).is_none() {
+        return;
+    }
+    let run = sandbox.run(&["denoise", "plain.exr", "--keep-noisy"]).expect(0);
+    assert!(run.stderr.contains("guided by albedo and normal"), "{}", run.stderr);
+    assert!(sandbox.path("plain.denoised.png").exists() && read(&sandbox.path("plain.exr")) == before);
+    let (plain, clean) = (file(&sandbox, "plain.exr"), file(&sandbox, "plain.denoised.exr"));
+    assert_eq!(clean.color().unwrap(), color(&sandbox, "render.exr"));
+    assert_eq!(clean.layer("noisy").unwrap(), plain.color().unwrap());
+    assert_eq!(clean.layer("noisy.variance").unwrap(), plain.layer("variance").unwrap());
+    for layer in ["albedo", "normal", "depth.Z", "materialId", "A"] {
+        assert_eq!(clean.layer(layer).unwrap(), plain.layer(layer).unwrap(), "{layer}");
+    }
+    assert_eq!(clean.channels().len(), plain.channels().len() + 3);
+    assert_eq!((clean.window(), clean.camera()), (plain.window(), plain.camera()));
+    let (facts, kept) = (clean.metadata(), plain.metadata());
+    for key in ["scene_hash", "settings", "render_seconds", "method"] {
+        assert_eq!(facts.get(key), kept.get(key), "{key}");
+    }
+    assert!(facts.text("denoised").is_some_and(|library| library.starts_with("Open Image Denoise 2.")));
+
+    let again = sandbox.run(&["denoise", "plain.denoised.exr"]).expect(3);
+    assert!(again.stderr.contains("denoised before"), "{}", again.stderr);
+    let onto = sandbox.run(&["denoise", "plain.exr", "-o", "./plain.exr"]).expect(2);
+    assert!(onto.stderr.contains("another file") && read(&sandbox.path("plain.exr")) == before);
+}
