@@ -68,7 +68,7 @@ fn failure(error: StudyError) -> Failure {
     match error {
         StudyError::Open(OpenError::Scene(_)) | StudyError::Compare(_) => Failure::input(error),
         StudyError::Knob { .. } => Failure::usage(error),
-        StudyError::Open(OpenError::Build { .. }) => Failure::render(error),
+        StudyError::Open(OpenError::Build { .. }) | StudyError::Denoise(_) => Failure::render(error),
         StudyError::Folder { .. } | StudyError::Write(_) => Failure::output(error),
         StudyError::Interrupted => Failure::interrupted(error),
     }

@@ -7,7 +7,7 @@ use crate::film::{Image, Layer};
 use crate::method::{Method, Output};
 use crate::plan::smaller;
 use crate::progress::Control;
-use crate::stats::{Stage, Stopwatch};
+use crate::stats::{Stage, Stats, Stopwatch};
 use crate::view::View;
 use crate::world::World;
 use std::cell::OnceCell;
@@ -29,16 +29,26 @@ pub(crate) struct Finish<'a> {
 }
 
 impl<'a> Finish<'a> {
-    /// Loads the denoiser, if the goal asks for it.
-    pub fn new(world: &'a World, view: &'a View, goal: &Goal, control: &'a Control) -> Finish<'a> {
+    /// Loads the denoiser, if the goal asks for it; the time is a part of denoising.
+    pub fn new(
+        world: &'a World,
+        view: &'a View,
+        goal: &Goal,
+        control: &'a Control,
+        stats: &mut Stats,
+    ) -> Finish<'a> {
         let failure = OnceCell::new();
-        let denoiser = match goal.denoise.then(Denoiser::load) {
-            Some(Err(error)) => {
+        let watch = Stopwatch::start();
+        let denoiser = goal.denoise.then(Denoiser::load).and_then(|loaded| match loaded {
+            Ok(denoiser) => {
+                stats.add_time(Stage::Denoise, watch.elapsed());
+                Some(denoiser)
+            }
+            Err(error) => {
                 failure.get_or_init(|| error);
                 None
             }
-            loaded => loaded.and_then(Result::ok),
-        };
+        });
         let Goal { features, keep_noisy, .. } = *goal;
         Finish { world, view, control, features, keep_noisy, denoiser, failure }
     }
@@ -97,12 +107,18 @@ impl<'a> Finish<'a> {
         let watch = Stopwatch::start();
         let layers =
             self.layers(&small, method, Features::default().with(Feature::Albedo).with(Feature::Normal));
+        let mut seconds = watch.elapsed().wall_seconds;
         let guides = guides(&layers);
-        if let Some(Err(error)) = guides.albedo.map(|albedo| denoiser.denoise(albedo, &guides)) {
-            self.failure.get_or_init(|| error);
+        let Some(color) = guides.albedo else { return 0.0 };
+        // The first picture of a device takes longer, whatever its size.
+        for is_first in [true, false] {
+            let watch = Stopwatch::start();
+            if let Err(error) = denoiser.denoise(color, &guides) {
+                self.failure.get_or_init(|| error);
+            }
+            seconds += if is_first { 0.0 } else { watch.elapsed().wall_seconds };
         }
-        let parts = self.view.window.pixel_count() as f64 / small.window.pixel_count() as f64;
-        watch.elapsed().wall_seconds * parts
+        seconds * self.view.window.pixel_count() as f64 / small.window.pixel_count() as f64
     }
 
     fn layers(&self, view: &View, method: &Method, wanted: Features) -> Vec<Layer> {

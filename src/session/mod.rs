@@ -19,6 +19,7 @@ mod goal;
 mod render;
 mod report;
 
+pub(crate) use finish::Finish;
 pub use frame::{Frame, Remark};
 pub use goal::{Goal, Wanted};
 pub use render::FrameError;

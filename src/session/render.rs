@@ -62,7 +62,7 @@ impl Session {
         let watch = Stopwatch::start();
         let mut stats = Stats::new();
         let mut remarks = Vec::new();
-        let finish = Finish::new(&self.world, view, goal, control);
+        let finish = Finish::new(&self.world, view, goal, control, &mut stats);
         let made = self.make(view, goal, &finish, control, &mut stats, &mut remarks)?;
         let Made { method, output, seconds, measured, plan } = made;
         stats.merge(&output.stats);

@@ -27,6 +27,7 @@ pub(super) use store::program;
 pub use subject::file_of;
 
 use super::document::Document;
+use crate::denoise::{DenoiseError, Denoiser};
 use crate::film::ImageError;
 use crate::progress::Control;
 use crate::session::OpenError;
@@ -101,6 +102,9 @@ pub enum StudyError {
         /// Names that exist.
         known: String,
     },
+    /// A picture cannot be denoised.
+    #[error(transparent)]
+    Denoise(DenoiseError),
     /// The study was cancelled.
     #[error("interrupted; what is rendered is kept, the same command goes on from there")]
     Interrupted,
@@ -120,6 +124,15 @@ impl<'a> Study<'a> {
     /// Loads a scene.
     pub fn subject(&self, path: &Path) -> Result<Subject, StudyError> {
         Subject::load(path, self)
+    }
+
+    /// True if pictures can be denoised; if not, says that those are left out and why.
+    pub fn denoises(&self) -> bool {
+        let loaded = Denoiser::load();
+        if let Err(error) = &loaded {
+            (self.say)(&format!("denoised pictures are left out: {error}"));
+        }
+        loaded.is_ok()
     }
 
     /// Returns the conditions that the figures depend on, by name.

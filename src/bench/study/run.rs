@@ -5,9 +5,10 @@ use super::store::{Kept, program};
 use super::{Study, StudyError, Subject};
 use crate::embree::BuildQuality;
 use crate::film::Image;
-use crate::method::{LightStore, Method};
+use crate::method::{LightStore, Method, path};
 use crate::paths::Look;
-use crate::stats::{Stage, Stopwatch};
+use crate::session::{Finish, Goal};
+use crate::stats::{Stage, Stats, Stopwatch};
 use serde_json::{Value, json};
 
 /// A method with settings, under a label.
@@ -17,6 +18,21 @@ pub struct Candidate {
     pub label: String,
     /// Method and settings.
     pub method: Method,
+    /// True if its picture is denoised.
+    pub denoise: bool,
+}
+
+impl Candidate {
+    /// A method under a label.
+    pub fn new(label: impl Into<String>, method: Method) -> Candidate {
+        Candidate { label: label.into(), method, denoise: false }
+    }
+
+    /// The path tracer of a number of samples a pixel, denoised.
+    pub fn denoised_path(label: impl Into<String>, spp: u32) -> Candidate {
+        let method = Method::Path(path::Settings { spp, ..path::Settings::default() });
+        Candidate { denoise: true, ..Candidate::new(label, method) }
+    }
 }
 
 /// A rendered picture with its statistics.
@@ -81,6 +97,7 @@ impl Study<'_> {
             "build": built.map(|quality| format!("{quality:?}")),
             "repeats": self.plan.repeats,
             "method": method.name(),
+            "denoise": candidate.denoise,
             // All settings, including those that the command line lacks.
             "settings": format!("{method:?}"),
         });
@@ -103,12 +120,17 @@ impl Study<'_> {
     fn render(&self, subject: &Subject, candidate: &Candidate) -> Result<Run, StudyError> {
         let mut best: Option<Run> = None;
         for _ in 0..self.plan.repeats.max(1) {
-            let output = candidate.method.render(
-                &subject.session.world,
-                &LightStore::default(),
-                &subject.view,
-                self.control,
-            );
+            let Subject { session, view, .. } = subject;
+            let goal = Goal { denoise: candidate.denoise, ..Goal::default() };
+            let mut loading = Stats::new();
+            let finish = Finish::new(&session.world, view, &goal, self.control, &mut loading);
+            let mut output =
+                candidate.method.render(&session.world, &LightStore::default(), view, self.control);
+            finish.apply(&candidate.method, &mut output);
+            output.stats.merge(&loading);
+            if let Some(error) = finish.failure() {
+                return Err(StudyError::Denoise(error.clone()));
+            }
             if !output.complete {
                 return Err(StudyError::Interrupted);
             }

@@ -62,6 +62,7 @@ pub fn scatter(x_name: &str, y_name: &str, series: &[Series]) -> String {
             let path: Vec<String> = points.iter().map(|p| format!("{:.1} {:.1}", x(p.0), y(p.1))).collect();
             svg += &format!("<path fill=\"none\" stroke=\"{}\" d=\"M{}\"/>\n", series.colour, path.join("L"));
         }
+        let drawn = !points.is_empty();
         for (px, py, name) in points {
             let (px, py) = (x(*px), y(*py));
             svg += &format!(
@@ -74,7 +75,7 @@ pub fn scatter(x_name: &str, y_name: &str, series: &[Series]) -> String {
             }
             svg.push('\n');
         }
-        if !series.name.is_empty() {
+        if drawn && !series.name.is_empty() {
             let colour = series.colour;
             svg += &format!("<circle cx=\"{}\" cy=\"{legend}\" r=\"4\" fill=\"{colour}\"/>", right + 12.0);
             svg += &svg_text(right + 20.0, legend + 4.0, "start", &series.name);

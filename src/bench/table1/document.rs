@@ -17,12 +17,13 @@ const ZOOMS: usize = 3;
 const LEGEND: &str = "Times are processor seconds over all threads. N_c: records; direct %: share of them that hold \
     direct light; anisotropy: long over short radius of footprints, direct / indirect; a: their radius over the distance \
     of what casts light and shadow; cut: clusters; T_light: light pass and trees; T_f: records and cuts of eye samples' \
-    own; T_cache: splatting and adaptation; total: all that and the eye pass. PSNR and FLIP are against the reference as \
+    own; T_cache: splatting and adaptation; total: all that, the eye pass and denoising. PSNR and FLIP are against the reference as \
     it is, relMSE is without its noise and without the worst pixel of a thousand; brightness below 1 is mostly what \
     clamping takes away. \"To LC\": against lightcuts per pixel on the same eye samples and virtual lights. \"Light\": \
-    against the reference of the eye samples alone, in which only wrong light counts. \"Speed\": time of lightcuts (LC) \
-    or photon-cache (PM) over the row's; \"at equal FLIP\" and \"at equal light\": the same for as large a FLIP, or relMSE \
-    of light, interpolated between the other's rows; > and < where none is as good or as bad.";
+    against the reference of the eye samples alone, in which only wrong light counts. \"Speed\": time of lightcuts (LC), \
+    photon-cache (PM) or denoised paths over the row's; \"at equal FLIP\" and \"at equal light\": the same for as large a FLIP, or relMSE \
+    of light, interpolated between the other's rows; > and < where none is as good or as bad. Paths take \
+    samples of their own: their error of light holds the aliasing of the few eye samples as well.";
 
 /// Returns the paper's claims, then a section a scene.
 pub fn document(table: &Table1) -> Document {
@@ -124,7 +125,7 @@ fn curves(scene: &SceneTable, error: impl Fn(&super::Row) -> f64) -> Vec<Series>
     };
     let mut series: Vec<Series> = OPPONENTS
         .into_iter()
-        .zip(["#a40", "#693"])
+        .zip(["#a40", "#693", "#939"])
         .map(|((family, name), colour)| Series {
             name: name.to_owned(),
             colour,

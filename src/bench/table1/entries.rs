@@ -16,11 +16,16 @@ pub enum Family {
     Unshared,
     /// Records of final gathering over a photon map.
     PhotonCache,
+    /// Path tracing and a denoiser.
+    DenoisedPath,
 }
 
 /// Families that others are compared with, each with the label of its own row.
-pub const OPPONENTS: [(Family, &str); 2] =
-    [(Family::Lightcuts, "lightcuts"), (Family::PhotonCache, "photon-cache")];
+pub const OPPONENTS: [(Family, &str); 3] = [
+    (Family::Lightcuts, "lightcuts"),
+    (Family::PhotonCache, "photon-cache"),
+    (Family::DenoisedPath, "path --denoise"),
+];
 
 /// A row of the table.
 pub struct Entry {
@@ -39,13 +44,17 @@ const CURVE: [f32; 4] = [0.5, 2.0, 4.0, 8.0];
 /// Numbers of rays of photon-cache that make its curve, relative to the default.
 const RAYS: [f32; 3] = [0.25, 0.5, 2.0];
 
+/// Samples a pixel of the denoised paths in the table, and of those that make their curve.
+const DENOISED_SPP: u32 = 16;
+const DENOISED_CURVE: [u32; 3] = [1, 4, 64];
+
 /// Returns the positions of the eye samples of all rows.
 pub fn look() -> Look {
     let reconstruction::Settings { spp, seed, .. } = reconstruction::Settings::default();
     Look::EyeSamples { spp, seed }
 }
 
-/// Returns all rows. Other methods take the eye samples of the default, lightcuts per pixel its virtual lights
+/// Returns all rows. Other methods but paths take the eye samples of the default, lightcuts per pixel its virtual lights
 /// and cuts too.
 pub fn entries() -> Vec<Entry> {
     let default = reconstruction::Settings::default();
@@ -73,9 +82,15 @@ pub fn entries() -> Vec<Entry> {
         ..photon_cache::Settings::default()
     };
     let entry = |label: &str, paper, family, method| Entry {
-        candidate: Candidate { label: label.to_owned(), method },
+        candidate: Candidate::new(label, method),
         family,
         paper,
+        main: true,
+    };
+    let denoised = |label: &str, spp| Entry {
+        candidate: Candidate::denoised_path(label, spp),
+        family: Family::DenoisedPath,
+        paper: None,
         main: true,
     };
     let mut entries = vec![
@@ -84,6 +99,7 @@ pub fn entries() -> Vec<Entry> {
         entry("cache, isotropic", Some("LCache1"), Family::Own, shaped(Footprints::Isotropic)),
         entry("photon-cache", Some("PM"), Family::PhotonCache, Method::PhotonCache(photons)),
         entry("lightcuts", None, Family::Lightcuts, Method::Lightcuts(cuts)),
+        denoised("path --denoise", DENOISED_SPP),
         entry("lightcuts, unshared", Some("LC"), Family::Unshared, Method::Lightcuts(unshared)),
     ];
     for factor in CURVE {
@@ -99,6 +115,9 @@ pub fn entries() -> Vec<Entry> {
         let label = format!("photon-cache, {} rays", settings.rays);
         let method = Method::PhotonCache(settings);
         entries.push(Entry { main: false, paper: None, ..entry(&label, None, Family::PhotonCache, method) });
+    }
+    for spp in DENOISED_CURVE {
+        entries.push(Entry { main: false, ..denoised(&format!("path --denoise, {spp} spp"), spp) });
     }
     entries
 }

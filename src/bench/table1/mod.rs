@@ -11,7 +11,7 @@
 //! | T_light | light pass and trees |
 //! | T_f | records, and eye samples' own cuts |
 //! | T_cache | splatting and adaptation |
-//! | total | all of that and the eye pass |
+//! | total | all of that, the eye pass and denoising |
 //!
 //! Deviations: the paper's ΣT leaves out T_light, our total does not. All errors are against a path-traced
 //! reference of the same scene: of its pixels, and of the points of the eye samples alone, which measures
@@ -75,11 +75,13 @@ struct Pictures {
 
 fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     let mut table = Table1 { facts: study.facts(), scenes: Vec::new() };
+    let denoises = study.denoises();
     for path in scenes {
         let subject = study.subject(path)?;
         let reference = study.reference(&subject, Look::Pixels)?;
         let light = study.reference(&subject, look())?;
-        let entries = entries();
+        let mut entries = entries();
+        entries.retain(|entry| denoises || !entry.candidate.denoise);
         let runs: Vec<Run> =
             entries.iter().map(|entry| study.run(&subject, &entry.candidate)).collect::<Result<_, _>>()?;
         table.scenes.push(SceneTable {

@@ -61,7 +61,7 @@ pub struct Versus {
 }
 
 /// Heads of the columns of [`Row::cells`].
-pub const HEADS: [&str; 27] = [
+pub const HEADS: [&str; 30] = [
     "method",
     "paper's",
     "N_c",
@@ -87,6 +87,9 @@ pub const HEADS: [&str; 27] = [
     "at equal FLIP",
     "at equal light",
     "speed to PM",
+    "at equal FLIP",
+    "at equal light",
+    "speed to path",
     "at equal FLIP",
     "at equal light",
 ];

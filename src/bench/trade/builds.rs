@@ -33,7 +33,7 @@ impl Judge<'_> {
         let mut levels = Vec::with_capacity(builds.levels.len());
         for &(text, quality) in builds.levels {
             let label = format!("{} {text}", builds.name);
-            let candidate = Candidate { label, method: Method::Reconstruction(Settings::default()) };
+            let candidate = Candidate::new(label, Method::Reconstruction(Settings::default()));
             let run = self.study.run_over(quality, &mut self.subject, &candidate)?;
             let point = self.judge(&candidate, &candidate.label, Sort::Sweep, &run, true)?;
             levels.push((text.to_owned(), point));

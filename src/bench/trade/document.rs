@@ -150,7 +150,8 @@ fn cloud(scene: &SceneTrade, error: JudgedBy) -> Vec<Series> {
         Series { name: "front".to_owned(), colour: "#693", joined: true, points: joined },
         of("--quality", "#939", Sort::Quality),
         of("default", "#d00", Sort::Default),
-        Series { name: String::new(), ..of("", "#a40", Sort::Other) },
+        of("", "#a40", Sort::Other),
+        Series { joined: true, ..of("path --denoise", "#0a7", Sort::DenoisedPath) },
     ]
 }
 

@@ -10,7 +10,7 @@
 //!   errors of virtual lights and their clamping;
 //! - FLIP: against a reference of whole pixels, which includes the aliasing of few eye samples a pixel.
 //!
-//! The settings of `--quality` are shown beside them. Builds of the acceleration structure are varied alone,
+//! The settings of `--quality` are shown beside them, and denoised paths, judged by FLIP alone. Builds of the acceleration structure are varied alone,
 //! not in the designed sample.
 
 mod builds;
@@ -44,6 +44,9 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 
 /// Errors that fronts are drawn for.
 const ERRORS: [JudgedBy; 3] = [JudgedBy::Limit, JudgedBy::Light, JudgedBy::Flip];
+
+/// Samples a pixel of denoised paths.
+const DENOISED_SPP: [u32; 4] = [1, 4, 16, 64];
 
 /// All results.
 #[derive(Serialize)]
@@ -100,6 +103,8 @@ enum Sort {
     Sample,
     /// Another method.
     Other,
+    /// Denoised paths of some number of samples.
+    DenoisedPath,
 }
 
 /// A sweep of one knob.
@@ -160,6 +165,13 @@ fn scene(study: &Study, subject: Subject) -> Result<SceneTrade, StudyError> {
     for (label, method) in others() {
         judge.point(label, "", Sort::Other, method, true)?;
     }
+    if study.denoises() {
+        for spp in DENOISED_SPP {
+            let candidate = Candidate::denoised_path("path --denoise", spp);
+            let run = study.run(&judge.subject, &candidate)?;
+            judge.judge(&candidate, &format!("--spp {spp}"), Sort::DenoisedPath, &run, false)?;
+        }
+    }
     for (name, method) in qualities() {
         judge.point(name, &options(&method), Sort::Quality, method, method.spp() == spp)?;
     }
@@ -188,7 +200,7 @@ fn limit() -> Candidate {
     let mut settings = lightcuts::Settings { spp, seed, light, cut, family, ..Default::default() };
     settings.cut.epsilon *= 0.25;
     settings.cut.max_cut *= 16;
-    Candidate { label: "limit".to_owned(), method: Method::Lightcuts(settings) }
+    Candidate::new("limit", Method::Lightcuts(settings))
 }
 
 /// Returns the default method at the named levels of the quality scale.
@@ -232,7 +244,7 @@ impl Judge<'_> {
         method: Method,
         same_samples: bool,
     ) -> Result<usize, StudyError> {
-        let candidate = Candidate { label: label.to_owned(), method };
+        let candidate = Candidate::new(label, method);
         let run = self.study.run(&self.subject, &candidate)?;
         self.judge(&candidate, turned, sort, &run, same_samples)
     }
@@ -269,7 +281,12 @@ impl Judge<'_> {
 /// Marks the fronts among the points of the default method and the cache.
 fn mark_fronts(points: &mut [Point]) {
     for error in ERRORS {
-        let own = |point: &Point| (point.seconds, point.error(error).filter(|_| point.sort != Sort::Other));
+        let own = |point: &Point| {
+            (
+                point.seconds,
+                point.error(error).filter(|_| !matches!(point.sort, Sort::Other | Sort::DenoisedPath)),
+            )
+        };
         let places = points.iter().map(own).enumerate();
         let (judged, figures): (Vec<usize>, Vec<(f64, f64)>) =
             places.filter_map(|(i, (seconds, error))| Some((i, (seconds, error?)))).unzip();

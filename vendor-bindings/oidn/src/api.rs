@@ -52,6 +52,7 @@ functions! {
     new_filter = "oidnNewFilter": fn(Handle, *const c_char) -> Handle;
     release_filter = "oidnReleaseFilter": fn(Handle);
     set_filter_bool = "oidnSetFilterBool": fn(Handle, *const c_char, bool);
+    set_filter_int = "oidnSetFilterInt": fn(Handle, *const c_char, c_int);
     set_shared_filter_image = "oidnSetSharedFilterImage":
         fn(Handle, *const c_char, *mut c_void, c_int, usize, usize, usize, usize, usize);
     commit_filter = "oidnCommitFilter": fn(Handle);

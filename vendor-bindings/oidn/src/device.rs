@@ -7,6 +7,10 @@ use std::fmt;
 use std::path::Path;
 use std::ptr;
 
+/// Memory that the filter may take, in MB: it works on parts of pictures above about 1200x1200 pixels, as fast as on the
+/// whole, which would take three times as much at 2048x2048.
+const MAX_MEMORY: c_int = 1000;
+
 /// Version of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Version {
@@ -118,6 +122,8 @@ impl Device {
         filter.set_image(c"output", output.as_mut_ptr().cast(), size);
         filter.set_bool(c"hdr", true);
         filter.set_bool(c"cleanAux", picture.clean_guides && normal.is_some());
+        // SAFETY: the filter is alive and the name NUL-terminated.
+        unsafe { (self.api.set_filter_int)(filter.handle, c"maxMemoryMB".as_ptr(), MAX_MEMORY) };
         // SAFETY: the filter is alive. Its images have the size that it was told, and live as long as this function,
         // which the filter does not outlive; it writes to the output alone, which nothing else refers to.
         unsafe { (self.api.commit_filter)(filter.handle) };
