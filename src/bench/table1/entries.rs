@@ -54,8 +54,8 @@ pub fn look() -> Look {
     Look::EyeSamples { spp, seed }
 }
 
-/// Returns all rows. Other methods but paths take the eye samples of the default, lightcuts per pixel its virtual lights
-/// and cuts too.
+/// Returns all rows. Other methods but paths take the eye samples of the default, lightcuts per pixel its virtual
+/// lights and cuts too.
 pub fn entries() -> Vec<Entry> {
     let default = reconstruction::Settings::default();
     let shaped = |footprints| {

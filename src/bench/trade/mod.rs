@@ -10,8 +10,8 @@
 //!   errors of virtual lights and their clamping;
 //! - FLIP: against a reference of whole pixels, which includes the aliasing of few eye samples a pixel.
 //!
-//! The settings of `--quality` are shown beside them, and denoised paths, judged by FLIP alone. Builds of the acceleration structure are varied alone,
-//! not in the designed sample.
+//! The settings of `--quality` are shown beside them, and denoised paths by their FLIP. Builds of the
+//! acceleration structure are varied alone, not in the designed sample.
 
 mod builds;
 mod document;

@@ -7,8 +7,8 @@ use std::fmt;
 use std::path::Path;
 use std::ptr;
 
-/// Memory that the filter may take, in MB: it works on parts of pictures above about 1200x1200 pixels, as fast as on the
-/// whole, which would take three times as much at 2048x2048.
+/// Memory that the filter may take, in MB. Large pictures are then denoised in parts, as fast as whole ones, which
+/// would take three times as much at 2048x2048 pixels.
 const MAX_MEMORY: c_int = 1000;
 
 /// Version of the library.
