@@ -107,6 +107,11 @@ impl AreaLight {
         (triangle as u32, self.shapes[triangle], Vec2::new(rest, u.y))
     }
 
+    /// First corner, two edges and unit normal of each triangle.
+    pub(super) fn shapes(&self) -> &[[Vec3; 4]] {
+        &self.shapes
+    }
+
     /// Returns the factor of the texture on the emission at a point of a triangle.
     #[inline]
     pub(super) fn texture(&self, scene: &Scene, triangle: u32, barycentric: Vec2) -> Rgb {

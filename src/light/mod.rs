@@ -1,20 +1,24 @@
 //! Emitters of light: emitting triangles, point, spot and directional lights, and the environment, sampled.
 //!
 //! [`Emitters`] is built once from the scene. Next-event estimation chooses one emitter in proportion to a
-//! rough irradiance at the shaded point, then samples that emitter; the light pass chooses by power.
+//! rough irradiance at the shaded point, down a tree where they are many, then samples that emitter; the light pass
+//! chooses by power.
 
 mod area;
 mod distribution;
 mod environment;
 mod packet;
 mod select;
+#[cfg(test)]
+mod tests;
+mod tree;
 
 pub use area::{AreaLight, emitted};
 pub use distribution::DiscreteDistribution;
 pub use environment::{EnvironmentLight, EnvironmentSample};
 pub use select::Receivers16;
 
-use crate::math::{F32x16, LANES, Rgb, U32x16, luminance};
+use crate::math::{F32x16, LANES, Rgb, U32x16, luminance, mask_of};
 use crate::scene::{DeltaLight, Scene};
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -80,7 +84,8 @@ impl Emitters {
     pub fn pdf_areas(&self, at: Receivers16, mesh: &U32x16, distance: &F32x16, cos: &F32x16) -> F32x16 {
         let lights = mesh.map(|mesh| self.light_of_mesh[mesh as usize]);
         let index = lights.map(|light| if light == NO_LIGHT { 0 } else { light });
-        let choice = self.selection.probability(self, at, &index);
+        let lit = mask_of(&lights.map(|light| u32::from(light != NO_LIGHT)));
+        let choice = self.selection.probability(self, at, &index, lit);
         std::array::from_fn(|i| {
             if lights[i] == NO_LIGHT {
                 return 0.0;
@@ -93,8 +98,11 @@ impl Emitters {
     /// Probability with which [`Emitters::sample_direct`] at `at` chooses the environment.
     #[inline]
     pub fn environment_choice(&self, at: Receivers16) -> F32x16 {
-        let index = (self.areas.len() + self.deltas.len()) as u32;
-        self.selection.probability(self, at, &[index; LANES])
+        self.selection.probability(self, at, &[self.environment_index(); LANES], u16::MAX)
+    }
+
+    fn environment_index(&self) -> u32 {
+        (self.areas.len() + self.deltas.len()) as u32
     }
 }
 

@@ -71,7 +71,7 @@ impl Emitters {
         u: &Vec2x16,
         wanted: u16,
     ) -> DirectSamples16 {
-        let (chosen, choice) = self.selection.sample(self, at, u_choice);
+        let (chosen, choice) = self.selection.sample(self, at, u_choice, wanted);
         let mut triangles = Triangles16::default();
         let (mut textured, mut rest) = (0u16, 0u16);
         for lane in lanes_in(wanted).filter(|i| choice[*i] > 0.0) {
