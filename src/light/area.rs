@@ -17,12 +17,6 @@ pub struct AreaLight {
     pub area: f32,
     /// Flux of all sides, W, as luminance (textured emission by its mean).
     pub power: f32,
-    /// Centre of a sphere around the mesh.
-    pub centre: Vec3,
-    /// Radius of that sphere.
-    pub radius: f32,
-    /// The front's normal where the mesh is flat and emits from one side: behind its plane it is invisible.
-    flat_normal: Vec3,
     triangles: DiscreteDistribution,
     /// First corner, two edges and unit normal of each triangle.
     shapes: Vec<[Vec3; 4]>,
@@ -65,17 +59,11 @@ impl AreaLight {
         if !(power > 0.0 && power.is_finite()) {
             return None;
         }
-        let (low, high) = bounds(mesh);
-        let first = shapes.iter().find(|s| s.1 > 0.0)?.0;
-        let flat = !emission.two_sided && shapes.iter().all(|s| s.1 == 0.0 || s.0.dot(first) > 0.99999);
         Some(AreaLight {
             mesh: index,
             emission,
             area,
             power,
-            centre: 0.5 * (low + high),
-            radius: 0.5 * (high - low).length(),
-            flat_normal: if flat { first } else { Vec3::ZERO },
             triangles,
             shapes: (0..mesh.triangles.len())
                 .map(|t| {
@@ -124,18 +112,6 @@ impl AreaLight {
     pub fn radiance(&self, scene: &Scene, point: &AreaPoint, out: Vec3) -> Rgb {
         emitted(scene, self.mesh, point.triangle, point.barycentric, point.normal, out)
     }
-
-    /// Estimates the irradiance at `x` on a surface of normal `n` that could face the light, for choosing
-    /// between lights only; zero where no part of the light can shine on that side.
-    #[inline(always)]
-    pub(super) fn importance(&self, x: Vec3, n: Vec3) -> f32 {
-        let to_light = self.centre - x;
-        let below = n.dot(to_light) <= -self.radius;
-        // A light that is not flat has the zero vector: the test never fails.
-        let behind = self.flat_normal.dot(to_light) >= self.radius;
-        let dist_sq = to_light.length_squared().max(self.radius * self.radius).max(f32::MIN_POSITIVE);
-        if below | behind { 0.0 } else { self.power / dist_sq }
-    }
 }
 
 /// Returns the radiance that a point of a mesh emits towards `out`; zero where it does not emit.
@@ -159,9 +135,4 @@ fn texture_factor(
     barycentric: Vec2,
 ) -> Rgb {
     texture.map_or(Rgb::ONE, |t| scene.textures[t.0 as usize].lookup(mesh.uv(triangle as usize, barycentric)))
-}
-
-fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
-    let corners = mesh.triangles.iter().flatten().map(|i| mesh.positions[*i as usize]);
-    corners.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)))
 }

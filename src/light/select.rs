@@ -1,24 +1,22 @@
 //! Choice of the emitter to sample for a shaded point.
 //!
-//! With few emitters the choice is proportional to each one's rough irradiance at the point, mixed with its
-//! power so that no emitter is starved; with many, it is made so between the nodes of a cut of a tree over them,
-//! and goes on down the tree.
+//! The choice starts among the nodes of a cut of a tree over the emitters, or all emitters where they are few, and the
+//! environment: in proportion to the rough irradiance by each at the point, mixed with its power so that none is
+//! starved. It goes on down the tree.
 
-use super::tree::{self, EmitterTree};
-use super::{AreaLight, DiscreteDistribution, Emitters, EnvironmentLight, delta_irradiance, delta_power};
-use crate::math::{F32x16, LANES, U32x16, Vec3x16, lanes_in, luminance};
+use super::tree::{BY_POWER, EmitterTree};
+use super::{AreaLight, DiscreteDistribution, Emitters, EnvironmentLight};
+use crate::math::{F32x16, LANES, U32x16, Vec3x16, lanes_in};
 use crate::scene::DeltaLight;
 use std::f32::consts::PI;
 
-/// Maximum number of emitters that are weighted one by one at every shaded point.
-const WEIGHED: usize = 32;
+/// Maximum number of candidates that are weighted one by one at every shaded point: emitters, the environment one of
+/// them.
+const MAX_CANDIDATES: usize = 32;
 
-/// Maximum number of nodes of the tree among which the choice starts. In rooms with a thousand lamps 12 and 31 give a
-/// fourth and an eighth more variance than 16 to 24.
-const TOP: usize = 16;
-
-/// Share of the choice among emitters that is by power, whatever the point.
-const BY_POWER: f32 = 0.1;
+/// Number of nodes of the tree among which the choice starts where there are more emitters. In rooms with a thousand
+/// lamps 12 and 31 give a fourth and an eighth more variance than 16 to 24.
+const CUT: usize = 16;
 
 /// Sixteen points to be lit.
 #[derive(Clone, Copy, Debug)]
@@ -31,12 +29,10 @@ pub struct Receivers16<'a> {
 
 #[derive(Clone, Debug)]
 pub(super) struct Selection {
-    /// Candidates by power: all emitters, or the nodes of the tree's cut and the environment.
+    /// Candidates by power: the nodes of the tree's cut, and the environment.
     by_power: DiscreteDistribution,
-    /// Tree over all emitters but the environment, if they are many.
-    tree: Option<EmitterTree>,
-    /// Share of the choice among candidates that is by power, whatever the point.
-    share_by_power: f32,
+    /// Tree over all emitters but the environment.
+    tree: EmitterTree,
 }
 
 impl Selection {
@@ -47,18 +43,12 @@ impl Selection {
         diagonal: f32,
     ) -> Selection {
         let radius = 0.5 * diagonal;
-        let (tree, powers) = if areas.len() + deltas.len() + usize::from(environment.is_some()) > WEIGHED {
-            let (tree, powers) = EmitterTree::new(areas, deltas, diagonal, TOP);
-            (Some(tree), powers)
-        } else {
-            let deltas = deltas.iter().map(|d| delta_power(d, radius));
-            (None, areas.iter().map(|a| a.power).chain(deltas).collect())
-        };
+        let few = areas.len() + deltas.len() < MAX_CANDIDATES;
+        let cut = if few { MAX_CANDIDATES - 1 } else { CUT };
+        let (tree, powers) = EmitterTree::new(areas, deltas, diagonal, cut);
         // Flux through the scene's bounding sphere.
         let environment = environment.map(|e| 4.0 * PI * PI * radius * radius * e.mean_luminance());
-        let by_power = DiscreteDistribution::new(powers.into_iter().chain(environment));
-        let share_by_power = if tree.is_some() { tree::BY_POWER } else { BY_POWER };
-        Selection { by_power, tree, share_by_power }
+        Selection { by_power: DiscreteDistribution::new(powers.into_iter().chain(environment)), tree }
     }
 
     /// Chooses an emitter for each lane of `wanted`; returns it and its probability, zero where no emitter can be
@@ -98,18 +88,13 @@ impl Selection {
             choice[i] = if total[i] > 0.0 { weight / total[i] } else { 0.0 };
             within[i] /= weight;
         }
-        if let Some(tree) = &self.tree {
-            for lane in lanes_in(wanted) {
-                if choice[lane] == 0.0 {
-                    continue;
-                }
-                let candidate = chosen[lane] as usize;
-                if candidate == tree.len() {
-                    chosen[lane] = e.environment_index();
-                    continue;
-                }
+        for lane in lanes_in(wanted) {
+            let candidate = chosen[lane] as usize;
+            if candidate == self.tree.len() {
+                chosen[lane] = e.environment_index();
+            } else if choice[lane] > 0.0 {
                 let (x, n) = (at.position.get(lane), at.normal.get(lane));
-                let below = tree.sample(candidate, x, n, within[lane].min(1.0 - f32::EPSILON));
+                let below = self.tree.sample(candidate, x, n, within[lane].min(1.0 - f32::EPSILON));
                 let (emitter, probability) = below.unwrap_or_default();
                 chosen[lane] = emitter;
                 choice[lane] *= probability;
@@ -125,12 +110,11 @@ impl Selection {
             return [1.0; LANES];
         }
         let mut probability = [1.0; LANES];
-        let mut candidates = *index;
-        if let Some(tree) = &self.tree {
-            candidates = [tree.len() as u32; LANES];
-            for lane in lanes_in(wanted).filter(|lane| index[*lane] != e.environment_index()) {
+        let mut candidates = [self.tree.len() as u32; LANES];
+        for lane in lanes_in(wanted) {
+            if index[lane] != e.environment_index() {
                 let (x, n) = (at.position.get(lane), at.normal.get(lane));
-                let (top, below) = tree.probability(index[lane] as usize, x, n);
+                let (top, below) = self.tree.probability(index[lane] as usize, x, n);
                 (candidates[lane], probability[lane]) = (top as u32, below);
             }
         }
@@ -144,12 +128,9 @@ impl Selection {
 
     /// Weights of all candidates, and their sums.
     #[inline]
-    fn weights(&self, e: &Emitters, at: Receivers16) -> ([F32x16; WEIGHED], F32x16) {
-        let mut weights = [[0.0; LANES]; WEIGHED];
-        match &self.tree {
-            Some(tree) => tree.weigh(at, &mut weights),
-            None => weigh(e, at, &mut weights),
-        }
+    fn weights(&self, e: &Emitters, at: Receivers16) -> ([F32x16; MAX_CANDIDATES], F32x16) {
+        let mut weights = [[0.0; LANES]; MAX_CANDIDATES];
+        self.tree.weigh(at, &mut weights);
         if let Some(environment) = &e.environment {
             weights[self.by_power.len() - 1] = [PI * PI * environment.mean_luminance(); LANES];
         }
@@ -163,11 +144,11 @@ impl Selection {
         let mut scale = [0.0; LANES];
         for i in 0..LANES {
             let usable = (local_total[i] > 0.0) & (local_total[i] < f32::INFINITY);
-            scale[i] = if usable { (1.0 - self.share_by_power) / local_total[i] } else { 0.0 };
+            scale[i] = if usable { (1.0 - BY_POWER) / local_total[i] } else { 0.0 };
         }
         let mut total = [0.0; LANES];
         for (index, w) in weights_used.iter_mut().enumerate() {
-            let by_power = self.share_by_power * self.by_power.probability(index);
+            let by_power = BY_POWER * self.by_power.probability(index);
             for i in 0..LANES {
                 // Emitters that cannot shine on this side keep weight zero.
                 let shines = (w[i] > 0.0) & (scale[i] > 0.0);
@@ -176,24 +157,5 @@ impl Selection {
             }
         }
         (weights, total)
-    }
-}
-
-/// Writes the weights of all emitters but the environment.
-#[inline]
-fn weigh(e: &Emitters, at: Receivers16, weights: &mut [F32x16]) {
-    let Receivers16 { position: x, normal: n } = at;
-    let (areas, deltas) = weights.split_at_mut(e.areas.len());
-    for (w, light) in areas.iter_mut().zip(&e.areas) {
-        for i in 0..LANES {
-            w[i] = light.importance(x.get(i), n.get(i));
-        }
-    }
-    for (w, light) in deltas.iter_mut().zip(&e.deltas) {
-        for i in 0..LANES {
-            let (direction, _, irradiance) = delta_irradiance(light, x.get(i));
-            let raw = luminance(irradiance) * PI;
-            w[i] = if n.get(i).dot(direction) > 0.0 && raw.is_finite() { raw } else { 0.0 };
-        }
     }
 }

@@ -6,7 +6,7 @@ use crate::sampling::{Sampler, uniform_sphere};
 use crate::scene::{Emission, Environment, MaterialId, Mesh};
 use glam::Vec2;
 
-/// Numbers of emitters below and above the one from which on a tree is used.
+/// Numbers of emitters that are all candidates, and that are more than those.
 const COUNTS: [usize; 4] = [5, 32, 60, 400];
 
 /// Emitters of all kinds, of sizes and powers over orders of magnitude, in a cube of side 10, and an environment.
@@ -157,7 +157,7 @@ fn the_mean_of_direct_light_is_the_sum_over_all_emitters() {
         while points < 12.0 {
             // Away from the lamps, where the plain sum over points on them has converged.
             let (x, n) = receiver(&scene, &mut sampler);
-            if emitters.areas.iter().any(|light| x.distance(light.centre) < 3.0 * light.radius) {
+            if emitters.areas.iter().any(|light| x.distance(light.shapes()[0][0]) < 5.0 * light.area.sqrt()) {
                 continue;
             }
             let all = 0..=emitters.environment_index() as usize;

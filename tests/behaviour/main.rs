@@ -10,6 +10,7 @@ mod compensation;
 mod denoise;
 mod extremes;
 mod lightcuts;
+mod many_lights;
 mod occluder_cache;
 mod own_scenes;
 mod path;

@@ -26,11 +26,13 @@ pub enum Content {
     Emitter(usize),
 }
 
-/// Builds a tree over emitters, at least one; its root comes last.
+/// Builds a tree over emitters; its root comes last.
 pub fn build(emitters: &[EmitterBounds]) -> Vec<BinaryNode> {
     let mut nodes = Vec::with_capacity(2 * emitters.len());
     let mut order: Vec<usize> = (0..emitters.len()).collect();
-    build_below(emitters, &mut order, &mut nodes);
+    if !order.is_empty() {
+        build_below(emitters, &mut order, &mut nodes);
+    }
     nodes
 }
 

@@ -3,9 +3,10 @@
 //! Papers: Conty Estevez & Kulla, *Importance Sampling of Many Lights with Adaptive Tree Splitting*, 2018; Yuksel,
 //! *Stochastic Lightcuts*, 2019.
 //!
-//! Deviations: the choice starts not at the root but among the nodes of a cut, which are weighted at sixteen points at
-//! once, and goes on by branches of up to eight children. Part of it is by power, against estimates that are far off.
-//! Directional lights are points far away.
+//! Deviations: the choice starts not at the root but among the nodes of a cut (all emitters, if they are few), which
+//! are weighted at sixteen points at once, and goes on by branches of up to eight children. Part of it is by power,
+//! against estimates that are far off. Directional lights are points far away. The angle in which a node is seen
+//! enters by its sine alone, which bounds the cosines and saves roots.
 
 mod bounds;
 mod branch;
@@ -46,7 +47,7 @@ enum Place {
 }
 
 impl EmitterTree {
-    /// Builds the tree over at least one emitter, with a cut of at most `top` nodes, in a scene of the given diagonal.
+    /// Builds the tree, with a cut of at most `top` nodes, in a scene of the given diagonal.
     /// Returns it and the powers of the cut's nodes.
     pub fn new(
         areas: &[AreaLight],
@@ -58,7 +59,7 @@ impl EmitterTree {
         let deltas = deltas.iter().map(|light| EmitterBounds::of_delta(light, diagonal));
         let emitters: Vec<EmitterBounds> = areas.chain(deltas).collect();
         let binary = build(&emitters);
-        let cut = cut(&binary, binary.len() - 1, top);
+        let cut = binary.len().checked_sub(1).map_or(Vec::new(), |root| cut(&binary, root, top));
         let mut tree = EmitterTree {
             top: Vec::new(),
             branches: Vec::new(),
