@@ -1,8 +1,10 @@
 //! Eye samples: surfaces visible in a pixel, directly or through mirrors and glass.
 
 mod chain;
+mod drawn;
 mod features;
 mod index;
+mod merge;
 mod pass;
 mod points;
 mod rays;

@@ -6,6 +6,7 @@
 use super::points::{PointGeometry, PointSurface, VisibilitySample};
 use super::{ChainCounts, EyeIndex, EyeRays, EyeSettings, ShadingPoints, VisibilitySamples, VisibleSurfaces};
 use crate::film::{Image, Window};
+use crate::math::luminance;
 use crate::progress::Control;
 use crate::view::View;
 use crate::world::World;
@@ -14,6 +15,9 @@ use std::mem;
 
 /// Pixels along the edge of the square whose eye rays one task traces.
 pub const TILE: u32 = 16;
+
+/// Maximum luminance known in a pixel that counts, so that sums stay finite.
+const MAX_KNOWN: f32 = 1e12;
 
 /// All that a window sees.
 pub struct EyePass<'w> {
@@ -34,12 +38,36 @@ pub struct EyePass<'w> {
 }
 
 impl<'w> EyePass<'w> {
+    /// Traces the eye rays of every pixel in the view's window, with direct light if it is to be drawn.
+    pub fn of(
+        world: &'w World,
+        view: &View,
+        settings: EyeSettings,
+        drawn: bool,
+        control: &Control,
+    ) -> EyePass<'w> {
+        match drawn {
+            true => EyePass::with_direct_light(world, view, settings, control),
+            false => EyePass::trace(world, view, settings, control),
+        }
+    }
+
+    /// Luminance of the light known in the pixel of a shading point, as if the point reflected it: the pixel's error is
+    /// judged against all of it.
+    pub fn known_luminance(&self, point: usize) -> f32 {
+        let brightest = |seen: &VisibilitySample| {
+            let known = luminance(self.emitted.pixels[seen.pixel as usize]);
+            let weight = luminance(seen.weight);
+            if known > 0.0 && known < f32::INFINITY && weight > 0.0 { known / weight } else { 0.0 }
+        };
+        self.visibility.of(point).iter().map(brightest).fold(f32::INFINITY, f32::min).min(MAX_KNOWN)
+    }
+
     /// Traces the eye rays of every pixel in the view's window.
     pub fn trace(world: &'w World, view: &View, settings: EyeSettings, control: &Control) -> EyePass<'w> {
         let rays = EyeRays::new(world, view, settings);
         let window = &view.window;
-        let spp = settings.spp.max(1) as f32;
-        let mut tiles: Vec<VisibleSurfaces> = (0..window.tile_count(TILE))
+        let tiles: Vec<VisibleSurfaces> = (0..window.tile_count(TILE))
             .into_par_iter()
             .filter_map(|tile| {
                 if control.is_cancelled() {
@@ -55,7 +83,12 @@ impl<'w> EyePass<'w> {
                 Some(found)
             })
             .collect();
+        EyePass::gather(window, tiles, settings.spp.max(1))
+    }
 
+    /// Joins the tiles of a window with `spp` rays a pixel; some are missing if the pass was cancelled.
+    pub(super) fn gather(window: &Window, mut tiles: Vec<VisibleSurfaces<'w>>, spp: u32) -> EyePass<'w> {
+        let spp = spp as f32;
         let complete = tiles.len() == window.tile_count(TILE);
         let mut emitted = Image::new(window.width, window.height);
         let mut chains = ChainCounts::default();
@@ -88,7 +121,7 @@ impl<'w> EyePass<'w> {
     /// Memory in bytes that it takes to render `window` from eye samples kept all at once, if every ray meets one
     /// surface: they themselves, and as measured half as much again for sorting and lighting them.
     pub fn expected_bytes(window: &Window, spp: u32) -> u64 {
-        let point = size_of::<PointGeometry>() + size_of::<PointSurface>();
+        let point = size_of::<PointGeometry>() + size_of::<PointSurface>() + size_of::<u32>();
         let each = 3 * (point + size_of::<VisibilitySample>()) / 2;
         window.pixel_count().saturating_mul(u64::from(spp)).saturating_mul(each as u64)
     }

@@ -77,6 +77,12 @@ impl Emitters {
         self.light_of_mesh[mesh as usize] != NO_LIGHT
     }
 
+    /// True if a ray can meet an emitter by chance.
+    #[inline]
+    pub fn are_hittable(&self) -> bool {
+        !self.areas.is_empty() || self.environment.is_some()
+    }
+
     /// Densities with which [`Emitters::sample_direct`] at `at` draws points of the meshes `mesh` at
     /// `distance` whose normals have the cosine `cos` (either sign) to the ray; zero where a mesh is no
     /// light.

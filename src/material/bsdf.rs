@@ -196,6 +196,22 @@ impl<'m> Bsdf<'m> {
         albedo
     }
 
+    /// Returns [`Bsdf::albedo`] seen from the cosine `cos` on the side of the viewer.
+    pub fn mean_albedo(&self, cos: f32) -> Rgb {
+        self.albedo(Vec3::new(0.0, 0.0, cos.clamp(0.01, 1.0)))
+    }
+
+    /// Returns the mean with another BSDF of the same lobes, by weights of each channel.
+    pub fn mean(&self, weight: Rgb, other: &Bsdf, other_weight: Rgb) -> Self {
+        let total = weight + other_weight;
+        let share = Rgb::select(total.cmpgt(Rgb::ZERO), other_weight / total, Rgb::ZERO);
+        let mut mean = Bsdf { base: self.base + (other.base - self.base) * share, ..*self };
+        for (scale, theirs) in mean.scales.iter_mut().zip(other.scales) {
+            *scale = *scale + (theirs - *scale) * share;
+        }
+        mean
+    }
+
     /// True if `is_such` of a lobe that scatters anything.
     #[inline(always)]
     fn any_lobe(&self, is_such: impl Fn(&LobeModel) -> bool) -> bool {

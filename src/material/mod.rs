@@ -27,7 +27,7 @@ pub use bound::DirectionBound;
 pub use bsdf::Bsdf;
 pub use lobe::RoughLobe;
 pub use model::Materials;
-pub use packet::Bsdfs16;
+pub use packet::{BsdfSamples16, Bsdfs16};
 
 #[cfg(test)]
 pub(crate) mod tests;

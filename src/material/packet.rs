@@ -4,6 +4,7 @@
 use super::bsdf::Bsdf;
 use crate::math::{F32x16, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
 use crate::sampling::cosine_hemisphere;
+use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// Sixteen materials, each at one point and seen from one direction.
@@ -60,6 +61,12 @@ impl<'m> Bsdfs16<'m> {
     #[inline]
     pub fn smooth(&self) -> u16 {
         self.smooth
+    }
+
+    /// Returns the material of a lane, and the direction that it is seen from.
+    #[inline]
+    pub fn lane(&self, lane: usize) -> (Bsdf<'m>, Vec3) {
+        (self.lanes[lane], self.wo.get(lane))
     }
 
     /// Returns [`Bsdf::eval_pdf`] in all lanes; those not in `wanted` may be left at anything.

@@ -27,14 +27,14 @@ impl<'w> Prepared<'w> {
         world: &'w World,
         lights: &LightStore,
         view: &View,
-        sampling: Sampling,
+        (sampling, drawn): (Sampling, bool),
         wanted: (LightPassSettings, Family),
         control: &Control,
     ) -> Prepared<'w> {
         let mut stats = Stats::new();
         let rays = sampling.eye(&world.scene);
         control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
-        let eye = stats.time(Stage::EyePass, || EyePass::trace(world, view, rays, control));
+        let eye = stats.time(Stage::EyePass, || EyePass::of(world, view, rays, drawn, control));
         counts::eye(&mut stats, &eye.chains);
         let wanted = LightsWanted::new(world, sampling, wanted);
         let lights = lights.get(world, wanted, control, &mut stats);

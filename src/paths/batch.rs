@@ -4,11 +4,52 @@
 //! same paths in the same order, pictures do not depend on threads.
 
 use super::packet::{Packet, Shadows};
-use crate::embree::{Hits16, Rays16};
+use crate::embree::{Hits16, Ray, Rays16};
 use crate::light::Receivers16;
+use crate::material::Bsdf;
 use crate::math::{LANES, Rgb, first_lanes, lanes_in};
 use crate::sampling::Samplers16;
-use crate::world::World;
+use crate::world::{Surface, World};
+use glam::Vec3;
+
+/// Surface that a chain of mirrors, glass and sharp lobes has led a path to, and that scatters light by other lobes too.
+#[derive(Clone, Copy, Debug)]
+pub struct ChainEnd<'w> {
+    /// Index of the path in its batch.
+    pub path: u32,
+    /// The surface.
+    pub surface: Surface,
+    /// BSDF less the lobes that the chain follows.
+    pub bsdf: Bsdf<'w>,
+    /// Unit vector back along the edge.
+    pub out: Vec3,
+    /// Share of the radiance leaving along `out` that reaches the eye.
+    pub throughput: Rgb,
+    /// Length of the chain.
+    pub distance: f32,
+    /// Hash of the surfaces and lobes on the way: equal for paths that came the same way; 0 straight from the eye.
+    pub way: u32,
+    /// Edges from the eye.
+    pub depth: u32,
+}
+
+/// The light that a batch finds along its paths.
+pub trait Reach<'w> {
+    /// True if paths end at the first surface that scatters by lobes which a chain does not follow: of the light that
+    /// reaches it, only that from emitters is found, by light samples and by one more edge. False for paths of full
+    /// length.
+    const ENDS: bool;
+
+    /// Called at every such surface, in an order that does not depend on threads.
+    fn end(&mut self, _end: &ChainEnd<'w>) {}
+}
+
+/// Paths of full length.
+pub struct FullPaths;
+
+impl Reach<'_> for FullPaths {
+    const ENDS: bool = false;
+}
 
 /// Rays traced.
 #[derive(Clone, Copy, Debug, Default)]
@@ -39,11 +80,17 @@ impl Batch {
     }
 
     /// Traces all paths to their ends, at most `max_depth` edges, and empties the batch.
-    /// Returns the radiance of each.
-    pub fn trace(&mut self, world: &World, max_depth: u32, counts: &mut Counts) -> std::vec::Drain<'_, Rgb> {
+    /// Returns the radiance that each finds.
+    pub fn trace<'w, R: Reach<'w>>(
+        &mut self,
+        world: &'w World,
+        max_depth: u32,
+        reach: &mut R,
+        counts: &mut Counts,
+    ) -> std::vec::Drain<'_, Rgb> {
         let mut depth = 1;
         while self.count > 0 {
-            self.extend(world, depth, max_depth, counts);
+            self.extend(world, [depth, max_depth], reach, counts);
             depth += 1;
         }
         self.packets.clear();
@@ -51,7 +98,13 @@ impl Batch {
     }
 
     /// Traces every path's edge and shades where it ends; paths that end are dropped, the others stay in order.
-    fn extend(&mut self, world: &World, depth: u32, max_depth: u32, counts: &mut Counts) {
+    fn extend<'w, R: Reach<'w>>(
+        &mut self,
+        world: &'w World,
+        [depth, max_depth]: [u32; 2],
+        reach: &mut R,
+        counts: &mut Counts,
+    ) {
         counts.rays += self.count as u64;
         let mut kept = 0;
         let mut hits = Hits16::default();
@@ -66,12 +119,14 @@ impl Batch {
             hits.repeat(found.trailing_zeros() as usize, !found);
             let surfaces = world.surfaces(&hits);
             packet.add_emitted(world, &surfaces, found, &mut self.radiance);
-            if depth < max_depth {
-                let going_on = packet.scatter(world, &surfaces, depth, found, |segment, radiance, slot| {
+            let followed = if R::ENDS { found & packet.followed() } else { found };
+            if depth < max_depth && followed != 0 {
+                let arrives = |segment: &Ray, radiance: Rgb, slot: u32| {
                     if self.shadows.push(segment, radiance, slot) {
                         self.shadows.trace(world, depth == 1, &mut self.radiance, counts);
                     }
-                });
+                };
+                let going_on = packet.scatter(world, &surfaces, depth, followed, reach, arrives);
                 self.keep(&packet, going_on, &mut kept);
             }
         }
@@ -104,7 +159,8 @@ impl Batch {
         for lane in lanes_in(escaped) {
             let (radiance, pdf) = light[lane];
             let weight = packet.weight_against(lane, pdf * choice[lane]);
-            self.radiance[packet.slot[lane] as usize] += packet.throughput.get(lane) * radiance * weight;
+            self.radiance[packet.slot[lane] as usize] +=
+                packet.emission_throughput.get(lane) * radiance * weight;
         }
     }
 }

@@ -9,6 +9,6 @@ mod packet;
 mod start;
 mod vertex;
 
-pub use batch::{Batch, Counts};
+pub use batch::{Batch, ChainEnd, Counts, FullPaths, Reach};
 pub use look::{Look, eye_sampler};
 pub use start::{Start, start};

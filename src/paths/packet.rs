@@ -2,7 +2,7 @@
 
 use super::batch::Counts;
 use crate::embree::{Ray, Rays16};
-use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, first_lanes};
+use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, first_lanes, lanes_in};
 use crate::sampling::Samplers16;
 use crate::world::World;
 
@@ -11,8 +11,10 @@ use crate::world::World;
 pub(super) struct Packet {
     /// The edges to be traced.
     pub rays: Rays16,
-    /// Shares of the radiance along the edges that reach the eye.
+    /// Shares of the radiance reflected where the edges end that reach the eye.
     pub throughput: Vec3x16,
+    /// Shares of the radiance emitted there.
+    pub emission_throughput: Vec3x16,
     /// Undoes the scaling of radiance inside dense media, for Russian roulette.
     pub eta_sq: F32x16,
     /// Shading normals where the edges start, on the sides the paths arrived from.
@@ -23,6 +25,10 @@ pub(super) struct Packet {
     pub samplers: Samplers16,
     /// Index of the result that each path adds to.
     pub slot: U32x16,
+    /// Lengths up to where the edges start.
+    pub distance: F32x16,
+    /// Hashes of the surfaces and lobes on the way.
+    pub way: U32x16,
 }
 
 /// Light that arrives where segments are free, gathered until a packet is full.
@@ -38,14 +44,18 @@ pub(super) struct Shadows {
 impl Packet {
     /// Paths along eye rays, with results from `slot` on.
     pub fn new(rays: Rays16, samplers: Samplers16, slot: u32) -> Packet {
+        let ones = Vec3x16 { x: [1.0; LANES], y: [1.0; LANES], z: [1.0; LANES] };
         Packet {
             rays,
-            throughput: Vec3x16 { x: [1.0; LANES], y: [1.0; LANES], z: [1.0; LANES] },
+            throughput: ones,
+            emission_throughput: ones,
             eta_sq: [1.0; LANES],
             normal: Vec3x16::default(),
             pdf: [f32::INFINITY; LANES],
             samplers,
             slot: std::array::from_fn(|i| slot + i as u32),
+            distance: [0.0; LANES],
+            way: [0; LANES],
         }
     }
 
@@ -54,12 +64,21 @@ impl Packet {
     pub fn copy_lane(&mut self, to: usize, packet: &Packet, from: usize) {
         self.rays.set(to, &packet.rays.get(from));
         self.throughput.set(to, packet.throughput.get(from));
+        self.emission_throughput.set(to, packet.emission_throughput.get(from));
         self.eta_sq[to] = packet.eta_sq[from];
         self.normal.set(to, packet.normal.get(from));
         self.pdf[to] = packet.pdf[from];
         self.samplers.seed[to] = packet.samplers.seed[from];
         self.samplers.index[to] = packet.samplers.index[from];
         self.slot[to] = packet.slot[from];
+        self.distance[to] = packet.distance[from];
+        self.way[to] = packet.way[from];
+    }
+
+    /// Lanes whose next surface reflects light to the eye.
+    #[inline]
+    pub fn followed(&self) -> u16 {
+        lanes_in(u16::MAX).filter(|i| self.throughput.get(*i) != Rgb::ZERO).fold(0, |mask, i| mask | 1 << i)
     }
 }
 

@@ -47,4 +47,4 @@ pub mod targets;
 #[cfg(test)]
 mod tests;
 
-pub use settings::{CacheSettings, Footprints, FoundBy};
+pub use settings::{CacheSettings, DirectBy, Footprints, FoundBy};

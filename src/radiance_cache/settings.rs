@@ -20,11 +20,24 @@ choices! {
 }
 
 choices! {
-    /// Source of the light of a layer.
+    /// Source of indirect light.
     pub enum FoundBy {
         /// Records, as in the paper, splatted onto the eye samples.
         Records = "records",
         /// Cuts that neighbouring eye samples share, reconstructed between them.
+        Cuts = "cuts",
+    }
+}
+
+choices! {
+    /// Source of direct light.
+    pub enum DirectBy {
+        /// Points drawn on emitters and directions drawn from materials, at every eye sample; the eye samples of a
+        /// pixel are merged for indirect light.
+        Drawn = "drawn",
+        /// Records.
+        Records = "records",
+        /// Cuts.
         Cuts = "cuts",
     }
 }
@@ -36,7 +49,7 @@ settings! {
     /// Settings of the cache.
     pub struct CacheSettings in "Records" {
         /// Source of direct light.
-        direct: FoundBy = FoundBy::Cuts => [.values(&["records", "cuts"])];
+        direct: DirectBy = DirectBy::Drawn => [.values(&["drawn", "records", "cuts"])];
         /// Source of indirect light.
         indirect: FoundBy = FoundBy::Records => [.values(&["records", "cuts"])];
         /// Largest error bound of a cluster in a record's cut, relative to its luminance.
@@ -89,7 +102,20 @@ settings! {
 impl CacheSettings {
     /// Layers whose light is found by records.
     pub fn cached(&self) -> DirectIndirect<bool> {
-        DirectIndirect { direct: self.direct, indirect: self.indirect }.map(|by| by == FoundBy::Records)
+        DirectIndirect {
+            direct: self.direct == DirectBy::Records,
+            indirect: self.indirect == FoundBy::Records,
+        }
+    }
+
+    /// True if the eye pass finds the direct light.
+    pub fn draws_direct_light(&self) -> bool {
+        self.direct == DirectBy::Drawn
+    }
+
+    /// True if all light is found by cuts.
+    pub fn lights_by_cuts(&self) -> bool {
+        self.direct == DirectBy::Cuts && self.indirect == FoundBy::Cuts
     }
 
     /// True if so many neighbours share a cut.

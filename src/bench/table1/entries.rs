@@ -3,7 +3,7 @@
 use crate::bench::study::Candidate;
 use crate::method::{Method, cache, lightcuts, photon_cache, reconstruction};
 use crate::paths::Look;
-use crate::radiance_cache::{Footprints, FoundBy};
+use crate::radiance_cache::{DirectBy, Footprints, FoundBy};
 
 /// A method's name over several settings, which make a curve of error against time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +61,8 @@ pub fn entries() -> Vec<Entry> {
     let shaped = |footprints| {
         let mut settings = cache::Settings::default();
         settings.cache.footprints = footprints;
-        settings.cache.direct = FoundBy::Records;
+        settings.cache.direct = DirectBy::Records;
+        settings.spp = default.spp;
         settings.cache.indirect = FoundBy::Records;
         Method::Cache(settings)
     };

@@ -9,13 +9,14 @@ use crate::method::ladder::CUTS;
 use crate::method::lights::LightStore;
 use crate::method::sampling::method_settings;
 use crate::method::{Move, Output, Prepared, Renderer, Sampled, counts};
+use crate::paths::Look;
 use crate::progress::Control;
-use crate::radiance_cache::CacheSettings;
 use crate::radiance_cache::fill::CacheFrame;
 use crate::radiance_cache::series::Glossy;
 use crate::radiance_cache::source::LightcutSource;
 use crate::radiance_cache::store::Records;
 use crate::radiance_cache::targets::Targets;
+use crate::radiance_cache::{CacheSettings, DirectBy};
 use crate::setting::{COMPENSATION, Each, INSPECT, Settings as _};
 use crate::shade::{Picture, ShadeSettings};
 use crate::stats::Stage;
@@ -25,7 +26,7 @@ use crate::world::World;
 
 method_settings! {
     /// Settings of the method.
-    spp = 4, "Records" {
+    spp = 16, "Records" {
         /// Numbers of VPLs; their seed is not used.
         light: LightPassSettings = LightPassSettings::default() => [group];
         /// Accuracy of the cut of an eye sample.
@@ -49,11 +50,6 @@ impl Settings {
         self.cache.cut.clamp = self.cut.clamp;
     }
 
-    /// True if all light is found by cuts, none by records.
-    fn lights_by_cuts(&self) -> bool {
-        !self.cache.cached().any()
-    }
-
     /// Settings of the shading stage.
     fn shading(&self) -> ShadeSettings {
         ShadeSettings { cut: self.cut, share: self.cache.share, shadows: self.cache.shadows }
@@ -71,8 +67,9 @@ impl Renderer for Settings {
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
         let wanted = (self.light, self.family);
+        let drawn = self.cache.draws_direct_light();
         let Prepared { eye: samples, lights, mut stats } =
-            Prepared::new(world, lights, view, self.sampling(), wanted, control);
+            Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = lights.context(world, self.compensation);
         let source = LightcutSource { context, settings: &self.cache };
 
@@ -84,14 +81,14 @@ impl Renderer for Settings {
 
         let mut picture = Picture::new(&samples, self.inspect);
         let tasks =
-            stats.time(Stage::Splat, || resolve(&frame.interpolate(&records), &samples, &mut picture));
+            stats.time(Stage::Splat, || resolve(&frame.interpolate(&records), &samples, drawn, &mut picture));
         control.begin(Stage::Render, tasks.len() as u64);
         let counts = stats.time(Stage::Render, || {
             picture.shade(&context, &samples, &tasks, self.cache.patches, &self.shading(), control)
         });
         stats.count("Shading/tasks by cuts", tasks.len() as u64);
         counts::cuts(&mut stats, "Lightcut", &counts.cuts);
-        if !self.cache.cached().indirect {
+        if self.cache.direct == DirectBy::Cuts && !self.cache.cached().indirect {
             counts::clamping(&mut stats, &counts.cuts, self.compensation.then_some(&counts.compensation));
         }
         counts.shadows.report(&mut stats);
@@ -104,7 +101,7 @@ impl Renderer for Settings {
     }
 
     fn check(&self) -> Result<(), String> {
-        match self.lights_by_cuts() {
+        match self.cache.lights_by_cuts() {
             true => {
                 Err("without records, direct and indirect light by cuts are --method reconstruction"
                     .to_owned())
@@ -115,6 +112,14 @@ impl Renderer for Settings {
 
     fn expected_bytes(&self, window: &Window) -> Option<u64> {
         Some(EyePass::expected_bytes(window, self.spp))
+    }
+
+    fn look(&self) -> Look {
+        let Settings { spp, seed, .. } = *self;
+        match self.cache.draws_direct_light() {
+            true => Look::Pixels,
+            false => Look::EyeSamples { spp, seed },
+        }
     }
 
     fn ladder(&self) -> &'static [Move] {

@@ -5,10 +5,21 @@ use crate::radiance_cache::resolve::{Interpolated, Left};
 use crate::shade::{Picture, ShadingTask};
 use crate::vpl::Origin;
 
-/// Adds the light of records to the picture. Returns tasks for the rest, which is shaded by cuts.
-pub fn resolve(light: &[Interpolated], eye: &EyePass, picture: &mut Picture) -> Vec<ShadingTask> {
+/// Adds the light of records to the picture. Returns tasks for the rest, which is shaded by cuts; if `drawn`, the eye
+/// pass has found the direct light.
+pub fn resolve(
+    light: &[Interpolated],
+    eye: &EyePass,
+    drawn: bool,
+    picture: &mut Picture,
+) -> Vec<ShadingTask> {
     let mut tasks = Vec::new();
     for (point, light) in light.iter().enumerate() {
+        let mut light = *light;
+        if drawn {
+            light.left.direct = Left::Nothing;
+            light.baseline_luminance += eye.known_luminance(point);
+        }
         for origin in Origin::ALL {
             picture.add(eye, point, Some(origin), light.base[origin]);
         }

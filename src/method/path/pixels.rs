@@ -1,6 +1,6 @@
 //! Single pixels, each with as many paths as are wanted for it.
 
-use crate::paths::{Batch, Counts, Look, Start, start};
+use crate::paths::{Batch, Counts, FullPaths, Look, Start, start};
 use crate::view::View;
 use crate::world::World;
 use glam::DVec3;
@@ -36,7 +36,7 @@ pub fn pixel_means(
         let paths =
             wanted.iter().flat_map(|w| samples(w).map(|sample| Start { pixel: w.pixel, sample, seed }));
         start(&mut batch, paths, view, look);
-        let mut values = batch.trace(world, max_depth, counts);
+        let mut values = batch.trace(world, max_depth, &mut FullPaths, counts);
         for (w, sum) in wanted.iter().zip(&mut sums) {
             for value in values.by_ref().take(samples(w).len()) {
                 if value.is_finite() {

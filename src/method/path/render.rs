@@ -5,7 +5,7 @@ use crate::math::Rgb;
 use crate::method::ladder::PATHS;
 use crate::method::sampling::method_settings;
 use crate::method::{LightStore, Move, Output, Renderer};
-use crate::paths::{Batch, Counts, Look, Start, start};
+use crate::paths::{Batch, Counts, FullPaths, Look, Start, start};
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
 use crate::view::View;
@@ -123,7 +123,7 @@ impl Tile {
                     samples.clone().map(move |sample| Start { pixel, sample, seed: settings.seed })
                 });
             start(&mut batch, paths, view, settings.look);
-            let mut values = batch.trace(world, max_depth, &mut self.counts);
+            let mut values = batch.trace(world, max_depth, &mut FullPaths, &mut self.counts);
             for pixel in &mut self.pixels {
                 for (sample, mut value) in samples.clone().zip(values.by_ref()) {
                     if !value.is_finite() {

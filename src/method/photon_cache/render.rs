@@ -81,8 +81,9 @@ impl Renderer for Settings {
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
         let wanted = (self.light, self.family);
+        let drawn = self.cache.draws_direct_light();
         let Prepared { eye: samples, lights, mut stats } =
-            Prepared::new(world, lights, view, self.sampling(), wanted, control);
+            Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = lights.context(world, true);
         let direct = LightcutSource { context, settings: &self.cache };
 
@@ -101,7 +102,7 @@ impl Renderer for Settings {
 
         let mut picture = Picture::new(&samples, self.inspect);
         let tasks = stats.time(Stage::Splat, || match &frame {
-            Some(frame) => resolve(&frame.interpolate(&records), &samples, &mut picture),
+            Some(frame) => resolve(&frame.interpolate(&records), &samples, drawn, &mut picture),
             None => (0..samples.len() as u32).map(ShadingTask::all).collect(),
         });
         let direct: Vec<ShadingTask> = tasks

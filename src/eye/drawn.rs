@@ -1,0 +1,135 @@
+//! The eye pass with direct light: paths end at the first surfaces that scatter light broadly, emitters are sampled
+//! there, and what is left to be found is the indirect light of the shading points that the ends are merged into.
+
+use super::merge::{MergedPoint, merge};
+use super::pass::TILE;
+use super::points::VisibilitySample;
+use super::{ChainCounts, EyePass, EyeSettings, VisibleSurfaces};
+use crate::math::Rgb;
+use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, Start, start};
+use crate::progress::Control;
+use crate::sampling::hash;
+use crate::view::View;
+use crate::world::World;
+use rayon::prelude::*;
+
+/// Number of paths traced together, about: enough to fill packets to the end, few enough for the second-level cache.
+const BATCH: u32 = 1024;
+
+/// Share of a pixel's edge that counts as the distance to the next point.
+const SPACING: f32 = 0.5;
+
+/// The ends of paths, by the number of the path and in the order of its edges.
+#[derive(Default)]
+struct Ends<'w> {
+    spacing_by_distance: f32,
+    found: Vec<(u32, u32, MergedPoint<'w>)>,
+}
+
+impl<'w> Reach<'w> for Ends<'w> {
+    const ENDS: bool = true;
+
+    fn end(&mut self, end: &ChainEnd<'w>) {
+        if let Some(point) = MergedPoint::new(end, self.spacing_by_distance * end.distance) {
+            self.found.push((end.path, end.depth, point));
+        }
+    }
+}
+
+/// A thread's buffers.
+#[derive(Default)]
+struct Workspace<'w> {
+    batch: Batch,
+    ends: Ends<'w>,
+    merged: Vec<MergedPoint<'w>>,
+}
+
+/// A tile of the window.
+struct Tile<'a, 'w> {
+    world: &'w World,
+    view: &'a View,
+    settings: EyeSettings,
+}
+
+impl<'w> EyePass<'w> {
+    /// Finds direct light by `settings.spp` paths a pixel, which end at the first surface that scatters light broadly,
+    /// and the shading points where indirect light is wanted. [`EyePass::emitted`] holds all the light found.
+    pub fn with_direct_light(
+        world: &'w World,
+        view: &View,
+        settings: EyeSettings,
+        control: &Control,
+    ) -> EyePass<'w> {
+        let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
+        let tile = Tile { world, view, settings };
+        let tiles = (0..view.window.tile_count(TILE))
+            .into_par_iter()
+            .map_init(Workspace::default, |work, index| {
+                if control.is_cancelled() {
+                    return None;
+                }
+                let found = tile.trace(index, work);
+                control.advance(1);
+                Some(found)
+            })
+            .flatten()
+            .collect();
+        EyePass::gather(&view.window, tiles, settings.spp)
+    }
+}
+
+impl<'w> Tile<'_, 'w> {
+    fn trace(&self, index: usize, work: &mut Workspace<'w>) -> VisibleSurfaces<'w> {
+        let mut found = VisibleSurfaces::default();
+        let window = &self.view.window;
+        let pixels: Vec<[u32; 2]> = window.tile(index, TILE).collect();
+        for pixels in pixels.chunks((BATCH / self.settings.spp).max(1) as usize) {
+            self.pixels(pixels, work, &mut found);
+        }
+        found
+    }
+
+    /// Traces the paths of some pixels.
+    fn pixels(&self, pixels: &[[u32; 2]], work: &mut Workspace<'w>, found: &mut VisibleSurfaces<'w>) {
+        let EyeSettings { spp, seed, max_depth } = self.settings;
+        let window = &self.view.window;
+        let Workspace { batch, ends, merged } = work;
+        ends.found.clear();
+        ends.spacing_by_distance = SPACING * self.view.pixel_angle();
+        let paths = pixels.iter().flat_map(|pixel| {
+            let pixel = window.film_pixel(*pixel);
+            (0..spp).map(move |sample| Start { pixel, sample, seed })
+        });
+        let look = if spp > 1 { Look::Pixels } else { Look::EyeSamples { spp, seed } };
+        start(batch, paths, self.view, look);
+        let mut counts = Counts::default();
+        let mut radiance = batch.trace(self.world, max_depth, ends, &mut counts);
+        found.chains += ChainCounts { rays: counts.rays, shadow_rays: counts.shadow_rays, overflow: 0 };
+        ends.found.sort_by_key(|(path, depth, _)| (*path, *depth));
+        let mut rest = &ends.found[..];
+        for (i, [x, y]) in (1..).zip(pixels) {
+            let pixel = y * window.width + x;
+            let mut sum = Rgb::ZERO;
+            for value in radiance.by_ref().take(spp as usize) {
+                if value.is_finite() {
+                    sum += value;
+                } else {
+                    found.nonfinite += 1;
+                }
+            }
+            if sum != Rgb::ZERO {
+                found.emitted.push((pixel, sum));
+            }
+            let (own, others) = rest.split_at(rest.partition_point(|(path, ..)| *path < i * spp));
+            rest = others;
+            let [film_x, film_y] = window.film_pixel([*x, *y]);
+            let draw = hash(hash(film_x, film_y), seed ^ 0x7e11) as f32 * (1.0 / 4_294_967_296.0);
+            merge(own.iter().map(|(_, _, point)| *point), draw, merged);
+            for point in merged.iter() {
+                found.points.geometry.push(point.geometry);
+                found.points.surfaces.push(point.surface);
+                found.visibility.push(VisibilitySample { pixel, weight: point.weight });
+            }
+        }
+    }
+}
