@@ -53,8 +53,15 @@ pub struct Vertex<'w> {
     pub depth: u32,
     /// Their length in all.
     pub distance: f32,
-    /// True if one of the directions on the way was sampled, not that of a mirror or of refraction.
-    pub sampled: bool,
+}
+
+/// Lobes that chains follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Follow {
+    /// Mirrors and smooth glass.
+    Delta,
+    /// Sharp lobes too, where they reflect the light of emitters.
+    DeltaAndSharp,
 }
 
 /// Name of the counter of [`ChainCounts::overflow`].
@@ -81,16 +88,14 @@ struct Branch {
     distance: f32,
     /// Start of the ray, if a sharp lobe sampled it.
     start: Option<Start>,
-    /// True if this or an earlier direction was sampled.
-    sampled: bool,
 }
 
 /// Follows `ray` and calls `visit` for the end of every edge; returns the radiance emitted into the ray by surfaces
-/// and the environment, directly or along specular chains of at most `max_depth` edges.
+/// and the environment, directly or along specular chains of at most `max_depth` edges. Without sharp lobes, it is not all.
 pub fn trace<'w>(
     world: &'w World,
     ray: Ray,
-    max_depth: u32,
+    (max_depth, follow): (u32, Follow),
     sampler: &mut Sampler,
     counts: &mut ChainCounts,
     mut visit: impl FnMut(Met<'w>),
@@ -99,7 +104,7 @@ pub fn trace<'w>(
     let mut pending: [Option<Branch>; PENDING] = [const { None }; PENDING];
     let mut waiting = 0;
     let (throughput, eta_sq, depth, distance) = (Rgb::ONE, 1.0, 1, 0.0);
-    let mut current = Some(Branch { ray, throughput, eta_sq, depth, distance, start: None, sampled: false });
+    let mut current = Some(Branch { ray, throughput, eta_sq, depth, distance, start: None });
     while let Some(branch) = current.take().or_else(|| {
         waiting = usize::checked_sub(waiting, 1)?;
         pending[waiting].take()
@@ -129,12 +134,11 @@ pub fn trace<'w>(
         }
         let whole = world.bsdf(&surface);
         let (bsdf, sharp) = match whole.split_sharp_lobes() {
-            Some((bsdf, sharp)) => (bsdf, Some(sharp)),
-            None => (whole, None),
+            Some((bsdf, sharp)) if follow == Follow::DeltaAndSharp => (bsdf, Some(sharp)),
+            _ => (whole, None),
         };
         let Branch { throughput, depth, .. } = branch;
-        let sampled = branch.sampled;
-        visit(Met::Surface(Vertex { surface, bsdf, out, throughput, depth, distance, sampled }));
+        visit(Met::Surface(Vertex { surface, bsdf, out, throughput, depth, distance }));
         if branch.depth >= max_depth || !(bsdf.has_delta() || sharp.is_some()) {
             continue;
         }
@@ -159,8 +163,8 @@ pub fn trace<'w>(
             let direction = surface.frame.to_world(lobe.wi);
             let ray = shadow::ray_from(surface.position, surface.normal, direction);
             let start = (!lobe.delta).then(|| Start::new(&surface, wo, lobe.pdf));
-            let (depth, sampled) = (branch.depth + 1, branch.sampled || !lobe.delta);
-            let next = Branch { ray, throughput, eta_sq, depth, distance, start, sampled };
+            let depth = branch.depth + 1;
+            let next = Branch { ray, throughput, eta_sq, depth, distance, start };
             if current.is_none() {
                 current = Some(next);
             } else if waiting < PENDING {

@@ -19,13 +19,15 @@
 //!
 //! Positions are averaged over the samples that meet a surface, albedo and normals over all.
 
-use super::chain::{ChainCounts, Met, Vertex, trace};
+use super::chain::{ChainCounts, Follow, Met, Vertex, trace};
+use crate::embree::{Hits16, Ray, Rays16};
 use crate::film::{Image, Layer};
-use crate::math::Rgb;
+use crate::math::{LANES, Rgb, first_lanes, lanes_in};
 use crate::paths::Look;
 use crate::progress::Control;
+use crate::sampling::Sampler;
 use crate::view::View;
-use crate::world::World;
+use crate::world::{Surface, World};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::str::FromStr;
@@ -225,14 +227,27 @@ impl Pixel {
     /// Features of a pixel of the film.
     fn new(world: &World, view: &View, settings: &FeatureSettings, film_pixel: [u32; 2]) -> Pixel {
         let mut pixel = Pixel::default();
-        for sample in 0..settings.samples() {
-            let (mut sampler, jitter) = settings.look.eye_sampler(film_pixel, settings.seed, sample);
-            let ray = view.primary_ray(film_pixel, jitter);
-            let cos = ray.direction.dot(view.camera.forward);
-            let mut seen = Seen::default();
-            let visit = |met| seen.meet(world, met);
-            trace(world, ray, MAX_EDGES, &mut sampler, &mut ChainCounts::default(), visit);
-            pixel.add(world, &seen, cos);
+        let samples: Vec<u32> = (0..settings.samples()).collect();
+        for samples in samples.chunks(LANES) {
+            let (mut rays, mut samplers) = (Rays16::default(), [Sampler::new(0, 0); LANES]);
+            for lane in 0..LANES {
+                let sample = samples.get(lane).copied().unwrap_or(samples[0]);
+                let (sampler, jitter) = settings.look.eye_sampler(film_pixel, settings.seed, sample);
+                rays.set(lane, &view.primary_ray(film_pixel, jitter));
+                samplers[lane] = sampler;
+            }
+            let (valid, mut hits) = (first_lanes(samples.len()), Hits16::default());
+            let found = world.accel.closest_hit16(&rays, valid, true, &mut hits);
+            if found == 0 {
+                continue;
+            }
+            hits.repeat(found.trailing_zeros() as usize, !found);
+            let surfaces = world.surfaces(&hits);
+            for lane in lanes_in(found) {
+                let ray = rays.get(lane);
+                let seen = Seen::new(world, &ray, surfaces.get(lane), &mut samplers[lane]);
+                pixel.add(world, &seen, ray.direction.dot(view.camera.forward));
+            }
         }
         pixel
     }
@@ -267,6 +282,21 @@ struct Seen<'w> {
 }
 
 impl<'w> Seen<'w> {
+    /// Surfaces seen along an eye ray, of which `surface` is the first.
+    fn new(world: &'w World, ray: &Ray, surface: Surface, sampler: &mut Sampler) -> Seen<'w> {
+        let mut seen = Seen::default();
+        let bsdf = world.bsdf(&surface);
+        if bsdf.has_delta() {
+            let visit = |met| seen.meet(world, met);
+            trace(world, *ray, (MAX_EDGES, Follow::Delta), sampler, &mut ChainCounts::default(), visit);
+        } else {
+            let (out, throughput, distance) = (-ray.direction, Rgb::ONE, surface.t);
+            let vertex = Vertex { surface, bsdf, out, throughput, depth: 1, distance };
+            seen.meet(world, Met::Surface(vertex));
+        }
+        seen
+    }
+
     fn meet(&mut self, world: &'w World, met: Met<'w>) {
         match met {
             Met::Nothing { throughput } => {
@@ -274,8 +304,7 @@ impl<'w> Seen<'w> {
                     (self.share, self.main) = (throughput.max_element(), None);
                 }
             }
-            // Sharp rough lobes count as surfaces; their reflection is not followed.
-            Met::Surface(vertex) if !vertex.sampled => {
+            Met::Surface(vertex) => {
                 self.first = self.first.or(Some(vertex));
                 let whole = world.bsdf(&vertex.surface);
                 let albedo = whole.albedo(vertex.surface.frame.to_local(vertex.out));
@@ -285,7 +314,6 @@ impl<'w> Seen<'w> {
                     (self.share, self.main) = (vertex.throughput.max_element(), Some(vertex));
                 }
             }
-            Met::Surface(_) => {}
         }
     }
 }

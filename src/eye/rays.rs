@@ -1,6 +1,6 @@
 //! Eye rays one by one: their random numbers, their places in pixels, and the surfaces that they make visible.
 
-use super::chain::{ChainCounts, Met, Vertex, trace};
+use super::chain::{ChainCounts, Follow, Met, Vertex, trace};
 use super::points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySample};
 use crate::math::Rgb;
 use crate::paths::eye_sampler;
@@ -81,7 +81,7 @@ impl<'a, 'w> EyeRays<'a, 'w> {
                 visibility.push(VisibilitySample { pixel, weight: vertex.throughput });
             }
         };
-        let emitted = trace(self.world, ray, max_depth, &mut sampler, chains, visit);
+        let emitted = trace(self.world, ray, (max_depth, Follow::DeltaAndSharp), &mut sampler, chains, visit);
         if !emitted.is_finite() {
             found.nonfinite += 1;
         } else if emitted != Rgb::ZERO {

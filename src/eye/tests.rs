@@ -1,6 +1,6 @@
 //! Chains through mirrors and glass, visibility samples and features, against closed forms.
 
-use super::chain::{ChainCounts, Met, Vertex, trace};
+use super::chain::{ChainCounts, Follow, Met, Vertex, trace};
 use super::{EyePass, EyeSettings, Feature, FeatureSettings, Features, features};
 use crate::film::{Layer, Pixels};
 use crate::math::Rgb;
@@ -34,7 +34,7 @@ fn chain(world: &WorldAndView, max_depth: u32, seed: u32) -> (Vec<Vertex<'_>>, C
     let [width, height] = world.view.window.film;
     let ray = world.view.primary_ray([width / 2, height / 2], Vec2::splat(1e-3));
     let (mut vertices, mut counts) = (Vec::new(), ChainCounts::default());
-    trace(world, ray, max_depth, &mut Sampler::new(seed, 0), &mut counts, |met| {
+    trace(world, ray, (max_depth, Follow::DeltaAndSharp), &mut Sampler::new(seed, 0), &mut counts, |met| {
         if let Met::Surface(vertex) = met {
             vertices.push(vertex);
         }
@@ -55,7 +55,7 @@ fn mirrors_pass_all_light_on_until_the_chain_is_too_long() {
     let (vertices, counts) = chain(&world, 6, 0);
     assert_eq!(vertices.iter().map(|v| v.surface.mesh).collect::<Vec<_>>(), [0, 1, 0, 1, 0, 1]);
     for (i, vertex) in vertices.iter().enumerate() {
-        assert_eq!((vertex.depth, vertex.throughput, vertex.sampled), (i as u32 + 1, Rgb::ONE, false));
+        assert_eq!((vertex.depth, vertex.throughput), (i as u32 + 1, Rgb::ONE));
         let unfolded = 1.0 + 3.0 * i as f32;
         assert!((vertex.distance - unfolded).abs() < 1e-3 * unfolded, "{}", vertex.distance);
     }

@@ -5,7 +5,7 @@ use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::render;
-use lightsplat::method::{Footprints, FoundBy};
+use lightsplat::method::{DirectBy, Footprints, FoundBy};
 use lightsplat::method::{Output, cache, reconstruction};
 use lightsplat::progress::Control;
 use lightsplat::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
@@ -13,8 +13,8 @@ use lightsplat::stats::{Counter, Stage};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-fn settings(direct: FoundBy, footprints: Footprints) -> cache::Settings {
-    let mut settings = cache::Settings::default();
+fn settings(direct: DirectBy, footprints: Footprints) -> cache::Settings {
+    let mut settings = cache::Settings { spp: 4, ..Default::default() };
     settings.light.indirect = 20_000;
     settings.spp = 1;
     // Compensation is noisier than the differences tested here; it has tests of its own.
@@ -100,22 +100,22 @@ fn room_with_ball(materials: impl FnOnce(&mut Scene, MaterialId) -> [MaterialId;
 /// The lit room by lightcuts per pixel with the light of [`settings`], rendered once.
 fn lit_reference() -> &'static Image {
     static REFERENCE: OnceLock<Image> = OnceLock::new();
-    REFERENCE.get_or_init(|| per_pixel(&lit_room(), &settings(FoundBy::Cuts, Footprints::Isotropic)))
+    REFERENCE.get_or_init(|| per_pixel(&lit_room(), &settings(DirectBy::Cuts, Footprints::Isotropic)))
 }
 
 /// The same of the glossy room.
 fn glossy_reference() -> &'static Image {
     static REFERENCE: OnceLock<Image> = OnceLock::new();
-    REFERENCE.get_or_init(|| per_pixel(&glossy_room(), &settings(FoundBy::Cuts, Footprints::Isotropic)))
+    REFERENCE.get_or_init(|| per_pixel(&glossy_room(), &settings(DirectBy::Cuts, Footprints::Isotropic)))
 }
 
 #[test]
 fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
     let world = lit_room();
-    for (direct, limit) in [(FoundBy::Cuts, 0.02), (FoundBy::Records, 0.06)] {
+    for (direct, limit) in [(DirectBy::Cuts, 0.02), (DirectBy::Records, 0.06)] {
         for footprints in [Footprints::Isotropic, Footprints::Anisotropic, Footprints::Occlusion] {
             let mut settings = settings(direct, footprints);
-            if direct == FoundBy::Records {
+            if direct == DirectBy::Records {
                 // Penumbrae are steep: at the default accuracy they need the other mode.
                 (settings.cache.accuracy[0], settings.cache.reach[0]) = (0.1, [0.7, 5.0]);
             }
@@ -128,7 +128,7 @@ fn records_agree_with_lightcuts_per_pixel_in_every_mode() {
 #[test]
 fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
     let world = glossy_room();
-    for (direct, limit) in [(FoundBy::Cuts, 0.03), (FoundBy::Records, 0.08)] {
+    for (direct, limit) in [(DirectBy::Cuts, 0.03), (DirectBy::Records, 0.08)] {
         let mut settings = settings(direct, Footprints::Anisotropic);
         (settings.cache.accuracy[0], settings.cache.reach[0]) = (0.1, [0.7, 5.0]);
         let output = rendered(&world, &settings);
@@ -148,7 +148,7 @@ fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
 #[test]
 fn reconstruction_cuts_agree_with_lightcuts_per_pixel() {
     for world in [lit_room(), glossy_room()] {
-        let mut settings = settings(FoundBy::Cuts, Footprints::Occlusion);
+        let mut settings = settings(DirectBy::Cuts, Footprints::Occlusion);
         settings.spp = 4;
         settings.cache.indirect = FoundBy::Cuts;
         settings.cut.epsilon = 0.01;
@@ -168,7 +168,7 @@ fn reconstruction_cuts_agree_with_lightcuts_per_pixel() {
 #[test]
 fn layers_by_records_and_by_samples_add_up_in_every_combination() {
     let world = glossy_room();
-    for direct in [FoundBy::Cuts, FoundBy::Records] {
+    for direct in [DirectBy::Cuts, DirectBy::Records] {
         for indirect in [FoundBy::Cuts, FoundBy::Records] {
             let mut settings = settings(direct, Footprints::Anisotropic);
             settings.cache.indirect = indirect;
@@ -182,15 +182,15 @@ fn layers_by_records_and_by_samples_add_up_in_every_combination() {
 
 #[test]
 fn surfaces_without_lobes_make_no_series() {
-    let output = rendered(&lit_room(), &settings(FoundBy::Cuts, Footprints::Anisotropic));
+    let output = rendered(&lit_room(), &settings(DirectBy::Cuts, Footprints::Anisotropic));
     assert_eq!(count(&output, "Cache/records with series"), None);
 }
 
 #[test]
 fn the_bits_do_not_depend_on_the_number_of_threads() {
-    let records = settings(FoundBy::Records, Footprints::Occlusion);
+    let records = settings(DirectBy::Records, Footprints::Occlusion);
     let mut lent = records;
-    (lent.cache.direct, lent.cache.indirect) = (FoundBy::Cuts, FoundBy::Cuts);
+    (lent.cache.direct, lent.cache.indirect) = (DirectBy::Cuts, FoundBy::Cuts);
     for (world, settings) in [(lit_room(), records), (glossy_room(), records), (glossy_room(), lent)] {
         let pictures = [1, 2, 4].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -204,7 +204,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
 fn far_fewer_records_than_eye_samples_and_growing_slower() {
     let world = lit_room();
     let records = |spp| {
-        let mut settings = settings(FoundBy::Cuts, Footprints::Anisotropic);
+        let mut settings = settings(DirectBy::Cuts, Footprints::Anisotropic);
         settings.spp = spp;
         count(&rendered(&world, &settings), "Cache/records, indirect").unwrap() as f64
     };

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use lightsplat::film::{Image, Layer};
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::cache;
-use lightsplat::method::{Footprints, FoundBy};
+use lightsplat::method::{DirectBy, Footprints, FoundBy};
 use lightsplat::scene::MaterialId;
 use lightsplat::world::Surface;
 use std::sync::OnceLock;
@@ -34,7 +34,8 @@ fn divided_room() -> WorldAndView {
 }
 
 fn settings(footprints: Footprints) -> cache::Settings {
-    let mut settings = cache::Settings::default();
+    let mut settings = cache::Settings { spp: 4, ..Default::default() };
+    settings.cache.direct = DirectBy::Cuts;
     settings.light.indirect = 30_000;
     settings.spp = 1;
     settings.cache.footprints = footprints;
@@ -144,11 +145,11 @@ fn smooth_light_stays_smooth() {
     let mut by = settings(Footprints::Isotropic);
     let reference = per_pixel(&world, &by);
     for (direct, indirect, footprints) in [
-        (FoundBy::Cuts, FoundBy::Cuts, Footprints::Isotropic),
-        (FoundBy::Cuts, FoundBy::Records, Footprints::Isotropic),
-        (FoundBy::Records, FoundBy::Records, Footprints::Isotropic),
-        (FoundBy::Records, FoundBy::Records, Footprints::Anisotropic),
-        (FoundBy::Records, FoundBy::Records, Footprints::Occlusion),
+        (DirectBy::Cuts, FoundBy::Cuts, Footprints::Isotropic),
+        (DirectBy::Cuts, FoundBy::Records, Footprints::Isotropic),
+        (DirectBy::Records, FoundBy::Records, Footprints::Isotropic),
+        (DirectBy::Records, FoundBy::Records, Footprints::Anisotropic),
+        (DirectBy::Records, FoundBy::Records, Footprints::Occlusion),
     ] {
         (by.cache.direct, by.cache.indirect, by.cache.footprints) = (direct, indirect, footprints);
         let picture = rendered(&world, &by).color;

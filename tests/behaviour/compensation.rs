@@ -4,8 +4,8 @@ use crate::common::*;
 use glam::{Vec2, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
-use lightsplat::method::FoundBy;
 use lightsplat::method::render;
+use lightsplat::method::{DirectBy, FoundBy};
 use lightsplat::method::{Output, cache, lightcuts, path, reconstruction};
 use lightsplat::progress::Control;
 use lightsplat::stats::Counter;
@@ -14,7 +14,8 @@ const SIZE: u32 = 96;
 
 /// Pictures by all methods of indirect light, with compensation or without.
 fn outputs(world: &WorldAndView, vpls: u32, compensation: bool) -> Vec<(&'static str, Output)> {
-    let mut settings = cache::Settings { compensation, ..Default::default() };
+    let mut settings = cache::Settings { spp: 4, compensation, ..Default::default() };
+    settings.cache.direct = DirectBy::Cuts;
     settings.light.indirect = vpls;
     settings.cache.least_cell = 8;
     settings.cache.indirect = FoundBy::Cuts;

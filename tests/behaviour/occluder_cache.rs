@@ -3,9 +3,9 @@
 use crate::common::*;
 use glam::Vec3;
 use lightsplat::math::Rgb;
-use lightsplat::method::FoundBy;
 use lightsplat::method::LightPassSettings;
 use lightsplat::method::render;
+use lightsplat::method::{DirectBy, FoundBy};
 use lightsplat::method::{OccluderCacheSettings, ShadowSettings};
 use lightsplat::method::{Output, cache, lightcuts};
 use lightsplat::progress::Control;
@@ -73,7 +73,8 @@ fn the_radiance_cache_gives_the_same_bits_with_it_and_without_on_any_number_of_t
     for share in [true, false] {
         let mut first = None;
         for shadows in uses() {
-            let mut settings = cache::Settings { light: LIGHT, ..Default::default() };
+            let mut settings = cache::Settings { spp: 4, light: LIGHT, ..Default::default() };
+            settings.cache.direct = DirectBy::Cuts;
             settings.spp = 1;
             settings.cache.indirect = FoundBy::Records;
             settings.cache.least_cell = 8;

@@ -16,12 +16,12 @@ use crate::photon::records::FinalGatherSource;
 use crate::photon::strata::Strata;
 use crate::photon::{IrradianceMap, PhotonMap};
 use crate::progress::Control;
-use crate::radiance_cache::CacheSettings;
 use crate::radiance_cache::fill::CacheFrame;
 use crate::radiance_cache::series::Glossy;
 use crate::radiance_cache::source::LightcutSource;
 use crate::radiance_cache::store::Records;
 use crate::radiance_cache::targets::Targets;
+use crate::radiance_cache::{CacheSettings, DirectBy};
 use crate::setting::{Each, INSPECT, Settings as _};
 use crate::shade::{Picture, ShadeSettings, ShadingTask};
 use crate::stats::{Stage, Stats};
@@ -46,7 +46,11 @@ method_settings! {
             group without ["vpls"]
         ];
         /// Number and reach of records. Cells of 32 samples have as many rays of their own as a record.
-        cache: CacheSettings = CacheSettings { least_cell: 32, ..CacheSettings::default() } => [
+        cache: CacheSettings = CacheSettings {
+            direct: DirectBy::Cuts,
+            least_cell: 32,
+            ..CacheSettings::default()
+        } => [
             group without ["indirect"]
         ];
         /// Accuracy of the cut of an eye sample.
