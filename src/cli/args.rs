@@ -1,13 +1,12 @@
 //! Arguments of the command line. Every option is documented here and nowhere else: `--help` is made of it.
 
 use super::bench_args::BenchArgs;
-use super::exit::{self, Failure};
+use super::exit;
 use super::method_args::MethodArgs;
 use super::plan_args::PlanArgs;
 use super::values::{Crop, ProgressMode, Resolution, feature};
 use crate::film::Exposure;
-use crate::session::{Feature, Goal};
-use anyhow::anyhow;
+use crate::session::Feature;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
 
@@ -113,10 +112,10 @@ impl PngArgs {
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct DenoiseArgs {
     /// Take the noise off the picture by Open Image Denoise 2, guided by albedo and normals through mirrors and glass;
-    /// a picture without it and a warning where the library is missing
+    /// a picture without it and a warning where the library is missing. The default where the method is meant for it
     #[arg(long, overrides_with = "no_denoise")]
     denoise: bool,
-    /// Leave the noise in the picture, the default
+    /// Leave the noise in the picture
     #[arg(long, overrides_with = "denoise")]
     no_denoise: bool,
     /// Keep the picture as it was before denoising as layer `noisy`
@@ -125,13 +124,9 @@ pub struct DenoiseArgs {
 }
 
 impl DenoiseArgs {
-    /// True if the picture is to be denoised.
-    pub fn denoise(&self) -> Result<bool, Failure> {
-        let denoise = self.denoise || (Goal::default().denoise && !self.no_denoise);
-        if self.keep_noisy && !denoise {
-            return Err(Failure::usage(anyhow!("--keep-noisy goes with --denoise")));
-        }
-        Ok(denoise)
+    /// True if the picture is to be denoised; `None` by default.
+    pub fn denoise(&self) -> Option<bool> {
+        (self.denoise || self.no_denoise).then_some(self.denoise)
     }
 }
 

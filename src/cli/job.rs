@@ -42,22 +42,25 @@ impl RenderJob {
         let method = args.plan.method(args.method.method()?, &held);
         let verify = verify::settings(&args.verify, &method, args.plan.error.is_some());
         let wanted = args.plan.wanted(&method, held, args.verify.verify_samples, run)?;
-        let denoise = args.denoise.denoise()?;
         let png = args.png.file(&args.output);
         check_outputs(&args.output, png.as_deref())?;
+        let goal = Goal {
+            method,
+            wanted,
+            features: args.aov.into_iter().collect(),
+            denoise: args.denoise.denoise(),
+            keep_noisy: args.denoise.keep_noisy,
+            verify,
+        };
+        if goal.keep_noisy && !goal.denoises() {
+            return Err(Failure::usage(anyhow!("--keep-noisy goes with --denoise")));
+        }
         Ok(RenderJob {
             scene: args.scene,
             strict: args.strict,
             output: args.output,
             png: png.map(|path| (path, args.png.exposure)),
-            goal: Goal {
-                method,
-                wanted,
-                features: args.aov.into_iter().collect(),
-                denoise,
-                keep_noisy: args.denoise.keep_noisy,
-                verify,
-            },
+            goal,
             threads: threads::count(args.threads),
             framing: Framing {
                 frame: args.frame,

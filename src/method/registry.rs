@@ -1,6 +1,6 @@
 //! All methods. A new one is a folder and a line here.
 
-use super::{Renderer, reconstruction};
+use super::{Renderer, cache};
 use crate::setting::Each;
 use serde_json::Value as Json;
 use std::ops::{Deref, DerefMut};
@@ -37,10 +37,10 @@ macro_rules! methods {
 }
 
 methods! {
-    /// Reconstruction cuts.
-    Reconstruction(reconstruction),
     /// The radiance cache.
     Cache(cache),
+    /// Reconstruction cuts.
+    Reconstruction(reconstruction),
     /// The same cache over a photon map.
     PhotonCache(photon_cache),
     /// Lightcuts per pixel.
@@ -49,10 +49,10 @@ methods! {
     Path(path),
 }
 
-/// Reconstruction cuts with their defaults, the first method.
+/// The radiance cache with its defaults, the first method.
 impl Default for Method {
     fn default() -> Method {
-        Method::Reconstruction(reconstruction::Settings::default())
+        Method::Cache(cache::Settings::default())
     }
 }
 

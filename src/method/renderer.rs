@@ -38,6 +38,11 @@ pub trait Renderer: Settings + Sampled {
         Look::EyeSamples { spp: sampling.spp, seed: sampling.seed }
     }
 
+    /// True if pictures have noise that a denoiser is meant to take off: faster than by more samples.
+    fn leaves_noise(&self) -> bool {
+        false
+    }
+
     /// Memory for `window` besides the scene, where that grows with the samples.
     fn expected_bytes(&self, _window: &Window) -> Option<u64> {
         None

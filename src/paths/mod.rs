@@ -1,6 +1,6 @@
 //! Paths from the eye, traced many together, an edge at a time, in packets of sixteen.
 //!
-//! A [`Batch`] takes paths by the places of their first edges in pixels ([`start`], [`Look`]) and follows them, with
+//! A [`Batch`] takes paths by the places of their first edges in pixels ([`start()`], [`Look`]) and follows them, with
 //! next-event estimation at every vertex.
 
 mod batch;

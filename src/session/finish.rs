@@ -39,7 +39,7 @@ impl<'a> Finish<'a> {
     ) -> Finish<'a> {
         let failure = OnceCell::new();
         let watch = Stopwatch::start();
-        let denoiser = goal.denoise.then(Denoiser::load).and_then(|loaded| match loaded {
+        let denoiser = goal.denoises().then(Denoiser::load).and_then(|loaded| match loaded {
             Ok(denoiser) => {
                 stats.add_time(Stage::Denoise, watch.elapsed());
                 Some(denoiser)

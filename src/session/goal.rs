@@ -14,12 +14,19 @@ pub struct Goal {
     pub wanted: Wanted,
     /// Features of the surfaces seen that are wanted beside the colour.
     pub features: Features,
-    /// True if the picture is to be denoised.
-    pub denoise: bool,
+    /// True if the picture is to be denoised; by default, if the method's pictures are meant to be.
+    pub denoise: Option<bool>,
     /// True if the picture before denoising is kept as layer `noisy`.
     pub keep_noisy: bool,
     /// Settings of the verification of the picture's error, if any.
     pub verify: Option<verify::Settings>,
+}
+
+impl Goal {
+    /// True if the picture is to be denoised.
+    pub fn denoises(&self) -> bool {
+        self.denoise.unwrap_or(self.method.leaves_noise())
+    }
 }
 
 /// Source of settings.

@@ -93,7 +93,7 @@ impl Session {
         film.metadata.set("partial", if complete { "false" } else { "true" });
         film.metadata.set("render_seconds", seconds);
         film.metadata.set("nonfinite", nonfinite as f64);
-        if goal.denoise {
+        if goal.denoises() {
             film.metadata.set("denoised", denoised_by.as_deref().unwrap_or("false"));
         }
         let since_start = match &goal.wanted {

@@ -13,7 +13,9 @@ fn frame(session: &Session, size: u32, spp: u32, seed: u32, denoise: bool) -> Fr
     let framing = Framing { resolution: Some([size, size]), ..Framing::default() };
     let view = View::new(&session.cameras, &framing).unwrap();
     let method = Method::Path(path::Settings { spp, seed, ..Default::default() });
-    session.frame(&view, &Goal { method, denoise, ..Goal::default() }, &Control::new()).unwrap()
+    session
+        .frame(&view, &Goal { method, denoise: Some(denoise), ..Goal::default() }, &Control::new())
+        .unwrap()
 }
 
 #[test]

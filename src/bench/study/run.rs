@@ -121,7 +121,7 @@ impl Study<'_> {
         let mut best: Option<Run> = None;
         for _ in 0..self.plan.repeats.max(1) {
             let Subject { session, view, .. } = subject;
-            let goal = Goal { denoise: candidate.denoise, ..Goal::default() };
+            let goal = Goal { denoise: Some(candidate.denoise), ..Goal::default() };
             let mut loading = Stats::new();
             let finish = Finish::new(&session.world, view, &goal, self.control, &mut loading);
             let mut output =

@@ -24,6 +24,9 @@ use crate::view::View;
 use crate::vpl::LightPassSettings;
 use crate::world::World;
 
+/// Shading points a pixel that eye samples are merged into at most, as a rule.
+const MERGED_POINTS: u32 = 3;
+
 method_settings! {
     /// Settings of the method.
     spp = 16, "Records" {
@@ -111,7 +114,8 @@ impl Renderer for Settings {
     }
 
     fn expected_bytes(&self, window: &Window) -> Option<u64> {
-        Some(EyePass::expected_bytes(window, self.spp))
+        let merged = self.spp.min(MERGED_POINTS);
+        Some(EyePass::expected_bytes(window, if self.cache.draws_direct_light() { merged } else { self.spp }))
     }
 
     fn look(&self) -> Look {
@@ -120,6 +124,10 @@ impl Renderer for Settings {
             true => Look::Pixels,
             false => Look::EyeSamples { spp, seed },
         }
+    }
+
+    fn leaves_noise(&self) -> bool {
+        self.cache.draws_direct_light()
     }
 
     fn ladder(&self) -> &'static [Move] {
