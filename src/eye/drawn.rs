@@ -5,6 +5,7 @@ use super::merge::{MergedPoint, merge};
 use super::pass::TILE;
 use super::points::VisibilitySample;
 use super::{ChainCounts, EyePass, EyeSettings, VisibleSurfaces};
+use crate::material::Bsdf;
 use crate::math::Rgb;
 use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, Start, start};
 use crate::progress::Control;
@@ -19,15 +20,29 @@ const BATCH: u32 = 1024;
 /// Share of a pixel's edge that counts as the distance to the next point.
 const SPACING: f32 = 0.5;
 
+/// Direct light to be drawn.
+#[derive(Clone, Debug, Default)]
+pub struct DrawnLight {
+    /// True of materials all of whose rough lobes chains follow, by material; of others they follow the sharp ones.
+    pub followed: Vec<bool>,
+}
+
 /// The ends of paths, by the number of the path and in the order of its edges.
-#[derive(Default)]
-struct Ends<'w> {
+struct Ends<'a, 'w> {
+    drawn: &'a DrawnLight,
     spacing_by_distance: f32,
     found: Vec<(u32, u32, MergedPoint<'w>)>,
 }
 
-impl<'w> Reach<'w> for Ends<'w> {
+impl<'w> Reach<'w> for Ends<'_, 'w> {
     const ENDS: bool = true;
+
+    fn split<'m>(&self, bsdf: &Bsdf<'m>) -> Option<(Bsdf<'m>, Bsdf<'m>)> {
+        match self.drawn.followed.get(bsdf.material().0 as usize) {
+            Some(true) => bsdf.split_rough_lobes(),
+            _ => bsdf.split_sharp_lobes(),
+        }
+    }
 
     fn end(&mut self, end: &ChainEnd<'w>) {
         if let Some(point) = MergedPoint::new(end, self.spacing_by_distance * end.distance) {
@@ -37,10 +52,9 @@ impl<'w> Reach<'w> for Ends<'w> {
 }
 
 /// A thread's buffers.
-#[derive(Default)]
-struct Workspace<'w> {
+struct Workspace<'a, 'w> {
     batch: Batch,
-    ends: Ends<'w>,
+    ends: Ends<'a, 'w>,
     merged: Vec<MergedPoint<'w>>,
 }
 
@@ -58,13 +72,19 @@ impl<'w> EyePass<'w> {
         world: &'w World,
         view: &View,
         settings: EyeSettings,
+        drawn: &DrawnLight,
         control: &Control,
     ) -> EyePass<'w> {
         let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
         let tile = Tile { world, view, settings };
+        let workspace = || Workspace {
+            batch: Batch::default(),
+            ends: Ends { drawn, spacing_by_distance: 0.0, found: Vec::new() },
+            merged: Vec::new(),
+        };
         let tiles = (0..view.window.tile_count(TILE))
             .into_par_iter()
-            .map_init(Workspace::default, |work, index| {
+            .map_init(workspace, |work, index| {
                 if control.is_cancelled() {
                     return None;
                 }
@@ -79,7 +99,7 @@ impl<'w> EyePass<'w> {
 }
 
 impl<'w> Tile<'_, 'w> {
-    fn trace(&self, index: usize, work: &mut Workspace<'w>) -> VisibleSurfaces<'w> {
+    fn trace(&self, index: usize, work: &mut Workspace<'_, 'w>) -> VisibleSurfaces<'w> {
         let mut found = VisibleSurfaces::default();
         let window = &self.view.window;
         let pixels: Vec<[u32; 2]> = window.tile(index, TILE).collect();
@@ -90,7 +110,7 @@ impl<'w> Tile<'_, 'w> {
     }
 
     /// Traces the paths of some pixels.
-    fn pixels(&self, pixels: &[[u32; 2]], work: &mut Workspace<'w>, found: &mut VisibleSurfaces<'w>) {
+    fn pixels(&self, pixels: &[[u32; 2]], work: &mut Workspace<'_, 'w>, found: &mut VisibleSurfaces<'w>) {
         let EyeSettings { spp, seed, max_depth } = self.settings;
         let window = &self.view.window;
         let Workspace { batch, ends, merged } = work;

@@ -4,7 +4,10 @@
 //! Paper: Herzog et al. 2009, section 4: eye samples are stored through specular chains and sorted by a kd-tree.
 
 use super::points::{PointGeometry, PointSurface, VisibilitySample};
-use super::{ChainCounts, EyeIndex, EyeRays, EyeSettings, ShadingPoints, VisibilitySamples, VisibleSurfaces};
+use super::{
+    ChainCounts, DrawnLight, EyeIndex, EyeRays, EyeSettings, ShadingPoints, VisibilitySamples,
+    VisibleSurfaces,
+};
 use crate::film::{Image, Window};
 use crate::math::luminance;
 use crate::progress::Control;
@@ -43,12 +46,12 @@ impl<'w> EyePass<'w> {
         world: &'w World,
         view: &View,
         settings: EyeSettings,
-        drawn: bool,
+        drawn: Option<&DrawnLight>,
         control: &Control,
     ) -> EyePass<'w> {
         match drawn {
-            true => EyePass::with_direct_light(world, view, settings, control),
-            false => EyePass::trace(world, view, settings, control),
+            Some(drawn) => EyePass::with_direct_light(world, view, settings, drawn, control),
+            None => EyePass::trace(world, view, settings, control),
         }
     }
 

@@ -76,15 +76,26 @@ impl<'m> Bsdf<'m> {
     /// eye paths follow by sampling them.
     #[inline]
     pub fn split_sharp_lobes(&self) -> Option<(Self, Self)> {
-        if !self.model.smooth_lobes || !self.any_lobe(LobeModel::is_sharp) {
+        self.split_lobes(LobeModel::is_sharp)
+    }
+
+    /// Returns the BSDF without its rough lobes, and these alone, if there are any.
+    #[inline]
+    pub fn split_rough_lobes(&self) -> Option<(Self, Self)> {
+        self.split_lobes(|lobe| !lobe.is_delta())
+    }
+
+    #[inline]
+    fn split_lobes(&self, is_such: impl Fn(&LobeModel) -> bool) -> Option<(Self, Self)> {
+        if !self.model.smooth_lobes || !self.any_lobe(&is_such) {
             return None;
         }
-        let (mut rest, mut sharp) = (*self, Bsdf { base: Rgb::ZERO, ..*self });
+        let (mut rest, mut such) = (*self, Bsdf { base: Rgb::ZERO, ..*self });
         for (i, lobe) in self.model.lobes.iter().enumerate() {
-            let without = if lobe.is_sharp() { &mut rest } else { &mut sharp };
+            let without = if is_such(lobe) { &mut rest } else { &mut such };
             without.scales[i] = Rgb::ZERO;
         }
-        Some((rest, sharp))
+        Some((rest, such))
     }
 
     /// True if the material is Lambertian and nothing else.

@@ -2,7 +2,7 @@
 
 use super::lights::{LightStore, Lights, LightsWanted};
 use super::{Sampling, counts};
-use crate::eye::EyePass;
+use crate::eye::{DrawnLight, EyePass};
 use crate::light_tree::Family;
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
@@ -27,14 +27,14 @@ impl<'w> Prepared<'w> {
         world: &'w World,
         lights: &LightStore,
         view: &View,
-        (sampling, drawn): (Sampling, bool),
+        (sampling, drawn): (Sampling, Option<DrawnLight>),
         wanted: (LightPassSettings, Family),
         control: &Control,
     ) -> Prepared<'w> {
         let mut stats = Stats::new();
         let rays = sampling.eye(&world.scene);
         control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
-        let eye = stats.time(Stage::EyePass, || EyePass::of(world, view, rays, drawn, control));
+        let eye = stats.time(Stage::EyePass, || EyePass::of(world, view, rays, drawn.as_ref(), control));
         counts::eye(&mut stats, &eye.chains);
         let wanted = LightsWanted::new(world, sampling, wanted);
         let lights = lights.get(world, wanted, control, &mut stats);

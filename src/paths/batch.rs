@@ -40,6 +40,11 @@ pub trait Reach<'w> {
     /// length.
     const ENDS: bool;
 
+    /// Splits the lobes that a chain follows from the others, if there are any of the former besides delta lobes.
+    fn split<'m>(&self, bsdf: &Bsdf<'m>) -> Option<(Bsdf<'m>, Bsdf<'m>)> {
+        bsdf.split_sharp_lobes()
+    }
+
     /// Called at every such surface, in an order that does not depend on threads.
     fn end(&mut self, _end: &ChainEnd<'w>) {}
 }

@@ -101,7 +101,7 @@ impl Packet {
         let mut found = found;
         if R::ENDS {
             let draws = self.samplers.point(pair + 3).y;
-            self.follow(&bsdfs, &samples, surfaces, found, &draws);
+            self.follow(&bsdfs, &samples, surfaces, (found, &draws), reach);
             if !world.emitters.are_hittable() {
                 found &= self.followed();
             }
@@ -124,7 +124,7 @@ impl Packet {
     ) {
         for lane in lanes_in(bsdfs.smooth() & found) {
             let (whole, wo) = bsdfs.lane(lane);
-            let bsdf = whole.split_sharp_lobes().map_or(whole, |(rest, _)| rest);
+            let bsdf = reach.split(&whole).map_or(whole, |(rest, _)| rest);
             if !bsdf.has_smooth() || !(wo.z > 0.0 || bsdf.two_sided()) {
                 continue;
             }
@@ -143,13 +143,13 @@ impl Packet {
 
     /// Reduces the throughput of the sampled directions to that of the lobes which chains follow: all of it in the
     /// directions of delta lobes, and the share of the sharp lobes elsewhere, by chance all or nothing.
-    fn follow(
+    fn follow<'w>(
         &mut self,
         bsdfs: &Bsdfs16,
         samples: &BsdfSamples16,
         surfaces: &Surfaces16,
-        found: u16,
-        draws: &F32x16,
+        (found, draws): (u16, &F32x16),
+        reach: &impl Reach<'w>,
     ) {
         for lane in lanes_in(found) {
             self.distance[lane] += surfaces.t[lane];
@@ -161,7 +161,7 @@ impl Packet {
             if delta {
                 continue;
             }
-            let share = match bsdf.split_sharp_lobes() {
+            let share = match reach.split(&bsdf) {
                 Some((_, sharp)) => sharp.eval(wo, wi) / bsdf.eval(wo, wi).max(Rgb::splat(f32::MIN_POSITIVE)),
                 None => Rgb::ZERO,
             };

@@ -14,11 +14,12 @@ use super::source::Candidate;
 use super::splat::Splat;
 use super::store::RecordStore;
 use super::targets::Targets;
-use crate::eye::{PointGeometry, PointSurface, ShadingPoints};
+use crate::eye::{DrawnLight, PointGeometry, PointSurface, ShadingPoints};
 use crate::gradient::Incidence;
 use crate::hsh::{Accumulator, Caching, Kernel, MaterialSeries, Radiance};
 use crate::material::Bsdf;
 use crate::math::{Frame, Rgb};
+use crate::scene::MaterialId;
 use crate::vpl::{DirectIndirect, Origin};
 use crate::world::World;
 use glam::Vec3;
@@ -88,6 +89,14 @@ impl SeriesGatherer {
 /// Lobes of a scene's materials as series.
 pub struct Glossy {
     surfaces: MaterialSeries,
+}
+
+/// Direct light to be drawn, if it is: chains follow the lobes that neither irradiance nor series can light.
+pub fn drawn_light(world: &World, settings: &CacheSettings) -> Option<DrawnLight> {
+    let surfaces = MaterialSeries::new(&world.scene, &world.materials, &settings.series);
+    let followed = |material| surfaces.caching(MaterialId(material)) == Caching::PerSample;
+    let materials = world.scene.materials.len() as u32;
+    settings.draws_direct_light().then(|| DrawnLight { followed: (0..materials).map(followed).collect() })
 }
 
 impl Glossy {

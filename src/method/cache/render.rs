@@ -12,7 +12,7 @@ use crate::method::{Move, Output, Prepared, Renderer, Sampled, counts};
 use crate::paths::Look;
 use crate::progress::Control;
 use crate::radiance_cache::fill::CacheFrame;
-use crate::radiance_cache::series::Glossy;
+use crate::radiance_cache::series::{Glossy, drawn_light};
 use crate::radiance_cache::source::LightcutSource;
 use crate::radiance_cache::store::Records;
 use crate::radiance_cache::targets::Targets;
@@ -70,7 +70,7 @@ impl Renderer for Settings {
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
         let wanted = (self.light, self.family);
-        let drawn = self.cache.draws_direct_light();
+        let drawn = drawn_light(world, &self.cache);
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = lights.context(world, self.compensation);
@@ -83,8 +83,9 @@ impl Renderer for Settings {
         counts::cuts(&mut stats, "Records", &frame.cuts);
 
         let mut picture = Picture::new(&samples, self.inspect);
-        let tasks =
-            stats.time(Stage::Splat, || resolve(&frame.interpolate(&records), &samples, drawn, &mut picture));
+        let tasks = stats.time(Stage::Splat, || {
+            resolve(&frame.interpolate(&records), &samples, self.cache.draws_direct_light(), &mut picture)
+        });
         control.begin(Stage::Render, tasks.len() as u64);
         let counts = stats.time(Stage::Render, || {
             picture.shade(&context, &samples, &tasks, self.cache.patches, &self.shading(), control)

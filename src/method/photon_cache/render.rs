@@ -17,7 +17,7 @@ use crate::photon::strata::Strata;
 use crate::photon::{IrradianceMap, PhotonMap};
 use crate::progress::Control;
 use crate::radiance_cache::fill::CacheFrame;
-use crate::radiance_cache::series::Glossy;
+use crate::radiance_cache::series::{Glossy, drawn_light};
 use crate::radiance_cache::source::LightcutSource;
 use crate::radiance_cache::store::Records;
 use crate::radiance_cache::targets::Targets;
@@ -85,7 +85,7 @@ impl Renderer for Settings {
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
         let wanted = (self.light, self.family);
-        let drawn = self.cache.draws_direct_light();
+        let drawn = drawn_light(world, &self.cache);
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = lights.context(world, true);
@@ -106,7 +106,9 @@ impl Renderer for Settings {
 
         let mut picture = Picture::new(&samples, self.inspect);
         let tasks = stats.time(Stage::Splat, || match &frame {
-            Some(frame) => resolve(&frame.interpolate(&records), &samples, drawn, &mut picture),
+            Some(frame) => {
+                resolve(&frame.interpolate(&records), &samples, self.cache.draws_direct_light(), &mut picture)
+            }
             None => (0..samples.len() as u32).map(ShadingTask::all).collect(),
         });
         let direct: Vec<ShadingTask> = tasks

@@ -48,7 +48,7 @@ impl Settings {
         view: &View,
         control: &Control,
     ) -> Prepared<'w> {
-        Prepared::new(world, lights, view, (self.sampling(), false), (self.light, self.family), control)
+        Prepared::new(world, lights, view, (self.sampling(), None), (self.light, self.family), control)
     }
 
     /// Settings of the shading stage.
