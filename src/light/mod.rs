@@ -22,9 +22,16 @@ use crate::math::{F32x16, LANES, Rgb, U32x16, luminance, mask_of};
 use crate::scene::{DeltaLight, Scene};
 use glam::Vec3;
 use std::f32::consts::PI;
+use tree::EmitterBounds;
 
 /// Mark of a mesh that is no light in [`Emitters::light_of_mesh`].
 const NO_LIGHT: u32 = u32::MAX;
+
+/// Ratio of radius to distance below which an emitter looks small.
+const SMALL: f32 = 0.3;
+
+/// Maximum number of area lights of which that is tested.
+const MAX_TESTED: usize = 32;
 
 /// All emitters of a scene. Emitter indices count area lights, then delta lights, then the environment.
 #[derive(Clone, Debug)]
@@ -36,6 +43,8 @@ pub struct Emitters {
     /// The environment; `None` if black.
     pub environment: Option<EnvironmentLight>,
     light_of_mesh: Vec<u32>,
+    /// Spheres around the emitting meshes: centre and squared radius.
+    spheres: Vec<(Vec3, f32)>,
     selection: select::Selection,
 }
 
@@ -68,7 +77,12 @@ impl Emitters {
         let environment = scene.environment.as_ref().and_then(EnvironmentLight::new);
         let deltas = scene.lights.clone();
         let selection = select::Selection::new(&areas, &deltas, environment.as_ref(), diagonal);
-        Emitters { areas, deltas, environment, light_of_mesh, selection }
+        let sphere = |light: &AreaLight| {
+            let EmitterBounds { low, high, .. } = EmitterBounds::of_area(light);
+            (0.5 * (low + high), 0.25 * (high - low).length_squared())
+        };
+        let spheres = areas.iter().map(sphere).collect();
+        Emitters { spheres, areas, deltas, environment, light_of_mesh, selection }
     }
 
     /// True if a mesh is a light.
@@ -81,6 +95,23 @@ impl Emitters {
     #[inline]
     pub fn are_hittable(&self) -> bool {
         !self.areas.is_empty() || self.environment.is_some()
+    }
+
+    /// Lanes from which all emitters that a ray can meet look so small that directions drawn from a diffuse surface
+    /// hardly ever find them.
+    #[inline]
+    pub fn look_small(&self, at: Receivers16) -> u16 {
+        if self.environment.is_some() || self.areas.len() > MAX_TESTED {
+            return 0;
+        }
+        let mut small = [1; LANES];
+        for (centre, radius_sq) in &self.spheres {
+            for i in 0..LANES {
+                let dist_sq = centre.distance_squared(at.position.get(i));
+                small[i] &= u32::from(*radius_sq < SMALL * SMALL * dist_sq);
+            }
+        }
+        mask_of(&small)
     }
 
     /// Densities with which [`Emitters::sample_direct`] at `at` draws points of the meshes `mesh` at

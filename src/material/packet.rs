@@ -57,6 +57,12 @@ impl<'m> Bsdfs16<'m> {
         Bsdfs16 { lanes, wo, base, side, layered, smooth }
     }
 
+    /// Returns the lanes that are Lambertian and nothing else.
+    #[inline]
+    pub fn lambertian(&self) -> u16 {
+        !self.layered
+    }
+
     /// Returns the lanes that scatter into more than isolated directions.
     #[inline]
     pub fn smooth(&self) -> u16 {

@@ -77,9 +77,16 @@ impl Packet {
         }
         let bsdfs = world.bsdfs(surfaces, wo);
         let choices = self.samplers.point(pair + 2);
+        // Diffuse surfaces that paths end at, and from which emitters look small, have light samples alone.
+        let alone = if R::ENDS {
+            let at = Receivers16 { position: &surfaces.position, normal: &self.normal };
+            bsdfs.lambertian() & world.emitters.look_small(at)
+        } else {
+            0
+        };
         if bsdfs.smooth() & found != 0 {
             let numbers = (&choices.x, &self.samplers.point(pair));
-            self.light(world, surfaces, &bsdfs, numbers, bsdfs.smooth() & found, arrives);
+            self.light(world, surfaces, &bsdfs, numbers, (bsdfs.smooth() & found, alone), arrives);
         }
         let samples = bsdfs.sample(&choices.y, &self.samplers.point(pair + 1), found);
         let roulette = if depth >= ROULETTE_DEPTH { self.samplers.number(pair + 3) } else { [0.0; LANES] };
@@ -102,6 +109,7 @@ impl Packet {
         if R::ENDS {
             let draws = self.samplers.point(pair + 3).y;
             self.follow(&bsdfs, &samples, surfaces, (found, &draws), reach);
+            found &= !alone;
             if !world.emitters.are_hittable() {
                 found &= self.followed();
             }
@@ -172,7 +180,8 @@ impl Packet {
         }
     }
 
-    /// Samples light in the lanes of `wanted`: which emitter, and where on it.
+    /// Samples light in the lanes of `wanted`: which emitter, and where on it. Lanes of `alone` have no other way to
+    /// find it.
     #[inline]
     fn light(
         &self,
@@ -180,7 +189,7 @@ impl Packet {
         surfaces: &Surfaces16,
         bsdfs: &Bsdfs16,
         (u_choice, u_light): (&F32x16, &Vec2x16),
-        wanted: u16,
+        (wanted, alone): (u16, u16),
         mut arrives: impl FnMut(&Ray, Rgb, u32),
     ) {
         let at = Receivers16 { position: &surfaces.position, normal: &self.normal };
@@ -193,7 +202,8 @@ impl Packet {
         let (value, pdf) = bsdfs.eval_pdf(&wi, wanted);
         let (mut radiance, mut segments, mut scattered) = (Vec3x16::default(), Rays16::default(), [0; LANES]);
         for i in 0..LANES {
-            let weight = if lights.delta[i] != 0 { 1.0 } else { power_heuristic(lights.pdf[i], pdf[i]) };
+            let only = (lights.delta[i] != 0) | ((alone >> i) & 1 != 0);
+            let weight = if only { 1.0 } else { power_heuristic(lights.pdf[i], pdf[i]) };
             let value = value.get(i);
             let factor = wi.z[i].abs() * weight / lights.pdf[i];
             radiance.set(i, self.throughput.get(i) * value * lights.radiance.get(i) * factor);

@@ -17,7 +17,7 @@ mod node;
 use super::{AreaLight, Receivers16};
 use crate::math::{F32x16, LANES};
 use crate::scene::DeltaLight;
-use bounds::EmitterBounds;
+pub use bounds::EmitterBounds;
 use branch::Branch;
 use build::{BinaryNode, Content, build};
 use glam::Vec3;
