@@ -205,7 +205,7 @@ mod tests {
         let told = |key: &str| all.iter().find(|setting| setting.spec.key == key).unwrap().default();
         assert_eq!(
             (told("spp"), told("least_cell")),
-            ("4, 64 for path".to_owned(), "256, 32 for photon-cache".to_owned())
+            ("4, 16 for cache, 64 for path".to_owned(), "256, 32 for photon-cache".to_owned())
         );
     }
 

@@ -91,7 +91,8 @@ struct Branch {
 }
 
 /// Follows `ray` and calls `visit` for the end of every edge; returns the radiance emitted into the ray by surfaces
-/// and the environment, directly or along specular chains of at most `max_depth` edges. Without sharp lobes, it is not all.
+/// and the environment, directly or along specular chains of at most `max_depth` edges; not all of it if chains do
+/// not follow sharp lobes.
 pub fn trace<'w>(
     world: &'w World,
     ray: Ray,

@@ -2,8 +2,9 @@
 //!
 //! Paper: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapters 9 and 10.
 //!
-//! Where a path ends at the first surface that scatters by lobes which a chain does not follow ([`Reach`]), it has one more
-//! edge from there, which finds emitters only: the counterpart of the light samples in multiple importance sampling.
+//! Where a path ends at the first surface that scatters by lobes which a chain does not follow ([`Reach`]), it has
+//! one more edge from there, which finds emitters only: the counterpart of the light samples in multiple importance
+//! sampling.
 //!
 //! Deviations: a path survives Russian roulette with the square root of its throughput. The throughput
 //! itself, from the second bounce on, ends paths between dark walls so often that the few that then hit the

@@ -83,7 +83,7 @@ fn qualities_are_settings_from_rough_to_fine_and_typed_ones_are_held() {
     let names = ["draft", "preview", "final", "reference"];
     let found = names.map(|name| settings(&["--quality", name, "--vpls", "500"]));
     for (method, settings) in &found {
-        assert_eq!((method, &settings["vpls"]), (&"reconstruction".into(), &500.into()));
+        assert_eq!((method, &settings["vpls"]), (&"cache".into(), &500.into()));
     }
     let of = |key: &str| [0, 1, 2, 3].map(|k| found[k].1[key].as_f64().unwrap());
     assert!(of("epsilon").is_sorted_by(|a, b| a > b), "{:?}", of("epsilon"));

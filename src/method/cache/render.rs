@@ -5,7 +5,7 @@ use crate::eye::EyePass;
 use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
-use crate::method::ladder::CUTS;
+use crate::method::ladder::{CUTS, DRAWN};
 use crate::method::lights::LightStore;
 use crate::method::sampling::method_settings;
 use crate::method::{Move, Output, Prepared, Renderer, Sampled, counts};
@@ -132,6 +132,6 @@ impl Renderer for Settings {
     }
 
     fn ladder(&self) -> &'static [Move] {
-        &CUTS
+        if self.cache.draws_direct_light() { &DRAWN } else { &CUTS }
     }
 }
