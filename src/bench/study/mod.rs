@@ -7,6 +7,7 @@
 //!
 //! Units: processor seconds, over all threads, unless stated to be elapsed.
 
+mod equal;
 mod judge;
 mod numbers;
 pub(super) mod page;
@@ -21,6 +22,7 @@ pub use reference::{Noise, Reference, ReferenceSettings};
 pub use run::Run;
 pub use subject::Subject;
 
+pub(super) use equal::{Speed, speed};
 pub(super) use numbers::{figure, optional, seconds};
 pub(super) use run::Candidate;
 pub(super) use store::program;

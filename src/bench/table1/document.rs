@@ -3,11 +3,11 @@
 use super::entries::{Family, OPPONENTS};
 use super::paper::{CLAIMS, SAVED_BY_ANISOTROPY};
 use super::row::HEADS;
-use super::{SceneTable, Speed, Table1};
+use super::{SceneTable, Table1};
 use crate::bench::document::{Document, Grid};
 use crate::bench::study::page::{figure, heat, shown, worst, zoom};
 use crate::bench::study::scatter::{Series, scatter};
-use crate::bench::study::{self, optional};
+use crate::bench::study::{self, Speed, optional};
 use crate::film::metrics::flip_map;
 
 /// Number of parts of the picture that are shown pixel by pixel.

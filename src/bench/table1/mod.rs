@@ -20,16 +20,14 @@
 
 mod document;
 mod entries;
-mod equal;
 mod paper;
 mod row;
 
-use super::study::{Errors, Noise, Reference, Results, Run, Study, StudyError};
+use super::study::{Errors, Noise, Reference, Results, Run, Study, StudyError, speed};
 use super::{Benchmark, Kind};
 use crate::film::Image;
 use crate::paths::Look;
 use entries::{Entry, Family, OPPONENTS, entries, look};
-use equal::{Speed, speed};
 use row::{Row, Versus};
 use serde::Serialize;
 use std::path::PathBuf;

@@ -1,8 +1,7 @@
 //! Figures of a method on a scene.
 
-use super::Speed;
 use super::entries::{Entry, Family, OPPONENTS};
-use crate::bench::study::{Errors, Run, figure, optional, seconds};
+use crate::bench::study::{Errors, Run, Speed, figure, optional, seconds};
 use crate::stats::Stage;
 use serde::Serialize;
 use serde_json::Value;
