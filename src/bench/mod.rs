@@ -11,6 +11,7 @@ mod document;
 pub mod export;
 mod hsh;
 mod measure;
+mod race;
 mod report;
 mod setting;
 mod shadow;
@@ -57,9 +58,10 @@ pub enum Kind {
 }
 
 /// All benchmarks.
-pub const REGISTRY: [Benchmark; 7] = [
+pub const REGISTRY: [Benchmark; 8] = [
     table1::BENCHMARK,
     trade::BENCHMARK,
+    race::BENCHMARK,
     shadow::BENCHMARK,
     bounds::BENCHMARK,
     trees::BENCHMARK,

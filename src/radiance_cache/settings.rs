@@ -2,7 +2,7 @@
 
 use crate::hsh::SeriesSettings;
 use crate::lightcut::{CutSettings, MIN_SHARED};
-use crate::setting::{DOWN, PATCHES, SHARE, UP, choices, settings};
+use crate::setting::{DOWN, JudgedBy, PATCHES, SHARE, UP, choices, settings};
 use crate::shadow::ShadowSettings;
 use crate::vpl::DirectIndirect;
 
@@ -49,7 +49,7 @@ settings! {
     /// Settings of the cache.
     pub struct CacheSettings in "Records" {
         /// Source of direct light.
-        direct: DirectBy = DirectBy::Drawn => [.values(&["drawn", "records", "cuts"])];
+        direct: DirectBy = DirectBy::Drawn => [.values(&["drawn", "records", "cuts"]).judged_by(JudgedBy::Flip)];
         /// Source of indirect light.
         indirect: FoundBy = FoundBy::Records => [.values(&["records", "cuts"])];
         /// Largest error bound of a cluster in a record's cut, relative to its luminance.

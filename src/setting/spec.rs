@@ -46,12 +46,12 @@ pub struct Levels {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JudgedBy {
-    /// Error against lightcuts of a much smaller error on the same virtual lights: the errors of the lights
-    /// and their clamping would hide all else.
+    /// Error against cuts of a much smaller error on the same virtual lights, by the same samples: the errors of the
+    /// lights and their clamping would hide all else.
     Limit,
     /// Error of light: the setting changes the virtual lights or their clamping.
     Light,
-    /// FLIP of whole pictures: the setting changes the eye samples.
+    /// FLIP of whole pictures: the setting changes the samples.
     Flip,
 }
 

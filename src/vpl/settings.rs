@@ -11,7 +11,9 @@ settings! {
         /// Virtual point lights on area lights and directions of the environment, about.
         ///
         /// Shared out among all area lights by power; each gets at least 256.
-        direct: u32 = 4096 => [.named("direct_vpls").at_least(1.0).scaled(&FEWER).judged_by(JudgedBy::Light)];
+        direct: u32 = 4096 => [
+            .named("direct_vpls").at_least(1.0).scaled(&FEWER).judged_by(JudgedBy::Light).with(&[("direct", "cuts")])
+        ];
         /// Virtual point lights where light is reflected, about; 0: direct light only.
         indirect: u32 = 300_000 => [.named("vpls").at_least(0.0).scaled(&FEWER).judged_by(JudgedBy::Light)];
         /// Seed of the VPLs.

@@ -33,15 +33,23 @@ fn the_table_covers_all_methods_and_renders_nothing_twice() {
         assert_eq!(scene["reference"]["spp"], 8);
         assert!(scene["reference"]["standard_error"].as_f64().unwrap() > 0.0);
         let rows = scene["rows"].as_array().unwrap();
-        for label in ["reconstruction", "cache, anisotropic", "cache, isotropic", "photon-cache", "lightcuts"]
-        {
+        assert_eq!(rows[0]["label"], "default");
+        let labels =
+            ["reconstruction", "cache, anisotropic", "cache, isotropic", "photon-cache", "lightcuts"];
+        for label in [&["default"], &labels[..]].concat() {
             let row = rows.iter().find(|row| row["label"] == label).unwrap();
             assert!(row["total"].as_f64().unwrap() > 0.0 && row["main"] == true, "{row}");
             // Few paths and few samples, but the same scene: of the same brightness.
             let brightness = row["against_reference"]["brightness"].as_f64().unwrap();
             assert!((0.7..1.3).contains(&brightness), "{row}");
             let flip = row["against_lightcuts"]["flip"].as_f64();
-            assert!(flip.is_none_or(|flip| flip < 0.1) && flip.is_none() == (label == "lightcuts"), "{row}");
+            assert_eq!(flip.is_none(), ["default", "lightcuts"].contains(&label), "{row}");
+            assert!(flip.is_none_or(|flip| flip < 0.1), "{row}");
+            // An estimate of the whole pixel has no aliasing that an error of light could leave out.
+            assert_eq!(row["light"] == row["against_reference"], label == "default", "{row}");
+            // Without a denoiser there are no paths to compare with.
+            let against_paths = &row["versus"][2];
+            assert!(against_paths["at_equal_flip"].is_object() || against_paths.is_null(), "{row}");
         }
         // Includes the two references.
         pictures += rows.len() + 2;
@@ -71,7 +79,8 @@ fn the_table_covers_all_methods_and_renders_nothing_twice() {
 fn the_trade_sweeps_knobs_and_finds_the_front() {
     let sandbox = Sandbox::new();
     let knobs = ["--knob", "epsilon", "--knob", "spp", "--knob", "build quality"];
-    let base = [&["bench", "trade", "room.xml", "-o", "study"][..], &knobs].concat();
+    // The room has no indirect light.
+    let base = [&["bench", "trade", "cornell", "--scenes", SCENES, "-o", "study"][..], &knobs].concat();
     let size = ["--resolution", "48x32", "--reference-spp", "16", "--samples", "4", "--threads", "2"];
     let run = || sandbox.run(&[&base[..], &size].concat()).expect(0);
     let first = run();
@@ -89,7 +98,9 @@ fn the_trade_sweeps_knobs_and_finds_the_front() {
         for level in levels {
             let point = &points[level[1].as_u64().unwrap() as usize];
             assert!(point["label"].as_str().unwrap().ends_with(level[0].as_str().unwrap()), "{point}");
-            assert_eq!(point["light"].is_null(), sweep["knob"] == "--spp", "{point}");
+            let other_samples = sweep["knob"] == "--spp" && level[0] != "16";
+            assert_eq!(point["limit"].is_null(), other_samples, "{point}");
+            assert!(point["light"].is_number() && point["whole_pixels"] == true, "{point}");
         }
     }
     let of_builds: Vec<&Value> =
@@ -100,7 +111,7 @@ fn the_trade_sweeps_knobs_and_finds_the_front() {
     );
     let sorted = |sort: &str| points.iter().filter(|point| point["sort"] == sort).count();
     let sorts = ["default", "quality", "sample", "other"].map(sorted);
-    assert_eq!(sorts, [1, 4, 4, 2]);
+    assert_eq!(sorts, [1, 4, 4, 3]);
     let figures = |point: &Value| [point["seconds"].as_f64().unwrap(), point["flip"].as_f64().unwrap()];
     let front: Vec<&Value> =
         points.iter().filter(|point| point["fronts"].as_array().unwrap().contains(&"flip".into())).collect();
@@ -115,6 +126,39 @@ fn the_trade_sweeps_knobs_and_finds_the_front() {
     let again = run();
     assert_eq!((rendered(&again.stderr), again.stdout), (vec![], first.stdout));
     assert!(sandbox.run(&[&base[..], &["--knob", "luck"]].concat()).expect(2).stderr.contains("patch"));
+}
+
+#[test]
+fn the_race_tells_times_within_those_of_its_pictures() {
+    let sandbox = Sandbox::new();
+    let base = ["bench", "race", "room.xml", "-o", "study", "--resolution", "48x32", "--threads", "2"];
+    let run = || sandbox.run(&[&base[..], &["--reference-spp", "16"]].concat()).expect(0);
+    let first = run();
+    let race = json(&sandbox.path("study/race.json"));
+    let scene = &race["scenes"][0];
+    let points = scene["points"].as_array().unwrap();
+    let denoises = points.iter().any(|point| point["is_path"] == true);
+    let times = scene["times"].as_array().unwrap();
+    assert_eq!(times.len(), 5);
+    for times in times {
+        for (method, is_path) in [("default", false), ("path", true)] {
+            let of_method = points.iter().filter(|point| point["is_path"] == is_path);
+            let seconds: Vec<f64> = of_method.map(|point| point["seconds"].as_f64().unwrap()).collect();
+            assert_eq!(times[method].is_null(), is_path && !denoises, "{times}");
+            if let Some(time) = times[method]["value"].as_f64() {
+                let least = seconds.iter().copied().fold(f64::INFINITY, f64::min);
+                let most = seconds.iter().copied().fold(0.0, f64::max);
+                assert!((0.999 * least..=1.001 * most).contains(&time), "{times} {seconds:?}");
+            }
+        }
+    }
+    assert!(
+        first.stdout.contains("| PSNR 35 | PSNR 40 | PSNR 45 | FLIP 0.08 | FLIP 0.05 |"),
+        "{}",
+        first.stdout
+    );
+    let again = run();
+    assert_eq!((rendered(&again.stderr), again.stdout), (vec![], first.stdout));
 }
 
 #[test]

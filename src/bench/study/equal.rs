@@ -1,74 +1,100 @@
-//! Speed relative to another method at equal error, as far as the other's curve reaches.
+//! Time that a method takes to an error, as far as its curve of measured pictures reaches.
 
 use serde::Serialize;
 use std::fmt;
 
-/// Ratio of the other's time to this one's.
+/// A time, or a ratio of two, as far as it is known.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(tag = "is", content = "factor", rename_all = "snake_case")]
-pub enum Speed {
-    /// Interpolated between two of the other's pictures.
+#[serde(tag = "is", content = "value", rename_all = "snake_case")]
+pub enum Bounded {
+    /// Interpolated between two pictures.
     About(f64),
-    /// Lower bound: no picture of the other's is as good; taken against its best.
+    /// Lower bound: no picture is as good; that of the best.
     AtLeast(f64),
-    /// Upper bound: all pictures of the other's are better; taken against its fastest.
+    /// Upper bound: all pictures are better; that of the fastest.
     AtMost(f64),
 }
 
-impl fmt::Display for Speed {
+impl fmt::Display for Bounded {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Speed::About(x) => write!(f, "{x:.2}"),
-            Speed::AtLeast(x) => write!(f, "> {x:.2}"),
-            Speed::AtMost(x) => write!(f, "< {x:.2}"),
+            Bounded::About(x) => write!(f, "{x:.2}"),
+            Bounded::AtLeast(x) => write!(f, "> {x:.2}"),
+            Bounded::AtMost(x) => write!(f, "< {x:.2}"),
         }
     }
 }
 
-/// Returns the speed of a picture of a time and error against the times and errors of another method, all
-/// positive. Settings of the other that are beaten in both by another of its settings are ignored; times are
-/// interpolated in logarithms.
-pub fn speed((time, error): (f64, f64), others: &[(f64, f64)]) -> Option<Speed> {
-    let mut sorted: Vec<(f64, f64)> = others.iter().copied().filter(|o| o.0 > 0.0 && o.1 > 0.0).collect();
+/// Formats a value; a dash for `None`.
+pub fn bounded(value: Option<Bounded>) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| value.to_string())
+}
+
+impl Bounded {
+    /// Returns the ratio of two; `None` if their bounds do not bound it.
+    pub fn over(self, other: Bounded) -> Option<Bounded> {
+        use Bounded::{About, AtLeast, AtMost};
+        match (self, other) {
+            (About(a), About(b)) => Some(About(a / b)),
+            (About(a) | AtLeast(a), About(b) | AtMost(b)) => Some(AtLeast(a / b)),
+            (About(a) | AtMost(a), About(b) | AtLeast(b)) => Some(AtMost(a / b)),
+            _ => None,
+        }
+    }
+}
+
+/// Returns the time to `error` by the times and errors of a method's pictures, all positive. Pictures that are beaten
+/// in both by another are ignored; times are interpolated in logarithms.
+pub fn time_to(error: f64, pictures: &[(f64, f64)]) -> Option<Bounded> {
+    let mut sorted: Vec<(f64, f64)> = pictures.iter().copied().filter(|p| p.0 > 0.0 && p.1 > 0.0).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut front: Vec<(f64, f64)> = Vec::new();
-    for other in sorted {
-        if front.last().is_none_or(|best| other.1 < best.1) {
-            front.push(other);
+    for picture in sorted {
+        if front.last().is_none_or(|best| picture.1 < best.1) {
+            front.push(picture);
         }
     }
     let (fastest, best) = (*front.first()?, *front.last()?);
-    if !(time > 0.0 && error > 0.0) {
+    if error.is_nan() || error <= 0.0 {
         return None;
     }
     if error < best.1 {
-        return Some(Speed::AtLeast(best.0 / time));
+        return Some(Bounded::AtLeast(best.0));
     }
     if error >= fastest.1 {
-        let factor = fastest.0 / time;
-        return Some(if error > fastest.1 { Speed::AtMost(factor) } else { Speed::About(factor) });
+        let time = fastest.0;
+        return Some(if error > fastest.1 { Bounded::AtMost(time) } else { Bounded::About(time) });
     }
     let pair = front.windows(2).find(|pair| pair[1].1 <= error)?;
     let share = (pair[0].1 / error).ln() / (pair[0].1 / pair[1].1).ln();
-    let other = pair[0].0.ln() + share * (pair[1].0 / pair[0].0).ln();
-    Some(Speed::About(other.exp() / time))
+    let log_time = pair[0].0.ln() + share * (pair[1].0 / pair[0].0).ln();
+    Some(Bounded::About(log_time.exp()))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::Bounded::{About, AtLeast, AtMost};
     use super::*;
 
     #[test]
-    fn speeds_are_interpolated_within_the_front_and_bounds_beyond_it() {
+    fn times_are_interpolated_within_the_front_and_bounds_beyond_it() {
         // Error halves as time doubles; the third is beaten by the second.
-        let others = [(1.0, 0.4), (4.0, 0.1), (5.0, 0.2)];
-        let at = |time, error| speed((time, error), &others);
-        let Some(Speed::About(x)) = at(1.0, 0.2) else { panic!() };
+        let pictures = [(1.0, 0.4), (4.0, 0.1), (5.0, 0.2)];
+        let at = |error| time_to(error, &pictures);
+        let Some(About(x)) = at(0.2) else { panic!() };
         assert!((x - 2.0).abs() < 1e-12, "{x}");
-        assert_eq!(at(2.0, 0.05), Some(Speed::AtLeast(2.0)));
-        assert_eq!(at(0.5, 0.8), Some(Speed::AtMost(2.0)));
-        assert_eq!(at(2.0, 0.4), Some(Speed::About(0.5)));
-        assert_eq!(at(2.0, 0.1), Some(Speed::About(2.0)));
-        assert_eq!((at(0.0, 0.1), speed((1.0, 1.0), &[])), (None, None));
+        assert_eq!([at(0.05), at(0.8)], [Some(AtLeast(4.0)), Some(AtMost(1.0))]);
+        assert_eq!([at(0.4), at(0.1)], [Some(About(1.0)), Some(About(4.0))]);
+        assert_eq!([at(0.0), time_to(1.0, &[])], [None; 2]);
+    }
+
+    #[test]
+    fn ratios_of_bounds_are_bounds_where_those_allow_it() {
+        assert_eq!(About(6.0).over(About(2.0)), Some(About(3.0)));
+        assert_eq!(AtLeast(6.0).over(About(2.0)), Some(AtLeast(3.0)));
+        assert_eq!(AtLeast(6.0).over(AtMost(2.0)), Some(AtLeast(3.0)));
+        assert_eq!(About(6.0).over(AtLeast(2.0)), Some(AtMost(3.0)));
+        assert_eq!(AtMost(6.0).over(About(2.0)), Some(AtMost(3.0)));
+        assert_eq!([AtLeast(6.0).over(AtLeast(2.0)), AtMost(6.0).over(AtMost(2.0))], [None; 2]);
     }
 }

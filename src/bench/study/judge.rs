@@ -12,7 +12,8 @@ const WORST: f64 = 0.001;
 /// Error measures.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Errors {
-    /// PSNR of the displayed pictures, dB; `None` if they are identical.
+    /// PSNR of the displayed pictures, dB; `None` if they are identical. Against a reference, its noise is
+    /// subtracted; `None` if nothing remains.
     pub psnr: Option<f64>,
     /// Relative mean square error without the worst pixel of a thousand: where paths rarely find a lamp, a
     /// few pixels of the reference are wrong by more than all others together. Against a reference, its noise
@@ -32,8 +33,7 @@ impl Errors {
         Ok(Errors { psnr: found.psnr, rel_mse: found.rel_mse_trimmed, flip: found.flip, brightness })
     }
 
-    /// Returns the errors against the truth that a reference estimates. PSNR and FLIP are against the
-    /// reference as it is.
+    /// Returns the errors against the truth that a reference estimates. FLIP is against the reference as it is.
     pub fn against(test: &Image, reference: &Reference) -> Result<Errors, StudyError> {
         let errors = Errors::between(test, &reference.mean)?;
         let floor = 0.01 * mean(&reference.mean).powi(2);
@@ -49,13 +49,31 @@ impl Errors {
         errors_of_pixels.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
         let counted = ((1.0 - WORST) * errors_of_pixels.len() as f64) as usize;
         let sum: f64 = errors_of_pixels[..counted].iter().sum();
-        Ok(Errors { rel_mse: sum / counted.max(1) as f64, ..errors })
+        let psnr = without_noise(errors.psnr, reference.noise.psnr);
+        Ok(Errors { psnr, rel_mse: sum / counted.max(1) as f64, ..errors })
+    }
+
+    /// Returns the root mean square error of the displayed pictures; 0 where there is no PSNR.
+    pub fn displayed_rmse(&self) -> f64 {
+        self.psnr.map_or(0.0, rmse_of_psnr)
     }
 
     /// Returns the root of the relative mean square error; 0 where that is negative.
     pub fn rel_rmse(&self) -> f64 {
         self.rel_mse.max(0.0).sqrt()
     }
+}
+
+/// Returns the root mean square error that a PSNR stands for, relative to the peak.
+pub fn rmse_of_psnr(psnr: f64) -> f64 {
+    10f64.powf(-0.05 * psnr)
+}
+
+/// Returns the PSNR against the truth by that against a reference, whose own noise has a PSNR too.
+fn without_noise(psnr: Option<f64>, noise: Option<f64>) -> Option<f64> {
+    let square = |psnr: Option<f64>| psnr.map_or(0.0, |psnr| rmse_of_psnr(psnr).powi(2));
+    let mse = square(psnr) - square(noise);
+    (mse > 0.0).then(|| -10.0 * mse.log10())
 }
 
 fn mean(image: &Image) -> f64 {
@@ -67,6 +85,7 @@ fn mean(image: &Image) -> f64 {
 mod tests {
     use super::*;
     use crate::bench::study::reference::Reference;
+    use crate::film::metrics::psnr;
     use crate::math::Rgb;
     use crate::sampling::hash;
 
@@ -88,5 +107,10 @@ mod tests {
         // The square of 0.1; leaving out the worst pixels takes a hundredth; with the reference's noise it
         // would be .0103.
         assert!((0.0097..0.0101).contains(&errors.rel_mse), "{errors:?}");
+        // With its noise, PSNR would be lower by .17 dB.
+        let mut truth = Image::new(128, 128);
+        truth.pixels.fill(Rgb::splat(1.0));
+        let expected = psnr(&test, &truth, reference.exposure).unwrap();
+        assert!((errors.psnr.unwrap() - expected).abs() < 0.05, "{errors:?} {expected}");
     }
 }

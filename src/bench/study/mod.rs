@@ -7,6 +7,7 @@
 //!
 //! Units: processor seconds, over all threads, unless stated to be elapsed.
 
+mod candidate;
 mod equal;
 mod judge;
 mod numbers;
@@ -17,14 +18,14 @@ pub(super) mod scatter;
 mod store;
 mod subject;
 
-pub use judge::Errors;
+pub use judge::{Errors, rmse_of_psnr};
 pub use reference::{Noise, Reference, ReferenceSettings};
 pub use run::Run;
 pub use subject::Subject;
 
-pub(super) use equal::{Speed, speed};
+pub(super) use candidate::{Candidate, eye_samples, qualities};
+pub(super) use equal::{Bounded, bounded, time_to};
 pub(super) use numbers::{figure, optional, seconds};
-pub(super) use run::Candidate;
 pub(super) use store::program;
 pub use subject::file_of;
 
@@ -33,6 +34,7 @@ use crate::denoise::{DenoiseError, Denoiser};
 use crate::film::ImageError;
 use crate::progress::Control;
 use crate::session::OpenError;
+use candidate::DENOISED_SPP;
 use std::path::{Path, PathBuf};
 use store::Store;
 
@@ -45,6 +47,8 @@ pub struct Study<'a> {
     /// Callback for progress messages.
     pub say: &'a (dyn Fn(&str) + Sync),
     store: Store,
+    /// Name of the denoiser, if there is one.
+    denoiser: Option<String>,
 }
 
 /// A study's results.
@@ -120,7 +124,14 @@ impl<'a> Study<'a> {
         say: &'a (dyn Fn(&str) + Sync),
     ) -> Result<Study<'a>, StudyError> {
         let store = Store::open(&plan.folder)?;
-        Ok(Study { plan, control, say, store })
+        let denoiser = match Denoiser::load() {
+            Ok(denoiser) => Some(denoiser.name()),
+            Err(error) => {
+                say(&format!("pictures keep their noise, denoised paths are left out: {error}"));
+                None
+            }
+        };
+        Ok(Study { plan, control, say, store, denoiser })
     }
 
     /// Loads a scene.
@@ -128,13 +139,15 @@ impl<'a> Study<'a> {
         Subject::load(path, self)
     }
 
-    /// True if pictures can be denoised; if not, says that those are left out and why.
+    /// True if pictures can be denoised.
     pub fn denoises(&self) -> bool {
-        let loaded = Denoiser::load();
-        if let Err(error) = &loaded {
-            (self.say)(&format!("denoised pictures are left out: {error}"));
-        }
-        loaded.is_ok()
+        self.denoiser.is_some()
+    }
+
+    /// Returns denoised paths of several numbers of samples a pixel; none without a denoiser.
+    pub fn denoised_paths(&self) -> impl Iterator<Item = Candidate> {
+        let spps = DENOISED_SPP.into_iter().filter(|_| self.denoises());
+        spps.map(|spp| Candidate::denoised_path(format!("path --denoise, {spp} spp"), spp))
     }
 
     /// Returns the conditions that the figures depend on, by name.
@@ -146,6 +159,7 @@ impl<'a> Study<'a> {
             ("pixels".to_owned(), format!("{width}x{height}")),
             ("threads".to_owned(), self.plan.threads.to_string()),
             ("runs a picture".to_owned(), self.plan.repeats.to_string()),
+            ("denoiser".to_owned(), self.denoiser.clone().unwrap_or("none".to_owned())),
         ]
     }
 }

@@ -2,38 +2,14 @@
 
 use super::reference::{Reference, reference};
 use super::store::{Kept, program};
-use super::{Study, StudyError, Subject};
+use super::{Candidate, Study, StudyError, Subject};
 use crate::embree::BuildQuality;
 use crate::film::Image;
-use crate::method::{LightStore, Method, path};
+use crate::method::LightStore;
 use crate::paths::Look;
 use crate::session::{Finish, Goal};
 use crate::stats::{Stage, Stats, Stopwatch};
 use serde_json::{Value, json};
-
-/// A method with settings, under a label.
-#[derive(Clone)]
-pub struct Candidate {
-    /// Label of the row or point.
-    pub label: String,
-    /// Method and settings.
-    pub method: Method,
-    /// True if its picture is denoised.
-    pub denoise: bool,
-}
-
-impl Candidate {
-    /// A method under a label.
-    pub fn new(label: impl Into<String>, method: Method) -> Candidate {
-        Candidate { label: label.into(), method, denoise: false }
-    }
-
-    /// The path tracer of a number of samples a pixel, denoised.
-    pub fn denoised_path(label: impl Into<String>, spp: u32) -> Candidate {
-        let method = Method::Path(path::Settings { spp, ..path::Settings::default() });
-        Candidate { denoise: true, ..Candidate::new(label, method) }
-    }
-}
 
 /// A rendered picture with its statistics.
 #[derive(Clone)]
@@ -97,7 +73,7 @@ impl Study<'_> {
             "build": built.map(|quality| format!("{quality:?}")),
             "repeats": self.plan.repeats,
             "method": method.name(),
-            "denoise": candidate.denoise,
+            "denoise": candidate.denoise && self.denoises(),
             // All settings, including those that the command line lacks.
             "settings": format!("{method:?}"),
         });
@@ -121,7 +97,7 @@ impl Study<'_> {
         let mut best: Option<Run> = None;
         for _ in 0..self.plan.repeats.max(1) {
             let Subject { session, view, .. } = subject;
-            let goal = Goal { denoise: Some(candidate.denoise), ..Goal::default() };
+            let goal = Goal { denoise: Some(candidate.denoise && self.denoises()), ..Goal::default() };
             let mut loading = Stats::new();
             let finish = Finish::new(&session.world, view, &goal, self.control, &mut loading);
             let mut output =
@@ -159,7 +135,14 @@ impl Run {
     }
 
     fn sum(&self, stages: &[Stage], clock: &str) -> f64 {
-        stages.iter().filter_map(|stage| self.stats["times"][stage.key()][clock].as_f64()).sum()
+        let times = stages.iter().filter_map(|stage| self.stats["times"][stage.key()][clock].as_f64());
+        // The sum of none would be -0.
+        times.fold(0.0, |sum, time| sum + time)
+    }
+
+    /// True if the picture was denoised.
+    pub fn denoised(&self) -> bool {
+        self.stats["times"][Stage::Denoise.key()].is_object()
     }
 
     /// Returns a counter, if it was counted.

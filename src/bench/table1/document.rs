@@ -7,7 +7,7 @@ use super::{SceneTable, Table1};
 use crate::bench::document::{Document, Grid};
 use crate::bench::study::page::{figure, heat, shown, worst, zoom};
 use crate::bench::study::scatter::{Series, scatter};
-use crate::bench::study::{self, Speed, optional};
+use crate::bench::study::{self, bounded, optional};
 use crate::film::metrics::flip_map;
 
 /// Number of parts of the picture that are shown pixel by pixel.
@@ -17,13 +17,16 @@ const ZOOMS: usize = 3;
 const LEGEND: &str = "Times are processor seconds over all threads. N_c: records; direct %: share of them that hold \
     direct light; anisotropy: long over short radius of footprints, direct / indirect; a: their radius over the distance \
     of what casts light and shadow; cut: clusters; T_light: light pass and trees; T_f: records and cuts of eye samples' \
-    own; T_cache: splatting and adaptation; total: all that, the eye pass and denoising. PSNR and FLIP are against the reference as \
-    it is, relMSE is without its noise and without the worst pixel of a thousand; brightness below 1 is mostly what \
-    clamping takes away. \"To LC\": against lightcuts per pixel on the same eye samples and virtual lights. \"Light\": \
-    against the reference of the eye samples alone, in which only wrong light counts. \"Speed\": time of lightcuts (LC), \
-    photon-cache (PM) or denoised paths over the row's; \"at equal FLIP\" and \"at equal light\": the same for as large a FLIP, or relMSE \
-    of light, interpolated between the other's rows; > and < where none is as good or as bad. Paths take \
-    samples of their own: their error of light holds the aliasing of the few eye samples as well.";
+    own; T_cache: splatting and adaptation; total: all that, the eye pass, in which the default finds direct light, and \
+    denoising. FLIP is against the reference as it is, PSNR and relMSE are without its noise, relMSE also without the \
+    worst pixel of a thousand; brightness below 1 is mostly what clamping takes away. The default and paths are denoised \
+    and estimate the whole pixel; the other rows keep four eye samples a pixel, whose aliasing counts in FLIP, PSNR and \
+    relMSE. \"Light\": where that does not count, against the reference of those eye samples alone; of the default and \
+    paths, against the reference of pixels, so that both have all errors that are not aliasing. \"To LC\": against \
+    lightcuts per pixel on the same eye samples and virtual lights. \"Speed\": time of lightcuts (LC), photon-cache (PM) \
+    or denoised paths over the row's; \"at equal FLIP\", \"PSNR\" and \"light\": the same for as large a FLIP, as \
+    high a PSNR or as large a relMSE of light, interpolated between the other's rows; > and < where none is as good or \
+    as bad.";
 
 /// Returns the paper's claims, then a section a scene.
 pub fn document(table: &Table1) -> Document {
@@ -32,7 +35,7 @@ pub fn document(table: &Table1) -> Document {
     document.text(LEGEND);
     document.heading(2, "Beside the paper");
     document.text(
-        "Ratios of times with the light pass; in brackets at equal FLIP / at equal error of light. The paper's are the \
+        "Ratios of times with the light pass; in brackets at equal FLIP / PSNR / error of light. The paper's are the \
          least and largest over its own scenes.",
     );
     let scenes = table.scenes.iter().map(|scene| scene.scene.clone());
@@ -90,8 +93,8 @@ fn claims(table: &Table1) -> Vec<Vec<String>> {
             let speed = other.total / row.total.max(f64::MIN_POSITIVE);
             match row.versus.iter().flatten().find(|v| v.method == other.label) {
                 Some(v) => {
-                    let text = |speed: Option<Speed>| speed.map_or("-".to_owned(), |s| s.to_string());
-                    format!("{speed:.2} ({} / {})", text(v.at_equal_flip), text(v.at_equal_light))
+                    let equal = [v.at_equal_flip, v.at_equal_psnr, v.at_equal_light].map(bounded);
+                    format!("{speed:.2} ({})", equal.join(" / "))
                 }
                 None => format!("{speed:.2}"),
             }
@@ -115,7 +118,7 @@ fn row(table: &Table1, what: &str, paper: String, ours: impl Fn(&SceneTable) -> 
     [what.to_owned(), paper].into_iter().chain(table.scenes.iter().map(ours)).collect()
 }
 
-/// Returns other methods as curves, the settings of reconstruction cuts and of the cache as points.
+/// Returns other methods as curves, the default, reconstruction cuts and the cache as points.
 fn curves(scene: &SceneTable, error: impl Fn(&super::Row) -> f64) -> Vec<Series> {
     let of = |family| {
         let rows = scene.rows.iter().filter(move |row| row.family == family);

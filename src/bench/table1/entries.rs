@@ -1,14 +1,13 @@
 //! Rows of the table. Settings are the methods' own defaults but for the exceptions stated here.
 
-use crate::bench::study::Candidate;
+use crate::bench::study::{Candidate, Study};
 use crate::method::{Method, cache, lightcuts, photon_cache, reconstruction};
-use crate::paths::Look;
 use crate::radiance_cache::{DirectBy, Footprints, FoundBy};
 
 /// A method's name over several settings, which make a curve of error against time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
-    /// Reconstruction cuts and the radiance cache.
+    /// The default, reconstruction cuts and the radiance cache.
     Own,
     /// Lightcuts per pixel, with cuts shared between neighbours.
     Lightcuts,
@@ -44,42 +43,35 @@ const CURVE: [f32; 4] = [0.5, 2.0, 4.0, 8.0];
 /// Numbers of rays of photon-cache that make its curve, relative to the default.
 const RAYS: [f32; 3] = [0.25, 0.5, 2.0];
 
-/// Samples a pixel of the denoised paths in the table, and of those that make their curve.
+/// Samples a pixel of the denoised paths that are compared, as many as the default has.
 const DENOISED_SPP: u32 = 16;
-const DENOISED_CURVE: [u32; 3] = [1, 4, 64];
 
-/// Returns the positions of the eye samples of all rows.
-pub fn look() -> Look {
-    let reconstruction::Settings { spp, seed, .. } = reconstruction::Settings::default();
-    Look::EyeSamples { spp, seed }
-}
-
-/// Returns all rows. Other methods but paths take the eye samples of the default, lightcuts per pixel its virtual
-/// lights and cuts too.
-pub fn entries() -> Vec<Entry> {
-    let default = reconstruction::Settings::default();
+/// Returns all rows; denoised paths only if the study denoises. Other methods but those and the default take the eye
+/// samples of reconstruction cuts, lightcuts per pixel their virtual lights and cuts too.
+pub fn entries(study: &Study) -> Vec<Entry> {
+    let reconstruction = reconstruction::Settings::default();
     let shaped = |footprints| {
         let mut settings = cache::Settings::default();
         settings.cache.footprints = footprints;
         settings.cache.direct = DirectBy::Records;
-        settings.spp = default.spp;
+        settings.spp = reconstruction.spp;
         settings.cache.indirect = FoundBy::Records;
         Method::Cache(settings)
     };
     let cuts = lightcuts::Settings {
-        spp: default.spp,
-        seed: default.seed,
-        max_depth: default.max_depth,
-        light: default.light,
-        cut: default.cut,
-        family: default.family,
+        spp: reconstruction.spp,
+        seed: reconstruction.seed,
+        max_depth: reconstruction.max_depth,
+        light: reconstruction.light,
+        cut: reconstruction.cut,
+        family: reconstruction.family,
         ..lightcuts::Settings::default()
     };
     let unshared = lightcuts::Settings { share: false, ..cuts };
     let photons = photon_cache::Settings {
-        spp: default.spp,
-        seed: default.seed,
-        max_depth: default.max_depth,
+        spp: reconstruction.spp,
+        seed: reconstruction.seed,
+        max_depth: reconstruction.max_depth,
         ..photon_cache::Settings::default()
     };
     let entry = |label: &str, paper, family, method| Entry {
@@ -88,19 +80,13 @@ pub fn entries() -> Vec<Entry> {
         paper,
         main: true,
     };
-    let denoised = |label: &str, spp| Entry {
-        candidate: Candidate::denoised_path(label, spp),
-        family: Family::DenoisedPath,
-        paper: None,
-        main: true,
-    };
     let mut entries = vec![
-        entry("reconstruction", None, Family::Own, Method::Reconstruction(default)),
+        entry("default", None, Family::Own, Method::default()),
+        entry("reconstruction", None, Family::Own, Method::Reconstruction(reconstruction)),
         entry("cache, anisotropic", Some("LCache2"), Family::Own, shaped(Footprints::Anisotropic)),
         entry("cache, isotropic", Some("LCache1"), Family::Own, shaped(Footprints::Isotropic)),
         entry("photon-cache", Some("PM"), Family::PhotonCache, Method::PhotonCache(photons)),
         entry("lightcuts", None, Family::Lightcuts, Method::Lightcuts(cuts)),
-        denoised("path --denoise", DENOISED_SPP),
         entry("lightcuts, unshared", Some("LC"), Family::Unshared, Method::Lightcuts(unshared)),
     ];
     for factor in CURVE {
@@ -117,8 +103,12 @@ pub fn entries() -> Vec<Entry> {
         let method = Method::PhotonCache(settings);
         entries.push(Entry { main: false, paper: None, ..entry(&label, None, Family::PhotonCache, method) });
     }
-    for spp in DENOISED_CURVE {
-        entries.push(Entry { main: false, ..denoised(&format!("path --denoise, {spp} spp"), spp) });
+    for mut candidate in study.denoised_paths() {
+        let main = candidate.method.spp() == DENOISED_SPP;
+        if main {
+            candidate.label = "path --denoise".to_owned();
+        }
+        entries.push(Entry { candidate, family: Family::DenoisedPath, paper: None, main });
     }
     entries
 }

@@ -14,20 +14,24 @@
 //! | total | all of that, the eye pass and denoising |
 //!
 //! Deviations: the paper's ΣT leaves out T_light, our total does not. All errors are against a path-traced
-//! reference of the same scene: of its pixels, and of the points of the eye samples alone, which measures
-//! errors of light without the aliasing of few eye samples a pixel; and against lightcuts per pixel on the
-//! same eye samples and virtual lights, where clamping does not show either.
+//! reference of the same scene: of its pixels, and of light. Errors of light are, for methods that keep a few
+//! eye samples a pixel, against a reference of those points alone, without their aliasing; for methods that
+//! estimate the whole pixel, the default and paths, they are those of its pixels. Methods that keep eye samples
+//! are compared with lightcuts per pixel on the same samples and virtual lights too, where clamping does not
+//! show either.
 
 mod document;
 mod entries;
 mod paper;
 mod row;
 
-use super::study::{Errors, Noise, Reference, Results, Run, Study, StudyError, speed};
+use super::study::{
+    Bounded, Errors, Noise, Reference, Results, Run, Study, StudyError, eye_samples, time_to,
+};
 use super::{Benchmark, Kind};
 use crate::film::Image;
 use crate::paths::Look;
-use entries::{Entry, Family, OPPONENTS, entries, look};
+use entries::{Entry, Family, OPPONENTS, entries};
 use row::{Row, Versus};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -73,13 +77,11 @@ struct Pictures {
 
 fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     let mut table = Table1 { facts: study.facts(), scenes: Vec::new() };
-    let denoises = study.denoises();
     for path in scenes {
         let subject = study.subject(path)?;
         let reference = study.reference(&subject, Look::Pixels)?;
-        let light = study.reference(&subject, look())?;
-        let mut entries = entries();
-        entries.retain(|entry| denoises || !entry.candidate.denoise);
+        let light = study.reference(&subject, eye_samples())?;
+        let entries = entries(study);
         let runs: Vec<Run> =
             entries.iter().map(|entry| study.run(&subject, &entry.candidate)).collect::<Result<_, _>>()?;
         table.scenes.push(SceneTable {
@@ -107,9 +109,11 @@ fn rows(
     let mut rows = Vec::with_capacity(runs.len());
     let lightcuts = entries.iter().position(|entry| entry.main && entry.family == Family::Lightcuts);
     for (i, (entry, run)) in entries.iter().zip(runs).enumerate() {
-        let errors = [Errors::against(&run.color, reference)?, Errors::against(&run.color, light)?];
-        let mut row = Row::new(entry, run, errors);
-        if let Some(lightcuts) = lightcuts.filter(|&l| l != i) {
+        let whole = entry.candidate.method.look() == Look::Pixels;
+        let errors = Errors::against(&run.color, reference)?;
+        let light = if whole { errors } else { Errors::against(&run.color, light)? };
+        let mut row = Row::new(entry, run, [errors, light]);
+        if let Some(lightcuts) = lightcuts.filter(|&l| l != i && !whole) {
             row.against_lightcuts = Some(Errors::between(&run.color, &runs[lightcuts].color)?);
         }
         rows.push(row);
@@ -125,12 +129,14 @@ fn versus(row: &Row, rows: &[Row], (family, label): (Family, &str)) -> Option<Ve
     let at_equal = |error: fn(&Row) -> f64| {
         let others = rows.iter().filter(|other| other.family == family);
         let others: Vec<_> = others.map(|other| (other.total, error(other))).collect();
-        speed((row.total, error(row)), &others).filter(|_| row.family != family)
+        let time = time_to(error(row), &others).filter(|_| row.family != family)?;
+        time.over(Bounded::About(row.total.max(f64::MIN_POSITIVE)))
     };
     Some(Versus {
         method: label.to_owned(),
         speed: own.total / row.total.max(f64::MIN_POSITIVE),
         at_equal_flip: at_equal(|row| row.against_reference.flip),
+        at_equal_psnr: at_equal(|row| row.against_reference.displayed_rmse()),
         at_equal_light: at_equal(|row| row.light.rel_mse),
     })
 }

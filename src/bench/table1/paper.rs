@@ -13,8 +13,8 @@ pub struct Claim {
     pub range: Option<[f64; 2]>,
 }
 
-/// All claims, the paper's methods first, then our own against the same opponents.
-pub const CLAIMS: [Claim; 5] = [
+/// All claims, the paper's methods first, then our own against the same opponents and denoised paths.
+pub const CLAIMS: [Claim; 6] = [
     Claim {
         what: "LCache2, both layers, against photon mapping with radiance caching",
         of: ["cache, anisotropic", "photon-cache"],
@@ -26,18 +26,23 @@ pub const CLAIMS: [Claim; 5] = [
         range: Some([3.0, 5.7]),
     },
     Claim {
-        what: "our default (not in the paper) against photon-cache",
+        what: "reconstruction cuts (not in the paper) against photon-cache",
         of: ["reconstruction", "photon-cache"],
         range: Some([6.5, 30.0]),
     },
     Claim {
-        what: "our default (not in the paper) against lightcuts per pixel",
+        what: "reconstruction cuts (not in the paper) against lightcuts per pixel",
         of: ["reconstruction", "lightcuts, unshared"],
         range: Some([3.0, 5.7]),
     },
     Claim {
-        what: "our default against lightcuts that neighbouring pixels share (neither in the paper)",
+        what: "reconstruction cuts against lightcuts that neighbouring pixels share (neither in the paper)",
         of: ["reconstruction", "lightcuts"],
+        range: None,
+    },
+    Claim {
+        what: "the default against denoised paths (neither in the paper)",
+        of: ["default", "path --denoise"],
         range: None,
     },
 ];

@@ -1,7 +1,7 @@
 //! Figures of a method on a scene.
 
 use super::entries::{Entry, Family, OPPONENTS};
-use crate::bench::study::{Errors, Run, Speed, figure, optional, seconds};
+use crate::bench::study::{Bounded, Errors, Run, bounded, figure, optional, seconds};
 use crate::stats::Stage;
 use serde::Serialize;
 use serde_json::Value;
@@ -19,6 +19,8 @@ pub struct Row {
     pub family: Family,
     /// The method's settings.
     pub settings: Value,
+    /// True if its picture is denoised.
+    pub denoised: bool,
     /// Numbers of records, direct and indirect.
     pub records: Option<[f64; 2]>,
     /// Long over short radius of footprints, direct and indirect.
@@ -40,9 +42,9 @@ pub struct Row {
     /// Speed against other methods.
     pub versus: [Option<Versus>; OPPONENTS.len()],
     pub against_reference: Errors,
-    /// Errors against the reference of the eye samples.
+    /// Errors of light: against the reference of the eye samples; of whole pixels, where those are estimated.
     pub light: Errors,
-    /// Errors against lightcuts per pixel; `None` for lightcuts themselves.
+    /// Errors against lightcuts per pixel; `None` for lightcuts themselves, and for estimates of whole pixels.
     pub against_lightcuts: Option<Errors>,
 }
 
@@ -54,13 +56,15 @@ pub struct Versus {
     /// At their own settings.
     pub speed: f64,
     /// At equal FLIP against the reference.
-    pub at_equal_flip: Option<Speed>,
-    /// At equal relMSE against the reference of the eye samples.
-    pub at_equal_light: Option<Speed>,
+    pub at_equal_flip: Option<Bounded>,
+    /// At equal PSNR against the reference.
+    pub at_equal_psnr: Option<Bounded>,
+    /// At equal relMSE of light.
+    pub at_equal_light: Option<Bounded>,
 }
 
 /// Heads of the columns of [`Row::cells`].
-pub const HEADS: [&str; 30] = [
+pub const HEADS: [&str; 33] = [
     "method",
     "paper's",
     "N_c",
@@ -84,18 +88,21 @@ pub const HEADS: [&str; 30] = [
     "FLIP to LC",
     "speed to LC",
     "at equal FLIP",
+    "at equal PSNR",
     "at equal light",
     "speed to PM",
     "at equal FLIP",
+    "at equal PSNR",
     "at equal light",
     "speed to path",
     "at equal FLIP",
+    "at equal PSNR",
     "at equal light",
 ];
 
 impl Row {
     /// Computes the figures of a picture.
-    pub fn new(entry: &Entry, run: &Run, [against_reference, light_errors]: [Errors; 2]) -> Row {
+    pub fn new(entry: &Entry, run: &Run, [against_reference, of_light]: [Errors; 2]) -> Row {
         let records = |layer: &str| run.counter("Cache", &format!("records, {layer}"));
         let records = records("direct").zip(records("indirect")).map(|(d, i)| [d, i]);
         let mean = |what: &str| ["direct", "indirect"].map(|l| run.counter("Cache", &format!("{what}, {l}")));
@@ -112,6 +119,7 @@ impl Row {
             main: entry.main,
             family: entry.family,
             settings: entry.candidate.method.settings(),
+            denoised: run.denoised(),
             records,
             anisotropy: mean("anisotropy"),
             accuracy: mean("accuracy"),
@@ -127,7 +135,7 @@ impl Row {
             elapsed: run.elapsed(),
             versus: [const { None }; OPPONENTS.len()],
             against_reference,
-            light: light_errors,
+            light: of_light,
             against_lightcuts: None,
         }
     }
@@ -144,10 +152,10 @@ impl Row {
         let others = self.against_lightcuts.as_ref();
         let versus = self.versus.iter().flat_map(|versus| match versus {
             Some(v) => {
-                let text = |speed: &Option<Speed>| speed.map_or("-".to_owned(), |s| s.to_string());
-                [format!("{:.2}", v.speed), text(&v.at_equal_flip), text(&v.at_equal_light)]
+                let [flip, psnr, light] = [v.at_equal_flip, v.at_equal_psnr, v.at_equal_light].map(bounded);
+                [format!("{:.2}", v.speed), flip, psnr, light]
             }
-            None => ["-", "-", "-"].map(str::to_owned),
+            None => ["-"; 4].map(str::to_owned),
         });
         let cells = vec![
             self.label.clone(),

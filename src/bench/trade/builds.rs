@@ -4,7 +4,6 @@
 use super::{Candidate, Judge, Sort, StudyError, Sweep};
 use crate::embree::BuildQuality;
 use crate::method::Method;
-use crate::method::reconstruction::Settings;
 use crate::setting::JudgedBy;
 
 /// A choice between builds.
@@ -33,9 +32,9 @@ impl Judge<'_> {
         let mut levels = Vec::with_capacity(builds.levels.len());
         for &(text, quality) in builds.levels {
             let label = format!("{} {text}", builds.name);
-            let candidate = Candidate::new(label, Method::Reconstruction(Settings::default()));
+            let candidate = Candidate::new(label, Method::default());
             let run = self.study.run_over(quality, &mut self.subject, &candidate)?;
-            let point = self.judge(&candidate, &candidate.label, Sort::Sweep, &run, true)?;
+            let point = self.judge(&candidate, &candidate.label, Sort::Sweep, &run)?;
             levels.push((text.to_owned(), point));
         }
         Ok(self.judged(builds.name, levels, JudgedBy::Limit))

@@ -48,13 +48,18 @@ fn section(document: &mut Document, scene: &SceneTrade) {
 fn about(scene: &SceneTrade) -> String {
     let (pixels, light) = (&scene.reference, &scene.light_reference);
     format!(
-        "From the limit: relative RMSE against lightcuts of a quarter of the error on the same virtual lights, what cuts and \
-         records add. Light error: relative RMSE against {} paths through each pixel's eye samples, whose own noise, {} of relMSE, is \
-         taken off, and without the worst pixel of a thousand; it holds what virtual lights and their clamping get wrong. FLIP: against {} paths over each pixel, whose halves differ by {}.",
-        light.spp,
-        figure(light.rel_mse),
+        "From the limit: relative RMSE against the same picture by cuts of a quarter of the error on the same virtual lights \
+         and with the same samples of direct light: what cuts and records add. Light error: relative RMSE against {} paths \
+         over each pixel, whose own noise, {} of relMSE, is taken off, and without the worst pixel of a thousand; it holds \
+         what virtual lights and their clamping get wrong, and the noise that is left. FLIP: against the same paths, whose \
+         halves differ by {}. The default and paths are denoised. Reconstruction, lightcuts, photon-cache and knobs with \
+         direct light by records or cuts keep four eye samples a pixel: their error from the limit and of light is against \
+         lightcuts and {} paths ({} of relMSE) through those alone, their FLIP holds their aliasing.",
         pixels.spp,
-        figure(pixels.flip_of_halves)
+        figure(pixels.rel_mse),
+        figure(pixels.flip_of_halves),
+        light.spp,
+        figure(light.rel_mse)
     )
 }
 

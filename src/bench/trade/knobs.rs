@@ -2,7 +2,8 @@
 //!
 //! Coarse levels should be faster, fine ones better, where a setting has such an order.
 
-use crate::method::{Method, cache, reconstruction};
+use crate::method::{Method, reconstruction};
+use crate::paths::Look;
 use crate::setting::{JudgedBy, Levels, Spec, Value};
 
 /// A setting, or one number of several that it has.
@@ -48,37 +49,34 @@ impl Knob {
     }
 }
 
-/// All of them: those of reconstruction cuts on the default picture, those of records on the cache's.
+/// Returns all knobs of the default method.
 pub fn knobs() -> Vec<Knob> {
     let mut knobs: Vec<Knob> = Vec::new();
-    let reconstruction = Method::Reconstruction(reconstruction::Settings::default());
-    for method in [reconstruction, Method::Cache(cache::Settings::default())] {
-        let known = knobs.len();
-        method.visit(&mut |spec, value| {
-            let Some(levels) = spec.levels() else { return };
-            if knobs[..known].iter().any(|knob| knob.key == spec.key) {
-                return;
+    Method::default().visit(&mut |spec, value| {
+        let Some(levels) = spec.levels() else { return };
+        let mut base = Method::default();
+        for (key, text) in levels.with {
+            drop(base.set(key, text));
+        }
+        // Methods that keep eye samples are judged on those of reconstruction cuts.
+        if base.look() != Look::Pixels {
+            base.set_number("spp", 0, reconstruction::Settings::default().spp.into());
+        }
+        for (part, label) in levels.parts.iter().enumerate() {
+            if levels.parts.len() > 1 && label.is_empty() {
+                continue;
             }
-            let mut base = method;
-            for (key, text) in levels.with {
-                drop(base.set(key, text));
-            }
-            for (part, label) in levels.parts.iter().enumerate() {
-                if levels.parts.len() > 1 && label.is_empty() {
-                    continue;
-                }
-                let comma = if label.is_empty() { "" } else { ", " };
-                knobs.push(Knob {
-                    name: format!("--{}{comma}{label}", spec.option()),
-                    key: spec.key,
-                    part,
-                    levels: levels_of(spec, levels, value, part),
-                    base,
-                    judged_by: levels.judged_by,
-                });
-            }
-        });
-    }
+            let comma = if label.is_empty() { "" } else { ", " };
+            knobs.push(Knob {
+                name: format!("--{}{comma}{label}", spec.option()),
+                key: spec.key,
+                part,
+                levels: levels_of(spec, levels, value, part),
+                base,
+                judged_by: levels.judged_by,
+            });
+        }
+    });
     knobs
 }
 
@@ -104,6 +102,8 @@ fn levels_of(spec: &'static Spec, levels: &Levels, value: &mut dyn Value, part: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::study::eye_samples;
+    use crate::bench::trade::has_default_samples;
 
     #[test]
     fn every_knob_has_distinct_levels_that_change_the_settings_and_holds_the_default() {
@@ -117,6 +117,12 @@ mod tests {
             };
             let found: Vec<_> = knob.levels.iter().map(turned).collect();
             assert!(found.len() > 1 && knob.level_of(&knob.base).is_some(), "{}", knob.name);
+            for level in knob.levels.iter().filter(|_| knob.judged_by != JudgedBy::Flip) {
+                let mut method = knob.base;
+                knob.turn(level, &mut method);
+                let has_limit = has_default_samples(&method) || method.look() == eye_samples();
+                assert!(has_limit, "{} {}", knob.name, level.text);
+            }
             for i in 1..found.len() {
                 assert!(!found[..i].contains(&found[i]), "{}: {}", knob.name, knob.levels[i].text);
             }

@@ -1,17 +1,22 @@
-//! The trade-off of each setting of reconstruction cuts and of the cache: error against time, one setting at a
-//! time and by a designed sample.
+//! The trade-off of each setting of the default method: error against time, one setting at a time and by a
+//! designed sample.
 //!
-//! Every knob is swept alone around the defaults; then all are varied together, on the cache, by an
-//! Owen-scrambled Sobol design, whose projection on any one knob is stratified. Three errors are distinguished:
+//! Every knob is swept alone around the defaults; then all are varied together by an Owen-scrambled Sobol
+//! design, whose projection on any one knob is stratified. Pictures are denoised where that is their method's
+//! default. Three errors are distinguished:
 //!
-//! - from the limit: against lightcuts of a quarter of the error on the same virtual lights, the error added
-//!   by records and cuts;
-//! - of light: against a reference path-traced through the picture's own eye samples, which includes the
-//!   errors of virtual lights and their clamping;
-//! - FLIP: against a reference of whole pixels, which includes the aliasing of few eye samples a pixel.
+//! - from the limit: against the same picture by cuts of a quarter of the error on the same virtual lights, with
+//!   the same samples of direct light: the error added by records and cuts;
+//! - of light: against a path-traced reference, which includes the errors of virtual lights and their clamping,
+//!   and the noise that remains of drawn light;
+//! - FLIP: against the same reference, as it is seen.
 //!
-//! The settings of `--quality` are shown beside them, and denoised paths by their FLIP. Builds of the
-//! acceleration structure are varied alone, not in the designed sample.
+//! The reference is one of whole pixels. Methods that keep a few eye samples a pixel, and knobs that have an effect
+//! with direct light by records or cuts only, have limit and light judged on those samples instead, without
+//! their aliasing.
+//!
+//! The settings of `--quality` are shown beside them, and denoised paths. Builds of the acceleration structure
+//! are varied alone, not in the designed sample.
 
 mod builds;
 mod document;
@@ -21,11 +26,12 @@ mod sweep;
 mod verdict;
 
 use super::study::{Candidate, Errors, Noise, Reference, Results, Run, Study, StudyError, Subject};
+use super::study::{eye_samples, qualities};
 use super::{Benchmark, Kind};
-use crate::method::reconstruction::Settings;
-use crate::method::{Method, lightcuts, photon_cache};
+use crate::lightcut::CutSettings;
+use crate::method::{Method, cache, lightcuts, photon_cache, reconstruction};
 use crate::paths::Look;
-use crate::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
+use crate::radiance_cache::FoundBy;
 use crate::setting::JudgedBy;
 use crate::stats::Stage;
 use builds::{BUILDS, Builds};
@@ -44,9 +50,6 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 
 /// Errors that fronts are drawn for.
 const ERRORS: [JudgedBy; 3] = [JudgedBy::Limit, JudgedBy::Light, JudgedBy::Flip];
-
-/// Samples a pixel of denoised paths.
-const DENOISED_SPP: [u32; 4] = [1, 4, 16, 64];
 
 /// All results.
 #[derive(Serialize)]
@@ -75,17 +78,21 @@ struct Point {
     /// Reason for which it was rendered.
     sort: Sort,
     settings: Value,
+    /// True if the picture is denoised.
+    denoised: bool,
+    /// True if it estimates whole pixels, false if it keeps eye samples.
+    whole_pixels: bool,
     /// Processor seconds.
     seconds: f64,
     /// Settings that differ from the defaults.
     turned: String,
-    /// Relative RMSE from the limit, where the eye samples are the same.
+    /// Relative RMSE from the limit, where that has the same samples.
     limit: Option<f64>,
-    /// Relative RMSE of light, where the eye samples are the same.
+    /// Relative RMSE of light: of whole pixels, or of the reference's eye samples.
     light: Option<f64>,
     /// FLIP against the reference of pixels.
     flip: f64,
-    /// Errors by which no other point of the same methods is faster and no worse.
+    /// Errors by which no other point of the default method is faster and no worse.
     fronts: Vec<JudgedBy>,
 }
 
@@ -144,36 +151,34 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
 struct Judge<'a> {
     study: &'a Study<'a>,
     subject: Subject,
+    /// Reference of whole pixels.
     reference: Reference,
+    /// Reference of eye samples.
     light: Reference,
-    limit: Run,
+    /// Limits of the default and of methods that keep eye samples.
+    limits: [Run; 2],
     points: Vec<Point>,
 }
 
 fn scene(study: &Study, subject: Subject) -> Result<SceneTrade, StudyError> {
-    let Settings { spp, seed, .. } = Settings::default();
+    let [limit, limit_of_eye_samples] = limits();
     let mut judge = Judge {
         study,
         reference: study.reference(&subject, Look::Pixels)?,
-        light: study.reference(&subject, Look::EyeSamples { spp, seed })?,
-        limit: study.run(&subject, &limit())?,
+        light: study.reference(&subject, eye_samples())?,
+        limits: [study.run(&subject, &limit)?, study.run(&subject, &limit_of_eye_samples)?],
         subject,
         points: Vec::new(),
     };
-    let default = Method::Reconstruction(Settings::default());
-    judge.point(default.name(), "", Sort::Default, default, true)?;
-    for (label, method) in others() {
-        judge.point(label, "", Sort::Other, method, true)?;
+    judge.point(&Candidate::new("default", Method::default()), "", Sort::Default)?;
+    for candidate in others() {
+        judge.point(&candidate, "", Sort::Other)?;
     }
-    if study.denoises() {
-        for spp in DENOISED_SPP {
-            let candidate = Candidate::denoised_path("path --denoise", spp);
-            let run = study.run(&judge.subject, &candidate)?;
-            judge.judge(&candidate, &format!("--spp {spp}"), Sort::DenoisedPath, &run, false)?;
-        }
+    for candidate in study.denoised_paths() {
+        judge.point(&candidate, "", Sort::DenoisedPath)?;
     }
-    for (name, method) in qualities() {
-        judge.point(name, &options(&method), Sort::Quality, method, method.spp() == spp)?;
+    for (candidate, options) in qualities() {
+        judge.point(&candidate, &options, Sort::Quality)?;
     }
     let (knobs, builds) = chosen(&study.plan.knobs)?;
     let mut sweeps: Vec<Sweep> = knobs.iter().map(|knob| judge.sweep(knob)).collect::<Result<_, _>>()?;
@@ -193,21 +198,27 @@ fn scene(study: &Study, subject: Subject) -> Result<SceneTrade, StudyError> {
     })
 }
 
-/// Returns the limit of cuts and records over the default's virtual lights: lightcuts of a quarter of the
-/// error.
-fn limit() -> Candidate {
-    let Settings { spp, seed, light, cut, family, .. } = Settings::default();
-    let mut settings = lightcuts::Settings { spp, seed, light, cut, family, ..Default::default() };
-    settings.cut.epsilon *= 0.25;
-    settings.cut.max_cut *= 16;
-    Candidate::new("limit", Method::Lightcuts(settings))
+/// Returns the limits of cuts and records over the defaults' virtual lights, on the default's samples and on eye
+/// samples: cuts of a quarter of the error at every point.
+fn limits() -> [Candidate; 2] {
+    let finer = |cut: &mut CutSettings| {
+        cut.epsilon *= 0.25;
+        cut.max_cut *= 16;
+    };
+    let mut drawn = cache::Settings::default();
+    drawn.cache.indirect = FoundBy::Cuts;
+    drawn.cache.share = false;
+    finer(&mut drawn.cut);
+    let mut kept = lightcuts_on_eye_samples();
+    finer(&mut kept.cut);
+    [("limit", Method::Cache(drawn)), ("limit of eye samples", Method::Lightcuts(kept))]
+        .map(|(label, method)| Candidate::new(label, method))
 }
 
-/// Returns the default method at the named levels of the quality scale.
-fn qualities() -> Vec<(&'static str, Method)> {
-    let ladder = Ladder::new(Method::Reconstruction(Settings::default()), &[]);
-    let named = [("draft", DRAFT), ("preview", PREVIEW), ("final", FINAL), ("reference", REFERENCE)];
-    ladder.iter().flat_map(|ladder| named.map(|(name, height)| (name, ladder.at(height)))).collect()
+/// Returns lightcuts on the eye samples and virtual lights of reconstruction cuts.
+fn lightcuts_on_eye_samples() -> lightcuts::Settings {
+    let reconstruction::Settings { spp, seed, light, cut, family, .. } = Default::default();
+    lightcuts::Settings { spp, seed, light, cut, family, ..Default::default() }
 }
 
 /// Returns the knobs and builds named, or all.
@@ -226,27 +237,32 @@ fn chosen(names: &[String]) -> Result<(Vec<Knob>, Vec<&'static Builds>), StudyEr
     Ok((knobs, builds))
 }
 
-/// Returns the other methods at their defaults, on the same eye samples.
-fn others() -> [(&'static str, Method); 2] {
-    let Settings { spp, seed, light, cut, family, .. } = Settings::default();
-    let cuts = lightcuts::Settings { spp, seed, light, cut, family, ..Default::default() };
+/// Returns the methods that keep eye samples at their defaults, all on those of reconstruction cuts.
+fn others() -> [Candidate; 3] {
+    let reconstruction = reconstruction::Settings::default();
+    let reconstruction::Settings { spp, seed, .. } = reconstruction;
     let photons = photon_cache::Settings { spp, seed, ..Default::default() };
-    [("lightcuts", Method::Lightcuts(cuts)), ("photon-cache", Method::PhotonCache(photons))]
+    let cuts = Method::Lightcuts(lightcuts_on_eye_samples());
+    [Method::Reconstruction(reconstruction), cuts, Method::PhotonCache(photons)]
+        .map(|method| Candidate::new(method.name(), method))
 }
 
 impl Judge<'_> {
     /// Renders a point; returns its index.
-    fn point(
-        &mut self,
-        label: &str,
-        turned: &str,
-        sort: Sort,
-        method: Method,
-        same_samples: bool,
-    ) -> Result<usize, StudyError> {
-        let candidate = Candidate::new(label, method);
-        let run = self.study.run(&self.subject, &candidate)?;
-        self.judge(&candidate, turned, sort, &run, same_samples)
+    fn point(&mut self, candidate: &Candidate, turned: &str, sort: Sort) -> Result<usize, StudyError> {
+        let run = self.study.run(&self.subject, candidate)?;
+        self.judge(candidate, turned, sort, &run)
+    }
+
+    /// Returns the reference of a method's light and the limit of its cuts and records, as far as they have its
+    /// samples.
+    fn standards(&self, method: &Method) -> (Option<&Reference>, Option<&Run>) {
+        let [limit, limit_of_eye_samples] = &self.limits;
+        match method.look() {
+            Look::Pixels => (Some(&self.reference), has_default_samples(method).then_some(limit)),
+            look if look == eye_samples() => (Some(&self.light), Some(limit_of_eye_samples)),
+            Look::EyeSamples { .. } => (None, None),
+        }
     }
 
     /// Judges a picture; returns the index of its point.
@@ -256,36 +272,41 @@ impl Judge<'_> {
         turned: &str,
         sort: Sort,
         run: &Run,
-        same_samples: bool,
     ) -> Result<usize, StudyError> {
-        let (mut light, mut limit) = (None, None);
-        if same_samples {
-            light = Some(Errors::against(&run.color, &self.light)?.rel_rmse());
-            limit = Some(Errors::between(&run.color, &self.limit.color)?.rel_rmse());
-        }
+        let (light, limit) = self.standards(&candidate.method);
+        let light = light.map(|light| Errors::against(&run.color, light)).transpose()?;
+        let limit = limit.map(|limit| Errors::between(&run.color, &limit.color)).transpose()?;
+        let flip = Errors::against(&run.color, &self.reference)?.flip;
         self.points.push(Point {
             label: candidate.label.clone(),
             sort,
             settings: candidate.method.settings(),
+            denoised: run.denoised(),
+            whole_pixels: candidate.method.look() == Look::Pixels,
             seconds: run.seconds(&Stage::ALL),
             turned: turned.to_owned(),
-            limit,
-            light,
-            flip: Errors::against(&run.color, &self.reference)?.flip,
+            limit: limit.map(|errors| errors.rel_rmse()),
+            light: light.map(|errors| errors.rel_rmse()),
+            flip,
             fronts: Vec::new(),
         });
         Ok(self.points.len() - 1)
     }
 }
 
-/// Marks the fronts among the points of the default method and the cache.
+/// True if a method draws the samples of the default.
+fn has_default_samples(method: &Method) -> bool {
+    let samples = |method: &Method| (method.name(), method.look(), method.spp(), method.seed());
+    samples(method) == samples(&Method::default())
+}
+
+/// Marks the fronts among the points of the default method; errors of whole pixels and of eye samples do not compare.
 fn mark_fronts(points: &mut [Point]) {
     for error in ERRORS {
         let own = |point: &Point| {
-            (
-                point.seconds,
-                point.error(error).filter(|_| !matches!(point.sort, Sort::Other | Sort::DenoisedPath)),
-            )
+            let found = !matches!(point.sort, Sort::Other | Sort::DenoisedPath)
+                && (point.whole_pixels || error == JudgedBy::Flip);
+            (point.seconds, point.error(error).filter(|_| found))
         };
         let places = points.iter().map(own).enumerate();
         let (judged, figures): (Vec<usize>, Vec<(f64, f64)>) =

@@ -3,8 +3,8 @@
 use super::front::effect;
 use super::knobs::Knob;
 use super::verdict::{ERROR_TOLERANCE, TIME_TOLERANCE, course, verdict};
-use super::{Judge, KnobEffect, Point, Sort, StudyError, Sweep};
-use crate::method::{Method, cache};
+use super::{Candidate, Judge, KnobEffect, Point, Sort, StudyError, Sweep};
+use crate::method::Method;
 use crate::sampling::Sampler;
 use crate::setting::JudgedBy;
 
@@ -19,7 +19,7 @@ impl Judge<'_> {
             let mut method = knob.base;
             knob.turn(level, &mut method);
             let label = format!("{} {}", knob.name, level.text);
-            let point = self.point(&label, &label, Sort::Sweep, method, knob.judged_by != JudgedBy::Flip)?;
+            let point = self.point(&Candidate::new(&*label, method), &label, Sort::Sweep)?;
             levels.push((level.text.clone(), point));
         }
         Ok(self.judged(&knob.name, levels, knob.judged_by))
@@ -37,14 +37,16 @@ impl Judge<'_> {
         Sweep { knob: knob.to_owned(), levels, error, time, verdict, judged_by }
     }
 
-    /// Varies all knobs of the cache together that leave the eye samples unchanged.
+    /// Varies all knobs of the default together that have an effect on it and leave its samples unchanged.
     pub fn sample(&mut self, knobs: &[Knob]) -> Result<Vec<KnobEffect>, StudyError> {
-        let knobs: Vec<&Knob> = knobs.iter().filter(|knob| knob.judged_by != JudgedBy::Flip).collect();
+        let default = Method::default();
+        let matters =
+            |knob: &&Knob| knob.judged_by != JudgedBy::Flip && knob.base.settings() == default.settings();
+        let knobs: Vec<&Knob> = knobs.iter().filter(matters).collect();
         let mut places = vec![Vec::new(); knobs.len()];
         let (mut errors, mut times) = (Vec::new(), Vec::new());
         for index in 0..self.study.plan.samples {
             let mut sampler = Sampler::new(DESIGN, index);
-            let default = Method::Cache(cache::Settings::default());
             let mut method = default;
             let mut turned = Vec::new();
             for (knob, places) in knobs.iter().zip(&mut places) {
@@ -56,8 +58,8 @@ impl Judge<'_> {
                 }
                 places.push(level as f64 / (count - 1).max(1) as f64);
             }
-            let label = format!("sample {index}");
-            let point = self.point(&label, &turned.join("; "), Sort::Sample, method, true)?;
+            let candidate = Candidate::new(format!("sample {index}"), method);
+            let point = self.point(&candidate, &turned.join("; "), Sort::Sample)?;
             errors.push(self.points[point].light.unwrap_or(0.0));
             times.push(self.points[point].seconds);
         }
