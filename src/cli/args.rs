@@ -162,7 +162,8 @@ pub struct VerifyArgs {
     /// the interval that covers it in 95 of 100 cases
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..))]
     pub verify: Option<u32>,
-    /// Meaning of a pixel's value [default: that of the method: pixels for path, else eye-samples]
+    /// Meaning of a pixel's value [default: that of the method: pixels for path and for cache with direct
+    /// light drawn, else eye-samples]
     #[arg(long, value_enum, requires = "measured")]
     pub verify_against: Option<VerifyAgainst>,
     /// Most paths a pixel [default: 4096]; how many pixels would need more to be known to 1 % is reported

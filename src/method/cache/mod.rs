@@ -1,17 +1,16 @@
-//! The radiance cache: incident light computed at some thousand points, and extrapolated to the eye samples
-//! between them.
+//! The radiance cache: direct light drawn at every visibility sample, indirect light computed at some thousand
+//! points and extrapolated to the shading points between them.
 //!
 //! Paper: Herzog et al. 2009, records splatted onto all eye samples; LCache1 with isotropic, LCache2 with
 //! anisotropic footprints. Beyond it: footprints and gradients that include the edges of occluders
 //! (`occlusion`).
 //!
-//! By default the records are of indirect light; direct light, whose shadows are fine, is lit by
-//! reconstruction cuts, as in [`super::reconstruction`]. So are eye samples whose reflection is too sharp for
-//! records, where a record would serve too few of them, and where records still disagree visibly after the
-//! last pass.
+//! By default the records are of indirect light; direct light, whose shadows are fine, is drawn by the eye pass, and
+//! leaves noise for a denoiser. Reconstruction cuts, as in [`super::reconstruction`], light shading points whose
+//! reflection is too sharp for records, where a record would serve too few of them, and where records still
+//! disagree visibly after the last pass; and either layer where that is asked for.
 //!
-//! Use it where light is smooth, or where records are wanted for other uses: they are few, and do not depend
-//! on the pixels. Where only the picture matters, reconstruction cuts take as long and err less.
+//! Use it as the default. Noise of drawn light is unbiased; virtual lights and records are not.
 
 mod render;
 pub(crate) mod resolve;

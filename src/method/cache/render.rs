@@ -65,7 +65,7 @@ impl Renderer for Settings {
     }
 
     fn about(&self) -> &'static str {
-        "The radiance cache: records of direct or indirect light, splatted onto the eye samples around them"
+        "The radiance cache: direct light drawn, indirect light at records, splatted onto the points around them"
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {

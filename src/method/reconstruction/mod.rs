@@ -4,10 +4,10 @@
 //! Paper: Walter et al. 2005, *Lightcuts: A Scalable Approach to Illumination*, section 5; see
 //! [`crate::lightcut::ReconstructionCut`], also for its deviations.
 //!
-//! Use it as the default: against records ([`super::cache`]) it takes as long and errs less, most of all
-//! where shadows are fine. The patch's cut corresponds to a record, a linear fit to its gradient, and rays
-//! correct it where the sixteen disagree. Caustics on visible surfaces are missing, as in
-//! [`super::lightcuts`].
+//! Use it for pictures without noise that are not to be denoised: against records of both layers of light
+//! ([`super::cache`]) it takes as long and errs less, most of all where shadows are fine. The patch's cut
+//! corresponds to a record, a linear fit to its gradient, and rays correct it where the sixteen disagree. Caustics
+//! on visible surfaces are missing, as in [`super::lightcuts`].
 
 mod render;
 mod settings;
