@@ -35,8 +35,9 @@ use std::str::FromStr;
 /// Pixels along the edge of the square that one task looks through.
 const TILE: u32 = 16;
 
-/// Maximum number of samples a pixel: features have little noise.
-const MAX_SAMPLES: u32 = 16;
+/// Maximum number of samples a pixel. Features have little noise, but a denoiser repeats what they have along edges: 32
+/// instead of 16 are worth .2 dB to denoised paths of 64 samples.
+const MAX_SAMPLES: u32 = 32;
 
 /// Longest chain of mirrors and glass in edges.
 const MAX_EDGES: u32 = 64;
