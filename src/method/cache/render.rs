@@ -121,7 +121,8 @@ impl Renderer for Settings {
 
     fn look(&self) -> Look {
         let Settings { spp, seed, .. } = *self;
-        match self.cache.draws_direct_light() {
+        // A single sample looks through the pixel's centre, drawn or not.
+        match self.cache.draws_direct_light() && spp > 1 {
             true => Look::Pixels,
             false => Look::EyeSamples { spp, seed },
         }
