@@ -1,14 +1,17 @@
 //! Chains through mirrors and glass, visibility samples and features, against closed forms.
 
 use super::chain::{ChainCounts, Follow, Met, Vertex, trace};
-use super::{EyePass, EyeSettings, Feature, FeatureSettings, Features, features};
-use crate::film::{Layer, Pixels};
+use super::{DrawnLight, EyePass, EyeSettings, Feature, FeatureSettings, Features, features};
+use crate::film::{Layer, Pixels, Window};
 use crate::math::Rgb;
 use crate::paths::Look;
 use crate::progress::Control;
 use crate::sampling::Sampler;
-use crate::scene::{Camera, MaterialId, Mesh};
+use crate::scene::{
+    Camera, Coat, DeltaLight, Distribution, Fresnel, Lobe, Material, MaterialId, Mesh, Reflectance,
+};
 use crate::test_scenes::*;
+use crate::view::View;
 use glam::{DVec3, Vec2, Vec3};
 
 /// Index of refraction of an interface that reflects a quarter of the light at normal incidence.
@@ -142,6 +145,108 @@ fn visibility_samples_carry_the_whole_light_of_each_pixel() {
     assert!(exact > 200 && exact < 400, "{exact}");
     let mean = sums.iter().sum::<Rgb>() / 400.0;
     assert!((mean - Rgb::ONE).abs().max_element() < 0.01, "{mean}");
+}
+
+/// A room with glass and a mirror ball in it.
+fn room_with_chains() -> WorldAndView {
+    let (mut scene, _) = lit_room(camera(Vec3::new(0.0, 0.0, 0.9), Vec3::ZERO, 0.8), 20);
+    for (x, material) in [(0.35, glass(1.5)), (-0.35, mirror())] {
+        let material = add_material(&mut scene, material);
+        scene.meshes.push(sphere(Vec3::new(x, -0.3, -0.2), 0.3, 16, material));
+    }
+    world(scene)
+}
+
+fn drawn<'w>(world: &'w WorldAndView, view: &View, spp: u32) -> EyePass<'w> {
+    let settings = EyeSettings { spp, seed: 1, max_depth: 32 };
+    EyePass::with_direct_light(world, view, settings, &DrawnLight::default(), &Control::new())
+}
+
+#[test]
+fn merged_points_carry_the_whole_light_of_each_pixel() {
+    let world = room_with_chains();
+    let pass = drawn(&world, &world.view, 64);
+    let mut sums = vec![Rgb::ZERO; 400];
+    for point in 0..pass.len() {
+        for sample in pass.visibility.of(point) {
+            sums[sample.pixel as usize] += sample.weight;
+        }
+    }
+    // Noise is left where there is glass, which reflects or refracts by chance, and where chains are thinned.
+    let exact = sums.iter().filter(|sum| (**sum - Rgb::ONE).abs().max_element() < 1e-4).count();
+    assert!(exact > 200 && exact < 400, "{exact}");
+    let mean = sums.iter().sum::<Rgb>() / 400.0;
+    assert!((mean - Rgb::ONE).abs().max_element() < 0.02, "{mean}");
+    assert!(pass.len() >= 400 && pass.len() < 800, "{}", pass.len());
+}
+
+#[test]
+fn chains_follow_the_share_of_a_sharp_coat_on_a_base() {
+    let mut scene = seen_from_origin([32, 32]);
+    let lobe = Lobe::Rough {
+        distribution: Distribution::Ggx,
+        alpha: 0.05.into(),
+        fresnel: Fresnel::Dielectric(1.5),
+        scale: Reflectance::Constant(Rgb::ONE),
+    };
+    let coat = Some(Coat { eta: 1.5, nonlinear: false });
+    let coated = Material { lobes: vec![lobe], coat, ..diffuse(Rgb::splat(0.6)) };
+    let coated = add_material(&mut scene, coated);
+    let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+    scene.meshes.extend([wall(-1.0, coated), back_wall(2.0, grey)]);
+    let world = world(scene);
+    let surface = world.intersect(&world.view.primary_ray([16, 16], Vec2::ZERO)).expect("the coat");
+    let (_, sharp) = world.bsdf(&surface).split_sharp_lobes().expect("a sharp lobe");
+    let expected = sharp.albedo(Vec3::Z);
+    let pass = drawn(&world, &world.view, 64);
+    let mut sums = [Rgb::ZERO; 2];
+    for point in 0..pass.len() {
+        let behind = pass.points.geometry[point].position.z > 0.0;
+        sums[usize::from(behind)] +=
+            pass.visibility.of(point).iter().map(|sample| sample.weight).sum::<Rgb>();
+    }
+    let [front, behind] = sums.map(|sum| sum / 1024.0);
+    assert_near(front, Rgb::ONE);
+    assert!(((behind - expected) / expected).abs().max_element() < 0.03, "{behind} {expected}");
+}
+
+#[test]
+fn a_crop_has_the_whole_pictures_merged_points() {
+    let world = room_with_chains();
+    let points = |window: Window| {
+        let view = View { window, ..world.view };
+        let pass = drawn(&world, &view, 16);
+        let mut points = Vec::new();
+        for point in 0..pass.len() {
+            for sample in pass.visibility.of(point) {
+                let [x, y] = window.film_pixel([sample.pixel % window.width, sample.pixel / window.width]);
+                let position = pass.points.geometry[point].position.to_array().map(f32::to_bits);
+                points.push(([x, y], position, sample.weight.to_array().map(f32::to_bits)));
+            }
+        }
+        points.sort_unstable();
+        points
+    };
+    let whole = points(world.view.window);
+    let window = Window { offset: [3, 7], width: 13, height: 9, ..world.view.window };
+    let inside = |[x, y]: [u32; 2]| (3..16).contains(&x) && (7..16).contains(&y);
+    let expected: Vec<_> = whole.into_iter().filter(|(pixel, ..)| inside(*pixel)).collect();
+    assert!(points(window) == expected);
+}
+
+#[test]
+fn the_back_of_a_one_sided_surface_is_black() {
+    for (two_sided, lit) in [(true, 64), (false, 0)] {
+        let mut scene = seen_from_origin([8, 8]);
+        let material = add_material(&mut scene, Material { two_sided, ..diffuse(Rgb::splat(0.5)) });
+        scene.meshes.push(back_wall(-2.0, material));
+        let (position, intensity) = (Vec3::new(0.5, 0.3, 0.0), Rgb::ONE);
+        scene.lights.push(DeltaLight::Point { position, intensity });
+        let world = world(scene);
+        let pass = drawn(&world, &world.view, 16);
+        assert_eq!(pass.len(), lit);
+        assert_eq!(pass.emitted.pixels.iter().filter(|light| **light != Rgb::ZERO).count(), lit);
+    }
 }
 
 fn all_features(world: &WorldAndView, spp: u32) -> Vec<Layer> {

@@ -1,14 +1,19 @@
 //! Small scenes made in memory, shared by the behaviour tests.
 #![allow(dead_code, missing_docs)]
 
-use glam::Vec3;
+use glam::{Mat3, Vec2, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::Rgb;
 use lightsplat::method::render;
 use lightsplat::method::{LightStore, Output, Renderer, cache, lightcuts};
 use lightsplat::progress::Control;
 use lightsplat::scene::formats::{LoadOptions, Loaded, load};
-use lightsplat::scene::{Camera, Emission, Fresnel, Lobe, Material, MaterialId, Mesh, Reflectance, Scene};
+use lightsplat::scene::{
+    Camera, Cameras, Emission, Filter, Fresnel, Lobe, Material, MaterialId, Mesh, Parameter, Reflectance,
+    Scene, Texture, TextureId, Wrap,
+};
+use lightsplat::session::{Frame, Remark, Session};
+use lightsplat::stats::Stats;
 use lightsplat::view::View;
 use lightsplat::world::World;
 use std::ops::{Deref, DerefMut};
@@ -96,6 +101,16 @@ pub fn glass(eta: f32) -> Material {
     Material { lobes, ..diffuse(Rgb::ZERO) }
 }
 
+/// Diffuse by the texels of a texture, top row first, which repeats.
+pub fn checkered(scene: &mut Scene, width: usize, texels: Vec<Rgb>) -> Material {
+    let height = texels.len() / width;
+    let (filter, wrap) = (Filter::Nearest, Wrap::Repeat);
+    let name = "checker".into();
+    scene.textures.push(Texture { name, width, height, texels, filter, wrap, to_uv: Mat3::IDENTITY });
+    let texture = TextureId(scene.textures.len() as u32 - 1);
+    Material { diffuse: Parameter::Textured { texture, scale: Rgb::ONE }, ..diffuse(Rgb::ZERO) }
+}
+
 pub fn add_material(scene: &mut Scene, material: Material) -> MaterialId {
     scene.materials.push(material);
     MaterialId(scene.materials.len() as u32 - 1)
@@ -112,6 +127,12 @@ pub fn quad(corner: Vec3, a: Vec3, b: Vec3, material: MaterialId) -> Mesh {
         material,
         emission: None,
     }
+}
+
+/// The same with texture coordinates that repeat a texture so many times along each edge.
+pub fn textured(mut quad: Mesh, repeats: Vec2) -> Mesh {
+    quad.uvs = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y].map(|uv| uv * repeats).into();
+    quad
 }
 
 /// The six walls of an axis-aligned box, fronts inward.
@@ -186,6 +207,23 @@ pub fn sphere(centre: Vec3, radius: f32, n: u32, material: MaterialId) -> Mesh {
 
 pub fn world(SceneAndView { scene, view }: SceneAndView) -> WorldAndView {
     WorldAndView { world: World::new(scene, 2).expect("the scene builds"), view }
+}
+
+/// A session over a scene, with its view.
+pub fn session(SceneAndView { scene, view }: SceneAndView) -> (Session, View) {
+    let cameras = Cameras { still: view.camera, path: Vec::new(), resolution: view.window.film };
+    let (warnings, repairs) = (Vec::new(), Default::default());
+    let loaded = Loaded { scene, cameras, warnings, repairs, hash: 0, generator: None };
+    (Session::of(loaded, Path::new("test"), Stats::new()).expect("the scene builds"), view)
+}
+
+/// True, with a line that says so, if a frame is noisy that was to be denoised: there is no library.
+pub fn lacks_denoiser(frame: &Frame) -> bool {
+    let warning = frame.remarks.iter().find(|remark| matches!(remark, Remark::Warning(_)));
+    if let Some(warning) = warning {
+        eprintln!("skipped: {warning:?}");
+    }
+    warning.is_some()
 }
 
 /// The picture by lightcuts per pixel over the same virtual lights, at a quarter of the default error.

@@ -8,6 +8,7 @@ mod cache_artefacts;
 mod common;
 mod compensation;
 mod denoise;
+mod drawn;
 mod extremes;
 mod lightcuts;
 mod many_lights;

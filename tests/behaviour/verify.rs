@@ -10,8 +10,9 @@ use lightsplat::method::Family;
 use lightsplat::method::Look;
 use lightsplat::method::path::{Counts, Wanted, pixel_means};
 use lightsplat::method::render;
-use lightsplat::method::{lightcuts, path, reconstruction};
+use lightsplat::method::{Method, cache, lightcuts, path, reconstruction};
 use lightsplat::progress::Control;
+use lightsplat::session::Goal;
 use lightsplat::verify::{Estimate, Settings, Verified, verify};
 use lightsplat::view::View;
 use rayon::prelude::*;
@@ -213,7 +214,7 @@ fn load(name: &str) -> WorldAndView {
     world(load_scene(&path, Some([64, 64])))
 }
 
-/// Ten pairs of scene and settings, each verified with four seeds. Prints the table: the truth's interval by
+/// Thirteen pairs of scene and settings, each verified with four seeds. Prints the table: the truth's interval by
 /// a whole reference, which is itself noisy, and the estimate with its own.
 #[test]
 #[ignore = "minutes of path tracing; run with --release --ignored --nocapture"]
@@ -228,13 +229,16 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
         (few.light.indirect, few.cut.epsilon) = (20_000, 0.04);
         let cuts = lightcuts::Settings { family: Family::default(), ..Default::default() };
         let few_paths = path::Settings { spp: 64, ..Default::default() };
+        let drawn = cache::Settings::default();
         let pairs = match name {
             "cornell" | "kitchen" => vec![
+                ("cache", render(&world, &world.view, &drawn, &control).color, Look::Pixels),
                 ("reconstruction", render(&world, &world.view, &cached, &control).color, eye),
                 ("reconstruction, few VPLs", render(&world, &world.view, &few, &control).color, eye),
             ],
             "knot" => vec![
                 ("reconstruction", render(&world, &world.view, &cached, &control).color, eye),
+                ("cache", render(&world, &world.view, &drawn, &control).color, Look::Pixels),
                 ("path, 64 spp", render(&world, &world.view, &few_paths, &control).color, Look::Pixels),
             ],
             "nave" => vec![
@@ -284,4 +288,45 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
     }
     println!("covered of {trials}: bias {}, RMS {}, percentile {}", covered[0], covered[1], covered[2]);
     assert!(covered.iter().all(|&c| c * 10 >= trials * 9), "{covered:?} of {trials}");
+}
+
+mod slow_default {
+    use super::*;
+
+    /// The default in a room with a ball and a lamp, without denoising and, where there is the library, with it.
+    #[test]
+    fn intervals_cover_the_error_of_the_default_noisy_and_denoised() {
+        let settings = cache::Settings::default();
+        let mut scene = staged(lit_room());
+        scene.max_depth = Some(6);
+        let (session, view) = session(scene);
+        let frame = |denoise| {
+            let goal = Goal { method: Method::Cache(settings), denoise: Some(denoise), ..Goal::default() };
+            session.frame(&view, &goal, &Control::new()).expect("a frame")
+        };
+        let noisy = frame(false).film.color;
+        let denoised = frame(true);
+        let world = WorldAndView { world: session.world, view };
+        let references = references(&world, Look::Pixels, 4096);
+        let mut pictures = vec![noisy];
+        if !lacks_denoiser(&denoised) {
+            pictures.push(denoised.film.color);
+        }
+        let (mut covered, mut trials) = ([0; 3], 0);
+        for image in pictures {
+            let truth = known(&image, &references);
+            for seed in 0..5 {
+                let settings = Settings { pixels: 400, seed, ..Settings::default() };
+                let found = check(&world, &image, &settings);
+                let square = |e: Estimate| e.map(|e| e * e);
+                let estimates =
+                    [found.relative_bias, square(found.relative_rms), square(found.relative_error_95)];
+                for (i, estimate) in estimates.into_iter().enumerate() {
+                    covered[i] += u32::from(agree(estimate, truth[i]));
+                }
+                trials += 1;
+            }
+        }
+        assert!(covered.iter().all(|&c| c + 1 >= trials), "{covered:?} of {trials}");
+    }
 }

@@ -1,0 +1,410 @@
+//! Direct light drawn by the eye pass, and indirect light at points merged from its samples, against path tracing.
+
+use crate::common::*;
+use glam::{DVec3, Vec2, Vec3};
+use lightsplat::film::metrics::z_test;
+use lightsplat::film::{Image, Window};
+use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::{FoundBy, Look, Method, Renderer, cache, path};
+use lightsplat::progress::Control;
+use lightsplat::scene::{Coat, DeltaLight, Distribution, Environment, Fresnel, Lobe, Material, Reflectance};
+use lightsplat::session::{Frame, Goal, Session};
+use lightsplat::stats::Counter;
+use lightsplat::view::View;
+use std::f32::consts::PI;
+
+/// Pictures averaged.
+const SEEDS: u32 = 64;
+
+/// The default, undenoised, with direct light alone.
+fn direct_only() -> cache::Settings {
+    let mut settings = cache::Settings::default();
+    (settings.light.direct, settings.light.indirect) = (1, 0);
+    settings
+}
+
+/// Mean of the pictures of so many seeds, and the variance of that mean, rounding included.
+fn over_seeds(world: &WorldAndView, settings: cache::Settings, seeds: u32) -> [Image; 2] {
+    let Window { width, height, .. } = world.view.window;
+    let mut sums = vec![[DVec3::ZERO; 2]; (width * height) as usize];
+    for seed in 0..seeds {
+        let picture = rendered(world, &cache::Settings { seed, ..settings }).color;
+        for ([sum, squares], pixel) in sums.iter_mut().zip(picture.pixels) {
+            *sum += pixel.as_dvec3();
+            *squares += pixel.as_dvec3().powf(2.0);
+        }
+    }
+    let n = f64::from(seeds);
+    let image = |pixels| Image { width, height, pixels };
+    let mean = |[sum, _]: &[DVec3; 2]| *sum / n;
+    let variance = |sums: &[DVec3; 2]| {
+        let (mean, [_, squares]) = (mean(sums), *sums);
+        ((squares / n - mean * mean) / (n - 1.0)).max(DVec3::ZERO) + (1e-6 * mean).powf(2.0)
+    };
+    [
+        image(sums.iter().map(|sums| mean(sums).as_vec3()).collect()),
+        image(sums.iter().map(|sums| variance(sums).as_vec3()).collect()),
+    ]
+}
+
+/// The path tracer's picture and its variance; its seed is none of the others'.
+fn paths(world: &WorldAndView, spp: u32, max_depth: Option<u32>) -> [Image; 2] {
+    let settings = path::Settings { spp, seed: SEEDS, max_depth, ..Default::default() };
+    let output = rendered(world, &settings);
+    [output.color, output.variance.expect("more than one sample")]
+}
+
+/// Asserts that two means are those of the same quantity, by pixel and altogether.
+fn assert_same([mean, variance]: &[Image; 2], [exact, exact_variance]: &[Image; 2], what: &str) {
+    let test = z_test(mean, exact, variance, exact_variance);
+    // Rare bright paths leave the variance uncertain, and stratified samples have less than they state.
+    assert!(test.share_passed > 0.99 && test.mean_z_squared < 1.3, "{what}: {test:?}");
+    let sum = |image: &Image| image.pixels.iter().map(|p| p.as_dvec3()).sum::<DVec3>();
+    let deviation = (sum(variance) + sum(exact_variance)).map(f64::sqrt);
+    let z = (sum(mean) - sum(exact)) / deviation;
+    let precision = deviation / sum(exact);
+    assert!(z.abs().max_element() < 4.0 && precision.max_element() < 0.01, "{what}: {z} {precision}");
+}
+
+/// A room with a ball in it, without its wall behind the ball and without light.
+fn dark_room() -> SceneAndView {
+    let mut scene = scene(camera(Vec3::new(0.1, 0.0, 0.95), Vec3::new(0.0, -0.2, 0.0), 0.8), [24, 24]);
+    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.4)));
+    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    scene.meshes.remove(2);
+    scene.meshes.push(sphere(Vec3::new(0.2, -0.6, -0.3), 0.4, 24, wall));
+    scene
+}
+
+/// A kind of light: its name, and how it is added to a scene.
+type Light = (&'static str, fn(&mut SceneAndView));
+
+const LIGHTS: [Light; 6] = [
+    ("lamp", |scene| {
+        let black = add_material(scene, diffuse(Rgb::ZERO));
+        let lamp = quad(Vec3::new(-0.6, 0.9, -0.5), Vec3::X * 0.5, Vec3::Z * 0.4, black);
+        scene.meshes.push(emitting(lamp, Rgb::new(9.0, 8.0, 6.0)));
+    }),
+    ("point", |scene| {
+        let (position, intensity) = (Vec3::new(-0.4, 0.6, 0.2), Rgb::new(0.5, 0.7, 0.9));
+        scene.lights.push(DeltaLight::Point { position, intensity });
+    }),
+    ("spot", |scene| {
+        let position = Vec3::new(0.5, 0.8, 0.5);
+        let (direction, intensity) = (-position.normalize(), Rgb::new(2.0, 1.5, 1.0));
+        let (inner_angle, outer_angle) = (0.3, 0.7);
+        scene.lights.push(DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle });
+    }),
+    ("sun", |scene| {
+        let direction = Vec3::new(0.2, -0.5, 1.0).normalize();
+        scene.lights.push(DeltaLight::Directional { direction, irradiance: Rgb::new(3.0, 2.5, 2.0) });
+    }),
+    ("sky", |scene| scene.environment = Some(Environment::Constant(Rgb::new(0.6, 0.8, 1.2)))),
+    ("all", |scene| LIGHTS[..5].iter().for_each(|(_, add)| add(scene))),
+];
+
+#[test]
+fn direct_light_is_right_on_the_mean_for_every_kind_of_light() {
+    for (name, add) in LIGHTS {
+        let mut scene = dark_room();
+        add(&mut scene);
+        let world = world(scene);
+        let settings = cache::Settings { spp: 4, max_depth: Some(2), ..direct_only() };
+        assert_same(&over_seeds(&world, settings, SEEDS), &paths(&world, 1024, Some(2)), name);
+    }
+}
+
+#[test]
+fn a_floor_under_a_lamp_a_bulb_and_the_sky_has_their_irradiance() {
+    let mut scene = scene(camera(Vec3::new(0.0, 0.5, 0.0), Vec3::ZERO, 1e-3), [4, 4]);
+    let floor = add_material(&mut scene, diffuse(Rgb::splat(0.6)));
+    scene.meshes.push(quad(Vec3::new(-5.0, 0.0, -5.0), Vec3::Z * 10.0, Vec3::X * 10.0, floor));
+    let (position, intensity) = (Vec3::new(0.0, 2.0, 1.5), Rgb::splat(10.0));
+    scene.lights.push(DeltaLight::Point { position, intensity });
+    scene.environment = Some(Environment::Constant(Rgb::splat(0.8)));
+    // A square of half-width h at height d, parallel, before the sky (Howell C-11 applied to four corners).
+    let (h, d) = (0.5f32, 1.0f32);
+    let black = add_material(&mut scene, diffuse(Rgb::ZERO));
+    let lamp = quad(Vec3::new(-h, d, -h), Vec3::X * 2.0 * h, Vec3::Z * 2.0 * h, black);
+    scene.meshes.push(emitting(lamp, Rgb::splat(7.0)));
+    let a = h / d;
+    let quarter = 2.0 * a / (1.0 + a * a).sqrt() * (a / (1.0 + a * a).sqrt()).atan();
+    let irradiance = 10.0 * 0.8 / 6.25 + (7.0 - 0.8) * 2.0 * quarter + 0.8 * PI;
+
+    let settings = cache::Settings { spp: 256, ..direct_only() };
+    let [mean, variance] = over_seeds(&world(scene), settings, SEEDS);
+    let (mean, variance) = (regions(&mean, 4)[0], regions(&variance, 4)[0] / 16.0);
+    let expected = 0.6 / PI * irradiance;
+    assert!((mean.x - expected).abs() < 4.0 * variance.x.sqrt(), "{mean} {expected}, {variance}");
+    assert!(variance.x.sqrt() < 0.002 * expected, "{variance}");
+}
+
+#[test]
+fn a_single_sample_looks_through_the_centre_of_the_pixel() {
+    let mut scene = dark_room();
+    LIGHTS[1].1(&mut scene);
+    let world = world(scene);
+    let look = Look::EyeSamples { spp: 1, seed: 0 };
+    let settings = path::Settings { spp: 1, max_depth: Some(2), look, ..Default::default() };
+    let single = cache::Settings { spp: 1, ..direct_only() };
+    assert_eq!(single.look(), look);
+    let drawn = rendered(&world, &single).color;
+    // One point light leaves nothing to chance.
+    assert_eq!(drawn, rendered(&world, &settings).color);
+}
+
+fn rough(alpha: f32, base: f32, coat: Option<Coat>) -> Material {
+    let (fresnel, scale) = match coat {
+        Some(coat) => (Fresnel::Dielectric(coat.eta), Rgb::ONE),
+        None => (Fresnel::One, Rgb::new(0.9, 0.8, 0.6)),
+    };
+    let (distribution, scale) = (Distribution::Ggx, Reflectance::Constant(scale));
+    let lobe = Lobe::Rough { distribution, alpha: alpha.into(), fresnel, scale };
+    Material { lobes: vec![lobe], coat, ..diffuse(Rgb::splat(base)) }
+}
+
+/// A smooth coat on a base.
+fn plastic(base: f32) -> Material {
+    let coat = Coat { eta: 1.5, nonlinear: false };
+    let scale = Reflectance::Constant(Rgb::ONE);
+    let lobe = Lobe::Mirror { fresnel: Fresnel::Dielectric(1.5), scale };
+    Material { lobes: vec![lobe], coat: Some(coat), ..diffuse(Rgb::splat(base)) }
+}
+
+/// Small mirrors, glass and sharp lobes close to the eye before a far wall that has a base under coats: all light but
+/// a ten-thousandth, which is scattered from the wall by way of the small things, reaches the eye directly or along
+/// chains. The wall is no more than one plane, so that it does not light itself.
+fn gallery() -> SceneAndView {
+    let mut scene = scene(camera(Vec3::ZERO, -Vec3::Z, 0.8), [24, 24]);
+    let coat = Some(Coat { eta: 1.5, nonlinear: false });
+    let walls =
+        [diffuse(Rgb::new(0.2, 0.5, 0.8)), plastic(0.4), rough(0.08, 0.6, coat), rough(0.1, 0.0, None)];
+    for (i, material) in walls.into_iter().enumerate() {
+        let material = add_material(&mut scene, material);
+        let corner = Vec3::new(-20.0 + 10.0 * i as f32, -20.0, -10.0);
+        scene.meshes.push(quad(corner, Vec3::X * 10.0, Vec3::Y * 40.0, material));
+    }
+    let small = [mirror(), glass(1.5), rough(0.1, 0.0, None), rough(0.02, 0.0, None)];
+    for (i, material) in small.into_iter().enumerate() {
+        let material = add_material(&mut scene, material);
+        let (x, y) = (0.045 * (i % 2) as f32 - 0.0225, 0.045 * (i / 2) as f32 - 0.0225);
+        scene.meshes.push(sphere(Vec3::new(x, y, -0.1), 0.02, 48, material));
+    }
+    let pane = add_material(&mut scene, glass(1.4));
+    for z in [-0.2, -0.201] {
+        let corner = Vec3::new(-0.15, 0.05, z);
+        let (a, b) = if z == -0.2 { (Vec3::X, Vec3::Y) } else { (Vec3::Y, Vec3::X) };
+        scene.meshes.push(quad(corner, a * 0.1, b * 0.1, pane));
+    }
+    scene
+}
+
+#[test]
+fn mirrors_glass_coats_and_sharp_lobes_show_direct_light_as_paths_see_it() {
+    let lamp = |scene: &mut SceneAndView| {
+        let black = add_material(scene, diffuse(Rgb::ZERO));
+        let lamp = quad(Vec3::new(-3.0, 8.0, -6.0), Vec3::X * 6.0, Vec3::Z * 4.0, black);
+        scene.meshes.push(emitting(lamp, Rgb::new(9.0, 8.0, 6.0)));
+    };
+    let point = |scene: &mut SceneAndView| {
+        let (position, intensity) = (Vec3::new(4.0, -6.0, -4.0), Rgb::new(80.0, 90.0, 99.0));
+        scene.lights.push(DeltaLight::Point { position, intensity });
+    };
+    let sky = |scene: &mut SceneAndView| scene.environment = Some(Environment::Constant(Rgb::splat(0.7)));
+    let lights: [Light; 3] = [("lamp", lamp), ("point", point), ("sky", sky)];
+    for (name, add) in lights {
+        let mut scene = gallery();
+        add(&mut scene);
+        let world = world(scene);
+        assert_same(&over_seeds(&world, direct_only(), SEEDS), &paths(&world, 4096, None), name);
+    }
+}
+
+/// Means over squares of `size` pixels.
+fn regions(image: &Image, size: u32) -> Vec<Rgb> {
+    let mut sums = vec![Rgb::ZERO; (image.width / size * (image.height / size)) as usize];
+    for (i, pixel) in (0..).zip(&image.pixels) {
+        let (x, y) = (i % image.width / size, i / image.width / size);
+        sums[(y * (image.width / size) + x) as usize] += *pixel / (size * size) as f32;
+    }
+    sums
+}
+
+/// Maximum difference of a region's luminance, relative to the reference.
+fn worst_region(test: &Image, reference: &Image, size: u32) -> f32 {
+    let pairs = regions(test, size).into_iter().zip(regions(reference, size));
+    pairs.map(|(a, b)| (luminance(a) / luminance(b) - 1.0).abs()).fold(0.0, f32::max)
+}
+
+/// A lit room with a floor under a smooth coat, and a mirror, a glass and glossy balls so small that they do not change
+/// its light; they fill much of the view.
+fn room_of_balls() -> SceneAndView {
+    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.9), Vec3::new(0.0, -0.25, 0.0), 0.8), [48, 48]);
+    let wall = add_material(&mut scene, diffuse(Rgb::new(0.6, 0.5, 0.4)));
+    let floor = add_material(&mut scene, plastic(0.5));
+    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    scene.meshes[0].material = floor;
+    let lamp = quad(Vec3::new(-0.6, 0.99, -0.6), Vec3::X * 1.2, Vec3::Z * 1.2, wall);
+    scene.meshes.push(emitting(lamp, Rgb::new(3.0, 2.7, 2.4)));
+    let small = [mirror(), glass(1.5), rough(0.1, 0.0, None), rough(0.02, 0.0, None)];
+    for (i, material) in small.into_iter().enumerate() {
+        let material = add_material(&mut scene, material);
+        let (x, y) = (0.06 * (i % 2) as f32 - 0.03, 0.06 * (i / 2) as f32 - 0.055);
+        scene.meshes.push(sphere(Vec3::new(x, y, 0.8), 0.022, 48, material));
+    }
+    scene
+}
+
+#[test]
+fn light_from_records_and_cuts_shows_in_chains_as_paths_see_it() {
+    let world = world(room_of_balls());
+    let mut settings = cache::Settings { max_depth: Some(8), ..Default::default() };
+    settings.light.indirect = 50_000;
+    let [mean, _] = over_seeds(&world, settings, 4);
+    let [exact, _] = paths(&world, 1024, Some(8));
+    let (worst, total) = (worst_region(&mean, &exact, 8), worst_region(&mean, &exact, 48));
+    assert!(worst < 0.06 && total < 0.02, "{worst} {total}");
+}
+
+#[test]
+fn fine_stripes_far_away_have_the_light_of_their_mean() {
+    let stripes = [Rgb::new(0.9, 0.1, 0.3), Rgb::new(0.1, 0.7, 0.3)];
+    let mean = (stripes[0] + stripes[1]) / 2.0;
+    let picture = |striped: bool| {
+        let (mut scene, _) = lit_room(camera(Vec3::new(0.0, 0.0, 0.9), Vec3::ZERO, 0.5), 32);
+        let material = if striped { checkered(&mut scene, 2, stripes.into()) } else { diffuse(mean) };
+        let material = add_material(&mut scene, material);
+        // The wall opposite, with several stripes to a pixel.
+        let opposite =
+            scene.meshes.iter().position(|m| m.positions.iter().all(|p| p.z == -1.0)).expect("a wall");
+        let corner = Vec3::splat(-1.0);
+        scene.meshes[opposite] =
+            textured(quad(corner, Vec3::X * 2.0, Vec3::Y * 2.0, material), Vec2::new(91.3, 17.7));
+        let mut settings = cache::Settings::default();
+        settings.light.indirect = 30_000;
+        over_seeds(&world(scene), settings, 8)
+    };
+    let ([striped, variance], [plain, _]) = (picture(true), picture(false));
+    let worst = worst_region(&striped, &plain, 8);
+    // The noise of one picture's sixteen samples; that of a single sample is 0.8.
+    let noise = (8.0 * regions(&variance, 32)[0]).map(f32::sqrt) / regions(&plain, 32)[0];
+    assert!(worst < 0.02 && noise.max_element() < 0.2, "{worst} {noise}");
+}
+
+/// Wires, a seventh of a pixel wide and some pixels apart, before a bright wall.
+fn fence() -> SceneAndView {
+    let mut scene = scene(camera(Vec3::ZERO, -Vec3::Z, 0.5), [48, 48]);
+    let white = add_material(&mut scene, diffuse(Rgb::splat(0.8)));
+    let dark = add_material(&mut scene, diffuse(Rgb::splat(0.02)));
+    scene.meshes.push(quad(Vec3::new(-9.0, -9.0, -4.0), Vec3::X * 18.0, Vec3::Y * 18.0, white));
+    // A pixel is 1/48 wide at a distance of 1.
+    for wire in -10..=10 {
+        let (x, width) = (5.3 / 48.0 * wire as f32, 0.15 / 48.0);
+        let slanted = Vec3::new(0.1, 3.0, 0.0);
+        scene.meshes.push(quad(Vec3::new(x, -1.5, -1.0), Vec3::X * width, slanted, dark));
+    }
+    scene.environment = Some(Environment::Constant(Rgb::ONE));
+    scene
+}
+
+fn frame(session: &Session, view: &View, settings: cache::Settings, denoise: bool) -> Frame {
+    let goal = Goal { method: Method::Cache(settings), denoise: Some(denoise), ..Goal::default() };
+    session.frame(view, &goal, &Control::new()).expect("a frame")
+}
+
+/// The denoised frame's picture; `None` where there is no library.
+fn denoised(session: &Session, view: &View, settings: cache::Settings) -> Option<Image> {
+    let frame = frame(session, view, settings, true);
+    (!lacks_denoiser(&frame)).then_some(frame.film.color)
+}
+
+#[test]
+fn wires_thinner_than_a_pixel_are_not_lost() {
+    let (session, view) = session(fence());
+    let mut settings = cache::Settings::default();
+    settings.light.indirect = 20_000;
+    let paths = path::Settings { spp: 1024, seed: 9, ..Default::default() };
+    let goal = Goal { method: Method::Path(paths), denoise: Some(false), ..Goal::default() };
+    let exact = session.frame(&view, &goal, &Control::new()).expect("a frame").film.color;
+    let noisy = frame(&session, &view, settings, false).film.color;
+    let denoised = denoised(&session, &view, settings);
+    for picture in [Some(noisy), denoised].into_iter().flatten() {
+        let worst = worst_region(&picture, &exact, 16);
+        // Slope of the regression on the reference: 1 if the wires are as dark as they should be, 0 if they are lost.
+        let mean = luminance(regions(&exact, 48)[0]);
+        let values = picture
+            .pixels
+            .iter()
+            .zip(&exact.pixels)
+            .map(|(a, b)| (luminance(*a) - mean, luminance(*b) - mean));
+        let (products, squares) = values.fold((0.0, 0.0), |sum, (a, b)| (sum.0 + a * b, sum.1 + b * b));
+        let slope = products / squares;
+        assert!(worst < 0.02 && (slope - 1.0).abs() < 0.1, "{worst} {slope}");
+        let differences = picture.pixels.iter().zip(&exact.pixels).map(|(a, b)| luminance(*a - *b).powi(2));
+        let noise = (differences.sum::<f32>() / squares).sqrt();
+        assert!(noise < 0.9, "{noise}");
+    }
+}
+
+/// Runs `work` on so many threads.
+fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool").install(work)
+}
+
+#[test]
+fn the_bits_of_the_default_do_not_depend_on_threads_denoised_or_not() {
+    let mut settings = cache::Settings::default();
+    settings.light.indirect = 20_000;
+    let run = |threads| {
+        on_threads(threads, || {
+            let (session, view) = session(room_of_balls());
+            let noisy = frame(&session, &view, settings, false).film.color;
+            (noisy, denoised(&session, &view, settings))
+        })
+    };
+    let one = run(1);
+    for threads in [2, 4] {
+        assert!(one == run(threads), "{threads} threads");
+    }
+}
+
+#[test]
+fn a_crop_repeats_the_whole_picture_s_direct_light() {
+    let world = world(room_of_balls());
+    for spp in [1, 5, 16] {
+        let settings = cache::Settings { spp, seed: 3, ..direct_only() };
+        let whole = rendered(&world, &settings).color;
+        for [x, y, width, height] in [[0, 0, 48, 20], [5, 30, 19, 3], [17, 13, 1, 1], [31, 7, 17, 41]] {
+            let window = Window { offset: [x, y], width, height, ..world.view.window };
+            let view = View { window, ..world.view };
+            let crop = lightsplat::method::render(&world, &view, &settings, &Control::new()).color;
+            for (i, pixel) in (0..).zip(crop.pixels) {
+                let (x, y) = (x + i % width, y + i / width);
+                assert_eq!(pixel, whole.pixels[(y * 48 + x) as usize], "{spp} {x} {y}");
+            }
+        }
+    }
+}
+
+#[test]
+fn cuts_are_coarse_where_most_of_the_light_is_known() {
+    // A room seen through glass that reflects a small panel behind the eye.
+    let mean_cut = |panel_radiance: f32| {
+        let (mut scene, _) = lit_room(camera(Vec3::new(0.0, 0.0, 0.9), Vec3::ZERO, 0.3), 24);
+        // A quarter is reflected, so that samples of every pixel see the panel.
+        let glass = add_material(&mut scene, glass(3.0));
+        let black = add_material(&mut scene, diffuse(Rgb::ZERO));
+        scene.meshes.push(quad(Vec3::new(-0.1, -0.1, 0.85), Vec3::X * 0.2, Vec3::Y * 0.2, glass));
+        let panel = quad(Vec3::new(-0.05, -0.05, 0.95), Vec3::Y * 0.1, Vec3::X * 0.1, black);
+        scene.meshes.push(emitting(panel, Rgb::splat(panel_radiance)));
+        let mut settings = cache::Settings::default();
+        (settings.light.indirect, settings.cache.indirect) = (30_000, FoundBy::Cuts);
+        let output = rendered(&world(scene), &settings);
+        match output.stats.get("Lightcut/mean cut") {
+            Some(Counter::Sum(mean)) => mean,
+            other => panic!("{other:?}"),
+        }
+    };
+    let (unknown, known) = (mean_cut(0.01), mean_cut(100.0));
+    assert!(known < 0.5 * unknown, "{known} {unknown}");
+}
