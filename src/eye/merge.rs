@@ -9,7 +9,7 @@ use super::points::{PointGeometry, PointSurface};
 use crate::math::{Rgb, luminance};
 use crate::paths::ChainEnd;
 
-/// Minimum cosine between normals of samples that are merged: 11 degrees.
+/// Minimum cosine between normals, and between directions towards the eye, of samples that are merged: 11 degrees.
 const MIN_COS: f32 = 0.98;
 
 /// Maximum distance between samples that are merged, and from each other's plane, in spacings.
@@ -57,6 +57,7 @@ impl<'w> MergedPoint<'w> {
             && mine.material() == others.material()
             && mine.same_lobes(others)
             && a.normal.dot(b.normal) > MIN_COS
+            && self.surface.out.dot(other.surface.out) > MIN_COS
             && between.length_squared() < (MAX_DISTANCE * a.spacing).powi(2)
             && a.normal.dot(between).abs() < MAX_HEIGHT * a.spacing
     }

@@ -61,7 +61,11 @@ impl<'w> EyePass<'w> {
         let brightest = |seen: &VisibilitySample| {
             let known = luminance(self.emitted.pixels[seen.pixel as usize]);
             let weight = luminance(seen.weight);
-            if known > 0.0 && known < f32::INFINITY && weight > 0.0 { known / weight } else { 0.0 }
+            match weight > 0.0 {
+                true if known > 0.0 && known < f32::INFINITY => known / weight,
+                true => 0.0,
+                false => MAX_KNOWN,
+            }
         };
         self.visibility.of(point).iter().map(brightest).fold(f32::INFINITY, f32::min).min(MAX_KNOWN)
     }
