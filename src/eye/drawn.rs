@@ -13,9 +13,13 @@ use crate::sampling::hash;
 use crate::view::View;
 use crate::world::World;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Number of paths traced together, about: enough to fill packets to the end, few enough for the second-level cache.
 const BATCH: u32 = 1024;
+
+/// Number of shading points that so many samples of a pixel are merged into at most, as a rule.
+const MERGED: u64 = 3;
 
 /// Share of a pixel's edge that counts as the distance to the next point.
 const SPACING: f32 = 0.5;
@@ -98,19 +102,33 @@ impl<'w> EyePass<'w> {
     }
 }
 
+/// Shading points expected of each pixel with `spp` samples, at most.
+pub fn merged_points(spp: u32) -> u64 {
+    u64::from(spp).min(MERGED * u64::from(spp.div_ceil(BATCH)))
+}
+
 impl<'w> Tile<'_, 'w> {
     fn trace(&self, index: usize, work: &mut Workspace<'_, 'w>) -> VisibleSurfaces<'w> {
         let mut found = VisibleSurfaces::default();
         let window = &self.view.window;
         let pixels: Vec<[u32; 2]> = window.tile(index, TILE).collect();
-        for pixels in pixels.chunks((BATCH / self.settings.spp).max(1) as usize) {
-            self.pixels(pixels, work, &mut found);
+        let spp = self.settings.spp;
+        for pixels in pixels.chunks((BATCH / spp).max(1) as usize) {
+            for first in (0..spp).step_by(BATCH as usize) {
+                self.pixels(pixels, first..first.saturating_add(BATCH).min(spp), work, &mut found);
+            }
         }
         found
     }
 
-    /// Traces the paths of some pixels.
-    fn pixels(&self, pixels: &[[u32; 2]], work: &mut Workspace<'_, 'w>, found: &mut VisibleSurfaces<'w>) {
+    /// Traces some of the paths of some pixels, whose ends are merged.
+    fn pixels(
+        &self,
+        pixels: &[[u32; 2]],
+        samples: Range<u32>,
+        work: &mut Workspace<'_, 'w>,
+        found: &mut VisibleSurfaces<'w>,
+    ) {
         let EyeSettings { spp, seed, max_depth } = self.settings;
         let window = &self.view.window;
         let Workspace { batch, ends, merged } = work;
@@ -118,7 +136,7 @@ impl<'w> Tile<'_, 'w> {
         ends.spacing_by_distance = SPACING * self.view.pixel_angle();
         let paths = pixels.iter().flat_map(|pixel| {
             let pixel = window.film_pixel(*pixel);
-            (0..spp).map(move |sample| Start { pixel, sample, seed })
+            samples.clone().map(move |sample| Start { pixel, sample, seed })
         });
         let look = if spp > 1 { Look::Pixels } else { Look::EyeSamples { spp, seed } };
         start(batch, paths, self.view, look);
@@ -130,7 +148,7 @@ impl<'w> Tile<'_, 'w> {
         for (i, [x, y]) in (1..).zip(pixels) {
             let pixel = y * window.width + x;
             let mut sum = Rgb::ZERO;
-            for value in radiance.by_ref().take(spp as usize) {
+            for value in radiance.by_ref().take(samples.len()) {
                 if value.is_finite() {
                     sum += value;
                 } else {
@@ -140,10 +158,12 @@ impl<'w> Tile<'_, 'w> {
             if sum != Rgb::ZERO {
                 found.emitted.push((pixel, sum));
             }
-            let (own, others) = rest.split_at(rest.partition_point(|(path, ..)| *path < i * spp));
+            let (own, others) =
+                rest.split_at(rest.partition_point(|(path, ..)| *path < i * samples.len() as u32));
             rest = others;
             let [film_x, film_y] = window.film_pixel([*x, *y]);
-            let draw = hash(hash(film_x, film_y), seed ^ 0x7e11) as f32 * (1.0 / 4_294_967_296.0);
+            let draw =
+                hash(hash(film_x, film_y), seed ^ 0x7e11 ^ samples.start) as f32 * (1.0 / 4_294_967_296.0);
             merge(own.iter().map(|(_, _, point)| *point), draw, merged);
             for point in merged.iter() {
                 found.points.geometry.push(point.geometry);

@@ -13,7 +13,7 @@ mod sharp;
 mod tests;
 
 pub use chain::{ChainCounts, DROPPED_BRANCHES};
-pub use drawn::DrawnLight;
+pub use drawn::{DrawnLight, merged_points};
 pub use features::{Feature, FeatureSettings, Features, UnknownFeature, features};
 pub use index::EyeIndex;
 pub use pass::EyePass;

@@ -125,12 +125,12 @@ impl<'w> EyePass<'w> {
         }
     }
 
-    /// Memory in bytes that it takes to render `window` from eye samples kept all at once, if every ray meets one
-    /// surface: they themselves, and as measured half as much again for sorting and lighting them.
-    pub fn expected_bytes(window: &Window, spp: u32) -> u64 {
+    /// Memory in bytes that it takes to render `window` from so many shading points a pixel kept all at once: they
+    /// themselves, and as measured half as much again for sorting and lighting them.
+    pub fn expected_bytes(window: &Window, points: u64) -> u64 {
         let point = size_of::<PointGeometry>() + size_of::<PointSurface>() + size_of::<u32>();
         let each = 3 * (point + size_of::<VisibilitySample>()) / 2;
-        window.pixel_count().saturating_mul(u64::from(spp)).saturating_mul(each as u64)
+        window.pixel_count().saturating_mul(points).saturating_mul(each as u64)
     }
 
     /// Number of shading points.

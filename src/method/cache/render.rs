@@ -1,7 +1,7 @@
 //! The picture: eye pass, light pass, trees, the cache, and the rest by cuts.
 
 use super::resolve::resolve;
-use crate::eye::EyePass;
+use crate::eye::{EyePass, merged_points};
 use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
@@ -23,9 +23,6 @@ use crate::stats::Stage;
 use crate::view::View;
 use crate::vpl::LightPassSettings;
 use crate::world::World;
-
-/// Shading points a pixel that eye samples are merged into at most, as a rule.
-const MERGED_POINTS: u32 = 3;
 
 method_settings! {
     /// Settings of the method.
@@ -115,8 +112,8 @@ impl Renderer for Settings {
     }
 
     fn expected_bytes(&self, window: &Window) -> Option<u64> {
-        let merged = self.spp.min(MERGED_POINTS);
-        Some(EyePass::expected_bytes(window, if self.cache.draws_direct_light() { merged } else { self.spp }))
+        let drawn = self.cache.draws_direct_light();
+        Some(EyePass::expected_bytes(window, if drawn { merged_points(self.spp) } else { self.spp.into() }))
     }
 
     fn look(&self) -> Look {

@@ -71,7 +71,7 @@ impl Renderer for Settings {
     }
 
     fn expected_bytes(&self, window: &Window) -> Option<u64> {
-        Some(EyePass::expected_bytes(window, self.spp))
+        Some(EyePass::expected_bytes(window, self.spp.into()))
     }
 
     fn ladder(&self) -> &'static [Move] {
