@@ -21,7 +21,8 @@ const BATCH: u32 = 1024;
 /// Number of shading points that so many samples of a pixel are merged into at most, as a rule.
 const MERGED: u64 = 3;
 
-/// Share of a pixel's edge that counts as the distance to the next point.
+/// Share of a pixel's edge that counts as the distance to the next point: that of four eye samples a pixel, for which
+/// the reach of records is set.
 const SPACING: f32 = 0.5;
 
 /// Direct light to be drawn.
@@ -34,6 +35,7 @@ pub struct DrawnLight {
 /// The ends of paths, by the number of the path and in the order of its edges.
 struct Ends<'a, 'w> {
     drawn: &'a DrawnLight,
+    /// Distance between neighbouring points over that from the eye, on surfaces that face it.
     spacing_by_distance: f32,
     found: Vec<(u32, u32, MergedPoint<'w>)>,
 }
@@ -71,7 +73,7 @@ struct Tile<'a, 'w> {
 
 impl<'w> EyePass<'w> {
     /// Finds direct light by `settings.spp` paths a pixel, which end at the first surface that scatters light broadly,
-    /// and the shading points where indirect light is wanted. [`EyePass::emitted`] holds all the light found.
+    /// and the shading points where indirect light is wanted. [`EyePass::known`] holds all the light found.
     pub fn with_direct_light(
         world: &'w World,
         view: &View,
@@ -81,9 +83,10 @@ impl<'w> EyePass<'w> {
     ) -> EyePass<'w> {
         let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
         let tile = Tile { world, view, settings };
+        let spacing_by_distance = SPACING * view.pixel_angle();
         let workspace = || Workspace {
             batch: Batch::default(),
-            ends: Ends { drawn, spacing_by_distance: 0.0, found: Vec::new() },
+            ends: Ends { drawn, spacing_by_distance, found: Vec::new() },
             merged: Vec::new(),
         };
         let tiles = (0..view.window.tile_count(TILE))
@@ -133,7 +136,6 @@ impl<'w> Tile<'_, 'w> {
         let window = &self.view.window;
         let Workspace { batch, ends, merged } = work;
         ends.found.clear();
-        ends.spacing_by_distance = SPACING * self.view.pixel_angle();
         let paths = pixels.iter().flat_map(|pixel| {
             let pixel = window.film_pixel(*pixel);
             samples.clone().map(move |sample| Start { pixel, sample, seed })
@@ -156,7 +158,7 @@ impl<'w> Tile<'_, 'w> {
                 }
             }
             if sum != Rgb::ZERO {
-                found.emitted.push((pixel, sum));
+                found.known.push((pixel, sum));
             }
             let (own, others) =
                 rest.split_at(rest.partition_point(|(path, ..)| *path < i * samples.len() as u32));

@@ -5,7 +5,7 @@
 //! factors, so that textures are antialiased. Deviations: ends of chains through mirrors, glass and sharp lobes, which
 //! may be many to a pixel, are thinned in proportion to the light they may carry, with weights that keep the mean.
 
-use super::points::{PointGeometry, PointSurface};
+use super::points::{PointGeometry, PointSurface, shading_point};
 use crate::math::{Rgb, luminance};
 use crate::paths::ChainEnd;
 
@@ -36,16 +36,9 @@ pub struct MergedPoint<'w> {
 impl<'w> MergedPoint<'w> {
     /// The point of one chain's end; `spacing` is the distance to that of the next pixel. `None` if it cannot be lit.
     pub fn new(end: &ChainEnd<'w>, spacing: f32) -> Option<MergedPoint<'w>> {
-        let ChainEnd { surface: s, bsdf, out, .. } = end;
-        let front = s.frame.normal.dot(*out) > 0.0;
-        let normal = if front { s.frame.normal } else { -s.frame.normal };
-        // Foreshortening is limited, so that grazing samples do not claim whole floors.
-        let spacing = spacing / normal.dot(*out).max(0.05).sqrt();
-        let geometry = PointGeometry { position: s.position, spacing, normal, coat: bsdf.coat() };
-        let surface = PointSurface { bsdf: *bsdf, geometric_normal: s.normal, out: *out };
-        let finite = s.position.is_finite() && spacing.is_finite() && end.throughput.is_finite();
+        let (geometry, surface) = shading_point(&end.surface, end.bsdf, end.out, spacing)?;
         let point = MergedPoint { geometry, surface, weight: end.throughput, way: end.way, depth: end.depth };
-        finite.then_some(point)
+        end.throughput.is_finite().then_some(point)
     }
 
     /// True if `other` may be merged into it.
@@ -70,7 +63,7 @@ impl<'w> MergedPoint<'w> {
     /// Luminance of the share of the light that the point reflects into the pixel.
     fn carried(&self) -> f32 {
         let cos = self.surface.out.dot(self.geometry.normal);
-        luminance(self.weight * self.surface.bsdf.mean_albedo(cos))
+        luminance(self.weight * self.surface.bsdf.albedo_at(cos))
     }
 }
 

@@ -30,8 +30,9 @@ pub struct EyePass<'w> {
     pub index: EyeIndex,
     /// Shares of the points' radiances that reach the pixels.
     pub visibility: VisibilitySamples,
-    /// Light that reaches the eye from emitters, directly or along specular chains.
-    pub emitted: Image,
+    /// Light known: that which reaches the eye from emitters, directly or along specular chains, and direct light if
+    /// it is drawn.
+    pub known: Image,
     /// Rays traced.
     pub chains: ChainCounts,
     /// Radiances that were not finite and left out.
@@ -58,8 +59,8 @@ impl<'w> EyePass<'w> {
     /// Luminance of the light known in the pixel of a shading point, as if the point reflected it: the pixel's error is
     /// judged against all of it.
     pub fn known_luminance(&self, point: usize) -> f32 {
-        let brightest = |seen: &VisibilitySample| {
-            let known = luminance(self.emitted.pixels[seen.pixel as usize]);
+        let as_reflected = |seen: &VisibilitySample| {
+            let known = luminance(self.known.pixels[seen.pixel as usize]);
             let weight = luminance(seen.weight);
             match weight > 0.0 {
                 true if known > 0.0 && known < f32::INFINITY => known / weight,
@@ -67,7 +68,7 @@ impl<'w> EyePass<'w> {
                 false => MAX_KNOWN,
             }
         };
-        self.visibility.of(point).iter().map(brightest).fold(f32::INFINITY, f32::min).min(MAX_KNOWN)
+        self.visibility.of(point).iter().map(as_reflected).fold(f32::INFINITY, f32::min).min(MAX_KNOWN)
     }
 
     /// Traces the eye rays of every pixel in the view's window.
@@ -97,12 +98,12 @@ impl<'w> EyePass<'w> {
     pub(super) fn gather(window: &Window, mut tiles: Vec<VisibleSurfaces<'w>>, spp: u32) -> EyePass<'w> {
         let spp = spp as f32;
         let complete = tiles.len() == window.tile_count(TILE);
-        let mut emitted = Image::new(window.width, window.height);
+        let mut known = Image::new(window.width, window.height);
         let mut chains = ChainCounts::default();
         let mut nonfinite = 0;
         for tile in &mut tiles {
-            for (pixel, radiance) in mem::take(&mut tile.emitted) {
-                emitted.pixels[pixel as usize] += radiance / spp;
+            for (pixel, radiance) in mem::take(&mut tile.known) {
+                known.pixels[pixel as usize] += radiance / spp;
             }
             chains += tile.chains;
             nonfinite += tile.nonfinite;
@@ -118,7 +119,7 @@ impl<'w> EyePass<'w> {
             points: ShadingPoints { geometry, surfaces },
             index,
             visibility: VisibilitySamples::one_each(samples),
-            emitted,
+            known,
             chains,
             nonfinite,
             complete,

@@ -7,6 +7,7 @@
 
 use crate::material::Bsdf;
 use crate::math::Rgb;
+use crate::world::Surface;
 use glam::Vec3;
 use std::ops::Range;
 
@@ -33,6 +34,26 @@ pub struct PointSurface<'w> {
     pub geometric_normal: Vec3,
     /// Unit vector towards the eye, or towards the last mirror or glass before it.
     pub out: Vec3,
+}
+
+/// The shading point at a surface seen along `out`, where the next ray is `spacing` away on a surface that faces the
+/// eye; `None` if it cannot be lit.
+pub fn shading_point<'w>(
+    surface: &Surface,
+    bsdf: Bsdf<'w>,
+    out: Vec3,
+    spacing: f32,
+) -> Option<(PointGeometry, PointSurface<'w>)> {
+    let front = surface.frame.normal.dot(out) > 0.0;
+    if !front && !bsdf.two_sided() {
+        return None;
+    }
+    let normal = if front { surface.frame.normal } else { -surface.frame.normal };
+    // Foreshortening is limited, so that grazing samples do not claim whole floors.
+    let spacing = spacing / normal.dot(out).max(0.05).sqrt();
+    let geometry = PointGeometry { position: surface.position, spacing, normal, coat: bsdf.coat() };
+    let finite = surface.position.is_finite() && spacing.is_finite();
+    finite.then_some((geometry, PointSurface { bsdf, geometric_normal: surface.normal, out }))
 }
 
 /// Points whose reflected radiance is wanted, as a structure of arrays.

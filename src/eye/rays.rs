@@ -1,7 +1,7 @@
 //! Eye rays one by one: their random numbers, their places in pixels, and the surfaces that they make visible.
 
-use super::chain::{ChainCounts, Follow, Met, Vertex, trace};
-use super::points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySample};
+use super::chain::{ChainCounts, Follow, Met, trace};
+use super::points::{ShadingPoints, VisibilitySample, shading_point};
 use crate::math::Rgb;
 use crate::paths::eye_sampler;
 use crate::view::View;
@@ -36,8 +36,8 @@ pub struct VisibleSurfaces<'w> {
     pub points: ShadingPoints<'w>,
     /// Visibility sample of each of them.
     pub visibility: Vec<VisibilitySample>,
-    /// By pixel: light, other than 0, that reaches the eye from emitters, directly or along specular chains.
-    pub emitted: Vec<(u32, Rgb)>,
+    /// By pixel: light, other than 0, that is known (see [`super::EyePass::known`]).
+    pub known: Vec<(u32, Rgb)>,
     /// Rays traced.
     pub chains: ChainCounts,
     /// Radiances that were not finite and left out.
@@ -45,12 +45,12 @@ pub struct VisibleSurfaces<'w> {
 }
 
 impl VisibleSurfaces<'_> {
-    /// Forgets surfaces and emitted light, and keeps the memory.
+    /// Forgets surfaces and light, and keeps the memory.
     pub fn clear(&mut self) {
         self.points.geometry.clear();
         self.points.surfaces.clear();
         self.visibility.clear();
-        self.emitted.clear();
+        self.known.clear();
     }
 }
 
@@ -74,7 +74,8 @@ impl<'a, 'w> EyeRays<'a, 'w> {
             if let Met::Surface(vertex) = met
                 && vertex.bsdf.has_smooth()
                 && vertex.depth < max_depth
-                && let Some((geometry, surface)) = self.shading_point(&vertex)
+                && let Some((geometry, surface)) =
+                    shading_point(&vertex.surface, vertex.bsdf, vertex.out, self.angle * vertex.distance)
             {
                 points.geometry.push(geometry);
                 points.surfaces.push(surface);
@@ -85,22 +86,7 @@ impl<'a, 'w> EyeRays<'a, 'w> {
         if !emitted.is_finite() {
             found.nonfinite += 1;
         } else if emitted != Rgb::ZERO {
-            found.emitted.push((pixel, emitted));
+            found.known.push((pixel, emitted));
         }
-    }
-
-    /// The shading point at a visible surface, or `None` if it cannot be lit.
-    fn shading_point(&self, eye: &Vertex<'w>) -> Option<(PointGeometry, PointSurface<'w>)> {
-        let s = &eye.surface;
-        let front = s.frame.normal.dot(eye.out) > 0.0;
-        if !front && !eye.bsdf.two_sided() {
-            return None;
-        }
-        let normal = if front { s.frame.normal } else { -s.frame.normal };
-        // Foreshortening is limited, so that grazing samples do not claim whole floors.
-        let spacing = self.angle * eye.distance / normal.dot(eye.out).max(0.05).sqrt();
-        let geometry = PointGeometry { position: s.position, spacing, normal, coat: eye.bsdf.coat() };
-        let surface = PointSurface { bsdf: eye.bsdf, geometric_normal: s.normal, out: eye.out };
-        (s.position.is_finite() && spacing.is_finite()).then_some((geometry, surface))
     }
 }

@@ -245,7 +245,7 @@ fn the_back_of_a_one_sided_surface_is_black() {
         let world = world(scene);
         let pass = drawn(&world, &world.view, 16);
         assert_eq!(pass.len(), lit);
-        assert_eq!(pass.emitted.pixels.iter().filter(|light| **light != Rgb::ZERO).count(), lit);
+        assert_eq!(pass.known.pixels.iter().filter(|light| **light != Rgb::ZERO).count(), lit);
     }
 }
 

@@ -132,9 +132,14 @@ impl MaterialSeries {
         self.materials[id.0 as usize].caching
     }
 
+    /// Returns the content of the records of all materials, in their order.
+    pub fn cachings(&self) -> impl Iterator<Item = Caching> + '_ {
+        self.materials.iter().map(|surface| surface.caching)
+    }
+
     /// True if any material is to have a series.
     pub fn any_series(&self) -> bool {
-        self.materials.iter().any(|surface| surface.caching.bands().is_some())
+        self.cachings().any(|caching| caching.bands().is_some())
     }
 
     /// Number of tables of lobes.

@@ -208,7 +208,7 @@ impl<'m> Bsdf<'m> {
     }
 
     /// Returns [`Bsdf::albedo`] seen from the cosine `cos` on the side of the viewer.
-    pub fn mean_albedo(&self, cos: f32) -> Rgb {
+    pub fn albedo_at(&self, cos: f32) -> Rgb {
         self.albedo(Vec3::new(0.0, 0.0, cos.clamp(0.01, 1.0)))
     }
 

@@ -12,7 +12,8 @@ use crate::sampling::Samplers16;
 use crate::world::{Surface, World};
 use glam::Vec3;
 
-/// Surface that a chain of mirrors, glass and sharp lobes has led a path to, and that scatters light by other lobes.
+/// Surface that a chain of mirrors, glass and sharp lobes has led a path to, and that scatters light by other lobes;
+/// not always on the side that is seen.
 #[derive(Clone, Copy, Debug)]
 pub struct ChainEnd<'w> {
     /// Index of the path in its batch.

@@ -7,6 +7,8 @@ mod batch;
 mod look;
 mod packet;
 mod start;
+#[cfg(test)]
+mod tests;
 mod vertex;
 
 pub use batch::{Batch, ChainEnd, Counts, FullPaths, Reach};

@@ -122,7 +122,7 @@ impl Packet {
         found & samples.going_on() & mask_of(&survives)
     }
 
-    /// Calls `reach` with the surfaces that scatter by lobes which chains do not follow, seen from the side that does.
+    /// Calls `reach` with the surfaces that scatter by lobes which chains do not follow.
     fn end_chains<'w, R: Reach<'w>>(
         &self,
         bsdfs: &Bsdfs16<'w>,
@@ -132,9 +132,9 @@ impl Packet {
         reach: &mut R,
     ) {
         for lane in lanes_in(bsdfs.smooth() & found) {
-            let (whole, wo) = bsdfs.lane(lane);
+            let (whole, _) = bsdfs.lane(lane);
             let bsdf = reach.split(&whole).map_or(whole, |(rest, _)| rest);
-            if !bsdf.has_smooth() || !(wo.z > 0.0 || bsdf.two_sided()) {
+            if !bsdf.has_smooth() {
                 continue;
             }
             reach.end(&ChainEnd {

@@ -100,7 +100,7 @@ impl CacheFrame<'_> {
 }
 
 fn blank(eye: &EyePass) -> Image {
-    Image::new(eye.emitted.width, eye.emitted.height)
+    Image::new(eye.known.width, eye.known.height)
 }
 
 /// Pixels that see a shading point.

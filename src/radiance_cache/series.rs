@@ -91,24 +91,26 @@ pub struct Glossy {
     surfaces: MaterialSeries,
 }
 
-/// Direct light to be drawn, if it is: chains follow the lobes that neither irradiance nor series can light.
-pub fn drawn_light(world: &World, settings: &CacheSettings) -> Option<DrawnLight> {
-    let surfaces = MaterialSeries::new(&world.scene, &world.materials, &settings.series);
-    let followed = |material| surfaces.caching(MaterialId(material)) == Caching::PerSample;
-    let materials = world.scene.materials.len() as u32;
-    settings.draws_direct_light().then(|| DrawnLight { followed: (0..materials).map(followed).collect() })
-}
-
 impl Glossy {
-    /// Series of the lobes of a scene, if there are to be records and any of the points has a lobe broad enough.
-    pub fn new(world: &World, points: &ShadingPoints, settings: &CacheSettings) -> Option<Glossy> {
-        if !settings.cached().any()
-            || points.surfaces.iter().all(|surface| surface.bsdf.split_base(1.0).1.is_none())
-        {
-            return None;
-        }
-        let surfaces = MaterialSeries::new(&world.scene, &world.materials, &settings.series);
-        surfaces.any_series().then_some(Glossy { surfaces })
+    /// Series of the lobes of a scene; `None` if its materials have no rough lobe.
+    pub fn new(world: &World, settings: &CacheSettings) -> Option<Glossy> {
+        let materials = 0..world.materials.count() as u32;
+        let rough = |id| world.materials.average(&world.scene, MaterialId(id)).split_base(1.0).1.is_some();
+        let surfaces = || MaterialSeries::new(&world.scene, &world.materials, &settings.series);
+        materials.into_iter().any(rough).then(|| Glossy { surfaces: surfaces() })
+    }
+
+    /// The same where there are to be records and any of the points has a lobe broad enough.
+    pub fn for_points(&self, points: &ShadingPoints, settings: &CacheSettings) -> Option<&Glossy> {
+        let needed = settings.cached().any()
+            && self.surfaces.any_series()
+            && points.surfaces.iter().any(|surface| surface.bsdf.split_base(1.0).1.is_some());
+        needed.then_some(self)
+    }
+
+    /// Materials whose lobes neither irradiance nor series can light.
+    fn too_sharp(&self) -> Vec<bool> {
+        self.surfaces.cachings().map(|caching| caching == Caching::PerSample).collect()
     }
 
     /// Bands of the series that a surface needs; 0 where it has no lobe, or one too sharp.
@@ -118,6 +120,12 @@ impl Glossy {
             _ => 0,
         }
     }
+}
+
+/// Direct light to be drawn, if it is: chains follow the lobes that records cannot light.
+pub fn drawn_light(glossy: Option<&Glossy>, settings: &CacheSettings) -> Option<DrawnLight> {
+    let followed = || glossy.map_or(Vec::new(), Glossy::too_sharp);
+    settings.draws_direct_light().then(|| DrawnLight { followed: followed() })
 }
 
 impl Targets<'_> {

@@ -1,7 +1,9 @@
 //! Settings of records: their number, and their reach.
 
+use crate::eye::merged_points;
 use crate::hsh::SeriesSettings;
 use crate::lightcut::{CutSettings, MIN_SHARED};
+use crate::paths::Look;
 use crate::setting::{DOWN, JudgedBy, PATCHES, SHARE, UP, choices, settings};
 use crate::shadow::ShadowSettings;
 use crate::vpl::DirectIndirect;
@@ -111,6 +113,17 @@ impl CacheSettings {
     /// True if the eye pass finds the direct light.
     pub fn draws_direct_light(&self) -> bool {
         self.direct == DirectBy::Drawn
+    }
+
+    /// Value that a pixel of `spp` eye samples is to have: where direct light is drawn, they are samples of its square.
+    pub fn look(&self, spp: u32, seed: u32) -> Look {
+        // A single sample looks through the pixel's centre, drawn or not.
+        if self.draws_direct_light() && spp > 1 { Look::Pixels } else { Look::EyeSamples { spp, seed } }
+    }
+
+    /// Shading points of a pixel of `spp` eye samples, about, at most.
+    pub fn points_a_pixel(&self, spp: u32) -> u64 {
+        if self.draws_direct_light() { merged_points(spp) } else { spp.into() }
     }
 
     /// True if all light is found by cuts.

@@ -18,9 +18,9 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// The emitters in view.
+    /// The light that the eye pass knows.
     pub fn new(eye: &EyePass, with_parts: bool) -> Picture {
-        let color = eye.emitted.clone();
+        let color = eye.known.clone();
         let blank = || Image::new(color.width, color.height);
         let parts = with_parts.then(|| [blank(), blank(), blank()]);
         Picture { color, parts, nonfinite: eye.nonfinite }

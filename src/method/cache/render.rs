@@ -1,7 +1,7 @@
 //! The picture: eye pass, light pass, trees, the cache, and the rest by cuts.
 
 use super::resolve::resolve;
-use crate::eye::{EyePass, merged_points};
+use crate::eye::EyePass;
 use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
@@ -67,15 +67,16 @@ impl Renderer for Settings {
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
         let wanted = (self.light, self.family);
-        let drawn = drawn_light(world, &self.cache);
+        let glossy = Glossy::new(world, &self.cache);
+        let drawn = drawn_light(glossy.as_ref(), &self.cache);
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = lights.context(world, self.compensation);
         let source = LightcutSource { context, settings: &self.cache };
 
         let mut records = Records::default();
-        let glossy = Glossy::new(world, &samples.points, &self.cache);
-        let targets = Targets::new(&samples.points, &samples.index, glossy.as_ref());
+        let glossy = glossy.as_ref().and_then(|glossy| glossy.for_points(&samples.points, &self.cache));
+        let targets = Targets::new(&samples.points, &samples.index, glossy);
         let frame = CacheFrame::fill(targets, &mut records, &source, control, &mut stats);
         counts::cuts(&mut stats, "Records", &frame.cuts);
 
@@ -112,17 +113,11 @@ impl Renderer for Settings {
     }
 
     fn expected_bytes(&self, window: &Window) -> Option<u64> {
-        let drawn = self.cache.draws_direct_light();
-        Some(EyePass::expected_bytes(window, if drawn { merged_points(self.spp) } else { self.spp.into() }))
+        Some(EyePass::expected_bytes(window, self.cache.points_a_pixel(self.spp)))
     }
 
     fn look(&self) -> Look {
-        let Settings { spp, seed, .. } = *self;
-        // A single sample looks through the pixel's centre, drawn or not.
-        match self.cache.draws_direct_light() && spp > 1 {
-            true => Look::Pixels,
-            false => Look::EyeSamples { spp, seed },
-        }
+        self.cache.look(self.spp, self.seed)
     }
 
     fn leaves_noise(&self) -> bool {

@@ -72,7 +72,7 @@ impl<'w> Tiles<'_, 'w> {
             }
         }
         let mut rays = vec![(Rgb::ZERO, 0.0); (BLOCK * BLOCK * self.spp) as usize];
-        for &(ray, emitted) in &seen.emitted {
+        for &(ray, emitted) in &seen.known {
             rays[ray as usize].0 = emitted;
         }
         shader.shade_all(&seen.points, |task, shaded| {

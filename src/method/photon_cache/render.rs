@@ -9,6 +9,7 @@ use crate::method::cache::resolve::resolve;
 use crate::method::lights::LightStore;
 use crate::method::sampling::method_settings;
 use crate::method::{Output, Prepared, Renderer, Sampled, counts};
+use crate::paths::Look;
 use crate::photon::density::estimates;
 use crate::photon::indirect_light::{GatherCounts, IndirectLight};
 use crate::photon::own::{SampleGather, reflected};
@@ -85,7 +86,8 @@ impl Renderer for Settings {
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
         let wanted = (self.light, self.family);
-        let drawn = drawn_light(world, &self.cache);
+        let glossy = Glossy::new(world, &self.cache);
+        let drawn = drawn_light(glossy.as_ref(), &self.cache);
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = lights.context(world, true);
@@ -95,9 +97,9 @@ impl Renderer for Settings {
         let light = IndirectLight { world, map: &map };
         let source = FinalGatherSource::new(direct, light, Strata::new(self.rays), self.seed);
         let mut records = Records::default();
-        let glossy = Glossy::new(world, &samples.points, &self.cache);
+        let glossy = glossy.as_ref().and_then(|glossy| glossy.for_points(&samples.points, &self.cache));
         let frame = self.cache.cached().any().then(|| {
-            let targets = Targets::new(&samples.points, &samples.index, glossy.as_ref());
+            let targets = Targets::new(&samples.points, &samples.index, glossy);
             CacheFrame::fill(targets, &mut records, &source, control, &mut stats)
         });
         if let Some(frame) = &frame {
@@ -146,7 +148,15 @@ impl Renderer for Settings {
     }
 
     fn expected_bytes(&self, window: &Window) -> Option<u64> {
-        Some(EyePass::expected_bytes(window, self.spp.into()))
+        Some(EyePass::expected_bytes(window, self.cache.points_a_pixel(self.spp)))
+    }
+
+    fn look(&self) -> Look {
+        self.cache.look(self.spp, self.seed)
+    }
+
+    fn leaves_noise(&self) -> bool {
+        self.cache.draws_direct_light()
     }
 }
 

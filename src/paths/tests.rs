@@ -1,0 +1,46 @@
+//! Ends of chains: the ways that they came.
+
+use super::{Batch, ChainEnd, Counts, Look, Reach, Start, start};
+use crate::math::Rgb;
+use crate::scene::Camera;
+use crate::test_scenes::*;
+use glam::Vec3;
+use std::collections::BTreeSet;
+
+/// Ends by the mesh that they lie on: depth and way.
+#[derive(Default)]
+struct Ways(Vec<(u32, u32, u32)>);
+
+impl<'w> Reach<'w> for Ways {
+    const ENDS: bool = true;
+
+    fn end(&mut self, end: &ChainEnd<'w>) {
+        self.0.push((end.surface.mesh, end.depth, end.way));
+    }
+}
+
+#[test]
+fn ways_tell_mirrors_apart_and_nothing_else() {
+    let mut scene = scene(Camera { tan_half_x: 0.5, ..Camera::default() }, [8, 8]);
+    let mirror = add_material(&mut scene, mirror());
+    let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+    // Two mirrors in the upper half of the view, which show the wall behind, and a wall in the lower half.
+    for x in [-5.0, 0.0] {
+        scene.meshes.push(quad(Vec3::new(x, 0.0, -1.0), Vec3::X * 5.0, Vec3::Y * 5.0, mirror));
+    }
+    scene.meshes.push(quad(Vec3::new(-50.0, -50.0, 2.0), Vec3::Y * 100.0, Vec3::X * 100.0, grey));
+    scene.meshes.push(quad(Vec3::new(-50.0, -50.0, -2.0), Vec3::X * 100.0, Vec3::Y * 100.0, grey));
+    let world = world(scene);
+    let pixels = (0..64).map(|i| Start { pixel: [i % 8, i / 8], sample: 0, seed: 0 });
+    let (mut batch, mut ways) = (Batch::default(), Ways::default());
+    start(&mut batch, pixels, &world.view, Look::EyeSamples { spp: 1, seed: 0 });
+    batch.trace(&world, 8, &mut ways, &mut Counts::default());
+    assert_eq!(ways.0.len(), 64);
+    let of = |mesh| -> BTreeSet<(u32, u32)> {
+        ways.0.iter().filter(|end| end.0 == mesh).map(|end| (end.1, end.2)).collect()
+    };
+    assert_eq!(of(3), BTreeSet::from([(1, 0)]), "straight from the eye");
+    let mirrored: Vec<(u32, u32)> = of(2).into_iter().collect();
+    assert_eq!(mirrored.iter().map(|end| end.0).collect::<Vec<_>>(), [2, 2], "one way by each mirror");
+    assert!(mirrored.iter().all(|end| end.1 != 0));
+}
