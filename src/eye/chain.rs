@@ -76,8 +76,10 @@ pub struct ChainCounts {
     pub shadow_rays: u64,
     /// Branches dropped because too many were pending; their light is missing.
     pub overflow: u64,
+    /// Samples that some pixels have and others have not.
+    pub extra_samples: u64,
 }
-add_fields!(ChainCounts { rays, shadow_rays, overflow });
+add_fields!(ChainCounts { rays, shadow_rays, overflow, extra_samples });
 
 struct Branch {
     ray: Ray,

@@ -1,5 +1,6 @@
 //! Eye samples: surfaces visible in a pixel, directly or through mirrors and glass.
 
+mod adaptive;
 mod chain;
 mod drawn;
 mod features;

@@ -12,6 +12,7 @@ use crate::scene::{
 };
 use crate::test_scenes::*;
 use crate::view::View;
+use crate::world::World;
 use glam::{DVec3, Vec2, Vec3};
 
 /// Index of refraction of an interface that reflects a quarter of the light at normal incidence.
@@ -158,14 +159,27 @@ fn room_with_chains() -> WorldAndView {
 }
 
 fn drawn<'w>(world: &'w WorldAndView, view: &View, spp: u32) -> EyePass<'w> {
+    drawn_with(world, view, spp, 0.0)
+}
+
+/// The eye pass with extra samples.
+fn drawn_with<'w>(world: &'w World, view: &View, spp: u32, extra_samples: f32) -> EyePass<'w> {
     let settings = EyeSettings { spp, seed: 1, max_depth: 32 };
-    EyePass::with_direct_light(world, view, settings, &DrawnLight::default(), &Control::new())
+    let drawn = DrawnLight { extra_samples, ..DrawnLight::default() };
+    EyePass::with_direct_light(world, view, settings, &drawn, &Control::new())
 }
 
 #[test]
 fn merged_points_carry_the_whole_light_of_each_pixel() {
     let world = room_with_chains();
-    let pass = drawn(&world, &world.view, 64);
+    // Pixels of 48 and of 192 samples, or of 12, 24 and 48; or with parts of their own.
+    for (spp, extra_samples) in [(64, 0.0), (48, 0.5), (12, 1.0), (700, 0.5)] {
+        check_weights(drawn_with(&world, &world.view, spp, extra_samples), spp, extra_samples > 0.0);
+    }
+}
+
+fn check_weights(pass: EyePass, spp: u32, extra: bool) {
+    assert_eq!(pass.chains.extra_samples > 0, extra);
     let mut sums = vec![Rgb::ZERO; 400];
     for point in 0..pass.len() {
         for sample in pass.visibility.of(point) {
@@ -177,7 +191,8 @@ fn merged_points_carry_the_whole_light_of_each_pixel() {
     assert!(exact > 200 && exact < 400, "{exact}");
     let mean = sums.iter().sum::<Rgb>() / 400.0;
     assert!((mean - Rgb::ONE).abs().max_element() < 0.02, "{mean}");
-    assert!(pass.len() >= 400 && pass.len() < 800, "{}", pass.len());
+    // Ends of first samples and of more are merged together.
+    assert!(pass.len() >= 400 && (pass.len() < 800 || spp > 512), "{}", pass.len());
 }
 
 #[test]
@@ -211,11 +226,12 @@ fn chains_follow_the_share_of_a_sharp_coat_on_a_base() {
 }
 
 #[test]
-fn a_crop_has_the_whole_pictures_merged_points() {
+fn a_crop_has_the_whole_pictures_merged_points_with_extra_samples_too() {
     let world = room_with_chains();
     let points = |window: Window| {
         let view = View { window, ..world.view };
-        let pass = drawn(&world, &view, 16);
+        let pass = drawn_with(&world, &view, 16, 0.3);
+        assert!(pass.chains.extra_samples > 0);
         let mut points = Vec::new();
         for point in 0..pass.len() {
             for sample in pass.visibility.of(point) {

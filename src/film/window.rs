@@ -67,6 +67,20 @@ impl Window {
         (dx < self.width && dy < self.height).then(|| dy as usize * self.width as usize + dx as usize)
     }
 
+    /// The window and so many pixels around it, as far as there are any on the film.
+    pub fn grown(&self, by: u32) -> Window {
+        let start = self.offset.map(|offset| offset.saturating_sub(by));
+        let end = |i: usize, length: u32| (self.offset[i] + length).saturating_add(by).min(self.film[i]);
+        let (width, height) = (end(0, self.width) - start[0], end(1, self.height) - start[1]);
+        Window { offset: start, width, height, ..*self }
+    }
+
+    /// Pixels of the film that lie in the window, in rows.
+    pub fn film_pixels(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let Window { offset: [left, top], width, height, .. } = *self;
+        (top..top + height).flat_map(move |y| (left..left + width).map(move |x| [x, y]))
+    }
+
     /// Film coordinates of a pixel of the window.
     #[inline]
     pub fn film_pixel(&self, [x, y]: [u32; 2]) -> [u32; 2] {
@@ -88,6 +102,15 @@ mod tests {
             let expected: Vec<[u32; 2]> = (0..width).flat_map(|x| (0..height).map(move |y| [x, y])).collect();
             assert_eq!(pixels, expected);
         }
+    }
+
+    #[test]
+    fn a_grown_window_ends_at_the_film() {
+        let window = Window { film: [9, 5], offset: [1, 2], width: 3, height: 3 };
+        let grown = window.grown(2);
+        assert_eq!(grown, Window { film: [9, 5], offset: [0, 0], width: 6, height: 5 });
+        assert_eq!(grown.film_pixels().count(), 30);
+        assert!(grown.film_pixels().enumerate().all(|(i, pixel)| grown.index(pixel) == Some(i)));
     }
 
     #[test]

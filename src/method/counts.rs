@@ -10,6 +10,9 @@ pub fn eye(stats: &mut Stats, counts: &ChainCounts) {
     stats.count("Rays/closest hit", counts.rays);
     stats.count("Eye/shadow rays", counts.shadow_rays);
     stats.count(DROPPED_BRANCHES, counts.overflow);
+    if counts.extra_samples > 0 {
+        stats.count("Eye/extra samples", counts.extra_samples);
+    }
 }
 
 /// Of lightcuts, in a group of counters.

@@ -125,7 +125,9 @@ impl Glossy {
 /// Direct light to be drawn, if it is: chains follow the lobes that records cannot light.
 pub fn drawn_light(glossy: Option<&Glossy>, settings: &CacheSettings) -> Option<DrawnLight> {
     let followed = || glossy.map_or(Vec::new(), Glossy::too_sharp);
-    settings.draws_direct_light().then(|| DrawnLight { followed: followed() })
+    settings
+        .draws_direct_light()
+        .then(|| DrawnLight { followed: followed(), extra_samples: settings.extra_samples })
 }
 
 impl Targets<'_> {

@@ -52,6 +52,12 @@ settings! {
     pub struct CacheSettings in "Records" {
         /// Source of direct light.
         direct: DirectBy = DirectBy::Drawn => [.values(&["drawn", "records", "cuts"]).judged_by(JudgedBy::Flip)];
+        /// Samples beside `spp` for the pixels with the greatest contrast around them, at most three times `spp` each,
+        /// as a share of all pixels' `spp`.
+        ///
+        /// A fifth is worth .6 to 1 dB of the denoised picture, as much as twice the samples everywhere; the next fifth
+        /// half as much.
+        extra_samples: f32 = 0.2 => [.fraction().values(&["0", "0.2", "0.5", "1"]).with(&[("direct", "drawn")])];
         /// Source of indirect light.
         indirect: FoundBy = FoundBy::Records => [.values(&["records", "cuts"])];
         /// Largest error bound of a cluster in a record's cut, relative to its luminance.
@@ -123,7 +129,10 @@ impl CacheSettings {
 
     /// Shading points of a pixel of `spp` eye samples, about, at most.
     pub fn points_a_pixel(&self, spp: u32) -> u64 {
-        if self.draws_direct_light() { merged_points(spp) } else { spp.into() }
+        match self.draws_direct_light() {
+            true => merged_points((spp as f32 * (1.0 + self.extra_samples)) as u32),
+            false => spp.into(),
+        }
     }
 
     /// True if all light is found by cuts.

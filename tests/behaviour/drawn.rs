@@ -307,6 +307,46 @@ fn fence() -> SceneAndView {
     scene
 }
 
+/// Mean square of the differences from `exact`, per pixel.
+fn mean_square_error(picture: &Image, exact: &Image) -> f32 {
+    let squares = picture.pixels.iter().zip(&exact.pixels).map(|(a, b)| (*a - *b).length_squared());
+    squares.sum::<f32>() / exact.pixels.len() as f32
+}
+
+#[test]
+fn extra_samples_go_to_edges_and_leave_the_mean_as_it_is() {
+    let world = world(fence());
+    let settings = |spp, extra_samples| {
+        let mut settings = cache::Settings { spp, max_depth: Some(2), ..direct_only() };
+        settings.cache.extra_samples = extra_samples;
+        settings
+    };
+    // Few samples, which miss most wires: were they to choose, pixels whose wires they miss would be brighter.
+    let exact = paths(&world, 1024, Some(2));
+    assert_same(&over_seeds(&world, settings(4, 1.0), SEEDS), &exact, "a fence");
+
+    // The edge of a dark wall before a bright one, in the light of a sun, which has no noise of its own.
+    let mut scene = fence();
+    scene.meshes.truncate(1);
+    scene.environment = None;
+    scene.lights.push(DeltaLight::Directional { direction: -Vec3::Z, irradiance: Rgb::splat(PI) });
+    let black = add_material(&mut scene, diffuse(Rgb::splat(0.1)));
+    scene.meshes.push(quad(Vec3::new(-2.0, -2.0, -3.0), Vec3::X * 2.0, Vec3::new(0.4, 4.0, 0.0), black));
+    let world = crate::common::world(scene);
+    let [exact, _] = paths(&world, 4096, Some(2));
+    let error = |settings| {
+        let output = rendered(&world, &settings);
+        let extra = match output.stats.get("Eye/extra samples") {
+            Some(Counter::Count(extra)) => extra as f32 / (48.0 * 48.0 * 16.0),
+            _ => 0.0,
+        };
+        (mean_square_error(&output.color, &exact), extra)
+    };
+    let ((plain, none), (better, some)) = (error(settings(16, 0.0)), error(settings(16, 0.2)));
+    assert!(none == 0.0 && some > 0.05 && some < 0.4, "{none} {some}");
+    assert!(better < 0.5 * plain, "{better} {plain}");
+}
+
 fn frame(session: &Session, view: &View, settings: cache::Settings, denoise: bool) -> Frame {
     let goal = Goal { method: Method::Cache(settings), denoise: Some(denoise), ..Goal::default() };
     session.frame(view, &goal, &Control::new()).expect("a frame")
