@@ -10,7 +10,7 @@ use super::merge::{MergedPoint, merge};
 use super::pass::TILE;
 use super::points::VisibilitySample;
 use super::{ChainCounts, EyePass, EyeSettings, VisibleSurfaces};
-use crate::material::Bsdf;
+use crate::material::{Bsdf, LobeSet};
 use crate::math::{Rgb, luminance};
 use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, Start, start};
 use crate::progress::Control;
@@ -45,27 +45,31 @@ const MAX_ADAPTIVE: u32 = u32::MAX / 4;
 /// Seed of the pilot's samples over that of the others.
 const PILOT_SEED: u32 = 0x3c6e_f372;
 
-/// The ends of paths, by the number of the path and in the order of its edges.
+/// The ends of paths, in the order of the paths' edges.
 struct Ends<'a, 'w> {
     drawn: &'a DrawnLight,
     /// Distance between neighbouring points over that from the eye, on surfaces that face it.
     spacing_by_distance: f32,
-    found: Vec<(u32, u32, MergedPoint<'w>)>,
+    found: Vec<MergedPoint<'w>>,
+    /// Their paths, and their numbers.
+    order: Vec<(u32, u32)>,
 }
 
 impl<'w> Reach<'w> for Ends<'_, 'w> {
     const ENDS: bool = true;
 
-    fn split<'m>(&self, bsdf: &Bsdf<'m>) -> Option<(Bsdf<'m>, Bsdf<'m>)> {
+    fn followed(&self, bsdf: &Bsdf) -> LobeSet {
         match self.drawn.followed.get(bsdf.material().0 as usize) {
-            Some(true) => bsdf.split_rough_lobes(),
-            _ => bsdf.split_sharp_lobes(),
+            Some(true) => bsdf.rough_lobes(),
+            _ => bsdf.sharp_lobes(),
         }
     }
 
+    #[inline]
     fn end(&mut self, end: &ChainEnd<'w>) {
         if let Some(point) = MergedPoint::new(end, self.spacing_by_distance * end.distance) {
-            self.found.push((end.path, end.depth, point));
+            self.order.push((end.path, self.found.len() as u32));
+            self.found.push(point);
         }
     }
 }
@@ -95,7 +99,16 @@ struct Found<'b, 'w> {
     sum: Rgb,
     /// Radiances that were not finite and left out.
     nonfinite: u64,
-    ends: &'b [(u32, u32, MergedPoint<'w>)],
+    ends: &'b [MergedPoint<'w>],
+    /// Those of the pixel, by path.
+    order: &'b [(u32, u32)],
+}
+
+impl<'b, 'w> Found<'b, 'w> {
+    fn ends(&self) -> impl Iterator<Item = &'b MergedPoint<'w>> {
+        let ends = self.ends;
+        self.order.iter().map(|(_, number)| &ends[*number as usize])
+    }
 }
 
 /// Light and shading points of the first samples of a tile's pixels.
@@ -168,7 +181,7 @@ pub fn merged_points(spp: u32) -> u64 {
 impl<'a, 'w> Tracer<'a, 'w> {
     fn workspace(&self) -> Workspace<'a, 'w> {
         let spacing_by_distance = SPACING * self.view.pixel_angle();
-        let ends = Ends { drawn: self.drawn, spacing_by_distance, found: Vec::new() };
+        let ends = Ends { drawn: self.drawn, spacing_by_distance, found: Vec::new(), order: Vec::new() };
         Workspace { batch: Batch::default(), ends, merged: Vec::new() }
     }
 
@@ -190,7 +203,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
             tile.sums[found.index] += found.sum;
             tile.nonfinite += found.nonfinite;
             let draw = self.draw(film_pixels[found.index], found.first);
-            merge(found.ends.iter().map(|(_, _, point)| *point), draw, merged);
+            merge(found.ends(), draw, merged);
             tile.points.extend_from_slice(merged);
             tile.firsts[found.index + 1] = tile.points.len();
         });
@@ -233,8 +246,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
                     tile.sums[i] += more.sum;
                     found.nonfinite += more.nonfinite;
                     let before = if more.first == spp { first_points(i) } else { &[] };
-                    let points = before.iter().chain(more.ends.iter().map(|(_, _, point)| point));
-                    merge(points.copied(), self.draw(film_pixels[i], more.first), merged);
+                    let points = before.iter().chain(more.ends());
+                    merge(points, self.draw(film_pixels[i], more.first), merged);
                     put(&mut found, i, merged, total);
                 });
                 found.chains += chains;
@@ -327,12 +340,13 @@ impl<'a, 'w> Tracer<'a, 'w> {
                     .flat_map(|pixel| part.clone().map(move |sample| Start { pixel: *pixel, sample, seed }));
                 start(batch, paths, self.view, look);
                 ends.found.clear();
+                ends.order.clear();
                 let mut counts = Counts::default();
                 let mut radiance = batch.trace(self.world, self.settings.max_depth, ends, &mut counts);
                 chains.rays += counts.rays;
                 chains.shadow_rays += counts.shadow_rays;
-                ends.found.sort_by_key(|(path, depth, _)| (*path, *depth));
-                let mut rest = &ends.found[..];
+                ends.order.sort_unstable();
+                let (found, mut rest) = (&ends.found[..], &ends.order[..]);
                 for i in 0..pixels.len() {
                     let (mut sum, mut nonfinite) = (Rgb::ZERO, 0);
                     for value in radiance.by_ref().take(n) {
@@ -344,8 +358,9 @@ impl<'a, 'w> Tracer<'a, 'w> {
                     }
                     let own;
                     (own, rest) =
-                        rest.split_at(rest.partition_point(|(path, ..)| *path < ((i + 1) * n) as u32));
-                    each(Found { index: chunk * together + i, first, sum, nonfinite, ends: own }, merged);
+                        rest.split_at(rest.partition_point(|(path, _)| *path < ((i + 1) * n) as u32));
+                    let index = chunk * together + i;
+                    each(Found { index, first, sum, nonfinite, ends: found, order: own }, merged);
                 }
             }
         }

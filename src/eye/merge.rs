@@ -35,6 +35,7 @@ pub struct MergedPoint<'w> {
 
 impl<'w> MergedPoint<'w> {
     /// The point of one chain's end; `spacing` is the distance to that of the next pixel. `None` if it cannot be lit.
+    #[inline]
     pub fn new(end: &ChainEnd<'w>, spacing: f32) -> Option<MergedPoint<'w>> {
         let (geometry, surface) = shading_point(&end.surface, end.bsdf, end.out, spacing)?;
         let point = MergedPoint { geometry, surface, weight: end.throughput, way: end.way, depth: end.depth };
@@ -69,16 +70,16 @@ impl<'w> MergedPoint<'w> {
 
 /// Merges the points of one pixel, in order, and thins those beyond mirrors, glass and sharp lobes; `draw` in [0, 1)
 /// chooses among them.
-pub fn merge<'w>(
-    samples: impl Iterator<Item = MergedPoint<'w>>,
+pub fn merge<'a, 'w: 'a>(
+    samples: impl Iterator<Item = &'a MergedPoint<'w>>,
     draw: f32,
     merged: &mut Vec<MergedPoint<'w>>,
 ) {
     merged.clear();
     for sample in samples {
-        match merged.iter_mut().find(|point| point.takes(&sample)) {
-            Some(point) => point.merge(&sample),
-            None => merged.push(sample),
+        match merged.iter_mut().find(|point| point.takes(sample)) {
+            Some(point) => point.merge(sample),
+            None => merged.push(*sample),
         }
     }
     if merged.iter().all(|point| point.depth <= 1) {
@@ -138,7 +139,8 @@ mod tests {
 
     fn merged<'w>(ends: &[ChainEnd<'w>], draw: f32) -> Vec<MergedPoint<'w>> {
         let mut merged = Vec::new();
-        merge(ends.iter().map(point), draw, &mut merged);
+        let points: Vec<MergedPoint> = ends.iter().map(point).collect();
+        merge(points.iter(), draw, &mut merged);
         merged
     }
 

@@ -38,6 +38,7 @@ pub struct PointSurface<'w> {
 
 /// The shading point at a surface seen along `out`, where the next ray is `spacing` away on a surface that faces the
 /// eye; `None` if it cannot be lit.
+#[inline]
 pub fn shading_point<'w>(
     surface: &Surface,
     bsdf: Bsdf<'w>,

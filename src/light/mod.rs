@@ -18,7 +18,7 @@ pub use distribution::DiscreteDistribution;
 pub use environment::{EnvironmentLight, EnvironmentSample};
 pub use select::Receivers16;
 
-use crate::math::{F32x16, LANES, Rgb, U32x16, luminance, mask_of};
+use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, luminance, mask_of};
 use crate::scene::{DeltaLight, Scene};
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -112,6 +112,25 @@ impl Emitters {
             }
         }
         mask_of(&small)
+    }
+
+    /// Lanes whose rays, of unit direction, may meet an emitting surface.
+    #[inline]
+    pub fn may_be_met(&self, origin: &Vec3x16, direction: &Vec3x16) -> u16 {
+        if self.areas.len() > MAX_TESTED {
+            return u16::MAX;
+        }
+        let mut met = [0; LANES];
+        for (centre, radius_sq) in &self.spheres {
+            for i in 0..LANES {
+                let to_centre = *centre - origin.get(i);
+                let nearest = direction.get(i) * to_centre.dot(direction.get(i)).max(0.0);
+                // The slack covers rounding, on the way to spheres far away too.
+                let reach_sq = 1.01 * radius_sq + 1e-9 * to_centre.length_squared();
+                met[i] |= u32::from(!(to_centre.distance_squared(nearest) > reach_sq));
+            }
+        }
+        mask_of(&met)
     }
 
     /// Densities with which [`Emitters::sample_direct`] at `at` draws points of the meshes `mesh` at

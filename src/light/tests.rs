@@ -218,3 +218,22 @@ fn densities_of_points_are_those_of_sampling_them() {
         }
     }
 }
+
+#[test]
+fn rays_that_meet_a_lamp_are_never_said_to_miss_all_and_most_others_are() {
+    let mut sampler = Sampler::new(7, 0);
+    let (mut missing, rays) = (0, 4000);
+    let scene = scene(32, 5);
+    let emitters = emitters(&scene);
+    for _ in 0..rays {
+        let (x, away) = receiver(&scene, &mut sampler);
+        // From up to a hundred times as far.
+        let x = x * 100f32.powf(sampler.next_1d());
+        let lamp = &emitters.areas[(sampler.next_1d() * emitters.areas.len() as f32) as usize];
+        let towards = (lamp.sample(sampler.next_2d()).position - x).normalize();
+        let met = |direction| emitters.may_be_met(&Vec3x16::splat(x), &Vec3x16::splat(direction)) == u16::MAX;
+        assert!(met(towards), "{x} {towards}");
+        missing += u32::from(!met(away));
+    }
+    assert!(missing > rays / 2, "{missing}");
+}

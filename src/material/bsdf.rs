@@ -19,6 +19,10 @@ pub struct Bsdf<'m> {
     pub(super) scales: [Rgb; MAX_LOBES],
 }
 
+/// Some of the lobes of a BSDF.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LobeSet(u8);
+
 /// Direction and the quantities that depend on it alone.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outgoing {
@@ -30,6 +34,19 @@ pub(super) struct Outgoing {
     pub base_probability: f32,
     /// Probabilities of sampling the lobes.
     pub probabilities: [f32; MAX_LOBES],
+}
+
+impl LobeSet {
+    /// True if there is none.
+    #[inline]
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    #[inline(always)]
+    fn has(self, slot: usize) -> bool {
+        self.0 >> slot & 1 != 0
+    }
 }
 
 impl<'m> Bsdf<'m> {
@@ -72,30 +89,60 @@ impl<'m> Bsdf<'m> {
         self.model.delta_lobes
     }
 
-    /// Returns the BSDF without its sharp lobes, and these alone, if there are any: rough lobes of α ≤ 0.1, which
-    /// eye paths follow by sampling them.
+    /// Returns the BSDF without its sharp lobes, and these alone, if there are any.
     #[inline]
     pub fn split_sharp_lobes(&self) -> Option<(Self, Self)> {
-        self.split_lobes(LobeModel::is_sharp)
+        let sharp = self.sharp_lobes();
+        let without_base = Bsdf { base: Rgb::ZERO, ..*self };
+        (!sharp.is_empty()).then(|| (self.without(sharp), without_base.without(LobeSet(!sharp.0))))
     }
 
-    /// Returns the BSDF without its rough lobes, and these alone, if there are any.
+    /// Returns the sharp lobes that reflect anything: rough lobes of α ≤ 0.1, which eye paths follow by sampling them.
     #[inline]
-    pub fn split_rough_lobes(&self) -> Option<(Self, Self)> {
-        self.split_lobes(|lobe| !lobe.is_delta())
+    pub fn sharp_lobes(&self) -> LobeSet {
+        self.lobes(LobeModel::is_sharp)
     }
 
+    /// Returns the rough lobes that reflect anything.
     #[inline]
-    fn split_lobes(&self, is_such: impl Fn(&LobeModel) -> bool) -> Option<(Self, Self)> {
-        if !self.model.smooth_lobes || !self.any_lobe(&is_such) {
-            return None;
+    pub fn rough_lobes(&self) -> LobeSet {
+        self.lobes(|lobe| !lobe.is_delta())
+    }
+
+    #[inline(always)]
+    fn lobes(&self, is_such: impl Fn(&LobeModel) -> bool) -> LobeSet {
+        let mut such = 0;
+        if self.model.smooth_lobes {
+            for (slot, lobe) in self.model.lobes.iter().enumerate() {
+                such |= u8::from(self.scales[slot] != Rgb::ZERO && is_such(lobe)) << slot;
+            }
         }
-        let (mut rest, mut such) = (*self, Bsdf { base: Rgb::ZERO, ..*self });
-        for (i, lobe) in self.model.lobes.iter().enumerate() {
-            let without = if is_such(lobe) { &mut rest } else { &mut such };
-            without.scales[i] = Rgb::ZERO;
+        LobeSet(such)
+    }
+
+    /// Returns the BSDF without some of its lobes.
+    #[inline]
+    pub fn without(&self, lobes: LobeSet) -> Self {
+        let mut rest = *self;
+        for (slot, scale) in rest.scales.iter_mut().enumerate() {
+            *scale = if lobes.has(slot) { Rgb::ZERO } else { *scale };
         }
-        Some((rest, such))
+        rest
+    }
+
+    /// Returns the part of [`Bsdf::eval`] that some of the lobes have in it.
+    #[inline]
+    pub fn eval_lobes(&self, lobes: LobeSet, wo: Vec3, wi: Vec3) -> Rgb {
+        let side = self.side(wo);
+        let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z * side), Vec3::new(wi.x, wi.y, wi.z * side));
+        let Some(directions) = Directions::new(wo, wi) else { return Rgb::ZERO };
+        let mut value = Rgb::ZERO;
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            if lobes.has(slot) {
+                value += lobe.eval_pdf(self.scales[slot], 0.0, &directions).0;
+            }
+        }
+        value
     }
 
     /// True if the material is Lambertian and nothing else.

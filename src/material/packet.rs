@@ -69,10 +69,16 @@ impl<'m> Bsdfs16<'m> {
         self.smooth
     }
 
-    /// Returns the material of a lane, and the direction that it is seen from.
+    /// Returns the material of a lane.
     #[inline]
-    pub fn lane(&self, lane: usize) -> (Bsdf<'m>, Vec3) {
-        (self.lanes[lane], self.wo.get(lane))
+    pub fn lane(&self, lane: usize) -> &Bsdf<'m> {
+        &self.lanes[lane]
+    }
+
+    /// Returns the direction that a lane is seen from.
+    #[inline]
+    pub fn wo(&self, lane: usize) -> Vec3 {
+        self.wo.get(lane)
     }
 
     /// Returns [`Bsdf::eval_pdf`] in all lanes; those not in `wanted` may be left at anything.
@@ -121,6 +127,12 @@ impl<'m> Bsdfs16<'m> {
 }
 
 impl BsdfSamples16 {
+    /// Returns the lanes of delta lobes.
+    #[inline]
+    pub fn delta(&self) -> u16 {
+        mask_of(&self.pdf.map(|pdf| u32::from(pdf == f32::INFINITY)))
+    }
+
     /// Returns the lanes where the path goes on.
     #[inline]
     pub fn going_on(&self) -> u16 {

@@ -1,16 +1,20 @@
 //! Many paths traced together, an edge at a time, in packets of sixteen that are closed up after every edge.
 //!
+//! Edges of paths that end ([`Reach::ENDS`]) and only look for emitters are cheaper than others: those past the bounds
+//! of all emitting surfaces are dropped, or where there is an environment, tested for occlusion alone.
+//!
 //! Deviations: Embree's packets change the last bits of a hit, never its meaning; since a batch always holds the
 //! same paths in the same order, pictures do not depend on threads.
 
 use super::packet::{Packet, Shadows};
 use crate::embree::{Hits16, Ray, Rays16};
 use crate::light::Receivers16;
-use crate::material::Bsdf;
+use crate::material::{Bsdf, LobeSet};
 use crate::math::{LANES, Rgb, first_lanes, lanes_in};
 use crate::sampling::Samplers16;
 use crate::world::{Surface, World};
 use glam::Vec3;
+use std::mem;
 
 /// Surface that a chain of mirrors, glass and sharp lobes has led a path to, and that scatters light by other lobes;
 /// not always on the side that is seen.
@@ -41,9 +45,9 @@ pub trait Reach<'w> {
     /// length.
     const ENDS: bool;
 
-    /// Splits the lobes that a chain follows from the others, if there are any of the former besides delta lobes.
-    fn split<'m>(&self, bsdf: &Bsdf<'m>) -> Option<(Bsdf<'m>, Bsdf<'m>)> {
-        bsdf.split_sharp_lobes()
+    /// Returns the lobes that a chain follows besides delta lobes.
+    fn followed(&self, bsdf: &Bsdf) -> LobeSet {
+        bsdf.sharp_lobes()
     }
 
     /// Called at every such surface, in an order that does not depend on threads.
@@ -73,6 +77,8 @@ pub struct Batch {
     /// Paths in the packets; they fill the lanes from the first on.
     count: usize,
     shadows: Shadows,
+    /// Edges that can find nothing but the environment, until they fill a packet; their number.
+    outward: (Packet, usize),
     radiance: Vec<Rgb>,
 }
 
@@ -132,11 +138,18 @@ impl Batch {
                         self.shadows.trace(world, depth == 1, &mut self.radiance, counts);
                     }
                 };
-                let going_on = packet.scatter(world, &surfaces, depth, followed, reach, arrives);
+                let mut going_on = packet.scatter(world, &surfaces, depth, followed, reach, arrives);
+                if R::ENDS {
+                    let sought = going_on & !packet.followed();
+                    let met = world.emitters.may_be_met(&packet.rays.origins(), &packet.rays.directions());
+                    going_on &= !sought | met;
+                    self.look_outward(world, &packet, sought & !met, counts);
+                }
                 self.keep(&packet, going_on, &mut kept);
             }
         }
         self.shadows.trace(world, depth == 1, &mut self.radiance, counts);
+        self.trace_outward(world, counts);
         self.count = kept;
     }
 
@@ -151,6 +164,30 @@ impl Batch {
             self.packets[*kept / LANES].copy_lane(*kept % LANES, packet, lane);
             *kept += 1;
         }
+    }
+
+    /// Adds the environment's light to the paths of a packet in the lanes of `sought` whose edges are free.
+    fn look_outward(&mut self, world: &World, packet: &Packet, sought: u16, counts: &mut Counts) {
+        if world.emitters.environment.is_none() {
+            return;
+        }
+        for lane in lanes_in(sought) {
+            let (outward, count) = &mut self.outward;
+            outward.copy_lane(*count, packet, lane);
+            *count += 1;
+            if *count == LANES {
+                self.trace_outward(world, counts);
+            }
+        }
+    }
+
+    fn trace_outward(&mut self, world: &World, counts: &mut Counts) {
+        let (outward, count) = mem::take(&mut self.outward);
+        counts.shadow_rays += count as u64;
+        let valid = first_lanes(count);
+        let occluded = world.accel.occluded16(&outward.rays, valid, false);
+        self.escape(world, &outward, valid & !occluded);
+        self.outward.0 = outward;
     }
 
     /// Adds the environment's light to the paths of a packet that met nothing.

@@ -7,7 +7,7 @@ use crate::sampling::Samplers16;
 use crate::world::World;
 
 /// Sixteen paths on their way.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Packet {
     /// The edges to be traced.
     pub rays: Rays16,

@@ -16,7 +16,7 @@ use super::batch::{ChainEnd, Reach};
 use super::packet::Packet;
 use crate::embree::{Ray, Rays16};
 use crate::light::Receivers16;
-use crate::material::{BsdfSamples16, Bsdfs16};
+use crate::material::{BsdfSamples16, Bsdfs16, LobeSet};
 use crate::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, mask_of};
 use crate::sampling::{hash, power_heuristic};
 use crate::shadow;
@@ -91,9 +91,11 @@ impl Packet {
         }
         let samples = bsdfs.sample(&choices.y, &self.samplers.point(pair + 1), found);
         let roulette = if depth >= ROULETTE_DEPTH { self.samplers.number(pair + 3) } else { [0.0; LANES] };
-        if R::ENDS {
-            self.end_chains(&bsdfs, surfaces, depth, found, reach);
-        }
+        let chained = if R::ENDS {
+            self.end_chains(&bsdfs, surfaces, depth, found, reach)
+        } else {
+            [LobeSet::default(); LANES]
+        };
         let mut survives = [0; LANES];
         for i in 0..LANES {
             let throughput = self.throughput.get(i) * samples.weight.get(i);
@@ -108,9 +110,8 @@ impl Packet {
         self.emission_throughput = self.throughput;
         let mut found = found;
         if R::ENDS {
-            let draws = self.samplers.point(pair + 3).y;
-            self.follow(&bsdfs, &samples, surfaces, (found, &draws), reach);
-            found &= !alone;
+            found &= !alone & samples.going_on() & mask_of(&survives);
+            self.follow(&bsdfs, &samples, surfaces, (found, pair + 3), &chained);
             if !world.emitters.are_hittable() {
                 found &= self.followed();
             }
@@ -122,7 +123,7 @@ impl Packet {
         found & samples.going_on() & mask_of(&survives)
     }
 
-    /// Calls `reach` with the surfaces that scatter by lobes which chains do not follow.
+    /// Calls `reach` with the surfaces that scatter by lobes which chains do not follow; returns those that they do.
     fn end_chains<'w, R: Reach<'w>>(
         &self,
         bsdfs: &Bsdfs16<'w>,
@@ -130,10 +131,12 @@ impl Packet {
         depth: u32,
         found: u16,
         reach: &mut R,
-    ) {
+    ) -> [LobeSet; LANES] {
+        let mut chained = [LobeSet::default(); LANES];
         for lane in lanes_in(bsdfs.smooth() & found) {
-            let (whole, _) = bsdfs.lane(lane);
-            let bsdf = reach.split(&whole).map_or(whole, |(rest, _)| rest);
+            let whole = bsdfs.lane(lane);
+            chained[lane] = reach.followed(whole);
+            let bsdf = whole.without(chained[lane]);
             if !bsdf.has_smooth() {
                 continue;
             }
@@ -148,36 +151,42 @@ impl Packet {
                 depth,
             });
         }
+        chained
     }
 
     /// Reduces the throughput of the sampled directions to that of the lobes which chains follow: all of it in the
-    /// directions of delta lobes, and the share of the sharp lobes elsewhere, by chance all or nothing.
-    fn follow<'w>(
+    /// directions of delta lobes, and the share of the lobes of `chained` elsewhere, by chance all or nothing.
+    fn follow(
         &mut self,
         bsdfs: &Bsdfs16,
         samples: &BsdfSamples16,
         surfaces: &Surfaces16,
-        (found, draws): (u16, &F32x16),
-        reach: &impl Reach<'w>,
+        (found, pair): (u16, u32),
+        chained: &[LobeSet; LANES],
     ) {
-        for lane in lanes_in(found) {
-            self.distance[lane] += surfaces.t[lane];
-            let wi = samples.wi.get(lane);
-            let (bsdf, wo) = bsdfs.lane(lane);
-            let delta = samples.pdf[lane] == f32::INFINITY;
-            let side = u32::from((wo.z > 0.0) == (wi.z > 0.0)) + 2 * u32::from(delta);
-            self.way[lane] = hash(self.way[lane] ^ side.wrapping_mul(0x9e37_79b9), 1 + surfaces.mesh[lane]);
-            if delta {
-                continue;
-            }
-            let share = match reach.split(&bsdf) {
-                Some((_, sharp)) => sharp.eval(wo, wi) / bsdf.eval(wo, wi).max(Rgb::splat(f32::MIN_POSITIVE)),
-                None => Rgb::ZERO,
-            };
+        let delta = samples.delta() & found;
+        let may_go_on = lanes_in(found).filter(|lane| !chained[*lane].is_empty());
+        let sharp = may_go_on.fold(0, |mask, lane| mask | 1u16 << lane) & !delta;
+        self.throughput.keep(delta | sharp);
+        if delta | sharp == 0 {
+            return;
+        }
+        let draws = self.samplers.point(pair).y;
+        for lane in lanes_in(sharp) {
+            let (wo, wi) = (bsdfs.wo(lane), samples.wi.get(lane));
+            let value = samples.weight.get(lane) * (samples.pdf[lane] / wi.z.abs());
+            let share =
+                bsdfs.lane(lane).eval_lobes(chained[lane], wo, wi) / value.max(Rgb::splat(f32::MIN_POSITIVE));
             let survival = share.max_element().min(1.0);
             let goes_on = draws[lane] < survival;
             let throughput = if goes_on { self.throughput.get(lane) * share / survival } else { Rgb::ZERO };
             self.throughput.set(lane, throughput);
+        }
+        for lane in lanes_in(delta | sharp) {
+            self.distance[lane] += surfaces.t[lane];
+            let same_side = (bsdfs.wo(lane).z > 0.0) == (samples.wi.z[lane] > 0.0);
+            let side = u32::from(same_side) + 2 * u32::from((delta >> lane) & 1 != 0);
+            self.way[lane] = hash(self.way[lane] ^ side.wrapping_mul(0x9e37_79b9), 1 + surfaces.mesh[lane]);
         }
     }
 
