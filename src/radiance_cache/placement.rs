@@ -3,6 +3,9 @@
 //! Paper: Herzog et al. 2009, section 6 (records are computed where no record contributes); the coarse
 //! beginning is the overture of Ward's irradiance caching. Each step takes at most one sample of each cell of
 //! one level of the eye samples' index, the one nearest to the middle of the uncovered samples there.
+//!
+//! Light that is known already masks a record's errors (section 6 again, where it is the other layer's). Drawn direct
+//! light does so as far as the darkest part of the neighbourhood that the record may light has it.
 
 use super::source::Candidate;
 use super::splat::Splat;
@@ -12,6 +15,9 @@ use crate::vpl::DirectIndirect;
 use crate::world::SurfacePoint;
 use glam::Vec3;
 use rayon::prelude::*;
+
+/// Levels up from a cell to the one whose darkest part the errors of its record are judged against.
+const WIDER: u32 = 2;
 
 /// Layers among those `cached` that have no record at a sample, though records could light it.
 #[inline]
@@ -53,7 +59,11 @@ pub fn candidates(
             let middle = sum / count;
             let distance = |i: &usize| targets.points.geometry[*i].position.distance_squared(middle);
             let sample = range.filter(uncovered).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-            Some(candidate(targets, splats, sample, missing(targets, splats, cached, sample)))
+            let mut candidate = candidate(targets, splats, sample, missing(targets, splats, cached, sample));
+            // The footprint may reach beyond the cell.
+            let up = level.min(WIDER);
+            candidate.baseline_luminance += targets.least_known(targets.index.range(level - up, cell >> up));
+            Some(candidate)
         })
         .collect()
 }
@@ -155,6 +165,34 @@ mod tests {
         // The middle of the uncovered samples, not of the cell.
         let coarse = candidates(&targets, &splats, one(Origin::Direct), 0, 0);
         assert!(coarse.len() == 1 && (coarse[0].point.position - Vec3::new(0.75, 0.5, 0.0)).length() < 0.04);
+    }
+
+    #[test]
+    fn light_known_in_the_darkest_part_of_the_neighbourhood_masks_errors() {
+        let floor = Floor::grid(32);
+        let lit = |i: usize| floor.points.geometry[i].position.x < 0.5;
+        let reflected = 3.0;
+        let targets = floor.targets().with_known(|i| if lit(i) { reflected } else { 0.0 });
+        let splats = splats(&targets, &Records::default());
+        let albedo = luminance(floor.points.surfaces[0].bsdf.base_brdf() * std::f32::consts::PI);
+        let (mut bright, mut dark) = (0, 0);
+        for parity in 0..2 {
+            for found in candidates(&targets, &splats, BOTH, 6, parity) {
+                let cell = floor.index.range(6, 0).len();
+                let wider = floor.index.range(4, found.sample as usize / (4 * cell));
+                if wider.clone().all(lit) {
+                    let expected = std::f32::consts::PI * reflected / albedo;
+                    assert!((found.baseline_luminance / expected - 1.0).abs() < 1e-4);
+                    bright += 1;
+                } else {
+                    assert_eq!(found.baseline_luminance, 0.0);
+                    dark += usize::from(lit(found.sample as usize));
+                }
+            }
+        }
+        assert_eq!((bright, dark), (32, 0), "the middle of the floor divides cells of that level");
+        let coarse = candidates(&targets, &splats, BOTH, 0, 0);
+        assert_eq!(coarse[0].baseline_luminance, 0.0);
     }
 
     #[test]

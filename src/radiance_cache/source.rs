@@ -24,7 +24,7 @@ pub struct Candidate {
     pub bands: u8,
     /// Layers without a record here.
     pub missing: DirectIndirect<bool>,
-    /// Luminance of the irradiance that records of the other layer give.
+    /// Luminance of the irradiance known besides: of the other layer's records, and of light that was drawn.
     pub baseline_luminance: f32,
 }
 

@@ -2,8 +2,13 @@
 
 use super::series::Glossy;
 use crate::eye::{EyeIndex, PointGeometry, ShadingPoints};
-use crate::math::Rgb;
+use crate::math::{Rgb, luminance};
+use rayon::prelude::*;
+use std::f32::consts::PI;
 use std::ops::Range;
+
+/// Parts of a range of points of which the darkest counts.
+const PARTS: usize = 8;
 
 /// Shading points that records are splatted onto.
 pub struct Targets<'a> {
@@ -17,6 +22,8 @@ pub struct Targets<'a> {
     pub bands: Vec<u8>,
     /// True if records can light the point: it has a base, or a lobe broad enough for a series.
     pub cacheable: Vec<bool>,
+    /// Luminance of the irradiance that gives each point the light which is known besides; empty if none is.
+    known: Vec<f32>,
 }
 
 impl<'a> Targets<'a> {
@@ -30,7 +37,27 @@ impl<'a> Targets<'a> {
             .zip(&bands)
             .map(|(surface, &bands)| bands > 0 || surface.bsdf.split_base(1.0).0 != Rgb::ZERO)
             .collect();
-        Targets { points, index, glossy, bands, cacheable }
+        Targets { points, index, glossy, bands, cacheable, known: Vec::new() }
+    }
+
+    /// The same, where light of these luminances is reflected besides: records' errors are judged against the whole.
+    pub fn with_known(mut self, luminance_of: impl Fn(usize) -> f32 + Sync) -> Targets<'a> {
+        let irradiance = |point: usize| {
+            let surface = &self.points.surfaces[point];
+            let albedo =
+                luminance(surface.bsdf.albedo_at(surface.out.dot(self.points.geometry[point].normal)));
+            let irradiance = PI * luminance_of(point) / albedo;
+            if irradiance < f32::INFINITY { irradiance } else { 0.0 }
+        };
+        self.known = (0..self.points.len()).into_par_iter().map(irradiance).collect();
+        self
+    }
+
+    /// Least of the mean irradiances known in the parts of a range.
+    pub fn least_known(&self, range: Range<usize>) -> f32 {
+        let Some(known) = self.known.get(range).filter(|known| !known.is_empty()) else { return 0.0 };
+        let mean = |part: &[f32]| part.iter().sum::<f32>() / part.len() as f32;
+        known.chunks(known.len().div_ceil(PARTS)).map(mean).fold(f32::INFINITY, f32::min)
     }
 
     /// Geometry of a range of points, and the bands that they need.

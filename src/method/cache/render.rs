@@ -76,7 +76,10 @@ impl Renderer for Settings {
 
         let mut records = Records::default();
         let glossy = glossy.as_ref().and_then(|glossy| glossy.for_points(&samples.points, &self.cache));
-        let targets = Targets::new(&samples.points, &samples.index, glossy);
+        let mut targets = Targets::new(&samples.points, &samples.index, glossy);
+        if self.cache.draws_direct_light() {
+            targets = targets.with_known(|point| samples.known_luminance(point));
+        }
         let frame = CacheFrame::fill(targets, &mut records, &source, control, &mut stats);
         counts::cuts(&mut stats, "Records", &frame.cuts);
 
