@@ -9,14 +9,16 @@ mod merge;
 mod pass;
 mod points;
 mod rays;
+mod seen;
 mod sharp;
 #[cfg(test)]
 mod tests;
 
 pub use chain::{ChainCounts, DROPPED_BRANCHES};
 pub use drawn::{DrawnLight, merged_points};
-pub use features::{Feature, FeatureSettings, Features, UnknownFeature, features};
+pub use features::{Feature, Features, UnknownFeature, features};
 pub use index::EyeIndex;
 pub use pass::EyePass;
 pub use points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySamples};
 pub use rays::{EyeRays, EyeSettings, VisibleSurfaces};
+pub use seen::FeatureSettings;
