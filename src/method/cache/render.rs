@@ -30,12 +30,7 @@ method_settings! {
         /// Numbers of VPLs; their seed is not used.
         light: LightPassSettings = LightPassSettings::default() => [group];
         /// Accuracy of the cut of an eye sample.
-        ///
-        /// Less of weak singularities is kept than by other methods: beside smooth light they are seen as dashes along
-        /// creases, and short rays find the rest.
-        cut: CutSettings = CutSettings { clamp: Some(0.005), ..CutSettings::default() } => [
-            by Settings::each_of_cut
-        ];
+        cut: CutSettings = CutSettings::default() => [by Settings::each_of_cut];
         /// Compensation by short rays for light lost to clamping.
         compensation: bool = true => [is COMPENSATION];
         /// Builder of the light trees.
