@@ -182,6 +182,9 @@ impl Batch {
     }
 
     fn trace_outward(&mut self, world: &World, counts: &mut Counts) {
+        if self.outward.1 == 0 {
+            return;
+        }
         let (outward, count) = mem::take(&mut self.outward);
         counts.shadow_rays += count as u64;
         let valid = first_lanes(count);
