@@ -8,7 +8,7 @@
 //! - [`world`] makes it ready: [`embree`] for rays, [`material`] for scattering, [`light`] for emitters;
 //! - [`view`] says from where it is seen and which part of the [`film`] is rendered;
 //! - [`vpl`] turns lights and photon paths into virtual point lights, [`light_tree`] clusters them;
-//! - [`paths`] follows paths from the eye in packets;
+//! - [`paths`] follows paths from the eye in packets, whole or as far as other stages leave light to be found;
 //! - [`eye`] follows each pixel through mirrors and glass to the points that scatter light into it;
 //! - [`lightcut`] finds, for each of those, the coarsest clusters whose expected errors stay below the
 //!   threshold, or reconstructs its light from the cut of its neighbours;

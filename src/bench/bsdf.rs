@@ -75,7 +75,8 @@ fn kinds() -> Vec<Material> {
     let dielectric = Fresnel::Dielectric(1.5);
     let gold = Fresnel::Conductor { eta: Rgb::new(0.143, 0.375, 1.442), k: Rgb::new(3.983, 2.386, 1.603) };
     let (ggx, beckmann) = (Distribution::Ggx, Distribution::Beckmann);
-    let glass = Lobe::Dielectric { eta: 1.5, reflectance: constant(1.0), transmittance: constant(1.0) };
+    let glass =
+        Lobe::Dielectric { eta: 1.5, thin: false, reflectance: constant(1.0), transmittance: constant(1.0) };
     let mirror = |fresnel| Some(Lobe::Mirror { fresnel, scale: constant(1.0) });
     [
         ("diffuse", 0.5, None, None),

@@ -1,6 +1,6 @@
 //! The acceleration structure over triangle meshes, and queries of one ray.
 
-use super::ray::ALL_GEOMETRY;
+use super::ray::{ALL_GEOMETRY, CLEAR, OCCLUDING};
 use super::{Device, EmbreeError, Hit, Ray, Width};
 use embree4_sys as sys;
 use glam::Vec3;
@@ -15,6 +15,8 @@ pub struct TriangleMesh<'a> {
     pub positions: &'a [Vec3],
     /// Vertex indices of each triangle.
     pub triangles: &'a [[u32; 3]],
+    /// False if queries for occlusion are to leave it out.
+    pub occludes: bool,
 }
 
 /// Effort of Embree's build, and size of the result.
@@ -129,7 +131,7 @@ impl Accel {
         unsafe {
             if copied {
                 sys::rtcSetGeometryBuildQuality(geometry, quality);
-                sys::rtcSetGeometryMask(geometry, ALL_GEOMETRY);
+                sys::rtcSetGeometryMask(geometry, if mesh.occludes { ALL_GEOMETRY } else { CLEAR });
                 sys::rtcCommitGeometry(geometry);
                 sys::rtcAttachGeometryByID(self.scene, geometry, id);
             }
@@ -167,7 +169,7 @@ impl Accel {
     /// always the same.
     #[inline]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        let ray = ray.to_embree().filter(|_| !self.is_empty())?;
+        let ray = ray.to_embree(ALL_GEOMETRY).filter(|_| !self.is_empty())?;
         let mut rayhit = sys::RTCRayHit {
             ray,
             hit: sys::RTCHit {
@@ -195,10 +197,12 @@ impl Accel {
         })
     }
 
-    /// True if any triangle intersects the ray's segment.
+    /// True if any triangle of a mesh that occludes intersects the ray's segment.
     #[inline]
     pub fn occluded(&self, ray: &Ray) -> bool {
-        let Some(mut shadow_ray) = ray.to_embree().filter(|_| !self.is_empty()) else { return false };
+        let Some(mut shadow_ray) = ray.to_embree(OCCLUDING).filter(|_| !self.is_empty()) else {
+            return false;
+        };
         // SAFETY: as for `rtcIntersect1` above.
         unsafe { sys::rtcOccluded1(self.scene, &mut shadow_ray, std::ptr::null_mut()) };
         // Embree marks an occluded ray so; a traceable ray never starts that way: t_near <= t_far and -inf

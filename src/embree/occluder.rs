@@ -7,6 +7,7 @@
 //! single ray, and with the packet's other lanes.
 
 use super::query::query_flags;
+use super::ray::OCCLUDING;
 use super::{Accel, Ray, Rays16};
 use embree4_sys as sys;
 
@@ -97,7 +98,7 @@ impl Accel {
     /// As [`Accel::occluded`], but returns the occluder.
     #[inline]
     pub fn occluder(&self, ray: &Ray) -> Option<Occluder> {
-        let mut shadow_ray = ray.to_embree().filter(|_| !self.is_empty())?;
+        let mut shadow_ray = ray.to_embree(OCCLUDING).filter(|_| !self.is_empty())?;
         let found = Occluder { t: 0.0, geometry: u32::MAX, primitive: u32::MAX };
         let mut query = Query { context: CONTEXT, found };
         let mut arguments = query.arguments(false, record_occluder);
@@ -116,7 +117,7 @@ impl Accel {
         }
         let mut query = Query { context: CONTEXT, found };
         let mut arguments = query.arguments(coherent, record_occluders);
-        let mut packet = rays.to_embree();
+        let mut packet = rays.to_embree(OCCLUDING);
         // SAFETY: as above; mask and packet have the required 64-byte alignment.
         unsafe { sys::rtcOccluded16(lanes.0.as_ptr(), self.scene(), &mut packet, &mut arguments) };
         lanes.mask_where(|i| packet.tfar[i] == f32::NEG_INFINITY)

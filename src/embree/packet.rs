@@ -1,6 +1,5 @@
 //! Packets of sixteen rays and of their hits.
 
-use super::ray::ALL_GEOMETRY;
 use super::{Hit, Ray};
 use crate::math::Vec3x16;
 use embree4_sys as sys;
@@ -107,7 +106,7 @@ impl Rays16 {
     }
 
     #[inline]
-    pub(super) fn to_embree(&self) -> sys::RTCRay16 {
+    pub(super) fn to_embree(&self, mask: u32) -> sys::RTCRay16 {
         sys::RTCRay16 {
             org_x: self.origin_x,
             org_y: self.origin_y,
@@ -118,7 +117,7 @@ impl Rays16 {
             dir_z: self.direction_z,
             time: [0.0; 16],
             tfar: self.t_far,
-            mask: [ALL_GEOMETRY; 16],
+            mask: [mask; 16],
             id: LANE_IDS,
             flags: [0; 16],
         }

@@ -4,6 +4,7 @@
 
 use super::packet::LaneMask;
 use super::query::{EmbreePacket, occluded_arguments};
+use super::ray::OCCLUDING;
 use super::{Accel, Rays16, Width};
 use embree4_sys as sys;
 
@@ -27,7 +28,7 @@ impl PreparedRays {
                 packets
                     .flat_map(|(rays, valid)| {
                         let valid = rays.lanes(valid).mask_where(|_| true);
-                        crate::math::lanes_in(valid).filter_map(|i| rays.get(i).to_embree())
+                        crate::math::lanes_in(valid).filter_map(|i| rays.get(i).to_embree(OCCLUDING))
                     })
                     .collect(),
             ),

@@ -6,7 +6,7 @@
 //! some 1e-4 of its hits.
 
 use super::packet::LANE_IDS;
-use super::ray::ALL_GEOMETRY;
+use super::ray::{ALL_GEOMETRY, OCCLUDING};
 use super::{Accel, Hits16, Rays16, Width};
 use embree4_sys as sys;
 
@@ -66,7 +66,7 @@ macro_rules! packet {
                     dir_z: row(&rays.direction_z),
                     time: [0.0; $width],
                     tfar: row(&rays.t_far),
-                    mask: [ALL_GEOMETRY; $width],
+                    mask: [OCCLUDING; $width],
                     id: part(&LANE_IDS, first),
                     flags: [0; $width],
                 }
@@ -107,7 +107,7 @@ impl Accel {
         }
         const NONE: [u32; 16] = [sys::RTC_INVALID_GEOMETRY_ID; 16];
         let mut rayhit = sys::RTCRayHit16 {
-            ray: rays.to_embree(),
+            ray: rays.to_embree(ALL_GEOMETRY),
             hit: sys::RTCHit16 {
                 Ng_x: [0.0; 16],
                 Ng_y: [0.0; 16],
@@ -152,7 +152,7 @@ impl Accel {
         if self.is_empty() || !lanes.any() {
             return 0;
         }
-        let mut packet = rays.to_embree();
+        let mut packet = rays.to_embree(OCCLUDING);
         let mut arguments = occluded_arguments(coherent);
         // SAFETY: as for `rtcIntersect16` above.
         unsafe { sys::rtcOccluded16(lanes.0.as_ptr(), self.scene(), &mut packet, &mut arguments) };

@@ -3,8 +3,14 @@
 use embree4_sys as sys;
 use glam::{Vec3, Vec4};
 
-/// Ray mask that includes all geometry, of which there is only one kind here.
+/// Ray mask that includes all geometry, and mask of geometry that occludes.
 pub(super) const ALL_GEOMETRY: u32 = u32::MAX;
+
+/// Mask of geometry that does not occlude.
+pub(super) const CLEAR: u32 = 2;
+
+/// Mask of the rays of occlusion queries.
+pub(super) const OCCLUDING: u32 = !CLEAR;
 
 /// The segment `origin + t direction`, `t_near < t <= t_far`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,16 +44,16 @@ impl Ray {
         self.origin + t * self.direction
     }
 
-    /// Converts to Embree's layout; `None` if the segment is empty or invalid: then it hits nothing and
-    /// Embree is not called.
+    /// Converts to Embree's layout, for geometry of `mask`; `None` if the segment is empty or invalid: then it hits
+    /// nothing and Embree is not called.
     ///
     /// Written as whole vectors, as Embree reads it: after writes of single words the read would stall until
     /// they reach the cache.
     #[inline(always)]
-    pub(super) fn to_embree(self) -> Option<sys::RTCRay> {
+    pub(super) fn to_embree(self, mask: u32) -> Option<sys::RTCRay> {
         let origin = self.origin.extend(self.t_near);
         let direction = self.direction.extend(0.0); // time
-        let end = Vec4::new(self.t_far, f32::from_bits(ALL_GEOMETRY), 0.0, 0.0); // mask, id, flags
+        let end = Vec4::new(self.t_far, f32::from_bits(mask), 0.0, 0.0); // mask, id, flags
         let is_finite = origin.abs().cmplt(Vec4::INFINITY) & direction.abs().cmplt(Vec4::INFINITY);
         let is_traceable = is_finite.all() & direction.cmpne(Vec4::ZERO).any() & (self.t_near <= self.t_far);
         // SAFETY: both are 48 bytes of plain numbers in the same order: origin, t_near, direction, time, t_far,

@@ -165,8 +165,12 @@ pub fn trace<'w>(
             }
             let direction = surface.frame.to_world(lobe.wi);
             let ray = shadow::ray_from(surface.position, surface.normal, direction);
-            let start = (!lobe.delta).then(|| Start::new(&surface, wo, lobe.pdf));
-            let depth = branch.depth + 1;
+            // Shadow rays pass sheets too, so an edge that does stays what it is.
+            let start = match lobe.straight {
+                true => branch.start,
+                false => (!lobe.delta).then(|| Start::new(&surface, wo, lobe.pdf)),
+            };
+            let depth = branch.depth + u32::from(!lobe.straight);
             let next = Branch { ray, throughput, eta_sq, depth, distance, start };
             if current.is_none() {
                 current = Some(next);

@@ -5,8 +5,8 @@
 
 use super::points::{PointGeometry, PointSurface, VisibilitySample};
 use super::{
-    ChainCounts, DrawnLight, EyeIndex, EyeRays, EyeSettings, ShadingPoints, VisibilitySamples,
-    VisibleSurfaces,
+    ChainCounts, DrawnLight, EyeIndex, EyeRays, EyeSettings, LightByDeltaLobes, ShadingPoints,
+    VisibilitySamples, VisibleSurfaces,
 };
 use crate::film::{Image, Window};
 use crate::math::luminance;
@@ -30,8 +30,8 @@ pub struct EyePass<'w> {
     pub index: EyeIndex,
     /// Shares of the points' radiances that reach the pixels.
     pub visibility: VisibilitySamples,
-    /// Light known: that which reaches the eye from emitters, directly or along specular chains, and direct light if
-    /// it is drawn.
+    /// Light known: that which reaches the eye from emitters, directly or along specular chains; that which comes to
+    /// surfaces seen by mirrors and glass; and direct light if it is drawn.
     pub known: Image,
     /// Rays traced.
     pub chains: ChainCounts,
@@ -42,7 +42,8 @@ pub struct EyePass<'w> {
 }
 
 impl<'w> EyePass<'w> {
-    /// Traces the eye rays of every pixel in the view's window, with direct light if it is to be drawn.
+    /// Traces the eye rays of every pixel in the view's window, and finds the light that comes by mirrors and glass,
+    /// with direct light if it is to be drawn.
     pub fn of(
         world: &'w World,
         view: &View,
@@ -52,7 +53,14 @@ impl<'w> EyePass<'w> {
     ) -> EyePass<'w> {
         match drawn {
             Some(drawn) => EyePass::with_direct_light(world, view, settings, drawn, control),
-            None => EyePass::trace(world, view, settings, control),
+            None => {
+                let mut pass = EyePass::trace(world, view, settings, control);
+                let light = LightByDeltaLobes::new(world, view, settings, control);
+                light.add_to(&mut pass.known);
+                pass.chains += light.chains;
+                pass.nonfinite += light.nonfinite;
+                pass
+            }
         }
     }
 

@@ -104,9 +104,7 @@ impl Sharp<'_> {
             if value == Rgb::ZERO || !value.is_finite() {
                 continue;
             }
-            if self.is_free(direction, distance, Vec3::ZERO, counts) {
-                radiance += value;
-            }
+            radiance += value * self.arriving(direction, distance, Vec3::ZERO, counts);
         }
         radiance
     }
@@ -143,21 +141,21 @@ impl Sharp<'_> {
             left -= share;
             if left < 0.0 {
                 let (direction, distance) = (lights.direction.get(i), lights.distance[i]);
-                let free = self.is_free(direction, distance, lights.normal.get(i), counts);
-                return if free { values[i] * (sum / share) } else { Rgb::ZERO };
+                let arriving = self.arriving(direction, distance, lights.normal.get(i), counts);
+                return values[i] * arriving * (sum / share);
             }
         }
         Rgb::ZERO
     }
 
-    /// True if an emitter, whose surface has the given normal, if any, is visible.
-    fn is_free(&self, direction: Vec3, distance: f32, normal: Vec3, counts: &mut ChainCounts) -> bool {
+    /// Share of the light of an emitter, whose surface has the given normal, if any, that arrives.
+    fn arriving(&self, direction: Vec3, distance: f32, normal: Vec3, counts: &mut ChainCounts) -> Rgb {
         counts.shadow_rays += 1;
         let Surface { position, normal: own, .. } = *self.surface;
         if distance.is_finite() {
-            shadow::visible(self.world, position, own, position + direction * distance, normal)
+            shadow::between(self.world, position, own, position + direction * distance, normal)
         } else {
-            shadow::escapes(self.world, position, own, direction)
+            shadow::arriving(self.world, &shadow::ray_from(position, own, direction))
         }
     }
 }

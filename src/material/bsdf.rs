@@ -89,6 +89,16 @@ impl<'m> Bsdf<'m> {
         self.model.delta_lobes
     }
 
+    /// True if part of the light goes on as by a mirror or refracted, in another direction than it comes in.
+    pub fn bends_light(&self) -> bool {
+        self.any_lobe(LobeModel::bends)
+    }
+
+    /// True if part of the light passes straight through the surface.
+    pub fn passes_straight(&self) -> bool {
+        self.any_lobe(LobeModel::passes_straight)
+    }
+
     /// Returns the BSDF without its sharp lobes, and these alone, if there are any.
     #[inline]
     pub fn split_sharp_lobes(&self) -> Option<(Self, Self)> {

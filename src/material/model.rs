@@ -199,8 +199,8 @@ impl Model {
                     add(LobeModel::Rough(lobe), scale);
                 }
                 Lobe::Mirror { fresnel, scale } => add(LobeModel::Mirror(Mirror { fresnel }), scale),
-                Lobe::Dielectric { eta, reflectance, transmittance } => {
-                    let way = |passage| LobeModel::Interface(Interface { eta, passage });
+                Lobe::Dielectric { eta, thin, reflectance, transmittance } => {
+                    let way = |passage| LobeModel::Interface(Interface { eta, thin, passage });
                     add(way(Passage::Reflection), reflectance);
                     add(way(Passage::Refraction), transmittance);
                 }

@@ -35,6 +35,8 @@ pub struct BsdfSamples16 {
     pub eta: F32x16,
     /// Not zero where the path goes on.
     pub goes_on: U32x16,
+    /// Not zero where it goes straight on, as if there was no surface but for the light's colour.
+    straight: U32x16,
 }
 
 impl<'m> Bsdfs16<'m> {
@@ -120,6 +122,7 @@ impl<'m> Bsdfs16<'m> {
                 s.weight.set(i, sample.weight);
                 s.pdf[i] = if sample.delta { f32::INFINITY } else { sample.pdf };
                 s.eta[i] = sample.eta;
+                s.straight[i] = u32::from(sample.straight);
             }
         }
         s
@@ -131,6 +134,12 @@ impl BsdfSamples16 {
     #[inline]
     pub fn delta(&self) -> u16 {
         mask_of(&self.pdf.map(|pdf| u32::from(pdf == f32::INFINITY)))
+    }
+
+    /// Returns the lanes that go straight on.
+    #[inline]
+    pub fn straight(&self) -> u16 {
+        mask_of(&self.straight)
     }
 
     /// Returns the lanes where the path goes on.

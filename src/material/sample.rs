@@ -21,13 +21,15 @@ pub struct BsdfSample {
     pub delta: bool,
     /// Index of refraction on the side of `wi` over that on the side of `wo`; 1 unless refracted.
     pub eta: f32,
+    /// True if light goes on as if there was no surface, but for its colour.
+    pub straight: bool,
 }
 
 impl BsdfSample {
     /// Makes the sample of a delta lobe that has been chosen with probability 1.
     #[inline]
     pub(super) fn delta(wi: Vec3, weight: Rgb, eta: f32) -> BsdfSample {
-        BsdfSample { wi, weight, pdf: 1.0, delta: true, eta }
+        BsdfSample { wi, weight, pdf: 1.0, delta: true, eta, straight: false }
     }
 }
 
@@ -54,7 +56,8 @@ impl Bsdf<'_> {
         }
         let mut sample = if self.is_lambert() {
             let wi = cosine_hemisphere(u);
-            BsdfSample { wi, weight: self.base * PI, pdf: wi.z * FRAC_1_PI, delta: false, eta: 1.0 }
+            let weight = self.base * PI;
+            BsdfSample { wi, weight, pdf: wi.z * FRAC_1_PI, delta: false, eta: 1.0, straight: false }
         } else {
             self.sample_layered(wo, u_lobe, u)?
         };
@@ -66,7 +69,8 @@ impl Bsdf<'_> {
         let outgoing = self.outgoing(wo);
         let smooth = |wi: Vec3, (value, pdf): (Rgb, f32)| {
             let weight = value * (wi.z.abs() / pdf);
-            (pdf > 0.0).then_some(BsdfSample { wi, weight, pdf, delta: false, eta: 1.0 })
+            let sample = BsdfSample { wi, weight, pdf, delta: false, eta: 1.0, straight: false };
+            (pdf > 0.0).then_some(sample)
         };
         if u_lobe < outgoing.base_probability {
             let wi = cosine_hemisphere(u);
@@ -94,6 +98,12 @@ impl Bsdf<'_> {
             }
         }
         Some(last)
+    }
+
+    /// Share of the light from `wo` that passes straight through the surface.
+    pub fn straight_transmittance(&self, wo: Vec3) -> Rgb {
+        let passing = self.model.lobes.iter().zip(self.scales).filter(|(lobe, _)| lobe.passes_straight());
+        passing.filter_map(|(lobe, scale)| lobe.delta(scale, wo)).map(|sample| sample.weight).sum()
     }
 
     /// Returns every delta lobe as seen from `wo`.

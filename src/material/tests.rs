@@ -87,7 +87,12 @@ fn mirror(fresnel: Fresnel) -> Material {
 
 fn glass(eta: f32) -> Material {
     let one = constant(Rgb::ONE);
-    material("glass", Rgb::ZERO, None, Lobe::Dielectric { eta, reflectance: one, transmittance: one })
+    material(
+        "glass",
+        Rgb::ZERO,
+        None,
+        Lobe::Dielectric { eta, thin: false, reflectance: one, transmittance: one },
+    )
 }
 
 fn label(distribution: Distribution) -> &'static str {

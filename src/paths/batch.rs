@@ -6,11 +6,11 @@
 //! Deviations: Embree's packets change the last bits of a hit, never its meaning; since a batch always holds the
 //! same paths in the same order, pictures do not depend on threads.
 
-use super::packet::{Packet, Shadows};
+use super::packet::{Packet, Shadows, Stage};
 use crate::embree::{Hits16, Ray, Rays16};
 use crate::light::Receivers16;
 use crate::material::{Bsdf, LobeSet};
-use crate::math::{LANES, Rgb, first_lanes, lanes_in};
+use crate::math::{LANES, Rgb, Vec3x16, first_lanes, lanes_in};
 use crate::sampling::Samplers16;
 use crate::world::{Surface, World};
 use glam::Vec3;
@@ -34,16 +34,20 @@ pub struct ChainEnd<'w> {
     pub distance: f32,
     /// Hash of the surfaces and lobes on the way: equal for paths that came the same way; 0 straight from the eye.
     pub way: u32,
-    /// Edges from the eye.
+    /// Edges from the eye; those before and behind a sheet that light passes straight count as one.
     pub depth: u32,
 }
 
 /// The light that a batch finds along its paths.
 pub trait Reach<'w> {
     /// True if paths end at the first surface that scatters by lobes which a chain does not follow: of the light that
-    /// reaches it, only that from emitters is found, by light samples and by one more edge. False for paths of full
-    /// length.
+    /// reaches it, only that is found which comes from emitters, by light samples and by one more edge, or by a delta
+    /// lobe of the surface that this edge meets, from where the path is of full length: such light comes along no
+    /// straight segment from a light or a virtual light. False for paths of full length from the eye.
     const ENDS: bool;
+
+    /// True if of the light that reaches ends only that by delta lobes is wanted, and none that chains find.
+    const ONLY_BY_DELTA_LOBES: bool = false;
 
     /// Returns the lobes that a chain follows besides delta lobes.
     fn followed(&self, bsdf: &Bsdf) -> LobeSet {
@@ -100,6 +104,9 @@ impl Batch {
         reach: &mut R,
         counts: &mut Counts,
     ) -> std::vec::Drain<'_, Rgb> {
+        if R::ONLY_BY_DELTA_LOBES {
+            self.packets.iter_mut().for_each(|packet| packet.emission_throughput = Vec3x16::ZERO);
+        }
         let mut depth = 1;
         while self.count > 0 {
             self.extend(world, [depth, max_depth], reach, counts);
@@ -131,8 +138,12 @@ impl Batch {
             hits.repeat(found.trailing_zeros() as usize, !found);
             let surfaces = world.surfaces(&hits);
             packet.add_emitted(world, &surfaces, found, &mut self.radiance);
-            let followed = if R::ENDS { found & packet.followed() } else { found };
-            if depth < max_depth && followed != 0 {
+            let mut followed = if R::ENDS { found & packet.followed() } else { found };
+            if R::ENDS {
+                followed &= !packet.at(Stage::Scattered) | world.specular.lanes(&surfaces.mesh);
+            }
+            followed &= packet.may_go_on(depth, max_depth);
+            if followed != 0 {
                 let arrives = |segment: &Ray, radiance: Rgb, slot: u32| {
                     if self.shadows.push(segment, radiance, slot) {
                         self.shadows.trace(world, depth == 1, &mut self.radiance, counts);
@@ -140,10 +151,9 @@ impl Batch {
                 };
                 let mut going_on = packet.scatter(world, &surfaces, depth, followed, reach, arrives);
                 if R::ENDS {
-                    let sought = going_on & !packet.followed();
-                    let met = world.emitters.may_be_met(&packet.rays.origins(), &packet.rays.directions());
-                    going_on &= !sought | met;
-                    self.look_outward(world, &packet, sought & !met, counts);
+                    let (kept, outward) = looked_along(world, &packet, going_on);
+                    going_on = kept;
+                    self.look_outward(world, &packet, outward, counts);
                 }
                 self.keep(&packet, going_on, &mut kept);
             }
@@ -185,11 +195,14 @@ impl Batch {
         if self.outward.1 == 0 {
             return;
         }
-        let (outward, count) = mem::take(&mut self.outward);
+        let (mut outward, count) = mem::take(&mut self.outward);
         counts.shadow_rays += count as u64;
         let valid = first_lanes(count);
-        let occluded = world.accel.occluded16(&outward.rays, valid, false);
-        self.escape(world, &outward, valid & !occluded);
+        let free = valid & !world.accel.occluded16(&outward.rays, valid, false);
+        let throughput = &mut outward.emission_throughput;
+        let attenuate = |lane, share| throughput.set(lane, throughput.get(lane) * share);
+        world.transmittance16(&outward.rays, free, attenuate);
+        self.escape(world, &outward, free);
         self.outward.0 = outward;
     }
 
@@ -209,4 +222,21 @@ impl Batch {
                 packet.emission_throughput.get(lane) * radiance * weight;
         }
     }
+}
+
+/// Of the paths that go on, those whose edges are to be followed, and those whose edges can find nothing but the
+/// environment.
+fn looked_along(world: &World, packet: &Packet, going_on: u16) -> (u16, u16) {
+    let sought = going_on & (packet.at(Stage::Scattered) | !packet.followed());
+    if sought == 0 {
+        return (going_on, 0);
+    }
+    let (origins, directions) = (packet.rays.origins(), packet.rays.directions());
+    let mut met = world.emitters.may_be_met(&origins, &directions);
+    let mut seeing = u16::MAX;
+    if world.specular.bends_light() {
+        seeing = packet.sees_emitters();
+        met = (met & seeing) | (world.specular.may_be_met(&origins, &directions) & packet.followed());
+    }
+    (going_on & (!sought | met), sought & seeing & !met)
 }

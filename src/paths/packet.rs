@@ -2,9 +2,21 @@
 
 use super::batch::Counts;
 use crate::embree::{Ray, Rays16};
-use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, first_lanes, lanes_in};
+use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, first_lanes, lanes_in, mask_of};
 use crate::sampling::Samplers16;
 use crate::world::World;
+
+/// Part of the light that a path of a reach that ends ([`super::Reach::ENDS`]) finds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub(super) enum Stage {
+    /// That of surfaces seen by chains.
+    Chain,
+    /// That which comes to the end of a chain from emitters, or by the delta lobes of the next surface.
+    Scattered,
+    /// All light, beyond such a delta lobe.
+    Full,
+}
 
 /// Sixteen paths on their way.
 #[derive(Clone, Debug, Default)]
@@ -29,6 +41,10 @@ pub(super) struct Packet {
     pub distance: F32x16,
     /// Hashes of the surfaces and lobes on the way.
     pub way: U32x16,
+    /// Values of [`Stage`].
+    pub stage: U32x16,
+    /// Numbers of sheets that light has passed straight; the edges before and behind count as one.
+    pub sheets: U32x16,
 }
 
 /// Light that arrives where segments are free, gathered until a packet is full.
@@ -56,6 +72,8 @@ impl Packet {
             slot: std::array::from_fn(|i| slot + i as u32),
             distance: [0.0; LANES],
             way: [0; LANES],
+            stage: [Stage::Chain as u32; LANES],
+            sheets: [0; LANES],
         }
     }
 
@@ -73,6 +91,27 @@ impl Packet {
         self.slot[to] = packet.slot[from];
         self.distance[to] = packet.distance[from];
         self.way[to] = packet.way[from];
+        self.stage[to] = packet.stage[from];
+        self.sheets[to] = packet.sheets[from];
+    }
+
+    /// Lanes that have fewer than `max_depth` of `edges` if sheets are not counted.
+    #[inline]
+    pub fn may_go_on(&self, edges: u32, max_depth: u32) -> u16 {
+        mask_of(&self.sheets.map(|sheets| u32::from(edges - sheets < max_depth)))
+    }
+
+    /// Lanes at a stage.
+    #[inline]
+    pub fn at(&self, stage: Stage) -> u16 {
+        mask_of(&self.stage.map(|other| u32::from(other == stage as u32)))
+    }
+
+    /// Lanes that light emitted by the next surface would count in.
+    #[inline]
+    pub fn sees_emitters(&self) -> u16 {
+        let sees = |i: &usize| self.emission_throughput.get(*i) != Rgb::ZERO;
+        lanes_in(u16::MAX).filter(sees).fold(0, |mask, i| mask | 1 << i)
     }
 
     /// Lanes whose next surface reflects light to the eye.
@@ -99,7 +138,10 @@ impl Shadows {
     pub fn trace(&mut self, world: &World, coherent: bool, results: &mut [Rgb], counts: &mut Counts) {
         counts.shadow_rays += self.count as u64;
         let occluded = world.accel.occluded16(&self.rays, first_lanes(self.count), coherent);
-        for lane in (0..self.count).filter(|lane| (occluded >> lane) & 1 == 0) {
+        let free = first_lanes(self.count) & !occluded;
+        let attenuate = |lane, share| self.radiance.set(lane, self.radiance.get(lane) * share);
+        world.transmittance16(&self.rays, free, attenuate);
+        for lane in lanes_in(free) {
             results[self.slot[lane] as usize] += self.radiance.get(lane);
         }
         self.count = 0;

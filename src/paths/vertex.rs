@@ -3,8 +3,8 @@
 //! Paper: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapters 9 and 10.
 //!
 //! Where a path ends at the first surface that scatters by lobes which a chain does not follow ([`Reach`]), it has
-//! one more edge from there, which finds emitters only: the counterpart of the light samples in multiple importance
-//! sampling.
+//! one more edge from there, which finds emitters: the counterpart of the light samples in multiple importance
+//! sampling. Where it meets a mirror or glass, the path goes on.
 //!
 //! Deviations: a path survives Russian roulette with the square root of its throughput. The throughput
 //! itself, from the second bounce on, ends paths between dark walls so often that the few that then hit the
@@ -13,17 +13,20 @@
 //! tenth less).
 
 use super::batch::{ChainEnd, Reach};
-use super::packet::Packet;
+use super::packet::{Packet, Stage};
 use crate::embree::{Ray, Rays16};
 use crate::light::Receivers16;
 use crate::material::{BsdfSamples16, Bsdfs16, LobeSet};
 use crate::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, mask_of};
 use crate::sampling::{hash, power_heuristic};
 use crate::shadow;
-use crate::world::{Surfaces16, World};
+use crate::world::{Surfaces16, World, beyond};
 
 /// From this vertex on, counted from the eye, Russian roulette may end a path.
 const ROULETTE_DEPTH: u32 = 2;
+
+/// Maximum number of sheets that a path passes as if they were not there, so that it ends.
+const MAX_SHEETS: u32 = 64;
 
 /// Pairs of random numbers that come before the first vertex: the place in the pixel.
 const PAIRS_BEFORE: u32 = 1;
@@ -69,6 +72,7 @@ impl Packet {
         arrives: impl FnMut(&Ray, Rgb, u32),
     ) -> u16 {
         let pair = PAIRS_BEFORE + 1 + (depth - 1).wrapping_mul(PAIRS_A_VERTEX);
+        let before = world.has_sheets().then(|| self.clone());
         let mut wo = Vec3x16::default();
         for i in 0..LANES {
             let frame = surfaces.frame(i);
@@ -78,25 +82,29 @@ impl Packet {
         }
         let bsdfs = world.bsdfs(surfaces, wo);
         let choices = self.samplers.point(pair + 2);
+        let mut at_end = if R::ENDS { found & self.at(Stage::Chain) } else { 0 };
+        let scattered = if R::ENDS { found & self.at(Stage::Scattered) } else { 0 };
         // Diffuse surfaces that paths end at, and from which emitters look small, have light samples alone.
         let alone = if R::ENDS {
             let at = Receivers16 { position: &surfaces.position, normal: &self.normal };
-            bsdfs.lambertian() & world.emitters.look_small(at)
+            at_end & bsdfs.lambertian() & world.emitters.look_small(at)
         } else {
             0
         };
-        if bsdfs.smooth() & found != 0 {
+        let unlit = scattered | if R::ONLY_BY_DELTA_LOBES { at_end } else { 0 };
+        let lit = bsdfs.smooth() & found & !unlit;
+        if lit != 0 {
             let numbers = (&choices.x, &self.samplers.point(pair));
-            self.light(world, surfaces, &bsdfs, numbers, (bsdfs.smooth() & found, alone), arrives);
+            self.light(world, surfaces, &bsdfs, numbers, (lit, alone), arrives);
         }
         let samples = bsdfs.sample(&choices.y, &self.samplers.point(pair + 1), found);
         let roulette = if depth >= ROULETTE_DEPTH { self.samplers.number(pair + 3) } else { [0.0; LANES] };
         let chained = if R::ENDS {
-            self.end_chains(&bsdfs, surfaces, depth, found, reach)
+            self.end_chains(&bsdfs, surfaces, depth, at_end, reach)
         } else {
             [LobeSet::default(); LANES]
         };
-        let mut survives = [0; LANES];
+        let (mut survives, mut survivals) = ([0; LANES], [1.0; LANES]);
         for i in 0..LANES {
             let throughput = self.throughput.get(i) * samples.weight.get(i);
             self.eta_sq[i] *= samples.eta[i] * samples.eta[i];
@@ -104,23 +112,52 @@ impl Packet {
             let survival = if depth >= ROULETTE_DEPTH { survival } else { 1.0 };
             // The comparison also ends paths whose throughput is not a number.
             survives[i] = u32::from(roulette[i] < survival);
+            survivals[i] = survival;
             self.throughput.set(i, throughput / survival);
             self.pdf[i] = samples.pdf[i];
         }
         self.emission_throughput = self.throughput;
         let mut found = found;
         if R::ENDS {
-            found &= !alone & samples.going_on() & mask_of(&survives);
-            self.follow(&bsdfs, &samples, surfaces, (found, pair + 3), &chained);
-            if !world.emitters.are_hittable() {
-                found &= self.followed();
+            let by_delta_lobes = world.specular.bends_light();
+            found &= samples.going_on() & mask_of(&survives) & (!scattered | samples.delta());
+            found &= if by_delta_lobes { u16::MAX } else { !alone };
+            at_end &= found;
+            self.follow(&bsdfs, &samples, surfaces, (at_end, pair + 3), &chained);
+            let blind = if world.emitters.are_hittable() { alone } else { at_end & !self.at(Stage::Chain) };
+            if by_delta_lobes {
+                self.emission_throughput.keep(!blind);
+            } else {
+                found &= !blind;
+            }
+            let leaving = found & scattered & !samples.straight();
+            lanes_in(leaving).for_each(|lane| self.stage[lane] = Stage::Full as u32);
+            if R::ONLY_BY_DELTA_LOBES {
+                self.emission_throughput.keep(self.at(Stage::Full));
             }
         }
         for i in 0..LANES {
             let direction = surfaces.frame(i).to_world(samples.wi.get(i));
             self.rays.set(i, &shadow::ray_from(surfaces.position.get(i), surfaces.normal.get(i), direction));
         }
-        found & samples.going_on() & mask_of(&survives)
+        found &= samples.going_on() & mask_of(&survives);
+        if let Some(before) = before {
+            for i in lanes_in(found & samples.straight()) {
+                self.pass_sheet(i, &before, surfaces, samples.weight.get(i) / survivals[i]);
+            }
+        }
+        found
+    }
+
+    /// Lengthens a lane's edge, as it was `before`, beyond the sheet that it has met. It stays the same edge, also in
+    /// multiple importance sampling, as shadow rays pass sheets too.
+    fn pass_sheet(&mut self, lane: usize, before: &Packet, surfaces: &Surfaces16, weight: Rgb) {
+        let (position, normal) = (surfaces.position.get(lane), surfaces.normal.get(lane));
+        self.rays.set(lane, &beyond(&before.rays.get(lane), position, normal, surfaces.t[lane]));
+        self.normal.set(lane, before.normal.get(lane));
+        self.pdf[lane] = before.pdf[lane];
+        self.emission_throughput.set(lane, before.emission_throughput.get(lane) * weight);
+        self.sheets[lane] += u32::from(self.sheets[lane] < MAX_SHEETS);
     }
 
     /// Calls `reach` with the surfaces that scatter by lobes which chains do not follow; returns those that they do.
@@ -148,26 +185,27 @@ impl Packet {
                 throughput: self.throughput.get(lane),
                 distance: self.distance[lane] + surfaces.t[lane],
                 way: self.way[lane],
-                depth,
+                depth: depth - self.sheets[lane],
             });
         }
         chained
     }
 
-    /// Reduces the throughput of the sampled directions to that of the lobes which chains follow: all of it in the
-    /// directions of delta lobes, and the share of the lobes of `chained` elsewhere, by chance all or nothing.
+    /// Reduces the throughput of the sampled directions at ends to that of the lobes which chains follow: all of it in
+    /// the directions of delta lobes, and the share of the lobes of `chained` elsewhere, by chance all or nothing. The
+    /// paths of the others leave their chains, with the throughput of the other lobes.
     fn follow(
         &mut self,
         bsdfs: &Bsdfs16,
         samples: &BsdfSamples16,
         surfaces: &Surfaces16,
-        (found, pair): (u16, u32),
+        (at_end, pair): (u16, u32),
         chained: &[LobeSet; LANES],
     ) {
-        let delta = samples.delta() & found;
-        let may_go_on = lanes_in(found).filter(|lane| !chained[*lane].is_empty());
+        let delta = samples.delta() & at_end;
+        let may_go_on = lanes_in(at_end).filter(|lane| !chained[*lane].is_empty());
         let sharp = may_go_on.fold(0, |mask, lane| mask | 1u16 << lane) & !delta;
-        self.throughput.keep(delta | sharp);
+        lanes_in(at_end & !(delta | sharp)).for_each(|lane| self.stage[lane] = Stage::Scattered as u32);
         if delta | sharp == 0 {
             return;
         }
@@ -178,11 +216,16 @@ impl Packet {
             let share =
                 bsdfs.lane(lane).eval_lobes(chained[lane], wo, wi) / value.max(Rgb::splat(f32::MIN_POSITIVE));
             let survival = share.max_element().min(1.0);
-            let goes_on = draws[lane] < survival;
-            let throughput = if goes_on { self.throughput.get(lane) * share / survival } else { Rgb::ZERO };
-            self.throughput.set(lane, throughput);
+            let (share, probability) = match draws[lane] < survival {
+                true => (share, survival),
+                false => {
+                    self.stage[lane] = Stage::Scattered as u32;
+                    ((Rgb::ONE - share).max(Rgb::ZERO), 1.0 - survival)
+                }
+            };
+            self.throughput.set(lane, self.throughput.get(lane) * share / probability);
         }
-        for lane in lanes_in(delta | sharp) {
+        for lane in lanes_in((delta | sharp) & !samples.straight()) {
             self.distance[lane] += surfaces.t[lane];
             let same_side = (bsdfs.wo(lane).z > 0.0) == (samples.wi.z[lane] > 0.0);
             let side = u32::from(same_side) + 2 * u32::from((delta >> lane) & 1 != 0);

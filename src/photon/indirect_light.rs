@@ -1,8 +1,8 @@
 //! Indirect light that surfaces reflect along the rays that hit them.
 //!
 //! A surface reflects the irradiance of the map, unless it is nearer than the map resolves (see
-//! [`super::near`]). Mirrors, glass and sharp lobes are followed to the surfaces visible in them; emission is
-//! direct light and is not counted.
+//! [`super::near`]). Sharp lobes are followed to the surfaces visible in them, by mirrors and glass too; light by
+//! mirrors and glass alone is found with the eye samples, and not counted. Nor is emission, which is direct light.
 //!
 //! Units: radiance.
 
@@ -54,7 +54,7 @@ impl IndirectLight<'_> {
         counts: &mut GatherCounts,
     ) -> (Rgb, Rgb) {
         let (mut radiance, mut throughput, mut near) = (Rgb::ZERO, Rgb::ONE, Rgb::ZERO);
-        let mut surface = *first;
+        let (mut surface, mut scattered) = (*first, false);
         for edge in 0..MAX_EDGES {
             let bsdf = self.world.bsdf(&surface);
             let out = surface.frame.to_local(-direction);
@@ -73,6 +73,10 @@ impl IndirectLight<'_> {
             let followed = sharp.map_or(bsdf, |(_, sharp)| sharp);
             let sample = followed.sample(out, sampler.next_1d(), sampler.next_2d());
             let Some(s) = sample.filter(|s| s.delta || sharp.is_some()) else { break };
+            scattered |= !s.delta;
+            if !(scattered || s.straight) {
+                break;
+            }
             throughput *= s.weight;
             direction = surface.frame.to_world(s.wi);
             counts.followed += 1;

@@ -149,8 +149,8 @@ impl IndirectLight<'_> {
             };
             let share = cos * FRAC_1_PI * weight / lights.pdf[lane];
             let arriving = near.throughput.get(lane) * lights.radiance.get(lane) * share;
-            if arriving.is_finite() && !world.accel.occluded(&ray) {
-                radiance[lane] += arriving;
+            if arriving.is_finite() {
+                radiance[lane] += arriving * shadow::arriving(world, &ray);
             }
         }
     }

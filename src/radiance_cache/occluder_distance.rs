@@ -7,7 +7,7 @@
 use crate::embree::Occluders16;
 use crate::light_tree::Node;
 use crate::lightcut::{PacketVisibility, ReceiverPacket, Visibility, to_vpl};
-use crate::math::{F32x16, LANES};
+use crate::math::{F32x16, LANES, Rgb, Vec3x16};
 use crate::shadow::Engine;
 use crate::vpl::Vpl;
 use crate::world::World;
@@ -58,6 +58,10 @@ impl Visibility for OccluderLog<'_> {
             None => true,
         }
     }
+
+    fn transmittance(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> Rgb {
+        Visibility::transmittance(&self.engine, x, normal, vpl, node)
+    }
 }
 
 impl PacketVisibility for OccluderLog<'_> {
@@ -77,5 +81,9 @@ impl PacketVisibility for OccluderLog<'_> {
             self.log.borrow_mut().push((key, distances));
         }
         lanes & !occluded
+    }
+
+    fn attenuate16(&self, points: &ReceiverPacket, lanes: u16, of: (&Vpl, &Node), light: &mut Vec3x16) {
+        self.engine.attenuate16(points, lanes, of, light)
     }
 }

@@ -144,6 +144,9 @@ pub enum Lobe {
     Dielectric {
         /// Interior over exterior index of refraction; the interior is behind the normal.
         eta: f32,
+        /// True for a sheet with an interface on either side, so close to each other that light which passes it, and is
+        /// reflected between them any number of times, goes straight on.
+        thin: bool,
         /// Factor on reflection.
         reflectance: Reflectance,
         /// Factor on refraction (radiance also scales by 1/η² as it enters the denser side).

@@ -55,4 +55,16 @@ impl Scene {
     pub fn path_limit(&self, wanted: Option<u32>) -> u32 {
         wanted.or(self.max_depth).unwrap_or(u32::MAX)
     }
+
+    /// True if light from single points or directions may come to surfaces through solid glass, by ways that no
+    /// sampling finds.
+    pub fn focuses_point_lights(&self) -> bool {
+        let is_solid = |lobe: &Lobe| match *lobe {
+            Lobe::Dielectric { eta, thin, .. } => !thin && eta != 1.0,
+            _ => false,
+        };
+        let material = |mesh: &Mesh| self.materials.get(mesh.material.0 as usize);
+        let mut lobes = self.meshes.iter().filter_map(material).flat_map(|material| &material.lobes);
+        !self.lights.is_empty() && lobes.any(is_solid)
+    }
 }

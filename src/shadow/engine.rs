@@ -30,6 +30,12 @@ impl<'w> Engine<'w> {
         Engine { cache, ..Engine::new(world) }
     }
 
+    /// The world.
+    #[inline]
+    pub fn world(&self) -> &'w World {
+        self.world
+    }
+
     /// Clears the cache. To be called at boundaries of the work that do not depend on the number of threads.
     pub fn begin_chunk(&self) {
         if let Some(cache) = &self.cache {

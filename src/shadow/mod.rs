@@ -16,5 +16,5 @@ pub use cache::OccluderCacheSettings;
 pub use counts::ShadowCounts;
 pub use engine::Engine;
 pub(crate) use segment::ULPS;
-pub use segment::{escapes, ray_from, segment, visible};
+pub use segment::{arriving, between, ray_from, segment};
 pub use settings::ShadowSettings;

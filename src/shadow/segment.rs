@@ -5,6 +5,7 @@
 //! the position itself, so it holds for any scene size or offset, where a constant would not.
 
 use crate::embree::Ray;
+use crate::math::Rgb;
 use crate::world::World;
 use glam::Vec3;
 
@@ -34,15 +35,15 @@ pub fn segment(a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> Ray {
     Ray { origin, t_near: 0.0, direction: target - origin, t_far: 1.0 }
 }
 
-/// True if the segment between two surface points is unoccluded. A zero normal marks a point that lies on no
-/// surface.
+/// Share of the light that arrives along the segment between two surface points. A zero normal marks a point that lies
+/// on no surface.
 #[inline]
-pub fn visible(world: &World, a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> bool {
-    !world.accel.occluded(&segment(a, a_normal, b, b_normal))
+pub fn between(world: &World, a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> Rgb {
+    arriving(world, &segment(a, a_normal, b, b_normal))
 }
 
-/// True if a ray from a surface point hits nothing.
+/// Share of the light that arrives along a segment: 0 where it is occluded, else the transmittance of the sheets on it.
 #[inline]
-pub fn escapes(world: &World, position: Vec3, normal: Vec3, direction: Vec3) -> bool {
-    !world.accel.occluded(&ray_from(position, normal, direction))
+pub fn arriving(world: &World, segment: &Ray) -> Rgb {
+    if world.accel.occluded(segment) { Rgb::ZERO } else { world.transmittance(segment) }
 }

@@ -10,10 +10,14 @@ use crate::scene::Scene;
 use glam::{Vec2, Vec3};
 
 mod packet;
+mod sheets;
+mod specular;
 mod triangle;
 
 pub use crate::embree::{EmbreeError, Ray};
 pub use packet::Surfaces16;
+pub use sheets::beyond;
+use specular::Specular;
 use triangle::Triangles;
 
 /// A scene with all tables that methods need.
@@ -26,15 +30,23 @@ pub struct World {
     pub(crate) materials: Materials,
     /// Emitters of light.
     pub(crate) emitters: Emitters,
+    /// Mirrors and glass.
+    pub(crate) specular: Specular,
     /// Diagonal of the bounds of all surfaces; 1 if there are none. Lengths that depend on scale derive from it.
     pub diagonal: f32,
     triangles: Triangles,
+    /// Surfaces that light passes straight through, if there are any.
+    sheets: Option<Accel>,
 }
 
 /// Returns the meshes of a scene as input of an acceleration structure.
-pub fn triangle_meshes(scene: &Scene) -> Vec<TriangleMesh<'_>> {
-    let meshes = scene.meshes.iter();
-    meshes.map(|m| TriangleMesh { positions: &m.positions, triangles: &m.triangles }).collect()
+pub fn triangle_meshes<'a>(scene: &'a Scene, materials: &Materials) -> Vec<TriangleMesh<'a>> {
+    let meshes = scene.meshes.iter().map(|mesh| TriangleMesh {
+        positions: &mesh.positions,
+        triangles: &mesh.triangles,
+        occludes: !materials.average(scene, mesh.material).passes_straight(),
+    });
+    meshes.collect()
 }
 
 /// A surface point that gathers light.
@@ -71,20 +83,23 @@ impl World {
     /// Builds the world; `threads` is the number of Embree's build threads.
     pub fn new(scene: Scene, threads: usize) -> Result<World, EmbreeError> {
         let device = Device::new(threads)?;
-        let accel = Accel::build(&device, &triangle_meshes(&scene))?;
+        let materials = Materials::new(&scene);
+        let accel = Accel::build(&device, &triangle_meshes(&scene, &materials))?;
         let diagonal = match accel.bounds() {
             Some((low, high)) if high != low => (high - low).length(),
             _ => 1.0,
         };
-        let materials = Materials::new(&scene);
         let emitters = Emitters::new(&scene, diagonal);
+        let specular = Specular::new(&scene, &materials);
         let triangles = Triangles::new(&scene);
-        Ok(World { scene, accel, materials, emitters, diagonal, triangles })
+        let sheets = sheets::sheets(&scene, &materials, &accel)?;
+        Ok(World { scene, accel, materials, emitters, specular, diagonal, triangles, sheets })
     }
 
     /// Builds the acceleration structure anew, at another quality, for benchmarks.
     pub(crate) fn rebuild(&mut self, quality: BuildQuality) -> Result<(), EmbreeError> {
-        self.accel = Accel::build_with(self.accel.device(), &triangle_meshes(&self.scene), quality)?;
+        let meshes = triangle_meshes(&self.scene, &self.materials);
+        self.accel = Accel::build_with(self.accel.device(), &meshes, quality)?;
         Ok(())
     }
 

@@ -97,7 +97,15 @@ pub fn mirror() -> Material {
 
 pub fn glass(eta: f32) -> Material {
     let one = Reflectance::Constant(Rgb::ONE);
-    let lobes = vec![Lobe::Dielectric { eta, reflectance: one, transmittance: one }];
+    let lobes = vec![Lobe::Dielectric { eta, thin: false, reflectance: one, transmittance: one }];
+    Material { lobes, ..diffuse(Rgb::ZERO) }
+}
+
+/// A thin sheet of glass that takes part of the light which passes it.
+pub fn pane(eta: f32, transmittance: Rgb) -> Material {
+    let (reflectance, transmittance) =
+        (Reflectance::Constant(Rgb::ONE), Reflectance::Constant(transmittance));
+    let lobes = vec![Lobe::Dielectric { eta, thin: true, reflectance, transmittance }];
     Material { lobes, ..diffuse(Rgb::ZERO) }
 }
 

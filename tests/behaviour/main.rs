@@ -10,6 +10,7 @@ mod compensation;
 mod denoise;
 mod drawn;
 mod extremes;
+mod glass;
 mod lightcuts;
 mod many_lights;
 mod occluder_cache;

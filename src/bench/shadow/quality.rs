@@ -12,7 +12,7 @@ use crate::world::triangle_meshes;
 use std::hint::black_box;
 
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
-    let meshes = triangle_meshes(&setting.world.scene);
+    let meshes = triangle_meshes(&setting.world.scene, &setting.world.materials);
     let mut warnings = Vec::new();
     let mut built = Vec::new();
     for quality in [

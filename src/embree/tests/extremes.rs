@@ -9,7 +9,7 @@ use std::hint::black_box;
 const TRIANGLE: [Vec3; 3] = [Vec3::new(-9.0, -9.0, 1.0), Vec3::new(9.0, -9.0, 1.0), Vec3::new(0.0, 9.0, 1.0)];
 
 fn mesh<'a>(positions: &'a [Vec3], triangles: &'a [[u32; 3]]) -> TriangleMesh<'a> {
-    TriangleMesh { positions, triangles }
+    TriangleMesh { positions, triangles, occludes: true }
 }
 
 fn meets_nothing(accel: &Accel, ray: &Ray) -> bool {
@@ -34,6 +34,29 @@ fn an_empty_scene_has_no_bounds_and_no_hits() {
         assert!(accel.is_empty());
         assert_eq!(accel.bounds(), None);
         assert!(meets_nothing(&accel, &Ray::new(Vec3::ZERO, Vec3::Z)));
+    }
+}
+
+#[test]
+fn meshes_that_do_not_occlude_are_hit_and_nothing_else() {
+    let behind = TRIANGLE.map(|p| p + 2.0 * Vec3::Z);
+    for device in devices() {
+        let clear = TriangleMesh { occludes: false, ..mesh(&TRIANGLE, &[[0, 1, 2]]) };
+        let accel = Accel::build(&device, &[clear, mesh(&behind, &[[0, 1, 2]])]).unwrap();
+        for (t_far, occluded) in [(2.0, false), (4.0, true)] {
+            let ray = Ray { t_far, ..Ray::new(Vec3::ZERO, Vec3::Z) };
+            let mut packet = Rays16::default();
+            (0..16).for_each(|lane| packet.set(lane, &ray));
+            let all = if occluded { u16::MAX } else { 0 };
+            let mut found = Occluders16::default();
+            assert_eq!(accel.closest_hit(&ray).map(|hit| hit.geometry), Some(0));
+            assert_eq!(accel.occluded(&ray), occluded);
+            assert_eq!(accel.occluder(&ray).map(|occluder| occluder.geometry), occluded.then_some(1));
+            assert_eq!(accel.occluders16(&packet, u16::MAX, true, &mut found), all);
+            for width in Width::ALL {
+                assert_eq!(accel.occluded_by(width, &packet, u16::MAX, true), all);
+            }
+        }
     }
 }
 

@@ -80,8 +80,11 @@ impl Soup {
     }
 
     pub fn build(&self, device: &Device) -> Accel {
-        let meshes: Vec<_> =
-            self.meshes.iter().map(|(positions, triangles)| TriangleMesh { positions, triangles }).collect();
+        let meshes: Vec<_> = self
+            .meshes
+            .iter()
+            .map(|(positions, triangles)| TriangleMesh { positions, triangles, occludes: true })
+            .collect();
         Accel::build(device, &meshes).unwrap()
     }
 

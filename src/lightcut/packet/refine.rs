@@ -214,7 +214,9 @@ impl<'a, 't, 'm, V: PacketVisibility> Pass<'a, 't, 'm, V> {
         }
         self.cut.counts.rays += u64::from(lit.count_ones());
         self.cut.counts.packets += 1;
-        responses.keep(self.visibility.visible16(self.receivers, lit, vpl, node));
+        let visible = self.visibility.visible16(self.receivers, lit, vpl, node);
+        responses.keep(visible);
+        self.visibility.attenuate16(self.receivers, visible, (vpl, node), &mut responses);
         responses
     }
 

@@ -36,6 +36,9 @@ const MIN_LUMINANCE: f32 = 1.0 / 16.0;
 /// Luminance, relative to that at which a leaf is clamped, above which a weak singularity is evaluated.
 const NEARLY_CLAMPED: f32 = 0.5;
 
+/// Share of its light that a cluster which counts as seen without sheets may lack: rounding.
+const UNATTENUATED: f32 = 1e-4;
+
 /// A cluster that is evaluated at every point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Evaluated {
@@ -83,6 +86,8 @@ struct AtAnchors {
     seen: u16,
     /// True if enough anchors are lit to judge by.
     known: bool,
+    /// True if some see it through sheets that take light, which fits know nothing of.
+    attenuated: bool,
     /// Unshadowed luminance.
     luminances: F32x16,
     /// Mean over the anchors, relative to their totals.
@@ -120,11 +125,11 @@ impl<'a, 't, 'm> Anchors<'a, 't, 'm> {
             return Class::Dropped;
         }
         let large = at.share > LARGE * self.epsilon;
-        let disputed = at.seen != at.lit || !at.known || large;
+        let disputed = at.seen != at.lit || !at.known || large || at.attenuated;
         let brighter = BRIGHTER * lanes_in(at.lit).map(|l| at.luminances[l]).fold(0.0, f32::max);
         let evaluated = || evaluated(if disputed { 0.0 } else { brighter }, brighter.max(min_split));
         let nearly_clamped = |l: usize| at.luminances[l] > NEARLY_CLAMPED * self.sum.limits[l];
-        if large || is_weak(node) && lanes_in(at.lit).any(nearly_clamped) {
+        if large || at.attenuated || is_weak(node) && lanes_in(at.lit).any(nearly_clamped) {
             return evaluated();
         }
         let Some((fit, values)) = interpolant.fit(self.transfer, self.receivers, cluster, at.seen) else {
@@ -150,11 +155,13 @@ impl<'a, 't, 'm> Anchors<'a, 't, 'm> {
         let r = &cluster.responses;
         let reached = |&l: &usize| r.x[l] + r.y[l] + r.z[l] > 0.0;
         let seen = lanes_in(lit).filter(reached).fold(0u16, |mask, lane| mask | 1 << lane);
+        let lacks = |l| (unshadowed.get(l) - r.get(l)).cmpgt(UNATTENUATED * unshadowed.get(l)).any();
+        let attenuated = lanes_in(seen).any(lacks);
         // If only a few of the anchors are lit at all, little is known.
         let known = lit.count_ones() * 2 >= self.receivers.valid.count_ones();
         let luminances = luminances(node.intensity, &unshadowed);
         let relative = lanes_in(lit).map(|l| luminances[l] * self.inverse_totals[l]);
         let share = relative.sum::<f32>() / self.receivers.len() as f32;
-        AtAnchors { lit, seen, known, luminances, share }
+        AtAnchors { lit, seen, known, attenuated, luminances, share }
     }
 }

@@ -85,7 +85,9 @@ impl<V: PacketVisibility> Gathering<'_, '_, '_, V> {
         if doubtful != 0 {
             self.counts.rays += u64::from(doubtful.count_ones());
             self.counts.packets += 1;
-            responses.keep(self.visibility.visible16(self.receivers, doubtful, vpl, n) | !doubtful);
+            let visible = self.visibility.visible16(self.receivers, doubtful, vpl, n);
+            responses.keep(visible | !doubtful);
+            self.visibility.attenuate16(self.receivers, visible, (vpl, n), &mut responses);
         }
         Some(responses)
     }

@@ -11,10 +11,9 @@ pub fn gather_all<V: Visibility>(transfer: &Transfer, visibility: &V, receiver: 
     for leaf in transfer.trees.leaves() {
         let vpl = &transfer.trees.vpls[leaf.representative()];
         let contribution = leaf.intensity * transfer.unshadowed(receiver, vpl, leaf.kind());
-        if contribution != Rgb::ZERO
-            && visibility.visible(receiver.position(), receiver.geometric_normal(), vpl, leaf)
-        {
-            sum += contribution.as_dvec3();
+        let (x, normal) = (receiver.position(), receiver.geometric_normal());
+        if contribution != Rgb::ZERO && visibility.visible(x, normal, vpl, leaf) {
+            sum += (contribution * visibility.transmittance(x, normal, vpl, leaf)).as_dvec3();
         }
     }
     sum.as_vec3()

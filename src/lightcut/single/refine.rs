@@ -106,7 +106,10 @@ impl<V: Visibility> Pass<'_, '_, '_, V> {
         }
         self.cut.counts.rays += 1;
         let (x, normal) = (self.receiver.position(), self.receiver.geometric_normal());
-        if self.visibility.visible(x, normal, vpl, node) { response } else { Rgb::ZERO }
+        match self.visibility.visible(x, normal, vpl, node) {
+            true => response * self.visibility.transmittance(x, normal, vpl, node),
+            false => Rgb::ZERO,
+        }
     }
 
     /// Queues the cluster at `place` by the error to expect.

@@ -51,6 +51,21 @@ impl LobeModel {
         }
     }
 
+    /// True if it is a delta lobe that sends light in another direction than it comes in.
+    pub fn bends(&self) -> bool {
+        match self {
+            LobeModel::Rough(_) => false,
+            LobeModel::Mirror(_) => true,
+            LobeModel::Interface(interface) => interface.bends(),
+        }
+    }
+
+    /// True if light goes on in the direction that it comes in.
+    #[inline]
+    pub fn passes_straight(&self) -> bool {
+        matches!(self, LobeModel::Interface(interface) if interface.passes_straight())
+    }
+
     /// True if the surface's two sides are the two sides of one interface.
     pub fn transmits(&self) -> bool {
         matches!(self, LobeModel::Interface(_))

@@ -124,12 +124,44 @@ fn weights_are_value_times_cosine_over_density() {
 }
 
 #[test]
+fn thin_sheets_pass_light_straight_after_all_reflections_between_their_sides() {
+    let one = constant(Rgb::ONE);
+    let sheet = Lobe::Dielectric { eta: 1.5, thin: true, reflectance: one, transmittance: one };
+    let sheet = material("sheet", Rgb::ZERO, None, sheet);
+    for theta in [0.0, 0.7, 1.5, 2.0, 3.0] {
+        let wo = direction(theta, 0.4);
+        let r = with_bsdf(&glass(1.5), |b| {
+            let outside = Vec3::new(wo.x, wo.y, wo.z.abs());
+            b.delta_lobes(outside).reflection.expect("reflection").weight.x
+        });
+        // Light that leaves after any number of reflections inside, by either side.
+        let (mut reflected, mut passed, mut inside) = (r, 0.0, 1.0 - r);
+        for _ in 0..50 {
+            passed += inside * (1.0 - r);
+            inside *= r;
+            reflected += inside * (1.0 - r);
+            inside *= r;
+        }
+        with_bsdf(&sheet, |b| {
+            let lobes = b.delta_lobes(wo);
+            let (reflection, passage) = (lobes.reflection.expect("one"), lobes.refraction.expect("other"));
+            assert!((reflection.weight - reflected).abs().max_element() < 1e-5, "{theta} {reflection:?}");
+            assert!((passage.weight - passed).abs().max_element() < 1e-5, "{theta} {passage:?}");
+            assert!(passage.wi == -wo && passage.straight && !reflection.straight && passage.eta == 1.0);
+            assert_eq!(b.straight_transmittance(wo), passage.weight);
+        });
+    }
+}
+
+#[test]
 fn delta_lobes_are_sampled_for_what_they_carry() {
     let mut random = Random(3);
     let scale = |material: Material, reflectance: Rgb, transmittance: Rgb| {
         let (r, t) = (constant(reflectance), constant(transmittance));
         let lobe = match material.lobes[..] {
-            [Lobe::Dielectric { eta, .. }] => Lobe::Dielectric { eta, reflectance: r, transmittance: t },
+            [Lobe::Dielectric { eta, thin, .. }] => {
+                Lobe::Dielectric { eta, thin, reflectance: r, transmittance: t }
+            }
             [Lobe::Mirror { fresnel, .. }] => Lobe::Mirror { fresnel, scale: r },
             _ => panic!("{}", material.name),
         };

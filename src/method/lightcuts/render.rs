@@ -1,7 +1,7 @@
 //! The picture: light pass, trees, then pixels in tiles.
 
 use super::blocks::{TILE, Tile, Tiles};
-use crate::eye::{ChainCounts, EyeRays, VisibleSurfaces};
+use crate::eye::{EyeRays, LightByDeltaLobes, VisibleSurfaces};
 use crate::film::{Image, Layer};
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
@@ -72,7 +72,8 @@ impl Renderer for Settings {
 
         let mut color = Image::new(view.window.width, view.window.height);
         let mut cut_size = color.map(|_| 0.0);
-        let (mut work, mut chains, mut nonfinite) = (ShadingCounts::default(), ChainCounts::default(), 0);
+        let light = stats.time(Stage::Render, || LightByDeltaLobes::new(world, view, eye, control));
+        let (mut work, mut chains, mut nonfinite) = (ShadingCounts::default(), light.chains, light.nonfinite);
         for tile in done.iter().flatten() {
             for &(pixel, radiance, clusters) in &tile.pixels {
                 color.pixels[pixel] = radiance;
@@ -82,12 +83,13 @@ impl Renderer for Settings {
             chains += tile.chains;
             nonfinite += tile.nonfinite;
         }
+        light.add_to(&mut color);
         stats.count("Rays/shadow packets", work.cuts.packets);
         work.shadows.report(&mut stats);
         counts::cuts(&mut stats, "Lightcut", &work.cuts);
         counts::clamping(&mut stats, &work.cuts, self.compensation.then_some(&work.compensation));
         counts::eye(&mut stats, &chains);
-        let complete = done.iter().all(Option::is_some);
+        let complete = done.iter().all(Option::is_some) && !control.is_cancelled();
         let extra = vec![Layer::scalar("cut", cut_size)];
         Output { color, variance: None, extra, stats, complete, nonfinite }
     }

@@ -59,5 +59,11 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let (mut draft, hash) = plan.realise()?;
     let (repairs, centre) = sanitize::sanitize(&mut draft)?;
     let (scene, cameras) = recentre::recentre(draft, centre);
+    if scene.focuses_point_lights() {
+        let what = "light of point, spot and directional lights that comes through solid glass is not found";
+        let fallback =
+            "surfaces behind the glass lack it; thin glass lets it pass, and light of small lamps is found";
+        log.warn(&Place::file(path), what, fallback)?;
+    }
     Ok(Loaded { scene, cameras, warnings: log.into_warnings(), repairs, hash, generator })
 }

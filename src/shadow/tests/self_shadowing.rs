@@ -72,7 +72,7 @@ impl Solid {
         let positions: Vec<Vec3> = faces.into_iter().flatten().map(|p| centre + size * p).collect();
         let triangles: Vec<[u32; 3]> =
             (0..positions.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let mesh = TriangleMesh { positions: &positions, triangles: &triangles };
+        let mesh = TriangleMesh { positions: &positions, triangles: &triangles, occludes: true };
         let accel = Accel::build(&Device::new(1).unwrap(), &[mesh]).unwrap();
         Solid { positions, triangles, accel, centre, size }
     }

@@ -78,7 +78,7 @@ impl Converter<'_> {
             "conductor" | "roughconductor" => self.conductor(bsdf, name)?,
             "dielectric" | "thindielectric" | "roughdielectric" => self.dielectric(bsdf, name)?,
             "phong" | "ward" => self.classic_glossy(bsdf, name)?,
-            "null" => glass(name, 1.0, Reflectance::Constant(Rgb::ONE), Reflectance::Constant(Rgb::ONE)),
+            "null" => glass(name, (1.0, false), [Reflectance::Constant(Rgb::ONE); 2]),
             "twosided" => self.two_sided(bsdf, depth)?,
             "mask" | "bumpmap" | "bump" | "normalmap" | "blendbsdf" | "mixturebsdf" | "coating"
             | "roughcoating" => self.wrapped(bsdf, depth)?,
@@ -166,26 +166,15 @@ impl Converter<'_> {
     }
 
     fn dielectric(&mut self, bsdf: &Object, name: String) -> Result<Material, SceneError> {
-        let mut eta = self.relative_ior(bsdf, "bk7")?;
-        match bsdf.plugin.as_str() {
-            "thindielectric" => {
-                eta = 1.0;
-                let fallback = "it is clear and does not reflect";
-                self.log.warn(&bsdf.place, "a thin sheet of dielectric is not modelled", fallback)?;
-            }
-            "roughdielectric" => {
-                bsdf.ignore(&["alpha", "alpha_u", "alpha_v", "distribution", "sample_visible"]);
-                self.log.warn(
-                    &bsdf.place,
-                    "a rough dielectric is not modelled",
-                    "the surface is smooth glass",
-                )?;
-            }
-            _ => {}
+        let eta = self.relative_ior(bsdf, "bk7")?;
+        if bsdf.plugin == "roughdielectric" {
+            bsdf.ignore(&["alpha", "alpha_u", "alpha_v", "distribution", "sample_visible"]);
+            let fallback = "the surface is smooth glass";
+            self.log.warn(&bsdf.place, "a rough dielectric is not modelled", fallback)?;
         }
         let reflectance = self.reflectance(bsdf, "specular_reflectance", 1.0)?;
         let transmittance = self.reflectance(bsdf, "specular_transmittance", 1.0)?;
-        Ok(glass(name, eta, reflectance, transmittance))
+        Ok(glass(name, (eta, bsdf.plugin == "thindielectric"), [reflectance, transmittance]))
     }
 
     /// Phong and Ward: a Lambert base and a GGX lobe of the same width and reflectance.
@@ -278,7 +267,8 @@ fn diffuse(name: String, diffuse: Reflectance) -> Material {
     Material { name, diffuse, ..Material::default() }
 }
 
-fn glass(name: String, eta: f32, reflectance: Reflectance, transmittance: Reflectance) -> Material {
-    let lobe = Lobe::Dielectric { eta, reflectance, transmittance };
+/// Glass of an index of refraction, perhaps a thin sheet of it, with factors on reflection and transmission.
+fn glass(name: String, (eta, thin): (f32, bool), [reflectance, transmittance]: [Reflectance; 2]) -> Material {
+    let lobe = Lobe::Dielectric { eta, thin, reflectance, transmittance };
     Material { name, two_sided: true, lobes: vec![lobe], ..Material::default() }
 }

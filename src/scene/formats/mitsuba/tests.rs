@@ -1,6 +1,6 @@
 use crate::math::Rgb;
 use crate::scene::formats::{Level, LoadOptions, Loaded, load};
-use crate::scene::{DeltaLight, Distribution, Environment, Fresnel, Lobe, Reflectance, Roughness};
+use crate::scene::{DeltaLight, Distribution, Environment, Fresnel, Lobe, Material, Reflectance, Roughness};
 use glam::{DVec3, Vec3};
 use std::fs;
 
@@ -23,7 +23,7 @@ fn load_body(body: &str) -> Result<Loaded, String> {
     load_with(body, &[], false)
 }
 
-fn bsdf(text: &str) -> (crate::scene::Material, usize) {
+fn bsdf(text: &str) -> (Material, usize) {
     let loaded = load_body(&format!("<shape type=\"rectangle\">{text}</shape>")).unwrap();
     (loaded.scene.materials[0].clone(), loaded.warnings.len())
 }
@@ -39,7 +39,13 @@ fn defaults_are_mitsubas() {
     ));
     assert!(!m.two_sided);
     let (m, _) = bsdf("<bsdf type=\"dielectric\"/>");
-    assert!(matches!(m.lobes[..], [Lobe::Dielectric { eta, .. }] if (eta - 1.5046 / 1.000277).abs() < 1e-6));
+    let eta_of = |m: &Material, wanted| match m.lobes[..] {
+        [Lobe::Dielectric { eta, thin, .. }] if thin == wanted => eta,
+        _ => panic!("{m:?}"),
+    };
+    assert!((eta_of(&m, false) - 1.5046 / 1.000277).abs() < 1e-6);
+    assert_eq!(eta_of(&bsdf("<bsdf type=\"thindielectric\"/>").0, true), eta_of(&m, false));
+    assert_eq!(eta_of(&bsdf("<bsdf type=\"null\"/>").0, false), 1.0);
     let (m, _) = bsdf("<bsdf type=\"conductor\"/>");
     assert!(matches!(m.lobes[..], [Lobe::Mirror { fresnel: Fresnel::One, .. }]));
     let (m, _) = bsdf("<bsdf type=\"roughconductor\"><string name=\"material\" value=\"Cr\"/></bsdf>");
@@ -85,7 +91,6 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
         (format!("<bsdf type=\"bumpmap\">{texture}{nested}</bsdf>"), "\"bumpmap\""),
         ("<bsdf type=\"roughdiffuse\"><rgb name=\"reflectance\" value=\"0.3\"/></bsdf>".into(), "rough diffuse"),
         ("<bsdf type=\"phong\"><float name=\"exponent\" value=\"98\"/></bsdf>".into(), "\"phong\""),
-        ("<bsdf type=\"thindielectric\"/>".into(), "thin sheet"),
         ("<bsdf type=\"velvet\"/>".into(), "\"velvet\""),
         ("<bsdf type=\"diffuse\"><float name=\"sheen\" value=\"1\"/></bsdf>".into(), "\"sheen\""),
         ("<emitter type=\"area\"><float name=\"glow\" value=\"1\"/></emitter>".into(), "\"glow\""),

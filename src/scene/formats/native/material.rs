@@ -8,10 +8,10 @@
 //! | roughplastic | those, alpha, distribution |
 //! | conductor | preset or eta and k; specular; alpha (0 or absent: a mirror), distribution |
 //! | mirror | reflectance |
-//! | glass | ior, reflectance, transmittance |
+//! | glass | ior, reflectance, transmittance, thin |
 //!
-//! Defaults: ior 1.5, alpha 0.1, specular 1, distribution "ggx". Colours and alpha may be pictures; alpha's are
-//! read as they are, without a transfer function.
+//! Defaults: ior 1.5, alpha 0.1, specular 1, distribution "ggx", thin false (true: a sheet, which light passes
+//! straight). Colours and alpha may be pictures; alpha's are read as they are, without a transfer function.
 
 use super::Builder;
 use super::text::{ColourText, FilterText, MaterialText, NumberText, TextureText, WrapText};
@@ -86,7 +86,8 @@ impl Builder<'_> {
             "glass" => {
                 let reflectance = self.colour(&text.reflectance.clone().unwrap_or(one()), place)?;
                 let transmittance = self.colour(&text.transmittance.clone().unwrap_or(one()), place)?;
-                let glass = Lobe::Dielectric { eta: ior, reflectance, transmittance };
+                let thin = text.thin.unwrap_or(false);
+                let glass = Lobe::Dielectric { eta: ior, thin, reflectance, transmittance };
                 (Reflectance::BLACK, None, Some(glass))
             }
             _ => (Reflectance::BLACK, None, None),
@@ -171,7 +172,7 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
         "plastic" => &["diffuse", "specular", "ior", "nonlinear"],
         "roughplastic" => &["diffuse", "specular", "ior", "nonlinear", "alpha", "distribution"],
         "conductor" => &["preset", "eta", "k", "specular", "alpha", "distribution"],
-        "glass" => &["ior", "reflectance", "transmittance"],
+        "glass" => &["ior", "reflectance", "transmittance", "thin"],
         other => {
             let remedy = "use diffuse, glossy, plastic, roughplastic, conductor, mirror or glass";
             return Err(place.wrong(format!("unknown kind of material \"{other}\""), remedy));
@@ -189,6 +190,7 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
         ("preset", text.preset.is_some()),
         ("eta", text.eta.is_some()),
         ("k", text.k.is_some()),
+        ("thin", text.thin.is_some()),
     ];
     check::keys(&format!("{} material", text.kind), known, &given, place)
 }

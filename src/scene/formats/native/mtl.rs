@@ -77,7 +77,7 @@ impl Builder<'_> {
         if matches!(source.model, 4 | 6 | 7 | 9) || source.dissolve < 1.0 {
             let eta = source.ior.filter(|n| *n > 0.0).unwrap_or(1.5);
             let white = Reflectance::Constant(Rgb::ONE);
-            let glass = Lobe::Dielectric { eta, reflectance: white, transmittance: white };
+            let glass = Lobe::Dielectric { eta, thin: false, reflectance: white, transmittance: white };
             return Ok(made(Reflectance::BLACK, Some(glass)));
         }
         if matches!(source.model, 3 | 5) {

@@ -66,6 +66,7 @@ pub(super) struct MaterialText {
     pub preset: Option<String>,
     pub eta: Option<[f64; 3]>,
     pub k: Option<[f64; 3]>,
+    pub thin: Option<bool>,
 }
 
 /// A colour, a grey, or the name of a picture, optionally with reading options.

@@ -1,0 +1,89 @@
+//! Light that reaches the surfaces seen through glass and over mirrors, as a layer of its own, for pictures whose other
+//! light is that of virtual lights: these light surfaces along straight segments, which glass and mirrors block.
+//!
+//! Deviations: it is found by paths, and leaves noise where all else in the picture is smooth.
+
+use super::pass::TILE;
+use super::{ChainCounts, EyeSettings};
+use crate::film::Image;
+use crate::math::Rgb;
+use crate::paths::{Batch, Counts, Look, Reach, Start, start};
+use crate::progress::Control;
+use crate::view::View;
+use crate::world::World;
+use rayon::prelude::*;
+
+/// Paths from each eye sample.
+const PATHS: u32 = 4;
+
+/// Of the light that surfaces seen reflect, that which comes to them by delta lobes.
+struct ByDeltaLobes;
+
+impl Reach<'_> for ByDeltaLobes {
+    const ENDS: bool = true;
+    const ONLY_BY_DELTA_LOBES: bool = true;
+}
+
+/// Light in the pixels of a window that comes to the surfaces seen by mirrors and glass.
+pub struct LightByDeltaLobes {
+    /// The light; `None` if nothing in the scene bends light.
+    pub image: Option<Image>,
+    /// Rays traced.
+    pub chains: ChainCounts,
+    /// Radiances that were not finite and left out.
+    pub nonfinite: u64,
+}
+
+impl LightByDeltaLobes {
+    /// Finds it by paths from the eye samples of `settings`; not in all tiles if cancelled.
+    pub fn new(world: &World, view: &View, settings: EyeSettings, control: &Control) -> LightByDeltaLobes {
+        let mut light = LightByDeltaLobes { image: None, chains: ChainCounts::default(), nonfinite: 0 };
+        if !world.specular.bends_light() {
+            return light;
+        }
+        let window = &view.window;
+        let EyeSettings { spp, seed, max_depth } = settings;
+        let (look, samples) = (Look::EyeSamples { spp, seed }, spp.max(1).saturating_mul(PATHS));
+        let trace = |batch: &mut Batch, index| {
+            let mut found: Vec<(usize, Rgb)> = Vec::new();
+            let (mut counts, mut nonfinite) = (Counts::default(), 0);
+            for [x, y] in window.tile(index, TILE) {
+                if control.is_cancelled() {
+                    break;
+                }
+                let pixel = window.film_pixel([x, y]);
+                let paths = (0..samples).map(|sample| Start { pixel, sample, seed });
+                start(batch, paths, view, look);
+                let (mut sum, mut finite) = (Rgb::ZERO, 0);
+                for radiance in batch.trace(world, max_depth, &mut ByDeltaLobes, &mut counts) {
+                    if radiance.is_finite() {
+                        sum += radiance;
+                        finite += 1;
+                    }
+                }
+                nonfinite += u64::from(samples - finite);
+                found.push(((y * window.width + x) as usize, sum / samples as f32));
+            }
+            (found, counts, nonfinite)
+        };
+        let tiles = (0..window.tile_count(TILE)).into_par_iter();
+        let tiles: Vec<_> = tiles.map_init(Batch::default, trace).collect();
+        let mut image = Image::new(window.width, window.height);
+        for (found, counts, nonfinite) in tiles {
+            found.into_iter().for_each(|(pixel, radiance)| image.pixels[pixel] = radiance);
+            light.chains.rays += counts.rays;
+            light.chains.shadow_rays += counts.shadow_rays;
+            light.nonfinite += nonfinite;
+        }
+        light.image = Some(image);
+        light
+    }
+
+    /// Adds the light to a picture of the window.
+    pub fn add_to(&self, picture: &mut Image) {
+        for (pixel, light) in picture.pixels.iter_mut().zip(self.image.iter().flat_map(|image| &image.pixels))
+        {
+            *pixel += *light;
+        }
+    }
+}

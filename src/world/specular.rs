@@ -1,0 +1,155 @@
+//! Surfaces that reflect or refract light as mirrors and glass do, by which light goes where straight segments
+//! between surfaces and lights do not lead.
+
+use crate::material::Materials;
+use crate::math::{LANES, U32x16, Vec3x16, mask_of};
+use crate::scene::{Mesh, Scene};
+use glam::Vec3;
+
+/// Maximum number of boxes that rays are tested against.
+const MAX_BOXES: usize = 16;
+
+/// Coordinate of a direction that stands for smaller ones, 0 among them.
+const MIN_DIRECTION: f32 = 1e-20;
+
+/// The specular surfaces of a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Specular {
+    /// True of meshes that have delta lobes, those among them by which light passes straight.
+    meshes: Vec<bool>,
+    /// Boxes around meshes of other delta lobes, as lowest and highest corners.
+    boxes: Vec<(Vec3, Vec3)>,
+}
+
+impl Specular {
+    /// Finds them.
+    pub fn new(scene: &Scene, materials: &Materials) -> Specular {
+        let average = |mesh: &Mesh| materials.average(scene, mesh.material);
+        let mut meshes: Vec<bool> = scene.meshes.iter().map(|mesh| average(mesh).has_delta()).collect();
+        if !meshes.contains(&true) {
+            meshes.clear();
+        }
+        let bending =
+            scene.meshes.iter().filter(|mesh| !mesh.triangles.is_empty() && average(mesh).bends_light());
+        let mut boxes = Vec::new();
+        group(bending.map(bounds).collect(), MAX_BOXES, &mut boxes);
+        Specular { meshes, boxes }
+    }
+
+    /// True if any bends light.
+    #[inline]
+    pub fn bends_light(&self) -> bool {
+        !self.boxes.is_empty()
+    }
+
+    /// Lanes whose meshes are specular.
+    #[inline]
+    pub fn lanes(&self, mesh: &U32x16) -> u16 {
+        match self.meshes[..] {
+            [] => 0,
+            _ => mask_of(&mesh.map(|mesh| u32::from(self.meshes[mesh as usize]))),
+        }
+    }
+
+    /// Lanes whose rays may meet one that bends light.
+    #[inline]
+    pub fn may_be_met(&self, origin: &Vec3x16, direction: &Vec3x16) -> u16 {
+        let mut met = [0; LANES];
+        for (low, high) in &self.boxes {
+            for i in 0..LANES {
+                let (mut near, mut far) = (0.0, f32::INFINITY);
+                for axis in 0..3 {
+                    let (o, d) = (origin.rows()[axis][i], direction.rows()[axis][i]);
+                    let d = if d.abs() < MIN_DIRECTION { MIN_DIRECTION } else { d };
+                    let (a, b) = ((low[axis] - o) / d, (high[axis] - o) / d);
+                    let (least, most) = if a < b { (a, b) } else { (b, a) };
+                    near = if least > near { least } else { near };
+                    far = if most < far { most } else { far };
+                }
+                met[i] |= u32::from(near <= far);
+            }
+        }
+        mask_of(&met)
+    }
+}
+
+/// Box around a mesh, a little larger than it, for rounding.
+fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
+    let corners = mesh.triangles.iter().flatten().filter_map(|i| mesh.positions.get(*i as usize));
+    let whole = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let (low, high) = corners.fold(whole, |(low, high), p| (low.min(*p), high.max(*p)));
+    let slack = 1e-5 * low.abs().max(high.abs()).max_element();
+    (low - slack, high + slack)
+}
+
+/// Joins boxes to at most `count` of neighbours: halves of their list along the longest axis, over and over.
+fn group(mut boxes: Vec<(Vec3, Vec3)>, count: usize, found: &mut Vec<(Vec3, Vec3)>) {
+    if boxes.len() <= count {
+        found.append(&mut boxes);
+        return;
+    }
+    let join = |a: (Vec3, Vec3), b: &(Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
+    let all = boxes[1..].iter().fold(boxes[0], join);
+    if count == 1 {
+        found.push(all);
+        return;
+    }
+    let axis = (all.1 - all.0).max_position();
+    boxes.sort_by(|a, b| (a.0 + a.1)[axis].total_cmp(&(b.0 + b.1)[axis]));
+    let rest = boxes.split_off(boxes.len() / 2);
+    group(boxes, count / 2, found);
+    group(rest, count - count / 2, found);
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::embree::{Hits16, Rays16};
+    use crate::math::{Rgb, lanes_in};
+    use crate::sampling::owen_sobol_2d;
+    use crate::scene::Camera;
+    use crate::shadow::ray_from;
+    use crate::test_scenes::*;
+    use glam::Vec3;
+
+    #[test]
+    fn no_ray_that_meets_a_specular_surface_is_missed_and_most_others_are() {
+        let mut scene = scene(Camera::default(), [1, 1]);
+        let (mirror, grey) =
+            (add_material(&mut scene, mirror()), add_material(&mut scene, diffuse(Rgb::ONE)));
+        let clear = add_material(&mut scene, glass(1.0));
+        let place = |i: u32| {
+            let (a, b) = (owen_sobol_2d(i, 1), owen_sobol_2d(i, 2));
+            Vec3::new(a.x, a.y, b.x) * 2.0 - 1.0
+        };
+        scene.meshes.extend(room(Vec3::splat(-2.0), Vec3::splat(2.0), grey));
+        for i in 0..40 {
+            let corner = Vec3::X + 0.5 * place(i);
+            scene.meshes.push(quad(corner, Vec3::Y * 0.1, Vec3::Z * 0.1, mirror));
+            scene.meshes.push(quad(place(100 + i) - 0.9 * Vec3::X, Vec3::Y * 0.1, Vec3::Z * 0.1, clear));
+        }
+        let world = world(scene);
+        assert!(world.specular.bends_light() && world.specular.boxes.len() == super::MAX_BOXES);
+        let (mut met, mut rays_sent) = (0, 0);
+        for first in (0..16_000).step_by(16) {
+            let mut rays = Rays16::default();
+            for lane in 0..16 {
+                let (x, towards) = (place(1000 + first + lane), place(50_000 + 3 * (first + lane)));
+                // Every other ray runs along an axis.
+                let towards = if lane % 2 == 0 { towards.normalize_or(Vec3::X) } else { Vec3::X };
+                rays.set(lane as usize, &ray_from(x, Vec3::ZERO, towards));
+            }
+            let mut hits = Hits16::default();
+            let found = world.accel.closest_hit16(&rays, u16::MAX, false, &mut hits);
+            let may_be = world.specular.may_be_met(&rays.origins(), &rays.directions());
+            for lane in lanes_in(found) {
+                let material = world.scene.meshes[hits.geometry[lane] as usize].material;
+                let specular = world.specular.lanes(&hits.geometry) >> lane & 1 != 0;
+                assert_eq!(specular, material != grey);
+                assert!(material != mirror || may_be >> lane & 1 != 0);
+            }
+            met += may_be.count_ones();
+            rays_sent += 16;
+        }
+        assert!(met > 0 && met < rays_sent / 2, "{met}");
+    }
+}

@@ -1,0 +1,188 @@
+//! Light that reaches visible surfaces through glass and over mirrors: all methods against path tracing.
+
+use crate::common::*;
+use glam::{DVec3, Vec3};
+use lightsplat::math::Rgb;
+use lightsplat::method::{Renderer, cache, lightcuts, path, photon_cache, reconstruction};
+use lightsplat::scene::{DeltaLight, Material, MaterialId, Mesh};
+
+/// A change of a scene.
+type Add = fn(&mut SceneAndView);
+
+/// A room seen from inside, dark but for what comes through a hole in its wall towards +x, from a lamp in another room.
+fn two_rooms(add: impl FnOnce(&mut SceneAndView)) -> WorldAndView {
+    let mut scene = scene(camera(Vec3::new(0.5, 0.1, 0.9), Vec3::new(-0.4, -0.3, -0.6), 0.9), [16, 16]);
+    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));
+    let is_between = |mesh: &Mesh, x: f32| mesh.positions.iter().all(|p| p.x == x);
+    for (low, high, open) in [(-1.0, 1.0, 1.0), (1.2, 2.2, 1.2)] {
+        let walls = room(Vec3::new(low, -1.0, -1.0), Vec3::new(high, 1.0, 1.0), wall);
+        scene.meshes.extend(walls.into_iter().filter(|mesh| !is_between(mesh, open)));
+    }
+    // The wall between them, about the hole.
+    let (y, z) = (Vec3::Y, Vec3::Z);
+    for (y0, y1, z0, z1) in
+        [(-1.0, 1.0, -1.0, -0.6), (-1.0, 1.0, 0.5, 1.0), (-1.0, -0.3, -0.6, 0.5), (0.7, 1.0, -0.6, 0.5)]
+    {
+        for x in [1.0, 1.2] {
+            scene.meshes.push(quad(Vec3::new(x, y0, z0), y * (y1 - y0), z * (z1 - z0), wall));
+        }
+    }
+    let black = add_material(&mut scene, diffuse(Rgb::ZERO));
+    let lamp = quad(Vec3::new(1.5, 0.95, -0.4), Vec3::X * 0.5, Vec3::Z * 0.7, black);
+    scene.meshes.push(emitting(lamp, Rgb::new(60.0, 50.0, 40.0)));
+    add(&mut scene);
+    world(scene)
+}
+
+/// A sheet over the hole.
+fn sheet(scene: &mut SceneAndView, x: f32, material: Material) {
+    let material = add_material(scene, material);
+    let corner = Vec3::new(x, -0.35, -0.65);
+    scene.meshes.push(quad(corner, Vec3::Y * 1.1, Vec3::Z * 1.2, material));
+}
+
+/// A closed room with a ball and a small lamp.
+fn lamp_room(add: Add) -> WorldAndView {
+    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [16, 16]);
+    let wall = add_material(&mut scene, diffuse(Rgb::new(0.6, 0.5, 0.4)));
+    scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+    scene.meshes.push(sphere(Vec3::new(-0.4, -0.7, -0.2), 0.3, 24, wall));
+    add(&mut scene);
+    world(scene)
+}
+
+/// A lamp in a shell of glass.
+fn bulb(scene: &mut SceneAndView) {
+    let (material, black) = (add_material(scene, glass(1.5)), add_material(scene, diffuse(Rgb::ZERO)));
+    let centre = Vec3::new(0.3, 0.3, -0.2);
+    let mut inside = sphere(centre, 0.27, 24, material);
+    inside.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    inside.normals.iter_mut().for_each(|normal| *normal = -*normal);
+    scene.meshes.extend([sphere(centre, 0.3, 24, material), inside]);
+    scene.meshes.push(emitting(sphere(centre, 0.12, 24, black), Rgb::new(9.0, 8.0, 6.0)));
+}
+
+/// A lamp that shines upon a mirror alone.
+fn spotlight(scene: &mut SceneAndView) {
+    let (material, black) = (add_material(scene, mirror()), add_material(scene, diffuse(Rgb::ZERO)));
+    let corner = Vec3::new(-0.5, 0.95, -0.9);
+    scene.meshes.push(quad(corner, Vec3::X, Vec3::Z, material));
+    let lamp = quad(Vec3::new(-0.25, 0.4, -0.65), Vec3::Z * 0.5, Vec3::X * 0.5, black);
+    scene.meshes.push(emitting(lamp, Rgb::new(9.0, 8.0, 6.0)));
+}
+
+fn mean(world: &WorldAndView, settings: &impl Renderer) -> DVec3 {
+    let pixels = rendered(world, settings).color.pixels;
+    pixels.iter().map(|pixel| pixel.as_dvec3()).sum::<DVec3>() / pixels.len() as f64
+}
+
+/// Mean of the picture by paths.
+fn by_paths(world: &WorldAndView) -> DVec3 {
+    mean(world, &path::Settings { spp: 4096, ..Default::default() })
+}
+
+/// Mean of the default's picture.
+fn by_default(world: &WorldAndView) -> DVec3 {
+    mean(world, &cache::Settings { spp: 1024, ..Default::default() })
+}
+
+fn assert_agreement(found: DVec3, exact: DVec3, what: &str) {
+    let ratio = found / exact;
+    assert!((ratio - 1.0).abs().max_element() < 0.02, "{what}: {ratio}");
+}
+
+/// A solid pane in the hole.
+fn solid_pane(scene: &mut SceneAndView) {
+    let material = add_material(scene, glass(1.5));
+    for mut side in room(Vec3::new(1.05, -0.35, -0.65), Vec3::new(1.1, 0.75, 0.55), material) {
+        side.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+        scene.meshes.push(side);
+    }
+}
+
+/// Two thin panes in the hole.
+fn thin_panes(scene: &mut SceneAndView) {
+    sheet(scene, 1.1, pane(1.5, Rgb::new(0.9, 0.6, 0.3)));
+    sheet(scene, 1.15, pane(1.3, Rgb::ONE));
+}
+
+#[test]
+fn light_comes_through_panes_and_bulbs_and_over_mirrors() {
+    let worlds = [two_rooms(solid_pane), two_rooms(thin_panes), lamp_room(bulb), lamp_room(spotlight)];
+    for (world, what) in worlds.iter().zip(["solid pane", "thin panes", "bulb", "mirror"]) {
+        assert_agreement(by_default(world), by_paths(world), what);
+    }
+}
+
+/// A sun that shines through the hole.
+fn sun(scene: &mut SceneAndView) {
+    scene.meshes.retain(|mesh| !mesh.positions.iter().all(|p| p.x == 2.2) && mesh.emission.is_none());
+    let direction = Vec3::new(-1.0, -0.4, -0.1).normalize();
+    scene.lights.push(DeltaLight::Directional { direction, irradiance: Rgb::new(9.0, 8.0, 7.0) });
+}
+
+#[test]
+fn sheets_that_do_nothing_are_as_if_they_were_not_there() {
+    for with_sun in [false, true] {
+        let light = |scene: &mut SceneAndView| {
+            if with_sun {
+                sun(scene);
+            }
+        };
+        let open = two_rooms(light);
+        let hung = two_rooms(|scene| {
+            light(scene);
+            sheet(scene, 1.1, glass(1.0));
+            sheet(scene, 1.12, pane(1.0, Rgb::ONE));
+        });
+        let exact = by_paths(&open);
+        assert_agreement(by_paths(&hung), exact, "paths");
+        assert_agreement(by_default(&hung), exact, "default");
+    }
+}
+
+#[test]
+fn the_sun_comes_through_a_thin_pane_by_its_transmittance() {
+    // One bounce: the light that comes straight in.
+    let direct = |scene: &mut SceneAndView| {
+        sun(scene);
+        let black = MaterialId(1);
+        let outside = |mesh: &&mut Mesh| mesh.positions.iter().all(|p| p.x >= 1.0);
+        scene.meshes.iter_mut().filter(outside).for_each(|mesh| mesh.material = black);
+    };
+    let open = two_rooms(direct);
+    let hung = two_rooms(|scene| {
+        direct(scene);
+        sheet(scene, 1.1, pane(1.5, Rgb::new(0.9, 0.6, 0.3)));
+    });
+    let settings = path::Settings { spp: 1024, max_depth: Some(2), ..Default::default() };
+    let share = mean(&hung, &settings) / mean(&open, &settings);
+    // Fresnel's reflectance at the sun's 22.4 degrees, by both sides of the sheet.
+    let cos: f64 = 1.0 / (1.0f64 + 0.16 + 0.01).sqrt();
+    let inside = (1.0 - (1.0 - cos * cos) / 2.25).sqrt();
+    let (s, p) = ((cos - 1.5 * inside) / (cos + 1.5 * inside), (inside - 1.5 * cos) / (inside + 1.5 * cos));
+    let one = 0.5 * (s * s + p * p);
+    let expected = DVec3::new(0.9, 0.6, 0.3) * (1.0 - 2.0 * one / (1.0 + one));
+    assert!((share / expected - 1.0).abs().max_element() < 1e-3, "{share} {expected}");
+    let drawn = cache::Settings { spp: 256, max_depth: Some(2), ..Default::default() };
+    let share = mean(&hung, &drawn) / mean(&open, &drawn);
+    assert!((share / expected - 1.0).abs().max_element() < 1e-3, "drawn: {share} {expected}");
+}
+
+mod slow_methods {
+    use super::*;
+
+    #[test]
+    fn all_methods_agree() {
+        let worlds = [two_rooms(solid_pane), two_rooms(thin_panes), lamp_room(bulb), lamp_room(spotlight)];
+        for (world, what) in worlds.iter().zip(["solid pane", "thin panes", "bulb", "mirror"]) {
+            let (spp, exact) = (128, by_paths(world));
+            let cuts = lightcuts::Settings { spp, ..Default::default() };
+            assert_agreement(mean(world, &cuts), exact, &format!("{what}, lightcuts"));
+            let reconstructed = reconstruction::Settings { spp, ..Default::default() };
+            assert_agreement(mean(world, &reconstructed), exact, &format!("{what}, reconstruction"));
+            let photons = photon_cache::Settings { spp, ..Default::default() };
+            assert_agreement(mean(world, &photons), exact, &format!("{what}, photon-cache"));
+        }
+    }
+}
