@@ -10,6 +10,7 @@ use super::merge::{MergedPoint, merge};
 use super::pass::TILE;
 use super::points::VisibilitySample;
 use super::{ChainCounts, EyePass, EyeSettings, VisibleSurfaces};
+use crate::light::LearnedSky;
 use crate::material::{Bsdf, LobeSet};
 use crate::math::{Rgb, luminance};
 use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, Start, start};
@@ -46,8 +47,9 @@ const MAX_ADAPTIVE: u32 = u32::MAX / 4;
 const PILOT_SEED: u32 = 0x3c6e_f372;
 
 /// The ends of paths, in the order of the paths' edges.
-struct Ends<'a, 'w> {
+pub(super) struct Ends<'a, 'w> {
     drawn: &'a DrawnLight,
+    sky: Option<&'a LearnedSky>,
     /// Distance between neighbouring points over that from the eye, on surfaces that face it.
     spacing_by_distance: f32,
     found: Vec<MergedPoint<'w>>,
@@ -65,6 +67,10 @@ impl<'w> Reach<'w> for Ends<'_, 'w> {
         }
     }
 
+    fn sky(&self) -> Option<&LearnedSky> {
+        self.sky
+    }
+
     #[inline]
     fn end(&mut self, end: &ChainEnd<'w>) {
         if let Some(point) = MergedPoint::new(end, self.spacing_by_distance * end.distance) {
@@ -75,23 +81,23 @@ impl<'w> Reach<'w> for Ends<'_, 'w> {
 }
 
 /// A thread's buffers.
-struct Workspace<'a, 'w> {
+pub(super) struct Workspace<'a, 'w> {
     batch: Batch,
     ends: Ends<'a, 'w>,
     merged: Vec<MergedPoint<'w>>,
 }
 
 /// Paths through the pixels of a view.
-struct Tracer<'a, 'w> {
-    world: &'w World,
-    view: &'a View,
+pub(super) struct Tracer<'a, 'w> {
+    pub(super) world: &'w World,
+    pub(super) view: &'a View,
     settings: EyeSettings,
     drawn: &'a DrawnLight,
     control: &'a Control,
 }
 
 /// Samples of one pixel that have been traced together.
-struct Found<'b, 'w> {
+pub(super) struct Found<'b, 'w> {
     /// Index of the pixel, and of the first sample.
     index: usize,
     first: u32,
@@ -105,7 +111,7 @@ struct Found<'b, 'w> {
 }
 
 impl<'b, 'w> Found<'b, 'w> {
-    fn ends(&self) -> impl Iterator<Item = &'b MergedPoint<'w>> {
+    pub(super) fn ends(&self) -> impl Iterator<Item = &'b MergedPoint<'w>> {
         let ends = self.ends;
         self.order.iter().map(|(_, number)| &ends[*number as usize])
     }
@@ -145,10 +151,13 @@ impl<'w> EyePass<'w> {
     ) -> EyePass<'w> {
         let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
         let tracer = Tracer { world, view, settings, drawn, control };
+        let environment = world.emitters.environment.as_ref();
+        let sky = environment.map(|environment| tracer.learn_sky(environment, settings.seed));
+        let sky = sky.as_ref();
         let tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
             .into_par_iter()
             .map_init(
-                || tracer.workspace(),
+                || tracer.workspace(sky),
                 |work, index| {
                     if control.is_cancelled() {
                         return None;
@@ -160,10 +169,10 @@ impl<'w> EyePass<'w> {
             )
             .flatten()
             .collect();
-        let needs = tracer.needs(&tiles);
+        let needs = tracer.needs(&tiles, sky);
         let tiles = tiles
             .into_par_iter()
-            .map_init(|| tracer.workspace(), |work, tile| tracer.more_samples(tile, needs.as_ref(), work))
+            .map_init(|| tracer.workspace(sky), |work, tile| tracer.more_samples(tile, needs.as_ref(), work))
             .collect();
         let mut pass = EyePass::gather(&view.window, tiles, 1);
         if let Some(needs) = needs {
@@ -179,14 +188,14 @@ pub fn merged_points(spp: u32) -> u64 {
 }
 
 impl<'a, 'w> Tracer<'a, 'w> {
-    fn workspace(&self) -> Workspace<'a, 'w> {
+    pub(super) fn workspace<'b>(&'b self, sky: Option<&'b LearnedSky>) -> Workspace<'b, 'w> {
         let spacing_by_distance = SPACING * self.view.pixel_angle();
-        let ends = Ends { drawn: self.drawn, spacing_by_distance, found: Vec::new(), order: Vec::new() };
+        let ends = Ends { drawn: self.drawn, sky, spacing_by_distance, found: Vec::new(), order: Vec::new() };
         Workspace { batch: Batch::default(), ends, merged: Vec::new() }
     }
 
     /// Takes the first samples of all pixels of a tile.
-    fn first_samples(&self, index: usize, work: &mut Workspace<'a, 'w>) -> Tile<'w> {
+    fn first_samples(&self, index: usize, work: &mut Workspace<'_, 'w>) -> Tile<'w> {
         let window = &self.view.window;
         let pixels: Vec<[u32; 2]> = window.tile(index, TILE).collect();
         let film_pixels: Vec<[u32; 2]> = pixels.iter().map(|pixel| window.film_pixel(*pixel)).collect();
@@ -215,7 +224,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         &self,
         mut tile: Tile<'w>,
         needs: Option<&Needs>,
-        work: &mut Workspace<'a, 'w>,
+        work: &mut Workspace<'_, 'w>,
     ) -> VisibleSurfaces<'w> {
         let EyeSettings { spp, seed, .. } = self.settings;
         let window = &self.view.window;
@@ -262,7 +271,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
     }
 
     /// Learns which pixels need more samples than the first; `None` if none is to get more.
-    fn needs(&self, tiles: &[Tile]) -> Option<Needs> {
+    fn needs(&self, tiles: &[Tile], sky: Option<&LearnedSky>) -> Option<Needs> {
         let EyeSettings { spp, seed, .. } = self.settings;
         let share = self.drawn.extra_samples;
         if !(share > 0.0 && (2..=MAX_ADAPTIVE).contains(&spp)) {
@@ -270,7 +279,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         }
         let squares = pilot(self.view.window.film);
         let pixels = squares.iter().map(|square| square.film_pixels().collect()).collect();
-        let (values, mut chains) = self.luminances(pixels, seed ^ PILOT_SEED);
+        let (values, mut chains) = self.luminances(pixels, seed ^ PILOT_SEED, sky);
         let filled = |(window, values)| Luminances { window, values };
         let choice = Choice::new(&squares.into_iter().zip(values).map(filled).collect::<Vec<_>>(), share);
 
@@ -284,7 +293,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         let beside: Vec<[u32; 2]> =
             near.film_pixels().filter(|pixel| window.index(*pixel).is_none()).collect();
         let beside: Vec<Vec<[u32; 2]>> = beside.chunks(BATCH as usize).map(<[_]>::to_vec).collect();
-        let (values, traced) = self.luminances(beside.clone(), seed);
+        let (values, traced) = self.luminances(beside.clone(), seed, sky);
         beside
             .iter()
             .flatten()
@@ -295,12 +304,17 @@ impl<'a, 'w> Tracer<'a, 'w> {
     }
 
     /// Luminances that the first samples of groups of film pixels find; 0 where cancelled.
-    fn luminances(&self, groups: Vec<Vec<[u32; 2]>>, seed: u32) -> (Vec<Vec<f32>>, ChainCounts) {
+    fn luminances(
+        &self,
+        groups: Vec<Vec<[u32; 2]>>,
+        seed: u32,
+        sky: Option<&LearnedSky>,
+    ) -> (Vec<Vec<f32>>, ChainCounts) {
         let spp = self.settings.spp;
         let found: Vec<(Vec<f32>, ChainCounts)> = groups
             .into_par_iter()
             .map_init(
-                || self.workspace(),
+                || self.workspace(sky),
                 |work, pixels| {
                     let mut sums = vec![Rgb::ZERO; pixels.len()];
                     if self.control.is_cancelled() {
@@ -319,12 +333,12 @@ impl<'a, 'w> Tracer<'a, 'w> {
 
     /// Traces samples of film pixels and calls `each` for every pixel in order, for every part of its samples if they
     /// are too many to be traced at once.
-    fn sample(
+    pub(super) fn sample(
         &self,
         pixels: &[[u32; 2]],
         samples: Range<u32>,
         seed: u32,
-        work: &mut Workspace<'a, 'w>,
+        work: &mut Workspace<'_, 'w>,
         mut each: impl FnMut(Found<'_, 'w>, &mut Vec<MergedPoint<'w>>),
     ) -> ChainCounts {
         let Workspace { batch, ends, merged } = work;

@@ -12,6 +12,7 @@ mod points;
 mod rays;
 mod seen;
 mod sharp;
+mod sky;
 #[cfg(test)]
 mod tests;
 

@@ -4,6 +4,8 @@
 //! a guide table narrows the search to a few entries, because in the large distributions of environment maps
 //! every step of a binary search is a cache miss.
 
+use std::ops::Range;
+
 /// A discrete distribution over `0..len`, in proportion to non-negative weights.
 #[derive(Clone, Debug)]
 pub struct DiscreteDistribution {
@@ -62,6 +64,20 @@ impl DiscreteDistribution {
         if self.total > 0.0 { self.cumulative[i + 1] - self.cumulative[i] } else { 0.0 }
     }
 
+    /// Probability of the outcomes `range`.
+    #[inline]
+    pub fn span(&self, range: &Range<usize>) -> f32 {
+        if self.total > 0.0 { self.cumulative[range.end] - self.cumulative[range.start] } else { 0.0 }
+    }
+
+    /// [`DiscreteDistribution::sample`] among the outcomes `range`.
+    #[inline]
+    pub fn sample_between(&self, range: &Range<usize>, u: f32) -> (usize, f32) {
+        let u = self.cumulative[range.start] + u * self.span(range);
+        let (i, rest) = self.sample(u.min(1.0 - f32::EPSILON));
+        (i.clamp(range.start, range.end - 1), rest)
+    }
+
     /// Returns the outcome at `u` in [0, 1), and `u` stretched to [0, 1) within it.
     ///
     /// Never returns an outcome of probability zero unless all are.
@@ -80,14 +96,6 @@ impl DiscreteDistribution {
         let first = self.guide[span.saturating_sub(1)] as usize;
         let last = (self.guide[(span + 2).min(spans)] as usize + 1).min(self.len());
         Bracket { first, last }
-    }
-
-    /// Halves a bracket once, without a branch.
-    #[inline]
-    pub(super) fn halve(&self, u: f32, b: Bracket) -> Bracket {
-        let middle = (b.first + b.last) / 2;
-        let above = self.cumulative[middle] <= u;
-        Bracket { first: if above { middle } else { b.first }, last: if above { b.last } else { middle } }
     }
 
     /// Finishes [`DiscreteDistribution::sample`] within a bracket.

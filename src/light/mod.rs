@@ -15,7 +15,7 @@ mod tree;
 
 pub use area::{AreaLight, emitted};
 pub use distribution::DiscreteDistribution;
-pub use environment::{EnvironmentLight, EnvironmentSample};
+pub use environment::{EnvironmentLight, EnvironmentSample, LearnedSky, Looks};
 pub use select::Receivers16;
 
 use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, luminance, mask_of};

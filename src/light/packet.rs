@@ -99,14 +99,21 @@ impl Emitters {
             }
         }
         if far != 0 {
-            self.sample_environment(u, &choice, far, &mut samples);
+            self.sample_environment(at, u, &choice, far, &mut samples);
         }
         samples
     }
 
-    fn sample_environment(&self, u: &Vec2x16, choice: &F32x16, wanted: u16, samples: &mut DirectSamples16) {
+    fn sample_environment(
+        &self,
+        at: Receivers16,
+        u: &Vec2x16,
+        choice: &F32x16,
+        wanted: u16,
+        samples: &mut DirectSamples16,
+    ) {
         let Some(environment) = &self.environment else { return };
-        let drawn = environment.sample16(u, wanted);
+        let drawn = environment.sample16(u, wanted, at.sky.map(|sky| (sky, at.position)));
         for lane in lanes_in(wanted) {
             samples.set(lane, drawn[lane].map(|s| s.direct(choice[lane])));
         }

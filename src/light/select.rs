@@ -5,7 +5,7 @@
 //! starved. It goes on down the tree.
 
 use super::tree::{BY_POWER, EmitterTree};
-use super::{AreaLight, DiscreteDistribution, Emitters, EnvironmentLight};
+use super::{AreaLight, DiscreteDistribution, Emitters, EnvironmentLight, LearnedSky};
 use crate::math::{F32x16, LANES, U32x16, Vec3x16, lanes_in};
 use crate::scene::DeltaLight;
 use std::f32::consts::PI;
@@ -25,6 +25,8 @@ pub struct Receivers16<'a> {
     pub position: &'a Vec3x16,
     /// Unit normals of the reflecting sides.
     pub normal: &'a Vec3x16,
+    /// Knowledge of the environment that is used, if any.
+    pub sky: Option<&'a LearnedSky>,
 }
 
 #[derive(Clone, Debug)]

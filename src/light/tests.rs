@@ -75,7 +75,7 @@ fn emitters(scene: &Scene) -> Emitters {
 /// Probability of choosing each emitter at a point.
 fn probabilities(emitters: &Emitters, (x, n): (Vec3, Vec3)) -> Vec<f32> {
     let (x, n) = (Vec3x16::splat(x), Vec3x16::splat(n));
-    let at = Receivers16 { position: &x, normal: &n };
+    let at = Receivers16 { position: &x, normal: &n, sky: None };
     let one = |i| emitters.selection.probability(emitters, at, &[i; LANES], 1)[0];
     (0..=emitters.environment_index()).map(one).collect()
 }
@@ -115,7 +115,7 @@ fn frequencies_are_the_probabilities_and_all_that_shines_can_be_chosen() {
             let (x, n) = receiver(&scene, &mut sampler);
             let expected = probabilities(&emitters, (x, n));
             let (positions, normals) = (Vec3x16::splat(x), Vec3x16::splat(n));
-            let at = Receivers16 { position: &positions, normal: &normals };
+            let at = Receivers16 { position: &positions, normal: &normals, sky: None };
             let mut drawn = vec![0u32; expected.len()];
             let mut none = 0;
             for first in (0..DRAWS).step_by(LANES) {
@@ -163,7 +163,7 @@ fn the_mean_of_direct_light_is_the_sum_over_all_emitters() {
             let all = 0..=emitters.environment_index() as usize;
             let expected: f64 = all.map(|i| irradiance(&scene, &emitters, i, (x, n), 32)).sum();
             let (positions, normals) = (Vec3x16::splat(x), Vec3x16::splat(n));
-            let at = Receivers16 { position: &positions, normal: &normals };
+            let at = Receivers16 { position: &positions, normal: &normals, sky: None };
             let (mut sum, mut sum_sq) = (0.0, 0.0);
             for _ in 0..DRAWS / LANES as u32 {
                 let (mut choices, mut places) = ([0.0; LANES], Vec2x16::default());
@@ -200,7 +200,7 @@ fn densities_of_points_are_those_of_sampling_them() {
         for _ in 0..50 {
             let (x, n) = receiver(&scene, &mut sampler);
             let (x, n) = (Vec3x16::splat(x), Vec3x16::splat(n));
-            let at = Receivers16 { position: &x, normal: &n };
+            let at = Receivers16 { position: &x, normal: &n, sky: None };
             let choices = std::array::from_fn(|_| sampler.next_1d());
             let mut places = Vec2x16::default();
             for i in 0..LANES {

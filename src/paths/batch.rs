@@ -8,7 +8,7 @@
 
 use super::packet::{Packet, Shadows, Stage};
 use crate::embree::{Hits16, Ray, Rays16};
-use crate::light::Receivers16;
+use crate::light::{LearnedSky, Receivers16};
 use crate::material::{Bsdf, LobeSet};
 use crate::math::{LANES, Rgb, Vec3x16, first_lanes, lanes_in};
 use crate::sampling::Samplers16;
@@ -52,6 +52,11 @@ pub trait Reach<'w> {
     /// Returns the lobes that a chain follows besides delta lobes.
     fn followed(&self, bsdf: &Bsdf) -> LobeSet {
         bsdf.sharp_lobes()
+    }
+
+    /// Knowledge of the environment by which it is sampled, if any.
+    fn sky(&self) -> Option<&LearnedSky> {
+        None
     }
 
     /// Called at every such surface, in an order that does not depend on threads.
@@ -131,7 +136,7 @@ impl Batch {
             let mut packet = self.packets[index].clone();
             let valid = first_lanes(self.count - index * LANES);
             let found = world.accel.closest_hit16(&packet.rays, valid, depth == 1, &mut hits);
-            self.escape(world, &packet, valid & !found);
+            self.escape(world, &packet, valid & !found, reach.sky());
             if found == 0 {
                 continue;
             }
@@ -153,13 +158,13 @@ impl Batch {
                 if R::ENDS {
                     let (kept, outward) = looked_along(world, &packet, going_on);
                     going_on = kept;
-                    self.look_outward(world, &packet, outward, counts);
+                    self.look_outward(world, &packet, outward, reach.sky(), counts);
                 }
                 self.keep(&packet, going_on, &mut kept);
             }
         }
         self.shadows.trace(world, depth == 1, &mut self.radiance, counts);
-        self.trace_outward(world, counts);
+        self.trace_outward(world, reach.sky(), counts);
         self.count = kept;
     }
 
@@ -177,7 +182,14 @@ impl Batch {
     }
 
     /// Adds the environment's light to the paths of a packet in the lanes of `sought` whose edges are free.
-    fn look_outward(&mut self, world: &World, packet: &Packet, sought: u16, counts: &mut Counts) {
+    fn look_outward(
+        &mut self,
+        world: &World,
+        packet: &Packet,
+        sought: u16,
+        sky: Option<&LearnedSky>,
+        counts: &mut Counts,
+    ) {
         if world.emitters.environment.is_none() {
             return;
         }
@@ -186,12 +198,12 @@ impl Batch {
             outward.copy_lane(*count, packet, lane);
             *count += 1;
             if *count == LANES {
-                self.trace_outward(world, counts);
+                self.trace_outward(world, sky, counts);
             }
         }
     }
 
-    fn trace_outward(&mut self, world: &World, counts: &mut Counts) {
+    fn trace_outward(&mut self, world: &World, sky: Option<&LearnedSky>, counts: &mut Counts) {
         if self.outward.1 == 0 {
             return;
         }
@@ -202,19 +214,21 @@ impl Batch {
         let throughput = &mut outward.emission_throughput;
         let attenuate = |lane, share| throughput.set(lane, throughput.get(lane) * share);
         world.transmittance16(&outward.rays, free, attenuate);
-        self.escape(world, &outward, free);
+        self.escape(world, &outward, free, sky);
         self.outward.0 = outward;
     }
 
     /// Adds the environment's light to the paths of a packet that met nothing.
-    fn escape(&mut self, world: &World, packet: &Packet, escaped: u16) {
+    fn escape(&mut self, world: &World, packet: &Packet, escaped: u16, sky: Option<&LearnedSky>) {
         let Some(environment) = &world.emitters.environment else { return };
         if escaped == 0 {
             return;
         }
-        let at = Receivers16 { position: &packet.rays.origins(), normal: &packet.normal };
+        let origins = packet.rays.origins();
+        let at = Receivers16 { position: &origins, normal: &packet.normal, sky };
         let choice = world.emitters.environment_choice(at);
-        let light = environment.radiance_pdf16(&packet.rays.directions(), escaped);
+        let guided = sky.map(|sky| (sky, &origins));
+        let light = environment.radiance_pdf16(&packet.rays.directions(), escaped, guided);
         for lane in lanes_in(escaped) {
             let (radiance, pdf) = light[lane];
             let weight = packet.weight_against(lane, pdf * choice[lane]);

@@ -49,7 +49,7 @@ impl Packet {
         for i in 0..LANES {
             cos[i] = surfaces.normal.get(i).dot(directions.get(i));
         }
-        let start = Receivers16 { position: &self.rays.origins(), normal: &self.normal };
+        let start = Receivers16 { position: &self.rays.origins(), normal: &self.normal, sky: None };
         let light_pdf = world.emitters.pdf_areas(start, &surfaces.mesh, &surfaces.t, &cos);
         for i in lanes_in(lit) {
             let emitted = world.emitted(&surfaces.get(i), -directions.get(i));
@@ -86,7 +86,7 @@ impl Packet {
         let scattered = if R::ENDS { found & self.at(Stage::Scattered) } else { 0 };
         // Diffuse surfaces that paths end at, and from which emitters look small, have light samples alone.
         let alone = if R::ENDS {
-            let at = Receivers16 { position: &surfaces.position, normal: &self.normal };
+            let at = Receivers16 { position: &surfaces.position, normal: &self.normal, sky: None };
             at_end & bsdfs.lambertian() & world.emitters.look_small(at)
         } else {
             0
@@ -95,7 +95,8 @@ impl Packet {
         let lit = bsdfs.smooth() & found & !unlit;
         if lit != 0 {
             let numbers = (&choices.x, &self.samplers.point(pair));
-            self.light(world, surfaces, &bsdfs, numbers, (lit, alone), arrives);
+            let at = Receivers16 { position: &surfaces.position, normal: &self.normal, sky: reach.sky() };
+            self.light(world, surfaces, (&bsdfs, at), numbers, (lit, alone), arrives);
         }
         let samples = bsdfs.sample(&choices.y, &self.samplers.point(pair + 1), found);
         let roulette = if depth >= ROULETTE_DEPTH { self.samplers.number(pair + 3) } else { [0.0; LANES] };
@@ -240,12 +241,11 @@ impl Packet {
         &self,
         world: &World,
         surfaces: &Surfaces16,
-        bsdfs: &Bsdfs16,
+        (bsdfs, at): (&Bsdfs16, Receivers16),
         (u_choice, u_light): (&F32x16, &Vec2x16),
         (wanted, alone): (u16, u16),
         mut arrives: impl FnMut(&Ray, Rgb, u32),
     ) {
-        let at = Receivers16 { position: &surfaces.position, normal: &self.normal };
         let lights = world.emitters.sample_direct(&world.scene, at, u_choice, u_light, wanted);
         let mut wi = Vec3x16::default();
         for i in 0..LANES {

@@ -41,7 +41,7 @@ pub struct NearSurfaces {
 
 impl NearSurfaces {
     fn receivers(&self) -> Receivers16<'_> {
-        Receivers16 { position: &self.position, normal: &self.normal }
+        Receivers16 { position: &self.position, normal: &self.normal, sky: None }
     }
 
     /// Adds a surface hit along `direction`; `throughput` includes its albedo.
@@ -201,7 +201,7 @@ impl IndirectLight<'_> {
         let emitters = &self.world.emitters;
         let Some(environment) = emitters.environment.as_ref().filter(|_| lanes != 0) else { return };
         let choice = emitters.environment_choice(near.receivers());
-        let found = environment.radiance_pdf16(&rays.directions(), lanes);
+        let found = environment.radiance_pdf16(&rays.directions(), lanes, None);
         for lane in lanes_in(lanes) {
             let (light, other) = found[lane];
             let weight = power_heuristic(pdf[lane], other * choice[lane]);

@@ -1,0 +1,108 @@
+//! Learning where the environment shines: rays from points that the eye sees, spread over the whole film, so that a
+//! crop learns what the whole picture does.
+
+use super::drawn::Tracer;
+use crate::embree::Rays16;
+use crate::light::{EnvironmentLight, LearnedSky, Looks};
+use crate::math::{LANES, Vec2x16};
+use crate::sampling::{Sampler, hash, owen_sobol_2d};
+use crate::shadow;
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Maximum number of eye paths, and the number of the film's pixels for each of them.
+const MAX_PATHS: u32 = 16384;
+const PIXELS_A_PATH: u64 = 8;
+
+/// Number of packets of rays from each point.
+const PACKETS: usize = 2;
+
+/// Number of paths traced by one task.
+const CHUNK: usize = 256;
+
+/// Seed of the rays over that of the paths.
+const RAY_SEED: u32 = 0x9d7b_2c41;
+
+/// Factor from one ray to the tile of the next, coprime to their number.
+const STRIDE: usize = 97;
+
+/// Pixels of a film through which paths go.
+fn places(film: [u32; 2]) -> Vec<[u32; 2]> {
+    let pixels = u64::from(film[0]) * u64::from(film[1]);
+    let count = (pixels / PIXELS_A_PATH).clamp(64, MAX_PATHS.into()) as u32;
+    let place = |i| {
+        let at = owen_sobol_2d(i, RAY_SEED);
+        [0, 1].map(|axis| ((at[axis] * film[axis] as f32) as u32).min(film[axis] - 1))
+    };
+    (0..count).map(place).collect()
+}
+
+impl Tracer<'_, '_> {
+    /// Learns by one path through each of the pilot's pixels.
+    pub(super) fn learn_sky(&self, environment: &EnvironmentLight, seed: u32) -> LearnedSky {
+        let found: Vec<Looks> = places(self.view.window.film)
+            .par_chunks(CHUNK)
+            .enumerate()
+            .map_init(
+                || self.workspace(None),
+                |work, (chunk, pixels)| {
+                    let mut looks = Looks::default();
+                    self.sample(pixels, 0..1, seed, work, |found, _| {
+                        for end in found.ends() {
+                            let number = (chunk * CHUNK + looks.points.len()) as u32;
+                            looks.points.push(end.geometry.position);
+                            let normals = [end.geometry.normal, end.surface.geometric_normal];
+                            self.look(
+                                environment,
+                                end.geometry.position,
+                                normals,
+                                (number, seed),
+                                &mut looks.rays,
+                            );
+                        }
+                    });
+                    looks
+                },
+            )
+            .collect();
+        let mut all = Looks::default();
+        for mut looks in found {
+            all.points.append(&mut looks.points);
+            all.rays.append(&mut looks.rays);
+        }
+        LearnedSky::new(environment, &all)
+    }
+
+    /// Traces rays from a point with the given shading and geometric normal to some of the tiles, point by point to
+    /// others.
+    fn look(
+        &self,
+        environment: &EnvironmentLight,
+        x: Vec3,
+        [normal, geometric_normal]: [Vec3; 2],
+        (number, seed): (u32, u32),
+        rays: &mut Vec<(u16, f32)>,
+    ) {
+        let mut sampler = Sampler::new(hash(seed, RAY_SEED), number);
+        for packet in 0..PACKETS {
+            let first = (number as usize * PACKETS + packet) * LANES;
+            let tiles = std::array::from_fn(|lane| (first + lane) * STRIDE % environment.tile_count());
+            let mut u = Vec2x16::default();
+            (0..LANES).for_each(|lane| u.set(lane, sampler.next_2d()));
+            let samples = environment.sample_of_tiles(&tiles, &u);
+            let (mut segments, mut cos) = (Rays16::default(), [0.0; LANES]);
+            for (lane, sample) in samples.iter().enumerate() {
+                if let Some(sample) = sample {
+                    cos[lane] = normal.dot(sample.direction).max(0.0);
+                    segments.set(lane, &shadow::ray_from(x, geometric_normal, sample.direction));
+                }
+            }
+            let lit = (0..LANES).filter(|lane| cos[*lane] > 0.0).fold(0, |lit, lane| lit | 1u16 << lane);
+            let free = lit & !self.world.accel.occluded16(&segments, lit, false);
+            rays.extend(
+                (0..LANES)
+                    .map(|lane| (tiles[lane] as u16, if (free >> lane) & 1 != 0 { cos[lane] } else { 0.0 })),
+            );
+        }
+    }
+}

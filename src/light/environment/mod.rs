@@ -1,0 +1,212 @@
+//! Light from infinitely far: evaluation and sampling in proportion to radiance, about, or as [`LearnedSky`] has it.
+//!
+//! Directions are drawn by tiles of about equal flux, then within the tile.
+
+mod equal_cells;
+mod learned;
+mod map;
+mod regions;
+mod table;
+#[cfg(test)]
+mod tests;
+mod tiles;
+
+pub use learned::{LearnedSky, Looks};
+
+use crate::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
+use crate::sampling::uniform_sphere;
+use crate::scene::Environment;
+use equal_cells::EqualCells;
+use glam::{Vec2, Vec3};
+use map::{Map, bilinear};
+use std::f32::consts::FRAC_1_PI;
+use table::Table;
+use tiles::Tiles;
+
+/// The environment with its sampling distributions.
+#[derive(Clone, Debug)]
+pub struct EnvironmentLight {
+    source: Source,
+    tiles: Tiles,
+    /// Tiles by flux.
+    by_flux: Table,
+    /// Mean luminance over the sphere, W/(sr m²).
+    mean_luminance: f32,
+}
+
+#[derive(Clone, Debug)]
+enum Source {
+    Constant(Rgb),
+    Map(Map),
+}
+
+/// A direction drawn from the environment.
+#[derive(Clone, Copy, Debug)]
+pub struct EnvironmentSample {
+    /// Unit world direction towards the environment.
+    pub direction: Vec3,
+    /// Radiance arriving from that direction.
+    pub radiance: Rgb,
+    /// Density by solid angle.
+    pub pdf: f32,
+}
+
+/// A tile, numbers by which a direction there is drawn, and the factor on its density.
+#[derive(Clone, Copy, Default)]
+struct Drawn {
+    tile: usize,
+    u: Vec2,
+    density: f32,
+}
+
+/// Sixteen points that directions are drawn for, and what has been learned about them.
+pub type Learned<'a> = Option<(&'a LearnedSky, &'a Vec3x16)>;
+
+impl EnvironmentLight {
+    /// Builds the distributions; `None` if the environment is black.
+    pub fn new(environment: &Environment) -> Option<EnvironmentLight> {
+        let (source, mean_luminance, tiles) = match environment {
+            Environment::Constant(radiance) => {
+                (Source::Constant(*radiance), luminance(*radiance), Tiles::new(&EqualCells))
+            }
+            Environment::Map(map) => {
+                let map = Map::new(map);
+                let (mean, tiles) = (map.mean(), Tiles::new(&map));
+                (Source::Map(map), mean, tiles)
+            }
+        };
+        let by_flux = Table::new(tiles.all(), &vec![0.0; tiles.all().len()], 1.0);
+        let light = EnvironmentLight { source, tiles, by_flux, mean_luminance };
+        (mean_luminance > 0.0 && mean_luminance.is_finite()).then_some(light)
+    }
+
+    /// Mean luminance over the sphere of directions.
+    pub fn mean_luminance(&self) -> f32 {
+        self.mean_luminance
+    }
+
+    /// Number of tiles.
+    pub fn tile_count(&self) -> usize {
+        self.tiles.all().len()
+    }
+
+    /// Radiance arriving from the unit world direction `d`.
+    pub fn radiance(&self, d: Vec3) -> Rgb {
+        match &self.source {
+            Source::Constant(radiance) => *radiance,
+            Source::Map(map) => {
+                let place = map.locate(d);
+                bilinear(&map.corners(place.column, place.row), place.f)
+            }
+        }
+    }
+
+    /// Radiance arriving from the unit world direction `d`, and the density with which
+    /// [`EnvironmentLight::sample`] draws it.
+    pub fn radiance_pdf(&self, d: Vec3) -> (Rgb, f32) {
+        self.radiance_pdf16(&Vec3x16::splat(d), 1, None)[0]
+    }
+
+    /// [`EnvironmentLight::radiance_pdf`] in the lanes of `wanted`, which wait for memory together: a large
+    /// map lies outside the caches, and look-ups one after the other would take most of a render's time.
+    pub fn radiance_pdf16(&self, d: &Vec3x16, wanted: u16, learned: Learned) -> [(Rgb, f32); LANES] {
+        let map = match &self.source {
+            Source::Constant(radiance) => {
+                return each(wanted, |i| {
+                    let pdf = learned.map_or(0.25 * FRAC_1_PI, |(sky, x)| {
+                        let (column, row) = EqualCells::cell(d.get(i));
+                        sky.at(x.get(i)).density(self.tiles.of_cell(column, row))
+                    });
+                    (*radiance, pdf)
+                });
+            }
+            Source::Map(map) => map,
+        };
+        let places = each(wanted, |i| map.locate(d.get(i)));
+        let corners = each(wanted, |i| map.corners(places[i].column, places[i].row));
+        let tiles = each(wanted, |i| self.tiles.of_cell(places[i].column, places[i].row));
+        let tables = each(wanted, |i| self.table(learned, i).density(tiles[i]));
+        each(wanted, |i| {
+            let radiance = bilinear(&corners[i], places[i].f);
+            let within = match self.tiles.all()[tiles[i]].rows {
+                None => 1.0,
+                Some(_) => map.density(places[i], &corners[i], radiance),
+            };
+            (radiance, tables[i] * within)
+        })
+    }
+
+    /// Samples a direction about in proportion to luminance; `None` where the density vanishes.
+    pub fn sample(&self, u: Vec2) -> Option<EnvironmentSample> {
+        self.sample16(&Vec2x16 { x: [u.x; LANES], y: [u.y; LANES] }, 1, None)[0]
+    }
+
+    /// [`EnvironmentLight::sample`] in the lanes of `wanted`; `None` in the others. The lanes wait for memory together.
+    pub fn sample16(&self, u: &Vec2x16, wanted: u16, learned: Learned) -> [Option<EnvironmentSample>; LANES] {
+        if let (Source::Constant(radiance), None) = (&self.source, learned) {
+            let (radiance, pdf) = (*radiance, 0.25 * FRAC_1_PI);
+            return each(wanted, |i| {
+                Some(EnvironmentSample { direction: uniform_sphere(u.get(i)), radiance, pdf })
+            });
+        }
+        let drawn = each(wanted, |i| {
+            let table = self.table(learned, i);
+            let (tile, rest) = table.sample(u.x[i]);
+            Drawn { tile, u: Vec2::new(rest, u.y[i]), density: table.density(tile) }
+        });
+        self.sample_tiles(&drawn, wanted)
+    }
+
+    /// Samples a direction in each of sixteen tiles; densities are relative.
+    pub fn sample_of_tiles(&self, tiles: &[usize; LANES], u: &Vec2x16) -> [Option<EnvironmentSample>; LANES] {
+        let drawn = each(u16::MAX, |i| Drawn { tile: tiles[i], u: u.get(i), density: 1.0 });
+        self.sample_tiles(&drawn, u16::MAX)
+    }
+
+    /// Samples directions in tiles, in the lanes of `wanted`.
+    fn sample_tiles(&self, drawn: &[Drawn; LANES], wanted: u16) -> [Option<EnvironmentSample>; LANES] {
+        let tile = |i: usize| &self.tiles.all()[drawn[i].tile];
+        let map = match &self.source {
+            Source::Constant(radiance) => {
+                return each(wanted, |i| {
+                    let (z, x) = tile(i).place(drawn[i].u);
+                    let direction = EqualCells::direction(z, x);
+                    Some(EnvironmentSample { direction, radiance: *radiance, pdf: drawn[i].density })
+                });
+            }
+            Source::Map(map) => map,
+        };
+        let even = |i: usize| tile(i).rows.is_none();
+        let places = each(wanted, |i| match &tile(i).rows {
+            Some(rows) => map.sample(&tile(i).cells, rows, drawn[i].u),
+            None => {
+                let (z, x) = tile(i).place(drawn[i].u);
+                map.place_at(z, x)
+            }
+        });
+        let corners = each(wanted, |i| map.corners(places[i].column, places[i].row));
+        each(wanted, |i| {
+            let radiance = bilinear(&corners[i], places[i].f);
+            let within = if even(i) { 1.0 } else { map.density(places[i], &corners[i], radiance) };
+            let pdf = drawn[i].density * within;
+            let direction = map.direction(places[i]);
+            (pdf > 0.0 && pdf.is_finite()).then_some(EnvironmentSample { direction, radiance, pdf })
+        })
+    }
+
+    /// Distribution over tiles in a lane.
+    #[inline]
+    fn table<'a>(&'a self, learned: Learned<'a>, lane: usize) -> &'a Table {
+        learned.map_or(&self.by_flux, |(sky, x)| sky.at(x.get(lane)))
+    }
+}
+
+/// Applies `f` to each lane in `wanted`.
+#[inline(always)]
+fn each<T: Copy + Default>(wanted: u16, mut f: impl FnMut(usize) -> T) -> [T; LANES] {
+    let mut values = [T::default(); LANES];
+    for lane in lanes_in(wanted) {
+        values[lane] = f(lane);
+    }
+    values
+}

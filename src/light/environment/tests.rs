@@ -1,0 +1,151 @@
+//! The environment: densities are those of the directions drawn, by flux and as learned.
+
+use super::*;
+use crate::sampling::{owen_sobol_2d, uniform_sphere};
+use crate::scene::EnvironmentMap;
+use glam::Mat3;
+use std::f32::consts::TAU;
+
+fn map() -> EnvironmentMap {
+    let (width, height) = (16, 8);
+    let mut radiance: Vec<Rgb> =
+        (0..width * height).map(|i| Rgb::splat(0.1 + (i * 37 % 11) as f32 * 0.05)).collect();
+    radiance[3 * width + 15] = Rgb::new(500.0, 400.0, 300.0);
+    EnvironmentMap { width, height, radiance, to_local: Mat3::from_rotation_y(0.7) }
+}
+
+/// An even part beside one of texels that differ.
+fn two_parts() -> EnvironmentMap {
+    let (width, height) = (256, 160);
+    let texel = |i: usize| if i % width < 80 { 1.0 } else { 0.1 + (i * 37 % 11) as f32 * 0.3 };
+    let radiance = (0..width * height).map(|i| Rgb::splat(texel(i))).collect();
+    EnvironmentMap { width, height, radiance, to_local: Mat3::from_rotation_y(0.7) }
+}
+
+#[test]
+fn density_integrates_to_one_and_estimates_the_mean() {
+    let light = EnvironmentLight::new(&Environment::Map(map())).unwrap();
+    let n = 1 << 18;
+    let (mut mass, mut uniform_mean, mut sampled_mean, mut strays) = (0.0f64, 0.0f64, 0.0f64, 0);
+    for i in 0..n {
+        let u = owen_sobol_2d(i, 3);
+        let d = uniform_sphere(u);
+        mass += light.radiance_pdf(d).1 as f64 * 4.0 * std::f64::consts::PI;
+        uniform_mean += luminance(light.radiance(d)) as f64;
+        let s = light.sample(u).unwrap();
+        strays += u32::from((light.radiance(s.direction) - s.radiance).length() > 1e-2 * s.radiance.length());
+        sampled_mean += (luminance(s.radiance) / s.pdf) as f64 / (4.0 * std::f64::consts::PI);
+    }
+    // Rounding moves directions next to a pole round it.
+    assert!(strays < n / 10_000, "{strays}");
+    let n = n as f64;
+    assert!((mass / n - 1.0).abs() < 0.01, "{}", mass / n);
+    assert!((uniform_mean / sampled_mean - 1.0).abs() < 0.01);
+    // The weight of the mean in closed form uses cell means, not the sine inside a cell.
+    assert!((sampled_mean / n / light.mean_luminance() as f64 - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn directions_are_drawn_with_the_densities_told_even_in_tiles_and_uneven_ones() {
+    for (environment, evens) in
+        [(Environment::Map(two_parts()), 30..100), (Environment::Constant(Rgb::ONE), 256..257)]
+    {
+        let light = EnvironmentLight::new(&environment).unwrap();
+        assert!(evens.contains(&light.tiles.all().iter().filter(|tile| tile.rows.is_none()).count()));
+        let (n, mut counts, mut expected) = (1 << 19, [[0.0f64; 8]; 8], [[0.0f64; 8]; 8]);
+        let bin = |d: Vec3| {
+            let at = |x: f32| ((x * 8.0) as usize).min(7);
+            (at(0.5 + 0.5 * d.z), at(0.5 + d.y.atan2(d.x) / TAU))
+        };
+        let mut strays = 0;
+        for i in 0..n {
+            let u = owen_sobol_2d(i, 3);
+            let s = light.sample(u).unwrap();
+            let (radiance, pdf) = light.radiance_pdf(s.direction);
+            // Rounding moves directions across the edges of cells and tiles.
+            let same = (radiance - s.radiance).length() < 1e-2 * radiance.length();
+            strays += u32::from(!same || (pdf / s.pdf - 1.0).abs() > 1e-2);
+            let (a, b) = bin(s.direction);
+            counts[a][b] += 1.0;
+            let d = uniform_sphere(u);
+            let (a, b) = bin(d);
+            expected[a][b] += f64::from(light.radiance_pdf(d).1 * 2.0 * TAU);
+        }
+        assert!(strays < n / 1000, "{strays}");
+        for (a, b) in counts.iter().flatten().zip(expected.iter().flatten()) {
+            assert!((a / b - 1.0).abs() < 0.02, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn what_is_learned_of_a_window_is_where_most_samples_go_and_all_directions_keep_some() {
+    let light = EnvironmentLight::new(&Environment::Map(two_parts())).unwrap();
+    let open = |d: Vec3| d.x > 0.5;
+    // Two places: light from one side at the one, none at the other.
+    let mut looks = Looks::default();
+    for i in 0..128u32 {
+        looks.points.push(Vec3::new(if i < 64 { 0.0 } else { 10.0 }, i as f32 * 1e-3, 0.0));
+        for packet in 0..2 {
+            let tiles =
+                std::array::from_fn(|lane| (i as usize * 2 + packet + 16 * lane) % light.tile_count());
+            let mut u = Vec2x16::default();
+            (0..LANES).for_each(|lane| u.set(lane, owen_sobol_2d(i * 32 + lane as u32, 9)));
+            let samples = light.sample_of_tiles(&tiles, &u);
+            looks.rays.extend(tiles.iter().zip(samples).map(|(tile, s)| {
+                (*tile as u16, if i < 64 && s.is_some_and(|s| open(s.direction)) { 1.0 } else { 0.0 })
+            }));
+        }
+    }
+    let learned = LearnedSky::new(&light, &looks);
+    let share = |x: f32| {
+        let at = Vec3x16::splat(Vec3::new(x, 0.06, 0.0));
+        let (n, mut found, mut inverse) = (1 << 14, 0, 0.0f64);
+        for i in 0..n {
+            let u = owen_sobol_2d(i, 5);
+            let u = Vec2x16 { x: [u.x; LANES], y: [u.y; LANES] };
+            let s = light.sample16(&u, 1, Some((&learned, &at)))[0].unwrap();
+            found += u32::from(open(s.direction));
+            inverse += 1.0 / f64::from(s.pdf);
+            let (_, pdf) = light.radiance_pdf16(&Vec3x16::splat(s.direction), 1, Some((&learned, &at)))[0];
+            assert!((pdf / s.pdf - 1.0).abs() < 0.05, "{pdf} {}", s.pdf);
+        }
+        // Every direction is drawn, as often as told.
+        let sphere = inverse / f64::from(n) / (4.0 * std::f64::consts::PI);
+        assert!((sphere - 1.0).abs() < 0.03, "{sphere}");
+        found as f32 / n as f32
+    };
+    let unlearned =
+        (0..1 << 14).filter(|i| open(light.sample(owen_sobol_2d(*i, 5)).unwrap().direction)).count();
+    let unlearned = unlearned as f32 / (1 << 14) as f32;
+    assert!(share(0.0) > 0.7 && unlearned < 0.25, "{} {unlearned}", share(0.0));
+    // A place without any light of the sky has the mean of all places.
+    assert!(share(10.0) > 0.65);
+}
+
+#[test]
+fn a_one_texel_sun_costs_little_variance() {
+    let light = EnvironmentLight::new(&Environment::Map(map())).unwrap();
+    let weights: Vec<f64> = (0..4096)
+        .filter_map(|i| light.sample(owen_sobol_2d(i, 5)))
+        .map(|s| (luminance(s.radiance) / s.pdf) as f64)
+        .collect();
+    let mean = weights.iter().sum::<f64>() / weights.len() as f64;
+    let worst = weights.iter().fold(0.0f64, |m, w| m.max(*w));
+    assert!(worst < 2.0 * mean, "worst weight {worst}, mean {mean}");
+}
+
+#[test]
+fn one_pixel_map_is_constant() {
+    let map = EnvironmentMap {
+        width: 1,
+        height: 1,
+        radiance: vec![Rgb::new(1.0, 2.0, 3.0)],
+        to_local: Mat3::IDENTITY,
+    };
+    let light = EnvironmentLight::new(&Environment::Map(map)).unwrap();
+    for i in 0..64 {
+        let s = light.sample(owen_sobol_2d(i, 1)).unwrap();
+        assert!((s.radiance - Rgb::new(1.0, 2.0, 3.0)).length() < 1e-5);
+    }
+}
