@@ -1,9 +1,11 @@
 //! The eye pass with direct light: paths end at the first surfaces that scatter light broadly, emitters are sampled
 //! there, and what is left to be found is the indirect light of the shading points that the ends are merged into.
 //!
-//! All pixels get the same number of samples first; then those with contrast around them get more ([`adaptive`]).
+//! All pixels get the same number of samples first; then those with contrast around them get more ([`adaptive`]). Where
+//! an environment shines on each region of the scene is learned before ([`sky`]).
 //!
 //! [`adaptive`]: super::adaptive
+//! [`sky`]: super::sky
 
 use super::adaptive::{Choice, Luminances, MULTIPLES, pilot};
 use super::merge::{MergedPoint, merge};
