@@ -23,7 +23,7 @@ pub struct View {
 /// Frame, film size and crop that are wanted in place of the scene file's own.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Framing {
-    /// Frame of the camera path, counted from 0, in place of the still camera.
+    /// Frame of the camera path, counted from 1, in place of the still camera.
     pub frame: Option<usize>,
     /// Width and height of the film in pixels.
     pub resolution: Option<[u32; 2]>,
@@ -35,9 +35,9 @@ pub struct Framing {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FramingError {
     /// The camera path is not that long.
-    #[error("--frame {frame}: the scene has {frames} frames; {}", match frames {
-        0 => "leave --frame out".to_owned(),
-        _ => format!("at most {}", frames - 1),
+    #[error("frame {frame}: {}", match frames {
+        0 => "the scene has no camera path, only a still camera; give a TOML scene keys in [camera.path]".to_owned(),
+        _ => format!("the scene's camera path has {frames} frames, counted from 1"),
     })]
     Frame {
         /// The frame wanted.
@@ -78,7 +78,8 @@ impl View {
             None => cameras.still,
             Some(frame) => {
                 let frames = cameras.path.len();
-                *cameras.path.get(frame).ok_or(FramingError::Frame { frame, frames })?
+                let camera = frame.checked_sub(1).and_then(|index| cameras.path.get(index));
+                *camera.ok_or(FramingError::Frame { frame, frames })?
             }
         };
         Ok(View { camera, window })
@@ -139,7 +140,7 @@ mod tests {
     fn a_framing_takes_the_place_of_what_the_file_says() {
         let plain = View::new(&cameras(), &Framing::default()).unwrap();
         assert_eq!(plain, View::whole(Camera::default(), [8, 4]));
-        let framing = Framing { frame: Some(2), resolution: Some([16, 16]), crop: Some([[3, 4], [5, 6]]) };
+        let framing = Framing { frame: Some(3), resolution: Some([16, 16]), crop: Some([[3, 4], [5, 6]]) };
         let view = View::new(&cameras(), &framing).unwrap();
         assert_eq!(view.camera.origin, Vec3::X * 2.0);
         assert_eq!(view.window, Window { film: [16, 16], offset: [3, 4], width: 5, height: 6 });
@@ -148,8 +149,10 @@ mod tests {
     #[test]
     fn what_gives_no_view_is_named() {
         let error = |framing: Framing| View::new(&cameras(), &framing).unwrap_err();
-        let frame = error(Framing { frame: Some(3), ..Framing::default() });
-        assert_eq!(frame.to_string(), "--frame 3: the scene has 3 frames; at most 2");
+        for frame in [0, 4] {
+            let error = error(Framing { frame: Some(frame), ..Framing::default() }).to_string();
+            assert_eq!(error, format!("frame {frame}: the scene's camera path has 3 frames, counted from 1"));
+        }
         let crop = error(Framing { crop: Some([[7, 0], [2, 1]]), ..Framing::default() });
         assert_eq!(crop, FramingError::Crop { film: [8, 4] });
         let large = error(Framing { resolution: Some([1 << 16, 1 << 16]), ..Framing::default() });

@@ -21,6 +21,9 @@ pub struct Camera {
     pub far: f32,
 }
 
+/// Maximum number of frames in a camera path.
+pub const MAX_FRAMES: usize = 1 << 20;
+
 /// Cameras that a scene's file describes, and the size of their film.
 #[derive(Clone, Debug, Default)]
 pub struct Cameras {

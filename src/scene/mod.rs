@@ -17,7 +17,7 @@ mod texture;
 use glam::DVec3;
 use std::path::PathBuf;
 
-pub use camera::{Camera, Cameras};
+pub use camera::{Camera, Cameras, MAX_FRAMES};
 pub use light::{DeltaLight, Environment, EnvironmentMap};
 pub use material::{
     Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Parameter, Reflectance, Roughness,

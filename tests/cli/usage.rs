@@ -46,7 +46,7 @@ fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
     assert!(render(&["--aov", "albedo,normals"]).contains("geometric-normal"));
     render(&["--no-png", "--png", "b.png"]);
     assert!(render(&["--crop", "20,0,5,5"]).contains("24x16"));
-    assert!(render(&["--frame", "0"]).contains("0 frames"));
+    assert!(render(&["--frame", "1"]).contains("no camera path"));
     assert!(render(&["--png", "b.jpg"]).contains(".png"));
     assert!(sandbox.render("a.tiff", &[]).expect(2).stderr.contains(".exr"));
     assert_eq!(sandbox.files(), ["room.xml"]);

@@ -11,8 +11,9 @@
 //! up = [0.0, 1.0, 0.0]                # this is the default
 //! fov = 60.0                          # degrees, horizontal unless fov_axis = "y"; also near, far
 //! [camera.path]                       # optional walk-through
-//! frames = 281
+//! frames = 281                        # optional if keys have frames, which count from 1
 //! keys = [{ origin = [0, 1, 5], target = [0, 1, 0] }, { origin = [1, 1, 4], target = [0, 1, 0] }]
+//!                                     # each may have up and fov, and all a frame
 //! [[material]]
 //! name = "stone"
 //! kind = "diffuse"                    # the kinds and their keys: see `material`
@@ -40,6 +41,7 @@ mod light;
 mod material;
 mod mesh;
 mod mtl;
+mod path;
 mod text;
 
 use super::error::{Log, Place, SceneError};

@@ -171,6 +171,48 @@ fn a_path_has_a_camera_for_every_frame() {
 }
 
 #[test]
+fn keys_may_have_frames_fields_of_view_and_up_vectors() {
+    let path = "[camera.path]\nkeys = [\n{ frame = 1, origin = [0, 0, 5], target = [0, 0, 0] },\n\
+        { frame = 3, origin = [4, 0, 5], target = [4, 0, 0], fov = 30, up = [1, 0, 0] },\n\
+        { frame = 9, origin = [5, 0, 5], target = [5, 0, 0] }]\n";
+    let loaded = load_text(&format!("{HEAD}{path}")).unwrap();
+    let cameras = &loaded.cameras.path;
+    let x = |frame: usize| cameras[frame - 1].origin.x + loaded.scene.centre.x as f32;
+    assert_eq!(cameras.len(), 9);
+    for (frame, expected) in [(1, 0.0), (3, 4.0), (9, 5.0)] {
+        assert!((x(frame) - expected).abs() < 1e-5, "{frame}");
+    }
+    assert!((cameras[2].tan_half_x - 15f32.to_radians().tan()).abs() < 1e-6);
+    assert!((cameras[8].tan_half_x - 1.0).abs() < 1e-6 && cameras[1].tan_half_x < 1.0);
+    assert!(cameras[2].up.distance(Vec3::X) < 1e-6 && cameras[8].up.distance(Vec3::Y) < 1e-6);
+}
+
+#[test]
+fn wrong_paths_are_errors_with_line_and_remedy() {
+    // The keys stand in lines 7 and 8.
+    let error = |head: &str, first: &str, second: &str| {
+        let key = |more: &str| format!("{{ origin = [0, 0, 5], target = [0, 0, 0]{more} }}");
+        let path = format!("{HEAD}[camera.path]\n{head}keys = [{},\n{}]\n", key(first), key(second));
+        load_text(&path).unwrap_err()
+    };
+    let assert_says = |error: String, parts: [&str; 3]| {
+        assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+    };
+    assert_says(error("", "", ""), ["s.toml:6", "no number of frames", "`frame`"]);
+    assert_says(error("", ", frame = 1", ""), ["s.toml:8", "no frame", "all a frame"]);
+    assert_says(error("", ", frame = 0", ", frame = 2"), ["s.toml:7", "frame 0", "count from 1"]);
+    assert_says(error("", ", frame = 5", ", frame = 5"), ["s.toml:8", "frame 5", "order"]);
+    assert_says(error("", ", frame = 1, fov = 180", ", frame = 2"), ["s.toml:7", "fov", "0 to 180"]);
+    assert_says(
+        error("", ", frame = 1, up = [0, 0, 1]", ", frame = 2"),
+        ["s.toml:7", "up vector", "turn up"],
+    );
+    assert_says(error("frames = 4\n", ", frame = 1", ", frame = 5"), ["s.toml:6", "frame 5", "more frames"]);
+    assert_says(error("frames = 0\n", "", ""), ["s.toml:6", "0 frames", "at least one"]);
+    assert_says(error("frames = 4\n", ", fram = 1", ""), ["s.toml:8", "fram", "expected"]);
+}
+
+#[test]
 fn pictures_stand_upright_on_a_rectangle() {
     let mut png = std::io::Cursor::new(Vec::new());
     // White above, black below.

@@ -37,15 +37,18 @@ pub(super) struct CameraText {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PathText {
-    pub frames: usize,
-    pub keys: Vec<KeyText>,
+    pub frames: Option<usize>,
+    pub keys: Vec<Spanned<KeyText>>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct KeyText {
+    pub frame: Option<usize>,
     pub origin: [f64; 3],
     pub target: [f64; 3],
+    pub up: Option<[f64; 3]>,
+    pub fov: Option<f64>,
 }
 
 /// All keys of all kinds of material; `material` checks which kind allows which.
