@@ -1,8 +1,8 @@
 //! lightsplat: global illumination by lightcuts, reconstructed or cached, and a path-traced reference, over
 //! Embree 4.
 //!
-//! [`session`] is the API: a scene held ready, and frames rendered of it. The pipeline behind it, in the
-//! order of the data:
+//! [`session`] is the API: a scene held ready, and frames rendered of it; [`walk`] renders those of a camera path.
+//! The pipeline behind it, in the order of the data:
 //!
 //! - [`scene::formats`] reads a scene file, sanitises and recentres it; [`scene`] is the result;
 //! - [`world`] makes it ready: [`embree`] for rays, [`material`] for scattering, [`light`] for emitters;
@@ -64,4 +64,5 @@ pub mod stats;
 pub mod verify;
 pub mod view;
 mod vpl;
+pub mod walk;
 pub mod world;

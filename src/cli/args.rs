@@ -3,10 +3,11 @@
 use super::bench_args::BenchArgs;
 use super::exit;
 use super::method_args::MethodArgs;
-use super::plan_args::PlanArgs;
-use super::values::{Crop, ProgressMode, Resolution, feature};
+use super::plan_args::{PlanArgs, Quality};
+use super::values::{Bytes, Crop, ProgressMode, Resolution, feature};
 use crate::film::Exposure;
 use crate::session::Feature;
+use crate::walk::{FileNames, FrameList, KeepLimits};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
 
@@ -24,6 +25,8 @@ pub struct Cli {
 pub enum Command {
     /// Render a scene to OpenEXR and PNG
     Render(Box<RenderArgs>),
+    /// Render the frames of a walk-through along the scene's camera path
+    Walk(Box<WalkArgs>),
     /// Say what a scene holds and requires
     Info(InfoArgs),
     /// Take the noise off a picture that is there
@@ -55,7 +58,7 @@ pub struct RenderArgs {
     /// Render only this part of the film, in pixels from its top-left corner
     #[arg(long, value_name = "X,Y,W,H")]
     pub crop: Option<Crop>,
-    /// Frame of the scene's camera path, counted from 0, instead of its still camera
+    /// Frame of the scene's camera path, counted from 1, instead of its still camera
     #[arg(long)]
     pub frame: Option<usize>,
     /// The tone-mapped picture.
@@ -82,6 +85,65 @@ pub struct RenderArgs {
     /// Measuring the error.
     #[command(flatten)]
     pub verify: VerifyArgs,
+}
+
+/// Options of `walk`.
+#[derive(Debug, Args)]
+#[command(after_help = exit::HELP)]
+pub struct WalkArgs {
+    /// Scene with a camera path: native (.toml)
+    pub scene: PathBuf,
+    /// Pictures to write, with a place for the frame's number: f.####.exr or f.%04d.exr
+    #[arg(short, long, value_name = "NAME.####.exr")]
+    pub output: FileNames,
+    /// Frames, counted from 1: 7, 1-10, 1-100x5 (every fifth), or a list of those [default: all]
+    #[arg(long, value_name = "LIST")]
+    pub frames: Option<FrameList>,
+    /// Leave out frames whose files are whole and come of the same scene and settings
+    #[arg(long)]
+    pub resume: bool,
+    /// Most frames for which a record that lights nothing in view is kept
+    #[arg(long, value_name = "FRAMES", default_value_t = KeepLimits::default().idle_frames)]
+    pub idle_frames: u32,
+    /// Most memory for records between frames, like 512M or 2G [default: 1G]; the longest unused go first
+    #[arg(long, value_name = "BYTES")]
+    pub memory_limit: Option<Bytes>,
+    /// The method and its settings.
+    #[command(flatten)]
+    pub method: MethodArgs,
+    /// Settings by name; those that are typed are held
+    #[arg(long, value_enum, conflicts_with = "method")]
+    pub quality: Option<Quality>,
+    /// Threads to use [default: all processors]; the pictures are the same for any number
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub threads: Option<u32>,
+    /// Width and height in pixels instead of the scene's
+    #[arg(long, value_name = "WxH")]
+    pub resolution: Option<Resolution>,
+    /// Render only this part of the film, in pixels from its top-left corner
+    #[arg(long, value_name = "X,Y,W,H")]
+    pub crop: Option<Crop>,
+    /// Do not write tone-mapped pictures
+    #[arg(long, conflicts_with = "exposure")]
+    pub no_png: bool,
+    /// Exposure of the PNGs in stops, or `auto`: the 90th percentile of luminance over the whole path becomes 0.8
+    #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
+    pub exposure: Exposure,
+    /// Layers to write beside the colour, about the surfaces seen, through mirrors and glass
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = feature())]
+    pub aov: Vec<Feature>,
+    /// Denoising.
+    #[command(flatten)]
+    pub denoise: DenoiseArgs,
+    /// Print counters and stage times to standard output: a table of the frames, or an object a line and frame
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub stats: Option<StatsFormat>,
+    /// How progress is told on standard error
+    #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
+    pub progress: ProgressMode,
+    /// Fail on anything in the scene that is not modelled, instead of warning
+    #[arg(long)]
+    pub strict: bool,
 }
 
 /// Options of the tone-mapped picture beside an OpenEXR file.

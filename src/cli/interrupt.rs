@@ -15,6 +15,6 @@ pub fn cancel_on_signal(control: &Arc<Control>) -> Result<(), ctrlc::Error> {
             std::process::exit(exit::INTERRUPTED.into());
         }
         control.cancel();
-        talk::note("interrupted: stopping and writing what there is; once more to stop at once");
+        talk::note("interrupted: stopping; once more to stop at once");
     })
 }

@@ -14,6 +14,7 @@ mod info;
 mod interrupt;
 mod job;
 mod method_args;
+mod picture;
 mod plan_args;
 mod progress;
 mod render;
@@ -23,6 +24,9 @@ mod talk;
 mod threads;
 mod values;
 mod verify;
+mod walk;
+mod walk_job;
+mod walk_report;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -44,6 +48,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let outcome = catch_unwind(AssertUnwindSafe(|| match cli.command {
         Command::Render(args) => render::run(*args),
+        Command::Walk(args) => walk::run(*args),
         Command::Info(args) => info::run(args),
         Command::Denoise(args) => denoise::run(args),
         Command::Compare(args) => compare::run(args),

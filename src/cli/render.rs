@@ -3,14 +3,13 @@
 use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
 use super::job::RenderJob;
-use super::{interrupt, progress, scene, talk, threads};
-use crate::film::{Film, false_colour, write_exr, write_png, write_srgb8};
+use super::{interrupt, picture, progress, scene, talk, threads};
+use crate::film::Film;
 use crate::progress::Control;
 use crate::session::{Frame, FrameError, Remark};
 use crate::stats::{Stage, Stopwatch, peak_resident_bytes};
 use crate::view::View;
 use anyhow::{Context, anyhow};
-use std::path::Path;
 use std::sync::Arc;
 
 /// Runs the command.
@@ -85,32 +84,8 @@ fn render(job: &RenderJob, control: &Control) -> Result<Frame, Failure> {
     Ok(frame)
 }
 
-fn write(job: &RenderJob, mut film: Film) -> Result<(), Failure> {
-    let mut said = format!("wrote {}", job.output.display());
-    let mut png = None;
-    if let Some((path, exposure)) = &job.png {
-        let factor = exposure.factor(&film.color);
-        film.metadata.set("png_exposure", factor.log2() as f64);
-        said += &format!(" and {} (exposure {:+.2} EV)", path.display(), factor.log2());
-        png = Some((path, factor));
-    }
-    write_exr(&job.output, &film).map_err(Failure::output)?;
-    if let Some((path, factor)) = png {
-        write_png(path, &film.color, factor).map_err(Failure::output)?;
-        write_layers(path, &film, factor)?;
-    }
-    talk::note(&said);
-    Ok(())
-}
-
-/// Writes every layer that is meant to be shown as a PNG file named after the picture's.
-fn write_layers(picture: &Path, film: &Film, factor: f32) -> Result<(), Failure> {
-    for layer in &film.layers {
-        if let Some(bytes) = false_colour::show(layer, &film.color, factor) {
-            let path = picture.with_extension(format!("{}.png", layer.name));
-            let size = [film.window.width, film.window.height];
-            write_srgb8(&path, size, &bytes).map_err(Failure::output)?;
-        }
-    }
+fn write(job: &RenderJob, film: Film) -> Result<(), Failure> {
+    let png = job.png.as_ref().map(|(path, exposure)| (path.as_path(), exposure.factor(&film.color)));
+    talk::note(&picture::write(&job.output, png, film)?);
     Ok(())
 }

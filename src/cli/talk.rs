@@ -35,6 +35,13 @@ pub fn event(object: &serde_json::Value) {
     let _ = writeln!(io::stderr().lock(), "{object}");
 }
 
+/// The same where stderr is NDJSON, nothing elsewhere.
+pub fn event_if_wanted(object: impl FnOnce() -> serde_json::Value) {
+    if NDJSON.load(Ordering::Relaxed) {
+        event(&object());
+    }
+}
+
 fn say(kind: &str, text: &str) {
     if NDJSON.load(Ordering::Relaxed) {
         event(&json!({ "event": kind, "text": text }));

@@ -63,9 +63,43 @@ impl FromStr for Crop {
     }
 }
 
+/// Number of bytes, as `512M` or `2G`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bytes(pub u64);
+
+impl FromStr for Bytes {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Bytes, String> {
+        let upper = text.trim().to_ascii_uppercase();
+        let number = upper.trim_end_matches("IB").trim_end_matches('B');
+        let units = [('K', 10), ('M', 20), ('G', 30), ('T', 40)];
+        let unit = units.iter().find_map(|(unit, shift)| Some((number.strip_suffix(*unit)?, *shift)));
+        let (number, shift) = unit.unwrap_or((number, 0));
+        match number.trim().parse::<f64>() {
+            Ok(number) if number > 0.0 && number < f64::from(1 << 20) * f64::from(1 << 20) => {
+                Ok(Bytes((number * (1u64 << shift) as f64) as u64))
+            }
+            _ => Err("expected a number of bytes like 512M or 2G".to_owned()),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_of_bytes_are_parsed_and_refused() {
+        for (text, bytes) in
+            [("100", 100), ("1.5K", 1536), ("512 MiB", 512 << 20), ("2g", 2 << 30), ("1TB", 1 << 40)]
+        {
+            assert_eq!(text.parse(), Ok(Bytes(bytes)), "{text}");
+        }
+        for bad in ["", "G", "-1M", "0", "nan", "inf", "1e300G", "2X"] {
+            assert!(bad.parse::<Bytes>().is_err(), "{bad}");
+        }
+    }
 
     #[test]
     fn sizes_and_crops_are_parsed_and_refused() {

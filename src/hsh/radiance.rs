@@ -53,6 +53,11 @@ impl Radiance {
         Radiance { bands: bands as u8, coefficients: vec![0.0; BLOCKS * stride(bands)].into() }
     }
 
+    /// Memory beside the struct itself.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.coefficients)
+    }
+
     /// Number of bands of the series.
     pub fn bands(&self) -> usize {
         usize::from(self.bands)

@@ -29,6 +29,7 @@ pub use sampling::{Sampled, Sampling};
 pub use crate::light_tree::Family;
 pub use crate::lightcut::CutSettings;
 pub use crate::paths::Look;
+pub use crate::radiance_cache::kept::{KeepLimits, KeptRecords};
 pub use crate::radiance_cache::{CacheSettings, DirectBy, Footprints, FoundBy};
 pub use crate::shadow::{OccluderCacheSettings, ShadowSettings};
 pub use crate::vpl::LightPassSettings;

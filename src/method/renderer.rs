@@ -6,6 +6,7 @@ use super::{Output, Prepared, Sampled};
 use crate::film::Window;
 use crate::paths::Look;
 use crate::progress::Control;
+use crate::radiance_cache::kept::KeptRecords;
 use crate::setting::Settings;
 use crate::stats::StageTime;
 use crate::view::View;
@@ -23,6 +24,19 @@ pub trait Renderer: Settings + Sampled {
     ///
     /// `lights` keeps virtual lights from frame to frame.
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output;
+
+    /// Renders the next frame of a walk-through: by records of the frames before, to which it adds its own. Methods
+    /// without records render it alone.
+    fn render_next(
+        &self,
+        world: &World,
+        lights: &LightStore,
+        _kept: &mut KeptRecords,
+        view: &View,
+        control: &Control,
+    ) -> Output {
+        self.render(world, lights, view, control)
+    }
 
     /// Rejects settings that contradict each other.
     ///

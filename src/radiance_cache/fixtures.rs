@@ -65,7 +65,12 @@ pub fn record(position: Vec3, radii: [f32; 2], irradiance: Rgb) -> Record {
         normal: Vec3::Z,
         coat: 0,
         bands: 0,
-        footprint: Footprint { axes: [Vec3::X, Vec3::Y], radii, inverse_normal_tolerance: 2.5 },
+        footprint: Footprint {
+            axes: [Vec3::X, Vec3::Y],
+            radii,
+            unraised: radii,
+            inverse_normal_tolerance: 2.5,
+        },
         vector: Mat3::from_cols(Vec3::Z * irradiance.x, Vec3::Z * irradiance.y, Vec3::Z * irradiance.z),
         gradient: Mat3::ZERO,
         luminance: luminance(irradiance),

@@ -29,6 +29,8 @@ pub struct Footprint {
     pub axes: [Vec3; 2],
     /// Radius along each axis.
     pub radii: [f32; 2],
+    /// The same without the minimum that the spacing of eye samples set.
+    pub unraised: [f32; 2],
     /// Inverse of the root of 1 - cos of the angle at which the normals differ too much.
     pub inverse_normal_tolerance: f32,
 }
@@ -66,11 +68,13 @@ impl Footprint {
             1.0 / (inverse_sq + 1.0 / (furthest * furthest)).sqrt()
         };
         let [short, long] = light.curvature.map(radius);
+        let unraised = [short, long.min(MAX_ASPECT * short)];
         let short = short.clamp(min, max);
         let long = long.min(MAX_ASPECT * short).clamp(short, max);
         Footprint {
             axes: light.axes,
             radii: [short, long],
+            unraised,
             inverse_normal_tolerance: 1.0 / settings.normal_tolerance,
         }
     }
@@ -79,7 +83,8 @@ impl Footprint {
     /// of the luminance; a circle unless footprints are to be anisotropic.
     pub fn of_gradient(normal: Vec3, gradient: Vec3, luminance: f32, limits: &FootprintLimits) -> Footprint {
         let FootprintLimits { settings, accuracy, distance, radii: [min, max] } = *limits;
-        let radius = (accuracy * distance).clamp(min, max);
+        let unraised = accuracy * distance;
+        let radius = unraised.clamp(min, max);
         let change = radius * gradient.length() / luminance.max(f32::MIN_POSITIVE);
         let (axis, squeeze) = match gradient.try_normalize() {
             Some(axis) if settings.footprints == Footprints::Anisotropic => {
@@ -91,7 +96,15 @@ impl Footprint {
         Footprint {
             axes: [axis, normal.cross(axis)],
             radii: [radius * squeeze, radius / squeeze],
+            unraised: [unraised * squeeze, unraised / squeeze],
             inverse_normal_tolerance: 1.0 / settings.normal_tolerance,
+        }
+    }
+
+    /// Shrinks radii that were raised to a minimum, where the spacing of eye samples allows a smaller one, `min`, now.
+    pub fn lower(&mut self, min: f32) {
+        for (radius, unraised) in self.radii.iter_mut().zip(self.unraised) {
+            *radius = radius.min(unraised.max(min));
         }
     }
 
@@ -186,9 +199,31 @@ mod tests {
     }
 
     #[test]
+    fn radii_raised_to_a_minimum_follow_it_down_to_those_that_accuracy_asks_for() {
+        let settings = CacheSettings::default();
+        let light =
+            Derivatives { edge_gradient: Mat3::ZERO, axes: [Vec3::X, Vec3::Y], curvature: [300.0, 3.0] };
+        let of = |min| Footprint::of_hessian(&light, 2.0, &limits(&settings, [min, 1e3]));
+        let exact = of(1e-6);
+        let mut kept = of(0.5);
+        assert!(exact.radii[1] < 0.1 && kept.radii == [0.5, 0.5]);
+        // A larger minimum, of a view from farther away, changes nothing.
+        kept.lower(0.7);
+        assert_eq!(kept.radii, [0.5, 0.5]);
+        for min in [0.4, 0.2, 0.5 * (exact.radii[0] + exact.radii[1])] {
+            kept.lower(min);
+            let alone = of(min).radii;
+            assert!(kept.radii[0] == alone[0] && (min..=alone[1]).contains(&kept.radii[1]));
+        }
+        kept.lower(1e-6);
+        assert_eq!(kept.radii, exact.radii);
+    }
+
+    #[test]
     fn offsets_are_scaled_by_the_radii_and_five_times_as_much_along_the_normal() {
+        let radii = [2.0, 0.5];
         let footprint =
-            Footprint { axes: [Vec3::X, Vec3::Y], radii: [2.0, 0.5], inverse_normal_tolerance: 1.0 };
+            Footprint { axes: [Vec3::X, Vec3::Y], radii, unraised: radii, inverse_normal_tolerance: 1.0 };
         assert_eq!(footprint.scaled(Vec3::new(3.0, 3.0, 3.0), Vec3::Z), Vec3::new(1.5, 6.0, 30.0));
         assert_eq!(footprint.max_radius(), 2.0);
     }

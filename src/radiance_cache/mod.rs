@@ -4,7 +4,7 @@
 //!
 //! Contents of a record:
 //! - [`record`]: irradiance at a point; [`footprint`]: the ellipse within which it is used; [`store`]: the records of
-//!   a layer, which outlive the frame;
+//!   a layer, which outlive the frame; [`kept`]: those of a walk-through, from frame to frame;
 //! - [`series`]: radiance as a series beside irradiance, for glossy surfaces, and its reflection by lobes.
 //!
 //! Computation:
@@ -32,6 +32,7 @@ mod fixtures;
 pub mod footprint;
 pub mod gather;
 pub mod inspect;
+pub mod kept;
 pub mod occluder_distance;
 pub mod occlusion_hessian;
 pub mod placement;

@@ -4,6 +4,8 @@ use super::record::Record;
 use super::source::NewRecord;
 use crate::hsh::Radiance;
 use crate::vpl::DirectIndirect;
+use std::iter::repeat_with;
+use std::mem;
 
 /// Records of direct and of indirect light.
 pub type Records = DirectIndirect<RecordStore>;
@@ -26,6 +28,12 @@ impl RecordStore {
             self.series.push(new.series);
         }
         self.records.push(new.record);
+    }
+
+    /// Takes all records out, with their series.
+    pub fn drain(&mut self) -> impl Iterator<Item = (Record, Option<Radiance>)> {
+        let series = mem::take(&mut self.series).into_iter().chain(repeat_with(|| None));
+        mem::take(&mut self.records).into_iter().zip(series)
     }
 
     /// Light of a record as a series.

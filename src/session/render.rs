@@ -6,7 +6,7 @@ use super::goal::{Goal, Wanted};
 use super::{Session, report};
 use crate::eye::DROPPED_BRANCHES;
 use crate::film::Image;
-use crate::method::{LightStore, Method, Output};
+use crate::method::{KeptRecords, LightStore, Method, Output};
 use crate::plan::{self, LATE, Ladder};
 use crate::progress::Control;
 use crate::stats::{Counter, Stage, Stats, Stopwatch, available_bytes};
@@ -53,6 +53,17 @@ struct Made {
 impl Session {
     /// Renders the picture of `view` for `goal`. A frame that was cancelled halfway is partial, not an error.
     pub fn frame(&self, view: &View, goal: &Goal, control: &Control) -> Result<Frame, FrameError> {
+        self.frame_by(view, goal, None, control)
+    }
+
+    /// The same by records of the frames before, where they are `kept` and no settings are planned.
+    pub(crate) fn frame_by(
+        &self,
+        view: &View,
+        goal: &Goal,
+        kept: Option<&mut KeptRecords>,
+        control: &Control,
+    ) -> Result<Frame, FrameError> {
         if let (Some(needed), Some(available)) = (goal.method.expected_bytes(&view.window), available_bytes())
             && needed > available
         {
@@ -63,7 +74,10 @@ impl Session {
         let mut stats = Stats::new();
         let mut remarks = Vec::new();
         let finish = Finish::new(&self.world, view, goal, control, &mut stats);
-        let made = self.make(view, goal, &finish, control, &mut stats, &mut remarks)?;
+        let made = match goal.wanted {
+            Wanted::AsSet => self.as_set(view, goal.method, kept, &finish, control),
+            _ => self.planned(view, goal, &finish, control, &mut stats, &mut remarks)?,
+        };
         let Made { method, output, seconds, measured, plan } = made;
         stats.merge(&output.stats);
         if let Some(Counter::Count(dropped @ 1..)) = stats.get(DROPPED_BRANCHES) {
@@ -154,8 +168,27 @@ impl Session {
         stats.time(Stage::Verify, || verify(&self.world, view, image, settings, control))
     }
 
-    /// The finished picture by the goal's settings, or by those planned for it.
-    fn make(
+    /// The finished picture by a method as it is set.
+    fn as_set(
+        &self,
+        view: &View,
+        method: Method,
+        kept: Option<&mut KeptRecords>,
+        finish: &Finish,
+        control: &Control,
+    ) -> Made {
+        let watch = Stopwatch::start();
+        let mut output = match kept {
+            Some(kept) => method.render_next(&self.world, &self.lights, kept, view, control),
+            None => method.render(&self.world, &self.lights, view, control),
+        };
+        finish.apply(&method, &mut output);
+        let seconds = watch.elapsed().wall_seconds;
+        Made { method, output, seconds, measured: None, plan: Value::Null }
+    }
+
+    /// The finished picture by settings planned for the goal.
+    fn planned(
         &self,
         view: &View,
         goal: &Goal,
@@ -170,13 +203,7 @@ impl Session {
             Ok(ladder.within(&view.window))
         };
         match &goal.wanted {
-            Wanted::AsSet => {
-                let watch = Stopwatch::start();
-                let mut output = method.render(&self.world, &self.lights, view, control);
-                finish.apply(&method, &mut output);
-                let seconds = watch.elapsed().wall_seconds;
-                Ok(Made { method, output, seconds, measured: None, plan: Value::Null })
-            }
+            Wanted::AsSet => Ok(self.as_set(view, method, None, finish, control)),
             Wanted::Time { seconds, run, held } => {
                 let asked = *seconds;
                 let watch = Stopwatch::start();

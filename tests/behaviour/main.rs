@@ -20,3 +20,4 @@ mod photon_cache;
 mod scene_corpus;
 mod sharp_lobes;
 mod verify;
+mod walk;

@@ -9,6 +9,7 @@ mod plan;
 mod slow_studies;
 mod usage;
 mod verify;
+mod walk;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -12,6 +12,7 @@ use crate::method::{Move, Output, Prepared, Renderer, Sampled, counts};
 use crate::paths::Look;
 use crate::progress::Control;
 use crate::radiance_cache::fill::CacheFrame;
+use crate::radiance_cache::kept::KeptRecords;
 use crate::radiance_cache::series::{Glossy, drawn_light};
 use crate::radiance_cache::source::LightcutSource;
 use crate::radiance_cache::store::Records;
@@ -54,6 +55,65 @@ impl Settings {
     fn shading(&self) -> ShadeSettings {
         ShadeSettings { cut: self.cut, share: self.cache.share, shadows: self.cache.shadows }
     }
+
+    /// The picture, by records of the frames before where they are `kept`.
+    fn picture(
+        &self,
+        world: &World,
+        lights: &LightStore,
+        mut kept: Option<&mut KeptRecords>,
+        view: &View,
+        control: &Control,
+    ) -> Output {
+        let cache = match kept {
+            Some(_) => self.cache.of_walk(),
+            None => self.cache,
+        };
+        let wanted = (self.light, self.family);
+        let glossy = Glossy::new(world, &cache);
+        let drawn = drawn_light(glossy.as_ref(), &cache);
+        let Prepared { eye: samples, lights, mut stats } =
+            Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
+        let context = lights.context(world, self.compensation);
+        let source = LightcutSource { context, settings: &cache };
+
+        let mut own = Records::default();
+        let records = match &mut kept {
+            Some(kept) => kept.begin(view.camera.origin, &cache),
+            None => &mut own,
+        };
+        let glossy = glossy.as_ref().and_then(|glossy| glossy.for_points(&samples.points, &cache));
+        let mut targets = Targets::new(&samples.points, &samples.index, glossy);
+        if cache.draws_direct_light() {
+            targets = targets.with_known(|point| samples.known_luminance(point));
+        }
+        let frame = CacheFrame::fill(targets, records, &source, control, &mut stats);
+        counts::cuts(&mut stats, "Records", &frame.cuts);
+
+        let mut picture = Picture::new(&samples, self.inspect);
+        let tasks = stats.time(Stage::Splat, || {
+            resolve(&frame.interpolate(records), &samples, cache.draws_direct_light(), &mut picture)
+        });
+        control.begin(Stage::Render, tasks.len() as u64);
+        let counts = stats.time(Stage::Render, || {
+            picture.shade(&context, &samples, &tasks, cache.patches, &self.shading(), control)
+        });
+        stats.count("Shading/tasks by cuts", tasks.len() as u64);
+        counts::cuts(&mut stats, "Lightcut", &counts.cuts);
+        if cache.direct == DirectBy::Cuts && !cache.cached().indirect {
+            counts::clamping(&mut stats, &counts.cuts, self.compensation.then_some(&counts.compensation));
+        }
+        counts.shadows.report(&mut stats);
+        let complete = samples.complete && !control.is_cancelled();
+        let (color, mut extra, nonfinite) = picture.finish();
+        if self.inspect {
+            extra.extend(frame.inspect(records, &samples));
+        }
+        if let Some(kept) = kept {
+            kept.end(&frame, view.camera.origin, &mut stats);
+        }
+        Output { color, variance: None, extra, stats, complete, nonfinite }
+    }
 }
 
 impl Renderer for Settings {
@@ -66,43 +126,18 @@ impl Renderer for Settings {
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
-        let wanted = (self.light, self.family);
-        let glossy = Glossy::new(world, &self.cache);
-        let drawn = drawn_light(glossy.as_ref(), &self.cache);
-        let Prepared { eye: samples, lights, mut stats } =
-            Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
-        let context = lights.context(world, self.compensation);
-        let source = LightcutSource { context, settings: &self.cache };
+        self.picture(world, lights, None, view, control)
+    }
 
-        let mut records = Records::default();
-        let glossy = glossy.as_ref().and_then(|glossy| glossy.for_points(&samples.points, &self.cache));
-        let mut targets = Targets::new(&samples.points, &samples.index, glossy);
-        if self.cache.draws_direct_light() {
-            targets = targets.with_known(|point| samples.known_luminance(point));
-        }
-        let frame = CacheFrame::fill(targets, &mut records, &source, control, &mut stats);
-        counts::cuts(&mut stats, "Records", &frame.cuts);
-
-        let mut picture = Picture::new(&samples, self.inspect);
-        let tasks = stats.time(Stage::Splat, || {
-            resolve(&frame.interpolate(&records), &samples, self.cache.draws_direct_light(), &mut picture)
-        });
-        control.begin(Stage::Render, tasks.len() as u64);
-        let counts = stats.time(Stage::Render, || {
-            picture.shade(&context, &samples, &tasks, self.cache.patches, &self.shading(), control)
-        });
-        stats.count("Shading/tasks by cuts", tasks.len() as u64);
-        counts::cuts(&mut stats, "Lightcut", &counts.cuts);
-        if self.cache.direct == DirectBy::Cuts && !self.cache.cached().indirect {
-            counts::clamping(&mut stats, &counts.cuts, self.compensation.then_some(&counts.compensation));
-        }
-        counts.shadows.report(&mut stats);
-        let complete = samples.complete && !control.is_cancelled();
-        let (color, mut extra, nonfinite) = picture.finish();
-        if self.inspect {
-            extra.extend(frame.inspect(&records, &samples));
-        }
-        Output { color, variance: None, extra, stats, complete, nonfinite }
+    fn render_next(
+        &self,
+        world: &World,
+        lights: &LightStore,
+        kept: &mut KeptRecords,
+        view: &View,
+        control: &Control,
+    ) -> Output {
+        self.picture(world, lights, Some(kept), view, control)
     }
 
     fn check(&self) -> Result<(), String> {

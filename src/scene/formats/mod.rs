@@ -21,6 +21,7 @@ use std::path::Path;
 pub use super::sanitize::SanitizeReport;
 pub use error::{Level, Place, SceneError, Warning};
 pub(crate) use mesh::smooth_normals;
+pub(crate) use plan::fnv1a;
 
 /// Options for reading a scene.
 #[derive(Clone, Copy, Debug, Default)]

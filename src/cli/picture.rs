@@ -1,0 +1,31 @@
+//! Files of a picture: OpenEXR, tone-mapped PNG, and PNGs of the layers that are meant to be shown.
+
+use super::exit::Failure;
+use crate::film::{Film, false_colour, write_exr, write_png, write_srgb8};
+use std::path::Path;
+
+/// Writes a picture to `exr`, and to a PNG by a factor on radiance; returns a line that says so. The OpenEXR file comes
+/// last: where it is, the others are.
+pub fn write(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> Result<String, Failure> {
+    let mut said = format!("wrote {}", exr.display());
+    if let Some((path, factor)) = png {
+        film.metadata.set("png_exposure", f64::from(factor.log2()));
+        said += &format!(" and {} (exposure {:+.2} EV)", path.display(), factor.log2());
+        write_png(path, &film.color, factor).map_err(Failure::output)?;
+        write_layers(path, &film, factor)?;
+    }
+    write_exr(exr, &film).map_err(Failure::output)?;
+    Ok(said)
+}
+
+/// Writes every layer that is meant to be shown as a PNG file named after the picture's.
+fn write_layers(picture: &Path, film: &Film, factor: f32) -> Result<(), Failure> {
+    for layer in &film.layers {
+        if let Some(bytes) = false_colour::show(layer, &film.color, factor) {
+            let path = picture.with_extension(format!("{}.png", layer.name));
+            let size = [film.window.width, film.window.height];
+            write_srgb8(&path, size, &bytes).map_err(Failure::output)?;
+        }
+    }
+    Ok(())
+}

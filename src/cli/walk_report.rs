@@ -1,0 +1,111 @@
+//! Reports of a walk: statistics of its frames on stdout, a summary on stderr.
+
+use super::args::StatsFormat;
+use super::exit::Failure;
+use super::talk;
+use crate::session::Frame;
+use crate::stats::{Counter, Stage, StageTime, Stats};
+use serde_json::json;
+
+/// Columns of the table of frames, their widths, and the counters or stages that they show.
+const COUNTS: [(&str, &str); 4] = [
+    ("new", "Walk/new records"),
+    ("kept", "Walk/records kept"),
+    ("idle", "Walk/records evicted, idle"),
+    ("over", "Walk/records evicted for memory"),
+];
+const STAGES: [(&str, Stage); 6] = [
+    ("eye", Stage::EyePass),
+    ("records", Stage::Records),
+    ("splat", Stage::Splat),
+    ("render", Stage::Render),
+    ("denoise", Stage::Denoise),
+    ("total", Stage::Total),
+];
+
+/// Sums over the frames rendered so far.
+#[derive(Default)]
+pub struct Report {
+    format: Option<StatsFormat>,
+    /// Frames rendered, and frames left out because their files were there.
+    rendered: u64,
+    skipped: u64,
+    new_records: u64,
+    max_bytes: u64,
+    time: StageTime,
+}
+
+impl Report {
+    /// A report with statistics in a format, if they are wanted.
+    pub fn new(format: Option<StatsFormat>) -> Report {
+        Report { format, ..Report::default() }
+    }
+
+    /// Counts a frame that is left out.
+    pub fn skip(&mut self) {
+        self.skipped += 1;
+    }
+
+    /// Adds a frame and prints its statistics.
+    pub fn add(&mut self, number: usize, frame: &Frame) -> Result<(), Failure> {
+        let stats = &frame.stats;
+        let is_first = self.rendered == 0;
+        self.rendered += 1;
+        self.new_records += count(stats, "Walk/new records");
+        self.max_bytes = self.max_bytes.max(count(stats, "Walk/bytes kept"));
+        self.time += stats.stage(Stage::Total).unwrap_or_default();
+        match self.format {
+            Some(StatsFormat::Json) => {
+                let mut report = stats.to_json();
+                report["run"] = frame.facts.clone();
+                report["frame"] = json!(number);
+                talk::print(&format!("{report}\n"))
+            }
+            Some(StatsFormat::Text) => talk::print(&format!("{}{}", header(is_first), row(number, stats))),
+            None => Ok(()),
+        }
+    }
+
+    /// A line about all frames.
+    pub fn summary(&self) -> String {
+        let Report { rendered, skipped, .. } = self;
+        let mut text = format!("{rendered} frames rendered");
+        if *skipped > 0 {
+            text += &format!(", {skipped} left as they were");
+        }
+        if *rendered > 0 {
+            let frames = *rendered as f64;
+            text += &format!(", {:.2} s a frame", self.time.wall_seconds / frames);
+        }
+        if self.max_bytes > 0 {
+            let (mean, mib) =
+                (self.new_records as f64 / *rendered as f64, self.max_bytes as f64 / f64::from(1 << 20));
+            text += &format!(", {mean:.0} new records each, at most {mib:.1} MiB of records kept");
+        }
+        text
+    }
+}
+
+fn count(stats: &Stats, name: &str) -> u64 {
+    match stats.get(name) {
+        Some(Counter::Count(n)) => n,
+        _ => 0,
+    }
+}
+
+/// Head of the table: counts of records, then CPU seconds.
+fn header(wanted: bool) -> String {
+    if !wanted {
+        return String::new();
+    }
+    let counts: String = COUNTS.iter().map(|(name, _)| format!("{name:>9}")).collect();
+    let stages: String = STAGES.iter().map(|(name, _)| format!("{name:>9}")).collect();
+    format!("{:>7}{counts}{stages}  (CPU s)\n", "frame")
+}
+
+fn row(number: usize, stats: &Stats) -> String {
+    let counts: String = COUNTS.iter().map(|(_, name)| format!("{:>9}", count(stats, name))).collect();
+    let seconds = |stage| stats.stage(stage).map_or(0.0, |time| time.cpu_seconds);
+    let stages: String = STAGES.iter().map(|(_, stage)| format!("{:>9.3}", seconds(*stage))).collect();
+    format!("{number:>7}{counts}{stages}\n")
+}

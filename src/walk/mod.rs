@@ -1,0 +1,43 @@
+//! Walk-throughs: frames along a camera path, lit by records that live from frame to frame.
+//!
+//! Paper: Herzog et al. 2009, section 6.4.
+//!
+//! A [`Walk`] renders one frame after the other. Scene, virtual lights and light trees are the session's; the records
+//! of indirect light stay in the walk (see [`KeptRecords`]), so that a frame computes only those that its predecessors
+//! lack. Drawn direct light, features and denoising are each frame's own; the random numbers of a pixel are the same in
+//! every frame, so that noise which the denoiser leaves stays where it is. A frame has the same bits for any number of
+//! threads; it depends on the frames that the walk rendered before it.
+//!
+//! [`frames`] lists frames, [`names`] names their files, [`exposure`] finds one exposure for all of a path.
+
+pub mod exposure;
+pub mod frames;
+pub mod names;
+
+use crate::method::KeptRecords;
+use crate::progress::Control;
+use crate::session::{Frame, FrameError, Goal, Session};
+use crate::view::View;
+
+pub use crate::method::KeepLimits;
+pub use frames::FrameList;
+pub use names::FileNames;
+
+/// A walk through a session's scene.
+pub struct Walk<'a> {
+    session: &'a Session,
+    goal: Goal,
+    kept: KeptRecords,
+}
+
+impl<'a> Walk<'a> {
+    /// A walk that begins without records. Its frames are rendered for `goal`; where that plans settings, alone.
+    pub fn new(session: &'a Session, goal: Goal, limits: KeepLimits) -> Walk<'a> {
+        Walk { session, goal, kept: KeptRecords::new(limits) }
+    }
+
+    /// Renders the next frame, seen by `view`. One that was cancelled halfway is partial, not an error.
+    pub fn frame(&mut self, view: &View, control: &Control) -> Result<Frame, FrameError> {
+        self.session.frame_by(view, &self.goal, Some(&mut self.kept), control)
+    }
+}

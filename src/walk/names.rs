@@ -1,0 +1,116 @@
+//! Names of the files of a walk's frames: `f.####.exr` or `f.%04d.exr`, where the number stands with at least so many
+//! digits, padded by zeros.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// Maximum number of digits asked for.
+const MAX_DIGITS: usize = 16;
+
+/// A name with a place for the frame's number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FileNames {
+    folder: PathBuf,
+    before: String,
+    digits: usize,
+    after: String,
+}
+
+impl FileNames {
+    /// File of a frame.
+    pub fn of(&self, frame: usize) -> PathBuf {
+        let FileNames { folder, before, digits, after } = self;
+        folder.join(format!("{before}{frame:0digits$}{after}"))
+    }
+}
+
+impl FromStr for FileNames {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<FileNames, String> {
+        let path = Path::new(text);
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        let mut places = places(name);
+        let Some((start, end, digits)) = places.next() else {
+            return Err(
+                "the file's name has no place for the frame's number; write one like f.####.exr or f.%04d.exr".to_owned()
+            );
+        };
+        if places.next().is_some() {
+            return Err("the file's name has more than one place for the frame's number".to_owned());
+        }
+        if digits > MAX_DIGITS {
+            return Err(format!("{digits} digits are more than {MAX_DIGITS}"));
+        }
+        let (before, after) = (name[..start].to_owned(), name[end..].to_owned());
+        if !after.to_ascii_lowercase().ends_with(".exr") {
+            return Err("the file's name must end in .exr".to_owned());
+        }
+        Ok(FileNames { folder, before, digits, after })
+    }
+}
+
+/// Start, end and number of digits of every place for a number: a run of `#`, or `%d`, `%4d`, `%04d`.
+fn places(name: &str) -> impl Iterator<Item = (usize, usize, usize)> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        while at < name.len() {
+            let (start, rest) = (at, &name.as_bytes()[at..]);
+            let run = |of: fn(&u8) -> bool| rest[1..].iter().take_while(|byte| of(byte)).count();
+            match rest[0] {
+                b'#' => {
+                    at += 1 + run(|byte| *byte == b'#');
+                    return Some((start, at, at - start));
+                }
+                b'%' => {
+                    let width = run(u8::is_ascii_digit);
+                    at += 1 + width;
+                    if rest.get(1 + width) == Some(&b'd') {
+                        at += 1;
+                        // Digits too many for a number are too many for a name.
+                        let digits =
+                            name[start + 1..at - 1].parse().unwrap_or(if width > 0 { usize::MAX } else { 1 });
+                        return Some((start, at, digits));
+                    }
+                }
+                _ => at += 1,
+            }
+        }
+        None
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stand_with_their_digits_in_the_place_for_them() {
+        let name = |pattern: &str, frame| {
+            let file = pattern.parse::<FileNames>().unwrap().of(frame);
+            file.to_str().unwrap().to_owned()
+        };
+        assert_eq!(name("frames/f.####.exr", 7), "frames/f.0007.exr");
+        assert_eq!(name("/tmp/a b/%04d.EXR", 123_456), "/tmp/a b/123456.EXR");
+        assert_eq!(name("f%d_x.exr", 7), "f7_x.exr");
+        assert_eq!(name("f%3d.exr", 7), "f007.exr");
+        assert_eq!(name("#.exr", 12), "12.exr");
+        assert_eq!(name("ü%ü#.exr", 1), "ü%ü1.exr");
+        // The folder's name is left alone.
+        assert_eq!(name("take##/f#.exr", 3), "take##/f3.exr");
+    }
+
+    #[test]
+    fn names_without_one_place_are_refused_with_the_remedy() {
+        let error = |pattern: &str| pattern.parse::<FileNames>().unwrap_err();
+        for bad in ["f.exr", "", "/", "a#/f.exr", "f%4x.exr", "f%"] {
+            assert!(error(bad).contains("####"), "{bad}");
+        }
+        assert!(error("#_%d.exr").contains("more than one") && error("#a#.exr").contains("more than one"));
+        assert!(error("f.####.png").contains(".exr"));
+        for bad in ["f.%99d.exr", "f.%99999999999999999999999d.exr"] {
+            assert!(error(bad).contains("digits"), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Walk-throughs: frames by the records of those before them against the same frames alone.
+
+use crate::common::*;
+use glam::Vec3;
+use lightsplat::film::Image;
+use lightsplat::math::luminance;
+use lightsplat::method::{DirectBy, Method, cache};
+use lightsplat::progress::Control;
+use lightsplat::session::{Frame, Goal};
+use lightsplat::stats::Counter;
+use lightsplat::view::View;
+use lightsplat::walk::{KeepLimits, Walk};
+
+const FRAMES: usize = 8;
+
+/// A room with a lamp and a ball, and views of it as the camera comes nearer and turns.
+fn room() -> (SceneAndView, Vec<View>) {
+    let seen = |i: usize| {
+        let t = i as f32 / FRAMES as f32;
+        camera(Vec3::new(-0.3 + 0.4 * t, 0.1, 0.95 - 0.5 * t), Vec3::new(0.3 * t, -0.3, -0.4), 0.9)
+    };
+    let (mut scene, wall) = lit_room(seen(0), 64);
+    scene.meshes.push(sphere(Vec3::new(0.3, -0.6, -0.2), 0.4, 32, wall));
+    let views = (0..FRAMES).map(|i| View { camera: seen(i), ..scene.view }).collect();
+    (scene, views)
+}
+
+/// Settings whose pictures have no noise, so that they can be held to lightcuts per pixel.
+fn settings() -> cache::Settings {
+    let mut settings = cache::Settings { spp: 1, compensation: false, ..Default::default() };
+    settings.light.indirect = 20_000;
+    settings.cache.direct = DirectBy::Cuts;
+    settings.cache.least_cell = 8;
+    settings
+}
+
+fn goal() -> Goal {
+    Goal { method: Method::Cache(settings()), ..Goal::default() }
+}
+
+/// The same for walks, with half the least radius, which those double: in so small a picture it is what decides.
+fn goal_of_walk() -> Goal {
+    let mut settings = settings();
+    settings.cache.reach[1][0] *= 0.5;
+    Goal { method: Method::Cache(settings), ..Goal::default() }
+}
+
+fn count(frame: &Frame, name: &str) -> u64 {
+    match frame.stats.get(name) {
+        Some(Counter::Count(n)) => n,
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// Ratio of the means, and root mean square of the relative difference.
+fn against(picture: &Image, reference: &Image) -> (f32, f32) {
+    let mean =
+        |image: &Image| image.pixels.iter().map(|p| luminance(*p)).sum::<f32>() / image.pixels.len() as f32;
+    let squares = picture.pixels.iter().zip(&reference.pixels).map(|(a, b)| luminance(*a - *b).powi(2));
+    let rms = (squares.sum::<f32>() / picture.pixels.len() as f32).sqrt();
+    (mean(picture) / mean(reference), rms / mean(reference))
+}
+
+#[test]
+fn frames_of_a_walk_are_as_right_as_alone_with_few_new_records() {
+    let (scene, views) = room();
+    let (walked, _) = session(scene.clone());
+    let (alone, _) = session(scene.clone());
+    let mut walk = Walk::new(&walked, goal_of_walk(), KeepLimits::default());
+    let (mut new, mut all) = (0, 0);
+    let mut last = None;
+    for (i, view) in views.iter().enumerate() {
+        let frame = walk.frame(view, &Control::new()).unwrap();
+        let same = alone.frame(view, &goal(), &Control::new()).unwrap();
+        assert!(frame.complete);
+        // The lights stay, too.
+        assert_eq!(frame.stats.get("VPLs/total").is_some(), i == 0);
+        if i > 0 {
+            new += count(&frame, "Walk/new records");
+            all += count(&same, "Cache/records, indirect");
+        }
+        last = Some((frame, same, *view));
+    }
+    assert!(new * 4 < all, "{new} new records in the walk, {all} alone");
+    let (frame, same, view) = last.unwrap();
+    let reference = per_pixel(&world(SceneAndView { view, ..scene }), &settings());
+    let (mean, error) = against(&frame.film.color, &reference);
+    let (mean_alone, error_alone) = against(&same.film.color, &reference);
+    assert!((mean - mean_alone).abs() < 0.005, "means {mean} and alone {mean_alone}");
+    // A decibel.
+    assert!(error < 1.12 * error_alone, "error {error}, alone {error_alone}");
+}
+
+#[test]
+fn frames_of_a_walk_do_not_depend_on_threads() {
+    let (scene, views) = room();
+    let by_threads = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let (session, _) = session(scene.clone());
+            let mut walk = Walk::new(&session, goal(), KeepLimits { idle_frames: 1, bytes: 100_000 });
+            let frames = views[..3].iter().map(|view| walk.frame(view, &Control::new()).unwrap().film.color);
+            frames.collect::<Vec<_>>()
+        })
+    };
+    assert!(by_threads(1) == by_threads(3));
+}
+
+#[test]
+fn a_view_seen_twice_has_no_new_records_and_the_same_light() {
+    let (scene, views) = room();
+    let (session, _) = session(scene);
+    let mut walk = Walk::new(&session, goal(), KeepLimits::default());
+    let mut frame = || walk.frame(&views[2], &Control::new()).unwrap();
+    let first = frame();
+    // The second may adapt footprints that the first has left.
+    let second = frame();
+    assert!(count(&second, "Walk/new records") * 20 < count(&first, "Walk/new records"));
+    let (mean, difference) = against(&second.film.color, &first.film.color);
+    assert!((mean - 1.0).abs() < 1e-3 && difference < 0.01, "{mean} {difference}");
+    // A memory limit holds between frames.
+    let kept = count(&second, "Walk/bytes kept");
+    let mut small = Walk::new(&session, goal(), KeepLimits { bytes: kept / 3, ..KeepLimits::default() });
+    for view in &views[..3] {
+        let frame = small.frame(view, &Control::new()).unwrap();
+        assert!(count(&frame, "Walk/bytes kept") <= kept / 3);
+        assert!(count(&frame, "Walk/records evicted for memory") > 0);
+    }
+}

@@ -1,0 +1,186 @@
+//! Walks: frames whole, left out or done anew, kills in the middle, wrong ranges.
+
+use super::{Finished, Sandbox, read};
+use lightsplat::film::ExrFile;
+use std::fs;
+
+/// A floor under a lamp, and a path of six frames past it.
+const PATH: &str = r#"
+resolution = [96, 64]
+[camera]
+origin = [0, 3, 6]
+target = [0, 0.5, 0]
+fov = 50
+[camera.path]
+keys = [
+    { frame = 1, origin = [0, 3, 6], target = [0, 0.5, 0] },
+    { frame = 6, origin = [1, 3, 5], target = [0, 0.5, 0] },
+]
+[[material]]
+name = "grey"
+kind = "diffuse"
+reflectance = [0.6, 0.5, 0.4]
+[[mesh]]
+shape = "rectangle"
+material = "grey"
+transform = [{ rotate = { axis = [1, 0, 0], angle = -90 } }, { scale = 3 }]
+[[mesh]]
+shape = "rectangle"
+material = "grey"
+emission = [5, 5, 5]
+transform = [{ rotate = { axis = [1, 0, 0], angle = 90 } }, { translate = [0, 2, 0] }]
+"#;
+
+fn sandbox() -> Sandbox {
+    let sandbox = Sandbox::new();
+    fs::write(sandbox.path("path.toml"), PATH).unwrap();
+    fs::create_dir(sandbox.path("f")).unwrap();
+    sandbox
+}
+
+fn arguments<'a>(frames: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let base = ["walk", "path.toml", "-o", "f/a.##.exr", "--vpls", "2000", "--no-denoise"];
+    [&base, &["--frames", frames][..], more].concat()
+}
+
+/// Renders frames fast.
+fn walk(sandbox: &Sandbox, frames: &str, more: &[&str]) -> Finished {
+    sandbox.run(&arguments(frames, &[more, &["--spp", "4"]].concat()))
+}
+
+/// Names of the files of the frames, without leftovers of kills.
+fn frames(sandbox: &Sandbox) -> Vec<String> {
+    let entries = fs::read_dir(sandbox.path("f")).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.filter(|name| !name.ends_with(".tmp")).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn frames_are_whole_pictures_of_one_exposure_each_by_its_own_camera() {
+    let sandbox = sandbox();
+    let done = walk(&sandbox, "1-3,6", &["--stats", "json", "--aov", "depth"]).expect(0);
+    let names = ["01", "02", "03", "06"].map(|n| [format!("a.{n}.exr"), format!("a.{n}.png")]).concat();
+    assert_eq!(frames(&sandbox), names);
+    assert!(done.stderr.contains("4 frames rendered"), "{}", done.stderr);
+    let files = [1, 2, 3, 6].map(|n| (n, ExrFile::read(&sandbox.path(&format!("f/a.{n:02}.exr"))).unwrap()));
+    for (number, file) in &files {
+        let metadata = file.metadata();
+        assert_eq!(
+            (metadata.number("frame"), metadata.text("partial")),
+            (Some(f64::from(*number)), Some("false"))
+        );
+        assert_eq!(metadata.number("png_exposure"), files[0].1.metadata().number("png_exposure"));
+        assert!(file.camera() != files[0].1.camera() || *number == 1);
+    }
+    let stats: Vec<serde_json::Value> =
+        done.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(stats.iter().map(|s| s["frame"].as_u64().unwrap()).collect::<Vec<_>>(), [1, 2, 3, 6]);
+    let count = |stats: &serde_json::Value, name| stats["counters"]["Walk"][name].as_u64().unwrap();
+    assert!(count(&stats[0], "new records") > 4 * count(&stats[3], "new records"));
+    assert!(count(&stats[3], "records kept") >= count(&stats[0], "new records"));
+    // The exposure typed is the exposure taken, and the same frame alone by `render` has the same camera.
+    walk(&sandbox, "1", &["--exposure", "-1.5"]).expect(0);
+    let file = ExrFile::read(&sandbox.path("f/a.01.exr")).unwrap();
+    assert_eq!(file.metadata().number("png_exposure"), Some(-1.5));
+    sandbox
+        .run(&["render", "path.toml", "-o", "b.exr", "--frame", "6", "--spp", "1", "--vpls", "100"])
+        .expect(0);
+    assert_eq!(ExrFile::read(&sandbox.path("b.exr")).unwrap().camera(), files[3].1.camera());
+}
+
+#[test]
+fn resuming_leaves_whole_frames_alone_and_does_others_anew() {
+    let sandbox = sandbox();
+    walk(&sandbox, "1-5", &[]).expect(0);
+    let file = |name: &str| sandbox.path(&format!("f/{name}"));
+    let whole = read(&file("a.03.exr"));
+    fs::write(file("a.02.exr"), &whole[..whole.len() / 2]).unwrap();
+    fs::write(file("a.03.exr"), &read(&file("a.01.exr"))).unwrap();
+    fs::write(file("a.04.png"), "torn").unwrap();
+    let kept = read(&file("a.05.exr"));
+    let stderr = walk(&sandbox, "1-6", &["--resume"]).expect(0).stderr;
+    assert!(stderr.contains("4 frames rendered, 2 left as they were"), "{stderr}");
+    assert_eq!(read(&file("a.05.exr")), kept);
+    for (number, name) in (1..=6).map(|n| (f64::from(n), format!("a.{n:02}.exr"))) {
+        assert_eq!(ExrFile::read(&file(&name)).unwrap().metadata().number("frame"), Some(number));
+    }
+    let stderr = walk(&sandbox, "1-6", &["--resume"]).expect(0).stderr;
+    assert!(stderr.contains("0 frames rendered, 6 left"), "{stderr}");
+    // Other settings, or another scene, make other frames.
+    let stderr = walk(&sandbox, "1-2", &["--resume", "--seed", "7"]).expect(0).stderr;
+    assert!(stderr.contains("2 frames rendered"), "{stderr}");
+    fs::write(sandbox.path("path.toml"), PATH.replace("[5, 5, 5]", "[6, 5, 5]")).unwrap();
+    let stderr = walk(&sandbox, "3", &["--resume"]).expect(0).stderr;
+    assert!(stderr.contains("1 frames rendered"), "{stderr}");
+}
+
+#[test]
+fn frames_do_not_depend_on_threads() {
+    let sandbox = sandbox();
+    let colours = |threads| {
+        walk(&sandbox, "1-3", &["--threads", threads, "--no-png"]).expect(0);
+        ["f/a.01.exr", "f/a.03.exr"].map(|name| ExrFile::read(&sandbox.path(name)).unwrap().color().unwrap())
+    };
+    assert_eq!(colours("1"), colours("3"));
+}
+
+#[test]
+fn wrong_names_ranges_and_scenes_are_errors_and_nothing_is_written() {
+    let sandbox = sandbox();
+    let error = |frames: &str, more: &[&str], code| walk(&sandbox, frames, more).expect(code).stderr;
+    assert!(error("0-4", &[], 2).contains("count from 1"));
+    assert!(error("4-2", &[], 2).contains("holds no frame"));
+    assert!(error("a", &[], 2).contains("1-100x5"));
+    let beyond = error("5-7", &[], 2);
+    assert!(beyond.contains("no frame 7") && beyond.contains("has 6"), "{beyond}");
+    assert!(error("1", &["--memory-limit", "much"], 2).contains("512M"));
+    assert!(error("1", &["--time", "3s"], 2).contains("--time"));
+    let named = |name: &str| sandbox.run(&["walk", "path.toml", "-o", name, "--frames", "1"]);
+    assert!(named("f/a.exr").expect(2).stderr.contains("####"));
+    assert!(named("none/a.#.exr").expect(4).stderr.contains("does not exist"));
+    let pathless = sandbox.run(&["walk", "room.xml", "-o", "f/a.#.exr"]).expect(3).stderr;
+    assert!(pathless.contains("no camera path") && pathless.contains("[camera.path]"), "{pathless}");
+    assert_eq!(frames(&sandbox), [""; 0]);
+}
+
+#[cfg(unix)]
+mod signals {
+    use super::*;
+    use std::io::{BufRead, BufReader};
+    use std::process::{Command, Stdio};
+
+    /// Starts a walk of slow frames, sends the signal as frame 3 begins; returns the exit code.
+    fn stopped(sandbox: &Sandbox, signal: &str) -> Option<i32> {
+        let mut child = sandbox
+            .command(&arguments("1-6", &["--progress", "ndjson", "--spp", "300"]))
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+        let mut events = lines.by_ref().map(|line| serde_json::from_str::<serde_json::Value>(&line).unwrap());
+        assert!(events.any(|e| e["event"] == "frame" && e["state"] == "start" && e["frame"] == 3));
+        assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+        lines.for_each(drop);
+        child.wait().unwrap().code()
+    }
+
+    #[test]
+    fn whatever_stops_a_walk_leaves_whole_frames_and_resuming_does_the_rest() {
+        for (signal, code) in [("-KILL", None), ("-INT", Some(130)), ("-TERM", Some(130))] {
+            let sandbox = sandbox();
+            assert_eq!(stopped(&sandbox, signal), code, "{signal}");
+            let there = frames(&sandbox);
+            assert!(there.len() >= 4 && there.len() < 12, "{there:?}");
+            for name in there.iter().filter(|name| name.ends_with(".exr")) {
+                let file = ExrFile::read(&sandbox.path(&format!("f/{name}"))).unwrap();
+                assert_eq!(file.metadata().text("partial"), Some("false"));
+            }
+            let kept = read(&sandbox.path("f/a.01.exr"));
+            sandbox.run(&arguments("1-6", &["--resume", "--spp", "300"])).expect(0);
+            assert_eq!(frames(&sandbox).len(), 12);
+            assert_eq!(read(&sandbox.path("f/a.01.exr")), kept);
+        }
+    }
+}
