@@ -27,8 +27,8 @@ mod transfer;
 mod visibility;
 
 pub use clamp::frozen_luminance;
-pub use coherence::{CoherenceLimit, MIN_SHARED, group_coherent};
-pub use packet::{PacketCut, PacketLightcut, PacketSum, ReceiverPacket};
+pub use coherence::{CoherenceLimit, MIN_SHARED, group_coherent, group_compact};
+pub use packet::{PacketCluster, PacketCut, PacketLightcut, PacketSum, ReceiverPacket};
 pub use receiver::Receiver;
 pub use reconstruction::ReconstructionCut;
 pub use settings::{CutCounts, CutSettings};

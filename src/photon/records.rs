@@ -129,7 +129,8 @@ impl FinalGatherSource<'_> {
     /// occluders.
     fn hessian(&self, candidate: &Candidate, met: &Met) -> OcclusionHessian {
         let rays = self.settings().probe_rays;
-        let mut hessian = OcclusionHessian::new(self.light.world, &candidate.point, rays, candidate.sample);
+        let point = [(candidate.point, candidate.sample)];
+        let mut hessian = OcclusionHessian::at_points(self.light.world, &point, rays).remove(0);
         let measure = self.strata.measure();
         for (i, &nearness) in met.nearness.iter().enumerate() {
             if nearness > 0.0 {

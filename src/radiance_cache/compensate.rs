@@ -11,11 +11,8 @@ use super::gather::GatheredLayer;
 use super::source::{Candidate, LightcutSource};
 use crate::bias_compensation::short_rays::{self, ClampedPoint, NearSurface};
 use crate::bias_compensation::{Compensation, choose_evenly};
-use crate::lightcut::{
-    CoherenceLimit, CutSettings, Lightcut, MIN_SHARED, PacketLightcut, Receiver, ReceiverPacket,
-    group_coherent,
-};
-use crate::math::{Frame, LANES, Rgb, luminance};
+use crate::lightcut::{CutSettings, PacketLightcut, Receiver, ReceiverPacket, group_compact};
+use crate::math::{F32x16, Frame, LANES, LUMINANCE, Rgb, Vec3x16, luminance};
 use crate::vpl::DirectIndirect;
 use std::f32::consts::{FRAC_1_PI, PI};
 
@@ -29,37 +26,43 @@ const LOOKUPS: usize = 2;
 const NEGLIGIBLE: f32 = 5e-3;
 
 /// Error bound of those lightcuts; their share in a record's light is small.
-const EPSILON: f32 = 0.1;
+const EPSILON: f32 = 0.3;
 
 /// Divisor of a record's maximum number of clusters that gives the maximum in those lightcuts.
 const CUT_FRACTION: usize = 8;
 
-/// Limit of the contribution of an indirect virtual light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Clamp {
-    /// Its luminance is at most this.
-    Luminance(f32),
-    /// Its geometry term is at most this.
-    Geometry(f32),
+/// Limits of the contributions of indirect virtual lights to the points of a packet.
+#[derive(Clone, Copy, Debug)]
+pub struct Clamps {
+    limits: F32x16,
+    /// True if they limit geometry terms, false for luminances.
+    geometry: bool,
 }
 
-impl Clamp {
-    /// Share of a contribution that is kept, of the given luminance and geometry term.
-    #[inline]
-    pub fn kept(self, luminance: f32, geometry: f32) -> f32 {
-        let (value, limit) = match self {
-            Clamp::Luminance(limit) => (luminance, limit),
-            Clamp::Geometry(limit) => (geometry, limit),
-        };
-        if value > limit { limit / value } else { 1.0 }
+impl Clamps {
+    /// Limits such that none gives more than the luminances `limits`.
+    pub fn new(compensation: &Option<Compensation>, limits: &F32x16) -> Clamps {
+        match compensation {
+            Some(c) => Clamps { limits: limits.map(|limit| c.bound(limit)), geometry: true },
+            None => Clamps { limits: *limits, geometry: false },
+        }
     }
 
-    /// Returns the maximum geometry term, infinite if another quantity is limited.
-    pub fn bound(self) -> f32 {
-        match self {
-            Clamp::Luminance(_) => f32::INFINITY,
-            Clamp::Geometry(bound) => bound,
+    /// Shares that are kept of the contributions of a light, by the irradiance `responses` to one of unit intensity.
+    #[inline]
+    pub fn kept(&self, intensity: Rgb, responses: &Vec3x16) -> F32x16 {
+        let weights = if self.geometry { Rgb::X } else { intensity * LUMINANCE };
+        let mut kept = [1.0; LANES];
+        for l in 0..LANES {
+            let (value, limit) = (weights.dot(responses.get(l)), self.limits[l]);
+            kept[l] = if value > limit { limit / value } else { 1.0 };
         }
+        kept
+    }
+
+    /// Returns the maximum geometry term at a point, infinite if another quantity is limited.
+    pub fn bound(&self, lane: usize) -> f32 {
+        if self.geometry { self.limits[lane] } else { f32::INFINITY }
     }
 }
 
@@ -74,25 +77,16 @@ struct Lookup {
 }
 
 /// Workspaces of a thread's cuts.
-pub struct Cutters<'a> {
-    /// For one point.
-    pub single: &'a mut Lightcut,
-    /// For several.
-    pub group: &'a mut PacketLightcut,
-    /// The several.
+pub struct Cutter<'a> {
+    pub cut: &'a mut PacketLightcut,
     pub points: &'a mut ReceiverPacket<'static>,
-}
-
-/// Returns the clamp of indirect leaves, none of which may give more than the luminance `limit`.
-pub fn clamp(compensation: &Option<Compensation>, limit: f32) -> Clamp {
-    compensation.as_ref().map_or(Clamp::Luminance(limit), |c| Clamp::Geometry(c.bound(limit)))
 }
 
 /// Adds the compensation of clamped virtual lights to the direct and indirect light of a task's records.
 pub fn add(
     c: &Compensation,
     source: &LightcutSource,
-    mut cutters: Cutters,
+    mut cutter: Cutter,
     task: &[Candidate],
     gathered: &mut [&mut DirectIndirect<GatheredLayer>],
 ) {
@@ -120,11 +114,9 @@ pub fn add(
     for (record, met) in met.iter().enumerate() {
         choose(met, record, &mut lookups);
     }
-    // Sorted by the mesh hit: neighbours gather light side by side.
-    lookups.sort_by_key(|lookup| (lookup.near.surface.mesh, lookup.record));
     let place = |lookup: &Lookup| (lookup.near.surface.position, lookup.near.normal);
-    for group in group_coherent(CoherenceLimit::CLOSE, lookups, LANES, world.diagonal, place, |_, _| true) {
-        let irradiance = cutters.irradiance(source, &group);
+    for group in group_compact(lookups, world.diagonal, place) {
+        let irradiance = cutter.irradiance(source, &group);
         for (lookup, irradiance) in group.iter().zip(irradiance) {
             let found = lookup.factor * irradiance;
             if found.is_finite() {
@@ -149,7 +141,7 @@ fn choose(near: &[NearSurface], record: usize, lookups: &mut Vec<Lookup>) {
     });
 }
 
-impl Cutters<'_> {
+impl Cutter<'_> {
     /// Irradiance at points met, on the side of the records.
     fn irradiance(&mut self, source: &LightcutSource, group: &[Lookup]) -> [Rgb; LANES] {
         let settings = CutSettings {
@@ -157,20 +149,12 @@ impl Cutters<'_> {
             max_cut: source.settings.cut.max_cut.div_ceil(CUT_FRACTION),
             ..CutSettings::default()
         };
-        let collectors = group.iter().map(|lookup| {
+        self.points.set(group.iter().map(|lookup| {
             let s = &lookup.near.surface;
             Receiver::irradiance(s.position, s.normal, &Frame::from_normal(lookup.near.normal))
-        });
+        }));
         let (transfer, world) = (&source.context.transfer, source.context.world);
-        if group.len() >= MIN_SHARED {
-            self.points.set(collectors);
-            return self.group.gather(transfer, world, self.points, &settings).sum.radiance;
-        }
-        let mut irradiance = [Rgb::ZERO; LANES];
-        for (irradiance, collector) in irradiance.iter_mut().zip(collectors) {
-            *irradiance = self.single.gather(transfer, world, &collector, &settings).radiance;
-        }
-        irradiance
+        self.cut.gather(transfer, world, self.points, &settings).sum.radiance
     }
 }
 
@@ -180,13 +164,17 @@ mod tests {
 
     #[test]
     fn clamps_keep_what_is_within_the_limit() {
-        for (luminance, geometry) in [(0.5, 8.0), (2.0, 0.25), (4.0, 16.0)] {
-            let kept = Clamp::Luminance(2.0).kept(luminance, geometry);
-            assert_eq!(kept * luminance, luminance.min(2.0));
-            let kept = Clamp::Geometry(4.0).kept(luminance, geometry);
-            assert_eq!(kept * geometry, geometry.min(4.0));
-            assert_eq!(Clamp::Luminance(f32::INFINITY).kept(luminance, geometry), 1.0);
+        for (intensity, term) in [(0.5, 8.0), (2.0, 0.25), (4.0, 16.0)] {
+            let kept = |limit: f32, geometry: bool| {
+                let responses = Vec3x16::splat(Rgb::splat(term));
+                Clamps { limits: [limit; LANES], geometry }.kept(Rgb::splat(intensity), &responses)[3]
+            };
+            let luminance = kept(2.0, false) * intensity * term;
+            assert!((luminance - (intensity * term).min(2.0)).abs() < 1e-5);
+            assert_eq!(kept(4.0, true) * term, term.min(4.0));
+            assert_eq!(kept(f32::INFINITY, false), 1.0);
         }
-        assert_eq!((Clamp::Luminance(2.0).bound(), Clamp::Geometry(4.0).bound()), (f32::INFINITY, 4.0));
+        let clamps = Clamps::new(&None, &[2.0; LANES]);
+        assert_eq!((clamps.bound(0), Clamps { geometry: true, ..clamps }.bound(0)), (f32::INFINITY, 2.0));
     }
 }

@@ -1,12 +1,13 @@
 //! Records by lightcuts.
 //!
-//! Records close together share a cut, as neighbouring pixels do: its shadow rays are coherent. A record that
-//! lacks one layer only cuts only that layer's trees, judged against the light of the other layer, so that
-//! each layer masks the other's errors (Herzog et al. 2009, section 6).
+//! Sixteen records share a cut, the nearest that there are: bounds, gradients and second derivatives are found for
+//! all of them at once, and shadow rays to one light in one packet. A record that lacks one layer only cuts only
+//! that layer's trees, judged against the light of the other layer, so that each layer masks the other's errors
+//! (Herzog et al. 2009, section 6).
 
-use super::compensate::{self, Clamp, Cutters};
+use super::compensate::{self, Clamps, Cutter};
 use super::footprint::{Footprint, FootprintLimits};
-use super::gather::{GatheredLayer, LitCluster};
+use super::gather::{GatheredLayer, GatheredLayer16, LitCluster, RecordPoints};
 use super::occluder_distance::{OccluderDistances, OccluderLog};
 use super::occlusion_hessian::OcclusionHessian;
 use super::record::{Diagnostics, Record};
@@ -15,10 +16,9 @@ use super::settings::{CacheSettings, Footprints};
 use super::source::{Candidate, LightcutSource, NewRecord, RecordSource};
 use crate::hsh::Radiance;
 use crate::lightcut::{
-    CoherenceLimit, CutCounts, CutSettings, Lightcut, PacketLightcut, Receiver, ReceiverPacket,
-    group_coherent,
+    CutCounts, CutSettings, PacketCluster, PacketCut, PacketLightcut, ReceiverPacket, Transfer, group_compact,
 };
-use crate::math::{LANES, LUMINANCE, Rgb, luminance};
+use crate::math::{LUMINANCE, Rgb, lanes_in, luminance};
 use crate::shadow::Engine;
 use crate::vpl::{DirectIndirect, Origin};
 use glam::{Mat3, Vec3};
@@ -51,81 +51,25 @@ struct GatheredLight {
     /// Light as series, where the surface needs it so.
     series: DirectIndirect<Option<Radiance>>,
     /// Change of the light over the surface, if footprints are to include occluders' edges.
-    hessian: Option<Box<OcclusionHessian>>,
-}
-
-/// A cut as one of the points that it was refined for sees it.
-struct PointCut<'a, C> {
-    candidate: &'a Candidate,
-    receiver: &'a Receiver<'static>,
-    /// Distances to occluders, and the point's lane in them; `None` where they are not needed.
-    occluders: Option<(&'a OccluderDistances, usize)>,
-    clamp: Clamp,
-    /// Number of clusters.
-    size: usize,
-    /// Indices of the nodes, and the point's responses to their representatives.
-    clusters: C,
+    hessian: Option<OcclusionHessian>,
 }
 
 impl LightcutSource<'_> {
     /// Candidates that share a cut: neighbours that lack the same layers.
     pub fn groups(&self, candidates: &[Candidate]) -> Vec<Vec<Candidate>> {
         let place = |candidate: &Candidate| (candidate.point.position, candidate.point.normal);
-        let same = |a: &Candidate, b: &Candidate| a.missing == b.missing;
-        let candidates = candidates.iter().copied();
-        group_coherent(CoherenceLimit::CLOSE, candidates, LANES, self.context.world.diagonal, place, same)
+        let lacks = |direct, indirect| DirectIndirect { direct, indirect };
+        let mut groups = Vec::new();
+        for missing in [lacks(true, true), lacks(true, false), lacks(false, true)] {
+            let alike = candidates.iter().copied().filter(|candidate| candidate.missing == missing).collect();
+            groups.extend(group_compact(alike, self.context.world.diagonal, place));
+        }
+        if self.settings.share { groups } else { groups.concat().chunks(1).map(<[_]>::to_vec).collect() }
     }
 
     /// True if footprints depend on the distances of occluders; the distances of probe rays replace those.
     fn needs_occluders(&self) -> bool {
         self.settings.footprints != Footprints::Occlusion
-    }
-
-    /// Gathers the light of a cut at one point.
-    fn read(
-        &self,
-        series: &mut SeriesGatherer,
-        cut: PointCut<impl Iterator<Item = (u32, Rgb)>>,
-    ) -> GatheredLight {
-        let PointCut { candidate, receiver, occluders, clamp, size, clusters } = cut;
-        let rays = self.settings.probe_rays;
-        let hessian = (!self.needs_occluders())
-            .then(|| OcclusionHessian::new(self.context.world, &candidate.point, rays, candidate.sample));
-        let layer = GatheredLayer { cut: size as u32, bound: clamp.bound(), ..GatheredLayer::default() };
-        let layers = DirectIndirect { direct: layer, indirect: layer };
-        let mut light =
-            GatheredLight { layers, series: DirectIndirect::default(), hessian: hessian.map(Box::new) };
-        series.begin(candidate);
-        for (node, response) in clusters {
-            let node = &self.context.transfer.trees.nodes[node as usize];
-            let vpl = &self.context.transfer.trees.vpls[node.representative()];
-            let weak = node.is_leaf() && node.origin() == Origin::Indirect;
-            // The receiver of irradiance is grey: its response is the geometry term.
-            let kept = |irradiance: Rgb, response: Rgb| match weak {
-                true => clamp.kept(luminance(irradiance), response.x),
-                false => 1.0,
-            };
-            if response == Rgb::ZERO {
-                let Some((distances, lane)) = occluders else { continue };
-                let unshadowed = self.context.transfer.unshadowed(receiver, vpl, node.kind());
-                let hidden = node.intensity * unshadowed;
-                if luminance(hidden) > 0.0 {
-                    let luminance = kept(hidden, unshadowed) * luminance(hidden);
-                    light.layers[node.origin()].hidden(luminance, distances.get(node, lane));
-                }
-                continue;
-            }
-            let irradiance = node.intensity * response;
-            let kept = kept(irradiance, response);
-            let cluster = LitCluster { transfer: &self.context.transfer, node, vpl, irradiance, kept };
-            series.add(&cluster);
-            let passed = light.layers[node.origin()].add(candidate, &self.context.world.materials, &cluster);
-            if let Some(hessian) = &mut light.hessian {
-                hessian.add(&cluster, passed);
-            }
-        }
-        light.series = series.finish();
-        light
     }
 
     /// The record of one layer, or `None` where its light is not finite.
@@ -170,19 +114,16 @@ impl LightcutSource<'_> {
 /// A thread's buffers.
 struct Workspace<'w> {
     shadows: Engine<'w>,
-    single: Lightcut,
-    group: PacketLightcut,
+    cut: PacketLightcut,
     points: ReceiverPacket<'static>,
     series: SeriesGatherer,
 }
 
 impl<'w> Workspace<'w> {
     fn new(s: &LightcutSource<'w>) -> Workspace<'w> {
-        let shadows = s.settings.shadows;
         Workspace {
-            shadows: Engine::with(s.context.world, shadows.for_records(), shadows.cache),
-            single: Lightcut::new(),
-            group: PacketLightcut::new(),
+            shadows: Engine::new(s.context.world),
+            cut: PacketLightcut::new(),
             points: ReceiverPacket::new(),
             series: SeriesGatherer::default(),
         }
@@ -190,20 +131,12 @@ impl<'w> Workspace<'w> {
 
     /// The records of candidates that share a cut.
     fn compute(&mut self, s: &LightcutSource, group: &[Candidate]) -> (Vec<NewRecord>, CutCounts) {
-        self.shadows.begin_chunk();
-        (self.single.counts, self.group.counts) = Default::default();
-        let cut = CutSettings { origin: group[0].missing.only(), ..s.settings.cut };
-        let mut light: Vec<GatheredLight> = if !s.settings.shares(group.len()) {
-            group.iter().map(|candidate| self.alone(s, candidate, &cut)).collect()
-        } else {
-            self.points.set(group.iter().map(Candidate::receiver));
-            self.shared(s, group, &cut)
-        };
+        self.cut.counts = CutCounts::default();
+        let mut light = self.gather(s, group);
         if let Some(c) = &s.context.compensation {
-            let cutters =
-                Cutters { single: &mut self.single, group: &mut self.group, points: &mut self.points };
+            let cutter = Cutter { cut: &mut self.cut, points: &mut self.points };
             let mut gathered: Vec<_> = light.iter_mut().map(|light| &mut light.layers).collect();
-            compensate::add(c, s, cutters, group, &mut gathered);
+            compensate::add(c, s, cutter, group, &mut gathered);
         }
         let mut records = Vec::with_capacity(2 * group.len());
         for (candidate, mut light) in group.iter().zip(light) {
@@ -215,51 +148,79 @@ impl<'w> Workspace<'w> {
                 records.push(NewRecord { origin, sample: candidate.sample, record, series });
             }
         }
-        let mut counts = self.single.counts;
-        counts += self.group.counts;
-        (records, counts)
+        (records, self.cut.counts)
     }
 
-    /// Light at a point by a cut of its own.
-    fn alone(&mut self, s: &LightcutSource, candidate: &Candidate, cut: &CutSettings) -> GatheredLight {
-        let receiver = &candidate.receiver();
-        let rays = s.needs_occluders().then(|| OccluderLog::new(s.context.world));
-        let cut = match &rays {
-            Some(rays) => self.single.gather(&s.context.transfer, rays, receiver, cut),
-            None => self.single.gather(&s.context.transfer, &self.shadows, receiver, cut),
+    /// Light at the points of `group` by one cut.
+    fn gather(&mut self, s: &LightcutSource, group: &[Candidate]) -> Vec<GatheredLight> {
+        let world = s.context.world;
+        self.points.set(group.iter().map(Candidate::receiver));
+        let settings = CutSettings { origin: group[0].missing.only(), ..s.settings.cut };
+        let log = s.needs_occluders().then(|| OccluderLog::new(world));
+        let cut = match &log {
+            Some(log) => self.cut.gather(&s.context.transfer, log, &self.points, &settings),
+            None => self.cut.gather(&s.context.transfer, &self.shadows, &self.points, &settings),
         };
-        let occluders = rays.map(OccluderLog::sorted);
-        let cut = PointCut {
-            candidate,
-            receiver,
-            occluders: occluders.as_ref().map(|distances| (distances, 0)),
-            clamp: compensate::clamp(&s.context.compensation, cut.limit),
-            size: cut.clusters.len(),
-            clusters: cut.clusters.iter().map(|cluster| (cluster.node, cluster.response)),
-        };
-        s.read(&mut self.series, cut)
+        let clamps = Clamps::new(&s.context.compensation, &cut.sum.limits);
+        let points = RecordPoints::new(group, &world.materials);
+        let mut hessians = Vec::new();
+        if !s.needs_occluders() {
+            let places: Vec<_> = group.iter().map(|candidate| (candidate.point, candidate.sample)).collect();
+            hessians = OcclusionHessian::at_points(world, &places, s.settings.probe_rays);
+        }
+        let mut layers = DirectIndirect::<GatheredLayer16>::default();
+        let transfer = &s.context.transfer;
+        for PacketCluster { node, responses } in cut.clusters {
+            let cluster = LitCluster::new(transfer, *node);
+            let (origin, kept) = (cluster.node.origin(), cluster.kept(&clamps, responses));
+            let light = layers[origin].add(&points, &cluster, responses, &kept);
+            OcclusionHessian::add_arriving(&mut hessians, origin, &light);
+        }
+        if let Some(log) = log {
+            hidden(&log.sorted(), transfer, &self.points, &cut, &clamps, &mut layers);
+        }
+        let mut hessians = hessians.into_iter();
+        let mut light = Vec::with_capacity(group.len());
+        for (lane, candidate) in group.iter().enumerate() {
+            let mut hessian = hessians.next();
+            let layers = DirectIndirect::from_fn(|origin| {
+                if let Some(hessian) = &mut hessian {
+                    hessian.add_held(origin, layers[origin].held(lane));
+                }
+                layers[origin].layer(&points, lane, cut.clusters.len() as u32, clamps.bound(lane))
+            });
+            self.series.begin(candidate);
+            if self.series.is_wanted() {
+                for PacketCluster { node, responses } in
+                    cut.clusters.iter().filter(|c| c.responses.get(lane) != Rgb::ZERO)
+                {
+                    let cluster = LitCluster::new(transfer, *node);
+                    self.series.add(&cluster, cluster.kept(&clamps, responses)[lane]);
+                }
+            }
+            light.push(GatheredLight { layers, series: self.series.finish(), hessian });
+        }
+        light
     }
+}
 
-    /// Light at several points, which have been set, by one cut.
-    fn shared(&mut self, s: &LightcutSource, group: &[Candidate], cut: &CutSettings) -> Vec<GatheredLight> {
-        let rays = s.needs_occluders().then(|| OccluderLog::new(s.context.world));
-        let cut = match &rays {
-            Some(rays) => self.group.gather(&s.context.transfer, rays, &self.points, cut),
-            None => self.group.gather(&s.context.transfer, &self.shadows, &self.points, cut),
-        };
-        let occluders = rays.map(OccluderLog::sorted);
-        let series = &mut self.series;
-        let at_lane = |(lane, candidate): (usize, &Candidate)| {
-            let cut = PointCut {
-                candidate,
-                receiver: self.points.get(lane),
-                occluders: occluders.as_ref().map(|distances| (distances, lane)),
-                clamp: compensate::clamp(&s.context.compensation, cut.sum.limits[lane]),
-                size: cut.clusters.len(),
-                clusters: cut.clusters.iter().map(|cluster| (cluster.node, cluster.responses.get(lane))),
-            };
-            s.read(series, cut)
-        };
-        group.iter().enumerate().map(at_lane).collect()
+/// Adds the clusters of a cut that are hidden from points to what is known of the distances there.
+fn hidden(
+    occluders: &OccluderDistances,
+    transfer: &Transfer,
+    points: &ReceiverPacket,
+    cut: &PacketCut,
+    clamps: &Clamps,
+    layers: &mut DirectIndirect<GatheredLayer16>,
+) {
+    for PacketCluster { node, responses } in cut.clusters {
+        let cluster = LitCluster::new(transfer, *node);
+        let (lit, unshadowed) = transfer.unshadowed16(points, cluster.vpl, cluster.node.kind());
+        let kept = cluster.kept(clamps, &unshadowed);
+        let y = luminance(cluster.node.intensity);
+        for lane in lanes_in(lit).filter(|&lane| responses.x[lane] == 0.0) {
+            let distance = occluders.get(cluster.node, lane);
+            layers[cluster.node.origin()].hidden(lane, y * unshadowed.x[lane] * kept[lane], distance);
+        }
     }
 }

@@ -25,6 +25,9 @@ const ON_SURFACE: f32 = 0.05;
 /// Share that even a cell of quite another surface keeps: something must take the light.
 const ELSEWHERE: f32 = 1e-4;
 
+/// Difference of inverse distances, relative to them, up to which two cells are taken to see one plane.
+const SAME_PLANE: f32 = 1e-3;
+
 /// Light seen in each cell.
 #[derive(Clone, Debug)]
 pub struct CellLight {
@@ -58,27 +61,41 @@ impl CellLight {
         CellLight { irradiance: vec![Rgb::ZERO; probes.cells()] }
     }
 
-    /// Adds `irradiance` from a light at `offset` from the receiver in the probes' frame; `None` for light from
-    /// infinitely far along `direction`.
-    pub fn add(&mut self, probes: &Probes, direction: Vec3, offset: Option<Vec3>, irradiance: Rgb) {
-        let (ring, sector) = probes.coordinates(direction);
+    /// Adds `irradiance` from a light in a direction of the probes' frame, whose azimuth in turns is `turns`; `inverse`
+    /// is one over its distance, 0 if it is infinitely far.
+    #[inline]
+    pub fn add(&mut self, probes: &Probes, direction: Vec3, turns: f32, inverse: f32, irradiance: Rgb) {
+        let (ring, sector) = probes.coordinates(direction, turns);
         let (ring, sector) = (ring - 0.5, sector - 0.5);
         let (j, k) = (ring.floor(), sector.floor());
         let (along_j, along_k) = (ring - j, sector - k);
-        let mut cells = [0; 4];
+        let (j, k) = (j as i32, k as i32);
+        let last = probes.rings as i32 - 1;
+        let rows = [j, j + 1].map(|row| row.clamp(0, last) as usize * SECTORS);
+        let columns = [k, k + 1].map(|column| column.rem_euclid(SECTORS as i32) as usize);
+        let cells = [rows[0] + columns[0], rows[0] + columns[1], rows[1] + columns[0], rows[1] + columns[1]];
+        let near = [
+            (1.0 - along_j) * (1.0 - along_k),
+            (1.0 - along_j) * along_k,
+            along_j * (1.0 - along_k),
+            along_j * along_k,
+        ];
+        let mut off = [0.0; 4];
+        for (off, cell) in off.iter_mut().zip(cells) {
+            let height = probes.height[cell];
+            // n·q/h - 1 is the distance from the plane in units of h; in units of the light's distance it lacks h/|q|.
+            let relative = (probes.plane[cell].dot(direction) - inverse) * height * (1.0 / ON_SURFACE);
+            // Infinitely far light is where there is no surface.
+            *off = if (inverse == 0.0) == (height == 0.0) { relative } else { f32::INFINITY };
+        }
         let mut weights = [0.0; 4];
         for i in 0..4 {
-            let (dj, dk) = (i >> 1, i & 1);
-            let row = (j as i32 + dj as i32).clamp(0, probes.rings as i32 - 1) as usize;
-            let column = (k as i32 + dk as i32).rem_euclid(SECTORS as i32) as usize;
-            cells[i] = row * SECTORS + column;
-            let near =
-                if dj == 1 { along_j } else { 1.0 - along_j } * if dk == 1 { along_k } else { 1.0 - along_k };
-            weights[i] = near * (belonging(probes.plane[cells[i]], offset) + ELSEWHERE);
+            let fall = 1.0 / (1.0 + off[i] * off[i]);
+            weights[i] = near[i] * (fall * fall + ELSEWHERE);
         }
-        let sum: f32 = weights.iter().sum();
+        let scale = 1.0 / (weights[0] + weights[1] + weights[2] + weights[3]);
         for (cell, weight) in cells.into_iter().zip(weights) {
-            self.irradiance[cell] += irradiance * (weight / sum);
+            self.irradiance[cell] += irradiance * (weight * scale);
         }
     }
 
@@ -90,24 +107,27 @@ impl CellLight {
         let sector = TAU / SECTORS as f32;
         // Chord over arc: the mean of a direction over a sector.
         let chord = (0.5 * sector).sin() / (0.5 * sector);
+        let azimuths = |offset: f32| -> [Vec2; SECTORS] {
+            std::array::from_fn(|k| Vec2::from_angle(probes.azimuth(k as f32 + offset)))
+        };
+        let (middles, ends) = (azimuths(0.5), azimuths(1.0));
         for ring in 0..probes.rings {
             let (sin_in, sin_out) = (root(ring), root(ring + 1));
             let cos_out = (1.0 - sin_out * sin_out).max(0.0).sqrt();
             let sin_mid = ((ring as f32 + 0.5) / rings).sqrt();
+            let to_outer = ((ring as f32 + 1.5) / rings).min(1.0).sqrt().asin() - sin_mid.asin();
             for k in 0..SECTORS {
                 let cell = ring * SECTORS + k;
                 // To the next sector: ∫cosθ dθ along the meridian.
                 let next = ring * SECTORS + (k + 1) % SECTORS;
-                let (sin_phi, cos_phi) = probes.azimuth(k as f32 + 1.0).sin_cos();
-                let across = Vec2::new(-sin_phi, cos_phi);
+                let across = ends[k].perp();
                 let (length, width) = (sin_out - sin_in, sector * sin_mid);
                 self.add_edge(probes, &Edge { cells: [cell, next], across, length, width }, &mut sum);
                 // To the next ring: cosθ along the parallel, and cosθ for the tilt of the motion.
                 if ring + 1 < probes.rings {
                     let outer = cell + SECTORS;
-                    let across = Vec2::from_angle(probes.azimuth(k as f32 + 0.5));
+                    let (across, width) = (middles[k], to_outer);
                     let length = cos_out * cos_out * sin_out * sector * chord;
-                    let width = ((ring as f32 + 1.5) / rings).sqrt().asin() - sin_mid.asin();
                     self.add_edge(probes, &Edge { cells: [cell, outer], across, length, width }, &mut sum);
                 }
             }
@@ -145,7 +165,9 @@ fn parallax(probes: &Probes, a: usize, b: usize) -> f32 {
     // Each cell's surface against the other's plane, at both rays: if they cross on the way, the surfaces meet.
     let (first, last) = (between.dot(at_a), between.dot(at_b));
     let direct = probes.inverse[a] - probes.inverse[b];
-    if first * last <= 0.0 || first * direct < 0.0 {
+    // Two cells of one plane differ by rounding.
+    let same = SAME_PLANE * probes.inverse[a].max(probes.inverse[b]);
+    if first * last <= 0.0 || first * direct < 0.0 || first.abs().min(last.abs()) <= same {
         return 0.0;
     }
     // Backgrounds are mostly flat; the plane of an occluder that curves away tells nothing about its edge.
@@ -157,40 +179,30 @@ fn parallax(probes: &Probes, a: usize, b: usize) -> f32 {
     }
 }
 
-/// Tests whether a light may lie on the surface of `plane` (see [`Probes::plane`]): 1 if it does.
-#[inline]
-fn belonging(plane: Vec3, offset: Option<Vec3>) -> f32 {
-    let Some(offset) = offset else {
-        return if plane == Vec3::ZERO { 1.0 } else { 0.0 };
-    };
-    if plane == Vec3::ZERO {
-        return 0.0;
-    }
-    // n·q/h - 1 is the distance from the plane in units of h; in units of the light's distance it lacks h/|q|.
-    let off = (plane.dot(offset) - 1.0) / (plane.length() * offset.length());
-    let relative = off * (1.0 / ON_SURFACE);
-    let fall = 1.0 / (1.0 + relative * relative);
-    fall * fall
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::fixtures::candidate;
+    use super::super::probe::azimuths16;
     use super::*;
+    use crate::math::Vec3x16;
     use crate::scene::Scene;
     use crate::world::World;
 
     /// Probes of an empty scene, then with a surface straight above in every cell for which `height` gives one.
     fn probes(height: impl Fn(usize) -> Option<f32>) -> Probes {
         let world = World::new(Scene::default(), 1).expect("the world is built");
-        let mut probes = Probes::trace(&world, &candidate(Vec3::ZERO, Vec3::Z).point, 256, 0);
+        let point = candidate(Vec3::ZERO, Vec3::Z).point;
+        let mut probes = Probes::trace(&world, &[(point, 0)], 256).remove(0);
         for cell in 0..probes.cells() {
             if let Some(height) = height(cell) {
-                probes.plane[cell] = Vec3::Z / height;
-                probes.inverse[cell] = probes.direction[cell].z / height;
+                probes.set(cell, height / probes.direction[cell].z, Vec3::Z);
             }
         }
         probes
+    }
+
+    fn turns(direction: Vec3) -> f32 {
+        azimuths16(&Vec3x16::splat(direction))[0]
     }
 
     #[test]
@@ -198,15 +210,15 @@ mod tests {
         let probes = probes(|cell| (cell % SECTORS < 8).then_some(2.0));
         let mut light = CellLight::new(&probes);
         for (i, &direction) in probes.direction.iter().enumerate() {
-            let offset = (i % 3 != 0).then(|| direction * (2.0 / direction.z));
-            light.add(&probes, direction, offset, Rgb::ONE);
+            let inverse = if i % 3 != 0 { direction.z / 2.0 } else { 0.0 };
+            light.add(&probes, direction, turns(direction), inverse, Rgb::ONE);
         }
         let total: f32 = light.irradiance.iter().map(|irradiance| irradiance.x).sum();
         assert!((total - probes.cells() as f32).abs() < 1e-2, "{total}");
         let mut light = CellLight::new(&probes);
         // Between sectors 7 and 8, of which only the former sees the surface.
-        let direction = 0.5 * (probes.direction[5 * SECTORS + 7] + probes.direction[5 * SECTORS + 8]);
-        light.add(&probes, direction.normalize(), Some(direction * (2.0 / direction.z)), Rgb::ONE);
+        let direction = (probes.direction[5 * SECTORS + 7] + probes.direction[5 * SECTORS + 8]).normalize();
+        light.add(&probes, direction, turns(direction), direction.z / 2.0, Rgb::ONE);
         let on: f32 = (0..probes.rings).map(|ring| light.irradiance[ring * SECTORS + 7].x).sum();
         assert!(on > 0.999, "{on}");
     }

@@ -10,14 +10,17 @@
 //! minimum to a visible light or an occluder, tempered by the harmonic mean of the same, weighted by each
 //! light's unoccluded contribution; the occluder is the one that stopped the shadow ray, not the nearest.
 
+use super::compensate::Clamps;
 use super::source::Candidate;
 use crate::light_tree::Node;
 use crate::lightcut::Transfer;
 use crate::material::Materials;
-use crate::math::{Rgb, luminance};
-use crate::vpl::{Vpl, VplKind};
-use crate::world::SurfacePoint;
+use crate::math::{F32x16, Frame, LANES, Rgb, Vec3x16, lanes_in, luminance};
+use crate::vpl::{Origin, Vpl, VplKind};
 use glam::{Mat3, Vec3};
+
+/// Least cosine of an emitter that its relative change is divided by: where the light is seen edge-on, both vanish.
+const MIN_COS: f32 = 1e-3;
 
 /// Maximum ratio of the distance that sets the footprint to the minimum one.
 const MAX_OVER_LEAST: f32 = 2.0;
@@ -64,7 +67,7 @@ impl Default for GatheredLayer {
     }
 }
 
-/// Cluster of a cut, as its representative lights the point of a record.
+/// Cluster of a cut, as its representative lights points.
 #[derive(Clone, Copy)]
 pub struct LitCluster<'t> {
     /// Transfer from the virtual lights.
@@ -73,13 +76,23 @@ pub struct LitCluster<'t> {
     pub node: &'t Node,
     /// Its representative.
     pub vpl: &'t Vpl,
-    /// Irradiance before clamping and coat.
-    pub irradiance: Rgb,
-    /// Share of it that clamping leaves; 1 if it is not clamped.
-    pub kept: f32,
 }
 
-impl LitCluster<'_> {
+impl<'t> LitCluster<'t> {
+    /// The cluster of a node.
+    #[inline]
+    pub fn new(transfer: &'t Transfer<'t>, node: u32) -> LitCluster<'t> {
+        let node = &transfer.trees.nodes[node as usize];
+        LitCluster { transfer, node, vpl: &transfer.trees.vpls[node.representative()] }
+    }
+
+    /// Shares that are kept of its contributions, by the irradiance `responses` to its representative.
+    #[inline]
+    pub fn kept(&self, clamps: &Clamps, responses: &Vec3x16) -> F32x16 {
+        let weak = self.node.is_leaf() && self.node.origin() == Origin::Indirect;
+        if weak { clamps.kept(self.node.intensity, responses) } else { [1.0; LANES] }
+    }
+
     /// Returns the minimum squared distance that the geometry term of the representative divides by.
     #[inline]
     pub fn near_sq(&self) -> f32 {
@@ -87,60 +100,196 @@ impl LitCluster<'_> {
     }
 }
 
-impl GatheredLayer {
-    /// Adds a cluster of the cut. Returns its irradiance at the point after clamping and coat.
-    #[inline]
-    pub fn add(&mut self, point: &Candidate, materials: &Materials, cluster: &LitCluster) -> Rgb {
-        let &LitCluster { node, vpl, irradiance, kept, .. } = cluster;
-        let SurfacePoint { position, normal, .. } = point.point;
-        let filter = |cos: f32| match point.coat {
-            0 => 1.0,
-            coat => materials.coat_transmittance(coat, cos.min(1.0)),
+/// Points of up to sixteen records, lane by lane.
+pub struct RecordPoints<'a> {
+    candidates: &'a [Candidate],
+    materials: &'a Materials,
+    position: Vec3x16,
+    /// Tangents, bitangents and normals of their frames.
+    axes: [Vec3x16; 3],
+    /// Lanes whose light has to pass a coat.
+    coated: u16,
+}
+
+/// Light of one cluster at the points.
+pub struct ArrivingLight {
+    /// Irradiance after clamping and coat.
+    pub passed: Vec3x16,
+    /// Unit direction to the representative, in each point's frame.
+    pub direction: Vec3x16,
+    /// One over the distance; 0 for a directional light.
+    pub inverse: F32x16,
+}
+
+impl<'a> RecordPoints<'a> {
+    /// Points of `candidates`, of which only sixteen count.
+    pub fn new(candidates: &'a [Candidate], materials: &'a Materials) -> RecordPoints<'a> {
+        let candidates = &candidates[..candidates.len().min(LANES)];
+        let mut points = RecordPoints {
+            candidates,
+            materials,
+            position: Vec3x16::ZERO,
+            axes: [Vec3x16::ZERO; 3],
+            coated: 0,
         };
-        let kind = node.kind();
-        if kind == VplKind::Directional {
-            let cos = normal.dot(vpl.position);
-            if cos <= 0.0 {
-                return Rgb::ZERO;
+        for (lane, candidate) in candidates.iter().enumerate() {
+            let frame = Frame::from_normal(candidate.point.normal);
+            points.position.set(lane, candidate.point.position);
+            for (axis, v) in points.axes.iter_mut().zip([frame.tangent, frame.bitangent, frame.normal]) {
+                axis.set(lane, v);
             }
-            let passed = irradiance * filter(cos);
-            self.irradiance += passed;
-            self.weight += luminance(passed);
-            self.vector += outer(vpl.position / cos, passed);
-            return passed;
+            points.coated |= u16::from(candidate.coat != 0) << lane;
         }
-        let q = vpl.position - position;
-        let dist_sq = q.length_squared();
-        let height = normal.dot(q);
-        if !(height > 0.0) {
-            return Rgb::ZERO;
-        }
-        let distance = dist_sq.sqrt();
-        let filtered = irradiance * filter(height / distance);
-        let passed = filtered * kept;
-        self.clamped += luminance(filtered - passed);
-        self.irradiance += passed;
-        self.weight += luminance(passed);
-        self.nearness += luminance(passed) / distance;
-        self.least = self.least.min(distance);
-        // Irradiance = intensity · height · (the rest); the vector lacks the height.
-        self.vector += outer(q / height, passed);
-        if kept < 1.0 || dist_sq <= cluster.near_sq() {
-            return passed;
-        }
-        let relative = match kind {
-            VplKind::Oriented => {
-                let n = vpl.normal();
-                let a = -n.dot(q);
-                // Where the light is seen edge-on, a and the contribution vanish together.
-                n / a.max(1e-3 * distance) + 4.0 * q / dist_sq
-            }
-            _ => 3.0 * q / dist_sq,
-        };
-        self.gradient += outer(relative, passed);
-        passed
+        points
     }
 
+    /// Light of a cluster whose representative, of unit intensity, gives the irradiance `responses`, of which
+    /// clamping leaves the share `kept`.
+    fn arriving(&self, cluster: &LitCluster, responses: &Vec3x16, kept: &F32x16) -> ArrivingLight {
+        let distant = cluster.node.kind() == VplKind::Directional;
+        let intensity = cluster.node.intensity;
+        let mut light =
+            ArrivingLight { passed: Vec3x16::ZERO, direction: Vec3x16::ZERO, inverse: [0.0; LANES] };
+        for l in 0..LANES {
+            let q = if distant { cluster.vpl.position } else { cluster.vpl.position - self.position.get(l) };
+            let dist_sq = q.length_squared();
+            let inverse = if dist_sq > 0.0 { 1.0 / dist_sq.sqrt() } else { 0.0 };
+            let q = q * if distant { 1.0 } else { inverse };
+            let [t, b, n] = &self.axes;
+            let local = Vec3::new(q.dot(t.get(l)), q.dot(b.get(l)), q.dot(n.get(l)));
+            light.direction.set(l, local);
+            light.inverse[l] = if distant { 0.0 } else { inverse };
+            let share = if local.z > 0.0 { kept[l] } else { 0.0 };
+            light.passed.set(l, intensity * responses.get(l) * share);
+        }
+        for l in lanes_in(self.coated) {
+            let cos = light.direction.z[l].min(1.0);
+            let passing = self.materials.coat_transmittance(self.candidates[l].coat, cos);
+            light.passed.set(l, light.passed.get(l) * passing);
+        }
+        light
+    }
+}
+
+/// Sums over the lights of one layer as seen from the points of records: the fields of [`GatheredLayer`], and second
+/// derivatives.
+pub struct GatheredLayer16 {
+    /// Columns of the irradiance vectors.
+    vector: [Vec3x16; 3],
+    /// Columns of the gradients.
+    gradient: [Vec3x16; 3],
+    weight: F32x16,
+    nearness: F32x16,
+    least: F32x16,
+    clamped: F32x16,
+    /// Second derivatives uu, uv, vv of the luminance in each point's frame, while visibility is held.
+    held: [F32x16; 3],
+}
+
+impl Default for GatheredLayer16 {
+    fn default() -> GatheredLayer16 {
+        let zero = [0.0; LANES];
+        GatheredLayer16 {
+            vector: [Vec3x16::ZERO; 3],
+            gradient: [Vec3x16::ZERO; 3],
+            weight: zero,
+            nearness: zero,
+            least: [f32::INFINITY; LANES],
+            clamped: zero,
+            held: [zero; 3],
+        }
+    }
+}
+
+impl GatheredLayer16 {
+    /// Adds a cluster of the cut whose representative, of unit intensity, gives the irradiance `responses`, of which
+    /// clamping leaves the share `kept`. Returns its light at the points.
+    pub fn add(
+        &mut self,
+        points: &RecordPoints,
+        cluster: &LitCluster,
+        responses: &Vec3x16,
+        kept: &F32x16,
+    ) -> ArrivingLight {
+        let light = points.arriving(cluster, responses, kept);
+        let oriented = cluster.node.kind() == VplKind::Oriented;
+        let normal = if oriented { cluster.vpl.normal() } else { Vec3::ZERO };
+        // Powers of the distance in the falloff over the constant height.
+        let power = if oriented { 4.0 } else { 3.0 };
+        let max_inverse_sq = 1.0 / cluster.near_sq();
+        let axes = &points.axes;
+        for l in 0..LANES {
+            let (passed, inverse) = (light.passed.get(l), light.inverse[l]);
+            let y = luminance(passed);
+            let lit = y > 0.0;
+            let local = light.direction.get(l);
+            let direction = axes[0].get(l) * local.x + axes[1].get(l) * local.y + axes[2].get(l) * local.z;
+            // Irradiance = intensity · height · (the rest); the vector lacks the height.
+            let vector = direction * if lit { 1.0 / local.z } else { 0.0 };
+            let moves = lit && kept[l] >= 1.0 && inverse * inverse < max_inverse_sq;
+            let rate = if moves { inverse } else { 0.0 };
+            let cos = if oriented { -normal.dot(direction) } else { 1.0 };
+            let turning = normal * (1.0 / if cos > MIN_COS { cos } else { MIN_COS });
+            let gradient = (turning + direction * power) * rate;
+            for c in 0..3 {
+                let (v, g) = (&mut self.vector[c], &mut self.gradient[c]);
+                v.x[l] += vector.x * passed[c];
+                v.y[l] += vector.y * passed[c];
+                v.z[l] += vector.z * passed[c];
+                g.x[l] += gradient.x * passed[c];
+                g.y[l] += gradient.y * passed[c];
+                g.z[l] += gradient.z * passed[c];
+            }
+            self.weight[l] += y;
+            self.nearness[l] += y * inverse;
+            let distance = if lit && inverse > 0.0 { 1.0 / inverse } else { f32::INFINITY };
+            self.least[l] = if distance < self.least[l] { distance } else { self.least[l] };
+            self.clamped[l] += y * if kept[l] > 0.0 { 1.0 / kept[l] - 1.0 } else { 0.0 };
+            // Second derivatives of the irradiance over the irradiance, times the squared distance.
+            let (u, v) = (local.x, local.y);
+            let (n_u, n_v) = (turning.dot(axes[0].get(l)), turning.dot(axes[1].get(l)));
+            let crossed = power * (power + 2.0);
+            let second = y * rate * inverse;
+            self.held[0][l] += second * (8.0 * n_u * u + crossed * u * u - power);
+            self.held[1][l] += second * (4.0 * (n_u * v + n_v * u) + crossed * u * v);
+            self.held[2][l] += second * (8.0 * n_v * v + crossed * v * v - power);
+        }
+        light
+    }
+
+    /// Adds to a point a light that is hidden by something at `distance`.
+    #[inline]
+    pub fn hidden(&mut self, lane: usize, luminance: f32, distance: f32) {
+        self.weight[lane] += luminance;
+        self.nearness[lane] += luminance / distance;
+        self.least[lane] = self.least[lane].min(distance);
+    }
+
+    /// Second derivatives uu, uv, vv of the luminance at a point, in its frame, while visibility is held.
+    pub fn held(&self, lane: usize) -> [f32; 3] {
+        self.held.map(|held| held[lane])
+    }
+
+    /// Sums at a point, whose cut of `cut` clusters had geometry terms up to `bound`.
+    pub fn layer(&self, points: &RecordPoints, lane: usize, cut: u32, bound: f32) -> GatheredLayer {
+        let columns = |of: &[Vec3x16; 3]| Mat3::from_cols(of[0].get(lane), of[1].get(lane), of[2].get(lane));
+        let vector = columns(&self.vector);
+        GatheredLayer {
+            irradiance: vector.transpose() * points.axes[2].get(lane),
+            vector,
+            gradient: columns(&self.gradient),
+            weight: self.weight[lane],
+            nearness: self.nearness[lane],
+            least: self.least[lane],
+            bound,
+            cut,
+            clamped: self.clamped[lane],
+            compensated: 0.0,
+        }
+    }
+}
+
+impl GatheredLayer {
     /// Adds irradiance, already filtered, that short rays found at `distance`.
     ///
     /// Deviations: it is given the direction of the normal, lest a grazing ray weigh heavily where the normal
@@ -152,14 +301,6 @@ impl GatheredLayer {
         self.weight += y;
         self.nearness += y / distance;
         self.compensated += y;
-    }
-
-    /// Adds a light that is hidden by something at `distance`.
-    #[inline]
-    pub fn hidden(&mut self, luminance: f32, distance: f32) {
-        self.weight += luminance;
-        self.nearness += luminance / distance;
-        self.least = self.least.min(distance);
     }
 
     /// Returns the distance that sets the reach of the record: the harmonic mean over all lights, visible or
@@ -194,13 +335,15 @@ mod tests {
 
     /// Light gathered from the only light, of which `kept` is left.
     fn gathered(transfer: &Transfer, position: Vec3, normal: Vec3, kept: f32) -> GatheredLayer {
-        let node = &transfer.trees.nodes[transfer.trees.roots[0] as usize];
-        let vpl = &transfer.trees.vpls[0];
-        let irradiance = irradiance(transfer, position, normal);
-        let cluster = LitCluster { transfer, node, vpl, irradiance, kept };
-        let mut layer = GatheredLayer::default();
-        let passed = layer.add(&candidate(position, normal), &MATERIALS, &cluster);
-        assert_eq!(passed, layer.irradiance);
+        let cluster = LitCluster::new(transfer, transfer.trees.roots[0]);
+        let response = irradiance(transfer, position, normal).x / INTENSITY.x;
+        // The last of three, the others of which look elsewhere.
+        let group = [candidate(position, -normal), candidate(-position, normal), candidate(position, normal)];
+        let points = RecordPoints::new(&group, &MATERIALS);
+        let mut layer = GatheredLayer16::default();
+        let light = layer.add(&points, &cluster, &Vec3x16::splat(Rgb::splat(response)), &[kept; LANES]);
+        let layer = layer.layer(&points, 2, 1, f32::INFINITY);
+        assert!((light.passed.get(2) - layer.irradiance).length() <= 1e-6 * INTENSITY.length());
         layer
     }
 
@@ -256,12 +399,16 @@ mod tests {
 
     #[test]
     fn the_distance_is_a_harmonic_mean_near_the_least() {
-        let mut layer = GatheredLayer::default();
-        assert_eq!(layer.distance(), f32::INFINITY);
-        layer.hidden(3.0, 2.0);
-        layer.hidden(1.0, 4.0);
-        assert!((layer.distance() - 4.0 / (3.0 / 2.0 + 1.0 / 4.0)).abs() < 1e-6);
-        layer.hidden(1e-9, 0.5);
+        let group = [candidate(Vec3::ZERO, Vec3::Z)];
+        let points = RecordPoints::new(&group, &MATERIALS);
+        let mut sums = GatheredLayer16::default();
+        let at_point = |sums: &GatheredLayer16| sums.layer(&points, 0, 1, f32::INFINITY);
+        assert_eq!(at_point(&sums).distance(), f32::INFINITY);
+        sums.hidden(0, 3.0, 2.0);
+        sums.hidden(0, 1.0, 4.0);
+        assert!((at_point(&sums).distance() - 4.0 / (3.0 / 2.0 + 1.0 / 4.0)).abs() < 1e-6);
+        sums.hidden(0, 1e-9, 0.5);
+        let mut layer = at_point(&sums);
         assert_eq!(layer.distance(), MAX_OVER_LEAST * 0.5);
         assert_eq!((layer.irradiance, layer.weight), (Rgb::ZERO, 4.0));
         layer.compensate(Vec3::Z, Rgb::ONE, 0.25);

@@ -6,8 +6,8 @@
 
 use crate::embree::Occluders16;
 use crate::light_tree::Node;
-use crate::lightcut::{PacketVisibility, ReceiverPacket, Visibility, to_vpl};
-use crate::math::{F32x16, LANES, Rgb, Vec3x16};
+use crate::lightcut::{PacketVisibility, ReceiverPacket};
+use crate::math::{F32x16, LANES, Vec3x16};
 use crate::shadow::Engine;
 use crate::vpl::Vpl;
 use crate::world::World;
@@ -43,24 +43,6 @@ impl OccluderDistances {
     pub fn get(&self, node: &Node, lane: usize) -> f32 {
         let found = self.0.binary_search_by_key(&(node.representative() as u32), |entry| entry.0);
         found.map_or(f32::INFINITY, |i| self.0[i].1[lane])
-    }
-}
-
-impl Visibility for OccluderLog<'_> {
-    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
-        let (ray, key) = (to_vpl(x, normal, vpl, node.kind()), node.representative() as u32);
-        match self.engine.occluder(&ray, key) {
-            Some(occluder) => {
-                let distance = occluder.t * ray.direction.length();
-                self.log.borrow_mut().push((key, [distance; LANES]));
-                false
-            }
-            None => true,
-        }
-    }
-
-    fn transmittance(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> Rgb {
-        Visibility::transmittance(&self.engine, x, normal, vpl, node)
     }
 }
 

@@ -5,13 +5,14 @@
 //! estimate (see [`super::edges`]), so their absolute values are added.
 
 use super::edges::CellLight;
-use super::gather::LitCluster;
-use super::probe::Probes;
+use super::gather::ArrivingLight;
+use super::probe::{Probes, azimuths16};
 use crate::gradient::LocalVpl;
-use crate::math::{Rgb, luminance};
-use crate::vpl::{DirectIndirect, Origin, VplKind};
+use crate::math::{LANES, Rgb, luminance};
+use crate::vpl::{DirectIndirect, Origin};
 use crate::world::{SurfacePoint, World};
 use glam::{Mat3, Vec2, Vec3};
+use std::f32::consts::TAU;
 
 /// Smallest cosine at which a patch is taken to be seen: its share of the hemisphere does not vanish with it.
 const MIN_PATCH_COS: f32 = 0.2;
@@ -19,7 +20,6 @@ const MIN_PATCH_COS: f32 = 0.2;
 /// Surfaces seen from a point, and the light of both layers that they send.
 #[derive(Clone, Debug)]
 pub struct OcclusionHessian {
-    position: Vec3,
     probes: Probes,
     layers: DirectIndirect<LayerLight>,
 }
@@ -44,12 +44,14 @@ pub struct Derivatives {
 }
 
 impl OcclusionHessian {
-    /// Traces `rays` to the surfaces around a point; no light yet. `seed` turns the rays.
-    pub fn new(world: &World, point: &SurfacePoint, rays: u32, seed: u32) -> OcclusionHessian {
-        let probes = Probes::trace(world, point, rays, seed);
-        let layers =
-            DirectIndirect::from_fn(|_| LayerLight { cells: CellLight::new(&probes), held: [0.0; 3] });
-        OcclusionHessian { position: point.position, probes, layers }
+    /// Traces `rays` to the surfaces around each of some points; no light yet. The number of a point turns its rays.
+    pub fn at_points(world: &World, points: &[(SurfacePoint, u32)], rays: u32) -> Vec<OcclusionHessian> {
+        let of_probes = |probes: Probes| {
+            let layers =
+                DirectIndirect::from_fn(|_| LayerLight { cells: CellLight::new(&probes), held: [0.0; 3] });
+            OcclusionHessian { probes, layers }
+        };
+        Probes::trace(world, points, rays).into_iter().map(of_probes).collect()
     }
 
     /// Returns the harmonic mean distance of the visible surfaces.
@@ -57,29 +59,23 @@ impl OcclusionHessian {
         self.probes.harmonic_mean()
     }
 
-    /// Adds a visible cluster of the cut, of which the irradiance `passed` is left after clamping and coat. A clamped
-    /// one does not change with the receiver.
-    #[inline]
-    pub fn add(&mut self, cluster: &LitCluster, passed: Rgb) {
-        let &LitCluster { node, vpl, irradiance, kept, .. } = cluster;
-        let frame = &self.probes.frame;
-        let layer = &mut self.layers[node.origin()];
-        let kind = node.kind();
-        if kind == VplKind::Directional {
-            let direction = frame.to_local(vpl.position);
-            layer.cells.add(&self.probes, direction, None, passed);
-            return;
+    /// Adds a cluster of the cut as it lights several points to the hessian of each.
+    pub fn add_arriving(hessians: &mut [OcclusionHessian], origin: Origin, light: &ArrivingLight) {
+        let turns = azimuths16(&light.direction);
+        for (lane, hessian) in hessians.iter_mut().enumerate().take(LANES) {
+            let passed = light.passed.get(lane);
+            if passed != Rgb::ZERO {
+                let (direction, inverse) = (light.direction.get(lane), light.inverse[lane]);
+                let cells = &mut hessian.layers[origin].cells;
+                cells.add(&hessian.probes, direction, turns[lane], inverse, passed);
+            }
         }
-        let offset = frame.to_local(vpl.position - self.position);
-        layer.cells.add(&self.probes, offset.normalize_or(Vec3::Z), Some(offset), passed);
-        if kept < 1.0 {
-            return;
-        }
-        let y = luminance(irradiance);
-        let scale = luminance(node.intensity) * luminance(passed) / y.max(f32::MIN_POSITIVE);
-        let source = LocalVpl::of_vpl(frame, self.position, vpl, kind);
-        for (sum, h) in layer.held.iter_mut().zip(source.irradiance_hessian(cluster.near_sq())) {
-            *sum += scale * h;
+    }
+
+    /// Adds second derivatives uu, uv, vv of the luminance of a layer while visibility is held.
+    pub fn add_held(&mut self, origin: Origin, held: [f32; 3]) {
+        for (sum, held) in self.layers[origin].held.iter_mut().zip(held) {
+            *sum += held;
         }
     }
 
@@ -89,17 +85,16 @@ impl OcclusionHessian {
     pub fn add_patch(&mut self, origin: Origin, offset: Vec3, patch_normal: Vec3, irradiance: Rgb) {
         let distance_sq = offset.length_squared();
         let direction = offset.normalize_or(Vec3::Z);
-        let layer = &mut self.layers[origin];
-        layer.cells.add(&self.probes, direction, Some(offset), irradiance);
+        let turns = direction.y.atan2(direction.x) * (1.0 / TAU);
+        let inverse = 1.0 / distance_sq.sqrt().max(f32::MIN_POSITIVE);
+        self.layers[origin].cells.add(&self.probes, direction, turns, inverse, irradiance);
         let cosines = direction.z * (-direction.dot(patch_normal)).max(MIN_PATCH_COS);
         if !(cosines > 0.0) {
             return;
         }
         let intensity = luminance(irradiance) * distance_sq / cosines;
         let source = LocalVpl::Oriented { offset: offset.to_array(), normal: patch_normal.to_array() };
-        for (sum, h) in layer.held.iter_mut().zip(source.irradiance_hessian(0.0)) {
-            *sum += intensity * h;
-        }
+        self.add_held(origin, source.irradiance_hessian(0.0).map(|h| intensity * h));
     }
 
     /// Derivatives of the light of one layer.
@@ -138,11 +133,13 @@ fn tensor(axis: Vec2, [along, across]: [f32; 2]) -> [f32; 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::fixtures::{candidate, light};
+    use super::super::fixtures::{MATERIALS, candidate, light};
+    use super::super::gather::{GatheredLayer16, LitCluster, RecordPoints};
     use super::*;
     use crate::lightcut::Transfer;
+    use crate::math::Vec3x16;
     use crate::scene::Scene;
-    use crate::vpl::Vpl;
+    use crate::vpl::{Vpl, VplKind};
 
     #[test]
     fn eigenvectors_and_tensors_are_each_others_inverse() {
@@ -170,9 +167,20 @@ mod tests {
                 node.intensity * transfer.unshadowed(&receiver, vpl, kind)
             };
             let here = irradiance(Vec3::ZERO);
-            let mut hessian = OcclusionHessian::new(&world, &point, 64, 0);
-            hessian.add(&LitCluster { transfer: &transfer, node, vpl, irradiance: here, kept: 1.0 }, here);
-            let found = hessian.derivatives(Origin::Indirect);
+            let response = here.x / node.intensity.x;
+            let of_light = |kept: f32| {
+                let mut hessian = OcclusionHessian::at_points(&world, &[(point, 0)], 64);
+                let cluster = LitCluster::new(&transfer, trees.roots[0]);
+                let group = [candidate(point.position, Vec3::Z)];
+                let points = RecordPoints::new(&group, &MATERIALS);
+                let mut layer = GatheredLayer16::default();
+                let responses = Vec3x16::splat(Rgb::splat(response));
+                let light = layer.add(&points, &cluster, &responses, &[kept; LANES]);
+                OcclusionHessian::add_arriving(&mut hessian, Origin::Indirect, &light);
+                hessian[0].add_held(Origin::Indirect, layer.held(0));
+                hessian[0].derivatives(Origin::Indirect)
+            };
+            let found = of_light(1.0);
             assert_eq!(found.edge_gradient, Mat3::ZERO);
             assert!(found.curvature[0] >= found.curvature[1]);
             let step = 0.02;
@@ -184,7 +192,7 @@ mod tests {
             // A patch of surface in place of an oriented light of the same contribution has the same
             // derivatives.
             if kind == VplKind::Oriented {
-                let mut patch = OcclusionHessian::new(&world, &point, 64, 0);
+                let mut patch = OcclusionHessian::at_points(&world, &[(point, 0)], 64).remove(0);
                 let local = |v: Vec3| patch.probes.frame.to_local(v);
                 let (offset, normal) = (local(position - point.position), local(vpl.normal()));
                 patch.add_patch(Origin::Direct, offset, normal, here);
@@ -194,9 +202,7 @@ mod tests {
                 assert_eq!(patch.derivatives(Origin::Indirect).curvature, [0.0; 2]);
             }
             // A clamped light is taken not to change.
-            let mut clamped = OcclusionHessian::new(&world, &point, 64, 0);
-            clamped.add(&LitCluster { transfer: &transfer, node, vpl, irradiance: here, kept: 0.5 }, here);
-            assert_eq!(clamped.derivatives(Origin::Indirect).curvature, [0.0; 2]);
+            assert_eq!(of_light(0.5).curvature, [0.0; 2]);
         }
     }
 }

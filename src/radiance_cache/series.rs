@@ -49,11 +49,11 @@ impl SeriesGatherer {
         }
     }
 
-    /// Adds a visible cluster.
+    /// Adds a visible cluster, of which clamping leaves the share `kept`.
     #[inline]
-    pub fn add(&mut self, cluster: &LitCluster) {
+    pub fn add(&mut self, cluster: &LitCluster, kept: f32) {
         let Some((frame, position)) = &self.place else { return };
-        let &LitCluster { transfer, node, vpl, kept, .. } = cluster;
+        let &LitCluster { transfer, node, vpl } = cluster;
         let spots = &transfer.trees.spots;
         let incidence = Incidence::of_vpl(frame, *position, vpl, node.kind(), spots, cluster.near_sq());
         if let Some(incidence) = incidence {

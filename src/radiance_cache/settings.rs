@@ -2,7 +2,7 @@
 
 use crate::eye::merged_points;
 use crate::hsh::SeriesSettings;
-use crate::lightcut::{CutSettings, MIN_SHARED};
+use crate::lightcut::CutSettings;
 use crate::paths::Look;
 use crate::setting::{DOWN, JudgedBy, PATCHES, SHARE, UP, choices, settings};
 use crate::shadow::ShadowSettings;
@@ -157,10 +157,5 @@ impl CacheSettings {
     /// True if all light is found by cuts.
     pub fn lights_by_cuts(&self) -> bool {
         self.direct == DirectBy::Cuts && self.indirect == FoundBy::Cuts
-    }
-
-    /// True if so many neighbours share a cut.
-    pub fn shares(&self, points: usize) -> bool {
-        self.share && points >= MIN_SHARED
     }
 }

@@ -26,10 +26,4 @@ impl ShadowSettings {
     pub fn for_samples(&self, shared: bool) -> bool {
         self.cached.unwrap_or(!shared)
     }
-
-    /// True if rays from records use it: by default not, for they are too far apart to have occluders in
-    /// common.
-    pub fn for_records(&self) -> bool {
-        self.cached.unwrap_or(false)
-    }
 }

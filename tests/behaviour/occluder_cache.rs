@@ -93,7 +93,6 @@ fn the_radiance_cache_gives_the_same_bits_with_it_and_without_on_any_number_of_t
 fn it_is_asked_only_where_it_pays_unless_told_otherwise() {
     let by_default = ShadowSettings::default();
     assert_eq!([true, false].map(|share| by_default.for_samples(share)), [false, true]);
-    assert!(!by_default.for_records());
     let told = ShadowSettings { cached: Some(true), ..by_default };
-    assert!(told.for_samples(true) && told.for_samples(false) && told.for_records());
+    assert!(told.for_samples(true) && told.for_samples(false));
 }

@@ -19,8 +19,11 @@ impl Transfer<'_> {
     /// Error to expect of each receiver's luminance from a cluster of intensity `node.intensity`; 0 in lanes without a
     /// receiver.
     pub fn errors16(&self, receivers: &ReceiverPacket, node: &Node) -> F32x16 {
-        let (bounds, shares) = self.bounds16(receivers, node);
-        std::array::from_fn(|l| bounds[l] * shares[l])
+        let (mut errors, shares) = self.bounds16(receivers, node);
+        for l in 0..LANES {
+            errors[l] *= shares[l];
+        }
+        errors
     }
 
     /// Upper bound of each receiver's luminance, 0 in lanes without a receiver, and the error to expect relative to it.
@@ -67,7 +70,8 @@ impl Transfer<'_> {
         let oriented = local && node.cos_beta > -1.0;
         let emitter = Frame::from_normal(-node.axis);
         let axes = [emitter.tangent, emitter.bitangent, emitter.normal];
-        let emitter_half = axes.map(|axis| axis.abs().dot(half) + rounding);
+        let half_along = |axis: Vec3| axis.abs().dot(half) + rounding;
+        let emitter_half = [half_along(axes[0]), half_along(axes[1]), half_along(axes[2])];
         let mut all = Geometry { geometry: [0.0; LANES], cos_x: [0.0; LANES], shares: [0.0; LANES] };
         let normals = receivers.frame.normal();
         for l in 0..LANES {

@@ -8,6 +8,10 @@
 //! price of a sixth to a third more clusters; with the cubic mean the average is that of single cuts, and no
 //! lane's threshold more than 16^(1/3) = 2.5 times ε.
 //!
+//! Lanes that are far apart make the common cut up to three times as large as each one's own. A lane for which a
+//! cluster was fine enough by itself needs no shadow rays to its descendants: they are seen where the cluster's
+//! representative is, as in a cut of the lane's own. Half as many rays remain, no more than such cuts have.
+//!
 //! Deviations: a lane's luminance counts as at least 1/256 of the brightest lane's where errors are judged,
 //! so that one point in the dark does not drive the cut of fifteen in the light to its cap.
 
@@ -19,7 +23,6 @@ mod sum;
 mod tests;
 mod transfer;
 
-use super::refinement::Offenders;
 use super::{CutCounts, CutSettings, PacketVisibility, Transfer};
 use crate::math::{F32x16, LANES, Rgb, Vec3x16};
 use refine::{Judgement, Pass};
@@ -66,8 +69,6 @@ pub struct PacketLightcut {
     clusters: Vec<PacketCluster>,
     /// The clusters' errors and shares of the total.
     judgements: Vec<Judgement>,
-    /// By the sum of the cubes of relative errors.
-    offenders: Offenders,
     /// Work done so far.
     pub counts: CutCounts,
 }

@@ -67,5 +67,10 @@ impl PacketLight<'_> {
 #[inline]
 pub(in crate::lightcut) fn luminances(intensity: Rgb, responses: &Vec3x16) -> F32x16 {
     let (w, r) = (intensity * LUMINANCE, responses);
-    std::array::from_fn(|l| w.x * r.x[l] + w.y * r.y[l] + w.z * r.z[l])
+    // A loop: calls of closures may remain calls, lane by lane.
+    let mut luminances = [0.0; LANES];
+    for l in 0..LANES {
+        luminances[l] = w.x * r.x[l] + w.y * r.y[l] + w.z * r.z[l];
+    }
+    luminances
 }

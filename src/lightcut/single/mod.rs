@@ -11,16 +11,17 @@ mod bound;
 #[cfg(test)]
 mod exhaustive;
 mod geometry;
+mod offenders;
 mod refine;
 #[cfg(test)]
 mod tests;
 
 use super::clamp::Unclamped;
-use super::refinement::Offenders;
 use super::{CutCounts, CutSettings, Receiver, Transfer, Visibility};
 use crate::light_tree::LightTrees;
 use crate::math::{Rgb, luminance};
 use glam::DVec3;
+use offenders::Offenders;
 use refine::Pass;
 
 #[cfg(test)]
