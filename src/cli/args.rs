@@ -49,6 +49,29 @@ pub struct RenderArgs {
     /// The method and its settings.
     #[command(flatten)]
     pub method: MethodArgs,
+    /// Options of pictures in general.
+    #[command(flatten)]
+    pub picture: PictureArgs,
+    /// Frame of the scene's camera path, counted from 1, instead of its still camera
+    #[arg(long)]
+    pub frame: Option<usize>,
+    /// The tone-mapped picture.
+    #[command(flatten)]
+    pub png: PngArgs,
+    /// Print counters and stage times to standard output
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub stats: Option<StatsFormat>,
+    /// The goal: quality, time or error.
+    #[command(flatten)]
+    pub plan: PlanArgs,
+    /// Measuring the error.
+    #[command(flatten)]
+    pub verify: VerifyArgs,
+}
+
+/// Options that all commands have that render pictures.
+#[derive(Debug, Args)]
+pub struct PictureArgs {
     /// Threads to use [default: all processors]; the picture is the same for any number
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
@@ -58,33 +81,18 @@ pub struct RenderArgs {
     /// Render only this part of the film, in pixels from its top-left corner
     #[arg(long, value_name = "X,Y,W,H")]
     pub crop: Option<Crop>,
-    /// Frame of the scene's camera path, counted from 1, instead of its still camera
-    #[arg(long)]
-    pub frame: Option<usize>,
-    /// The tone-mapped picture.
-    #[command(flatten)]
-    pub png: PngArgs,
     /// Layers to write beside the colour, about the surfaces seen, through mirrors and glass
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = feature())]
     pub aov: Vec<Feature>,
     /// Denoising.
     #[command(flatten)]
     pub denoise: DenoiseArgs,
-    /// Print counters and stage times to standard output
-    #[arg(long, value_enum, value_name = "FORMAT")]
-    pub stats: Option<StatsFormat>,
     /// How progress is told on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     pub progress: ProgressMode,
     /// Fail on anything in the scene that is not modelled, instead of warning
     #[arg(long)]
     pub strict: bool,
-    /// The goal: quality, time or error.
-    #[command(flatten)]
-    pub plan: PlanArgs,
-    /// Measuring the error.
-    #[command(flatten)]
-    pub verify: VerifyArgs,
 }
 
 /// Options of `walk`.
@@ -114,36 +122,18 @@ pub struct WalkArgs {
     /// Settings by name; those that are typed are held
     #[arg(long, value_enum, conflicts_with = "method")]
     pub quality: Option<Quality>,
-    /// Threads to use [default: all processors]; the pictures are the same for any number
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
-    pub threads: Option<u32>,
-    /// Width and height in pixels instead of the scene's
-    #[arg(long, value_name = "WxH")]
-    pub resolution: Option<Resolution>,
-    /// Render only this part of the film, in pixels from its top-left corner
-    #[arg(long, value_name = "X,Y,W,H")]
-    pub crop: Option<Crop>,
+    /// Options of pictures in general.
+    #[command(flatten)]
+    pub picture: PictureArgs,
     /// Do not write tone-mapped pictures
     #[arg(long, conflicts_with = "exposure")]
     pub no_png: bool,
     /// Exposure of the PNGs in stops, or `auto`: the 90th percentile of luminance over the whole path becomes 0.8
     #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
     pub exposure: Exposure,
-    /// Layers to write beside the colour, about the surfaces seen, through mirrors and glass
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = feature())]
-    pub aov: Vec<Feature>,
-    /// Denoising.
-    #[command(flatten)]
-    pub denoise: DenoiseArgs,
     /// Print counters and stage times to standard output: a table of the frames, or an object a line and frame
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub stats: Option<StatsFormat>,
-    /// How progress is told on standard error
-    #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
-    pub progress: ProgressMode,
-    /// Fail on anything in the scene that is not modelled, instead of warning
-    #[arg(long)]
-    pub strict: bool,
 }
 
 /// Options of the tone-mapped picture beside an OpenEXR file.

@@ -47,9 +47,9 @@ impl RenderJob {
         let goal = Goal {
             method,
             wanted,
-            features: args.aov.into_iter().collect(),
-            denoise: args.denoise.denoise(),
-            keep_noisy: args.denoise.keep_noisy,
+            features: args.picture.aov.into_iter().collect(),
+            denoise: args.picture.denoise.denoise(),
+            keep_noisy: args.picture.denoise.keep_noisy,
             verify,
         };
         if goal.keep_noisy && !goal.denoises() {
@@ -57,18 +57,18 @@ impl RenderJob {
         }
         Ok(RenderJob {
             scene: args.scene,
-            strict: args.strict,
+            strict: args.picture.strict,
             output: args.output,
             png: png.map(|path| (path, args.png.exposure)),
             goal,
-            threads: threads::count(args.threads),
+            threads: threads::count(args.picture.threads),
             framing: Framing {
                 frame: args.frame,
-                resolution: args.resolution.map(|r| r.0),
-                crop: args.crop.map(|crop| [crop.offset, crop.size]),
+                resolution: args.picture.resolution.map(|r| r.0),
+                crop: args.picture.crop.map(|crop| [crop.offset, crop.size]),
             },
             stats: args.stats,
-            progress: args.progress,
+            progress: args.picture.progress,
         })
     }
 }

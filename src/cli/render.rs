@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Runs the command.
 pub fn run(args: RenderArgs) -> Result<(), Failure> {
     let run = Stopwatch::start();
-    talk::set_mode(args.progress);
+    talk::set_mode(args.picture.progress);
     let job = RenderJob::new(args, run)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;

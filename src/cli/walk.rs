@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// Runs the command.
 pub fn run(args: WalkArgs) -> Result<(), Failure> {
-    talk::set_mode(args.progress);
+    talk::set_mode(args.picture.progress);
     let job = WalkJob::new(args)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;

@@ -50,9 +50,9 @@ impl WalkJob {
         let goal = Goal {
             method: plan.method(args.method.method()?, &held),
             wanted: Wanted::AsSet,
-            features: args.aov.into_iter().collect(),
-            denoise: args.denoise.denoise(),
-            keep_noisy: args.denoise.keep_noisy,
+            features: args.picture.aov.into_iter().collect(),
+            denoise: args.picture.denoise.denoise(),
+            keep_noisy: args.picture.denoise.keep_noisy,
             verify: None,
         };
         if goal.keep_noisy && !goal.denoises() {
@@ -62,20 +62,20 @@ impl WalkJob {
         let bytes = args.memory_limit.map_or(defaults.bytes, |bytes| bytes.0);
         let job = WalkJob {
             scene: args.scene,
-            strict: args.strict,
+            strict: args.picture.strict,
             frames: args.frames,
             resume: args.resume,
             exposure: (!args.no_png).then_some(args.exposure),
             goal,
             limits: KeepLimits { idle_frames: args.idle_frames, bytes },
-            threads: threads::count(args.threads),
+            threads: threads::count(args.picture.threads),
             stats: args.stats,
-            progress: args.progress,
+            progress: args.picture.progress,
             names: args.output,
             framing: Framing {
                 frame: None,
-                resolution: args.resolution.map(|r| r.0),
-                crop: args.crop.map(|crop| [crop.offset, crop.size]),
+                resolution: args.picture.resolution.map(|r| r.0),
+                crop: args.picture.crop.map(|crop| [crop.offset, crop.size]),
             },
         };
         let listed = job.frames.iter().flat_map(FrameList::iter);

@@ -97,7 +97,7 @@ fn resuming_leaves_whole_frames_alone_and_does_others_anew() {
     let file = |name: &str| sandbox.path(&format!("f/{name}"));
     let whole = read(&file("a.03.exr"));
     fs::write(file("a.02.exr"), &whole[..whole.len() / 2]).unwrap();
-    fs::write(file("a.03.exr"), &read(&file("a.01.exr"))).unwrap();
+    fs::write(file("a.03.exr"), read(&file("a.01.exr"))).unwrap();
     fs::write(file("a.04.png"), "torn").unwrap();
     let kept = read(&file("a.05.exr"));
     let stderr = walk(&sandbox, "1-6", &["--resume"]).expect(0).stderr;
