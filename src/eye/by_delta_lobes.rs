@@ -16,12 +16,19 @@ use rayon::prelude::*;
 /// Paths from each eye sample.
 const PATHS: u32 = 4;
 
+/// Greatest share of scattered edges that are drawn towards mirrors and glass.
+pub(super) const MAX_GUIDED: f32 = 0.5;
+
 /// Of the light that surfaces seen reflect, that which comes to them by delta lobes.
-struct ByDeltaLobes;
+pub(super) struct ByDeltaLobes;
 
 impl Reach<'_> for ByDeltaLobes {
     const ENDS: bool = true;
     const ONLY_BY_DELTA_LOBES: bool = true;
+
+    fn guided(&self) -> f32 {
+        MAX_GUIDED
+    }
 }
 
 /// Light in the pixels of a window that comes to the surfaces seen by mirrors and glass.

@@ -11,7 +11,7 @@ use super::adaptive::{Choice, Luminances, MULTIPLES, pilot};
 use super::merge::{MergedPoint, merge};
 use super::pass::TILE;
 use super::points::VisibilitySample;
-use super::{ChainCounts, EyePass, EyeSettings, VisibleSurfaces};
+use super::{ChainCounts, EyePass, EyeSettings, VisibleSurfaces, guide};
 use crate::light::LearnedSky;
 use crate::material::{Bsdf, LobeSet};
 use crate::math::{Rgb, luminance};
@@ -54,6 +54,8 @@ pub(super) struct Ends<'a, 'w> {
     sky: Option<&'a LearnedSky>,
     /// Distance between neighbouring points over that from the eye, on surfaces that face it.
     spacing_by_distance: f32,
+    /// Share of the scattered edges that are drawn towards mirrors and glass.
+    guided: f32,
     found: Vec<MergedPoint<'w>>,
     /// Their paths, and their numbers.
     order: Vec<(u32, u32)>,
@@ -71,6 +73,10 @@ impl<'w> Reach<'w> for Ends<'_, 'w> {
 
     fn sky(&self) -> Option<&LearnedSky> {
         self.sky
+    }
+
+    fn guided(&self) -> f32 {
+        self.guided
     }
 
     #[inline]
@@ -95,6 +101,8 @@ pub(super) struct Tracer<'a, 'w> {
     pub(super) view: &'a View,
     settings: EyeSettings,
     drawn: &'a DrawnLight,
+    /// Share of the scattered edges that are drawn towards mirrors and glass.
+    guided: f32,
     control: &'a Control,
 }
 
@@ -152,7 +160,9 @@ impl<'w> EyePass<'w> {
         control: &Control,
     ) -> EyePass<'w> {
         let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
-        let tracer = Tracer { world, view, settings, drawn, control };
+        let mut tracer = Tracer { world, view, settings, drawn, guided: 0.0, control };
+        let mut counts = Counts::default();
+        tracer.guided = guide::share(world, view, settings, &mut tracer.workspace(None).ends, &mut counts);
         let environment = world.emitters.environment.as_ref();
         let sky = environment.map(|environment| tracer.learn_sky(environment, settings.seed));
         let sky = sky.as_ref();
@@ -177,6 +187,8 @@ impl<'w> EyePass<'w> {
             .map_init(|| tracer.workspace(sky), |work, tile| tracer.more_samples(tile, needs.as_ref(), work))
             .collect();
         let mut pass = EyePass::gather(&view.window, tiles, 1);
+        pass.chains.rays += counts.rays;
+        pass.chains.shadow_rays += counts.shadow_rays;
         if let Some(needs) = needs {
             pass.chains += needs.chains;
         }
@@ -192,7 +204,8 @@ pub fn merged_points(spp: u32) -> u64 {
 impl<'a, 'w> Tracer<'a, 'w> {
     pub(super) fn workspace<'b>(&'b self, sky: Option<&'b LearnedSky>) -> Workspace<'b, 'w> {
         let spacing_by_distance = SPACING * self.view.pixel_angle();
-        let ends = Ends { drawn: self.drawn, sky, spacing_by_distance, found: Vec::new(), order: Vec::new() };
+        let Tracer { drawn, guided, .. } = *self;
+        let ends = Ends { drawn, sky, spacing_by_distance, guided, found: Vec::new(), order: Vec::new() };
         Workspace { batch: Batch::default(), ends, merged: Vec::new() }
     }
 

@@ -5,6 +5,7 @@ mod by_delta_lobes;
 mod chain;
 mod drawn;
 mod features;
+mod guide;
 mod index;
 mod merge;
 mod pass;

@@ -59,6 +59,11 @@ pub trait Reach<'w> {
         None
     }
 
+    /// Share of the edges scattered by diffuse surfaces at ends that are drawn towards mirrors and glass, in [0, 1).
+    fn guided(&self) -> f32 {
+        0.0
+    }
+
     /// Called at every such surface, in an order that does not depend on threads.
     fn end(&mut self, _end: &ChainEnd<'w>) {}
 }

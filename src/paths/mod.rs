@@ -4,6 +4,7 @@
 //! next-event estimation at every vertex.
 
 mod batch;
+mod guided;
 mod look;
 mod packet;
 mod start;

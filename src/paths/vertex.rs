@@ -13,6 +13,7 @@
 //! tenth less).
 
 use super::batch::{ChainEnd, Reach};
+use super::guided::Guided;
 use super::packet::{Packet, Stage};
 use crate::embree::{Ray, Rays16};
 use crate::light::Receivers16;
@@ -91,14 +92,22 @@ impl Packet {
         } else {
             0
         };
+        let share = if R::ENDS { reach.guided() } else { 0.0 };
+        let guided = Guided { lanes: if share > 0.0 { at_end & bsdfs.lambertian() } else { 0 }, share };
         let unlit = scattered | if R::ONLY_BY_DELTA_LOBES { at_end } else { 0 };
         let lit = bsdfs.smooth() & found & !unlit;
         if lit != 0 {
             let numbers = (&choices.x, &self.samplers.point(pair));
             let at = Receivers16 { position: &surfaces.position, normal: &self.normal, sky: reach.sky() };
-            self.light(world, surfaces, (&bsdfs, at), numbers, (lit, alone), arrives);
+            self.light(world, surfaces, (&bsdfs, at), numbers, (lit, alone, &guided), arrives);
         }
-        let samples = bsdfs.sample(&choices.y, &self.samplers.point(pair + 1), found);
+        let places = self.samplers.point(pair + 1);
+        let mut samples = bsdfs.sample(&choices.y, &places, found);
+        for lane in lanes_in(guided.lanes) {
+            let at = (surfaces.position.get(lane), self.normal.get(lane));
+            let numbers = (choices.y[lane], places.get(lane));
+            guided.turn(world, at, &surfaces.frame(lane), (&bsdfs, lane), numbers, &mut samples);
+        }
         let roulette = if depth >= ROULETTE_DEPTH { self.samplers.number(pair + 3) } else { [0.0; LANES] };
         let chained = if R::ENDS {
             self.end_chains(&bsdfs, surfaces, depth, at_end, reach)
@@ -243,7 +252,7 @@ impl Packet {
         surfaces: &Surfaces16,
         (bsdfs, at): (&Bsdfs16, Receivers16),
         (u_choice, u_light): (&F32x16, &Vec2x16),
-        (wanted, alone): (u16, u16),
+        (wanted, alone, guided): (u16, u16, &Guided),
         mut arrives: impl FnMut(&Ray, Rgb, u32),
     ) {
         let lights = world.emitters.sample_direct(&world.scene, at, u_choice, u_light, wanted);
@@ -252,7 +261,11 @@ impl Packet {
             wi.set(i, surfaces.frame(i).to_local(lights.direction.get(i)));
         }
         let wanted = wanted & lights.useful();
-        let (value, pdf) = bsdfs.eval_pdf(&wi, wanted);
+        let (value, mut pdf) = bsdfs.eval_pdf(&wi, wanted);
+        for i in lanes_in(wanted & guided.lanes & !alone) {
+            let at = (surfaces.position.get(i), self.normal.get(i));
+            pdf[i] = guided.density(world, at, lights.direction.get(i), pdf[i]);
+        }
         let (mut radiance, mut segments, mut scattered) = (Vec3x16::default(), Rays16::default(), [0; LANES]);
         for i in 0..LANES {
             let only = (lights.delta[i] != 0) | ((alone >> i) & 1 != 0);

@@ -12,6 +12,7 @@ use glam::{Vec2, Vec3};
 mod packet;
 mod sheets;
 mod specular;
+mod towards;
 mod triangle;
 
 pub use crate::embree::{EmbreeError, Ray};

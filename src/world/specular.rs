@@ -16,9 +16,9 @@ const MIN_DIRECTION: f32 = 1e-20;
 #[derive(Clone, Debug, Default)]
 pub struct Specular {
     /// True of meshes that have delta lobes, those among them by which light passes straight.
-    meshes: Vec<bool>,
+    pub(super) meshes: Vec<bool>,
     /// Boxes around meshes of other delta lobes, as lowest and highest corners.
-    boxes: Vec<(Vec3, Vec3)>,
+    pub(super) boxes: Vec<(Vec3, Vec3)>,
 }
 
 impl Specular {

@@ -87,8 +87,12 @@ fn by_default(world: &WorldAndView) -> DVec3 {
 }
 
 fn assert_agreement(found: DVec3, exact: DVec3, what: &str) {
+    assert_agreement_within(0.02, found, exact, what);
+}
+
+fn assert_agreement_within(error: f64, found: DVec3, exact: DVec3, what: &str) {
     let ratio = found / exact;
-    assert!((ratio - 1.0).abs().max_element() < 0.02, "{what}: {ratio}");
+    assert!((ratio - 1.0).abs().max_element() < error, "{what}: {ratio}");
 }
 
 /// A solid pane in the hole.
@@ -172,17 +176,25 @@ fn the_sun_comes_through_a_thin_pane_by_its_transmittance() {
 mod slow_methods {
     use super::*;
 
+    /// Noise of these pictures' few paths by way of glass.
+    const NOISE: f64 = 0.05;
+
     #[test]
     fn all_methods_agree() {
         let worlds = [two_rooms(solid_pane), two_rooms(thin_panes), lamp_room(bulb), lamp_room(spotlight)];
         for (world, what) in worlds.iter().zip(["solid pane", "thin panes", "bulb", "mirror"]) {
             let (spp, exact) = (128, by_paths(world));
             let cuts = lightcuts::Settings { spp, ..Default::default() };
-            assert_agreement(mean(world, &cuts), exact, &format!("{what}, lightcuts"));
+            assert_agreement_within(NOISE, mean(world, &cuts), exact, &format!("{what}, lightcuts"));
             let reconstructed = reconstruction::Settings { spp, ..Default::default() };
-            assert_agreement(mean(world, &reconstructed), exact, &format!("{what}, reconstruction"));
+            assert_agreement_within(
+                NOISE,
+                mean(world, &reconstructed),
+                exact,
+                &format!("{what}, reconstruction"),
+            );
             let photons = photon_cache::Settings { spp, ..Default::default() };
-            assert_agreement(mean(world, &photons), exact, &format!("{what}, photon-cache"));
+            assert_agreement_within(NOISE, mean(world, &photons), exact, &format!("{what}, photon-cache"));
         }
     }
 }
