@@ -85,7 +85,7 @@ fn frames(
         frame.film.metadata.set("job", hash);
         let film = mem::replace(&mut frame.film, Film::new(Image::new(0, 0)));
         let png = png.as_deref().zip(factor);
-        let line = frame.stats.time(Stage::Write, || picture::write(&exr, png, film))?;
+        let line = frame.stats.time(Stage::Write, || picture::write_exr_last(&exr, png, film))?;
         let time = watch.elapsed();
         frame.stats.add_time(Stage::Total, time);
         frame.facts["scene_warnings"] = warnings.into();
