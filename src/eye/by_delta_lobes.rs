@@ -1,5 +1,6 @@
-//! Light that reaches the surfaces seen through glass and over mirrors, as a layer of its own, for pictures whose other
-//! light is that of virtual lights: these light surfaces along straight segments, which glass and mirrors block.
+//! Light that reaches the surfaces seen through glass, over mirrors and over lobes too sharp to pass for diffuse, as a
+//! layer of its own, for pictures whose other light is that of virtual lights: these shine along straight segments, and
+//! diffusely.
 //!
 //! Deviations: it is found by paths, and leaves noise where all else in the picture is smooth.
 
@@ -7,7 +8,7 @@ use super::pass::TILE;
 use super::{ChainCounts, EyeSettings};
 use crate::film::Image;
 use crate::math::Rgb;
-use crate::paths::{Batch, Counts, Look, Reach, Start, start};
+use crate::paths::{Batch, Counts, Look, Reach, ScatteredEdges, Start, start};
 use crate::progress::Control;
 use crate::view::View;
 use crate::world::World;
@@ -20,14 +21,21 @@ const PATHS: u32 = 4;
 pub(super) const MAX_GUIDED: f32 = 0.5;
 
 /// Of the light that surfaces seen reflect, that which comes to them by delta lobes.
-pub(super) struct ByDeltaLobes;
+pub(super) struct ByDeltaLobes {
+    /// True if that counts which comes by lobes too sharp to pass for diffuse, too.
+    pub glossy: bool,
+}
 
 impl Reach<'_> for ByDeltaLobes {
     const ENDS: bool = true;
     const ONLY_BY_DELTA_LOBES: bool = true;
 
-    fn guided(&self) -> f32 {
-        MAX_GUIDED
+    fn edges(&self) -> ScatteredEdges {
+        ScatteredEdges { guided: MAX_GUIDED, ..Default::default() }
+    }
+
+    fn goes_on_by_glossy_lobes(&self) -> bool {
+        self.glossy
     }
 }
 
@@ -62,7 +70,8 @@ impl LightByDeltaLobes {
                 let paths = (0..samples).map(|sample| Start { pixel, sample, seed });
                 start(batch, paths, view, look);
                 let (mut sum, mut finite) = (Rgb::ZERO, 0);
-                for radiance in batch.trace(world, max_depth, &mut ByDeltaLobes, &mut counts) {
+                for radiance in batch.trace(world, max_depth, &mut ByDeltaLobes { glossy: true }, &mut counts)
+                {
                     if radiance.is_finite() {
                         sum += radiance;
                         finite += 1;

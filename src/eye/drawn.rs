@@ -15,7 +15,7 @@ use super::{ChainCounts, EyePass, EyeSettings, VisibleSurfaces, guide};
 use crate::light::LearnedSky;
 use crate::material::{Bsdf, LobeSet};
 use crate::math::{Rgb, luminance};
-use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, Start, start};
+use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, ScatteredEdges, Start, start};
 use crate::progress::Control;
 use crate::sampling::hash;
 use crate::view::View;
@@ -54,8 +54,7 @@ pub(super) struct Ends<'a, 'w> {
     sky: Option<&'a LearnedSky>,
     /// Distance between neighbouring points over that from the eye, on surfaces that face it.
     spacing_by_distance: f32,
-    /// Share of the scattered edges that are drawn towards mirrors and glass.
-    guided: f32,
+    edges: ScatteredEdges,
     found: Vec<MergedPoint<'w>>,
     /// Their paths, and their numbers.
     order: Vec<(u32, u32)>,
@@ -75,8 +74,8 @@ impl<'w> Reach<'w> for Ends<'_, 'w> {
         self.sky
     }
 
-    fn guided(&self) -> f32 {
-        self.guided
+    fn edges(&self) -> ScatteredEdges {
+        self.edges
     }
 
     #[inline]
@@ -101,8 +100,7 @@ pub(super) struct Tracer<'a, 'w> {
     pub(super) view: &'a View,
     settings: EyeSettings,
     drawn: &'a DrawnLight,
-    /// Share of the scattered edges that are drawn towards mirrors and glass.
-    guided: f32,
+    edges: ScatteredEdges,
     control: &'a Control,
 }
 
@@ -160,9 +158,9 @@ impl<'w> EyePass<'w> {
         control: &Control,
     ) -> EyePass<'w> {
         let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
-        let mut tracer = Tracer { world, view, settings, drawn, guided: 0.0, control };
+        let mut tracer = Tracer { world, view, settings, drawn, edges: ScatteredEdges::default(), control };
         let mut counts = Counts::default();
-        tracer.guided = guide::share(world, view, settings, &mut tracer.workspace(None).ends, &mut counts);
+        tracer.edges = guide::edges(world, view, settings, &mut tracer.workspace(None).ends, &mut counts);
         let environment = world.emitters.environment.as_ref();
         let sky = environment.map(|environment| tracer.learn_sky(environment, settings.seed));
         let sky = sky.as_ref();
@@ -204,8 +202,8 @@ pub fn merged_points(spp: u32) -> u64 {
 impl<'a, 'w> Tracer<'a, 'w> {
     pub(super) fn workspace<'b>(&'b self, sky: Option<&'b LearnedSky>) -> Workspace<'b, 'w> {
         let spacing_by_distance = SPACING * self.view.pixel_angle();
-        let Tracer { drawn, guided, .. } = *self;
-        let ends = Ends { drawn, sky, spacing_by_distance, guided, found: Vec::new(), order: Vec::new() };
+        let Tracer { drawn, edges, .. } = *self;
+        let ends = Ends { drawn, sky, spacing_by_distance, edges, found: Vec::new(), order: Vec::new() };
         Workspace { batch: Batch::default(), ends, merged: Vec::new() }
     }
 

@@ -1,4 +1,5 @@
-//! Share of the scattered edges that are drawn towards mirrors and glass, where enough of the light comes from there.
+//! Share of the scattered edges that are drawn towards mirrors and glass, where enough of the light comes from there,
+//! and share that is followed of those that look for nothing but light sent on by polished surfaces.
 //!
 //! Some paths through the whole film tell how much light comes to surfaces seen by delta lobes, beside all that the eye
 //! pass with direct light finds. Of the latter the square of the mean root counts, so that lamps and windows in view
@@ -10,7 +11,7 @@
 use super::EyeSettings;
 use super::by_delta_lobes::{ByDeltaLobes, MAX_GUIDED};
 use crate::math::{Rgb, luminance};
-use crate::paths::{Batch, Counts, Look, Reach, Start, start};
+use crate::paths::{Batch, Counts, Look, Reach, ScatteredEdges, Start, start};
 use crate::sampling::owen_sobol_2d;
 use crate::view::View;
 use crate::world::World;
@@ -30,21 +31,28 @@ const MUCH: f32 = 0.1;
 /// Share of light below which no edge is worth it.
 const LITTLE: f32 = 0.01;
 
-/// The share of the edges; `all` finds the light of the eye pass along paths drawn without it.
-pub(super) fn share<'w>(
+/// Share of light that comes by lobes other than diffuse ones from which all blind edges are followed; with less, fewer
+/// in proportion, but no fewer than the least share.
+const ALL_BLIND: f32 = 0.1;
+const MIN_BLIND: f32 = 0.1;
+
+/// The edges; `all` finds the light of the eye pass along paths drawn without this knowledge.
+pub(super) fn edges<'w>(
     world: &'w World,
     view: &View,
     settings: EyeSettings,
     all: &mut impl Reach<'w>,
     counts: &mut Counts,
-) -> f32 {
+) -> ScatteredEdges {
+    let mut edges = ScatteredEdges::default();
     if !world.specular.bends_light() {
-        return 0.0;
+        return edges;
     }
     let film = view.window.film;
     let seed = settings.seed ^ SEED;
     let mut batch = Batch::default();
-    let (mut by_delta_lobes, mut roots) = (0.0, 0.0);
+    // Light that comes by delta lobes, by these and others too sharp to pass for diffuse; roots of all light.
+    let mut sums = [0.0; 3];
     for first in (0..PATHS).step_by(BATCH as usize) {
         let paths = (first..first + BATCH).map(|sample| {
             let at = owen_sobol_2d(sample, seed);
@@ -52,15 +60,21 @@ pub(super) fn share<'w>(
             Start { pixel: [pixel(at.x, film[0]), pixel(at.y, film[1])], sample, seed }
         });
         let finite = |light: Rgb| if light.is_finite() { f64::from(luminance(light)) } else { 0.0 };
-        start(&mut batch, paths.clone(), view, Look::Pixels);
-        let found = batch.trace(world, settings.max_depth, &mut ByDeltaLobes, counts);
-        by_delta_lobes += found.map(finite).sum::<f64>();
+        for (sum, glossy) in sums.iter_mut().zip([false, true]) {
+            start(&mut batch, paths.clone(), view, Look::Pixels);
+            let found = batch.trace(world, settings.max_depth, &mut ByDeltaLobes { glossy }, counts);
+            *sum += found.map(finite).sum::<f64>();
+        }
         start(&mut batch, paths, view, Look::Pixels);
         let found = batch.trace(world, settings.max_depth, all, counts);
-        roots += found.map(|light| finite(light).sqrt()).sum::<f64>();
+        sums[2] += found.map(|light| finite(light).sqrt()).sum::<f64>();
     }
-    let n = f64::from(PATHS);
-    let (by_delta_lobes, rest) = (by_delta_lobes / n, (roots / n).powi(2));
-    let share = (by_delta_lobes / (by_delta_lobes + rest).max(f64::MIN_POSITIVE)) as f32;
-    if share < LITTLE { 0.0 } else { MAX_GUIDED * share / (share + MUCH) }
+    let [by_delta, by_all, roots] = sums.map(|sum| sum / f64::from(PATHS));
+    let share = |light: f64| (light / (light + roots * roots).max(f64::MIN_POSITIVE)) as f32;
+    let guided = share(by_delta);
+    if world.specular.has_delta_lobes() && guided >= LITTLE {
+        edges.guided = MAX_GUIDED * guided / (guided + MUCH);
+    }
+    edges.blind = (share(by_all) / ALL_BLIND).clamp(MIN_BLIND, 1.0);
+    edges
 }

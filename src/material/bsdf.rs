@@ -94,6 +94,19 @@ impl<'m> Bsdf<'m> {
         self.any_lobe(LobeModel::bends)
     }
 
+    /// True if part of the light is reflected by lobes too sharp to pass for diffuse.
+    pub fn is_glossy(&self) -> bool {
+        self.any_lobe(LobeModel::is_glossy)
+    }
+
+    /// Returns the delta lobes and those too sharp to pass for diffuse alone, if there are any of the latter.
+    #[inline]
+    pub fn glossy_part(&self) -> Option<Self> {
+        let dull = self.lobes(|lobe| !lobe.is_glossy() && !lobe.is_delta());
+        let glossy = !self.lobes(LobeModel::is_glossy).is_empty();
+        glossy.then(|| Bsdf { base: Rgb::ZERO, ..*self }.without(dull))
+    }
+
     /// True if part of the light passes straight through the surface.
     pub fn passes_straight(&self) -> bool {
         self.any_lobe(LobeModel::passes_straight)
@@ -233,7 +246,7 @@ impl<'m> Bsdf<'m> {
 
     /// Returns the share of the flux from `wi` that a virtual light in this place radiates diffusely, to the side
     /// of `wi`: what the base reflects (through the coat, if there is one, in and out) and what those lobes reflect
-    /// that are rough enough to pass for diffuse.
+    /// that are rough enough to pass for diffuse. Paths find the rest.
     ///
     /// The virtual light's intensity per cosine is flux · `diffuse_albedo` / π.
     #[inline]

@@ -71,6 +71,21 @@ impl<'m> Bsdfs16<'m> {
         self.smooth
     }
 
+    /// Reduces those of `lanes` that have lobes too sharp to pass for diffuse to these and to delta lobes. Returns
+    /// them.
+    #[inline]
+    pub fn keep_glossy(&mut self, lanes: u16) -> u16 {
+        let mut glossy = 0;
+        for i in lanes_in(lanes & self.layered) {
+            if let Some(part) = self.lanes[i].glossy_part() {
+                self.lanes[i] = part;
+                self.base.set(i, Rgb::ZERO);
+                glossy |= 1 << i;
+            }
+        }
+        glossy
+    }
+
     /// Returns the material of a lane.
     #[inline]
     pub fn lane(&self, lane: usize) -> &Bsdf<'m> {

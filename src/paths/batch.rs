@@ -38,6 +38,21 @@ pub struct ChainEnd<'w> {
     pub depth: u32,
 }
 
+/// Edges scattered by diffuse surfaces at ends.
+#[derive(Clone, Copy, Debug)]
+pub struct ScatteredEdges {
+    /// Share of them that is drawn towards mirrors and glass, in [0, 1).
+    pub guided: f32,
+    /// Share that is followed of those that only look for light that other surfaces send on, in (0, 1].
+    pub blind: f32,
+}
+
+impl Default for ScatteredEdges {
+    fn default() -> ScatteredEdges {
+        ScatteredEdges { guided: 0.0, blind: 1.0 }
+    }
+}
+
 /// The light that a batch finds along its paths.
 pub trait Reach<'w> {
     /// True if paths end at the first surface that scatters by lobes which a chain does not follow: of the light that
@@ -59,9 +74,15 @@ pub trait Reach<'w> {
         None
     }
 
-    /// Share of the edges scattered by diffuse surfaces at ends that are drawn towards mirrors and glass, in [0, 1).
-    fn guided(&self) -> f32 {
-        0.0
+    /// The edges that are scattered at ends.
+    fn edges(&self) -> ScatteredEdges {
+        ScatteredEdges::default()
+    }
+
+    /// True if paths go on from the surface after a chain's end by lobes too sharp to pass for diffuse, as they do by
+    /// delta lobes.
+    fn goes_on_by_glossy_lobes(&self) -> bool {
+        true
     }
 
     /// Called at every such surface, in an order that does not depend on threads.
@@ -161,7 +182,8 @@ impl Batch {
                 };
                 let mut going_on = packet.scatter(world, &surfaces, depth, followed, reach, arrives);
                 if R::ENDS {
-                    let (kept, outward) = looked_along(world, &packet, going_on);
+                    let blind = reach.edges().blind;
+                    let (kept, outward) = looked_along(world, &mut packet, going_on, (blind, depth));
                     going_on = kept;
                     self.look_outward(world, &packet, outward, reach.sky(), counts);
                 }
@@ -244,8 +266,9 @@ impl Batch {
 }
 
 /// Of the paths that go on, those whose edges are to be followed, and those whose edges can find nothing but the
-/// environment.
-fn looked_along(world: &World, packet: &Packet, going_on: u16) -> (u16, u16) {
+/// environment. Of edges that are scattered at vertex `depth` and find no emitting surface, the share `blind` is
+/// followed.
+fn looked_along(world: &World, packet: &mut Packet, going_on: u16, (blind, depth): (f32, u32)) -> (u16, u16) {
     let sought = going_on & (packet.at(Stage::Scattered) | !packet.followed());
     if sought == 0 {
         return (going_on, 0);
@@ -255,7 +278,9 @@ fn looked_along(world: &World, packet: &Packet, going_on: u16) -> (u16, u16) {
     let mut seeing = u16::MAX;
     if world.specular.bends_light() {
         seeing = packet.sees_emitters();
-        met = (met & seeing) | (world.specular.may_be_met(&origins, &directions) & packet.followed());
+        met &= seeing;
+        let sent_on = sought & !met & packet.followed() & world.specular.may_be_met(&origins, &directions);
+        met |= sent_on & !packet.thin(sent_on, blind, depth);
     }
     (going_on & (!sought | met), sought & seeing & !met)
 }

@@ -12,9 +12,10 @@ use crate::world::World;
 pub(super) enum Stage {
     /// That of surfaces seen by chains.
     Chain,
-    /// That which comes to the end of a chain from emitters, or by the delta lobes of the next surface.
+    /// That which comes to the end of a chain from emitters, or by the next surface's delta lobes and those too sharp
+    /// to pass for diffuse.
     Scattered,
-    /// All light, beyond such a delta lobe.
+    /// All light, beyond such a lobe.
     Full,
 }
 

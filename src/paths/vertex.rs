@@ -4,7 +4,8 @@
 //!
 //! Where a path ends at the first surface that scatters by lobes which a chain does not follow ([`Reach`]), it has
 //! one more edge from there, which finds emitters: the counterpart of the light samples in multiple importance
-//! sampling. Where it meets a mirror or glass, the path goes on.
+//! sampling. Where it meets a mirror, glass, or a lobe too sharp to pass for diffuse, the path goes on by these alone:
+//! virtual lights have the other lobes.
 //!
 //! Deviations: a path survives Russian roulette with the square root of its throughput. The throughput
 //! itself, from the second bounce on, ends paths between dark walls so often that the few that then hit the
@@ -12,7 +13,7 @@
 //! 7 % less time in a Cornell box, a glossy knot and a church, at the same variance a sample (the knot: a
 //! tenth less).
 
-use super::batch::{ChainEnd, Reach};
+use super::batch::{ChainEnd, Reach, ScatteredEdges};
 use super::guided::Guided;
 use super::packet::{Packet, Stage};
 use crate::embree::{Ray, Rays16};
@@ -35,6 +36,11 @@ const PAIRS_BEFORE: u32 = 1;
 /// Pairs of random numbers a vertex takes: for the light, for the direction, for the choices of emitter and lobe,
 /// for Russian roulette.
 const PAIRS_A_VERTEX: u32 = 4;
+
+/// The first pair of random numbers of vertex `depth`.
+fn first_pair(depth: u32) -> u32 {
+    PAIRS_BEFORE + 1 + (depth - 1).wrapping_mul(PAIRS_A_VERTEX)
+}
 
 impl Packet {
     /// Adds to `results` the emission of the surfaces that the edges have hit, in the lanes of `found`.
@@ -72,7 +78,7 @@ impl Packet {
         reach: &mut R,
         arrives: impl FnMut(&Ray, Rgb, u32),
     ) -> u16 {
-        let pair = PAIRS_BEFORE + 1 + (depth - 1).wrapping_mul(PAIRS_A_VERTEX);
+        let pair = first_pair(depth);
         let before = world.has_sheets().then(|| self.clone());
         let mut wo = Vec3x16::default();
         for i in 0..LANES {
@@ -81,10 +87,12 @@ impl Packet {
             wo.set(i, local);
             self.normal.set(i, if local.z < 0.0 { -frame.normal } else { frame.normal });
         }
-        let bsdfs = world.bsdfs(surfaces, wo);
+        let mut bsdfs = world.bsdfs(surfaces, wo);
         let choices = self.samplers.point(pair + 2);
         let mut at_end = if R::ENDS { found & self.at(Stage::Chain) } else { 0 };
         let scattered = if R::ENDS { found & self.at(Stage::Scattered) } else { 0 };
+        let by_glossy = R::ENDS && reach.goes_on_by_glossy_lobes();
+        let glossy = if by_glossy { bsdfs.keep_glossy(scattered) } else { 0 };
         // Diffuse surfaces that paths end at, and from which emitters look small, have light samples alone.
         let alone = if R::ENDS {
             let at = Receivers16 { position: &surfaces.position, normal: &self.normal, sky: None };
@@ -92,9 +100,10 @@ impl Packet {
         } else {
             0
         };
-        let share = if R::ENDS { reach.guided() } else { 0.0 };
+        let edges = if R::ENDS { reach.edges() } else { ScatteredEdges::default() };
+        let share = edges.guided;
         let guided = Guided { lanes: if share > 0.0 { at_end & bsdfs.lambertian() } else { 0 }, share };
-        let unlit = scattered | if R::ONLY_BY_DELTA_LOBES { at_end } else { 0 };
+        let unlit = (scattered & !glossy) | if R::ONLY_BY_DELTA_LOBES { at_end } else { 0 };
         let lit = bsdfs.smooth() & found & !unlit;
         if lit != 0 {
             let numbers = (&choices.x, &self.samplers.point(pair));
@@ -130,7 +139,7 @@ impl Packet {
         let mut found = found;
         if R::ENDS {
             let by_delta_lobes = world.specular.bends_light();
-            found &= samples.going_on() & mask_of(&survives) & (!scattered | samples.delta());
+            found &= samples.going_on() & mask_of(&survives) & (!scattered | samples.delta() | glossy);
             found &= if by_delta_lobes { u16::MAX } else { !alone };
             at_end &= found;
             self.follow(&bsdfs, &samples, surfaces, (at_end, pair + 3), &chained);
@@ -157,6 +166,23 @@ impl Packet {
             }
         }
         found
+    }
+
+    /// Follows the paths of `lanes`, which were scattered at vertex `depth`, with a probability; returns the others.
+    pub fn thin(&mut self, lanes: u16, probability: f32, depth: u32) -> u16 {
+        if lanes == 0 || probability >= 1.0 {
+            return 0;
+        }
+        // The number that chose an emitter: it has no part in the direction.
+        let numbers = self.samplers.number(first_pair(depth) + 2);
+        let mut left = 0;
+        for lane in lanes_in(lanes) {
+            match numbers[lane] < probability {
+                true => self.throughput.set(lane, self.throughput.get(lane) / probability),
+                false => left |= 1 << lane,
+            }
+        }
+        left
     }
 
     /// Lengthens a lane's edge, as it was `before`, beyond the sheet that it has met. It stays the same edge, also in

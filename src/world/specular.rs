@@ -1,5 +1,5 @@
-//! Surfaces that reflect or refract light as mirrors and glass do, by which light goes where straight segments
-//! between surfaces and lights do not lead.
+//! Surfaces that send light on as mirrors and glass do, or by lobes too sharp to pass for diffuse: straight segments
+//! between surfaces and virtual lights do not carry it.
 
 use crate::material::Materials;
 use crate::math::{LANES, U32x16, Vec3x16, mask_of};
@@ -15,25 +15,38 @@ const MIN_DIRECTION: f32 = 1e-20;
 /// The specular surfaces of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Specular {
-    /// True of meshes that have delta lobes, those among them by which light passes straight.
+    /// True of meshes that have such lobes, delta lobes by which light passes straight among them.
     pub(super) meshes: Vec<bool>,
-    /// Boxes around meshes of other delta lobes, as lowest and highest corners.
+    /// Boxes around meshes that have others, as lowest and highest corners.
     pub(super) boxes: Vec<(Vec3, Vec3)>,
+    /// Boxes around those of them that have delta lobes.
+    pub(super) delta_boxes: Vec<(Vec3, Vec3)>,
 }
 
 impl Specular {
     /// Finds them.
     pub fn new(scene: &Scene, materials: &Materials) -> Specular {
         let average = |mesh: &Mesh| materials.average(scene, mesh.material);
-        let mut meshes: Vec<bool> = scene.meshes.iter().map(|mesh| average(mesh).has_delta()).collect();
+        let by_delta = |mesh: &Mesh| average(mesh).bends_light();
+        let bends =
+            |mesh: &Mesh| by_delta(mesh) || average(mesh).is_glossy() || average(mesh).is_of_mean_roughness();
+        let is_specular = |mesh: &Mesh| bends(mesh) || average(mesh).passes_straight();
+        let mut meshes: Vec<bool> = scene.meshes.iter().map(is_specular).collect();
         if !meshes.contains(&true) {
             meshes.clear();
         }
-        let bending =
-            scene.meshes.iter().filter(|mesh| !mesh.triangles.is_empty() && average(mesh).bends_light());
-        let mut boxes = Vec::new();
-        group(bending.map(bounds).collect(), MAX_BOXES, &mut boxes);
-        Specular { meshes, boxes }
+        let boxes = |is_such: &dyn Fn(&Mesh) -> bool| {
+            let such = scene.meshes.iter().filter(|mesh| !mesh.triangles.is_empty() && is_such(mesh));
+            let mut boxes = Vec::new();
+            group(such.map(bounds).collect(), MAX_BOXES, &mut boxes);
+            boxes
+        };
+        Specular { meshes, boxes: boxes(&bends), delta_boxes: boxes(&by_delta) }
+    }
+
+    /// True if any bends light by delta lobes.
+    pub fn has_delta_lobes(&self) -> bool {
+        !self.delta_boxes.is_empty()
     }
 
     /// True if any bends light.

@@ -26,7 +26,7 @@ struct Face {
 impl Specular {
     /// Front faces seen from `x`, where the normal is `n`.
     fn faces(&self, x: Vec3, n: Vec3) -> impl Iterator<Item = Face> {
-        self.boxes.iter().flat_map(move |&(low, high)| {
+        self.delta_boxes.iter().flat_map(move |&(low, high)| {
             let (centre, half) = (0.5 * (low + high) - x, 0.5 * (high - low));
             let rises = n.dot(centre) + n.abs().dot(half) > 0.0;
             (0..3).filter_map(move |axis| {
@@ -97,7 +97,7 @@ mod tests {
             (Vec3::new(-2.0, -0.5, 0.3), Vec3::new(-1.0, 0.8, 0.3)),
             (Vec3::new(-1.0, -9.0, -1.0), Vec3::new(1.0, -8.0, 1.0)),
         ];
-        let specular = Specular { meshes: Vec::new(), boxes };
+        let specular = Specular { delta_boxes: boxes, ..Default::default() };
         let (x, n) = (Vec3::ZERO, Vec3::Y);
         // Means of functions of direction over directions drawn, and over the sphere by their density.
         let functions = [|_: Vec3| 1.0, |d: Vec3| d.x * d.x, |d: Vec3| (d.z + 0.3) * d.y];

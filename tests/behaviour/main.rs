@@ -11,6 +11,7 @@ mod denoise;
 mod drawn;
 mod extremes;
 mod glass;
+mod glossy;
 mod lightcuts;
 mod many_lights;
 mod occluder_cache;

@@ -71,6 +71,12 @@ impl LobeModel {
         matches!(self, LobeModel::Interface(_))
     }
 
+    /// True if it is a rough lobe too sharp to pass for diffuse.
+    #[inline]
+    pub fn is_glossy(&self) -> bool {
+        matches!(self, LobeModel::Rough(rough) if rough.is_glossy())
+    }
+
     /// True if eye paths follow the lobe by sampling it, as they do a mirror: light cuts would show single virtual
     /// lights in it. The place, too, for lobes that scatter light across the surface, as cuts gather on one side.
     #[inline]

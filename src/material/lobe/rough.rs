@@ -16,9 +16,11 @@ use crate::scene::Fresnel;
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
-/// Minimum roughness of lobes that count as diffuse where a surface becomes a virtual light: among polished
-/// metals most of the light would otherwise be lost, which is worse than its spreading too widely.
-pub(in crate::material) const DIFFUSE_ALPHA: f32 = 0.05;
+/// Minimum roughness of lobes that count as diffuse where a surface becomes a virtual light. Paths from the eye find
+/// the light that comes over sharper ones, as they do over mirrors: spread evenly it would be much too bright in most
+/// places and too dark in the others. With 0.4 for 0.25 a polished knot gains a tenth in FLIP, a church with a glossy
+/// floor takes an eighth more time for .2 dB less.
+pub(in crate::material) const DIFFUSE_ALPHA: f32 = 0.25;
 
 /// Lobes up to this rough are followed from the eye like mirrors, by a sampled direction: light sampled along them
 /// says more than a sum over virtual lights, each of which would show as a highlight.
@@ -51,6 +53,12 @@ impl RoughLobe {
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         Directions::new(wo, wi).map_or(Rgb::ZERO, |d| self.eval_pdf(Rgb::ONE, 1.0, &d).0)
+    }
+
+    /// True if the lobe is too sharp to pass for diffuse.
+    #[inline]
+    pub fn is_glossy(&self) -> bool {
+        self.facets.alpha < DIFFUSE_ALPHA
     }
 
     /// True if eye paths follow the lobe.
@@ -95,7 +103,7 @@ impl RoughLobe {
 
     #[inline]
     pub(super) fn diffuse_albedo(&self, scale: Rgb, cos: f32) -> Option<Rgb> {
-        let table = self.albedo.as_ref().filter(|_| self.facets.alpha >= DIFFUSE_ALPHA)?;
+        let table = self.albedo.as_ref().filter(|_| !self.is_glossy())?;
         Some(scale * table.lookup(cos))
     }
 

@@ -1,6 +1,7 @@
 //! Energy, reciprocity, sides, and extremes.
 
 use super::*;
+use crate::material::lobe::DIFFUSE_ALPHA;
 
 /// Mean sample weight from `wo` over a stratified grid: the albedo, delta lobes included.
 fn albedo_by_sampling(bsdf: &Bsdf, wo: Vec3, seed: u64) -> Rgb {
@@ -73,7 +74,7 @@ fn perfect_mirrors_and_glass_lose_nothing_at_all() {
 #[test]
 fn a_virtual_light_radiates_what_the_surface_reflects() {
     for material in smooth_materials() {
-        if min_alpha(&material) < 0.05 {
+        if min_alpha(&material) < DIFFUSE_ALPHA {
             continue;
         }
         with_bsdf(&material, |bsdf| {
@@ -87,7 +88,7 @@ fn a_virtual_light_radiates_what_the_surface_reflects() {
         });
     }
     // A sharp lobe is not passed off as diffuse.
-    with_bsdf(&glossy(Rgb::splat(0.4), 0.3, 0.04), |b| {
+    with_bsdf(&glossy(Rgb::splat(0.4), 0.3, 0.99 * DIFFUSE_ALPHA), |b| {
         assert!((b.diffuse_albedo(Vec3::Z) - 0.4).abs().max_element() < 1e-6);
     });
 }
