@@ -1,7 +1,7 @@
 //! Eye samples: surfaces visible in a pixel, directly or through mirrors and glass.
 
 mod adaptive;
-mod by_delta_lobes;
+mod by_specular_lobes;
 mod chain;
 mod drawn;
 mod features;
@@ -17,7 +17,7 @@ mod sky;
 #[cfg(test)]
 mod tests;
 
-pub use by_delta_lobes::LightByDeltaLobes;
+pub use by_specular_lobes::LightBySpecularLobes;
 pub use chain::{ChainCounts, DROPPED_BRANCHES};
 pub use drawn::{DrawnLight, merged_points};
 pub use features::{Feature, Features, UnknownFeature, features};

@@ -5,7 +5,7 @@
 
 use super::points::{PointGeometry, PointSurface, VisibilitySample};
 use super::{
-    ChainCounts, DrawnLight, EyeIndex, EyeRays, EyeSettings, LightByDeltaLobes, ShadingPoints,
+    ChainCounts, DrawnLight, EyeIndex, EyeRays, EyeSettings, LightBySpecularLobes, ShadingPoints,
     VisibilitySamples, VisibleSurfaces,
 };
 use crate::film::{Image, Window};
@@ -55,7 +55,7 @@ impl<'w> EyePass<'w> {
             Some(drawn) => EyePass::with_direct_light(world, view, settings, drawn, control),
             None => {
                 let mut pass = EyePass::trace(world, view, settings, control);
-                let light = LightByDeltaLobes::new(world, view, settings, control);
+                let light = LightBySpecularLobes::new(world, view, settings, control);
                 light.add_to(&mut pass.known);
                 pass.chains += light.chains;
                 pass.nonfinite += light.nonfinite;

@@ -61,8 +61,8 @@ pub trait Reach<'w> {
     /// straight segment from a light or a virtual light. False for paths of full length from the eye.
     const ENDS: bool;
 
-    /// True if of the light that reaches ends only that by delta lobes is wanted, and none that chains find.
-    const ONLY_BY_DELTA_LOBES: bool = false;
+    /// True if of the light that reaches ends only that by specular lobes is wanted, and none that chains find.
+    const ONLY_BY_SPECULAR_LOBES: bool = false;
 
     /// Returns the lobes that a chain follows besides delta lobes.
     fn followed(&self, bsdf: &Bsdf) -> LobeSet {
@@ -135,7 +135,7 @@ impl Batch {
         reach: &mut R,
         counts: &mut Counts,
     ) -> std::vec::Drain<'_, Rgb> {
-        if R::ONLY_BY_DELTA_LOBES {
+        if R::ONLY_BY_SPECULAR_LOBES {
             self.packets.iter_mut().for_each(|packet| packet.emission_throughput = Vec3x16::ZERO);
         }
         let mut depth = 1;

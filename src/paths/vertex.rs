@@ -103,7 +103,7 @@ impl Packet {
         let edges = if R::ENDS { reach.edges() } else { ScatteredEdges::default() };
         let share = edges.guided;
         let guided = Guided { lanes: if share > 0.0 { at_end & bsdfs.lambertian() } else { 0 }, share };
-        let unlit = (scattered & !glossy) | if R::ONLY_BY_DELTA_LOBES { at_end } else { 0 };
+        let unlit = (scattered & !glossy) | if R::ONLY_BY_SPECULAR_LOBES { at_end } else { 0 };
         let lit = bsdfs.smooth() & found & !unlit;
         if lit != 0 {
             let numbers = (&choices.x, &self.samplers.point(pair));
@@ -138,20 +138,20 @@ impl Packet {
         self.emission_throughput = self.throughput;
         let mut found = found;
         if R::ENDS {
-            let by_delta_lobes = world.specular.bends_light();
+            let by_specular_lobes = world.specular.bends_light();
             found &= samples.going_on() & mask_of(&survives) & (!scattered | samples.delta() | glossy);
-            found &= if by_delta_lobes { u16::MAX } else { !alone };
+            found &= if by_specular_lobes { u16::MAX } else { !alone };
             at_end &= found;
             self.follow(&bsdfs, &samples, surfaces, (at_end, pair + 3), &chained);
             let blind = if world.emitters.are_hittable() { alone } else { at_end & !self.at(Stage::Chain) };
-            if by_delta_lobes {
+            if by_specular_lobes {
                 self.emission_throughput.keep(!blind);
             } else {
                 found &= !blind;
             }
             let leaving = found & scattered & !samples.straight();
             lanes_in(leaving).for_each(|lane| self.stage[lane] = Stage::Full as u32);
-            if R::ONLY_BY_DELTA_LOBES {
+            if R::ONLY_BY_SPECULAR_LOBES {
                 self.emission_throughput.keep(self.at(Stage::Full));
             }
         }

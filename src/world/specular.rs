@@ -1,5 +1,5 @@
-//! Surfaces that send light on as mirrors and glass do, or by lobes too sharp to pass for diffuse: straight segments
-//! between surfaces and virtual lights do not carry it.
+//! Surfaces with specular lobes: delta lobes, of mirrors and glass, and those too sharp to pass for diffuse. Straight
+//! segments between surfaces and virtual lights do not carry the light that these send on.
 
 use crate::material::Materials;
 use crate::math::{LANES, U32x16, Vec3x16, mask_of};

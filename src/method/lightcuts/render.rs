@@ -1,7 +1,7 @@
 //! The picture: light pass, trees, then pixels in tiles.
 
 use super::blocks::{TILE, Tile, Tiles};
-use crate::eye::{EyeRays, LightByDeltaLobes, VisibleSurfaces};
+use crate::eye::{EyeRays, LightBySpecularLobes, VisibleSurfaces};
 use crate::film::{Image, Layer};
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
@@ -72,7 +72,7 @@ impl Renderer for Settings {
 
         let mut color = Image::new(view.window.width, view.window.height);
         let mut cut_size = color.map(|_| 0.0);
-        let light = stats.time(Stage::Render, || LightByDeltaLobes::new(world, view, eye, control));
+        let light = stats.time(Stage::Render, || LightBySpecularLobes::new(world, view, eye, control));
         let (mut work, mut chains, mut nonfinite) = (ShadingCounts::default(), light.chains, light.nonfinite);
         for tile in done.iter().flatten() {
             for &(pixel, radiance, clusters) in &tile.pixels {

@@ -20,15 +20,15 @@ const PATHS: u32 = 4;
 /// Greatest share of scattered edges that are drawn towards mirrors and glass.
 pub(super) const MAX_GUIDED: f32 = 0.5;
 
-/// Of the light that surfaces seen reflect, that which comes to them by delta lobes.
-pub(super) struct ByDeltaLobes {
+/// Of the light that surfaces seen reflect, that which comes to them by specular lobes.
+pub(super) struct BySpecularLobes {
     /// True if that counts which comes by lobes too sharp to pass for diffuse, too.
     pub glossy: bool,
 }
 
-impl Reach<'_> for ByDeltaLobes {
+impl Reach<'_> for BySpecularLobes {
     const ENDS: bool = true;
-    const ONLY_BY_DELTA_LOBES: bool = true;
+    const ONLY_BY_SPECULAR_LOBES: bool = true;
 
     fn edges(&self) -> ScatteredEdges {
         ScatteredEdges { guided: MAX_GUIDED, ..Default::default() }
@@ -40,7 +40,7 @@ impl Reach<'_> for ByDeltaLobes {
 }
 
 /// Light in the pixels of a window that comes to the surfaces seen by mirrors and glass.
-pub struct LightByDeltaLobes {
+pub struct LightBySpecularLobes {
     /// The light; `None` if nothing in the scene bends light.
     pub image: Option<Image>,
     /// Rays traced.
@@ -49,10 +49,10 @@ pub struct LightByDeltaLobes {
     pub nonfinite: u64,
 }
 
-impl LightByDeltaLobes {
+impl LightBySpecularLobes {
     /// Finds it by paths from the eye samples of `settings`; not in all tiles if cancelled.
-    pub fn new(world: &World, view: &View, settings: EyeSettings, control: &Control) -> LightByDeltaLobes {
-        let mut light = LightByDeltaLobes { image: None, chains: ChainCounts::default(), nonfinite: 0 };
+    pub fn new(world: &World, view: &View, settings: EyeSettings, control: &Control) -> LightBySpecularLobes {
+        let mut light = LightBySpecularLobes { image: None, chains: ChainCounts::default(), nonfinite: 0 };
         if !world.specular.bends_light() {
             return light;
         }
@@ -70,7 +70,8 @@ impl LightByDeltaLobes {
                 let paths = (0..samples).map(|sample| Start { pixel, sample, seed });
                 start(batch, paths, view, look);
                 let (mut sum, mut finite) = (Rgb::ZERO, 0);
-                for radiance in batch.trace(world, max_depth, &mut ByDeltaLobes { glossy: true }, &mut counts)
+                for radiance in
+                    batch.trace(world, max_depth, &mut BySpecularLobes { glossy: true }, &mut counts)
                 {
                     if radiance.is_finite() {
                         sum += radiance;
