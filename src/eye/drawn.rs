@@ -101,7 +101,7 @@ pub(super) struct Tracer<'a, 'w> {
     settings: EyeSettings,
     drawn: &'a DrawnLight,
     edges: ScatteredEdges,
-    control: &'a Control,
+    pub(super) control: &'a Control,
 }
 
 /// Samples of one pixel that have been traced together.
@@ -162,8 +162,8 @@ impl<'w> EyePass<'w> {
         let mut counts = Counts::default();
         tracer.edges = guide::edges(world, view, settings, &mut tracer.workspace(None).ends, &mut counts);
         let environment = world.emitters.environment.as_ref();
-        let sky = environment.map(|environment| tracer.learn_sky(environment, settings.seed));
-        let sky = sky.as_ref();
+        let learned = environment.map(|environment| tracer.learn_sky(environment, settings.seed));
+        let sky = learned.as_ref().map(|(sky, _)| sky);
         let tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
             .into_par_iter()
             .map_init(
@@ -187,6 +187,9 @@ impl<'w> EyePass<'w> {
         let mut pass = EyePass::gather(&view.window, tiles, 1);
         pass.chains.rays += counts.rays;
         pass.chains.shadow_rays += counts.shadow_rays;
+        if let Some((_, chains)) = &learned {
+            pass.chains += *chains;
+        }
         if let Some(needs) = needs {
             pass.chains += needs.chains;
         }

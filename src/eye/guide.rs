@@ -48,6 +48,7 @@ pub(super) fn edges<'w>(
     if !world.specular.bends_light() {
         return edges;
     }
+    let has_delta_lobes = world.specular.has_delta_lobes();
     let film = view.window.film;
     let seed = settings.seed ^ SEED;
     let mut batch = Batch::default();
@@ -60,10 +61,12 @@ pub(super) fn edges<'w>(
             Start { pixel: [pixel(at.x, film[0]), pixel(at.y, film[1])], sample, seed }
         });
         let finite = |light: Rgb| if light.is_finite() { f64::from(luminance(light)) } else { 0.0 };
-        for (sum, glossy) in sums.iter_mut().zip([false, true]) {
+        // Without delta lobes there is nothing to be drawn towards.
+        let wanted = [(0, false), (1, true)].into_iter().filter(|(_, glossy)| *glossy || has_delta_lobes);
+        for (i, glossy) in wanted {
             start(&mut batch, paths.clone(), view, Look::Pixels);
             let found = batch.trace(world, settings.max_depth, &mut BySpecularLobes { glossy }, counts);
-            *sum += found.map(finite).sum::<f64>();
+            sums[i] += found.map(finite).sum::<f64>();
         }
         start(&mut batch, paths, view, Look::Pixels);
         let found = batch.trace(world, settings.max_depth, all, counts);
@@ -72,7 +75,7 @@ pub(super) fn edges<'w>(
     let [by_delta, by_all, roots] = sums.map(|sum| sum / f64::from(PATHS));
     let share = |light: f64| (light / (light + roots * roots).max(f64::MIN_POSITIVE)) as f32;
     let guided = share(by_delta);
-    if world.specular.has_delta_lobes() && guided >= LITTLE {
+    if has_delta_lobes && guided >= LITTLE {
         edges.guided = MAX_GUIDED * guided / (guided + MUCH);
     }
     edges.blind = (share(by_all) / ALL_BLIND).clamp(MIN_BLIND, 1.0);

@@ -1,6 +1,7 @@
 //! Learning where the environment shines: rays from points that the eye sees, spread over the whole film, so that a
 //! crop learns what the whole picture does.
 
+use super::ChainCounts;
 use super::drawn::Tracer;
 use crate::embree::Rays16;
 use crate::light::{EnvironmentLight, LearnedSky, Looks};
@@ -38,16 +39,19 @@ fn places(film: [u32; 2]) -> Vec<[u32; 2]> {
 }
 
 impl Tracer<'_, '_> {
-    /// Learns by one path through each of the pilot's pixels.
-    pub(super) fn learn_sky(&self, environment: &EnvironmentLight, seed: u32) -> LearnedSky {
-        let found: Vec<Looks> = places(self.view.window.film)
+    /// Learns by one path through each of the pilot's pixels, by fewer if cancelled; counts the rays.
+    pub(super) fn learn_sky(&self, environment: &EnvironmentLight, seed: u32) -> (LearnedSky, ChainCounts) {
+        let found: Vec<(Looks, ChainCounts)> = places(self.view.window.film)
             .par_chunks(CHUNK)
             .enumerate()
             .map_init(
                 || self.workspace(None),
                 |work, (chunk, pixels)| {
                     let mut looks = Looks::default();
-                    self.sample(pixels, 0..1, seed, work, |found, _| {
+                    if self.control.is_cancelled() {
+                        return (looks, ChainCounts::default());
+                    }
+                    let mut chains = self.sample(pixels, 0..1, seed, work, |found, _| {
                         for end in found.ends() {
                             let number = (chunk * CHUNK + looks.points.len()) as u32;
                             looks.points.push(end.geometry.position);
@@ -61,16 +65,18 @@ impl Tracer<'_, '_> {
                             );
                         }
                     });
-                    looks
+                    chains.shadow_rays += looks.rays.len() as u64;
+                    (looks, chains)
                 },
             )
             .collect();
-        let mut all = Looks::default();
-        for mut looks in found {
+        let (mut all, mut chains) = (Looks::default(), ChainCounts::default());
+        for (mut looks, traced) in found {
+            chains += traced;
             all.points.append(&mut looks.points);
             all.rays.append(&mut looks.rays);
         }
-        LearnedSky::new(environment, &all)
+        (LearnedSky::new(environment, &all), chains)
     }
 
     /// Traces rays from a point with the given shading and geometric normal to some of the tiles, point by point to

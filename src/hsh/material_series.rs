@@ -77,8 +77,7 @@ impl MaterialSeries {
     /// Projects the materials of a scene. Materials whose lobes differ only by a factor share one table.
     pub fn new(scene: &Scene, materials: &Materials, settings: &SeriesSettings) -> MaterialSeries {
         let quadrature = Quadrature::standard();
-        let averages: Vec<Bsdf> =
-            (0..materials.count()).map(|i| materials.average(scene, MaterialId(i as u32))).collect();
+        let averages: Vec<Bsdf> = materials.averages(scene).collect();
         // One lobe of each kind, and for each material the slots and kinds of its own.
         let mut kinds: Vec<&RoughLobe> = Vec::new();
         let mut used: Vec<Vec<LobeUse>> = Vec::with_capacity(averages.len());

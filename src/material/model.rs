@@ -124,6 +124,11 @@ impl Materials {
         Bsdf { model, base: colours.base, scales: colours.scales }
     }
 
+    /// Returns all materials in order, each with every texture replaced by its mean.
+    pub fn averages(&self, scene: &Scene) -> impl Iterator<Item = Bsdf<'_>> {
+        (0..self.count() as u32).map(|id| self.average(scene, MaterialId(id)))
+    }
+
     /// Returns the material with every texture replaced by its mean.
     pub fn average(&self, scene: &Scene, id: MaterialId) -> Bsdf<'_> {
         let model = &self.models[id.0 as usize];

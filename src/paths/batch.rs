@@ -56,8 +56,8 @@ impl Default for ScatteredEdges {
 /// The light that a batch finds along its paths.
 pub trait Reach<'w> {
     /// True if paths end at the first surface that scatters by lobes which a chain does not follow: of the light that
-    /// reaches it, only that is found which comes from emitters, by light samples and by one more edge, or by a delta
-    /// lobe of the surface that this edge meets, from where the path is of full length: such light comes along no
+    /// reaches it, only that is found which comes from emitters, by light samples and by one more edge, or by a
+    /// specular lobe of the surface that this edge meets, from where the path is of full length: such light comes along no
     /// straight segment from a light or a virtual light. False for paths of full length from the eye.
     const ENDS: bool;
 

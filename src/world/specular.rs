@@ -1,7 +1,7 @@
 //! Surfaces with specular lobes: delta lobes, of mirrors and glass, and those too sharp to pass for diffuse. Straight
 //! segments between surfaces and virtual lights do not carry the light that these send on.
 
-use crate::material::Materials;
+use crate::material::{Bsdf, Materials};
 use crate::math::{LANES, U32x16, Vec3x16, mask_of};
 use crate::scene::{Mesh, Scene};
 use glam::Vec3;
@@ -26,7 +26,9 @@ pub struct Specular {
 impl Specular {
     /// Finds them.
     pub fn new(scene: &Scene, materials: &Materials) -> Specular {
-        let average = |mesh: &Mesh| materials.average(scene, mesh.material);
+        // By material, since a mean is taken over all texels.
+        let averages: Vec<Bsdf> = materials.averages(scene).collect();
+        let average = |mesh: &Mesh| &averages[mesh.material.0 as usize];
         let by_delta = |mesh: &Mesh| average(mesh).bends_light();
         let bends =
             |mesh: &Mesh| by_delta(mesh) || average(mesh).is_glossy() || average(mesh).is_of_mean_roughness();

@@ -26,18 +26,16 @@ fn two_parts() -> EnvironmentMap {
 fn density_integrates_to_one_and_estimates_the_mean() {
     let light = EnvironmentLight::new(&Environment::Map(map())).unwrap();
     let n = 1 << 18;
-    let (mut mass, mut uniform_mean, mut sampled_mean, mut strays) = (0.0f64, 0.0f64, 0.0f64, 0);
+    let (mut mass, mut uniform_mean, mut sampled_mean) = (0.0f64, 0.0f64, 0.0f64);
     for i in 0..n {
         let u = owen_sobol_2d(i, 3);
         let d = uniform_sphere(u);
         mass += light.radiance_pdf(d).1 as f64 * 4.0 * std::f64::consts::PI;
         uniform_mean += luminance(light.radiance(d)) as f64;
         let s = light.sample(u).unwrap();
-        strays += u32::from((light.radiance(s.direction) - s.radiance).length() > 1e-2 * s.radiance.length());
+        assert!((light.radiance(s.direction) - s.radiance).length() < 1e-2 * s.radiance.length());
         sampled_mean += (luminance(s.radiance) / s.pdf) as f64 / (4.0 * std::f64::consts::PI);
     }
-    // Rounding moves directions next to a pole round it.
-    assert!(strays < n / 10_000, "{strays}");
     let n = n as f64;
     assert!((mass / n - 1.0).abs() < 0.01, "{}", mass / n);
     assert!((uniform_mean / sampled_mean - 1.0).abs() < 0.01);
