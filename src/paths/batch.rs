@@ -57,8 +57,8 @@ impl Default for ScatteredEdges {
 pub trait Reach<'w> {
     /// True if paths end at the first surface that scatters by lobes which a chain does not follow: of the light that
     /// reaches it, only that is found which comes from emitters, by light samples and by one more edge, or by a
-    /// specular lobe of the surface that this edge meets, from where the path is of full length: such light comes along no
-    /// straight segment from a light or a virtual light. False for paths of full length from the eye.
+    /// specular lobe of the surface that this edge meets, from where the path is of full length: such light comes along
+    /// no straight segment from a light or a virtual light. False for paths of full length from the eye.
     const ENDS: bool;
 
     /// True if of the light that reaches ends only that by specular lobes is wanted, and none that chains find.
