@@ -6,6 +6,7 @@ use super::method_args::MethodArgs;
 use super::plan_args::{PlanArgs, Quality};
 use super::values::{Bytes, Crop, ProgressMode, Resolution, feature};
 use crate::film::Exposure;
+use crate::scene::formats::LoadOptions;
 use crate::session::Feature;
 use crate::walk::{FileNames, FrameList, KeepLimits};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
@@ -90,9 +91,35 @@ pub struct PictureArgs {
     /// How progress is told on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     pub progress: ProgressMode,
-    /// Fail on anything in the scene that is not modelled, instead of warning
+    /// Reading of the scene.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+}
+
+/// Options of reading a scene.
+#[derive(Clone, Debug, Default, Args)]
+pub struct ReadingArgs {
+    /// Camera of the scene, by its number, counted from 1, or its name [default: the first]
+    #[arg(long, value_name = "N|NAME")]
+    camera: Option<String>,
+    /// Value of `$NAME` in a Mitsuba scene, in place of its <default>; may be given again
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
+    define: Vec<(String, String)>,
+    /// Fail on anything in the scene that is not modelled, and on a black picture, instead of warning
     #[arg(long)]
     pub strict: bool,
+}
+
+impl ReadingArgs {
+    /// The options of the scene's reader.
+    pub fn options(self) -> LoadOptions {
+        LoadOptions { strict: self.strict, camera: self.camera, parameters: self.define }
+    }
+}
+
+fn definition(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE")?;
+    if name.is_empty() { Err("the name is empty".into()) } else { Ok((name.to_owned(), value.to_owned())) }
 }
 
 /// Options of `walk`.
@@ -240,9 +267,9 @@ pub struct InfoArgs {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
-    /// Fail on anything in the scene that is not modelled, instead of warning
-    #[arg(long)]
-    pub strict: bool,
+    /// Reading of the scene.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
 }
 
 /// Options of `compare`.

@@ -6,6 +6,7 @@ use super::{files, scene, study, talk, threads};
 use crate::bench::export::{WRITERS, terminal};
 use crate::bench::{Benchmark, Context, Kind, Settings};
 use crate::film::atomic;
+use crate::scene::formats::LoadOptions;
 use anyhow::anyhow;
 
 /// Runs the command.
@@ -43,7 +44,11 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
         seconds: args.seconds.unwrap_or(defaults.seconds),
     };
     let pool = threads::pool(settings.threads)?;
-    let session = args.scenes.first().map(|path| pool.install(|| scene::open(path, false))).transpose()?;
+    let session = args
+        .scenes
+        .first()
+        .map(|path| pool.install(|| scene::open(path, &LoadOptions::default())))
+        .transpose()?;
     let report = pool.install(|| {
         let session = session.as_ref().map(|(session, _)| session);
         let context = Context { session, settings, say: &|what| talk::note(what) };

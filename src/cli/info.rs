@@ -10,7 +10,7 @@ use std::fmt::Write;
 
 /// Runs the command.
 pub fn run(args: InfoArgs) -> Result<(), Failure> {
-    let loaded = scene::read(&args.scene, args.strict)?;
+    let loaded = scene::read(&args.scene, &args.reading.options())?;
     let facts = facts(&loaded);
     let requires = Requirements::of(&loaded.scene);
     if args.json {

@@ -5,6 +5,7 @@ use super::exit::Failure;
 use super::values::ProgressMode;
 use super::{threads, verify};
 use crate::film::{Exposure, atomic};
+use crate::scene::formats::LoadOptions;
 use crate::session::Goal;
 use crate::stats::Stopwatch;
 use crate::view::Framing;
@@ -17,8 +18,8 @@ use std::path::{Path, PathBuf};
 pub struct RenderJob {
     /// Scene file.
     pub scene: PathBuf,
-    /// True if features that are not modelled are errors.
-    pub strict: bool,
+    /// Reading of the scene.
+    pub reading: LoadOptions,
     /// OpenEXR file; its folder has been found writable.
     pub output: PathBuf,
     /// PNG file and its exposure.
@@ -57,7 +58,7 @@ impl RenderJob {
         }
         Ok(RenderJob {
             scene: args.scene,
-            strict: args.picture.strict,
+            reading: args.picture.reading.options(),
             output: args.output,
             png: png.map(|path| (path, args.png.exposure)),
             goal,

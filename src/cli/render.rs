@@ -6,7 +6,7 @@ use super::job::RenderJob;
 use super::{interrupt, picture, progress, scene, talk, threads};
 use crate::film::Film;
 use crate::progress::Control;
-use crate::session::{Frame, FrameError, Remark};
+use crate::session::{BLACK, Frame, FrameError, Remark};
 use crate::stats::{Stage, Stopwatch, peak_resident_bytes};
 use crate::view::View;
 use anyhow::{Context, anyhow};
@@ -21,8 +21,9 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     let pool = threads::pool(job.threads)?;
 
-    let Frame { film, mut stats, mut facts, remarks, complete, unverified, .. } =
-        pool.install(|| render(&job, &control))?;
+    let frame = pool.install(|| render(&job, &control))?;
+    let is_black = frame.is_black();
+    let Frame { film, mut stats, mut facts, remarks, complete, unverified, .. } = frame;
     for remark in remarks {
         match remark {
             Remark::Note(text) => talk::note(&text),
@@ -51,6 +52,7 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
     }
     let output = job.output.display();
     match (complete, unverified) {
+        (true, _) if job.reading.strict && is_black => Err(Failure::render(anyhow!("{output}: {BLACK}"))),
         (true, false) => Ok(()),
         (true, true) => {
             Err(Failure::interrupted(anyhow!("interrupted; {output} is complete, its error not measured")))
@@ -61,7 +63,7 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
 
 /// The frame, with the times of opening its session and the facts that only the command knows.
 fn render(job: &RenderJob, control: &Control) -> Result<Frame, Failure> {
-    let (session, warnings) = scene::open(&job.scene, job.strict)?;
+    let (session, warnings) = scene::open(&job.scene, &job.reading)?;
     let view = View::new(&session.cameras, &job.framing).map_err(Failure::usage)?;
     if control.is_cancelled() {
         return Err(Failure::interrupted(FrameError::Interrupted));

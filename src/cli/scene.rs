@@ -8,8 +8,8 @@ use crate::stats::{Stage, Stats};
 use std::path::Path;
 
 /// Reads the scene at `path`.
-pub fn read(path: &Path, strict: bool) -> Result<Loaded, Failure> {
-    let loaded = load(path, &LoadOptions { strict }).map_err(Failure::input)?;
+pub fn read(path: &Path, options: &LoadOptions) -> Result<Loaded, Failure> {
+    let loaded = load(path, options).map_err(Failure::input)?;
     for (warning, times) in grouped(&loaded.warnings) {
         let more = if times > 1 { format!(" (and {} times more)", times - 1) } else { String::new() };
         match warning.level {
@@ -24,9 +24,9 @@ pub fn read(path: &Path, strict: bool) -> Result<Loaded, Failure> {
 }
 
 /// Opens a session on the scene at `path`; returns it and the number of warnings.
-pub fn open(path: &Path, strict: bool) -> Result<(Session, usize), Failure> {
+pub fn open(path: &Path, options: &LoadOptions) -> Result<(Session, usize), Failure> {
     let mut stats = Stats::new();
-    let loaded = stats.time(Stage::Load, || read(path, strict))?;
+    let loaded = stats.time(Stage::Load, || read(path, options))?;
     let warnings = loaded.warnings.len();
     let session = Session::of(loaded, path, stats).map_err(|error| match error {
         OpenError::Scene(_) => Failure::input(error),

@@ -7,7 +7,7 @@ use super::walk_report::Report;
 use super::{interrupt, picture, progress, scene, talk, threads};
 use crate::film::{Exposure, Film, Image};
 use crate::progress::Control;
-use crate::session::{Frame, FrameError, Remark, Session};
+use crate::session::{BLACK, Frame, FrameError, Remark, Session};
 use crate::stats::{Stage, Stopwatch};
 use crate::view::View;
 use crate::walk::{Walk, exposure};
@@ -28,7 +28,7 @@ pub fn run(args: WalkArgs) -> Result<(), Failure> {
 
 /// Renders the frames that are not there yet, and says what came of it.
 fn walk(job: &WalkJob, control: &Control) -> Result<(), Failure> {
-    let (session, warnings) = scene::open(&job.scene, job.strict)?;
+    let (session, warnings) = scene::open(&job.scene, &job.reading)?;
     let numbers = job.numbers(&session)?;
     let hash = job.hash(&session);
     let mut report = Report::new(job.stats);
@@ -81,6 +81,7 @@ fn frames(
             return Err(interrupted(number));
         }
         say_once(&frame, number, &mut said);
+        let is_black = frame.is_black();
         frame.film.metadata.set("frame", number as f64);
         frame.film.metadata.set("job", hash);
         let film = mem::replace(&mut frame.film, Film::new(Image::new(0, 0)));
@@ -96,6 +97,9 @@ fn frames(
         );
         talk::note(&format!("frame {number}: {line}"));
         report.add(number, &frame)?;
+        if job.reading.strict && is_black {
+            return Err(Failure::render(anyhow!("frame {number}: {BLACK}")));
+        }
     }
     Ok(())
 }

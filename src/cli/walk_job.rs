@@ -7,6 +7,7 @@ use super::plan_args::PlanArgs;
 use super::threads;
 use super::values::ProgressMode;
 use crate::film::{Exposure, ExrFile, Metadata};
+use crate::scene::formats::LoadOptions;
 use crate::scene::formats::fnv1a;
 use crate::session::{Goal, Session, Wanted};
 use crate::view::Framing;
@@ -20,8 +21,8 @@ use std::path::PathBuf;
 pub struct WalkJob {
     /// Scene file.
     pub scene: PathBuf,
-    /// True if features that are not modelled are errors.
-    pub strict: bool,
+    /// Reading of the scene.
+    pub reading: LoadOptions,
     /// Frames; `None` for all of the path.
     pub frames: Option<FrameList>,
     /// True if frames whose files are there are left out.
@@ -62,7 +63,7 @@ impl WalkJob {
         let bytes = args.memory_limit.map_or(defaults.bytes, |bytes| bytes.0);
         let job = WalkJob {
             scene: args.scene,
-            strict: args.picture.strict,
+            reading: args.picture.reading.options(),
             frames: args.frames,
             resume: args.resume,
             exposure: (!args.no_png).then_some(args.exposure),

@@ -56,6 +56,12 @@ impl Scene {
         wanted.or(self.max_depth).unwrap_or(u32::MAX)
     }
 
+    /// True if nothing in the scene gives light.
+    pub fn is_dark(&self) -> bool {
+        let emits = self.meshes.iter().any(|mesh| mesh.emission.is_some());
+        !emits && self.lights.is_empty() && self.environment.is_none()
+    }
+
     /// True if light from single points or directions may come to surfaces through solid glass, by ways that no
     /// sampling finds.
     pub fn focuses_point_lights(&self) -> bool {

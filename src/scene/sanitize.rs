@@ -1,14 +1,11 @@
 //! Removal and repair of invalid scene content before anything else uses it, with one report.
 //!
 //! Triangles that no ray could meaningfully hit are dropped, invalid normals are replaced by the geometric
-//! ones, lights without power are dropped. Reflectances that would create energy, and negative light, are
-//! errors: no picture could be computed from them.
-//!
-//! Deviations: texels that would reflect more than they receive are clamped, not rejected, since filtered and
-//! compressed pictures overshoot.
+//! ones, lights without power are dropped, reflectances that would create energy are clamped. Negative light is an
+//! error: no picture could be computed from it.
 
 use super::draft::{Draft, DraftMesh};
-use super::formats::error::{Place, SceneError};
+use super::formats::error::{Log, Place, SceneError};
 use super::material::{Fresnel, Lobe, Material, Reflectance, Roughness};
 use super::{DeltaLight, Environment, Texture, recentre};
 use crate::math::Rgb;
@@ -79,7 +76,7 @@ impl fmt::Display for SanitizeReport {
 }
 
 /// Cleans the draft; returns the report and the centre to recentre about.
-pub(crate) fn sanitize(draft: &mut Draft) -> Result<(SanitizeReport, DVec3), SceneError> {
+pub(crate) fn sanitize(draft: &mut Draft, log: &mut Log) -> Result<(SanitizeReport, DVec3), SceneError> {
     let mut report = SanitizeReport::default();
     for mesh in &mut draft.meshes {
         drop_unusable(mesh, &mut report);
@@ -93,14 +90,20 @@ pub(crate) fn sanitize(draft: &mut Draft) -> Result<(SanitizeReport, DVec3), Sce
         report.bad_uvs += bad_uvs.map(|uv| *uv = Vec2::ZERO).count();
         report.turned += mesh.turned;
     }
+    for mesh in draft.meshes.iter().filter(|mesh| mesh.triangles.is_empty() && mesh.emission.is_some()) {
+        let what = format!("the emitter \"{}\" has no triangle with an area", mesh.name);
+        log.warn(&main_file(&draft.sources), what, "it gives no light; repair its mesh or transform")?;
+    }
     let before = draft.meshes.len();
     draft.meshes.retain(|mesh| !mesh.triangles.is_empty());
     report.empty_meshes = before - draft.meshes.len();
     let place = |i: usize| draft.material_places.get(i).cloned().unwrap_or_else(|| main_file(&draft.sources));
     for (i, material) in draft.materials.iter_mut().enumerate() {
-        check_material(material, &mut draft.textures, &place(i), &mut report)?;
+        let checked = check_material(material, &mut draft.textures, &place(i), &mut report, log);
+        log.part(checked);
     }
-    check_lights(draft, &mut report)?;
+    let checked = check_lights(draft, &mut report);
+    log.conclude(checked)?;
     Ok((report, centre))
 }
 
@@ -194,6 +197,7 @@ fn check_material(
     textures: &mut [Texture],
     place: &Place,
     report: &mut SanitizeReport,
+    log: &mut Log,
 ) -> Result<(), SceneError> {
     let name = material.name.clone();
     let wrong = |what: String, remedy: &str| Err(place.wrong(format!("material \"{name}\": {what}"), remedy));
@@ -232,7 +236,8 @@ fn check_material(
                     );
                 }
                 if albedo.max_element() > 1.0 + ALBEDO_SLACK {
-                    return wrong(format!("the reflectance {albedo} exceeds 1"), "give 0 to 1");
+                    let what = format!("material \"{name}\": the reflectance {albedo} exceeds 1");
+                    log.warn(place, what, "it is clamped to 1")?;
                 }
                 report.clamped += usize::from(albedo.max_element() > 1.0);
                 *albedo = albedo.min(Rgb::ONE);

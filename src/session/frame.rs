@@ -10,6 +10,10 @@ use crate::view::View;
 use glam::DVec3;
 use serde_json::Value;
 
+/// Warning of a black picture, with its remedies.
+pub const BLACK: &str = "the picture is black: no light reaches what the camera sees; check the camera's place and \
+                         direction, and that lights are on the near side of walls and face the scene";
+
 /// A rendered frame.
 pub struct Frame {
     /// The picture, its layers and metadata.
@@ -38,7 +42,7 @@ pub enum Remark {
 }
 
 impl Frame {
-    /// True if the picture is black.
+    /// True if the picture is black everywhere.
     pub fn is_black(&self) -> bool {
         self.film.color.pixels.iter().all(|p| *p == Rgb::ZERO)
     }

@@ -20,7 +20,7 @@ mod render;
 mod report;
 
 pub(crate) use finish::Finish;
-pub use frame::{Frame, Remark};
+pub use frame::{BLACK, Frame, Remark};
 pub use goal::{Goal, Wanted};
 pub use render::FrameError;
 

@@ -6,6 +6,7 @@ use super::goal::{Goal, Wanted};
 use super::{Session, report};
 use crate::eye::DROPPED_BRANCHES;
 use crate::film::Image;
+use crate::math::Rgb;
 use crate::method::{KeptRecords, LightStore, Method, Output};
 use crate::plan::{self, LATE, Ladder};
 use crate::progress::Control;
@@ -91,6 +92,11 @@ impl Session {
         }
 
         let complete = output.complete;
+        let black = || output.color.pixels.iter().all(|pixel| *pixel == Rgb::ZERO);
+        // Of a scene without light, people have been warned.
+        if complete && !self.world.scene.is_dark() && black() {
+            remarks.push(Remark::Warning(frame::BLACK.to_owned()));
+        }
         let nonfinite_samples = output.nonfinite;
         let denoised_by = finish.denoised_by().filter(|_| complete);
         let (mut film, nonfinite_channels) =

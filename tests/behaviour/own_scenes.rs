@@ -11,7 +11,8 @@ use std::path::Path;
 
 fn world(name: &str) -> (World, Cameras) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).with_extension("toml");
-    let loaded = load(&path, &LoadOptions { strict: true }).unwrap_or_else(|e| panic!("{e}"));
+    let loaded = load(&path, &LoadOptions { strict: true, ..LoadOptions::default() })
+        .unwrap_or_else(|e| panic!("{e}"));
     assert!(loaded.warnings.is_empty(), "{name}: {:?}", loaded.warnings);
     (World::new(loaded.scene, 2).unwrap_or_else(|e| panic!("{e}")), loaded.cameras)
 }

@@ -43,7 +43,8 @@ fn valid_scenes_load_and_are_sound() {
     let scenes: Vec<PathBuf> = corpus("valid").into_iter().filter(|p| is_scene(p)).collect();
     assert!(scenes.len() >= 4);
     for path in scenes {
-        let loaded = load(&path, &LoadOptions { strict: true }).unwrap_or_else(|e| panic!("{e}"));
+        let loaded = load(&path, &LoadOptions { strict: true, ..LoadOptions::default() })
+            .unwrap_or_else(|e| panic!("{e}"));
         assert_sound(&loaded);
         assert!(
             loaded.repairs.is_clean() || loaded.repairs.turned > 0,

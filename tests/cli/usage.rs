@@ -79,6 +79,26 @@ fn scenes_that_are_missing_unknown_or_broken_end_with_3_and_name_the_file() {
 }
 
 #[test]
+fn a_black_picture_is_warned_of_and_an_error_under_strict() {
+    let sandbox = Sandbox::new();
+    // The lamp shines away from all that is seen.
+    let text = "<scene version=\"3.0.0\"><sensor type=\"perspective\"/><shape type=\"rectangle\">\
+        <emitter type=\"area\"/><transform name=\"to_world\"><rotate x=\"1\" angle=\"90\"/><translate y=\"9\"/>\
+        </transform></shape></scene>";
+    std::fs::write(sandbox.path("black.xml"), text).unwrap();
+    let arguments = ["render", "black.xml", "-o", "a.exr", "--spp", "1", "--resolution", "4x4"];
+    let warned = sandbox.run(&arguments).expect(0);
+    assert!(warned.stderr.contains("warning: the picture is black"), "{}", warned.stderr);
+    let strict = sandbox.run(&[&arguments[..], &["--strict"]].concat()).expect(1);
+    assert!(strict.stderr.contains("error: a.exr: the picture is black"), "{}", strict.stderr);
+    let dark = text.replace("<emitter type=\"area\"/>", "");
+    std::fs::write(sandbox.path("black.xml"), dark).unwrap();
+    let warned = sandbox.run(&arguments).expect(0);
+    assert!(warned.stderr.contains("no light that is modelled"), "{}", warned.stderr);
+    sandbox.run(&[&arguments[..], &["--strict"]].concat()).expect(3);
+}
+
+#[test]
 fn strict_turns_a_warning_into_an_error() {
     let sandbox = Sandbox::new();
     let text = super::ROOM.replace("type=\"diffuse\"", "type=\"velvetish\"");

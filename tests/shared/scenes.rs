@@ -34,7 +34,7 @@ const EXPECTED: [Expected; 7] = [
 fn every_shared_scene_loads_whole() {
     let Some(folder) = shared_scenes() else { return };
     for e in EXPECTED {
-        let loaded = load(&folder.join(e.file), &LoadOptions { strict: true });
+        let loaded = load(&folder.join(e.file), &LoadOptions { strict: true, ..LoadOptions::default() });
         let Loaded { scene, cameras, warnings, repairs, .. } =
             loaded.unwrap_or_else(|error| panic!("{error}"));
         let triangles: usize = scene.meshes.iter().map(|m| m.triangles.len()).sum();

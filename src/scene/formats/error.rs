@@ -1,5 +1,6 @@
 //! Errors in scenes, and warnings about parts that are not modelled: both name the file and the line.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -80,14 +81,14 @@ impl fmt::Display for Warning {
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// A file that cannot be opened or read.
-    #[error("{}: cannot read {}: {source}; check the name and its permissions", .from, .path.display())]
+    #[error("{}: cannot read {}: {error}; check the name and its permissions", .from, .path.display())]
     Read {
         /// The file.
         path: PathBuf,
         /// Place that refers to it.
         from: Place,
-        /// Error of the operating system.
-        source: std::io::Error,
+        /// Error of the operating system; no `source`, since the message holds it.
+        error: std::io::Error,
     },
     /// A file whose extension is that of no supported format.
     #[error("{}: unknown kind of scene; name a .toml (native) or .xml (Mitsuba) file", .0.display())]
@@ -138,28 +139,72 @@ pub enum SceneError {
         /// Message of the decoder.
         what: String,
     },
+    /// Errors of several parts of a scene, the first of them in the order of the description.
+    #[error("{}{}", lines(.first), more(.left_out))]
+    Several {
+        /// The first [`MAX_ERRORS`].
+        first: Vec<SceneError>,
+        /// Number of those after them.
+        left_out: usize,
+    },
     /// A warning, under `strict`.
     #[error("{0} (an error because of strict reading); remove it, or read without strict")]
     Strict(Warning),
 }
 
+/// Maximum number of errors that are told at once.
+const MAX_ERRORS: usize = 10;
+
+fn lines(errors: &[SceneError]) -> String {
+    errors.iter().map(SceneError::to_string).collect::<Vec<_>>().join("\n")
+}
+
+fn more(left_out: &usize) -> String {
+    if *left_out > 0 { format!("\nand {left_out} errors more") } else { String::new() }
+}
+
 impl SceneError {
+    /// Returns the error that stands for all of `errors`, each once.
+    pub(crate) fn all(errors: Vec<SceneError>) -> SceneError {
+        let mut said = BTreeSet::new();
+        let mut first: Vec<SceneError> =
+            errors.into_iter().filter(|error| said.insert(error.to_string())).collect();
+        let left_out = first.len().saturating_sub(MAX_ERRORS);
+        first.truncate(MAX_ERRORS);
+        if first.len() == 1 { first.remove(0) } else { SceneError::Several { first, left_out } }
+    }
+
     /// Returns the error of a wrong mesh file.
     pub(crate) fn mesh(place: Place, what: impl Into<String>) -> SceneError {
         SceneError::Mesh { place, what: what.into() }
     }
 }
 
-/// Collects warnings, or turns the first into an error under `strict`.
+/// Collects warnings, or turns them into errors under `strict`, and the errors of independent parts of a description.
 #[derive(Debug, Default)]
 pub(crate) struct Log {
     strict: bool,
     warnings: Vec<Warning>,
+    errors: Vec<SceneError>,
 }
 
 impl Log {
     pub fn new(strict: bool) -> Log {
-        Log { strict, warnings: Vec::new() }
+        Log { strict, ..Log::default() }
+    }
+
+    /// Returns the value of a part of the description, or keeps its error while others are read.
+    pub fn part<T>(&mut self, outcome: Result<T, SceneError>) -> Option<T> {
+        outcome.map_err(|error| self.errors.push(error)).ok()
+    }
+
+    /// Returns the value of the last part, or the errors of all parts if there are any.
+    pub fn conclude<T>(&mut self, last: Result<T, SceneError>) -> Result<T, SceneError> {
+        let mut errors = std::mem::take(&mut self.errors);
+        match last.map_err(|error| errors.push(error)) {
+            Ok(value) if errors.is_empty() => Ok(value),
+            _ => Err(SceneError::all(errors)),
+        }
     }
 
     /// Adds a warning about a change of the picture.
@@ -201,5 +246,27 @@ impl Log {
 
     pub fn into_warnings(self) -> Vec<Warning> {
         self.warnings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_parts_are_told_together_each_once_and_no_more_than_ten() {
+        let mut log = Log::new(false);
+        let place = |line| Place::line(Path::new("s.xml"), line);
+        assert_eq!(log.part(Ok(7)), Some(7));
+        assert!(log.conclude(Ok(())).is_ok());
+        log.part::<()>(Err(place(1).wrong("a", "b")));
+        assert_eq!(log.conclude(Ok(())).unwrap_err().to_string(), "s.xml:1: a; b");
+        assert!(log.conclude(Ok(())).is_ok());
+        for line in (1..=12).flat_map(|line| [line, line]) {
+            log.part::<()>(Err(place(line).wrong("a", "b")));
+        }
+        let text = log.conclude(Ok(())).unwrap_err().to_string();
+        assert_eq!(text.lines().count(), 11, "{text}");
+        assert!(text.contains("s.xml:10: a; b\nand 2 errors more"), "{text}");
     }
 }

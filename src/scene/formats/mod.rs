@@ -2,7 +2,7 @@
 //!
 //! A reader turns its text into a `Plan`, which opens meshes and pictures in parallel; the result is
 //! sanitised and recentred. Features that the model lacks are replaced, with a [`Warning`] for each
-//! replacement; under [`LoadOptions::strict`] the first of them is an error. Whatever the bytes, reading ends
+//! replacement; under [`LoadOptions::strict`] they are errors. Whatever the bytes, reading ends
 //! in a scene or a [`SceneError`].
 
 mod check;
@@ -24,10 +24,39 @@ pub(crate) use mesh::smooth_normals;
 pub(crate) use plan::fnv1a;
 
 /// Options for reading a scene.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
-    /// True if the first [`Level::Warning`] is an error.
+    /// True if warnings of [`Level::Warning`] are errors.
     pub strict: bool,
+    /// Camera of the scene by its number, counted from 1, or its name, in place of the first.
+    pub camera: Option<String>,
+    /// Names and values of a Mitsuba scene's `$parameters`, in place of its defaults.
+    pub parameters: Vec<(String, String)>,
+}
+
+impl LoadOptions {
+    /// Rejects options that only Mitsuba scenes have.
+    fn only_xml(&self, path: &Path) -> Result<(), SceneError> {
+        let remedy =
+            "leave --camera and --define out; they choose among what a Mitsuba scene (.xml) declares";
+        match (&self.camera, self.parameters.first()) {
+            (None, None) => Ok(()),
+            (Some(camera), _) => {
+                Err(Place::file(path).wrong(format!("there is no choice of a camera \"{camera}\""), remedy))
+            }
+            (_, Some((name, _))) => {
+                Err(Place::file(path).wrong(format!("there is no parameter \"{name}\""), remedy))
+            }
+        }
+    }
+
+    /// Hash of a scene whose files have the hash `files`, with these options.
+    fn hash(&self, files: u64) -> u64 {
+        if self.camera.is_none() && self.parameters.is_empty() {
+            return files;
+        }
+        fnv1a(format!("{files} {:?} {:?}", self.camera, self.parameters).as_bytes())
+    }
 }
 
 /// A scene, its cameras, and reports of reading it.
@@ -52,14 +81,22 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let mut log = Log::new(options.strict);
     let plan = match extension.as_deref() {
-        Some("toml") => native::read(path, &mut log)?,
-        Some("xml") => mitsuba::read(path, &mut log)?,
+        Some("toml") => {
+            options.only_xml(path)?;
+            native::read(path, &mut log)?
+        }
+        Some("xml") => mitsuba::read(path, options, &mut log)?,
         _ => return Err(SceneError::UnknownFormat(path.to_owned())),
     };
     let generator = plan.generator.clone();
     let (mut draft, hash) = plan.realise()?;
-    let (repairs, centre) = sanitize::sanitize(&mut draft)?;
+    let hash = options.hash(hash);
+    let (repairs, centre) = sanitize::sanitize(&mut draft, &mut log)?;
     let (scene, cameras) = recentre::recentre(draft, centre);
+    if scene.is_dark() {
+        let fallback = "the picture will be black; add an emitter, a light or an environment";
+        log.warn(&Place::file(path), "the scene has no light that is modelled", fallback)?;
+    }
     if scene.focuses_point_lights() {
         let what = "light of point, spot and directional lights that comes through solid glass is not found";
         let fallback =

@@ -1,7 +1,7 @@
 //! A parsed scene description, before any mesh or picture is opened; [`Plan::realise`] opens them all.
 //!
 //! Both readers end in a [`Plan`]. Files are read in parallel, each once; results are in the order of the
-//! description, and of several errors the first in that order is reported.
+//! description, and so are errors.
 
 use super::error::{Place, SceneError};
 use super::mesh::{self, Placement, RawMesh};
@@ -139,9 +139,15 @@ impl Plan {
         let mut hashes: Vec<u64> = self.sources.iter().map(|s| s.1).collect();
         let mut meshes: Vec<Vec<DraftMesh>> = vec![Vec::new(); self.contents.meshes.len()];
         let mut pictures: Vec<Option<Picture>> = vec![None; self.contents.textures.len()];
-        let mut sky = None;
+        let (mut sky, mut errors) = (None, Vec::new());
         for ((path, _), outcome) in files.iter().zip(outcomes) {
-            let (hash, done) = outcome?;
+            let (hash, done) = match outcome {
+                Ok(made) => made,
+                Err(error) => {
+                    errors.push(error);
+                    continue;
+                }
+            };
             sources.push(path.to_path_buf());
             hashes.push(hash);
             for done in done {
@@ -151,6 +157,9 @@ impl Plan {
                     Done::Environment(p) => sky = Some(p),
                 }
             }
+        }
+        if !errors.is_empty() {
+            return Err(SceneError::all(errors));
         }
         let contents = self.contents;
         for (plan, made) in contents.meshes.iter().zip(&mut meshes) {
@@ -218,7 +227,7 @@ impl Contents {
 
 /// Reads a file that `from` refers to.
 pub(crate) fn read_file(path: &Path, from: &Place) -> Result<Vec<u8>, SceneError> {
-    let fail = |source| SceneError::Read { path: path.to_owned(), from: from.clone(), source };
+    let fail = |error| SceneError::Read { path: path.to_owned(), from: from.clone(), error };
     std::fs::read(path).map_err(fail)
 }
 

@@ -5,6 +5,11 @@ use crate::scene::material::{Coat, Distribution, MaterialId};
 use crate::scene::mesh::Emission;
 use crate::scene::texture::{Filter, TextureId, Wrap};
 
+/// Sanitises, where warnings do not matter.
+fn sanitize(draft: &mut Draft) -> Result<(SanitizeReport, DVec3), SceneError> {
+    super::sanitize(draft, &mut Log::new(false))
+}
+
 fn grey() -> Material {
     let diffuse = Reflectance::Constant(Rgb::splat(0.5));
     Material { name: "grey".into(), diffuse, ..Material::default() }
@@ -97,12 +102,19 @@ fn bad_normals_become_geometric_and_bad_uvs_zero() {
 #[test]
 fn reflectances_must_not_create_energy() {
     let with = |diffuse: Rgb| Material { diffuse: Reflectance::Constant(diffuse), ..grey() };
-    for bad in
-        [Rgb::splat(1.1), Rgb::new(0.5, -0.1, 0.5), Rgb::new(0.5, f32::NAN, 0.5), Rgb::splat(f32::INFINITY)]
-    {
+    for bad in [Rgb::new(0.5, -0.1, 0.5), Rgb::new(0.5, f32::NAN, 0.5), Rgb::splat(f32::INFINITY)] {
         let message = sanitize(&mut draft(vec![], vec![with(bad)])).unwrap_err().to_string();
         assert!(message.contains("\"grey\"") && message.contains("give 0 to 1"), "{message}");
     }
+    let mut log = Log::new(false);
+    let mut d = draft(vec![], vec![with(Rgb::new(1.1, 0.5, 0.0))]);
+    super::sanitize(&mut d, &mut log).unwrap();
+    assert_eq!(d.materials[0].diffuse, Reflectance::Constant(Rgb::new(1.0, 0.5, 0.0)));
+    let warnings = log.into_warnings();
+    assert!(
+        warnings.len() == 1 && warnings[0].to_string().contains("exceeds 1; it is clamped"),
+        "{warnings:?}"
+    );
     let mut d = draft(vec![], vec![with(Rgb::new(1.0005, 1.0, 0.0))]);
     assert_eq!(sanitize(&mut d).unwrap().0.clamped, 1);
     assert_eq!(d.materials[0].diffuse, Reflectance::Constant(Rgb::new(1.0, 1.0, 0.0)));
@@ -169,4 +181,14 @@ fn lights_without_light_go_and_negative_light_is_an_error() {
     let mut d = draft(vec![], vec![]);
     d.lights = vec![point(Rgb::splat(f32::NAN))];
     assert!(sanitize(&mut d).is_err());
+}
+
+#[test]
+fn an_emitter_without_area_is_missed() {
+    let emission = Some(Emission { radiance: Rgb::ONE, texture: None, two_sided: false });
+    let flat = DraftMesh { name: "lamp".into(), triangles: vec![[0, 1, 1]], emission, ..triangle_mesh() };
+    let mut log = Log::new(false);
+    super::sanitize(&mut draft(vec![flat], vec![grey()]), &mut log).unwrap();
+    let warnings = log.into_warnings();
+    assert!(warnings.len() == 1 && warnings[0].to_string().contains("\"lamp\""), "{warnings:?}");
 }

@@ -16,16 +16,18 @@ mod texture;
 mod tree;
 mod value;
 
+use super::LoadOptions;
 use super::error::{Log, SceneError};
 use super::plan::{Contents, Plan, folder_of, stem_of};
 use crate::scene::material::MaterialId;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
-use tree::{Document, Object};
+use tree::{Child, Document, Object};
 
 /// Reads the description at `path`.
-pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
-    let document = Document::read(path)?;
+pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<Plan, SceneError> {
+    let document = Document::read(path, &options.parameters, log);
+    let document = log.conclude(document)?;
     let folder = folder_of(path).to_owned();
     let mut converter = Converter {
         document: &document,
@@ -35,9 +37,10 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
         material_of: Vec::new(),
         default_materials: [None; 2],
     };
-    converter.scene()?;
-    let (shot, max_depth) = converter.shot()?;
+    converter.scene();
+    let shot = converter.shot(options.camera.as_deref());
     let contents = converter.contents;
+    let (shot, max_depth) = log.conclude(shot)?;
     let stem = stem_of(path);
     let folder_name = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
     // Scene files are usually called scene.xml; then the folder's name is used.
@@ -57,19 +60,23 @@ struct Converter<'a> {
 }
 
 impl Converter<'_> {
-    fn scene(&mut self) -> Result<(), SceneError> {
+    fn scene(&mut self) {
         let document = self.document;
         for child in &document.root.children {
-            let object = document.object(child)?;
-            match object.tag.as_str() {
-                "shape" => self.shape(&object)?,
-                "emitter" => self.scene_emitter(&object)?,
-                // Sensors and integrators are read by `view`, the others where they are referred to.
-                "sensor" | "integrator" | "bsdf" | "texture" | "scene" => {}
-                tag => self.log.warn(&object.place, format!("<{tag}> is not modelled"), "it is ignored")?,
-            }
+            let converted = self.part(child);
+            self.log.part(converted);
         }
-        Ok(())
+    }
+
+    fn part(&mut self, child: &Child) -> Result<(), SceneError> {
+        let object = self.document.object(child)?;
+        match object.tag.as_str() {
+            "shape" => self.shape(&object),
+            "emitter" => self.scene_emitter(&object),
+            // Sensors and integrators are read by `shot`, the others where they are referred to.
+            "sensor" | "integrator" | "bsdf" | "texture" | "scene" => Ok(()),
+            tag => self.log.warn(&object.place, format!("<{tag}> is not modelled"), "it is ignored"),
+        }
     }
 
     /// Finds a file named by `object`: beside the main file, or beside the file that names it.

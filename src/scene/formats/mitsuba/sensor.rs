@@ -5,10 +5,11 @@ use super::tree::Object;
 use crate::scene::draft::{DraftCamera, Shot};
 use crate::scene::formats::error::{Place, SceneError};
 use glam::{DMat4, DVec3};
+use std::rc::Rc;
 
 impl Converter<'_> {
-    /// The camera with its film, and the longest path.
-    pub(super) fn shot(&mut self) -> Result<(Shot, Option<u32>), SceneError> {
+    /// The sensor `wanted` (a number from 1, or an id), else the first, with its film, and the longest path.
+    pub(super) fn shot(&mut self, wanted: Option<&str>) -> Result<(Shot, Option<u32>), SceneError> {
         let root = &self.document.root;
         let integrators = self.tagged(root, "integrator")?;
         let max_depth = match integrators.first() {
@@ -16,12 +17,10 @@ impl Converter<'_> {
             None => None,
         };
         let sensors = self.tagged(root, "sensor")?;
-        let Some(sensor) = sensors.first() else {
-            let remedy = "add <sensor type=\"perspective\"> with a to_world transform";
-            return Err(root.place.wrong("the scene has no sensor", remedy));
-        };
-        if let Some(second) = sensors.get(1) {
-            self.log.warn(&second.place, "there is more than one sensor", "the first is used")?;
+        let sensor = chosen(&sensors, wanted, &root.place)?;
+        if let (None, [_, second, ..]) = (wanted, &sensors[..]) {
+            let what = format!("there are {} sensors: {}", sensors.len(), names(&sensors));
+            self.log.note(&second.place, what, "the first is used; choose another with --camera");
         }
         match sensor.plugin.as_str() {
             "perspective" => {}
@@ -108,6 +107,34 @@ impl Converter<'_> {
         }
         Ok(resolution)
     }
+}
+
+fn chosen<'a>(
+    sensors: &'a [Rc<Object>],
+    wanted: Option<&str>,
+    place: &Place,
+) -> Result<&'a Rc<Object>, SceneError> {
+    if sensors.is_empty() {
+        let remedy = "add <sensor type=\"perspective\"> with a to_world transform";
+        return Err(place.wrong("the scene has no sensor", remedy));
+    }
+    let wanted = wanted.unwrap_or("1");
+    let number = wanted.parse().ok().and_then(|number: usize| sensors.get(number.checked_sub(1)?));
+    let named = || sensors.iter().find(|sensor| sensor.id.as_deref() == Some(wanted));
+    let missing = || {
+        let what = format!("there is no sensor \"{wanted}\"");
+        place.wrong(what, format!("give --camera a number from 1, or one of {}", names(sensors)))
+    };
+    number.or_else(named).ok_or_else(missing)
+}
+
+/// Numbers and ids of sensors.
+fn names(sensors: &[Rc<Object>]) -> String {
+    let name = |(i, sensor): (usize, &Rc<Object>)| match &sensor.id {
+        Some(id) => format!("{} ({id})", i + 1),
+        None => (i + 1).to_string(),
+    };
+    sensors.iter().enumerate().map(name).collect::<Vec<_>>().join(", ")
 }
 
 /// Horizontal field of view, radians.

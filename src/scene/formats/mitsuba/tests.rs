@@ -8,6 +8,9 @@ const SENSOR: &str = "<sensor type=\"perspective\"><float name=\"fov\" value=\"9
     <film type=\"hdrfilm\"><integer name=\"width\" value=\"8\"/><integer name=\"height\" value=\"4\"/>\
     <rfilter type=\"box\"/></film></sensor>\n";
 
+/// Light, so that reading does not warn of its lack.
+const SKY: &str = "<emitter type=\"constant\"/>";
+
 /// Loads a scene whose fourth line is the first of `body`, with the given files beside it.
 fn load_with(body: &str, files: &[(&str, &str)], strict: bool) -> Result<Loaded, String> {
     let folder = tempfile::tempdir().unwrap();
@@ -16,7 +19,7 @@ fn load_with(body: &str, files: &[(&str, &str)], strict: bool) -> Result<Loaded,
     }
     let path = folder.path().join("s.xml");
     fs::write(&path, format!("<scene version=\"3.0.0\">{SENSOR}\n{body}\n</scene>")).unwrap();
-    load(&path, &LoadOptions { strict }).map_err(|e| e.to_string())
+    load(&path, &LoadOptions { strict, ..LoadOptions::default() }).map_err(|e| e.to_string())
 }
 
 fn load_body(body: &str) -> Result<Loaded, String> {
@@ -24,7 +27,7 @@ fn load_body(body: &str) -> Result<Loaded, String> {
 }
 
 fn bsdf(text: &str) -> (Material, usize) {
-    let loaded = load_body(&format!("<shape type=\"rectangle\">{text}</shape>")).unwrap();
+    let loaded = load_body(&format!("{SKY}<shape type=\"rectangle\">{text}</shape>")).unwrap();
     (loaded.scene.materials[0].clone(), loaded.warnings.len())
 }
 
@@ -97,7 +100,7 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
         ("<bsdf type=\"roughconductor\"><float name=\"alpha_u\" value=\"0.1\"/><float name=\"alpha_v\" value=\"0.4\"/></bsdf>".into(), "anisotropic"),
     ];
     for (text, what) in cases {
-        let body = format!("<shape type=\"rectangle\">\n{text}</shape>");
+        let body = format!("{SKY}<shape type=\"rectangle\">\n{text}</shape>");
         let loaded = load_body(&body).unwrap();
         let [warning] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
         assert!(warning.to_string().contains(what) && warning.place.line == Some(5), "{warning}");
@@ -127,10 +130,6 @@ fn errors_name_the_line_and_a_remedy() {
         (
             "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"a b c\"/></bsdf></shape>",
             "a b c",
-        ),
-        (
-            "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"2\"/></bsdf></shape>",
-            "exceeds 1",
         ),
         (
             "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><string name=\"reflectance\" value=\"red\"/></bsdf></shape>",
@@ -168,7 +167,7 @@ fn errors_name_the_line_and_a_remedy() {
 
 #[test]
 fn defaults_includes_and_references_are_resolved() {
-    let body = "<default name=\"grey\" value=\"0.25\"/><include filename=\"mats.xml\"/>\
+    let body = "<emitter type=\"constant\"/><default name=\"grey\" value=\"0.25\"/><include filename=\"mats.xml\"/>\
         <shape type=\"cube\"><ref id=\"m\"/></shape><shape type=\"rectangle\"><ref id=\"m\"/></shape>";
     let mats = "<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"m\"><rgb name=\"reflectance\" value=\"$grey\"/></bsdf></scene>";
     let loaded = load_with(body, &[("mats.xml", mats)], true).unwrap();
@@ -236,4 +235,87 @@ fn the_sensor_takes_every_axis_of_the_field_of_view() {
         assert!((camera.tan_half_x - expected).abs() < 1e-6, "{axis} {width} {}", camera.tan_half_x);
         assert_eq!((camera.forward, camera.right, camera.up), (Vec3::Z, Vec3::NEG_X, Vec3::Y));
     }
+}
+
+#[test]
+fn errors_of_several_objects_are_told_together_each_with_its_line() {
+    let body = "<shape type=\"obj\"/>\n<shape type=\"sphere\"><float name=\"radius\" value=\"-1\"/></shape>\n\
+        <emitter type=\"spot\"><float name=\"cutoff_angle\" value=\"200\"/></emitter>";
+    let message = load_body(body).map(|_| ()).unwrap_err();
+    for (line, part) in message.lines().zip(["s.xml:4: ", "s.xml:5: ", "s.xml:6: "]) {
+        assert!(line.contains(part) && line.contains("; "), "{message}");
+    }
+    assert_eq!(message.lines().count(), 3, "{message}");
+    // Values that cannot be read are told before what follows from them.
+    let body =
+        "<shape type=\"obj\"><string name=\"filename\" value=\"$a\"/><float name=\"x\" value=\"y\"/></shape>";
+    let message = load_body(body).map(|_| ()).unwrap_err();
+    assert!(message.lines().count() == 2 && message.contains("-D a="), "{message}");
+    // Files that cannot be opened, each with the system's reason once.
+    let body = "<shape type=\"obj\"><string name=\"filename\" value=\"a.obj\"/></shape>\n\
+        <shape type=\"ply\"><string name=\"filename\" value=\"b.ply\"/></shape>";
+    let message = load_body(body).map(|_| ()).unwrap_err();
+    assert_eq!((message.lines().count(), message.matches("No such file").count()), (2, 2), "{message}");
+}
+
+#[test]
+fn a_scene_without_light_is_warned_of() {
+    let cube = "<shape type=\"cube\"/>";
+    let black = "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"0\"/></emitter>";
+    let flat = "<shape type=\"cube\"><emitter type=\"area\"/>\
+        <transform name=\"to_world\"><scale x=\"0\" y=\"0\"/></transform></shape>";
+    for (body, warnings) in [(cube.to_owned(), 1), (format!("{cube}{black}"), 1), (flat.to_owned(), 2)] {
+        let loaded = load_body(&body).unwrap();
+        assert_eq!(loaded.warnings.len(), warnings, "{:?}", loaded.warnings);
+        let warning = loaded.warnings.last().unwrap();
+        assert!(
+            warning.what.contains("no light") && warning.fallback.contains("add an emitter"),
+            "{warning}"
+        );
+        assert!(load_with(&body, &[], true).unwrap_err().contains("strict"));
+    }
+    assert!(load_body(&format!("{SKY}{cube}")).unwrap().warnings.is_empty());
+}
+
+#[test]
+fn parameters_and_sensors_are_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.xml");
+    let sensor = |id: &str, fov: &str| {
+        format!("<sensor type=\"perspective\" id=\"{id}\"><float name=\"fov\" value=\"{fov}\"/></sensor>")
+    };
+    let text = format!(
+        "<scene version=\"3.0.0\"><default name=\"fov\" value=\"90\"/>{SKY}{}{}{}</scene>",
+        sensor("a", "$fov"),
+        sensor("b", "60"),
+        "<sensor type=\"perspective\"/>"
+    );
+    fs::write(&path, text).unwrap();
+    let read = |camera: Option<&str>, parameters: &[(&str, &str)]| {
+        let parameters = parameters.iter().map(|(a, b)| (a.to_string(), b.to_string())).collect();
+        load(&path, &LoadOptions { camera: camera.map(str::to_owned), parameters, strict: false })
+    };
+    let fov = |loaded: Loaded| 2.0 * loaded.cameras.still.tan_half_x.atan().to_degrees();
+    let near = |a: f32, b: f32| (a - b).abs() < 1e-3;
+    let first = read(None, &[]).unwrap();
+    let hash = first.hash;
+    assert!(first.warnings.len() == 1 && first.warnings[0].what.contains("1 (a), 2 (b), 3"));
+    assert!(near(fov(first), 90.0));
+    let turned = read(None, &[("fov", "30")]).unwrap();
+    assert!(turned.hash != hash && near(fov(turned), 30.0));
+    assert!(near(fov(read(Some("b"), &[]).unwrap()), 60.0) && near(fov(read(Some("2"), &[]).unwrap()), 60.0));
+    for (camera, parameters, what) in
+        [(Some("4"), &[][..], "one of 1 (a)"), (Some("0"), &[], "\"0\""), (None, &[("fow", "1")], "$fow")]
+    {
+        let message = read(camera, parameters).unwrap_err().to_string();
+        assert!(message.contains(what), "{message}");
+    }
+}
+
+#[test]
+fn reflectances_above_one_are_clamped() {
+    let body = "<shape type=\"cube\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"2 .5 .5\"/></bsdf></shape>";
+    let loaded = load_body(&format!("{SKY}{body}")).unwrap();
+    assert_eq!(loaded.scene.materials[0].diffuse, Reflectance::Constant(Rgb::new(1.0, 0.5, 0.5)));
+    assert!(loaded.warnings[0].to_string().contains("exceeds 1"), "{:?}", loaded.warnings);
 }

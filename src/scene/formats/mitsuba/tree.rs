@@ -2,7 +2,7 @@
 //! `$parameters` are resolved here, and the camelCase names of Mitsuba 0.6 become those of 3.x.
 
 use super::value::{self, Value};
-use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::formats::error::{Log, Place, SceneError};
 use crate::scene::formats::plan::{folder_of, read_text};
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -70,10 +70,16 @@ pub(super) struct Document {
 }
 
 impl Document {
-    pub fn read(path: &Path) -> Result<Document, SceneError> {
-        let mut builder = Builder::default();
+    /// Reads a file and those that it includes; errors within objects are left in `log`.
+    pub fn read(path: &Path, given: &[(String, String)], log: &mut Log) -> Result<Document, SceneError> {
+        let mut builder = Builder::new(given, log);
         let mut root = Object::new("scene", "scene", None, Place::file(path));
         builder.file(path, &Place::file(path), &mut root, None, 0)?;
+        for (name, _) in builder.parameters.iter().filter(|(_, parameter)| !parameter.used.get()) {
+            let what = format!("nothing in the scene depends on the parameter ${name}");
+            let remedy = "correct the name given with -D, or leave it out";
+            builder.log.part::<()>(Err(Place::file(path).wrong(what, remedy)));
+        }
         Ok(Document { root, ids: builder.ids, sources: builder.sources })
     }
 
@@ -108,15 +114,30 @@ impl Document {
     }
 }
 
-#[derive(Default)]
-struct Builder {
+/// The value of a `$name` parameter.
+struct Parameter {
+    value: String,
+    /// True if the description has a default for it, or uses it.
+    used: Cell<bool>,
+}
+
+struct Builder<'a> {
+    log: &'a mut Log,
     ids: BTreeMap<String, Rc<Object>>,
     /// Values of `$name` parameters.
-    parameters: BTreeMap<String, String>,
+    parameters: BTreeMap<String, Parameter>,
     sources: Vec<(PathBuf, u64)>,
 }
 
-impl Builder {
+impl Builder<'_> {
+    fn new<'a>(given: &[(String, String)], log: &'a mut Log) -> Builder<'a> {
+        let parameter = |(name, value): &(String, String)| {
+            (name.clone(), Parameter { value: value.clone(), used: Cell::new(false) })
+        };
+        let parameters = given.iter().map(parameter).collect();
+        Builder { log, ids: BTreeMap::new(), parameters, sources: Vec::new() }
+    }
+
     /// Reads the file into `parent`: the contents of a scene, or its only object under `name`.
     fn file(
         &mut self,
@@ -137,9 +158,7 @@ impl Builder {
                 let remedy = "give it one, e.g. <scene version=\"3.0.0\">";
                 return Err(place.wrong("the scene has no version", remedy));
             }
-            for node in root.children() {
-                self.node(path, &node, parent, depth + 1)?;
-            }
+            self.contents(path, &root, parent, depth);
         } else {
             self.element(path, &root, parent, name, depth + 1)?;
         }
@@ -150,14 +169,12 @@ impl Builder {
         Place::line(path, node.document().text_pos_at(node.range().start).row)
     }
 
-    fn node(
-        &mut self,
-        path: &Path,
-        node: &roxmltree::Node,
-        parent: &mut Object,
-        depth: usize,
-    ) -> Result<(), SceneError> {
-        if node.is_element() { self.element(path, node, parent, None, depth) } else { Ok(()) }
+    /// Reads the elements inside `node` into `parent`; one with an error is left out.
+    fn contents(&mut self, path: &Path, node: &roxmltree::Node, parent: &mut Object, depth: usize) {
+        for child in node.children().filter(|child| child.is_element()) {
+            let read = self.element(path, &child, parent, None, depth + 1);
+            self.log.part(read);
+        }
     }
 
     fn element(
@@ -187,7 +204,8 @@ impl Builder {
         match node.tag_name().name() {
             "default" => {
                 let (name, value) = (need("name")?.to_owned(), need("value")?.to_owned());
-                self.parameters.entry(name).or_insert(value);
+                let default = Parameter { value, used: Cell::new(true) };
+                self.parameters.entry(name).or_insert(default).used.set(true);
             }
             "include" => {
                 let name = get("name").map(str::to_owned);
@@ -206,9 +224,7 @@ impl Builder {
             tag if is_object(tag) || (tag == "spectrum" && get("type").is_some()) => {
                 let kind = if tag == "spectrum" { "texture" } else { tag };
                 let mut object = Object::new(kind, need("type")?, get("id"), place.clone());
-                for child in node.children() {
-                    self.node(path, &child, &mut object, depth + 1)?;
-                }
+                self.contents(path, node, &mut object, depth);
                 let object = Rc::new(object);
                 if let Some(id) = &object.id
                     && let Some(other) = self.ids.insert(id.clone(), object.clone())
@@ -269,9 +285,11 @@ impl Builder {
             let known = self.parameters.iter().filter(|(name, _)| from[1..].starts_with(name.as_str()));
             let Some((name, value)) = known.max_by_key(|(name, _)| name.len()) else {
                 let name = from[1..].split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("");
-                return Err(place.undefined("parameter", &format!("${name}")));
+                let what = format!("the parameter ${name} has no value");
+                return Err(place.wrong(what, format!("give it one with -D {name}=..., or a <default>")));
             };
-            out.push_str(value);
+            value.used.set(true);
+            out.push_str(&value.value);
             rest = &from[1 + name.len()..];
         }
         out.push_str(rest);
@@ -334,9 +352,8 @@ mod tests {
 
     #[test]
     fn parameters_are_replaced_longest_first_and_escapes_kept() {
-        let mut builder = Builder::default();
-        builder.parameters.insert("a".into(), "1".into());
-        builder.parameters.insert("ab".into(), "2".into());
+        let mut log = Log::new(false);
+        let builder = Builder::new(&[("a".into(), "1".into()), ("ab".into(), "2".into())], &mut log);
         let place = Place::line(Path::new("x.xml"), 7);
         assert_eq!(builder.substitute(r"$a $ab-$a\$z", &place).unwrap(), "1 2-1$z");
         let message = builder.substitute("1 $nope", &place).unwrap_err().to_string();

@@ -64,17 +64,25 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     })?;
     let mut builder = Builder::new(file, log, &scene)?;
     for material in &scene.material {
-        builder.material(material)?;
+        let read = builder.material(material);
+        if builder.log.part(read).is_none() {
+            // Meshes may have it, without an error of theirs.
+            builder.material_ids.entry(material.get_ref().name.clone()).or_insert(MaterialId(0));
+        }
     }
     for mesh in &scene.mesh {
-        builder.mesh(mesh)?;
+        let read = builder.mesh(mesh);
+        builder.log.part(read);
     }
-    builder.report_unused_parts(&scene)?;
     for light in &scene.light {
-        builder.light(light)?;
+        let read = builder.light(light);
+        builder.log.part(read);
     }
-    builder.contents.environment = scene.environment.as_ref().map(|e| builder.environment(e)).transpose()?;
-    let shot = builder.shot(&scene)?;
+    let environment = scene.environment.as_ref().map(|e| builder.environment(e)).transpose();
+    builder.contents.environment = builder.log.part(environment).flatten();
+    let shot = builder.shot(&scene);
+    let shot = builder.log.conclude(shot)?;
+    builder.report_unused_parts(&scene)?;
     let mut sources = vec![(path.to_owned(), hash)];
     sources.append(&mut builder.sources);
     Ok(Plan {
