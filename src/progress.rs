@@ -5,6 +5,7 @@
 //! partial result, marked incomplete. Nothing here influences the picture.
 
 use crate::stats::Stage;
+use std::mem;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -13,8 +14,16 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 pub struct Control {
     cancelled: AtomicBool,
     /// Stage and total; `done` is reset under this lock, so a snapshot never mixes two stages.
-    stage: Mutex<Option<(Stage, u64)>>,
+    stage: Mutex<Begun>,
     done: AtomicU64,
+}
+
+#[derive(Debug, Default)]
+struct Begun {
+    /// The current stage, and its total.
+    current: Option<(Stage, u64)>,
+    /// Stages begun that [`Control::news`] has not returned.
+    news: Vec<Stage>,
 }
 
 /// A snapshot of a method's progress.
@@ -47,9 +56,10 @@ impl Control {
 
     /// Starts a stage of `total` units (0 if their number is not known). Stages follow one another.
     pub fn begin(&self, stage: Stage, total: u64) {
-        let mut current = self.lock();
+        let mut begun = self.lock();
         self.done.store(0, Ordering::Relaxed);
-        *current = Some((stage, total));
+        begun.current = Some((stage, total));
+        begun.news.push(stage);
     }
 
     /// Counts `n` more finished units of the current stage. Callable from any worker.
@@ -60,13 +70,22 @@ impl Control {
 
     /// Returns the progress; `None` before the first stage.
     pub fn progress(&self) -> Option<Progress> {
-        let current = self.lock();
-        let (stage, total) = (*current)?;
+        self.progress_of(&self.lock())
+    }
+
+    /// Returns the stages begun since the last call, and the progress.
+    pub fn news(&self) -> (Vec<Stage>, Option<Progress>) {
+        let mut begun = self.lock();
+        (mem::take(&mut begun.news), self.progress_of(&begun))
+    }
+
+    fn progress_of(&self, begun: &Begun) -> Option<Progress> {
+        let (stage, total) = begun.current?;
         let done = self.done.load(Ordering::Relaxed);
         Some(Progress { stage, done: if total > 0 { done.min(total) } else { done }, total })
     }
 
-    fn lock(&self) -> MutexGuard<'_, Option<(Stage, u64)>> {
+    fn lock(&self) -> MutexGuard<'_, Begun> {
         // The data is plain: a panic elsewhere cannot have left it half-written.
         self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -85,7 +104,10 @@ mod tests {
         assert_eq!(control.progress(), Some(Progress { stage: Stage::LightPass, done: 10, total: 10 }));
         control.begin(Stage::Render, 0);
         control.advance(3);
-        assert_eq!(control.progress(), Some(Progress { stage: Stage::Render, done: 3, total: 0 }));
+        let now = Some(Progress { stage: Stage::Render, done: 3, total: 0 });
+        assert_eq!(control.progress(), now);
+        assert_eq!(control.news(), (vec![Stage::LightPass, Stage::Render], now));
+        assert_eq!(control.news(), (vec![], now));
     }
 
     #[test]

@@ -12,12 +12,16 @@ pub const USAGE: u8 = 2;
 pub const INPUT: u8 = 3;
 /// The result cannot be written.
 pub const OUTPUT: u8 = 4;
-/// Interrupted by a signal; the partial picture is written, marked as partial.
-pub const INTERRUPTED: u8 = 130;
+/// Stopped by a signal after tidying up: the same run, begun again, may well succeed. This is the code `EX_TEMPFAIL` of
+/// sysexits.h, by which schedulers know that a job asks to be queued again.
+pub const INTERRUPTED: u8 = 75;
+/// Stopped at once, by a second signal.
+pub const ABORTED: u8 = 130;
 
 /// Text of `--help` about exit codes.
 pub const HELP: &str = "Exit codes: 0 done; 1 rendering failed; 2 wrong command line; 3 invalid scene or \
-picture; 4 the result cannot be written; 130 interrupted (what is rendered so far is written, marked as partial).";
+picture; 4 the result cannot be written; 75 stopped by a signal (a still is written as far as it is rendered, marked as partial; \
+frames of a walk are whole or not written): queue it again; 130 stopped at once by a second signal.";
 
 /// Why a run ended without success.
 #[derive(Debug)]

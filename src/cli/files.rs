@@ -11,6 +11,6 @@ pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
     atomic::write_atomically(path, |file| file.write_all(text.as_bytes()))
         .map_err(|source| ImageError::Write { path: path.to_owned(), source })
         .map_err(Failure::output)?;
-    talk::note(&format!("wrote {}", path.display()));
+    talk::wrote(&format!("wrote {}", path.display()), &[path.to_owned()]);
     Ok(())
 }

@@ -12,7 +12,8 @@ pub fn cancel_on_signal(control: &Arc<Control>) -> Result<(), ctrlc::Error> {
     let control = Arc::clone(control);
     ctrlc::set_handler(move || {
         if control.is_cancelled() {
-            std::process::exit(exit::INTERRUPTED.into());
+            talk::end(exit::ABORTED);
+            std::process::exit(exit::ABORTED.into());
         }
         control.cancel();
         talk::note("interrupted: stopping; once more to stop at once");

@@ -7,6 +7,7 @@ mod args;
 mod bench;
 mod bench_args;
 mod compare;
+mod course;
 mod denoise;
 mod exit;
 mod files;
@@ -54,18 +55,20 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
     }));
-    match outcome {
-        Ok(Ok(())) => ExitCode::from(exit::SUCCESS),
+    let code = match outcome {
+        Ok(Ok(())) => exit::SUCCESS,
         Ok(Err(failure)) => {
             talk::error(&failure);
-            ExitCode::from(failure.code())
+            failure.code()
         }
         // The panic hook has printed message and place.
         Err(_) => {
             talk::error(&Failure::render(anyhow::anyhow!(
                 "an internal error stopped the run; please report it with the lines above"
             )));
-            ExitCode::from(exit::RENDER)
+            exit::RENDER
         }
-    }
+    };
+    talk::end(code);
+    ExitCode::from(code)
 }

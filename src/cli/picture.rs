@@ -2,48 +2,54 @@
 
 use super::exit::Failure;
 use crate::film::{Film, false_colour, write_exr, write_png, write_srgb8};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Writes a picture to `exr`, then to a PNG by a factor on radiance; returns a line that says so.
-pub fn write(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> Result<String, Failure> {
-    let said = describe(exr, png, &mut film);
+/// Files that have been written, and a line that says so.
+pub struct Written {
+    /// The line.
+    pub said: String,
+    /// The files.
+    pub files: Vec<PathBuf>,
+}
+
+/// Writes a picture to `exr`, then to a PNG by a factor on radiance.
+pub fn write(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> Result<Written, Failure> {
+    let mut written = describe(exr, png, &mut film);
     write_exr(exr, &film).map_err(Failure::output)?;
-    write_previews(png, &film)?;
-    Ok(said)
+    written.files.extend(write_previews(png, &film)?);
+    Ok(written)
 }
 
 /// The same with the OpenEXR file last: where it is, the others are.
-pub fn write_exr_last(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> Result<String, Failure> {
-    let said = describe(exr, png, &mut film);
-    write_previews(png, &film)?;
+pub fn write_exr_last(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> Result<Written, Failure> {
+    let mut written = describe(exr, png, &mut film);
+    written.files.extend(write_previews(png, &film)?);
     write_exr(exr, &film).map_err(Failure::output)?;
-    Ok(said)
+    Ok(written)
 }
 
-/// Stores the exposure of the PNG in the film; returns a line that names the files.
-fn describe(exr: &Path, png: Option<(&Path, f32)>, film: &mut Film) -> String {
+/// Stores the exposure of the PNG in the film; returns the line that names the files, and the first of them.
+fn describe(exr: &Path, png: Option<(&Path, f32)>, film: &mut Film) -> Written {
     let mut said = format!("wrote {}", exr.display());
     if let Some((path, factor)) = png {
         film.metadata.set("png_exposure", f64::from(factor.log2()));
         said += &format!(" and {} (exposure {:+.2} EV)", path.display(), factor.log2());
     }
-    said
+    Written { said, files: vec![exr.to_owned()] }
 }
 
-fn write_previews(png: Option<(&Path, f32)>, film: &Film) -> Result<(), Failure> {
-    let Some((path, factor)) = png else { return Ok(()) };
-    write_png(path, &film.color, factor).map_err(Failure::output)?;
-    write_layers(path, film, factor)
-}
-
-/// Writes every layer that is meant to be shown as a PNG file named after the picture's.
-fn write_layers(picture: &Path, film: &Film, factor: f32) -> Result<(), Failure> {
+/// Writes the PNG, and beside it every layer that is meant to be shown as another, named after it; returns their files.
+fn write_previews(png: Option<(&Path, f32)>, film: &Film) -> Result<Vec<PathBuf>, Failure> {
+    let Some((picture, factor)) = png else { return Ok(Vec::new()) };
+    write_png(picture, &film.color, factor).map_err(Failure::output)?;
+    let mut files = vec![picture.to_owned()];
     for layer in &film.layers {
         if let Some(bytes) = false_colour::show(layer, &film.color, factor) {
             let path = picture.with_extension(format!("{}.png", layer.name));
             let size = [film.window.width, film.window.height];
             write_srgb8(&path, size, &bytes).map_err(Failure::output)?;
+            files.push(path);
         }
     }
-    Ok(())
+    Ok(files)
 }

@@ -1,28 +1,52 @@
 //! Progress messages on stderr, from a thread of its own that reads the method's [`Control`].
 
+use super::course::Course;
 use super::talk;
 use super::values::ProgressMode;
-use crate::progress::{Control, Progress};
+use crate::progress::Control;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::io::IsTerminal;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Interval between updates of the bar.
 const BAR_INTERVAL: Duration = Duration::from_millis(100);
-/// Interval between lines.
+/// Interval between events.
 const LINE_INTERVAL: Duration = Duration::from_millis(500);
+/// Interval between lines for agents, which write each to a log.
+const AGENT_INTERVAL: Duration = Duration::from_secs(2);
 
-/// Runs `work` while another thread tells of its progress; all is told when this returns.
-pub fn watched<R>(mode: ProgressMode, control: &Control, work: impl FnOnce() -> R) -> R {
-    let bar = std::io::stderr().is_terminal();
-    match mode {
-        ProgressMode::None => work(),
-        ProgressMode::Auto if !bar => work(),
-        ProgressMode::Auto => beside(work, |stop| show_bar(control, stop)),
-        ProgressMode::Ndjson => beside(work, |stop| write_lines(control, stop)),
+/// Tells of the progress of a run's frames.
+pub struct Watch {
+    mode: ProgressMode,
+    course: Course,
+}
+
+impl Watch {
+    /// A watch over the frames of a part of the run.
+    pub fn new(mode: ProgressMode, course: Course) -> Watch {
+        Watch { mode, course }
+    }
+
+    /// Runs `work`, which renders a frame, while another thread tells of its progress; all is told when this returns.
+    pub fn frame<R>(&mut self, number: Option<usize>, control: &Control, work: impl FnOnce() -> R) -> R {
+        let bar = std::io::stderr().is_terminal();
+        let course = &mut self.course;
+        let result = match self.mode {
+            ProgressMode::None => work(),
+            ProgressMode::Auto if !bar => work(),
+            ProgressMode::Auto => beside(work, |stop| show_bar(control, stop)),
+            ProgressMode::Ndjson => beside(work, |stop| {
+                tell(stop, LINE_INTERVAL, || write_events(course, number, control));
+            }),
+            ProgressMode::Openjd => beside(work, |stop| {
+                tell(stop, AGENT_INTERVAL, || write_for_agents(course, control));
+            }),
+        };
+        self.course.frame_done();
+        result
     }
 }
 
@@ -67,37 +91,62 @@ fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
-fn write_lines(control: &Control, stop: Receiver<()>) {
-    let start = Instant::now();
-    let mut told: Option<Progress> = None;
-    let mut tell = || {
-        let now = control.progress();
-        if let Some(progress) = now.filter(|_| now != told) {
-            told = now;
-            talk::event(&json!({
-                "event": "progress",
-                "stage": progress.stage,
-                "done": progress.done,
-                "total": progress.total,
-                "seconds": start.elapsed().as_secs_f64(),
-            }));
-        }
-    };
-    while goes_on(&stop, LINE_INTERVAL) {
+/// Tells at intervals, and once more when the work has ended.
+fn tell(stop: Receiver<()>, interval: Duration, mut tell: impl FnMut()) {
+    while goes_on(&stop, interval) {
         tell();
     }
     tell();
 }
 
+/// Writes the stages begun since the last time, and the progress if there is any.
+fn write_events(course: &mut Course, number: Option<usize>, control: &Control) {
+    let (begun, now) = control.news();
+    for stage in begun {
+        talk::event("stage", || with_frame(number, json!({ "stage": stage, "seconds": talk::seconds() })));
+    }
+    let Some(now) = now else { return };
+    talk::event("progress", || {
+        let fields = json!({
+            "stage": now.stage,
+            "done": now.done,
+            "total": now.total,
+            "fraction": course.fraction(Some(&now)),
+            "eta_seconds": course.eta_seconds(),
+            "seconds": talk::seconds(),
+        });
+        with_frame(number, fields)
+    });
+}
+
+fn with_frame(number: Option<usize>, mut fields: Value) -> Value {
+    if let Some(number) = number {
+        fields["frame"] = number.into();
+    }
+    fields
+}
+
+/// Writes the percentage and the stage at hand, as Open Job Description's sessions read them.
+fn write_for_agents(course: &mut Course, control: &Control) {
+    if let (_, Some(now)) = control.news() {
+        talk::line(&format!("openjd_progress: {:.2}", 100.0 * course.fraction(Some(&now))));
+        let [done, frames] = course.frames();
+        talk::line(&format!("openjd_status: picture {} of {frames}: {}", done + 1, now.stage.name()));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Instant;
 
     #[test]
     fn the_watcher_ends_with_the_work_and_the_result_comes_through() {
         let control = Control::new();
-        for mode in [ProgressMode::None, ProgressMode::Auto, ProgressMode::Ndjson] {
-            assert_eq!(watched(mode, &control, || 7), 7);
+        for mode in [ProgressMode::None, ProgressMode::Auto, ProgressMode::Ndjson, ProgressMode::Openjd] {
+            let mut watch = Watch::new(mode, Course::new(2, [0.0, 1.0], Instant::now()));
+            assert_eq!(watch.frame(None, &control, || 7), 7);
+            assert_eq!(watch.course.frames(), [1, 2]);
         }
     }
 

@@ -1,9 +1,11 @@
 //! `lightsplat render`: opens a session, renders the frame, writes it; whatever happens, no file is left half-written.
 
 use super::args::{RenderArgs, StatsFormat};
+use super::course::Course;
 use super::exit::Failure;
 use super::job::RenderJob;
-use super::{interrupt, picture, progress, scene, talk, threads};
+use super::progress::Watch;
+use super::{interrupt, picture, scene, talk, threads};
 use crate::film::Film;
 use crate::progress::Control;
 use crate::session::{BLACK, Frame, FrameError, Remark};
@@ -11,11 +13,12 @@ use crate::stats::{Stage, Stopwatch, peak_resident_bytes};
 use crate::view::View;
 use anyhow::{Context, anyhow};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Runs the command.
 pub fn run(args: RenderArgs) -> Result<(), Failure> {
     let run = Stopwatch::start();
-    talk::set_mode(args.picture.progress);
+    talk::start(args.picture.progress, "render");
     let job = RenderJob::new(args, run)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
@@ -68,7 +71,8 @@ fn render(job: &RenderJob, control: &Control) -> Result<Frame, Failure> {
     if control.is_cancelled() {
         return Err(Failure::interrupted(FrameError::Interrupted));
     }
-    let frame = progress::watched(job.progress, control, || session.frame(&view, &job.goal, control));
+    let mut progress = Watch::new(job.progress, Course::new(1, [0.0, 1.0], Instant::now()));
+    let frame = progress.frame(job.framing.frame, control, || session.frame(&view, &job.goal, control));
     let mut frame = frame.map_err(|error| match error {
         FrameError::Interrupted => Failure::interrupted(error),
         FrameError::Memory { .. } | FrameError::Unplannable(_) => Failure::usage(error),
@@ -88,6 +92,7 @@ fn render(job: &RenderJob, control: &Control) -> Result<Frame, Failure> {
 
 fn write(job: &RenderJob, film: Film) -> Result<(), Failure> {
     let png = job.png.as_ref().map(|(path, exposure)| (path.as_path(), exposure.factor(&film.color)));
-    talk::note(&picture::write(&job.output, png, film)?);
+    let written = picture::write(&job.output, png, film)?;
+    talk::wrote(&written.said, &written.files);
     Ok(())
 }

@@ -1,18 +1,39 @@
-//! Output: messages on stderr, data on stdout.
+//! Output: messages on stderr, data on stdout. Messages are prose, or events, one JSON object a line, by the schema in
+//! docs/progress.md; or prose with lines between that agents of Open Job Description read.
 
 use super::exit::Failure;
 use super::values::ProgressMode;
 use anyhow::Context;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::io::{self, Write};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::path::PathBuf;
+use std::sync::OnceLock;
+use std::time::Instant;
 
-/// True if stderr is NDJSON, one object a line, instead of prose. Set once, before any message.
-static NDJSON: AtomicBool = AtomicBool::new(false);
+/// Version of the schema of events: it grows when a field or event goes or changes its meaning, not when one comes.
+const SCHEMA: u32 = 1;
 
-/// Chooses prose or NDJSON for the rest of the run.
-pub fn set_mode(mode: ProgressMode) {
-    NDJSON.store(mode == ProgressMode::Ndjson, Ordering::Relaxed);
+/// Kind of messages, and the start of the run. Set once, before any message.
+static VOICE: OnceLock<(ProgressMode, Instant)> = OnceLock::new();
+
+fn mode() -> ProgressMode {
+    VOICE.get().map_or(ProgressMode::Auto, |(mode, _)| *mode)
+}
+
+/// Seconds since the start of the run.
+pub fn seconds() -> f64 {
+    VOICE.get().map_or(0.0, |(_, start)| start.elapsed().as_secs_f64())
+}
+
+/// Chooses the kind of messages for the rest of the run, and says that it begins.
+pub fn start(mode: ProgressMode, command: &str) {
+    VOICE.get_or_init(|| (mode, Instant::now()));
+    event("start", || json!({ "command": command, "version": env!("CARGO_PKG_VERSION") }));
+}
+
+/// Says how the run ended, for programs.
+pub fn end(code: u8) {
+    event("end", || json!({ "exit": code, "seconds": seconds() }));
 }
 
 /// Something the user should know.
@@ -25,29 +46,54 @@ pub fn warning(text: &str) {
     say("warning", text);
 }
 
-/// Why the run failed.
+/// Why the run, or a part of it, failed.
 pub fn error(failure: &Failure) {
+    if mode() == ProgressMode::Openjd {
+        line(&format!("openjd_fail: {failure}"));
+    }
     say("error", &failure.to_string());
 }
 
-/// One object as a line of its own, for programs that watch. Nobody may be listening, which is no error.
-pub fn event(object: &serde_json::Value) {
-    let _ = writeln!(io::stderr().lock(), "{object}");
-}
-
-/// The same where stderr is NDJSON, nothing elsewhere.
-pub fn event_if_wanted(object: impl FnOnce() -> serde_json::Value) {
-    if NDJSON.load(Ordering::Relaxed) {
-        event(&object());
+/// Files that have been written, whole.
+pub fn wrote(text: &str, files: &[PathBuf]) {
+    match mode() {
+        ProgressMode::Ndjson => event("wrote", || json!({ "files": files, "text": text })),
+        _ => note(text),
     }
 }
 
+/// The sum of a run of several pictures, with figures for programs.
+pub fn summary(text: &str, figures: impl FnOnce() -> Value) {
+    match mode() {
+        ProgressMode::Ndjson => event("summary", || {
+            let mut figures = figures();
+            figures["text"] = text.into();
+            figures
+        }),
+        _ => note(text),
+    }
+}
+
+/// An event for programs that watch, where they do: its kind and its fields, an object.
+pub fn event(kind: &str, fields: impl FnOnce() -> Value) {
+    if mode() == ProgressMode::Ndjson {
+        let mut object = fields();
+        object["v"] = SCHEMA.into();
+        object["event"] = kind.into();
+        line(&object.to_string());
+    }
+}
+
+/// One line. Nobody may be listening, which is no error.
+pub fn line(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
 fn say(kind: &str, text: &str) {
-    if NDJSON.load(Ordering::Relaxed) {
-        event(&json!({ "event": kind, "text": text }));
-    } else {
-        let prefix = if kind == "note" { String::new() } else { format!("{kind}: ") };
-        let _ = writeln!(io::stderr().lock(), "{prefix}{text}");
+    match mode() {
+        ProgressMode::Ndjson => event(kind, || json!({ "text": text })),
+        _ if kind == "note" => line(text),
+        _ => line(&format!("{kind}: {text}")),
     }
 }
 

@@ -10,8 +10,10 @@ use std::str::FromStr;
 pub enum ProgressMode {
     /// A bar on a terminal, nothing elsewhere
     Auto,
-    /// All talk as one JSON object a line
+    /// All talk as one JSON object a line, by the schema in docs/progress.md
     Ndjson,
+    /// Lines that agents of Open Job Description read between the others
+    Openjd,
     /// None
     None,
 }

@@ -1,10 +1,12 @@
 //! `lightsplat walk`: renders frame after frame of a camera path; each is written whole before the next begins.
 
 use super::args::WalkArgs;
+use super::course::Course;
 use super::exit::Failure;
+use super::progress::Watch;
 use super::walk_job::WalkJob;
 use super::walk_report::Report;
-use super::{interrupt, picture, progress, scene, talk, threads};
+use super::{interrupt, picture, scene, talk, threads};
 use crate::film::{Exposure, Film, Image};
 use crate::progress::Control;
 use crate::session::{BLACK, Frame, FrameError, Remark, Session};
@@ -16,10 +18,11 @@ use serde_json::json;
 use std::collections::BTreeSet;
 use std::mem;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Runs the command.
 pub fn run(args: WalkArgs) -> Result<(), Failure> {
-    talk::set_mode(args.picture.progress);
+    talk::start(args.picture.progress, "walk");
     let job = WalkJob::new(args)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
@@ -36,13 +39,13 @@ fn walk(job: &WalkJob, control: &Control) -> Result<(), Failure> {
     for number in numbers {
         if job.resume && job.is_done(number, &hash) {
             report.skip();
-            talk::event_if_wanted(|| json!({ "event": "frame", "frame": number, "state": "skipped" }));
+            talk::event("frame", || json!({ "frame": number, "state": "skipped" }));
         } else {
             left.push(number);
         }
     }
     let ended = frames(job, &session, (&left, &hash, warnings), &mut report, control);
-    talk::note(&report.summary());
+    report.sum_up();
     ended
 }
 
@@ -61,6 +64,7 @@ fn frames(
         Exposure::Ev(ev) => ev.exp2(),
     });
     let mut walk = Walk::new(session, job.goal.clone(), job.limits);
+    let mut progress = Watch::new(job.progress, Course::new(numbers.len(), [0.0, 1.0], Instant::now()));
     let mut said = BTreeSet::new();
     for (index, &number) in numbers.iter().enumerate() {
         if control.is_cancelled() {
@@ -68,11 +72,12 @@ fn frames(
         }
         let watch = Stopwatch::start();
         let (exr, png) = job.files(number);
-        talk::event_if_wanted(
-            || json!({ "event": "frame", "frame": number, "state": "start", "index": index, "count": numbers.len() }),
+        talk::event(
+            "frame",
+            || json!({ "frame": number, "state": "start", "index": index, "count": numbers.len() }),
         );
         let view = View::new(&session.cameras, &job.framing(number)).map_err(Failure::usage)?;
-        let frame = progress::watched(job.progress, control, || walk.frame(&view, control));
+        let frame = progress.frame(Some(number), control, || walk.frame(&view, control));
         let mut frame = frame.map_err(|error| match error {
             FrameError::Interrupted => interrupted(number),
             FrameError::Memory { .. } | FrameError::Unplannable(_) => Failure::usage(error),
@@ -86,16 +91,14 @@ fn frames(
         frame.film.metadata.set("job", hash);
         let film = mem::replace(&mut frame.film, Film::new(Image::new(0, 0)));
         let png = png.as_deref().zip(factor);
-        let line = frame.stats.time(Stage::Write, || picture::write_exr_last(&exr, png, film))?;
+        let written = frame.stats.time(Stage::Write, || picture::write_exr_last(&exr, png, film))?;
         let time = watch.elapsed();
         frame.stats.add_time(Stage::Total, time);
         frame.facts["scene_warnings"] = warnings.into();
         frame.facts["output"] = json!(exr);
         frame.facts["png"] = json!(png.map(|(path, _)| path));
-        talk::event_if_wanted(
-            || json!({ "event": "frame", "frame": number, "state": "end", "output": exr, "seconds": time.wall_seconds }),
-        );
-        talk::note(&format!("frame {number}: {line}"));
+        talk::wrote(&format!("frame {number}: {}", written.said), &written.files);
+        talk::event("frame", || json!({ "frame": number, "state": "end", "seconds": time.wall_seconds }));
         report.add(number, &frame)?;
         if job.reading.strict && is_black {
             return Err(Failure::render(anyhow!("frame {number}: {BLACK}")));

@@ -66,8 +66,19 @@ impl Report {
         }
     }
 
-    /// A line about all frames.
-    pub fn summary(&self) -> String {
+    /// Says how it went for all frames.
+    pub fn sum_up(&self) {
+        talk::summary(&self.text(), || {
+            json!({
+                "rendered": self.rendered,
+                "skipped": self.skipped,
+                "frame_seconds": self.time.wall_seconds / self.rendered.max(1) as f64,
+                "frame_cpu_seconds": self.time.cpu_seconds / self.rendered.max(1) as f64,
+            })
+        });
+    }
+
+    fn text(&self) -> String {
         let Report { rendered, skipped, .. } = self;
         let mut text = format!("{rendered} frames rendered");
         if *skipped > 0 {

@@ -29,12 +29,12 @@ fn signal(child: &Child, name: &str) {
 }
 
 #[test]
-fn interrupted_renders_end_with_130_and_leave_a_picture_marked_as_partial() {
+fn interrupted_renders_end_with_75_and_leave_a_picture_marked_as_partial() {
     for name in ["-INT", "-TERM"] {
         let sandbox = Sandbox::new();
         let mut child = begun(&sandbox);
         signal(&child, name);
-        assert_eq!(child.wait().unwrap().code(), Some(130), "{name}");
+        assert_eq!(child.wait().unwrap().code(), Some(75), "{name}");
         let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
         assert_eq!(file.metadata().text("partial"), Some("true"));
         assert!(file.color().unwrap().pixels.iter().any(|p| p.x > 0.0));
@@ -51,4 +51,22 @@ fn a_killed_render_leaves_the_old_files_whole() {
     signal(&child, "-KILL");
     assert_eq!(child.wait().unwrap().code(), None);
     assert_eq!((read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))), before);
+}
+
+#[test]
+fn a_second_signal_ends_the_run_at_once() {
+    let sandbox = Sandbox::new();
+    // Reading this scene never ends, and is not asked whether it should.
+    assert!(Command::new("mkfifo").arg(sandbox.path("pipe.xml")).status().unwrap().success());
+    let arguments = ["render", "pipe.xml", "-o", "a.exr", "--progress", "ndjson"];
+    let mut child = sandbox.command(&arguments).stderr(Stdio::piped()).spawn().unwrap();
+    let pipe = std::fs::File::options().write(true).open(sandbox.path("pipe.xml")).unwrap();
+    signal(&child, "-INT");
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+    assert!(lines.any(|line| line.contains("once more to stop at once")));
+    signal(&child, "-INT");
+    assert!(lines.any(|line| line.contains(r#""event":"end","exit":130"#)));
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    drop(pipe);
+    assert_eq!(sandbox.files(), ["pipe.xml", "room.xml"]);
 }

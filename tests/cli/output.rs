@@ -92,13 +92,39 @@ fn statistics_are_the_only_data_on_stdout() {
 }
 
 #[test]
-fn ndjson_progress_is_one_object_a_line() {
+fn messages_for_programs_are_one_object_a_line_from_start_to_end() {
     let sandbox = Sandbox::new();
     let stderr = sandbox.render("a.exr", &["--progress", "ndjson"]).expect(0).stderr;
     let events: Vec<serde_json::Value> = stderr.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
-    let last = events.iter().rfind(|e| e["event"] == "progress").unwrap();
+    assert!(events.iter().all(|e| e["v"] == 1));
+    let kinds: Vec<&str> = events.iter().map(|e| e["event"].as_str().unwrap()).collect();
+    assert_eq!((kinds[0], kinds[kinds.len() - 1]), ("start", "end"));
+    assert_eq!((&events[0]["command"], &events[events.len() - 1]["exit"]), (&"render".into(), &0.into()));
+    let find =
+        |kind: &str| &events[kinds.iter().rposition(|k| *k == kind).unwrap_or_else(|| panic!("{kind}"))];
+    assert_eq!(find("stage")["stage"], "render");
+    let last = find("progress");
     assert_eq!((&last["stage"], &last["done"]), (&"render".into(), &last["total"]));
-    assert!(events.iter().any(|e| e["event"] == "note"));
+    assert!(last["fraction"].as_f64() > Some(0.5) && last["eta_seconds"].is_number());
+    assert_eq!(find("wrote")["files"], serde_json::json!(["a.exr", "a.png"]));
+    // An invalid scene is an error, and an end all the same.
+    let stderr = sandbox.run(&["render", "none.xml", "-o", "b.exr", "--progress", "ndjson"]).expect(3).stderr;
+    assert!(stderr.contains(r#""event":"error""#) && stderr.contains(r#""exit":3"#), "{stderr}");
+}
+
+#[test]
+fn agents_are_told_percentage_status_and_failure() {
+    let sandbox = Sandbox::new();
+    let stderr = sandbox.render("a.exr", &["--progress", "openjd"]).expect(0).stderr;
+    let told: Vec<f64> = stderr
+        .lines()
+        .filter_map(|l| l.strip_prefix("openjd_progress: "))
+        .map(|p| p.parse().unwrap())
+        .collect();
+    assert!(told.last() > Some(&50.0) && told.iter().all(|p| *p <= 100.0), "{stderr}");
+    assert!(stderr.contains("openjd_status: picture 1 of 1: render") && stderr.contains("wrote a.exr"));
+    let stderr = sandbox.run(&["render", "none.xml", "-o", "b.exr", "--progress", "openjd"]).expect(3).stderr;
+    assert!(stderr.contains("openjd_fail: ") && stderr.contains("error: "), "{stderr}");
 }
 
 #[test]

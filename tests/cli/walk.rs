@@ -168,7 +168,7 @@ mod signals {
 
     #[test]
     fn whatever_stops_a_walk_leaves_whole_frames_and_resuming_does_the_rest() {
-        for (signal, code) in [("-KILL", None), ("-INT", Some(130)), ("-TERM", Some(130))] {
+        for (signal, code) in [("-KILL", None), ("-INT", Some(75)), ("-TERM", Some(75))] {
             let sandbox = sandbox();
             assert_eq!(stopped(&sandbox, signal), code, "{signal}");
             let there = frames(&sandbox);
