@@ -11,6 +11,9 @@ use super::texture::Texture;
 use glam::{DVec3, Vec2, Vec3};
 use std::path::PathBuf;
 
+/// Film of scenes that name no size, in pixels.
+pub(crate) const DEFAULT_RESOLUTION: [u32; 2] = [960, 540];
+
 /// A camera in world coordinates; fields as in [`super::Camera`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DraftCamera {
@@ -27,6 +30,8 @@ pub(crate) struct DraftCamera {
 #[derive(Clone, Debug)]
 pub(crate) struct Shot {
     pub camera: DraftCamera,
+    /// True if the camera is to be moved so that it sees all surfaces.
+    pub fits: bool,
     pub path: Vec<DraftCamera>,
     pub resolution: [u32; 2],
 }

@@ -6,6 +6,7 @@
 mod camera;
 mod draft;
 pub mod formats;
+mod framing;
 mod light;
 mod material;
 mod mesh;

@@ -14,7 +14,7 @@ mod native;
 mod picture;
 mod plan;
 
-use super::{Cameras, Scene, recentre, sanitize};
+use super::{Cameras, Scene, framing, recentre, sanitize};
 use error::Log;
 use std::path::Path;
 
@@ -92,6 +92,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let (mut draft, hash) = plan.realise()?;
     let hash = options.hash(hash);
     let (repairs, centre) = sanitize::sanitize(&mut draft, &mut log)?;
+    framing::frame(&mut draft);
     let (scene, cameras) = recentre::recentre(draft, centre);
     if scene.is_dark() {
         let fallback = "the picture will be black; add an emitter, a light or an environment";

@@ -28,7 +28,7 @@ fn draft(meshes: Vec<DraftMesh>, materials: Vec<Material>) -> Draft {
     Draft {
         name: "t".into(),
         sources: vec!["t.toml".into()],
-        shot: Shot { camera, path: vec![], resolution: [1, 1] },
+        shot: Shot { camera, fits: false, path: vec![], resolution: [1, 1] },
         max_depth: None,
         meshes,
         materials,

@@ -52,7 +52,7 @@ impl Converter<'_> {
         self.tagged(sensor, "sampler")?;
         let camera = self.camera(&sensor.place, &to_world, tan_half_x, near, far)?;
         sensor.report_unused(self.log)?;
-        Ok((Shot { camera, path: Vec::new(), resolution }, max_depth))
+        Ok((Shot { camera, fits: false, path: Vec::new(), resolution }, max_depth))
     }
 
     /// Mitsuba's camera looks along +z with +x to the left.

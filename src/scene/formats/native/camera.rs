@@ -4,26 +4,55 @@ use super::path::{Key, KeyedPath};
 use super::text::{CameraText, KeyText, PathText, SceneText};
 use super::{Builder, finite};
 use crate::scene::MAX_FRAMES;
-use crate::scene::draft::{DraftCamera, Shot};
+use crate::scene::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::framing;
 use glam::DVec3;
 use toml::Spanned;
 
+/// Field of view of cameras that have none, in degrees.
+const DEFAULT_FOV: f64 = 45.0;
+const DEFAULT_UP: [f64; 3] = [0.0, 1.0, 0.0];
+
 impl Builder<'_> {
     pub(super) fn shot(&self, scene: &SceneText) -> Result<Shot, SceneError> {
-        let place = self.file.place(scene.resolution.span());
-        let resolution = *scene.resolution.get_ref();
+        let resolution = self.resolution(scene)?;
+        let unspecified = CameraText::default();
+        let (place, text) = match &scene.camera {
+            Some(text) => (self.file.place(text.span()), text.get_ref()),
+            None => (Place::file(self.file.path), &unspecified),
+        };
+        self.check_fov_axis(text)?;
+        let path = text.path.as_ref().map(|walk| self.path(text, walk, resolution)).transpose()?;
+        let path = path.unwrap_or_default();
+        let shot = |camera, fits, path| Ok(Shot { camera, fits, path, resolution });
+        match (text.origin, text.target, path.first()) {
+            (Some(origin), Some(target), _) => {
+                let still = KeyText { frame: None, origin, target, up: None, fov: None };
+                shot(camera(text, &key(text, &still, &place)?, resolution, &place)?, false, path)
+            }
+            (None, None, Some(first)) => shot(*first, false, path),
+            (None, None, None) => {
+                let up = text.up.unwrap_or(DEFAULT_UP);
+                let origin = framing::outlook(finite(up, "the camera's up", &place)?).to_array();
+                let still = KeyText { frame: None, origin, target: [0.0; 3], up: None, fov: None };
+                shot(camera(text, &key(text, &still, &place)?, resolution, &place)?, true, path)
+            }
+            _ => {
+                let what = "the camera has only one of origin and target";
+                Err(place.wrong(what, "give both, or none for a view of everything"))
+            }
+        }
+    }
+
+    fn resolution(&self, scene: &SceneText) -> Result<[u32; 2], SceneError> {
+        let Some(text) = &scene.resolution else { return Ok(DEFAULT_RESOLUTION) };
+        let resolution = *text.get_ref();
         if resolution.iter().any(|r| !(1..=65536).contains(r)) {
             let what = format!("the resolution is {} x {}", resolution[0], resolution[1]);
-            return Err(place.wrong(what, "give 1 to 65536 each"));
+            return Err(self.file.place(text.span()).wrong(what, "give 1 to 65536 each"));
         }
-        let place = self.file.place(scene.camera.span());
-        let text = scene.camera.get_ref();
-        self.check_fov_axis(text)?;
-        let still = KeyText { frame: None, origin: text.origin, target: text.target, up: None, fov: None };
-        let camera = camera(text, &key(text, &still, &place)?, resolution, &place)?;
-        let path = text.path.as_ref().map(|walk| self.path(text, walk, resolution)).transpose()?;
-        Ok(Shot { camera, path: path.unwrap_or_default(), resolution })
+        Ok(resolution)
     }
 
     /// One camera a frame.
@@ -100,11 +129,11 @@ impl Builder<'_> {
 
 /// A key; the camera's own up vector and field of view stand where it has none.
 fn key(camera: &CameraText, text: &KeyText, place: &Place) -> Result<Key, SceneError> {
-    let fov = text.fov.unwrap_or(camera.fov);
+    let fov = text.fov.or(camera.fov).unwrap_or(DEFAULT_FOV);
     if !(fov > 0.0 && fov < 180.0) {
         return Err(place.wrong(format!("fov is {fov}"), "give 0 to 180 degrees"));
     }
-    let up = text.up.or(camera.up).unwrap_or([0.0, 1.0, 0.0]);
+    let up = text.up.or(camera.up).unwrap_or(DEFAULT_UP);
     Ok(Key {
         origin: finite(text.origin, "the camera's origin", place)?,
         target: finite(text.target, "the camera's target", place)?,

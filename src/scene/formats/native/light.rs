@@ -1,6 +1,6 @@
 //! Lights and environment of the native format.
 
-use super::text::{EnvironmentText, LightText};
+use super::text::{ColourText, EnvironmentText, LightText};
 use super::{Builder, finite};
 use crate::scene::formats::check;
 use crate::scene::formats::error::SceneError;
@@ -13,10 +13,13 @@ impl Builder<'_> {
     pub(super) fn light(&mut self, text: &Spanned<LightText>) -> Result<(), SceneError> {
         let place = self.file.place(text.span());
         let text = text.get_ref();
-        let need = |value: Option<[f64; 3]>, key: &str| {
-            let missing =
-                || place.wrong(format!("the {} light lacks {key}", text.kind), format!("add {key} = [...]"));
-            finite(value.ok_or_else(missing)?, key, &place)
+        let missing = |key: &str| {
+            place.wrong(format!("the {} light lacks {key}", text.kind), format!("add {key} = ..."))
+        };
+        let need =
+            |value: Option<[f64; 3]>, key: &str| finite(value.ok_or_else(|| missing(key))?, key, &place);
+        let colour = |value: &Option<ColourText>, key: &str| {
+            value.as_ref().ok_or_else(|| missing(key))?.rgb(&format!("the {key}"), &place)
         };
         let given = [
             ("position", text.position.is_some()),
@@ -39,13 +42,13 @@ impl Builder<'_> {
         check::keys(&format!("{} light", text.kind), known, &given, &place)?;
         let light = match text.kind.as_str() {
             "point" => {
-                let intensity = need(text.intensity, "intensity")?.as_vec3();
+                let intensity = colour(&text.intensity, "intensity")?;
                 (DeltaLight::Point { position: Vec3::ZERO, intensity }, need(text.position, "position")?)
             }
             "spot" => {
                 let position = need(text.position, "position")?;
                 let direction = check::unit(need(text.target, "target")? - position, &place)?;
-                let intensity = need(text.intensity, "intensity")?.as_vec3();
+                let intensity = colour(&text.intensity, "intensity")?;
                 let outer = text.outer_angle.unwrap_or(20.0);
                 let inner = text.inner_angle.unwrap_or(0.75 * outer);
                 let names = ["inner_angle", "outer_angle"];
@@ -56,7 +59,7 @@ impl Builder<'_> {
             }
             _ => {
                 let direction = check::unit(need(text.direction, "direction")?, &place)?;
-                let irradiance = need(text.irradiance, "irradiance")?.as_vec3();
+                let irradiance = colour(&text.irradiance, "irradiance")?;
                 (DeltaLight::Directional { direction, irradiance }, DVec3::ZERO)
             }
         };
@@ -67,9 +70,9 @@ impl Builder<'_> {
     pub(super) fn environment(&self, text: &Spanned<EnvironmentText>) -> Result<EnvironmentPlan, SceneError> {
         let place = self.file.place(text.span());
         let text = text.get_ref();
-        match (text.radiance, &text.file) {
+        match (&text.radiance, &text.file) {
             (Some(radiance), None) if text.scale.is_none() && text.rotate_y.is_none() => {
-                Ok(EnvironmentPlan::Constant(finite(radiance, "the radiance", &place)?.as_vec3()))
+                Ok(EnvironmentPlan::Constant(radiance.rgb("the radiance", &place)?))
             }
             (None, Some(file)) => {
                 let to_world = DMat4::from_rotation_y(text.rotate_y.unwrap_or(0.0).to_radians());

@@ -21,7 +21,7 @@ use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::plan::{Image, TexturePlan};
 use crate::scene::material::{Coat, Distribution, Fresnel, Lobe, Material, Reflectance, Roughness};
 use crate::scene::texture::{Filter, TextureId, Wrap};
-use glam::{DVec3, Mat3, Vec2};
+use glam::{Mat3, Vec2};
 use toml::Spanned;
 
 impl Builder<'_> {
@@ -72,7 +72,7 @@ impl Builder<'_> {
             }
             "conductor" => {
                 let scale = self.colour(&text.specular.clone().unwrap_or(one()), place)?;
-                let fresnel = conductor(text, place)?;
+                let fresnel = self.conductor(text, place)?;
                 let lobe = match text.alpha {
                     None | Some(NumberText::Number(0.0)) => Lobe::Mirror { fresnel, scale },
                     Some(_) => self.rough(text, fresnel, scale, place)?,
@@ -94,15 +94,20 @@ impl Builder<'_> {
         })
     }
 
-    fn colour(&mut self, text: &ColourText, place: &Place) -> Result<Reflectance, SceneError> {
-        Ok(match text {
-            ColourText::Rgb(rgb) => Reflectance::Constant(DVec3::from(*rgb).as_vec3()),
-            ColourText::Grey(grey) => Reflectance::Constant(Rgb::splat(*grey as f32)),
-            ColourText::Picture(file) => {
-                self.texture(&TextureText { file: file.clone(), ..TextureText::default() }, place)
+    fn conductor(&self, text: &MaterialText, place: &Place) -> Result<Fresnel, SceneError> {
+        match (&text.preset, &text.eta, &text.k) {
+            (Some(preset), None, None) => {
+                let (eta, k) = check::conductor(preset, place)?;
+                Ok(Fresnel::Conductor { eta, k })
             }
-            ColourText::Texture(texture) => self.texture(texture, place),
-        })
+            (None, Some(eta), Some(k)) => {
+                Ok(Fresnel::Conductor { eta: eta.rgb("eta", place)?, k: k.rgb("k", place)? })
+            }
+            _ => {
+                let what = format!("the conductor \"{}\" is not determined", text.name);
+                Err(place.wrong(what, "give either preset, or eta and k"))
+            }
+        }
     }
 
     fn rough(
@@ -193,20 +198,4 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
         ("thin", text.thin.is_some()),
     ];
     check::keys(&format!("{} material", text.kind), known, &given, place)
-}
-
-fn conductor(text: &MaterialText, place: &Place) -> Result<Fresnel, SceneError> {
-    match (&text.preset, text.eta, text.k) {
-        (Some(preset), None, None) => {
-            let (eta, k) = check::conductor(preset, place)?;
-            Ok(Fresnel::Conductor { eta, k })
-        }
-        (None, Some(eta), Some(k)) => {
-            Ok(Fresnel::Conductor { eta: DVec3::from(eta).as_vec3(), k: DVec3::from(k).as_vec3() })
-        }
-        _ => {
-            let what = format!("the conductor \"{}\" is not determined", text.name);
-            Err(place.wrong(what, "give either preset, or eta and k"))
-        }
-    }
 }

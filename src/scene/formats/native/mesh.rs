@@ -1,10 +1,11 @@
 //! Meshes of the native format: generated parts, files and shapes.
 
-use super::text::{MeshText, ScaleText, StepText};
-use super::{Builder, finite};
+use super::Builder;
+use super::text::{ColourText, MeshText, ScaleText, StepText};
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::mesh::{Normals, Placement, RawMesh, shapes};
 use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan, stem_of};
+use crate::scene::material::Reflectance;
 use crate::scene::mesh::Emission;
 use glam::{DMat4, DVec3};
 use lightsplat_scenes::Part;
@@ -26,13 +27,8 @@ impl Builder<'_> {
                 return Err(place.wrong("the mesh has no material", "add material = \"...\""));
             }
         };
-        let emission = match text.emission {
-            Some(radiance) => {
-                let radiance = finite(radiance, "the emission", &place)?.as_vec3();
-                Some(Emission { radiance, texture: None, two_sided: text.emission_two_sided })
-            }
-            None => None,
-        };
+        let emission =
+            text.emission.as_ref().map(|colour| self.emission(colour, text, &place)).transpose()?;
         let placement = Placement {
             to_world: self.transform(&text.transform)?,
             normals: Normals::AsGiven,
@@ -43,6 +39,19 @@ impl Builder<'_> {
         };
         self.contents.meshes.push(MeshPlan { place, name, geometry, placement, material, emission });
         Ok(())
+    }
+
+    fn emission(
+        &mut self,
+        colour: &ColourText,
+        text: &MeshText,
+        place: &Place,
+    ) -> Result<Emission, SceneError> {
+        let (radiance, texture) = match self.colour(colour, place)? {
+            Reflectance::Constant(_) => (colour.rgb("the emission", place)?, None),
+            Reflectance::Textured { texture, scale } => (scale, Some(texture)),
+        };
+        Ok(Emission { radiance, texture, two_sided: text.emission_two_sided })
     }
 
     fn geometry(&mut self, text: &MeshText, place: &Place) -> Result<(String, Geometry), SceneError> {

@@ -1,42 +1,9 @@
 //! The native format: a TOML description over OBJ, PLY and generated geometry.
 //!
-//! ```toml
-//! name = "room"                       # optional, else the file's name
-//! generator = "nave"                  # optional: yields named parts
-//! max_depth = 17                      # optional: longest path in edges
-//! resolution = [512, 512]
-//! [camera]
-//! origin = [0.0, 1.6, 5.0]
-//! target = [0.0, 1.6, 0.0]
-//! up = [0.0, 1.0, 0.0]                # this is the default
-//! fov = 60.0                          # degrees, horizontal unless fov_axis = "y"; also near, far
-//! [camera.path]                       # optional walk-through
-//! frames = 281                        # optional if keys have frames, which count from 1
-//! keys = [{ origin = [0, 1, 5], target = [0, 1, 0] }, { origin = [1, 1, 4], target = [0, 1, 0] }]
-//!                                     # each may have up and fov, and all a frame
-//! [[material]]
-//! name = "stone"
-//! kind = "diffuse"                    # the kinds and their keys: see `material`
-//! reflectance = [0.6, 0.58, 0.5]      # or 0.5, "wood.png" or { file = "wood.png", wrap = "clamp" }
-//! two_sided = true                    # this is the default
-//! [[mesh]]
-//! part = "vault"                      # or file = "x.obj", or shape = "rectangle|cube|sphere|disk|cylinder"
-//! material = "stone"                  # for OBJ optional: else its MTL materials
-//! transform = [{ scale = 2.0 }, { rotate = { axis = [0, 1, 0], angle = 30 } }, { translate = [0, 1, 0] }]
-//! emission = [10.0, 9.0, 8.0]         # optional; emission_two_sided = true; flip_normals = true
-//! [[light]]
-//! kind = "point"                      # position, intensity
-//! position = [0, 2, 0]                # "spot": position, target, intensity, inner_angle, outer_angle (half
-//! intensity = [5, 5, 5]               # angles in degrees); "directional": direction, irradiance
-//! [environment]
-//! radiance = [1.0, 1.0, 1.0]          # or file = "sky.exr", scale = 1.0, rotate_y = 0.0 (degrees)
-//! ```
-//!
-//! Transform steps apply in order; `matrix` takes 16 numbers row by row. Shapes have Mitsuba's extents. v counts
-//! upwards everywhere: pictures stand upright on a rectangle, and reach from the south pole of a sphere (-z) to
-//! the north. Meshes whose file has no normals are flat. A `specular` or `diffuse` may be a texture, too.
+//! Its keys, their types, units and defaults stand in `docs/scene-format.md`, which the tests hold against the code.
 
 mod camera;
+mod colour;
 mod light;
 mod material;
 mod mesh;
@@ -162,5 +129,7 @@ fn finite(v: [f64; 3], what: &str, place: &Place) -> Result<DVec3, SceneError> {
     v.is_finite().then_some(v).ok_or_else(wrong)
 }
 
+#[cfg(test)]
+mod page;
 #[cfg(test)]
 mod tests;

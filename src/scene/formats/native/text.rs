@@ -10,8 +10,8 @@ pub(super) struct SceneText {
     pub name: Option<String>,
     pub generator: Option<Spanned<String>>,
     pub max_depth: Option<u32>,
-    pub resolution: Spanned<[u32; 2]>,
-    pub camera: Spanned<CameraText>,
+    pub resolution: Option<Spanned<[u32; 2]>>,
+    pub camera: Option<Spanned<CameraText>>,
     #[serde(default)]
     pub material: Vec<Spanned<MaterialText>>,
     #[serde(default)]
@@ -21,13 +21,13 @@ pub(super) struct SceneText {
     pub environment: Option<Spanned<EnvironmentText>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraText {
-    pub origin: [f64; 3],
-    pub target: [f64; 3],
+    pub origin: Option<[f64; 3]>,
+    pub target: Option<[f64; 3]>,
     pub up: Option<[f64; 3]>,
-    pub fov: f64,
+    pub fov: Option<f64>,
     pub fov_axis: Option<Spanned<String>>,
     pub near: Option<f64>,
     pub far: Option<f64>,
@@ -67,24 +67,37 @@ pub(super) struct MaterialText {
     pub ior: Option<f64>,
     pub nonlinear: Option<bool>,
     pub preset: Option<String>,
-    pub eta: Option<[f64; 3]>,
-    pub k: Option<[f64; 3]>,
+    pub eta: Option<ColourText>,
+    pub k: Option<ColourText>,
     pub thin: Option<bool>,
 }
 
-/// A colour, a grey, or the name of a picture, optionally with reading options.
+/// A colour: the same in every place that takes one.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(untagged, expecting = "expected [r, g, b], a number, a picture's name or { file = \"...\" }")]
+#[serde(
+    untagged,
+    expecting = "expected a number, [r, g, b], \"#rrggbb\", { colour = ..., scale = ... } or a picture"
+)]
 pub(super) enum ColourText {
-    Rgb([f64; 3]),
     Grey(f64),
-    Picture(String),
+    Rgb([f64; 3]),
+    /// Hexadecimal after `#`, else the name of a picture.
+    Named(String),
+    /// A colour times a factor.
+    Scaled {
+        colour: Box<ColourText>,
+        scale: f64,
+    },
     Texture(TextureText),
 }
 
 /// A number, or the name of a picture with or without how to read it.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(untagged, expecting = "expected a number, a picture's name or { file = \"...\" }")]
+#[serde(
+    untagged,
+    deny_unknown_fields,
+    expecting = "expected a number, a picture's name or { file = \"...\" }"
+)]
 pub(super) enum NumberText {
     Number(f64),
     Picture(String),
@@ -131,7 +144,7 @@ pub(super) struct MeshText {
     pub material: Option<Spanned<String>>,
     #[serde(default)]
     pub transform: Vec<Spanned<StepText>>,
-    pub emission: Option<[f64; 3]>,
+    pub emission: Option<ColourText>,
     #[serde(default)]
     pub emission_two_sided: bool,
     #[serde(default)]
@@ -168,17 +181,17 @@ pub(super) struct LightText {
     pub kind: String,
     pub position: Option<[f64; 3]>,
     pub target: Option<[f64; 3]>,
-    pub intensity: Option<[f64; 3]>,
+    pub intensity: Option<ColourText>,
     pub inner_angle: Option<f64>,
     pub outer_angle: Option<f64>,
     pub direction: Option<[f64; 3]>,
-    pub irradiance: Option<[f64; 3]>,
+    pub irradiance: Option<ColourText>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct EnvironmentText {
-    pub radiance: Option<[f64; 3]>,
+    pub radiance: Option<ColourText>,
     pub file: Option<String>,
     pub scale: Option<f64>,
     pub rotate_y: Option<f64>,
