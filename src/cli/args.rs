@@ -10,6 +10,7 @@ use crate::scene::formats::LoadOptions;
 use crate::session::Feature;
 use crate::walk::{FileNames, FrameList, KeepLimits};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 /// Global illumination by lightcuts over Intel Embree, with a path-traced reference.
@@ -28,6 +29,8 @@ pub enum Command {
     Render(Box<RenderArgs>),
     /// Render the frames of a walk-through along the scene's camera path
     Walk(Box<WalkArgs>),
+    /// Render the pictures and walks of job files, reading each scene once
+    Batch(BatchArgs),
     /// Say what a scene holds and requires
     Info(InfoArgs),
     /// Take the noise off a picture that is there
@@ -88,6 +91,12 @@ pub struct PictureArgs {
     /// Denoising.
     #[command(flatten)]
     pub denoise: DenoiseArgs,
+    /// Leave out pictures whose files are whole and come of the same scene, settings and version of the program
+    #[arg(long)]
+    pub resume: bool,
+    /// Keep times and the number of threads out of the files: equal renders are equal bytes
+    #[arg(long)]
+    pub reproducible: bool,
     /// How progress is told on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     pub progress: ProgressMode,
@@ -134,9 +143,10 @@ pub struct WalkArgs {
     /// Frames, counted from 1: 7, 1-10, 1-100x5 (every fifth), or a list of those [default: all]
     #[arg(long, value_name = "LIST")]
     pub frames: Option<FrameList>,
-    /// Leave out frames whose files are whole and come of the same scene and settings
-    #[arg(long)]
-    pub resume: bool,
+    /// Begin without records at frames 1, N+1, 2N+1 and so on: chunks so long may be rendered by runs of their own, on
+    /// many machines, with the same pictures [default: one chunk]
+    #[arg(long, value_name = "N")]
+    pub chunk: Option<NonZeroUsize>,
     /// Most frames for which a record that lights nothing in view is kept
     #[arg(long, value_name = "FRAMES", default_value_t = KeepLimits::default().idle_frames)]
     pub idle_frames: u32,
@@ -161,6 +171,24 @@ pub struct WalkArgs {
     /// Print counters and stage times to standard output: a table of the frames, or an object a line and frame
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub stats: Option<StatsFormat>,
+}
+
+/// Options of `batch`.
+#[derive(Debug, Args)]
+#[command(after_help = exit::HELP)]
+pub struct BatchArgs {
+    /// Job files (.toml): pictures and walks, each with the options of its command
+    #[arg(required = true)]
+    pub jobs: Vec<PathBuf>,
+    /// Leave out pictures and frames whose files are whole and come of the same scene, settings and program version
+    #[arg(long)]
+    pub resume: bool,
+    /// Threads to use [default: all processors]; the pictures are the same for any number
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub threads: Option<u32>,
+    /// How progress is told on standard error
+    #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
+    pub progress: ProgressMode,
 }
 
 /// Options of the tone-mapped picture beside an OpenEXR file.

@@ -50,7 +50,7 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
         .map(|path| pool.install(|| scene::open(path, &LoadOptions::default())))
         .transpose()?;
     let report = pool.install(|| {
-        let session = session.as_ref().map(|(session, _)| session);
+        let session = session.as_ref().map(|opened| &opened.session);
         let context = Context { session, settings, say: &|what| talk::note(what) };
         benchmark.report(&context, measure(&context))
     });

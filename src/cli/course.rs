@@ -17,13 +17,33 @@ const SHARES: [(Stage, f64); 6] = [
     (Stage::Denoise, 0.15),
 ];
 
-/// Part of a run, and its progress.
-#[derive(Debug)]
-pub struct Course {
+/// A part of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
     /// Start of the run.
     start: Instant,
     /// Fractions of the run at which the part begins and ends.
-    span: [f64; 2],
+    fractions: [f64; 2],
+}
+
+impl Span {
+    /// All of a run that begins now.
+    pub fn whole() -> Span {
+        Span { start: Instant::now(), fractions: [0.0, 1.0] }
+    }
+
+    /// One of so many equal parts of it.
+    pub fn part(self, index: usize, count: usize) -> Span {
+        let [from, to] = self.fractions;
+        let at = |index: usize| from + (to - from) * index as f64 / count.max(1) as f64;
+        Span { fractions: [at(index), at(index + 1)], ..self }
+    }
+}
+
+/// Part of a run, and its progress.
+#[derive(Debug)]
+pub struct Course {
+    span: Span,
     /// Frames in the part, and those that are done.
     frames: usize,
     done: usize,
@@ -34,9 +54,9 @@ pub struct Course {
 }
 
 impl Course {
-    /// A part with a number of frames between two fractions of a run that began at `start`.
-    pub fn new(frames: usize, span: [f64; 2], start: Instant) -> Course {
-        Course { start, span, frames, done: 0, first: None, fraction: span[0] }
+    /// A part of a run with a number of frames.
+    pub fn new(frames: usize, span: Span) -> Course {
+        Course { span, frames, done: 0, first: None, fraction: span.fractions[0] }
     }
 
     /// Counts the frame at hand as done.
@@ -54,7 +74,7 @@ impl Course {
     pub fn fraction(&mut self, now: Option<&Progress>) -> f64 {
         let in_frame = now.map_or(0.0, |now| self.in_frame(now));
         let in_part = (self.done as f64 + in_frame) / self.frames.max(1) as f64;
-        let [from, to] = self.span;
+        let [from, to] = self.span.fractions;
         self.fraction = self.fraction.max(from + in_part.min(1.0) * (to - from));
         self.fraction
     }
@@ -62,7 +82,7 @@ impl Course {
     /// Seconds that the rest will take, at the pace so far; `None` as long as there is none.
     pub fn eta_seconds(&self) -> Option<f64> {
         (self.fraction > 0.0)
-            .then(|| self.start.elapsed().as_secs_f64() * (1.0 - self.fraction) / self.fraction)
+            .then(|| self.span.start.elapsed().as_secs_f64() * (1.0 - self.fraction) / self.fraction)
     }
 
     fn in_frame(&mut self, now: &Progress) -> f64 {
@@ -87,7 +107,7 @@ mod tests {
 
     #[test]
     fn fractions_rise_through_stages_and_frames_to_the_end_of_their_span() {
-        let mut course = Course::new(2, [0.5, 1.0], Instant::now());
+        let mut course = Course::new(2, Span::whole().part(1, 2));
         let mut last = course.fraction(None);
         assert_eq!(last, 0.5);
         for _ in 0..2 {
@@ -106,7 +126,7 @@ mod tests {
 
     #[test]
     fn methods_of_one_stage_are_half_done_in_its_middle_and_fractions_never_fall() {
-        let mut course = Course::new(1, [0.0, 1.0], Instant::now());
+        let mut course = Course::new(1, Span::whole());
         assert_eq!((course.fraction(None), course.eta_seconds()), (0.0, None));
         let share = SHARES[4].1 / (SHARES[4].1 + SHARES[5].1);
         assert!((course.fraction(Some(&at(Stage::Render, 5))) - 0.5 * share).abs() < 1e-9);

@@ -1,6 +1,7 @@
 //! Exit codes of a run.
 
 use std::fmt;
+use std::path::Path;
 
 /// All went well.
 pub const SUCCESS: u8 = 0;
@@ -12,6 +13,8 @@ pub const USAGE: u8 = 2;
 pub const INPUT: u8 = 3;
 /// The result cannot be written.
 pub const OUTPUT: u8 = 4;
+/// Some pictures of a batch failed; the others are done.
+pub const IN_PART: u8 = 5;
 /// Stopped by a signal after tidying up: the same run, begun again, may well succeed. This is the code `EX_TEMPFAIL` of
 /// sysexits.h, by which schedulers know that a job asks to be queued again.
 pub const INTERRUPTED: u8 = 75;
@@ -20,7 +23,7 @@ pub const ABORTED: u8 = 130;
 
 /// Text of `--help` about exit codes.
 pub const HELP: &str = "Exit codes: 0 done; 1 rendering failed; 2 wrong command line; 3 invalid scene or \
-picture; 4 the result cannot be written; 75 stopped by a signal (a still is written as far as it is rendered, marked as partial; \
+picture; 4 the result cannot be written; 5 some pictures of a batch failed, the others are done; 75 stopped by a signal (a still is written as far as it is rendered, marked as partial; \
 frames of a walk are whole or not written): queue it again; 130 stopped at once by a second signal.";
 
 /// Why a run ended without success.
@@ -49,6 +52,16 @@ impl Failure {
     /// The result cannot be written.
     pub fn output(error: impl Into<anyhow::Error>) -> Failure {
         Failure { code: OUTPUT, error: error.into() }
+    }
+
+    /// A part of the results failed.
+    pub fn in_part(error: impl Into<anyhow::Error>) -> Failure {
+        Failure { code: IN_PART, error: error.into() }
+    }
+
+    /// The same, with the file that it is about.
+    pub fn within(self, path: &Path) -> Failure {
+        Failure { error: self.error.context(path.display().to_string()), ..self }
     }
 
     /// Interrupted by a signal.

@@ -3,13 +3,14 @@
 use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
 use super::values::ProgressMode;
-use super::{threads, verify};
+use super::{job_key, threads, verify};
 use crate::film::{Exposure, atomic};
 use crate::scene::formats::LoadOptions;
-use crate::session::Goal;
+use crate::session::{Goal, Session};
 use crate::stats::Stopwatch;
 use crate::view::Framing;
 use anyhow::anyhow;
+use serde_json::json;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -24,12 +25,18 @@ pub struct RenderJob {
     pub output: PathBuf,
     /// PNG file and its exposure.
     pub png: Option<(PathBuf, Exposure)>,
+    /// True if the picture is left as it is where it is there.
+    pub resume: bool,
+    /// True if the files hold nothing but what follows from scene and settings.
+    pub reproducible: bool,
     /// Method, planned goal, and verification of the error.
     pub goal: Goal,
     /// Number of threads.
     pub threads: usize,
     /// Frame, film size and crop in place of the scene's.
     pub framing: Framing,
+    /// Start of the run.
+    pub run: Stopwatch,
     /// Statistics on stdout.
     pub stats: Option<StatsFormat>,
     /// Progress on stderr.
@@ -56,11 +63,18 @@ impl RenderJob {
         if goal.keep_noisy && !goal.denoises() {
             return Err(Failure::usage(anyhow!("--keep-noisy goes with --denoise")));
         }
+        if args.picture.reproducible && args.plan.time.is_some() {
+            return Err(Failure::usage(anyhow!(
+                "--reproducible: settings planned by --time differ from run to run"
+            )));
+        }
         Ok(RenderJob {
             scene: args.scene,
             reading: args.picture.reading.options(),
             output: args.output,
             png: png.map(|path| (path, args.png.exposure)),
+            resume: args.picture.resume,
+            reproducible: args.picture.reproducible,
             goal,
             threads: threads::count(args.picture.threads),
             framing: Framing {
@@ -68,9 +82,16 @@ impl RenderJob {
                 resolution: args.picture.resolution.map(|r| r.0),
                 crop: args.picture.crop.map(|crop| [crop.offset, crop.size]),
             },
+            run,
             stats: args.stats,
             progress: args.picture.progress,
         })
+    }
+
+    /// Key of the picture.
+    pub fn key(&self, session: &Session) -> String {
+        let exposure = self.png.as_ref().map(|(_, exposure)| exposure.to_string());
+        job_key::of(session, &self.goal, json!([format!("{:?}", self.framing), exposure, self.reproducible]))
     }
 }
 

@@ -4,6 +4,8 @@
 //! `exit`.
 
 mod args;
+mod batch;
+mod batch_file;
 mod bench;
 mod bench_args;
 mod compare;
@@ -14,6 +16,7 @@ mod files;
 mod info;
 mod interrupt;
 mod job;
+mod job_key;
 mod method_args;
 mod picture;
 mod plan_args;
@@ -50,6 +53,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let outcome = catch_unwind(AssertUnwindSafe(|| match cli.command {
         Command::Render(args) => render::run(*args),
         Command::Walk(args) => walk::run(*args),
+        Command::Batch(args) => batch::run(args),
         Command::Info(args) => info::run(args),
         Command::Denoise(args) => denoise::run(args),
         Command::Compare(args) => compare::run(args),

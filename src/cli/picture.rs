@@ -12,6 +12,14 @@ pub struct Written {
     pub files: Vec<PathBuf>,
 }
 
+/// Facts of a picture that differ between equal renders: time and machine.
+const CIRCUMSTANCES: [&str; 2] = ["render_seconds", "threads"];
+
+/// Takes those facts out, so that equal renders are equal files.
+pub fn forget_circumstances(film: &mut Film) {
+    CIRCUMSTANCES.iter().for_each(|key| film.metadata.remove(key));
+}
+
 /// Writes a picture to `exr`, then to a PNG by a factor on radiance.
 pub fn write(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> Result<Written, Failure> {
     let mut written = describe(exr, png, &mut film);

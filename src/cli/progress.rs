@@ -48,6 +48,11 @@ impl Watch {
         self.course.frame_done();
         result
     }
+
+    /// Frames done and all frames.
+    pub fn frames(&self) -> [usize; 2] {
+        self.course.frames()
+    }
 }
 
 /// Runs `work` here and `watch` in a thread that learns of the end by its channel closing, panic or not.
@@ -138,13 +143,13 @@ fn write_for_agents(course: &mut Course, control: &Control) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Instant;
+    use crate::cli::course::Span;
 
     #[test]
     fn the_watcher_ends_with_the_work_and_the_result_comes_through() {
         let control = Control::new();
         for mode in [ProgressMode::None, ProgressMode::Auto, ProgressMode::Ndjson, ProgressMode::Openjd] {
-            let mut watch = Watch::new(mode, Course::new(2, [0.0, 1.0], Instant::now()));
+            let mut watch = Watch::new(mode, Course::new(2, Span::whole()));
             assert_eq!(watch.frame(None, &control, || 7), 7);
             assert_eq!(watch.course.frames(), [1, 2]);
         }

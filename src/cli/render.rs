@@ -1,10 +1,12 @@
 //! `lightsplat render`: opens a session, renders the frame, writes it; whatever happens, no file is left half-written.
 
 use super::args::{RenderArgs, StatsFormat};
-use super::course::Course;
+use super::course::{Course, Span};
 use super::exit::Failure;
 use super::job::RenderJob;
+use super::job_key;
 use super::progress::Watch;
+use super::scene::Opened;
 use super::{interrupt, picture, scene, talk, threads};
 use crate::film::Film;
 use crate::progress::Control;
@@ -13,7 +15,6 @@ use crate::stats::{Stage, Stopwatch, peak_resident_bytes};
 use crate::view::View;
 use anyhow::{Context, anyhow};
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Runs the command.
 pub fn run(args: RenderArgs) -> Result<(), Failure> {
@@ -22,9 +23,25 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
     let job = RenderJob::new(args, run)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
-    let pool = threads::pool(job.threads)?;
+    threads::pool(job.threads)?.install(|| {
+        let opened = scene::open(&job.scene, &job.reading)?;
+        still(&job, &opened, Span::whole(), &control)
+    })
+}
 
-    let frame = pool.install(|| render(&job, &control))?;
+/// Renders the picture, unless it is there and may stay, and says what came of it. It is the part `span` of the run.
+pub fn still(job: &RenderJob, opened: &Opened, span: Span, control: &Control) -> Result<(), Failure> {
+    let (exr, png) = (&job.output, job.png.as_ref().map(|(path, _)| path.as_path()));
+    let key = job.key(&opened.session);
+    if job.resume && job_key::is_done((exr, png), job.framing.frame, &key) {
+        talk::note(&format!("{} is there already, left as it is", exr.display()));
+        return Ok(());
+    }
+    let mut frame = render(job, opened, span, control)?;
+    frame.film.metadata.set("job", key);
+    if job.reproducible {
+        picture::forget_circumstances(&mut frame.film);
+    }
     let is_black = frame.is_black();
     let Frame { film, mut stats, mut facts, remarks, complete, unverified, .. } = frame;
     for remark in remarks {
@@ -33,8 +50,8 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
             Remark::Warning(text) => talk::warning(&text),
         }
     }
-    stats.time(Stage::Write, || write(&job, film))?;
-    stats.add_time(Stage::Total, run.elapsed());
+    stats.time(Stage::Write, || write(job, film))?;
+    stats.add_time(Stage::Total, job.run.elapsed());
     if facts["plan"]["asked_seconds"].is_number() {
         let seconds = |stage| stats.stage(stage).map_or(0.0, |t| t.wall_seconds);
         let got = seconds(Stage::Total) - seconds(Stage::Verify);
@@ -65,13 +82,13 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
 }
 
 /// The frame, with the times of opening its session and the facts that only the command knows.
-fn render(job: &RenderJob, control: &Control) -> Result<Frame, Failure> {
-    let (session, warnings) = scene::open(&job.scene, &job.reading)?;
+fn render(job: &RenderJob, opened: &Opened, span: Span, control: &Control) -> Result<Frame, Failure> {
+    let Opened { session, warnings } = opened;
     let view = View::new(&session.cameras, &job.framing).map_err(Failure::usage)?;
     if control.is_cancelled() {
         return Err(Failure::interrupted(FrameError::Interrupted));
     }
-    let mut progress = Watch::new(job.progress, Course::new(1, [0.0, 1.0], Instant::now()));
+    let mut progress = Watch::new(job.progress, Course::new(1, span));
     let frame = progress.frame(job.framing.frame, control, || session.frame(&view, &job.goal, control));
     let mut frame = frame.map_err(|error| match error {
         FrameError::Interrupted => Failure::interrupted(error),
@@ -84,7 +101,7 @@ fn render(job: &RenderJob, control: &Control) -> Result<Frame, Failure> {
     if let Some(number) = job.framing.frame {
         frame.film.metadata.set("frame", number as f64);
     }
-    frame.facts["scene_warnings"] = warnings.into();
+    frame.facts["scene_warnings"] = (*warnings).into();
     frame.facts["output"] = serde_json::json!(job.output);
     frame.facts["png"] = serde_json::json!(job.png.as_ref().map(|(path, _)| path));
     Ok(frame)

@@ -23,8 +23,16 @@ pub fn read(path: &Path, options: &LoadOptions) -> Result<Loaded, Failure> {
     Ok(loaded)
 }
 
-/// Opens a session on the scene at `path`; returns it and the number of warnings.
-pub fn open(path: &Path, options: &LoadOptions) -> Result<(Session, usize), Failure> {
+/// A session, and the number of warnings of reading its scene.
+pub struct Opened {
+    /// The session.
+    pub session: Session,
+    /// Number of warnings.
+    pub warnings: usize,
+}
+
+/// Opens a session on the scene at `path`.
+pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
     let mut stats = Stats::new();
     let loaded = stats.time(Stage::Load, || read(path, options))?;
     let warnings = loaded.warnings.len();
@@ -32,7 +40,7 @@ pub fn open(path: &Path, options: &LoadOptions) -> Result<(Session, usize), Fail
         OpenError::Scene(_) => Failure::input(error),
         OpenError::Build { .. } => Failure::render(error),
     })?;
-    Ok((session, warnings))
+    Ok(Opened { session, warnings })
 }
 
 /// Warnings that say the same of different places, once each with their number, in order of appearance.

@@ -1,10 +1,11 @@
 //! `lightsplat walk`: renders frame after frame of a camera path; each is written whole before the next begins.
 
 use super::args::WalkArgs;
-use super::course::Course;
+use super::course::{Course, Span};
 use super::exit::Failure;
 use super::progress::Watch;
-use super::walk_job::WalkJob;
+use super::scene::Opened;
+use super::walk_job::{PlannedChunk, WalkJob};
 use super::walk_report::Report;
 use super::{interrupt, picture, scene, talk, threads};
 use crate::film::{Exposure, Film, Image};
@@ -12,13 +13,13 @@ use crate::progress::Control;
 use crate::session::{BLACK, Frame, FrameError, Remark, Session};
 use crate::stats::{Stage, Stopwatch};
 use crate::view::View;
-use crate::walk::{Walk, exposure};
+use crate::walk::{Walk, exposure, saved};
 use anyhow::{Context, anyhow};
 use serde_json::json;
 use std::collections::BTreeSet;
+use std::fs;
 use std::mem;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Runs the command.
 pub fn run(args: WalkArgs) -> Result<(), Failure> {
@@ -26,58 +27,87 @@ pub fn run(args: WalkArgs) -> Result<(), Failure> {
     let job = WalkJob::new(args)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
-    threads::pool(job.threads)?.install(|| walk(&job, &control))
+    threads::pool(job.threads)?.install(|| {
+        let opened = scene::open(&job.scene, &job.reading)?;
+        walk(&job, &opened, Span::whole(), &control)
+    })
 }
 
-/// Renders the frames that are not there yet, and says what came of it.
-fn walk(job: &WalkJob, control: &Control) -> Result<(), Failure> {
-    let (session, warnings) = scene::open(&job.scene, &job.reading)?;
-    let numbers = job.numbers(&session)?;
-    let hash = job.hash(&session);
+/// Renders the frames that are not there yet, and says what came of it. They are the part `span` of the run.
+pub fn walk(job: &WalkJob, opened: &Opened, span: Span, control: &Control) -> Result<(), Failure> {
+    let Opened { session, warnings } = opened;
+    let chunks = job.plan(session)?;
     let mut report = Report::new(job.stats);
-    let mut left = Vec::new();
-    for number in numbers {
-        if job.resume && job.is_done(number, &hash) {
-            report.skip();
-            talk::event("frame", || json!({ "frame": number, "state": "skipped" }));
-        } else {
-            left.push(number);
-        }
+    for number in chunks.iter().flat_map(PlannedChunk::untouched) {
+        report.skip();
+        talk::event("frame", || json!({ "frame": number, "state": "skipped" }));
     }
-    let ended = frames(job, &session, (&left, &hash, warnings), &mut report, control);
-    report.sum_up();
+    let count = chunks.iter().map(PlannedChunk::count).sum();
+    let progress = Watch::new(job.progress, Course::new(count, span));
+    let said = BTreeSet::new();
+    let mut frames =
+        Frames { job, session, warnings: *warnings, control, factor: None, report, progress, said };
+    let ended = chunks.into_iter().try_for_each(|chunk| frames.chunk(chunk));
+    frames.report.sum_up();
     ended
 }
 
-fn frames(
-    job: &WalkJob,
-    session: &Session,
-    (numbers, hash, warnings): (&[usize], &str, usize),
-    report: &mut Report,
-    control: &Control,
-) -> Result<(), Failure> {
-    let Some(first) = numbers.first() else { return Ok(()) };
-    let film = View::new(&session.cameras, &job.framing(*first)).map_err(Failure::usage)?.window.film;
-    // Frames of the whole path decide, so that any part of it has the same.
-    let factor = job.exposure.map(|exposure| match exposure {
-        Exposure::Auto => exposure::over_path(session, film, control).exp2(),
-        Exposure::Ev(ev) => ev.exp2(),
-    });
-    let mut walk = Walk::new(session, job.goal.clone(), job.limits);
-    let mut progress = Watch::new(job.progress, Course::new(numbers.len(), [0.0, 1.0], Instant::now()));
-    let mut said = BTreeSet::new();
-    for (index, &number) in numbers.iter().enumerate() {
+/// A walk under way.
+struct Frames<'a> {
+    job: &'a WalkJob,
+    session: &'a Session,
+    /// Warnings of reading the scene.
+    warnings: usize,
+    control: &'a Control,
+    /// Factor of the PNG files, once it is known.
+    factor: Option<f32>,
+    report: Report,
+    progress: Watch,
+    /// Remarks made before.
+    said: BTreeSet<String>,
+}
+
+impl Frames<'_> {
+    /// Renders the frames of a chunk that lack, and those that have to be for their records.
+    fn chunk(&mut self, chunk: PlannedChunk) -> Result<(), Failure> {
+        let Frames { job, session, .. } = *self;
+        let records = job.records_file(&chunk);
+        for run in &chunk.runs {
+            let saved = chunk.saved.as_ref().filter(|_| run.from_saved);
+            let walk = saved
+                .and_then(|(_, bytes)| Walk::restored(session, job.goal.clone(), job.limits, bytes))
+                .unwrap_or_else(|| Walk::new(session, job.goal.clone(), job.limits));
+            let behind = chunk.saved.as_ref().map_or(0, |(saved, _)| saved + 1);
+            let mut walk = walk;
+            for index in run.frames.clone() {
+                self.frame(&mut walk, &chunk, index)?;
+                if let Some(path) = records.as_ref().filter(|_| index >= behind && !chunk.is_last(index)) {
+                    saved::write(path, &chunk.keys[index], &walk.save()).map_err(Failure::output)?;
+                }
+            }
+        }
+        // Nobody will go on from these. That they cannot be removed is no harm.
+        if let Some(path) = records.filter(|_| chunk.ends) {
+            let _ = fs::remove_file(path);
+        }
+        Ok(())
+    }
+
+    /// Renders a frame of a chunk, and writes it unless it is there.
+    fn frame(&mut self, walk: &mut Walk, chunk: &PlannedChunk, index: usize) -> Result<(), Failure> {
+        let Frames { job, session, control, .. } = *self;
+        let (number, is_there) = (chunk.frames[index], chunk.done[index]);
         if control.is_cancelled() {
             return Err(interrupted(number));
         }
         let watch = Stopwatch::start();
-        let (exr, png) = job.files(number);
+        let [place, count] = self.progress.frames();
         talk::event(
             "frame",
-            || json!({ "frame": number, "state": "start", "index": index, "count": numbers.len() }),
+            || json!({ "frame": number, "state": "start", "index": place, "count": count, "is_there": is_there }),
         );
         let view = View::new(&session.cameras, &job.framing(number)).map_err(Failure::usage)?;
-        let frame = progress.frame(Some(number), control, || walk.frame(&view, control));
+        let frame = self.progress.frame(Some(number), control, || walk.frame(&view, control));
         let mut frame = frame.map_err(|error| match error {
             FrameError::Interrupted => interrupted(number),
             FrameError::Memory { .. } | FrameError::Unplannable(_) => Failure::usage(error),
@@ -85,26 +115,66 @@ fn frames(
         if !frame.complete {
             return Err(interrupted(number));
         }
-        say_once(&frame, number, &mut said);
         let is_black = frame.is_black();
-        frame.film.metadata.set("frame", number as f64);
-        frame.film.metadata.set("job", hash);
-        let film = mem::replace(&mut frame.film, Film::new(Image::new(0, 0)));
-        let png = png.as_deref().zip(factor);
-        let written = frame.stats.time(Stage::Write, || picture::write_exr_last(&exr, png, film))?;
-        let time = watch.elapsed();
-        frame.stats.add_time(Stage::Total, time);
-        frame.facts["scene_warnings"] = warnings.into();
-        frame.facts["output"] = json!(exr);
-        frame.facts["png"] = json!(png.map(|(path, _)| path));
-        talk::wrote(&format!("frame {number}: {}", written.said), &written.files);
-        talk::event("frame", || json!({ "frame": number, "state": "end", "seconds": time.wall_seconds }));
-        report.add(number, &frame)?;
+        if is_there {
+            self.report.repeat();
+        } else {
+            self.say_once(&frame, number);
+            self.write(&mut frame, number, &chunk.keys[index], &view)?;
+            frame.stats.add_time(Stage::Total, watch.elapsed());
+            self.report.add(number, &frame)?;
+        }
+        let seconds = watch.elapsed().wall_seconds;
+        talk::event("frame", || json!({ "frame": number, "state": "end", "seconds": seconds }));
         if job.reading.strict && is_black {
             return Err(Failure::render(anyhow!("frame {number}: {BLACK}")));
         }
+        Ok(())
     }
-    Ok(())
+
+    /// Writes a frame and states its files.
+    fn write(&mut self, frame: &mut Frame, number: usize, key: &str, view: &View) -> Result<(), Failure> {
+        let (exr, png) = self.job.files(number);
+        let factor = self.factor(view);
+        frame.film.metadata.set("frame", number as f64);
+        frame.film.metadata.set("job", key);
+        let mut film = mem::replace(&mut frame.film, Film::new(Image::new(0, 0)));
+        if self.job.reproducible {
+            picture::forget_circumstances(&mut film);
+        }
+        let png = png.as_deref().zip(factor);
+        let written = frame.stats.time(Stage::Write, || picture::write_exr_last(&exr, png, film))?;
+        frame.facts["scene_warnings"] = self.warnings.into();
+        frame.facts["output"] = json!(exr);
+        frame.facts["png"] = json!(png.map(|(path, _)| path));
+        talk::wrote(&format!("frame {number}: {}", written.said), &written.files);
+        Ok(())
+    }
+
+    /// Factor of the PNG files, if they are wanted. Frames of the whole path decide, so that any part of it has the
+    /// same.
+    fn factor(&mut self, view: &View) -> Option<f32> {
+        let exposure = self.job.exposure?;
+        let found = || match exposure {
+            Exposure::Auto => exposure::over_path(self.session, view.window.film, self.control).exp2(),
+            Exposure::Ev(ev) => ev.exp2(),
+        };
+        Some(*self.factor.get_or_insert_with(found))
+    }
+
+    /// Prints the remarks of a frame that no frame before it had.
+    fn say_once(&mut self, frame: &Frame, number: usize) {
+        for remark in &frame.remarks {
+            let (Remark::Note(text) | Remark::Warning(text)) = remark;
+            if self.said.insert(text.clone()) {
+                let line = format!("frame {number}: {text}");
+                match remark {
+                    Remark::Note(_) => talk::note(&line),
+                    Remark::Warning(_) => talk::warning(&line),
+                }
+            }
+        }
+    }
 }
 
 /// The frame at hand was not begun or is given up; those before it are whole.
@@ -112,18 +182,4 @@ fn interrupted(number: usize) -> Failure {
     Failure::interrupted(anyhow!(
         "interrupted before frame {number} was done, which is not written; go on by the same command with --resume"
     ))
-}
-
-/// Prints the remarks of a frame that no frame before it had.
-fn say_once(frame: &Frame, number: usize, said: &mut BTreeSet<String>) {
-    for remark in &frame.remarks {
-        let (Remark::Note(text) | Remark::Warning(text)) = remark;
-        if said.insert(text.clone()) {
-            let line = format!("frame {number}: {text}");
-            match remark {
-                Remark::Note(_) => talk::note(&line),
-                Remark::Warning(_) => talk::warning(&line),
-            }
-        }
-    }
 }

@@ -4,16 +4,17 @@ use super::args::{StatsFormat, WalkArgs};
 use super::exit::Failure;
 use super::job::check_outputs;
 use super::plan_args::PlanArgs;
-use super::threads;
 use super::values::ProgressMode;
-use crate::film::{Exposure, ExrFile, Metadata};
+use super::{job_key, threads};
+use crate::film::Exposure;
 use crate::scene::formats::LoadOptions;
-use crate::scene::formats::fnv1a;
 use crate::session::{Goal, Session, Wanted};
 use crate::view::Framing;
-use crate::walk::{FileNames, FrameList, KeepLimits};
+use crate::walk::chunk::{self, Chunk, Run};
+use crate::walk::{FileNames, FrameList, KeepLimits, saved};
 use anyhow::anyhow;
 use serde_json::json;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 /// A validated walk: scene, method, frames and their files.
@@ -25,8 +26,12 @@ pub struct WalkJob {
     pub reading: LoadOptions,
     /// Frames; `None` for all of the path.
     pub frames: Option<FrameList>,
+    /// Frames of a chunk, which begins without records; `None` for all of the path.
+    pub chunk: Option<NonZeroUsize>,
     /// True if frames whose files are there are left out.
     pub resume: bool,
+    /// True if the files hold nothing but what follows from scene and settings.
+    pub reproducible: bool,
     /// Exposure of the PNG files, if they are wanted.
     pub exposure: Option<Exposure>,
     /// Method and features.
@@ -65,7 +70,9 @@ impl WalkJob {
             scene: args.scene,
             reading: args.picture.reading.options(),
             frames: args.frames,
-            resume: args.resume,
+            chunk: args.chunk,
+            resume: args.picture.resume,
+            reproducible: args.picture.reproducible,
             exposure: (!args.no_png).then_some(args.exposure),
             goal,
             limits: KeepLimits { idle_frames: args.idle_frames, bytes },
@@ -100,11 +107,11 @@ impl WalkJob {
         Framing { frame: Some(frame), ..self.framing }
     }
 
-    /// Numbers of the frames to render.
+    /// Numbers of the frames wanted.
     ///
     /// # Errors
     /// If the scene has no camera path, or a frame lies beyond it.
-    pub fn numbers(&self, session: &Session) -> Result<Vec<usize>, Failure> {
+    fn numbers(&self, session: &Session) -> Result<Vec<usize>, Failure> {
         let frames = session.cameras.path.len();
         let scene = self.scene.display();
         if frames == 0 {
@@ -122,34 +129,82 @@ impl WalkJob {
         }
     }
 
-    /// Hash of all that decides what is in a frame's files, but for its number, the frames before it, and whether the
-    /// denoiser is there.
-    pub fn hash(&self, session: &Session) -> String {
-        let Goal { method, features, keep_noisy, .. } = &self.goal;
-        let decisive = json!({
-            "version": env!("CARGO_PKG_VERSION"),
-            "scene": session.hash,
-            "method": method.name(),
-            "settings": method.settings(),
-            "film": format!("{:?}", self.framing),
-            "features": format!("{features:?}"),
-            "denoise": self.goal.denoises(),
-            "keep_noisy": keep_noisy,
-            "exposure": self.exposure.map(|exposure| exposure.to_string()),
-            "limits": format!("{:?}", self.limits),
-        });
-        format!("{:016x}", fnv1a(decisive.to_string().as_bytes()))
+    /// The frames wanted, by chunks, and those of them to render.
+    ///
+    /// # Errors
+    /// If the scene has no camera path, or a frame lies beyond it.
+    pub fn plan(&self, session: &Session) -> Result<Vec<PlannedChunk>, Failure> {
+        let numbers = self.numbers(session)?;
+        let key = job_key::of(
+            session,
+            &self.goal,
+            json!([
+                format!("{:?}", self.framing),
+                self.exposure.map(|exposure| exposure.to_string()),
+                format!("{:?}", self.limits),
+                self.reproducible,
+            ]),
+        );
+        // Without records, frames have nothing to do with each other.
+        let size = if self.goal.method.keeps_records() { self.chunk } else { NonZeroUsize::new(1) };
+        let chunks = chunk::chunks(&numbers, size, session.cameras.path.len());
+        Ok(chunks.into_iter().map(|chunk| self.planned(chunk, &key)).collect())
     }
 
-    /// True if the files of a frame are whole and come of a job of this hash.
-    pub fn is_done(&self, number: usize, hash: &str) -> bool {
-        let (exr, png) = self.files(number);
-        let is_it = |metadata: Metadata| {
-            metadata.text("job") == Some(hash)
-                && metadata.number("frame") == Some(number as f64)
-                && metadata.text("partial") == Some("false")
+    fn planned(&self, chunk: Chunk, key: &str) -> PlannedChunk {
+        let Chunk { frames, ends } = chunk;
+        let keys: Vec<String> = (0..frames.len()).map(|i| job_key::of_frame(key, &frames[..=i])).collect();
+        let is_done = |(number, key): (&usize, &String)| {
+            let (exr, png) = self.files(*number);
+            self.resume && job_key::is_done((&exr, png.as_deref()), Some(*number), key)
         };
-        ExrFile::read(&exr).is_ok_and(|file| file.color().is_ok() && is_it(file.metadata()))
-            && png.is_none_or(|png| image::open(png).is_ok())
+        let done: Vec<bool> = frames.iter().zip(&keys).map(is_done).collect();
+        let mut chunk = PlannedChunk { frames, keys, done, ends, saved: None, runs: Vec::new() };
+        chunk.saved = self.records_file(&chunk).filter(|_| self.resume).and_then(|path| {
+            let (key, records) = saved::read(&path)?;
+            Some((chunk.keys.iter().position(|known| *known == key)?, records))
+        });
+        chunk.runs = chunk::runs(&chunk.done, chunk.saved.as_ref().map(|(index, _)| *index));
+        chunk
+    }
+
+    /// File of the records of a chunk, between its frames; none where there are no others to go on to.
+    pub fn records_file(&self, chunk: &PlannedChunk) -> Option<PathBuf> {
+        let first = chunk.frames.first().filter(|_| chunk.frames.len() > 1 || !chunk.ends)?;
+        Some(self.names.of(*first).with_extension("records"))
+    }
+}
+
+/// Frames of a chunk, and what is there of them.
+#[derive(Debug)]
+pub struct PlannedChunk {
+    /// Numbers of the frames.
+    pub frames: Vec<usize>,
+    /// Keys of their files.
+    pub keys: Vec<String>,
+    /// True where the files are whole.
+    pub done: Vec<bool>,
+    /// True if no later run can want further frames of the chunk.
+    pub ends: bool,
+    /// Records that were saved, and the index of the frame after which they were.
+    pub saved: Option<(usize, Vec<u8>)>,
+    /// Frames to render.
+    pub runs: Vec<Run>,
+}
+
+impl PlannedChunk {
+    /// Number of frames to render.
+    pub fn count(&self) -> usize {
+        self.runs.iter().map(|run| run.frames.len()).sum()
+    }
+
+    /// Numbers of the frames that are there and stay.
+    pub fn untouched(&self) -> impl Iterator<Item = usize> {
+        self.frames.iter().zip(&self.done).filter(|(_, done)| **done).map(|(number, _)| *number)
+    }
+
+    /// True if no frame of the chunk comes after this one.
+    pub fn is_last(&self, index: usize) -> bool {
+        self.ends && index + 1 == self.frames.len()
     }
 }

@@ -30,6 +30,8 @@ pub struct Report {
     /// Frames rendered, and frames left out because their files were there.
     rendered: u64,
     skipped: u64,
+    /// Of those, the frames rendered all the same, for their records.
+    repeated: u64,
     new_records: u64,
     max_bytes: u64,
     time: StageTime,
@@ -44,6 +46,11 @@ impl Report {
     /// Counts a frame that is left out.
     pub fn skip(&mut self) {
         self.skipped += 1;
+    }
+
+    /// Counts a frame that is left out, but rendered for its records.
+    pub fn repeat(&mut self) {
+        self.repeated += 1;
     }
 
     /// Adds a frame and prints its statistics.
@@ -72,6 +79,7 @@ impl Report {
             json!({
                 "rendered": self.rendered,
                 "skipped": self.skipped,
+                "repeated": self.repeated,
                 "frame_seconds": self.time.wall_seconds / self.rendered.max(1) as f64,
                 "frame_cpu_seconds": self.time.cpu_seconds / self.rendered.max(1) as f64,
             })
@@ -79,10 +87,13 @@ impl Report {
     }
 
     fn text(&self) -> String {
-        let Report { rendered, skipped, .. } = self;
+        let Report { rendered, skipped, repeated, .. } = self;
         let mut text = format!("{rendered} frames rendered");
         if *skipped > 0 {
             text += &format!(", {skipped} left as they were");
+        }
+        if *repeated > 0 {
+            text += &format!(" ({repeated} rendered again for their records)");
         }
         if *rendered > 0 {
             let frames = *rendered as f64;

@@ -1,8 +1,8 @@
 //! Changes of an OpenEXR file in memory that leave all else in it as it is: parts, channels of any type, attributes.
 
 use super::exr_read::text;
-use super::exr_write::{into_io, name_of, set};
-use super::{ExrFile, Image, ImageError, Value, atomic};
+use super::exr_write::{name_of, set, write};
+use super::{ExrFile, Image, ImageError, Value};
 use crate::math::luminance;
 use ::exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Text, WritableImage};
 use std::path::Path;
@@ -65,8 +65,7 @@ impl ExrFile {
 
     /// Writes the file to `path`, whole or not at all.
     pub fn write(&self, path: &Path) -> Result<(), ImageError> {
-        atomic::write_atomically(path, |file| self.parts.write().to_buffered(file).map_err(into_io))
-            .map_err(|source| ImageError::Write { path: path.to_owned(), source })
+        write(path, |bytes| self.parts.write().to_buffered(bytes))
     }
 }
 

@@ -6,9 +6,10 @@
 //!
 //! Units: radiance W/(sr m²), linear, Rec. 709 primaries (stated in the file).
 
+use super::exr_order::sort_attributes;
 use super::{Film, ImageError, Metadata, Pixels, Value, atomic};
 use ::exr::prelude::*;
-use std::io;
+use std::io::{self, Cursor, Write as _};
 use std::path::Path;
 
 /// Prefix of our attributes.
@@ -46,8 +47,22 @@ pub fn write_exr(path: &Path, film: &Film) -> std::result::Result<(), ImageError
         blue: Vec2(0.15, 0.06),
         white: Vec2(0.3127, 0.3290),
     });
-    atomic::write_atomically(path, |file| picture.write().to_buffered(file).map_err(into_io))
-        .map_err(|source| ImageError::Write { path: path.to_owned(), source })
+    write(path, |bytes| picture.write().to_buffered(bytes))
+}
+
+/// Writes the file that `encode` makes, its attributes in order, whole or not at all.
+pub(super) fn write(
+    path: &Path,
+    encode: impl FnOnce(&mut Cursor<Vec<u8>>) -> std::result::Result<(), Error>,
+) -> std::result::Result<(), ImageError> {
+    atomic::write_atomically(path, |file| {
+        let mut bytes = Cursor::new(Vec::new());
+        encode(&mut bytes).map_err(into_io)?;
+        let mut bytes = bytes.into_inner();
+        sort_attributes(&mut bytes);
+        file.write_all(&bytes)
+    })
+    .map_err(|source| ImageError::Write { path: path.to_owned(), source })
 }
 
 /// Appends the three channels of a layer of that name.
@@ -108,7 +123,7 @@ pub(super) fn name_of(key: &str) -> Text {
     Text::from_slice_unchecked(format!("{PREFIX}{key}").as_bytes())
 }
 
-pub(super) fn into_io(error: Error) -> io::Error {
+fn into_io(error: Error) -> io::Error {
     match error {
         Error::Io(error) => error,
         other => io::Error::other(other.to_string()),

@@ -100,6 +100,11 @@ impl Metadata {
         }
     }
 
+    /// Removes the value of `key`.
+    pub fn remove(&mut self, key: &str) {
+        self.0.retain(|(present, _)| present != key);
+    }
+
     /// Returns the value of `key`.
     pub fn get(&self, key: &str) -> Option<&Value> {
         self.0.iter().find(|(present, _)| present == key).map(|(_, value)| value)

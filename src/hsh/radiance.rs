@@ -8,12 +8,13 @@ use super::basis::index;
 use super::basis::{MAX_BANDS, MAX_FUNCTIONS};
 use super::kernel::Kernel;
 use crate::math::{F32x8, Rgb, WIDTH};
+use serde::{Deserialize, Serialize};
 
 /// Number of rows: value and two derivatives, each of every channel.
 pub(super) const BLOCKS: usize = 3 * CHANNELS;
 
 /// Radiance over the hemisphere, and its derivatives as the receiver moves along u and v.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Radiance {
     bands: u8,
     /// Coefficients of the value's red, green and blue, then of the derivatives' along u and along v; each block
@@ -51,6 +52,11 @@ impl Radiance {
     pub fn black(bands: usize) -> Radiance {
         let bands = bands.clamp(1, MAX_BANDS);
         Radiance { bands: bands as u8, coefficients: vec![0.0; BLOCKS * stride(bands)].into() }
+    }
+
+    /// True if there are as many coefficients as the bands have, as there are unless it was read from damaged bytes.
+    pub fn is_sound(&self) -> bool {
+        (1..=MAX_BANDS).contains(&self.bands()) && self.coefficients.len() == BLOCKS * stride(self.bands())
     }
 
     /// Memory beside the struct itself.

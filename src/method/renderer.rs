@@ -38,6 +38,11 @@ pub trait Renderer: Settings + Sampled {
         self.render(world, lights, view, control)
     }
 
+    /// True if [`Renderer::render_next`] uses records of the frames before.
+    fn keeps_records(&self) -> bool {
+        false
+    }
+
     /// Rejects settings that contradict each other.
     ///
     /// # Errors

@@ -12,6 +12,7 @@ use super::settings::{CacheSettings, Footprints};
 use crate::math::Frame;
 use crate::vpl::Origin;
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// Factor by which a footprint is shorter along the normal than along its shorter axis.
 const NORMAL_SCALE: f32 = 5.0;
@@ -23,7 +24,7 @@ const MIN_SQUEEZE: f32 = 0.3;
 const MAX_ASPECT: f32 = 2.0;
 
 /// The ellipse within which a record is used.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Footprint {
     /// Unit tangent axes.
     pub axes: [Vec3; 2],

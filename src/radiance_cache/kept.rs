@@ -22,6 +22,7 @@ use crate::hsh::Radiance;
 use crate::stats::Stats;
 use crate::vpl::{DirectIndirect, Origin};
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 use std::mem;
 
 /// Minimum cosine between normal and direction to the eye that foreshortens; as that of eye samples.
@@ -61,6 +62,7 @@ pub struct KeptRecords {
 }
 
 /// A record between frames.
+#[derive(Serialize, Deserialize)]
 struct Kept {
     record: Record,
     series: Option<Radiance>,
@@ -68,7 +70,7 @@ struct Kept {
 }
 
 /// History of a record.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Use {
     /// Frame that it was last near a point seen.
     last: u32,
@@ -80,6 +82,20 @@ impl KeptRecords {
     /// None yet.
     pub fn new(limits: KeepLimits) -> KeptRecords {
         KeptRecords { limits, ..KeptRecords::default() }
+    }
+
+    /// Records as they were when [`KeptRecords::save`] returned these bytes; `None` if it did not.
+    pub fn restored(limits: KeepLimits, saved: &[u8]) -> Option<KeptRecords> {
+        let (frame, kept): (u32, DirectIndirect<Vec<Kept>>) = postcard::from_bytes(saved).ok()?;
+        let mut all = kept.direct.iter().chain(&kept.indirect);
+        let is_sound = all.all(|kept| kept.series.as_ref().is_none_or(Radiance::is_sound));
+        is_sound.then(|| KeptRecords { limits, frame, kept, ..KeptRecords::default() })
+    }
+
+    /// The records between frames as bytes, for this version of the program.
+    pub fn save(&self) -> Vec<u8> {
+        // Records are plain numbers, which cannot fail to be written; without bytes there would be none to restore.
+        postcard::to_stdvec(&(self.frame, &self.kept)).unwrap_or_default()
     }
 
     /// Begins a frame seen from `eye`; returns the records that may light it.
@@ -269,6 +285,21 @@ mod tests {
         let mut kept = KeptRecords::new(KeepLimits::default());
         assert!(light(&mut kept, &floor, ABOVE) > 10);
         assert_eq!(light(&mut kept, &floor, ABOVE), 0);
+    }
+
+    #[test]
+    fn records_restored_are_those_saved_and_damaged_bytes_are_refused() {
+        let floor = Floor::grid(32);
+        let mut kept = KeptRecords::new(KeepLimits::default());
+        light(&mut kept, &floor, ABOVE);
+        kept.kept.indirect[3].series = Some(Radiance::black(3));
+        let saved = kept.save();
+        let mut restored = KeptRecords::restored(KeepLimits::default(), &saved).unwrap();
+        assert_eq!(restored.save(), saved);
+        assert_eq!(light(&mut restored, &floor, ABOVE), 0);
+        for length in [0, 1, saved.len() / 2, saved.len() - 1] {
+            assert!(KeptRecords::restored(KeepLimits::default(), &saved[..length]).is_none());
+        }
     }
 
     #[test]

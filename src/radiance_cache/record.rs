@@ -11,6 +11,7 @@ use super::footprint::Footprint;
 use crate::eye::PointGeometry;
 use crate::math::{Rgb, luminance};
 use glam::{Mat3, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// Sine of the angle by which a point may lie behind the plane of a record that lights it.
 const BEHIND: f32 = 0.1;
@@ -22,7 +23,7 @@ const EXTRAPOLATION: f32 = 3.0;
 const MIN_DELTA: f32 = 1e-3;
 
 /// Irradiance of one layer around a point.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Record {
     /// Position.
     pub position: Vec3,
@@ -46,7 +47,7 @@ pub struct Record {
 }
 
 /// Figures about a record that only statistics and inspection read.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Diagnostics {
     /// Clusters in its cut, or rays of its gathering.
     pub cut: u32,

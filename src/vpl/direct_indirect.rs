@@ -1,6 +1,7 @@
 //! Pairs of values: one for direct light, one for indirect light.
 
 use super::Origin;
+use serde::{Deserialize, Serialize};
 use std::ops::{Index, IndexMut};
 
 impl Origin {
@@ -9,7 +10,7 @@ impl Origin {
 }
 
 /// One value for each origin of light.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DirectIndirect<T> {
     /// Value for direct light.
     pub direct: T,

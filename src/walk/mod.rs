@@ -9,11 +9,16 @@
 //! reprojected from frame to frame, new numbers in each change the denoised picture 1.8 times as much. A frame has the
 //! same bits for any number of threads; it depends on the frames that the walk rendered before it.
 //!
+//! Walks are cut into chunks, which begin without records, and a chunk's records are saved beside its frames, so that a
+//! walk that was stopped goes on with the same.
+//!
 //! [`frames`] lists frames, [`names`] names their files, [`exposure`] finds one exposure for all of a path.
 
+pub(crate) mod chunk;
 pub mod exposure;
 pub mod frames;
 pub mod names;
+pub(crate) mod saved;
 
 use crate::method::KeptRecords;
 use crate::progress::Control;
@@ -35,6 +40,16 @@ impl<'a> Walk<'a> {
     /// A walk that begins without records. Its frames are rendered for `goal`; where that plans settings, alone.
     pub fn new(session: &'a Session, goal: Goal, limits: KeepLimits) -> Walk<'a> {
         Walk { session, goal, kept: KeptRecords::new(limits) }
+    }
+
+    /// A walk that goes on from records that [`Walk::save`] returned; `None` if these are none.
+    pub fn restored(session: &'a Session, goal: Goal, limits: KeepLimits, saved: &[u8]) -> Option<Walk<'a>> {
+        Some(Walk { session, goal, kept: KeptRecords::restored(limits, saved)? })
+    }
+
+    /// The records as they are between frames: a walk that goes on from them renders the same frames, bit for bit.
+    pub fn save(&self) -> Vec<u8> {
+        self.kept.save()
     }
 
     /// Renders the next frame, seen by `view`. One that was cancelled halfway is partial, not an error.

@@ -113,6 +113,28 @@ fn messages_for_programs_are_one_object_a_line_from_start_to_end() {
 }
 
 #[test]
+fn equal_renders_are_equal_bytes_and_are_left_alone_where_they_are() {
+    let sandbox = Sandbox::new();
+    let files = || ["a.exr", "a.png"].map(|name| super::read(&sandbox.path(name)));
+    sandbox.render("a.exr", &["--reproducible", "--threads", "1"]).expect(0);
+    let first = files();
+    sandbox.render("a.exr", &["--reproducible", "--threads", "2"]).expect(0);
+    assert!(files() == first);
+    let left = |more: &[&str]| {
+        let stderr =
+            sandbox.render("a.exr", &[&["--reproducible", "--resume"], more].concat()).expect(0).stderr;
+        stderr.contains("left as it is")
+    };
+    assert!(left(&[]));
+    std::fs::remove_file(sandbox.path("a.png")).unwrap();
+    assert!(!left(&[]) && left(&[]) && files() == first);
+    assert!(!left(&["--seed", "1"]) && left(&["--seed", "1"]) && !left(&["--exposure", "1"]));
+    let error =
+        sandbox.run(&["render", "room.xml", "-o", "b.exr", "--reproducible", "--time", "1s"]).expect(2);
+    assert!(error.stderr.contains("--time"), "{}", error.stderr);
+}
+
+#[test]
 fn agents_are_told_percentage_status_and_failure() {
     let sandbox = Sandbox::new();
     let stderr = sandbox.render("a.exr", &["--progress", "openjd"]).expect(0).stderr;

@@ -5,7 +5,7 @@ use lightsplat::film::ExrFile;
 use std::fs;
 
 /// A floor under a lamp, and a path of six frames past it.
-const PATH: &str = r#"
+pub(super) const PATH: &str = r#"
 resolution = [96, 64]
 [camera]
 origin = [0, 3, 6]
@@ -48,11 +48,12 @@ fn walk(sandbox: &Sandbox, frames: &str, more: &[&str]) -> Finished {
     sandbox.run(&arguments(frames, &[more, &["--spp", "4"]].concat()))
 }
 
-/// Names of the files of the frames, without leftovers of kills.
+/// Names of the files of the frames, without their records and leftovers of kills.
 fn frames(sandbox: &Sandbox) -> Vec<String> {
     let entries = fs::read_dir(sandbox.path("f")).unwrap();
     let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let mut names: Vec<String> = names.filter(|name| !name.ends_with(".tmp")).collect();
+    let mut names: Vec<String> =
+        names.filter(|name| name.ends_with(".exr") || name.ends_with(".png")).collect();
     names.sort();
     names
 }
@@ -101,7 +102,7 @@ fn resuming_leaves_whole_frames_alone_and_does_others_anew() {
     fs::write(file("a.04.png"), "torn").unwrap();
     let kept = read(&file("a.05.exr"));
     let stderr = walk(&sandbox, "1-6", &["--resume"]).expect(0).stderr;
-    assert!(stderr.contains("4 frames rendered, 2 left as they were"), "{stderr}");
+    assert!(stderr.contains("4 frames rendered, 2 left as they were (1 rendered again"), "{stderr}");
     assert_eq!(read(&file("a.05.exr")), kept);
     for (number, name) in (1..=6).map(|n| (f64::from(n), format!("a.{n:02}.exr"))) {
         assert_eq!(ExrFile::read(&file(&name)).unwrap().metadata().number("frame"), Some(number));
@@ -145,6 +146,77 @@ fn wrong_names_ranges_and_scenes_are_errors_and_nothing_is_written() {
     assert_eq!(frames(&sandbox), [""; 0]);
 }
 
+/// Bytes of all files in the folder of the frames, by name.
+fn bytes(sandbox: &Sandbox) -> Vec<(String, Vec<u8>)> {
+    frames(sandbox)
+        .into_iter()
+        .map(|name| (name.clone(), read(&sandbox.path(&format!("f/{name}")))))
+        .collect()
+}
+
+#[test]
+fn a_resumed_walk_has_the_bytes_of_an_undisturbed_one_whatever_is_there() {
+    let sandbox = sandbox();
+    let records = || sandbox.path("f/a.01.records").exists();
+    walk(&sandbox, "1-6", &["--reproducible"]).expect(0);
+    let whole = bytes(&sandbox);
+    assert!(whole.len() == 12 && !records());
+    let empty = || {
+        fs::remove_dir_all(sandbox.path("f")).unwrap();
+        fs::create_dir(sandbox.path("f")).unwrap();
+    };
+    let resume = || walk(&sandbox, "1-6", &["--reproducible", "--resume"]).expect(0).stderr;
+    // Frames by a former run, with its records, without them, and with damaged ones.
+    for (spoil, repeated) in [("", ""), ("absent", " (3 rendered again"), ("damaged", " (3 rendered again")] {
+        empty();
+        walk(&sandbox, "1-3", &["--reproducible"]).expect(0);
+        assert!(records() && bytes(&sandbox) == whole[..6]);
+        match spoil {
+            "absent" => fs::remove_file(sandbox.path("f/a.01.records")).unwrap(),
+            "damaged" => fs::write(sandbox.path("f/a.01.records"), "torn").unwrap(),
+            _ => {}
+        }
+        let stderr = resume();
+        assert!(stderr.contains(&format!("3 frames rendered, 3 left as they were{repeated}")), "{stderr}");
+        assert!(bytes(&sandbox) == whole && !records(), "{spoil}");
+    }
+    // Frames of a walk that began elsewhere are others.
+    empty();
+    walk(&sandbox, "3-6", &["--reproducible"]).expect(0);
+    assert!(bytes(&sandbox)[0] != whole[4]);
+    let stderr = resume();
+    assert!(stderr.contains("6 frames rendered") && bytes(&sandbox) == whole, "{stderr}");
+}
+
+#[test]
+fn chunks_have_the_same_bytes_in_whichever_runs_and_order() {
+    let sandbox = sandbox();
+    let chunks = |frames: &str| walk(&sandbox, frames, &["--chunk", "2", "--reproducible"]).expect(0);
+    chunks("1-6");
+    let whole = bytes(&sandbox);
+    walk(&sandbox, "1-6", &["--reproducible"]).expect(0);
+    assert!(bytes(&sandbox)[..4] == whole[..4] && bytes(&sandbox)[4] != whole[4]);
+    fs::remove_dir_all(sandbox.path("f")).unwrap();
+    fs::create_dir(sandbox.path("f")).unwrap();
+    for frames in ["5-6", "1-2", "3-4"] {
+        chunks(frames);
+    }
+    assert!(bytes(&sandbox) == whole);
+    // Other methods have nothing that lives on.
+    let paths = |frames: &str, more: &[&str]| {
+        let common = ["--method", "path", "--reproducible", "--spp", "1", "--frames", frames];
+        sandbox.run(&[&["walk", "path.toml", "-o", "f/a.##.exr"], &common[..], more].concat()).expect(0)
+    };
+    paths("1-6", &[]);
+    let whole = bytes(&sandbox);
+    paths("3", &["--seed", "1"]);
+    let stderr = paths("1-6", &["--resume"]).stderr;
+    assert!(
+        stderr.contains("1 frames rendered, 5 left as they were,") && bytes(&sandbox) == whole,
+        "{stderr}"
+    );
+}
+
 #[cfg(unix)]
 mod signals {
     use super::*;
@@ -181,6 +253,38 @@ mod signals {
             sandbox.run(&arguments("1-6", &["--resume", "--spp", "300"])).expect(0);
             assert_eq!(frames(&sandbox).len(), 12);
             assert_eq!(read(&sandbox.path("f/a.01.exr")), kept);
+        }
+    }
+
+    /// Kills: a few, or as many as LIGHTSPLAT_KILLS says.
+    #[test]
+    fn kills_at_random_moments_leave_whole_files_and_the_bytes_of_an_undisturbed_walk() {
+        let kills: u32 = std::env::var("LIGHTSPLAT_KILLS").map_or(6, |kills| kills.parse().unwrap());
+        let sandbox = sandbox();
+        let arguments = arguments("1-6", &["--chunk", "4", "--spp", "4", "--reproducible", "--resume"]);
+        let begun = std::time::Instant::now();
+        sandbox.run(&arguments).expect(0);
+        let span = begun.elapsed();
+        let whole = bytes(&sandbox);
+        let mut random = 1u64;
+        let mut killed = 0;
+        while killed < kills {
+            random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            let mut child = sandbox.command(&arguments).stderr(Stdio::null()).spawn().unwrap();
+            std::thread::sleep(span.mul_f64((random >> 40) as f64 / f64::from(1 << 24)));
+            child.kill().unwrap();
+            let was_killed = child.wait().unwrap().code().is_none();
+            killed += u32::from(was_killed);
+            for (name, bytes) in bytes(&sandbox) {
+                let same = whole.iter().find(|(known, _)| *known == name);
+                assert!(same.is_some_and(|(_, whole)| *whole == bytes), "{name} after {killed} kills");
+            }
+            if !was_killed || killed == kills {
+                sandbox.run(&arguments).expect(0);
+                assert!(bytes(&sandbox) == whole, "after {killed} kills");
+                fs::remove_dir_all(sandbox.path("f")).unwrap();
+                fs::create_dir(sandbox.path("f")).unwrap();
+            }
         }
     }
 }

@@ -140,6 +140,10 @@ impl Renderer for Settings {
         self.picture(world, lights, Some(kept), view, control)
     }
 
+    fn keeps_records(&self) -> bool {
+        true
+    }
+
     fn check(&self) -> Result<(), String> {
         match self.cache.lights_by_cuts() {
             true => {

@@ -24,7 +24,7 @@ pub(crate) use mesh::smooth_normals;
 pub(crate) use plan::fnv1a;
 
 /// Options for reading a scene.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LoadOptions {
     /// True if warnings of [`Level::Warning`] are errors.
     pub strict: bool,

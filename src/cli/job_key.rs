@@ -1,0 +1,50 @@
+//! The key of a picture: a hash of all that decides what is in its files, by which `--resume` knows them again.
+
+use crate::film::{ExrFile, Metadata};
+use crate::scene::formats::fnv1a;
+use crate::session::{Goal, Session, Wanted};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// Key of a picture of `session` for `goal`, by the version of the program, and `more` that decides; but for whether
+/// the denoiser is there.
+pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
+    let Goal { method, wanted, features, keep_noisy, verify, .. } = goal;
+    let wanted = match wanted {
+        Wanted::AsSet => Value::Null,
+        Wanted::Time { seconds, held, .. } => json!([seconds, held]),
+        Wanted::Error { error, max_samples, held } => json!([error, max_samples, held]),
+    };
+    hash(json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "scene": session.hash,
+        "method": method.name(),
+        "settings": method.settings(),
+        "wanted": wanted,
+        "features": format!("{features:?}"),
+        "denoise": goal.denoises(),
+        "keep_noisy": keep_noisy,
+        "verify": format!("{verify:?}"),
+        "more": more,
+    }))
+}
+
+/// Key of a frame whose records come of `frames`, of which it is the last, in a walk of key `walk`.
+pub fn of_frame(walk: &str, frames: &[usize]) -> String {
+    hash(json!([walk, frames]))
+}
+
+fn hash(decisive: Value) -> String {
+    format!("{:016x}", fnv1a(decisive.to_string().as_bytes()))
+}
+
+/// True if the files of a picture, the number of its frame given, are whole and have this key.
+pub fn is_done((exr, png): (&Path, Option<&Path>), frame: Option<usize>, key: &str) -> bool {
+    let is_it = |metadata: Metadata| {
+        metadata.text("job") == Some(key)
+            && metadata.number("frame") == frame.map(|number| number as f64)
+            && metadata.text("partial") == Some("false")
+    };
+    ExrFile::read(exr).is_ok_and(|file| file.color().is_ok() && is_it(file.metadata()))
+        && png.is_none_or(|png| image::open(png).is_ok())
+}
