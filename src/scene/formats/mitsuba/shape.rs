@@ -9,7 +9,59 @@ use crate::scene::material::{Material, MaterialId};
 use glam::{DMat4, DVec3};
 
 impl Converter<'_> {
-    pub(super) fn shape(&mut self, shape: &Object) -> Result<(), SceneError> {
+    /// Adds a shape that `outer` places: a mesh, or those of a group.
+    pub(super) fn shape(&mut self, shape: &Object, outer: DMat4) -> Result<(), SceneError> {
+        match shape.plugin.as_str() {
+            // A group shows itself by its instances.
+            "shapegroup" => Ok(()),
+            "instance" => self.instance(shape, outer),
+            "merge" => self.members(shape, outer),
+            _ => self.mesh(shape, outer),
+        }
+    }
+
+    /// Places the meshes of a group.
+    fn instance(&mut self, instance: &Object, outer: DMat4) -> Result<(), SceneError> {
+        let groups = self.tagged(instance, "shape")?;
+        let [group] = &groups[..] else {
+            return Err(instance
+                .place
+                .wrong("an instance of no group, or of several", "refer to one shapegroup"));
+        };
+        if group.plugin != "shapegroup" {
+            let what = format!("an instance of a shape \"{}\"", group.plugin);
+            return Err(instance.place.wrong(what, "refer to a shapegroup"));
+        }
+        let to_world = instance.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
+        instance.report_unused(self.log)?;
+        let before = self.contents.meshes.len();
+        self.members(group, outer * to_world)?;
+        self.instances.0 += self.contents.meshes.len() - before;
+        self.instances.1.get_or_insert(instance.place.clone());
+        Ok(())
+    }
+
+    fn members(&mut self, group: &Object, outer: DMat4) -> Result<(), SceneError> {
+        let members = self.tagged(group, "shape")?;
+        group.report_unused(self.log)?;
+        for member in &members {
+            if matches!(member.plugin.as_str(), "shapegroup" | "instance" | "merge") {
+                return Err(member.place.wrong("a group in a group", "instance each by itself"));
+            }
+            self.shape(member, outer)?;
+        }
+        Ok(())
+    }
+
+    /// Notes that instances are copies.
+    pub(super) fn report_instances(&mut self) {
+        if let (count, Some(place)) = (self.instances.0, &self.instances.1) {
+            let what = format!("{count} meshes are placed by instances");
+            self.log.note(place, what, "each is a copy, and takes about 100 bytes of memory a triangle");
+        }
+    }
+
+    fn mesh(&mut self, shape: &Object, outer: DMat4) -> Result<(), SceneError> {
         let mut v_down = true;
         let geometry = match shape.plugin.as_str() {
             // The file's v, flipped by default for OBJ, counts downwards; ours counts upwards.
@@ -58,7 +110,7 @@ impl Converter<'_> {
         let material = self.material_of_shape(bsdfs.first(), emission.is_some())?;
         let textured = self.is_textured(material) || emission.is_some_and(|e| e.texture.is_some());
         let placement = Placement {
-            to_world: shape.transform("to_world")?.unwrap_or(DMat4::IDENTITY),
+            to_world: outer * shape.transform("to_world")?.unwrap_or(DMat4::IDENTITY),
             normals: if shape.boolean("face_normals", false)? { Normals::Flat } else { Normals::Smooth },
             flip_normals: shape.boolean("flip_normals", false)?,
             v_down,

@@ -319,3 +319,54 @@ fn reflectances_above_one_are_clamped() {
     assert_eq!(loaded.scene.materials[0].diffuse, Reflectance::Constant(Rgb::new(1.0, 0.5, 0.5)));
     assert!(loaded.warnings[0].to_string().contains("exceeds 1"), "{:?}", loaded.warnings);
 }
+
+#[test]
+fn sampled_spectra_become_colours_inline_and_from_files() {
+    let body = |spectrum: &str| {
+        format!(
+            "{SKY}<shape type=\"cube\"><bsdf type=\"diffuse\"><spectrum name=\"reflectance\" {spectrum}/></bsdf></shape>"
+        )
+    };
+    let colour = |spectrum: &str, files: &[(&str, &str)]| {
+        let loaded = load_with(&body(spectrum), files, true).unwrap();
+        let Reflectance::Constant(colour) = loaded.scene.materials[0].diffuse else { panic!() };
+        (colour, loaded.scene.sources.len())
+    };
+    let (inline, _) = colour("value=\"400:.2, 500:.3, 600:.8, 700:.6\"", &[]);
+    assert!((inline - Vec3::new(0.871727, 0.510388, 0.212802)).length() < 2e-3, "{inline}");
+    let file = "# a spectrum\n400 .2\n500 .3\n600 .8\n700 .6\n";
+    assert_eq!(colour("filename=\"a.spd\"", &[("a.spd", file)]), (inline, 2));
+    assert_eq!(colour("value=\".2, .4, .6\"", &[]).0, Vec3::new(0.2, 0.4, 0.6));
+    let message = load_with(&body("filename=\"a.spd\""), &[("a.spd", "400 1\nx\n")], false).unwrap_err();
+    assert!(message.contains("a.spd:2"), "{message}");
+    assert!(load_body(&body("filename=\"none.spd\"")).unwrap_err().contains("none.spd"));
+}
+
+#[test]
+fn instances_are_placed_copies_of_their_group() {
+    let group = "<shape type=\"shapegroup\" id=\"g\"><shape type=\"cube\"><transform name=\"to_world\">\
+        <translate x=\"1\"/></transform></shape><shape type=\"rectangle\"/></shape>";
+    let instance = |transform: &str| {
+        format!(
+            "<shape type=\"instance\"><ref id=\"g\"/><transform name=\"to_world\">{transform}</transform></shape>"
+        )
+    };
+    let body =
+        format!("{SKY}{group}{}{}", instance("<scale value=\"2\"/>"), instance("<translate z=\"9\"/>"));
+    let loaded = load_with(&body, &[], true).unwrap();
+    let middle = |mesh: usize| {
+        let positions = &loaded.scene.meshes[mesh].positions;
+        positions.iter().map(|p| p.as_dvec3() + loaded.scene.centre).sum::<DVec3>() / positions.len() as f64
+    };
+    assert_eq!(loaded.scene.meshes.len(), 4);
+    assert!((middle(0) - DVec3::new(2.0, 0.0, 0.0)).length() < 1e-5, "{}", middle(0));
+    assert!((middle(2) - DVec3::new(1.0, 0.0, 9.0)).length() < 1e-5, "{}", middle(2));
+    assert_eq!(loaded.scene.materials.len(), 1);
+    let [note] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
+    assert!(note.level == Level::Note && note.what.contains("4 meshes"), "{note}");
+    let nested = "<shape type=\"shapegroup\" id=\"h\"><ref id=\"h\"/></shape>\
+        <shape type=\"instance\"><ref id=\"h\"/></shape><shape type=\"merge\" id=\"m\"><ref id=\"m\"/></shape>";
+    let message = load_body(nested).unwrap_err();
+    assert!(message.contains("a group in a group"), "{message}");
+    assert!(load_body("<shape type=\"instance\"/>").unwrap_err().contains("refer to one shapegroup"));
+}

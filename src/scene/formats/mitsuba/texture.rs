@@ -3,11 +3,11 @@
 
 use super::tree::Object;
 use super::value::Value;
-use super::{Converter, value};
+use super::{Converter, cie, value};
 use crate::math::Rgb;
-use crate::scene::formats::error::SceneError;
+use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::picture::Picture;
-use crate::scene::formats::plan::{Image, TexturePlan};
+use crate::scene::formats::plan::{Image, TexturePlan, read_text};
 use crate::scene::material::Reflectance;
 use crate::scene::texture::{Filter, Wrap};
 use glam::{DMat3, DMat4, DVec2, DVec3};
@@ -34,13 +34,18 @@ impl Converter<'_> {
             Value::Float(v) => DVec3::splat(*v),
             Value::Integer(v) => DVec3::splat(*v as f64),
             Value::Spectrum(v) => white * *v,
-            Value::Samples(samples) => {
-                self.log.warn(
-                    &property.place,
-                    "sampled spectra are not modelled",
-                    "their mean is used as grey",
-                )?;
-                white * samples.iter().map(|s| s.1).sum::<f64>() / samples.len() as f64
+            Value::Samples(samples) => self.sampled(samples, emissive, &property.place),
+            Value::SamplesFile(name) => {
+                let path = self.beside(name, &property.place);
+                let (text, hash) = read_text(&path, &property.place)?;
+                if !self.sources.iter().any(|source| source.0 == path) {
+                    self.sources.push((path.clone(), hash));
+                }
+                let samples = value::samples_of_file(&text).map_err(|line| {
+                    let remedy = "write a wavelength in nm and a value a line, wavelengths ascending";
+                    Place::line(&path, line).wrong("this is no sampled spectrum", remedy)
+                })?;
+                self.sampled(&samples, emissive, &property.place)
             }
             _ => {
                 let what = format!("\"{name}\" of {} \"{}\" is no colour", object.tag, object.plugin);
@@ -48,6 +53,18 @@ impl Converter<'_> {
             }
         };
         Ok(Some(value::rgb(colour)))
+    }
+
+    /// Colour of a sampled spectrum; as in Mitsuba, without what Rec. 709 cannot hold.
+    fn sampled(&mut self, samples: &[(f64, f64)], emissive: bool, place: &Place) -> DVec3 {
+        let rgb = cie::rgb_of_samples(samples, !emissive);
+        let limit = if emissive { f64::INFINITY } else { 1.0 };
+        let clamped = rgb.clamp(DVec3::ZERO, DVec3::splat(limit));
+        if (rgb - clamped).abs().max_element() > 1e-2 * rgb.max_element() {
+            let what = format!("the spectrum's colour {rgb:.3} lies outside Rec. 709");
+            self.log.note(place, what, "it is clamped");
+        }
+        clamped
     }
 
     /// A reflectance: constant or textured.

@@ -17,8 +17,10 @@ pub(super) enum Value {
     Rgb(DVec3),
     /// A spectrum constant over wavelength.
     Spectrum(f64),
-    /// A sampled spectrum: wavelengths and values, in the file's order.
+    /// A sampled spectrum: wavelengths, ascending, and values.
     Samples(Vec<(f64, f64)>),
+    /// Name of a file with such samples.
+    SamplesFile(String),
     Transform(DMat4),
 }
 
@@ -50,20 +52,25 @@ pub(super) fn parse(tag: &str, attributes: &Attributes, place: &Place) -> Result
             Value::Rgb(if tag == "srgb" { DVec3::from(rgb.to_array().map(decode)) } else { rgb })
         }
         "spectrum" if attributes.contains_key("filename") => {
-            let remedy = "write the samples into value=\"wavelength:value, ...\"";
-            return Err(place.wrong("spectra in files are not read", remedy));
+            Value::SamplesFile(attributes.get("filename").cloned().unwrap_or_default())
         }
         "spectrum" => {
             let text = text()?;
             if let Some(value) = number(text) {
                 Value::Spectrum(value)
+            } else if let Some(rgb) = colour(text) {
+                // 0.6 takes three numbers for red, green and blue.
+                Value::Rgb(rgb)
             } else {
-                let samples = text.split([',', ' ']).filter(|s| !s.is_empty()).map(|s| {
+                let pairs = text.split([',', ' ', '\n', '\t']).filter(|s| !s.is_empty());
+                let samples = pairs.map(|s| {
                     let (wavelength, value) = s.split_once(':')?;
                     Some((number(wavelength)?, number(value)?))
                 });
-                let samples: Option<Vec<_>> = samples.collect();
-                Value::Samples(samples.filter(|s| !s.is_empty()).ok_or_else(|| unreadable(text))?)
+                Value::Samples(samples.collect::<Option<_>>().and_then(ascending).ok_or_else(|| {
+                    let remedy = "write one number, red, green and blue, or ascending wavelength:value pairs";
+                    place.wrong(format!("cannot read the spectrum \"{text}\""), remedy)
+                })?)
             }
         }
         "translate" | "rotate" | "scale" | "lookat" | "lookAt" | "matrix" => {
@@ -75,6 +82,28 @@ pub(super) fn parse(tag: &str, attributes: &Attributes, place: &Place) -> Result
             return Err(place.wrong(what, "use an element of Mitsuba's scene format"));
         }
     })
+}
+
+/// Parses a file of wavelengths and values, a pair a line.
+pub(super) fn samples_of_file(text: &str) -> Result<Vec<(f64, f64)>, u32> {
+    let mut samples: Vec<(f64, f64)> = Vec::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let line = line.split('#').next().unwrap_or("");
+        match numbers(line).as_deref() {
+            Some([]) => {}
+            Some([wavelength, value]) if samples.last().is_none_or(|last| last.0 < *wavelength) => {
+                samples.push((*wavelength, *value));
+            }
+            _ => return Err(number),
+        }
+    }
+    ascending(samples).ok_or(1)
+}
+
+/// Samples in ascending order of wavelength, at least one.
+fn ascending(samples: Vec<(f64, f64)>) -> Option<Vec<(f64, f64)>> {
+    let ascends = samples.windows(2).all(|pair| pair[0].0 < pair[1].0);
+    (ascends && !samples.is_empty()).then_some(samples)
 }
 
 /// Parses a finite number.
@@ -143,12 +172,15 @@ fn operation(tag: &str, attributes: &Attributes, place: &Place) -> Result<DMat4,
         "translate" => DMat4::from_translation(vector(attributes, 0.0, place)?),
         "scale" => DMat4::from_scale(vector(attributes, 1.0, place)?),
         "rotate" => {
-            let axis = vector(attributes, 0.0, place)?.try_normalize();
-            let axis = axis.ok_or_else(|| bad("the rotation's axis is zero".into(), "give x, y or z"))?;
             let angle = number(need("angle")?);
             let angle =
                 angle.ok_or_else(|| bad("cannot read the rotation's angle".into(), "write degrees"))?;
-            DMat4::from_axis_angle(axis, angle.to_radians())
+            match vector(attributes, 0.0, place)?.try_normalize() {
+                Some(axis) => DMat4::from_axis_angle(axis, angle.to_radians()),
+                // Exporters write rotations by nothing about nothing.
+                None if angle == 0.0 => DMat4::IDENTITY,
+                None => return Err(bad("the rotation's axis is zero".into(), "give x, y or z")),
+            }
         }
         "lookat" | "lookAt" => {
             let point = |name: &str| {
@@ -238,6 +270,14 @@ mod tests {
         assert_eq!(value("spectrum", "2").unwrap(), Value::Spectrum(2.0));
         assert_eq!(value("spectrum", "400:1, 700:2").unwrap(), Value::Samples(vec![(400., 1.), (700., 2.)]));
         assert!(value("spectrum", "400:").is_err());
+        assert!(value("spectrum", "500:1 400:1").unwrap_err().contains("ascending"));
+        for text in ["0.25 0.5 1", "0.25, 0.5, 1.0", "0.25,0.5,1"] {
+            assert_eq!(value("spectrum", text).unwrap(), Value::Rgb(DVec3::new(0.25, 0.5, 1.0)), "{text}");
+        }
+        assert_eq!(value("spectrum", "#ff0000").unwrap(), Value::Rgb(DVec3::X));
+        assert_eq!(samples_of_file("# nm\n400 1\n\n700, 2 # end\n"), Ok(vec![(400.0, 1.0), (700.0, 2.0)]));
+        assert_eq!(samples_of_file("400 1\n300 2\n"), Err(2));
+        assert_eq!(samples_of_file(""), Err(1));
         assert!(value("spectrum", "").is_err());
     }
 
@@ -258,6 +298,8 @@ mod tests {
         let at = op("lookat", &[("origin", "1 2 3"), ("target", "1 2 9"), ("up", "0 1 0")]);
         let Value::Transform(m) = transform(&[at]).unwrap() else { panic!() };
         assert_eq!(m, DMat4::from_translation(DVec3::new(1.0, 2.0, 3.0)));
+        let Value::Transform(m) = transform(&[op("rotate", &[("angle", "0")])]).unwrap() else { panic!() };
+        assert_eq!(m, DMat4::IDENTITY);
         let degenerate = [
             op("lookat", &[("origin", "1 2 3"), ("target", "1 2 3")]),
             op("lookat", &[("origin", "0 0 0"), ("target", "0 1 0"), ("up", "0 1 0")]),
