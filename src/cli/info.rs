@@ -39,6 +39,7 @@ fn facts(loaded: &Loaded) -> Value {
         "emitting_triangles":
             meshes.iter().filter(|m| m.emission.is_some()).map(|m| m.triangles.len()).sum::<usize>(),
         "point_spot_directional_lights": lights.len(),
+        "distant_discs": loaded.scene.discs.len(),
         "environment": loaded.scene.environment.is_some(),
         "warnings": loaded.warnings.len(),
         "repairs": loaded.repairs,

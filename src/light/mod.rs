@@ -1,4 +1,5 @@
-//! Emitters of light: emitting triangles, point, spot and directional lights, and the environment, sampled.
+//! Emitters of light: emitting triangles, point, spot and directional lights, and the environment with the discs before
+//! it, sampled.
 //!
 //! [`Emitters`] is built once from the scene. Next-event estimation chooses one emitter in proportion to a
 //! rough irradiance at the shaded point, down a tree where they are many, then samples that emitter; the light pass
@@ -40,7 +41,7 @@ pub struct Emitters {
     pub areas: Vec<AreaLight>,
     /// Point, spot and directional lights.
     pub deltas: Vec<DeltaLight>,
-    /// The environment; `None` if black.
+    /// The environment with the discs before it; `None` if black.
     pub environment: Option<EnvironmentLight>,
     light_of_mesh: Vec<u32>,
     /// Spheres around the emitting meshes: centre and squared radius.
@@ -74,7 +75,7 @@ impl Emitters {
         for (i, light) in areas.iter().enumerate() {
             light_of_mesh[light.mesh as usize] = i as u32;
         }
-        let environment = scene.environment.as_ref().and_then(EnvironmentLight::new);
+        let environment = EnvironmentLight::new(scene.environment.as_ref(), &scene.discs);
         let deltas = scene.lights.clone();
         let selection = select::Selection::new(&areas, &deltas, environment.as_ref(), diagonal);
         let sphere = |light: &AreaLight| {

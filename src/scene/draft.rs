@@ -4,7 +4,7 @@
 //! [`Scene`](super::Scene) of it.
 
 use super::formats::Place;
-use super::light::{DeltaLight, Environment};
+use super::light::{DeltaLight, DistantDisc, Environment};
 use super::material::{Material, MaterialId};
 use super::mesh::Emission;
 use super::texture::Texture;
@@ -67,4 +67,5 @@ pub(crate) struct Draft {
     /// Lights with their world positions, which replace the positions inside.
     pub lights: Vec<(DeltaLight, DVec3)>,
     pub environment: Option<Environment>,
+    pub discs: Vec<DistantDisc>,
 }

@@ -1,4 +1,4 @@
-//! Delta lights (point, spot and directional lights), and the environment.
+//! Delta lights (point, spot and directional lights), distant discs, and the environment.
 //!
 //! Light from surfaces is [`super::Emission`] on a mesh.
 
@@ -36,6 +36,17 @@ pub enum DeltaLight {
         /// Irradiance on a surface facing the light, W/m².
         irradiance: Rgb,
     },
+}
+
+/// A disc infinitely far away that shines evenly, such as the sun.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DistantDisc {
+    /// Unit direction towards its centre.
+    pub direction: Vec3,
+    /// Angle from its centre to its rim, radians.
+    pub half_angle: f32,
+    /// Radiance, W/(sr m²), added to that of the environment.
+    pub radiance: Rgb,
 }
 
 /// Light from infinitely far in every direction.

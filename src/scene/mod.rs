@@ -19,7 +19,7 @@ use glam::DVec3;
 use std::path::PathBuf;
 
 pub use camera::{Camera, Cameras, MAX_FRAMES};
-pub use light::{DeltaLight, Environment, EnvironmentMap};
+pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap};
 pub use material::{
     Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Parameter, Reflectance, Roughness,
 };
@@ -47,6 +47,8 @@ pub struct Scene {
     pub lights: Vec<DeltaLight>,
     /// Light from infinitely far in every direction.
     pub environment: Option<Environment>,
+    /// Discs before it, such as the sun.
+    pub discs: Vec<DistantDisc>,
     /// World position of the local origin.
     pub centre: DVec3,
 }
@@ -60,7 +62,7 @@ impl Scene {
     /// True if nothing in the scene gives light.
     pub fn is_dark(&self) -> bool {
         let emits = self.meshes.iter().any(|mesh| mesh.emission.is_some());
-        !emits && self.lights.is_empty() && self.environment.is_none()
+        !emits && self.lights.is_empty() && self.environment.is_none() && self.discs.is_empty()
     }
 
     /// True if light from single points or directions may come to surfaces through solid glass, by ways that no

@@ -63,6 +63,7 @@ pub(crate) fn recentre(draft: Draft, centre: DVec3) -> (Scene, Cameras) {
             .map(|(light, position)| place_light(light, local(position)))
             .collect(),
         environment: draft.environment,
+        discs: draft.discs,
         centre,
     };
     (scene, cameras)

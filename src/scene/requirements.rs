@@ -88,7 +88,7 @@ pub struct Requirements {
     pub triangles: usize,
     /// Number of triangles that emit.
     pub emitting_triangles: usize,
-    /// Number of area lights, point, spot and directional lights, and the environment.
+    /// Number of area lights, point, spot and directional lights, and the environment with its discs.
     pub lights: usize,
     /// Surface area, in squares of the scene's unit.
     pub area: f64,
@@ -147,8 +147,8 @@ impl Requirements {
                 DeltaLight::Directional { .. } => r.trees.directional = true,
             }
         }
-        r.lights += usize::from(scene.environment.is_some());
-        r.trees.environment = scene.environment.is_some();
+        r.trees.environment = scene.environment.is_some() || !scene.discs.is_empty();
+        r.lights += usize::from(r.trees.environment);
         r.trees.indirect = r.lights > 0 && reflects && scene.max_depth.is_none_or(|depth| depth > 2);
         r.memory.hierarchy = BVH_BYTES_PER_TRIANGLE * r.triangles;
         r.memory.pictures = scene.textures.iter().map(|t| 12 * t.texels.len()).sum();

@@ -314,9 +314,13 @@ fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), Sc
             return Err(place.wrong("a light's position is no number", "correct it"));
         }
     }
-    let before = draft.lights.len();
+    for disc in &draft.discs {
+        check(disc.radiance, "the radiance of a distant disc")?;
+    }
+    let before = draft.lights.len() + draft.discs.len();
+    draft.discs.retain(|disc| disc.radiance != Rgb::ZERO);
     draft.lights.retain(|(light, _)| power(light) != Rgb::ZERO);
-    report.black_lights += before - draft.lights.len();
+    report.black_lights += before - draft.lights.len() - draft.discs.len();
     let dark = match &mut draft.environment {
         Some(Environment::Constant(radiance)) => {
             check(*radiance, "the environment's radiance")?;

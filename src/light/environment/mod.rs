@@ -1,11 +1,15 @@
 //! Light from infinitely far: evaluation and sampling in proportion to radiance, about, or as [`LearnedSky`] has it.
 //!
-//! Directions are drawn by tiles of about equal flux, then within the tile.
+//! Directions are drawn by tiles of about equal flux, then within the tile. A distant disc, such as the sun, is a tile
+//! of its own, over those that it hides nothing of: their radiances and densities add.
 
+mod discs;
 mod equal_cells;
 mod learned;
 mod map;
 mod regions;
+#[cfg(test)]
+mod sky_tests;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -15,7 +19,8 @@ pub use learned::{LearnedSky, Looks};
 
 use crate::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
 use crate::sampling::uniform_sphere;
-use crate::scene::Environment;
+use crate::scene::{DistantDisc, Environment};
+use discs::Discs;
 use equal_cells::EqualCells;
 use glam::{Vec2, Vec3};
 use map::{Map, bilinear};
@@ -27,7 +32,9 @@ use tiles::Tiles;
 #[derive(Clone, Debug)]
 pub struct EnvironmentLight {
     source: Source,
+    /// Tiles of the source, then those of the discs.
     tiles: Tiles,
+    discs: Discs,
     /// Tiles by flux.
     by_flux: Table,
     /// Mean luminance over the sphere, W/(sr m²).
@@ -63,20 +70,27 @@ struct Drawn {
 pub type Learned<'a> = Option<(&'a LearnedSky, &'a Vec3x16)>;
 
 impl EnvironmentLight {
-    /// Builds the distributions; `None` if the environment is black.
-    pub fn new(environment: &Environment) -> Option<EnvironmentLight> {
-        let (source, mean_luminance, tiles) = match environment {
-            Environment::Constant(radiance) => {
+    /// Builds the distributions; `None` if environment and discs are black.
+    pub fn new(environment: Option<&Environment>, discs: &[DistantDisc]) -> Option<EnvironmentLight> {
+        let (source, mean_luminance, mut tiles) = match environment {
+            None => (Source::Constant(Rgb::ZERO), 0.0, Tiles::new(&EqualCells)),
+            Some(Environment::Constant(radiance)) => {
                 (Source::Constant(*radiance), luminance(*radiance), Tiles::new(&EqualCells))
             }
-            Environment::Map(map) => {
+            Some(Environment::Map(map)) => {
                 let map = Map::new(map);
                 let (mean, tiles) = (map.mean(), Tiles::new(&map));
                 (Source::Map(map), mean, tiles)
             }
         };
+        let discs = Discs::new(discs, tiles.all().len());
+        let with_discs = mean_luminance + discs.mean_luminance();
+        if !discs.is_empty() {
+            tiles.add(discs.tiles(with_discs), mean_luminance / with_discs);
+        }
+        let mean_luminance = with_discs;
         let by_flux = Table::new(tiles.all(), &vec![0.0; tiles.all().len()], 1.0);
-        let light = EnvironmentLight { source, tiles, by_flux, mean_luminance };
+        let light = EnvironmentLight { source, tiles, discs, by_flux, mean_luminance };
         (mean_luminance > 0.0 && mean_luminance.is_finite()).then_some(light)
     }
 
@@ -92,13 +106,14 @@ impl EnvironmentLight {
 
     /// Radiance arriving from the unit world direction `d`.
     pub fn radiance(&self, d: Vec3) -> Rgb {
-        match &self.source {
+        let radiance = match &self.source {
             Source::Constant(radiance) => *radiance,
             Source::Map(map) => {
                 let place = map.locate(d);
                 bilinear(&map.corners(place.column, place.row), place.f)
             }
-        }
+        };
+        self.discs.around(d).fold(radiance, |sum, (_, disc)| sum + disc)
     }
 
     /// Radiance arriving from the unit world direction `d`, and the density with which
@@ -110,14 +125,27 @@ impl EnvironmentLight {
     /// [`EnvironmentLight::radiance_pdf`] in the lanes of `wanted`, which wait for memory together: a large
     /// map lies outside the caches, and look-ups one after the other would take most of a render's time.
     pub fn radiance_pdf16(&self, d: &Vec3x16, wanted: u16, learned: Learned) -> [(Rgb, f32); LANES] {
+        let mut found = self.source_radiance_pdf16(d, wanted, learned);
+        if !self.discs.is_empty() {
+            for i in lanes_in(wanted) {
+                for (tile, disc) in self.discs.around(d.get(i)) {
+                    found[i].0 += disc;
+                    found[i].1 += self.table(learned, i).density(tile);
+                }
+            }
+        }
+        found
+    }
+
+    /// The same without the discs.
+    fn source_radiance_pdf16(&self, d: &Vec3x16, wanted: u16, learned: Learned) -> [(Rgb, f32); LANES] {
         let map = match &self.source {
             Source::Constant(radiance) => {
+                let even = learned.is_none() && self.discs.is_empty();
                 return each(wanted, |i| {
-                    let pdf = learned.map_or(0.25 * FRAC_1_PI, |(sky, x)| {
-                        let (column, row) = EqualCells::cell(d.get(i));
-                        sky.at(x.get(i)).density(self.tiles.of_cell(column, row))
-                    });
-                    (*radiance, pdf)
+                    let (column, row) = EqualCells::cell(d.get(i));
+                    let density = || self.table(learned, i).density(self.tiles.of_cell(column, row));
+                    (*radiance, if even { 0.25 * FRAC_1_PI } else { density() })
                 });
             }
             Source::Map(map) => map,
@@ -143,7 +171,7 @@ impl EnvironmentLight {
 
     /// [`EnvironmentLight::sample`] in the lanes of `wanted`; `None` in the others. The lanes wait for memory together.
     pub fn sample16(&self, u: &Vec2x16, wanted: u16, learned: Learned) -> [Option<EnvironmentSample>; LANES] {
-        if let (Source::Constant(radiance), None) = (&self.source, learned) {
+        if let (Source::Constant(radiance), None, true) = (&self.source, learned, self.discs.is_empty()) {
             let (radiance, pdf) = (*radiance, 0.25 * FRAC_1_PI);
             return each(wanted, |i| {
                 Some(EnvironmentSample { direction: uniform_sphere(u.get(i)), radiance, pdf })
@@ -154,7 +182,32 @@ impl EnvironmentLight {
             let (tile, rest) = table.sample(u.x[i]);
             Drawn { tile, u: Vec2::new(rest, u.y[i]), density: table.density(tile) }
         });
-        self.sample_tiles(&drawn, wanted)
+        let mut samples = self.sample_tiles(&drawn, wanted);
+        if !self.discs.is_empty() {
+            self.add_up(&mut samples, learned);
+        }
+        samples
+    }
+
+    /// Gives samples that are on a disc the radiance and density of all that is drawn there.
+    fn add_up(&self, samples: &mut [Option<EnvironmentSample>; LANES], learned: Learned) {
+        let (mut directions, mut on_discs) = (Vec3x16::default(), 0);
+        for (i, sample) in samples.iter().enumerate() {
+            if let Some(sample) = sample
+                && self.discs.around(sample.direction).next().is_some()
+            {
+                directions.set(i, sample.direction);
+                on_discs |= 1 << i;
+            }
+        }
+        if on_discs != 0 {
+            let found = self.radiance_pdf16(&directions, on_discs, learned);
+            for i in lanes_in(on_discs) {
+                let (radiance, pdf) = found[i];
+                let sample = EnvironmentSample { direction: directions.get(i), radiance, pdf };
+                samples[i] = (pdf > 0.0 && pdf.is_finite()).then_some(sample);
+            }
+        }
     }
 
     /// Samples a direction in each of sixteen tiles; densities are relative.
@@ -165,6 +218,20 @@ impl EnvironmentLight {
 
     /// Samples directions in tiles, in the lanes of `wanted`.
     fn sample_tiles(&self, drawn: &[Drawn; LANES], wanted: u16) -> [Option<EnvironmentSample>; LANES] {
+        let on_discs =
+            lanes_in(wanted).filter(|i| self.discs.has(drawn[*i].tile)).fold(0, |on, i| on | 1 << i);
+        let mut samples = self.sample_source_tiles(drawn, wanted & !on_discs);
+        for i in lanes_in(on_discs) {
+            let Drawn { tile, u, density } = drawn[i];
+            let drawn = self.discs.sample(tile, u);
+            samples[i] =
+                drawn.map(|(direction, radiance)| EnvironmentSample { direction, radiance, pdf: density });
+        }
+        samples
+    }
+
+    /// The same in tiles of the source.
+    fn sample_source_tiles(&self, drawn: &[Drawn; LANES], wanted: u16) -> [Option<EnvironmentSample>; LANES] {
         let tile = |i: usize| &self.tiles.all()[drawn[i].tile];
         let map = match &self.source {
             Source::Constant(radiance) => {

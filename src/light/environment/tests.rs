@@ -24,7 +24,7 @@ fn two_parts() -> EnvironmentMap {
 
 #[test]
 fn density_integrates_to_one_and_estimates_the_mean() {
-    let light = EnvironmentLight::new(&Environment::Map(map())).unwrap();
+    let light = EnvironmentLight::new(Some(&Environment::Map(map())), &[]).unwrap();
     let n = 1 << 18;
     let (mut mass, mut uniform_mean, mut sampled_mean) = (0.0f64, 0.0f64, 0.0f64);
     for i in 0..n {
@@ -48,7 +48,7 @@ fn directions_are_drawn_with_the_densities_told_even_in_tiles_and_uneven_ones() 
     for (environment, evens) in
         [(Environment::Map(two_parts()), 30..100), (Environment::Constant(Rgb::ONE), 256..257)]
     {
-        let light = EnvironmentLight::new(&environment).unwrap();
+        let light = EnvironmentLight::new(Some(&environment), &[]).unwrap();
         assert!(evens.contains(&light.tiles.all().iter().filter(|tile| tile.rows.is_none()).count()));
         let (n, mut counts, mut expected) = (1 << 19, [[0.0f64; 8]; 8], [[0.0f64; 8]; 8]);
         let bin = |d: Vec3| {
@@ -78,7 +78,7 @@ fn directions_are_drawn_with_the_densities_told_even_in_tiles_and_uneven_ones() 
 
 #[test]
 fn what_is_learned_of_a_window_is_where_most_samples_go_and_all_directions_keep_some() {
-    let light = EnvironmentLight::new(&Environment::Map(two_parts())).unwrap();
+    let light = EnvironmentLight::new(Some(&Environment::Map(two_parts())), &[]).unwrap();
     let open = |d: Vec3| d.x > 0.5;
     // Two places: light from one side at the one, none at the other.
     let mut looks = Looks::default();
@@ -123,7 +123,7 @@ fn what_is_learned_of_a_window_is_where_most_samples_go_and_all_directions_keep_
 
 #[test]
 fn a_one_texel_sun_costs_little_variance() {
-    let light = EnvironmentLight::new(&Environment::Map(map())).unwrap();
+    let light = EnvironmentLight::new(Some(&Environment::Map(map())), &[]).unwrap();
     let weights: Vec<f64> = (0..4096)
         .filter_map(|i| light.sample(owen_sobol_2d(i, 5)))
         .map(|s| (luminance(s.radiance) / s.pdf) as f64)
@@ -141,9 +141,57 @@ fn one_pixel_map_is_constant() {
         radiance: vec![Rgb::new(1.0, 2.0, 3.0)],
         to_local: Mat3::IDENTITY,
     };
-    let light = EnvironmentLight::new(&Environment::Map(map)).unwrap();
+    let light = EnvironmentLight::new(Some(&Environment::Map(map)), &[]).unwrap();
     for i in 0..64 {
         let s = light.sample(owen_sobol_2d(i, 1)).unwrap();
         assert!((s.radiance - Rgb::new(1.0, 2.0, 3.0)).length() < 1e-5);
+    }
+}
+
+#[test]
+fn discs_are_drawn_by_their_flux_and_add_to_what_is_behind_them() {
+    let sun = |radiance: f32, half_angle: f32| DistantDisc {
+        direction: Vec3::new(0.48, 0.6, 0.64),
+        half_angle,
+        radiance: Rgb::splat(radiance),
+    };
+    let sun_angle = 0.2679f32.to_radians();
+    // In f64, since the cosine of such an angle is 1 in f32.
+    let solid_angle = |half: f32| std::f64::consts::TAU * (1.0 - f64::from(half).cos());
+    let environments =
+        [None, Some(Environment::Constant(Rgb::splat(0.5))), Some(Environment::Map(two_parts()))];
+    for (environment, disc) in
+        environments.iter().flat_map(|e| [(e, sun(2e4, sun_angle)), (e, sun(3.0, 0.4))])
+    {
+        let plain = EnvironmentLight::new(environment.as_ref(), &[]);
+        let light = EnvironmentLight::new(environment.as_ref(), &[disc]).unwrap();
+        let behind = |d: Vec3| plain.as_ref().map_or(Rgb::ZERO, |light| light.radiance(d));
+        assert_eq!(light.tile_count(), plain.as_ref().map_or(256, |light| light.tile_count()) + 1);
+        let mean = f64::from(plain.as_ref().map_or(0.0, |light| light.mean_luminance()));
+        let flux = solid_angle(disc.half_angle) * f64::from(disc.radiance.x) / (4.0 * std::f64::consts::PI);
+        assert!((f64::from(light.mean_luminance()) / (mean + flux) - 1.0).abs() < 1e-3);
+        let (n, mut on_disc, mut sampled_mean, mut strays) = (1 << 17, 0.0f64, 0.0f64, 0);
+        for i in 0..n {
+            let Some(s) = light.sample(owen_sobol_2d(i, 3)) else { panic!("{i}") };
+            let (radiance, pdf) = light.radiance_pdf(s.direction);
+            strays += u32::from(
+                (radiance - s.radiance).length() > 1e-2 * radiance.length()
+                    || (pdf / s.pdf - 1.0).abs() > 1e-2,
+            );
+            let within = s.direction.angle_between(disc.direction) <= 1.001 * disc.half_angle + 4e-4;
+            assert!(within || (s.radiance - behind(s.direction)).length() <= 1e-2 * s.radiance.length());
+            on_disc += f64::from(u8::from(within));
+            sampled_mean += f64::from(luminance(s.radiance) / s.pdf) / (4.0 * std::f64::consts::PI);
+        }
+        assert!(strays < n / 500, "{strays}");
+        let n = f64::from(n);
+        assert!(
+            (sampled_mean / n / (mean + flux) - 1.0).abs() < 0.02,
+            "{}",
+            sampled_mean / n / (mean + flux)
+        );
+        assert!(on_disc / n >= 0.98 * flux / (mean + flux), "{}", on_disc / n);
+        let centre = light.radiance(disc.direction);
+        assert!((centre - behind(disc.direction) - disc.radiance).length() < 1e-3 * centre.length());
     }
 }

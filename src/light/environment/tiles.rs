@@ -87,6 +87,12 @@ impl Tiles {
         Tiles { tiles: tiles.collect(), block, blocks: blocks[0], of_block }
     }
 
+    /// Adds tiles that are no part of the grid, which keeps `share` of the flux.
+    pub fn add(&mut self, tiles: impl Iterator<Item = Tile>, share: f32) {
+        self.tiles.iter_mut().for_each(|tile| tile.flux *= share);
+        self.tiles.extend(tiles);
+    }
+
     /// The tiles.
     #[inline]
     pub fn all(&self) -> &[Tile] {
@@ -101,6 +107,11 @@ impl Tiles {
 }
 
 impl Tile {
+    /// A tile that is no part of a grid, of even radiance.
+    pub fn apart(flux: f32, solid_angle: f32) -> Tile {
+        Tile { cells: [0..0, 0..0], rows: None, heights: [0.0; 2], flux, density: 1.0 / solid_angle }
+    }
+
     fn new(grid: &impl Grid, cells: [Range<usize>; 2], flux: f32) -> Tile {
         let [columns, rows] = &cells;
         let heights = [grid.height(rows.start), grid.height(rows.end)];

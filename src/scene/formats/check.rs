@@ -3,12 +3,34 @@
 use super::constants;
 use super::error::{Place, SceneError};
 use crate::math::Rgb;
+use crate::scene::light::DistantDisc;
 use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
 
 /// The direction of a light at unit length.
 pub(crate) fn unit(direction: DVec3, place: &Place) -> Result<Vec3, SceneError> {
     let none = || place.wrong("the light has no direction", "give one that is not zero");
     Ok(direction.try_normalize().ok_or_else(none)?.as_vec3())
+}
+
+/// The disc of an even light that shines along `direction`, `angle` degrees wide, from its irradiance on a surface that
+/// faces it.
+pub(crate) fn disc(
+    direction: Vec3,
+    irradiance: Rgb,
+    angle: f64,
+    place: &Place,
+) -> Result<DistantDisc, SceneError> {
+    if !(angle > 0.0 && angle < 180.0) {
+        return Err(
+            place.wrong(format!("the light is {angle} degrees wide"), "give more than 0, less than 180")
+        );
+    }
+    let half_angle = (0.5 * angle).to_radians();
+    // Its projected solid angle.
+    let projected = PI * half_angle.sin() * half_angle.sin();
+    let radiance = irradiance / projected as f32;
+    Ok(DistantDisc { direction: -direction, half_angle: half_angle as f32, radiance })
 }
 
 /// The half angles of a spot light's cone, of these names, from degrees to radians.

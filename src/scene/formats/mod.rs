@@ -13,6 +13,7 @@ mod mitsuba;
 mod native;
 mod picture;
 mod plan;
+mod sky;
 
 use super::{Cameras, Scene, framing, recentre, sanitize};
 use error::Log;

@@ -6,9 +6,10 @@
 use super::error::{Place, SceneError};
 use super::mesh::{self, Placement, RawMesh};
 use super::picture::{self, Picture};
+use super::sky::SkyPlan;
 use crate::math::Rgb;
 use crate::scene::draft::{Draft, DraftMesh, Shot};
-use crate::scene::light::{DeltaLight, Environment, EnvironmentMap};
+use crate::scene::light::{DeltaLight, DistantDisc, Environment, EnvironmentMap};
 use crate::scene::material::{Material, MaterialId};
 use crate::scene::mesh::Emission;
 use crate::scene::texture::{Filter, Texture, TextureId, Wrap};
@@ -39,6 +40,7 @@ pub(crate) struct Contents {
     pub textures: Vec<TexturePlan>,
     pub lights: Vec<(DeltaLight, DVec3)>,
     pub environment: Option<EnvironmentPlan>,
+    pub discs: Vec<DistantDisc>,
 }
 
 impl Contents {
@@ -113,6 +115,7 @@ pub(crate) enum Image {
 pub(crate) enum EnvironmentPlan {
     Constant(Rgb),
     Map { place: Place, path: PathBuf, scale: f32, to_world: DMat4 },
+    Sky(SkyPlan),
 }
 
 /// A task on a file's bytes.
@@ -174,6 +177,7 @@ impl Plan {
             (Some(EnvironmentPlan::Map { scale, to_world, .. }), Some(picture)) => {
                 Some(Environment::Map(environment_map(picture, scale, &to_world)))
             }
+            (Some(EnvironmentPlan::Sky(sky)), _) => sky.map().map(Environment::Map),
             _ => None,
         };
         let draft = Draft {
@@ -187,6 +191,7 @@ impl Plan {
             textures,
             lights: contents.lights,
             environment,
+            discs: contents.discs,
         };
         let bytes: Vec<u8> = hashes.iter().flat_map(|h| h.to_le_bytes()).collect();
         Ok((draft, fnv1a(&bytes)))

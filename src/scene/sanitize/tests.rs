@@ -36,6 +36,7 @@ fn draft(meshes: Vec<DraftMesh>, materials: Vec<Material>) -> Draft {
         textures: vec![],
         lights: vec![],
         environment: None,
+        discs: vec![],
     }
 }
 

@@ -66,6 +66,7 @@ impl Converter<'_> {
                 let place = emitter.place.clone();
                 self.environment(emitter, EnvironmentPlan::Map { place, path, scale, to_world })?;
             }
+            "sky" | "sun" | "sunsky" => self.sky(emitter, to_world.unwrap_or(DMat4::IDENTITY))?,
             other => {
                 let what = format!("the emitter \"{other}\" is not modelled");
                 self.log.warn(&emitter.place, what, "it gives no light")?;
@@ -89,7 +90,7 @@ impl Converter<'_> {
     }
 
     /// Returns the transform without its scale; an error where it shears or is singular.
-    fn rotation(&mut self, emitter: &Object, m: DMat4) -> Result<DMat4, SceneError> {
+    pub(super) fn rotation(&mut self, emitter: &Object, m: DMat4) -> Result<DMat4, SceneError> {
         let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|a| a.truncate());
         let [Some(a), Some(b), Some(c)] = [x, y, z].map(|a| a.try_normalize()) else {
             return Err(emitter.place.wrong("to_world is singular", "use a rotation"));
@@ -107,7 +108,7 @@ impl Converter<'_> {
         Ok(DMat4::from_cols(a.extend(0.0), b.extend(0.0), c.extend(0.0), DVec3::ZERO.extend(1.0)))
     }
 
-    fn environment(&mut self, emitter: &Object, plan: EnvironmentPlan) -> Result<(), SceneError> {
+    pub(super) fn environment(&mut self, emitter: &Object, plan: EnvironmentPlan) -> Result<(), SceneError> {
         if self.contents.environment.is_some() {
             let what = "the scene has more than one environment";
             return Err(emitter.place.wrong(what, "leave one"));

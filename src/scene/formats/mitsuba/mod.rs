@@ -17,6 +17,7 @@ mod emitter;
 mod integrator;
 mod sensor;
 mod shape;
+mod sky;
 mod texture;
 mod tree;
 mod value;

@@ -67,6 +67,8 @@ pub(super) struct Document {
     ids: BTreeMap<String, Rc<Object>>,
     /// The files read, main file first, with the hash of their bytes.
     pub sources: Vec<(PathBuf, u64)>,
+    /// True if the main file is Mitsuba 0.x's.
+    pub is_old: bool,
 }
 
 impl Document {
@@ -80,7 +82,7 @@ impl Document {
             let remedy = "correct the name given with -D, or leave it out";
             builder.log.part::<()>(Err(Place::file(path).wrong(what, remedy)));
         }
-        Ok(Document { root, ids: builder.ids, sources: builder.sources })
+        Ok(Document { root, ids: builder.ids, sources: builder.sources, is_old: builder.is_old })
     }
 
     /// Returns the object that a child refers to.
@@ -127,6 +129,7 @@ struct Builder<'a> {
     /// Values of `$name` parameters.
     parameters: BTreeMap<String, Parameter>,
     sources: Vec<(PathBuf, u64)>,
+    is_old: bool,
 }
 
 impl Builder<'_> {
@@ -135,7 +138,7 @@ impl Builder<'_> {
             (name.clone(), Parameter { value: value.clone(), used: Cell::new(false) })
         };
         let parameters = given.iter().map(parameter).collect();
-        Builder { log, ids: BTreeMap::new(), parameters, sources: Vec::new() }
+        Builder { log, ids: BTreeMap::new(), parameters, sources: Vec::new(), is_old: false }
     }
 
     /// Reads the file into `parent`: the contents of a scene, or its only object under `name`.
@@ -154,10 +157,11 @@ impl Builder<'_> {
         let root = document.root_element();
         if root.tag_name().name() == "scene" {
             let place = self.place(path, &root);
-            if root.attribute("version").is_none() {
+            let Some(version) = root.attribute("version") else {
                 let remedy = "give it one, e.g. <scene version=\"3.0.0\">";
                 return Err(place.wrong("the scene has no version", remedy));
-            }
+            };
+            self.is_old |= self.sources.len() == 1 && version.starts_with("0.");
             self.contents(path, &root, parent, depth);
         } else {
             self.element(path, &root, parent, name, depth + 1)?;

@@ -29,11 +29,12 @@ impl Builder<'_> {
             ("outer_angle", text.outer_angle.is_some()),
             ("direction", text.direction.is_some()),
             ("irradiance", text.irradiance.is_some()),
+            ("angle", text.angle.is_some()),
         ];
         let known: &[&str] = match text.kind.as_str() {
             "point" => &["position", "intensity"],
             "spot" => &["position", "intensity", "target", "inner_angle", "outer_angle"],
-            "directional" => &["direction", "irradiance"],
+            "directional" => &["direction", "irradiance", "angle"],
             other => {
                 let what = format!("unknown kind of light \"{other}\"");
                 return Err(place.wrong(what, "use point, spot or directional"));
@@ -60,6 +61,11 @@ impl Builder<'_> {
             _ => {
                 let direction = check::unit(need(text.direction, "direction")?, &place)?;
                 let irradiance = colour(&text.irradiance, "irradiance")?;
+                if let Some(angle) = text.angle {
+                    let disc = check::disc(direction, irradiance, angle, &place)?;
+                    self.contents.discs.push(disc);
+                    return Ok(());
+                }
                 (DeltaLight::Directional { direction, irradiance }, DVec3::ZERO)
             }
         };

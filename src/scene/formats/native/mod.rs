@@ -9,6 +9,7 @@ mod material;
 mod mesh;
 mod mtl;
 mod path;
+mod sky;
 mod text;
 
 use super::error::{Log, Place, SceneError};
@@ -47,6 +48,10 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     }
     let environment = scene.environment.as_ref().map(|e| builder.environment(e)).transpose();
     builder.contents.environment = builder.log.part(environment).flatten();
+    if let Some(sky) = &scene.sky {
+        let read = builder.sky(sky);
+        builder.log.part(read);
+    }
     let shot = builder.shot(&scene);
     let shot = builder.log.conclude(shot)?;
     builder.report_unused_parts(&scene)?;

@@ -19,6 +19,7 @@ pub(super) struct SceneText {
     #[serde(default)]
     pub light: Vec<Spanned<LightText>>,
     pub environment: Option<Spanned<EnvironmentText>>,
+    pub sky: Option<Spanned<SkyText>>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -186,6 +187,7 @@ pub(super) struct LightText {
     pub outer_angle: Option<f64>,
     pub direction: Option<[f64; 3]>,
     pub irradiance: Option<ColourText>,
+    pub angle: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -194,5 +196,23 @@ pub(super) struct EnvironmentText {
     pub radiance: Option<ColourText>,
     pub file: Option<String>,
     pub scale: Option<f64>,
+    pub rotate_y: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SkyText {
+    pub up: Option<[f64; 3]>,
+    pub sun_direction: Option<[f64; 3]>,
+    pub date: Option<toml::value::Datetime>,
+    /// Latitude to the north and longitude to the east, degrees.
+    pub place: Option<[f64; 2]>,
+    pub turbidity: Option<f64>,
+    pub albedo: Option<ColourText>,
+    pub scale: Option<f64>,
+    pub sun_scale: Option<f64>,
+    /// Diameter of the sun, degrees.
+    pub sun_angle: Option<f64>,
+    /// Degrees from north of the scene to that of the place, counter-clockwise.
     pub rotate_y: Option<f64>,
 }
