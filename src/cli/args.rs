@@ -35,6 +35,10 @@ pub enum Command {
     Info(InfoArgs),
     /// Take the noise off a picture that is there
     Denoise(DenoiseFileArgs),
+    /// Merge pictures of the same view by different seeds into one with less noise
+    Merge(MergeArgs),
+    /// Put frames of a walk side by side on a contact sheet
+    Sheet(SheetArgs),
     /// Measure how far a picture is from a reference, and show where
     Compare(CompareArgs),
     /// Measure how fast parts of the renderer are, ratios first
@@ -256,6 +260,43 @@ pub struct DenoiseFileArgs {
     /// The tone-mapped picture.
     #[command(flatten)]
     pub png: PngArgs,
+}
+
+/// Options of `merge`.
+#[derive(Debug, Args)]
+#[command(after_help = exit::HELP)]
+pub struct MergeArgs {
+    /// Pictures (OpenEXR) of the same scene, view, method and settings by different seeds; each counts as much as it
+    /// has samples. Of denoised ones, their layer `noisy`
+    #[arg(required = true, num_args = 2..)]
+    pub inputs: Vec<PathBuf>,
+    /// Picture to write
+    #[arg(short, long, value_name = "FILE.exr")]
+    pub output: PathBuf,
+    /// The tone-mapped picture.
+    #[command(flatten)]
+    pub png: PngArgs,
+}
+
+/// Options of `sheet`.
+#[derive(Debug, Args)]
+#[command(after_help = exit::HELP)]
+pub struct SheetArgs {
+    /// Frames as walk's --output names them; their PNG files are shown
+    #[arg(value_name = "NAME.####.exr")]
+    pub names: FileNames,
+    /// Frames to show: 7, 1-10, 1-100x5 (every fifth), or a list of those; all have to be there
+    #[arg(long, value_name = "LIST")]
+    pub frames: FrameList,
+    /// Sheet to write
+    #[arg(short, long, value_name = "FILE.png")]
+    pub output: PathBuf,
+    /// Frames in a row [default: so many that the sheet is about 16:9]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub columns: Option<u32>,
+    /// Width of a frame in pixels, at most its own
+    #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..))]
+    pub width: u32,
 }
 
 /// Options that measure the picture's error.

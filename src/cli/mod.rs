@@ -17,12 +17,14 @@ mod info;
 mod interrupt;
 mod job;
 mod job_key;
+mod merge;
 mod method_args;
 mod picture;
 mod plan_args;
 mod progress;
 mod render;
 mod scene;
+mod sheet;
 mod study;
 mod talk;
 mod threads;
@@ -56,6 +58,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Batch(args) => batch::run(args),
         Command::Info(args) => info::run(args),
         Command::Denoise(args) => denoise::run(args),
+        Command::Merge(args) => merge::run(args),
+        Command::Sheet(args) => sheet::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
     }));

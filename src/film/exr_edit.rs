@@ -55,6 +55,22 @@ impl ExrFile {
         }
     }
 
+    /// Removes a fact, where there is one.
+    pub fn remove_fact(&mut self, key: &str) {
+        if let Some(part) = self.parts.layer_data.first_mut() {
+            part.attributes.other.remove(&name_of(key));
+        }
+    }
+
+    /// Removes the layer `name`, where there is one.
+    pub fn remove_layer(&mut self, name: &str) {
+        for part in &mut self.parts.layer_data {
+            part.channel_data.list.retain(|channel| {
+                text(&channel.name).rsplit_once('.').is_none_or(|(layer, _)| layer != name)
+            });
+        }
+    }
+
     /// Gives a fact another key, where there is one.
     pub fn rename_fact(&mut self, from: &str, to: &str) {
         let Some(part) = self.parts.layer_data.first_mut() else { return };

@@ -6,6 +6,7 @@
 pub mod atomic;
 mod error;
 mod exr_edit;
+mod exr_merge;
 mod exr_order;
 mod exr_read;
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! A rendered frame: the picture and all that is reported about it.
 
 use crate::denoise::NOISY_VARIANCE;
-use crate::film::metrics::rel_mse_of_variance;
-use crate::film::{Film, Image, Layer, Metadata};
+use crate::film::metrics::{rel_mse_of_variance, standard_error};
+use crate::film::{Film, Layer, Metadata};
 use crate::math::Rgb;
 use crate::method::{Method, Output};
 use crate::stats::Stats;
@@ -54,7 +54,7 @@ pub(super) fn film(output: Output, view: &View, centre: DVec3, denoised: bool) -
     let (layer, of) = if denoised { (NOISY_VARIANCE, "noisy_") } else { ("variance", "") };
     let mut metadata = Metadata::default();
     if let Some(variance) = &output.variance {
-        metadata.set(&format!("{of}standard_error"), root_mean(variance));
+        metadata.set(&format!("{of}standard_error"), standard_error(variance));
         metadata.set(&format!("{of}relative_mse_of_noise"), rel_mse_of_variance(variance, &output.color));
     }
     let variance = output.variance.map(|image| Layer::color(layer, image));
@@ -63,10 +63,4 @@ pub(super) fn film(output: Output, view: &View, centre: DVec3, denoised: bool) -
     let mut film = Film { window: view.window, color: output.color, layers, camera, metadata };
     let nonfinite = film.remove_nonfinite();
     (film, nonfinite)
-}
-
-/// Root of the mean variance over pixels and channels: the standard error of a typical pixel.
-fn root_mean(variance: &Image) -> f64 {
-    let sum: f64 = variance.pixels.iter().map(|p| p.as_dvec3().element_sum() / 3.0).sum();
-    (sum / variance.pixels.len().max(1) as f64).sqrt()
 }

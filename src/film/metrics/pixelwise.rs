@@ -25,6 +25,12 @@ pub fn rel_mse(test: &Image, reference: &Image, trim: f64) -> f64 {
     mean(errors.into_iter())
 }
 
+/// Root of the mean variance over pixels and channels: the standard error of a typical pixel.
+pub fn standard_error(variance: &Image) -> f64 {
+    let sum: f64 = variance.pixels.iter().map(|p| p.as_dvec3().element_sum() / 3.0).sum();
+    (sum / variance.pixels.len().max(1) as f64).sqrt()
+}
+
 /// Relative mean square error that a picture would have against `reference` if it differed only by noise of
 /// the given `variance` (of the reference's pixel means).
 pub fn rel_mse_of_variance(variance: &Image, reference: &Image) -> f64 {
