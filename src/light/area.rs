@@ -52,7 +52,7 @@ impl AreaLight {
         let area = triangles.total() as f32;
         let mean_texture = emission.texture.map_or(Rgb::ONE, |t| {
             let texels = &scene.textures[t.0 as usize].texels;
-            texels.iter().copied().sum::<Rgb>() / texels.len().max(1) as f32
+            texels.iter().sum::<Rgb>() / texels.len().max(1) as f32
         });
         let sides = if emission.two_sided { 2.0 } else { 1.0 };
         let power = luminance(emission.radiance * mean_texture) * area * std::f32::consts::PI * sides;

@@ -57,7 +57,7 @@ impl Levels {
             _ => None,
         })?;
         let texels = &textures.get(texture.0 as usize)?.texels;
-        let levels = || texels.iter().map(|texel| Level::of(luminance(*texel)).0);
+        let levels = || texels.iter().map(|texel| Level::of(luminance(texel)).0);
         Some(Levels { texture, range: levels().min()?..=levels().max()?, first })
     }
 

@@ -9,8 +9,8 @@ mod sampling;
 use super::*;
 use crate::math::Rgb;
 use crate::scene::{
-    Coat, Distribution, Filter, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene, Texture,
-    TextureId, Wrap,
+    Coat, Distribution, Filter, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene, Texels,
+    Texture, TextureId, Wrap,
 };
 use glam::{Mat3, Vec2, Vec3};
 
@@ -22,7 +22,7 @@ pub(crate) fn scene(materials: Vec<Material>) -> Scene {
             name: String::new(),
             width: 2,
             height: 1,
-            texels: vec![Rgb::X, Rgb::Y],
+            texels: Texels::new(2, &[Rgb::X, Rgb::Y]),
             filter: Filter::Nearest,
             wrap: Wrap::Repeat,
             to_uv: Mat3::IDENTITY,

@@ -13,6 +13,7 @@ mod mesh;
 mod recentre;
 pub mod requirements;
 mod sanitize;
+mod texels;
 mod texture;
 
 use glam::DVec3;
@@ -25,6 +26,7 @@ pub use material::{
 };
 pub use mesh::{Emission, Mesh};
 pub use requirements::Requirements;
+pub use texels::Texels;
 pub use texture::{Filter, Texture, TextureId, Wrap};
 
 /// A scene, ready for the acceleration structure. The default is an empty one.

@@ -151,7 +151,7 @@ impl Requirements {
         r.lights += usize::from(r.trees.environment);
         r.trees.indirect = r.lights > 0 && reflects && scene.max_depth.is_none_or(|depth| depth > 2);
         r.memory.hierarchy = BVH_BYTES_PER_TRIANGLE * r.triangles;
-        r.memory.pictures = scene.textures.iter().map(|t| 12 * t.texels.len()).sum();
+        r.memory.pictures = scene.textures.iter().map(|t| t.texels.bytes()).sum();
         if let Some(Environment::Map(map)) = &scene.environment {
             // The texels, and cumulative sums over them.
             r.memory.pictures += (12 + 12 + 8) * map.radiance.len();
@@ -174,8 +174,8 @@ impl Requirements {
         for lobe in &material.lobes {
             if let Lobe::Rough { alpha, .. } = lobe {
                 let alpha = alpha.value(|id| {
-                    let texels = scene.textures.get(id.0 as usize).map_or(&[][..], |t| &t.texels);
-                    texels.iter().map(|texel| luminance(*texel)).reduce(f32::min).unwrap_or(1.0)
+                    let texture = scene.textures.get(id.0 as usize);
+                    texture.and_then(|t| t.texels.iter().map(luminance).reduce(f32::min)).unwrap_or(1.0)
                 });
                 self.smallest_alpha = Some(self.smallest_alpha.map_or(alpha, |a| a.min(alpha)));
             }

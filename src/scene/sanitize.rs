@@ -7,7 +7,7 @@
 use super::draft::{Draft, DraftMesh};
 use super::formats::error::{Log, Place, SceneError};
 use super::material::{Fresnel, Lobe, Material, Reflectance, Roughness};
-use super::{DeltaLight, Environment, Texture, recentre};
+use super::{DeltaLight, Environment, Texels, Texture, recentre};
 use crate::math::Rgb;
 use glam::{DVec3, Vec2, Vec3};
 use serde::Serialize;
@@ -276,7 +276,12 @@ fn check_sum(material: &Material, place: &Place) -> Result<(), SceneError> {
 
 fn clamp_texels(texture: &mut Texture, scale: Rgb, report: &mut SanitizeReport) {
     let limit = scale.max(Rgb::ONE).recip();
-    for texel in &mut texture.texels {
+    let fits = |texel: Rgb| texel.cmpge(Rgb::ZERO).all() && texel.cmple(limit).all();
+    if texture.texels.all(fits) {
+        return;
+    }
+    let mut texels: Vec<Rgb> = texture.texels.iter().collect();
+    for texel in &mut texels {
         if !texel.is_finite() || texel.min_element() < 0.0 {
             report.bad_texels += 1;
             *texel = if texel.is_nan() { Rgb::ZERO } else { texel.max(Rgb::ZERO) };
@@ -286,6 +291,7 @@ fn clamp_texels(texture: &mut Texture, scale: Rgb, report: &mut SanitizeReport) 
             *texel = texel.min(limit);
         }
     }
+    texture.texels = Texels::new(texture.width, &texels);
 }
 
 fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), SceneError> {
@@ -298,7 +304,7 @@ fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), Sc
         let Some(emission) = mesh.emission else { continue };
         check(emission.radiance, &format!("mesh \"{}\": the radiance", mesh.name))?;
         let texture = emission.texture.and_then(|id| draft.textures.get(id.0 as usize));
-        let dark = texture.is_some_and(|t| t.texels.iter().all(|texel| texel.max_element() <= 0.0));
+        let dark = texture.is_some_and(|t| t.texels.all(|texel| texel.max_element() <= 0.0));
         if emission.radiance == Rgb::ZERO || dark {
             report.black_lights += 1;
             mesh.emission = None;

@@ -1,5 +1,6 @@
 //! Image textures, stored as linear colour.
 
+use super::texels::Texels;
 use crate::math::Rgb;
 use glam::{DVec3, Mat3, Vec2};
 
@@ -36,8 +37,8 @@ pub struct Texture {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// Linear colour, row-major, top row first.
-    pub texels: Vec<Rgb>,
+    /// Linear colour, top row first.
+    pub texels: Texels,
     /// Interpolation between texels.
     pub filter: Filter,
     /// Extension of the texture beyond [0, 1]².
@@ -52,15 +53,16 @@ impl Texture {
         let uv = self.to_uv.transform_point2(uv);
         let (x, y) = (uv.x * self.width as f32, (1.0 - uv.y) * self.height as f32);
         match self.filter {
-            Filter::Nearest => self.texel(x.floor() as i64, y.floor() as i64),
+            Filter::Nearest => self.texels.get(self.column(x.floor() as i64), self.row(y.floor() as i64)),
             Filter::Bilinear => {
                 let (x, y) = (x - 0.5, y - 0.5);
                 let (x0, y0) = (x.floor(), y.floor());
                 let (fx, fy) = (x - x0, y - y0);
                 let (x0, y0) = (x0 as i64, y0 as i64);
-                let top = self.texel(x0, y0).lerp(self.texel(x0 + 1, y0), fx);
-                let bottom = self.texel(x0, y0 + 1).lerp(self.texel(x0 + 1, y0 + 1), fx);
-                top.lerp(bottom, fy)
+                let [left, right] = [x0, x0 + 1].map(|x| self.column(x));
+                let [top, bottom] = [y0, y0 + 1].map(|y| self.row(y));
+                let between = |y| self.texels.get(left, y).lerp(self.texels.get(right, y), fx);
+                between(top).lerp(between(bottom), fy)
             }
         }
     }
@@ -70,21 +72,28 @@ impl Texture {
         if self.texels.is_empty() {
             return Rgb::ONE;
         }
-        let sum = self.texels.iter().fold(DVec3::ZERO, |sum, t| sum + t.as_dvec3());
+        let sum = self.texels.iter().fold(DVec3::ZERO, |sum, texel| sum + texel.as_dvec3());
         (sum / self.texels.len() as f64).as_vec3()
     }
 
     #[inline]
-    fn texel(&self, x: i64, y: i64) -> Rgb {
-        let x = self.wrap.index(x, self.width);
-        let y = self.wrap.index(y, self.height);
-        self.texels[y * self.width + x]
+    fn column(&self, x: i64) -> usize {
+        self.wrap.index(x, self.width)
+    }
+
+    #[inline]
+    fn row(&self, y: i64) -> usize {
+        self.wrap.index(y, self.height)
     }
 }
 
 impl Wrap {
     #[inline]
     fn index(self, i: i64, n: usize) -> usize {
+        // Nearly always; divisions are slow.
+        if (i as u64) < n as u64 {
+            return i as usize;
+        }
         let n = n as i64;
         let i = match self {
             Wrap::Repeat => i.rem_euclid(n),

@@ -10,7 +10,7 @@ use lightsplat::progress::Control;
 use lightsplat::scene::formats::{LoadOptions, Loaded, load};
 use lightsplat::scene::{
     Camera, Cameras, Emission, Filter, Fresnel, Lobe, Material, MaterialId, Mesh, Parameter, Reflectance,
-    Scene, Texture, TextureId, Wrap,
+    Scene, Texels, Texture, TextureId, Wrap,
 };
 use lightsplat::session::{Frame, Remark, Session};
 use lightsplat::stats::Stats;
@@ -114,6 +114,7 @@ pub fn checkered(scene: &mut Scene, width: usize, texels: Vec<Rgb>) -> Material 
     let height = texels.len() / width;
     let (filter, wrap) = (Filter::Nearest, Wrap::Repeat);
     let name = "checker".into();
+    let texels = Texels::new(width, &texels);
     scene.textures.push(Texture { name, width, height, texels, filter, wrap, to_uv: Mat3::IDENTITY });
     let texture = TextureId(scene.textures.len() as u32 - 1);
     Material { diffuse: Parameter::Textured { texture, scale: Rgb::ONE }, ..diffuse(Rgb::ZERO) }

@@ -5,6 +5,7 @@
 
 use super::error::{Place, SceneError};
 use crate::math::Rgb;
+use crate::scene::Texels;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -16,7 +17,7 @@ const MAX_PIXELS: usize = 1 << 28;
 pub(crate) struct Picture {
     pub width: usize,
     pub height: usize,
-    pub texels: Vec<Rgb>,
+    pub texels: Texels,
 }
 
 /// Decodes `bytes`; `raw` leaves integer values as they are instead of decoding sRGB.
@@ -68,7 +69,7 @@ fn decode_exr(bytes: &[u8]) -> Result<Picture, exr::error::Error> {
     if texels.len() != width * height {
         return Err(exr::error::Error::Invalid("subsampled channels".into()));
     }
-    Ok(Picture { width, height, texels })
+    Ok(Picture { width, height, texels: Texels::new(width, &texels) })
 }
 
 fn decode_common(bytes: &[u8], raw: bool, path: &Path) -> Result<Picture, String> {
@@ -82,17 +83,18 @@ fn decode_common(bytes: &[u8], raw: bool, path: &Path) -> Result<Picture, String
     let image = reader.decode().map_err(|e| e.to_string())?;
     let (width, height) = (image.width() as usize, image.height() as usize);
     use image::DynamicImage as D;
+    let plain = |texels: Vec<Rgb>| Texels::new(width, &texels);
     let texels = match image {
         D::ImageRgb32F(_) | D::ImageRgba32F(_) => {
-            image.to_rgb32f().pixels().map(|p| Rgb::from(p.0)).collect()
+            plain(image.to_rgb32f().pixels().map(|p| Rgb::from(p.0)).collect())
         }
         D::ImageRgb16(_) | D::ImageRgba16(_) | D::ImageLuma16(_) | D::ImageLumaA16(_) => {
             let decode = |v: u16| linear(f32::from(v) / 65535.0, raw);
-            image.to_rgb16().pixels().map(|p| Rgb::from(p.0.map(decode))).collect()
+            plain(image.to_rgb16().pixels().map(|p| Rgb::from(p.0.map(decode))).collect())
         }
         _ => {
-            let table: Vec<f32> = (0..256).map(|v| linear(v as f32 / 255.0, raw)).collect();
-            image.to_rgb8().pixels().map(|p| Rgb::from(p.0.map(|v| table[usize::from(v)]))).collect()
+            let codes: Vec<[u8; 4]> = image.to_rgb8().pixels().map(|p| [p.0[0], p.0[1], p.0[2], 0]).collect();
+            Texels::coded(width, &codes, std::array::from_fn(|code| linear(code as f32 / 255.0, raw)))
         }
     };
     Ok(Picture { width, height, texels })
@@ -128,20 +130,23 @@ mod tests {
         assert_eq!((decoded.width, decoded.height), (2, 2));
         // 200 and 60 of 255, by the standard's formula in f64.
         assert!(
-            (decoded.texels[0] - Rgb::new(0.577580, 0.0451862, 0.0212190)).length() < 1e-6,
+            (decoded.texels.get(0 % decoded.width, 0 / decoded.width)
+                - Rgb::new(0.577580, 0.0451862, 0.0212190))
+            .length()
+                < 1e-6,
             "{}",
-            decoded.texels[0]
+            decoded.texels.get(0 % decoded.width, 0 / decoded.width)
         );
         let raw = decode_file(&png, true, "t.png").unwrap();
-        assert_eq!(raw.texels[0], Rgb::new(200.0, 60.0, 40.0) / 255.0);
+        assert_eq!(raw.texels.get(0 % raw.width, 0 / raw.width), Rgb::new(200.0, 60.0, 40.0) / 255.0);
     }
 
     #[test]
     fn floating_point_pictures_are_linear_with_the_top_row_first() {
         let sky = decode_file(&corpus("sky.exr"), false, "sky.exr").unwrap();
         assert_eq!((sky.width, sky.height), (4, 3));
-        assert_eq!(sky.texels[1], Rgb::new(0.5, 1.0, 2.0));
-        assert_eq!(sky.texels[8], Rgb::new(2.0, 1.0, 4.0));
+        assert_eq!(sky.texels.get(1 % sky.width, 1 / sky.width), Rgb::new(0.5, 1.0, 2.0));
+        assert_eq!(sky.texels.get(8 % sky.width, 8 / sky.width), Rgb::new(2.0, 1.0, 4.0));
     }
 
     #[test]

@@ -317,7 +317,7 @@ fn texture(plan: TexturePlan, decoded: Option<Picture>) -> Option<Texture> {
 /// Makes the map with `scale` applied. As in Mitsuba, fewer than 3 rows are padded by repeating the last.
 fn environment_map(picture: Picture, scale: f32, to_world: &DMat4) -> EnvironmentMap {
     let Picture { width, height, texels } = picture;
-    let mut radiance: Vec<Rgb> = texels.iter().map(|&t| t * scale).collect();
+    let mut radiance: Vec<Rgb> = texels.iter().map(|texel| texel * scale).collect();
     let last: Vec<Rgb> = radiance[radiance.len() - width..].to_vec();
     for _ in height..3 {
         radiance.extend_from_slice(&last);

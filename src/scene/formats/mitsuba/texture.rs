@@ -5,6 +5,7 @@ use super::tree::Object;
 use super::value::Value;
 use super::{Converter, cie, value};
 use crate::math::Rgb;
+use crate::scene::Texels;
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::picture::Picture;
 use crate::scene::formats::plan::{Image, TexturePlan, read_text};
@@ -193,7 +194,8 @@ impl Converter<'_> {
             }
         };
         let (even, odd) = (texel("color0", 0.4)?, texel("color1", 0.2)?);
-        let picture = Picture { width: 2, height: 2, texels: vec![even, odd, odd, even] };
+        let texels = Texels::new(2, &[even, odd, odd, even]);
+        let picture = Picture { width: 2, height: 2, texels };
         let texture = self.contents.add_texture(TexturePlan {
             place: object.place.clone(),
             image: Image::Ready("checkerboard".into(), picture),
