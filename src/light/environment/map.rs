@@ -123,12 +123,20 @@ impl Map {
         [top + column, top + right, bottom + column, bottom + right].map(|i| radiance[i])
     }
 
-    /// Draws a place among cells, of which `rows` draws the row.
-    #[inline]
-    pub fn sample(&self, cells: &[Range<usize>; 2], rows: &DiscreteDistribution, u: Vec2) -> Place {
-        let (row, rest_y) = rows.sample(u.y);
-        let row = cells[1].start + row;
-        let (column, rest_x) = self.columns[row].sample_between(&cells[0], u.x);
+    /// Draws a place among a few cells.
+    pub fn sample(&self, [columns, rows]: &[Range<usize>; 2], u: Vec2) -> Place {
+        let flux = |row: usize| self.flux(row, columns);
+        let total: f32 = rows.clone().map(flux).sum();
+        let (mut row, mut before) = (rows.start, 0.0);
+        let mut here = flux(row);
+        while row + 1 < rows.end && before + here <= u.y * total {
+            before += here;
+            row += 1;
+            here = flux(row);
+        }
+        let rest_y =
+            if here > 0.0 { ((u.y * total - before) / here).clamp(0.0, 1.0 - f32::EPSILON) } else { 0.0 };
+        let (column, rest_x) = self.columns[row].sample_between(columns, u.x);
         let f = sample_bilinear(self.luminances(column, row), Vec2::new(rest_x, rest_y));
         Place { column, row, f }
     }

@@ -26,7 +26,7 @@ use glam::{Vec2, Vec3};
 use map::{Map, bilinear};
 use std::f32::consts::FRAC_1_PI;
 use table::Table;
-use tiles::Tiles;
+use tiles::{Block, Tiles};
 
 /// The environment with its sampling distributions.
 #[derive(Clone, Debug)]
@@ -158,7 +158,10 @@ impl EnvironmentLight {
             let radiance = bilinear(&corners[i], places[i].f);
             let within = match self.tiles.all()[tiles[i]].rows {
                 None => 1.0,
-                Some(_) => map.density(places[i], &corners[i], radiance),
+                Some(_) => match self.tiles.density(places[i].column, places[i].row) {
+                    0.0 => map.density(places[i], &corners[i], radiance),
+                    density => density,
+                },
             };
             (radiance, tables[i] * within)
         })
@@ -244,17 +247,25 @@ impl EnvironmentLight {
             Source::Map(map) => map,
         };
         let even = |i: usize| tile(i).rows.is_none();
-        let places = each(wanted, |i| match &tile(i).rows {
-            Some(rows) => map.sample(&tile(i).cells, rows, drawn[i].u),
-            None => {
-                let (z, x) = tile(i).place(drawn[i].u);
-                map.place_at(z, x)
+        let blocks = each(wanted, |i| match &tile(i).rows {
+            Some(rows) => self.tiles.sample(tile(i), rows, drawn[i].u),
+            None => Block::default(),
+        });
+        let places = each(wanted, |i| {
+            if !even(i) && blocks[i].density == 0.0 {
+                return map.sample(&self.tiles.cells(&blocks[i]), blocks[i].u);
             }
+            let (z, x) = if even(i) { tile(i).place(drawn[i].u) } else { self.tiles.place(&blocks[i]) };
+            map.place_at(z, x)
         });
         let corners = each(wanted, |i| map.corners(places[i].column, places[i].row));
         each(wanted, |i| {
             let radiance = bilinear(&corners[i], places[i].f);
-            let within = if even(i) { 1.0 } else { map.density(places[i], &corners[i], radiance) };
+            let within = match blocks[i].density {
+                _ if even(i) => 1.0,
+                0.0 => map.density(places[i], &corners[i], radiance),
+                density => density,
+            };
             let pdf = drawn[i].density * within;
             let direction = map.direction(places[i]);
             (pdf > 0.0 && pdf.is_finite()).then_some(EnvironmentSample { direction, radiance, pdf })

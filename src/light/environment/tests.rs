@@ -22,6 +22,17 @@ fn two_parts() -> EnvironmentMap {
     EnvironmentMap { width, height, radiance, to_local: Mat3::from_rotation_y(0.7) }
 }
 
+/// A gradient that is even over blocks of some cells, not over tiles, and a part of texels that differ.
+fn gradient() -> EnvironmentMap {
+    let (width, height) = (700, 300);
+    let texel = |i: usize| match (i % width, i / width) {
+        (400..420, 100..110) => 20.0 + (i * 37 % 11) as f32,
+        (x, y) => 0.02 + (x as f32 / 700.0).powi(4) * (1.0 + y as f32 / 300.0),
+    };
+    let radiance = (0..width * height).map(|i| Rgb::splat(texel(i))).collect();
+    EnvironmentMap { width, height, radiance, to_local: Mat3::from_rotation_y(0.7) }
+}
+
 #[test]
 fn density_integrates_to_one_and_estimates_the_mean() {
     let light = EnvironmentLight::new(Some(&Environment::Map(map())), &[]).unwrap();
@@ -45,9 +56,11 @@ fn density_integrates_to_one_and_estimates_the_mean() {
 
 #[test]
 fn directions_are_drawn_with_the_densities_told_even_in_tiles_and_uneven_ones() {
-    for (environment, evens) in
-        [(Environment::Map(two_parts()), 30..100), (Environment::Constant(Rgb::ONE), 256..257)]
-    {
+    for (environment, evens) in [
+        (Environment::Map(two_parts()), 30..100),
+        (Environment::Map(gradient()), 10..250),
+        (Environment::Constant(Rgb::ONE), 256..257),
+    ] {
         let light = EnvironmentLight::new(Some(&environment), &[]).unwrap();
         assert!(evens.contains(&light.tiles.all().iter().filter(|tile| tile.rows.is_none()).count()));
         let (n, mut counts, mut expected) = (1 << 19, [[0.0f64; 8]; 8], [[0.0f64; 8]; 8]);

@@ -1,10 +1,12 @@
 //! Tiles of the sphere of directions, of about equal flux.
 //!
-//! Where radiance is about even over a tile, directions are drawn there uniformly, which reads no table: those of a map
-//! lie outside the caches, and reading them takes more time than the shadow ray.
+//! Where radiance is about even over a tile, directions are drawn there uniformly; elsewhere by blocks of cells, and
+//! uniformly in those where radiance is about even. The tables of cells lie outside the caches, and reading them takes
+//! more time than the shadow ray.
 
 use crate::light::DiscreteDistribution;
 use glam::Vec2;
+use rayon::prelude::*;
 use std::f32::consts::TAU;
 use std::ops::Range;
 
@@ -14,11 +16,12 @@ const MAX_TILES: usize = 256;
 /// Maximum number of blocks of cells along an edge; tiles consist of whole blocks.
 const MAX_BLOCKS: usize = 256;
 
-/// Maximum squared coefficient of variation of the radiance of an even tile: the variance that it adds to an estimate.
+/// Maximum squared coefficient of variation of the radiance of an even tile or block: the variance that it adds to an
+/// estimate.
 const EVEN: f64 = 0.03;
 
 /// Grid of cells over the sphere of directions, columns of equal azimuth and rows between two heights.
-pub(super) trait Grid {
+pub(super) trait Grid: Sync {
     /// Numbers of columns and rows.
     fn size(&self) -> [usize; 2];
     /// Height above the horizon, in [-1, 1], at which a row begins; rows go down.
@@ -34,7 +37,9 @@ pub(super) trait Grid {
 pub(super) struct Tile {
     /// Columns and rows.
     pub cells: [Range<usize>; 2],
-    /// Rows, of which one is drawn; `None` if radiance is even.
+    /// Columns and rows of blocks.
+    blocks: [Range<usize>; 2],
+    /// Rows of blocks, of which one is drawn; `None` if radiance is even.
     pub rows: Option<DiscreteDistribution>,
     /// Heights between which the tile lies.
     pub heights: [f32; 2],
@@ -49,10 +54,29 @@ pub(super) struct Tile {
 #[derive(Clone, Debug)]
 pub(super) struct Tiles {
     tiles: Vec<Tile>,
+    /// Columns and rows of cells.
+    size: [usize; 2],
     /// Cells along the edges of a block, and blocks in a row.
     block: [usize; 2],
     blocks: usize,
     of_block: Vec<u16>,
+    /// Blocks of each row.
+    columns: Vec<DiscreteDistribution>,
+    /// Densities by solid angle, among all cells, of the directions in even blocks; 0 of others.
+    even: Vec<f32>,
+    /// Heights at which rows of blocks begin and the last one ends.
+    heights: Vec<f32>,
+}
+
+/// A block that was drawn, and numbers by which a place in it is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Block {
+    column: usize,
+    row: usize,
+    /// Numbers in [0, 1)².
+    pub u: Vec2,
+    /// Density by solid angle among all cells if the block is even, else 0.
+    pub density: f32,
 }
 
 /// Rectangle of blocks, and its flux.
@@ -67,24 +91,90 @@ impl Tiles {
         let cells = |range: &Range<usize>, axis: usize| {
             range.start * block[axis]..(range.end * block[axis]).min(size[axis])
         };
-        let flux_of = |i: usize| -> f64 {
+        let cells_of = |i: usize| {
             let (x, y) = (i % blocks[0], i / blocks[0]);
-            let columns = cells(&(x..x + 1), 0);
-            cells(&(y..y + 1), 1).map(|row| f64::from(grid.flux(row, &columns))).sum()
+            [cells(&(x..x + 1), 0), cells(&(y..y + 1), 1)]
         };
-        let flux: Vec<f64> = (0..blocks[0] * blocks[1]).map(flux_of).collect();
+        let flux_of = |i: usize| -> f64 {
+            let [columns, rows] = cells_of(i);
+            rows.map(|row| f64::from(grid.flux(row, &columns))).sum()
+        };
+        let heights: Vec<f32> = (0..=size[1]).map(|row| grid.height(row)).collect();
+        let sums_of = |i: usize| Sums::of(grid, &heights, &cells_of(i));
+        let numbers = (0..blocks[0] * blocks[1]).into_par_iter();
+        let (flux, sums): (Vec<f64>, Vec<Sums>) = numbers.map(|i| (flux_of(i), sums_of(i))).unzip();
         let parts = cut(&flux, blocks);
         let total: f64 = parts.iter().map(|part| part.1).sum();
+        let columns: Vec<DiscreteDistribution> = flux
+            .chunks(blocks[0].max(1))
+            .map(|row| DiscreteDistribution::new(row.iter().map(|flux| *flux as f32)))
+            .collect();
+        let solid_angle = |[columns, rows]: &[Range<usize>; 2]| {
+            (heights[rows.start] - heights[rows.end]) * TAU / size[0] as f32 * columns.len() as f32
+        };
+        let density = |i: usize| match sums[i].is_even() {
+            true => finite((flux[i] / total) as f32 / solid_angle(&cells_of(i))),
+            false => 0.0,
+        };
+        let even = (0..flux.len()).map(density).collect();
         let mut of_block = vec![0; flux.len()];
         for (tile, (rect, _)) in parts.iter().enumerate() {
             for y in rect[1].clone() {
                 of_block[y * blocks[0]..][rect[0].clone()].fill(tile as u16);
             }
         }
-        let tiles = parts.iter().map(|([columns, rows], flux)| {
-            Tile::new(grid, [cells(columns, 0), cells(rows, 1)], (flux / total) as f32)
-        });
-        Tiles { tiles: tiles.collect(), block, blocks: blocks[0], of_block }
+        let tile = |(part, part_flux): &Part| {
+            let lines =
+                || part[1].clone().map(|row| row * blocks[0] + part[0].start..row * blocks[0] + part[0].end);
+            let even = lines().flat_map(|line| &sums[line]).fold(Sums::default(), Sums::and).is_even();
+            let row_flux = |line: Range<usize>| flux[line].iter().sum::<f64>() as f32;
+            let rows = (!even).then(|| DiscreteDistribution::new(lines().map(row_flux)));
+            let cells = [cells(&part[0], 0), cells(&part[1], 1)];
+            let flux = (part_flux / total) as f32;
+            let density = finite(if even { 1.0 / solid_angle(&cells) } else { 1.0 / flux });
+            let heights = [heights[cells[1].start], heights[cells[1].end]];
+            Tile { cells, blocks: part.clone(), rows, heights, flux, density }
+        };
+        let tiles = parts.iter().map(tile).collect();
+        let heights = (0..=blocks[1]).map(|row| heights[(row * block[1]).min(size[1])]).collect();
+        Tiles { tiles, size, block, blocks: blocks[0], of_block, columns, even, heights }
+    }
+
+    /// Draws a block of a tile that is not even, of whose rows `rows` draws one.
+    #[inline]
+    pub fn sample(&self, tile: &Tile, rows: &DiscreteDistribution, u: Vec2) -> Block {
+        let (row, v) = rows.sample(u.y);
+        let row = tile.blocks[1].start + row;
+        let (column, u) = self.columns[row].sample_between(&tile.blocks[0], u.x);
+        Block { column, row, u: Vec2::new(u, v), density: self.even[row * self.blocks + column] }
+    }
+
+    /// Columns and rows of a block's cells.
+    #[inline]
+    pub fn cells(&self, block: &Block) -> [Range<usize>; 2] {
+        let cells = |at: usize, axis: usize| {
+            at * self.block[axis]..((at + 1) * self.block[axis]).min(self.size[axis])
+        };
+        [cells(block.column, 0), cells(block.row, 1)]
+    }
+
+    /// Height, and cells from the first column's left edge, of a place drawn uniformly by solid angle in a block.
+    #[inline]
+    pub fn place(&self, block: &Block) -> (f32, f32) {
+        let [columns, _] = self.cells(block);
+        let (top, bottom) = (self.heights[block.row], self.heights[block.row + 1]);
+        (top + (bottom - top) * block.u.y, columns.start as f32 + block.u.x * columns.len() as f32)
+    }
+
+    /// Density among all cells of directions in an even block around a cell, 0 in other blocks.
+    #[inline]
+    pub fn density(&self, column: usize, row: usize) -> f32 {
+        self.even[self.block_of(column, row)]
+    }
+
+    #[inline]
+    fn block_of(&self, column: usize, row: usize) -> usize {
+        row / self.block[1] * self.blocks + column / self.block[0]
     }
 
     /// Adds tiles that are no part of the grid, which keeps `share` of the flux.
@@ -102,37 +192,58 @@ impl Tiles {
     /// Tile of a cell.
     #[inline]
     pub fn of_cell(&self, column: usize, row: usize) -> usize {
-        self.of_block[row / self.block[1] * self.blocks + column / self.block[0]].into()
+        self.of_block[self.block_of(column, row)].into()
+    }
+}
+
+/// A density, or 0 where there is nothing to draw.
+fn finite(density: f32) -> f32 {
+    if density.is_finite() { density } else { 0.0 }
+}
+
+/// Sums over cells, by solid angle up to a factor: of 1, of luminance and of its square.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums([f64; 3]);
+
+impl Sums {
+    /// Over cells between two heights each.
+    fn of(grid: &impl Grid, heights: &[f32], [columns, rows]: &[Range<usize>; 2]) -> Sums {
+        let mut sums = [0.0; 3];
+        for row in rows.clone() {
+            let weight = f64::from(heights[row] - heights[row + 1]).max(0.0);
+            for luminance in columns.clone().flat_map(|column| grid.luminances(column, row)) {
+                let luminance = f64::from(luminance);
+                sums[0] += weight;
+                sums[1] += weight * luminance;
+                sums[2] += weight * luminance * luminance;
+            }
+        }
+        Sums(sums)
+    }
+
+    fn and(self, other: &Sums) -> Sums {
+        Sums(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+
+    /// True if radiance is about even.
+    fn is_even(&self) -> bool {
+        let [angle, sum, squares] = self.0;
+        squares * angle <= (1.0 + EVEN) * sum * sum
     }
 }
 
 impl Tile {
     /// A tile that is no part of a grid, of even radiance.
     pub fn apart(flux: f32, solid_angle: f32) -> Tile {
-        Tile { cells: [0..0, 0..0], rows: None, heights: [0.0; 2], flux, density: 1.0 / solid_angle }
-    }
-
-    fn new(grid: &impl Grid, cells: [Range<usize>; 2], flux: f32) -> Tile {
-        let [columns, rows] = &cells;
-        let heights = [grid.height(rows.start), grid.height(rows.end)];
-        let (mut angle, mut sum, mut squares) = (0.0f64, 0.0f64, 0.0f64);
-        for row in rows.clone() {
-            let weight = f64::from(grid.height(row) - grid.height(row + 1)).max(0.0);
-            for column in columns.clone() {
-                for luminance in grid.luminances(column, row).map(f64::from) {
-                    angle += weight;
-                    sum += weight * luminance;
-                    squares += weight * luminance * luminance;
-                }
-            }
+        let none = [0..0, 0..0];
+        Tile {
+            blocks: none.clone(),
+            cells: none,
+            rows: None,
+            heights: [0.0; 2],
+            flux,
+            density: 1.0 / solid_angle,
         }
-        let even = squares * angle <= (1.0 + EVEN) * sum * sum;
-        let cell = TAU / grid.size()[0] as f32;
-        let solid_angle = (heights[0] - heights[1]) * cell * columns.len() as f32;
-        let distribution = || DiscreteDistribution::new(rows.clone().map(|row| grid.flux(row, columns)));
-        let density = if even { 1.0 / solid_angle } else { 1.0 / flux };
-        let density = if density.is_finite() { density } else { 0.0 };
-        Tile { rows: (!even).then(distribution), heights, flux, density, cells }
     }
 
     /// Height, and cells from the first column's left edge, of a place drawn uniformly by solid angle.
