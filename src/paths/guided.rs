@@ -5,7 +5,7 @@
 
 use crate::material::{BsdfSamples16, Bsdfs16};
 use crate::math::Frame;
-use crate::world::World;
+use crate::world::{Faces, World};
 use glam::{Vec2, Vec3};
 
 /// Lanes whose directions are drawn so, and the share of those towards mirrors and glass.
@@ -17,7 +17,11 @@ pub(super) struct Guided {
 impl Guided {
     /// Density of a direction at the point `x` of a surface of normal `n`, whose own density of it is `pdf`.
     pub fn density(&self, world: &World, (x, n): (Vec3, Vec3), direction: Vec3, pdf: f32) -> f32 {
-        match world.specular.towards_pdf(x, n, direction) {
+        self.mixed(&world.specular.faces(x, n), direction, pdf)
+    }
+
+    fn mixed(&self, faces: &Faces, direction: Vec3, pdf: f32) -> f32 {
+        match faces.density(direction) {
             Some(towards) => pdf + self.share * (towards - pdf),
             None => pdf,
         }
@@ -33,13 +37,14 @@ impl Guided {
         (u_choice, u): (f32, Vec2),
         samples: &mut BsdfSamples16,
     ) {
+        let faces = world.specular.faces(x, n);
         let towards = match u_choice < self.share {
-            true => world.specular.towards(x, n, u_choice / self.share, u),
+            true => faces.towards(u_choice / self.share, u),
             false => None,
         };
         let wi = towards.map_or(samples.wi.get(lane), |direction| frame.to_local(direction));
         let (value, pdf) = bsdfs.lane(lane).eval_pdf(bsdfs.wo(lane), wi);
-        let pdf = self.density(world, (x, n), frame.to_world(wi), pdf);
+        let pdf = self.mixed(&faces, frame.to_world(wi), pdf);
         samples.wi.set(lane, wi);
         samples.weight.set(lane, value * (wi.z.abs() / pdf));
         samples.pdf[lane] = pdf;

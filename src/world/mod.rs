@@ -19,6 +19,7 @@ pub use crate::embree::{EmbreeError, Ray};
 pub use packet::Surfaces16;
 pub use sheets::beyond;
 use specular::Specular;
+pub use towards::Faces;
 use triangle::Triangles;
 
 /// A scene with all tables that methods need.

@@ -1,13 +1,14 @@
 //! Surfaces with specular lobes: delta lobes, of mirrors and glass, and those too sharp to pass for diffuse. Straight
 //! segments between surfaces and virtual lights do not carry the light that these send on.
 
+use super::towards::Boxes16;
 use crate::material::{Bsdf, Materials};
 use crate::math::{LANES, U32x16, Vec3x16, mask_of};
 use crate::scene::{Mesh, Scene};
 use glam::Vec3;
 
 /// Maximum number of boxes that rays are tested against.
-const MAX_BOXES: usize = 16;
+const MAX_BOXES: usize = LANES;
 
 /// Coordinate of a direction that stands for smaller ones, 0 among them.
 const MIN_DIRECTION: f32 = 1e-20;
@@ -20,7 +21,9 @@ pub struct Specular {
     /// Boxes around meshes that have others, as lowest and highest corners.
     pub(super) boxes: Vec<(Vec3, Vec3)>,
     /// Boxes around those of them that have delta lobes.
-    pub(super) delta_boxes: Vec<(Vec3, Vec3)>,
+    pub(super) delta_boxes: Boxes16,
+    /// True if there are any.
+    pub(super) has_delta_lobes: bool,
 }
 
 impl Specular {
@@ -43,12 +46,14 @@ impl Specular {
             group(such.map(bounds).collect(), MAX_BOXES, &mut boxes);
             boxes
         };
-        Specular { meshes, boxes: boxes(&bends), delta_boxes: boxes(&by_delta) }
+        let delta_boxes = boxes(&by_delta);
+        let has_delta_lobes = !delta_boxes.is_empty();
+        Specular { meshes, boxes: boxes(&bends), has_delta_lobes, delta_boxes: Boxes16::new(&delta_boxes) }
     }
 
     /// True if any bends light by delta lobes.
     pub fn has_delta_lobes(&self) -> bool {
-        !self.delta_boxes.is_empty()
+        self.has_delta_lobes
     }
 
     /// True if any bends light.

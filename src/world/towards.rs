@@ -6,81 +6,119 @@
 //! Units: densities are by solid angle.
 
 use super::specular::Specular;
+use crate::math::{F32x16, LANES, Vec3x16};
 use glam::{Vec2, Vec3};
 
 /// Least cosine that counts for a face: its centre may be below a horizon that the face rises above.
 const MIN_COS: f32 = 0.1;
 
-/// A front face of a box.
-struct Face {
-    axis: usize,
-    /// Coordinate of its plane.
-    at: f32,
-    low: Vec3,
-    high: Vec3,
-    area: f32,
-    /// Solid angle, about, times the cosine at the point.
-    weight: f32,
+/// Up to sixteen boxes; those of no extent count for nothing.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Boxes16 {
+    low: Vec3x16,
+    high: Vec3x16,
+}
+
+/// Front faces of the boxes, seen from a point.
+pub struct Faces<'a> {
+    boxes: &'a Boxes16,
+    x: Vec3,
+    /// By axis: coordinates of the planes of the faces across it.
+    at: [F32x16; 3],
+    /// Solid angles, about, times the cosines at the point; 0 of faces that are not in front.
+    weights: [F32x16; 3],
+    total: f32,
+}
+
+impl Boxes16 {
+    /// Of lowest and highest corners, the first sixteen.
+    pub fn new(corners: &[(Vec3, Vec3)]) -> Boxes16 {
+        let mut boxes = Boxes16::default();
+        for (lane, (low, high)) in corners.iter().take(LANES).enumerate() {
+            boxes.low.set(lane, *low);
+            boxes.high.set(lane, *high);
+        }
+        boxes
+    }
+
+    fn corners(&self, lane: usize) -> (Vec3, Vec3) {
+        (self.low.get(lane), self.high.get(lane))
+    }
 }
 
 impl Specular {
     /// Front faces seen from `x`, where the normal is `n`.
-    fn faces(&self, x: Vec3, n: Vec3) -> impl Iterator<Item = Face> {
-        self.delta_boxes.iter().flat_map(move |&(low, high)| {
-            let (centre, half) = (0.5 * (low + high) - x, 0.5 * (high - low));
-            let rises = n.dot(centre) + n.abs().dot(half) > 0.0;
-            (0..3).filter_map(move |axis| {
-                let distance = (low[axis] - x[axis]).max(x[axis] - high[axis]);
-                if !(rises && distance > 0.0) {
-                    return None;
-                }
-                let at = if x[axis] < low[axis] { low[axis] } else { high[axis] };
-                let mut to_face = centre;
-                to_face[axis] = at - x[axis];
-                let (a, b) = (half[(axis + 1) % 3], half[(axis + 2) % 3]);
-                let area = 4.0 * a * b;
-                let dist_sq = to_face.length_squared() + 0.25 * area;
-                let cos = (n.dot(to_face) / dist_sq.sqrt()).max(MIN_COS);
-                let weight = cos * area * distance / (dist_sq * dist_sq.sqrt());
-                (weight > 0.0).then_some(Face { axis, at, low, high, area, weight })
-            })
-        })
+    pub fn faces(&self, x: Vec3, n: Vec3) -> Faces<'_> {
+        let boxes = &self.delta_boxes;
+        let (low, high) = (boxes.low.rows(), boxes.high.rows());
+        let (mut centre, mut half, mut height) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [0.0; LANES]);
+        for axis in 0..3 {
+            for i in 0..LANES {
+                centre[axis][i] = 0.5 * (low[axis][i] + high[axis][i]) - x[axis];
+                half[axis][i] = 0.5 * (high[axis][i] - low[axis][i]);
+                height[i] += n[axis] * centre[axis][i] + n[axis].abs() * half[axis][i];
+            }
+        }
+        let mut faces = Faces { boxes, x, at: [[0.0; LANES]; 3], weights: [[0.0; LANES]; 3], total: 0.0 };
+        for axis in 0..3 {
+            let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+            for i in 0..LANES {
+                let below = low[axis][i] - x[axis];
+                let distance = below.max(x[axis] - high[axis][i]);
+                let at = if below > 0.0 { low[axis][i] } else { high[axis][i] };
+                let to_face = [at - x[axis], centre[b][i], centre[c][i]];
+                let area = 4.0 * half[b][i] * half[c][i];
+                let dist_sq = to_face.iter().map(|d| d * d).sum::<f32>() + 0.25 * area;
+                let inv_dist = 1.0 / dist_sq.sqrt();
+                let cos = (n[axis] * to_face[0] + n[b] * to_face[1] + n[c] * to_face[2]) * inv_dist;
+                let weight = cos.max(MIN_COS) * area * distance * inv_dist * inv_dist * inv_dist;
+                let is_front = (distance > 0.0) & (height[i] > 0.0) & (weight > 0.0);
+                faces.at[axis][i] = at;
+                faces.weights[axis][i] = if is_front { weight } else { 0.0 };
+            }
+        }
+        faces.total = faces.weights.iter().flatten().sum();
+        faces
     }
+}
 
-    /// Draws a direction from `x`, where the normal is `n`; `None` where no box is in front.
-    pub fn towards(&self, x: Vec3, n: Vec3, u_face: f32, u: Vec2) -> Option<Vec3> {
-        let total: f32 = self.faces(x, n).map(|face| face.weight).sum();
-        let (mut left, mut chosen) = (u_face * total, None);
-        for face in self.faces(x, n) {
-            left -= face.weight;
-            chosen = Some(face);
+impl Faces<'_> {
+    /// Draws a direction; `None` where no box is in front.
+    pub fn towards(&self, u_face: f32, u: Vec2) -> Option<Vec3> {
+        let (mut left, mut chosen) = (u_face * self.total, None);
+        for (i, weight) in self.weights.iter().flatten().enumerate().filter(|(_, weight)| **weight > 0.0) {
+            left -= weight;
+            chosen = Some(i);
             if left < 0.0 {
                 break;
             }
         }
-        let Face { axis, at, low, high, .. } = chosen?;
-        let mut point = low;
-        point[axis] = at;
+        let (axis, lane) = chosen.map(|i| (i / LANES, i % LANES))?;
+        let (mut point, high) = self.boxes.corners(lane);
         for (axis, u) in [((axis + 1) % 3, u.x), ((axis + 2) % 3, u.y)] {
-            point[axis] += u * (high[axis] - low[axis]);
+            point[axis] += u * (high[axis] - point[axis]);
         }
-        (point - x).try_normalize()
+        point[axis] = self.at[axis][lane];
+        (point - self.x).try_normalize()
     }
 
-    /// Density with which [`Specular::towards`] draws the unit vector `direction`; `None` where it draws none.
-    pub fn towards_pdf(&self, x: Vec3, n: Vec3, direction: Vec3) -> Option<f32> {
-        let (mut total, mut density) = (0.0, 0.0);
-        for face in self.faces(x, n) {
-            total += face.weight;
-            let Face { axis, at, low, high, .. } = face;
-            let t = (at - x[axis]) / direction[axis];
-            let point = x + t * direction;
-            let within = |axis: usize| low[axis] <= point[axis] && point[axis] <= high[axis];
-            if t > 0.0 && t < f32::INFINITY && within((axis + 1) % 3) && within((axis + 2) % 3) {
-                density += face.weight * t * t / (face.area * direction[axis].abs());
+    /// Density with which [`Faces::towards`] draws the unit vector `direction`; `None` where it draws none.
+    pub fn density(&self, direction: Vec3) -> Option<f32> {
+        let (low, high) = (self.boxes.low.rows(), self.boxes.high.rows());
+        let mut density = [0.0; LANES];
+        for axis in 0..3 {
+            let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+            let inv_cos = 1.0 / direction[axis];
+            for i in 0..LANES {
+                let t = (self.at[axis][i] - self.x[axis]) * inv_cos;
+                let (y, z) = (self.x[b] + t * direction[b], self.x[c] + t * direction[c]);
+                let within = (low[b][i] <= y) & (y <= high[b][i]) & (low[c][i] <= z) & (z <= high[c][i]);
+                let area = (high[b][i] - low[b][i]) * (high[c][i] - low[c][i]);
+                let met = (t > 0.0) & (t < f32::INFINITY) & within & (self.weights[axis][i] > 0.0);
+                density[i] += if met { self.weights[axis][i] * t * t * inv_cos.abs() / area } else { 0.0 };
             }
         }
-        (total > 0.0).then(|| density / total)
+        (self.total > 0.0).then(|| density.iter().sum::<f32>() / self.total)
     }
 }
 
@@ -97,20 +135,20 @@ mod tests {
             (Vec3::new(-2.0, -0.5, 0.3), Vec3::new(-1.0, 0.8, 0.3)),
             (Vec3::new(-1.0, -9.0, -1.0), Vec3::new(1.0, -8.0, 1.0)),
         ];
-        let specular = Specular { delta_boxes: boxes, ..Default::default() };
-        let (x, n) = (Vec3::ZERO, Vec3::Y);
+        let specular = Specular { delta_boxes: Boxes16::new(&boxes), ..Default::default() };
+        let faces = specular.faces(Vec3::ZERO, Vec3::Y);
         // Means of functions of direction over directions drawn, and over the sphere by their density.
         let functions = [|_: Vec3| 1.0, |d: Vec3| d.x * d.x, |d: Vec3| (d.z + 0.3) * d.y];
         let count = 1 << 16;
         let (mut drawn, mut whole, mut missed) = ([0.0f64; 3], [0.0f64; 3], 0);
         for i in 0..count {
-            let d = specular.towards(x, n, owen_sobol_2d(i, 1).x, owen_sobol_2d(i, 2)).expect("boxes");
-            missed += u32::from(specular.towards_pdf(x, n, d) == Some(0.0));
+            let d = faces.towards(owen_sobol_2d(i, 1).x, owen_sobol_2d(i, 2)).expect("boxes");
+            missed += u32::from(faces.density(d) == Some(0.0));
             let u = owen_sobol_2d(i, 3);
             let (z, phi) = (1.0 - 2.0 * u.x, 2.0 * PI * u.y);
             let sin = (1.0 - z * z).sqrt();
             let even = Vec3::new(sin * phi.cos(), sin * phi.sin(), z);
-            let pdf = specular.towards_pdf(x, n, even).expect("boxes") * 4.0 * PI;
+            let pdf = faces.density(even).expect("boxes") * 4.0 * PI;
             for (k, f) in functions.iter().enumerate() {
                 drawn[k] += f64::from(f(d)) / f64::from(count);
                 whole[k] += f64::from(f(even) * pdf) / f64::from(count);
@@ -121,7 +159,8 @@ mod tests {
             assert!((drawn - whole).abs() < 0.01, "{drawn} {whole}");
         }
         // The third box is below the horizon; all are from inside one of them.
-        assert_eq!(specular.towards_pdf(x, n, -Vec3::Y), Some(0.0));
-        assert!(specular.towards(Vec3::new(0.0, -8.5, 0.0), -Vec3::Y, 0.5, Vec2::splat(0.5)).is_none());
+        assert_eq!(faces.density(-Vec3::Y), Some(0.0));
+        let inside = specular.faces(Vec3::new(0.0, -8.5, 0.0), -Vec3::Y);
+        assert!(inside.towards(0.5, Vec2::splat(0.5)).is_none() && inside.density(Vec3::X).is_none());
     }
 }
