@@ -5,11 +5,15 @@
 
 use crate::embree::Ray;
 use crate::film::{CameraMatrices, Window};
-use crate::scene::{Camera, Cameras};
+use crate::sampling::{Sampler, hash};
+use crate::scene::{Camera, Cameras, Projection};
 use glam::{DVec3, Vec2, Vec3};
 
 /// Maximum number of pixels rendered at once: 16384 by 65536. More would exhaust the memory of most machines.
 const MAX_PIXELS: u64 = 1 << 30;
+
+/// Seed of places on the lens over that of the samples.
+const LENS_SEED: u32 = 0x1e45_0f0c;
 
 /// A camera and the part of its film to render.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,13 +94,34 @@ impl View {
         View { camera, window: Window::whole(resolution) }
     }
 
-    /// The ray through the film's pixel `[x, y]` at `jitter` within it, from the camera's near to its far plane.
+    /// The ray through the film's pixel `[x, y]` at the place around it that its filter gives `jitter`, from the
+    /// camera's near to its far plane, through the middle of a lens.
     #[inline]
-    pub fn primary_ray(&self, [x, y]: [u32; 2], jitter: Vec2) -> Ray {
+    pub fn primary_ray(&self, pixel: [u32; 2], jitter: Vec2) -> Ray {
+        self.ray(pixel, jitter, Vec2::splat(0.5))
+    }
+
+    /// The same for sample `sample` of the pixel's, which a lens, if there is one, sends through a place of its own.
+    #[inline]
+    pub fn sample_ray(&self, pixel: [u32; 2], jitter: Vec2, (seed, sample): (u32, u32)) -> Ray {
+        let lens = match self.camera.projection {
+            Projection::Lens { .. } => {
+                let seed = hash(hash(hash(pixel[0], pixel[1]), seed), LENS_SEED);
+                Sampler::new(seed, sample).next_2d()
+            }
+            Projection::Pinhole | Projection::Parallel => Vec2::splat(0.5),
+        };
+        self.ray(pixel, jitter, lens)
+    }
+
+    #[inline]
+    fn ray(&self, [x, y]: [u32; 2], jitter: Vec2, lens: Vec2) -> Ray {
         let camera = &self.camera;
-        let direction = camera.direction([x as f32 + jitter.x, y as f32 + jitter.y], self.window.film);
+        let place = camera.filter.place(jitter);
+        let (origin, direction) =
+            camera.ray([x as f32 + place.x, y as f32 + place.y], self.window.film, lens);
         let cos = direction.dot(camera.forward);
-        Ray { origin: camera.origin, t_near: camera.near / cos, direction, t_far: camera.far / cos }
+        Ray { origin, t_near: camera.near / cos, direction, t_far: camera.far / cos }
     }
 
     /// Matrices to the camera and the film from the coordinates of the scene's file, which has the scene's `centre`
@@ -112,7 +137,8 @@ impl View {
         let (mut world_to_camera, mut world_to_ndc) = ([0.0; 16], [0.0; 16]);
         for (row, [x, y, z]) in basis.into_iter().enumerate() {
             let w = if row == 3 { 1.0 } else { 0.0 };
-            let ndc = [0.5 * z + scale * x, 0.5 * z - scale * width / height * y, w, z];
+            let [depth, by] = if camera.projection == Projection::Parallel { [z, w] } else { [w, z] };
+            let ndc = [0.5 * by + scale * x, 0.5 * by - scale * width / height * y, depth, by];
             for (column, (to_camera, to_ndc)) in [x, y, z, w].into_iter().zip(ndc).enumerate() {
                 world_to_camera[4 * row + column] = to_camera as f32;
                 world_to_ndc[4 * row + column] = to_ndc as f32;
@@ -121,9 +147,17 @@ impl View {
         CameraMatrices { world_to_camera, world_to_ndc }
     }
 
-    /// Angle between neighbouring pixels at the film's centre, in radians.
+    /// Angle between neighbouring pixels at the film's centre, in radians; in a parallel projection that at the
+    /// distance of the scene's centre, or of the film's half width if that is more.
     pub fn pixel_angle(&self) -> f32 {
-        2.0 * self.camera.tan_half_x / self.window.film[0] as f32
+        let spacing = 2.0 * self.camera.tan_half_x / self.window.film[0] as f32;
+        match self.camera.projection {
+            Projection::Pinhole | Projection::Lens { .. } => spacing,
+            Projection::Parallel => {
+                let to_centre = -self.camera.origin.dot(self.camera.forward);
+                spacing / to_centre.max(self.camera.tan_half_x)
+            }
+        }
     }
 }
 
@@ -183,6 +217,23 @@ mod tests {
             assert!((x / w * 40.0 - f64::from(pixel[0]) - 0.5).abs() < 5e-3, "{x} {w}");
             assert!((y / w * 30.0 - f64::from(pixel[1]) - 0.5).abs() < 5e-3, "{y} {w}");
             assert!((z / w * depth - 1.0).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn parallel_rays_are_projected_to_their_pixel() {
+        let camera = Camera { tan_half_x: 3.0, projection: Projection::Parallel, ..Camera::default() };
+        let view = View::whole(camera, [40, 30]);
+        let matrix = view.matrices(DVec3::ZERO).world_to_ndc;
+        for pixel in [[0, 0], [31, 7], [20, 29]] {
+            let ray = view.primary_ray(pixel, Vec2::splat(0.5));
+            let point = (ray.origin + ray.direction * 2.5).as_dvec3();
+            let p = [point.x, point.y, point.z, 1.0];
+            let image: [f64; 4] = std::array::from_fn(|column| {
+                (0..4).map(|row| p[row] * f64::from(matrix[4 * row + column])).sum()
+            });
+            assert!((image[0] / image[3] * 40.0 - f64::from(pixel[0]) - 0.5).abs() < 1e-4, "{image:?}");
+            assert!((image[1] / image[3] * 30.0 - f64::from(pixel[1]) - 0.5).abs() < 1e-4, "{image:?}");
         }
     }
 

@@ -140,7 +140,8 @@ impl Looking<'_> {
             for (lane, &(pixel, sample)) in packet.iter().enumerate() {
                 let FeatureSettings { look, seed, .. } = *self.settings;
                 let (sampler, jitter) = look.eye_sampler(film_pixels[pixel], seed, sample);
-                rays.set(lane, &self.view.primary_ray(film_pixels[pixel], jitter));
+                let of = look.numbers(seed, sample);
+                rays.set(lane, &self.view.sample_ray(film_pixels[pixel], jitter, of));
                 samplers[lane] = sampler;
             }
             let (valid, mut hits) = (first_lanes(count), Hits16::default());

@@ -18,6 +18,15 @@ pub enum Look {
 }
 
 impl Look {
+    /// Seed and number of the eye sample for which sample `sample` stands.
+    #[inline]
+    pub fn numbers(self, seed: u32, sample: u32) -> (u32, u32) {
+        match self {
+            Look::Pixels => (seed, sample),
+            Look::EyeSamples { spp, seed } => (seed, sample % spp.max(1)),
+        }
+    }
+
     /// The random numbers of sample `sample` in the film's pixel, and its place in the pixel. Eye samples are taken in
     /// turn; elsewhere `seed` chooses.
     #[inline]

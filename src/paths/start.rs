@@ -42,7 +42,8 @@ pub fn start(batch: &mut Batch, mut paths: impl Iterator<Item = Start>, view: &V
                 Look::Pixels => anywhere.get(i),
                 Look::EyeSamples { .. } => look.eye_sampler(path.pixel, path.seed, path.sample).1,
             };
-            rays.set(i, &view.primary_ray(path.pixel, jitter));
+            let of = look.numbers(path.seed, path.sample);
+            rays.set(i, &view.sample_ray(path.pixel, jitter, of));
         }
         batch.push(rays, samplers, count);
     }

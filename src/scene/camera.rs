@@ -1,11 +1,19 @@
-//! Pinhole camera with square pixels.
+//! Cameras with square pixels: pinholes, thin lenses, parallel projection; filters of their film's pixels.
+//!
+//! Filters are sampled, not splatted: a pixel's samples lie around it by the filter's density, and count alike. So the
+//! noise of neighbours is independent, as denoisers expect, and every method filters by the places of its eye rays.
+//!
+//! Paper: M. Ernst, M. Stamminger, G. Greiner, *Filter Importance Sampling*, 2006.
+//!
+//! Deviations: filters with negative lobes are not modelled.
 
-use glam::Vec3;
+use crate::sampling::uniform_disk;
+use glam::{Vec2, Vec3};
 
-/// A perspective pinhole camera. Pixel (0, 0) is the top-left corner of the film.
+/// A camera. Pixel (0, 0) is the top-left corner of the film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Pinhole, relative to the scene's centre.
+    /// Pinhole, middle of the lens, or of the film of a parallel projection, relative to the scene's centre.
     pub origin: Vec3,
     /// Unit vector through the film's centre.
     pub forward: Vec3,
@@ -13,12 +21,83 @@ pub struct Camera {
     pub right: Vec3,
     /// Unit vector towards the film's top edge.
     pub up: Vec3,
-    /// Tangent of half the horizontal field of view, for the scene's own aspect ratio.
+    /// Tangent of half the horizontal field of view, for the scene's own aspect ratio; half the film's width in a
+    /// parallel projection.
     pub tan_half_x: f32,
     /// Near clipping distance along `forward`.
     pub near: f32,
     /// Far clipping distance along `forward`.
     pub far: f32,
+    /// How the film is lit.
+    pub projection: Projection,
+    /// Filter of the film's pixels.
+    pub filter: PixelFilter,
+}
+
+/// Projection of the scene onto the film.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Projection {
+    /// Through a point: all is in focus.
+    #[default]
+    Pinhole,
+    /// Through a thin lens.
+    Lens {
+        /// Radius of the lens.
+        radius: f32,
+        /// Distance along `forward` of the plane in focus.
+        distance: f32,
+    },
+    /// Along `forward`.
+    Parallel,
+}
+
+/// Density of a pixel's samples around its middle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum PixelFilter {
+    /// Even over the pixel itself.
+    #[default]
+    Box,
+    /// Falling linearly along each axis, to 0 at the distance `radius`, in pixels.
+    Tent {
+        /// Half its width.
+        radius: f32,
+    },
+    /// A normal distribution, cut off at four times its deviation, in pixels.
+    Gaussian {
+        /// Standard deviation.
+        deviation: f32,
+    },
+}
+
+impl PixelFilter {
+    /// Tent and Gaussian as wide as Mitsuba's by default.
+    pub const TENT: PixelFilter = PixelFilter::Tent { radius: 1.0 };
+    /// See [`PixelFilter::TENT`].
+    pub const GAUSSIAN: PixelFilter = PixelFilter::Gaussian { deviation: 0.5 };
+
+    /// Maps the unit square to the place of a sample, in pixels from the pixel's top-left corner, and its middle to the
+    /// pixel's.
+    #[inline]
+    pub fn place(&self, u: Vec2) -> Vec2 {
+        match *self {
+            PixelFilter::Box => u,
+            PixelFilter::Tent { radius } => {
+                let tent =
+                    |u: f32| if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
+                Vec2::splat(0.5) + radius * Vec2::new(tent(u.x), tent(u.y))
+            }
+            PixelFilter::Gaussian { deviation } => {
+                let disk = uniform_disk(u);
+                let radius_sq = disk.length_squared();
+                if radius_sq == 0.0 {
+                    return Vec2::splat(0.5);
+                }
+                let cut = 1.0 - (-8.0f32).exp();
+                let distance = deviation * (-2.0 * (1.0 - (cut * radius_sq).min(cut)).ln()).sqrt();
+                Vec2::splat(0.5) + disk * (distance / radius_sq.sqrt())
+            }
+        }
+    }
 }
 
 /// Maximum number of frames in a camera path.
@@ -46,19 +125,95 @@ impl Default for Camera {
             tan_half_x: 1.0,
             near: 0.0,
             far: f32::INFINITY,
+            projection: Projection::Pinhole,
+            filter: PixelFilter::Box,
         }
     }
 }
 
 impl Camera {
-    /// Unit direction through film position `pixel` (in pixels, continuous) of a `resolution` film.
+    /// Unit direction from a pinhole through film position `pixel` (in pixels, continuous) of a `resolution` film.
     ///
     /// The horizontal field of view is kept when the aspect ratio changes.
     #[inline]
     pub fn direction(&self, pixel: [f32; 2], resolution: [u32; 2]) -> Vec3 {
-        let [w, h] = resolution.map(|r| r as f32);
-        let x = (2.0 * pixel[0] / w - 1.0) * self.tan_half_x;
-        let y = (h - 2.0 * pixel[1]) / w * self.tan_half_x;
+        let [x, y] = self.across(pixel, resolution);
         (self.forward + self.right * x + self.up * y).normalize()
+    }
+
+    /// Way to the right and up across the film from its middle to `pixel`, at the distance 1 from a pinhole.
+    #[inline]
+    fn across(&self, pixel: [f32; 2], resolution: [u32; 2]) -> [f32; 2] {
+        let [w, h] = resolution.map(|r| r as f32);
+        [(2.0 * pixel[0] / w - 1.0) * self.tan_half_x, (h - 2.0 * pixel[1]) / w * self.tan_half_x]
+    }
+
+    /// Origin and unit direction of the ray through film position `pixel`, and through the place of a lens to which
+    /// `lens` in the unit square is mapped.
+    #[inline]
+    pub fn ray(&self, pixel: [f32; 2], resolution: [u32; 2], lens: Vec2) -> (Vec3, Vec3) {
+        let across = |[x, y]: [f32; 2]| self.right * x + self.up * y;
+        match self.projection {
+            Projection::Pinhole => (self.origin, self.direction(pixel, resolution)),
+            Projection::Lens { radius, distance } => {
+                let on_lens = across((uniform_disk(lens) * radius).to_array());
+                let in_focus = (self.forward + across(self.across(pixel, resolution))) * distance;
+                (self.origin + on_lens, (in_focus - on_lens).normalize())
+            }
+            Projection::Parallel => (self.origin + across(self.across(pixel, resolution)), self.forward),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::owen_sobol_2d;
+
+    #[test]
+    fn samples_lie_around_the_pixel_by_the_filters_density() {
+        let n = 1 << 14;
+        for (filter, variance, reach) in [
+            (PixelFilter::Box, 1.0 / 12.0, 0.5),
+            (PixelFilter::TENT, 1.0 / 6.0, 1.0),
+            (PixelFilter::Tent { radius: 2.0 }, 4.0 / 6.0, 2.0),
+            (PixelFilter::GAUSSIAN, 0.25, 2.0),
+        ] {
+            let offsets = (0..n).map(|i| filter.place(owen_sobol_2d(i, 5)) - 0.5);
+            let (mut mean, mut squares) = (Vec2::ZERO, Vec2::ZERO);
+            for offset in offsets {
+                assert!(offset.abs().max_element() <= reach + 1e-5, "{filter:?} {offset}");
+                mean += offset / n as f32;
+                squares += offset * offset / n as f32;
+            }
+            assert!(
+                mean.length() < 2e-3 && (squares / variance - 1.0).abs().max_element() < 0.01,
+                "{filter:?} {squares}"
+            );
+            assert_eq!(filter.place(Vec2::splat(0.5)), Vec2::splat(0.5));
+            for corner in [Vec2::ZERO, Vec2::ONE, Vec2::new(0.0, 1.0)] {
+                assert!(filter.place(corner).is_finite());
+            }
+        }
+    }
+
+    #[test]
+    fn rays_through_a_lens_meet_in_the_plane_in_focus_and_parallel_ones_never() {
+        let lens = Projection::Lens { radius: 0.5, distance: 4.0 };
+        let camera = Camera { projection: lens, tan_half_x: 0.7, ..Camera::default() };
+        let (pixel, film) = ([3.0, 5.0], [16, 8]);
+        let pinhole = camera.direction(pixel, film);
+        let meeting = pinhole * (4.0 / pinhole.dot(camera.forward));
+        let mut spread = 0.0f32;
+        for i in 0..64 {
+            let (origin, direction) = camera.ray(pixel, film, owen_sobol_2d(i, 1));
+            spread = spread.max(origin.length());
+            let t = 4.0 / direction.dot(camera.forward);
+            assert!((origin + direction * t - meeting).length() < 1e-5);
+        }
+        assert!(spread > 0.45 && spread <= 0.5, "{spread}");
+        let parallel = Camera { projection: Projection::Parallel, tan_half_x: 3.0, ..Camera::default() };
+        let (origin, direction) = parallel.ray([16.0, 0.0], film, Vec2::ZERO);
+        assert_eq!((origin, direction), (Vec3::new(3.0, 1.5, 0.0), -Vec3::Z));
     }
 }

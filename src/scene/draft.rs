@@ -3,6 +3,7 @@
 //! Every reader ends in a [`Draft`]; [`super::sanitize`] and [`super::recentre`] make the
 //! [`Scene`](super::Scene) of it.
 
+use super::camera::{PixelFilter, Projection};
 use super::formats::Place;
 use super::light::{DeltaLight, DistantDisc, Environment};
 use super::material::{Material, MaterialId};
@@ -24,6 +25,8 @@ pub(crate) struct DraftCamera {
     pub tan_half_x: f64,
     pub near: f64,
     pub far: f64,
+    pub projection: Projection,
+    pub filter: PixelFilter,
 }
 
 /// Cameras, and the size of their film.

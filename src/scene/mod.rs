@@ -19,7 +19,7 @@ mod texture;
 use glam::DVec3;
 use std::path::PathBuf;
 
-pub use camera::{Camera, Cameras, MAX_FRAMES};
+pub use camera::{Camera, Cameras, MAX_FRAMES, PixelFilter, Projection};
 pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap};
 pub use material::{
     Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Parameter, Reflectance, Roughness,
@@ -70,12 +70,23 @@ impl Scene {
     /// True if light from single points or directions may come to surfaces through solid glass, by ways that no
     /// sampling finds.
     pub fn focuses_point_lights(&self) -> bool {
+        !self.lights.is_empty() && self.has_solid_glass()
+    }
+
+    /// True if light of the sun, or another disc as small, may come to surfaces through solid glass, by ways that few
+    /// samples find.
+    pub fn focuses_the_sun(&self) -> bool {
+        const SMALL: f32 = 0.05;
+        self.discs.iter().any(|disc| disc.half_angle < SMALL) && self.has_solid_glass()
+    }
+
+    fn has_solid_glass(&self) -> bool {
         let is_solid = |lobe: &Lobe| match *lobe {
             Lobe::Dielectric { eta, thin, .. } => !thin && eta != 1.0,
             _ => false,
         };
         let material = |mesh: &Mesh| self.materials.get(mesh.material.0 as usize);
         let mut lobes = self.meshes.iter().filter_map(material).flat_map(|material| &material.lobes);
-        !self.lights.is_empty() && lobes.any(is_solid)
+        lobes.any(is_solid)
     }
 }

@@ -35,6 +35,8 @@ pub(crate) fn recentre(draft: Draft, centre: DVec3) -> (Scene, Cameras) {
         tan_half_x: c.tan_half_x as f32,
         near: c.near as f32,
         far: c.far as f32,
+        projection: c.projection,
+        filter: c.filter,
     };
     let mesh = |m: super::draft::DraftMesh| Mesh {
         name: m.name,

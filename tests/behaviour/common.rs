@@ -23,7 +23,7 @@ pub fn camera(origin: Vec3, target: Vec3, tan_half_x: f32) -> Camera {
     let forward = (target - origin).normalize();
     let helper = if forward.y.abs() > 0.9 { Vec3::Z } else { Vec3::Y };
     let right = forward.cross(helper).normalize();
-    Camera { origin, forward, right, up: right.cross(forward), tan_half_x, near: 0.0, far: f32::INFINITY }
+    Camera { origin, forward, right, up: right.cross(forward), tan_half_x, ..Camera::default() }
 }
 
 /// A scene being built, and its view.

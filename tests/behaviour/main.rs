@@ -20,5 +20,6 @@ mod path;
 mod photon_cache;
 mod scene_corpus;
 mod sharp_lobes;
+mod sun;
 mod verify;
 mod walk;

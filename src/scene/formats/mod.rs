@@ -105,5 +105,10 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
             "surfaces behind the glass lack it; thin glass lets it pass, and light of small lamps is found";
         log.warn(&Place::file(path), what, fallback)?;
     }
+    if scene.focuses_the_sun() {
+        let what = "light of the sun that comes through solid glass is found by few paths";
+        let fallback = "surfaces behind the glass are spotted; thin glass lets it pass";
+        log.warn(&Place::file(path), what, fallback)?;
+    }
     Ok(Loaded { scene, cameras, warnings: log.into_warnings(), repairs, hash, generator })
 }

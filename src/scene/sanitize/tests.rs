@@ -25,6 +25,8 @@ fn draft(meshes: Vec<DraftMesh>, materials: Vec<Material>) -> Draft {
         tan_half_x: 1.0,
         near: 0.0,
         far: f64::INFINITY,
+        projection: Default::default(),
+        filter: Default::default(),
     };
     Draft {
         name: "t".into(),

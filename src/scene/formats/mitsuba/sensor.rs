@@ -1,9 +1,10 @@
-//! The perspective sensor and its film.
+//! Sensors and their film.
 
 use super::Converter;
 use super::tree::Object;
 use crate::scene::draft::{DraftCamera, Shot};
 use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::{PixelFilter, Projection};
 use glam::{DMat4, DVec3};
 use std::rc::Rc;
 
@@ -23,20 +24,15 @@ impl Converter<'_> {
             self.log.note(&second.place, what, "the first is used; choose another with --camera");
         }
         match sensor.plugin.as_str() {
-            "perspective" => {}
-            "thinlens" => {
-                sensor.ignore(&["aperture_radius", "focus_distance"]);
-                self.log.warn(&sensor.place, "a thin lens is not modelled", "everything is in focus")?;
-            }
+            "perspective" | "thinlens" | "orthographic" => {}
             other => {
                 let what = format!("the sensor \"{other}\" is not modelled");
                 return Err(sensor.place.wrong(what, "use type=\"perspective\""));
             }
         }
-        let resolution = self.film(sensor)?;
+        let (resolution, filter) = self.film(sensor)?;
         let to_world = sensor.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
         let aspect = f64::from(resolution[0]) / f64::from(resolution[1]);
-        let tan_half_x = (0.5 * horizontal_fov(sensor, aspect)?).tan();
         let near = sensor.positive("near_clip", 1e-2)?;
         let far = sensor.positive("far_clip", 1e4)?;
         if near >= far {
@@ -48,40 +44,57 @@ impl Converter<'_> {
                 self.log.warn(&sensor.place, "a shifted principal point is not modelled", "it is centred")?;
             }
         }
-        sensor.ignore(&["shutter_open", "shutter_close", "focus_distance"]);
+        let focus_distance = sensor.positive("focus_distance", far)?;
+        let (projection, tan_half_x) = match sensor.plugin.as_str() {
+            // The film reaches from -1 to 1, which to_world scales.
+            "orthographic" => (Projection::Parallel, to_world.transform_vector3(DVec3::X).length()),
+            "thinlens" => {
+                let radius = sensor.positive("aperture_radius", 0.0)?;
+                let lens = Projection::Lens { radius: radius as f32, distance: focus_distance as f32 };
+                (lens, (0.5 * horizontal_fov(sensor, aspect)?).tan())
+            }
+            _ => (Projection::Pinhole, (0.5 * horizontal_fov(sensor, aspect)?).tan()),
+        };
+        sensor.ignore(&["shutter_open", "shutter_close"]);
         self.tagged(sensor, "sampler")?;
-        let camera = self.camera(&sensor.place, &to_world, tan_half_x, near, far)?;
+        let camera = self.camera(&sensor.place, &to_world, projection)?;
+        let camera = DraftCamera { tan_half_x, near, far, filter, ..camera };
         sensor.report_unused(self.log)?;
         Ok((Shot { camera, fits: false, path: Vec::new(), resolution }, max_depth))
     }
 
-    /// Mitsuba's camera looks along +z with +x to the left.
+    /// Place of a camera; Mitsuba's looks along +z with +x to the left.
     fn camera(
         &mut self,
         place: &Place,
         to_world: &DMat4,
-        tan_half_x: f64,
-        near: f64,
-        far: f64,
+        projection: Projection,
     ) -> Result<DraftCamera, SceneError> {
         let axes = [DVec3::NEG_X, DVec3::Y, DVec3::Z].map(|a| to_world.transform_vector3(a));
         let singular = || place.wrong("the sensor's to_world is singular", "use a rotation");
         let [right, up, forward] = axes.map(|a| a.try_normalize());
         let (right, up, forward) =
             (right.ok_or_else(singular)?, up.ok_or_else(singular)?, forward.ok_or_else(singular)?);
-        if axes.iter().any(|a| (a.length_squared() - 1.0).abs() > 1e-3) {
-            self.log.warn(place, "the sensor's to_world scales", "the scale is left out")?;
+        let scales = match projection {
+            Projection::Parallel => (axes[0].length() / axes[1].length() - 1.0).abs() > 1e-3,
+            _ => axes.iter().any(|a| (a.length_squared() - 1.0).abs() > 1e-3),
+        };
+        if scales {
+            let fallback = "only that of a parallel projection's width is taken";
+            self.log.warn(place, "the sensor's to_world scales", fallback)?;
         }
         if right.dot(up).abs().max(up.dot(forward).abs()).max(forward.dot(right).abs()) > 1e-3 {
             return Err(place.wrong("the sensor's to_world shears", "use a rotation"));
         }
         let origin = to_world.transform_point3(DVec3::ZERO);
-        Ok(DraftCamera { origin, forward, right, up, tan_half_x, near, far })
+        let (tan_half_x, near, far, filter) = (1.0, 0.0, f64::INFINITY, PixelFilter::Box);
+        Ok(DraftCamera { origin, forward, right, up, tan_half_x, near, far, projection, filter })
     }
 
-    fn film(&mut self, sensor: &Object) -> Result<[u32; 2], SceneError> {
+    /// Size of the film, and its filter.
+    fn film(&mut self, sensor: &Object) -> Result<([u32; 2], PixelFilter), SceneError> {
         let films = self.tagged(sensor, "film")?;
-        let Some(film) = films.first() else { return Ok([768, 576]) };
+        let Some(film) = films.first() else { return Ok(([768, 576], PixelFilter::GAUSSIAN)) };
         let size = |name: &str, default: i64| {
             let value = film.integer(name)?.unwrap_or(default);
             let fits = u32::try_from(value).ok().filter(|v| (1..=65536).contains(v));
@@ -98,14 +111,32 @@ impl Converter<'_> {
                 )?;
             }
         }
-        // A pixel is the mean over its square here, whatever the filter.
         let filters = self.tagged(film, "rfilter")?;
-        let filter = filters.first().map_or("gaussian", |f| f.plugin.as_str());
-        if filter != "box" {
-            let what = format!("the film's reconstruction filter is \"{filter}\"");
-            self.log.note(&film.place, what, "pixels are box-filtered");
-        }
-        Ok(resolution)
+        let filter = filters.first().map_or(Ok(PixelFilter::GAUSSIAN), |filter| self.filter(filter))?;
+        Ok((resolution, filter))
+    }
+
+    fn filter(&mut self, object: &Object) -> Result<PixelFilter, SceneError> {
+        let filter = match object.plugin.as_str() {
+            "box" => match object.positive("radius", 0.5)? {
+                0.5 => PixelFilter::Box,
+                radius => {
+                    let what = format!("a box filter of radius {radius} is not modelled");
+                    self.log.note(&object.place, what, "it is .5");
+                    PixelFilter::Box
+                }
+            },
+            "tent" => PixelFilter::Tent { radius: object.positive("radius", 1.0)? as f32 },
+            "gaussian" => PixelFilter::Gaussian { deviation: object.positive("stddev", 0.5)? as f32 },
+            other => {
+                let what = format!("the film's reconstruction filter \"{other}\" is not modelled");
+                self.log.note(&object.place, what, "a Gaussian of deviation .5 stands in");
+                object.properties.iter().for_each(|property| property.used.set(true));
+                PixelFilter::GAUSSIAN
+            }
+        };
+        object.report_unused(self.log)?;
+        Ok(filter)
     }
 }
 

@@ -1,6 +1,7 @@
 use crate::math::Rgb;
 use crate::scene::formats::{Level, LoadOptions, Loaded, load};
 use crate::scene::{DeltaLight, Distribution, Environment, Fresnel, Lobe, Material, Reflectance, Roughness};
+use crate::scene::{PixelFilter, Projection};
 use glam::{DVec3, Vec3};
 use std::fs;
 
@@ -369,4 +370,33 @@ fn instances_are_placed_copies_of_their_group() {
     let message = load_body(nested).unwrap_err();
     assert!(message.contains("a group in a group"), "{message}");
     assert!(load_body("<shape type=\"instance\"/>").unwrap_err().contains("refer to one shapegroup"));
+}
+
+#[test]
+fn lenses_parallel_projections_and_filters_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.xml");
+    let camera = |plugin: &str, inside: &str, film: &str| {
+        let text = format!(
+            "<scene version=\"3.0.0\">{SKY}<sensor type=\"{plugin}\">{inside}<film type=\"hdrfilm\">{film}</film></sensor></scene>"
+        );
+        fs::write(&path, text).unwrap();
+        let loaded = load(&path, &LoadOptions::default()).unwrap();
+        (loaded.cameras.still, loaded.warnings)
+    };
+    let lens = "<float name=\"aperture_radius\" value=\"0.1\"/><float name=\"focus_distance\" value=\"3\"/>";
+    let (still, warnings) = camera("thinlens", lens, "<rfilter type=\"box\"/>");
+    assert_eq!(still.projection, Projection::Lens { radius: 0.1, distance: 3.0 });
+    assert!(still.filter == PixelFilter::Box && warnings.is_empty(), "{warnings:?}");
+    let scaled = "<transform name=\"to_world\"><scale x=\"5\" y=\"5\"/></transform>";
+    let (still, warnings) = camera("orthographic", scaled, "");
+    assert_eq!((still.projection, still.tan_half_x), (Projection::Parallel, 5.0));
+    assert!(still.filter == PixelFilter::GAUSSIAN && warnings.is_empty(), "{warnings:?}");
+    let tent = "<rfilter type=\"tent\"><float name=\"radius\" value=\"1.5\"/></rfilter>";
+    let (still, _) = camera("perspective", "", tent);
+    assert_eq!((still.projection, still.filter), (Projection::Pinhole, PixelFilter::Tent { radius: 1.5 }));
+    let (still, warnings) = camera("perspective", scaled, "<rfilter type=\"lanczos\"/>");
+    assert_eq!(still.filter, PixelFilter::GAUSSIAN);
+    let what: Vec<&str> = warnings.iter().map(|w| w.what.as_str()).collect();
+    assert!(matches!(what[..], [a, b] if a.contains("lanczos") && b.contains("scales")), "{what:?}");
 }

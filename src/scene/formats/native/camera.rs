@@ -3,10 +3,10 @@
 use super::path::{Key, KeyedPath};
 use super::text::{CameraText, KeyText, PathText, SceneText};
 use super::{Builder, finite};
-use crate::scene::MAX_FRAMES;
 use crate::scene::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::framing;
+use crate::scene::{MAX_FRAMES, PixelFilter, Projection};
 use glam::DVec3;
 use toml::Spanned;
 
@@ -23,6 +23,7 @@ impl Builder<'_> {
             None => (Place::file(self.file.path), &unspecified),
         };
         self.check_fov_axis(text)?;
+        self.check_filter(text)?;
         let path = text.path.as_ref().map(|walk| self.path(text, walk, resolution)).transpose()?;
         let path = path.unwrap_or_default();
         let shot = |camera, fits, path| Ok(Shot { camera, fits, path, resolution });
@@ -33,6 +34,10 @@ impl Builder<'_> {
             }
             (None, None, Some(first)) => shot(*first, false, path),
             (None, None, None) => {
+                if text.film_width.is_some() || text.aperture_radius.is_some() {
+                    let what = "a camera with a film_width or an aperture_radius stands nowhere";
+                    return Err(place.wrong(what, "give its origin and target"));
+                }
                 let up = text.up.unwrap_or(DEFAULT_UP);
                 let origin = framing::outlook(finite(up, "the camera's up", &place)?).to_array();
                 let still = KeyText { frame: None, origin, target: [0.0; 3], up: None, fov: None };
@@ -116,6 +121,16 @@ impl Builder<'_> {
         Ok(frames)
     }
 
+    fn check_filter(&self, text: &CameraText) -> Result<(), SceneError> {
+        match text.filter.as_ref().map(|f| (filter(f.get_ref()), f.span())) {
+            Some((None, span)) => {
+                let remedy = "use box, tent or gaussian";
+                Err(self.file.place(span).wrong("the film's filter is not known", remedy))
+            }
+            _ => Ok(()),
+        }
+    }
+
     fn check_fov_axis(&self, text: &CameraText) -> Result<(), SceneError> {
         match text.fov_axis.as_ref().map(|a| (a.get_ref().as_str(), a.span())) {
             None | Some(("x" | "y", _)) => Ok(()),
@@ -124,6 +139,15 @@ impl Builder<'_> {
                 Err(self.file.place(span).wrong(what, "use x or y"))
             }
         }
+    }
+}
+
+fn filter(name: &str) -> Option<PixelFilter> {
+    match name {
+        "box" => Some(PixelFilter::Box),
+        "tent" => Some(PixelFilter::TENT),
+        "gaussian" => Some(PixelFilter::GAUSSIAN),
+        _ => None,
     }
 }
 
@@ -164,5 +188,29 @@ fn camera(
     if !(near >= 0.0 && near < far) {
         return Err(place.wrong(format!("near is {near}, far {far}"), "keep 0 <= near < far"));
     }
-    Ok(DraftCamera { origin, forward, right, up: right.cross(forward), tan_half_x, near, far })
+    let positive = |value: f64, name: &str| match value > 0.0 && value.is_finite() {
+        true => Ok(value),
+        false => Err(place.wrong(format!("{name} is {value}"), "give a number above 0")),
+    };
+    let mut half_width = tan_half_x;
+    let projection = match (text.film_width, text.aperture_radius) {
+        (Some(_), Some(_)) => {
+            return Err(
+                place.wrong("a parallel projection has no lens", "leave out aperture_radius or film_width")
+            );
+        }
+        (Some(width), None) => {
+            half_width = 0.5 * positive(width, "film_width")?;
+            Projection::Parallel
+        }
+        (None, Some(radius)) => {
+            let distance = text.focus_distance.unwrap_or_else(|| origin.distance(target));
+            let distance = positive(distance, "focus_distance")? as f32;
+            Projection::Lens { radius: positive(radius, "aperture_radius")? as f32, distance }
+        }
+        (None, None) => Projection::Pinhole,
+    };
+    let filter = text.filter.as_ref().and_then(|name| filter(name.get_ref())).unwrap_or_default();
+    let up = right.cross(forward);
+    Ok(DraftCamera { origin, forward, right, up, tan_half_x: half_width, near, far, projection, filter })
 }

@@ -32,6 +32,10 @@ pub(super) struct CameraText {
     pub fov_axis: Option<Spanned<String>>,
     pub near: Option<f64>,
     pub far: Option<f64>,
+    pub aperture_radius: Option<f64>,
+    pub focus_distance: Option<f64>,
+    pub film_width: Option<f64>,
+    pub filter: Option<Spanned<String>>,
     pub path: Option<Spanned<PathText>>,
 }
 

@@ -1,0 +1,204 @@
+//! The sun, a distant disc: light through a window by all methods, soft shadows, and a lit room against Mitsuba.
+
+use crate::common::*;
+use glam::{DVec3, Vec3};
+use lightsplat::film::metrics::{Variances, compare};
+use lightsplat::film::{Image, Window};
+use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::{Renderer, cache, lightcuts, path, photon_cache, reconstruction};
+use lightsplat::scene::{DistantDisc, Environment};
+use lightsplat::view::View;
+use std::process::Command;
+
+/// A sun over +x, of the true one's size, and its direction.
+fn sun(scene: &mut SceneAndView, half_angle: f32) -> Vec3 {
+    let direction = Vec3::new(0.8, 0.55, 0.2).normalize();
+    let solid_angle = std::f32::consts::PI * half_angle * half_angle;
+    let radiance = Rgb::new(1.5, 1.3, 1.0) / solid_angle;
+    scene.discs.push(DistantDisc { direction, half_angle, radiance });
+    direction
+}
+
+/// A room that is open towards +x, under a sun and a faint sky, with a thin sheet of glass before the opening.
+fn sunny_room() -> WorldAndView {
+    let mut scene = scene(camera(Vec3::new(0.9, 0.1, 0.9), Vec3::new(-0.4, -0.3, -0.6), 0.9), [16, 16]);
+    let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));
+    let walls = room(Vec3::splat(-1.0), Vec3::ONE, wall);
+    scene.meshes.extend(walls.into_iter().filter(|mesh| mesh.positions.iter().any(|p| p.x != 1.0)));
+    let glass = add_material(&mut scene, pane(1.5, Rgb::new(0.9, 0.8, 0.7)));
+    scene.meshes.push(quad(Vec3::new(1.05, -1.1, -1.1), Vec3::Y * 2.2, Vec3::Z * 2.2, glass));
+    scene.environment = Some(Environment::Constant(Rgb::new(0.05, 0.08, 0.12)));
+    sun(&mut scene, 0.2679f32.to_radians());
+    world(scene)
+}
+
+fn mean(world: &WorldAndView, settings: &impl Renderer) -> DVec3 {
+    let pixels = rendered(world, settings).color.pixels;
+    pixels.iter().map(|pixel| pixel.as_dvec3()).sum::<DVec3>() / pixels.len() as f64
+}
+
+#[test]
+fn all_methods_find_the_sun_through_a_pane() {
+    let world = sunny_room();
+    let exact = mean(&world, &path::Settings { spp: 2048, ..Default::default() });
+    let found = [
+        ("cache", mean(&world, &cache::Settings { spp: 256, ..Default::default() })),
+        ("lightcuts", mean(&world, &lightcuts::Settings { spp: 64, ..Default::default() })),
+        ("reconstruction", mean(&world, &reconstruction::Settings { spp: 64, ..Default::default() })),
+        ("photon-cache", mean(&world, &photon_cache::Settings { spp: 64, ..Default::default() })),
+    ];
+    for (name, found) in found {
+        let ratio = found / exact;
+        eprintln!("{name}: {ratio:.4}");
+        assert!((ratio - 1.0).abs().max_element() < 0.02, "{name}: {ratio}");
+    }
+}
+
+/// A wide sun's shadow of an edge on a floor falls off over the width that its angle gives.
+#[test]
+fn shadows_of_a_wide_sun_are_soft() {
+    let half_angle = 4f32.to_radians();
+    let mut scene = scene(camera(Vec3::new(0.0, 6.0, 0.0), Vec3::ZERO, 0.25), [64, 1]);
+    let white = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+    scene.meshes.push(quad(Vec3::new(-9.0, 0.0, 9.0), Vec3::X * 18.0, Vec3::NEG_Z * 18.0, white));
+    let direction = sun(&mut scene, half_angle);
+    // Its edge lies at height 4, in the plane through the origin that holds the sun's centre and the z axis.
+    let edge = direction * (4.0 / direction.y);
+    scene.meshes.push(quad(Vec3::new(edge.x, 4.0, -30.0), Vec3::Z * 60.0, Vec3::X * 40.0, white));
+    let scene = world(scene);
+    let lit = |settings: &dyn Fn() -> Image| {
+        settings().pixels.iter().map(|pixel| luminance(*pixel)).collect::<Vec<f32>>()
+    };
+    let by_paths = lit(&|| {
+        rendered(&scene, &path::Settings { spp: 4096, max_depth: Some(2), ..Default::default() }).color
+    });
+    let by_cuts = lit(&|| {
+        let mut settings = lightcuts::Settings { spp: 64, ..Default::default() };
+        settings.light.indirect = 0;
+        rendered(&scene, &settings).color
+    });
+    let (bright, dark) = (by_paths[0].max(by_paths[63]), by_paths[0].min(by_paths[63]));
+    assert!(dark < 1e-3 * bright && bright > 0.1, "{bright} {dark}");
+    // Chord of the disc that the edge leaves free, by distance from the middle of the penumbra.
+    let penumbra = by_paths.iter().filter(|l| **l > 0.02 * bright && **l < 0.98 * bright).count();
+    // Along x, at the slant of the light: distance times angle, over the cosine twice.
+    let (distance, sin) = (4.0 / direction.y, direction.y / direction.truncate().length());
+    let width = 2.0 * half_angle * distance * direction.truncate().length() / sin;
+    let pixels = width / (2.0 * 0.25 * 6.0 / 64.0);
+    eprintln!("penumbra of {penumbra} pixels, by its angle {pixels}");
+    assert!((penumbra as f32 / pixels - 1.0).abs() < 0.25, "{penumbra} {pixels}");
+    for (a, b) in by_paths.iter().zip(&by_cuts) {
+        assert!((a - b).abs() < 0.03 * bright, "{a} {b}");
+    }
+}
+
+/// Edge of the pictures in pixels, and samples a pixel of either renderer.
+const SIZE: u32 = 24;
+const SPP: u32 = 1024;
+
+/// A room with an open side under sun and sky, seen by a lens and through a wide filter.
+const ROOM: &str = r#"<scene version="3.0.0">
+    <integrator type="path"><integer name="max_depth" value="8"/></integrator>
+    <sensor type="thinlens">
+        <float name="fov" value="60"/>
+        <float name="aperture_radius" value="0.1"/><float name="focus_distance" value="4"/>
+        <transform name="to_world"><lookat origin="1.8, 1.8, -3.5" target="-0.6, 1, 1" up="0, 1, 0"/></transform>
+        <sampler type="independent"/>
+        <film type="hdrfilm">
+            <integer name="width" value="24"/><integer name="height" value="24"/>
+            <rfilter type="box"/>
+        </film>
+    </sensor>
+    <emitter type="sunsky">
+        <vector name="sun_direction" x="0.75" y="0.55" z="-0.1"/>
+        <float name="turbidity" value="4"/>
+        <transform name="to_world"><rotate x="1" angle="-90"/></transform>
+    </emitter>
+    <bsdf type="twosided" id="white"><bsdf type="diffuse"><rgb name="reflectance" value=".7 .68 .65"/></bsdf></bsdf>
+    <bsdf type="twosided" id="red"><bsdf type="diffuse"><rgb name="reflectance" value=".6 .2 .15"/></bsdf></bsdf>
+    <shape type="rectangle">
+        <transform name="to_world"><scale x="2" y="2.5"/><rotate x="1" angle="-90"/></transform><ref id="white"/>
+    </shape>
+    <shape type="rectangle">
+        <transform name="to_world"><scale x="2" y="2.5"/><rotate x="1" angle="90"/><translate y="3"/></transform>
+        <ref id="white"/>
+    </shape>
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale x="2" y="1.5"/><rotate y="1" angle="180"/><translate y="1.5" z="2.5"/>
+        </transform>
+        <ref id="white"/>
+    </shape>
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale x="2.5" y="1.5"/><rotate y="1" angle="90"/><translate x="-2" y="1.5"/>
+        </transform>
+        <ref id="red"/>
+    </shape>
+    <shape type="cube">
+        <transform name="to_world">
+            <scale value=".4"/><rotate y="1" angle="30"/><translate x="-.6" y=".4" z=".8"/>
+        </transform>
+        <ref id="white"/>
+    </shape>
+</scene>"#;
+
+/// Renders with other seeds over and over: means and their variances.
+const SCRIPT: &str = r"
+import sys
+import numpy as np
+import mitsuba as mi
+mi.set_variant('scalar_rgb')
+scene, runs = mi.load_file(sys.argv[1]), 16
+pictures = [np.array(mi.render(scene, spp=int(sys.argv[3]) // runs, seed=seed)) for seed in range(runs)]
+mean, variance = np.mean(pictures, 0), np.var(pictures, 0, ddof=1) / runs
+np.concatenate([mean.ravel(), variance.ravel()]).astype('<f4').tofile(sys.argv[2])
+";
+
+mod slow_mitsuba {
+    use super::*;
+
+    #[test]
+    fn a_room_under_sun_and_sky_is_as_by_the_package_mitsuba() {
+        if !Command::new("python3").args(["-c", "import mitsuba"]).output().is_ok_and(|o| o.status.success())
+        {
+            eprintln!("skipped: there is no Python package mitsuba");
+            return;
+        }
+        let folder = tempfile::tempdir().expect("a folder");
+        let (file, values) = (folder.path().join("scene.xml"), folder.path().join("values"));
+        std::fs::write(&file, ROOM).expect("a file");
+        let output = Command::new("python3")
+            .args(["-c", SCRIPT])
+            .arg(&file)
+            .arg(&values)
+            .arg(SPP.to_string())
+            .output();
+        let output = output.expect("a process");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let bytes = std::fs::read(values).expect("values");
+        let numbers: Vec<f32> =
+            bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().expect("four bytes"))).collect();
+        let image = |numbers: &[f32]| {
+            let mut image = Image::new(SIZE, SIZE);
+            let colours = numbers.chunks_exact(3).map(|c| Rgb::new(c[0], c[1], c[2]));
+            image.pixels.iter_mut().zip(colours).for_each(|(pixel, colour)| *pixel = colour);
+            image
+        };
+        let (mean, variance) = numbers.split_at(numbers.len() / 2);
+        let (reference, variance) = (image(mean), image(variance));
+        let SceneAndView { scene, view } = load_scene(&file, None);
+        let view = View { window: Window::whole([SIZE, SIZE]), ..view };
+        let world = world(SceneAndView { scene, view });
+        let output = rendered(&world, &path::Settings { spp: SPP, ..Default::default() });
+        let variances = Variances { test: output.variance.as_ref(), reference: Some(&variance) };
+        let result = compare(&output.color, &reference, variances).expect("the pictures compare");
+        let z = result.z_test.expect("both variances are known");
+        let ratios = (result.mean_ratio, result.mean_ratio_std_error);
+        eprintln!("passed {:.5}, z² {:.2}, ratio {ratios:?}", z.share_passed, z.mean_z_squared);
+        assert!(z.passed, "only {:.4} of the pixels agree", z.share_passed);
+        for ratio in ratios.0.into_iter().flatten() {
+            assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+        }
+    }
+}
