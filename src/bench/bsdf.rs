@@ -95,6 +95,7 @@ fn kinds() -> Vec<Material> {
         diffuse: constant(diffuse),
         coat,
         lobes: Vec::from_iter(lobe),
+        ..Material::default()
     })
     .into()
 }

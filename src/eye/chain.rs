@@ -168,7 +168,7 @@ pub fn trace<'w>(
             // Shadow rays pass sheets too, so an edge that does stays what it is.
             let start = match lobe.straight {
                 true => branch.start,
-                false => (!lobe.delta).then(|| Start::new(&surface, wo, lobe.pdf)),
+                false => sharp.filter(|_| !lobe.delta).map(|by| Start::new(&surface, &by, wo, lobe.pdf)),
             };
             let depth = branch.depth + u32::from(!lobe.straight);
             let next = Branch { ray, throughput, eta_sq, depth, distance, start };

@@ -35,15 +35,19 @@ pub(super) struct Start {
 #[derive(Clone, Copy, Debug)]
 struct Place {
     position: Vec3,
-    /// Of the side that reflects.
+    /// Of the side that reflects; zero where both sides' light counts.
     normal: Vec3,
 }
 
 impl Place {
-    /// On `surface`, seen along `wo` in its shading frame.
-    fn new(surface: &Surface, wo: Vec3) -> Place {
-        let normal = surface.frame.normal;
-        Place { position: surface.position, normal: if wo.z < 0.0 { -normal } else { normal } }
+    /// On `surface`, seen along `wo` in its shading frame, whose lobe it is.
+    fn new(surface: &Surface, lobe: &Bsdf, wo: Vec3) -> Place {
+        let normal = match surface.frame.normal {
+            _ if lobe.scatters_across() => Vec3::ZERO,
+            normal if wo.z < 0.0 => -normal,
+            normal => normal,
+        };
+        Place { position: surface.position, normal }
     }
 
     /// In all lanes.
@@ -53,9 +57,9 @@ impl Place {
 }
 
 impl Start {
-    /// At `surface`, seen along `wo` in its shading frame.
-    pub fn new(surface: &Surface, wo: Vec3, pdf: f32) -> Start {
-        Start { place: Place::new(surface, wo), pdf }
+    /// At `surface`, whose lobe is seen along `wo` in its shading frame.
+    pub fn new(surface: &Surface, lobe: &Bsdf, wo: Vec3, pdf: f32) -> Start {
+        Start { place: Place::new(surface, lobe, wo), pdf }
     }
 
     /// Returns the weight of the emission of the surface hit, which points sampled on emitters find as well.
@@ -120,7 +124,7 @@ impl Sharp<'_> {
             choices[i] = (first + i as f32 / CANDIDATES).fract();
             places.set(i, (place + i as f32 * STEPS).fract());
         }
-        let (x, n) = Place::new(self.surface, self.wo).splat();
+        let (x, n) = Place::new(self.surface, self.lobe, self.wo).splat();
         let at = Receivers16 { position: &x, normal: &n, sky: None };
         let lights = emitters.sample_direct(&self.world.scene, at, &choices, &places, u16::MAX);
         let (mut values, mut sum) = ([Rgb::ZERO; LANES], 0.0);

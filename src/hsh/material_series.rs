@@ -46,7 +46,7 @@ pub enum Caching {
     Irradiance,
     /// A series of so many bands.
     Series(u8),
-    /// Too glossy for records, several rough lobes, or textured roughness: series are made for single lobes.
+    /// Too glossy for records, several broad lobes, or textured roughness: series are made for single lobes.
     PerSample,
 }
 
@@ -101,7 +101,7 @@ impl MaterialSeries {
             .iter()
             .zip(&used)
             .map(|(bsdf, lobes)| match lobes[..] {
-                _ if bsdf.is_of_mean_roughness() => {
+                _ if bsdf.is_of_mean_roughness() || bsdf.has_grazing_lobes() => {
                     MaterialEntry::without_series(bsdf, Caching::PerSample, &quadrature)
                 }
                 [] => MaterialEntry::without_series(bsdf, Caching::Irradiance, &quadrature),

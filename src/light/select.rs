@@ -23,7 +23,7 @@ const CUT: usize = 16;
 pub struct Receivers16<'a> {
     /// Positions.
     pub position: &'a Vec3x16,
-    /// Unit normals of the reflecting sides.
+    /// Unit normals of the reflecting sides; zero where light may come from both.
     pub normal: &'a Vec3x16,
     /// Knowledge of the environment that is used, if any.
     pub sky: Option<&'a LearnedSky>,

@@ -39,7 +39,8 @@ pub fn all_materials() -> Scene {
     let mut materials = Vec::new();
     let mut add = |two_sided, diffuse, coat, lobe: Option<Lobe>| {
         let name = format!("{}", materials.len());
-        materials.push(Material { name, two_sided, diffuse, coat, lobes: Vec::from_iter(lobe) });
+        let lobes = Vec::from_iter(lobe);
+        materials.push(Material { name, two_sided, diffuse, coat, lobes, ..Material::default() });
     };
     let coat = Some(Coat { eta: 1.5, nonlinear: true });
     let (grey, black) = (constant(0.5, 0.4, 0.8), constant(0.0, 0.0, 0.0));

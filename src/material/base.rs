@@ -36,6 +36,8 @@ pub(super) enum CoatInterface {
     None,
     /// Smooth, of this index.
     Smooth(f32),
+    /// That of the principled material's base, which has no index: it takes half of the light at grazing angles.
+    Burley,
     Rough(Arc<RoughCoat>),
 }
 
@@ -43,7 +45,9 @@ impl PartialEq for CoatInterface {
     /// True if the same light reaches the base.
     fn eq(&self, other: &CoatInterface) -> bool {
         match (self, other) {
-            (CoatInterface::None, CoatInterface::None) => true,
+            (CoatInterface::None, CoatInterface::None) | (CoatInterface::Burley, CoatInterface::Burley) => {
+                true
+            }
             (CoatInterface::Smooth(a), CoatInterface::Smooth(b)) => a == b,
             (CoatInterface::Rough(a), CoatInterface::Rough(b)) => Arc::ptr_eq(a, b),
             _ => false,
@@ -58,6 +62,7 @@ impl CoatInterface {
         match self {
             CoatInterface::None => 1.0,
             CoatInterface::Smooth(eta) => 1.0 - fresnel::dielectric(cos, *eta),
+            CoatInterface::Burley => 1.0 - 0.5 * fresnel::schlick_weight(cos),
             CoatInterface::Rough(coat) => coat.transmittance.lookup(cos),
         }
     }
@@ -98,6 +103,7 @@ impl BaseModel {
     pub fn new(coat: Option<Coat>, interface: CoatInterface) -> BaseModel {
         let (mean_transmittance, internal_reflectance) = match &interface {
             CoatInterface::None => (1.0, 0.0),
+            CoatInterface::Burley => (1.0 - 1.0 / 42.0, 0.0),
             // 1 - the mean reflectance outside follows from that inside by reciprocity; the fit inside is
             // the one that sets the base's brightness, so both come from it.
             CoatInterface::Smooth(eta) => {

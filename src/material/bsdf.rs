@@ -19,6 +19,15 @@ pub struct Bsdf<'m> {
     pub(super) scales: [Rgb; MAX_LOBES],
 }
 
+/// Colours of a material.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Colours<T> {
+    /// Albedo or BRDF of the base.
+    pub base: T,
+    /// Factors on the lobes.
+    pub scales: [T; MAX_LOBES],
+}
+
 /// Some of the lobes of a BSDF.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LobeSet(u8);
@@ -107,6 +116,16 @@ impl<'m> Bsdf<'m> {
         glossy.then(|| Bsdf { base: Rgb::ZERO, ..*self }.without(dull))
     }
 
+    /// True if part of the light goes on to the other side in more than isolated directions.
+    pub fn scatters_across(&self) -> bool {
+        self.model.transmits && self.any_lobe(LobeModel::scatters_across)
+    }
+
+    /// True if part of the light is scattered broadly by other lobes than rough reflection.
+    pub fn has_grazing_lobes(&self) -> bool {
+        self.any_lobe(|lobe| matches!(lobe, LobeModel::Grazing(_)))
+    }
+
     /// True if part of the light passes straight through the surface.
     pub fn passes_straight(&self) -> bool {
         self.any_lobe(LobeModel::passes_straight)
@@ -158,7 +177,7 @@ impl<'m> Bsdf<'m> {
     pub fn eval_lobes(&self, lobes: LobeSet, wo: Vec3, wi: Vec3) -> Rgb {
         let side = self.side(wo);
         let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z * side), Vec3::new(wi.x, wi.y, wi.z * side));
-        let Some(directions) = Directions::new(wo, wi) else { return Rgb::ZERO };
+        let Some(directions) = self.directions(wo, wi) else { return Rgb::ZERO };
         let mut value = Rgb::ZERO;
         for (slot, lobe) in self.model.lobes.iter().enumerate() {
             if lobes.has(slot) {
@@ -319,7 +338,8 @@ impl<'m> Bsdf<'m> {
     #[inline(always)]
     pub(super) fn outgoing(&self, wo: Vec3) -> Outgoing {
         let transmittance = self.coat_transmittance(wo.z);
-        let base = mean(self.model.base.albedo(self.base, transmittance));
+        // Light that passes gaps in a surface may come to its back.
+        let base = if wo.z > 0.0 { mean(self.model.base.albedo(self.base, transmittance)) } else { 0.0 };
         // Most materials have one lobe at most.
         let (base_probability, probabilities) = match &self.model.lobes[..] {
             [] => (if base > 0.0 { 1.0 } else { 0.0 }, [0.0; MAX_LOBES]),
@@ -328,7 +348,9 @@ impl<'m> Bsdf<'m> {
                     true => base / (base + lobe.sampling_weight(self.scales[0], wo, transmittance)),
                     false => 0.0,
                 };
-                (probability, [1.0 - probability, 0.0, 0.0])
+                let mut probabilities = [0.0; MAX_LOBES];
+                probabilities[0] = 1.0 - probability;
+                (probability, probabilities)
             }
             _ => self.probabilities(base, wo, transmittance),
         };
@@ -362,10 +384,17 @@ impl<'m> Bsdf<'m> {
         if !self.model.smooth_lobes {
             return self.eval_pdf_base(outgoing, wi);
         }
-        match Directions::new(outgoing.wo, wi) {
+        match self.directions(outgoing.wo, wi) {
             Some(directions) => self.eval_pdf_between(outgoing, &directions),
             None => (Rgb::ZERO, 0.0),
         }
+    }
+
+    #[inline(always)]
+    fn directions(&self, wo: Vec3, wi: Vec3) -> Option<Directions> {
+        // Of opposite directions refraction makes no use of the facet between them.
+        let opposite = || self.model.transmits.then_some(Directions { wo, wi, half: Vec3::Z });
+        Directions::new(wo, wi).or_else(opposite)
     }
 
     /// Returns value and density of the base alone.

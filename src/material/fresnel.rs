@@ -87,6 +87,19 @@ pub(super) fn diffuse_reflectance(eta: f32) -> f32 {
     }
 }
 
+/// Weight of the reflectance at grazing incidence in Schlick's approximation.
+#[inline]
+pub(super) fn schlick_weight(cos: f32) -> f32 {
+    let m = (1.0 - cos).clamp(0.0, 1.0);
+    m * m * (m * m) * m
+}
+
+/// Schlick's approximation between given reflectances at normal and grazing incidence.
+#[inline]
+fn schlick(cos: f32, normal: Rgb, edge: f32) -> Rgb {
+    normal + (Rgb::splat(edge) - normal) * schlick_weight(cos)
+}
+
 impl Fresnel {
     /// Returns the reflectance for light at `cos_i` to the (micro)surface's normal, on its front side.
     #[inline]
@@ -95,6 +108,7 @@ impl Fresnel {
             Fresnel::One => Rgb::ONE,
             Fresnel::Dielectric(eta) => Rgb::splat(dielectric(cos_i.max(0.0), eta)),
             Fresnel::Conductor { eta, k } => conductor(cos_i, eta, k),
+            Fresnel::Schlick { normal, edge } => schlick(cos_i, normal, edge),
         }
     }
 
@@ -109,6 +123,11 @@ impl Fresnel {
                     r[l] = dielectric(if cos_i[l] > 0.0 { cos_i[l] } else { 0.0 }, eta);
                 }
                 Vec3x16 { x: r, y: r, z: r }
+            }
+            Fresnel::Schlick { normal, edge } => {
+                let mut r = Vec3x16::default();
+                (0..LANES).for_each(|l| r.set(l, schlick(cos_i[l], normal, edge)));
+                r
             }
             Fresnel::Conductor { eta, k } => {
                 let channel = |eta: f32, k: f32| {
@@ -126,10 +145,10 @@ impl Fresnel {
     /// Returns the maximum reflectance at any cosine >= `cos_min`, given that at normal incidence.
     ///
     /// A dielectric's grows towards grazing. A conductor's may first fall from its value at normal incidence,
-    /// then rises to 1, so the larger of the ends bounds it.
+    /// then rises to 1, and Schlick's goes from one end to the other, so the larger of the ends bounds them.
     pub(super) fn max_reflectance(&self, cos_min: f32, normal: Rgb) -> Rgb {
         match *self {
-            Fresnel::Conductor { eta, k } => conductor(cos_min, eta, k).max(normal),
+            Fresnel::Conductor { .. } | Fresnel::Schlick { .. } => self.reflectance(cos_min).max(normal),
             _ => self.reflectance(cos_min),
         }
     }

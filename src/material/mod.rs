@@ -2,8 +2,9 @@
 //! one point, to be evaluated, sampled and bounded.
 //!
 //! Every material is a Lambert base, perhaps under a dielectric coat, and up to three lobes (see
-//! [`crate::scene::Material`]); definitions are Mitsuba 3's `diffuse`, `plastic`, `roughplastic`,
-//! `conductor`, `roughconductor`, `dielectric` and `twosided`, so that pictures agree with its references.
+//! [`crate::scene::Material`]), and may have gaps; definitions are Mitsuba 3's `diffuse`, `plastic`, `roughplastic`,
+//! `conductor`, `roughconductor`, `dielectric`, `mask` and `twosided`, so that pictures agree with its references.
+//! Rough glass is `roughdielectric`, principled materials are `principled`.
 //! [`Bsdf`] adds up base and lobes; each lobe by itself is in its file under `lobe`.
 //!
 //! All directions are in the local shading frame (z = shading normal), point away from the surface and have
@@ -18,6 +19,7 @@ mod lobe;
 mod microfacet;
 mod model;
 mod packet;
+mod principled;
 mod roughness;
 mod sample;
 mod table;

@@ -1,16 +1,17 @@
 //! Materials prepared for evaluation: values that do not depend on the point are computed once a scene.
 
 use super::base::{BaseModel, CoatInterface, RoughCoat};
-use super::bsdf::Bsdf;
+use super::bsdf::{Bsdf, Colours};
 use super::lobe::{
-    DIFFUSE_ALPHA, Interface, LobeModel, MAX_LOBES, Mirror, Passage, RoughLobe, albedo_table,
+    DIFFUSE_ALPHA, Interface, LobeModel, MAX_LOBES, Mirror, Passage, RoughInterface, RoughLobe, albedo_table,
     max_reflectance_table,
 };
 use super::microfacet::Microfacets;
+use super::principled::PrincipledModel;
 use super::roughness::{self, Level, Levels};
 use super::table::AngleTable;
 use crate::math::{Rgb, luminance};
-use crate::scene::{Fresnel, Lobe, Material, MaterialId, Reflectance, Scene, Texture, TextureId};
+use crate::scene::{Fresnel, Lobe, Material, MaterialId, Reflectance, Scene, Share, Texture, TextureId};
 use glam::Vec2;
 use std::sync::Arc;
 
@@ -41,24 +42,90 @@ pub(super) struct Model {
     pub smooth_lobes: bool,
     /// True if some lobe scatters into isolated directions.
     pub delta_lobes: bool,
-    /// True if light may go to the other side.
+    /// True if the surface's two sides are the two sides of one interface.
     pub transmits: bool,
+    /// True if light may go to the other side, there or by gaps.
+    pub passes_light: bool,
     /// Material of the scene.
     pub material: MaterialId,
     /// Models to look up instead, if the roughness is textured.
     pub levels: Option<Levels>,
-    source: Colours<Reflectance>,
+    source: Source,
+    /// Share of the surface that is there, and the slot of the rest.
+    opacity: Option<(Share, usize)>,
     /// The colours, if nothing is textured.
     constant: Option<Colours<Rgb>>,
 }
 
-/// Colours of a material.
-#[derive(Clone, Copy, Debug)]
-struct Colours<T> {
-    /// Albedo or BRDF of the base.
-    base: T,
-    /// Factors on the lobes.
-    scales: [T; MAX_LOBES],
+/// Colours of a material before textures are looked up.
+#[derive(Clone, Debug)]
+enum Source {
+    Layers(Colours<Reflectance>),
+    Principled(PrincipledModel),
+    Blend(Box<BlendSource>),
+}
+
+/// Two sources, the lobes of one before those of the other.
+#[derive(Clone, Debug)]
+struct BlendSource {
+    /// Share of the second.
+    weight: Share,
+    sources: [(Source, BaseModel); 2],
+    /// Number of the first one's lobes.
+    first: usize,
+}
+
+impl Source {
+    fn is_textured(&self) -> bool {
+        match self {
+            Source::Layers(colours) => {
+                colours.base.is_textured() || colours.scales.iter().any(Reflectance::is_textured)
+            }
+            Source::Principled(principled) => principled.is_textured(),
+            Source::Blend(blend) => {
+                blend.weight.is_textured() || blend.sources.iter().any(|(source, _)| source.is_textured())
+            }
+        }
+    }
+
+    /// Returns BRDF of the base and factors on the lobes where each texture has the value `texel` of it.
+    fn colours(&self, base: &BaseModel, texel: &dyn Fn(TextureId) -> Rgb) -> Colours<Rgb> {
+        let value = |reflectance: Reflectance| match reflectance {
+            Reflectance::Constant(value) => value,
+            textured => textured.value(texel).max(Rgb::ZERO),
+        };
+        match self {
+            Source::Layers(colours) => {
+                Colours { base: base.brdf(value(colours.base)), scales: colours.scales.map(value) }
+            }
+            Source::Principled(principled) => {
+                let colours = principled.colours(texel);
+                Colours { base: base.brdf(colours.base), ..colours }
+            }
+            Source::Blend(blend) => {
+                let weight = blend.weight.value(|id| luminance(texel(id))).clamp(0.0, 1.0);
+                let [mut mixed, other] =
+                    blend.sources.each_ref().map(|(source, base)| source.colours(base, texel));
+                mixed.base = mixed.base.lerp(other.base, weight);
+                mixed.scales.iter_mut().for_each(|scale| *scale *= 1.0 - weight);
+                for (mixed, other) in mixed.scales[blend.first..].iter_mut().zip(other.scales) {
+                    *mixed = other * weight;
+                }
+                mixed
+            }
+        }
+    }
+}
+
+/// Content of a model.
+struct Layers {
+    source: Source,
+    base: BaseModel,
+    /// True if the base is black.
+    black: bool,
+    /// True if there is a coat on it.
+    coated: bool,
+    lobes: Vec<LobeModel>,
 }
 
 impl Materials {
@@ -174,19 +241,56 @@ impl Tables {
     }
 }
 
-impl Model {
-    /// Prepares a material; if its roughness is textured, for a level of it, or for the texture's mean.
+impl Layers {
+    /// Base and lobes of a material, of which at most `most` are kept, for a level of its roughness if that is
+    /// textured.
     fn new(
         material: &Material,
-        id: MaterialId,
         textures: &[Texture],
         level: Option<(TextureId, Level)>,
+        most: usize,
         tables: &mut Tables,
-    ) -> Model {
+    ) -> Layers {
+        let first = Layers::of_one(material, textures, level, most, tables);
+        let Some(blend) = &material.blend else { return first };
+        let left = most - first.lobes.len();
+        first.blend(blend.weight, Layers::new(&blend.other, textures, level, left, tables))
+    }
+
+    /// The mixture with another, whose share is `weight`.
+    fn blend(self, weight: Share, other: Layers) -> Layers {
+        let base = if self.black { other.base.clone() } else { self.base.clone() };
+        let mut lobes = self.lobes;
+        let first = lobes.len();
+        lobes.extend(other.lobes);
+        let sources = [(self.source, self.base), (other.source, other.base)];
+        Layers {
+            source: Source::Blend(Box::new(BlendSource { weight, sources, first })),
+            base,
+            black: self.black && other.black,
+            coated: self.coated || other.coated,
+            lobes,
+        }
+    }
+
+    /// Base and lobes of a material by itself.
+    fn of_one(
+        material: &Material,
+        textures: &[Texture],
+        level: Option<(TextureId, Level)>,
+        most: usize,
+        tables: &mut Tables,
+    ) -> Layers {
+        if let Some(principled) = &material.principled {
+            let (principled, lobes) = PrincipledModel::new(principled, level, textures, most);
+            let base = BaseModel::new(None, CoatInterface::Burley);
+            let source = Source::Principled(principled);
+            return Layers { source, base, black: false, coated: true, lobes };
+        }
         let mut source = Colours { base: material.diffuse, scales: [Reflectance::BLACK; MAX_LOBES] };
         let mut lobes = Vec::new();
         let mut add = |lobe, scale| {
-            if let Some(slot) = source.scales.get_mut(lobes.len()) {
+            if let Some(slot) = source.scales[..most].get_mut(lobes.len()) {
                 *slot = scale;
                 lobes.push(lobe);
             }
@@ -204,16 +308,28 @@ impl Model {
                     add(LobeModel::Rough(lobe), scale);
                 }
                 Lobe::Mirror { fresnel, scale } => add(LobeModel::Mirror(Mirror { fresnel }), scale),
-                Lobe::Dielectric { eta, thin, reflectance, transmittance } => {
+                Lobe::RoughDielectric { distribution, alpha, eta, reflectance, transmittance }
+                    if eta != 1.0 =>
+                {
+                    let facets = Microfacets::new(distribution, roughness::alpha(&alpha, level, textures));
+                    let way = |passage| {
+                        let inside_only = false;
+                        LobeModel::RoughInterface(RoughInterface { facets, eta, passage, inside_only })
+                    };
+                    add(way(Passage::Reflection), reflectance);
+                    add(way(Passage::Refraction), transmittance);
+                }
+                Lobe::Dielectric { eta, reflectance, transmittance, .. }
+                | Lobe::RoughDielectric { eta, reflectance, transmittance, .. } => {
+                    let thin = matches!(lobe, Lobe::Dielectric { thin: true, .. });
                     let way = |passage| LobeModel::Interface(Interface { eta, thin, passage });
                     add(way(Passage::Reflection), reflectance);
                     add(way(Passage::Refraction), transmittance);
                 }
             }
         }
-        let transmits = lobes.iter().any(LobeModel::transmits);
         // Nothing could lie beneath an interface that light passes.
-        let black = material.diffuse == Reflectance::BLACK || transmits;
+        let black = material.diffuse == Reflectance::BLACK || lobes.iter().any(LobeModel::transmits);
         if black {
             source.base = Reflectance::BLACK;
         }
@@ -223,33 +339,57 @@ impl Model {
             (Some(coat), Some(facets)) => CoatInterface::Rough(tables.coat(facets, coat.eta)),
             (Some(coat), None) => CoatInterface::Smooth(coat.eta),
         };
-        let bare = !black && coat.is_none();
-        let alone = lobes.len() == 1;
+        let base = BaseModel::new(coat, interface);
+        Layers { source: Source::Layers(source), base, black, coated: coat.is_some(), lobes }
+    }
+}
+
+impl Model {
+    /// Prepares a material; if its roughness is textured, for a level of it, or for the texture's mean.
+    fn new(
+        material: &Material,
+        id: MaterialId,
+        textures: &[Texture],
+        level: Option<(TextureId, Level)>,
+        tables: &mut Tables,
+    ) -> Model {
+        let most = MAX_LOBES - usize::from(material.opacity.is_some());
+        let Layers { source, base, black, coated, mut lobes } =
+            Layers::new(material, textures, level, most, tables);
+        let bare = !black && !coated;
+        let needs_albedo = bare || lobes.len() > 1 || material.parts().any(|part| part.principled.is_some());
         for lobe in &mut lobes {
             let LobeModel::Rough(rough) = lobe else { continue };
-            if bare || !alone || rough.facets.alpha >= DIFFUSE_ALPHA {
+            if needs_albedo || rough.facets.alpha >= DIFFUSE_ALPHA {
                 rough.albedo = Some(tables.albedo(rough.facets, rough.fresnel));
             }
-            if let Fresnel::Conductor { .. } = rough.fresnel {
+            if let Fresnel::Conductor { .. } | Fresnel::Schlick { .. } = rough.fresnel {
                 rough.max_reflectance = Some(Arc::new(max_reflectance_table(&rough.fresnel)));
             }
         }
+        let transmits = lobes.iter().any(LobeModel::transmits);
+        let opacity = material.opacity.map(|opacity| (opacity, lobes.len()));
+        lobes.extend(opacity.map(|_| LobeModel::Gap));
+        let is_textured =
+            source.is_textured() || material.opacity.is_some_and(|opacity| opacity.is_textured());
         let mut model = Model {
             two_sided: material.two_sided,
-            base: BaseModel::new(coat, interface),
+            base,
             coat: 0,
             lobe_list: 0,
             lambert: bare && lobes.is_empty(),
             smooth_lobes: lobes.iter().any(|lobe| !lobe.is_delta()),
             delta_lobes: lobes.iter().any(LobeModel::is_delta),
             transmits,
+            passes_light: transmits || opacity.is_some(),
             lobes,
             material: id,
             levels: None,
             source,
+            opacity,
             constant: None,
         };
-        if !source.base.is_textured() && !source.scales.iter().any(Reflectance::is_textured) {
+        if !is_textured {
             model.constant = Some(model.colours(|_| Rgb::ONE));
         }
         model
@@ -257,10 +397,13 @@ impl Model {
 
     /// Returns the colours where each texture has the value `texel` of it.
     fn colours(&self, texel: impl Fn(TextureId) -> Rgb) -> Colours<Rgb> {
-        let value = |reflectance: Reflectance| match reflectance {
-            Reflectance::Constant(value) => value,
-            textured => textured.value(&texel).max(Rgb::ZERO),
-        };
-        Colours { base: self.base.brdf(value(self.source.base)), scales: self.source.scales.map(value) }
+        let mut colours = self.source.colours(&self.base, &texel);
+        if let Some((opacity, gap)) = self.opacity {
+            let share = opacity.value(|id| luminance(texel(id))).clamp(0.0, 1.0);
+            colours.base *= share;
+            colours.scales.iter_mut().for_each(|scale| *scale *= share);
+            colours.scales[gap] = Rgb::splat(1.0 - share);
+        }
+        colours
     }
 }

@@ -52,10 +52,19 @@ pub(super) struct Levels {
 impl Levels {
     /// Returns the levels of the first textured roughness of `material`, if there is any.
     pub fn of(material: &Material, textures: &[Texture], first: usize) -> Option<Levels> {
-        let texture = material.lobes.iter().find_map(|lobe| match lobe {
-            Lobe::Rough { alpha: Roughness::Textured { texture, .. }, .. } => Some(*texture),
-            _ => None,
-        })?;
+        let textured = |roughness: &Roughness| match roughness {
+            Roughness::Textured { texture, .. } => Some(*texture),
+            Roughness::Constant(_) => None,
+        };
+        let of_lobe = |lobe: &Lobe| match lobe {
+            Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => textured(alpha),
+            Lobe::Mirror { .. } | Lobe::Dielectric { .. } => None,
+        };
+        let of_part = |part: &Material| match &part.principled {
+            Some(principled) => textured(&principled.roughness),
+            None => part.lobes.iter().find_map(of_lobe),
+        };
+        let texture = material.parts().find_map(of_part)?;
         let texels = &textures.get(texture.0 as usize)?.texels;
         let levels = || texels.iter().map(|texel| Level::of(luminance(texel)).0);
         Some(Levels { texture, range: levels().min()?..=levels().max()?, first })

@@ -51,7 +51,7 @@ impl Bsdf<'_> {
     pub fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let side = self.side(wo);
         let wo = Vec3::new(wo.x, wo.y, wo.z * side);
-        if !(wo.z > 0.0) && !self.model.transmits {
+        if !(wo.z > 0.0) && !self.model.passes_light {
             return None;
         }
         let mut sample = if self.is_lambert() {
@@ -67,20 +67,21 @@ impl Bsdf<'_> {
 
     fn sample_layered(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let outgoing = self.outgoing(wo);
-        let smooth = |wi: Vec3, (value, pdf): (Rgb, f32)| {
+        let smooth = |wi: Vec3, eta: f32, (value, pdf): (Rgb, f32)| {
             let weight = value * (wi.z.abs() / pdf);
-            let sample = BsdfSample { wi, weight, pdf, delta: false, eta: 1.0, straight: false };
+            let sample = BsdfSample { wi, weight, pdf, delta: false, eta, straight: false };
             (pdf > 0.0).then_some(sample)
         };
         if u_lobe < outgoing.base_probability {
             let wi = cosine_hemisphere(u);
-            return smooth(wi, self.eval_pdf_layered(&outgoing, wi));
+            return smooth(wi, 1.0, self.eval_pdf_layered(&outgoing, wi));
         }
         let slot = self.pick(&outgoing, u_lobe)?;
         let (lobe, pdf) = (&self.model.lobes[slot], outgoing.probabilities[slot]);
         if !lobe.is_delta() {
             let directions = lobe.sample(wo, u)?;
-            return smooth(directions.wi, self.eval_pdf_between(&outgoing, &directions));
+            let eta = lobe.refraction(wo);
+            return smooth(directions.wi, eta, self.eval_pdf_between(&outgoing, &directions));
         }
         let sample = lobe.delta(self.scales[slot], wo)?;
         (pdf > 0.0).then_some(BsdfSample { weight: sample.weight / pdf, pdf, ..sample })

@@ -2,15 +2,18 @@
 
 mod agreement;
 mod alike;
+mod blends;
 mod bounds;
 mod energy;
+mod gaps;
+mod rough_glass;
 mod sampling;
 
 use super::*;
 use crate::math::Rgb;
 use crate::scene::{
-    Coat, Distribution, Filter, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene, Texels,
-    Texture, TextureId, Wrap,
+    Blend, Coat, Distribution, Filter, Fresnel, Lobe, Material, MaterialId, Principled, Reflectance,
+    Roughness, Scene, Texels, Texture, TextureId, Wrap,
 };
 use glam::{Mat3, Vec2, Vec3};
 
@@ -47,7 +50,8 @@ fn constant(value: Rgb) -> Reflectance {
 }
 
 fn material(name: &str, diffuse: Rgb, coat: Option<Coat>, lobe: Lobe) -> Material {
-    Material { name: name.into(), two_sided: false, diffuse: constant(diffuse), coat, lobes: vec![lobe] }
+    let (name, diffuse) = (name.into(), constant(diffuse));
+    Material { name, diffuse, coat, lobes: vec![lobe], ..Material::default() }
 }
 
 fn lambert(albedo: Rgb) -> Material {
@@ -95,6 +99,43 @@ fn glass(eta: f32) -> Material {
     )
 }
 
+fn rough_glass(distribution: Distribution, alpha: f32, eta: f32) -> Material {
+    let (reflectance, transmittance) = (constant(Rgb::ONE), constant(Rgb::ONE));
+    let lobe = Lobe::RoughDielectric { distribution, alpha: alpha.into(), eta, reflectance, transmittance };
+    material(&format!("roughdielectric_{}_{alpha}", label(distribution)), Rgb::ZERO, None, lobe)
+}
+
+fn principled(name: &str, parameters: Principled) -> Material {
+    let parameters = Principled { base_color: constant(PAINT), ..parameters };
+    Material { name: name.into(), principled: Some(Box::new(parameters)), ..Material::default() }
+}
+
+/// Principled materials of every kind that does not transmit light.
+fn principled_materials() -> Vec<Material> {
+    let of = |metallic: f32, roughness: f32| Principled {
+        metallic: metallic.into(),
+        roughness: roughness.into(),
+        ..Principled::default()
+    };
+    let mixed = Principled {
+        spec_tint: 0.4.into(),
+        sheen: 0.8.into(),
+        sheen_tint: 0.5.into(),
+        clearcoat: 0.9.into(),
+        clearcoat_gloss: 0.3,
+        ..of(0.3, 0.6)
+    };
+    vec![
+        principled("principled_plain", of(0.0, 0.5)),
+        principled("principled_metal", of(1.0, 0.4)),
+        principled("principled_mixed", mixed),
+    ]
+}
+
+fn principled_glass() -> Material {
+    principled("principled_glass", Principled { spec_trans: 0.7.into(), eta: 1.4, ..Principled::default() })
+}
+
 fn label(distribution: Distribution) -> &'static str {
     match distribution {
         Distribution::Ggx => "ggx",
@@ -123,8 +164,24 @@ fn smooth_materials() -> Vec<Material> {
     all.push(Material { name: "two-sided".into(), two_sided: true, ..glossy(PAINT * 0.5, 0.4, 0.3) });
     all.push(Material { name: "black glossy".into(), ..glossy(Rgb::ZERO, 0.4, 0.3) });
     all.push(layered());
+    all.extend(principled_materials());
+    let metal = rough_conductor(Distribution::Ggx, 0.3, Rgb::ONE);
+    all.push(blend(0.4, rough_plastic(Distribution::Beckmann, 0.2, true), metal));
+    all.push(Material { name: "gaps".into(), ..masked(0.7, layered()) });
     all.push(Material { name: "layered, black base".into(), diffuse: constant(Rgb::ZERO), ..layered() });
     all
+}
+
+/// The mixture of two, `weight` the share of the second.
+fn blend(weight: f32, first: Material, other: Material) -> Material {
+    let name = format!("{} and {}", first.name, other.name);
+    let (weight, lobes) = (weight.into(), first.lobes.clone());
+    Material { name, lobes, blend: Some(Box::new(Blend { weight, other })), ..first }
+}
+
+/// The material on a share of the surface.
+fn masked(opacity: f32, material: Material) -> Material {
+    Material { opacity: Some(opacity.into()), ..material }
 }
 
 /// Base and three lobes: a sharp one, a wide one, and a mirror.
@@ -141,7 +198,10 @@ fn layered() -> Material {
 
 /// Minimum roughness of the rough lobes; infinite without any.
 fn min_alpha(material: &Material) -> f32 {
-    let alphas = material.lobes.iter().filter_map(|lobe| match lobe {
+    if let Some(principled) = &material.principled {
+        return if principled.clearcoat == 0.0.into() { 0.16 } else { 0.07 };
+    }
+    let alphas = material.parts().flat_map(|part| &part.lobes).filter_map(|lobe| match lobe {
         Lobe::Rough { alpha: Roughness::Constant(alpha), .. } => Some(*alpha),
         _ => None,
     });

@@ -30,7 +30,7 @@ pub(super) struct Packet {
     pub emission_throughput: Vec3x16,
     /// Undoes the scaling of radiance inside dense media, for Russian roulette.
     pub eta_sq: F32x16,
-    /// Shading normals where the edges start, on the sides the paths arrived from.
+    /// Shading normals where the edges start, on the sides the paths arrived from; zero where they scatter to both.
     pub normal: Vec3x16,
     /// Densities of the edges' directions; infinite where light sampling could not have chosen them.
     pub pdf: F32x16,

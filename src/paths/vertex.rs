@@ -23,6 +23,7 @@ use crate::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, mask_of};
 use crate::sampling::{hash, power_heuristic};
 use crate::shadow;
 use crate::world::{Surfaces16, World, beyond};
+use glam::Vec3;
 
 /// From this vertex on, counted from the eye, Russian roulette may end a path.
 const ROULETTE_DEPTH: u32 = 2;
@@ -88,6 +89,11 @@ impl Packet {
             self.normal.set(i, if local.z < 0.0 { -frame.normal } else { frame.normal });
         }
         let mut bsdfs = world.bsdfs(surfaces, wo);
+        if world.specular.scatter_across() {
+            // Light comes to them from both sides.
+            let across = |lane: &usize| bsdfs.lane(*lane).scatters_across();
+            lanes_in(found).filter(across).for_each(|lane| self.normal.set(lane, Vec3::ZERO));
+        }
         let choices = self.samplers.point(pair + 2);
         let mut at_end = if R::ENDS { found & self.at(Stage::Chain) } else { 0 };
         let scattered = if R::ENDS { found & self.at(Stage::Scattered) } else { 0 };

@@ -1,8 +1,8 @@
 //! Indirect light that surfaces reflect along the rays that hit them.
 //!
 //! A surface reflects the irradiance of the map, unless it is nearer than the map resolves (see
-//! [`super::near`]). Sharp lobes are followed to the surfaces visible in them, by mirrors and glass too; light by
-//! mirrors and glass alone is found with the eye samples, and not counted. Nor is emission, which is direct light.
+//! [`super::near`]). Surfaces behind sheets and gaps count as well; light by mirrors, glass and other lobes too sharp
+//! to pass for diffuse is found with the eye samples, and not counted. Nor is emission, which is direct light.
 //!
 //! Units: radiance.
 
@@ -25,7 +25,7 @@ pub struct GatherCounts {
     pub record_rays: u64,
     /// Rays from single samples.
     pub own_rays: u64,
-    /// Rays continued from mirrors, glass and sharp lobes.
+    /// Rays continued behind sheets and gaps.
     pub followed: u64,
     /// Surfaces too near for the map.
     pub near: u64,
@@ -54,7 +54,7 @@ impl IndirectLight<'_> {
         counts: &mut GatherCounts,
     ) -> (Rgb, Rgb) {
         let (mut radiance, mut throughput, mut near) = (Rgb::ZERO, Rgb::ONE, Rgb::ZERO);
-        let (mut surface, mut scattered) = (*first, false);
+        let mut surface = *first;
         for edge in 0..MAX_EDGES {
             let bsdf = self.world.bsdf(&surface);
             let out = surface.frame.to_local(-direction);
@@ -66,17 +66,11 @@ impl IndirectLight<'_> {
                     None => {}
                 }
             }
-            let sharp = bsdf.split_sharp_lobes();
-            if sharp.is_none() && !bsdf.has_delta() {
+            if !bsdf.has_delta() {
                 break;
             }
-            let followed = sharp.map_or(bsdf, |(_, sharp)| sharp);
-            let sample = followed.sample(out, sampler.next_1d(), sampler.next_2d());
-            let Some(s) = sample.filter(|s| s.delta || sharp.is_some()) else { break };
-            scattered |= !s.delta;
-            if !(scattered || s.straight) {
-                break;
-            }
+            let sample = bsdf.sample(out, sampler.next_1d(), sampler.next_2d());
+            let Some(s) = sample.filter(|s| s.straight) else { break };
             throughput *= s.weight;
             direction = surface.frame.to_world(s.wi);
             counts.followed += 1;

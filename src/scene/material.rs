@@ -2,8 +2,11 @@
 //!
 //! Every material of the supported formats is one of these combinations, so a stage that handles base, lobes
 //! and coat handles them all: `plastic` is a base under a coat with a mirror lobe, `roughplastic` the same
-//! with a rough lobe, `conductor` a mirror lobe alone.
+//! with a rough lobe, `conductor` a mirror lobe alone. [`Principled`] is a combination of its own. Any of them may
+//! have gaps ([`Material::opacity`]).
 
+use super::principled::Principled;
+use super::relief::Relief;
 use super::texture::TextureId;
 use crate::math::Rgb;
 use std::ops::Mul;
@@ -32,6 +35,9 @@ pub type Reflectance = Parameter<Rgb>;
 /// Microfacet roughness α.
 pub type Roughness = Parameter<f32>;
 
+/// Number from 0 to 1.
+pub type Share = Parameter<f32>;
+
 impl<T: Copy + Mul<Output = T>> Parameter<T> {
     /// Returns the parameter where each texture has the value `texel` of it.
     #[inline]
@@ -55,6 +61,16 @@ impl<T> From<T> for Parameter<T> {
 }
 
 impl Reflectance {
+    /// Returns the parameter times a factor.
+    pub(super) fn times(self, factor: Rgb) -> Reflectance {
+        match self {
+            Reflectance::Constant(value) => Reflectance::Constant(value * factor),
+            Reflectance::Textured { texture, scale } => {
+                Reflectance::Textured { texture, scale: scale * factor }
+            }
+        }
+    }
+
     /// No reflection anywhere.
     pub const BLACK: Reflectance = Reflectance::Constant(Rgb::ZERO);
 }
@@ -71,24 +87,35 @@ pub struct Material {
     /// Name for reports.
     pub name: String,
     /// True: the side away from the normal behaves as the front does. False: it is black
-    /// (except for [`Lobe::Dielectric`], which always has two sides).
+    /// (except for glass, which always has two sides).
     pub two_sided: bool,
     /// Albedo of the Lambert base, before the coat takes its share; zero where there is none.
     pub diffuse: Reflectance,
     /// Dielectric interface over the base, as rough as the first rough lobe.
     pub coat: Option<Coat>,
-    /// Lobes besides the base: up to three, of which [`Lobe::Dielectric`] counts for two. More are ignored.
+    /// Lobes besides the base: up to five, of which those of glass count for two. More are ignored.
     pub lobes: Vec<Lobe>,
+    /// Base and lobes in terms of other parameters; base, coat and lobes above are left out where it is given.
+    pub principled: Option<Box<Principled>>,
+    /// Another material that is mixed with this one; of its own, base and lobes count.
+    pub blend: Option<Box<Blend>>,
+    /// Share of the surface that is there, of either side; light passes the rest straight. `None`: all of it.
+    pub opacity: Option<Share>,
+    /// Relief, which turns the shading normals.
+    pub relief: Option<Relief>,
 }
 
 impl Material {
     /// Returns every colour.
     pub(super) fn reflectances_mut(&mut self) -> Vec<&mut Reflectance> {
         let mut all = vec![&mut self.diffuse];
+        all.extend(self.principled.as_mut().map(|principled| &mut principled.base_color));
+        all.extend(self.blend.iter_mut().flat_map(|blend| blend.other.reflectances_mut()));
         for lobe in &mut self.lobes {
             match lobe {
                 Lobe::Rough { scale, .. } | Lobe::Mirror { scale, .. } => all.push(scale),
-                Lobe::Dielectric { reflectance, transmittance, .. } => {
+                Lobe::Dielectric { reflectance, transmittance, .. }
+                | Lobe::RoughDielectric { reflectance, transmittance, .. } => {
                     all.extend([reflectance, transmittance])
                 }
             }
@@ -96,17 +123,52 @@ impl Material {
         all
     }
 
+    /// Returns the material's own parts and, in turn, those of the ones mixed with it.
+    pub fn parts(&self) -> impl Iterator<Item = &Material> {
+        std::iter::successors(Some(self), |material| material.blend.as_ref().map(|blend| &blend.other))
+    }
+
+    /// Returns every share.
+    pub(super) fn shares_mut(&mut self) -> Vec<&mut Share> {
+        let mut all = Vec::from_iter(&mut self.opacity);
+        all.extend(self.principled.iter_mut().flat_map(|principled| principled.shares_mut()));
+        if let Some(blend) = &mut self.blend {
+            all.push(&mut blend.weight);
+            all.extend(blend.other.shares_mut());
+        }
+        all
+    }
+
     /// True if any parameter is textured.
     pub fn is_textured(&self) -> bool {
         self.diffuse.is_textured()
+            || self.relief.is_some()
+            || self
+                .blend
+                .as_ref()
+                .is_some_and(|blend| blend.weight.is_textured() || blend.other.is_textured())
+            || self.opacity.is_some_and(|opacity| opacity.is_textured())
+            || self.principled.as_ref().is_some_and(|principled| principled.is_textured())
             || self.lobes.iter().any(|lobe| match lobe {
                 Lobe::Rough { alpha, scale, .. } => alpha.is_textured() || scale.is_textured(),
                 Lobe::Mirror { scale, .. } => scale.is_textured(),
                 Lobe::Dielectric { reflectance, transmittance, .. } => {
                     reflectance.is_textured() || transmittance.is_textured()
                 }
+                Lobe::RoughDielectric { alpha, reflectance, transmittance, .. } => {
+                    alpha.is_textured() || reflectance.is_textured() || transmittance.is_textured()
+                }
             })
     }
+}
+
+/// Mixture with another material. Where the bases of both lie under coats that differ, that of the first covers both.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Blend {
+    /// Share of the other material.
+    pub weight: Share,
+    /// The other material.
+    pub other: Material,
 }
 
 /// Smooth or rough dielectric interface over the Lambert base, as Mitsuba's `plastic` and
@@ -152,6 +214,19 @@ pub enum Lobe {
         /// Factor on refraction (radiance also scales by 1/η² as it enters the denser side).
         transmittance: Reflectance,
     },
+    /// Rough glass: reflects and refracts by microfacets.
+    RoughDielectric {
+        /// Microfacet distribution.
+        distribution: Distribution,
+        /// Roughness.
+        alpha: Roughness,
+        /// Interior over exterior index of refraction; the interior is behind the normal.
+        eta: f32,
+        /// Factor on reflection.
+        reflectance: Reflectance,
+        /// Factor on refraction.
+        transmittance: Reflectance,
+    },
 }
 
 /// Microfacet distributions, both with Smith's separable shadowing as Mitsuba uses it.
@@ -176,5 +251,12 @@ pub enum Fresnel {
         eta: Rgb,
         /// Absorption.
         k: Rgb,
+    },
+    /// Schlick's approximation between two reflectances.
+    Schlick {
+        /// At normal incidence.
+        normal: Rgb,
+        /// At grazing incidence.
+        edge: f32,
     },
 }

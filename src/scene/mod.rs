@@ -10,7 +10,9 @@ mod framing;
 mod light;
 mod material;
 mod mesh;
+mod principled;
 mod recentre;
+mod relief;
 pub mod requirements;
 mod sanitize;
 mod texels;
@@ -22,9 +24,11 @@ use std::path::PathBuf;
 pub use camera::{Camera, Cameras, MAX_FRAMES, PixelFilter, Projection};
 pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap};
 pub use material::{
-    Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Parameter, Reflectance, Roughness,
+    Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Parameter, Reflectance, Roughness, Share,
 };
 pub use mesh::{Emission, Mesh};
+pub use principled::Principled;
+pub use relief::Relief;
 pub use requirements::Requirements;
 pub use texels::Texels;
 pub use texture::{Filter, Texture, TextureId, Wrap};
@@ -86,7 +90,8 @@ impl Scene {
             _ => false,
         };
         let material = |mesh: &Mesh| self.materials.get(mesh.material.0 as usize);
-        let mut lobes = self.meshes.iter().filter_map(material).flat_map(|material| &material.lobes);
+        let mut lobes =
+            self.meshes.iter().filter_map(material).flat_map(Material::parts).flat_map(|part| &part.lobes);
         lobes.any(is_solid)
     }
 }

@@ -26,8 +26,10 @@ pub struct MaterialKinds {
     pub rough_plastic: usize,
     /// Mirrors.
     pub mirror: usize,
-    /// Smooth glass.
+    /// Glass, smooth or rough.
     pub glass: usize,
+    /// Principled materials.
+    pub principled: usize,
 }
 
 /// Light trees that are not empty.
@@ -124,7 +126,9 @@ impl Requirements {
                 *used = true;
             }
             let rough = |lobe: &Lobe| matches!(lobe, Lobe::Rough { .. });
-            glossy_area += if material.lobes.iter().any(rough) { area } else { 0.0 };
+            let is_glossy =
+                material.parts().any(|part| part.principled.is_some() || part.lobes.iter().any(rough));
+            glossy_area += if is_glossy { area } else { 0.0 };
             specular_area += if material.lobes.iter().all(rough) { 0.0 } else { area };
             reflects |= stores_light(material);
         }
@@ -132,7 +136,7 @@ impl Requirements {
             r.count(material, scene);
         }
         r.specular_chains = r.materials.mirror + r.materials.glass + r.materials.plastic > 0;
-        r.glossy = r.materials.glossy + r.materials.rough_plastic > 0;
+        r.glossy = r.materials.glossy + r.materials.rough_plastic + r.materials.principled > 0;
         if r.area > 0.0 {
             r.glossy_area_share = glossy_area / r.area;
             r.specular_area_share = specular_area / r.area;
@@ -163,8 +167,9 @@ impl Requirements {
         self.two_sided |= material.two_sided && !is_glass(material);
         let kinds = &mut self.materials;
         let kind = match (material.lobes.first(), &material.coat) {
+            _ if material.principled.is_some() => &mut kinds.principled,
             _ if is_glass(material) => &mut kinds.glass,
-            (None | Some(Lobe::Dielectric { .. }), _) => &mut kinds.diffuse,
+            (None | Some(Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. }), _) => &mut kinds.diffuse,
             (Some(Lobe::Rough { .. }), Some(_)) => &mut kinds.rough_plastic,
             (Some(Lobe::Rough { .. }), None) => &mut kinds.glossy,
             (Some(Lobe::Mirror { .. }), Some(_)) => &mut kinds.plastic,
@@ -172,7 +177,7 @@ impl Requirements {
         };
         *kind += 1;
         for lobe in &material.lobes {
-            if let Lobe::Rough { alpha, .. } = lobe {
+            if let Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } = lobe {
                 let alpha = alpha.value(|id| {
                     let texture = scene.textures.get(id.0 as usize);
                     texture.and_then(|t| t.texels.iter().map(luminance).reduce(f32::min)).unwrap_or(1.0)
@@ -187,11 +192,14 @@ impl Requirements {
 fn stores_light(material: &Material) -> bool {
     let black = |r: &Reflectance| matches!(r, Reflectance::Constant(c) if c.max_element() <= 0.0);
     let glossy = |lobe: &Lobe| matches!(lobe, Lobe::Rough { scale, .. } if !black(scale));
-    !black(&material.diffuse) || material.lobes.iter().any(glossy)
+    let stores =
+        |part: &Material| part.principled.is_some() || !black(&part.diffuse) || part.lobes.iter().any(glossy);
+    material.parts().any(stores)
 }
 
 fn is_glass(material: &Material) -> bool {
-    material.lobes.iter().any(|lobe| matches!(lobe, Lobe::Dielectric { .. }))
+    let of_glass = |lobe: &Lobe| matches!(lobe, Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. });
+    material.parts().any(|part| part.lobes.iter().any(of_glass))
 }
 
 fn area_and_bounds(mesh: &super::Mesh, low: &mut DVec3, high: &mut DVec3) -> f64 {
@@ -224,6 +232,7 @@ impl fmt::Display for Requirements {
             (m.rough_plastic, "rough plastic"),
             (m.mirror, "mirror"),
             (m.glass, "glass"),
+            (m.principled, "principled"),
         ]);
         let trees = named(&[
             (t.omni, "omni"),

@@ -6,8 +6,8 @@
 
 use super::draft::{Draft, DraftMesh};
 use super::formats::error::{Log, Place, SceneError};
-use super::material::{Fresnel, Lobe, Material, Reflectance, Roughness};
-use super::{DeltaLight, Environment, Texels, Texture, recentre};
+use super::material::{Fresnel, Lobe, Material, Reflectance, Roughness, Share};
+use super::{DeltaLight, Environment, Relief, Texels, Texture, recentre};
 use crate::math::Rgb;
 use glam::{DVec3, Vec2, Vec3};
 use serde::Serialize;
@@ -203,9 +203,18 @@ fn check_material(
     let wrong = |what: String, remedy: &str| Err(place.wrong(format!("material \"{name}\": {what}"), remedy));
     let positive = |v: f32| v.is_finite() && v > 0.0;
     let mut etas = Vec::from_iter(material.coat.map(|coat| coat.eta));
+    if let Some(principled) = &material.principled {
+        etas.push(principled.eta);
+        if !(0.0..=1.0).contains(&principled.clearcoat_gloss) {
+            return wrong(format!("its clear coat's gloss is {}", principled.clearcoat_gloss), "give 0 to 1");
+        }
+    }
     for lobe in &mut material.lobes {
+        if let Lobe::Dielectric { eta, .. } | Lobe::RoughDielectric { eta, .. } = lobe {
+            etas.push(*eta);
+        }
         match lobe {
-            Lobe::Rough { alpha, .. } => {
+            Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => {
                 let (Roughness::Constant(value) | Roughness::Textured { scale: value, .. }) = alpha;
                 if !value.is_finite() || *value < 0.0 {
                     return wrong(format!("its roughness is {value}"), "give 0 to 1");
@@ -219,9 +228,11 @@ fn check_material(
                     }
                 }
             }
-            Lobe::Mirror { .. } => {}
-            Lobe::Dielectric { eta, .. } => etas.push(*eta),
+            Lobe::Mirror { .. } | Lobe::Dielectric { .. } => {}
         }
+    }
+    if let Some(blend) = &mut material.blend {
+        check_material(&mut blend.other, textures, place, report, log)?;
     }
     if let Some(eta) = etas.into_iter().find(|eta| !positive(*eta)) {
         return wrong(format!("its index of refraction is {eta}"), "give a number above 0");
@@ -254,6 +265,23 @@ fn check_material(
             }
         }
     }
+    for share in material.shares_mut() {
+        let (Share::Constant(value) | Share::Textured { scale: value, .. }) = share;
+        if !(*value >= 0.0 && *value <= 1.0 + ALBEDO_SLACK) {
+            return wrong(format!("a share of {value}"), "give 0 to 1");
+        }
+        *value = value.min(1.0);
+        if let Share::Textured { texture, .. } = share {
+            textures.get_mut(texture.0 as usize).into_iter().for_each(|t| clamp_texels(t, Rgb::ONE, report));
+        }
+    }
+    if let Some(relief) = &material.relief {
+        let (Relief::Normals { strength: factor, .. } | Relief::Heights { scale: factor, .. }) = relief;
+        if !factor.is_finite() {
+            return wrong(format!("its relief has the factor {factor}"), "give a number");
+        }
+    }
+    material.opacity = material.opacity.filter(|opacity| *opacity != Share::Constant(1.0));
     check_sum(material, place)
 }
 

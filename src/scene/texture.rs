@@ -1,7 +1,7 @@
 //! Image textures, stored as linear colour.
 
 use super::texels::Texels;
-use crate::math::Rgb;
+use crate::math::{Rgb, luminance};
 use glam::{DVec3, Mat3, Vec2};
 
 /// Index into [`super::Scene::textures`].
@@ -65,6 +65,24 @@ impl Texture {
                 between(top).lerp(between(bottom), fy)
             }
         }
+    }
+
+    /// Returns the derivatives by u and v of the luminance at `uv`, texels joined linearly.
+    pub fn luminance_gradient(&self, uv: Vec2) -> Vec2 {
+        let at = self.to_uv.transform_point2(uv);
+        let (x, y) = (at.x * self.width as f32 - 0.5, (1.0 - at.y) * self.height as f32 - 0.5);
+        let (x0, y0) = (x.floor(), y.floor());
+        let (fx, fy) = (x - x0, y - y0);
+        let [left, right] = [0, 1].map(|step| self.column(x0 as i64 + step));
+        let [top, bottom] = [0, 1].map(|step| self.row(y0 as i64 + step));
+        let texel = |x, y| luminance(self.texels.get(x, y));
+        let [t00, t10, t01, t11] =
+            [texel(left, top), texel(right, top), texel(left, bottom), texel(right, bottom)];
+        let along_x = (t10 - t00) * (1.0 - fy) + (t11 - t01) * fy;
+        let along_y = (t01 - t00) * (1.0 - fx) + (t11 - t10) * fx;
+        let gradient = Vec2::new(along_x * self.width as f32, -along_y * self.height as f32);
+        let [u, v] = [self.to_uv.x_axis, self.to_uv.y_axis].map(|axis| axis.truncate());
+        Vec2::new(gradient.dot(u), gradient.dot(v))
     }
 
     /// Returns the mean of the texels; white without any.

@@ -10,6 +10,7 @@ use crate::scene::Scene;
 use glam::{Vec2, Vec3};
 
 mod packet;
+mod relief;
 mod sheets;
 mod specular;
 mod towards;
@@ -17,6 +18,7 @@ mod triangle;
 
 pub use crate::embree::{EmbreeError, Ray};
 pub use packet::Surfaces16;
+use relief::Reliefs;
 pub use sheets::beyond;
 use specular::Specular;
 pub use towards::Faces;
@@ -37,6 +39,8 @@ pub struct World {
     /// Diagonal of the bounds of all surfaces; 1 if there are none. Lengths that depend on scale derive from it.
     pub diagonal: f32,
     triangles: Triangles,
+    /// Reliefs, if there are any.
+    reliefs: Option<Reliefs>,
     /// Surfaces that light passes straight through, if there are any.
     sheets: Option<Accel>,
 }
@@ -96,7 +100,8 @@ impl World {
         let specular = Specular::new(&scene, &materials);
         let triangles = Triangles::new(&scene);
         let sheets = sheets::sheets(&scene, &materials, &accel)?;
-        Ok(World { scene, accel, materials, emitters, specular, diagonal, triangles, sheets })
+        let reliefs = Reliefs::new(&scene);
+        Ok(World { scene, accel, materials, emitters, specular, diagonal, triangles, reliefs, sheets })
     }
 
     /// Builds the acceleration structure anew, at another quality, for benchmarks.
@@ -121,10 +126,12 @@ impl World {
             Some(interpolated) => interpolated.try_normalize().unwrap_or(triangle.normal),
             None => triangle.normal,
         };
+        let mut frame = Frame::from_normal(shading);
+        self.relieve(&mut frame, (hit.geometry, hit.primitive), triangle, barycentric);
         Surface {
             position: triangle.position(barycentric),
             normal: triangle.normal,
-            frame: Frame::from_normal(shading),
+            frame,
             barycentric,
             mesh: hit.geometry,
             triangle: hit.primitive,

@@ -84,6 +84,15 @@ impl World {
             s.bitangent.set(i, frame.bitangent);
             s.shading_normal.set(i, frame.normal);
         }
+        if self.has_reliefs() {
+            for i in 0..LANES {
+                let (mut frame, at) = (s.frame(i), (s.mesh[i], s.triangle[i]));
+                self.relieve(&mut frame, at, self.triangles.get(at.0, at.1), s.barycentric.get(i));
+                s.tangent.set(i, frame.tangent);
+                s.bitangent.set(i, frame.bitangent);
+                s.shading_normal.set(i, frame.normal);
+            }
+        }
         s
     }
 

@@ -1,4 +1,5 @@
-//! Sheets: surfaces that light passes straight through, such as thin panes, and that shadow rays pass with it.
+//! Sheets: surfaces that light passes straight through, such as thin panes and those with gaps, and that shadow rays
+//! pass with it.
 //!
 //! Queries for occlusion leave sheets out; the light of segments found free takes the colour of the sheets that they
 //! cross, each of them once, in order.
@@ -59,6 +60,9 @@ impl World {
             let surface = self.surface(&hit);
             let out = surface.frame.to_local(-segment.direction.normalize());
             transmittance *= self.bsdf(&surface).straight_transmittance(out);
+            if transmittance == Rgb::ZERO {
+                break;
+            }
             rest = beyond(&rest, surface.position, surface.normal, surface.t);
         }
         Rgb::ZERO

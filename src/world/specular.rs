@@ -20,10 +20,12 @@ pub struct Specular {
     pub(super) meshes: Vec<bool>,
     /// Boxes around meshes that have others, as lowest and highest corners.
     pub(super) boxes: Vec<(Vec3, Vec3)>,
-    /// Boxes around those of them that have delta lobes.
+    /// Boxes around those of them that have delta lobes, or are of rough glass.
     pub(super) delta_boxes: Boxes16,
     /// True if there are any.
     pub(super) has_delta_lobes: bool,
+    /// True if any scatter light to their other side in more than isolated directions.
+    pub(super) scatter_across: bool,
 }
 
 impl Specular {
@@ -47,11 +49,22 @@ impl Specular {
             boxes
         };
         let delta_boxes = boxes(&by_delta);
-        let has_delta_lobes = !delta_boxes.is_empty();
-        Specular { meshes, boxes: boxes(&bends), has_delta_lobes, delta_boxes: Boxes16::new(&delta_boxes) }
+        Specular {
+            meshes,
+            boxes: boxes(&bends),
+            has_delta_lobes: !delta_boxes.is_empty(),
+            delta_boxes: Boxes16::new(&delta_boxes),
+            scatter_across: averages.iter().any(Bsdf::scatters_across),
+        }
     }
 
-    /// True if any bends light by delta lobes.
+    /// True if any scatters light to its other side in more than isolated directions.
+    #[inline]
+    pub fn scatter_across(&self) -> bool {
+        self.scatter_across
+    }
+
+    /// True if any bends light by delta lobes, or is of rough glass.
     pub fn has_delta_lobes(&self) -> bool {
         self.has_delta_lobes
     }

@@ -83,8 +83,7 @@ pub fn diffuse(reflectance: Rgb) -> Material {
         name: "diffuse".into(),
         two_sided: true,
         diffuse: Reflectance::Constant(reflectance),
-        coat: None,
-        lobes: vec![],
+        ..Material::default()
     }
 }
 

@@ -59,7 +59,7 @@ fn valid_scenes_load_and_are_sound() {
 fn every_source_of_geometry_arrives_in_both_formats() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/valid");
     for (file, meshes, textures, lights, sources) in
-        [("everything.toml", 9, 2, 3, 7), ("everything.xml", 8, 1, 3, 7), ("old.xml", 2, 0, 0, 2)]
+        [("everything.toml", 11, 3, 3, 7), ("everything.xml", 11, 1, 3, 7), ("old.xml", 2, 0, 0, 2)]
     {
         let scene = load(&folder.join(file), &LoadOptions::default()).unwrap().scene;
         let counts = (scene.meshes.len(), scene.textures.len(), scene.lights.len(), scene.sources.len());

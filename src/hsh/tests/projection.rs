@@ -21,7 +21,7 @@ fn constant(value: f32) -> Reflectance {
 }
 
 fn lambert(albedo: f32) -> Material {
-    Material { name: "lambert".into(), two_sided: true, diffuse: constant(albedo), coat: None, lobes: vec![] }
+    Material { name: "lambert".into(), two_sided: true, diffuse: constant(albedo), ..Material::default() }
 }
 
 fn rough(alpha: f32, fresnel: Fresnel, albedo: f32, coat: Option<Coat>) -> Material {

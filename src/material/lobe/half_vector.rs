@@ -73,6 +73,8 @@ pub(in crate::material) struct FacetBound {
     pub cos_o: f32,
     /// Maximum cosine of a direction.
     pub cos_max: f32,
+    /// Minimum cosine of a direction.
+    pub cos_min: f32,
     /// Minimum squared sine of the facet normal's inclination.
     pub sin_sq: f32,
     /// Minimum cosine between `wo` and the facet normal.
@@ -88,6 +90,7 @@ impl FacetBound {
         FacetBound {
             cos_o,
             cos_max,
+            cos_min,
             sin_sq: min_sin_sq(cos_o, cos_min, cos_max, bound.cos_mirror_max),
             cos_d: min_cos(cos_o, cos_min, bound.cos_mirror_max),
         }
@@ -97,6 +100,7 @@ impl FacetBound {
 /// [`FacetBound`] in all lanes; lanes whose directions are all below the horizon may hold anything.
 pub(in crate::material) struct FacetBounds16<'a> {
     pub cos_max: &'a F32x16,
+    pub cos_min: F32x16,
     pub sin_sq: F32x16,
     pub cos_d: F32x16,
 }
@@ -104,17 +108,18 @@ pub(in crate::material) struct FacetBounds16<'a> {
 impl FacetBounds16<'_> {
     #[inline(always)]
     pub fn new<'a>(cos_o: &F32x16, bounds: &'a DirectionBounds16) -> FacetBounds16<'a> {
-        let (mut sin_sq, mut cos_d) = ([0.0; LANES], [0.0; LANES]);
+        let (mut sin_sq, mut cos_d, mut least) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for l in 0..LANES {
             let cos_o = if cos_o[l] < 1.0 { cos_o[l] } else { 1.0 };
             let cos_max = bounds.cos_i_max[l];
             let cos_min = if bounds.cos_i_min[l] > 0.0 { bounds.cos_i_min[l] } else { 0.0 };
             let cos_min = if cos_min < cos_max { cos_min } else { cos_max };
+            least[l] = cos_min;
             let mirror = bounds.cos_mirror_max[l];
             sin_sq[l] = min_sin_sq(cos_o, cos_min, cos_max, mirror);
             cos_d[l] = min_cos(cos_o, cos_min, mirror);
         }
-        FacetBounds16 { cos_max: &bounds.cos_i_max, sin_sq, cos_d }
+        FacetBounds16 { cos_max: &bounds.cos_i_max, cos_min: least, sin_sq, cos_d }
     }
 }
 

@@ -6,23 +6,29 @@
 //! textured, comes with each call as `scale`. The dispatch in this file is the only code that enumerates the
 //! lobes.
 
+mod clear_coat;
+mod grazing;
 mod half_vector;
 mod interface;
 mod mirror;
 mod rough;
+mod rough_interface;
 
+pub(super) use clear_coat::ClearCoat;
+pub(super) use grazing::{Grazing, GrazingKind};
 pub(super) use half_vector::{Directions, Directions16, FacetBound, FacetBounds16};
 pub(super) use interface::{Interface, Passage};
 pub(super) use mirror::Mirror;
 pub use rough::RoughLobe;
 pub(super) use rough::{DIFFUSE_ALPHA, albedo as rough_albedo, albedo_table, max_reflectance_table};
+pub(super) use rough_interface::RoughInterface;
 
 use super::sample::BsdfSample;
 use crate::math::{F32x16, LANES, Rgb, Vec3x16};
 use glam::{Vec2, Vec3};
 
 /// Maximum number of lobes of a BSDF.
-pub(super) const MAX_LOBES: usize = 3;
+pub(super) const MAX_LOBES: usize = 6;
 
 /// Lobe without its factor.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +36,11 @@ pub(super) enum LobeModel {
     Rough(RoughLobe),
     Mirror(Mirror),
     Interface(Interface),
+    RoughInterface(RoughInterface),
+    ClearCoat(ClearCoat),
+    Grazing(Grazing),
+    /// Place where there is no surface, for a share of the light.
+    Gap,
 }
 
 /// Data of a lobe at sixteen points.
@@ -46,42 +57,69 @@ impl LobeModel {
     #[inline]
     pub fn is_delta(&self) -> bool {
         match self {
-            LobeModel::Rough(_) => false,
-            LobeModel::Mirror(_) | LobeModel::Interface(_) => true,
+            LobeModel::Mirror(_) | LobeModel::Interface(_) | LobeModel::Gap => true,
+            _ => false,
         }
     }
 
-    /// True if it is a delta lobe that sends light in another direction than it comes in.
+    /// True if light goes on in another direction than it comes in as by mirrors and glass, be it rough.
     pub fn bends(&self) -> bool {
         match self {
-            LobeModel::Rough(_) => false,
-            LobeModel::Mirror(_) => true,
+            LobeModel::Mirror(_) | LobeModel::RoughInterface(_) => true,
             LobeModel::Interface(interface) => interface.bends(),
+            LobeModel::Rough(_) | LobeModel::ClearCoat(_) | LobeModel::Grazing(_) | LobeModel::Gap => false,
         }
     }
 
     /// True if light goes on in the direction that it comes in.
     #[inline]
     pub fn passes_straight(&self) -> bool {
-        matches!(self, LobeModel::Interface(interface) if interface.passes_straight())
+        match self {
+            LobeModel::Interface(interface) => interface.passes_straight(),
+            LobeModel::Gap => true,
+            _ => false,
+        }
     }
 
     /// True if the surface's two sides are the two sides of one interface.
     pub fn transmits(&self) -> bool {
-        matches!(self, LobeModel::Interface(_))
+        matches!(self, LobeModel::Interface(_) | LobeModel::RoughInterface(_))
+    }
+
+    /// True if light goes on to the other side in more than isolated directions.
+    #[inline]
+    pub fn scatters_across(&self) -> bool {
+        matches!(self, LobeModel::RoughInterface(_))
     }
 
     /// True if it is a rough lobe too sharp to pass for diffuse.
     #[inline]
     pub fn is_glossy(&self) -> bool {
-        matches!(self, LobeModel::Rough(rough) if rough.is_glossy())
+        match self {
+            LobeModel::Rough(rough) => rough.is_glossy(),
+            LobeModel::RoughInterface(_) | LobeModel::ClearCoat(_) => true,
+            _ => false,
+        }
     }
 
     /// True if eye paths follow the lobe by sampling it, as they do a mirror: light cuts would show single virtual
     /// lights in it. The place, too, for lobes that scatter light across the surface, as cuts gather on one side.
     #[inline]
     pub fn is_sharp(&self) -> bool {
-        matches!(self, LobeModel::Rough(rough) if rough.is_sharp())
+        match self {
+            LobeModel::Rough(rough) => rough.is_sharp(),
+            LobeModel::RoughInterface(_) | LobeModel::ClearCoat(_) => true,
+            _ => false,
+        }
+    }
+
+    /// Index of refraction on the far side over that on the side of `wo`, if a lobe that scatters refracts; else 1.
+    #[inline]
+    pub fn refraction(&self, wo: Vec3) -> f32 {
+        match self {
+            LobeModel::RoughInterface(rough) => rough.refraction(wo),
+            _ => 1.0,
+        }
     }
 
     /// Returns value and density; the latter times `probability`, that of choosing the lobe.
@@ -89,7 +127,10 @@ impl LobeModel {
     pub fn eval_pdf(&self, scale: Rgb, probability: f32, directions: &Directions) -> (Rgb, f32) {
         match self {
             LobeModel::Rough(rough) => rough.eval_pdf(scale, probability, directions),
-            LobeModel::Mirror(_) | LobeModel::Interface(_) => (Rgb::ZERO, 0.0),
+            LobeModel::RoughInterface(rough) => rough.eval_pdf(scale, probability, directions),
+            LobeModel::ClearCoat(coat) => coat.eval_pdf(scale, probability, directions),
+            LobeModel::Grazing(grazing) => grazing.eval_pdf(scale, probability, directions),
+            _ => (Rgb::ZERO, 0.0),
         }
     }
 
@@ -99,7 +140,10 @@ impl LobeModel {
     pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
         match self {
             LobeModel::Rough(rough) => rough.sample(wo, u),
-            LobeModel::Mirror(_) | LobeModel::Interface(_) => None,
+            LobeModel::RoughInterface(rough) => rough.sample(wo, u),
+            LobeModel::ClearCoat(coat) => coat.sample(wo, u),
+            LobeModel::Grazing(grazing) => grazing.sample(wo, u),
+            _ => None,
         }
     }
 
@@ -107,9 +151,13 @@ impl LobeModel {
     #[inline(always)]
     pub fn delta(&self, scale: Rgb, wo: Vec3) -> Option<BsdfSample> {
         match self {
-            LobeModel::Rough(_) => None,
             LobeModel::Mirror(mirror) => mirror.delta(scale, wo),
             LobeModel::Interface(interface) => interface.delta(scale, wo),
+            LobeModel::Gap => {
+                let straight = BsdfSample { straight: true, ..BsdfSample::delta(-wo, scale, 1.0) };
+                (scale != Rgb::ZERO).then_some(straight)
+            }
+            _ => None,
         }
     }
 
@@ -121,6 +169,10 @@ impl LobeModel {
             LobeModel::Rough(rough) => rough.sampling_weight(scale, wo.z, transmittance),
             LobeModel::Mirror(mirror) => mean(mirror.weight(scale, wo.z)),
             LobeModel::Interface(interface) => interface.sampling_weight(scale, wo.z),
+            LobeModel::RoughInterface(rough) => rough.sampling_weight(scale, wo.z),
+            LobeModel::ClearCoat(coat) => coat.sampling_weight(scale, wo.z),
+            LobeModel::Grazing(grazing) => mean(grazing.albedo(scale, wo.z)),
+            LobeModel::Gap => mean(scale),
         }
     }
 
@@ -128,7 +180,10 @@ impl LobeModel {
     pub fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
         match self {
             LobeModel::Rough(rough) => rough.mean_reflectance(scale, cos),
-            LobeModel::Mirror(_) | LobeModel::Interface(_) => Rgb::ZERO,
+            LobeModel::RoughInterface(rough) => rough.albedo(scale, cos),
+            LobeModel::ClearCoat(coat) => coat.albedo(scale, cos),
+            LobeModel::Grazing(grazing) => grazing.albedo(scale, cos),
+            _ => Rgb::ZERO,
         }
     }
 
@@ -137,40 +192,52 @@ impl LobeModel {
     pub fn diffuse_albedo(&self, scale: Rgb, cos: f32) -> Option<Rgb> {
         match self {
             LobeModel::Rough(rough) => rough.diffuse_albedo(scale, cos),
-            LobeModel::Mirror(_) | LobeModel::Interface(_) => None,
+            LobeModel::Grazing(grazing) => Some(grazing.albedo(scale, cos)),
+            _ => None,
         }
     }
 
-    /// Returns an upper bound of value times cosine.
+    /// Returns an upper bound of value times cosine; 0 for delta lobes and those that scatter light across the surface.
     #[inline(always)]
     pub fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
         match self {
             LobeModel::Rough(rough) => rough.bound(scale, bound),
-            LobeModel::Mirror(_) | LobeModel::Interface(_) => Rgb::ZERO,
+            LobeModel::ClearCoat(coat) => coat.bound(scale, bound),
+            LobeModel::Grazing(grazing) => grazing.bound(scale, bound),
+            _ => Rgb::ZERO,
         }
     }
 
     /// Sets a lane for `wo` on the side of the normal.
     #[inline]
     pub fn set_lane(&self, lanes: &mut LobeLanes, lane: usize, scale: Rgb, wo: Vec3) {
-        if let LobeModel::Rough(rough) = self {
-            rough.set_lane(lanes, lane, scale, wo);
+        match self {
+            LobeModel::Rough(rough) => rough.set_lane(lanes, lane, scale, wo),
+            LobeModel::ClearCoat(coat) => coat.set_lane(lanes, lane, scale, wo),
+            LobeModel::Grazing(grazing) => grazing.set_lane(lanes, lane, scale, wo),
+            _ => {}
         }
     }
 
     /// Adds the lobe's values, without the cosine, in all lanes.
     #[inline]
     pub fn add_value16(&self, lanes: &LobeLanes, directions: &Directions16, sum: &mut Vec3x16) {
-        if let LobeModel::Rough(rough) = self {
-            rough.add_value16(lanes, directions, sum);
+        match self {
+            LobeModel::Rough(rough) => rough.add_value16(lanes, directions, sum),
+            LobeModel::ClearCoat(coat) => coat.add_value16(lanes, directions, sum),
+            LobeModel::Grazing(grazing) => grazing.add_value16(lanes, directions, sum),
+            _ => {}
         }
     }
 
     /// Adds the lobe's bounds of value times cosine in all lanes.
     #[inline]
     pub fn add_bound16(&self, lanes: &LobeLanes, bounds: &FacetBounds16, sum: &mut Vec3x16) {
-        if let LobeModel::Rough(rough) = self {
-            rough.add_bound16(lanes, bounds, sum);
+        match self {
+            LobeModel::Rough(rough) => rough.add_bound16(lanes, bounds, sum),
+            LobeModel::ClearCoat(coat) => coat.add_bound16(lanes, bounds, sum),
+            LobeModel::Grazing(grazing) => grazing.add_bound16(lanes, bounds, sum),
+            _ => {}
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::material::lobe::DIFFUSE_ALPHA;
+use crate::material::sample::DeltaLobes;
 
 /// Mean sample weight from `wo` over a stratified grid: the albedo, delta lobes included.
 fn albedo_by_sampling(bsdf: &Bsdf, wo: Vec3, seed: u64) -> Rgb {
@@ -80,7 +81,10 @@ fn a_virtual_light_radiates_what_the_surface_reflects() {
                 // All but the lobes that paths follow: those too sharp to pass for diffuse, and delta lobes.
                 let followed = match bsdf.glossy_part() {
                     Some(part) => albedo_by_sampling(&part, wi, 8),
-                    None => bsdf.delta_lobes(wi).reflection.map_or(Rgb::ZERO, |s| s.weight),
+                    None => {
+                        let DeltaLobes { reflection, refraction } = bsdf.delta_lobes(wi);
+                        [reflection, refraction].into_iter().flatten().map(|s| s.weight).sum()
+                    }
                 };
                 let sampled = albedo_by_sampling(&bsdf, wi, 7) - followed;
                 let error = (bsdf.diffuse_albedo(wi) - sampled).abs().max_element();
@@ -120,7 +124,7 @@ fn sides_are_kept_apart() {
             for (wo, wi) in [(back(wo), back(wi)), (wo, back(wi)), (back(wo), wi)] {
                 assert_eq!(b.eval_pdf(wo, wi), (Rgb::ZERO, 0.0), "{}", material.name);
             }
-            assert!(b.sample(back(wo), 0.3, Vec2::splat(0.3)).is_none());
+            assert!(b.sample(back(wo), 0.3, Vec2::splat(0.3)).is_none_or(|s| s.straight));
             assert_eq!(b.diffuse_albedo(back(wo)), Rgb::ZERO);
         });
         with_bsdf(&Material { two_sided: true, ..material.clone() }, |b| {

@@ -100,8 +100,7 @@ fn world() -> World {
         name: String::new(),
         two_sided: true,
         diffuse: Reflectance::Constant(Rgb::ONE),
-        coat: None,
-        lobes: vec![],
+        ..Material::default()
     };
     World::new(Scene { meshes, materials: vec![grey], ..Scene::default() }, 1).unwrap()
 }

@@ -1,7 +1,7 @@
 //! Bsdfs to materials.
 //!
-//! Deviations: bump, normal and alpha maps, anisotropy, transmission through rough interfaces and layered
-//! coatings have no counterpart; each is replaced by the nearest material, with a warning.
+//! Deviations: anisotropy and layered coatings have no counterpart; each is replaced by the
+//! nearest material, with a warning.
 
 use super::Converter;
 use super::tree::Object;
@@ -10,8 +10,10 @@ use crate::scene::formats::check;
 use crate::scene::formats::constants;
 use crate::scene::formats::error::SceneError;
 use crate::scene::material::{
-    Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness,
+    Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Parameter, Reflectance, Roughness, Share,
 };
+use crate::scene::principled::{Principled, eta_of_specular};
+use crate::scene::relief::Relief;
 use std::rc::Rc;
 
 impl Converter<'_> {
@@ -77,11 +79,15 @@ impl Converter<'_> {
             "plastic" | "roughplastic" => self.plastic(bsdf, name)?,
             "conductor" | "roughconductor" => self.conductor(bsdf, name)?,
             "dielectric" | "thindielectric" | "roughdielectric" => self.dielectric(bsdf, name)?,
+            "principled" => self.principled(bsdf, name)?,
             "phong" | "ward" => self.classic_glossy(bsdf, name)?,
             "null" => glass(name, (1.0, false), [Reflectance::Constant(Rgb::ONE); 2]),
             "twosided" => self.two_sided(bsdf, depth)?,
-            "mask" | "bumpmap" | "bump" | "normalmap" | "blendbsdf" | "mixturebsdf" | "coating"
-            | "roughcoating" => self.wrapped(bsdf, depth)?,
+            "mask" => self.masked(bsdf, depth)?,
+            "bumpmap" | "bump" | "normalmap" => self.relieved(bsdf, depth)?,
+            "blendbsdf" => self.blended(bsdf, depth)?,
+            "coating" | "roughcoating" => self.coated(bsdf, depth)?,
+            "mixturebsdf" => self.wrapped(bsdf, depth)?,
             other => {
                 let what = format!("the bsdf \"{other}\" is not modelled");
                 self.log.warn(&bsdf.place, what, "a diffuse grey of 0.5 stands in")?;
@@ -95,10 +101,125 @@ impl Converter<'_> {
     /// The nested bsdf seen from both sides.
     fn two_sided(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let nested = self.nested(bsdf, depth)?;
-        if let [Lobe::Dielectric { .. }, ..] = nested.lobes[..] {
+        if let [Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. }, ..] = nested.lobes[..] {
             self.log.warn(&bsdf.place, "twosided stands around a transmitting bsdf", "it is left out")?;
         }
         Ok(Material { two_sided: true, ..nested })
+    }
+
+    /// The nested bsdf with gaps.
+    fn masked(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        let opacity = self.share(bsdf, "opacity", 0.5)?;
+        let nested = self.nested(bsdf, depth)?;
+        let opacity = match (opacity, nested.opacity) {
+            (opacity, None) => opacity,
+            (Share::Constant(a), Some(Share::Constant(b))) => Share::Constant(a * b),
+            (Share::Constant(a), Some(Share::Textured { texture, scale })) => {
+                Share::Textured { texture, scale: a * scale }
+            }
+            (opacity, Some(_)) => {
+                self.log.warn(
+                    &bsdf.place,
+                    "a mask of a mask is not modelled",
+                    "the inner one is left out",
+                )?;
+                opacity
+            }
+        };
+        Ok(Material { opacity: Some(opacity), ..nested })
+    }
+
+    /// The nested bsdf under a dielectric coat: a diffuse one is that of plastic, and lobes lose at the coat as much as
+    /// at normal incidence.
+    fn coated(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        let eta = self.relative_ior(bsdf, "bk7")?;
+        let scale = self.reflectance(bsdf, "specular_reflectance", 1.0)?;
+        let absorption = self.colour(bsdf, "sigma_a")?.unwrap_or(Rgb::ZERO);
+        let absorbed = -2.0 * bsdf.positive("thickness", 1.0)? as f32 * absorption;
+        let through = Rgb::from_array(absorbed.to_array().map(f32::exp));
+        let fresnel = Fresnel::Dielectric(eta);
+        let coat = match bsdf.plugin.as_str() {
+            "coating" => Lobe::Mirror { fresnel, scale },
+            _ => self.rough(bsdf, fresnel, scale)?,
+        };
+        let mut nested = self.nested(bsdf, depth)?;
+        let transmits = |lobe: &Lobe| matches!(lobe, Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. });
+        let is_layered = nested.coat.is_some() || nested.principled.is_some() || nested.blend.is_some();
+        if is_layered || nested.lobes.iter().any(transmits) {
+            let what = "a coating of plastic, glass, principled materials or blends is not modelled";
+            self.log.warn(&bsdf.place, what, "it is left out")?;
+            return Ok(nested);
+        }
+        let normal = 4.0 * eta / ((eta + 1.0) * (eta + 1.0));
+        for lobe in &mut nested.lobes {
+            if let Lobe::Rough { scale, .. } | Lobe::Mirror { scale, .. } = lobe {
+                *scale = scale.times(through * (normal * normal));
+            }
+        }
+        nested.diffuse = nested.diffuse.times(through);
+        nested.coat = Some(Coat { eta, nonlinear: true });
+        nested.lobes.insert(0, coat);
+        let what =
+            format!("the {} reflects light between it and what it covers as plastic does", bsdf.plugin);
+        self.log.note(&bsdf.place, what, "the plugin itself does not");
+        Ok(nested)
+    }
+
+    /// Two nested bsdfs, mixed.
+    fn blended(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        let weight = self.share(bsdf, "weight", 0.5)?;
+        let nested = self.tagged(bsdf, "bsdf")?;
+        let [first, second] = &nested[..] else {
+            let what = format!("the bsdf \"{}\" holds {} others", bsdf.plugin, nested.len());
+            return Err(bsdf.place.wrong(what, "nest two"));
+        };
+        let (first, other) = (self.material(first, depth + 1)?, self.material(second, depth + 1)?);
+        let is_based =
+            |material: &Material| material.principled.is_some() || material.diffuse != Reflectance::BLACK;
+        let coat = |material: &Material| (material.coat, material.principled.is_some());
+        if is_based(&first) && is_based(&other) && coat(&first) != coat(&other) {
+            let fallback = "that of the first is on both";
+            self.log.warn(&bsdf.place, "a blend of bases under different coats is not modelled", fallback)?;
+        }
+        for (is_left_out, what) in [
+            (first.blend.is_some(), "a blend as the first bsdf of a blend"),
+            (other.opacity.is_some() || other.relief.is_some(), "a mask or relief of the second bsdf"),
+        ] {
+            if is_left_out {
+                self.log.warn(&bsdf.place, format!("{what} is not modelled"), "it is left out")?;
+            }
+        }
+        let blend = Some(Box::new(Blend { weight, other }));
+        Ok(Material { blend, ..first })
+    }
+
+    /// The nested bsdf with a relief.
+    fn relieved(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        let nested = self.nested(bsdf, depth)?;
+        let normals = bsdf.plugin == "normalmap";
+        let named = if normals { self.document.named(bsdf, "normalmap")? } else { None };
+        let texture = match named {
+            Some(texture) => Some(texture),
+            None => self.tagged(bsdf, "texture")?.into_iter().next(),
+        };
+        let scale = bsdf.float("scale")?.unwrap_or(1.0) as f32;
+        let relief = match texture.map(|texture| self.texture(&texture, 0)).transpose()? {
+            Some(Reflectance::Textured { texture, .. }) if normals => {
+                Some(Relief::Normals { texture, strength: 1.0, y_along_v: false })
+            }
+            Some(Reflectance::Textured { texture, scale: factor }) => {
+                Some(Relief::Heights { texture, scale: scale * luminance(factor) })
+            }
+            _ => None,
+        };
+        if relief.is_some() && nested.relief.is_some() {
+            self.log.warn(
+                &bsdf.place,
+                "a relief of a relief is not modelled",
+                "the inner one is left out",
+            )?;
+        }
+        Ok(Material { relief: relief.or(nested.relief), ..nested })
     }
 
     /// Modifiers that are left out.
@@ -167,13 +288,13 @@ impl Converter<'_> {
 
     fn dielectric(&mut self, bsdf: &Object, name: String) -> Result<Material, SceneError> {
         let eta = self.relative_ior(bsdf, "bk7")?;
-        if bsdf.plugin == "roughdielectric" {
-            bsdf.ignore(&["alpha", "alpha_u", "alpha_v", "distribution", "sample_visible"]);
-            let fallback = "the surface is smooth glass";
-            self.log.warn(&bsdf.place, "a rough dielectric is not modelled", fallback)?;
-        }
         let reflectance = self.reflectance(bsdf, "specular_reflectance", 1.0)?;
         let transmittance = self.reflectance(bsdf, "specular_transmittance", 1.0)?;
+        if bsdf.plugin == "roughdielectric" {
+            let (distribution, alpha) = self.facets(bsdf)?;
+            let lobe = Lobe::RoughDielectric { distribution, alpha, eta, reflectance, transmittance };
+            return Ok(Material { name, two_sided: true, lobes: vec![lobe], ..Material::default() });
+        }
         Ok(glass(name, (eta, bsdf.plugin == "thindielectric"), [reflectance, transmittance]))
     }
 
@@ -195,7 +316,48 @@ impl Converter<'_> {
         Ok(Material { name, diffuse, lobes: vec![lobe], ..Material::default() })
     }
 
+    fn principled(&mut self, bsdf: &Object, name: String) -> Result<Material, SceneError> {
+        let mut share = |name: &str, default: f32| self.share(bsdf, name, default);
+        let mut principled = Principled {
+            metallic: share("metallic", 0.0)?,
+            roughness: share("roughness", 0.5)?,
+            spec_tint: share("spec_tint", 0.0)?,
+            spec_trans: share("spec_trans", 0.0)?,
+            sheen: share("sheen", 0.0)?,
+            sheen_tint: share("sheen_tint", 0.0)?,
+            clearcoat: share("clearcoat", 0.0)?,
+            ..Principled::default()
+        };
+        principled.base_color = self.reflectance(bsdf, "base_color", 0.5)?;
+        principled.eta = match bsdf.has("eta") {
+            true => self.ior(bsdf, "eta", "bk7")? as f32,
+            false => eta_of_specular(bsdf.float("specular")?.unwrap_or(0.5)),
+        };
+        principled.clearcoat_gloss = match self.share(bsdf, "clearcoat_gloss", 0.0)? {
+            Share::Constant(gloss) => gloss,
+            Share::Textured { .. } => {
+                self.log.warn(&bsdf.place, "a textured clearcoat_gloss is not modelled", "it is 0.5")?;
+                0.5
+            }
+        };
+        for (name, what) in [("anisotropic", "anisotropic roughness"), ("flatness", "flatness")] {
+            let none = Share::Constant(0.0);
+            if self.share(bsdf, name, 0.0)? != none {
+                self.log.warn(&bsdf.place, format!("{what} is not modelled"), "it is left out")?;
+            }
+        }
+        bsdf.ignore(&["main_specular_sampling_rate", "clearcoat_sampling_rate"]);
+        bsdf.ignore(&["diffuse_reflectance_sampling_rate"]);
+        Ok(Material { name, principled: Some(Box::new(principled)), ..Material::default() })
+    }
+
     fn rough(&mut self, bsdf: &Object, fresnel: Fresnel, scale: Reflectance) -> Result<Lobe, SceneError> {
+        let (distribution, alpha) = self.facets(bsdf)?;
+        Ok(Lobe::Rough { distribution, alpha, fresnel, scale })
+    }
+
+    /// Distribution and roughness of microfacets.
+    fn facets(&mut self, bsdf: &Object) -> Result<(Distribution, Roughness), SceneError> {
         let distribution = match bsdf.string("distribution")?.map(|d| d.to_lowercase()).as_deref() {
             None | Some("beckmann") => Distribution::Beckmann,
             Some("ggx") => Distribution::Ggx,
@@ -228,17 +390,32 @@ impl Converter<'_> {
         } else {
             self.alpha(bsdf, "alpha")?
         };
-        Ok(Lobe::Rough { distribution, alpha, fresnel, scale })
+        Ok((distribution, alpha))
     }
 
     fn alpha(&mut self, bsdf: &Object, name: &str) -> Result<Roughness, SceneError> {
-        let Some(texture) = self.document.named(bsdf, name)? else {
-            return Ok(Roughness::Constant(bsdf.positive(name, 0.1)? as f32));
-        };
-        Ok(match self.texture(&texture, 0)? {
-            Reflectance::Constant(colour) => Roughness::Constant(luminance(colour)),
+        match self.document.named(bsdf, name)? {
+            Some(texture) => self.number(&texture),
+            None => Ok(Roughness::Constant(bsdf.positive(name, 0.1)? as f32)),
+        }
+    }
+
+    /// A share of light or surface: a number, a colour of that luminance, or a texture.
+    fn share(&mut self, bsdf: &Object, name: &str, default: f32) -> Result<Share, SceneError> {
+        if let Some(colour) = self.colour(bsdf, name)? {
+            return Ok(Share::Constant(luminance(colour)));
+        }
+        match self.document.named(bsdf, name)? {
+            Some(texture) => self.number(&texture),
+            None => Ok(Share::Constant(default)),
+        }
+    }
+
+    fn number(&mut self, texture: &Object) -> Result<Parameter<f32>, SceneError> {
+        Ok(match self.texture(texture, 0)? {
+            Reflectance::Constant(colour) => Parameter::Constant(luminance(colour)),
             Reflectance::Textured { texture, scale } => {
-                Roughness::Textured { texture, scale: luminance(scale) }
+                Parameter::Textured { texture, scale: luminance(scale) }
             }
         })
     }

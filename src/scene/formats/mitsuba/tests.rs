@@ -89,10 +89,10 @@ fn the_old_spellings_mean_the_same() {
 #[test]
 fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
     let nested = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.3\"/></bsdf>";
-    let texture = "<texture type=\"bitmap\"><string name=\"filename\" value=\"none.png\"/></texture>";
     let cases = [
-        (format!("<bsdf type=\"mask\"><float name=\"opacity\" value=\"0.5\"/>{nested}</bsdf>"), "\"mask\""),
-        (format!("<bsdf type=\"bumpmap\">{texture}{nested}</bsdf>"), "\"bumpmap\""),
+        (format!("<bsdf type=\"mixturebsdf\">{nested}</bsdf>"), "\"mixturebsdf\""),
+        ("<bsdf type=\"coating\"><bsdf type=\"dielectric\"/></bsdf>".into(), "coating of"),
+        ("<bsdf type=\"principled\"><float name=\"flatness\" value=\"0.5\"/></bsdf>".into(), "flatness"),
         ("<bsdf type=\"roughdiffuse\"><rgb name=\"reflectance\" value=\"0.3\"/></bsdf>".into(), "rough diffuse"),
         ("<bsdf type=\"phong\"><float name=\"exponent\" value=\"98\"/></bsdf>".into(), "\"phong\""),
         ("<bsdf type=\"velvet\"/>".into(), "\"velvet\""),
@@ -119,7 +119,17 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
         matches!(rough.lobes[..], [Lobe::Rough { alpha: Roughness::Textured { .. }, .. }]) && warnings == 0
     );
     let (mask, _) = bsdf(&format!("<bsdf type=\"mask\">{nested}</bsdf>"));
-    assert_eq!(mask.diffuse, Reflectance::Constant(Rgb::splat(0.3)));
+    assert_eq!((mask.diffuse, mask.opacity), (Rgb::splat(0.3).into(), Some(0.5.into())));
+    let absorbing = "<float name=\"thickness\" value=\"0.5\"/><rgb name=\"sigma_a\" value=\"1\"/>";
+    let (coated, _) = bsdf(&format!("<bsdf type=\"coating\">{absorbing}{nested}</bsdf>"));
+    assert!(matches!(coated.lobes[..], [Lobe::Mirror { fresnel: Fresnel::Dielectric(_), .. }]));
+    let Reflectance::Constant(below) = coated.diffuse else { panic!() };
+    assert!(coated.coat.is_some() && (below - 0.3 * (-1.0f32).exp()).length() < 1e-6);
+    let (mixed, warnings) =
+        bsdf(&format!("<bsdf type=\"blendbsdf\">{nested}<bsdf type=\"conductor\"/></bsdf>"));
+    assert!(mixed.blend.is_some_and(|b| b.weight == 0.5.into() && b.other.lobes.len() == 1) && warnings == 0);
+    let (car, _) = bsdf("<bsdf type=\"principled\"><float name=\"specular\" value=\"0.5\"/></bsdf>");
+    assert!((car.principled.expect("one").eta - 1.5).abs() < 1e-6);
 }
 
 #[test]

@@ -1,25 +1,16 @@
 //! Materials of the native format.
-//!
-//! | kind | keys |
-//! |---|---|
-//! | diffuse | reflectance |
-//! | glossy | diffuse, specular, alpha: Lambert and a lobe of constant reflectance |
-//! | plastic | diffuse, specular, ior, nonlinear: a smooth coat over Lambert |
-//! | roughplastic | those, alpha, distribution |
-//! | conductor | preset or eta and k; specular; alpha (0 or absent: a mirror), distribution |
-//! | mirror | reflectance |
-//! | glass | ior, reflectance, transmittance, thin |
-//!
-//! Defaults: ior 1.5, alpha 0.1, specular 1, distribution "ggx", thin false (true: a sheet, which light passes
-//! straight). Colours and alpha may be pictures; alpha's are read as they are, without a transfer function.
 
 use super::Builder;
-use super::text::{ColourText, FilterText, MaterialText, NumberText, TextureText, WrapText};
+use super::text::{ColourText, FilterText, MapText, MaterialText, NumberText, TextureText, WrapText};
 use crate::math::Rgb;
 use crate::scene::formats::check;
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::plan::{Image, TexturePlan};
-use crate::scene::material::{Coat, Distribution, Fresnel, Lobe, Material, Reflectance, Roughness};
+use crate::scene::material::{
+    Coat, Distribution, Fresnel, Lobe, Material, Parameter, Reflectance, Roughness, Share,
+};
+use crate::scene::principled::Principled;
+use crate::scene::relief::Relief;
 use crate::scene::texture::{Filter, TextureId, Wrap};
 use glam::{Mat3, Vec2};
 use toml::Spanned;
@@ -30,9 +21,15 @@ impl Builder<'_> {
         let text = text.get_ref();
         check_keys(text, &place)?;
         let (diffuse, coat, lobe) = self.layers(text, &place)?;
+        let principled = (text.kind == "principled").then(|| self.principled(text, &place)).transpose()?;
+        let principled = principled.map(Box::new);
         let two_sided = text.two_sided.unwrap_or(true);
         let lobes = Vec::from_iter(lobe);
-        let material = Material { name: text.name.clone(), two_sided, diffuse, coat, lobes };
+        let opacity = text.opacity.clone().map(|opacity| self.share(opacity, &place));
+        let name = text.name.clone();
+        let relief = self.relief(text, &place)?;
+        let material =
+            Material { name, two_sided, diffuse, coat, lobes, opacity, principled, relief, blend: None };
         let id = self.contents.add_material(material, place.clone());
         if self.material_ids.insert(text.name.clone(), id).is_some() {
             let what = format!("there are two materials called \"{}\"", text.name);
@@ -86,8 +83,18 @@ impl Builder<'_> {
             "glass" => {
                 let reflectance = self.colour(&text.reflectance.clone().unwrap_or(one()), place)?;
                 let transmittance = self.colour(&text.transmittance.clone().unwrap_or(one()), place)?;
-                let thin = text.thin.unwrap_or(false);
-                let glass = Lobe::Dielectric { eta: ior, thin, reflectance, transmittance };
+                let (eta, thin) = (ior, text.thin.unwrap_or(false));
+                let glass = match text.alpha {
+                    None => Lobe::Dielectric { eta, thin, reflectance, transmittance },
+                    Some(_) if thin => {
+                        let what = format!("the glass \"{}\" is thin and rough", text.name);
+                        return Err(place.wrong(what, "leave out thin or alpha"));
+                    }
+                    Some(_) => {
+                        let (distribution, alpha) = self.facets(text, place)?;
+                        Lobe::RoughDielectric { distribution, alpha, eta, reflectance, transmittance }
+                    }
+                };
                 (Reflectance::BLACK, None, Some(glass))
             }
             _ => (Reflectance::BLACK, None, None),
@@ -117,6 +124,16 @@ impl Builder<'_> {
         scale: Reflectance,
         place: &Place,
     ) -> Result<Lobe, SceneError> {
+        let (distribution, alpha) = self.facets(text, place)?;
+        Ok(Lobe::Rough { distribution, alpha, fresnel, scale })
+    }
+
+    /// Distribution and roughness of microfacets.
+    fn facets(
+        &mut self,
+        text: &MaterialText,
+        place: &Place,
+    ) -> Result<(Distribution, Roughness), SceneError> {
         let alpha = match text.alpha.clone().unwrap_or(NumberText::Number(0.1)) {
             NumberText::Number(alpha) => {
                 if !(alpha > 0.0 && alpha <= 4.0) {
@@ -125,10 +142,8 @@ impl Builder<'_> {
                 }
                 Roughness::Constant(alpha as f32)
             }
-            NumberText::Picture(file) => {
-                self.roughness(TextureText { file, ..TextureText::default() }, place)
-            }
-            NumberText::Texture(texture) => self.roughness(texture, place),
+            NumberText::Picture(file) => self.number(TextureText { file, ..TextureText::default() }, place),
+            NumberText::Texture(texture) => self.number(texture, place),
         };
         let distribution = match text.distribution.as_deref() {
             None | Some("ggx") => Distribution::Ggx,
@@ -138,13 +153,65 @@ impl Builder<'_> {
                 return Err(place.wrong(what, "use ggx or beckmann"));
             }
         };
-        Ok(Lobe::Rough { distribution, alpha, fresnel, scale })
+        Ok((distribution, alpha))
     }
 
-    fn roughness(&mut self, text: TextureText, place: &Place) -> Roughness {
+    fn principled(&mut self, text: &MaterialText, place: &Place) -> Result<Principled, SceneError> {
+        let base_color = match &text.base_color {
+            Some(colour) => self.colour(colour, place)?,
+            None => Principled::default().base_color,
+        };
+        let mut share = |number: &Option<NumberText>, default| match number {
+            Some(number) => self.share(number.clone(), place),
+            None => Share::Constant(default),
+        };
+        Ok(Principled {
+            base_color,
+            metallic: share(&text.metallic, 0.0),
+            roughness: share(&text.roughness, 0.5),
+            eta: text.ior.unwrap_or(1.5) as f32,
+            spec_tint: share(&text.spec_tint, 0.0),
+            spec_trans: share(&text.spec_trans, 0.0),
+            sheen: share(&text.sheen, 0.0),
+            sheen_tint: share(&text.sheen_tint, 0.0),
+            clearcoat: share(&text.clearcoat, 0.0),
+            clearcoat_gloss: text.clearcoat_gloss.unwrap_or(0.0) as f32,
+        })
+    }
+
+    fn relief(&mut self, text: &MaterialText, place: &Place) -> Result<Option<Relief>, SceneError> {
+        if let (Some(_), Some(_)) = (&text.normal_map, &text.bump_map) {
+            let what = format!("the material \"{}\" has two reliefs", text.name);
+            return Err(place.wrong(what, "leave out normal_map or bump_map"));
+        }
+        let raw = |map: &MapText| match map.clone() {
+            MapText::Picture(file) => TextureText { file, raw: true, ..TextureText::default() },
+            MapText::Texture(texture) => TextureText { raw: true, ..texture },
+        };
+        let normals = text.normal_map.as_ref().map(raw).map(|map| Relief::Normals {
+            texture: self.texture_id(&map, place),
+            strength: map.scale.unwrap_or(1.0) as f32,
+            y_along_v: true,
+        });
+        let heights = text.bump_map.as_ref().map(raw).map(|map| Relief::Heights {
+            texture: self.texture_id(&map, place),
+            scale: map.scale.unwrap_or(1.0) as f32,
+        });
+        Ok(normals.or(heights))
+    }
+
+    fn share(&mut self, text: NumberText, place: &Place) -> Share {
+        match text {
+            NumberText::Number(number) => Share::Constant(number as f32),
+            NumberText::Picture(file) => self.number(TextureText { file, ..TextureText::default() }, place),
+            NumberText::Texture(texture) => self.number(texture, place),
+        }
+    }
+
+    fn number(&mut self, text: TextureText, place: &Place) -> Parameter<f32> {
         let scale = text.scale.unwrap_or(1.0) as f32;
         let texture = self.texture_id(&TextureText { raw: true, ..text }, place);
-        Roughness::Textured { texture, scale }
+        Parameter::Textured { texture, scale }
     }
 
     pub(super) fn texture(&mut self, text: &TextureText, place: &Place) -> Reflectance {
@@ -177,9 +244,21 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
         "plastic" => &["diffuse", "specular", "ior", "nonlinear"],
         "roughplastic" => &["diffuse", "specular", "ior", "nonlinear", "alpha", "distribution"],
         "conductor" => &["preset", "eta", "k", "specular", "alpha", "distribution"],
-        "glass" => &["ior", "reflectance", "transmittance", "thin"],
+        "glass" => &["ior", "reflectance", "transmittance", "thin", "alpha", "distribution"],
+        "principled" => &[
+            "base_color",
+            "metallic",
+            "roughness",
+            "ior",
+            "spec_tint",
+            "spec_trans",
+            "sheen",
+            "sheen_tint",
+            "clearcoat",
+            "clearcoat_gloss",
+        ],
         other => {
-            let remedy = "use diffuse, glossy, plastic, roughplastic, conductor, mirror or glass";
+            let remedy = "use diffuse, glossy, plastic, roughplastic, conductor, mirror, glass or principled";
             return Err(place.wrong(format!("unknown kind of material \"{other}\""), remedy));
         }
     };
@@ -196,6 +275,15 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
         ("eta", text.eta.is_some()),
         ("k", text.k.is_some()),
         ("thin", text.thin.is_some()),
+        ("base_color", text.base_color.is_some()),
+        ("metallic", text.metallic.is_some()),
+        ("roughness", text.roughness.is_some()),
+        ("spec_tint", text.spec_tint.is_some()),
+        ("spec_trans", text.spec_trans.is_some()),
+        ("sheen", text.sheen.is_some()),
+        ("sheen_tint", text.sheen_tint.is_some()),
+        ("clearcoat", text.clearcoat.is_some()),
+        ("clearcoat_gloss", text.clearcoat_gloss.is_some()),
     ];
     check::keys(&format!("{} material", text.kind), known, &given, place)
 }

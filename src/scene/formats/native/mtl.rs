@@ -64,8 +64,8 @@ impl Builder<'_> {
             name: name.clone(),
             two_sided: true,
             diffuse,
-            coat: None,
             lobes: Vec::from_iter(lobe),
+            ..Material::default()
         };
         if source.emissive != Rgb::ZERO {
             let what = format!("the material \"{name}\" emits");

@@ -79,6 +79,7 @@ fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
         "pair" => (vec!["[1, 2]"], vec!["1", "[1]"]),
         "colour" => (colours, vec!["true", "[1, 2]"]),
         "colour or picture" => ([colours, pictures].concat(), vec!["true", "[1, 2]"]),
+        "picture" => (pictures, vec!["true", "0.5"]),
         "number or picture" => ([vec!["0.5"], pictures].concat(), vec!["true", "[1, 2, 3]"]),
         "moment" => (vec!["2024-06-21T12:00:00Z"], vec!["1", "\"noon\""]),
         "table" | "list of tables" | "list of numbers" => (vec![], vec!["true", "1"]),

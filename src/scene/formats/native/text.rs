@@ -75,6 +75,18 @@ pub(super) struct MaterialText {
     pub eta: Option<ColourText>,
     pub k: Option<ColourText>,
     pub thin: Option<bool>,
+    pub opacity: Option<NumberText>,
+    pub normal_map: Option<MapText>,
+    pub bump_map: Option<MapText>,
+    pub base_color: Option<ColourText>,
+    pub metallic: Option<NumberText>,
+    pub roughness: Option<NumberText>,
+    pub spec_tint: Option<NumberText>,
+    pub spec_trans: Option<NumberText>,
+    pub sheen: Option<NumberText>,
+    pub sheen_tint: Option<NumberText>,
+    pub clearcoat: Option<NumberText>,
+    pub clearcoat_gloss: Option<f64>,
 }
 
 /// A colour: the same in every place that takes one.
@@ -105,6 +117,14 @@ pub(super) enum ColourText {
 )]
 pub(super) enum NumberText {
     Number(f64),
+    Picture(String),
+    Texture(TextureText),
+}
+
+/// The name of a picture, with or without how to read it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged, expecting = "expected a picture's name or { file = \"...\" }")]
+pub(super) enum MapText {
     Picture(String),
     Texture(TextureText),
 }

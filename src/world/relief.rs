@@ -1,0 +1,181 @@
+//! Shading frames on surfaces with a relief.
+//!
+//! Paper: J. F. Blinn, *Simulation of Wrinkled Surfaces*, 1978, for heights; definitions are those of Mitsuba 3's
+//! `bumpmap` and `normalmap`.
+//! Deviations: the relief changes shading alone, neither the outline nor shadows; where a turned normal faces away from
+//! the eye, a two-sided surface is shaded as seen from behind.
+
+use super::World;
+use super::triangle::Triangle;
+use crate::math::Frame;
+use crate::scene::{Mesh, Relief, Scene};
+use glam::{Vec2, Vec3};
+
+/// Reliefs of a scene, by mesh.
+pub(super) struct Reliefs(Vec<Option<Relief>>);
+
+impl Reliefs {
+    /// Collects them; `None` if there are none.
+    pub fn new(scene: &Scene) -> Option<Reliefs> {
+        let of =
+            |mesh: &Mesh| scene.materials.get(mesh.material.0 as usize).and_then(|material| material.relief);
+        let all: Vec<Option<Relief>> = scene.meshes.iter().map(of).collect();
+        all.iter().any(Option::is_some).then_some(Reliefs(all))
+    }
+}
+
+impl World {
+    /// True if any surface has a relief.
+    #[inline]
+    pub(super) fn has_reliefs(&self) -> bool {
+        self.reliefs.is_some()
+    }
+
+    /// Turns the shading frame at barycentric weights `b` of a triangle by the relief of its mesh, if it has one.
+    #[inline]
+    pub(super) fn relieve(
+        &self,
+        frame: &mut Frame,
+        (mesh, primitive): (u32, u32),
+        triangle: &Triangle,
+        b: Vec2,
+    ) {
+        let Some(Reliefs(reliefs)) = &self.reliefs else { return };
+        if let Some(relief) = &reliefs[mesh as usize] {
+            let mesh = &self.scene.meshes[mesh as usize];
+            *frame = turned(&self.scene, relief, (mesh, primitive as usize), triangle, b, frame.normal);
+        }
+    }
+}
+
+/// Returns the frame of a relief where the shading normal is `normal`; the tangent is not along u.
+#[inline(never)]
+fn turned(
+    scene: &Scene,
+    relief: &Relief,
+    (mesh, primitive): (&Mesh, usize),
+    triangle: &Triangle,
+    b: Vec2,
+    normal: Vec3,
+) -> Frame {
+    let [along_u, along_v] = derivatives(mesh, primitive, triangle.edges);
+    let uv = mesh.uv(primitive, b);
+    let texture = |id: crate::scene::TextureId| scene.textures.get(id.0 as usize);
+    let level = |v: Vec3| v - normal * normal.dot(v);
+    let turned = match *relief {
+        Relief::Normals { texture: id, strength, y_along_v } => texture(id).map(|texture| {
+            let local = texture.lookup(uv) * 2.0 - 1.0;
+            let x = level(along_u).normalize_or_zero();
+            let y = normal.cross(x);
+            let y = if y_along_v && y.dot(along_v) < 0.0 { -y } else { y };
+            x * (local.x * strength) + y * (local.y * strength) + normal * local.z
+        }),
+        Relief::Heights { texture: id, scale } => texture(id).map(|texture| {
+            let slope = texture.luminance_gradient(uv) * scale;
+            let turned = (level(along_u) + normal * slope.x).cross(level(along_v) + normal * slope.y);
+            if turned.dot(triangle.normal) < 0.0 { -turned } else { turned }
+        }),
+    };
+    Frame::from_normal(turned.and_then(Vec3::try_normalize).unwrap_or(normal))
+}
+
+/// Derivatives of the position by u and v, on the plane of a triangle.
+fn derivatives(mesh: &Mesh, primitive: usize, edges: [Vec3; 2]) -> [Vec3; 2] {
+    let corner = |b: Vec2| mesh.uv(primitive, b);
+    let origin = corner(Vec2::ZERO);
+    let (d1, d2) = (corner(Vec2::X) - origin, corner(Vec2::Y) - origin);
+    let determinant = d1.perp_dot(d2);
+    if determinant == 0.0 {
+        return edges;
+    }
+    let along_u = (edges[0] * d2.y - edges[1] * d1.y) / determinant;
+    let along_v = (edges[1] * d1.x - edges[0] * d2.x) / determinant;
+    [along_u, along_v]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::embree::{Hits16, Ray};
+    use crate::math::Rgb;
+    use crate::scene::{Camera, Filter, Material, Relief, Texels, Texture, TextureId, Wrap};
+    use crate::test_scenes::*;
+    use glam::{Mat3, Vec2, Vec3};
+
+    /// A square from 0 to 2 in the plane z = 0, u from 0 to 1 along x and v along y, and its relief.
+    fn square(relief: Relief, width: usize, texels: Vec<Rgb>) -> WorldAndView {
+        let mut scene = scene(Camera::default(), [1, 1]);
+        let (name, height) = ("relief".into(), texels.len() / width);
+        let (filter, wrap, to_uv) = (Filter::Bilinear, Wrap::Clamp, Mat3::IDENTITY);
+        let texels = Texels::new(width, &texels);
+        scene.textures.push(Texture { name, width, height, texels, filter, wrap, to_uv });
+        let relieved = Material { relief: Some(relief), ..diffuse(Rgb::ONE) };
+        let material = add_material(&mut scene, relieved);
+        scene.meshes.push(textured(quad(Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0, material), Vec2::ONE));
+        world(scene)
+    }
+
+    /// Shading normal at (x, y), the same from a packet of hits.
+    fn normal(world: &WorldAndView, x: f32, y: f32) -> Vec3 {
+        let ray = Ray::new(Vec3::new(x, y, 1.0), -Vec3::Z);
+        let surface = world.intersect(&ray).expect("the square");
+        let hit = world.accel.closest_hit(&ray).expect("the square");
+        let hits = Hits16 {
+            t: [hit.t; 16],
+            u: [hit.u; 16],
+            v: [hit.v; 16],
+            geometry: [hit.geometry; 16],
+            primitive: [hit.primitive; 16],
+        };
+        assert_eq!(world.surfaces(&hits).frame(3), surface.frame);
+        assert_eq!(surface.normal, Vec3::Z);
+        surface.frame.normal
+    }
+
+    #[test]
+    fn heights_slope_as_the_texels_do() {
+        // A ramp from 0 to 1 between the centres of two texels, half the square apart: one unit of length.
+        let relief = Relief::Heights { texture: TextureId(0), scale: 0.5 };
+        let ramp = square(relief, 2, vec![Rgb::ZERO, Rgb::ONE]);
+        let expected = Vec3::new(-0.5, 0.0, 1.0).normalize();
+        for (x, y) in [(0.8, 0.3), (1.2, 1.7)] {
+            assert!((normal(&ramp, x, y) - expected).length() < 1e-5, "{}", normal(&ramp, x, y));
+        }
+        // Beyond the centres it is level.
+        assert!((normal(&ramp, 0.2, 1.0) - Vec3::Z).length() < 1e-5);
+        // The top row is the higher one: the surface rises along y.
+        let up = square(relief, 1, vec![Rgb::ONE, Rgb::ZERO]);
+        let expected = Vec3::new(0.0, -0.5, 1.0).normalize();
+        assert!((normal(&up, 1.0, 1.0) - expected).length() < 1e-5, "{}", normal(&up, 1.0, 1.0));
+    }
+
+    #[test]
+    fn normals_are_those_of_the_texels_in_the_frame_of_the_texture() {
+        let local = Vec3::new(0.6, 0.0, 0.8);
+        for (local, strength, y_along_v, expected) in [
+            (local, 1.0, false, local),
+            (Vec3::new(0.0, 0.6, 0.8), 1.0, true, Vec3::new(0.0, 0.6, 0.8)),
+            (local, 0.5, false, Vec3::new(0.3, 0.0, 0.8).normalize()),
+            (Vec3::Z, 1.0, true, Vec3::Z),
+        ] {
+            let relief = Relief::Normals { texture: TextureId(0), strength, y_along_v };
+            let flat = square(relief, 1, vec![0.5 * local + 0.5]);
+            assert!(
+                (normal(&flat, 1.1, 0.4) - expected).length() < 1e-5,
+                "{local} {}",
+                normal(&flat, 1.1, 0.4)
+            );
+        }
+    }
+
+    #[test]
+    fn a_mirrored_texture_turns_y_only_where_it_follows_v() {
+        for (y_along_v, y) in [(false, 0.6), (true, -0.6)] {
+            let relief = Relief::Normals { texture: TextureId(0), strength: 1.0, y_along_v };
+            let local = Vec3::new(0.0, 0.6, 0.8);
+            let mut staged = staged(square(relief, 1, vec![0.5 * local + 0.5]));
+            staged.meshes[0].uvs.iter_mut().for_each(|uv| uv.y = -uv.y);
+            let found = normal(&world(staged), 1.0, 1.0);
+            assert!((found - Vec3::new(0.0, y, 0.8)).length() < 1e-5, "{found}");
+        }
+    }
+}
