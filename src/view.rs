@@ -40,7 +40,8 @@ pub struct Framing {
 pub enum FramingError {
     /// The camera path is not that long.
     #[error("frame {frame}: {}", match frames {
-        0 => "the scene has no camera path, only a still camera; give a TOML scene keys in [camera.path]".to_owned(),
+        0 => "the scene has no camera path, only a still camera; give a TOML scene keys in [camera.path], or a glTF \
+              model an animated camera".to_owned(),
         _ => format!("the scene's camera path has {frames} frames, counted from 1"),
     })]
     Frame {

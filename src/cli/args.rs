@@ -49,7 +49,7 @@ pub enum Command {
 #[derive(Debug, Args)]
 #[command(after_help = exit::HELP)]
 pub struct RenderArgs {
-    /// Scene: native (.toml) or Mitsuba (.xml)
+    /// Scene: native (.toml), Mitsuba (.xml) or glTF (.glb, .gltf)
     pub scene: PathBuf,
     /// Picture to write: 32-bit float OpenEXR with variance and metadata where known
     #[arg(short, long, value_name = "FILE.exr")]
@@ -331,7 +331,7 @@ pub enum VerifyAgainst {
 /// Options of `info`.
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// Scene: native (.toml) or Mitsuba (.xml)
+    /// Scene: native (.toml), Mitsuba (.xml) or glTF (.glb, .gltf)
     pub scene: PathBuf,
     /// Print JSON
     #[arg(long)]

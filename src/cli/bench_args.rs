@@ -13,8 +13,8 @@ pub struct BenchArgs {
     /// Name of the benchmark
     #[arg(value_parser = PossibleValuesParser::new(REGISTRY.iter().map(|b| b.name)), hide_possible_values = true)]
     pub benchmark: String,
-    /// Scenes: native (.toml) or Mitsuba (.xml); for those that need them. Studies also take names of scenes
-    /// in --scenes
+    /// Scenes: native (.toml), Mitsuba (.xml) or glTF (.glb, .gltf); for those that need them. Studies also take
+    /// names of scenes in --scenes
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
     /// Threads where all are used [default: all processors]

@@ -29,6 +29,23 @@ pub(crate) struct DraftCamera {
     pub filter: PixelFilter,
 }
 
+/// At the origin, looking along -z with y up.
+impl Default for DraftCamera {
+    fn default() -> DraftCamera {
+        DraftCamera {
+            origin: DVec3::ZERO,
+            forward: DVec3::NEG_Z,
+            right: DVec3::X,
+            up: DVec3::Y,
+            tan_half_x: 22.5f64.to_radians().tan(),
+            near: 0.0,
+            far: f64::INFINITY,
+            projection: Projection::default(),
+            filter: PixelFilter::default(),
+        }
+    }
+}
+
 /// Cameras, and the size of their film.
 #[derive(Clone, Debug)]
 pub(crate) struct Shot {

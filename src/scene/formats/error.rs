@@ -91,7 +91,7 @@ pub enum SceneError {
         error: std::io::Error,
     },
     /// A file whose extension is that of no supported format.
-    #[error("{}: unknown kind of scene; name a .toml (native) or .xml (Mitsuba) file", .0.display())]
+    #[error("{}: unknown kind of scene; name a .toml (native), .xml (Mitsuba), .glb or .gltf file", .0.display())]
     UnknownFormat(PathBuf),
     /// Text that is not well-formed XML or TOML.
     #[error("{place}: {message}; correct the file's syntax")]

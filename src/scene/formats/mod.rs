@@ -1,4 +1,4 @@
-//! Scene readers: native TOML and Mitsuba XML, one model.
+//! Scene readers: native TOML, Mitsuba XML and glTF, one model.
 //!
 //! A reader turns its text into a `Plan`, which opens meshes and pictures in parallel; the result is
 //! sanitised and recentred. Features that the model lacks are replaced, with a [`Warning`] for each
@@ -8,6 +8,7 @@
 mod check;
 mod constants;
 pub(crate) mod error;
+mod gltf;
 mod mesh;
 mod mitsuba;
 mod native;
@@ -36,19 +37,19 @@ pub struct LoadOptions {
 }
 
 impl LoadOptions {
-    /// Rejects options that only Mitsuba scenes have.
-    fn only_xml(&self, path: &Path) -> Result<(), SceneError> {
-        let remedy =
-            "leave --camera and --define out; they choose among what a Mitsuba scene (.xml) declares";
-        match (&self.camera, self.parameters.first()) {
-            (None, None) => Ok(()),
-            (Some(camera), _) => {
-                Err(Place::file(path).wrong(format!("there is no choice of a camera \"{camera}\""), remedy))
-            }
-            (_, Some((name, _))) => {
-                Err(Place::file(path).wrong(format!("there is no parameter \"{name}\""), remedy))
-            }
-        }
+    /// Rejects the choice of a camera, for formats with one, and parameters.
+    fn no_choice(&self, path: &Path) -> Result<(), SceneError> {
+        self.no_parameters(path)?;
+        let Some(camera) = &self.camera else { return Ok(()) };
+        let remedy = "leave --camera out; it chooses among those of a Mitsuba scene (.xml) or a glTF model";
+        Err(Place::file(path).wrong(format!("there is no choice of a camera \"{camera}\""), remedy))
+    }
+
+    /// Rejects parameters, for formats without.
+    fn no_parameters(&self, path: &Path) -> Result<(), SceneError> {
+        let Some((name, _)) = self.parameters.first() else { return Ok(()) };
+        let remedy = "leave --define out; it gives values to parameters that a Mitsuba scene (.xml) declares";
+        Err(Place::file(path).wrong(format!("there is no parameter \"{name}\""), remedy))
     }
 
     /// Hash of a scene whose files have the hash `files`, with these options.
@@ -77,16 +78,20 @@ pub struct Loaded {
     pub generator: Option<String>,
 }
 
-/// Reads the scene at `path`: `.toml` is native, `.xml` Mitsuba's.
+/// Reads the scene at `path`: `.toml` is native, `.xml` Mitsuba's, `.glb` and `.gltf` glTF.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let mut log = Log::new(options.strict);
     let plan = match extension.as_deref() {
         Some("toml") => {
-            options.only_xml(path)?;
+            options.no_choice(path)?;
             native::read(path, &mut log)?
         }
         Some("xml") => mitsuba::read(path, options, &mut log)?,
+        Some("glb" | "gltf") => {
+            options.no_parameters(path)?;
+            gltf::read(path, options, &mut log)?
+        }
         _ => return Err(SceneError::UnknownFormat(path.to_owned())),
     };
     let generator = plan.generator.clone();

@@ -20,12 +20,30 @@ pub(crate) struct Picture {
     pub texels: Texels,
 }
 
-/// Decodes `bytes`; `raw` leaves integer values as they are instead of decoding sRGB.
-pub(crate) fn decode(bytes: &[u8], raw: bool, path: &Path, place: &Place) -> Result<Picture, SceneError> {
+/// Part of a picture that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Channel {
+    /// Linear colour.
+    Colour,
+    /// Integer values of all channels as they are, not decoded from sRGB.
+    Data,
+    /// One such channel alone in 8 bits, as a grey: 0 to 3 for red, green, blue and alpha, 1 where there is none.
+    One(usize),
+    /// 1 where alpha is at least so much, else 0.
+    AlphaFrom(f32),
+}
+
+/// Decodes a part of `bytes`; `path` tells the format of files without a signature.
+pub(crate) fn decode(
+    bytes: &[u8],
+    channel: Channel,
+    path: &Path,
+    place: &Place,
+) -> Result<Picture, SceneError> {
     let picture = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
         decode_exr(bytes).map_err(|e| e.to_string())
     } else {
-        decode_common(bytes, raw, path)
+        decode_common(bytes, channel, path)
     };
     let picture = picture.and_then(|p| match p.texels.is_empty() {
         true => Err("it has no pixels".to_string()),
@@ -72,7 +90,7 @@ fn decode_exr(bytes: &[u8]) -> Result<Picture, exr::error::Error> {
     Ok(Picture { width, height, texels: Texels::new(width, &texels) })
 }
 
-fn decode_common(bytes: &[u8], raw: bool, path: &Path) -> Result<Picture, String> {
+fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture, String> {
     let mut reader =
         image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     if reader.format().is_none() {
@@ -82,6 +100,19 @@ fn decode_common(bytes: &[u8], raw: bool, path: &Path) -> Result<Picture, String
     }
     let image = reader.decode().map_err(|e| e.to_string())?;
     let (width, height) = (image.width() as usize, image.height() as usize);
+    let grey = |code: &dyn Fn(&[u8; 4]) -> u8| {
+        let codes: Vec<[u8; 4]> = image.to_rgba8().pixels().map(|p| [code(&p.0); 4]).collect();
+        let texels = Texels::coded(width, &codes, std::array::from_fn(|code| code as f32 / 255.0));
+        Ok(Picture { width, height, texels })
+    };
+    let raw = match channel {
+        Channel::Colour => false,
+        Channel::Data => true,
+        Channel::One(channel) => return grey(&|rgba| rgba[channel]),
+        Channel::AlphaFrom(cutoff) => {
+            return grey(&|rgba| if f32::from(rgba[3]) >= 255.0 * cutoff { 255 } else { 0 });
+        }
+    };
     use image::DynamicImage as D;
     let plain = |texels: Vec<Rgb>| Texels::new(width, &texels);
     let texels = match image {
@@ -115,7 +146,8 @@ mod tests {
     use std::path::PathBuf;
 
     fn decode_file(bytes: &[u8], raw: bool, name: &str) -> Result<Picture, SceneError> {
-        decode(bytes, raw, Path::new(name), &Place::file(Path::new("s.toml")))
+        let channel = if raw { Channel::Data } else { Channel::Colour };
+        decode(bytes, channel, Path::new(name), &Place::file(Path::new("s.toml")))
     }
 
     fn corpus(name: &str) -> Vec<u8> {

@@ -5,7 +5,7 @@
 
 use super::error::{Place, SceneError};
 use super::mesh::{self, Placement, RawMesh};
-use super::picture::{self, Picture};
+use super::picture::{self, Channel, Picture};
 use super::sky::SkyPlan;
 use crate::math::Rgb;
 use crate::scene::draft::{Draft, DraftMesh, Shot};
@@ -17,6 +17,7 @@ use glam::{DMat3, DMat4, DVec3, Mat3};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The whole content of a scene description.
 #[derive(Clone, Debug)]
@@ -75,14 +76,32 @@ pub(crate) struct MeshPlan {
     pub emission: Option<Emission>,
 }
 
+/// Part of a file that is asked for: nodes, objects or groups by name, with all below them, but none of `except`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Selection {
+    /// Names, or none for everything.
+    pub only: Vec<String>,
+    pub except: Vec<String>,
+}
+
 /// Source of a mesh.
 #[derive(Clone, Debug)]
 pub(crate) enum Geometry {
-    Obj(PathBuf),
+    /// File, and the objects and groups of it that are asked for.
+    Obj(PathBuf, Selection),
     Ply(PathBuf),
     /// File and index of the mesh in it.
     Serialized(PathBuf, usize),
     Ready(RawMesh),
+    /// One that other plans place as well.
+    Shared(Arc<RawMesh>),
+}
+
+/// Light and look of surfaces.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look {
+    pub material: MaterialId,
+    pub emission: Option<Emission>,
 }
 
 /// Choice of a mesh's materials.
@@ -90,7 +109,7 @@ pub(crate) enum Geometry {
 pub(crate) enum MaterialPlan {
     One(MaterialId),
     /// Materials by the file's own names, and the one for unknown names.
-    ByName(BTreeMap<String, MaterialId>, MaterialId),
+    ByName(BTreeMap<String, Look>, MaterialId),
 }
 
 /// A texture to be read.
@@ -106,8 +125,24 @@ pub(crate) struct TexturePlan {
 /// Source of a texture's texels.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Image {
-    File { path: PathBuf, raw: bool },
+    File {
+        path: PathBuf,
+        raw: bool,
+    },
     Ready(String, Picture),
+    /// A channel of a picture, or its colour.
+    Part {
+        name: String,
+        source: PictureSource,
+        channel: Channel,
+    },
+}
+
+/// Encoded picture.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum PictureSource {
+    File(PathBuf),
+    Bytes(Arc<[u8]>),
 }
 
 /// An environment to be read.
@@ -121,7 +156,7 @@ pub(crate) enum EnvironmentPlan {
 /// A task on a file's bytes.
 enum Task<'a> {
     Mesh(usize, &'a MeshPlan),
-    Texture(usize, &'a TexturePlan, bool),
+    Texture(usize, &'a TexturePlan, Channel),
     Environment(&'a Place),
 }
 
@@ -166,10 +201,13 @@ impl Plan {
         }
         let contents = self.contents;
         for (plan, made) in contents.meshes.iter().zip(&mut meshes) {
-            if let Geometry::Ready(raw) = &plan.geometry {
-                *made = finish_mesh(plan, raw.clone());
+            match &plan.geometry {
+                Geometry::Ready(raw) => *made = finish_mesh(plan, raw.clone()),
+                Geometry::Shared(raw) => *made = finish_mesh(plan, RawMesh::clone(raw)),
+                Geometry::Obj(..) | Geometry::Ply(_) | Geometry::Serialized(..) => {}
             }
         }
+        contents.decode_embedded(&mut pictures)?;
         let textures =
             contents.textures.into_iter().zip(pictures).filter_map(|(t, p)| texture(t, p)).collect();
         let environment = match (contents.environment, sky) {
@@ -212,21 +250,39 @@ impl Contents {
         };
         for (i, mesh) in self.meshes.iter().enumerate() {
             match &mesh.geometry {
-                Geometry::Obj(path) | Geometry::Ply(path) | Geometry::Serialized(path, _) => {
+                Geometry::Obj(path, _) | Geometry::Ply(path) | Geometry::Serialized(path, _) => {
                     add(path, Task::Mesh(i, mesh));
                 }
-                Geometry::Ready(_) => {}
+                Geometry::Ready(_) | Geometry::Shared(_) => {}
             }
         }
         for (i, texture) in self.textures.iter().enumerate() {
-            if let Image::File { path, raw } = &texture.image {
-                add(path, Task::Texture(i, texture, *raw));
+            match &texture.image {
+                Image::File { path, raw } => {
+                    let channel = if *raw { Channel::Data } else { Channel::Colour };
+                    add(path, Task::Texture(i, texture, channel));
+                }
+                Image::Part { source: PictureSource::File(path), channel, .. } => {
+                    add(path, Task::Texture(i, texture, *channel));
+                }
+                Image::Ready(..) | Image::Part { .. } => {}
             }
         }
         if let Some(EnvironmentPlan::Map { place, path, .. }) = &self.environment {
             add(path, Task::Environment(place));
         }
         files
+    }
+
+    /// Decodes the pictures that descriptions hold themselves.
+    fn decode_embedded(&self, pictures: &mut [Option<Picture>]) -> Result<(), SceneError> {
+        let decode = |(plan, picture): (&TexturePlan, &mut Option<Picture>)| {
+            if let Image::Part { source: PictureSource::Bytes(bytes), channel, name } = &plan.image {
+                *picture = Some(picture::decode(bytes, *channel, Path::new(name), &plan.place)?);
+            }
+            Ok(())
+        };
+        self.textures.par_iter().zip(pictures).try_for_each(decode)
     }
 }
 
@@ -274,30 +330,36 @@ fn one(task: &Task, bytes: &[u8], path: &Path) -> Result<Done, SceneError> {
     Ok(match task {
         Task::Mesh(i, plan) => {
             let raw = match &plan.geometry {
-                Geometry::Obj(_) => mesh::obj::read(bytes, path)?,
+                Geometry::Obj(_, selection) => mesh::obj::read(bytes, path, selection)?,
                 Geometry::Ply(_) => mesh::ply::read(bytes, path)?,
                 Geometry::Serialized(_, index) => mesh::serialized::read(bytes, *index, path)?,
                 Geometry::Ready(raw) => raw.clone(),
+                Geometry::Shared(raw) => RawMesh::clone(raw),
             };
             Done::Meshes(*i, finish_mesh(plan, raw))
         }
-        Task::Texture(i, plan, raw) => Done::Texture(*i, picture::decode(bytes, *raw, path, &plan.place)?),
-        Task::Environment(place) => Done::Environment(picture::decode(bytes, false, path, place)?),
+        Task::Texture(i, plan, channel) => {
+            Done::Texture(*i, picture::decode(bytes, *channel, path, &plan.place)?)
+        }
+        Task::Environment(place) => Done::Environment(picture::decode(bytes, Channel::Colour, path, place)?),
     })
 }
 
 fn finish_mesh(plan: &MeshPlan, raw: RawMesh) -> Vec<DraftMesh> {
     let parts = match &plan.material {
-        MaterialPlan::One(material) => vec![(plan.name.clone(), *material, raw)],
-        MaterialPlan::ByName(names, other) => {
+        MaterialPlan::One(material) => {
+            vec![(plan.name.clone(), Look { material: *material, emission: None }, raw)]
+        }
+        MaterialPlan::ByName(looks, other) => {
             let parts = mesh::obj::split_by_material(raw).into_iter();
-            let material = |name: &str| names.get(name).copied().unwrap_or(*other);
-            parts.map(|(name, part)| (format!("{}:{name}", plan.name), material(&name), part)).collect()
+            let unknown = Look { material: *other, emission: None };
+            let look = |name: &str| looks.get(name).copied().unwrap_or(unknown);
+            parts.map(|(name, part)| (format!("{}:{name}", plan.name), look(&name), part)).collect()
         }
     };
-    let finish = |(name, material, raw)| {
+    let finish = |(name, look, raw): (String, Look, RawMesh)| {
         let placed = mesh::place(raw, &plan.placement);
-        DraftMesh { name, material, emission: plan.emission, ..placed }
+        DraftMesh { name, material: look.material, emission: plan.emission.or(look.emission), ..placed }
     };
     parts.into_iter().map(finish).collect()
 }
@@ -309,6 +371,7 @@ fn texture(plan: TexturePlan, decoded: Option<Picture>) -> Option<Texture> {
             (name.unwrap_or_default(), decoded?)
         }
         Image::Ready(name, picture) => (name, picture),
+        Image::Part { name, .. } => (name, decoded?),
     };
     let Picture { width, height, texels } = picture;
     Some(Texture { name, width, height, texels, filter: plan.filter, wrap: plan.wrap, to_uv: plan.to_uv })

@@ -8,6 +8,7 @@
 pub(crate) mod mtl;
 pub(crate) mod obj;
 pub(crate) mod ply;
+mod polygon;
 pub(crate) mod serialized;
 pub(crate) mod shapes;
 mod smooth;

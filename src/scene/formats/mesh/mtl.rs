@@ -30,6 +30,10 @@ pub(crate) struct ClassicMaterial {
     pub model: u32,
     /// map_Kd, without its options.
     pub diffuse_map: Option<String>,
+    /// map_Ke, likewise.
+    pub emissive_map: Option<String>,
+    /// map_d, likewise.
+    pub opacity_map: Option<String>,
     /// Keywords of other maps.
     pub other_maps: Vec<String>,
 }
@@ -55,6 +59,8 @@ pub(crate) fn read(bytes: &[u8], path: &Path) -> Result<Vec<ClassicMaterial>, Sc
                 ior: None,
                 model: 2,
                 diffuse_map: None,
+                emissive_map: None,
+                opacity_map: None,
                 other_maps: Vec::new(),
             });
         } else if let Some(material) = materials.last_mut() {
@@ -75,17 +81,21 @@ fn statement(material: &mut ClassicMaterial, word: &[u8], rest: &[u8], text: Str
         b"Tr" => material.dissolve = 1.0 - number()?,
         b"Ni" => material.ior = Some(number()?),
         b"illum" => material.model = number()? as u32,
-        b"map_Kd" => {
-            // Options come first, the file name last; without options the name may hold spaces.
-            let last = text.split_whitespace().last().unwrap_or_default().to_owned();
-            material.diffuse_map = Some(if text.starts_with('-') { last } else { text });
-        }
-        b"map_Ks" | b"map_Ns" | b"map_d" | b"map_bump" | b"map_Bump" | b"bump" | b"disp" | b"norm" => {
+        b"map_Kd" => material.diffuse_map = Some(file_name(text)),
+        b"map_Ke" => material.emissive_map = Some(file_name(text)),
+        b"map_d" => material.opacity_map = Some(file_name(text)),
+        b"map_Ks" | b"map_Ns" | b"map_bump" | b"map_Bump" | b"bump" | b"disp" | b"norm" => {
             material.other_maps.push(String::from_utf8_lossy(word).into_owned());
         }
         _ => {}
     }
     Ok(())
+}
+
+/// The file of a map: options come first, the name last; without options it may hold spaces.
+fn file_name(text: String) -> String {
+    let last = text.split_whitespace().last().unwrap_or_default().to_owned();
+    if text.starts_with('-') { last } else { text }
 }
 
 /// Parses three numbers, or one for a grey.

@@ -1,7 +1,10 @@
-//! Wavefront OBJ: positions, texture coordinates, normals, polygons and material groups of the whole file.
+//! Wavefront OBJ: positions, texture coordinates, normals, polygons and material groups of the objects and groups that
+//! are asked for.
 //!
-//! A vertex is a distinct (position, uv, normal) triple of indices, numbered by first use, and polygons are
-//! fans, as in Mitsuba. Lines, points, curves and smoothing groups are ignored.
+//! A vertex is a distinct (position, uv, normal) triple of indices, numbered by first use. Lines, points, curves and
+//! smoothing groups are ignored.
+//!
+//! Deviations: convex polygons are fans, as in Mitsuba, others are cut by `polygon`.
 //!
 //! Reasons not to use `tobj` (4.0.5, tried behind a `BufRead` that passes it one line at a time, counts them,
 //! and leaves out `o`, `g` and `usemtl`, at which it would split the mesh so that vertices are no longer
@@ -12,23 +15,27 @@
 //! checks all this and finds the faces of each material reads every number and every face, and is as long as
 //! this file.
 
-use super::RawMesh;
+use super::{RawMesh, polygon};
 use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::formats::plan::Selection;
 use glam::{DVec3, Vec2, Vec3};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 const MISSING: u32 = u32::MAX;
 
-/// Reads the OBJ text `bytes`; `path` is for messages.
-pub(crate) fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
-    let mut reader = Reader::default();
+/// Reads the selected part of the OBJ text `bytes`; `path` is for messages.
+pub(crate) fn read(bytes: &[u8], path: &Path, selection: &Selection) -> Result<RawMesh, SceneError> {
+    let mut reader = Reader { selected: selection.only.is_empty(), ..Reader::default() };
     // Guesses from the usual 30 bytes a line; only the speed depends on them.
     reader.positions.reserve(bytes.len() / 100);
     reader.mesh.triangles.reserve(bytes.len() / 60);
     for (number, line) in bytes.split(|&b| b == b'\n').enumerate() {
         let fail = |what: String| SceneError::mesh(Place::line(path, number as u32 + 1), what);
-        reader.line(line).map_err(fail)?;
+        reader.line(line, selection).map_err(fail)?;
+    }
+    if reader.mesh.triangles.is_empty() && !selection.only.is_empty() {
+        return Err(Place::file(path).undefined("object or group", &selection.only.join("\", \"")));
     }
     Ok(reader.finish())
 }
@@ -37,6 +44,12 @@ pub(crate) fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
 pub(crate) fn material_libraries(bytes: &[u8]) -> Vec<String> {
     let lines = bytes.split(|&b| b == b'\n').filter(|l| l.starts_with(b"mtllib"));
     lines.map(|l| String::from_utf8_lossy(&l[6..]).trim().to_owned()).filter(|n| !n.is_empty()).collect()
+}
+
+/// Returns the names of the materials that the faces of the OBJ text `bytes` use.
+pub(crate) fn used_materials(bytes: &[u8]) -> BTreeSet<String> {
+    let lines = bytes.split(|&b| b == b'\n').filter_map(|line| line.trim_ascii().strip_prefix(b"usemtl"));
+    lines.map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect()
 }
 
 #[derive(Default)]
@@ -50,6 +63,11 @@ struct Reader {
     vertices: Vec<Vertex>,
     mesh: RawMesh,
     corners: Vec<u32>,
+    /// Name of the object, and names of the groups, that faces belong to.
+    object: String,
+    groups: Vec<String>,
+    /// True if such faces are asked for.
+    selected: bool,
 }
 
 struct Vertex {
@@ -60,7 +78,7 @@ struct Vertex {
 }
 
 impl Reader {
-    fn line(&mut self, line: &[u8]) -> Result<(), String> {
+    fn line(&mut self, line: &[u8], selection: &Selection) -> Result<(), String> {
         let line = line.trim_ascii();
         let word_end = line.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(line.len());
         let (word, rest) = line.split_at(word_end);
@@ -78,9 +96,23 @@ impl Reader {
                 let name = String::from_utf8_lossy(rest).trim().to_owned();
                 self.mesh.groups.push((name, self.mesh.triangles.len()));
             }
+            b"o" => {
+                self.object = String::from_utf8_lossy(rest).trim().to_owned();
+                self.select(selection);
+            }
+            b"g" => {
+                let names = String::from_utf8_lossy(rest);
+                self.groups = names.split_whitespace().map(str::to_owned).collect();
+                self.select(selection);
+            }
             _ => {}
         }
         Ok(())
+    }
+
+    fn select(&mut self, selection: &Selection) {
+        let is_in = |names: &[String]| names.iter().any(|n| *n == self.object || self.groups.contains(n));
+        self.selected = (selection.only.is_empty() || is_in(&selection.only)) && !is_in(&selection.except);
     }
 
     fn face(&mut self, rest: &[u8]) -> Result<(), String> {
@@ -99,7 +131,10 @@ impl Reader {
         if corners.len() < 3 {
             return Err(format!("a face needs three corners, this one has {}", corners.len()));
         }
-        self.mesh.triangles.extend(corners[1..].windows(2).map(|w| [corners[0], w[0], w[1]]));
+        if self.selected {
+            let position = |&corner: &u32| self.positions[self.vertices[corner as usize].position as usize];
+            polygon::cut(&corners, position, &mut self.mesh.triangles);
+        }
         self.corners = corners;
         Ok(())
     }
@@ -213,7 +248,7 @@ mod tests {
     use super::*;
 
     fn read_text(text: &str) -> Result<RawMesh, String> {
-        read(text.as_bytes(), Path::new("t.obj")).map_err(|e| e.to_string())
+        read(text.as_bytes(), Path::new("t.obj"), &Selection::default()).map_err(|e| e.to_string())
     }
 
     #[test]
@@ -224,6 +259,24 @@ mod tests {
         assert_eq!(mesh.positions[4], DVec3::ZERO);
         assert_eq!(mesh.uvs[4], Vec2::ONE);
         assert!(mesh.normals.is_empty());
+    }
+
+    #[test]
+    fn objects_and_groups_are_chosen_by_name() {
+        let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\no lamp\ng bulb glass\nf 2 3 4\ng base\nf 3 4 1\n\
+            o table\nf 4 1 2\n";
+        let names = |names: &[&str]| names.iter().map(|name| name.to_string()).collect();
+        let count = |only: &[&str], except: &[&str]| {
+            let selection = Selection { only: names(only), except: names(except) };
+            read(text.as_bytes(), Path::new("t.obj"), &selection).map(|mesh| mesh.triangles.len())
+        };
+        assert_eq!(count(&[], &[]).unwrap(), 4);
+        assert_eq!(count(&["lamp"], &[]).unwrap(), 2);
+        assert_eq!(count(&["glass"], &[]).unwrap(), 1);
+        assert_eq!(count(&["lamp"], &["bulb"]).unwrap(), 1);
+        assert_eq!(count(&[], &["lamp"]).unwrap(), 2);
+        let message = count(&["lamp "], &[]).unwrap_err().to_string();
+        assert!(message.contains("no object or group called \"lamp \""), "{message}");
     }
 
     #[test]

@@ -1,7 +1,11 @@
-//! PLY meshes, ASCII and binary of either byte order: vertices with optional normals and texture coordinates,
-//! faces of any size as fans. Other elements and properties are ignored.
+//! PLY meshes, ASCII and binary of either byte order: vertices with optional normals and texture coordinates, faces of
+//! any size, cut by `polygon`. Other elements and properties are ignored.
+//!
+//! Reasons not to use `ply-rs-bw` (4.0.1, tried): a byte that is not UTF-8, as in comments by old exporters, ends the
+//! reading; so does a blank line, or an element over several lines, among ASCII values; every face is a list of its own
+//! in memory; and its messages take three lines.
 
-use super::RawMesh;
+use super::{RawMesh, polygon};
 use crate::scene::formats::error::{Place, SceneError};
 use glam::{DVec3, Vec2, Vec3};
 use std::path::Path;
@@ -267,7 +271,10 @@ fn faces(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> Resu
             if corners.len() < 3 {
                 return Err(format!("a face needs three corners, this one has {}", corners.len()));
             }
-            mesh.triangles.extend(corners[1..].windows(2).map(|w| [corners[0], w[0], w[1]]));
+            // Corners out of range, which are told once all is read, lie anywhere.
+            let positions = &mesh.positions;
+            let position = |&corner: &u32| positions.get(corner as usize).copied().unwrap_or_default();
+            polygon::cut(&corners, position, &mut mesh.triangles);
         }
     }
     Ok(())
@@ -326,6 +333,13 @@ mod tests {
             assert_eq!((&mesh.positions, &mesh.uvs), (&from_ascii.positions, &from_ascii.uvs));
             assert_eq!(mesh.triangles, from_ascii.triangles);
         }
+    }
+
+    #[test]
+    fn old_comments_and_free_lines_are_no_trouble() {
+        let text = ascii().replace("made here", "fait \u{e9}t\u{e9}").replace("0 4 0 1", "\n0 4\n0 1");
+        let bytes: Vec<u8> = text.chars().map(|c| c as u8).collect();
+        assert_eq!(read(&bytes, Path::new("t.ply")).unwrap().triangles.len(), 2);
     }
 
     #[test]

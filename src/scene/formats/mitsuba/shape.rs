@@ -4,7 +4,7 @@ use super::Converter;
 use super::tree::Object;
 use crate::scene::formats::error::SceneError;
 use crate::scene::formats::mesh::{Normals, Placement, shapes};
-use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan, stem_of};
+use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan, Selection, stem_of};
 use crate::scene::material::{Material, MaterialId};
 use glam::{DMat4, DVec3};
 
@@ -67,7 +67,7 @@ impl Converter<'_> {
             // The file's v, flipped by default for OBJ, counts downwards; ours counts upwards.
             "obj" => {
                 v_down = !shape.boolean("flip_tex_coords", true)?;
-                Geometry::Obj(self.file(shape, "filename")?)
+                Geometry::Obj(self.file(shape, "filename")?, Selection::default())
             }
             "ply" => {
                 v_down = !shape.boolean("flip_tex_coords", false)?;
@@ -119,9 +119,9 @@ impl Converter<'_> {
         shape.ignore(&["collapse", "silhouette_sampling_weight", "max_smooth_angle"]);
         shape.report_unused(self.log)?;
         let name = shape.id.clone().unwrap_or_else(|| match &geometry {
-            Geometry::Obj(path) | Geometry::Ply(path) => stem_of(path),
+            Geometry::Obj(path, _) | Geometry::Ply(path) => stem_of(path),
             Geometry::Serialized(path, index) => format!("{}@{index}", stem_of(path)),
-            Geometry::Ready(_) => shape.plugin.clone(),
+            Geometry::Ready(_) | Geometry::Shared(_) => shape.plugin.clone(),
         });
         let place = shape.place.clone();
         let material = MaterialPlan::One(material);

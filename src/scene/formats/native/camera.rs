@@ -16,7 +16,11 @@ const DEFAULT_UP: [f64; 3] = [0.0, 1.0, 0.0];
 
 impl Builder<'_> {
     pub(super) fn shot(&self, scene: &SceneText) -> Result<Shot, SceneError> {
-        let resolution = self.resolution(scene)?;
+        if let (None, Some(shot)) = (&scene.camera, &self.model_shot) {
+            let resolution = self.resolution(scene, shot.resolution)?;
+            return Ok(Shot { resolution, ..shot.clone() });
+        }
+        let resolution = self.resolution(scene, DEFAULT_RESOLUTION)?;
         let unspecified = CameraText::default();
         let (place, text) = match &scene.camera {
             Some(text) => (self.file.place(text.span()), text.get_ref()),
@@ -50,8 +54,8 @@ impl Builder<'_> {
         }
     }
 
-    fn resolution(&self, scene: &SceneText) -> Result<[u32; 2], SceneError> {
-        let Some(text) = &scene.resolution else { return Ok(DEFAULT_RESOLUTION) };
+    fn resolution(&self, scene: &SceneText, default: [u32; 2]) -> Result<[u32; 2], SceneError> {
+        let Some(text) = &scene.resolution else { return Ok(default) };
         let resolution = *text.get_ref();
         if resolution.iter().any(|r| !(1..=65536).contains(r)) {
             let what = format!("the resolution is {} x {}", resolution[0], resolution[1]);

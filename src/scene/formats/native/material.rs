@@ -219,7 +219,7 @@ impl Builder<'_> {
         Reflectance::Textured { texture: self.texture_id(text, place), scale }
     }
 
-    fn texture_id(&mut self, text: &TextureText, place: &Place) -> TextureId {
+    pub(super) fn texture_id(&mut self, text: &TextureText, place: &Place) -> TextureId {
         let wrap = match text.wrap {
             None | Some(WrapText::Repeat) => Wrap::Repeat,
             Some(WrapText::Mirror) => Wrap::Mirror,

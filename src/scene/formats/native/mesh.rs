@@ -1,28 +1,36 @@
 //! Meshes of the native format: generated parts, files and shapes.
 
 use super::Builder;
-use super::text::{ColourText, MeshText, ScaleText, StepText};
+use super::text::{ColourText, MeshText, NamesText, ScaleText, StepText};
 use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::formats::gltf::{self, FRAMES_PER_SECOND, ImportOptions};
 use crate::scene::formats::mesh::{Normals, Placement, RawMesh, shapes};
-use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan, stem_of};
-use crate::scene::material::Reflectance;
+use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan, Selection, stem_of};
+use crate::scene::material::{MaterialId, Reflectance};
 use crate::scene::mesh::Emission;
 use glam::{DMat4, DVec3};
 use lightsplat_scenes::Part;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 impl Builder<'_> {
     pub(super) fn mesh(&mut self, text: &Spanned<MeshText>) -> Result<(), SceneError> {
         let place = self.file.place(text.span());
         let text = text.get_ref();
+        if let Some(path) = self.model(text) {
+            return self.import(&path, text, &place);
+        }
+        if text.lumens_per_watt.is_some() || text.fps.is_some() {
+            let what = "lumens_per_watt and fps mean nothing for a mesh that is no glTF model";
+            return Err(place.wrong(what, "leave them out"));
+        }
         let (name, geometry) = self.geometry(text, &place)?;
-        let material = match (&text.material, &geometry) {
-            (Some(name), _) => {
-                let unknown = || self.file.place(name.span()).undefined("material", name.get_ref());
-                MaterialPlan::One(*self.material_ids.get(name.get_ref()).ok_or_else(unknown)?)
-            }
-            (None, Geometry::Obj(path)) => self.mtl_materials(path, &place)?,
+        if !matches!(geometry, Geometry::Obj(..)) && (text.group.is_some() || text.except.is_some()) {
+            return Err(place.wrong("the mesh has no groups", "leave group and except out"));
+        }
+        let material = match (self.named_material(text)?, &geometry) {
+            (Some(material), _) => MaterialPlan::One(material),
+            (None, Geometry::Obj(path, _)) => self.mtl_materials(path, &place)?,
             (None, _) => {
                 return Err(place.wrong("the mesh has no material", "add material = \"...\""));
             }
@@ -39,6 +47,47 @@ impl Builder<'_> {
         };
         self.contents.meshes.push(MeshPlan { place, name, geometry, placement, material, emission });
         Ok(())
+    }
+
+    /// The file of a glTF model, if the mesh is one.
+    fn model(&self, text: &MeshText) -> Option<PathBuf> {
+        let path = self.folder.join(text.file.as_ref()?);
+        let extension = path.extension()?.to_string_lossy().to_lowercase();
+        matches!(extension.as_str(), "glb" | "gltf").then_some(path)
+    }
+
+    fn import(&mut self, path: &Path, text: &MeshText, place: &Place) -> Result<(), SceneError> {
+        let positive = |value: Option<f64>, key: &str| match value {
+            Some(value) if !(value > 0.0 && value.is_finite()) => {
+                Err(place.wrong(format!("{key} is {value}"), "give a number above 0"))
+            }
+            value => Ok(value),
+        };
+        let emission = text.emission.as_ref().map(|colour| self.emission(colour, text, place)).transpose()?;
+        let options = ImportOptions {
+            to_world: self.transform(&text.transform)?,
+            selection: selection(text),
+            flip_normals: text.flip_normals,
+            material: self.named_material(text)?,
+            emission,
+            lumens_per_watt: positive(text.lumens_per_watt, "lumens_per_watt")?.map(|lumens| lumens as f32),
+            fps: positive(text.fps, "fps")?.unwrap_or(FRAMES_PER_SECOND),
+            camera: None,
+        };
+        let imported = gltf::import(path, place, &options, &mut self.contents, self.log)?;
+        for source in imported.sources {
+            if !self.sources.iter().any(|known| known.0 == source.0) {
+                self.sources.push(source);
+            }
+        }
+        self.model_shot = self.model_shot.take().or(imported.shot);
+        Ok(())
+    }
+
+    fn named_material(&self, text: &MeshText) -> Result<Option<MaterialId>, SceneError> {
+        let Some(name) = &text.material else { return Ok(None) };
+        let unknown = || self.file.place(name.span()).undefined("material", name.get_ref());
+        self.material_ids.get(name.get_ref()).copied().map(Some).ok_or_else(unknown)
     }
 
     fn emission(
@@ -67,12 +116,12 @@ impl Builder<'_> {
                 let name = stem_of(&path);
                 let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
                 let geometry = match extension.as_deref() {
-                    Some("obj") => Geometry::Obj(path),
+                    Some("obj") => Geometry::Obj(path, selection(text)),
                     Some("ply") => Geometry::Ply(path),
                     Some("serialized") => Geometry::Serialized(path, text.index.unwrap_or(0)),
                     _ => {
                         let what = format!("unknown kind of mesh file \"{file}\"");
-                        return Err(place.wrong(what, "use .obj, .ply or .serialized"));
+                        return Err(place.wrong(what, "use .glb, .gltf, .obj, .ply or .serialized"));
                     }
                 };
                 Ok((name, geometry))
@@ -110,6 +159,16 @@ impl Builder<'_> {
         let other = self.default_material(place);
         Ok(MaterialPlan::ByName(names, other))
     }
+}
+
+/// Groups that a mesh asks for.
+fn selection(text: &MeshText) -> Selection {
+    let names = |names: &Option<NamesText>| match names {
+        None => Vec::new(),
+        Some(NamesText::One(name)) => vec![name.clone()],
+        Some(NamesText::Several(names)) => names.clone(),
+    };
+    Selection { only: names(&text.group), except: names(&text.except) }
 }
 
 fn matrix(step: &StepText, place: &Place) -> Result<DMat4, SceneError> {

@@ -1,4 +1,4 @@
-//! The native format: a TOML description over OBJ, PLY and generated geometry.
+//! The native format: a TOML description over glTF, OBJ, PLY and generated geometry.
 //!
 //! Its keys, their types, units and defaults stand in `docs/scene-format.md`, which the tests hold against the code.
 
@@ -14,6 +14,7 @@ mod text;
 
 use super::error::{Log, Place, SceneError};
 use super::plan::{Contents, Plan, folder_of, read_text, stem_of};
+use crate::scene::draft::Shot;
 use crate::scene::material::MaterialId;
 use glam::DVec3;
 use lightsplat_scenes::Part;
@@ -92,6 +93,8 @@ struct Builder<'a> {
     /// Files read on the way (MTL), with their hashes.
     sources: Vec<(PathBuf, u64)>,
     material_ids: BTreeMap<String, MaterialId>,
+    /// Cameras of the first glTF model with one.
+    model_shot: Option<Shot>,
     contents: Contents,
 }
 
@@ -110,6 +113,7 @@ impl<'a> Builder<'a> {
             parts,
             sources: Vec::new(),
             material_ids: BTreeMap::new(),
+            model_shot: None,
             contents: Contents::default(),
         })
     }

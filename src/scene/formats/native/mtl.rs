@@ -1,19 +1,25 @@
 //! Materials from an OBJ's MTL files.
 //!
-//! Classic Phong materials become a Lambert base and a GGX lobe with α = sqrt(2 / (Ns + 2)); illumination models 3
-//! and 5 a mirror, 4, 6, 7 and 9, or a dissolve below 1, glass. The lobe is dimmed where base and lobe would reflect
-//! more than they receive. All are two-sided.
+//! Classic materials become a dielectric of roughness α = sqrt(2 / (Ns + 2)) over a Lambert base. Ks is its
+//! reflectance at normal incidence, at most that of dielectrics, .08: greater values, such as exporters write for all
+//! materials, say how bright highlights are, not how much is reflected. Over a black Kd they say it: that is a metal.
+//! Illumination models 3 and 5 are mirrors, 4, 6, 7 and 9 glass. d and map_d are the share of the surface that is
+//! there, Ke is emission. All are two-sided.
 
 use super::Builder;
 use super::text::TextureText;
-use crate::math::Rgb;
+use crate::math::{Rgb, luminance};
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::mesh::mtl::{self, ClassicMaterial};
 use crate::scene::formats::mesh::obj;
-use crate::scene::formats::plan::{fnv1a, folder_of, read_file};
-use crate::scene::material::{Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance};
+use crate::scene::formats::plan::{Look, fnv1a, folder_of, read_file};
+use crate::scene::material::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Share};
+use crate::scene::mesh::Emission;
 use std::collections::BTreeMap;
 use std::path::Path;
+
+/// Largest reflectance of dielectrics at normal incidence.
+const MAX_DIELECTRIC: f32 = 0.08;
 
 impl Builder<'_> {
     /// Reads the materials of the OBJ's libraries, by name.
@@ -21,9 +27,10 @@ impl Builder<'_> {
         &mut self,
         path: &Path,
         place: &Place,
-    ) -> Result<BTreeMap<String, MaterialId>, SceneError> {
-        let mut ids = BTreeMap::new();
+    ) -> Result<BTreeMap<String, Look>, SceneError> {
+        let mut looks = BTreeMap::new();
         let text = read_file(path, place)?;
+        let used = obj::used_materials(&text);
         let from = Place::file(path);
         let folder = folder_of(path);
         for library in obj::material_libraries(&text) {
@@ -32,20 +39,21 @@ impl Builder<'_> {
             if !self.sources.iter().any(|s| s.0 == file) {
                 self.sources.push((file.clone(), fnv1a(&bytes)));
             }
-            for source in mtl::read(&bytes, &file)? {
+            for source in mtl::read(&bytes, &file)?.into_iter().filter(|source| used.contains(&source.name)) {
                 let material = self.convert_mtl(&source, &file)?;
-                let id = self.contents.add_material(material, source.place);
-                ids.insert(source.name, id);
+                let emission = self.mtl_emission(&source, &file);
+                let material = self.contents.add_material(material, source.place);
+                looks.insert(source.name, Look { material, emission });
             }
         }
-        if ids.is_empty() {
+        if looks.is_empty() {
             self.log.warn(
                 place,
                 "neither the mesh nor its file has a material",
                 "a grey of 0.5 stands in",
             )?;
         }
-        Ok(ids)
+        Ok(looks)
     }
 
     /// Returns the material for faces that the file leaves without one.
@@ -60,21 +68,20 @@ impl Builder<'_> {
         let place = &source.place;
         let (kd, ks) = (source.diffuse, source.specular);
         let name = source.name.clone();
+        let is_glass = matches!(source.model, 4 | 6 | 7 | 9);
+        let opacity = if is_glass { None } else { self.mtl_opacity(source, file) };
         let made = |diffuse, lobe| Material {
             name: name.clone(),
             two_sided: true,
+            opacity,
             diffuse,
             lobes: Vec::from_iter(lobe),
             ..Material::default()
         };
-        if source.emissive != Rgb::ZERO {
-            let what = format!("the material \"{name}\" emits");
-            self.log.warn(place, what, "it does not: give the mesh an emission in the scene file")?;
-        }
         for map in &source.other_maps {
             self.log.warn(place, format!("the material \"{name}\" has a {map}"), "it is ignored")?;
         }
-        if matches!(source.model, 4 | 6 | 7 | 9) || source.dissolve < 1.0 {
+        if is_glass {
             let eta = source.ior.filter(|n| *n > 0.0).unwrap_or(1.5);
             let white = Reflectance::Constant(Rgb::ONE);
             let glass = Lobe::Dielectric { eta, thin: false, reflectance: white, transmittance: white };
@@ -97,23 +104,54 @@ impl Builder<'_> {
         if source.model < 2 || ks == Rgb::ZERO || source.exponent <= 0.0 {
             return Ok(made(diffuse, None));
         }
-        let room = (Rgb::ONE - kd.min(Rgb::ONE)).max(Rgb::ZERO);
-        let lobe = Lobe::Rough {
+        let lobe = |fresnel, scale| Lobe::Rough {
             distribution: Distribution::Ggx,
             alpha: (2.0 / (source.exponent + 2.0)).sqrt().into(),
-            fresnel: Fresnel::One,
-            scale: Reflectance::Constant(ks.min(room)),
+            fresnel,
+            scale: Reflectance::Constant(scale),
         };
-        if ks.cmpgt(room).any() {
-            let what = format!("Kd and Ks of the material \"{name}\" exceed 1 together");
-            self.log.warn(place, what, "its lobe is dimmed")?;
+        if source.diffuse_map.is_none() && kd == Rgb::ZERO {
+            return Ok(made(Reflectance::BLACK, Some(lobe(Fresnel::One, ks.min(Rgb::ONE)))));
         }
-        Ok(made(diffuse, Some(lobe)))
+        let root = luminance(ks).clamp(0.0, MAX_DIELECTRIC).sqrt();
+        let eta = (1.0 + root) / (1.0 - root);
+        let coated = made(diffuse, Some(lobe(Fresnel::Dielectric(eta), Rgb::ONE)));
+        Ok(Material { coat: Some(Coat { eta, nonlinear: false }), ..coated })
+    }
+
+    fn mtl_opacity(&mut self, source: &ClassicMaterial, file: &Path) -> Option<Share> {
+        let scale = source.dissolve.clamp(0.0, 1.0);
+        match &source.opacity_map {
+            Some(map) => {
+                let text = TextureText { raw: true, ..self.mtl_file(map, file) };
+                let texture = self.texture_id(&text, &Place::file(file));
+                Some(Share::Textured { texture, scale })
+            }
+            None => (scale < 1.0).then_some(Share::Constant(scale)),
+        }
+    }
+
+    fn mtl_emission(&mut self, source: &ClassicMaterial, file: &Path) -> Option<Emission> {
+        let map = source.emissive_map.as_ref().map(|map| self.mtl_texture(map, file));
+        let texture = match map {
+            Some(Reflectance::Textured { texture, .. }) => Some(texture),
+            _ => None,
+        };
+        // Many exporters write a black Ke beside a map.
+        let radiance =
+            if texture.is_some() && source.emissive == Rgb::ZERO { Rgb::ONE } else { source.emissive };
+        (radiance != Rgb::ZERO).then_some(Emission { radiance, texture, two_sided: false })
     }
 
     fn mtl_texture(&mut self, name: &str, file: &Path) -> Reflectance {
+        let text = self.mtl_file(name, file);
+        self.texture(&text, &Place::file(file))
+    }
+
+    /// The picture that an MTL file names.
+    fn mtl_file(&self, name: &str, file: &Path) -> TextureText {
         let beside = folder_of(file).join(name.replace('\\', "/"));
         let relative = beside.strip_prefix(&self.folder).unwrap_or(&beside).to_string_lossy().into_owned();
-        self.texture(&TextureText { file: relative, ..TextureText::default() }, &Place::file(file))
+        TextureText { file: relative, ..TextureText::default() }
     }
 }

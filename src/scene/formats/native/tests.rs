@@ -1,5 +1,5 @@
 use crate::scene::formats::{Level, LoadOptions, Loaded, load};
-use crate::scene::{DeltaLight, Environment, Fresnel, Lobe, Reflectance, Roughness, TextureId};
+use crate::scene::{DeltaLight, Environment, Fresnel, Lobe, Reflectance, Roughness, Share, TextureId};
 use glam::{DVec3, Vec3};
 use std::fs;
 
@@ -124,24 +124,48 @@ fn what_is_wrong_is_named_with_its_line() {
 fn an_obj_brings_its_mtl_materials() {
     let obj =
         b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 2 3\nusemtl shiny\nf 1 2 4\n\
-        usemtl lost\nf 2 3 4\n";
-    let mtl = b"newmtl red\nKd 0.8 0.1 0.1\nKs 0 0 0\nillum 2\nnewmtl shiny\nKd 0.4 0.4 0.4\nKs 0.5 0.5 0.9\nNs 98\n";
-    let text = format!("{HEAD}[[mesh]]\nfile = \"a.obj\"\n{SKY}");
+        usemtl lost\nf 2 3 4\nusemtl brass\nf 3 4 1\nusemtl lamp\nf 4 1 2\n";
+    let mtl = b"newmtl red\nKd 0.8 0.1 0.1\nKs 0 0 0\nillum 2\nnewmtl shiny\nKd 0.4 0.4 0.4\nKs 0.5 0.5 0.5\nNs 98\n\
+        newmtl brass\nKs 0.9 0.7 0.4\nNs 98\nnewmtl lamp\nKe 9 8 7\nd 0.25\nnewmtl unused\nKd 1 1 1\nmap_bump x.png\n";
+    let text = format!("{HEAD}[[mesh]]\nfile = \"a.obj\"\n");
     let loaded = load_with(&text, &[("a.obj", obj), ("a.mtl", mtl)]).unwrap();
     let scene = &loaded.scene;
     let names: Vec<&str> =
         scene.meshes.iter().map(|m| scene.materials[m.material.0 as usize].name.as_str()).collect();
-    assert_eq!(names, ["red", "shiny", "default"]);
-    let shiny = &scene.materials[scene.meshes[1].material.0 as usize];
-    let [Lobe::Rough { alpha: Roughness::Constant(alpha), scale: Reflectance::Constant(scale), .. }] =
-        shiny.lobes[..]
+    assert_eq!(names, ["red", "shiny", "default", "brass", "lamp"]);
+    let material = |mesh: usize| &scene.materials[scene.meshes[mesh].material.0 as usize];
+    let [Lobe::Rough { alpha: Roughness::Constant(alpha), fresnel: Fresnel::Dielectric(eta), .. }] =
+        material(1).lobes[..]
     else {
         panic!()
     };
     assert!((alpha - (2.0f32 / 100.0).sqrt()).abs() < 1e-6);
-    assert!((scale - Vec3::new(0.5, 0.5, 0.6)).length() < 1e-6, "dimmed: {scale}");
-    assert_eq!(loaded.warnings.len(), 1, "{:?}", loaded.warnings);
+    assert!((((eta - 1.0) / (eta + 1.0)).powi(2) - 0.08).abs() < 1e-6, "the most of dielectrics: {eta}");
+    assert!(material(1).coat.is_some_and(|coat| coat.eta == eta));
+    let [Lobe::Rough { fresnel: Fresnel::One, scale: Reflectance::Constant(scale), .. }] =
+        material(3).lobes[..]
+    else {
+        panic!()
+    };
+    assert_eq!(scale, Vec3::new(0.9, 0.7, 0.4));
+    let emission: Vec<Option<Vec3>> = scene.meshes.iter().map(|m| m.emission.map(|e| e.radiance)).collect();
+    assert_eq!(emission, [None, None, None, None, Some(Vec3::new(9.0, 8.0, 7.0))]);
+    assert_eq!((material(3).opacity, material(4).opacity), (None, Some(Share::Constant(0.25))));
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
     assert_eq!(scene.sources.len(), 3);
+
+    let lamp = format!(
+        "{HEAD}[[mesh]]\nfile = \"b.obj\"\ngroup = \"lamp\"\nemission = 5\n\
+        [[mesh]]\nfile = \"b.obj\"\nexcept = [\"lamp\", \"cat\"]\n"
+    );
+    let grouped =
+        b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\no floor\nf 1 2 3\no lamp\nf 1 2 4\n";
+    let scene = load_with(&lamp, &[("b.obj", grouped), ("a.mtl", mtl)]).unwrap().scene;
+    let lit: Vec<bool> = scene.meshes.iter().map(|m| m.emission.is_some()).collect();
+    assert_eq!((lit, scene.meshes[1].triangles.len()), (vec![true, false], 1));
+    let message =
+        load_with(&lamp.replace("\"lamp\"\ne", "\"lam\"\ne"), &[("b.obj", grouped), ("a.mtl", mtl)]);
+    assert!(message.unwrap_err().contains("no object or group called \"lam\""));
 }
 
 #[test]

@@ -166,6 +166,14 @@ pub(super) struct MeshText {
     pub shape: Option<String>,
     /// Index of the mesh in a `.serialized` file.
     pub index: Option<usize>,
+    /// Groups of an OBJ file, or nodes of a glTF model, that are asked for.
+    pub group: Option<NamesText>,
+    /// Those that are left out.
+    pub except: Option<NamesText>,
+    /// Units of a glTF model's lights for one here.
+    pub lumens_per_watt: Option<f64>,
+    /// Frames a second of a glTF model's animation.
+    pub fps: Option<f64>,
     pub material: Option<Spanned<String>>,
     #[serde(default)]
     pub transform: Vec<Spanned<StepText>>,
@@ -174,6 +182,13 @@ pub(super) struct MeshText {
     pub emission_two_sided: bool,
     #[serde(default)]
     pub flip_normals: bool,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(untagged, expecting = "expected a name or a list of names")]
+pub(super) enum NamesText {
+    One(String),
+    Several(Vec<String>),
 }
 
 /// One step of a transform; exactly one key.
