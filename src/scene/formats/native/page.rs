@@ -72,6 +72,7 @@ fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
     let pictures = vec!["\"a.png\"", "{ file = \"a.png\", tiles = [2, 2] }"];
     match kind {
         "text" => (vec![], vec!["1", "[1.0]"]),
+        "name or names" => (vec!["\"a\"", "[\"a\", \"b\"]"], vec!["1", "[1]"]),
         "integer" => (vec!["2"], vec!["0.5", "\"x\"", "-1"]),
         "number" => (vec!["0.5", "2"], vec!["\"x\"", "true"]),
         "yes or no" => (vec!["true", "false"], vec!["1", "\"yes\""]),
@@ -275,6 +276,15 @@ fn colours_are_the_same_everywhere_and_pictures_only_where_the_page_says() {
             assert_eq!(picture.is_ok(), row.kind == "colour or picture", "{name}: {} {picture:?}", row.key);
         }
     }
+}
+
+#[test]
+fn the_tutorial_of_the_readme_loads_by_itself() {
+    let readme = include_str!("../../../../README.md");
+    let (_, rest) = readme.split_once("<!-- tutorial -->\n```toml\n").unwrap();
+    let text = rest.split("```").next().unwrap();
+    assert!(text.lines().filter(|line| !line.is_empty()).count() <= 20);
+    outcome(text).unwrap_or_else(|e| panic!("{e}"));
 }
 
 #[test]
