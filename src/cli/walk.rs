@@ -69,16 +69,21 @@ struct Frames<'a> {
 
 impl Frames<'_> {
     /// Renders the frames of a chunk that lack, and those that have to be for their records.
-    fn chunk(&mut self, chunk: PlannedChunk) -> Result<(), Failure> {
+    fn chunk(&mut self, mut chunk: PlannedChunk) -> Result<(), Failure> {
         let Frames { job, session, .. } = *self;
         let records = job.records_file(&chunk);
+        let saved = chunk.saved.take();
+        let behind = saved.as_ref().map_or(0, |(index, _)| index + 1);
+        let mut restored =
+            saved.and_then(|(_, bytes)| Walk::restored(session, job.goal.clone(), job.limits, &bytes));
+        if restored.is_none() && behind > 0 {
+            // Written by another program of this version: all begins anew.
+            return self.chunk(chunk.without_saved());
+        }
         for run in &chunk.runs {
-            let saved = chunk.saved.as_ref().filter(|_| run.from_saved);
-            let walk = saved
-                .and_then(|(_, bytes)| Walk::restored(session, job.goal.clone(), job.limits, bytes))
+            let mut walk = restored
+                .take_if(|_| run.from_saved)
                 .unwrap_or_else(|| Walk::new(session, job.goal.clone(), job.limits));
-            let behind = chunk.saved.as_ref().map_or(0, |(saved, _)| saved + 1);
-            let mut walk = walk;
             for index in run.frames.clone() {
                 self.frame(&mut walk, &chunk, index)?;
                 if let Some(path) = records.as_ref().filter(|_| index >= behind && !chunk.is_last(index)) {
@@ -135,7 +140,7 @@ impl Frames<'_> {
     /// Writes a frame and states its files.
     fn write(&mut self, frame: &mut Frame, number: usize, key: &str, view: &View) -> Result<(), Failure> {
         let (exr, png) = self.job.files(number);
-        let factor = self.factor(view);
+        let factor = self.factor(number, view)?;
         frame.film.metadata.set("frame", number as f64);
         frame.film.metadata.set("job", key);
         let mut film = mem::replace(&mut frame.film, Film::new(Image::new(0, 0)));
@@ -152,14 +157,20 @@ impl Frames<'_> {
     }
 
     /// Factor of the PNG files, if they are wanted. Frames of the whole path decide, so that any part of it has the
-    /// same.
-    fn factor(&mut self, view: &View) -> Option<f32> {
-        let exposure = self.job.exposure?;
-        let found = || match exposure {
+    /// same; frame `number` is the first that needs it.
+    fn factor(&mut self, number: usize, view: &View) -> Result<Option<f32>, Failure> {
+        let Some(exposure) = self.job.exposure.filter(|_| self.factor.is_none()) else {
+            return Ok(self.factor);
+        };
+        let factor = match exposure {
             Exposure::Auto => exposure::over_path(self.session, view.window.film, self.control).exp2(),
             Exposure::Ev(ev) => ev.exp2(),
         };
-        Some(*self.factor.get_or_insert_with(found))
+        if self.control.is_cancelled() {
+            return Err(interrupted(number));
+        }
+        self.factor = Some(factor);
+        Ok(self.factor)
     }
 
     /// Prints the remarks of a frame that no frame before it had.

@@ -193,6 +193,11 @@ pub struct PlannedChunk {
 }
 
 impl PlannedChunk {
+    /// The same where no records were saved.
+    pub fn without_saved(self) -> PlannedChunk {
+        PlannedChunk { runs: chunk::runs(&self.done, None), saved: None, ..self }
+    }
+
     /// Number of frames to render.
     pub fn count(&self) -> usize {
         self.runs.iter().map(|run| run.frames.len()).sum()

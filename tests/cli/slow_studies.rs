@@ -19,8 +19,10 @@ fn json(path: &Path) -> Value {
 #[test]
 fn the_table_covers_all_methods_and_renders_nothing_twice() {
     let sandbox = Sandbox::new();
+    // The room with a path as long as the table's walk.
+    fs::write(sandbox.path("path.toml"), super::walk::PATH.replace("frame = 6", "frame = 24")).unwrap();
     let run = |more: &[&str]| {
-        let base = ["bench", "table1", "room.xml", "knot", "--scenes", SCENES, "-o", "study"];
+        let base = ["bench", "table1", "path.toml", "knot", "--scenes", SCENES, "-o", "study"];
         let size = ["--resolution", "64x64", "--threads", "2"];
         sandbox.run(&[&base, &size[..], more].concat()).expect(0)
     };
@@ -50,6 +52,14 @@ fn the_table_covers_all_methods_and_renders_nothing_twice() {
             // Without a denoiser there are no paths to compare with.
             let against_paths = &row["versus"][2];
             assert!(against_paths["at_equal_flip"].is_object() || against_paths.is_null(), "{row}");
+        }
+        let walk = rows.iter().find(|row| row["paper"] == "LWalk2");
+        assert_eq!(walk.is_some(), scene["scene"] == scenes[0]["scene"]);
+        if let Some(walk) = walk {
+            let of = |what: &str| [walk, &rows[0]].map(|row| row[what].as_f64().unwrap());
+            assert!(of("light_pass")[0] < 0.5 * of("light_pass")[1], "{walk}");
+            let brightness = walk["against_reference"]["brightness"].as_f64().unwrap();
+            assert!((0.7..1.3).contains(&brightness), "{walk}");
         }
         // Includes the two references.
         pictures += rows.len() + 2;

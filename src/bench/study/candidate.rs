@@ -16,12 +16,19 @@ pub struct Candidate {
     pub method: Method,
     /// True if its picture is denoised.
     pub denoise: bool,
+    /// Frames of a walk-through that ends at the picture, which is its last; `None` for a picture alone.
+    pub walk: Option<usize>,
 }
 
 impl Candidate {
     /// A method under a label, denoised if its pictures are meant to be.
     pub fn new(label: impl Into<String>, method: Method) -> Candidate {
-        Candidate { label: label.into(), denoise: method.leaves_noise(), method }
+        Candidate { label: label.into(), denoise: method.leaves_noise(), method, walk: None }
+    }
+
+    /// A walk-through of so many frames by a method that keeps records.
+    pub fn walk(label: impl Into<String>, method: Method, frames: usize) -> Candidate {
+        Candidate { walk: Some(frames), ..Candidate::new(label, method) }
     }
 
     /// The path tracer of a number of samples a pixel, denoised.

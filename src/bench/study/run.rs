@@ -8,7 +8,9 @@ use crate::film::Image;
 use crate::method::LightStore;
 use crate::paths::Look;
 use crate::session::{Finish, Goal};
-use crate::stats::{Stage, Stats, Stopwatch};
+use crate::stats::{Stage, StageTime, Stats, Stopwatch};
+use crate::view::View;
+use crate::walk::{KeepLimits, Walk};
 use serde_json::{Value, json};
 
 /// A rendered picture with its statistics.
@@ -37,7 +39,14 @@ impl Study<'_> {
         let place = self.place(subject, candidate, None);
         match self.kept(&place) {
             Some(run) => Ok(run),
-            None => self.keep(&place, self.render(subject, candidate)?),
+            None => {
+                let views = candidate.walk.and_then(|frames| subject.walk(frames));
+                let rendered = match views {
+                    Some(views) => self.walk(subject, candidate, &views),
+                    None => self.render(subject, candidate),
+                };
+                self.keep(&place, rendered?)
+            }
         }
     }
 
@@ -74,6 +83,7 @@ impl Study<'_> {
             "repeats": self.plan.repeats,
             "method": method.name(),
             "denoise": candidate.denoise && self.denoises(),
+            "walk": candidate.walk,
             // All settings, including those that the command line lacks.
             "settings": format!("{method:?}"),
         });
@@ -89,6 +99,42 @@ impl Study<'_> {
     fn keep(&self, place: &Place, run: Run) -> Result<Run, StudyError> {
         let kept = Kept { color: run.color.clone(), layers: Vec::new(), facts: run.stats.clone() };
         self.store.save(&place.file, &place.key, &kept)?;
+        Ok(run)
+    }
+
+    /// Renders a walk-through over `views`, once; returns its last picture with the means over all frames of times and
+    /// of records computed.
+    fn walk(&self, subject: &Subject, candidate: &Candidate, views: &[View]) -> Result<Run, StudyError> {
+        let denoise = Some(candidate.denoise && self.denoises());
+        let goal = Goal { method: candidate.method, denoise, ..Goal::default() };
+        let mut walk = Walk::new(&subject.session, goal, KeepLimits::default());
+        let mut times = [0.0; Stage::ALL.len()].map(|_: f64| StageTime::default());
+        let mut records = 0.0;
+        let mut last = None;
+        for view in views {
+            // The only other errors are of settings, which studies choose, and of memory.
+            let frame = walk.frame(view, self.control).ok().filter(|frame| frame.complete);
+            let Some(frame) = frame else { return Err(StudyError::Interrupted) };
+            for (time, stage) in times.iter_mut().zip(Stage::ALL) {
+                *time += frame.stats.stage(stage).unwrap_or_default();
+            }
+            let run = Run { color: frame.film.color, stats: frame.stats.to_json() };
+            records += run.counter("Walk", "new records").unwrap_or_default();
+            last = Some(run);
+        }
+        let Some(mut run) = last else { return Err(StudyError::Interrupted) };
+        let frames = views.len() as f64;
+        run.stats["times"] = Value::Object(Default::default());
+        for (time, stage) in times.iter().zip(Stage::ALL).filter(|(time, _)| time.wall_seconds > 0.0) {
+            let StageTime { wall_seconds, cpu_seconds } = *time;
+            let mean = StageTime { wall_seconds: wall_seconds / frames, cpu_seconds: cpu_seconds / frames };
+            run.stats["times"][stage.key()] = json!(mean);
+        }
+        for (layer, count) in [("direct", 0.0), ("indirect", records / frames)] {
+            run.stats["counters"]["Cache"][format!("records, {layer}")] = json!(count);
+        }
+        let seconds = run.seconds(&Stage::ALL);
+        (self.say)(&format!("{}, {}, a frame: {seconds:.2} s", subject.name, candidate.label));
         Ok(run)
     }
 

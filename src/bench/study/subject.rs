@@ -24,6 +24,15 @@ pub struct Subject {
 }
 
 impl Subject {
+    /// Views of a walk-through that ends at the view of the picture: the frames of the camera path that come after it,
+    /// the last one first. `None` if the path does not hold so many, or not the picture's camera.
+    pub fn walk(&self, frames: usize) -> Option<Vec<View>> {
+        let path = &self.session.cameras.path;
+        let first = path.iter().position(|camera| *camera == self.view.camera)?;
+        let cameras = path.get(first..first + frames)?.iter().rev();
+        Some(cameras.map(|camera| View { camera: *camera, ..self.view }).collect())
+    }
+
     /// Builds its acceleration structure anew.
     pub(super) fn rebuild(&mut self, quality: BuildQuality) -> Result<(), StudyError> {
         Ok(self.session.rebuild(quality)?)

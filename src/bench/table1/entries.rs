@@ -1,6 +1,6 @@
 //! Rows of the table. Settings are the methods' own defaults but for the exceptions stated here.
 
-use crate::bench::study::{Candidate, Study};
+use crate::bench::study::{Candidate, Study, Subject};
 use crate::method::{Method, cache, lightcuts, photon_cache, reconstruction};
 use crate::radiance_cache::{DirectBy, Footprints, FoundBy};
 
@@ -43,12 +43,16 @@ const CURVE: [f32; 4] = [0.5, 2.0, 4.0, 8.0];
 /// Numbers of rays of photon-cache that make its curve, relative to the default.
 const RAYS: [f32; 3] = [0.25, 0.5, 2.0];
 
+/// Frames of the walk-through.
+const WALK: usize = 24;
+
 /// Samples a pixel of the denoised paths that are compared, as many as the default has.
 const DENOISED_SPP: u32 = 16;
 
-/// Returns all rows; denoised paths only if the study denoises. Other methods but those and the default take the eye
-/// samples of reconstruction cuts, lightcuts per pixel their virtual lights and cuts too.
-pub fn entries(study: &Study) -> Vec<Entry> {
+/// Returns all rows for a scene, that of the walk-through only where its camera path passes the picture; denoised paths
+/// only if the study denoises. Other methods but those and the default take the eye samples of reconstruction cuts,
+/// lightcuts per pixel their virtual lights and cuts too.
+pub fn entries(study: &Study, subject: &Subject) -> Vec<Entry> {
     let reconstruction = reconstruction::Settings::default();
     let shaped = |footprints| {
         let mut settings = cache::Settings::default();
@@ -89,6 +93,10 @@ pub fn entries(study: &Study) -> Vec<Entry> {
         entry("lightcuts", None, Family::Lightcuts, Method::Lightcuts(cuts)),
         entry("lightcuts, unshared", Some("LC"), Family::Unshared, Method::Lightcuts(unshared)),
     ];
+    if subject.walk(WALK).is_some() {
+        let candidate = Candidate::walk("walk, a frame", Method::default(), WALK);
+        entries.insert(1, Entry { candidate, family: Family::Own, paper: Some("LWalk2"), main: true });
+    }
     for factor in CURVE {
         let mut settings = cuts;
         settings.cut.epsilon *= factor;

@@ -13,6 +13,9 @@
 //! | T_cache | splatting and adaptation |
 //! | total | all of that, the eye pass and denoising |
 //!
+//! The row of a walk-through, LWalk2, states means over 24 frames that end at the picture, whose errors are its: of
+//! the records that a frame adds to those before it, and of times; the light pass is the first frame's alone.
+//!
 //! Deviations: the paper's ΣT leaves out T_light, our total does not. All errors are against a path-traced
 //! reference of the same scene: of its pixels, and of light. Errors of light are, for methods that keep a few
 //! eye samples a pixel, against a reference of those points alone, without their aliasing; for methods that
@@ -81,7 +84,7 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
         let subject = study.subject(path)?;
         let reference = study.reference(&subject, Look::Pixels)?;
         let light = study.reference(&subject, eye_samples())?;
-        let entries = entries(study);
+        let entries = entries(study, &subject);
         let runs: Vec<Run> =
             entries.iter().map(|entry| study.run(&subject, &entry.candidate)).collect::<Result<_, _>>()?;
         table.scenes.push(SceneTable {
