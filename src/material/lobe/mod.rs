@@ -56,10 +56,7 @@ impl LobeModel {
     /// True if light goes on into isolated directions, so that value and density are 0 everywhere.
     #[inline]
     pub fn is_delta(&self) -> bool {
-        match self {
-            LobeModel::Mirror(_) | LobeModel::Interface(_) | LobeModel::Gap => true,
-            _ => false,
-        }
+        matches!(self, LobeModel::Mirror(_) | LobeModel::Interface(_) | LobeModel::Gap)
     }
 
     /// True if light goes on in another direction than it comes in as by mirrors and glass, be it rough.

@@ -298,20 +298,22 @@ impl Converter<'_> {
         Ok(glass(name, (eta, bsdf.plugin == "thindielectric"), [reflectance, transmittance]))
     }
 
-    /// Phong and Ward: a Lambert base and a GGX lobe of the same width and reflectance.
+    /// Phong and Ward: a Lambert base and a microfacet lobe of the same reflectance. For Phong's it is GGX with the α,
+    /// within 4 %, that is nearest in the mean square over inclinations up to 57°, for exponents from 5 to 1000; Ward's
+    /// is Beckmann's but for its factors of the cosines.
     fn classic_glossy(&mut self, bsdf: &Object, name: String) -> Result<Material, SceneError> {
         let diffuse = self.reflectance(bsdf, "diffuse_reflectance", 0.5)?;
         let scale = self.reflectance(bsdf, "specular_reflectance", 0.2)?;
-        let alpha = if bsdf.plugin == "phong" {
-            (2.0 / (bsdf.positive("exponent", 30.0)? + 2.0)).sqrt()
+        let (distribution, alpha) = if bsdf.plugin == "phong" {
+            (Distribution::Ggx, (1.0 / (bsdf.positive("exponent", 30.0)? + 2.0)).sqrt())
         } else {
             bsdf.ignore(&["variant"]);
-            (bsdf.positive("alpha_u", 0.1)? * bsdf.positive("alpha_v", 0.1)?).sqrt()
+            let alpha = (bsdf.positive("alpha_u", 0.1)? * bsdf.positive("alpha_v", 0.1)?).sqrt();
+            (Distribution::Beckmann, alpha)
         };
         let what = format!("the bsdf \"{}\" is not modelled", bsdf.plugin);
-        self.log.warn(&bsdf.place, what, format!("a GGX lobe of alpha {alpha:.4} stands in"))?;
-        let alpha = alpha as f32;
-        let (distribution, alpha) = (Distribution::Ggx, alpha.into());
+        self.log.warn(&bsdf.place, what, format!("a {distribution:?} lobe of alpha {alpha:.4} stands in"))?;
+        let alpha = (alpha as f32).into();
         let lobe = Lobe::Rough { distribution, alpha, fresnel: Fresnel::One, scale };
         Ok(Material { name, diffuse, lobes: vec![lobe], ..Material::default() })
     }
