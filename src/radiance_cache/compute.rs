@@ -7,7 +7,8 @@
 
 use super::compensate::{self, Clamps, Cutter};
 use super::footprint::{Footprint, FootprintLimits};
-use super::gather::{GatheredLayer, GatheredLayer16, LitCluster, RecordPoints};
+use super::gather::{GatheredLayer, GatheredLayer16};
+use super::lit_cluster::{LitCluster, RecordPoints};
 use super::occluder_distance::{OccluderDistances, OccluderLog};
 use super::occlusion_hessian::OcclusionHessian;
 use super::record::{Diagnostics, Record};

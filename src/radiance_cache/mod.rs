@@ -33,6 +33,7 @@ pub mod footprint;
 pub mod gather;
 pub mod inspect;
 pub mod kept;
+pub mod lit_cluster;
 pub mod occluder_distance;
 pub mod occlusion_hessian;
 pub mod placement;

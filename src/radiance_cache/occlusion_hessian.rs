@@ -5,7 +5,7 @@
 //! estimate (see [`super::edges`]), so their absolute values are added.
 
 use super::edges::CellLight;
-use super::gather::ArrivingLight;
+use super::lit_cluster::ArrivingLight;
 use super::probe::{Probes, azimuths16};
 use crate::gradient::LocalVpl;
 use crate::math::{LANES, Rgb, luminance};
@@ -134,7 +134,8 @@ fn tensor(axis: Vec2, [along, across]: [f32; 2]) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::super::fixtures::{MATERIALS, candidate, light};
-    use super::super::gather::{GatheredLayer16, LitCluster, RecordPoints};
+    use super::super::gather::GatheredLayer16;
+    use super::super::lit_cluster::{LitCluster, RecordPoints};
     use super::*;
     use crate::lightcut::Transfer;
     use crate::math::Vec3x16;

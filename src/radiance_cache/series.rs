@@ -7,7 +7,7 @@
 //! normal mirrors to the sample's mirror direction, scaled to reflect as much of uniform light as the sample's
 //! own.
 
-use super::gather::LitCluster;
+use super::lit_cluster::LitCluster;
 use super::record::Record;
 use super::settings::CacheSettings;
 use super::source::Candidate;

@@ -282,11 +282,16 @@ fn check_material(
         }
     }
     material.opacity = material.opacity.filter(|opacity| *opacity != Share::Constant(1.0));
-    check_sum(material, place)
+    scale_sum(material, place, report, log)
 }
 
-/// Checks that a bare Lambert base and lobes of constant reflectance do not exceed 1 together.
-fn check_sum(material: &Material, place: &Place) -> Result<(), SceneError> {
+/// Scales a bare Lambert base and lobes of constant reflectance that exceed 1 together, as Mitsuba does.
+fn scale_sum(
+    material: &mut Material,
+    place: &Place,
+    report: &mut SanitizeReport,
+    log: &mut Log,
+) -> Result<(), SceneError> {
     let (None, Reflectance::Constant(base)) = (material.coat, material.diffuse) else { return Ok(()) };
     let constant = |lobe: &Lobe| match lobe {
         Lobe::Rough { fresnel: Fresnel::One, scale: Reflectance::Constant(scale), .. }
@@ -297,7 +302,17 @@ fn check_sum(material: &Material, place: &Place) -> Result<(), SceneError> {
     if lobes != Rgb::ZERO && (base + lobes).max_element() > 1.0 + ALBEDO_SLACK {
         let what =
             format!("material \"{}\": diffuse {base} and specular {lobes} exceed 1 together", material.name);
-        return Err(place.wrong(what, "lower one of them"));
+        log.warn(place, what, "they are scaled to 1; lower one of them")?;
+        report.clamped += 1;
+        let factor = (base + lobes).max_element().recip();
+        material.diffuse = Reflectance::Constant(base * factor);
+        for lobe in &mut material.lobes {
+            if let Lobe::Rough { fresnel: Fresnel::One, scale: Reflectance::Constant(scale), .. }
+            | Lobe::Mirror { fresnel: Fresnel::One, scale: Reflectance::Constant(scale) } = lobe
+            {
+                *scale *= factor;
+            }
+        }
     }
     Ok(())
 }

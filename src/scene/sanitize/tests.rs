@@ -130,7 +130,17 @@ fn reflectances_must_not_create_energy() {
         scale: Reflectance::Constant(Rgb::splat(scale)),
     };
     let glossy = |fresnel, scale| Material { lobes: vec![lobe(fresnel, scale)], ..grey() };
-    assert!(sanitize(&mut draft(vec![], vec![glossy(Fresnel::One, 0.6)])).is_err(), "0.5 + 0.6");
+    // 0.5 + 0.75 are scaled to 1.
+    let mut d = draft(vec![], vec![glossy(Fresnel::One, 0.75)]);
+    let mut log = Log::new(false);
+    super::sanitize(&mut d, &mut log).unwrap();
+    assert_eq!(d.materials[0].diffuse, Reflectance::Constant(Rgb::splat(0.4)));
+    let scaled = Reflectance::Constant(Rgb::splat(0.6));
+    assert!(matches!(d.materials[0].lobes[..], [Lobe::Rough { scale, .. }] if scale == scaled));
+    assert!(log.into_warnings()[0].to_string().contains("exceed 1 together"));
+    assert!(
+        super::sanitize(&mut draft(vec![], vec![glossy(Fresnel::One, 0.75)]), &mut Log::new(true)).is_err()
+    );
     assert!(sanitize(&mut draft(vec![], vec![glossy(Fresnel::Dielectric(1.5), 1.0)])).is_ok());
     let mut d = draft(vec![], vec![glossy(Fresnel::One, 0.5)]);
     sanitize(&mut d).unwrap();
