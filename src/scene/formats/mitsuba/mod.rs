@@ -12,6 +12,7 @@
 
 mod access;
 mod bsdf;
+mod bsdf_kinds;
 mod cie;
 mod emitter;
 mod integrator;
