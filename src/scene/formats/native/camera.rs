@@ -56,7 +56,7 @@ impl Builder<'_> {
 
     fn resolution(&self, scene: &SceneText, default: [u32; 2]) -> Result<[u32; 2], SceneError> {
         let Some(text) = &scene.resolution else { return Ok(default) };
-        let resolution = *text.get_ref();
+        let resolution = text.get_ref().0;
         if resolution.iter().any(|r| !(1..=65536).contains(r)) {
             let what = format!("the resolution is {} x {}", resolution[0], resolution[1]);
             return Err(self.file.place(text.span()).wrong(what, "give 1 to 65536 each"));

@@ -10,7 +10,7 @@ pub(super) struct SceneText {
     pub name: Option<String>,
     pub generator: Option<Spanned<String>>,
     pub max_depth: Option<u32>,
-    pub resolution: Option<Spanned<[u32; 2]>>,
+    pub resolution: Option<Spanned<PairText>>,
     pub camera: Option<Spanned<CameraText>>,
     #[serde(default)]
     pub material: Vec<Spanned<MaterialText>>,
@@ -20,6 +20,19 @@ pub(super) struct SceneText {
     pub light: Vec<Spanned<LightText>>,
     pub environment: Option<Spanned<EnvironmentText>>,
     pub sky: Option<Spanned<SkyText>>,
+}
+
+/// Two whole numbers, no more: the parser's own arrays would leave out what follows.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "Vec<u32>")]
+pub(super) struct PairText(pub [u32; 2]);
+
+impl TryFrom<Vec<u32>> for PairText {
+    type Error = &'static str;
+
+    fn try_from(numbers: Vec<u32>) -> Result<PairText, &'static str> {
+        numbers.try_into().map(PairText).map_err(|_| "expected an array of length 2")
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]
