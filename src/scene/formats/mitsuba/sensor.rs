@@ -83,8 +83,12 @@ impl Converter<'_> {
             let fallback = "only that of a parallel projection's width is taken";
             self.log.warn(place, "the sensor's to_world scales", fallback)?;
         }
+        let (mut right, mut up) = (right, up);
         if right.dot(up).abs().max(up.dot(forward).abs()).max(forward.dot(right).abs()) > 1e-3 {
-            return Err(place.wrong("the sensor's to_world shears", "use a rotation"));
+            self.log.warn(place, "the sensor's to_world shears", "it looks the same way, not sheared")?;
+            up = up.reject_from_normalized(forward).try_normalize().ok_or_else(singular)?;
+            right = right.reject_from_normalized(forward).reject_from_normalized(up);
+            right = right.try_normalize().ok_or_else(singular)?;
         }
         let origin = to_world.transform_point3(DVec3::ZERO);
         let (tan_half_x, near, far, filter) = (1.0, 0.0, f64::INFINITY, PixelFilter::Box);

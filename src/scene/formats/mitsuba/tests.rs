@@ -249,6 +249,29 @@ fn the_sensor_takes_every_axis_of_the_field_of_view() {
 }
 
 #[test]
+fn a_sensor_that_shears_is_straightened_with_a_warning() {
+    let sensor = |first_row: &str| {
+        let text = format!(
+            "<scene version=\"3.0.0\"><sensor type=\"perspective\"><transform name=\"to_world\"><matrix \
+            value=\"{first_row} 0 1 0 0 0 0 1 0 0 0 0 1\"/></transform></sensor></scene>"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.xml");
+        fs::write(&path, text).unwrap();
+        load(&path, &LoadOptions::default())
+    };
+    let loaded = sensor("1 0.02 0 0").unwrap();
+    let camera = loaded.cameras.still;
+    assert!(camera.right.dot(camera.up).abs() < 1e-6 && camera.forward == Vec3::Z, "{camera:?}");
+    assert!(
+        loaded.warnings.iter().any(|warning| warning.to_string().contains("shears")),
+        "{:?}",
+        loaded.warnings
+    );
+    assert!(sensor("0 1 0 0").is_err());
+}
+
+#[test]
 fn errors_of_several_objects_are_told_together_each_with_its_line() {
     let body = "<shape type=\"obj\"/>\n<shape type=\"sphere\"><float name=\"radius\" value=\"-1\"/></shape>\n\
         <emitter type=\"spot\"><float name=\"cutoff_angle\" value=\"200\"/></emitter>";
