@@ -115,7 +115,7 @@ pub struct ReadingArgs {
     /// Camera of the scene, by its number, counted from 1, or its name [default: the first]
     #[arg(long, value_name = "N|NAME")]
     camera: Option<String>,
-    /// Value of `$NAME` in a Mitsuba scene, in place of its <default>; may be given again
+    /// Value of `$NAME` in a Mitsuba scene, in place of its `<default>`; may be given again
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
     define: Vec<(String, String)>,
     /// Fail on anything in the scene that is not modelled, and on a black picture, instead of warning
