@@ -83,12 +83,16 @@ fn scenes_are_read_once_and_resuming_renders_what_lacks() {
         + &["a", "b", "c"]
             .map(|n| format!("[[picture]]\nscene = 'room.xml'\noutput = 'out/{n}.exr'\n"))
             .concat();
-    // Reading warns of a material that is not modelled, once for each time that it is done.
+    // Reading warns of what is not modelled, once for each time that it is done.
     let sandbox = sandbox(&jobs.replace(", camera = '3'", ""));
     let scene = super::ROOM.replace("type=\"diffuse\"", "type=\"roughdielectric\"");
     fs::write(sandbox.path("room.xml"), scene).unwrap();
     let stderr = batch(&sandbox, &[]).expect(0).stderr;
-    assert_eq!(stderr.matches("a rough dielectric is not modelled").count(), 1, "{stderr}");
+    assert_eq!(
+        stderr.matches("\"reflectance\" of bsdf \"roughdielectric\" is not modelled").count(),
+        1,
+        "{stderr}"
+    );
     assert!(stderr.contains("3 of 3 pictures and walks done"), "{stderr}");
     let kept = ["a", "c"].map(|n| read(&sandbox.path(&format!("out/{n}.exr"))));
     fs::remove_file(sandbox.path("out/b.exr")).unwrap();

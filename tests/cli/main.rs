@@ -100,7 +100,9 @@ const ROOM: &str = r#"<scene version="3.0.0">
   <sensor type="perspective">
     <float name="fov" value="50"/>
     <transform name="to_world"><lookat origin="0, 3, 6" target="0, 0.5, 0" up="0, 1, 0"/></transform>
-    <film type="hdrfilm"><integer name="width" value="96"/><integer name="height" value="64"/></film>
+    <film type="hdrfilm">
+      <integer name="width" value="96"/><integer name="height" value="64"/><rfilter type="box"/>
+    </film>
   </sensor>
   <shape type="rectangle">
     <transform name="to_world"><rotate x="1" angle="-90"/><scale value="3"/></transform>
