@@ -103,17 +103,22 @@ fn picture(path: &Path, texels: [[u8; 3]; 4]) {
     image::RgbImage::from_raw(2, 2, texels.concat()).expect("four texels").save(path).expect("a file");
 }
 
-/// Renders the scene with a material in both; asserts that the pictures pass the z-test and that their means agree
-/// within half a per cent or their noise.
+/// Renders the scene with a material in both.
 fn agrees(name: &str, bsdf: &str) {
     let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("scene.xml");
-    std::fs::write(&file, SCENE.replace("BSDF", bsdf)).expect("a file");
     let texels = [[230, 180, 130], [25, 50, 75], [25, 50, 75], [230, 180, 130]];
     picture(&folder.path().join("checker.png"), texels);
+    scene_agrees(name, folder.path(), &SCENE.replace("BSDF", bsdf));
+}
+
+/// Renders a scene of a film of 24 by 24 pixels, whose files are in a folder, in both; asserts that the pictures pass
+/// the z-test and that their means agree within half a per cent or their noise.
+pub fn scene_agrees(name: &str, folder: &Path, scene: &str) {
+    let file = folder.join("scene.xml");
+    std::fs::write(&file, scene).expect("a file");
     let loaded = load(&file, &LoadOptions::default()).expect("the scene loads");
     assert!(loaded.warnings.is_empty(), "{name}: {:?}", loaded.warnings);
-    let Some([reference, variance]) = by_mitsuba(&file, folder.path()) else { return };
+    let Some([reference, variance]) = by_mitsuba(&file, folder) else { return };
     let world = World::new(loaded.scene, 2).expect("the scene builds");
     let view = View { camera: loaded.cameras.still, window: Window::whole([SIZE, SIZE]) };
     let settings = path::Settings { spp: SPP, ..Default::default() };

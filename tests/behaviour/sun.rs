@@ -2,13 +2,10 @@
 
 use crate::common::*;
 use glam::{DVec3, Vec3};
-use lightsplat::film::metrics::{Variances, compare};
-use lightsplat::film::{Image, Window};
+use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::{Renderer, cache, lightcuts, path, photon_cache, reconstruction};
 use lightsplat::scene::{DistantDisc, Environment};
-use lightsplat::view::View;
-use std::process::Command;
 
 /// A sun over +x, of the true one's size, and its direction.
 fn sun(scene: &mut SceneAndView, half_angle: f32) -> Vec3 {
@@ -92,11 +89,7 @@ fn shadows_of_a_wide_sun_are_soft() {
     }
 }
 
-/// Edge of the pictures in pixels, and samples a pixel of either renderer.
-const SIZE: u32 = 24;
-const SPP: u32 = 1024;
-
-/// A room with an open side under sun and sky, seen by a lens and through a wide filter.
+/// A room with an open side under sun and sky, seen by a lens.
 const ROOM: &str = r#"<scene version="3.0.0">
     <integrator type="path"><integer name="max_depth" value="8"/></integrator>
     <sensor type="thinlens">
@@ -143,62 +136,13 @@ const ROOM: &str = r#"<scene version="3.0.0">
     </shape>
 </scene>"#;
 
-/// Renders with other seeds over and over: means and their variances.
-const SCRIPT: &str = r"
-import sys
-import numpy as np
-import mitsuba as mi
-mi.set_variant('scalar_rgb')
-scene, runs = mi.load_file(sys.argv[1]), 16
-pictures = [np.array(mi.render(scene, spp=int(sys.argv[3]) // runs, seed=seed)) for seed in range(runs)]
-mean, variance = np.mean(pictures, 0), np.var(pictures, 0, ddof=1) / runs
-np.concatenate([mean.ravel(), variance.ravel()]).astype('<f4').tofile(sys.argv[2])
-";
-
 mod slow_mitsuba {
-    use super::*;
+    use super::ROOM;
+    use crate::mitsuba::scene_agrees;
 
     #[test]
     fn a_room_under_sun_and_sky_is_as_by_the_package_mitsuba() {
-        if !Command::new("python3").args(["-c", "import mitsuba"]).output().is_ok_and(|o| o.status.success())
-        {
-            eprintln!("skipped: there is no Python package mitsuba");
-            return;
-        }
         let folder = tempfile::tempdir().expect("a folder");
-        let (file, values) = (folder.path().join("scene.xml"), folder.path().join("values"));
-        std::fs::write(&file, ROOM).expect("a file");
-        let output = Command::new("python3")
-            .args(["-c", SCRIPT])
-            .arg(&file)
-            .arg(&values)
-            .arg(SPP.to_string())
-            .output();
-        let output = output.expect("a process");
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let bytes = std::fs::read(values).expect("values");
-        let numbers: Vec<f32> =
-            bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().expect("four bytes"))).collect();
-        let image = |numbers: &[f32]| {
-            let mut image = Image::new(SIZE, SIZE);
-            let colours = numbers.chunks_exact(3).map(|c| Rgb::new(c[0], c[1], c[2]));
-            image.pixels.iter_mut().zip(colours).for_each(|(pixel, colour)| *pixel = colour);
-            image
-        };
-        let (mean, variance) = numbers.split_at(numbers.len() / 2);
-        let (reference, variance) = (image(mean), image(variance));
-        let SceneAndView { scene, view } = load_scene(&file, None);
-        let view = View { window: Window::whole([SIZE, SIZE]), ..view };
-        let world = world(SceneAndView { scene, view });
-        let output = rendered(&world, &path::Settings { spp: SPP, ..Default::default() });
-        let variances = Variances { test: output.variance.as_ref(), reference: Some(&variance) };
-        let result = compare(&output.color, &reference, variances).expect("the pictures compare");
-        let z = result.z_test.expect("both variances are known");
-        let ratios = (result.mean_ratio, result.mean_ratio_std_error);
-        eprintln!("passed {:.5}, z² {:.2}, ratio {ratios:?}", z.share_passed, z.mean_z_squared);
-        assert!(z.passed, "only {:.4} of the pixels agree", z.share_passed);
-        for ratio in ratios.0.into_iter().flatten() {
-            assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
-        }
+        scene_agrees("sun and sky", folder.path(), ROOM);
     }
 }
