@@ -6,6 +6,7 @@ mod compare;
 mod denoise;
 mod interrupt;
 mod merge;
+mod movie;
 mod output;
 mod plan;
 mod sheet;
