@@ -95,7 +95,8 @@ pub struct PictureArgs {
     /// Denoising.
     #[command(flatten)]
     pub denoise: DenoiseArgs,
-    /// Leave out pictures whose files are whole and come of the same scene, settings and version of the program
+    /// Leave out pictures whose files are whole and come of the same scene, settings and version of the program; go on
+    /// with pictures of paths that were stopped
     #[arg(long)]
     pub resume: bool,
     /// Keep times and the number of threads out of the files: equal renders are equal bytes
@@ -267,7 +268,7 @@ pub struct DenoiseFileArgs {
 #[command(after_help = exit::HELP)]
 pub struct MergeArgs {
     /// Pictures (OpenEXR) of the same scene, view, method and settings by different seeds; each counts as much as it
-    /// has samples. Of denoised ones, their layer `noisy`
+    /// has samples, pixel by pixel where paths were stopped. Of denoised ones, their layer `noisy`
     #[arg(required = true, num_args = 2..)]
     pub inputs: Vec<PathBuf>,
     /// Picture to write

@@ -1,6 +1,7 @@
 //! The key of a picture: a hash of all that decides what is in its files, by which `--resume` knows them again.
 
-use crate::film::{ExrFile, Metadata};
+use crate::film::ExrFile;
+use crate::method::path::Begun;
 use crate::scene::formats::fnv1a;
 use crate::session::{Goal, Session, Wanted};
 use serde_json::{Value, json};
@@ -40,11 +41,19 @@ fn hash(decisive: Value) -> String {
 
 /// True if the files of a picture, the number of its frame given, are whole and have this key.
 pub fn is_done((exr, png): (&Path, Option<&Path>), frame: Option<usize>, key: &str) -> bool {
-    let is_it = |metadata: Metadata| {
-        metadata.text("job") == Some(key)
-            && metadata.number("frame") == frame.map(|number| number as f64)
-            && metadata.text("partial") == Some("false")
-    };
-    ExrFile::read(exr).is_ok_and(|file| file.color().is_ok() && is_it(file.metadata()))
+    ExrFile::read(exr).is_ok_and(|file| file.color().is_ok() && is_it(&file, frame, key, "false"))
         && png.is_none_or(|png| image::open(png).is_ok())
+}
+
+/// The samples of the picture that has this key, where it was interrupted and can go on.
+pub fn begun(exr: &Path, frame: Option<usize>, key: &str) -> Option<Begun> {
+    let file = ExrFile::read(exr).ok()?;
+    is_it(&file, frame, key, "true").then(|| Begun::of(&file)).flatten()
+}
+
+fn is_it(file: &ExrFile, frame: Option<usize>, key: &str, partial: &str) -> bool {
+    let metadata = file.metadata();
+    metadata.text("job") == Some(key)
+        && metadata.number("frame") == frame.map(|number| number as f64)
+        && metadata.text("partial") == Some(partial)
 }

@@ -1,5 +1,5 @@
 //! `lightsplat merge`: one picture of several of the same view by different seeds, each counting as much as it has
-//! samples.
+//! samples, pixel by pixel where it was interrupted.
 
 use super::args::MergeArgs;
 use super::exit::Failure;
@@ -7,7 +7,8 @@ use super::job::check_outputs;
 use super::talk;
 use crate::denoise::{NOISY, NOISY_VARIANCE};
 use crate::film::metrics::{rel_mse_of_variance, standard_error};
-use crate::film::{ExrFile, Metadata, write_png};
+use crate::film::{ExrFile, Metadata, SAMPLES, Weight, write_png};
+use crate::method::path::Begun;
 use anyhow::anyhow;
 use serde_json::Value;
 use std::path::Path;
@@ -47,9 +48,12 @@ pub fn run(args: MergeArgs) -> Result<(), Failure> {
             }
             seeds.push(seed);
         }
-        weights.push(spp);
+        weights.push(file.numbers(SAMPLES).map_or(Weight::Whole(spp), |own| Weight::ByPixel(own.pixels)));
     }
-    let mut files = files.into_iter().map(|(_, file)| file);
+    let mut files = files.into_iter().map(|(_, mut file)| {
+        file.remove_layer(SAMPLES);
+        file
+    });
     let Some(mut merged) = files.next() else { return Ok(()) };
     merged.merge(&files.collect::<Vec<_>>(), &weights, &[VARIANCE]).map_err(Failure::input)?;
     let color = merged.color().map_err(Failure::input)?;
@@ -60,8 +64,8 @@ pub fn run(args: MergeArgs) -> Result<(), Failure> {
     OWN.iter().for_each(|fact| merged.remove_fact(fact));
     let own: Vec<String> = facts[0].iter().map(|(key, _)| key.to_owned()).collect();
     own.iter().filter(|key| key.starts_with("verified_")).for_each(|key| merged.remove_fact(key));
-    merged.set("spp", weights.iter().sum::<f64>());
     merged.set("seed", seeds.join(","));
+    count_samples(&mut merged, &weights, color.pixels.len());
     let mut said = format!("wrote {}, merged of {} pictures", args.output.display(), weights.len());
     let mut written = vec![args.output.clone()];
     let factor = args.png.exposure.factor(&color);
@@ -83,11 +87,13 @@ fn noisy(path: &Path) -> Result<ExrFile, Failure> {
     let mut file = ExrFile::read(path).map_err(Failure::input)?;
     let facts = file.metadata();
     let refuse = |reason: &str| Err(Failure::input(anyhow!("{}: {reason}", path.display())));
-    if facts.text("partial") == Some("true") {
+    if facts.text("partial") == Some("true") && file.numbers(SAMPLES).is_none() {
         return refuse(
-            "its rendering was interrupted, so that its pixels do not have as many samples as it says",
+            "its rendering was interrupted, and it does not say how many samples its pixels have: only --method path \
+             does; render the rest by the same command with --resume",
         );
     }
+    Begun::remove_squares(&mut file);
     if facts.text("denoised").is_some_and(|library| library != "false") {
         let Ok(noisy) = file.layer(NOISY) else {
             return refuse(
@@ -101,6 +107,18 @@ fn noisy(path: &Path) -> Result<ExrFile, Failure> {
     }
     file.remove_fact("denoised");
     Ok(file)
+}
+
+/// States the samples of a merged picture: their number, or its mean, and those of each pixel, where they differ. The
+/// picture is partial where a pixel has none.
+fn count_samples(merged: &mut ExrFile, weights: &[Weight], pixels: usize) {
+    let samples = |pixel| weights.iter().map(|weight| weight.of(pixel)).sum::<f64>();
+    let all: Vec<f64> = (0..pixels).map(samples).collect();
+    merged.set("spp", all.iter().sum::<f64>() / pixels.max(1) as f64);
+    merged.set("partial", if all.contains(&0.0) { "true" } else { "false" });
+    if all.iter().any(|n| *n != all[0]) {
+        merged.add_numbers(SAMPLES, all.into_iter().map(|n| n as u32).collect());
+    }
 }
 
 /// Seeds of a picture: several, if it has been merged.

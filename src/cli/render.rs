@@ -8,7 +8,8 @@ use super::job_key;
 use super::progress::Watch;
 use super::scene::Opened;
 use super::{interrupt, picture, scene, talk, threads};
-use crate::film::Film;
+use crate::film::{Film, SAMPLES};
+use crate::method::path::Begun;
 use crate::progress::Control;
 use crate::session::{BLACK, Frame, FrameError, Remark};
 use crate::stats::{Stage, Stopwatch, peak_resident_bytes};
@@ -37,12 +38,14 @@ pub fn still(job: &RenderJob, opened: &Opened, span: Span, control: &Control) ->
         talk::note(&format!("{} is there already, left as it is", exr.display()));
         return Ok(());
     }
-    let mut frame = render(job, opened, span, control)?;
+    let begun = job.resume.then(|| job_key::begun(exr, job.framing.frame, &key)).flatten();
+    let mut frame = render(job, opened, begun, (span, control))?;
     frame.film.metadata.set("job", key);
     if job.reproducible {
         picture::forget_circumstances(&mut frame.film);
     }
     let is_black = frame.is_black();
+    let can_go_on = frame.film.layers.iter().any(|layer| layer.name == SAMPLES);
     let Frame { film, mut stats, mut facts, remarks, complete, unverified, .. } = frame;
     for remark in remarks {
         match remark {
@@ -77,19 +80,33 @@ pub fn still(job: &RenderJob, opened: &Opened, span: Span, control: &Control) ->
         (true, true) => {
             Err(Failure::interrupted(anyhow!("interrupted; {output} is complete, its error not measured")))
         }
-        (false, _) => Err(Failure::interrupted(anyhow!("interrupted; {output} is partial"))),
+        (false, _) => {
+            let further = if can_go_on { "; go on by the same command with --resume" } else { "" };
+            Err(Failure::interrupted(anyhow!("interrupted; {output} is partial{further}")))
+        }
     }
 }
 
 /// The frame, with the times of opening its session and the facts that only the command knows.
-fn render(job: &RenderJob, opened: &Opened, span: Span, control: &Control) -> Result<Frame, Failure> {
+fn render(
+    job: &RenderJob,
+    opened: &Opened,
+    begun: Option<Begun>,
+    (span, control): (Span, &Control),
+) -> Result<Frame, Failure> {
     let Opened { session, warnings } = opened;
     let view = View::new(&session.cameras, &job.framing).map_err(Failure::usage)?;
     if control.is_cancelled() {
         return Err(Failure::interrupted(FrameError::Interrupted));
     }
     let mut progress = Watch::new(job.progress, Course::new(1, span));
-    let frame = progress.frame(job.framing.frame, control, || session.frame(&view, &job.goal, control));
+    let frame = progress.frame(job.framing.frame, control, || match begun {
+        Some(begun) => {
+            talk::note(&format!("goes on with the samples of {}", job.output.display()));
+            session.rest_of_frame(&view, &job.goal, begun, control)
+        }
+        None => session.frame(&view, &job.goal, control),
+    });
     let mut frame = frame.map_err(|error| match error {
         FrameError::Interrupted => Failure::interrupted(error),
         FrameError::Memory { .. } | FrameError::Unplannable(_) => Failure::usage(error),

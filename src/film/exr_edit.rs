@@ -66,8 +66,19 @@ impl ExrFile {
     pub fn remove_layer(&mut self, name: &str) {
         for part in &mut self.parts.layer_data {
             part.channel_data.list.retain(|channel| {
-                text(&channel.name).rsplit_once('.').is_none_or(|(layer, _)| layer != name)
+                let channel = text(&channel.name);
+                channel.rsplit_once('.').map_or(channel.as_str(), |(layer, _)| layer) != name
             });
+        }
+    }
+
+    /// Adds a channel of whole numbers of the size of the first part.
+    pub fn add_numbers(&mut self, name: &str, numbers: Vec<u32>) {
+        if let Some(part) = self.parts.layer_data.first_mut() {
+            let mut list = std::mem::take(&mut part.channel_data.list);
+            let name = Text::from_slice_unchecked(name.as_bytes());
+            list.push(AnyChannel::new(name, FlatSamples::U32(numbers)));
+            part.channel_data = AnyChannels::sort(list);
         }
     }
 

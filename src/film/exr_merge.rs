@@ -4,16 +4,35 @@ use super::exr_read::text;
 use super::{ExrFile, ImageError};
 use ::exr::prelude::FlatSamples;
 
+/// Weight of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Weight {
+    /// The same for all pixels.
+    Whole(f64),
+    /// By pixel.
+    ByPixel(Vec<u32>),
+}
+
+impl Weight {
+    /// The weight of a pixel.
+    pub fn of(&self, pixel: usize) -> f64 {
+        match self {
+            Weight::Whole(weight) => *weight,
+            Weight::ByPixel(weights) => weights.get(pixel).copied().unwrap_or_default().into(),
+        }
+    }
+}
+
 impl ExrFile {
     /// Puts the weighted mean of the pictures in the place of every channel of floats, and of the layers of `variances`
-    /// the variance of that mean; ids stay. All pictures have the same channels and size.
+    /// the variance of that mean; 0 where nothing has weight. Ids stay. All pictures have the same channels and size.
     ///
     /// # Errors
     /// If they have not.
     pub fn merge(
         &mut self,
         others: &[ExrFile],
-        weights: &[f64],
+        weights: &[Weight],
         variances: &[&str],
     ) -> Result<(), ImageError> {
         if let Some(other) = others.iter().find(|other| other.shape() != self.shape()) {
@@ -21,7 +40,7 @@ impl ExrFile {
             let reason = format!("its parts or channels are not those of {a}");
             return Err(ImageError::Decode { path: b.to_string().into(), reason });
         }
-        let sum: f64 = weights.iter().sum();
+        let sum = |pixel: usize| weights.iter().map(|weight| weight.of(pixel)).sum::<f64>();
         for (p, part) in self.parts.layer_data.iter_mut().enumerate() {
             for (c, channel) in part.channel_data.list.iter_mut().enumerate() {
                 let name = text(&channel.name);
@@ -34,12 +53,10 @@ impl ExrFile {
                 }
                 let mut means = vec![0.0f64; channel.sample_data.len()];
                 for (samples, weight) in std::iter::once(&channel.sample_data).chain(of_others).zip(weights) {
-                    let part = weight / sum;
-                    let factor = if is_variance { part * part } else { part };
-                    means
-                        .iter_mut()
-                        .zip(samples.values_as_f32())
-                        .for_each(|(m, x)| *m += factor * f64::from(x));
+                    for (i, (mean, x)) in means.iter_mut().zip(samples.values_as_f32()).enumerate() {
+                        let part = weight.of(i) / sum(i).max(f64::MIN_POSITIVE);
+                        *mean += if is_variance { part * part } else { part } * f64::from(x);
+                    }
                 }
                 channel.sample_data = FlatSamples::F32(means.into_iter().map(|mean| mean as f32).collect());
             }

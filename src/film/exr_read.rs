@@ -5,7 +5,9 @@ use super::{CameraMatrices, Image, ImageError, Metadata, Value};
 use crate::film::Window;
 use crate::math::Rgb;
 use ::exr::meta::header::Header;
-use ::exr::prelude::{AttributeValue, Error, FlatImage, Layer, ReadChannels, ReadLayers, Text, Vec2, read};
+use ::exr::prelude::{
+    AttributeValue, Error, FlatImage, FlatSamples, Layer, ReadChannels, ReadLayers, Text, Vec2, read,
+};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -74,6 +76,19 @@ impl ExrFile {
     /// the one channel `name.Y` or `name` as grey.
     pub fn layer(&self, name: &str) -> Result<Image, ImageError> {
         self.join(self.find(name, &LAYER).ok_or_else(|| self.missing(format!("layer `{name}`")))?)
+    }
+
+    /// The whole numbers of the channel `name`.
+    pub fn numbers(&self, name: &str) -> Option<Image<u32>> {
+        let part = self.parts.layer_data.first()?;
+        let channel = part.channel_data.list.iter().find(|channel| text(&channel.name) == name)?;
+        let (width, height) = (part.size.0, part.size.1);
+        match &channel.sample_data {
+            FlatSamples::U32(pixels) if pixels.len() == width * height => {
+                Some(Image { width: width as u32, height: height as u32, pixels: pixels.clone() })
+            }
+            _ => None,
+        }
     }
 
     /// Returns the names of all layers that have a colour, in the file's order; "" is the picture's own.

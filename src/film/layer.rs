@@ -10,6 +10,9 @@
 use super::Image;
 use crate::math::Rgb;
 
+/// Layer of the samples of each pixel, where they differ.
+pub const SAMPLES: &str = "samples";
+
 /// An image beside the colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {

@@ -22,9 +22,10 @@ pub mod tone;
 mod window;
 
 pub use error::ImageError;
+pub use exr_merge::Weight;
 pub use exr_read::{ExrFile, read_exr};
 pub use exr_write::write_exr;
-pub use layer::{Layer, Pixels, Preview};
+pub use layer::{Layer, Pixels, Preview, SAMPLES};
 pub use layers::{CameraMatrices, Film, Metadata, Value};
 pub use png::{write_png, write_srgb8};
 pub use tone::Exposure;

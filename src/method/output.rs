@@ -12,6 +12,8 @@ pub struct Output {
     pub variance: Option<Image>,
     /// Further images.
     pub extra: Vec<Layer>,
+    /// Layers by which the picture can go on where it is interrupted; none where the method cannot.
+    pub begun: Vec<Layer>,
     /// Counters and times.
     pub stats: Stats,
     /// False if the method was cancelled: the picture is partial.

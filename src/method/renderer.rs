@@ -2,6 +2,7 @@
 
 use super::ladder::Move;
 use super::lights::LightStore;
+use super::path::Begun;
 use super::{Output, Prepared, Sampled};
 use crate::film::Window;
 use crate::paths::Look;
@@ -32,6 +33,19 @@ pub trait Renderer: Settings + Sampled {
         world: &World,
         lights: &LightStore,
         _kept: &mut KeptRecords,
+        view: &View,
+        control: &Control,
+    ) -> Output {
+        self.render(world, lights, view, control)
+    }
+
+    /// Renders the rest of a picture of the same settings and `view` that was interrupted. Methods whose pictures do
+    /// not go on render it anew.
+    fn render_rest(
+        &self,
+        world: &World,
+        lights: &LightStore,
+        _begun: &Begun,
         view: &View,
         control: &Control,
     ) -> Output {

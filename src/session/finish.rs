@@ -67,20 +67,23 @@ impl<'a> Finish<'a> {
         self.denoiser.as_ref().filter(|_| self.failure.get().is_none())
     }
 
-    /// Adds the features of the method's own eye samples to its picture, and denoises that where it is complete. The
+    /// Adds the features of the method's own eye samples to its picture, and denoises that, where it is complete. The
     /// times are the output's.
     pub fn apply(&self, method: &Method, output: &mut Output) {
-        let denoiser = self.denoiser().filter(|_| output.complete);
+        let denoiser = self.denoiser();
         let mut wanted = self.features;
         if denoiser.is_some() {
             wanted = wanted.with(Feature::Albedo).with(Feature::Normal);
         }
-        if wanted.is_empty() {
+        if wanted.is_empty() || !output.complete {
             return;
         }
         let mut layers = output.stats.time(Stage::EyePass, || self.layers(self.view, method, wanted));
         output.complete &= !self.control.is_cancelled();
-        if let Some(denoiser) = denoiser.filter(|_| output.complete) {
+        if !output.complete {
+            return;
+        }
+        if let Some(denoiser) = denoiser {
             self.control.begin(Stage::Denoise, 0);
             output.nonfinite += output.color.remove_nonfinite();
             match output.stats.time(Stage::Denoise, || denoiser.denoise(&output.color, &guides(&layers))) {

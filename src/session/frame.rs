@@ -58,7 +58,8 @@ pub(super) fn film(output: Output, view: &View, centre: DVec3, denoised: bool) -
         metadata.set(&format!("{of}relative_mse_of_noise"), rel_mse_of_variance(variance, &output.color));
     }
     let variance = output.variance.map(|image| Layer::color(layer, image));
-    let layers = variance.into_iter().chain(output.extra).collect();
+    let begun = output.begun.into_iter().filter(|_| !output.complete);
+    let layers = variance.into_iter().chain(output.extra).chain(begun).collect();
     let camera = Some(view.matrices(centre));
     let mut film = Film { window: view.window, color: output.color, layers, camera, metadata };
     let nonfinite = film.remove_nonfinite();

@@ -22,6 +22,7 @@ mod report;
 pub(crate) use finish::Finish;
 pub use frame::{BLACK, Frame, Remark};
 pub use goal::{Goal, Wanted};
+pub(crate) use render::Former;
 pub use render::FrameError;
 
 pub use crate::eye::{Feature, Features, UnknownFeature};

@@ -7,6 +7,7 @@ use super::{Session, report};
 use crate::eye::DROPPED_BRANCHES;
 use crate::film::Image;
 use crate::math::Rgb;
+use crate::method::path::Begun;
 use crate::method::{KeptRecords, LightStore, Method, Output};
 use crate::plan::{self, LATE, Ladder};
 use crate::progress::Control;
@@ -37,6 +38,16 @@ pub enum FrameError {
     Unplannable(&'static str),
 }
 
+/// Work of former renders on which one builds.
+pub(crate) enum Former<'a> {
+    /// None.
+    Nothing,
+    /// Records of the frames before, in a walk-through.
+    Records(&'a mut KeptRecords),
+    /// The same picture, interrupted.
+    Samples(Begun),
+}
+
 /// A picture by the settings that its goal led to.
 struct Made {
     /// The method with the settings used.
@@ -54,15 +65,27 @@ struct Made {
 impl Session {
     /// Renders the picture of `view` for `goal`. A frame that was cancelled halfway is partial, not an error.
     pub fn frame(&self, view: &View, goal: &Goal, control: &Control) -> Result<Frame, FrameError> {
-        self.frame_by(view, goal, None, control)
+        self.frame_by(view, goal, Former::Nothing, control)
     }
 
-    /// The same by records of the frames before, where they are `kept` and no settings are planned.
+    /// The rest of the same frame where rendering it was interrupted. It has the bits of one that was not, unless its
+    /// settings are planned.
+    pub fn rest_of_frame(
+        &self,
+        view: &View,
+        goal: &Goal,
+        begun: Begun,
+        control: &Control,
+    ) -> Result<Frame, FrameError> {
+        self.frame_by(view, goal, Former::Samples(begun), control)
+    }
+
+    /// The same with the help of `former` renders, where no settings are planned.
     pub(crate) fn frame_by(
         &self,
         view: &View,
         goal: &Goal,
-        kept: Option<&mut KeptRecords>,
+        former: Former,
         control: &Control,
     ) -> Result<Frame, FrameError> {
         if let (Some(needed), Some(available)) = (goal.method.expected_bytes(&view.window), available_bytes())
@@ -76,7 +99,7 @@ impl Session {
         let mut remarks = Vec::new();
         let finish = Finish::new(&self.world, view, goal, control, &mut stats);
         let made = match goal.wanted {
-            Wanted::AsSet => self.as_set(view, goal.method, kept, &finish, control),
+            Wanted::AsSet => self.as_set(view, goal.method, former, &finish, control),
             _ => self.planned(view, goal, &finish, control, &mut stats, &mut remarks)?,
         };
         let Made { method, output, seconds, measured, plan } = made;
@@ -179,17 +202,22 @@ impl Session {
         &self,
         view: &View,
         method: Method,
-        kept: Option<&mut KeptRecords>,
+        former: Former,
         finish: &Finish,
         control: &Control,
     ) -> Made {
         let watch = Stopwatch::start();
-        let mut output = match kept {
-            Some(kept) => method.render_next(&self.world, &self.lights, kept, view, control),
-            None => method.render(&self.world, &self.lights, view, control),
+        let mut seconds = 0.0;
+        let mut output = match former {
+            Former::Records(kept) => method.render_next(&self.world, &self.lights, kept, view, control),
+            Former::Samples(begun) => {
+                seconds += begun.seconds;
+                method.render_rest(&self.world, &self.lights, &begun, view, control)
+            }
+            Former::Nothing => method.render(&self.world, &self.lights, view, control),
         };
         finish.apply(&method, &mut output);
-        let seconds = watch.elapsed().wall_seconds;
+        seconds += watch.elapsed().wall_seconds;
         Made { method, output, seconds, measured: None, plan: Value::Null }
     }
 
@@ -209,7 +237,7 @@ impl Session {
             Ok(ladder.within(&view.window))
         };
         match &goal.wanted {
-            Wanted::AsSet => Ok(self.as_set(view, method, None, finish, control)),
+            Wanted::AsSet => Ok(self.as_set(view, method, Former::Nothing, finish, control)),
             Wanted::Time { seconds, run, held } => {
                 let asked = *seconds;
                 let watch = Stopwatch::start();

@@ -27,7 +27,7 @@ pub(crate) mod saved;
 
 use crate::method::KeptRecords;
 use crate::progress::Control;
-use crate::session::{Frame, FrameError, Goal, Session};
+use crate::session::{Former, Frame, FrameError, Goal, Session};
 use crate::view::View;
 
 pub use crate::method::KeepLimits;
@@ -59,6 +59,6 @@ impl<'a> Walk<'a> {
 
     /// Renders the next frame, seen by `view`. One that was cancelled halfway is partial, not an error.
     pub fn frame(&mut self, view: &View, control: &Control) -> Result<Frame, FrameError> {
-        self.session.frame_by(view, &self.goal, Some(&mut self.kept), control)
+        self.session.frame_by(view, &self.goal, Former::Records(&mut self.kept), control)
     }
 }

@@ -1,4 +1,4 @@
-//! Signals: the first one ends the render with a partial picture, SIGKILL leaves the former file.
+//! Signals: the first one ends the render with a partial picture, which can go on; SIGKILL leaves the former file.
 #![cfg(unix)]
 
 use super::{Sandbox, read};
@@ -8,8 +8,13 @@ use std::process::{Child, Command, Stdio};
 
 /// Starts a render that would take very long; returns once its first pixels are done.
 fn begun(sandbox: &Sandbox) -> Child {
+    begun_by(sandbox, &Sandbox::path_tracing("100000000", &[]))
+}
+
+/// The same by any arguments.
+fn begun_by(sandbox: &Sandbox, arguments: &[&str]) -> Child {
     let mut child = sandbox
-        .command(&Sandbox::path_tracing("100000000", &["--progress", "ndjson"]))
+        .command(&[arguments, &["--progress", "ndjson"]].concat())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
@@ -40,6 +45,81 @@ fn interrupted_renders_end_with_75_and_leave_a_picture_marked_as_partial() {
         assert!(file.color().unwrap().pixels.iter().any(|p| p.x > 0.0));
         assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"]);
     }
+}
+
+#[test]
+fn interrupted_paths_go_on_to_the_bytes_of_an_undisturbed_render() {
+    let sandbox = Sandbox::new();
+    let arguments = Sandbox::path_tracing("1500", &["--reproducible", "--resume", "--aov", "depth"]);
+    sandbox.run(&arguments).expect(0);
+    let files = || [read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))];
+    let whole = files();
+    std::fs::remove_file(sandbox.path("a.exr")).unwrap();
+    for _ in 0..2 {
+        let mut child = begun_by(&sandbox, &arguments);
+        signal(&child, "-INT");
+        assert_eq!(child.wait().unwrap().code(), Some(75));
+        let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
+        assert_eq!(file.metadata().text("partial"), Some("true"));
+        assert!(file.numbers("samples").unwrap().pixels.iter().any(|n| *n > 0 && *n < 1500));
+        assert_eq!(file.metadata().number("nonfinite"), Some(0.0));
+    }
+    let stderr = sandbox.run(&arguments).expect(0).stderr;
+    assert!(stderr.contains("goes on with the samples") && files() == whole, "{stderr}");
+    // Other settings make another picture.
+    std::fs::remove_file(sandbox.path("a.exr")).unwrap();
+    let mut child = begun_by(&sandbox, &arguments);
+    signal(&child, "-INT");
+    assert_eq!(child.wait().unwrap().code(), Some(75));
+    let stderr = sandbox.run(&Sandbox::path_tracing("16", &["--resume", "--seed", "1"])).expect(0).stderr;
+    assert!(!stderr.contains("goes on"), "{stderr}");
+}
+
+#[test]
+fn interrupted_paths_are_merged_by_the_samples_of_each_pixel() {
+    let sandbox = Sandbox::new();
+    let mut child = begun(&sandbox);
+    signal(&child, "-INT");
+    assert_eq!(child.wait().unwrap().code(), Some(75));
+    let whole = |name, spp, seed| {
+        let common = ["render", "room.xml", "--method", "path", "-o", name, "--spp", spp, "--seed", seed];
+        sandbox.run(&common).expect(0);
+        ExrFile::read(&sandbox.path(name)).unwrap()
+    };
+    let (a, b) = (ExrFile::read(&sandbox.path("a.exr")).unwrap(), whole("b.exr", "48", "5"));
+    let merge = |inputs: [&str; 2]| {
+        sandbox.run(&["merge", inputs[0], inputs[1], "-o", "m.exr"]).expect(0);
+        ExrFile::read(&sandbox.path("m.exr")).unwrap()
+    };
+    let merged = merge(["a.exr", "b.exr"]);
+    let samples = a.numbers("samples").unwrap().pixels;
+    let images = [&a, &b, &merged].map(|file| file.color().unwrap().pixels);
+    let variances = [&a, &b, &merged].map(|file| file.layer("variance").unwrap().pixels);
+    for (i, n) in samples.iter().enumerate() {
+        let share = *n as f32 / (*n + 48) as f32;
+        for ([a, b, m], [of_a, of_b]) in [
+            (images.each_ref().map(|image| image[i]), [share, 1.0 - share]),
+            (variances.each_ref().map(|image| image[i]), [share * share, (1.0 - share) * (1.0 - share)]),
+        ] {
+            let expected = a * of_a + b * of_b;
+            assert!(
+                (m - expected).abs().max_element() <= 1e-5 * expected.max_element(),
+                "{m} for {expected}"
+            );
+        }
+    }
+    assert_eq!(merged.metadata().text("partial"), Some("false"));
+    let mean = samples.iter().map(|n| f64::from(*n)).sum::<f64>() / samples.len() as f64 + 48.0;
+    assert!((merged.metadata().number("spp").unwrap() - mean).abs() < 1e-6 * mean);
+    // The samples of a merged picture count on.
+    std::fs::rename(sandbox.path("m.exr"), sandbox.path("ab.exr")).unwrap();
+    whole("c.exr", "16", "6");
+    let all = merge(["ab.exr", "c.exr"]);
+    let counts = |file: &ExrFile| file.numbers("samples").map(|numbers| numbers.pixels);
+    let expected = |more: u32| samples.iter().map(|n| n + more).collect::<Vec<_>>();
+    let is_even = samples.iter().all(|n| *n == samples[0]);
+    assert_eq!(counts(&merged), (!is_even).then(|| expected(48)));
+    assert_eq!(counts(&all), (!is_even).then(|| expected(64)));
 }
 
 #[test]

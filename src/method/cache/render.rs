@@ -112,7 +112,7 @@ impl Settings {
         if let Some(kept) = kept {
             kept.end(&frame, view.camera.origin, &mut stats);
         }
-        Output { color, variance: None, extra, stats, complete, nonfinite }
+        Output { color, variance: None, extra, begun: Vec::new(), stats, complete, nonfinite }
     }
 }
 

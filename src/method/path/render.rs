@@ -1,5 +1,6 @@
 //! The picture: pixels in tiles, samples in passes.
 
+use super::Begun;
 use crate::film::Image;
 use crate::math::Rgb;
 use crate::method::ladder::PATHS;
@@ -40,10 +41,35 @@ impl Renderer for Settings {
     }
 
     fn render(&self, world: &World, _lights: &LightStore, view: &View, control: &Control) -> Output {
+        self.picture(world, None, view, control)
+    }
+
+    fn render_rest(
+        &self,
+        world: &World,
+        _lights: &LightStore,
+        begun: &Begun,
+        view: &View,
+        control: &Control,
+    ) -> Output {
+        self.picture(world, Some(begun), view, control)
+    }
+
+    fn look(&self) -> Look {
+        self.look
+    }
+
+    fn ladder(&self) -> &'static [Move] {
+        &PATHS
+    }
+}
+
+impl Settings {
+    /// The picture, from where an interrupted one ended.
+    fn picture(&self, world: &World, begun: Option<&Begun>, view: &View, control: &Control) -> Output {
         let mut stats = Stats::new();
-        let mut tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
-            .map(|_| Tile { pixels: Vec::new(), samples: 0, counts: Counts::default(), nonfinite: 0 })
-            .collect();
+        let tile = |i| begun.and_then(|begun| Tile::of(begun, view, self.spp, i)).unwrap_or_default();
+        let mut tiles: Vec<Tile> = (0..view.window.tile_count(TILE)).map(tile).collect();
         let passes = self.spp.div_ceil(PASS);
         control.begin(Stage::Render, passes as u64 * tiles.len() as u64);
         stats.time(Stage::Render, || {
@@ -58,16 +84,18 @@ impl Renderer for Settings {
             }
         });
         let mut color = Image::new(view.window.width, view.window.height);
-        let mut variance = Image::new(view.window.width, view.window.height);
-        let (mut rays, mut shadow_rays, mut nonfinite, mut paths) = (0, 0, 0, 0);
+        let mut squares = Image::new(view.window.width, view.window.height);
+        let mut samples = squares.map(|_| 0);
+        let (mut rays, mut shadow_rays, mut paths) = (0, 0, 0);
+        let mut nonfinite = begun.map_or(0, |begun| begun.nonfinite);
         for (i, tile) in tiles.iter().enumerate() {
-            let n = tile.samples as f32;
             for (pixel, [x, y]) in tile.pixels.iter().zip(view.window.tile(i, TILE)) {
                 let at = (y * view.window.width + x) as usize;
                 color.pixels[at] = pixel.mean;
-                variance.pixels[at] = if n > 1.0 { pixel.squares / (n * (n - 1.0)) } else { Rgb::ZERO };
+                squares.pixels[at] = pixel.squares;
+                samples.pixels[at] = tile.samples;
             }
-            paths += tile.samples as u64 * tile.pixels.len() as u64;
+            paths += tile.paths;
             rays += tile.counts.rays;
             shadow_rays += tile.counts.shadow_rays;
             nonfinite += tile.nonfinite;
@@ -77,17 +105,19 @@ impl Renderer for Settings {
         stats.count("Rays/shadow", shadow_rays);
         let complete = tiles.iter().all(|t| t.samples == self.spp);
         // With a single sample there is no spread to measure.
-        let variance = (self.spp > 1).then_some(variance);
-        Output { color, variance, extra: Vec::new(), stats, complete, nonfinite }
+        let variance = (self.spp > 1).then(|| variance(&squares, &samples));
+        let begun = Begun::layers(squares, samples);
+        Output { color, variance, extra: Vec::new(), begun, stats, complete, nonfinite }
     }
+}
 
-    fn look(&self) -> Look {
-        self.look
-    }
-
-    fn ladder(&self) -> &'static [Move] {
-        &PATHS
-    }
+/// Variance of each pixel's mean; 0 where there are too few samples for one.
+fn variance(squares: &Image, samples: &Image<u32>) -> Image {
+    let mut samples = samples.pixels.iter().map(|n| *n as f32);
+    squares.map(|squares| match samples.next() {
+        Some(n) if n > 1.0 => *squares / (n * (n - 1.0)),
+        _ => Rgb::ZERO,
+    })
 }
 
 /// Running mean and sum of squared differences of one pixel (Welford).
@@ -98,18 +128,40 @@ struct Pixel {
 }
 
 /// A tile's pixels and their counts.
+#[derive(Default)]
 struct Tile {
     pixels: Vec<Pixel>,
     samples: u32,
+    /// Paths traced in this run.
+    paths: u64,
     counts: Counts,
     nonfinite: u64,
 }
 
 impl Tile {
+    /// The tile as it was when a picture of `spp` samples was interrupted; `None` if that cannot have been.
+    fn of(begun: &Begun, view: &View, spp: u32, index: usize) -> Option<Tile> {
+        let (mut pixels, mut samples) = (Vec::new(), None);
+        for [x, y] in view.window.tile(index, TILE) {
+            let at = (y * view.window.width + x) as usize;
+            let [mean, squares] = [&begun.color, &begun.squares].map(|image| image.pixels.get(at).copied());
+            pixels.push(Pixel { mean: mean?, squares: squares? });
+            let own = *begun.samples.pixels.get(at)?;
+            if *samples.get_or_insert(own) != own {
+                return None;
+            }
+        }
+        let samples = samples.filter(|n| *n <= spp && (n % PASS == 0 || *n == spp))?;
+        Some(Tile { pixels, samples, ..Tile::default() })
+    }
+
     /// Takes the samples up to `end` of every pixel.
     fn render(&mut self, world: &World, view: &View, settings: &Settings, index: usize, end: u32) {
         let max_depth = world.scene.path_limit(settings.max_depth);
         let begin = self.samples;
+        if begin >= end {
+            return;
+        }
         let coordinates = view.window.tile(index, TILE);
         if self.pixels.is_empty() {
             self.pixels = vec![Pixel::default(); coordinates.count()];
@@ -136,6 +188,7 @@ impl Tile {
                 }
             }
         }
+        self.paths += u64::from(end - begin) * self.pixels.len() as u64;
         self.samples = end;
     }
 }

@@ -144,7 +144,7 @@ impl Renderer for Settings {
         if self.inspect {
             extra.extend(frame.iter().flat_map(|frame| frame.inspect(&records, &samples)));
         }
-        Output { color, variance: None, extra, stats, complete, nonfinite }
+        Output { color, variance: None, extra, begun: Vec::new(), stats, complete, nonfinite }
     }
 
     fn expected_bytes(&self, window: &Window) -> Option<u64> {
