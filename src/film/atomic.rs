@@ -18,10 +18,14 @@ pub fn check_writable(path: &Path) -> Result<(), ImageError> {
     if path.file_name().is_none() {
         return refuse("the path does not end in a file name".to_owned());
     }
-    let target = resolve(path);
-    match fs::metadata(&target) {
-        Ok(present) if present.is_dir() => return refuse("it is a folder; name a file in it".to_owned()),
-        Ok(present) if !present.is_file() => return refuse("it is not a regular file".to_owned()),
+    let target = match resolve(path) {
+        Ok(target) => target,
+        Err(error) => return refuse(error.to_string()),
+    };
+    let present = fs::metadata(&target).ok();
+    match &present {
+        Some(present) if present.is_dir() => return refuse("it is a folder; name a file in it".to_owned()),
+        Some(present) if !present.is_file() => return refuse("it is not a regular file".to_owned()),
         _ => {}
     }
     let folder = folder_of(&target);
@@ -33,20 +37,50 @@ pub fn check_writable(path: &Path) -> Result<(), ImageError> {
         Ok(present) if !present.is_dir() => return refuse(format!("{} is not a folder", folder.display())),
         Ok(_) => {}
     }
-    match temporary(&target) {
-        Ok(_removed_on_drop) => Ok(()),
-        Err(error) => refuse(format!("no file can be created in {}: {error}", folder.display())),
+    let removed_on_drop = match temporary(&target) {
+        Ok(temporary) => temporary,
+        Err(error) => return refuse(format!("no file can be created in {}: {error}", folder.display())),
+    };
+    #[cfg(unix)]
+    if let Some(present) = present
+        && let Some(reason) = irreplaceable(&target, &present, &folder, &removed_on_drop)
+    {
+        return refuse(reason.to_owned());
     }
+    drop(removed_on_drop);
+    Ok(())
+}
+
+/// Reason why a file that is there cannot give its name to a new one, though its folder takes new files.
+#[cfg(unix)]
+fn irreplaceable(
+    target: &Path,
+    present: &fs::Metadata,
+    folder: &Path,
+    own: &NamedTempFile,
+) -> Option<&'static str> {
+    use std::os::unix::fs::MetadataExt;
+    const STICKY: u32 = 0o1000;
+    const EPERM: i32 = 1;
+    let (folder, own) = (fs::metadata(folder).ok()?, own.as_file().metadata().ok()?);
+    let is_others = own.uid() != 0 && ![present.uid(), folder.uid()].contains(&own.uid());
+    if folder.mode() & STICKY != 0 && is_others {
+        return Some("it is another user's file in a folder where only its owner may replace it");
+    }
+    // Lack of permission to write into the old file is another error, and no hindrance.
+    let opened = File::options().append(true).open(target);
+    opened.is_err_and(|error| error.raw_os_error() == Some(EPERM)).then_some("it is marked as immutable")
 }
 
 /// Replaces the file at `path` by the output of `write`, whole or not at all.
 ///
-/// A symbolic link is followed; the permissions of a file already there are kept.
+/// A symbolic link is followed; the permissions of a file already there are kept. Where the new file cannot take its
+/// name, it stays beside it, and the error says where.
 pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
 ) -> io::Result<()> {
-    let target = resolve(path);
+    let target = resolve(path)?;
     let temporary = temporary(&target)?;
     let mut buffered = BufWriter::new(temporary.as_file());
     write(&mut buffered)?;
@@ -56,12 +90,19 @@ pub fn write_atomically(
         temporary.as_file().set_permissions(present.permissions())?;
     }
     temporary.as_file().sync_all()?;
-    temporary.persist(&target).map_err(|error| error.error)?;
+    temporary.persist(&target).map_err(|failed| match failed.file.keep() {
+        Ok((_, kept)) => io::Error::new(
+            failed.error.kind(),
+            format!("{}; what was to be written is in {}", failed.error, kept.display()),
+        ),
+        Err(_) => failed.error,
+    })?;
     sync_folder(&folder_of(&target))
 }
 
 fn temporary(target: &Path) -> io::Result<NamedTempFile> {
-    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    // Names have at most 255 bytes, those of temporary files included.
+    let name: String = target.file_name().unwrap_or_default().to_string_lossy().chars().take(40).collect();
     let mut builder = tempfile::Builder::new();
     let prefix = format!(".{name}.");
     builder.prefix(&prefix).suffix(".tmp");
@@ -74,9 +115,22 @@ fn temporary(target: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder_of(target))
 }
 
-/// Returns the file behind a symbolic link, so that the link itself stays.
-fn resolve(path: &Path) -> PathBuf {
-    fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
+/// Returns the file behind symbolic links, which stay, whether or not it is there.
+pub fn resolve(path: &Path) -> io::Result<PathBuf> {
+    const MAX_LINKS: usize = 40;
+    let mut target = path.to_owned();
+    for _ in 0..MAX_LINKS {
+        match fs::read_link(&target) {
+            Ok(next) => target = folder_of(&target).join(next),
+            Err(_) => {
+                // The file need not be there, nor its folder.
+                let folder = folder_of(&target);
+                let folder = fs::canonicalize(&folder).unwrap_or(folder);
+                return Ok(target.file_name().map_or(target.clone(), |name| folder.join(name)));
+            }
+        }
+    }
+    Err(io::Error::other("its symbolic links go round in a circle"))
 }
 
 fn folder_of(path: &Path) -> PathBuf {
@@ -88,9 +142,10 @@ fn folder_of(path: &Path) -> PathBuf {
 
 fn sync_folder(folder: &Path) -> io::Result<()> {
     match File::open(folder).and_then(|folder| folder.sync_all()) {
-        // Some file systems cannot flush folders; there is no remedy.
+        // Some file systems cannot flush folders, and some folders cannot be opened; the file is in place.
         Err(error) if error.kind() == io::ErrorKind::InvalidInput => Ok(()),
         Err(error) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => Ok(()),
         other => other,
     }
 }
@@ -156,6 +211,57 @@ mod tests {
         fs::write(&plain, "").unwrap();
         write_atomically(&new, |file| file.write_all(b"new")).unwrap();
         assert_eq!(mode(&new), mode(&plain));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_to_nothing_are_followed_and_circles_of_links_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let [new, link, circle] = ["new", "link", "circle"].map(|name| folder.path().join(name));
+        std::os::unix::fs::symlink("new", &link).unwrap();
+        std::os::unix::fs::symlink("circle", &circle).unwrap();
+        check_writable(&link).unwrap();
+        write_atomically(&link, |file| file.write_all(b"new")).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&new).unwrap(), "new");
+        assert!(check_writable(&circle).unwrap_err().to_string().contains("circle"));
+        assert!(write_atomically(&circle, |_| Ok(())).is_err());
+    }
+
+    #[test]
+    fn names_as_long_as_they_may_be_are_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x".repeat(255));
+        check_writable(&path).unwrap();
+        write_atomically(&path, |file| file.write_all(b"new")).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+    }
+
+    #[test]
+    fn content_that_cannot_take_its_name_is_kept_and_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("picture.exr");
+        let failed = write_atomically(&path, |file| {
+            // Meanwhile a folder takes the name.
+            fs::create_dir(&path)?;
+            file.write_all(b"new")
+        });
+        let message = failed.unwrap_err().to_string();
+        let kept = names(folder.path()).into_iter().find(|name| name.ends_with(".tmp")).unwrap();
+        assert!(message.contains(&kept), "{message}");
+        assert_eq!(fs::read_to_string(folder.path().join(kept)).unwrap(), "new");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn folders_that_cannot_be_opened_take_files_all_the_same() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let set = |mode| fs::set_permissions(folder.path(), fs::Permissions::from_mode(mode)).unwrap();
+        set(0o300);
+        let written = write_atomically(&folder.path().join("new"), |file| file.write_all(b"new"));
+        set(0o700);
+        written.unwrap();
     }
 
     #[test]
