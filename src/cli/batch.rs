@@ -91,7 +91,7 @@ impl Batch {
             }
             talk::event(
                 "picture",
-                || json!({ "state": "start", "index": self.begun, "count": self.count, "output": entry.output }),
+                || json!({ "state": "start", "index": self.begun, "count": self.count, "output": entry.output.to_string_lossy() }),
             );
             let span = self.span.part(self.begun, self.count);
             self.begun += 1;
@@ -105,7 +105,7 @@ impl Batch {
                     let ok = self.settle(entry, done).is_some();
                     talk::event(
                         "picture",
-                        || json!({ "state": if ok { "end" } else { "failed" }, "output": entry.output }),
+                        || json!({ "state": if ok { "end" } else { "failed" }, "output": entry.output.to_string_lossy() }),
                     );
                 }
             }

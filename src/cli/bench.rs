@@ -2,12 +2,14 @@
 
 use super::bench_args::{BenchArgs, StudyArgs};
 use super::exit::Failure;
+use super::outputs::Inputs;
 use super::{files, scene, study, talk, threads};
 use crate::bench::export::{WRITERS, terminal};
 use crate::bench::{Benchmark, Context, Kind, Settings};
 use crate::film::atomic;
 use crate::scene::formats::LoadOptions;
 use anyhow::anyhow;
+use std::path::PathBuf;
 
 /// Runs the command.
 pub fn run(args: BenchArgs) -> Result<(), Failure> {
@@ -37,6 +39,8 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
     for path in exports.into_iter().flatten() {
         atomic::check_writable(path).map_err(Failure::output)?;
     }
+    let files = || exports.into_iter().flatten().map(PathBuf::as_path);
+    Inputs::new(&args.scenes).check_apart(files())?;
     let defaults = Settings::default();
     let settings = Settings {
         threads: threads::count(args.threads),
@@ -49,6 +53,9 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
         .first()
         .map(|path| pool.install(|| scene::open(path, &LoadOptions::default())))
         .transpose()?;
+    if let Some(opened) = &session {
+        opened.inputs.check_apart(files())?;
+    }
     let report = pool.install(|| {
         let session = session.as_ref().map(|opened| &opened.session);
         let context = Context { session, settings, say: &|what| talk::note(what) };

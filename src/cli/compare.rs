@@ -2,16 +2,22 @@
 
 use super::args::{CompareArgs, HeatmapError};
 use super::exit::Failure;
+use super::outputs::{Inputs, check_name};
 use super::talk;
 use crate::film::metrics::{self, Comparison, Variances, ZTest};
 use crate::film::{ExrFile, Image, ImageError, atomic, heatmap, write_srgb8};
+use crate::math::Rgb;
 use std::fmt::Write;
 use std::path::Path;
 
 /// Runs the command.
 pub fn run(args: CompareArgs) -> Result<(), Failure> {
     if let Some(path) = &args.heatmap {
+        check_name(path, "png", "--heatmap")?;
         atomic::check_writable(path).map_err(Failure::output)?;
+        let variances = args.variance_a.iter().chain(&args.variance_b);
+        Inputs::new([&args.test, &args.reference].into_iter().chain(variances))
+            .check_apart([path.as_path()])?;
     }
     let (test, test_variance) = read(&args.test, args.variance_a.as_deref())?;
     let (reference, reference_variance) = read(&args.reference, args.variance_b.as_deref())?;
@@ -43,9 +49,9 @@ fn read(path: &Path, variance: Option<&Path>) -> Result<(Image, Option<Image>), 
     }
     let image = finite(file.color(), path)?;
     let variance = match variance {
-        Some(path) => Some(finite(ExrFile::read(path).and_then(|file| file.color()), path)?),
+        Some(path) => Some(not_negative(ExrFile::read(path).and_then(|file| file.color()), path)?),
         None if file.layers().iter().any(|layer| layer == "variance") => {
-            Some(finite(file.layer("variance"), path)?)
+            Some(not_negative(file.layer("variance"), path)?)
         }
         None => None,
     };
@@ -57,6 +63,20 @@ fn finite(image: Result<Image, ImageError>, path: &Path) -> Result<Image, Failur
     match image.remove_nonfinite() {
         0 => {}
         n => talk::warning(&format!("{n} channels in {} are NaN or infinite; taken as 0", path.display())),
+    }
+    Ok(image)
+}
+
+/// A picture of variances.
+fn not_negative(image: Result<Image, ImageError>, path: &Path) -> Result<Image, Failure> {
+    let mut image = finite(image, path)?;
+    let negative = image.pixels.iter().filter(|variance| variance.min_element() < 0.0).count();
+    if negative > 0 {
+        talk::warning(&format!(
+            "variances of {negative} pixels in {} are negative; taken as 0",
+            path.display()
+        ));
+        image.pixels.iter_mut().for_each(|variance| *variance = variance.max(Rgb::ZERO));
     }
     Ok(image)
 }

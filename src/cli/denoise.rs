@@ -2,12 +2,12 @@
 
 use super::args::DenoiseFileArgs;
 use super::exit::Failure;
-use super::job::check_outputs;
+use super::outputs::{Inputs, check_outputs};
 use super::{talk, threads};
 use crate::denoise::{Denoiser, Guides, NOISY, NOISY_VARIANCE, guides};
 use crate::film::{ExrFile, Image, ImageError, write_png};
 use anyhow::anyhow;
-use std::fs::canonicalize;
+use std::path::PathBuf;
 
 /// Runs the command.
 pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
@@ -15,10 +15,7 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
     let output = args.output.clone().unwrap_or_else(|| input.with_extension("denoised.exr"));
     let png = args.png.file(&output);
     check_outputs(&output, png.as_deref())?;
-    if canonicalize(input).is_ok_and(|input| canonicalize(&output).is_ok_and(|output| input == output)) {
-        let message = "--output is the picture to denoise, which would be lost: name another file";
-        return Err(Failure::usage(anyhow!(message)));
-    }
+    Inputs::new([input]).check_apart([&output].into_iter().chain(&png).map(PathBuf::as_path))?;
     let mut file = ExrFile::read(input).map_err(Failure::input)?;
     if let Some(library) = file.metadata().text("denoised").filter(|library| *library != "false") {
         return Err(Failure::input(anyhow!("{} has been denoised before, by {library}", input.display())));

@@ -9,7 +9,7 @@ use std::path::Path;
 /// Writes text to a file, whole or not at all.
 pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
     atomic::write_atomically(path, |file| file.write_all(text.as_bytes()))
-        .map_err(|source| ImageError::Write { path: path.to_owned(), source })
+        .map_err(|error| ImageError::Write { path: path.to_owned(), error })
         .map_err(Failure::output)?;
     talk::wrote(&format!("wrote {}", path.display()), &[path.to_owned()]);
     Ok(())

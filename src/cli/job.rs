@@ -2,17 +2,17 @@
 
 use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
+use super::outputs::check_outputs;
 use super::values::ProgressMode;
 use super::{job_key, threads, verify};
-use crate::film::{Exposure, atomic};
+use crate::film::Exposure;
 use crate::scene::formats::LoadOptions;
 use crate::session::{Goal, Session};
 use crate::stats::Stopwatch;
 use crate::view::Framing;
 use anyhow::anyhow;
 use serde_json::json;
-use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A validated render: scene, method and output files.
 #[derive(Debug)]
@@ -93,24 +93,4 @@ impl RenderJob {
         let exposure = self.png.as_ref().map(|(_, exposure)| exposure.to_string());
         job_key::of(session, &self.goal, json!([format!("{:?}", self.framing), exposure, self.reproducible]))
     }
-}
-
-/// Checks names of a picture's files, and that they can be written.
-pub fn check_outputs(exr: &Path, png: Option<&Path>) -> Result<(), Failure> {
-    named(exr, "exr", "--output")?;
-    if let Some(path) = png {
-        named(path, "png", "--png")?;
-    }
-    for path in std::iter::once(exr).chain(png) {
-        atomic::check_writable(path).map_err(Failure::output)?;
-    }
-    Ok(())
-}
-
-fn named(path: &Path, extension: &str, option: &str) -> Result<(), Failure> {
-    let right = path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case(extension));
-    if right {
-        return Ok(());
-    }
-    Err(Failure::usage(anyhow!("{option} {}: the file's name must end in .{extension}", path.display())))
 }

@@ -3,7 +3,7 @@
 
 use super::args::MergeArgs;
 use super::exit::Failure;
-use super::job::check_outputs;
+use super::outputs::{Inputs, check_outputs};
 use super::talk;
 use crate::denoise::{NOISY, NOISY_VARIANCE};
 use crate::film::metrics::{rel_mse_of_variance, standard_error};
@@ -11,7 +11,7 @@ use crate::film::{ExrFile, Metadata, SAMPLES, Weight, write_png};
 use crate::method::path::Begun;
 use anyhow::anyhow;
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Layer of the variance of pixels' means.
 const VARIANCE: &str = "variance";
@@ -22,6 +22,7 @@ const OWN: [&str; 3] = ["job", "render_seconds", "threads"];
 pub fn run(args: MergeArgs) -> Result<(), Failure> {
     let png = args.png.file(&args.output);
     check_outputs(&args.output, png.as_deref())?;
+    Inputs::new(&args.inputs).check_apart([&args.output].into_iter().chain(&png).map(PathBuf::as_path))?;
     let mut files = Vec::new();
     for path in &args.inputs {
         files.push((path.as_path(), noisy(path)?));

@@ -19,6 +19,7 @@ mod job;
 mod job_key;
 mod merge;
 mod method_args;
+mod outputs;
 mod picture;
 mod plan_args;
 mod progress;
@@ -38,6 +39,7 @@ use args::{Cli, Command};
 use clap::Parser;
 use exit::Failure;
 use std::ffi::OsString;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
@@ -46,10 +48,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(error) => {
-            // Help and version go to stdout with code 0, the rest to stderr with code 2; if even that cannot
-            // be printed there is no way to report it.
-            let _ = error.print();
-            return ExitCode::from(if error.use_stderr() { exit::USAGE } else { exit::SUCCESS });
+            // Help and version go to stdout with code 0, the rest to stderr with code 2.
+            let printed = error.print();
+            return ExitCode::from(match printed {
+                _ if error.use_stderr() => exit::USAGE,
+                Err(error) if error.kind() != io::ErrorKind::BrokenPipe => exit::OUTPUT,
+                _ => exit::SUCCESS,
+            });
         }
     };
     let outcome = catch_unwind(AssertUnwindSafe(|| match cli.command {

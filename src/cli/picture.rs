@@ -1,7 +1,7 @@
 //! Files of a picture: OpenEXR, tone-mapped PNG, and PNGs of the layers that are meant to be shown.
 
 use super::exit::Failure;
-use crate::film::{Film, false_colour, write_exr, write_png, write_srgb8};
+use crate::film::{ExrFile, Film, false_colour, write_exr, write_png, write_srgb8};
 use std::path::{Path, PathBuf};
 
 /// Files that have been written, and a line that says so.
@@ -18,6 +18,17 @@ const CIRCUMSTANCES: [&str; 2] = ["render_seconds", "threads"];
 /// Takes those facts out, so that equal renders are equal files.
 pub fn forget_circumstances(film: &mut Film) {
     CIRCUMSTANCES.iter().for_each(|key| film.metadata.remove(key));
+}
+
+/// File of a part of the picture at `path`, beside it.
+pub fn beside(path: &Path) -> PathBuf {
+    let extension = path.extension().map(|extension| extension.to_string_lossy());
+    path.with_extension(format!("partial.{}", extension.unwrap_or_default()))
+}
+
+/// True if the file is a picture of which only a part has been rendered.
+pub fn is_partial(exr: &Path) -> bool {
+    ExrFile::read(exr).is_ok_and(|file| file.metadata().text("partial") == Some("true"))
 }
 
 /// Writes a picture to `exr`, then to a PNG by a factor on radiance.

@@ -8,13 +8,14 @@ use super::job_key;
 use super::progress::Watch;
 use super::scene::Opened;
 use super::{interrupt, picture, scene, talk, threads};
-use crate::film::{Film, SAMPLES};
+use crate::film::SAMPLES;
 use crate::method::path::Begun;
 use crate::progress::Control;
 use crate::session::{BLACK, Frame, FrameError, Remark};
 use crate::stats::{Stage, Stopwatch, peak_resident_bytes};
 use crate::view::View;
 use anyhow::{Context, anyhow};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Runs the command.
@@ -38,8 +39,18 @@ pub fn still(job: &RenderJob, opened: &Opened, span: Span, control: &Control) ->
         talk::note(&format!("{} is there already, left as it is", exr.display()));
         return Ok(());
     }
-    let begun = job.resume.then(|| job_key::begun(exr, job.framing.frame, &key)).flatten();
+    opened.inputs.check_apart([exr.as_path()].into_iter().chain(png))?;
+    if let Some(png) = png.filter(|_| job.goal.method.text("inspect").is_some_and(|inspect| inspect == "on"))
+    {
+        opened.inputs.check_layers(png)?;
+    }
+    let parts = [exr.clone(), picture::beside(exr)];
+    let begun = parts.iter().filter(|_| job.resume);
+    let begun = begun.filter_map(|part| job_key::begun(part, job.framing.frame, &key)).next();
     let mut frame = render(job, opened, begun, (span, control))?;
+    let (exr, png) = files(job, frame.complete);
+    frame.facts["output"] = exr.to_string_lossy().into();
+    frame.facts["png"] = png.as_ref().map(|path| path.to_string_lossy()).into();
     frame.film.metadata.set("job", key);
     if job.reproducible {
         picture::forget_circumstances(&mut frame.film);
@@ -53,7 +64,9 @@ pub fn still(job: &RenderJob, opened: &Opened, span: Span, control: &Control) ->
             Remark::Warning(text) => talk::warning(&text),
         }
     }
-    stats.time(Stage::Write, || write(job, film))?;
+    let exposed = png.as_deref().zip(job.png.as_ref().map(|(_, exposure)| exposure.factor(&film.color)));
+    let written = stats.time(Stage::Write, || picture::write(&exr, exposed, film))?;
+    talk::wrote(&written.said, &written.files);
     stats.add_time(Stage::Total, job.run.elapsed());
     if facts["plan"]["asked_seconds"].is_number() {
         let seconds = |stage| stats.stage(stage).map_or(0.0, |t| t.wall_seconds);
@@ -73,7 +86,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: Span, control: &Control) ->
         }
         None => {}
     }
-    let output = job.output.display();
+    let output = exr.display();
     match (complete, unverified) {
         (true, _) if job.reading.strict && is_black => Err(Failure::render(anyhow!("{output}: {BLACK}"))),
         (true, false) => Ok(()),
@@ -94,7 +107,7 @@ fn render(
     begun: Option<Begun>,
     (span, control): (Span, &Control),
 ) -> Result<Frame, Failure> {
-    let Opened { session, warnings } = opened;
+    let Opened { session, warnings, .. } = opened;
     let view = View::new(&session.cameras, &job.framing).map_err(Failure::usage)?;
     if control.is_cancelled() {
         return Err(Failure::interrupted(FrameError::Interrupted));
@@ -119,14 +132,14 @@ fn render(
         frame.film.metadata.set("frame", number as f64);
     }
     frame.facts["scene_warnings"] = (*warnings).into();
-    frame.facts["output"] = serde_json::json!(job.output);
-    frame.facts["png"] = serde_json::json!(job.png.as_ref().map(|(path, _)| path));
     Ok(frame)
 }
 
-fn write(job: &RenderJob, film: Film) -> Result<(), Failure> {
-    let png = job.png.as_ref().map(|(path, exposure)| (path.as_path(), exposure.factor(&film.color)));
-    let written = picture::write(&job.output, png, film)?;
-    talk::wrote(&written.said, &written.files);
-    Ok(())
+/// The job's files, OpenEXR and PNG; for a part of a picture ones beside them, where one is that may be whole.
+fn files(job: &RenderJob, is_complete: bool) -> (PathBuf, Option<PathBuf>) {
+    let png = job.png.as_ref().map(|(path, _)| path);
+    if is_complete || !job.output.exists() || picture::is_partial(&job.output) {
+        return (job.output.clone(), png.cloned());
+    }
+    (picture::beside(&job.output), png.map(|path| picture::beside(path)))
 }

@@ -1,6 +1,7 @@
 //! Loads the scene of a command, and prints the warnings of loading.
 
 use super::exit::Failure;
+use super::outputs::Inputs;
 use super::talk;
 use crate::scene::formats::{Level, LoadOptions, Loaded, Warning, load};
 use crate::session::{OpenError, Session};
@@ -23,12 +24,14 @@ pub fn read(path: &Path, options: &LoadOptions) -> Result<Loaded, Failure> {
     Ok(loaded)
 }
 
-/// A session, and the number of warnings of reading its scene.
+/// A session, and facts of reading its scene.
 pub struct Opened {
     /// The session.
     pub session: Session,
     /// Number of warnings.
     pub warnings: usize,
+    /// Files of the scene.
+    pub inputs: Inputs,
 }
 
 /// Opens a session on the scene at `path`.
@@ -36,11 +39,12 @@ pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
     let mut stats = Stats::new();
     let loaded = stats.time(Stage::Load, || read(path, options))?;
     let warnings = loaded.warnings.len();
+    let inputs = Inputs::new(&loaded.scene.sources);
     let session = Session::of(loaded, path, stats).map_err(|error| match error {
         OpenError::Scene(_) => Failure::input(error),
         OpenError::Build { .. } => Failure::render(error),
     })?;
-    Ok(Opened { session, warnings })
+    Ok(Opened { session, warnings, inputs })
 }
 
 /// Warnings that say the same of different places, once each with their number, in order of appearance.

@@ -2,12 +2,12 @@
 
 use super::args::SheetArgs;
 use super::exit::Failure;
+use super::outputs::{Inputs, check_name};
 use super::talk;
 use crate::film::{atomic, write_srgb8};
 use anyhow::anyhow;
 use image::RgbImage;
 use image::imageops::{replace, thumbnail};
-use std::ffi::OsStr;
 
 /// Pixels between frames.
 const GAP: u32 = 4;
@@ -20,17 +20,14 @@ const MAX_PIXELS: u64 = 1 << 28;
 
 /// Runs the command.
 pub fn run(args: SheetArgs) -> Result<(), Failure> {
-    if !args.output.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-        return Err(Failure::usage(anyhow!(
-            "--output {}: the file's name must end in .png",
-            args.output.display()
-        )));
-    }
+    check_name(&args.output, "png", "--output")?;
     atomic::check_writable(&args.output).map_err(Failure::output)?;
+    let picture_of = |number| args.names.of(number).with_extension("png");
+    Inputs::new(args.frames.iter().map(picture_of)).check_apart([args.output.as_path()])?;
     let count = args.frames.iter().len() as u32;
     let mut sheet: Option<Sheet> = None;
     for (place, number) in (0..).zip(args.frames.iter()) {
-        let path = args.names.of(number).with_extension("png");
+        let path = picture_of(number);
         let picture = image::open(&path).map_err(|error| {
             Failure::input(anyhow!("{}: {error}; the frames need their PNG files", path.display()))
         })?;

@@ -57,7 +57,10 @@ pub fn error(failure: &Failure) {
 /// Files that have been written, whole.
 pub fn wrote(text: &str, files: &[PathBuf]) {
     match mode() {
-        ProgressMode::Ndjson => event("wrote", || json!({ "files": files, "text": text })),
+        ProgressMode::Ndjson => event("wrote", || {
+            let names: Vec<_> = files.iter().map(|path| path.to_string_lossy()).collect();
+            json!({ "files": names, "text": text })
+        }),
         _ => note(text),
     }
 }

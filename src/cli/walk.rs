@@ -19,6 +19,7 @@ use serde_json::json;
 use std::collections::BTreeSet;
 use std::fs;
 use std::mem;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Runs the command.
@@ -35,8 +36,12 @@ pub fn run(args: WalkArgs) -> Result<(), Failure> {
 
 /// Renders the frames that are not there yet, and says what came of it. They are the part `span` of the run.
 pub fn walk(job: &WalkJob, opened: &Opened, span: Span, control: &Control) -> Result<(), Failure> {
-    let Opened { session, warnings } = opened;
+    let Opened { session, warnings, .. } = opened;
     let chunks = job.plan(session)?;
+    for number in chunks.iter().flat_map(|chunk| &chunk.frames) {
+        let (exr, png) = job.files(*number);
+        opened.inputs.check_apart([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
+    }
     let mut report = Report::new(job.stats);
     for number in chunks.iter().flat_map(PlannedChunk::untouched) {
         report.skip();
@@ -150,8 +155,8 @@ impl Frames<'_> {
         let png = png.as_deref().zip(factor);
         let written = frame.stats.time(Stage::Write, || picture::write_exr_last(&exr, png, film))?;
         frame.facts["scene_warnings"] = self.warnings.into();
-        frame.facts["output"] = json!(exr);
-        frame.facts["png"] = json!(png.map(|(path, _)| path));
+        frame.facts["output"] = exr.to_string_lossy().into();
+        frame.facts["png"] = png.map(|(path, _)| path.to_string_lossy()).into();
         talk::wrote(&format!("frame {number}: {}", written.said), &written.files);
         Ok(())
     }

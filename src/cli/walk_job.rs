@@ -2,7 +2,7 @@
 
 use super::args::{StatsFormat, WalkArgs};
 use super::exit::Failure;
-use super::job::check_outputs;
+use super::outputs::check_outputs;
 use super::plan_args::PlanArgs;
 use super::values::ProgressMode;
 use super::{job_key, threads};

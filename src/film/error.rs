@@ -8,12 +8,12 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum ImageError {
     /// The file cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {error}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// Error of the operating system.
-        source: io::Error,
+        /// Error of the operating system; no `source`, since the message holds it.
+        error: io::Error,
     },
     /// The file is not a supported OpenEXR picture.
     #[error("{} is not a readable OpenEXR picture: {reason}", path.display())]
@@ -42,12 +42,12 @@ pub enum ImageError {
         reason: String,
     },
     /// Writing failed; the file's former content is untouched.
-    #[error("writing {} failed: {source}; the file, if there was one, is as it was before", path.display())]
+    #[error("writing {} failed: {error}; the file, if there was one, is as it was before", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// Error of the operating system.
-        source: io::Error,
+        /// Error of the operating system; no `source`, since the message holds it.
+        error: io::Error,
     },
     /// The images of one film, or two to compare, differ in size.
     #[error("{what}: {}x{} and {}x{} pixels", sizes[0][0], sizes[0][1], sizes[1][0], sizes[1][1])]

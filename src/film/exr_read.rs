@@ -36,9 +36,9 @@ pub(super) struct Place {
 impl ExrFile {
     /// Reads all channels of the file at `path`.
     pub fn read(path: &Path) -> Result<ExrFile, ImageError> {
-        let file = File::open(path).map_err(|source| ImageError::Read { path: path.to_owned(), source })?;
+        let file = File::open(path).map_err(|error| ImageError::Read { path: path.to_owned(), error })?;
         let decode = |error: Error| match error {
-            Error::Io(source) => ImageError::Read { path: path.to_owned(), source },
+            Error::Io(error) => ImageError::Read { path: path.to_owned(), error },
             other => ImageError::Decode { path: path.to_owned(), reason: other.to_string() },
         };
         let chunks = ::exr::block::read(BufReader::new(file), false).map_err(decode)?;

@@ -62,7 +62,7 @@ pub(super) fn write(
         sort_attributes(&mut bytes);
         file.write_all(&bytes)
     })
-    .map_err(|source| ImageError::Write { path: path.to_owned(), source })
+    .map_err(|error| ImageError::Write { path: path.to_owned(), error })
 }
 
 /// Appends the three channels of a layer of that name.

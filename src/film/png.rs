@@ -21,7 +21,7 @@ pub fn write_srgb8(path: &Path, size: [u32; 2], bytes: &[u8]) -> Result<(), Imag
             }
         })
     })
-    .map_err(|source| ImageError::Write { path: path.to_owned(), source })
+    .map_err(|error| ImageError::Write { path: path.to_owned(), error })
 }
 
 #[cfg(test)]

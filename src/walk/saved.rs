@@ -17,7 +17,7 @@ pub fn write(path: &Path, key: &str, records: &[u8]) -> Result<(), ImageError> {
         write!(file, "{key}{:0DIGITS$x}", fnv1a(records))?;
         file.write_all(records)
     });
-    written.map_err(|source| ImageError::Write { path: path.to_owned(), source })
+    written.map_err(|error| ImageError::Write { path: path.to_owned(), error })
 }
 
 /// Reads records and the key that they were saved with; `None` where there are none, or the file is damaged.

@@ -74,6 +74,35 @@ fn the_heatmap_shows_both_pictures_and_the_error() {
 }
 
 #[test]
+fn negative_variances_count_as_none_and_are_told() {
+    let sandbox = Sandbox::new();
+    picture(&sandbox, "a.exr", [8, 6], |i| 1.0 + i as f32);
+    picture(&sandbox, "b.exr", [8, 6], |i| 1.1 + i as f32);
+    picture(&sandbox, "v.exr", [8, 6], |i| if i % 2 == 0 { -1.0 } else { 1.0 });
+    let arguments = ["compare", "a.exr", "b.exr", "--variance-a", "v.exr", "--variance-b", "v.exr"];
+    let run = sandbox.run(&arguments).expect(0);
+    assert!(
+        run.stderr.contains("24 pixels in v.exr are negative") && !run.stdout.contains("NaN"),
+        "{}",
+        run.stdout
+    );
+}
+
+#[test]
+fn the_heatmap_replaces_no_picture_that_is_read() {
+    let sandbox = Sandbox::new();
+    picture(&sandbox, "a.exr", [8, 6], |_| 1.0);
+    let before = super::read(&sandbox.path("a.exr"));
+    assert!(
+        sandbox.run(&["compare", "a.exr", "a.exr", "--heatmap", "a.exr"]).expect(2).stderr.contains(".png")
+    );
+    std::fs::copy(sandbox.path("a.exr"), sandbox.path("a.png")).unwrap();
+    let run = sandbox.run(&["compare", "a.exr", "a.png", "--heatmap", "./a.png"]).expect(2);
+    assert!(run.stderr.contains("would be lost"), "{}", run.stderr);
+    assert!(super::read(&sandbox.path("a.exr")) == before && super::read(&sandbox.path("a.png")) == before);
+}
+
+#[test]
 fn pictures_that_are_missing_broken_or_of_unlike_size_end_with_3() {
     let sandbox = Sandbox::new();
     picture(&sandbox, "a.exr", [8, 6], |_| 1.0);

@@ -1,10 +1,15 @@
 //! Signals: the first one ends the render with a partial picture, which can go on; SIGKILL leaves the former file.
-#![cfg(unix)]
+#![cfg(target_os = "linux")]
 
 use super::{Sandbox, read};
 use lightsplat::film::ExrFile;
-use std::io::{BufRead, BufReader};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Write};
+use std::os::unix::fs::OpenOptionsExt;
 use std::process::{Child, Command, Stdio};
+
+/// O_NONBLOCK.
+const NONBLOCK: i32 = 0o4000;
 
 /// Starts a render that would take very long; returns once its first pixels are done.
 fn begun(sandbox: &Sandbox) -> Child {
@@ -123,6 +128,22 @@ fn interrupted_paths_are_merged_by_the_samples_of_each_pixel() {
 }
 
 #[test]
+fn a_part_of_a_picture_does_not_replace_a_whole_one() {
+    let sandbox = Sandbox::new();
+    sandbox.render("a.exr", &[]).expect(0);
+    let before = (read(&sandbox.path("a.exr")), read(&sandbox.path("a.png")));
+    for _ in 0..2 {
+        let mut child = begun(&sandbox);
+        signal(&child, "-INT");
+        assert_eq!(child.wait().unwrap().code(), Some(75));
+        assert!((read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))) == before);
+        let file = ExrFile::read(&sandbox.path("a.partial.exr")).unwrap();
+        assert_eq!(file.metadata().text("partial"), Some("true"));
+        assert_eq!(sandbox.files(), ["a.exr", "a.partial.exr", "a.partial.png", "a.png", "room.xml"]);
+    }
+}
+
+#[test]
 fn a_killed_render_leaves_the_old_files_whole() {
     let sandbox = Sandbox::new();
     sandbox.render("a.exr", &[]).expect(0);
@@ -136,17 +157,21 @@ fn a_killed_render_leaves_the_old_files_whole() {
 #[test]
 fn a_second_signal_ends_the_run_at_once() {
     let sandbox = Sandbox::new();
-    // Reading this scene never ends, and is not asked whether it should.
-    assert!(Command::new("mkfifo").arg(sandbox.path("pipe.xml")).status().unwrap().success());
-    let arguments = ["render", "pipe.xml", "-o", "a.exr", "--progress", "ndjson"];
-    let mut child = sandbox.command(&arguments).stderr(Stdio::piped()).spawn().unwrap();
-    let pipe = std::fs::File::options().write(true).open(sandbox.path("pipe.xml")).unwrap();
-    signal(&child, "-INT");
+    // Nobody reads the statistics, and the pipe for them is full already.
+    assert!(Command::new("mkfifo").arg(sandbox.path("full")).status().unwrap().success());
+    let mut pipe =
+        File::options().read(true).write(true).custom_flags(NONBLOCK).open(sandbox.path("full")).unwrap();
+    while pipe.write(&[0; 4096]).is_ok() {}
+    let stdout = File::options().write(true).open(sandbox.path("full")).unwrap();
+    let arguments = Sandbox::path_tracing("1", &["--stats", "json", "--progress", "ndjson"]);
+    let mut child = sandbox.command(&arguments).stdout(stdout).stderr(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+    assert!(lines.any(|line| line.contains(r#""event":"wrote""#)));
+    signal(&child, "-INT");
     assert!(lines.any(|line| line.contains("once more to stop at once")));
     signal(&child, "-INT");
     assert!(lines.any(|line| line.contains(r#""event":"end","exit":130"#)));
     assert_eq!(child.wait().unwrap().code(), Some(130));
     drop(pipe);
-    assert_eq!(sandbox.files(), ["pipe.xml", "room.xml"]);
+    assert_eq!(sandbox.files(), ["a.exr", "a.png", "full", "room.xml"]);
 }

@@ -283,3 +283,71 @@ fn inspection_writes_its_layers_as_pictures_for_both_caches() {
         assert!(layers.iter().any(|name| name == "gradient.X"), "{layers:?}");
     }
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn pictures_are_written_to_paths_of_any_bytes() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let sandbox = Sandbox::new();
+    let folder = sandbox.folder.path().join(OsStr::from_bytes(b"\xff"));
+    std::fs::create_dir(&folder).unwrap();
+    let render = ["render", "room.xml", "--method", "path", "--spp", "1", "--resolution", "4x4"];
+    for more in [["--stats", "json"], ["--progress", "ndjson"]] {
+        let mut command = sandbox.command(&[&render[..], &more].concat());
+        command.arg("-o").arg(folder.join(OsStr::from_bytes(b"a\xfe.exr")));
+        Finished::from(command.output().unwrap()).expect(0);
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2);
+        std::fs::remove_dir_all(&folder).unwrap();
+        std::fs::create_dir(&folder).unwrap();
+    }
+    let job = "[[picture]]\nscene = '../room.xml'\noutput = 'b.exr'\nmethod = 'path'\nspp = 1\nresolution = '4x4'\n";
+    std::fs::write(folder.join("job.toml"), job).unwrap();
+    let mut command = sandbox.command(&["batch", "--progress", "ndjson"]);
+    Finished::from(command.arg(folder.join("job.toml")).output().unwrap()).expect(0);
+    assert!(read_exr(&folder.join("b.exr")).is_ok());
+}
+
+#[test]
+fn no_result_replaces_a_file_that_is_read_or_another_result() {
+    let sandbox = Sandbox::new();
+    let corpus = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/valid");
+    std::fs::copy(corpus.join("tile.png"), sandbox.path("wood.png")).unwrap();
+    std::fs::copy(corpus.join("sky.exr"), sandbox.path("sky.exr")).unwrap();
+    let scene = "resolution = [4, 4]\ncamera = { origin = [0, 0, 5], target = [0, 0, 0] }\n\
+        material = [{ name = 'm', kind = 'diffuse', reflectance = 'wood.png' }]\n\
+        mesh = [{ shape = 'cube', material = 'm' }]\nenvironment = { file = 'sky.exr' }\n";
+    std::fs::write(sandbox.path("own.toml"), scene).unwrap();
+    let names = ["own.toml", "room.xml", "sky.exr", "wood.png"];
+    let before = names.map(|name| read(&sandbox.path(name)));
+    let refused = |arguments: &[&str]| {
+        let stderr = sandbox.run(arguments).expect(2).stderr;
+        assert!(stderr.contains("name another file"), "{stderr}");
+        assert_eq!(sandbox.files(), names);
+    };
+    let render = ["render", "own.toml", "--method", "path", "--spp", "1"];
+    // The default PNG is beside the picture.
+    refused(&[&render[..], &["-o", "wood.exr"]].concat());
+    refused(&[&render[..], &["-o", "./sky.exr", "--no-png"]].concat());
+    refused(&["bench", "shadow", "own.toml", "--export-json", "own.toml"]);
+    refused(&["bench", "shadow", "own.toml", "--export-csv", "wood.png"]);
+    refused(&["bench", "shadow", "own.toml", "--export-csv", "a.csv", "--export-json", "./a.csv"]);
+    let job = "[[picture]]\nscene = 'own.toml'\noutput = 'wood.exr'\nspp = 1\n";
+    std::fs::write(sandbox.path("job.toml"), job).unwrap();
+    sandbox.run(&["batch", "job.toml"]).expect(5);
+    std::fs::remove_file(sandbox.path("job.toml")).unwrap();
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("a.exr", sandbox.path("x.png")).unwrap();
+        let stderr =
+            sandbox.run(&[&render[..], &["-o", "a.exr", "--png", "x.png"]].concat()).expect(2).stderr;
+        assert!(stderr.contains("two results"), "{stderr}");
+        std::fs::remove_file(sandbox.path("x.png")).unwrap();
+    }
+    sandbox.render("a.exr", &["--seed", "1"]).expect(0);
+    sandbox.render("b.exr", &["--seed", "2"]).expect(0);
+    let whole = read(&sandbox.path("a.exr"));
+    sandbox.run(&["merge", "a.exr", "b.exr", "-o", "a.exr"]).expect(2);
+    assert!(read(&sandbox.path("a.exr")) == whole);
+    assert!(names.map(|name| read(&sandbox.path(name))) == before);
+}

@@ -14,6 +14,53 @@ fn help_and_version_are_data_and_no_error() {
     assert!(help.stderr.is_empty());
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn help_that_cannot_be_printed_ends_with_4() {
+    let sandbox = Sandbox::new();
+    for arguments in [&["--help"][..], &["--version"], &["info", "room.xml"]] {
+        let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+        let status = sandbox.command(arguments).stdout(full).stderr(std::process::Stdio::null()).status();
+        assert_eq!(status.unwrap().code(), Some(4), "{arguments:?}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn devices_and_pipes_are_refused_at_once() {
+    let sandbox = Sandbox::new();
+    let place = |name: &str, text: &str| std::fs::write(sandbox.path(name), text).unwrap();
+    for name in ["zero.toml", "zero.xml", "zero.glb", "zero.obj", "zero.png", "zero.mtl"] {
+        std::os::unix::fs::symlink("/dev/zero", sandbox.path(name)).unwrap();
+    }
+    assert!(std::process::Command::new("mkfifo").arg(sandbox.path("pipe.toml")).status().unwrap().success());
+    place(
+        "mesh.toml",
+        "material = [{ name = 'm', kind = 'mirror' }]\nmesh = [{ file = 'zero.obj', material = 'm' }]",
+    );
+    place("texture.toml", "material = [{ name = 'm', kind = 'diffuse', reflectance = 'zero.png' }]");
+    place("library.obj", "mtllib zero.mtl\nusemtl m\n");
+    place("library.toml", "mesh = [{ file = 'library.obj' }]");
+    let scenes =
+        ["zero.toml", "zero.xml", "zero.glb", "pipe.toml", "mesh.toml", "texture.toml", "library.toml"];
+    for name in scenes {
+        let stderr = sandbox.run(&["info", name]).expect(3).stderr;
+        assert!(stderr.contains("not a regular file"), "{name}: {stderr}");
+    }
+    assert!(sandbox.run(&["batch", "zero.toml"]).expect(3).stderr.contains("not a regular file"));
+}
+
+#[test]
+fn errors_of_the_system_are_told_once() {
+    let sandbox = Sandbox::new();
+    for arguments in
+        [&["info", "none.toml"][..], &["compare", "none.exr", "none.exr"], &["batch", "none.toml"]]
+    {
+        let stderr = sandbox.run(arguments).expect(3).stderr;
+        assert_eq!(stderr.matches("No such file").count(), 1, "{stderr}");
+    }
+}
+
 #[test]
 fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
     let sandbox = Sandbox::new();
@@ -42,6 +89,11 @@ fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
         ["--reach", "5,2"],
     ] {
         render(&["--method", "photon-cache", wrong[0], wrong[1]]);
+    }
+    for option in ["--mu", "--series-alpha", "--series-error"] {
+        for wrong in ["nan", "inf", "-1"] {
+            render(&["--method", "cache", &format!("{option}={wrong}")]);
+        }
     }
     assert!(render(&["--aov", "albedo,normals"]).contains("geometric-normal"));
     render(&["--no-png", "--png", "b.png"]);

@@ -1,0 +1,106 @@
+//! Files that a command writes: their names, that they can be written, and that they replace nothing it reads.
+
+use super::exit::Failure;
+use crate::film::atomic;
+use anyhow::anyhow;
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+/// Checks names of a picture's files, and that they can be written.
+pub fn check_outputs(exr: &Path, png: Option<&Path>) -> Result<(), Failure> {
+    check_name(exr, "exr", "--output")?;
+    if let Some(path) = png {
+        check_name(path, "png", "--png")?;
+    }
+    let paths = || std::iter::once(exr).chain(png);
+    paths().try_for_each(|path| atomic::check_writable(path).map_err(Failure::output))?;
+    Inputs::default().check_apart(paths())
+}
+
+/// Checks the ending of a file's name that `option` gives.
+pub fn check_name(path: &Path, extension: &str, option: &str) -> Result<(), Failure> {
+    let right = path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case(extension));
+    if right {
+        return Ok(());
+    }
+    Err(Failure::usage(anyhow!("{option} {}: the file's name must end in .{extension}", path.display())))
+}
+
+/// Files that a command reads, links followed.
+#[derive(Default)]
+pub struct Inputs(BTreeSet<PathBuf>);
+
+impl Inputs {
+    /// The files at `paths`.
+    pub fn new<P: AsRef<Path>>(paths: impl IntoIterator<Item = P>) -> Inputs {
+        Inputs(paths.into_iter().filter_map(|path| atomic::resolve(path.as_ref()).ok()).collect())
+    }
+
+    /// Refuses an output that would replace an input or another output.
+    pub fn check_apart<'a>(&self, outputs: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
+        let mut written = BTreeSet::new();
+        for path in outputs {
+            let Ok(target) = atomic::resolve(path) else { continue };
+            let refuse =
+                |what: &str| Err(Failure::usage(anyhow!("{}: {what}: name another file", path.display())));
+            if self.0.contains(&target) {
+                return refuse("this file is read, and would be lost");
+            }
+            if !written.insert(target) {
+                return refuse("two results would be written to this file");
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a PNG beside which PNGs of layers, named after it, might replace an input.
+    pub fn check_layers(&self, png: &Path) -> Result<(), Failure> {
+        let Ok(target) = atomic::resolve(png) else { return Ok(()) };
+        let stem = target.with_extension("");
+        let is_layer = |input: &&PathBuf| {
+            let layer = input.extension().is_some_and(|e| e == "png").then(|| input.with_extension(""));
+            layer.is_some_and(|layer| layer != stem && layer.with_extension("") == stem)
+        };
+        match self.0.iter().find(is_layer) {
+            Some(input) => Err(Failure::usage(anyhow!(
+                "{}: the PNG of a layer might replace {}, which is read: name another file",
+                png.display(),
+                input.display()
+            ))),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs::write;
+
+    #[test]
+    fn files_are_told_apart_by_what_they_are_and_not_by_their_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        write(at("scene.toml"), "").unwrap();
+        let inputs = Inputs::new([at("scene.toml"), at("missing.png")]);
+        let check = |names: &[&str]| {
+            let paths: Vec<PathBuf> = names.iter().map(|name| at(name)).collect();
+            inputs.check_apart(paths.iter().map(PathBuf::as_path)).map_err(|failure| failure.to_string())
+        };
+        check(&["a.exr", "a.png"]).unwrap();
+        assert!(check(&["a.exr", "./scene.toml"]).unwrap_err().contains("would be lost"));
+        assert!(check(&["a.exr", "./a.exr"]).unwrap_err().contains("two results"));
+        write(at("wood.direct.png"), "").unwrap();
+        let inputs_of_layers = Inputs::new([at("wood.direct.png")]);
+        assert!(inputs_of_layers.check_layers(&at("wood.png")).is_err());
+        inputs_of_layers.check_layers(&at("wo.png")).unwrap();
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("scene.toml", at("link.exr")).unwrap();
+            std::os::unix::fs::symlink("a.exr", at("dangling.png")).unwrap();
+            assert!(check(&["link.exr"]).unwrap_err().contains("would be lost"));
+            assert!(check(&["a.exr", "dangling.png"]).unwrap_err().contains("two results"));
+        }
+    }
+}
