@@ -6,12 +6,15 @@
 use super::args::{Cli, Command};
 use super::exit::Failure;
 use crate::scene::formats::LoadOptions;
+use crate::scene::formats::read_regular;
 use crate::walk::FileNames;
 use anyhow::{Context, anyhow};
 use clap::Parser;
 use serde::Deserialize;
 use std::ffi::OsString;
+#[cfg(test)]
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
@@ -60,7 +63,7 @@ impl Entry {
 
 /// Reads a job file. Paths in it are relative to its folder; `more` are arguments for every picture.
 pub fn read(path: &Path, more: &[&str]) -> Result<Vec<Entry>, Failure> {
-    let text = fs::read_to_string(path);
+    let text = read_regular(path).and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other));
     let text = text.with_context(|| format!("cannot read {}", path.display())).map_err(Failure::input)?;
     let file: JobFile = toml::from_str(&text)
         .map_err(|error| Failure::input(anyhow!("{}: {}", path.display(), error.to_string().trim_end())))?;

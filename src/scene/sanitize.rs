@@ -19,6 +19,10 @@ const HUGE: f64 = 1e18;
 const ALBEDO_SLACK: f32 = 1e-3;
 /// Minimum roughness, that of Mitsuba.
 const MIN_ALPHA: f32 = 1e-4;
+/// Maximum roughness, at which a surface is all but black.
+const MAX_ALPHA: f32 = 4.0;
+/// Maximum η and k of a conductor; those of metals are below 100, and the fourth powers of these are finite.
+const MAX_CONDUCTOR: f32 = 1e6;
 
 /// Counts of removals and repairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -210,14 +214,25 @@ fn check_material(
         }
     }
     for lobe in &mut material.lobes {
+        if let Lobe::Rough { fresnel: Fresnel::Conductor { eta, k }, .. }
+        | Lobe::Mirror { fresnel: Fresnel::Conductor { eta, k }, .. } = lobe
+        {
+            let is_metal = |v: Rgb| v.cmpge(Rgb::ZERO).all() && v.cmple(Rgb::splat(MAX_CONDUCTOR)).all();
+            if !(is_metal(*eta) && is_metal(*k)) {
+                return wrong(
+                    format!("its optical constants eta {eta} and k {k} are out of range"),
+                    "give numbers from 0 to 1e6",
+                );
+            }
+        }
         if let Lobe::Dielectric { eta, .. } | Lobe::RoughDielectric { eta, .. } = lobe {
             etas.push(*eta);
         }
         match lobe {
             Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => {
                 let (Roughness::Constant(value) | Roughness::Textured { scale: value, .. }) = alpha;
-                if !value.is_finite() || *value < 0.0 {
-                    return wrong(format!("its roughness is {value}"), "give 0 to 1");
+                if !(0.0..=MAX_ALPHA).contains(value) {
+                    return wrong(format!("its roughness is {value}"), "give 0 to 1, at most 4");
                 }
                 match alpha {
                     Roughness::Constant(value) => *value = value.max(MIN_ALPHA),
@@ -359,9 +374,17 @@ fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), Sc
     };
     for (light, position) in &draft.lights {
         check(power(light), "a light's intensity")?;
-        if !position.is_finite() {
-            return Err(place.wrong("a light's position is no number", "correct it"));
+        if !(position.abs().max_element() <= HUGE) {
+            return Err(
+                place.wrong(format!("a light stands at {position}"), "keep within 1e18 of the origin")
+            );
         }
+    }
+    let shot = &draft.shot;
+    let cameras = || [&shot.camera].into_iter().chain(&shot.path);
+    if let Some(camera) = cameras().find(|camera| !(camera.origin.abs().max_element() <= HUGE)) {
+        let what = format!("a camera stands at {}", camera.origin);
+        return Err(place.wrong(what, "keep within 1e18 of the origin"));
     }
     for disc in &draft.discs {
         check(disc.radiance, "the radiance of a distant disc")?;

@@ -24,6 +24,7 @@ pub use super::sanitize::SanitizeReport;
 pub use error::{Level, Place, SceneError, Warning};
 pub(crate) use mesh::smooth_normals;
 pub(crate) use plan::fnv1a;
+pub(crate) use plan::read_regular;
 
 /// Options for reading a scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -95,7 +96,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
         _ => return Err(SceneError::UnknownFormat(path.to_owned())),
     };
     let generator = plan.generator.clone();
-    let (mut draft, hash) = plan.realise()?;
+    let (mut draft, hash) = plan.realise(&mut log)?;
     let hash = options.hash(hash);
     let (repairs, centre) = sanitize::sanitize(&mut draft, &mut log)?;
     framing::frame(&mut draft);

@@ -6,11 +6,17 @@
 use super::error::{Place, SceneError};
 use crate::math::Rgb;
 use crate::scene::Texels;
+use image::{DynamicImage, ImageDecoder};
 use std::io::Cursor;
 use std::path::Path;
 
 /// Maximum number of pixels: 16k by 16k.
 const MAX_PIXELS: usize = 1 << 28;
+/// Maximum number of pixels of a small file, and of pixels a byte of larger ones, which only a file of one colour has.
+const MAX_SMALL: usize = 1 << 24;
+const MAX_PIXELS_PER_BYTE: usize = 1 << 13;
+/// Maximum number of bytes of a decoded pixel: four channels of 32 bits.
+const MAX_PIXEL_BYTES: u64 = 16;
 
 /// A decoded picture, top row first.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,8 +62,9 @@ fn decode_exr(bytes: &[u8]) -> Result<Picture, exr::error::Error> {
     use exr::prelude::*;
     // The size is checked before any allocation that depends on it.
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)?;
-    if meta.headers.iter().any(|h| h.layer_size.width().saturating_mul(h.layer_size.height()) > MAX_PIXELS) {
-        return Err(exr::error::Error::Invalid("more pixels than any real picture has".into()));
+    for header in &meta.headers {
+        let (width, height) = (header.layer_size.width(), header.layer_size.height());
+        check_size(width, height, bytes).map_err(|what| exr::error::Error::Invalid(what.into()))?;
     }
     // Mitsuba names luminance images Y; `rgb_channels` would refuse those.
     let image = read()
@@ -90,6 +97,15 @@ fn decode_exr(bytes: &[u8]) -> Result<Picture, exr::error::Error> {
     Ok(Picture { width, height, texels: Texels::new(width, &texels) })
 }
 
+/// Rejects sizes that no picture has, or none of so few bytes, before anything is allocated for them.
+fn check_size(width: usize, height: usize, bytes: &[u8]) -> Result<(), String> {
+    let most = bytes.len().saturating_mul(MAX_PIXELS_PER_BYTE).clamp(MAX_SMALL, MAX_PIXELS);
+    match width.checked_mul(height) {
+        Some(pixels) if pixels <= most => Ok(()),
+        _ => Err(format!("{width} x {height} pixels are more than a file of {} bytes may have", bytes.len())),
+    }
+}
+
 fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture, String> {
     let mut reader =
         image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
@@ -98,7 +114,14 @@ fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture,
         let format = image::ImageFormat::from_path(path).map_err(|e| e.to_string())?;
         reader.set_format(format);
     }
-    let image = reader.decode().map_err(|e| e.to_string())?;
+    let mut limits = image::Limits::no_limits();
+    limits.max_alloc = Some(MAX_PIXELS as u64 * MAX_PIXEL_BYTES);
+    reader.limits(limits.clone());
+    let mut decoder = reader.into_decoder().map_err(|e| e.to_string())?;
+    decoder.set_limits(limits).map_err(|e| e.to_string())?;
+    let (width, height) = decoder.dimensions();
+    check_size(width as usize, height as usize, bytes)?;
+    let image = DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())?;
     let (width, height) = (image.width() as usize, image.height() as usize);
     let grey = |code: &dyn Fn(&[u8; 4]) -> u8| {
         let codes: Vec<[u8; 4]> = image.to_rgba8().pixels().map(|p| [code(&p.0); 4]).collect();
@@ -113,18 +136,19 @@ fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture,
             return grey(&|rgba| if f32::from(rgba[3]) >= 255.0 * cutoff { 255 } else { 0 });
         }
     };
-    use image::DynamicImage as D;
+    use DynamicImage as D;
     let plain = |texels: Vec<Rgb>| Texels::new(width, &texels);
     let texels = match image {
         D::ImageRgb32F(_) | D::ImageRgba32F(_) => {
-            plain(image.to_rgb32f().pixels().map(|p| Rgb::from(p.0)).collect())
+            plain(image.into_rgb32f().pixels().map(|p| Rgb::from(p.0)).collect())
         }
         D::ImageRgb16(_) | D::ImageRgba16(_) | D::ImageLuma16(_) | D::ImageLumaA16(_) => {
             let decode = |v: u16| linear(f32::from(v) / 65535.0, raw);
-            plain(image.to_rgb16().pixels().map(|p| Rgb::from(p.0.map(decode))).collect())
+            plain(image.into_rgb16().pixels().map(|p| Rgb::from(p.0.map(decode))).collect())
         }
         _ => {
-            let codes: Vec<[u8; 4]> = image.to_rgb8().pixels().map(|p| [p.0[0], p.0[1], p.0[2], 0]).collect();
+            let codes: Vec<[u8; 4]> =
+                image.into_rgb8().pixels().map(|p| [p.0[0], p.0[1], p.0[2], 0]).collect();
             Texels::coded(width, &codes, std::array::from_fn(|code| linear(code as f32 / 255.0, raw)))
         }
     };
@@ -185,6 +209,34 @@ mod tests {
         exr[at + 8..at + 12].copy_from_slice(&2_000_000_000i32.to_le_bytes());
         exr[at + 12..at + 16].copy_from_slice(&2_000_000_000i32.to_le_bytes());
         assert!(decode_file(&exr, false, "sky.exr").is_err());
+    }
+
+    /// A Radiance picture of one colour, run-length encoded.
+    fn radiance(width: u16, height: usize) -> Vec<u8> {
+        let mut row = [&[2, 2][..], &width.to_be_bytes()].concat();
+        for channel in [128, 64, 32, 129] {
+            let mut left = width;
+            while left > 0 {
+                let run = left.min(127);
+                row.extend([128 + run as u8, channel]);
+                left -= run;
+            }
+        }
+        let head = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n");
+        [head.into_bytes(), row.repeat(height)].concat()
+    }
+
+    #[test]
+    fn skies_of_any_real_size_are_decoded() {
+        // 513 MiB as 32-bit floats; the decoder's own limit is 512.
+        let (width, height) = (11_000, 4080);
+        let sky = decode_file(&radiance(width, height), false, "sky.hdr").unwrap();
+        assert_eq!((sky.width, sky.height), (width.into(), height));
+        assert!((sky.texels.get(0, height - 1) - Rgb::new(1.0, 0.5, 0.25)).length() < 1e-2);
+        // A claim that no file of this size can keep.
+        let claims = String::from_utf8_lossy(&radiance(8, 1)).replace("-Y 1 +X 8", "-Y 16384 +X 16384");
+        let message = decode_file(claims.as_bytes(), false, "sky.hdr").unwrap_err().to_string();
+        assert!(message.contains("16384 x 16384"), "{message}");
     }
 
     #[test]

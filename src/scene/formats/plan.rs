@@ -3,7 +3,7 @@
 //! Both readers end in a [`Plan`]. Files are read in parallel, each once; results are in the order of the
 //! description, and so are errors.
 
-use super::error::{Place, SceneError};
+use super::error::{Log, Place, SceneError};
 use super::mesh::{self, Placement, RawMesh};
 use super::picture::{self, Channel, Picture};
 use super::sky::SkyPlan;
@@ -16,6 +16,8 @@ use crate::scene::texture::{Filter, Texture, TextureId, Wrap};
 use glam::{DMat3, DMat4, DVec3, Mat3};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -168,7 +170,7 @@ enum Done {
 
 impl Plan {
     /// Opens every file; returns the scene and the hash over the bytes of all its files.
-    pub fn realise(self) -> Result<(Draft, u64), SceneError> {
+    pub fn realise(self, log: &mut Log) -> Result<(Draft, u64), SceneError> {
         let files = self.contents.tasks();
         let outcomes: Vec<Result<(u64, Vec<Done>), SceneError>> =
             files.par_iter().map(|(path, tasks)| carry_out(path, tasks)).collect();
@@ -204,7 +206,12 @@ impl Plan {
             match &plan.geometry {
                 Geometry::Ready(raw) => *made = finish_mesh(plan, raw.clone()),
                 Geometry::Shared(raw) => *made = finish_mesh(plan, RawMesh::clone(raw)),
-                Geometry::Obj(..) | Geometry::Ply(_) | Geometry::Serialized(..) => {}
+                Geometry::Obj(path, _) | Geometry::Ply(path) | Geometry::Serialized(path, _) => {
+                    if made.iter().all(|mesh| mesh.triangles.is_empty()) {
+                        let what = format!("no triangles or polygons are found in {}", path.display());
+                        log.warn(&plan.place, what, "the mesh is left out; repair or re-export it")?;
+                    }
+                }
             }
         }
         contents.decode_embedded(&mut pictures)?;
@@ -212,8 +219,13 @@ impl Plan {
             contents.textures.into_iter().zip(pictures).filter_map(|(t, p)| texture(t, p)).collect();
         let environment = match (contents.environment, sky) {
             (Some(EnvironmentPlan::Constant(radiance)), _) => Some(Environment::Constant(radiance)),
-            (Some(EnvironmentPlan::Map { scale, to_world, .. }), Some(picture)) => {
-                Some(Environment::Map(environment_map(picture, scale, &to_world)))
+            (Some(EnvironmentPlan::Map { place, scale, to_world, .. }), Some(picture)) => {
+                let map = environment_map(picture, scale, &to_world);
+                let map = map.ok_or_else(|| {
+                    let remedy = "give a factor of 0 or more that leaves the picture's values finite";
+                    place.wrong(format!("the environment's scale is {scale}"), remedy)
+                })?;
+                Some(Environment::Map(map))
             }
             (Some(EnvironmentPlan::Sky(sky)), _) => sky.map().map(Environment::Map),
             _ => None,
@@ -289,7 +301,15 @@ impl Contents {
 /// Reads a file that `from` refers to.
 pub(crate) fn read_file(path: &Path, from: &Place) -> Result<Vec<u8>, SceneError> {
     let fail = |error| SceneError::Read { path: path.to_owned(), from: from.clone(), error };
-    std::fs::read(path).map_err(fail)
+    read_regular(path).map_err(fail)
+}
+
+/// Reads a regular file: devices have no end, and pipes may never have a beginning.
+pub(crate) fn read_regular(path: &Path) -> io::Result<Vec<u8>> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::other("it is not a regular file"));
+    }
+    fs::read(path)
 }
 
 /// Reads a description's own file, to which `from` refers; returns its text and the hash of its bytes.
@@ -377,9 +397,13 @@ fn texture(plan: TexturePlan, decoded: Option<Picture>) -> Option<Texture> {
     Some(Texture { name, width, height, texels, filter: plan.filter, wrap: plan.wrap, to_uv: plan.to_uv })
 }
 
-/// Makes the map with `scale` applied. As in Mitsuba, fewer than 3 rows are padded by repeating the last.
-fn environment_map(picture: Picture, scale: f32, to_world: &DMat4) -> EnvironmentMap {
+/// Makes the map with `scale` applied; `None` if it has no light then, negative or infinite. As in Mitsuba, fewer than
+/// 3 rows are padded by repeating the last.
+fn environment_map(picture: Picture, scale: f32, to_world: &DMat4) -> Option<EnvironmentMap> {
     let Picture { width, height, texels } = picture;
+    if !(scale >= 0.0 && texels.all(|texel| !texel.is_finite() || (texel * scale).is_finite())) {
+        return None;
+    }
     let mut radiance: Vec<Rgb> = texels.iter().map(|texel| texel * scale).collect();
     let last: Vec<Rgb> = radiance[radiance.len() - width..].to_vec();
     for _ in height..3 {
@@ -387,7 +411,7 @@ fn environment_map(picture: Picture, scale: f32, to_world: &DMat4) -> Environmen
     }
     // A rotation (or reflection), so that the transpose is the inverse; readers have checked that.
     let to_local = DMat3::from_mat4(*to_world).transpose().as_mat3();
-    EnvironmentMap { width, height: height.max(3), radiance, to_local }
+    Some(EnvironmentMap { width, height: height.max(3), radiance, to_local })
 }
 
 /// 64-bit FNV-1a: negligible beside parsing, and sufficient to tell scenes apart.

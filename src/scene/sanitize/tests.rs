@@ -153,6 +153,41 @@ fn reflectances_must_not_create_energy() {
 }
 
 #[test]
+fn optical_constants_are_those_of_metals() {
+    let metal = |eta: f32, k: f32| {
+        let fresnel = Fresnel::Conductor { eta: Rgb::splat(eta), k: Rgb::new(1.0, k, 1.0) };
+        let scale = Reflectance::Constant(Rgb::ONE);
+        let smooth = Lobe::Mirror { fresnel, scale };
+        let rough = Lobe::Rough { distribution: Distribution::Ggx, alpha: 0.1.into(), fresnel, scale };
+        [smooth, rough].map(|lobe| Material { lobes: vec![lobe], ..grey() })
+    };
+    for (eta, k) in
+        [(f32::NAN, 1.0), (1.0, f32::NAN), (f32::INFINITY, 1.0), (-1.0, 1.0), (1.0, -1e-9), (1.0, 1e30)]
+    {
+        for material in metal(eta, k) {
+            let message = sanitize(&mut draft(vec![], vec![material])).unwrap_err().to_string();
+            assert!(message.contains("out of range"), "{eta} {k}: {message}");
+        }
+    }
+    for (eta, k) in [(0.0, 0.0), (0.0, 1e6), (1e6, 0.0), (1e6, 1e6)] {
+        for material in metal(eta, k) {
+            sanitize(&mut draft(vec![], vec![material])).unwrap();
+        }
+    }
+}
+
+#[test]
+fn cameras_and_lights_stand_where_f32_has_numbers() {
+    let light = DeltaLight::Point { position: Vec3::ZERO, intensity: Rgb::ONE };
+    let mut far = draft(vec![], vec![]);
+    far.lights.push((light, DVec3::splat(1e39)));
+    assert!(sanitize(&mut far).unwrap_err().to_string().contains("a light stands at"));
+    let mut far = draft(vec![], vec![]);
+    far.shot.camera.origin.x = 1e39;
+    assert!(sanitize(&mut far).unwrap_err().to_string().contains("a camera stands at"));
+}
+
+#[test]
 fn texels_are_clamped_to_what_their_factor_leaves() {
     let texels = vec![Rgb::splat(0.9), Rgb::splat(f32::NAN), Rgb::new(-1.0, 0.2, 0.2), Rgb::splat(0.4)];
     let texture = Texture {

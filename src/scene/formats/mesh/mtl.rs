@@ -3,7 +3,7 @@
 //! Reason not to use `tobj`: a colour of one or two numbers makes its MTL reader panic (4.0.5), and its
 //! errors name no line.
 
-use super::obj::numbers;
+use super::obj;
 use crate::math::Rgb;
 use crate::scene::formats::error::{Place, SceneError};
 use glam::DVec3;
@@ -41,7 +41,7 @@ pub(crate) struct ClassicMaterial {
 /// Reads the MTL text `bytes`; `path` is for messages.
 pub(crate) fn read(bytes: &[u8], path: &Path) -> Result<Vec<ClassicMaterial>, SceneError> {
     let mut materials: Vec<ClassicMaterial> = Vec::new();
-    for (number, line) in bytes.split(|&b| b == b'\n').enumerate() {
+    for (number, line) in obj::lines(bytes).enumerate() {
         let place = Place::line(path, number as u32 + 1);
         let line = line.trim_ascii();
         let word_end = line.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(line.len());
@@ -71,7 +71,7 @@ pub(crate) fn read(bytes: &[u8], path: &Path) -> Result<Vec<ClassicMaterial>, Sc
 }
 
 fn statement(material: &mut ClassicMaterial, word: &[u8], rest: &[u8], text: String) -> Result<(), String> {
-    let number = || numbers::<1>(rest).map(|[v]| v as f32);
+    let number = || finite::<1>(rest).map(|[v]| v as f32);
     match word {
         b"Kd" => material.diffuse = colour(rest)?,
         b"Ks" => material.specular = colour(rest)?,
@@ -98,11 +98,20 @@ fn file_name(text: String) -> String {
     if text.starts_with('-') { last } else { text }
 }
 
+/// Parses the first `N` numbers of a line.
+fn finite<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
+    let numbers = obj::numbers(rest)?;
+    match numbers.iter().find(|number| !(**number as f32).is_finite()) {
+        Some(number) => Err(format!("the number {number} is not finite")),
+        None => Ok(numbers),
+    }
+}
+
 /// Parses three numbers, or one for a grey.
 fn colour(rest: &[u8]) -> Result<Rgb, String> {
-    let three = numbers::<3>(rest).map(|c| DVec3::from(c).as_vec3());
+    let three = finite::<3>(rest).map(|c| DVec3::from(c).as_vec3());
     three.or_else(|e| match rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty()).count() {
-        1 => numbers::<1>(rest).map(|[v]| Rgb::splat(v as f32)),
+        1 => finite::<1>(rest).map(|[v]| Rgb::splat(v as f32)),
         _ => Err(e),
     })
 }
@@ -123,7 +132,7 @@ mod tests {
         assert_eq!((a.dissolve, a.exponent, a.ior, a.model), (0.75, 10.0, Some(1.4), 7));
         assert_eq!((a.diffuse_map.as_deref(), a.other_maps.len()), (Some("wood.png"), 1));
         assert_eq!(c.diffuse_map.as_deref(), Some("my wood.png"));
-        for bad in ["Kd 0.1 0.2", "Kd a b c", "Ns", "d x"] {
+        for bad in ["Kd 0.1 0.2", "Kd a b c", "Ns", "d x", "Ks nan", "d nan", "Ni inf", "Ke 1 2 1e39"] {
             let message =
                 read(format!("newmtl a\n{bad}\n").as_bytes(), Path::new("t.mtl")).unwrap_err().to_string();
             assert!(message.starts_with("t.mtl:2:"), "{message}");

@@ -23,6 +23,8 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 const MISSING: u32 = u32::MAX;
+/// Number of vertices of a position beyond which they are found by a hash map.
+const MAX_CHAIN: usize = 16;
 
 /// Reads the selected part of the OBJ text `bytes`; `path` is for messages.
 pub(crate) fn read(bytes: &[u8], path: &Path, selection: &Selection) -> Result<RawMesh, SceneError> {
@@ -30,7 +32,7 @@ pub(crate) fn read(bytes: &[u8], path: &Path, selection: &Selection) -> Result<R
     // Guesses from the usual 30 bytes a line; only the speed depends on them.
     reader.positions.reserve(bytes.len() / 100);
     reader.mesh.triangles.reserve(bytes.len() / 60);
-    for (number, line) in bytes.split(|&b| b == b'\n').enumerate() {
+    for (number, line) in lines(bytes).enumerate() {
         let fail = |what: String| SceneError::mesh(Place::line(path, number as u32 + 1), what);
         reader.line(line, selection).map_err(fail)?;
     }
@@ -40,15 +42,22 @@ pub(crate) fn read(bytes: &[u8], path: &Path, selection: &Selection) -> Result<R
     Ok(reader.finish())
 }
 
+/// Lines of a text, without the mark of UTF-8 before them; they end as on Unix, Windows or an old Macintosh.
+pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
+    bytes.split(move |&b| b == end)
+}
+
 /// Returns the `mtllib` names of the OBJ text `bytes`, in order.
 pub(crate) fn material_libraries(bytes: &[u8]) -> Vec<String> {
-    let lines = bytes.split(|&b| b == b'\n').filter(|l| l.starts_with(b"mtllib"));
+    let lines = lines(bytes).filter(|l| l.starts_with(b"mtllib"));
     lines.map(|l| String::from_utf8_lossy(&l[6..]).trim().to_owned()).filter(|n| !n.is_empty()).collect()
 }
 
 /// Returns the names of the materials that the faces of the OBJ text `bytes` use.
 pub(crate) fn used_materials(bytes: &[u8]) -> BTreeSet<String> {
-    let lines = bytes.split(|&b| b == b'\n').filter_map(|line| line.trim_ascii().strip_prefix(b"usemtl"));
+    let lines = lines(bytes).filter_map(|line| line.trim_ascii().strip_prefix(b"usemtl"));
     lines.map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect()
 }
 
@@ -60,6 +69,8 @@ struct Reader {
     /// First vertex of each position index: a chain through `next`, which is faster than a hash map on real
     /// files.
     first: Vec<u32>,
+    /// Vertices of positions that have more than `MAX_CHAIN`, by position, uv and normal.
+    crowded: HashMap<[u32; 3], u32>,
     vertices: Vec<Vertex>,
     mesh: RawMesh,
     corners: Vec<u32>,
@@ -143,15 +154,22 @@ impl Reader {
         if self.first.len() < self.positions.len() {
             self.first.resize(self.positions.len(), MISSING);
         }
-        let mut at = self.first[position as usize];
+        let new = self.vertices.len() as u32;
+        let (mut at, mut length) = (self.first[position as usize], 0);
         while at != MISSING {
             let vertex = &self.vertices[at as usize];
             if vertex.uv == uv && vertex.normal == normal {
                 return at;
             }
-            at = vertex.next;
+            (at, length) = (vertex.next, length + 1);
+            if length == MAX_CHAIN {
+                let known = *self.crowded.entry([position, uv, normal]).or_insert(new);
+                if known == new {
+                    self.vertices.push(Vertex { position, uv, normal, next: MISSING });
+                }
+                return known;
+            }
         }
-        let new = self.vertices.len() as u32;
         self.vertices.push(Vertex { position, uv, normal, next: self.first[position as usize] });
         self.first[position as usize] = new;
         new
@@ -277,6 +295,28 @@ mod tests {
         assert_eq!(count(&[], &["lamp"]).unwrap(), 2);
         let message = count(&["lamp "], &[]).unwrap_err().to_string();
         assert!(message.contains("no object or group called \"lamp \""), "{message}");
+    }
+
+    #[test]
+    fn a_vertex_with_thousands_of_texture_coordinates_is_no_trouble() {
+        let mut text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n".to_owned();
+        let count = 50_000;
+        (0..count).for_each(|i| text += &format!("vt {i} 0\n"));
+        (1..=count).for_each(|i| text += &format!("f 1/{i} 2/1 3/1\n"));
+        (1..=count).rev().for_each(|i| text += &format!("f 1/{i} 2/1 3/1\n"));
+        let mesh = read_text(&text).unwrap();
+        assert_eq!(mesh.positions.len(), count + 2);
+        for (i, [corner, ..]) in mesh.triangles.iter().enumerate() {
+            let uv = if i < count { i } else { 2 * count - 1 - i };
+            assert_eq!(mesh.uvs[*corner as usize].x, uv as f32);
+        }
+    }
+
+    #[test]
+    fn marks_of_utf_8_and_lines_of_old_macintoshes_are_read() {
+        for text in ["\u{feff}v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r"] {
+            assert_eq!(read_text(text).unwrap().triangles, [[0, 1, 2]]);
+        }
     }
 
     #[test]

@@ -191,6 +191,8 @@ fn contents(header: &Header, values: &mut dyn Values) -> Result<RawMesh, String>
         match element.name.as_str() {
             "vertex" => vertices(element, values, &mut mesh)?,
             "face" => faces(element, values, &mut mesh)?,
+            // Elements without properties have no bytes, whatever their number.
+            _ if element.properties.is_empty() => {}
             _ => {
                 for _ in 0..element.count {
                     for property in &element.properties {
@@ -319,6 +321,13 @@ mod tests {
         put(&[4]);
         (0..4).for_each(|i: i32| put(&i.to_le_bytes()));
         out
+    }
+
+    #[test]
+    fn elements_without_properties_take_no_time() {
+        let text =
+            ascii().replace("element extra 1\n", "element nothing 18446744073709551615\nelement extra 1\n");
+        assert_eq!(read(text.as_bytes(), Path::new("t.ply")).unwrap().positions.len(), 4);
     }
 
     #[test]

@@ -12,6 +12,8 @@ const HAS_NORMALS: u32 = 0x0001;
 const HAS_UVS: u32 = 0x0002;
 const HAS_COLOURS: u32 = 0x0008;
 const DOUBLE: u32 = 0x2000;
+/// Maximum number of bytes of a mesh's name.
+const MAX_NAME: usize = 1 << 16;
 
 /// Reads mesh number `index` of the file `bytes`; `path` is for messages.
 pub(crate) fn read(bytes: &[u8], index: usize, path: &Path) -> Result<RawMesh, SceneError> {
@@ -125,7 +127,29 @@ impl Stream<'_> {
     }
 
     fn skip_name(&mut self) -> Result<(), String> {
-        while self.bytes(1, 1)? != [0] {}
-        Ok(())
+        for _ in 0..MAX_NAME {
+            if self.bytes(1, 1)? == [0] {
+                return Ok(());
+            }
+        }
+        Err(format!("its name is longer than {MAX_NAME} bytes"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use flate2::Compression;
+    use flate2::write::ZlibEncoder;
+    use std::io::Write;
+
+    #[test]
+    fn a_name_without_an_end_is_an_error_at_once() {
+        let mut zlib = ZlibEncoder::new(Vec::new(), Compression::fast());
+        zlib.write_all(&0x1000u32.to_le_bytes()).unwrap();
+        (0..300).for_each(|_| zlib.write_all(&[b'a'; 1 << 20]).unwrap());
+        let file = [&MAGIC.to_le_bytes()[..], &4u16.to_le_bytes(), &zlib.finish().unwrap()].concat();
+        let message = read(&file, 0, Path::new("a.serialized")).unwrap_err().to_string();
+        assert!(message.contains("a.serialized") && message.contains("its name is longer"), "{message}");
     }
 }

@@ -18,8 +18,11 @@ impl Converter<'_> {
             return Ok(Some(2));
         }
         match integrator.integer("max_depth")? {
-            None => Ok(None),
-            Some(depth) if depth < 0 => Ok(None),
+            None | Some(-1) => Ok(None),
+            Some(depth) if depth < 1 => {
+                let remedy = "give 1 for emitters alone, or more, or -1 for no limit";
+                Err(integrator.place.wrong(format!("max_depth is {depth}"), remedy))
+            }
             Some(depth) => Ok(Some(u32::try_from(depth).unwrap_or(u32::MAX))),
         }
     }

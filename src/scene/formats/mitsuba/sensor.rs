@@ -221,7 +221,7 @@ fn horizontal_fov(sensor: &Object, aspect: f64) -> Result<f64, SceneError> {
             ));
         }
     };
-    if !(tan_x > 0.0 && tan_x < 1e6 && fov > 0.0 && fov < std::f64::consts::PI) {
+    if !(tan_x > 0.0 && (tan_x as f32).is_finite() && fov > 0.0 && fov < std::f64::consts::PI) {
         return Err(wrong("the field of view is not between 0 and 180 degrees".into(), "correct fov"));
     }
     Ok(2.0 * tan_x.atan())

@@ -163,6 +163,24 @@ fn errors_name_the_line_and_a_remedy() {
         ),
         ("<emitter type=\"constant\"/><emitter type=\"constant\"/>", "more than one environment"),
         ("<emitter type=\"constant\"><rgb name=\"radiance\" value=\"-1\"/></emitter>", "negative"),
+        (
+            "<texture type=\"checkerboard\" id=\"a\"><ref name=\"color0\" id=\"a\"/></texture>\
+            <shape type=\"cube\"><bsdf type=\"diffuse\"><ref name=\"reflectance\" id=\"a\"/></bsdf></shape>",
+            "each other",
+        ),
+        (
+            "<integrator type=\"path\"><integer name=\"max_depth\" value=\"0\"/></integrator>",
+            "max_depth is 0",
+        ),
+        (
+            "<integrator type=\"path\"><integer name=\"max_depth\" value=\"-2\"/></integrator>",
+            "max_depth is -2",
+        ),
+        (
+            "<shape type=\"cube\"><bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"1e30\"/></bsdf></shape>",
+            "its roughness is",
+        ),
+        ("<emitter type=\"point\"><point name=\"position\" x=\"1e39\"/></emitter>", "a light stands at"),
         ("<translate x=\"1\"/>", "outside"),
         ("<flout name=\"a\" value=\"1\"/>", "<flout>"),
         ("<include filename=\"s.xml\"/>", "deeply"),
@@ -174,6 +192,36 @@ fn errors_name_the_line_and_a_remedy() {
         let message = load_body(body).map(|l| format!("{:?}", l.warnings)).unwrap_err();
         assert!(message.contains(what) && message.contains("s.xml"), "{message}\n{body}");
     }
+}
+
+#[test]
+fn parameters_and_includes_that_multiply_are_refused_before_they_fill_memory() {
+    let value = |i: usize| format!("$a{}", i - 1).repeat(10);
+    let defaults = (1..40).map(|i| format!("<default name=\"a{i}\" value=\"{}\"/>\n", value(i)));
+    let bomb = format!("<default name=\"a0\" value=\"xxxxxxxxxx\"/>\n{}", defaults.collect::<String>());
+    let message = load_body(&bomb).map(drop).unwrap_err();
+    assert!(message.contains("16 MiB") && message.contains("s.xml:"), "{message}");
+
+    let names: Vec<String> = (1..40).map(|i| format!("{i}.xml")).collect();
+    let twice = |i: usize| format!("<include filename=\"{}.xml\"/>", i + 1).repeat(2);
+    let texts: Vec<String> = (1..40)
+        .map(|i| {
+            format!("<scene version=\"3.0.0\">{}</scene>", if i < 39 { twice(i) } else { String::new() })
+        })
+        .collect();
+    let files: Vec<(&str, &str)> =
+        names.iter().map(String::as_str).zip(texts.iter().map(String::as_str)).collect();
+    let message = load_with(&twice(0), &files, false).map(drop).unwrap_err();
+    assert!(message.contains("4096 files"), "{message}");
+}
+
+#[test]
+fn fields_of_view_up_to_a_half_circle_are_read() {
+    let sensor = SENSOR.replace("\"90\"", "\"179.99999\"");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.xml");
+    fs::write(&path, format!("<scene version=\"3.0.0\">{sensor}{SKY}</scene>")).unwrap();
+    assert!(load(&path, &LoadOptions::default()).unwrap().cameras.still.tan_half_x > 1e7);
 }
 
 #[test]

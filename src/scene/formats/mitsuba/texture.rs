@@ -75,11 +75,22 @@ impl Converter<'_> {
         name: &str,
         default: f32,
     ) -> Result<Reflectance, SceneError> {
+        self.reflectance_within(object, name, default, 0)
+    }
+
+    /// The same of a texture that so many others hold.
+    fn reflectance_within(
+        &mut self,
+        object: &Object,
+        name: &str,
+        default: f32,
+        depth: u32,
+    ) -> Result<Reflectance, SceneError> {
         if let Some(colour) = self.colour(object, name)? {
             return Ok(Reflectance::Constant(colour));
         }
         match self.document.named(object, name)? {
-            Some(texture) => self.texture(&texture, 0),
+            Some(texture) => self.texture(&texture, depth),
             None => Ok(Reflectance::Constant(Rgb::splat(default))),
         }
     }
@@ -95,7 +106,7 @@ impl Converter<'_> {
         }
         let reflectance = match object.plugin.as_str() {
             "bitmap" => self.bitmap(object)?,
-            "checkerboard" => self.checkerboard(object)?,
+            "checkerboard" => self.checkerboard(object, depth)?,
             "uniform" | "srgb" | "rgb" | "spectrum" | "d65" => {
                 let value = match self.colour(object, "color")? {
                     Some(colour) => Some(colour),
@@ -186,13 +197,14 @@ impl Converter<'_> {
     }
 
     /// Two by two texels without interpolation: the squares are half a unit wide.
-    fn checkerboard(&mut self, object: &Object) -> Result<Reflectance, SceneError> {
-        let mut texel = |name: &str, default: f32| match self.reflectance(object, name, default)? {
-            Reflectance::Constant(colour) => Ok(colour),
-            Reflectance::Textured { .. } => {
-                Err(object.place.wrong("a checkerboard of textures", "give its colours as <rgb>"))
-            }
-        };
+    fn checkerboard(&mut self, object: &Object, depth: u32) -> Result<Reflectance, SceneError> {
+        let mut texel =
+            |name: &str, default: f32| match self.reflectance_within(object, name, default, depth + 1)? {
+                Reflectance::Constant(colour) => Ok(colour),
+                Reflectance::Textured { .. } => {
+                    Err(object.place.wrong("a checkerboard of textures", "give its colours as <rgb>"))
+                }
+            };
         let (even, odd) = (texel("color0", 0.4)?, texel("color1", 0.2)?);
         let texels = Texels::new(2, &[even, odd, odd, even]);
         let picture = Picture { width: 2, height: 2, texels };

@@ -11,6 +11,10 @@ use std::rc::Rc;
 
 /// Maximum nesting of elements, and of included files; deeper is an error, and no real scene is.
 const MAX_DEPTH: usize = 48;
+/// Maximum number of files of a scene; files that include the next one twice would be two to the power of their number.
+const MAX_FILES: usize = 4096;
+/// Maximum number of bytes that all `$parameters` of a scene become; values made of values would have no end.
+const MAX_SUBSTITUTED: usize = 1 << 24;
 
 /// A plugin instance: `<bsdf type="diffuse" id="a">` and its contents.
 #[derive(Debug)]
@@ -128,6 +132,8 @@ struct Builder<'a> {
     ids: BTreeMap<String, Rc<Object>>,
     /// Values of `$name` parameters.
     parameters: BTreeMap<String, Parameter>,
+    /// Bytes that they have become so far.
+    substituted: Cell<usize>,
     sources: Vec<(PathBuf, u64)>,
     is_old: bool,
 }
@@ -138,7 +144,8 @@ impl Builder<'_> {
             (name.clone(), Parameter { value: value.clone(), used: Cell::new(false) })
         };
         let parameters = given.iter().map(parameter).collect();
-        Builder { log, ids: BTreeMap::new(), parameters, sources: Vec::new(), is_old: false }
+        let substituted = Cell::new(0);
+        Builder { log, ids: BTreeMap::new(), parameters, substituted, sources: Vec::new(), is_old: false }
     }
 
     /// Reads the file into `parent`: the contents of a scene, or its only object under `name`.
@@ -150,6 +157,10 @@ impl Builder<'_> {
         name: Option<String>,
         depth: usize,
     ) -> Result<(), SceneError> {
+        if self.sources.len() == MAX_FILES {
+            let remedy = "include each file once";
+            return Err(from.wrong(format!("the scene includes more than {MAX_FILES} files"), remedy));
+        }
         let (text, hash) = read_text(path, from)?;
         self.sources.push((path.to_owned(), hash));
         let parsed = roxmltree::Document::parse(&text);
@@ -293,6 +304,11 @@ impl Builder<'_> {
                 return Err(place.wrong(what, format!("give it one with -D {name}=..., or a <default>")));
             };
             value.used.set(true);
+            self.substituted.set(self.substituted.get() + value.value.len());
+            if self.substituted.get() > MAX_SUBSTITUTED {
+                let what = format!("the parameters become more than {} MiB of text", MAX_SUBSTITUTED >> 20);
+                return Err(place.wrong(what, "do not make values of values"));
+            }
             out.push_str(&value.value);
             rest = &from[1 + name.len()..];
         }

@@ -1,8 +1,8 @@
 //! Camera and walk-through of the native format.
 
+use super::Builder;
 use super::path::{Key, KeyedPath};
-use super::text::{CameraText, KeyText, PathText, SceneText};
-use super::{Builder, finite};
+use super::text::{CameraText, KeyText, Number, PathText, SceneText};
 use crate::scene::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::framing;
@@ -12,7 +12,6 @@ use toml::Spanned;
 
 /// Field of view of cameras that have none, in degrees.
 const DEFAULT_FOV: f64 = 45.0;
-const DEFAULT_UP: [f64; 3] = [0.0, 1.0, 0.0];
 
 impl Builder<'_> {
     pub(super) fn shot(&self, scene: &SceneText) -> Result<Shot, SceneError> {
@@ -42,10 +41,10 @@ impl Builder<'_> {
                     let what = "a camera with a film_width or an aperture_radius stands nowhere";
                     return Err(place.wrong(what, "give its origin and target"));
                 }
-                let up = text.up.unwrap_or(DEFAULT_UP);
-                let origin = framing::outlook(finite(up, "the camera's up", &place)?).to_array();
-                let still = KeyText { frame: None, origin, target: [0.0; 3], up: None, fov: None };
-                shot(camera(text, &key(text, &still, &place)?, resolution, &place)?, true, path)
+                let up = text.up.map_or(DVec3::Y, DVec3::from);
+                let fov = fov(text, None, &place)?;
+                let outlook = Key { origin: framing::outlook(up), target: DVec3::ZERO, up, fov };
+                shot(camera(text, &outlook, resolution, &place)?, true, path)
             }
             _ => {
                 let what = "the camera has only one of origin and target";
@@ -157,17 +156,18 @@ fn filter(name: &str) -> Option<PixelFilter> {
 
 /// A key; the camera's own up vector and field of view stand where it has none.
 fn key(camera: &CameraText, text: &KeyText, place: &Place) -> Result<Key, SceneError> {
-    let fov = text.fov.or(camera.fov).unwrap_or(DEFAULT_FOV);
-    if !(fov > 0.0 && fov < 180.0) {
-        return Err(place.wrong(format!("fov is {fov}"), "give 0 to 180 degrees"));
+    let up = text.up.or(camera.up).map_or(DVec3::Y, DVec3::from);
+    let fov = fov(camera, text.fov, place)?;
+    Ok(Key { origin: text.origin.into(), target: text.target.into(), up, fov })
+}
+
+/// The field of view of a key, degrees: its own or the camera's.
+fn fov(camera: &CameraText, own: Option<Number>, place: &Place) -> Result<f64, SceneError> {
+    let fov = own.or(camera.fov).map_or(DEFAULT_FOV, f64::from);
+    match fov > 0.0 && fov < 180.0 {
+        true => Ok(fov),
+        false => Err(place.wrong(format!("fov is {fov}"), "give 0 to 180 degrees")),
     }
-    let up = text.up.or(camera.up).unwrap_or(DEFAULT_UP);
-    Ok(Key {
-        origin: finite(text.origin, "the camera's origin", place)?,
-        target: finite(text.target, "the camera's target", place)?,
-        up: finite(up, "the camera's up", place)?,
-        fov,
-    })
 }
 
 fn camera(
@@ -204,13 +204,13 @@ fn camera(
             );
         }
         (Some(width), None) => {
-            half_width = 0.5 * positive(width, "film_width")?;
+            half_width = 0.5 * positive(width.into(), "film_width")?;
             Projection::Parallel
         }
         (None, Some(radius)) => {
-            let distance = text.focus_distance.unwrap_or_else(|| origin.distance(target));
+            let distance = text.focus_distance.map_or_else(|| origin.distance(target), f64::from);
             let distance = positive(distance, "focus_distance")? as f32;
-            Projection::Lens { radius: positive(radius, "aperture_radius")? as f32, distance }
+            Projection::Lens { radius: positive(radius.into(), "aperture_radius")? as f32, distance }
         }
         (None, None) => Projection::Pinhole,
     };

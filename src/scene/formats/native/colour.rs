@@ -2,7 +2,7 @@
 //! in sRGB, any of these times a factor, or a picture where a surface carries it.
 
 use super::Builder;
-use super::text::{ColourText, TextureText};
+use super::text::{ColourText, Number, TextureText};
 use crate::math::Rgb;
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::picture::srgb_to_linear;
@@ -23,7 +23,7 @@ impl ColourText {
     /// Returns the colour, or nothing for a picture.
     pub fn constant(&self, place: &Place) -> Result<Option<Rgb>, SceneError> {
         Ok(match self {
-            ColourText::Grey(grey) => Some(Rgb::splat(*grey as f32)),
+            ColourText::Grey(grey) => Some(Rgb::splat(grey.0 as f32)),
             ColourText::Rgb(rgb) => Some(DVec3::from(*rgb).as_vec3()),
             ColourText::Named(name) => match name.strip_prefix('#') {
                 Some(digits) => Some(hexadecimal(digits).ok_or_else(|| {
@@ -32,7 +32,7 @@ impl ColourText {
                 None => None,
             },
             ColourText::Scaled { colour, scale } => {
-                colour.constant(place)?.map(|colour| colour * *scale as f32)
+                colour.constant(place)?.map(|colour| colour * scale.0 as f32)
             }
             ColourText::Texture(_) => None,
         })
@@ -45,7 +45,7 @@ impl ColourText {
             ColourText::Texture(texture) => Some(texture.clone()),
             ColourText::Scaled { colour, scale } => {
                 let inner = colour.picture()?;
-                Some(TextureText { scale: Some(inner.scale.unwrap_or(1.0) * scale), ..inner })
+                Some(TextureText { scale: Some(Number(inner.scale() * scale.0)), ..inner })
             }
             ColourText::Grey(_) | ColourText::Rgb(_) => None,
         }

@@ -1,7 +1,7 @@
 //! Lights and environment of the native format.
 
-use super::text::{ColourText, EnvironmentText, LightText};
-use super::{Builder, finite};
+use super::Builder;
+use super::text::{ColourText, EnvironmentText, LightText, Numbers};
 use crate::scene::formats::check;
 use crate::scene::formats::error::SceneError;
 use crate::scene::formats::plan::EnvironmentPlan;
@@ -16,8 +16,7 @@ impl Builder<'_> {
         let missing = |key: &str| {
             place.wrong(format!("the {} light lacks {key}", text.kind), format!("add {key} = ..."))
         };
-        let need =
-            |value: Option<[f64; 3]>, key: &str| finite(value.ok_or_else(|| missing(key))?, key, &place);
+        let need = |value: Option<Numbers<3>>, key: &str| value.map(DVec3::from).ok_or_else(|| missing(key));
         let colour = |value: &Option<ColourText>, key: &str| {
             value.as_ref().ok_or_else(|| missing(key))?.rgb(&format!("the {key}"), &place)
         };
@@ -50,8 +49,8 @@ impl Builder<'_> {
                 let position = need(text.position, "position")?;
                 let direction = check::unit(need(text.target, "target")? - position, &place)?;
                 let intensity = colour(&text.intensity, "intensity")?;
-                let outer = text.outer_angle.unwrap_or(20.0);
-                let inner = text.inner_angle.unwrap_or(0.75 * outer);
+                let outer = text.outer_angle.map_or(20.0, f64::from);
+                let inner = text.inner_angle.map_or(0.75 * outer, f64::from);
                 let names = ["inner_angle", "outer_angle"];
                 let [inner_angle, outer_angle] = check::cone(names, [inner, outer], &place)?;
                 let light =
@@ -62,7 +61,7 @@ impl Builder<'_> {
                 let direction = check::unit(need(text.direction, "direction")?, &place)?;
                 let irradiance = colour(&text.irradiance, "irradiance")?;
                 if let Some(angle) = text.angle {
-                    let disc = check::disc(direction, irradiance, angle, &place)?;
+                    let disc = check::disc(direction, irradiance, angle.into(), &place)?;
                     self.contents.discs.push(disc);
                     return Ok(());
                 }
@@ -81,8 +80,8 @@ impl Builder<'_> {
                 Ok(EnvironmentPlan::Constant(radiance.rgb("the radiance", &place)?))
             }
             (None, Some(file)) => {
-                let to_world = DMat4::from_rotation_y(text.rotate_y.unwrap_or(0.0).to_radians());
-                let (path, scale) = (self.folder.join(file), text.scale.unwrap_or(1.0) as f32);
+                let to_world = DMat4::from_rotation_y(text.rotate_y.map_or(0.0, f64::from).to_radians());
+                let (path, scale) = (self.folder.join(file), text.scale.map_or(1.0, f64::from) as f32);
                 Ok(EnvironmentPlan::Map { place, path, scale, to_world })
             }
             _ => {

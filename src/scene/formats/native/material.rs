@@ -1,7 +1,7 @@
 //! Materials of the native format.
 
 use super::Builder;
-use super::text::{ColourText, FilterText, MapText, MaterialText, NumberText, TextureText, WrapText};
+use super::text::{ColourText, FilterText, MapText, MaterialText, Number, NumberText, TextureText, WrapText};
 use crate::math::Rgb;
 use crate::scene::formats::check;
 use crate::scene::formats::error::{Place, SceneError};
@@ -47,8 +47,8 @@ impl Builder<'_> {
             let what = || format!("the material \"{}\" lacks {key}", text.name);
             colour.clone().ok_or_else(|| place.wrong(what(), format!("add {key} = ...")))
         };
-        let one = || ColourText::Grey(1.0);
-        let ior = text.ior.unwrap_or(1.5) as f32;
+        let one = || ColourText::Grey(Number(1.0));
+        let ior = text.ior.map_or(1.5, f64::from) as f32;
         Ok(match text.kind.as_str() {
             "diffuse" => (self.colour(&need(&text.reflectance, "reflectance")?, place)?, None, None),
             "glossy" => {
@@ -71,7 +71,7 @@ impl Builder<'_> {
                 let scale = self.colour(&text.specular.clone().unwrap_or(one()), place)?;
                 let fresnel = self.conductor(text, place)?;
                 let lobe = match text.alpha {
-                    None | Some(NumberText::Number(0.0)) => Lobe::Mirror { fresnel, scale },
+                    None | Some(NumberText::Number(Number(0.0))) => Lobe::Mirror { fresnel, scale },
                     Some(_) => self.rough(text, fresnel, scale, place)?,
                 };
                 (Reflectance::BLACK, None, Some(lobe))
@@ -134,8 +134,8 @@ impl Builder<'_> {
         text: &MaterialText,
         place: &Place,
     ) -> Result<(Distribution, Roughness), SceneError> {
-        let alpha = match text.alpha.clone().unwrap_or(NumberText::Number(0.1)) {
-            NumberText::Number(alpha) => {
+        let alpha = match text.alpha.clone().unwrap_or(NumberText::Number(Number(0.1))) {
+            NumberText::Number(Number(alpha)) => {
                 if !(alpha > 0.0 && alpha <= 4.0) {
                     let what = format!("the roughness of \"{}\" is {alpha}", text.name);
                     return Err(place.wrong(what, "give a number above 0, usually up to 1"));
@@ -169,13 +169,13 @@ impl Builder<'_> {
             base_color,
             metallic: share(&text.metallic, 0.0),
             roughness: share(&text.roughness, 0.5),
-            eta: text.ior.unwrap_or(1.5) as f32,
+            eta: text.ior.map_or(1.5, f64::from) as f32,
             spec_tint: share(&text.spec_tint, 0.0),
             spec_trans: share(&text.spec_trans, 0.0),
             sheen: share(&text.sheen, 0.0),
             sheen_tint: share(&text.sheen_tint, 0.0),
             clearcoat: share(&text.clearcoat, 0.0),
-            clearcoat_gloss: text.clearcoat_gloss.unwrap_or(0.0) as f32,
+            clearcoat_gloss: text.clearcoat_gloss.map_or(0.0, f64::from) as f32,
         })
     }
 
@@ -190,32 +190,33 @@ impl Builder<'_> {
         };
         let normals = text.normal_map.as_ref().map(raw).map(|map| Relief::Normals {
             texture: self.texture_id(&map, place),
-            strength: map.scale.unwrap_or(1.0) as f32,
+            strength: map.scale() as f32,
             y_along_v: true,
         });
-        let heights = text.bump_map.as_ref().map(raw).map(|map| Relief::Heights {
-            texture: self.texture_id(&map, place),
-            scale: map.scale.unwrap_or(1.0) as f32,
-        });
+        let heights = text
+            .bump_map
+            .as_ref()
+            .map(raw)
+            .map(|map| Relief::Heights { texture: self.texture_id(&map, place), scale: map.scale() as f32 });
         Ok(normals.or(heights))
     }
 
     fn share(&mut self, text: NumberText, place: &Place) -> Share {
         match text {
-            NumberText::Number(number) => Share::Constant(number as f32),
+            NumberText::Number(Number(number)) => Share::Constant(number as f32),
             NumberText::Picture(file) => self.number(TextureText { file, ..TextureText::default() }, place),
             NumberText::Texture(texture) => self.number(texture, place),
         }
     }
 
     fn number(&mut self, text: TextureText, place: &Place) -> Parameter<f32> {
-        let scale = text.scale.unwrap_or(1.0) as f32;
+        let scale = text.scale() as f32;
         let texture = self.texture_id(&TextureText { raw: true, ..text }, place);
         Parameter::Textured { texture, scale }
     }
 
     pub(super) fn texture(&mut self, text: &TextureText, place: &Place) -> Reflectance {
-        let scale = Rgb::splat(text.scale.unwrap_or(1.0) as f32);
+        let scale = Rgb::splat(text.scale() as f32);
         Reflectance::Textured { texture: self.texture_id(text, place), scale }
     }
 
@@ -229,7 +230,7 @@ impl Builder<'_> {
             None | Some(FilterText::Bilinear) => Filter::Bilinear,
             Some(FilterText::Nearest) => Filter::Nearest,
         };
-        let tiles = text.tiles.unwrap_or([1.0, 1.0]).map(|t| t as f32);
+        let tiles = text.tiles.map_or([1.0, 1.0], <[f64; 2]>::from).map(|t| t as f32);
         let to_uv = Mat3::from_scale(Vec2::from(tiles));
         let image = Image::File { path: self.folder.join(&text.file), raw: text.raw };
         self.contents.add_texture(TexturePlan { place: place.clone(), image, filter, wrap, to_uv })

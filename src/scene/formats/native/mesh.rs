@@ -1,7 +1,7 @@
 //! Meshes of the native format: generated parts, files and shapes.
 
 use super::Builder;
-use super::text::{ColourText, MeshText, NamesText, ScaleText, StepText};
+use super::text::{ColourText, MeshText, NamesText, Number, ScaleText, StepText};
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::gltf::{self, FRAMES_PER_SECOND, ImportOptions};
 use crate::scene::formats::mesh::{Normals, Placement, RawMesh, shapes};
@@ -57,8 +57,8 @@ impl Builder<'_> {
     }
 
     fn import(&mut self, path: &Path, text: &MeshText, place: &Place) -> Result<(), SceneError> {
-        let positive = |value: Option<f64>, key: &str| match value {
-            Some(value) if !(value > 0.0 && value.is_finite()) => {
+        let positive = |value: Option<Number>, key: &str| match value.map(f64::from) {
+            Some(value) if value <= 0.0 => {
                 Err(place.wrong(format!("{key} is {value}"), "give a number above 0"))
             }
             value => Ok(value),
@@ -149,6 +149,9 @@ impl Builder<'_> {
         for step in steps {
             let place = self.file.place(step.span());
             to_world = matrix(step.get_ref(), &place)? * to_world;
+            if !to_world.is_finite() {
+                return Err(place.wrong("the transform is not finite", "write smaller numbers"));
+            }
         }
         Ok(to_world)
     }
@@ -172,26 +175,22 @@ fn selection(text: &MeshText) -> Selection {
 }
 
 fn matrix(step: &StepText, place: &Place) -> Result<DMat4, SceneError> {
-    let matrix = match (&step.scale, &step.rotate, step.translate, step.matrix) {
-        (Some(ScaleText::Uniform(s)), None, None, None) => DMat4::from_scale(DVec3::splat(*s)),
+    Ok(match (&step.scale, &step.rotate, step.translate, step.matrix) {
+        (Some(ScaleText::Uniform(s)), None, None, None) => DMat4::from_scale(DVec3::splat(s.0)),
         (Some(ScaleText::Axes(s)), None, None, None) => DMat4::from_scale(DVec3::from(*s)),
         (None, Some(rotate), None, None) => {
             let axis = DVec3::from(rotate.axis).try_normalize();
             let zero = || place.wrong("the rotation's axis is zero", "give a direction");
-            DMat4::from_axis_angle(axis.ok_or_else(zero)?, rotate.angle.to_radians())
+            DMat4::from_axis_angle(axis.ok_or_else(zero)?, rotate.angle.0.to_radians())
         }
         (None, None, Some(by), None) => DMat4::from_translation(DVec3::from(by)),
-        (None, None, None, Some(rows)) => DMat4::from_cols_array(&rows).transpose(),
+        (None, None, None, Some(rows)) => DMat4::from_cols_array(&rows.0.map(f64::from)).transpose(),
         _ => {
             let remedy =
                 "write { scale = 2.0 }, { rotate = { ... } }, { translate = [...] } or { matrix = [...] }";
             return Err(place.wrong("a transform step does not say one thing", remedy));
         }
-    };
-    match matrix.is_finite() {
-        true => Ok(matrix),
-        false => Err(place.wrong("a transform step is not finite", "write finite numbers")),
-    }
+    })
 }
 
 fn raw_part(part: &Part) -> RawMesh {

@@ -16,7 +16,6 @@ use super::error::{Log, Place, SceneError};
 use super::plan::{Contents, Plan, folder_of, read_text, stem_of};
 use crate::scene::draft::Shot;
 use crate::scene::material::MaterialId;
-use glam::DVec3;
 use lightsplat_scenes::Part;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -53,6 +52,8 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
         let read = builder.sky(sky);
         builder.log.part(read);
     }
+    let depth = builder.max_depth(&scene);
+    let max_depth = builder.log.part(depth).flatten();
     let shot = builder.shot(&scene);
     let shot = builder.log.conclude(shot)?;
     builder.report_unused_parts(&scene)?;
@@ -63,7 +64,7 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
         sources,
         generator: scene.generator.map(|g| g.into_inner()),
         shot,
-        max_depth: scene.max_depth,
+        max_depth,
         contents: builder.contents,
     })
 }
@@ -118,6 +119,16 @@ impl<'a> Builder<'a> {
         })
     }
 
+    fn max_depth(&self, scene: &SceneText) -> Result<Option<u32>, SceneError> {
+        match &scene.max_depth {
+            Some(depth) if *depth.get_ref() == 0 => {
+                let remedy = "give 1 for emitters alone, or more";
+                Err(self.file.place(depth.span()).wrong("max_depth is 0, which no path has", remedy))
+            }
+            depth => Ok(depth.as_ref().map(|depth| *depth.get_ref())),
+        }
+    }
+
     fn report_unused_parts(&mut self, scene: &SceneText) -> Result<(), SceneError> {
         let unused = self.parts.iter().zip(&self.part_used).filter(|(_, used)| !**used);
         let names: Vec<&str> = unused.map(|(part, _)| part.name.as_str()).collect();
@@ -129,13 +140,6 @@ impl<'a> Builder<'a> {
             _ => Ok(()),
         }
     }
-}
-
-/// Returns a finite vector, or an error at `place` that names `what`.
-fn finite(v: [f64; 3], what: &str, place: &Place) -> Result<DVec3, SceneError> {
-    let v = DVec3::from(v);
-    let wrong = || place.wrong(format!("{what} is not finite"), "write finite numbers");
-    v.is_finite().then_some(v).ok_or_else(wrong)
 }
 
 #[cfg(test)]

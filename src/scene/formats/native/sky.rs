@@ -1,7 +1,7 @@
 //! Sun and sky of the native format: where y is up, north is -z and east x; where z is, north is y.
 
+use super::Builder;
 use super::text::SkyText;
-use super::{Builder, finite};
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::plan::EnvironmentPlan;
 use crate::scene::formats::sky::{Moment, SkyPlan, sun_position};
@@ -13,18 +13,16 @@ impl Builder<'_> {
     pub(super) fn sky(&mut self, text: &Spanned<SkyText>) -> Result<(), SceneError> {
         let place = self.file.place(text.span());
         let text = text.get_ref();
-        let up = finite(text.up.unwrap_or([0.0, 1.0, 0.0]), "the sky's up", &place)?.try_normalize();
+        let up = text.up.map_or(DVec3::Y, DVec3::from).try_normalize();
         let up = up.ok_or_else(|| place.wrong("the sky's up is zero", "give a direction"))?;
         let towards_sun = match (text.sun_direction, &text.date, text.place) {
-            (Some(direction), None, None) if text.rotate_y.is_none() => {
-                finite(direction, "the sun's direction", &place)?
-                    .try_normalize()
-                    .ok_or_else(|| place.wrong("the sun has no direction", "give one that is not zero"))?
-            }
+            (Some(direction), None, None) if text.rotate_y.is_none() => DVec3::from(direction)
+                .try_normalize()
+                .ok_or_else(|| place.wrong("the sun has no direction", "give one that is not zero"))?,
             (None, Some(date), Some(at)) => {
-                let [zenith, azimuth] = sun_position(&moment(date, &place)?, at);
+                let [zenith, azimuth] = sun_position(&moment(date, &place)?, at.into());
                 let (sin, cos) = zenith.sin_cos();
-                let azimuth = azimuth - text.rotate_y.unwrap_or(0.0).to_radians();
+                let azimuth = azimuth - text.rotate_y.map_or(0.0, f64::from).to_radians();
                 let towards_sun = DVec3::new(sin * azimuth.sin(), cos, -sin * azimuth.cos());
                 DQuat::from_rotation_arc(DVec3::Y, up) * towards_sun
             }
@@ -34,13 +32,13 @@ impl Builder<'_> {
             }
         };
         let mut sky = SkyPlan::new(up, towards_sun);
-        sky.turbidity = text.turbidity.unwrap_or(sky.turbidity);
+        sky.turbidity = text.turbidity.map_or(sky.turbidity, f64::from);
         if let Some(albedo) = &text.albedo {
             sky.albedo = albedo.rgb("the ground's albedo", &place)?;
         }
-        sky.sky_scale = text.scale.unwrap_or(1.0);
-        sky.sun_scale = text.sun_scale.unwrap_or(sky.sky_scale);
-        sky.sun_angle = text.sun_angle.unwrap_or(sky.sun_angle);
+        sky.sky_scale = text.scale.map_or(1.0, f64::from);
+        sky.sun_scale = text.sun_scale.map_or(sky.sky_scale, f64::from);
+        sky.sun_angle = text.sun_angle.map_or(sky.sun_angle, f64::from);
         sky.check(&place, self.log)?;
         self.contents.discs.extend(sky.sun());
         if self.contents.environment.is_some() {

@@ -100,8 +100,8 @@ fn what_is_wrong_is_named_with_its_line() {
         ),
         (
             format!("{HEAD}[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = nan\n"),
-            6,
-            "no number",
+            9,
+            "expected a number",
         ),
         (format!("{HEAD}[[material]]\nname = \"m\"\nkind = \"conductor\"\npreset = \"Xx\"\n"), 6, "\"Xx\""),
         (format!("{HEAD}{GREY}{GREY}"), 10, "two materials"),
@@ -117,6 +117,89 @@ fn what_is_wrong_is_named_with_its_line() {
     for (text, line, what) in cases {
         let message = load_text(&text).unwrap_err();
         assert!(message.contains(&format!("s.toml:{line}:")) && message.contains(what), "{message}\n{text}");
+    }
+}
+
+#[test]
+fn numbers_without_a_sense_are_refused_with_their_line() {
+    let material = |line: &str| format!("{HEAD}[[material]]\nname = \"m\"\n{line}\n");
+    let step = |step: &str| {
+        format!("{HEAD}{GREY}[[mesh]]\nshape = \"cube\"\nmaterial = \"m\"\ntransform = [{step}]\n")
+    };
+    let sky = |line: &str| format!("{HEAD}[environment]\nfile = \"tile.png\"\n{line}\n");
+    let cases = [
+        // Surplus numbers.
+        (HEAD.replace("[8, 4]", "[8, 4, 2]"), 1, "length 2"),
+        (HEAD.replace("origin = [0, 0, 5]", "origin = [0, 0, 5, 1]"), 3, "length 3"),
+        (step("{ translate = [1, 2, 3, 4] }"), 13, "length 3"),
+        (step("{ matrix = [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1, 7] }"), 13, "length 16"),
+        (step("{ scale = [1, 2, 3, 4] }"), 13, "[x, y, z]"),
+        (format!("{HEAD}[sky]\ndate = 2024-06-21T12:00:00Z\nplace = [50, 10, 3]\n"), 8, "length 2"),
+        // Not finite, or not in f32.
+        (HEAD.replace("origin = [0, 0, 5]", "origin = [0, 0, 1e39]"), 3, "3.4e38"),
+        (format!("{HEAD}[[light]]\nkind = \"point\"\nposition = [0, inf, 0]\n"), 8, "3.4e38"),
+        (step("{ rotate = { axis = [1, 0, 0], angle = nan } }"), 13, "3.4e38"),
+        (sky("rotate_y = nan"), 8, "3.4e38"),
+        (sky("rotate_y = inf"), 8, "3.4e38"),
+        (sky("scale = nan"), 8, "3.4e38"),
+        (sky("scale = 1e39"), 8, "3.4e38"),
+        (sky("scale = -1"), 6, "scale is -1"),
+        (
+            material("kind = \"diffuse\"\nreflectance = { file = \"tile.png\", tiles = [nan, 1] }"),
+            9,
+            "expected",
+        ),
+        (
+            material("kind = \"diffuse\"\nreflectance = { file = \"tile.png\", tiles = [inf, 1] }"),
+            9,
+            "expected",
+        ),
+        (material("kind = \"conductor\"\neta = 1\nk = [nan, 1, 1]"), 10, "expected"),
+        // Numbers that no material has.
+        (material("kind = \"conductor\"\neta = 1\nk = -1"), 6, "out of range"),
+        (material("kind = \"conductor\"\neta = 1e30\nk = 1"), 6, "out of range"),
+        (format!("max_depth = 0\n{HEAD}"), 1, "max_depth is 0"),
+    ];
+    let tile = fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/valid/tile.png")).unwrap();
+    for (text, line, what) in cases {
+        let message = load_with(&text, &[("tile.png", &tile)]).unwrap_err();
+        assert!(message.contains(&format!("s.toml:{line}:")) && message.contains(what), "{message}\n{text}");
+    }
+}
+
+#[test]
+fn a_picture_that_its_factor_makes_infinite_is_an_error() {
+    let sky = fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/valid/sky.exr")).unwrap();
+    let text = format!("{HEAD}[environment]\nfile = \"sky.exr\"\nscale = 3e38\n");
+    let message = load_with(&text, &[("sky.exr", &sky)]).unwrap_err();
+    assert!(message.contains("s.toml:6:") && message.contains("finite"), "{message}");
+}
+
+#[test]
+fn a_mesh_file_in_which_nothing_is_found_is_warned_of_and_an_error_under_strict() {
+    let utf_16: Vec<u8> =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let vertices = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    let points = "end_header\n0 0 0\n1 0 0\n0 1 0\n";
+    let strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+    let files = [
+        ("a.obj", utf_16),
+        ("b.obj", Vec::new()),
+        ("c.obj", (0..=255).collect()),
+        ("d.ply", format!("ply\nformat ascii 1.0\n{vertices}{points}").into_bytes()),
+        ("e.ply", format!("ply\nformat ascii 1.0\n{vertices}{strips}{points}3 0 1 2\n").into_bytes()),
+    ];
+    for (name, bytes) in &files {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.toml");
+        fs::write(folder.path().join(name), bytes).unwrap();
+        let mesh = format!("[[mesh]]\nfile = \"{name}\"\nmaterial = \"m\"\n");
+        fs::write(&path, format!("{HEAD}{GREY}{mesh}{SKY}")).unwrap();
+        let loaded = load(&path, &LoadOptions::default()).unwrap();
+        let [warning] = &loaded.warnings[..] else { panic!("{name}: {:?}", loaded.warnings) };
+        assert!(warning.level == Level::Warning && warning.what.contains(name), "{warning}");
+        let strict = load(&path, &LoadOptions { strict: true, ..LoadOptions::default() });
+        assert!(strict.unwrap_err().to_string().contains("s.toml:10:"));
     }
 }
 

@@ -1,6 +1,7 @@
 //! The native format as text: the keys of each table. Any other key is an error, so that a misspelt one
 //! cannot pass unnoticed.
 
+use glam::DVec3;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -9,8 +10,8 @@ use toml::Spanned;
 pub(super) struct SceneText {
     pub name: Option<String>,
     pub generator: Option<Spanned<String>>,
-    pub max_depth: Option<u32>,
-    pub resolution: Option<Spanned<PairText>>,
+    pub max_depth: Option<Spanned<u32>>,
+    pub resolution: Option<Spanned<Row<u32, 2>>>,
     pub camera: Option<Spanned<CameraText>>,
     #[serde(default)]
     pub material: Vec<Spanned<MaterialText>>,
@@ -22,32 +23,70 @@ pub(super) struct SceneText {
     pub sky: Option<Spanned<SkyText>>,
 }
 
-/// Two whole numbers, no more: the parser's own arrays would leave out what follows.
+/// A number that `f32` holds.
 #[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(try_from = "Vec<u32>")]
-pub(super) struct PairText(pub [u32; 2]);
+#[serde(try_from = "f64")]
+pub(super) struct Number(pub f64);
 
-impl TryFrom<Vec<u32>> for PairText {
+impl TryFrom<f64> for Number {
     type Error = &'static str;
 
-    fn try_from(numbers: Vec<u32>) -> Result<PairText, &'static str> {
-        numbers.try_into().map(PairText).map_err(|_| "expected an array of length 2")
+    fn try_from(number: f64) -> Result<Number, &'static str> {
+        (number as f32)
+            .is_finite()
+            .then_some(Number(number))
+            .ok_or("expected a number from -3.4e38 to 3.4e38")
+    }
+}
+
+/// Just so many values: the parser's own arrays would leave out those that follow.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "Vec<T>")]
+#[serde(bound(deserialize = "T: Deserialize<'de>"))]
+pub(super) struct Row<T, const N: usize>(pub [T; N]);
+
+impl<T, const N: usize> TryFrom<Vec<T>> for Row<T, N> {
+    type Error = String;
+
+    fn try_from(values: Vec<T>) -> Result<Row<T, N>, String> {
+        values.try_into().map(Row).map_err(|_| format!("expected an array of length {N}"))
+    }
+}
+
+/// A row of numbers.
+pub(super) type Numbers<const N: usize> = Row<Number, N>;
+
+impl From<Number> for f64 {
+    fn from(number: Number) -> f64 {
+        number.0
+    }
+}
+
+impl From<Numbers<2>> for [f64; 2] {
+    fn from(numbers: Numbers<2>) -> [f64; 2] {
+        numbers.0.map(f64::from)
+    }
+}
+
+impl From<Numbers<3>> for DVec3 {
+    fn from(numbers: Numbers<3>) -> DVec3 {
+        DVec3::from(numbers.0.map(f64::from))
     }
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraText {
-    pub origin: Option<[f64; 3]>,
-    pub target: Option<[f64; 3]>,
-    pub up: Option<[f64; 3]>,
-    pub fov: Option<f64>,
+    pub origin: Option<Numbers<3>>,
+    pub target: Option<Numbers<3>>,
+    pub up: Option<Numbers<3>>,
+    pub fov: Option<Number>,
     pub fov_axis: Option<Spanned<String>>,
     pub near: Option<f64>,
     pub far: Option<f64>,
-    pub aperture_radius: Option<f64>,
-    pub focus_distance: Option<f64>,
-    pub film_width: Option<f64>,
+    pub aperture_radius: Option<Number>,
+    pub focus_distance: Option<Number>,
+    pub film_width: Option<Number>,
     pub filter: Option<Spanned<String>>,
     pub path: Option<Spanned<PathText>>,
 }
@@ -63,10 +102,10 @@ pub(super) struct PathText {
 #[serde(deny_unknown_fields)]
 pub(super) struct KeyText {
     pub frame: Option<usize>,
-    pub origin: [f64; 3],
-    pub target: [f64; 3],
-    pub up: Option<[f64; 3]>,
-    pub fov: Option<f64>,
+    pub origin: Numbers<3>,
+    pub target: Numbers<3>,
+    pub up: Option<Numbers<3>>,
+    pub fov: Option<Number>,
 }
 
 /// All keys of all kinds of material; `material` checks which kind allows which.
@@ -82,7 +121,7 @@ pub(super) struct MaterialText {
     pub transmittance: Option<ColourText>,
     pub alpha: Option<NumberText>,
     pub distribution: Option<String>,
-    pub ior: Option<f64>,
+    pub ior: Option<Number>,
     pub nonlinear: Option<bool>,
     pub preset: Option<String>,
     pub eta: Option<ColourText>,
@@ -99,7 +138,7 @@ pub(super) struct MaterialText {
     pub sheen: Option<NumberText>,
     pub sheen_tint: Option<NumberText>,
     pub clearcoat: Option<NumberText>,
-    pub clearcoat_gloss: Option<f64>,
+    pub clearcoat_gloss: Option<Number>,
 }
 
 /// A colour: the same in every place that takes one.
@@ -109,14 +148,14 @@ pub(super) struct MaterialText {
     expecting = "expected a number, [r, g, b], \"#rrggbb\", { colour = ..., scale = ... } or a picture"
 )]
 pub(super) enum ColourText {
-    Grey(f64),
-    Rgb([f64; 3]),
+    Grey(Number),
+    Rgb(Numbers<3>),
     /// Hexadecimal after `#`, else the name of a picture.
     Named(String),
     /// A colour times a factor.
     Scaled {
         colour: Box<ColourText>,
-        scale: f64,
+        scale: Number,
     },
     Texture(TextureText),
 }
@@ -129,7 +168,7 @@ pub(super) enum ColourText {
     expecting = "expected a number, a picture's name or { file = \"...\" }"
 )]
 pub(super) enum NumberText {
-    Number(f64),
+    Number(Number),
     Picture(String),
     Texture(TextureText),
 }
@@ -151,9 +190,16 @@ pub(super) struct TextureText {
     #[serde(default)]
     pub raw: bool,
     /// Factor on every texel.
-    pub scale: Option<f64>,
+    pub scale: Option<Number>,
     /// Repetitions along u and v.
-    pub tiles: Option<[f64; 2]>,
+    pub tiles: Option<Numbers<2>>,
+}
+
+impl TextureText {
+    /// Factor on every texel.
+    pub fn scale(&self) -> f64 {
+        self.scale.map_or(1.0, f64::from)
+    }
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -184,9 +230,9 @@ pub(super) struct MeshText {
     /// Those that are left out.
     pub except: Option<NamesText>,
     /// Units of a glTF model's lights for one here.
-    pub lumens_per_watt: Option<f64>,
+    pub lumens_per_watt: Option<Number>,
     /// Frames a second of a glTF model's animation.
-    pub fps: Option<f64>,
+    pub fps: Option<Number>,
     pub material: Option<Spanned<String>>,
     #[serde(default)]
     pub transform: Vec<Spanned<StepText>>,
@@ -210,36 +256,36 @@ pub(super) enum NamesText {
 pub(super) struct StepText {
     pub scale: Option<ScaleText>,
     pub rotate: Option<RotateText>,
-    pub translate: Option<[f64; 3]>,
-    pub matrix: Option<[f64; 16]>,
+    pub translate: Option<Numbers<3>>,
+    pub matrix: Option<Numbers<16>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(untagged, expecting = "expected a number or [x, y, z]")]
 pub(super) enum ScaleText {
-    Uniform(f64),
-    Axes([f64; 3]),
+    Uniform(Number),
+    Axes(Numbers<3>),
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RotateText {
-    pub axis: [f64; 3],
-    pub angle: f64,
+    pub axis: Numbers<3>,
+    pub angle: Number,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LightText {
     pub kind: String,
-    pub position: Option<[f64; 3]>,
-    pub target: Option<[f64; 3]>,
+    pub position: Option<Numbers<3>>,
+    pub target: Option<Numbers<3>>,
     pub intensity: Option<ColourText>,
-    pub inner_angle: Option<f64>,
-    pub outer_angle: Option<f64>,
-    pub direction: Option<[f64; 3]>,
+    pub inner_angle: Option<Number>,
+    pub outer_angle: Option<Number>,
+    pub direction: Option<Numbers<3>>,
     pub irradiance: Option<ColourText>,
-    pub angle: Option<f64>,
+    pub angle: Option<Number>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -247,24 +293,24 @@ pub(super) struct LightText {
 pub(super) struct EnvironmentText {
     pub radiance: Option<ColourText>,
     pub file: Option<String>,
-    pub scale: Option<f64>,
-    pub rotate_y: Option<f64>,
+    pub scale: Option<Number>,
+    pub rotate_y: Option<Number>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SkyText {
-    pub up: Option<[f64; 3]>,
-    pub sun_direction: Option<[f64; 3]>,
+    pub up: Option<Numbers<3>>,
+    pub sun_direction: Option<Numbers<3>>,
     pub date: Option<toml::value::Datetime>,
     /// Latitude to the north and longitude to the east, degrees.
-    pub place: Option<[f64; 2]>,
-    pub turbidity: Option<f64>,
+    pub place: Option<Numbers<2>>,
+    pub turbidity: Option<Number>,
     pub albedo: Option<ColourText>,
-    pub scale: Option<f64>,
-    pub sun_scale: Option<f64>,
+    pub scale: Option<Number>,
+    pub sun_scale: Option<Number>,
     /// Diameter of the sun, degrees.
-    pub sun_angle: Option<f64>,
+    pub sun_angle: Option<Number>,
     /// Degrees from north of the scene to that of the place, counter-clockwise.
-    pub rotate_y: Option<f64>,
+    pub rotate_y: Option<Number>,
 }
