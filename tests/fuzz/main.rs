@@ -1,0 +1,170 @@
+//! Damaged files of every kind, and pictures of damaged scenes: errors, never a panic, an endless run or memory without
+//! bounds.
+//!
+//! Cases follow from their number. `cargo test --test fuzz` tries some hundreds of every target; with
+//! `FUZZ_SECONDS=3600` in the environment a target goes on for so long, from case `FUZZ_FIRST`, and says how many it
+//! tried. Files that fail go to `tests/scenes/fuzzed`, whose files are tried in every run. A case that ends the
+//! process, for it takes more than [`MAX_BYTES`] or [`MAX_SECONDS`], is left in `target/tmp/fuzz`.
+
+mod mutate;
+mod seeds;
+mod sound;
+mod target;
+
+use cap::Cap;
+use mutate::{Random, mutate};
+use seeds::corpus;
+use std::alloc::System;
+use std::collections::BTreeMap;
+use std::fs;
+use std::panic::{self, AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+use target::Workplace;
+
+/// Maximum memory of all cases at hand, of which there is one a thread.
+const MAX_BYTES: usize = 3 << 30;
+/// Maximum time of a case, on a machine that does other things as well.
+const MAX_SECONDS: u64 = 60;
+
+#[global_allocator]
+static MEMORY: Cap<System> = Cap::new(System, MAX_BYTES);
+
+/// Message and place of the last panic.
+static LAST_PANIC: Mutex<Option<(String, String)>> = Mutex::new(None);
+
+/// Keeps panics for [`tried`], which tells them.
+fn listen() {
+    panic::set_hook(Box::new(|info| {
+        let place = info.location().map_or("nowhere".to_owned(), |place| {
+            let name = Path::new(place.file()).file_stem().unwrap_or_default().to_string_lossy();
+            format!("{name}-{}", place.line())
+        });
+        *LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner) = Some((place, info.to_string()));
+    }));
+}
+
+/// Reads the case in place, and renders it; returns where and how it panicked.
+fn tried(
+    workplace: &Workplace,
+    extension: &str,
+    renders: bool,
+    random: &mut Random,
+) -> Result<(), (String, String)> {
+    catch_unwind(AssertUnwindSafe(|| {
+        let loaded = workplace.read(extension);
+        if let Some(loaded) = loaded.filter(|_| renders) {
+            workplace.render(loaded, random);
+        }
+    }))
+    .map_err(|_| LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default())
+}
+
+/// Ends the process if a case takes too long.
+fn watch(folder: PathBuf) -> Arc<AtomicU64> {
+    let begun = Arc::new(AtomicU64::new(0));
+    let shared = Arc::downgrade(&begun);
+    thread::spawn(move || {
+        let (mut last, mut since) = (0, Instant::now());
+        while let Some(begun) = shared.upgrade() {
+            let now = begun.load(Ordering::Relaxed);
+            if now != last {
+                (last, since) = (now, Instant::now());
+            }
+            if since.elapsed() > Duration::from_secs(MAX_SECONDS) {
+                eprintln!("case {now} takes too long; it is in {}", folder.display());
+                std::process::abort();
+            }
+            drop(begun);
+            thread::sleep(Duration::from_millis(500));
+        }
+    });
+    begun
+}
+
+fn number(variable: &str) -> Option<u64> {
+    std::env::var(variable).ok()?.parse().ok()
+}
+
+/// Tries `count` cases of a target, or as many as the environment has time for.
+fn fuzz(target: &str, count: u64) {
+    listen();
+    let seeds = seeds::of(target);
+    let (seconds, first) = (number("FUZZ_SECONDS"), number("FUZZ_FIRST").unwrap_or(0));
+    let name = format!("{target}-{first}");
+    let workplace = Workplace::new(Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz").join(&name));
+    let start = Instant::now();
+    let begun = watch(workplace.case("*"));
+    let mut failed: BTreeMap<String, String> = BTreeMap::new();
+    let is_wanted = |case: u64| match seconds {
+        Some(seconds) => start.elapsed().as_secs() < seconds,
+        None => case < first + count,
+    };
+    let mut case = first;
+    while is_wanted(case) {
+        begun.store(case + 1, Ordering::Relaxed);
+        let mut random = Random::new(case);
+        let (seed, other) = (random.pick(&seeds), random.pick(&seeds));
+        let path = workplace.case(seed.extension);
+        fs::write(&path, seed.pack(mutate(&seed.bytes, &other.bytes, &mut random))).unwrap();
+        if let Err((place, message)) = tried(&workplace, seed.extension, target == "picture", &mut random) {
+            failed.entry(place.clone()).or_insert_with(|| {
+                let kept = corpus("fuzzed").join(format!("{target}-{place}.{}", seed.extension));
+                fs::copy(&path, &kept).unwrap();
+                format!("case {case}, kept as {}: {message}", kept.display())
+            });
+        }
+        case += 1;
+    }
+    if seconds.is_some() {
+        eprintln!("{target}: cases {first} to {case} in {:.0} s", start.elapsed().as_secs_f64());
+    }
+    let _ = fs::remove_dir_all(workplace.case("").parent().unwrap());
+    assert!(failed.is_empty(), "{failed:#?}");
+}
+
+macro_rules! targets {
+    ($($name:ident $count:literal)+) => {$(
+        #[test]
+        fn $name() {
+            fuzz(stringify!($name), $count);
+        }
+    )+};
+}
+
+targets! {
+    toml 500
+    xml 500
+    obj 500
+    mtl 500
+    ply 500
+    serialized 500
+    gltf 500
+    exr 500
+    pictures 500
+    spectrum 500
+    records 500
+    job 30
+    picture 100
+}
+
+/// Files that failed once, by any method.
+#[test]
+fn files_that_failed_once_are_errors_or_pictures() {
+    listen();
+    let workplace = Workplace::new(Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz/kept"));
+    let begun = watch(workplace.case("*"));
+    for file in fs::read_dir(corpus("fuzzed")).unwrap() {
+        let path = file.unwrap().path();
+        let Some(extension) = path.extension().map(|e| e.to_string_lossy().into_owned()) else { continue };
+        fs::copy(&path, workplace.case(&extension)).unwrap();
+        for choice in 0..8 {
+            begun.fetch_add(1, Ordering::Relaxed);
+            let outcome = tried(&workplace, &extension, true, &mut Random::new(choice));
+            assert_eq!(outcome, Ok(()), "{}", path.display());
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! Properties of scenes that every stage relies on.
+
+use lightsplat::scene::formats::Loaded;
+
+/// Asserts the properties of a scene that has been read.
+pub fn assert_sound(Loaded { scene, cameras, .. }: &Loaded) {
+    for mesh in &scene.meshes {
+        let count = mesh.positions.len();
+        assert!(mesh.positions.iter().all(|p| p.is_finite()));
+        assert!(mesh.normals.is_empty() || mesh.normals.len() == count);
+        assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-3));
+        assert!(mesh.uvs.is_empty() || mesh.uvs.len() == count);
+        assert!(mesh.uvs.iter().all(|uv| uv.is_finite()));
+        assert!(mesh.triangles.iter().flatten().all(|&i| (i as usize) < count));
+        assert!((mesh.material.0 as usize) < scene.materials.len());
+    }
+    for texture in &scene.textures {
+        assert_eq!(texture.texels.len(), texture.width * texture.height);
+        assert!(
+            texture.texels.iter().all(|t| t.is_finite() && t.min_element() >= 0.0 && t.max_element() <= 1.0)
+        );
+    }
+    assert!(scene.centre.is_finite());
+    for camera in cameras.path.iter().chain([&cameras.still]) {
+        assert!(camera.origin.is_finite() && camera.forward.is_normalized());
+        assert!(camera.tan_half_x.is_finite() && camera.tan_half_x > 0.0);
+    }
+}
