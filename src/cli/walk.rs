@@ -13,7 +13,8 @@ use crate::progress::Control;
 use crate::session::{BLACK, Frame, FrameError, Remark, Session};
 use crate::stats::{Stage, Stopwatch};
 use crate::view::View;
-use crate::walk::{Walk, exposure, saved};
+use crate::walk::saved::{self, Pace};
+use crate::walk::{Walk, exposure};
 use anyhow::{Context, anyhow};
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -21,6 +22,7 @@ use std::fs;
 use std::mem;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Runs the command.
 pub fn run(args: WalkArgs) -> Result<(), Failure> {
@@ -85,14 +87,20 @@ impl Frames<'_> {
             // Written by another program of this version: all begins anew.
             return self.chunk(chunk.without_saved());
         }
+        let mut pace = Pace::default();
         for run in &chunk.runs {
             let mut walk = restored
                 .take_if(|_| run.from_saved)
                 .unwrap_or_else(|| Walk::new(session, job.goal.clone(), job.limits));
             for index in run.frames.clone() {
                 self.frame(&mut walk, &chunk, index)?;
-                if let Some(path) = records.as_ref().filter(|_| index >= behind && !chunk.is_last(index)) {
+                let Some(path) = records.as_ref().filter(|_| index >= behind && !chunk.is_last(index)) else {
+                    continue;
+                };
+                if index + 1 == run.frames.end || pace.is_due(Instant::now()) {
+                    let begun = Instant::now();
                     saved::write(path, &chunk.keys[index], &walk.save()).map_err(Failure::output)?;
+                    pace.saved(begun, Instant::now());
                 }
             }
         }
