@@ -4,14 +4,15 @@
 //! ones, lights without power are dropped, reflectances that would create energy are clamped. Negative light is an
 //! error: no picture could be computed from it.
 
-use super::draft::{Draft, DraftMesh};
+use super::draft::{Draft, DraftCamera, DraftMesh};
 use super::formats::error::{Log, Place, SceneError};
 use super::material::{Fresnel, Lobe, Material, Reflectance, Roughness, Share};
-use super::{DeltaLight, Environment, Relief, Texels, Texture, recentre};
+use super::{DeltaLight, Environment, PixelFilter, Projection, Relief, Texels, Texture, recentre};
 use crate::math::Rgb;
 use glam::{DVec3, Vec2, Vec3};
 use serde::Serialize;
 use std::fmt;
+use std::path::PathBuf;
 
 /// Maximum coordinate; Embree silently drops triangles beyond 1.8e18.
 const HUGE: f64 = 1e18;
@@ -23,6 +24,8 @@ const MIN_ALPHA: f32 = 1e-4;
 const MAX_ALPHA: f32 = 4.0;
 /// Maximum η and k of a conductor; those of metals are below 100, and the fourth powers of these are finite.
 const MAX_CONDUCTOR: f32 = 1e6;
+/// Maximum width of a pixel filter, in pixels.
+const MAX_FILTER: f32 = 1e3;
 
 /// Counts of removals and repairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -106,12 +109,16 @@ pub(crate) fn sanitize(draft: &mut Draft, log: &mut Log) -> Result<(SanitizeRepo
         let checked = check_material(material, &mut draft.textures, &place(i), &mut report, log);
         log.part(checked);
     }
+    let shot = &draft.shot;
+    let checked =
+        [&shot.camera].into_iter().chain(&shot.path).try_for_each(|c| check_camera(c, &draft.sources));
+    log.part(checked);
     let checked = check_lights(draft, &mut report);
     log.conclude(checked)?;
     Ok((report, centre))
 }
 
-fn main_file(sources: &[std::path::PathBuf]) -> Place {
+fn main_file(sources: &[PathBuf]) -> Place {
     Place { path: sources.first().cloned().unwrap_or_default(), line: None }
 }
 
@@ -352,6 +359,35 @@ fn clamp_texels(texture: &mut Texture, scale: Rgb, report: &mut SanitizeReport) 
     texture.texels = Texels::new(texture.width, &texels);
 }
 
+/// Rejects cameras whose rays `f32` cannot hold.
+fn check_camera(camera: &DraftCamera, sources: &[PathBuf]) -> Result<(), SceneError> {
+    let place = main_file(sources);
+    if !(camera.origin.abs().max_element() <= HUGE) {
+        let what = format!("a camera stands at {}", camera.origin);
+        return Err(place.wrong(what, "keep within 1e18 of the origin"));
+    }
+    let lens = match camera.projection {
+        Projection::Lens { radius, distance } => [radius, distance],
+        Projection::Pinhole | Projection::Parallel => [1.0; 2],
+    };
+    let is_length = |length: f32| length > 0.0 && length <= HUGE as f32;
+    if !is_length(camera.tan_half_x as f32) || !lens.into_iter().all(is_length) || camera.near > HUGE {
+        let what = "a camera's film, lens, focus or near plane is no size";
+        return Err(place.wrong(what, "give numbers above 0, up to 1e18"));
+    }
+    let (PixelFilter::Tent { radius: width } | PixelFilter::Gaussian { deviation: width }) = camera.filter
+    else {
+        return Ok(());
+    };
+    match width > 0.0 && width <= MAX_FILTER {
+        true => Ok(()),
+        false => {
+            Err(place
+                .wrong(format!("the film's filter is {width} pixels wide"), "give more than 0, up to 1000"))
+        }
+    }
+}
+
 fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), SceneError> {
     let place = main_file(&draft.sources);
     let check = |light: Rgb, what: &str| match light.is_finite() && light.min_element() >= 0.0 {
@@ -379,12 +415,6 @@ fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), Sc
                 place.wrong(format!("a light stands at {position}"), "keep within 1e18 of the origin")
             );
         }
-    }
-    let shot = &draft.shot;
-    let cameras = || [&shot.camera].into_iter().chain(&shot.path);
-    if let Some(camera) = cameras().find(|camera| !(camera.origin.abs().max_element() <= HUGE)) {
-        let what = format!("a camera stands at {}", camera.origin);
-        return Err(place.wrong(what, "keep within 1e18 of the origin"));
     }
     for disc in &draft.discs {
         check(disc.radiance, "the radiance of a distant disc")?;

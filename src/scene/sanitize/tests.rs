@@ -185,6 +185,22 @@ fn cameras_and_lights_stand_where_f32_has_numbers() {
     let mut far = draft(vec![], vec![]);
     far.shot.camera.origin.x = 1e39;
     assert!(sanitize(&mut far).unwrap_err().to_string().contains("a camera stands at"));
+    let camera = draft(vec![], vec![]).shot.camera;
+    let lens = |radius, distance| Projection::Lens { radius, distance };
+    for wrong in [
+        DraftCamera { tan_half_x: 1e39, ..camera },
+        DraftCamera { tan_half_x: 1e-60, ..camera },
+        DraftCamera { near: 1e39, ..camera },
+        DraftCamera { projection: lens(f32::INFINITY, 1.0), ..camera },
+        DraftCamera { projection: lens(1.0, f32::NAN), ..camera },
+        DraftCamera { filter: PixelFilter::Gaussian { deviation: f32::INFINITY }, ..camera },
+        DraftCamera { filter: PixelFilter::Tent { radius: 1e30 }, ..camera },
+    ] {
+        let mut walk = draft(vec![], vec![]);
+        walk.shot.path.push(wrong);
+        let message = sanitize(&mut walk).unwrap_err().to_string();
+        assert!(message.starts_with("t.toml: ") && message.contains("up to"), "{message}");
+    }
 }
 
 #[test]
