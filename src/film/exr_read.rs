@@ -8,8 +8,8 @@ use ::exr::meta::header::Header;
 use ::exr::prelude::{
     AttributeValue, Error, FlatImage, FlatSamples, Layer, ReadChannels, ReadLayers, Text, Vec2, read,
 };
-use std::fs::File;
-use std::io::BufReader;
+use std::fs::{self, File};
+use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
 /// Names of a picture's channels.
@@ -36,9 +36,14 @@ pub(super) struct Place {
 impl ExrFile {
     /// Reads all channels of the file at `path`.
     pub fn read(path: &Path) -> Result<ExrFile, ImageError> {
-        let file = File::open(path).map_err(|error| ImageError::Read { path: path.to_owned(), error })?;
+        let fail = |error| ImageError::Read { path: path.to_owned(), error };
+        // Opening a pipe would wait for its writer.
+        if !fs::metadata(path).map_err(fail)?.is_file() {
+            return Err(fail(io::Error::other("it is not a regular file")));
+        }
+        let file = File::open(path).map_err(fail)?;
         let decode = |error: Error| match error {
-            Error::Io(error) => ImageError::Read { path: path.to_owned(), error },
+            Error::Io(error) => fail(error),
             other => ImageError::Decode { path: path.to_owned(), reason: other.to_string() },
         };
         let chunks = ::exr::block::read(BufReader::new(file), false).map_err(decode)?;

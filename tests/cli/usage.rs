@@ -47,6 +47,9 @@ fn devices_and_pipes_are_refused_at_once() {
         let stderr = sandbox.run(&["info", name]).expect(3).stderr;
         assert!(stderr.contains("not a regular file"), "{name}: {stderr}");
     }
+    std::fs::rename(sandbox.path("pipe.toml"), sandbox.path("pipe.exr")).unwrap();
+    let compared = sandbox.run(&["compare", "pipe.exr", "pipe.exr"]).expect(3);
+    assert!(compared.stderr.contains("not a regular file"), "{}", compared.stderr);
     assert!(sandbox.run(&["batch", "zero.toml"]).expect(3).stderr.contains("not a regular file"));
 }
 
