@@ -109,6 +109,10 @@ pub(crate) fn sanitize(draft: &mut Draft, log: &mut Log) -> Result<(SanitizeRepo
         let checked = check_material(material, &mut draft.textures, &place(i), &mut report, log);
         log.part(checked);
     }
+    if let Some(texture) = draft.textures.iter().find(|texture| !texture.to_uv.is_finite()) {
+        let what = format!("the picture \"{}\" is moved or scaled beyond all numbers", texture.name);
+        log.part::<()>(Err(main_file(&draft.sources).wrong(what, "correct its transform")));
+    }
     let shot = &draft.shot;
     let checked =
         [&shot.camera].into_iter().chain(&shot.path).try_for_each(|c| check_camera(c, &draft.sources));

@@ -55,12 +55,10 @@ impl Texture {
         match self.filter {
             Filter::Nearest => self.texels.get(self.column(x.floor() as i64), self.row(y.floor() as i64)),
             Filter::Bilinear => {
-                let (x, y) = (x - 0.5, y - 0.5);
-                let (x0, y0) = (x.floor(), y.floor());
-                let (fx, fy) = (x - x0, y - y0);
-                let (x0, y0) = (x0 as i64, y0 as i64);
-                let [left, right] = [x0, x0 + 1].map(|x| self.column(x));
-                let [top, bottom] = [y0, y0 + 1].map(|y| self.row(y));
+                let ([x0, x1], fx) = neighbours(x - 0.5);
+                let ([y0, y1], fy) = neighbours(y - 0.5);
+                let [left, right] = [x0, x1].map(|x| self.column(x));
+                let [top, bottom] = [y0, y1].map(|y| self.row(y));
                 let between = |y| self.texels.get(left, y).lerp(self.texels.get(right, y), fx);
                 between(top).lerp(between(bottom), fy)
             }
@@ -70,11 +68,10 @@ impl Texture {
     /// Returns the derivatives by u and v of the luminance at `uv`, texels joined linearly.
     pub fn luminance_gradient(&self, uv: Vec2) -> Vec2 {
         let at = self.to_uv.transform_point2(uv);
-        let (x, y) = (at.x * self.width as f32 - 0.5, (1.0 - at.y) * self.height as f32 - 0.5);
-        let (x0, y0) = (x.floor(), y.floor());
-        let (fx, fy) = (x - x0, y - y0);
-        let [left, right] = [0, 1].map(|step| self.column(x0 as i64 + step));
-        let [top, bottom] = [0, 1].map(|step| self.row(y0 as i64 + step));
+        let ([x0, x1], fx) = neighbours(at.x * self.width as f32 - 0.5);
+        let ([y0, y1], fy) = neighbours((1.0 - at.y) * self.height as f32 - 0.5);
+        let [left, right] = [x0, x1].map(|x| self.column(x));
+        let [top, bottom] = [y0, y1].map(|y| self.row(y));
         let texel = |x, y| luminance(self.texels.get(x, y));
         let [t00, t10, t01, t11] =
             [texel(left, top), texel(right, top), texel(left, bottom), texel(right, bottom)];
@@ -105,6 +102,15 @@ impl Texture {
     }
 }
 
+/// Numbers of the texels on both sides of a place, and its way from the first to the second. Far out, where numbers have
+/// no fraction, any texels will do; where they have overflowed, too.
+#[inline]
+fn neighbours(place: f32) -> ([i64; 2], f32) {
+    let floor = place.floor();
+    let first = floor as i64;
+    ([first, first.wrapping_add(1)], (place - floor).max(0.0))
+}
+
 impl Wrap {
     #[inline]
     fn index(self, i: i64, n: usize) -> usize {
@@ -122,5 +128,28 @@ impl Wrap {
             }
         };
         i as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coordinates_as_large_as_may_be_have_a_colour() {
+        let texels = Texels::new(2, &[Rgb::ZERO, Rgb::X, Rgb::Y, Rgb::Z]);
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            for filter in [Filter::Bilinear, Filter::Nearest] {
+                let (texels, to_uv) = (texels.clone(), Mat3::from_scale(Vec2::splat(1e9)));
+                let texture = Texture { name: "t".into(), width: 2, height: 2, texels, filter, wrap, to_uv };
+                for uv in [1e-9, 1e9, -1e12, 1e25, 3e38, -3e38] {
+                    let uv = Vec2::new(uv, 0.3);
+                    assert!(
+                        texture.lookup(uv).is_finite() && !texture.luminance_gradient(uv).is_nan(),
+                        "{uv}"
+                    );
+                }
+            }
+        }
     }
 }
