@@ -102,8 +102,8 @@ impl Texture {
     }
 }
 
-/// Numbers of the texels on both sides of a place, and its way from the first to the second. Far out, where numbers have
-/// no fraction, any texels will do; where they have overflowed, too.
+/// Numbers of the texels on both sides of a place, and its way from the first to the second. Far out, where numbers
+/// have no fraction, any texels will do; where they have overflowed, too.
 #[inline]
 fn neighbours(place: f32) -> ([i64; 2], f32) {
     let floor = place.floor();
