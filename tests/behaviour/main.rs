@@ -9,7 +9,6 @@ mod common;
 mod compensation;
 mod denoise;
 mod drawn;
-mod extremes;
 mod glass;
 mod glossy;
 mod lightcuts;
