@@ -27,6 +27,11 @@ const PENDING: usize = 32;
 /// Below this throughput a branch survives only with probability throughput / threshold.
 const ROULETTE_THROUGHPUT: f32 = 0.05;
 
+/// Edges, straight through sheets too, from which on a branch survives with no more than this probability: chains end
+/// where nothing absorbs.
+const MANY_EDGES: u32 = 64;
+const MAX_SURVIVAL: f32 = 0.9;
+
 /// The end of an edge of a chain.
 pub enum Met<'w> {
     /// A surface.
@@ -86,6 +91,8 @@ struct Branch {
     throughput: Rgb,
     eta_sq: f32,
     depth: u32,
+    /// Edges, those that pass sheets straight counted each.
+    edges: u32,
     /// Length of the chain up to the ray's origin.
     distance: f32,
     /// Start of the ray, if a sharp lobe sampled it.
@@ -106,8 +113,8 @@ pub fn trace<'w>(
     let mut emitted = Rgb::ZERO;
     let mut pending: [Option<Branch>; PENDING] = [const { None }; PENDING];
     let mut waiting = 0;
-    let (throughput, eta_sq, depth, distance) = (Rgb::ONE, 1.0, 1, 0.0);
-    let mut current = Some(Branch { ray, throughput, eta_sq, depth, distance, start: None });
+    let (throughput, eta_sq, depth, edges, distance) = (Rgb::ONE, 1.0, 1, 1, 0.0);
+    let mut current = Some(Branch { ray, throughput, eta_sq, depth, edges, distance, start: None });
     while let Some(branch) = current.take().or_else(|| {
         waiting = usize::checked_sub(waiting, 1)?;
         pending[waiting].take()
@@ -156,9 +163,11 @@ pub fn trace<'w>(
             let mut throughput = branch.throughput * lobe.weight;
             let eta_sq = branch.eta_sq * lobe.eta * lobe.eta;
             let carried = throughput.max_element() * eta_sq;
-            if carried < ROULETTE_THROUGHPUT {
-                let survival = carried / ROULETTE_THROUGHPUT;
-                if sampler.next_1d() >= survival {
+            let limit = if branch.edges >= MANY_EDGES { MAX_SURVIVAL } else { 1.0 };
+            let survival = (carried / ROULETTE_THROUGHPUT).min(limit);
+            // The comparisons also end branches whose throughput is not a number.
+            if carried.is_nan() || survival < 1.0 {
+                if !(sampler.next_1d() < survival) {
                     continue;
                 }
                 throughput /= survival;
@@ -171,7 +180,8 @@ pub fn trace<'w>(
                 false => sharp.filter(|_| !lobe.delta).map(|by| Start::new(&surface, &by, wo, lobe.pdf)),
             };
             let depth = branch.depth + u32::from(!lobe.straight);
-            let next = Branch { ray, throughput, eta_sq, depth, distance, start };
+            let edges = branch.edges + 1;
+            let next = Branch { ray, throughput, eta_sq, depth, edges, distance, start };
             if current.is_none() {
                 current = Some(next);
             } else if waiting < PENDING {
