@@ -70,8 +70,8 @@ impl Footprint {
         };
         let [short, long] = light.curvature.map(radius);
         let unraised = [short, long.min(MAX_ASPECT * short)];
-        let short = short.clamp(min, max);
-        let long = long.min(MAX_ASPECT * short).clamp(short, max);
+        let short = within(short, [min, max]);
+        let long = within(long.min(MAX_ASPECT * short), [short, max]);
         Footprint {
             axes: light.axes,
             radii: [short, long],
@@ -85,7 +85,7 @@ impl Footprint {
     pub fn of_gradient(normal: Vec3, gradient: Vec3, luminance: f32, limits: &FootprintLimits) -> Footprint {
         let FootprintLimits { settings, accuracy, distance, radii: [min, max] } = *limits;
         let unraised = accuracy * distance;
-        let radius = unraised.clamp(min, max);
+        let radius = within(unraised, [min, max]);
         let change = radius * gradient.length() / luminance.max(f32::MIN_POSITIVE);
         let (axis, squeeze) = match gradient.try_normalize() {
             Some(axis) if settings.footprints == Footprints::Anisotropic => {
@@ -133,6 +133,11 @@ impl Footprint {
             offset.dot(normal) * NORMAL_SCALE / r0.min(r1),
         )
     }
+}
+
+/// The radius kept between a minimum and a maximum; the minimum if it is not a number, as where derivatives overflow.
+fn within(radius: f32, [min, max]: [f32; 2]) -> f32 {
+    radius.max(min).min(max)
 }
 
 #[cfg(test)]
@@ -207,6 +212,21 @@ mod tests {
         assert_near(long.radii[1], 2.0 * long.radii[0]);
         assert_eq!(of([300.0, 0.0], 4.0, [0.1, 0.15]).radii, [0.1, 0.15]);
         assert_eq!(of([0.0, 0.0], 4.0, [0.1, 0.15]).radii, [0.15, 0.15]);
+    }
+
+    #[test]
+    fn where_derivatives_overflow_footprints_have_their_least_radii() {
+        let settings = CacheSettings::default();
+        for curvature in [[f32::NAN; 2], [f32::INFINITY; 2], [f32::INFINITY, f32::NAN]] {
+            let light = Derivatives { edge_gradient: Mat3::ZERO, axes: [Vec3::X, Vec3::Y], curvature };
+            for luminance in [0.0, 1.0, f32::MAX] {
+                let found = Footprint::of_hessian(&light, luminance, &limits(&settings, [0.1, 9.0]));
+                assert_eq!(found.radii, [0.1; 2]);
+            }
+            let gradient = Vec3::splat(curvature[1]);
+            let found = Footprint::of_gradient(Vec3::Z, gradient, 1.0, &limits(&settings, [0.1, 9.0]));
+            assert!(found.radii.iter().all(|radius| radius.is_finite() && *radius > 0.0));
+        }
     }
 
     #[test]
