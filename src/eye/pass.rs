@@ -134,12 +134,13 @@ impl<'w> EyePass<'w> {
         }
     }
 
-    /// Memory in bytes that it takes to render `window` from so many shading points a pixel kept all at once: they
-    /// themselves, and as measured half as much again for sorting and lighting them.
+    /// Memory in bytes that it takes to render `window` from so many shading points a pixel kept all at once: the
+    /// film, the points themselves, and as measured twice as much again and more for sorting and lighting them.
     pub fn expected_bytes(window: &Window, points: u64) -> u64 {
         let point = size_of::<PointGeometry>() + size_of::<PointSurface>() + size_of::<u32>();
-        let each = 3 * (point + size_of::<VisibilitySample>()) / 2;
-        window.pixel_count().saturating_mul(points).saturating_mul(each as u64)
+        let each = 10 * (point + size_of::<VisibilitySample>()) / 3;
+        let points = window.pixel_count().saturating_mul(points).saturating_mul(each as u64);
+        Image::expected_bytes(window).saturating_add(points)
     }
 
     /// Number of shading points.

@@ -56,7 +56,15 @@ impl<T> Image<T> {
     }
 }
 
+/// Memory of a pixel while a picture is rendered and written, with its variance, in bytes, as measured.
+const PIXEL_BYTES: u64 = 72;
+
 impl Image {
+    /// Memory in bytes that it takes to render `window` and to write its files, about, whatever the method.
+    pub fn expected_bytes(window: &Window) -> u64 {
+        window.pixel_count().saturating_mul(PIXEL_BYTES)
+    }
+
     /// A black image.
     pub fn new(width: u32, height: u32) -> Image {
         Image { width, height, pixels: vec![Rgb::ZERO; width as usize * height as usize] }

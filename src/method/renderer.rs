@@ -4,7 +4,7 @@ use super::ladder::Move;
 use super::lights::LightStore;
 use super::path::Begun;
 use super::{Output, Prepared, Sampled};
-use crate::film::Window;
+use crate::film::{Image, Window};
 use crate::paths::Look;
 use crate::progress::Control;
 use crate::radiance_cache::kept::KeptRecords;
@@ -76,9 +76,10 @@ pub trait Renderer: Settings + Sampled {
         false
     }
 
-    /// Memory for `window` besides the scene, where that grows with the samples.
-    fn expected_bytes(&self, _window: &Window) -> Option<u64> {
-        None
+    /// Memory in bytes for `window` besides the scene, about: what grows with pixels, samples, virtual lights and
+    /// photons.
+    fn expected_bytes(&self, window: &Window) -> u64 {
+        Image::expected_bytes(window)
     }
 
     /// Settings that qualities and plans move together; none where it is not known how.

@@ -45,10 +45,9 @@ impl Ladder {
             method.set_number("spp", 0, f64::from(spp));
             method.expected_bytes(window)
         };
-        if let (Some(_), Some(bytes)) = (needed(1), available_bytes()) {
+        if let Some(bytes) = available_bytes().filter(|_| needed(2) > needed(1)) {
             let doubled = (0..16).map(|k| self.base.spp().saturating_mul(1 << k));
-            let fits = doubled.take_while(|&spp| needed(spp).is_none_or(|needed| needed <= bytes));
-            self.most_spp = fits.last().unwrap_or(1);
+            self.most_spp = doubled.take_while(|&spp| needed(spp) <= bytes).last().unwrap_or(1);
         }
         self
     }

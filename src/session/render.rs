@@ -24,8 +24,9 @@ pub enum FrameError {
     Interrupted,
     /// The frame needs more memory than there is.
     #[error(
-        "the eye samples would take about {needed:.1} GiB, and {available:.1} GiB of memory are available: take a \
-         smaller --spp, render the film in parts with --crop, or use --method lightcuts"
+        "the picture would take about {needed:.1} GiB, and {available:.1} GiB of memory are available: take fewer \
+         samples (--spp), virtual lights (--vpls, --direct-vpls) or photons (--photons), render the film in parts with \
+         --crop, or use --method lightcuts"
     )]
     Memory {
         /// Needed, in GiB.
@@ -88,9 +89,8 @@ impl Session {
         former: Former,
         control: &Control,
     ) -> Result<Frame, FrameError> {
-        if let (Some(needed), Some(available)) = (goal.method.expected_bytes(&view.window), available_bytes())
-            && needed > available
-        {
+        let needed = goal.method.expected_bytes(&view.window);
+        if let Some(available) = available_bytes().filter(|available| needed > *available) {
             let [needed, available] = [needed, available].map(|bytes| bytes as f64 / f64::from(1 << 30));
             return Err(FrameError::Memory { needed, available });
         }

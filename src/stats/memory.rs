@@ -1,13 +1,63 @@
-//! Memory used by the process, and memory left on the machine.
+//! Memory used by the process, and memory left to it.
+
+use std::path::Path;
 
 /// Peak resident set size of this process, in bytes; `None` where the system does not report it.
 pub fn peak_resident_bytes() -> Option<u64> {
     field(&std::fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }
 
-/// Memory available without swapping, in bytes; `None` where the system does not report it.
+/// Memory available to this process without swapping, in bytes: that of the machine, or less by the limits of its
+/// control groups (as of containers) and of its address space. `None` where the system reports none of them.
 pub fn available_bytes() -> Option<u64> {
-    field(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
+    let read = |path: &str| std::fs::read_to_string(path).ok();
+    let machine = read("/proc/meminfo").and_then(|text| field(&text, "MemAvailable:"));
+    let groups =
+        read("/proc/self/cgroup").and_then(|text| left_to_groups(&text, Path::new("/sys/fs/cgroup")));
+    let space = read("/proc/self/limits").and_then(|text| address_space(&text)).map(|limit| {
+        limit.saturating_sub(read("/proc/self/status").and_then(|text| field(&text, "VmSize:")).unwrap_or(0))
+    });
+    [machine, groups, space].into_iter().flatten().min()
+}
+
+/// The soft limit of the address space in `/proc/self/limits`; `None` if it is unlimited.
+fn address_space(limits: &str) -> Option<u64> {
+    let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+/// The least that is left to the memory groups of `/proc/self/cgroup`, of version 1 or 2, and all above them, under
+/// `mount`; `None` if none has a limit. A container may see its own group at the mount alone.
+fn left_to_groups(groups: &str, mount: &Path) -> Option<u64> {
+    let mut left = None;
+    for line in groups.lines() {
+        let mut parts = line.splitn(3, ':').skip(1);
+        let (Some(controllers), Some(group)) = (parts.next(), parts.next()) else { continue };
+        let (mount, names) = match controllers {
+            "" => (mount.to_owned(), ["memory.max", "memory.current"]),
+            _ if controllers.split(',').any(|name| name == "memory") => {
+                (mount.join("memory"), ["memory.limit_in_bytes", "memory.usage_in_bytes"])
+            }
+            _ => continue,
+        };
+        for group in Path::new(group.trim_start_matches('/')).ancestors() {
+            left = left.into_iter().chain(left_to_group(&mount.join(group), names)).min();
+        }
+    }
+    left
+}
+
+/// Limit of a group less what it uses; files that are cached give way.
+fn left_to_group(folder: &Path, [limit, used]: [&str; 2]) -> Option<u64> {
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
+    let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
+    let cached = read("memory.stat").and_then(|text| {
+        // Version 1 tells that of groups below apart.
+        let line = |name| text.lines().find_map(|line| line.strip_prefix(name));
+        line("total_inactive_file ").or_else(|| line("inactive_file "))?.trim().parse::<u64>().ok()
+    });
+    let used = number(used)?.saturating_sub(cached.unwrap_or(0));
+    Some(number(limit)?.saturating_sub(used))
 }
 
 /// Parses a line such as `VmHWM:   1024 kB`, in bytes.
@@ -33,6 +83,37 @@ mod tests {
         let text = "MemTotal:  9 kB\nMemAvailable:   12 kB\nSwapFree: 7\n";
         assert_eq!(field(text, "MemAvailable:"), Some(12 * 1024));
         assert_eq!((field(text, "SwapFree:"), field(text, "Cached:")), (None, None));
+    }
+
+    #[test]
+    fn limits_of_groups_and_of_those_above_count_whatever_their_version() {
+        let mount = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| {
+            let path = mount.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        };
+        write("jobs/one/memory.max", "max\n");
+        write("jobs/one/memory.current", "1000\n");
+        write("jobs/memory.max", "5000\n");
+        write("jobs/memory.current", "3000\n");
+        write("jobs/memory.stat", "anon 9\ninactive_file 500\n");
+        write("memory/box/memory.limit_in_bytes", "4000\n");
+        write("memory/box/memory.usage_in_bytes", "3000\n");
+        let left = |groups: &str| left_to_groups(groups, mount.path());
+        assert_eq!(left("0::/jobs/one\n"), Some(2500));
+        assert_eq!(left("0::/\n5:cpu:/box\n4:memory:/box\n"), Some(1000));
+        assert_eq!(left("0::/jobs\n4:cpu,memory:/box\n"), Some(1000));
+        assert_eq!(left("0::/elsewhere\nnonsense\n"), None);
+    }
+
+    #[test]
+    fn limits_of_the_address_space_are_read() {
+        let limits = |soft: &str| {
+            format!("Limit  Soft Limit  Hard Limit  Units\nMax address space {soft} unlimited bytes\n")
+        };
+        assert_eq!(address_space(&limits("4096")), Some(4096));
+        assert_eq!(address_space(&limits("unlimited")), None);
     }
 
     #[cfg(target_os = "linux")]

@@ -14,10 +14,22 @@ settings! {
         direct: u32 = 4096 => [
             .named("direct_vpls").at_least(1.0).scaled(&FEWER).judged_by(JudgedBy::Light).with(&[("direct", "cuts")])
         ];
-        /// Virtual point lights where light is reflected, about; 0: direct light only.
+        /// Virtual point lights where light is reflected, about, and at least those of 1024 paths; 0: direct light
+        /// only.
         indirect: u32 = 300_000 => [.named("vpls").at_least(0.0).scaled(&FEWER).judged_by(JudgedBy::Light)];
         /// Seed of the VPLs.
         seed: u32 = 0;
+    }
+}
+
+/// Memory of a virtual light of emitted and of reflected light while its tree is built, in bytes, as measured.
+const DIRECT_BYTES: u64 = 320;
+const INDIRECT_BYTES: u64 = 220;
+
+impl LightPassSettings {
+    /// Memory that the virtual lights take, in bytes, about.
+    pub fn expected_bytes(&self) -> u64 {
+        u64::from(self.direct) * DIRECT_BYTES + u64::from(self.indirect) * INDIRECT_BYTES
     }
 }
 

@@ -154,8 +154,9 @@ impl Renderer for Settings {
         }
     }
 
-    fn expected_bytes(&self, window: &Window) -> Option<u64> {
-        Some(EyePass::expected_bytes(window, self.cache.points_a_pixel(self.spp)))
+    fn expected_bytes(&self, window: &Window) -> u64 {
+        let lights = self.light.expected_bytes();
+        EyePass::expected_bytes(window, self.cache.points_a_pixel(self.spp)).saturating_add(lights)
     }
 
     fn look(&self) -> Look {

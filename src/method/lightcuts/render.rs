@@ -2,7 +2,7 @@
 
 use super::blocks::{TILE, Tile, Tiles};
 use crate::eye::{EyeRays, LightBySpecularLobes, VisibleSurfaces};
-use crate::film::{Image, Layer};
+use crate::film::{Image, Layer, Window};
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::ladder::CUTS;
@@ -44,6 +44,10 @@ impl Renderer for Settings {
 
     fn about(&self) -> &'static str {
         "Lightcuts per pixel: virtual point lights, clustered as far as the expected error allows"
+    }
+
+    fn expected_bytes(&self, window: &Window) -> u64 {
+        Image::expected_bytes(window) + self.light.expected_bytes()
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {

@@ -31,6 +31,9 @@ use crate::vpl::{LightPassSettings, Origin, PhotonSettings};
 use crate::world::World;
 use rayon::prelude::*;
 
+/// Memory of a photon with its place in the map, in bytes, as measured.
+const PHOTON_BYTES: u64 = 180;
+
 method_settings! {
     /// Settings of the method.
     spp = 4, "Photon map" {
@@ -147,8 +150,10 @@ impl Renderer for Settings {
         Output { color, variance: None, extra, begun: Vec::new(), stats, complete, nonfinite }
     }
 
-    fn expected_bytes(&self, window: &Window) -> Option<u64> {
-        Some(EyePass::expected_bytes(window, self.cache.points_a_pixel(self.spp)))
+    fn expected_bytes(&self, window: &Window) -> u64 {
+        let lights = LightPassSettings { indirect: 0, ..self.light }.expected_bytes()
+            + u64::from(self.photons) * PHOTON_BYTES;
+        EyePass::expected_bytes(window, self.cache.points_a_pixel(self.spp)).saturating_add(lights)
     }
 
     fn look(&self) -> Look {

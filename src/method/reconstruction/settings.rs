@@ -70,8 +70,9 @@ impl Renderer for Settings {
         light(self, world, self.prepared(world, lights, view, control), control)
     }
 
-    fn expected_bytes(&self, window: &Window) -> Option<u64> {
-        Some(EyePass::expected_bytes(window, self.spp.into()))
+    fn expected_bytes(&self, window: &Window) -> u64 {
+        let lights = self.light.expected_bytes();
+        EyePass::expected_bytes(window, self.spp.into()).saturating_add(lights)
     }
 
     fn ladder(&self) -> &'static [Move] {

@@ -1,0 +1,46 @@
+//! Memory is reckoned before it is spent.
+
+use crate::all_methods::all;
+use lightsplat::film::Window;
+use std::process::Command;
+
+#[test]
+fn every_method_reckons_with_pixels_samples_lights_and_photons() {
+    let small = Window::whole([100, 100]);
+    for (name, method) in all() {
+        let expected = |key: &str, value: &str, window: &Window| {
+            let mut method = method;
+            let known = method.set(key, value).expect("a value");
+            known.then(|| method.expected_bytes(window))
+        };
+        assert!(method.expected_bytes(&Window::whole([32_768, 32_768])) > 60 << 30, "{name}");
+        for (key, value) in [("vpls", "1000000000"), ("direct_vpls", "1000000000"), ("photons", "1000000000")]
+        {
+            assert!(expected(key, value, &small).is_none_or(|bytes| bytes > 100 << 30), "{name} {key}");
+        }
+        let samples = expected("spp", "1000000", &small).expect("every method has samples");
+        let keeps = !["path", "lightcuts", "drawn"].contains(&name);
+        assert!(samples > 100 << 30 || !keeps, "{name} {samples}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn too_much_for_the_limit_of_the_shell_is_refused_before_anything_is_rendered() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("room.toml"), crate::all_methods::room(1.0)).expect("a scene");
+    let command = env!("CARGO_BIN_EXE_lightsplat");
+    for wanted in ["--vpls 100000000", "--direct-vpls 100000000", "--method photon-cache --photons 100000000"]
+        .into_iter()
+        .chain(["--method path --resolution 16384x8192", "--method lightcuts --resolution 16384x8192"])
+    {
+        let line =
+            format!("ulimit -v 3000000; exec {command} render room.toml -o a.exr --threads 1 {wanted}");
+        let run =
+            Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().expect("a shell");
+        let stderr = String::from_utf8_lossy(&run.stderr);
+        assert_eq!(run.status.code(), Some(2), "{wanted}: {stderr}");
+        assert!(stderr.contains("GiB") && stderr.contains("--crop"), "{stderr}");
+    }
+    assert!(!folder.path().join("a.exr").exists());
+}
