@@ -30,6 +30,8 @@ pub const LATE: f64 = 1.1;
 const LESS: f64 = 0.3;
 /// Rungs by which half the way from samples and lights to cuts may be off.
 const CLOSE: f64 = 0.5;
+/// Share of the remaining time that samples and lights may take, as far as is known, so that cuts have the rest.
+const PREPARE_SHARE: f64 = 0.4;
 /// Maximum number of times that samples and lights are chosen.
 const ROUNDS: u32 = 3;
 /// Share reserved for costs outside the model.
@@ -84,7 +86,7 @@ pub fn for_time<'w>(
     let coarse = highest(&cost, ladder, view, usable());
     let seconds = whole(&cost, ladder, view, coarse);
     if tunes {
-        return tuned(world, view, ladder, (coarse, seconds), pilots, &usable, control);
+        return tuned(world, view, ladder, (&cost, coarse), pilots, &usable, control);
     }
     let method = ladder.at(coarse);
     let options = options(&method);
@@ -92,27 +94,39 @@ pub fn for_time<'w>(
 }
 
 /// Plans cuts as fine as trials allow, on eye samples and virtual lights of about the same level. `guess` is
-/// the level to start from and the time that it may take.
+/// a model of cost and the level to start from.
 fn tuned<'w>(
     world: &'w World,
     view: &View,
     ladder: &Ladder,
-    guess: (f64, f64),
+    guess: (&Cost, f64),
     mut pilots: u64,
     usable: &impl Fn() -> f64,
     control: &Control,
 ) -> Option<Planned<'w>> {
-    let (mut coarse, mut seconds) = guess;
+    let (cost, mut coarse) = guess;
     // Of all trials. Their processor time is steady where other work makes the clock's jump.
     let mut tried = StageTime::default();
+    // Samples and lights with cuts as cheap as can be; the model knows lights of the first small renders alone, so what
+    // they take in truth corrects it.
+    let mut correction = 1.0;
+    let preparing = |height: f64| {
+        let method = ladder.at(height);
+        cost.seconds(0.0, samples(&method, view), vpls(&method))
+    };
     for round in 1.. {
+        coarse = highest_within(ladder, coarse, |height| {
+            correction * preparing(height) <= PREPARE_SHARE * usable()
+        });
         let method = ladder.at(coarse);
+        let seconds = usable();
         let watch = Stopwatch::start();
         let there = method.prepare(world, view, control)?;
         let spent = watch.elapsed();
         if control.is_cancelled() {
             return None;
         }
+        correction = spent.wall_seconds / preparing(coarse).max(1e-9);
         let lighting = (seconds - spent.wall_seconds).max(0.0);
         let every = (lighting / (TRIAL_SHARE * usable()).max(1e-9)).ceil().clamp(1.0, 64.0) as usize;
         let mut try_at = |fine: f64| {
@@ -127,8 +141,13 @@ fn tuned<'w>(
         let same = options(&ladder.between(next, coarse)) == options(&ladder.at(coarse));
         let off = late || (next - coarse).abs() > CLOSE;
         pilots += first.trials;
-        if off && !same && round < ROUNDS {
-            (coarse, seconds) = (next, usable());
+        // Samples and lights in hand are not given up for others that would leave no time for cuts.
+        let affordable = match late {
+            true => usable() > 0.0,
+            false => correction * preparing(next) <= PREPARE_SHARE * usable(),
+        };
+        if off && !same && affordable && round < ROUNDS {
+            coarse = next;
             continue;
         }
         let tuned = tune(first.height, ladder.top(), TRIALS, usable, &mut try_at)?;
@@ -193,9 +212,14 @@ fn small_renders(
 
 /// The highest settings that take no longer than `seconds`; the lowest if none do.
 fn highest(cost: &Cost, ladder: &Ladder, view: &View, seconds: f64) -> f64 {
+    highest_within(ladder, ladder.top(), |height| whole(cost, ladder, view, height) <= seconds)
+}
+
+/// The highest level up to `top` that fits; the lowest if none does.
+fn highest_within(ladder: &Ladder, top: f64, fits: impl Fn(f64) -> bool) -> f64 {
     let steps = (ladder.top() * f64::from(STEPS)) as u32;
-    let heights = (0..=steps).rev().map(|k| f64::from(k) / f64::from(STEPS));
-    heights.into_iter().find(|&height| whole(cost, ladder, view, height) <= seconds).unwrap_or(0.0)
+    let heights = (0..=steps).rev().map(|k| f64::from(k) / f64::from(STEPS)).filter(|height| *height < top);
+    std::iter::once(top).chain(heights).find(|&height| fits(height)).unwrap_or(0.0)
 }
 
 fn whole(cost: &Cost, ladder: &Ladder, view: &View, height: f64) -> f64 {
@@ -210,4 +234,23 @@ fn samples(method: &Method, view: &View) -> f64 {
 /// Number of all virtual lights asked for, never 0, since it is a divisor.
 fn vpls(method: &Method) -> f64 {
     ["vpls", "direct_vpls"].iter().filter_map(|key| method.number(key)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_highest_level_that_fits_is_no_higher_than_the_one_wanted() {
+        let ladder = Ladder::new(Method::named("reconstruction").unwrap(), &[]).unwrap();
+        let step = 1.0 / f64::from(STEPS);
+        for top in [0.0, 0.7, 2.3, ladder.top()] {
+            assert_eq!(highest_within(&ladder, top, |_| true), top);
+            assert_eq!(highest_within(&ladder, top, |_| false), 0.0);
+            for limit in [0.1, 1.9, 5.0] {
+                let found = highest_within(&ladder, top, |height| height <= limit);
+                assert!(found <= limit.min(top) && found > limit.min(top) - step, "{found} {limit} {top}");
+            }
+        }
+    }
 }

@@ -247,9 +247,10 @@ impl Session {
                     .ok_or(FrameError::Interrupted)?;
                 let spent = found.spent();
                 stats.add_time(Stage::Plan, watch.elapsed().without(spent));
-                let planned = run.elapsed().wall_seconds + found.render_seconds + finishing;
+                let before = run.elapsed().wall_seconds;
+                let planned = before + found.render_seconds + finishing;
                 let in_reach = planned <= asked * LATE;
-                remarks.extend(report::of_time(asked, planned, in_reach, &found.options));
+                remarks.extend(report::of_time(asked, [before, planned], in_reach, &found.options));
                 stats.add("Plan/time asked [s]", asked);
                 stats.add("Plan/time planned, without writing [s]", planned);
                 stats.count("Plan/in time (1: yes)", u64::from(in_reach));

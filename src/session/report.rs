@@ -7,12 +7,14 @@ use crate::stats::Stats;
 use crate::verify::{Estimate, Settings, Verified};
 use serde_json::{Value, json};
 
-/// Remarks about a plan for a time.
-pub(super) fn of_time(asked: f64, planned: f64, in_reach: bool, options: &str) -> Vec<Remark> {
+/// Remarks about a plan for a time, of whose `planned` seconds `before` have passed.
+pub(super) fn of_time(asked: f64, [before, planned]: [f64; 2], in_reach: bool, options: &str) -> Vec<Remark> {
     let mut remarks = Vec::new();
     if !in_reach {
+        let rest = planned - before;
         remarks.push(Remark::Warning(format!(
-            "{asked} s are too short: the cheapest settings are planned to take {planned:.2} s"
+            "{asked} s are too short: {before:.2} s have passed with reading the scene and planning, and the picture by \
+             the cheapest settings is planned to take {rest:.2} s more"
         )));
     }
     remarks.push(Remark::Note(format!("planned for {asked} s on this machine, this time: {options}")));
