@@ -15,7 +15,8 @@ settings! {
         max_cut: usize = 5000 => [.at_least(1.0).scaled(&UP)];
         /// Most that one indirect virtual point light may give, relative to the sample's luminance; 0 does not clamp.
         ///
-        /// `None` leaves weak singularities unclamped.
+        /// `None` leaves weak singularities unclamped. Shares below a thousandth are refused: compensation gives back
+        /// what is taken of single lights, and clusters as bright as that are not taken apart.
         clamp: Option<f32> = Some(0.02) => [.fraction().scaled(&UP).judged_by(JudgedBy::Light)];
         /// Origin of the light whose trees alone are cut; `None` for all trees.
         origin: Option<Origin> = None;

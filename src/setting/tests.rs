@@ -91,7 +91,7 @@ fn what_is_shown_is_read_back_and_what_makes_no_sense_is_refused() {
         ("reach", &["", "1", "2,1", "0,1", "-1,2", "1,2,3", "1,2,4,3", "1,inf", "nan,1", "a,b"]),
         ("most", &["0", "many"]),
         ("fast", &["yes"]),
-        ("bound", &["1.5"]),
+        ("bound", &["1.5", "1e-4", "-1"]),
     ];
     for (key, texts) in wrong {
         for text in texts {

@@ -146,7 +146,10 @@ impl Value for Option<u32> {
     }
 }
 
-/// A positive number, or 0 for none.
+/// Minimum of shares that have one.
+const MIN_SHARE: f32 = 1e-3;
+
+/// A share of a thousandth or more, or 0 for none.
 impl Value for Option<f32> {
     fn text(&self) -> String {
         self.unwrap_or(0.0).to_string()
@@ -155,6 +158,9 @@ impl Value for Option<f32> {
     fn parse(&mut self, text: &str) -> Result<(), String> {
         let mut number = 0f32;
         number.parse(text)?;
+        if number > 0.0 && number < MIN_SHARE {
+            return Err(format!("expected 0 for none, or at least {MIN_SHARE}"));
+        }
         *self = (number > 0.0).then_some(number);
         Ok(())
     }
