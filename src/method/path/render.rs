@@ -92,7 +92,8 @@ impl Settings {
             for (pixel, [x, y]) in tile.pixels.iter().zip(view.window.tile(i, TILE)) {
                 let at = (y * view.window.width + x) as usize;
                 color.pixels[at] = pixel.mean;
-                squares.pixels[at] = pixel.squares;
+                // Squares of radiances that f32 holds may be beyond it.
+                squares.pixels[at] = pixel.squares.min(Rgb::splat(f32::MAX));
                 samples.pixels[at] = tile.samples;
             }
             paths += tile.paths;
