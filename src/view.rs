@@ -126,15 +126,16 @@ impl View {
     }
 
     /// Matrices to the camera and the film from the coordinates of the scene's file, which has the scene's `centre`
-    /// there.
-    pub fn matrices(&self, centre: DVec3) -> CameraMatrices {
+    /// there and its `unit` of length.
+    pub fn matrices(&self, centre: DVec3, unit: f64) -> CameraMatrices {
         let camera = &self.camera;
-        let origin = centre + camera.origin.as_dvec3();
+        let origin = centre + camera.origin.as_dvec3() * unit;
         let axes = [camera.right, camera.up, camera.forward].map(Vec3::as_dvec3);
         // Rows: images of the world's axes and of its origin.
         let basis = [DVec3::X, DVec3::Y, DVec3::Z, -origin].map(|v| axes.map(|axis| v.dot(axis)));
         let [width, height] = self.window.film.map(f64::from);
-        let scale = 0.5 / f64::from(camera.tan_half_x);
+        let is_length = camera.projection == Projection::Parallel;
+        let scale = 0.5 / (f64::from(camera.tan_half_x) * if is_length { unit } else { 1.0 });
         let (mut world_to_camera, mut world_to_ndc) = ([0.0; 16], [0.0; 16]);
         for (row, [x, y, z]) in basis.into_iter().enumerate() {
             let w = if row == 3 { 1.0 } else { 0.0 };
@@ -201,7 +202,7 @@ mod tests {
         let camera = Camera { origin, forward, right, up, tan_half_x: 0.7, ..Camera::default() };
         let view = View::whole(camera, [40, 30]);
         let centre = DVec3::new(100.0, -50.0, 25.0);
-        let matrices = view.matrices(centre);
+        let matrices = view.matrices(centre, 1.0);
         // Row vectors: each row of the matrix is scaled by one coordinate.
         let product = |p: DVec3, m: &[f32; 16]| -> [f64; 4] {
             let p = [p.x, p.y, p.z, 1.0];
@@ -225,7 +226,7 @@ mod tests {
     fn parallel_rays_are_projected_to_their_pixel() {
         let camera = Camera { tan_half_x: 3.0, projection: Projection::Parallel, ..Camera::default() };
         let view = View::whole(camera, [40, 30]);
-        let matrix = view.matrices(DVec3::ZERO).world_to_ndc;
+        let matrix = view.matrices(DVec3::ZERO, 1.0).world_to_ndc;
         for pixel in [[0, 0], [31, 7], [20, 29]] {
             let ray = view.primary_ray(pixel, Vec2::splat(0.5));
             let point = (ray.origin + ray.direction * 2.5).as_dvec3();

@@ -153,11 +153,12 @@ pub fn features(
         }
     }
     let pixels = Image { width: window.width, height: window.height, pixels };
-    let centre = world.scene.centre;
+    let (centre, unit) = (world.scene.centre, world.scene.unit());
     let position = |p: &Pixel| match p.surfaces {
         0 => Vec3::ZERO,
-        n => (centre + p.position / f64::from(n)).as_vec3(),
+        n => (centre + p.position / f64::from(n) * unit).as_vec3(),
     };
+    let depth = |p: &Pixel| p.nearest.map_or(NO_DEPTH, |n| (f64::from(n.depth) * unit) as f32);
     let layer = |feature: Feature| match feature {
         Feature::Albedo => Layer::color("albedo", pixels.map(|p| p.albedo / p.samples as f32)),
         Feature::Normal => Layer::vector("normal", pixels.map(|p| p.normal / p.samples as f32)),
@@ -165,7 +166,7 @@ pub fn features(
             Layer::vector("geometricNormal", pixels.map(|p| p.geometric_normal / p.samples as f32))
         }
         Feature::Position => Layer::vector("position", pixels.map(position)),
-        Feature::Depth => Layer::scalar("depth.Z", pixels.map(|p| p.nearest.map_or(NO_DEPTH, |n| n.depth))),
+        Feature::Depth => Layer::scalar("depth.Z", pixels.map(depth)),
         Feature::Material => Layer::id("materialId", pixels.map(|p| p.nearest.map_or(0, |n| n.material + 1))),
         Feature::Object => Layer::id("objectId", pixels.map(|p| p.nearest.map_or(0, |n| n.mesh + 1))),
         Feature::Alpha => Layer::scalar("A", pixels.map(|p| p.surfaces as f32 / p.samples as f32)),

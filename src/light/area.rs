@@ -36,9 +36,17 @@ pub struct AreaPoint {
 }
 
 /// Unit normal and area of a triangle; a zero normal if it has no area.
-pub fn normal_and_area([a, b, c]: [Vec3; 3]) -> (Vec3, f32) {
+pub fn normal_and_area(corners: [Vec3; 3]) -> (Vec3, f32) {
+    let [a, b, c] = corners;
     let cross = (b - a).cross(c - a);
-    (cross.normalize_or_zero(), 0.5 * cross.length())
+    let length = cross.length();
+    if length > 1e-15 && length < 1e15 {
+        return (cross.normalize_or_zero(), 0.5 * length);
+    }
+    // Its square is beyond f32.
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    let cross = (b - a).cross(c - a);
+    (cross.normalize_or_zero().as_vec3(), (0.5 * cross.length()) as f32)
 }
 
 impl AreaLight {

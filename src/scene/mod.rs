@@ -1,9 +1,11 @@
 //! The scene model: plain data, sanitised and recentred, as the readers in `formats` return it.
 //!
-//! Units: lengths are the scene file's; radiance W/(sr m²) in linear Rec. 709; all positions are relative to
-//! [`Scene::centre`], which is kept in f64 so that a scene far from its origin keeps its precision.
+//! Units: lengths are the scene file's, but for the factor [`Scene::unit`]; radiance W/(sr m²) in linear Rec. 709; all
+//! positions are relative to [`Scene::centre`], which is kept in f64 so that a scene far from its origin keeps its
+//! precision.
 
 mod camera;
+mod coincident;
 mod draft;
 pub mod formats;
 mod framing;
@@ -28,6 +30,7 @@ pub use material::{
 };
 pub use mesh::{Emission, Mesh};
 pub use principled::Principled;
+pub(crate) use recentre::MAX_RATIO;
 pub use relief::Relief;
 pub use requirements::Requirements;
 pub use texels::Texels;
@@ -57,9 +60,19 @@ pub struct Scene {
     pub discs: Vec<DistantDisc>,
     /// World position of the local origin.
     pub centre: DVec3,
+    /// The local unit of length is two to this power in the file's; 0 but for very small and very large scenes.
+    pub exponent: i32,
+    /// Distance from the camera within which it has a tenth of all triangles' corners, where everything reaches very
+    /// much farther; else 0.
+    pub vicinity: f32,
 }
 
 impl Scene {
+    /// Local unit of length, in the file's.
+    pub fn unit(&self) -> f64 {
+        f64::from(self.exponent).exp2()
+    }
+
     /// Maximum path length in edges: `wanted` if set, else the scene's own, else no limit.
     pub fn path_limit(&self, wanted: Option<u32>) -> u32 {
         wanted.or(self.max_depth).unwrap_or(u32::MAX)

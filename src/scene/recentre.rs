@@ -1,44 +1,123 @@
 //! From world coordinates in f64 to coordinates about the scene's centre in f32.
 //!
 //! A scene a millimetre across, a million units from the origin, loses no bit that f32 can hold: the
-//! subtraction happens in f64, before any rounding.
+//! subtraction happens in f64, before any rounding. The centre is the middle of the box around everything, or the
+//! camera where something lies very far beyond what is around it: triangles far away do not cost the precision of the
+//! others.
+//!
+//! Scenes that are very small or very large are given another unit of length, a power of two, so that no product of
+//! lengths leaves the range of f32.
 
-use super::draft::{Draft, DraftCamera};
-use super::{Camera, Cameras, DeltaLight, Mesh, Scene};
+use super::draft::{Draft, DraftCamera, DraftMesh};
+use super::{Camera, Cameras, DeltaLight, Material, Mesh, Projection, Relief, Scene};
+use crate::math::Rgb;
 use glam::{DVec3, Vec3};
 
-/// Returns the middle of the box around all triangles; of all lights and the camera where there are none.
-pub(crate) fn centre(draft: &Draft) -> DVec3 {
-    let corners = draft.meshes.iter().flat_map(|mesh| {
+/// Maximum ratio of a scene's diagonal to the distance within which its camera has a tenth of it.
+pub(crate) const MAX_RATIO: f64 = 1e3;
+
+/// Number of corners, about, by which that distance is found.
+const CORNERS: usize = 1 << 16;
+
+/// Sizes of scenes that keep their unit, as exponents of two.
+const ORDINARY: std::ops::Range<i32> = -10..24;
+
+/// Coordinates that a scene is rendered in.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Coordinates {
+    /// World position of the local origin.
+    pub centre: DVec3,
+    /// The local unit of length is two to this power in the world's.
+    pub exponent: i32,
+    /// Local distance from the camera within which it has a tenth of all corners, where everything reaches more than
+    /// [`MAX_RATIO`] times as far; else 0.
+    pub vicinity: f32,
+}
+
+impl Coordinates {
+    /// Coordinates for a draft.
+    pub fn of(draft: &Draft) -> Coordinates {
+        let lights = || draft.lights.iter().map(|light| light.1);
+        let camera = draft.shot.camera.origin;
+        let Some((low, high)) = bounds(corners(draft)) else {
+            let others = bounds(lights().chain([camera])).unwrap_or_default();
+            return Coordinates { centre: 0.5 * others.0 + 0.5 * others.1, ..Coordinates::default() };
+        };
+        let (middle, diagonal) = (0.5 * low + 0.5 * high, (high - low).length());
+        // A camera that is to see everything has no place yet.
+        let vicinity = if draft.shot.fits { diagonal } else { vicinity(draft, camera) };
+        let (centre, vicinity) = match vicinity > 0.0 && diagonal > MAX_RATIO * vicinity {
+            true => (camera, vicinity),
+            false => (middle, 0.0),
+        };
+        let size = if vicinity > 0.0 { vicinity } else { diagonal };
+        let exponent = size.log2().floor().clamp(-1000.0, 1000.0) as i32;
+        let exponent = if ORDINARY.contains(&exponent) { 0 } else { exponent };
+        let coordinates = Coordinates { centre, exponent, vicinity: 0.0 };
+        Coordinates { vicinity: (vicinity * coordinates.scale()) as f32, ..coordinates }
+    }
+
+    /// Local length of a world's unit.
+    pub fn scale(&self) -> f64 {
+        f64::from(-self.exponent).exp2()
+    }
+
+    /// The local position of a point.
+    pub fn local(&self, world: DVec3) -> Vec3 {
+        ((world - self.centre) * self.scale()).as_vec3()
+    }
+}
+
+/// Corners of all triangles.
+fn corners(draft: &Draft) -> impl Iterator<Item = DVec3> {
+    draft.meshes.iter().flat_map(|mesh| {
         let used = mesh.triangles.iter().flatten();
         used.filter_map(|&i| mesh.positions.get(i as usize).copied())
-    });
-    let of_triangles = middle(corners);
-    let others = draft.lights.iter().map(|l| l.1).chain([draft.shot.camera.origin]);
-    of_triangles.or_else(|| middle(others)).unwrap_or(DVec3::ZERO)
+    })
 }
 
-fn middle(points: impl Iterator<Item = DVec3>) -> Option<DVec3> {
+fn bounds(points: impl Iterator<Item = DVec3>) -> Option<(DVec3, DVec3)> {
     let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = points.filter(|p| p.is_finite()).fold(empty, |(l, h), p| (l.min(p), h.max(p)));
-    (low.cmple(high).all()).then(|| 0.5 * low + 0.5 * high)
+    low.cmple(high).all().then_some((low, high))
 }
 
-/// Returns the scene about `centre`, and its cameras.
-pub(crate) fn recentre(draft: Draft, centre: DVec3) -> (Scene, Cameras) {
-    let local = |p: DVec3| (p - centre).as_vec3();
-    let camera = |c: &DraftCamera| Camera {
-        origin: local(c.origin),
-        forward: c.forward.as_vec3(),
-        right: c.right.as_vec3(),
-        up: c.up.as_vec3(),
-        tan_half_x: c.tan_half_x as f32,
-        near: c.near as f32,
-        far: c.far as f32,
-        projection: c.projection,
-        filter: c.filter,
+/// Distance from `camera` within which it has a tenth of the corners.
+fn vicinity(draft: &Draft, camera: DVec3) -> f64 {
+    let count: usize = draft.meshes.iter().map(|mesh| 3 * mesh.triangles.len()).sum();
+    let mut distances: Vec<f64> =
+        corners(draft).step_by(count.div_ceil(CORNERS).max(1)).map(|p| p.distance(camera)).collect();
+    let tenth = distances.len() / 10;
+    *distances.select_nth_unstable_by(tenth, f64::total_cmp).1
+}
+
+/// Returns the scene in other coordinates, and its cameras.
+pub(crate) fn recentre(draft: Draft, coordinates: &Coordinates) -> (Scene, Cameras) {
+    let scale = coordinates.scale();
+    let local = |p: DVec3| coordinates.local(p);
+    let length = |length: f32| (f64::from(length) * scale) as f32;
+    let camera = |c: &DraftCamera| {
+        let (mut tan_half_x, mut projection) = (c.tan_half_x, c.projection);
+        match &mut projection {
+            Projection::Pinhole => {}
+            Projection::Lens { radius, distance } => {
+                (*radius, *distance) = (length(*radius), length(*distance));
+            }
+            Projection::Parallel => tan_half_x *= scale,
+        }
+        Camera {
+            origin: local(c.origin),
+            forward: c.forward.as_vec3(),
+            right: c.right.as_vec3(),
+            up: c.up.as_vec3(),
+            tan_half_x: tan_half_x as f32,
+            near: (c.near * scale) as f32,
+            far: (c.far * scale) as f32,
+            projection,
+            filter: c.filter,
+        }
     };
-    let mesh = |m: super::draft::DraftMesh| Mesh {
+    let mesh = |m: DraftMesh| Mesh {
         name: m.name,
         positions: m.positions.into_iter().map(local).collect(),
         normals: m.normals,
@@ -52,29 +131,48 @@ pub(crate) fn recentre(draft: Draft, centre: DVec3) -> (Scene, Cameras) {
         path: draft.shot.path.iter().map(camera).collect(),
         resolution: draft.shot.resolution,
     };
+    let mut materials = draft.materials;
+    materials.iter_mut().for_each(|material| scale_heights(material, scale));
     let scene = Scene {
         name: draft.name,
         sources: draft.sources,
         max_depth: draft.max_depth,
         meshes: draft.meshes.into_iter().map(mesh).collect(),
-        materials: draft.materials,
+        materials,
         textures: draft.textures,
         lights: draft
             .lights
             .into_iter()
-            .map(|(light, position)| place_light(light, local(position)))
+            .map(|(light, position)| place_light(light, local(position), scale))
             .collect(),
         environment: draft.environment,
         discs: draft.discs,
-        centre,
+        centre: coordinates.centre,
+        exponent: coordinates.exponent,
+        vicinity: coordinates.vicinity,
     };
     (scene, cameras)
 }
 
-fn place_light(light: DeltaLight, at: Vec3) -> DeltaLight {
+/// Heights of reliefs in the local unit.
+fn scale_heights(material: &mut Material, by: f64) {
+    if let Some(Relief::Heights { scale, .. }) = &mut material.relief {
+        *scale = (f64::from(*scale) * by) as f32;
+    }
+    if let Some(blend) = &mut material.blend {
+        scale_heights(&mut blend.other, by);
+    }
+}
+
+/// The light at a local position; intensities, which fall with the square of lengths, are scaled by theirs.
+fn place_light(light: DeltaLight, at: Vec3, scale: f64) -> DeltaLight {
+    let of_unit = |intensity: Rgb| (intensity.as_dvec3() * (scale * scale)).as_vec3();
     match light {
-        DeltaLight::Point { intensity, .. } => DeltaLight::Point { position: at, intensity },
+        DeltaLight::Point { intensity, .. } => {
+            DeltaLight::Point { position: at, intensity: of_unit(intensity) }
+        }
         DeltaLight::Spot { direction, intensity, inner_angle, outer_angle, .. } => {
+            let intensity = of_unit(intensity);
             DeltaLight::Spot { position: at, direction, intensity, inner_angle, outer_angle }
         }
         directional @ DeltaLight::Directional { .. } => directional,

@@ -141,8 +141,9 @@ impl Requirements {
             r.glossy_area_share = glossy_area / r.area;
             r.specular_area_share = specular_area / r.area;
         }
+        r.area *= scene.unit() * scene.unit();
         if r.triangles > 0 {
-            r.diagonal = (high - low).length();
+            r.diagonal = (high - low).length() * scene.unit();
         }
         for light in &scene.lights {
             r.lights += 1;

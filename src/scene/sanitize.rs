@@ -4,10 +4,12 @@
 //! ones, lights without power are dropped, reflectances that would create energy are clamped. Negative light is an
 //! error: no picture could be computed from it.
 
+use super::coincident::drop_coincident_emitters;
 use super::draft::{Draft, DraftCamera, DraftMesh};
 use super::formats::error::{Log, Place, SceneError};
 use super::material::{Fresnel, Lobe, Material, Reflectance, Roughness, Share};
-use super::{DeltaLight, Environment, PixelFilter, Projection, Relief, Texels, Texture, recentre};
+use super::recentre::Coordinates;
+use super::{DeltaLight, Environment, PixelFilter, Projection, Relief, Texels, Texture};
 use crate::math::Rgb;
 use glam::{DVec3, Vec2, Vec3};
 use serde::Serialize;
@@ -82,15 +84,19 @@ impl fmt::Display for SanitizeReport {
     }
 }
 
-/// Cleans the draft; returns the report and the centre to recentre about.
-pub(crate) fn sanitize(draft: &mut Draft, log: &mut Log) -> Result<(SanitizeReport, DVec3), SceneError> {
+/// Cleans the draft; returns the report and the coordinates to render it in.
+pub(crate) fn sanitize(
+    draft: &mut Draft,
+    log: &mut Log,
+) -> Result<(SanitizeReport, Coordinates), SceneError> {
     let mut report = SanitizeReport::default();
     for mesh in &mut draft.meshes {
         drop_unusable(mesh, &mut report);
     }
-    let centre = recentre::centre(draft);
+    drop_coincident_emitters(draft, &main_file(&draft.sources), log)?;
+    let coordinates = Coordinates::of(draft);
     for mesh in &mut draft.meshes {
-        drop_degenerate(mesh, centre, &mut report);
+        drop_degenerate(mesh, &coordinates, &mut report);
         use_all_vertices(mesh);
         repair_normals(mesh, &mut report);
         let bad_uvs = mesh.uvs.iter_mut().filter(|uv| !uv.is_finite());
@@ -119,7 +125,7 @@ pub(crate) fn sanitize(draft: &mut Draft, log: &mut Log) -> Result<(SanitizeRepo
     log.part(checked);
     let checked = check_lights(draft, &mut report);
     log.conclude(checked)?;
-    Ok((report, centre))
+    Ok((report, coordinates))
 }
 
 fn main_file(sources: &[PathBuf]) -> Place {
@@ -148,10 +154,10 @@ fn drop_unusable(mesh: &mut DraftMesh, report: &mut SanitizeReport) {
 }
 
 /// Drops triangles that have no area once their corners are rounded to f32.
-fn drop_degenerate(mesh: &mut DraftMesh, centre: DVec3, report: &mut SanitizeReport) {
+fn drop_degenerate(mesh: &mut DraftMesh, coordinates: &Coordinates, report: &mut SanitizeReport) {
     let positions = &mesh.positions;
     let rounded =
-        |i: u32| positions.get(i as usize).map_or(DVec3::ZERO, |p| (p - centre).as_vec3().as_dvec3());
+        |i: u32| positions.get(i as usize).map_or(DVec3::ZERO, |p| coordinates.local(*p).as_dvec3());
     let before = mesh.triangles.len();
     mesh.triangles.retain(|t| {
         let [a, b, c] = t.map(rounded);

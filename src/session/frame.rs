@@ -5,9 +5,9 @@ use crate::film::metrics::{rel_mse_of_variance, standard_error};
 use crate::film::{Film, Layer, Metadata};
 use crate::math::Rgb;
 use crate::method::{Method, Output};
+use crate::scene::Scene;
 use crate::stats::Stats;
 use crate::view::View;
-use glam::DVec3;
 use serde_json::Value;
 
 /// Warning of a black picture, with its remedies.
@@ -50,7 +50,7 @@ impl Frame {
 
 /// The film of a method's output, without channels that are not finite, whose number is returned. The variance is that
 /// of the noisy picture if `denoised`.
-pub(super) fn film(output: Output, view: &View, centre: DVec3, denoised: bool) -> (Film, u64) {
+pub(super) fn film(output: Output, view: &View, scene: &Scene, denoised: bool) -> (Film, u64) {
     let (layer, of) = if denoised { (NOISY_VARIANCE, "noisy_") } else { ("variance", "") };
     let mut metadata = Metadata::default();
     if let Some(variance) = &output.variance {
@@ -60,7 +60,7 @@ pub(super) fn film(output: Output, view: &View, centre: DVec3, denoised: bool) -
     let variance = output.variance.map(|image| Layer::color(layer, image));
     let begun = output.begun.into_iter().filter(|_| !output.complete);
     let layers = variance.into_iter().chain(output.extra).chain(begun).collect();
-    let camera = Some(view.matrices(centre));
+    let camera = Some(view.matrices(scene.centre, scene.unit()));
     let mut film = Film { window: view.window, color: output.color, layers, camera, metadata };
     let nonfinite = film.remove_nonfinite();
     (film, nonfinite)

@@ -123,7 +123,7 @@ impl Session {
         let nonfinite_samples = output.nonfinite;
         let denoised_by = finish.denoised_by().filter(|_| complete);
         let (mut film, nonfinite_channels) =
-            frame::film(output, view, self.world.scene.centre, denoised_by.is_some());
+            frame::film(output, view, &self.world.scene, denoised_by.is_some());
         for (n, what) in [(nonfinite_samples, "samples"), (nonfinite_channels, "channels of the picture")] {
             if n > 0 {
                 remarks.push(Remark::Warning(format!(

@@ -11,30 +11,74 @@ use crate::sampling::{Sampler, cosine_hemisphere, uniform_disk, uniform_sphere};
 use crate::scene::DeltaLight;
 use crate::shadow;
 use crate::world::World;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
+
+/// Radius of the middle of the target of light from infinitely far, over the distance of what is around the camera.
+const CORE: f32 = 8.0;
 
 /// The flux of a scene's emitters, sampled in proportion to power.
 pub struct PhotonEmitter<'w> {
     world: &'w World,
     by_power: DiscreteDistribution,
-    /// Sphere around all surfaces: the target of light from infinitely far.
+    target: Target,
+}
+
+/// Target of light from infinitely far: discs that face it.
+struct Target {
     centre: Vec3,
+    /// Radius of a disc that covers all surfaces.
     radius: f32,
+    /// Radius of its middle, which half of the light is drawn to; the other half is drawn in proportion to the inverse
+    /// square of the distance, so that surfaces around the camera have light however far all others reach. In ordinary
+    /// scenes it is that of the whole disc, to which all light is drawn evenly.
+    core: f32,
+}
+
+impl Target {
+    fn new(world: &World) -> Option<Target> {
+        let (low, high) = world.accel.bounds()?;
+        let (centre, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
+        let core = CORE * world.scene.vicinity;
+        if core > 0.0 && core < radius {
+            // About the camera, the local origin.
+            return Some(Target { centre: Vec3::ZERO, radius: radius + centre.length(), core });
+        }
+        Some(Target { centre, radius, core: radius })
+    }
+
+    /// Returns a ray along `direction` through a point of the disc that faces it, and the inverse of its density by
+    /// area.
+    fn ray(&self, direction: Vec3, u: Vec2) -> (Ray, f32) {
+        let Target { centre, radius, core } = *self;
+        let (d, area) = if core == radius {
+            (uniform_disk(u) * radius, PI * radius * radius)
+        } else if u.x < 0.5 {
+            (uniform_disk(Vec2::new(2.0 * u.x, u.y)) * core, 2.0 * PI * core * core)
+        } else {
+            let octaves = (radius / core).ln();
+            let (sin, cos) = (TAU * u.y).sin_cos();
+            let distance = core * ((2.0 * u.x - 1.0) * octaves).exp();
+            (Vec2::new(cos, sin) * distance, 4.0 * PI * octaves * distance * distance)
+        };
+        let frame = Frame::from_normal(direction);
+        // Starts a little beyond the sphere's surface: rounding must not put the origin inside the scene.
+        let origin = centre + frame.to_world(Vec3::new(d.x, d.y, -1.01 * radius));
+        (Ray { origin, t_near: 0.0, direction, t_far: f32::INFINITY }, area)
+    }
 }
 
 impl<'w> PhotonEmitter<'w> {
     /// Prepares sampling; `None` if there is no emitter or no surface.
     pub fn new(world: &'w World) -> Option<PhotonEmitter<'w>> {
-        let (low, high) = world.accel.bounds()?;
-        let (centre, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
+        let target = Target::new(world)?;
         let emitters = &world.emitters;
         let areas = emitters.areas.iter().map(|a| a.power);
-        let deltas = emitters.deltas.iter().map(|d| delta_power(d, radius));
-        let disk = PI * radius * radius;
+        let deltas = emitters.deltas.iter().map(|d| delta_power(d, target.core));
+        let disk = PI * target.core * target.core;
         let environment = emitters.environment.iter().map(|e| 4.0 * PI * disk * e.mean_luminance());
         let by_power = DiscreteDistribution::new(areas.chain(deltas).chain(environment));
-        (!by_power.is_empty()).then_some(PhotonEmitter { world, by_power, centre, radius })
+        (!by_power.is_empty()).then_some(PhotonEmitter { world, by_power, target })
     }
 
     /// Samples the first ray of a path and its flux; `None` where an emitter is dark.
@@ -73,27 +117,14 @@ impl<'w> PhotonEmitter<'w> {
                     carrying(ray, intensity * (falloff * TAU * one_minus_cos * inv_probability))
                 }
                 DeltaLight::Directional { direction, irradiance } => {
-                    let flux = irradiance * (self.disk_area() * inv_probability);
-                    carrying(self.ray_through_disk(direction, u_place), flux)
+                    let (ray, area) = self.target.ray(direction, u_place);
+                    carrying(ray, irradiance * (area * inv_probability))
                 }
             };
         }
         let s = emitters.environment.as_ref()?.sample(u_direction)?;
-        let flux = s.radiance * (self.disk_area() * inv_probability / s.pdf);
-        carrying(self.ray_through_disk(-s.direction, u_place), flux)
-    }
-
-    fn disk_area(&self) -> f32 {
-        PI * self.radius * self.radius
-    }
-
-    /// Returns a ray along `direction` through a point of the disk that faces it and covers all surfaces.
-    fn ray_through_disk(&self, direction: Vec3, u: glam::Vec2) -> Ray {
-        let d = uniform_disk(u) * self.radius;
-        let frame = Frame::from_normal(direction);
-        // Starts a little beyond the sphere's surface: rounding must not put the origin inside the scene.
-        let origin = self.centre + frame.to_world(Vec3::new(d.x, d.y, -1.01 * self.radius));
-        Ray { origin, t_near: 0.0, direction, t_far: f32::INFINITY }
+        let (ray, area) = self.target.ray(-s.direction, u_place);
+        carrying(ray, s.radiance * (area * inv_probability / s.pdf))
     }
 }
 

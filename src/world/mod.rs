@@ -6,7 +6,7 @@ use crate::embree::{Accel, BuildQuality, Device, Hit, TriangleId, TriangleMesh};
 use crate::light::{Emitters, emitted};
 use crate::material::{Bsdf, Materials};
 use crate::math::{Frame, Rgb};
-use crate::scene::Scene;
+use crate::scene::{MAX_RATIO, Scene};
 use glam::{Vec2, Vec3};
 
 mod packet;
@@ -36,7 +36,8 @@ pub struct World {
     pub(crate) emitters: Emitters,
     /// Mirrors and glass.
     pub(crate) specular: Specular,
-    /// Diagonal of the bounds of all surfaces; 1 if there are none. Lengths that depend on scale derive from it.
+    /// Diagonal of the bounds of all surfaces, or where these reach very far beyond what is around the camera, a
+    /// thousand times the distance of that; 1 if there are none. Lengths that depend on scale derive from it.
     pub diagonal: f32,
     triangles: Triangles,
     /// Reliefs, if there are any.
@@ -97,6 +98,10 @@ impl World {
             _ => 1.0,
         };
         let emitters = Emitters::new(&scene, diagonal);
+        let diagonal = match scene.vicinity > 0.0 {
+            true => diagonal.min(scene.vicinity * MAX_RATIO as f32),
+            false => diagonal,
+        };
         let specular = Specular::new(&scene, &materials);
         let triangles = Triangles::new(&scene);
         let sheets = sheets::sheets(&scene, &materials, &accel)?;

@@ -98,9 +98,9 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let generator = plan.generator.clone();
     let (mut draft, hash) = plan.realise(&mut log)?;
     let hash = options.hash(hash);
-    let (repairs, centre) = sanitize::sanitize(&mut draft, &mut log)?;
+    let (repairs, coordinates) = sanitize::sanitize(&mut draft, &mut log)?;
     framing::frame(&mut draft);
-    let (scene, cameras) = recentre::recentre(draft, centre);
+    let (scene, cameras) = recentre::recentre(draft, &coordinates);
     if scene.is_dark() {
         let fallback = "the picture will be black; add an emitter, a light or an environment";
         log.warn(&Place::file(path), "the scene has no light that is modelled", fallback)?;

@@ -7,7 +7,7 @@ use crate::scene::mesh::Emission;
 use crate::scene::texture::{Filter, TextureId, Wrap};
 
 /// Sanitises, where warnings do not matter.
-fn sanitize(draft: &mut Draft) -> Result<(SanitizeReport, DVec3), SceneError> {
+fn sanitize(draft: &mut Draft) -> Result<(SanitizeReport, Coordinates), SceneError> {
     super::sanitize(draft, &mut Log::new(false))
 }
 
@@ -59,7 +59,7 @@ fn each_kind_of_bad_triangle_is_dropped_and_counted() {
     mesh.triangles =
         vec![[0, 1, 2], [0, 1, 99], [0, 1, 4], [0, 1, 7], [0, 1, 5], [0, 1, 1], [0, 1, 6], [2, 1, 3]];
     let mut d = draft(vec![mesh], vec![grey()]);
-    let (report, centre) = sanitize(&mut d).unwrap();
+    let (report, coordinates) = sanitize(&mut d).unwrap();
     let expected = SanitizeReport {
         out_of_range: 1,
         not_finite: 2,
@@ -70,7 +70,7 @@ fn each_kind_of_bad_triangle_is_dropped_and_counted() {
     assert_eq!(report, expected);
     assert_eq!(d.meshes[0].triangles, [[0, 1, 2], [2, 1, 3]]);
     assert_eq!(d.meshes[0].positions.len(), 4, "unused vertices go");
-    assert_eq!(centre, DVec3::new(1.0, 0.5, 0.5), "of what could be hit or lies in line");
+    assert_eq!(coordinates.centre, DVec3::new(1.0, 0.5, 0.5), "of what could be hit or lies in line");
     assert!(!report.is_clean() && report.to_string().contains("2 triangles without area"));
 }
 

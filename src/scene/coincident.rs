@@ -1,0 +1,44 @@
+//! Emitting triangles that lie on others, corner by corner: a lamp described twice.
+//!
+//! Rays meet one of them, so that as a surface a lamp shines once; as a source of samples it would count twice.
+
+use super::draft::Draft;
+use super::formats::Place;
+use super::formats::error::{Log, SceneError};
+use glam::DVec3;
+use std::collections::HashSet;
+
+/// Drops emitting triangles with the corners, and the front, of an emitting one before.
+pub(super) fn drop_coincident_emitters(
+    draft: &mut Draft,
+    place: &Place,
+    log: &mut Log,
+) -> Result<(), SceneError> {
+    let mut seen = HashSet::new();
+    for mesh in draft.meshes.iter_mut().filter(|mesh| mesh.emission.is_some()) {
+        let positions = &mesh.positions;
+        let before = mesh.triangles.len();
+        mesh.triangles.retain(|t| {
+            let corners = t.map(|i| positions.get(i as usize).copied().unwrap_or_default());
+            seen.insert(turned_to_least(corners))
+        });
+        let dropped = before - mesh.triangles.len();
+        if dropped > 0 {
+            let what =
+                format!("{dropped} triangles of the emitter \"{}\" lie on others that emit", mesh.name);
+            log.warn(
+                place,
+                what,
+                "they give no light of their own; remove the copy, or raise the radiance of the first",
+            )?;
+        }
+    }
+    Ok(())
+}
+
+/// Bits of the corners, turned so that the least comes first; the front is the same.
+fn turned_to_least(corners: [DVec3; 3]) -> [[u64; 3]; 3] {
+    // Adding 0 makes one zero of both.
+    let [a, b, c] = corners.map(|p| (p + DVec3::ZERO).to_array().map(f64::to_bits));
+    [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c])
+}

@@ -1,0 +1,43 @@
+//! Light many orders of magnitude brighter or fainter than that of a room.
+
+use crate::all_methods::{all, mean, picture, room, toml};
+use lightsplat::film::Image;
+use lightsplat::method::LightStore;
+use lightsplat::progress::Control;
+
+#[test]
+fn pictures_are_in_proportion_to_light_by_every_method() {
+    let lit = |power: f64| {
+        let emission = format!("emission = [{:e}, {:e}, {:e}]", 8.0 * power, 7.0 * power, 6.0 * power);
+        toml(&room(1.0).replace("emission = [8, 7, 6]", &emission))
+    };
+    let worlds = [1e-20, 1e20].map(|power| (power as f32, lit(power)));
+    let one = lit(1.0);
+    for (name, method) in all() {
+        let expected = mean(&picture(&one, &method));
+        for (power, world) in &worlds {
+            let found = mean(&picture(world, &method)) / power;
+            assert!((found / expected - 1.0).abs() < 0.02, "{name} times {power}: {found}, {expected} at 1");
+        }
+    }
+}
+
+#[test]
+fn variances_beyond_f32_are_the_largest_it_has() {
+    let world = toml(&room(1.0).replace("emission = [8, 7, 6]", "emission = [8e25, 7e25, 6e25]"));
+    let (_, path) = all()[5];
+    let output = path.render(&world, &LightStore::default(), &world.view, &Control::new());
+    let finite = |image: &Image| image.pixels.iter().all(|pixel| pixel.is_finite());
+    assert!(finite(&output.color) && output.variance.as_ref().is_some_and(finite));
+}
+
+#[test]
+fn a_lamp_described_twice_shines_once() {
+    let once = room(1.0);
+    let parts: Vec<&str> = once.split("[[mesh]]").collect();
+    let twice = format!("{once}[[mesh]]{}", parts[1]);
+    let (once, twice) = (toml(&once), toml(&twice));
+    for (name, method) in all() {
+        assert_eq!(picture(&once, &method), picture(&twice, &method), "{name}");
+    }
+}
