@@ -158,7 +158,7 @@ impl Value for Option<f32> {
     fn parse(&mut self, text: &str) -> Result<(), String> {
         let mut number = 0f32;
         number.parse(text)?;
-        if number > 0.0 && number < MIN_SHARE {
+        if !(number == 0.0 || number >= MIN_SHARE) {
             return Err(format!("expected 0 for none, or at least {MIN_SHARE}"));
         }
         *self = (number > 0.0).then_some(number);
