@@ -86,7 +86,8 @@ pub struct PictureArgs {
     /// Width and height in pixels instead of the scene's
     #[arg(long, value_name = "WxH")]
     pub resolution: Option<Resolution>,
-    /// Render only this part of the film, in pixels from its top-left corner
+    /// Render only this part of the film, in pixels from its top-left corner: the whole picture's own pixels by path
+    /// and lightcuts; other methods share light between pixels, and differ from those by a per cent or so
     #[arg(long, value_name = "X,Y,W,H")]
     pub crop: Option<Crop>,
     /// Layers to write beside the colour, about the surfaces seen, through mirrors and glass

@@ -11,7 +11,8 @@
 //! certainly one; and the fewer photons chance has put into a region, the larger the area over which each
 //! one's estimate is used: either would bias the mean over the surface by about 1/k.
 //!
-//! Deviations: on curved surfaces the disc stays flat.
+//! Deviations: on curved surfaces the disc stays flat; of light just behind a closed wall about 1e-4 is found before
+//! it.
 //! Units: W/m².
 
 use super::disc::{self, Disc};
