@@ -77,7 +77,8 @@ impl Emitters {
         }
         let environment = EnvironmentLight::new(scene.environment.as_ref(), &scene.discs);
         let deltas = scene.lights.clone();
-        let selection = select::Selection::new(&areas, &deltas, environment.as_ref(), diagonal);
+        let extents = [diagonal, scene.extent(diagonal)];
+        let selection = select::Selection::new(&areas, &deltas, environment.as_ref(), extents);
         let sphere = |light: &AreaLight| {
             let EmitterBounds { low, high, .. } = EmitterBounds::of_area(light);
             (0.5 * (low + high), 0.25 * (high - low).length_squared())

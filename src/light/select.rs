@@ -42,12 +42,12 @@ impl Selection {
         areas: &[AreaLight],
         deltas: &[DeltaLight],
         environment: Option<&EnvironmentLight>,
-        diagonal: f32,
+        extents: [f32; 2],
     ) -> Selection {
-        let radius = 0.5 * diagonal;
+        let radius = 0.5 * extents[1];
         let few = areas.len() + deltas.len() < MAX_CANDIDATES;
         let cut = if few { MAX_CANDIDATES - 1 } else { CUT };
-        let (tree, powers) = EmitterTree::new(areas, deltas, diagonal, cut);
+        let (tree, powers) = EmitterTree::new(areas, deltas, extents, cut);
         // Flux through the scene's bounding sphere.
         let environment = environment.map(|e| 4.0 * PI * PI * radius * radius * e.mean_luminance());
         Selection { by_power: DiscreteDistribution::new(powers.into_iter().chain(environment)), tree }

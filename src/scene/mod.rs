@@ -30,7 +30,6 @@ pub use material::{
 };
 pub use mesh::{Emission, Mesh};
 pub use principled::Principled;
-pub(crate) use recentre::MAX_RATIO;
 pub use relief::Relief;
 pub use requirements::Requirements;
 pub use texels::Texels;
@@ -71,6 +70,12 @@ impl Scene {
     /// Local unit of length, in the file's.
     pub fn unit(&self) -> f64 {
         f64::from(self.exponent).exp2()
+    }
+
+    /// Diagonal of what lengths derive from, where that of all surfaces is `diagonal`: where these reach very far
+    /// beyond what is around the camera, a thousand times the distance of that.
+    pub fn extent(&self, diagonal: f32) -> f32 {
+        if self.vicinity > 0.0 { diagonal.min(self.vicinity * recentre::MAX_RATIO as f32) } else { diagonal }
     }
 
     /// Maximum path length in edges: `wanted` if set, else the scene's own, else no limit.

@@ -14,7 +14,7 @@ use crate::math::Rgb;
 use glam::{DVec3, Vec3};
 
 /// Maximum ratio of a scene's diagonal to the distance within which its camera has a tenth of it.
-pub(crate) const MAX_RATIO: f64 = 1e3;
+pub(super) const MAX_RATIO: f64 = 1e3;
 
 /// Number of corners, about, by which that distance is found.
 const CORNERS: usize = 1 << 16;
@@ -50,9 +50,14 @@ impl Coordinates {
             true => (camera, vicinity),
             false => (middle, 0.0),
         };
-        let size = if vicinity > 0.0 { vicinity } else { diagonal };
-        let exponent = size.log2().floor().clamp(-1000.0, 1000.0) as i32;
-        let exponent = if ORDINARY.contains(&exponent) { 0 } else { exponent };
+        let size = match draft.shot.fits {
+            _ if vicinity > 0.0 => vicinity,
+            true => diagonal,
+            false => diagonal.max(camera.distance(centre)),
+        };
+        let exponent = size.log2().floor();
+        let has_size = exponent.is_finite() && !ORDINARY.contains(&(exponent as i32));
+        let exponent = if has_size { exponent as i32 } else { 0 };
         let coordinates = Coordinates { centre, exponent, vicinity: 0.0 };
         Coordinates { vicinity: (vicinity * coordinates.scale()) as f32, ..coordinates }
     }

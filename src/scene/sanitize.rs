@@ -20,6 +20,8 @@ use std::path::PathBuf;
 const HUGE: f64 = 1e18;
 /// Tolerance by which a reflectance may exceed 1 through rounding.
 const ALBEDO_SLACK: f32 = 1e-3;
+/// Share of triangles that may vanish by rounding without a warning: those of fine models now and then do.
+const MANY_LOST: f64 = 0.01;
 /// Minimum roughness, that of Mitsuba.
 const MIN_ALPHA: f32 = 1e-4;
 /// Maximum roughness, at which a surface is all but black.
@@ -95,13 +97,25 @@ pub(crate) fn sanitize(
     }
     drop_coincident_emitters(draft, &main_file(&draft.sources), log)?;
     let coordinates = Coordinates::of(draft);
+    let (mut lost, mut triangles) = (0, 0);
     for mesh in &mut draft.meshes {
-        drop_degenerate(mesh, &coordinates, &mut report);
+        triangles += mesh.triangles.len();
+        lost += drop_degenerate(mesh, &coordinates, &mut report);
         use_all_vertices(mesh);
         repair_normals(mesh, &mut report);
         let bad_uvs = mesh.uvs.iter_mut().filter(|uv| !uv.is_finite());
         report.bad_uvs += bad_uvs.map(|uv| *uv = Vec2::ZERO).count();
         report.turned += mesh.turned;
+    }
+    if lost as f64 > MANY_LOST * triangles as f64 {
+        let what = format!(
+            "{lost} triangles are too small for their distance from the camera or the scene's middle"
+        );
+        log.warn(
+            &main_file(&draft.sources),
+            what,
+            "they are left out; move what lies far apart closer together",
+        )?;
     }
     for mesh in draft.meshes.iter().filter(|mesh| mesh.triangles.is_empty() && mesh.emission.is_some()) {
         let what = format!("the emitter \"{}\" has no triangle with an area", mesh.name);
@@ -153,17 +167,23 @@ fn drop_unusable(mesh: &mut DraftMesh, report: &mut SanitizeReport) {
     });
 }
 
-/// Drops triangles that have no area once their corners are rounded to f32.
-fn drop_degenerate(mesh: &mut DraftMesh, coordinates: &Coordinates, report: &mut SanitizeReport) {
+/// Drops triangles that have no area once their corners are rounded to f32; returns the number of those that had one
+/// before.
+fn drop_degenerate(mesh: &mut DraftMesh, coordinates: &Coordinates, report: &mut SanitizeReport) -> usize {
     let positions = &mesh.positions;
     let rounded =
         |i: u32| positions.get(i as usize).map_or(DVec3::ZERO, |p| coordinates.local(*p).as_dvec3());
     let before = mesh.triangles.len();
+    let mut lost = 0;
+    let has_area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a) != DVec3::ZERO;
     mesh.triangles.retain(|t| {
-        let [a, b, c] = t.map(rounded);
-        (b - a).cross(c - a) != DVec3::ZERO
+        let kept = has_area(t.map(rounded));
+        let exact = |i: u32| positions.get(i as usize).map_or(DVec3::ZERO, |p| *p - coordinates.centre);
+        lost += usize::from(!kept && has_area(t.map(exact)));
+        kept
     });
     report.degenerate += before - mesh.triangles.len();
+    lost
 }
 
 /// Drops vertices that no triangle uses, and attributes that are not present for every vertex.

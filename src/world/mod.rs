@@ -6,7 +6,7 @@ use crate::embree::{Accel, BuildQuality, Device, Hit, TriangleId, TriangleMesh};
 use crate::light::{Emitters, emitted};
 use crate::material::{Bsdf, Materials};
 use crate::math::{Frame, Rgb};
-use crate::scene::{MAX_RATIO, Scene};
+use crate::scene::Scene;
 use glam::{Vec2, Vec3};
 
 mod packet;
@@ -98,10 +98,7 @@ impl World {
             _ => 1.0,
         };
         let emitters = Emitters::new(&scene, diagonal);
-        let diagonal = match scene.vicinity > 0.0 {
-            true => diagonal.min(scene.vicinity * MAX_RATIO as f32),
-            false => diagonal,
-        };
+        let diagonal = scene.extent(diagonal);
         let specular = Specular::new(&scene, &materials);
         let triangles = Triangles::new(&scene);
         let sheets = sheets::sheets(&scene, &materials, &accel)?;

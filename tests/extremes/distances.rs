@@ -23,6 +23,17 @@ fn a_square_far_away_changes_no_picture() {
     }
 }
 
+#[test]
+fn lamps_under_a_sky_are_as_easily_found_beside_a_square_far_away() {
+    let open = room(1.0).split("[[mesh]]").take(4).collect::<Vec<_>>().join("[[mesh]]");
+    let open = open + "[environment]\nradiance = [0.05, 0.05, 0.05]\n";
+    let (alone, with) = (toml(&open), toml(&(open.clone() + &stray(1e7))));
+    for (name, method) in all() {
+        let [expected, found] = [&alone, &with].map(|world| mean(&picture(world, &method)));
+        assert!((found / expected - 1.0).abs() < 0.05, "{name}: {found}, alone {expected}");
+    }
+}
+
 /// A ball on a floor that reaches so far to all sides, under an even sky and a lamp.
 fn floor(reach: f64) -> String {
     format!(

@@ -20,6 +20,19 @@ fn a_room_looks_the_same_in_any_unit_by_every_method() {
 }
 
 #[test]
+fn a_scene_without_extent_is_its_sky() {
+    let world = toml(
+        "resolution = [8, 8]\n[camera]\norigin = [0, 0, 3]\ntarget = [0, 0, 0]\n\
+         [environment]\nradiance = [0.5, 0.5, 0.5]\n\
+         [[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = 0.5\n\
+         [[mesh]]\nshape = \"cube\"\nmaterial = \"m\"\ntransform = [{ scale = 1e-200 }]\n",
+    );
+    for (name, method) in all() {
+        assert!((mean(&picture(&world, &method)) - 0.5).abs() < 1e-5, "{name}");
+    }
+}
+
+#[test]
 fn point_lights_lenses_and_layers_keep_the_files_unit() {
     let text = |scale: f64| {
         let intensity = 3.0 * scale * scale;

@@ -47,12 +47,13 @@ enum Place {
 }
 
 impl EmitterTree {
-    /// Builds the tree, with a cut of at most `top` nodes, in a scene of the given diagonal.
+    /// Builds the tree, with a cut of at most `top` nodes, in a scene of the given diagonals: of all surfaces, and of
+    /// what positions are as precise as ([`crate::scene::Scene::extent`]).
     /// Returns it and the powers of the cut's nodes.
     pub fn new(
         areas: &[AreaLight],
         deltas: &[DeltaLight],
-        diagonal: f32,
+        [diagonal, extent]: [f32; 2],
         top: usize,
     ) -> (EmitterTree, Vec<f32>) {
         let areas = areas.iter().map(EmitterBounds::of_area);
@@ -67,14 +68,14 @@ impl EmitterTree {
             parents: Vec::new(),
         };
         for (i, node) in cut.iter().enumerate() {
-            let child = tree.add(&binary, *node, Place::Top(i as u32), diagonal);
-            tree.top.push((Node::new(&binary[*node].bounds, diagonal), child));
+            let child = tree.add(&binary, *node, Place::Top(i as u32), extent);
+            tree.top.push((Node::new(&binary[*node].bounds, extent), child));
         }
         (tree, cut.iter().map(|node| binary[*node].bounds.power).collect())
     }
 
     /// Adds a binary node, and those below it, to the branches.
-    fn add(&mut self, binary: &[BinaryNode], node: usize, place: Place, diagonal: f32) -> Child {
+    fn add(&mut self, binary: &[BinaryNode], node: usize, place: Place, extent: f32) -> Child {
         if let Content::Emitter(emitter) = binary[node].content {
             self.emitters[emitter] = place;
             return Child::emitter(emitter);
@@ -91,7 +92,7 @@ impl EmitterTree {
                 let share = f64::from(bounds.power) / total;
                 let share = if share.is_finite() { share as f32 } else { 0.0 };
                 let place = Place::Below { branch: index as u32, slot };
-                (Node::new(bounds, diagonal), share, self.add(binary, *member, place, diagonal))
+                (Node::new(bounds, extent), share, self.add(binary, *member, place, extent))
             })
             .collect();
         self.branches[index] = Branch::new(&children);

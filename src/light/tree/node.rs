@@ -7,7 +7,7 @@ use glam::Vec3;
 /// Maximum number of children of a branch.
 pub const ARITY: usize = WIDTH;
 
-/// Slack of the extents, over the scene's diagonal: positions are rounded, and light that arrives must not have
+/// Slack of the extents, over the scene's: positions are rounded, and light that arrives must not have
 /// importance zero.
 const SLACK: f32 = 1e-5;
 
@@ -40,13 +40,13 @@ pub struct Node {
 }
 
 impl Node {
-    /// Node of the given bounds, in a scene of the given diagonal.
-    pub fn new(bounds: &EmitterBounds, diagonal: f32) -> Node {
+    /// Node of the given bounds, in a scene whose positions are as precise as its `extent` lets them be.
+    pub fn new(bounds: &EmitterBounds, extent: f32) -> Node {
         let cone = &bounds.cone;
         let all = cone.normals >= std::f32::consts::PI;
         Node {
             centre: 0.5 * (bounds.low + bounds.high),
-            radius: 0.5 * bounds.low.distance(bounds.high) + SLACK * diagonal,
+            radius: 0.5 * bounds.low.distance(bounds.high) + SLACK * extent,
             axis: cone.axis,
             cos_normals: if all { -2.0 } else { cone.normals.cos() },
             sin_normals: if all { 0.0 } else { cone.normals.sin() },

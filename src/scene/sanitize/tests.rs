@@ -80,11 +80,17 @@ fn triangles_that_vanish_in_f32_are_degenerate() {
     let mut mesh = triangle_mesh();
     mesh.positions =
         [DVec3::ZERO, DVec3::X * 1e-9, DVec3::Y * 1e-9].iter().map(|p| *p + DVec3::ONE).collect();
-    let other =
-        DraftMesh { positions: triangle_mesh().positions.iter().map(|p| -*p).collect(), ..triangle_mesh() };
-    let mut d = draft(vec![mesh.clone(), other], vec![grey()]);
+    let other_mesh = || {
+        let positions = triangle_mesh().positions.iter().map(|p| -*p).collect();
+        DraftMesh { positions, ..triangle_mesh() }
+    };
+    let mut d = draft(vec![mesh.clone(), other_mesh()], vec![grey()]);
     let (report, _) = sanitize(&mut d).unwrap();
     assert_eq!((report.degenerate, report.empty_meshes, d.meshes.len()), (1, 1, 1));
+    let mut log = Log::new(true);
+    let mut d = draft(vec![mesh.clone(), other_mesh()], vec![grey()]);
+    let error = super::sanitize(&mut d, &mut log).unwrap_err().to_string();
+    assert!(error.contains("1 triangles are too small"), "{error}");
     // Alone it is kept.
     let mut d = draft(vec![mesh], vec![grey()]);
     assert!(sanitize(&mut d).unwrap().0.is_clean());
