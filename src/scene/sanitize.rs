@@ -4,14 +4,17 @@
 //! ones, lights without power are dropped, reflectances that would create energy are clamped. Negative light is an
 //! error: no picture could be computed from it.
 
+mod lights;
+
 use super::coincident::drop_coincident_emitters;
 use super::draft::{Draft, DraftCamera, DraftMesh};
 use super::formats::error::{Log, Place, SceneError};
 use super::material::{Fresnel, Lobe, Material, Reflectance, Roughness, Share};
 use super::recentre::Coordinates;
-use super::{DeltaLight, Environment, PixelFilter, Projection, Relief, Texels, Texture};
+use super::{PixelFilter, Projection, Relief, Texels, Texture};
 use crate::math::Rgb;
 use glam::{DVec3, Vec2, Vec3};
+use lights::check_lights;
 use serde::Serialize;
 use std::fmt;
 use std::path::PathBuf;
@@ -416,61 +419,6 @@ fn check_camera(camera: &DraftCamera, sources: &[PathBuf]) -> Result<(), SceneEr
                 .wrong(format!("the film's filter is {width} pixels wide"), "give more than 0, up to 1000"))
         }
     }
-}
-
-fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), SceneError> {
-    let place = main_file(&draft.sources);
-    let check = |light: Rgb, what: &str| match light.is_finite() && light.min_element() >= 0.0 {
-        true => Ok(()),
-        false => Err(place.wrong(format!("{what} {light} is negative or no number"), "give 0 or more")),
-    };
-    for mesh in &mut draft.meshes {
-        let Some(emission) = mesh.emission else { continue };
-        check(emission.radiance, &format!("mesh \"{}\": the radiance", mesh.name))?;
-        let texture = emission.texture.and_then(|id| draft.textures.get(id.0 as usize));
-        let dark = texture.is_some_and(|t| t.texels.all(|texel| texel.max_element() <= 0.0));
-        if emission.radiance == Rgb::ZERO || dark {
-            report.black_lights += 1;
-            mesh.emission = None;
-        }
-    }
-    let power = |light: &DeltaLight| match light {
-        DeltaLight::Point { intensity, .. } | DeltaLight::Spot { intensity, .. } => *intensity,
-        DeltaLight::Directional { irradiance, .. } => *irradiance,
-    };
-    for (light, position) in &draft.lights {
-        check(power(light), "a light's intensity")?;
-        if !(position.abs().max_element() <= HUGE) {
-            return Err(
-                place.wrong(format!("a light stands at {position}"), "keep within 1e18 of the origin")
-            );
-        }
-    }
-    for disc in &draft.discs {
-        check(disc.radiance, "the radiance of a distant disc")?;
-    }
-    let before = draft.lights.len() + draft.discs.len();
-    draft.discs.retain(|disc| disc.radiance != Rgb::ZERO);
-    draft.lights.retain(|(light, _)| power(light) != Rgb::ZERO);
-    report.black_lights += before - draft.lights.len() - draft.discs.len();
-    let dark = match &mut draft.environment {
-        Some(Environment::Constant(radiance)) => {
-            check(*radiance, "the environment's radiance")?;
-            *radiance == Rgb::ZERO
-        }
-        Some(Environment::Map(map)) => {
-            let bad = map.radiance.iter_mut().filter(|r| !r.is_finite() || r.min_element() < 0.0);
-            report.bad_texels +=
-                bad.map(|r| *r = if r.is_finite() { r.max(Rgb::ZERO) } else { Rgb::ZERO }).count();
-            map.radiance.iter().all(|r| *r == Rgb::ZERO)
-        }
-        None => false,
-    };
-    if dark {
-        report.black_lights += 1;
-        draft.environment = None;
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 use super::*;
-use crate::scene::Texels;
 use crate::scene::draft::DraftCamera;
 use crate::scene::draft::Shot;
 use crate::scene::material::{Coat, Distribution, MaterialId};
 use crate::scene::mesh::Emission;
 use crate::scene::texture::{Filter, TextureId, Wrap};
+use crate::scene::{DeltaLight, Environment, Texels};
 
 /// Sanitises, where warnings do not matter.
 fn sanitize(draft: &mut Draft) -> Result<(SanitizeReport, Coordinates), SceneError> {
