@@ -54,12 +54,9 @@ impl Radiance {
         Radiance { bands: bands as u8, coefficients: vec![0.0; BLOCKS * stride(bands)].into() }
     }
 
-    /// True if there are as many coefficients as the bands have, all finite, as there are unless it was read from
-    /// damaged bytes.
+    /// True if there are as many coefficients as the bands have, as there are unless it was read from damaged bytes.
     pub fn is_sound(&self) -> bool {
-        (1..=MAX_BANDS).contains(&self.bands())
-            && self.coefficients.len() == BLOCKS * stride(self.bands())
-            && self.coefficients.iter().all(|c| c.is_finite())
+        (1..=MAX_BANDS).contains(&self.bands()) && self.coefficients.len() == BLOCKS * stride(self.bands())
     }
 
     /// Memory beside the struct itself.

@@ -102,16 +102,6 @@ impl Footprint {
         }
     }
 
-    /// True if the numbers can be those of a footprint, as they are unless they were read from damaged bytes.
-    pub fn is_sound(&self) -> bool {
-        let is_positive = |x: f32| x > 0.0 && x.is_finite();
-        self.axes.iter().all(|axis| axis.is_normalized())
-            && self.radii.into_iter().all(is_positive)
-            // Light without any change has infinite ones.
-            && self.unraised.into_iter().all(|radius| radius >= 0.0)
-            && is_positive(self.inverse_normal_tolerance)
-    }
-
     /// Shrinks radii that were raised to a minimum, where the spacing of eye samples allows a smaller one, `min`, now.
     pub fn lower(&mut self, min: f32) {
         for (radius, unraised) in self.radii.iter_mut().zip(self.unraised) {

@@ -60,17 +60,6 @@ pub struct Diagnostics {
 }
 
 impl Record {
-    /// True if the numbers can be those of a record, as they are unless they were read from damaged bytes.
-    pub fn is_sound(&self) -> bool {
-        self.position.is_finite()
-            && self.normal.is_normalized()
-            && self.footprint.is_sound()
-            && self.vector.is_finite()
-            && self.gradient.is_finite()
-            && self.luminance >= 0.0
-            && self.luminance.is_finite()
-    }
-
     /// Distance δ of a point in units of the footprint: 1 at its edge; infinite where the record does not apply at
     /// all. `bands` are those that the surface there needs.
     #[inline]
