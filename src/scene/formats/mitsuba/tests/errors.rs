@@ -1,4 +1,4 @@
-//! What cannot be read, or not as it was meant: errors and warnings.
+//! Errors and warnings: inputs that cannot be read, or not as they were meant.
 
 use super::*;
 
