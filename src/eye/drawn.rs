@@ -1,18 +1,18 @@
 //! The eye pass with direct light: paths end at the first surfaces that scatter light broadly, emitters are sampled
 //! there, and what is left to be found is the indirect light of the shading points that the ends are merged into.
 //!
-//! All pixels get the same number of samples first; then those with contrast around them get more ([`adaptive`]). Where
-//! an environment shines on each region of the scene is learned before ([`sky`]).
+//! All pixels get the same number of samples first; then those with contrast around them get more ([`adaptive`]). A
+//! pilot learns before which emitters each region of the scene sees ([`learn`]).
 //!
 //! [`adaptive`]: super::adaptive
-//! [`sky`]: super::sky
+//! [`learn`]: super::learn
 
 use super::adaptive::{Choice, Luminances, MULTIPLES, pilot};
 use super::merge::{MergedPoint, merge};
 use super::pass::TILE;
 use super::points::VisibilitySample;
 use super::{ChainCounts, EyePass, EyeSettings, VisibleSurfaces, guide};
-use crate::light::LearnedSky;
+use crate::light::Learned;
 use crate::material::{Bsdf, LobeSet};
 use crate::math::{Rgb, luminance};
 use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, ScatteredEdges, Start, start};
@@ -51,7 +51,7 @@ const PILOT_SEED: u32 = 0x3c6e_f372;
 /// The ends of paths, in the order of the paths' edges.
 pub(super) struct Ends<'a, 'w> {
     drawn: &'a DrawnLight,
-    sky: Option<&'a LearnedSky>,
+    learned: Option<&'a Learned>,
     /// Distance between neighbouring points over that from the eye, on surfaces that face it.
     spacing_by_distance: f32,
     edges: ScatteredEdges,
@@ -70,8 +70,8 @@ impl<'w> Reach<'w> for Ends<'_, 'w> {
         }
     }
 
-    fn sky(&self) -> Option<&LearnedSky> {
-        self.sky
+    fn learned(&self) -> Option<&Learned> {
+        self.learned
     }
 
     fn edges(&self) -> ScatteredEdges {
@@ -161,13 +161,12 @@ impl<'w> EyePass<'w> {
         let mut tracer = Tracer { world, view, settings, drawn, edges: ScatteredEdges::default(), control };
         let mut counts = Counts::default();
         tracer.edges = guide::edges(world, view, settings, &mut tracer.workspace(None).ends, &mut counts);
-        let environment = world.emitters.environment.as_ref();
-        let learned = environment.map(|environment| tracer.learn_sky(environment, settings.seed));
-        let sky = learned.as_ref().map(|(sky, _)| sky);
+        let found = tracer.learn(settings.seed);
+        let learned = found.as_ref().map(|(learned, _)| learned);
         let tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
             .into_par_iter()
             .map_init(
-                || tracer.workspace(sky),
+                || tracer.workspace(learned),
                 |work, index| {
                     if control.is_cancelled() {
                         return None;
@@ -179,15 +178,18 @@ impl<'w> EyePass<'w> {
             )
             .flatten()
             .collect();
-        let needs = tracer.needs(&tiles, sky);
+        let needs = tracer.needs(&tiles, learned);
         let tiles = tiles
             .into_par_iter()
-            .map_init(|| tracer.workspace(sky), |work, tile| tracer.more_samples(tile, needs.as_ref(), work))
+            .map_init(
+                || tracer.workspace(learned),
+                |work, tile| tracer.more_samples(tile, needs.as_ref(), work),
+            )
             .collect();
         let mut pass = EyePass::gather(&view.window, tiles, 1);
         pass.chains.rays += counts.rays;
         pass.chains.shadow_rays += counts.shadow_rays;
-        if let Some((_, chains)) = &learned {
+        if let Some((_, chains)) = &found {
             pass.chains += *chains;
         }
         if let Some(needs) = needs {
@@ -203,10 +205,10 @@ pub fn merged_points(spp: u32) -> u64 {
 }
 
 impl<'a, 'w> Tracer<'a, 'w> {
-    pub(super) fn workspace<'b>(&'b self, sky: Option<&'b LearnedSky>) -> Workspace<'b, 'w> {
+    pub(super) fn workspace<'b>(&'b self, learned: Option<&'b Learned>) -> Workspace<'b, 'w> {
         let spacing_by_distance = SPACING * self.view.pixel_angle();
         let Tracer { drawn, edges, .. } = *self;
-        let ends = Ends { drawn, sky, spacing_by_distance, edges, found: Vec::new(), order: Vec::new() };
+        let ends = Ends { drawn, learned, spacing_by_distance, edges, found: Vec::new(), order: Vec::new() };
         Workspace { batch: Batch::default(), ends, merged: Vec::new() }
     }
 
@@ -287,7 +289,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
     }
 
     /// Learns which pixels need more samples than the first; `None` if none is to get more.
-    fn needs(&self, tiles: &[Tile], sky: Option<&LearnedSky>) -> Option<Needs> {
+    fn needs(&self, tiles: &[Tile], learned: Option<&Learned>) -> Option<Needs> {
         let EyeSettings { spp, seed, .. } = self.settings;
         let share = self.drawn.extra_samples;
         if !(share > 0.0 && (2..=MAX_ADAPTIVE).contains(&spp)) {
@@ -295,7 +297,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         }
         let squares = pilot(self.view.window.film);
         let pixels = squares.iter().map(|square| square.film_pixels().collect()).collect();
-        let (values, mut chains) = self.luminances(pixels, seed ^ PILOT_SEED, sky);
+        let (values, mut chains) = self.luminances(pixels, seed ^ PILOT_SEED, learned);
         let filled = |(window, values)| Luminances { window, values };
         let choice = Choice::new(&squares.into_iter().zip(values).map(filled).collect::<Vec<_>>(), share);
 
@@ -309,7 +311,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         let beside: Vec<[u32; 2]> =
             near.film_pixels().filter(|pixel| window.index(*pixel).is_none()).collect();
         let beside: Vec<Vec<[u32; 2]>> = beside.chunks(BATCH as usize).map(<[_]>::to_vec).collect();
-        let (values, traced) = self.luminances(beside.clone(), seed, sky);
+        let (values, traced) = self.luminances(beside.clone(), seed, learned);
         beside
             .iter()
             .flatten()
@@ -324,13 +326,13 @@ impl<'a, 'w> Tracer<'a, 'w> {
         &self,
         groups: Vec<Vec<[u32; 2]>>,
         seed: u32,
-        sky: Option<&LearnedSky>,
+        learned: Option<&Learned>,
     ) -> (Vec<Vec<f32>>, ChainCounts) {
         let spp = self.settings.spp;
         let found: Vec<(Vec<f32>, ChainCounts)> = groups
             .into_par_iter()
             .map_init(
-                || self.workspace(sky),
+                || self.workspace(learned),
                 |work, pixels| {
                     let mut sums = vec![Rgb::ZERO; pixels.len()];
                     if self.control.is_cancelled() {

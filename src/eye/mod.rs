@@ -7,13 +7,13 @@ mod drawn;
 mod features;
 mod guide;
 mod index;
+mod learn;
 mod merge;
 mod pass;
 mod points;
 mod rays;
 mod seen;
 mod sharp;
-mod sky;
 #[cfg(test)]
 mod tests;
 

@@ -65,7 +65,7 @@ impl Start {
     /// Returns the weight of the emission of the surface hit, which points sampled on emitters find as well.
     pub fn weight_of_area(&self, world: &World, met: &Surface, direction: Vec3) -> f32 {
         let (x, n) = self.place.splat();
-        let at = Receivers16 { position: &x, normal: &n, sky: None };
+        let at = Receivers16 { position: &x, normal: &n, learned: None };
         let cos = met.normal.dot(direction);
         let distance = met.position.distance(self.place.position);
         let pdf = world.emitters.pdf_areas(at, &[met.mesh; LANES], &[distance; LANES], &[cos; LANES]);
@@ -75,7 +75,7 @@ impl Start {
     /// Weight of the environment's radiance, whose density by solid angle is `pdf` once it is chosen.
     pub fn weight_of_environment(&self, world: &World, pdf: f32) -> f32 {
         let (x, n) = self.place.splat();
-        let at = Receivers16 { position: &x, normal: &n, sky: None };
+        let at = Receivers16 { position: &x, normal: &n, learned: None };
         self.weight(pdf * world.emitters.environment_choice(at)[0])
     }
 
@@ -125,7 +125,7 @@ impl Sharp<'_> {
             places.set(i, (place + i as f32 * STEPS).fract());
         }
         let (x, n) = Place::new(self.surface, self.lobe, self.wo).splat();
-        let at = Receivers16 { position: &x, normal: &n, sky: None };
+        let at = Receivers16 { position: &x, normal: &n, learned: None };
         let lights = emitters.sample_direct(&self.world.scene, at, &choices, &places, u16::MAX);
         let (mut values, mut sum) = ([Rgb::ZERO; LANES], 0.0);
         for i in lanes_in(lights.useful()).filter(|i| lights.delta[*i] == 0) {

@@ -8,7 +8,9 @@
 mod area;
 mod distribution;
 mod environment;
+mod learned;
 mod packet;
+mod regions;
 mod select;
 #[cfg(test)]
 mod tests;
@@ -17,7 +19,9 @@ mod tree;
 pub use area::{AreaLight, emitted};
 pub use distribution::DiscreteDistribution;
 pub use environment::{EnvironmentLight, EnvironmentSample, LearnedSky, Looks};
+pub use learned::Learned;
 pub use select::Receivers16;
+pub use tree::{LampLooks, LearnedLamps};
 
 use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, luminance, mask_of};
 use crate::scene::{DeltaLight, Scene};
@@ -30,6 +34,9 @@ const NO_LIGHT: u32 = u32::MAX;
 
 /// Ratio of radius to distance below which an emitter looks small.
 const SMALL: f32 = 0.3;
+
+/// Minimum number of lamps of which some may be hidden from most points.
+const MIN_HIDDEN: usize = 8;
 
 /// Maximum number of area lights of which that is tested.
 const MAX_TESTED: usize = 32;
@@ -97,6 +104,16 @@ impl Emitters {
     #[inline]
     pub fn are_hittable(&self) -> bool {
         !self.areas.is_empty() || self.environment.is_some()
+    }
+
+    /// True if lamps are so many that it pays to learn which are seen from where.
+    pub fn may_hide(&self) -> bool {
+        self.areas.len() + self.deltas.len() >= MIN_HIDDEN
+    }
+
+    /// Learns which of the lamps are seen from where; `None` if nearly all are from everywhere.
+    pub fn learn_lamps(&self, looks: &LampLooks) -> Option<LearnedLamps> {
+        self.selection.learn(looks)
     }
 
     /// Lanes from which all emitters that a ray can meet look so small that directions drawn from a diffuse surface

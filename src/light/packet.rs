@@ -72,6 +72,32 @@ impl Emitters {
         wanted: u16,
     ) -> DirectSamples16 {
         let (chosen, choice) = self.selection.sample(self, at, u_choice, wanted);
+        self.sample_chosen(scene, at, (&chosen, &choice), u, wanted)
+    }
+
+    /// [`Emitters::sample_direct`] of all emitters but the environment; returns the emitters, too.
+    pub fn sample_lamps(
+        &self,
+        scene: &Scene,
+        at: Receivers16,
+        u_choice: &F32x16,
+        u: &Vec2x16,
+    ) -> (U32x16, DirectSamples16) {
+        let (chosen, choice) = self.selection.sample(self, at, u_choice, u16::MAX);
+        let lamps = mask_of(&chosen.map(|emitter| u32::from(emitter != self.environment_index())));
+        (chosen, self.sample_chosen(scene, at, (&chosen, &choice), u, lamps))
+    }
+
+    /// Samples light of emitters chosen with their probabilities, in the lanes of `wanted`.
+    #[inline]
+    fn sample_chosen(
+        &self,
+        scene: &Scene,
+        at: Receivers16,
+        (chosen, choice): (&U32x16, &F32x16),
+        u: &Vec2x16,
+        wanted: u16,
+    ) -> DirectSamples16 {
         let mut triangles = Triangles16::default();
         let (mut textured, mut rest) = (0u16, 0u16);
         for lane in lanes_in(wanted).filter(|i| choice[*i] > 0.0) {
@@ -83,7 +109,7 @@ impl Emitters {
                 None => rest |= 1 << lane,
             }
         }
-        let mut samples = triangles.sample(at.position, &choice);
+        let mut samples = triangles.sample(at.position, choice);
         for lane in lanes_in(textured) {
             let light = &self.areas[chosen[lane] as usize];
             let factor = light.texture(scene, triangles.index[lane], triangles.barycentric.get(lane));
@@ -99,7 +125,7 @@ impl Emitters {
             }
         }
         if far != 0 {
-            self.sample_environment(at, u, &choice, far, &mut samples);
+            self.sample_environment(at, u, choice, far, &mut samples);
         }
         samples
     }
@@ -113,7 +139,11 @@ impl Emitters {
         samples: &mut DirectSamples16,
     ) {
         let Some(environment) = &self.environment else { return };
-        let drawn = environment.sample16(u, wanted, at.sky.map(|sky| (sky, at.position)));
+        let drawn = environment.sample16(
+            u,
+            wanted,
+            at.learned.and_then(|l| l.sky.as_ref()).map(|sky| (sky, at.position)),
+        );
         for lane in lanes_in(wanted) {
             samples.set(lane, drawn[lane].map(|s| s.direct(choice[lane])));
         }

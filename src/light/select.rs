@@ -4,8 +4,8 @@
 //! environment: in proportion to the rough irradiance by each at the point, mixed with its power so that none is
 //! starved. It goes on down the tree.
 
-use super::tree::{BY_POWER, EmitterTree};
-use super::{AreaLight, DiscreteDistribution, Emitters, EnvironmentLight, LearnedSky};
+use super::tree::{BY_POWER, EmitterTree, LampLooks, LearnedLamps};
+use super::{AreaLight, DiscreteDistribution, Emitters, EnvironmentLight, Learned};
 use crate::math::{F32x16, LANES, U32x16, Vec3x16, lanes_in};
 use crate::scene::DeltaLight;
 use std::f32::consts::PI;
@@ -25,8 +25,19 @@ pub struct Receivers16<'a> {
     pub position: &'a Vec3x16,
     /// Unit normals of the reflecting sides; zero where light may come from both.
     pub normal: &'a Vec3x16,
-    /// Knowledge of the environment that is used, if any.
-    pub sky: Option<&'a LearnedSky>,
+    /// Knowledge of the emitters that is used, if any.
+    pub learned: Option<&'a Learned>,
+}
+
+impl<'a> Receivers16<'a> {
+    /// Factors that have been learned on the importance of lamps, in each lane.
+    #[inline]
+    fn lamp_factors(&self) -> [Option<&'a [f32]>; LANES] {
+        match self.learned.and_then(|learned| learned.lamps.as_ref()) {
+            Some(lamps) => std::array::from_fn(|lane| Some(lamps.at(self.position.get(lane)))),
+            None => [None; LANES],
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -53,6 +64,11 @@ impl Selection {
         Selection { by_power: DiscreteDistribution::new(powers.into_iter().chain(environment)), tree }
     }
 
+    /// Learns which emitters are seen from where.
+    pub fn learn(&self, looks: &LampLooks) -> Option<LearnedLamps> {
+        LearnedLamps::new(&self.tree, looks)
+    }
+
     /// Chooses an emitter for each lane of `wanted`; returns it and its probability, zero where no emitter can be
     /// chosen.
     #[inline]
@@ -65,7 +81,8 @@ impl Selection {
         if count == 1 {
             return (chosen, [1.0; LANES]);
         }
-        let (weights, total) = self.weights(e, at);
+        let factors = at.lamp_factors();
+        let (weights, total) = self.weights(e, at, &factors);
         let mut left = [0.0; LANES];
         for i in 0..LANES {
             left[i] = u[i] * total[i];
@@ -96,7 +113,8 @@ impl Selection {
                 chosen[lane] = e.environment_index();
             } else if choice[lane] > 0.0 {
                 let (x, n) = (at.position.get(lane), at.normal.get(lane));
-                let below = self.tree.sample(candidate, x, n, within[lane].min(1.0 - f32::EPSILON));
+                let within = within[lane].min(1.0 - f32::EPSILON);
+                let below = self.tree.sample(candidate, (x, n), factors[lane], within);
                 let (emitter, probability) = below.unwrap_or_default();
                 chosen[lane] = emitter;
                 choice[lane] *= probability;
@@ -111,16 +129,17 @@ impl Selection {
         if self.by_power.len() == 1 {
             return [1.0; LANES];
         }
+        let factors = at.lamp_factors();
         let mut probability = [1.0; LANES];
         let mut candidates = [self.tree.len() as u32; LANES];
         for lane in lanes_in(wanted) {
             if index[lane] != e.environment_index() {
                 let (x, n) = (at.position.get(lane), at.normal.get(lane));
-                let (top, below) = self.tree.probability(index[lane] as usize, x, n);
+                let (top, below) = self.tree.probability(index[lane] as usize, (x, n), factors[lane]);
                 (candidates[lane], probability[lane]) = (top as u32, below);
             }
         }
-        let (weights, total) = self.weights(e, at);
+        let (weights, total) = self.weights(e, at, &factors);
         for i in 0..LANES {
             let choice = if total[i] > 0.0 { weights[candidates[i] as usize][i] / total[i] } else { 0.0 };
             probability[i] *= choice;
@@ -130,9 +149,21 @@ impl Selection {
 
     /// Weights of all candidates, and their sums.
     #[inline]
-    fn weights(&self, e: &Emitters, at: Receivers16) -> ([F32x16; MAX_CANDIDATES], F32x16) {
+    fn weights(
+        &self,
+        e: &Emitters,
+        at: Receivers16,
+        factors: &[Option<&[f32]>; LANES],
+    ) -> ([F32x16; MAX_CANDIDATES], F32x16) {
         let mut weights = [[0.0; LANES]; MAX_CANDIDATES];
         self.tree.weigh(at, &mut weights);
+        for (lane, factors) in factors.iter().enumerate() {
+            for (w, factor) in
+                weights.iter_mut().zip(factors.iter().flat_map(|factors| &factors[..self.tree.len()]))
+            {
+                w[lane] *= factor;
+            }
+        }
         if let Some(environment) = &e.environment {
             weights[self.by_power.len() - 1] = [PI * PI * environment.mean_luminance(); LANES];
         }

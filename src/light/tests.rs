@@ -72,10 +72,31 @@ fn emitters(scene: &Scene) -> Emitters {
     Emitters::new(scene, 10.0 * 3f32.sqrt())
 }
 
+/// Knowledge that two of three lamps are hidden from all points of positive x.
+fn learned(emitters: &Emitters) -> Learned {
+    let count = emitters.environment_index();
+    let mut looks = LampLooks::default();
+    for point in 0..4096 {
+        let mut sampler = Sampler::new(8, point);
+        let (place, z) = (sampler.next_2d(), sampler.next_1d());
+        let x = 14.0 * place.extend(z) - 7.0;
+        looks.points.push(x);
+        looks.rays.extend((0..32).map(|ray| {
+            let lamp = (point * 32 + ray) * 97 % count;
+            (ray % 3 > 0).then_some((lamp, is_seen(lamp as usize, x)))
+        }));
+    }
+    Learned { sky: None, lamps: emitters.learn_lamps(&looks) }
+}
+
+fn is_seen(lamp: usize, x: Vec3) -> bool {
+    lamp.is_multiple_of(3) || x.x < 0.0
+}
+
 /// Probability of choosing each emitter at a point.
-fn probabilities(emitters: &Emitters, (x, n): (Vec3, Vec3)) -> Vec<f32> {
+fn probabilities(emitters: &Emitters, (x, n): (Vec3, Vec3), learned: Option<&Learned>) -> Vec<f32> {
     let (x, n) = (Vec3x16::splat(x), Vec3x16::splat(n));
-    let at = Receivers16 { position: &x, normal: &n, sky: None };
+    let at = Receivers16 { position: &x, normal: &n, learned };
     let one = |i| emitters.selection.probability(emitters, at, &[i; LANES], 1)[0];
     (0..=emitters.environment_index()).map(one).collect()
 }
@@ -110,12 +131,14 @@ fn frequencies_are_the_probabilities_and_all_that_shines_can_be_chosen() {
     for count in COUNTS {
         let scene = scene(count, 1);
         let emitters = emitters(&scene);
+        let knowledge = learned(&emitters);
         let mut sampler = Sampler::new(2, 0);
-        for _ in 0..40 {
+        for round in 0..60 {
             let (x, n) = receiver(&scene, &mut sampler);
-            let expected = probabilities(&emitters, (x, n));
+            let learned = (round % 3 == 0).then_some(&knowledge);
+            let expected = probabilities(&emitters, (x, n), learned);
             let (positions, normals) = (Vec3x16::splat(x), Vec3x16::splat(n));
-            let at = Receivers16 { position: &positions, normal: &normals, sky: None };
+            let at = Receivers16 { position: &positions, normal: &normals, learned };
             let mut drawn = vec![0u32; expected.len()];
             let mut none = 0;
             for first in (0..DRAWS).step_by(LANES) {
@@ -147,11 +170,41 @@ fn frequencies_are_the_probabilities_and_all_that_shines_can_be_chosen() {
 }
 
 #[test]
+fn lamps_hidden_from_a_region_are_hardly_chosen_there() {
+    for count in COUNTS {
+        let scene = scene(count, 3);
+        let emitters = emitters(&scene);
+        let learned = learned(&emitters);
+        let mut sampler = Sampler::new(9, 0);
+        let (mut before, mut after, mut open) = (0.0, 0.0, 0.0f32);
+        for _ in 0..400 {
+            let (mut x, n) = receiver(&scene, &mut sampler);
+            x.x = x.x.abs() + 1.0;
+            let hidden = |learned: Option<&Learned>| -> f32 {
+                let of = probabilities(&emitters, (x, n), learned);
+                (0..count - 1).filter(|lamp| !is_seen(*lamp, x)).map(|lamp| of[lamp]).sum()
+            };
+            before += hidden(None);
+            after += hidden(Some(&learned));
+            let there = (x * Vec3::new(-1.0, 1.0, 1.0), n);
+            let [by_none, by_all] = [None, Some(&learned)].map(|l| probabilities(&emitters, there, l));
+            let moved: f32 = by_none.iter().zip(&by_all).map(|(a, b)| (a - b).abs()).sum();
+            open = open.max(moved);
+        }
+        // Down a tree, bright lamps that are hidden stand beside dim ones that are seen.
+        let share = if count <= 32 { 0.4 } else { 0.8 };
+        assert!(after < share * before, "{after} of {before} with {count} emitters");
+        assert!(open < 1e-3, "{open} with {count} emitters");
+    }
+}
+
+#[test]
 fn the_mean_of_direct_light_is_the_sum_over_all_emitters() {
     const DRAWS: u32 = 1 << 16;
     for count in COUNTS {
         let scene = scene(count, 5);
         let emitters = emitters(&scene);
+        let knowledge = learned(&emitters);
         let mut sampler = Sampler::new(4, 0);
         let (mut sum_of_z_sq, mut points) = (0.0, 0.0);
         while points < 12.0 {
@@ -163,7 +216,8 @@ fn the_mean_of_direct_light_is_the_sum_over_all_emitters() {
             let all = 0..=emitters.environment_index() as usize;
             let expected: f64 = all.map(|i| irradiance(&scene, &emitters, i, (x, n), 32)).sum();
             let (positions, normals) = (Vec3x16::splat(x), Vec3x16::splat(n));
-            let at = Receivers16 { position: &positions, normal: &normals, sky: None };
+            let learned = (points as u32).is_multiple_of(2).then_some(&knowledge);
+            let at = Receivers16 { position: &positions, normal: &normals, learned };
             let (mut sum, mut sum_sq) = (0.0, 0.0);
             for _ in 0..DRAWS / LANES as u32 {
                 let (mut choices, mut places) = ([0.0; LANES], Vec2x16::default());
@@ -200,7 +254,7 @@ fn densities_of_points_are_those_of_sampling_them() {
         for _ in 0..50 {
             let (x, n) = receiver(&scene, &mut sampler);
             let (x, n) = (Vec3x16::splat(x), Vec3x16::splat(n));
-            let at = Receivers16 { position: &x, normal: &n, sky: None };
+            let at = Receivers16 { position: &x, normal: &n, learned: None };
             let choices = std::array::from_fn(|_| sampler.next_1d());
             let mut places = Vec2x16::default();
             for i in 0..LANES {

@@ -8,7 +8,7 @@
 
 use super::packet::{Packet, Shadows, Stage};
 use crate::embree::{Hits16, Ray, Rays16};
-use crate::light::{LearnedSky, Receivers16};
+use crate::light::{Learned, Receivers16};
 use crate::material::{Bsdf, LobeSet};
 use crate::math::{LANES, Rgb, Vec3x16, first_lanes, lanes_in};
 use crate::sampling::Samplers16;
@@ -69,8 +69,8 @@ pub trait Reach<'w> {
         bsdf.sharp_lobes()
     }
 
-    /// Knowledge of the environment by which it is sampled, if any.
-    fn sky(&self) -> Option<&LearnedSky> {
+    /// Knowledge of the emitters by which they are sampled, if any.
+    fn learned(&self) -> Option<&Learned> {
         None
     }
 
@@ -162,13 +162,13 @@ impl Batch {
             let mut packet = self.packets[index].clone();
             let valid = first_lanes(self.count - index * LANES);
             let found = world.accel.closest_hit16(&packet.rays, valid, depth == 1, &mut hits);
-            self.escape(world, &packet, valid & !found, reach.sky());
+            self.escape(world, &packet, valid & !found, reach.learned());
             if found == 0 {
                 continue;
             }
             hits.repeat(found.trailing_zeros() as usize, !found);
             let surfaces = world.surfaces(&hits);
-            packet.add_emitted(world, &surfaces, found, &mut self.radiance);
+            packet.add_emitted(world, &surfaces, found, reach.learned(), &mut self.radiance);
             let mut followed = if R::ENDS { found & packet.followed() } else { found };
             if R::ENDS {
                 followed &= !packet.at(Stage::Scattered) | world.specular.lanes(&surfaces.mesh);
@@ -185,13 +185,13 @@ impl Batch {
                     let blind = reach.edges().blind;
                     let (kept, outward) = looked_along(world, &mut packet, going_on, (blind, depth));
                     going_on = kept;
-                    self.look_outward(world, &packet, outward, reach.sky(), counts);
+                    self.look_outward(world, &packet, outward, reach.learned(), counts);
                 }
                 self.keep(&packet, going_on, &mut kept);
             }
         }
         self.shadows.trace(world, depth == 1, &mut self.radiance, counts);
-        self.trace_outward(world, reach.sky(), counts);
+        self.trace_outward(world, reach.learned(), counts);
         self.count = kept;
     }
 
@@ -214,7 +214,7 @@ impl Batch {
         world: &World,
         packet: &Packet,
         sought: u16,
-        sky: Option<&LearnedSky>,
+        learned: Option<&Learned>,
         counts: &mut Counts,
     ) {
         if world.emitters.environment.is_none() {
@@ -225,12 +225,12 @@ impl Batch {
             outward.copy_lane(*count, packet, lane);
             *count += 1;
             if *count == LANES {
-                self.trace_outward(world, sky, counts);
+                self.trace_outward(world, learned, counts);
             }
         }
     }
 
-    fn trace_outward(&mut self, world: &World, sky: Option<&LearnedSky>, counts: &mut Counts) {
+    fn trace_outward(&mut self, world: &World, learned: Option<&Learned>, counts: &mut Counts) {
         if self.outward.1 == 0 {
             return;
         }
@@ -241,20 +241,20 @@ impl Batch {
         let throughput = &mut outward.emission_throughput;
         let attenuate = |lane, share| throughput.set(lane, throughput.get(lane) * share);
         world.transmittance16(&outward.rays, free, attenuate);
-        self.escape(world, &outward, free, sky);
+        self.escape(world, &outward, free, learned);
         self.outward.0 = outward;
     }
 
     /// Adds the environment's light to the paths of a packet that met nothing.
-    fn escape(&mut self, world: &World, packet: &Packet, escaped: u16, sky: Option<&LearnedSky>) {
+    fn escape(&mut self, world: &World, packet: &Packet, escaped: u16, learned: Option<&Learned>) {
         let Some(environment) = &world.emitters.environment else { return };
         if escaped == 0 {
             return;
         }
         let origins = packet.rays.origins();
-        let at = Receivers16 { position: &origins, normal: &packet.normal, sky };
+        let at = Receivers16 { position: &origins, normal: &packet.normal, learned };
         let choice = world.emitters.environment_choice(at);
-        let guided = sky.map(|sky| (sky, &origins));
+        let guided = learned.and_then(|learned| learned.sky.as_ref()).map(|sky| (sky, &origins));
         let light = environment.radiance_pdf16(&packet.rays.directions(), escaped, guided);
         for lane in lanes_in(escaped) {
             let (radiance, pdf) = light[lane];

@@ -17,7 +17,7 @@ use super::batch::{ChainEnd, Reach, ScatteredEdges};
 use super::guided::Guided;
 use super::packet::{Packet, Stage};
 use crate::embree::{Ray, Rays16};
-use crate::light::Receivers16;
+use crate::light::{Learned, Receivers16};
 use crate::material::{BsdfSamples16, Bsdfs16, LobeSet};
 use crate::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, mask_of};
 use crate::sampling::{hash, power_heuristic};
@@ -46,7 +46,14 @@ fn first_pair(depth: u32) -> u32 {
 impl Packet {
     /// Adds to `results` the emission of the surfaces that the edges have hit, in the lanes of `found`.
     #[inline]
-    pub fn add_emitted(&self, world: &World, surfaces: &Surfaces16, found: u16, results: &mut [Rgb]) {
+    pub fn add_emitted(
+        &self,
+        world: &World,
+        surfaces: &Surfaces16,
+        found: u16,
+        learned: Option<&Learned>,
+        results: &mut [Rgb],
+    ) {
         let lit = lanes_in(found).filter(|i| world.emitters.is_light(surfaces.mesh[*i]));
         let lit = lit.fold(0u16, |mask, i| mask | 1 << i);
         if lit == 0 {
@@ -57,7 +64,7 @@ impl Packet {
         for i in 0..LANES {
             cos[i] = surfaces.normal.get(i).dot(directions.get(i));
         }
-        let start = Receivers16 { position: &self.rays.origins(), normal: &self.normal, sky: None };
+        let start = Receivers16 { position: &self.rays.origins(), normal: &self.normal, learned };
         let light_pdf = world.emitters.pdf_areas(start, &surfaces.mesh, &surfaces.t, &cos);
         for i in lanes_in(lit) {
             let emitted = world.emitted(&surfaces.get(i), -directions.get(i));
@@ -101,7 +108,7 @@ impl Packet {
         let glossy = if by_glossy { bsdfs.keep_glossy(scattered) } else { 0 };
         // Diffuse surfaces that paths end at, and from which emitters look small, have light samples alone.
         let alone = if R::ENDS {
-            let at = Receivers16 { position: &surfaces.position, normal: &self.normal, sky: None };
+            let at = Receivers16 { position: &surfaces.position, normal: &self.normal, learned: None };
             at_end & bsdfs.lambertian() & world.emitters.look_small(at)
         } else {
             0
@@ -113,7 +120,8 @@ impl Packet {
         let lit = bsdfs.smooth() & found & !unlit;
         if lit != 0 {
             let numbers = (&choices.x, &self.samplers.point(pair));
-            let at = Receivers16 { position: &surfaces.position, normal: &self.normal, sky: reach.sky() };
+            let at =
+                Receivers16 { position: &surfaces.position, normal: &self.normal, learned: reach.learned() };
             self.light(world, surfaces, (&bsdfs, at), numbers, (lit, alone, &guided), arrives);
         }
         let places = self.samplers.point(pair + 1);

@@ -41,7 +41,7 @@ pub struct NearSurfaces {
 
 impl NearSurfaces {
     fn receivers(&self) -> Receivers16<'_> {
-        Receivers16 { position: &self.position, normal: &self.normal, sky: None }
+        Receivers16 { position: &self.position, normal: &self.normal, learned: None }
     }
 
     /// Adds a surface hit along `direction`; `throughput` includes its albedo.

@@ -4,6 +4,7 @@ use crate::common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
+use lightsplat::method::cache;
 use lightsplat::method::path::Settings;
 use lightsplat::scene::DeltaLight;
 
@@ -12,11 +13,11 @@ const ROOMS: usize = 3;
 
 /// A building of rooms without doors or roof, from above, with `count` lamps under its eaves: rectangles that face
 /// down, point and spot lights, of powers over an order of magnitude, a watt together.
-fn building(count: usize) -> WorldAndView {
+fn building(count: usize, size: u32) -> WorldAndView {
     let side = ROOMS as f32;
     let above =
         camera(Vec3::new(0.5 * side, 3.5 * side, 0.49 * side), Vec3::new(0.5 * side, 0.0, 0.5 * side), 0.2);
-    let mut scene = scene(above, [24, 24]);
+    let mut scene = scene(above, [size, size]);
     let wall = add_material(&mut scene, diffuse(Rgb::splat(0.6)));
     scene.meshes.push(quad(Vec3::ZERO, Vec3::Z * side, Vec3::X * side, wall));
     for i in 0..=ROOMS {
@@ -59,7 +60,7 @@ fn building(count: usize) -> WorldAndView {
 
 /// Error of 64 samples a pixel over the mean of the picture.
 fn relative_error(count: usize) -> f32 {
-    let world = building(count);
+    let world = building(count, 24);
     let settings = Settings { spp: 64, max_depth: Some(2), ..Settings::default() };
     let output = rendered(&world, &settings);
     let mean = |image: &Image| image.pixels.iter().map(|p| luminance(*p)).sum::<f32>();
@@ -74,4 +75,22 @@ fn noise_hardly_grows_with_the_number_of_lamps() {
     // With one lamp a room nothing but its shape and shadow is noisy.
     assert!(many < 2.0 * one_a_room, "{one_a_room} with 9 lamps, {many} with 900");
     assert!(many < 1.2 * ten_a_room, "{ten_a_room} with 90 lamps, {many} with 900");
+}
+
+#[test]
+fn lamps_of_other_rooms_are_hardly_sampled_once_learned() {
+    let world = building(900, 96);
+    let reference = rendered(&world, &Settings { spp: 512, max_depth: Some(2), ..Settings::default() }).color;
+    let mut drawn = cache::Settings { spp: 16, max_depth: Some(2), seed: 5, ..Default::default() };
+    drawn.cache.extra_samples = 0.0;
+    (drawn.light.direct, drawn.light.indirect) = (1, 0);
+    let settings = Settings { spp: 16, max_depth: Some(2), seed: 5, ..Settings::default() };
+    let sum = |image: &Image| image.pixels.iter().map(|p| luminance(*p)).sum::<f32>();
+    let error = |image: &Image| {
+        let squares = image.pixels.iter().zip(&reference.pixels).map(|(a, b)| luminance(*a - *b).powi(2));
+        squares.sum::<f32>().sqrt()
+    };
+    let [learned, plain] = [rendered(&world, &drawn).color, rendered(&world, &settings).color];
+    assert!((sum(&learned) / sum(&reference) - 1.0).abs() < 0.01, "{} {}", sum(&learned), sum(&reference));
+    assert!(error(&learned) < 0.9 * error(&plain), "{} {}", error(&learned), error(&plain));
 }

@@ -9,12 +9,15 @@
 //! regions. Estimates have no bias, however little was learned, because some samples are drawn by flux alone.
 
 use super::EnvironmentLight;
-use super::regions::Regions;
 use super::table::Table;
+use crate::light::regions::Regions;
 use glam::Vec3;
 
 /// Share of the samples that are drawn by flux alone.
 const BY_FLUX: f32 = 0.2;
+
+/// Maximum number of points in a region.
+const POINTS: usize = 64;
 
 /// Weight, in rays, of the mean over all regions in what a region learns of a tile.
 const PRIOR: f32 = 1.0;
@@ -40,7 +43,7 @@ impl LearnedSky {
     /// Learns from points of which each looked as often as the others.
     pub fn new(light: &EnvironmentLight, looks: &Looks) -> LearnedSky {
         let tiles = light.tiles.all();
-        let (regions, members) = Regions::new(&looks.points);
+        let (regions, members) = Regions::new(&looks.points, POINTS);
         let each = looks.rays.len() / looks.points.len().max(1);
         let rays_of = |point: u32| looks.rays[point as usize * each..][..each].iter();
         let sums = |points: &[u32], mut sums: Vec<[f32; 2]>| {

@@ -7,7 +7,6 @@ mod discs;
 mod equal_cells;
 mod learned;
 mod map;
-mod regions;
 #[cfg(test)]
 mod sky_tests;
 mod table;

@@ -48,9 +48,10 @@ impl Branch {
         branch
     }
 
-    /// Weights of the children at `x`, on a surface of normal `n`, zero for those that do not shine there.
+    /// Weights of the children at a point with its normal, zero for those that do not shine there; `factors` on their
+    /// importance are those that have been learned.
     #[inline(always)]
-    fn weights(&self, x: Vec3, n: Vec3) -> [f32; ARITY] {
+    fn weights(&self, (x, n): (Vec3, Vec3), factors: Option<&[f32]>) -> [f32; ARITY] {
         let mut weights = [0.0; ARITY];
         for i in 0..ARITY {
             let node = Node {
@@ -64,6 +65,9 @@ impl Branch {
             };
             weights[i] = node.importance(x, n);
         }
+        for (weight, factor) in weights.iter_mut().zip(factors.into_iter().flatten()) {
+            *weight *= factor;
+        }
         let sum = F32x8(weights).sum();
         let scale = if sum > 0.0 { (1.0 - BY_POWER) / sum } else { 0.0 };
         for i in 0..ARITY {
@@ -76,8 +80,8 @@ impl Branch {
     /// Chooses a child; returns it, its probability and the number stretched within it. `None` where no child
     /// shines.
     #[inline]
-    pub fn sample(&self, x: Vec3, n: Vec3, u: f32) -> Option<(Child, f32, f32)> {
-        let weights = self.weights(x, n);
+    pub fn sample(&self, at: (Vec3, Vec3), factors: Option<&[f32]>, u: f32) -> Option<(Child, f32, f32)> {
+        let weights = self.weights(at, factors);
         let (mut ends, mut total) = ([0.0; ARITY], 0.0);
         for i in 0..ARITY {
             total += weights[i];
@@ -99,8 +103,8 @@ impl Branch {
 
     /// Probability of [`Branch::sample`] choosing child `slot`.
     #[inline]
-    pub fn probability(&self, x: Vec3, n: Vec3, slot: usize) -> f32 {
-        let weights = self.weights(x, n);
+    pub fn probability(&self, at: (Vec3, Vec3), factors: Option<&[f32]>, slot: usize) -> f32 {
+        let weights = self.weights(at, factors);
         let total = F32x8(weights).sum();
         if total > 0.0 { weights[slot] / total } else { 0.0 }
     }

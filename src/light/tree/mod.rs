@@ -12,6 +12,7 @@ mod bounds;
 mod branch;
 mod build;
 mod cone;
+mod learned;
 mod node;
 
 use super::{AreaLight, Receivers16};
@@ -21,6 +22,7 @@ pub use bounds::EmitterBounds;
 use branch::Branch;
 use build::{BinaryNode, Content, build};
 use glam::Vec3;
+pub use learned::{LampLooks, LearnedLamps};
 use node::{ARITY, Child, Node};
 
 pub(super) use node::BY_POWER;
@@ -117,14 +119,21 @@ impl EmitterTree {
     /// Chooses an emitter below node `top` of the cut; returns it and its probability there. `None` where none shines
     /// on the point.
     #[inline]
-    pub fn sample(&self, top: usize, x: Vec3, n: Vec3, mut u: f32) -> Option<(u32, f32)> {
+    pub fn sample(
+        &self,
+        top: usize,
+        at: (Vec3, Vec3),
+        factors: Option<&[f32]>,
+        mut u: f32,
+    ) -> Option<(u32, f32)> {
         let (mut child, mut probability) = (self.top[top].1, 1.0);
         loop {
             let branch = match child.get() {
-                Ok(branch) => &self.branches[branch],
+                Ok(branch) => branch,
                 Err(emitter) => return Some((emitter, probability)),
             };
-            let (chosen, share, rest) = branch.sample(x, n, u)?;
+            let factors = factors.map(|factors| &factors[self.slot(branch, 0)..][..ARITY]);
+            let (chosen, share, rest) = self.branches[branch].sample(at, factors, u)?;
             (child, u) = (chosen, rest);
             probability *= share;
         }
@@ -132,17 +141,50 @@ impl EmitterTree {
 
     /// Returns the node of the cut above an emitter, and the probability of [`EmitterTree::sample`] choosing it there.
     #[inline]
-    pub fn probability(&self, emitter: usize, x: Vec3, n: Vec3) -> (usize, f32) {
+    pub fn probability(&self, emitter: usize, at: (Vec3, Vec3), factors: Option<&[f32]>) -> (usize, f32) {
         let (mut place, mut probability) = (self.emitters[emitter], 1.0);
         loop {
             match place {
                 Place::Top(top) => return (top as usize, probability),
                 Place::Below { branch, slot } => {
-                    probability *= self.branches[branch as usize].probability(x, n, slot as usize);
-                    place = self.parents[branch as usize];
+                    let branch = branch as usize;
+                    let factors = factors.map(|factors| &factors[self.slot(branch, 0)..][..ARITY]);
+                    probability *= self.branches[branch].probability(at, factors, slot as usize);
+                    place = self.parents[branch];
                 }
             }
         }
+    }
+}
+
+/// Nodes by number: those of the cut, then the children of each branch.
+impl EmitterTree {
+    /// Number of all nodes, and of what branches might have more.
+    fn slots(&self) -> usize {
+        self.slot(self.branches.len(), 0)
+    }
+
+    /// Number of a branch's child.
+    #[inline]
+    fn slot(&self, branch: usize, child: usize) -> usize {
+        self.top.len() + branch * ARITY + child
+    }
+
+    /// Number of the node at a place.
+    fn slot_at(&self, place: Place) -> usize {
+        match place {
+            Place::Top(top) => top as usize,
+            Place::Below { branch, slot } => self.slot(branch as usize, slot as usize),
+        }
+    }
+
+    /// Numbers of an emitter's node and those above it.
+    fn slots_above(&self, emitter: usize) -> impl Iterator<Item = usize> {
+        let above = |place: &Place| match *place {
+            Place::Top(_) => None,
+            Place::Below { branch, .. } => Some(self.parents[branch as usize]),
+        };
+        std::iter::successors(Some(self.emitters[emitter]), above).map(|place| self.slot_at(place))
     }
 }
 

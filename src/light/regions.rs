@@ -2,15 +2,12 @@
 
 use glam::Vec3;
 
-/// Maximum number of points in a region.
-const POINTS: usize = 64;
-
 /// Axis of leaves.
 const LEAF: u32 = 3;
 
 /// A kd-tree.
 #[derive(Clone, Debug)]
-pub(super) struct Regions {
+pub struct Regions {
     /// Nodes; the first child follows its parent.
     nodes: Vec<Node>,
 }
@@ -24,21 +21,21 @@ struct Node {
 }
 
 impl Regions {
-    /// Halves the points along the widest axis until they are few. Returns the points in each region, too.
-    pub fn new(points: &[Vec3]) -> (Regions, Vec<Vec<u32>>) {
+    /// Halves the points along the widest axis until they are `few` at most. Returns the points in each region, too.
+    pub fn new(points: &[Vec3], few: usize) -> (Regions, Vec<Vec<u32>>) {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let (mut regions, mut members) = (Regions { nodes: Vec::new() }, Vec::new());
-        regions.split(points, &mut order, &mut members);
+        regions.split(points, few, &mut order, &mut members);
         (regions, members)
     }
 
-    fn split(&mut self, points: &[Vec3], order: &mut [u32], members: &mut Vec<Vec<u32>>) {
+    fn split(&mut self, points: &[Vec3], few: usize, order: &mut [u32], members: &mut Vec<Vec<u32>>) {
         let at = |i: &u32| points[*i as usize];
         let low = order.iter().map(at).fold(Vec3::INFINITY, Vec3::min);
         let high = order.iter().map(at).fold(Vec3::NEG_INFINITY, Vec3::max);
         let axis = (high - low).max_position();
         let own = self.nodes.len();
-        if order.len() <= POINTS || !(high[axis] > low[axis]) {
+        if order.len() <= few || !(high[axis] > low[axis]) {
             self.nodes.push(Node { plane: 0.0, word: LEAF | (members.len() as u32) << 2 });
             members.push(order.to_vec());
             return;
@@ -47,9 +44,9 @@ impl Regions {
         order.select_nth_unstable_by(middle, |a, b| at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(b)));
         self.nodes.push(Node { plane: at(&order[middle])[axis], word: 0 });
         let (left, right) = order.split_at_mut(middle);
-        self.split(points, left, members);
+        self.split(points, few, left, members);
         self.nodes[own].word = axis as u32 | (self.nodes.len() as u32) << 2;
-        self.split(points, right, members);
+        self.split(points, few, right, members);
     }
 
     /// Region of a point.
