@@ -67,7 +67,7 @@ impl Tracer<'_, '_> {
                             let normals = [end.geometry.normal, end.surface.geometric_normal];
                             if let Some(environment) = environment {
                                 sky.points.push(x);
-                                self.look(environment, x, normals, (number, seed), &mut sky.rays);
+                                self.look_at_sky(environment, x, normals, (number, seed), &mut sky.rays);
                             }
                             if lamps {
                                 seen.points.push(x);
@@ -75,7 +75,7 @@ impl Tracer<'_, '_> {
                             }
                         }
                     });
-                    chains.shadow_rays += (sky.rays.len() + seen.rays.len()) as u64;
+                    chains.shadow_rays += (sky.rays.len() + seen.rays.iter().flatten().count()) as u64;
                     (sky, seen, chains)
                 },
             )
@@ -136,7 +136,7 @@ impl Tracer<'_, '_> {
 
     /// Traces rays from a point with the given shading and geometric normal to some of the tiles, point by point to
     /// others.
-    fn look(
+    fn look_at_sky(
         &self,
         environment: &EnvironmentLight,
         x: Vec3,
