@@ -19,6 +19,7 @@
 //! - [`photon`] finds indirect light by photons and final gathering instead, for comparison;
 //! - [`shadow`] answers whether segments are free, by packets of rays; [`sampling`] gives every stage its
 //!   numbers;
+//! - [`reprojection`] carries the light of a walk's picture to where the next frame sees it;
 //! - [`denoise`] takes the noise off a picture, by Open Image Denoise where that is there;
 //! - [`verify`] measures the error of a picture by path-tracing some of its pixels, [`plan`] chooses settings
 //!   for a time or an error, each of which [`setting`] declares once;
@@ -54,6 +55,7 @@ mod photon;
 mod plan;
 pub mod progress;
 mod radiance_cache;
+mod reprojection;
 mod sampling;
 pub mod scene;
 pub mod session;

@@ -149,6 +149,16 @@ impl View {
         CameraMatrices { world_to_camera, world_to_ndc }
     }
 
+    /// Distance between the places that neighbouring pixels at the film's centre see on a surface at `position` that
+    /// faces the camera.
+    pub fn spacing(&self, position: Vec3) -> f32 {
+        let spacing = 2.0 * self.camera.tan_half_x / self.window.film[0] as f32;
+        match self.camera.projection {
+            Projection::Parallel => spacing,
+            Projection::Pinhole | Projection::Lens { .. } => spacing * position.distance(self.camera.origin),
+        }
+    }
+
     /// Angle between neighbouring pixels at the film's centre, in radians; in a parallel projection that at the
     /// distance of the scene's centre, or of the film's half width if that is more.
     pub fn pixel_angle(&self) -> f32 {

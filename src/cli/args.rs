@@ -159,6 +159,10 @@ pub struct WalkArgs {
     /// Most memory for records between frames, like 512M or 2G [default: 1G]; the longest unused go first
     #[arg(long, value_name = "BYTES")]
     pub memory_limit: Option<Bytes>,
+    /// Draw the direct light of every pixel anew in every frame, instead of mixing in that of the frame before: errors
+    /// are less, and a frame takes longer
+    #[arg(long)]
+    pub no_reprojection: bool,
     /// The method and its settings.
     #[command(flatten)]
     pub method: MethodArgs,

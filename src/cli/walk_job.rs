@@ -75,7 +75,7 @@ impl WalkJob {
             reproducible: args.picture.reproducible,
             exposure: (!args.no_png).then_some(args.exposure),
             goal,
-            limits: KeepLimits { idle_frames: args.idle_frames, bytes },
+            limits: KeepLimits { idle_frames: args.idle_frames, bytes, reprojects: !args.no_reprojection },
             threads: threads::count(args.picture.threads),
             stats: args.stats,
             progress: args.picture.progress,

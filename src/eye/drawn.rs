@@ -7,14 +7,15 @@
 //! [`adaptive`]: super::adaptive
 //! [`learn`]: super::learn
 
-use super::adaptive::{Choice, Luminances, MULTIPLES, pilot};
+use super::adaptive::MULTIPLES;
 use super::merge::{MergedPoint, merge};
+use super::needs::Needs;
 use super::pass::TILE;
 use super::points::VisibilitySample;
-use super::{ChainCounts, EyePass, EyeSettings, VisibleSurfaces, guide};
+use super::{ChainCounts, EyePass, EyeSettings, Settled, VisibleSurfaces, guide};
 use crate::light::Learned;
 use crate::material::{Bsdf, LobeSet};
-use crate::math::{Rgb, luminance};
+use crate::math::Rgb;
 use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, ScatteredEdges, Start, start};
 use crate::progress::Control;
 use crate::sampling::hash;
@@ -24,7 +25,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Number of paths traced together, about: enough to fill packets to the end, few enough for the second-level cache.
-const BATCH: u32 = 1024;
+pub(super) const BATCH: u32 = 1024;
 
 /// Number of shading points that so many samples of a pixel are merged into at most, as a rule.
 const MERGED: u64 = 3;
@@ -40,13 +41,9 @@ pub struct DrawnLight {
     pub followed: Vec<bool>,
     /// Samples beside the first ones for the pixels that need them most, as a share of the first ones.
     pub extra_samples: f32,
+    /// Pixels that need few samples.
+    pub settled: Settled,
 }
-
-/// Maximum number of first samples that may be followed by more: their numbers are 32 bits wide.
-const MAX_ADAPTIVE: u32 = u32::MAX / 4;
-
-/// Seed of the pilot's samples over that of the others.
-const PILOT_SEED: u32 = 0x3c6e_f372;
 
 /// The ends of paths, in the order of the paths' edges.
 pub(super) struct Ends<'a, 'w> {
@@ -98,8 +95,8 @@ pub(super) struct Workspace<'a, 'w> {
 pub(super) struct Tracer<'a, 'w> {
     pub(super) world: &'w World,
     pub(super) view: &'a View,
-    settings: EyeSettings,
-    drawn: &'a DrawnLight,
+    pub(super) settings: EyeSettings,
+    pub(super) drawn: &'a DrawnLight,
     edges: ScatteredEdges,
     pub(super) control: &'a Control,
 }
@@ -107,10 +104,10 @@ pub(super) struct Tracer<'a, 'w> {
 /// Samples of one pixel that have been traced together.
 pub(super) struct Found<'b, 'w> {
     /// Index of the pixel, and of the first sample.
-    index: usize,
+    pub(super) index: usize,
     first: u32,
     /// Sum of the samples' radiances.
-    sum: Rgb,
+    pub(super) sum: Rgb,
     /// Radiances that were not finite and left out.
     nonfinite: u64,
     ends: &'b [MergedPoint<'w>],
@@ -126,25 +123,18 @@ impl<'b, 'w> Found<'b, 'w> {
 }
 
 /// Light and shading points of the first samples of a tile's pixels.
-struct Tile<'w> {
+pub(super) struct Tile<'w> {
     /// Pixels of the window.
-    pixels: Vec<[u32; 2]>,
+    pub(super) pixels: Vec<[u32; 2]>,
     /// By pixel: sum of the samples' radiances.
-    sums: Vec<Rgb>,
+    pub(super) sums: Vec<Rgb>,
+    /// By pixel: number of samples.
+    pub(super) samples: Vec<u32>,
     points: Vec<MergedPoint<'w>>,
-    /// By pixel, and at last for their end: index of the first of its points.
-    firsts: Vec<usize>,
+    /// By pixel: its points.
+    ranges: Vec<Range<usize>>,
     chains: ChainCounts,
     nonfinite: u64,
-}
-
-/// Numbers of samples that pixels are to get.
-struct Needs {
-    choice: Choice,
-    /// Luminances found by the first samples, in the window and in the pixels next to it.
-    luminances: Luminances,
-    /// Rays traced to learn them.
-    chains: ChainCounts,
 }
 
 impl<'w> EyePass<'w> {
@@ -216,24 +206,39 @@ impl<'a, 'w> Tracer<'a, 'w> {
     fn first_samples(&self, index: usize, work: &mut Workspace<'_, 'w>) -> Tile<'w> {
         let window = &self.view.window;
         let pixels: Vec<[u32; 2]> = window.tile(index, TILE).collect();
-        let film_pixels: Vec<[u32; 2]> = pixels.iter().map(|pixel| window.film_pixel(*pixel)).collect();
+        let EyeSettings { spp, seed, .. } = self.settings;
+        let settled = &self.drawn.settled;
+        let of_window = |pixel: &[u32; 2]| pixel[1] as usize * window.width as usize + pixel[0] as usize;
+        let are_settled: Vec<bool> = pixels.iter().map(|pixel| settled.contains(of_window(pixel))).collect();
         let mut tile = Tile {
             sums: vec![Rgb::ZERO; pixels.len()],
+            samples: vec![spp; pixels.len()],
             points: Vec::with_capacity(2 * pixels.len()),
-            firsts: vec![0; pixels.len() + 1],
+            ranges: vec![0..0; pixels.len()],
             chains: ChainCounts::default(),
             nonfinite: 0,
             pixels,
         };
-        let EyeSettings { spp, seed, .. } = self.settings;
-        tile.chains = self.sample(&film_pixels, 0..spp, seed, work, |found, merged| {
-            tile.sums[found.index] += found.sum;
-            tile.nonfinite += found.nonfinite;
-            let draw = self.draw(film_pixels[found.index], found.first);
-            merge(found.ends(), draw, merged);
-            tile.points.extend_from_slice(merged);
-            tile.firsts[found.index + 1] = tile.points.len();
-        });
+        for (is_settled, samples) in [(false, 0..spp), (true, settled.samples(spp))] {
+            let chosen: Vec<usize> =
+                (0..are_settled.len()).filter(|i| are_settled[*i] == is_settled).collect();
+            let film_pixels: Vec<[u32; 2]> =
+                chosen.iter().map(|i| window.film_pixel(tile.pixels[*i])).collect();
+            let number = samples.len() as u32;
+            tile.chains += self.sample(&film_pixels, samples, seed, work, |found, merged| {
+                let i = chosen[found.index];
+                tile.sums[i] += found.sum;
+                tile.samples[i] = number;
+                tile.nonfinite += found.nonfinite;
+                let draw = self.draw(film_pixels[found.index], found.first);
+                merge(found.ends(), draw, merged);
+                let start = tile.points.len();
+                tile.points.extend_from_slice(merged);
+                let range = &mut tile.ranges[i];
+                let start = if range.start < range.end { range.start } else { start };
+                *range = start..tile.points.len();
+            });
+        }
         tile
     }
 
@@ -250,8 +255,11 @@ impl<'a, 'w> Tracer<'a, 'w> {
             VisibleSurfaces { chains: tile.chains, nonfinite: tile.nonfinite, ..Default::default() };
         let film_pixels: Vec<[u32; 2]> = tile.pixels.iter().map(|pixel| window.film_pixel(*pixel)).collect();
         let needs = needs.filter(|_| !self.control.is_cancelled());
-        let more = |pixel: &[u32; 2]| needs.map_or(0, |needs| needs.choice.more(&needs.luminances, *pixel));
-        let multiples: Vec<u32> = film_pixels.iter().map(more).collect();
+        let more = |(pixel, samples): (&[u32; 2], &u32)| match needs {
+            Some(needs) if *samples == spp => needs.choice.more(&needs.luminances, *pixel),
+            _ => 0,
+        };
+        let multiples: Vec<u32> = film_pixels.iter().zip(&tile.samples).map(more).collect();
         let put = |found: &mut VisibleSurfaces<'w>, i: usize, points: &[MergedPoint<'w>], samples: u32| {
             let pixel = tile.pixels[i][1] * window.width + tile.pixels[i][0];
             for point in points {
@@ -260,13 +268,13 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 found.visibility.push(VisibilitySample { pixel, weight: point.weight / samples as f32 });
             }
         };
-        let first_points = |i: usize| &tile.points[tile.firsts[i]..tile.firsts[i + 1]];
+        let first_points = |i: usize| &tile.points[tile.ranges[i].clone()];
         for multiple in [0].into_iter().chain(MULTIPLES) {
             let chosen: Vec<usize> = (0..multiples.len()).filter(|i| multiples[*i] == multiple).collect();
-            let total = spp * (1 + multiple);
             if multiple == 0 {
-                chosen.iter().for_each(|i| put(&mut found, *i, first_points(*i), total));
+                chosen.iter().for_each(|i| put(&mut found, *i, first_points(*i), tile.samples[*i]));
             } else {
+                let total = spp * (1 + multiple);
                 let chosen_pixels: Vec<[u32; 2]> = chosen.iter().map(|i| film_pixels[*i]).collect();
                 let chains = self.sample(&chosen_pixels, spp..total, seed, work, |more, merged| {
                     let i = chosen[more.index];
@@ -276,77 +284,17 @@ impl<'a, 'w> Tracer<'a, 'w> {
                     let points = before.iter().chain(more.ends());
                     merge(points, self.draw(film_pixels[i], more.first), merged);
                     put(&mut found, i, merged, total);
+                    tile.samples[i] = total;
                 });
                 found.chains += chains;
                 found.chains.extra_samples += u64::from(total - spp) * chosen.len() as u64;
             }
             for i in chosen.into_iter().filter(|i| tile.sums[*i] != Rgb::ZERO) {
                 let pixel = tile.pixels[i][1] * window.width + tile.pixels[i][0];
-                found.known.push((pixel, tile.sums[i] / total as f32));
+                found.known.push((pixel, tile.sums[i] / tile.samples[i] as f32));
             }
         }
         found
-    }
-
-    /// Learns which pixels need more samples than the first; `None` if none is to get more.
-    fn needs(&self, tiles: &[Tile], learned: Option<&Learned>) -> Option<Needs> {
-        let EyeSettings { spp, seed, .. } = self.settings;
-        let share = self.drawn.extra_samples;
-        if !(share > 0.0 && (2..=MAX_ADAPTIVE).contains(&spp)) {
-            return None;
-        }
-        let squares = pilot(self.view.window.film);
-        let pixels = squares.iter().map(|square| square.film_pixels().collect()).collect();
-        let (values, mut chains) = self.luminances(pixels, seed ^ PILOT_SEED, learned);
-        let filled = |(window, values)| Luminances { window, values };
-        let choice = Choice::new(&squares.into_iter().zip(values).map(filled).collect::<Vec<_>>(), share);
-
-        let (window, near) = (&self.view.window, self.view.window.grown(1));
-        let mut luminances = Luminances { values: vec![0.0; near.pixel_count() as usize], window: near };
-        for tile in tiles {
-            for (pixel, sum) in tile.pixels.iter().zip(&tile.sums) {
-                luminances.set(window.film_pixel(*pixel), luminance(*sum / spp as f32));
-            }
-        }
-        let beside: Vec<[u32; 2]> =
-            near.film_pixels().filter(|pixel| window.index(*pixel).is_none()).collect();
-        let beside: Vec<Vec<[u32; 2]>> = beside.chunks(BATCH as usize).map(<[_]>::to_vec).collect();
-        let (values, traced) = self.luminances(beside.clone(), seed, learned);
-        beside
-            .iter()
-            .flatten()
-            .zip(values.iter().flatten())
-            .for_each(|(pixel, v)| luminances.set(*pixel, *v));
-        chains += traced;
-        Some(Needs { choice, luminances, chains })
-    }
-
-    /// Luminances that the first samples of groups of film pixels find; 0 where cancelled.
-    fn luminances(
-        &self,
-        groups: Vec<Vec<[u32; 2]>>,
-        seed: u32,
-        learned: Option<&Learned>,
-    ) -> (Vec<Vec<f32>>, ChainCounts) {
-        let spp = self.settings.spp;
-        let found: Vec<(Vec<f32>, ChainCounts)> = groups
-            .into_par_iter()
-            .map_init(
-                || self.workspace(learned),
-                |work, pixels| {
-                    let mut sums = vec![Rgb::ZERO; pixels.len()];
-                    if self.control.is_cancelled() {
-                        return (vec![0.0; pixels.len()], ChainCounts::default());
-                    }
-                    let each = |found: Found<'_, 'w>, _: &mut Vec<_>| sums[found.index] += found.sum;
-                    let chains = self.sample(&pixels, 0..spp, seed, work, each);
-                    (sums.into_iter().map(|sum| luminance(sum / spp as f32)).collect(), chains)
-                },
-            )
-            .collect();
-        let mut chains = ChainCounts::default();
-        found.iter().for_each(|(_, traced)| chains += *traced);
-        (found.into_iter().map(|(values, _)| values).collect(), chains)
     }
 
     /// Traces samples of film pixels and calls `each` for every pixel in order, for every part of its samples if they

@@ -21,11 +21,13 @@
 
 use super::seen::{FeatureSettings, Looking, Pixel};
 use crate::film::{Image, Layer};
+use crate::math::Rgb;
 use crate::progress::Control;
 use crate::view::View;
 use crate::world::World;
 use glam::Vec3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 
 /// Pixels along the edge of the square that one task looks through.
@@ -126,50 +128,86 @@ impl FromStr for Feature {
     }
 }
 
-/// The layers of the features wanted, over the view's window; black where cancelled.
-pub fn features(
-    world: &World,
-    view: &View,
-    settings: &FeatureSettings,
-    wanted: Features,
-    control: &Control,
-) -> Vec<Layer> {
-    let window = &view.window;
-    let tiles: Vec<Vec<Pixel>> = (0..window.tile_count(TILE))
-        .into_par_iter()
-        .map(|tile| {
-            if control.is_cancelled() {
-                return Vec::new();
+/// The surfaces seen through the pixels of a window.
+pub struct SeenPixels {
+    pixels: Image<Pixel>,
+}
+
+/// A surface that fills a pixel and its surroundings.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct EvenSurface {
+    /// Mean position relative to the scene's centre.
+    pub position: Vec3,
+    /// Unit shading normal towards the viewer.
+    pub normal: Vec3,
+    /// Number of the mesh.
+    pub mesh: u32,
+}
+
+impl SeenPixels {
+    /// Looks through the pixels of the view's window; where cancelled, nothing is there.
+    pub fn new(world: &World, view: &View, settings: &FeatureSettings, control: &Control) -> SeenPixels {
+        let window = &view.window;
+        let tiles: Vec<Vec<Pixel>> = (0..window.tile_count(TILE))
+            .into_par_iter()
+            .map(|tile| {
+                if control.is_cancelled() {
+                    return Vec::new();
+                }
+                let mut tile = window.tile(tile, TILE).map(|at| window.film_pixel(at));
+                let Some(first) = tile.next() else { return Vec::new() };
+                Looking { world, view, settings }.pixels(first, tile.last().unwrap_or(first))
+            })
+            .collect();
+        let mut pixels: Vec<Pixel> = vec![Pixel::default(); window.pixel_count() as usize];
+        for (tile, found) in tiles.into_iter().enumerate() {
+            for (pixel, [x, y]) in found.into_iter().zip(window.tile(tile, TILE)) {
+                pixels[(y * window.width + x) as usize] = pixel;
             }
-            let mut tile = window.tile(tile, TILE).map(|at| window.film_pixel(at));
-            let Some(first) = tile.next() else { return Vec::new() };
-            Looking { world, view, settings }.pixels(first, tile.last().unwrap_or(first))
-        })
-        .collect();
-    let mut pixels: Vec<Pixel> = vec![Pixel::default(); window.pixel_count() as usize];
-    for (tile, found) in tiles.into_iter().enumerate() {
-        for (pixel, [x, y]) in found.into_iter().zip(window.tile(tile, TILE)) {
-            pixels[(y * window.width + x) as usize] = pixel;
         }
+        SeenPixels { pixels: Image { width: window.width, height: window.height, pixels } }
     }
-    let pixels = Image { width: window.width, height: window.height, pixels };
-    let (centre, unit) = (world.scene.centre, world.scene.unit());
-    let position = |p: &Pixel| match p.surfaces {
-        0 => Vec3::ZERO,
-        n => (centre + p.position / f64::from(n) * unit).as_vec3(),
-    };
-    let depth = |p: &Pixel| p.nearest.map_or(NO_DEPTH, |n| (f64::from(n.depth) * unit) as f32);
-    let layer = |feature: Feature| match feature {
-        Feature::Albedo => Layer::color("albedo", pixels.map(|p| p.albedo / p.samples as f32)),
-        Feature::Normal => Layer::vector("normal", pixels.map(|p| p.normal / p.samples as f32)),
-        Feature::GeometricNormal => {
-            Layer::vector("geometricNormal", pixels.map(|p| p.geometric_normal / p.samples as f32))
-        }
-        Feature::Position => Layer::vector("position", pixels.map(position)),
-        Feature::Depth => Layer::scalar("depth.Z", pixels.map(depth)),
-        Feature::Material => Layer::id("materialId", pixels.map(|p| p.nearest.map_or(0, |n| n.material + 1))),
-        Feature::Object => Layer::id("objectId", pixels.map(|p| p.nearest.map_or(0, |n| n.mesh + 1))),
-        Feature::Alpha => Layer::scalar("A", pixels.map(|p| p.surfaces as f32 / p.samples as f32)),
-    };
-    Feature::ALL.into_iter().filter(|feature| wanted.contains(*feature)).map(layer).collect()
+
+    /// The surface that fills a pixel and those around it evenly, and reflects no clear images; `None` if there is
+    /// none.
+    pub fn even_surface(&self, pixel: usize) -> Option<EvenSurface> {
+        let pixel = &self.pixels.pixels[pixel];
+        let fills = pixel.is_even && !pixel.reflects && pixel.surfaces == pixel.samples;
+        let nearest = pixel.nearest.filter(|_| fills)?;
+        let position = (pixel.position / f64::from(pixel.surfaces)).as_vec3();
+        let normal = pixel.normal.try_normalize()?;
+        Some(EvenSurface { position, normal, mesh: nearest.mesh })
+    }
+
+    /// Mean albedo of a pixel.
+    pub fn albedo(&self, pixel: usize) -> Rgb {
+        let pixel = &self.pixels.pixels[pixel];
+        pixel.albedo / pixel.samples.max(1) as f32
+    }
+
+    /// The layers of the features wanted.
+    pub fn layers(&self, world: &World, wanted: Features) -> Vec<Layer> {
+        let pixels = &self.pixels;
+        let (centre, unit) = (world.scene.centre, world.scene.unit());
+        let position = |p: &Pixel| match p.surfaces {
+            0 => Vec3::ZERO,
+            n => (centre + p.position / f64::from(n) * unit).as_vec3(),
+        };
+        let depth = |p: &Pixel| p.nearest.map_or(NO_DEPTH, |n| (f64::from(n.depth) * unit) as f32);
+        let layer = |feature: Feature| match feature {
+            Feature::Albedo => Layer::color("albedo", pixels.map(|p| p.albedo / p.samples as f32)),
+            Feature::Normal => Layer::vector("normal", pixels.map(|p| p.normal / p.samples as f32)),
+            Feature::GeometricNormal => {
+                Layer::vector("geometricNormal", pixels.map(|p| p.geometric_normal / p.samples as f32))
+            }
+            Feature::Position => Layer::vector("position", pixels.map(position)),
+            Feature::Depth => Layer::scalar("depth.Z", pixels.map(depth)),
+            Feature::Material => {
+                Layer::id("materialId", pixels.map(|p| p.nearest.map_or(0, |n| n.material + 1)))
+            }
+            Feature::Object => Layer::id("objectId", pixels.map(|p| p.nearest.map_or(0, |n| n.mesh + 1))),
+            Feature::Alpha => Layer::scalar("A", pixels.map(|p| p.surfaces as f32 / p.samples as f32)),
+        };
+        Feature::ALL.into_iter().filter(|feature| wanted.contains(*feature)).map(layer).collect()
+    }
 }

@@ -62,6 +62,10 @@ pub(super) struct Pixel {
     pub nearest: Option<Nearest>,
     /// Number of samples.
     pub samples: u32,
+    /// True if a sample meets mirrors, glass, or lobes nearly as sharp: what is seen in them moves over the surface.
+    pub reflects: bool,
+    /// True if the samples, and those of the neighbours, are much the same.
+    pub is_even: bool,
     /// True if the samples are not much the same.
     varies: bool,
 }
@@ -115,6 +119,8 @@ impl Looking<'_> {
             })
         };
         let again: Vec<usize> = inside().filter(differs).map(at).collect();
+        inside().for_each(|pixel| pixels[at(pixel)].is_even = true);
+        again.iter().for_each(|pixel| pixels[*pixel].is_even = false);
         let rest = again.into_iter().flat_map(|pixel| (few..samples).map(move |sample| (pixel, sample)));
         self.add(&all, &mut pixels, rest);
         inside().map(|pixel| pixels[at(pixel)]).collect()
@@ -171,6 +177,7 @@ impl Pixel {
         let normal = vertex.map_or(Vec3::ZERO, |vertex| towards(&vertex, vertex.surface.frame.normal));
         self.varies |= self.samples > 0 && self.differs(seen.albedo, normal, vertex.map(|v| v.surface.mesh));
         self.samples += 1;
+        self.reflects |= seen.reflects;
         self.albedo += seen.albedo;
         let Some(vertex) = vertex else { return };
         let surface = &vertex.surface;
@@ -212,6 +219,8 @@ struct Seen<'w> {
     main: Option<Vertex<'w>>,
     /// Its share.
     share: f32,
+    /// True if mirrors, glass or sharp lobes are met.
+    reflects: bool,
 }
 
 impl<'w> Seen<'w> {
@@ -240,6 +249,7 @@ impl<'w> Seen<'w> {
             Met::Surface(vertex) => {
                 self.first = self.first.or(Some(vertex));
                 let whole = world.bsdf(&vertex.surface);
+                self.reflects |= whole.has_delta() || !whole.sharp_lobes().is_empty();
                 let albedo = whole.albedo(vertex.surface.frame.to_local(vertex.out));
                 self.albedo += vertex.throughput * albedo.min(Rgb::ONE);
                 let passes_on = whole.has_delta() && albedo == Rgb::ZERO;

@@ -1,7 +1,7 @@
 //! Chains through mirrors and glass, visibility samples and features, against closed forms.
 
 use super::chain::{ChainCounts, Follow, Met, Vertex, trace};
-use super::{DrawnLight, EyePass, EyeSettings, Feature, FeatureSettings, Features, features};
+use super::{DrawnLight, EyePass, EyeSettings, Feature, FeatureSettings, Features, SeenPixels};
 use crate::film::{Layer, Pixels, Window};
 use crate::math::Rgb;
 use crate::paths::Look;
@@ -268,7 +268,7 @@ fn the_back_of_a_one_sided_surface_is_black() {
 fn all_features(world: &WorldAndView, spp: u32) -> Vec<Layer> {
     let settings = FeatureSettings { look: Look::EyeSamples { spp, seed: 0 }, spp, seed: 0 };
     let wanted = Feature::ALL.into_iter().collect();
-    features(world, &world.view, &settings, wanted, &Control::new())
+    SeenPixels::new(world, &world.view, &settings, &Control::new()).layers(world, wanted)
 }
 
 /// Values of a layer, the first of three where there are no more.
@@ -377,7 +377,8 @@ fn only_what_is_wanted_is_made() {
     let (scene, _) = lit_room(camera(Vec3::new(0.0, 0.0, 0.9), Vec3::ZERO, 0.8), 4);
     let world = world(scene);
     let settings = FeatureSettings { look: Look::Pixels, spp: 2, seed: 0 };
-    let layers = |wanted: Features| features(&world, &world.view, &settings, wanted, &Control::new());
+    let seen = SeenPixels::new(&world, &world.view, &settings, &Control::new());
+    let layers = |wanted: Features| seen.layers(&world, wanted);
     let wanted = ["depth".parse(), "albedo".parse()].into_iter().map(Result::unwrap).collect();
     assert_eq!(layers(wanted).iter().map(|l| l.name.as_str()).collect::<Vec<_>>(), ["albedo", "depth.Z"]);
     assert!(layers(Features::default()).is_empty());

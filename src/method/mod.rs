@@ -22,7 +22,7 @@ pub use lights::LightStore;
 pub use output::Output;
 pub use prepared::Prepared;
 pub use registry::Method;
-pub use renderer::{Renderer, render};
+pub use renderer::{Before, Renderer, render};
 pub use sampling::{Sampled, Sampling};
 
 // Parts of the methods' settings.

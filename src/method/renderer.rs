@@ -4,6 +4,7 @@ use super::ladder::Move;
 use super::lights::LightStore;
 use super::path::Begun;
 use super::{Output, Prepared, Sampled};
+use crate::eye::Settled;
 use crate::film::{Image, Window};
 use crate::paths::Look;
 use crate::progress::Control;
@@ -12,6 +13,14 @@ use crate::setting::Settings;
 use crate::stats::StageTime;
 use crate::view::View;
 use crate::world::World;
+
+/// Work of the frames before, in a walk-through.
+pub struct Before<'a> {
+    /// Records.
+    pub records: &'a mut KeptRecords,
+    /// Pixels whose light is known.
+    pub settled: Settled,
+}
 
 /// A method with its settings.
 pub trait Renderer: Settings + Sampled {
@@ -26,13 +35,13 @@ pub trait Renderer: Settings + Sampled {
     /// `lights` keeps virtual lights from frame to frame.
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output;
 
-    /// Renders the next frame of a walk-through: by records of the frames before, to which it adds its own. Methods
-    /// without records render it alone.
+    /// Renders the next frame of a walk-through: by records of the frames before, to which it adds its own, and by few
+    /// samples of settled pixels. Methods without records render it alone.
     fn render_next(
         &self,
         world: &World,
         lights: &LightStore,
-        _kept: &mut KeptRecords,
+        _before: Before,
         view: &View,
         control: &Control,
     ) -> Output {

@@ -31,19 +31,21 @@ const MIN_COS: f32 = 0.05;
 /// Longer radius, in minimum radii, below which a record rests.
 const RESTS_BELOW: f32 = 0.5;
 
-/// Bounds of what is kept.
+/// Bounds of what a walk keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KeepLimits {
     /// Maximum number of frames for which a record is kept unused.
     pub idle_frames: u32,
     /// Maximum number of bytes of all records between frames.
     pub bytes: u64,
+    /// True if drawn light is carried over from the picture before (see [`crate::reprojection`]).
+    pub reprojects: bool,
 }
 
 /// By default a gibibyte, and a second or two of film.
 impl Default for KeepLimits {
     fn default() -> KeepLimits {
-        KeepLimits { idle_frames: 48, bytes: 1 << 30 }
+        KeepLimits { idle_frames: 48, bytes: 1 << 30, reprojects: true }
     }
 }
 
@@ -158,7 +160,7 @@ impl KeptRecords {
     /// numbers of both.
     fn evict(&mut self) -> [usize; 2] {
         let before = self.count();
-        let KeepLimits { idle_frames, bytes } = self.limits;
+        let KeepLimits { idle_frames, bytes, .. } = self.limits;
         let is_idle = |kept: &Kept| self.frame - kept.usage.last > idle_frames;
         for origin in Origin::ALL {
             self.kept[origin].retain(|kept| !is_idle(kept));

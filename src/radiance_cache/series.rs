@@ -14,7 +14,7 @@ use super::source::Candidate;
 use super::splat::Splat;
 use super::store::RecordStore;
 use super::targets::Targets;
-use crate::eye::{DrawnLight, PointGeometry, PointSurface, ShadingPoints};
+use crate::eye::{DrawnLight, PointGeometry, PointSurface, Settled, ShadingPoints};
 use crate::gradient::Incidence;
 use crate::hsh::{Accumulator, Caching, Kernel, MaterialSeries, Radiance};
 use crate::material::Bsdf;
@@ -123,11 +123,17 @@ impl Glossy {
 }
 
 /// Direct light to be drawn, if it is: chains follow the lobes that records cannot light.
-pub fn drawn_light(glossy: Option<&Glossy>, settings: &CacheSettings) -> Option<DrawnLight> {
+pub fn drawn_light(
+    glossy: Option<&Glossy>,
+    settings: &CacheSettings,
+    settled: Settled,
+) -> Option<DrawnLight> {
     let followed = || glossy.map_or(Vec::new(), Glossy::too_sharp);
-    settings
-        .draws_direct_light()
-        .then(|| DrawnLight { followed: followed(), extra_samples: settings.extra_samples })
+    settings.draws_direct_light().then(|| DrawnLight {
+        followed: followed(),
+        extra_samples: settings.extra_samples,
+        settled,
+    })
 }
 
 impl Targets<'_> {

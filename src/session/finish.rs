@@ -2,7 +2,7 @@
 
 use super::goal::Goal;
 use crate::denoise::{DenoiseError, Denoiser, Guides, NOISY};
-use crate::eye::{Feature, FeatureSettings, Features, features};
+use crate::eye::{Feature, FeatureSettings, Features, SeenPixels};
 use crate::film::{Image, Layer};
 use crate::method::{Method, Output};
 use crate::plan::smaller;
@@ -67,29 +67,55 @@ impl<'a> Finish<'a> {
         self.denoiser.as_ref().filter(|_| self.failure.get().is_none())
     }
 
+    /// True if the picture will be denoised.
+    pub fn denoises(&self) -> bool {
+        self.denoiser().is_some()
+    }
+
+    /// Features that are kept or guide the denoiser.
+    fn wanted(&self) -> Features {
+        match self.denoises() {
+            true => self.features.with(Feature::Albedo).with(Feature::Normal),
+            false => self.features,
+        }
+    }
+
+    /// Looks through the pixels by the method's own eye samples.
+    pub fn look(&self, method: &Method) -> SeenPixels {
+        self.look_at(self.view, method)
+    }
+
+    fn look_at(&self, view: &View, method: &Method) -> SeenPixels {
+        let settings = FeatureSettings { look: method.look(), spp: method.spp(), seed: method.seed() };
+        SeenPixels::new(self.world, view, &settings, self.control)
+    }
+
     /// Adds the features of the method's own eye samples to its picture, and denoises that, where it is complete. The
     /// times are the output's.
     pub fn apply(&self, method: &Method, output: &mut Output) {
-        let denoiser = self.denoiser();
-        let mut wanted = self.features;
-        if denoiser.is_some() {
-            wanted = wanted.with(Feature::Albedo).with(Feature::Normal);
-        }
-        if wanted.is_empty() || !output.complete {
+        if self.wanted().is_empty() || !output.complete {
             return;
         }
-        let mut layers = output.stats.time(Stage::EyePass, || self.layers(self.view, method, wanted));
+        let seen = output.stats.time(Stage::EyePass, || self.look(method));
+        self.apply_to_seen(&seen, output);
+    }
+
+    /// The same by pixels that have been looked through. Returns true if the picture is denoised.
+    pub fn apply_to_seen(&self, seen: &SeenPixels, output: &mut Output) -> bool {
         output.complete &= !self.control.is_cancelled();
         if !output.complete {
-            return;
+            return false;
         }
-        if let Some(denoiser) = denoiser {
+        let mut layers = seen.layers(self.world, self.wanted());
+        let mut is_denoised = false;
+        if let Some(denoiser) = self.denoiser() {
             self.control.begin(Stage::Denoise, 0);
             output.nonfinite += output.color.remove_nonfinite();
             match output.stats.time(Stage::Denoise, || denoiser.denoise(&output.color, &guides(&layers))) {
                 Ok(clean) => {
                     let noisy = std::mem::replace(&mut output.color, clean);
                     output.extra.extend(self.keep_noisy.then(|| Layer::color(NOISY, noisy)));
+                    is_denoised = true;
                 }
                 Err(error) => {
                     self.failure.get_or_init(|| error);
@@ -101,6 +127,7 @@ impl<'a> Finish<'a> {
             layers.retain(|layer| layer.name != feature.name());
         }
         output.extra.extend(layers);
+        is_denoised
     }
 
     /// Seconds that [`Finish::apply`] is likely to take for a picture of `method`, by that of a smaller one.
@@ -108,8 +135,7 @@ impl<'a> Finish<'a> {
         let Some(denoiser) = self.denoiser() else { return 0.0 };
         let small = smaller(self.view, TRIAL_SCALE);
         let watch = Stopwatch::start();
-        let layers =
-            self.layers(&small, method, Features::default().with(Feature::Albedo).with(Feature::Normal));
+        let layers = self.look_at(&small, method).layers(self.world, self.wanted());
         let mut seconds = watch.elapsed().wall_seconds;
         let guides = guides(&layers);
         let Some(color) = guides.albedo else { return 0.0 };
@@ -122,11 +148,6 @@ impl<'a> Finish<'a> {
             seconds += if is_first { 0.0 } else { watch.elapsed().wall_seconds };
         }
         seconds * self.view.window.pixel_count() as f64 / small.window.pixel_count() as f64
-    }
-
-    fn layers(&self, view: &View, method: &Method, wanted: Features) -> Vec<Layer> {
-        let settings = FeatureSettings { look: method.look(), spp: method.spp(), seed: method.seed() };
-        features(self.world, view, &settings, wanted, self.control)
     }
 }
 

@@ -22,8 +22,8 @@ mod report;
 pub(crate) use finish::Finish;
 pub use frame::{BLACK, Frame, Remark};
 pub use goal::{Goal, Wanted};
-pub(crate) use render::Former;
 pub use render::FrameError;
+pub(crate) use render::{Former, Kept};
 
 pub use crate::eye::{Feature, Features, UnknownFeature};
 

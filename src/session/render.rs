@@ -4,13 +4,14 @@ use super::finish::Finish;
 use super::frame::{self, Frame, Remark};
 use super::goal::{Goal, Wanted};
 use super::{Session, report};
-use crate::eye::DROPPED_BRANCHES;
+use crate::eye::{DROPPED_BRANCHES, Settled};
 use crate::film::Image;
 use crate::math::Rgb;
 use crate::method::path::Begun;
-use crate::method::{KeptRecords, LightStore, Method, Output};
+use crate::method::{Before, KeptRecords, LightStore, Method, Output};
 use crate::plan::{self, LATE, Ladder};
 use crate::progress::Control;
+use crate::reprojection::LastPicture;
 use crate::stats::{Counter, Stage, Stats, Stopwatch, available_bytes};
 use crate::verify::{self, Verified, verify};
 use crate::view::View;
@@ -43,10 +44,18 @@ pub enum FrameError {
 pub(crate) enum Former<'a> {
     /// None.
     Nothing,
-    /// Records of the frames before, in a walk-through.
-    Records(&'a mut KeptRecords),
+    /// The frames before, in a walk-through.
+    Frames(Kept<'a>),
     /// The same picture, interrupted.
     Samples(Begun),
+}
+
+/// Work of the frames before a frame, and of that for the next.
+pub(crate) struct Kept<'a> {
+    /// Records.
+    pub records: &'a mut KeptRecords,
+    /// The picture before, if drawn light is to be carried over from it.
+    pub last: Option<&'a mut LastPicture>,
 }
 
 /// A picture by the settings that its goal led to.
@@ -208,17 +217,52 @@ impl Session {
     ) -> Made {
         let watch = Stopwatch::start();
         let mut seconds = 0.0;
-        let mut output = match former {
-            Former::Records(kept) => method.render_next(&self.world, &self.lights, kept, view, control),
+        let output = match former {
+            Former::Frames(kept) => self.next_frame(view, &method, kept, finish, control),
             Former::Samples(begun) => {
                 seconds += begun.seconds;
-                method.render_rest(&self.world, &self.lights, &begun, view, control)
+                let mut output = method.render_rest(&self.world, &self.lights, &begun, view, control);
+                finish.apply(&method, &mut output);
+                output
             }
-            Former::Nothing => method.render(&self.world, &self.lights, view, control),
+            Former::Nothing => {
+                let mut output = method.render(&self.world, &self.lights, view, control);
+                finish.apply(&method, &mut output);
+                output
+            }
         };
-        finish.apply(&method, &mut output);
         seconds += watch.elapsed().wall_seconds;
         Made { method, output, seconds, measured: None, plan: Value::Null }
+    }
+
+    /// The finished next picture of a walk-through.
+    fn next_frame(
+        &self,
+        view: &View,
+        method: &Method,
+        kept: Kept,
+        finish: &Finish,
+        control: &Control,
+    ) -> Output {
+        let Kept { records, last } = kept;
+        let draws = method.keeps_records() && method.leaves_noise();
+        let Some(last) = last.filter(|_| draws && finish.denoises()) else {
+            let before = Before { records, settled: Settled::default() };
+            let mut output = method.render_next(&self.world, &self.lights, before, view, control);
+            finish.apply(method, &mut output);
+            return output;
+        };
+        let watch = Stopwatch::start();
+        let seen = finish.look(method);
+        let reprojected = last.reproject(view, &seen);
+        let looking = watch.elapsed();
+        let before = Before { records, settled: reprojected.settled() };
+        let mut output = method.render_next(&self.world, &self.lights, before, view, control);
+        output.stats.add_time(Stage::EyePass, looking);
+        reprojected.mix_into(&mut output.color, &seen);
+        let is_denoised = finish.apply_to_seen(&seen, &mut output);
+        last.replace(view, &seen, is_denoised.then_some(&output.color));
+        output
     }
 
     /// The finished picture by settings planned for the goal.

@@ -4,9 +4,10 @@
 //!
 //! A [`Walk`] renders one frame after the other. Scene, virtual lights and light trees are the session's; the records
 //! of indirect light stay in the walk (see [`KeptRecords`]), so that a frame computes only those that its predecessors
-//! lack. Drawn direct light, features and denoising are each frame's own; the random numbers of a pixel are the same in
-//! every frame, so that noise which the denoiser leaves stays where it is: on static surfaces of the apartment,
-//! reprojected from frame to frame, new numbers in each change the denoised picture 1.8 times as much. A frame has the
+//! lack. Of drawn direct light, that of even surfaces is carried from picture to picture and refreshed by few samples
+//! (see [`crate::reprojection`]). Elsewhere the random numbers of a pixel are the same in every frame, so that noise
+//! which the denoiser leaves stays where it is: on static surfaces of the apartment, reprojected from frame to frame,
+//! new numbers in each change the denoised picture 1.8 times as much. A frame has the
 //! same bits for any number of threads; it depends on the frames that the walk rendered before it.
 //!
 //! Walks are cut into chunks, which begin without records, and a chunk's records are saved beside its frames, so that a
@@ -27,7 +28,8 @@ pub(crate) mod saved;
 
 use crate::method::KeptRecords;
 use crate::progress::Control;
-use crate::session::{Former, Frame, FrameError, Goal, Session};
+use crate::reprojection::LastPicture;
+use crate::session::{Former, Frame, FrameError, Goal, Kept, Session};
 use crate::view::View;
 
 pub use crate::method::KeepLimits;
@@ -38,27 +40,44 @@ pub use names::FileNames;
 pub struct Walk<'a> {
     session: &'a Session,
     goal: Goal,
-    kept: KeptRecords,
+    limits: KeepLimits,
+    records: KeptRecords,
+    last: LastPicture,
 }
+
+/// Bytes of the length of a saved picture, before it and the records.
+const LENGTH: usize = size_of::<u64>();
 
 impl<'a> Walk<'a> {
     /// A walk that begins without records. Its frames are rendered for `goal`; where that plans settings, alone.
     pub fn new(session: &'a Session, goal: Goal, limits: KeepLimits) -> Walk<'a> {
-        Walk { session, goal, kept: KeptRecords::new(limits) }
+        let (records, last) = (KeptRecords::new(limits), LastPicture::default());
+        Walk { session, goal, limits, records, last }
     }
 
-    /// A walk that goes on from records that [`Walk::save`] returned; `None` if these are none.
+    /// A walk that goes on from bytes that [`Walk::save`] returned; `None` if it did not.
     pub fn restored(session: &'a Session, goal: Goal, limits: KeepLimits, saved: &[u8]) -> Option<Walk<'a>> {
-        Some(Walk { session, goal, kept: KeptRecords::restored(limits, saved)? })
+        let (length, rest) = saved.split_at_checked(LENGTH)?;
+        let length = u64::from_le_bytes(length.try_into().ok()?);
+        let (last, records) = rest.split_at_checked(length.try_into().ok()?)?;
+        let (last, excess): (LastPicture, _) = postcard::take_from_bytes(last).ok()?;
+        let is_sound = excess.is_empty() && last.is_sound();
+        let records = KeptRecords::restored(limits, records)?;
+        is_sound.then_some(Walk { session, goal, limits, records, last })
     }
 
-    /// The records as they are between frames: a walk that goes on from them renders the same frames, bit for bit.
+    /// The records and the last picture as they are between frames: a walk that goes on from them renders the same
+    /// frames, bit for bit.
     pub fn save(&self) -> Vec<u8> {
-        self.kept.save()
+        // Plain numbers, which cannot fail to be written; without bytes there would be none to restore.
+        let last = postcard::to_stdvec(&self.last).unwrap_or_default();
+        [&(last.len() as u64).to_le_bytes()[..], &last, &self.records.save()].concat()
     }
 
     /// Renders the next frame, seen by `view`. One that was cancelled halfway is partial, not an error.
     pub fn frame(&mut self, view: &View, control: &Control) -> Result<Frame, FrameError> {
-        self.session.frame_by(view, &self.goal, Former::Records(&mut self.kept), control)
+        let last = self.limits.reprojects.then_some(&mut self.last);
+        let kept = Kept { records: &mut self.records, last };
+        self.session.frame_by(view, &self.goal, Former::Frames(kept), control)
     }
 }

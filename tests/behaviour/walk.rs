@@ -3,8 +3,9 @@
 use crate::common::*;
 use glam::Vec3;
 use lightsplat::film::Image;
+use lightsplat::film::metrics::{Variances, compare};
 use lightsplat::math::luminance;
-use lightsplat::method::{DirectBy, Method, cache};
+use lightsplat::method::{DirectBy, Method, cache, path};
 use lightsplat::progress::Control;
 use lightsplat::session::{Frame, Goal};
 use lightsplat::stats::Counter;
@@ -98,7 +99,11 @@ fn frames_of_a_walk_do_not_depend_on_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let (session, _) = session(scene.clone());
-            let mut walk = Walk::new(&session, goal(), KeepLimits { idle_frames: 1, bytes: 100_000 });
+            let mut walk = Walk::new(
+                &session,
+                goal(),
+                KeepLimits { idle_frames: 1, bytes: 100_000, ..KeepLimits::default() },
+            );
             let frames = views[..3].iter().map(|view| walk.frame(view, &Control::new()).unwrap().film.color);
             frames.collect::<Vec<_>>()
         })
@@ -126,4 +131,68 @@ fn a_view_seen_twice_has_no_new_records_and_the_same_light() {
         assert!(count(&frame, "Walk/bytes kept") <= kept / 3);
         assert!(count(&frame, "Walk/records evicted for memory") > 0);
     }
+}
+
+/// Settings whose direct light is drawn.
+fn drawn() -> Goal {
+    let mut settings = cache::Settings::default();
+    settings.light.indirect = 20_000;
+    settings.cache.least_cell = 8;
+    Goal { method: Method::Cache(settings), ..Goal::default() }
+}
+
+#[test]
+fn drawn_light_is_carried_from_frame_to_frame() {
+    let (scene, views) = room();
+    let views: Vec<View> = views.iter().map(|view| View::whole(view.camera, [96, 96])).collect();
+    let (session, _) = session(scene.clone());
+    let mut last = Vec::new();
+    for reprojects in [false, true] {
+        let limits = KeepLimits { reprojects, ..KeepLimits::default() };
+        let mut walk = Walk::new(&session, drawn(), limits);
+        last.extend(views.iter().map(|view| walk.frame(view, &Control::new()).unwrap()).last());
+    }
+    if lacks_denoiser(&last[0]) {
+        return;
+    }
+    let [rays, fewer] = [0, 1].map(|i| count(&last[i], "Eye/shadow rays"));
+    assert!(fewer * 3 < rays * 2, "{fewer} shadow rays, {rays} by all samples");
+    let method = Method::Path(path::Settings { spp: 1024, ..Default::default() });
+    let goal = Goal { method, denoise: Some(false), ..Goal::default() };
+    let reference = session.frame(&views[FRAMES - 1], &goal, &Control::new()).unwrap().film.color;
+    let error = |frame: &Frame| {
+        compare(&frame.film.color, &reference, Variances::default()).unwrap().rel_mse_trimmed.sqrt()
+    };
+    // A decibel.
+    let [all, few] = [0, 1].map(|i| error(&last[i]));
+    assert!(few < 1.12 * all, "error {few}, by all samples {all}");
+    let (mean, _) = against(&last[1].film.color, &last[0].film.color);
+    assert!((mean - 1.0).abs() < 0.005, "mean {mean}");
+}
+
+#[test]
+fn a_walk_restored_goes_on_with_the_same_bits_on_any_number_of_threads() {
+    let (scene, views) = room();
+    let by_threads = |threads: usize, save: bool| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let (session, _) = session(scene.clone());
+            let mut walk = Walk::new(&session, drawn(), KeepLimits::default());
+            for view in &views[..2] {
+                walk.frame(view, &Control::new()).unwrap();
+            }
+            if save {
+                let saved = walk.save();
+                walk = Walk::restored(&session, drawn(), KeepLimits::default(), &saved).unwrap();
+                for length in [0, 7, 8, saved.len() / 2, saved.len() - 1] {
+                    let part = &saved[..length];
+                    assert!(Walk::restored(&session, drawn(), KeepLimits::default(), part).is_none());
+                }
+            }
+            walk.frame(&views[2], &Control::new()).unwrap().film.color
+        })
+    };
+    let whole = by_threads(1, false);
+    assert!(by_threads(2, true) == whole);
+    assert!(by_threads(3, false) == whole);
 }

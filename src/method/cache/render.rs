@@ -8,11 +8,10 @@ use crate::lightcut::CutSettings;
 use crate::method::ladder::{CUTS, DRAWN};
 use crate::method::lights::LightStore;
 use crate::method::sampling::method_settings;
-use crate::method::{Move, Output, Prepared, Renderer, Sampled, counts};
+use crate::method::{Before, Move, Output, Prepared, Renderer, Sampled, counts};
 use crate::paths::Look;
 use crate::progress::Control;
 use crate::radiance_cache::fill::CacheFrame;
-use crate::radiance_cache::kept::KeptRecords;
 use crate::radiance_cache::series::{Glossy, drawn_light};
 use crate::radiance_cache::source::LightcutSource;
 use crate::radiance_cache::store::Records;
@@ -61,17 +60,18 @@ impl Settings {
         &self,
         world: &World,
         lights: &LightStore,
-        mut kept: Option<&mut KeptRecords>,
+        before: Option<Before>,
         view: &View,
         control: &Control,
     ) -> Output {
+        let (mut kept, settled) = before.map(|before| (before.records, before.settled)).unzip();
         let cache = match kept {
             Some(_) => self.cache.of_walk(),
             None => self.cache,
         };
         let wanted = (self.light, self.family);
         let glossy = Glossy::new(world, &cache);
-        let drawn = drawn_light(glossy.as_ref(), &cache);
+        let drawn = drawn_light(glossy.as_ref(), &cache, settled.unwrap_or_default());
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = lights.context(world, self.compensation);
@@ -133,11 +133,11 @@ impl Renderer for Settings {
         &self,
         world: &World,
         lights: &LightStore,
-        kept: &mut KeptRecords,
+        before: Before,
         view: &View,
         control: &Control,
     ) -> Output {
-        self.picture(world, lights, Some(kept), view, control)
+        self.picture(world, lights, Some(before), view, control)
     }
 
     fn keeps_records(&self) -> bool {

@@ -1,6 +1,6 @@
 //! The picture: eye pass, photons, trees of direct light, the cache, and the rest by single samples.
 
-use crate::eye::EyePass;
+use crate::eye::{EyePass, Settled};
 use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
@@ -90,7 +90,7 @@ impl Renderer for Settings {
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
         let wanted = (self.light, self.family);
         let glossy = Glossy::new(world, &self.cache);
-        let drawn = drawn_light(glossy.as_ref(), &self.cache);
+        let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default());
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = lights.context(world, true);
