@@ -9,7 +9,7 @@ use super::basis::{MAX_BANDS, MAX_FUNCTIONS};
 use super::kernel::{even_index, repeated};
 use super::projection::{Projection, Quadrature};
 use super::radiance::stride;
-use crate::material::RoughLobe;
+use crate::material::DullLobe;
 use rayon::prelude::*;
 
 /// Number of intervals to start with.
@@ -39,7 +39,7 @@ fn parameter(cos_o: f32) -> f32 {
 impl LobeTable {
     /// Tabulates the first `bands` of a lobe so that the error of the interpolated kernel is at most
     /// `tolerance` of its norm.
-    pub fn new(lobe: &RoughLobe, bands: usize, tolerance: f64, quadrature: &Quadrature) -> LobeTable {
+    pub fn new(lobe: DullLobe, bands: usize, tolerance: f64, quadrature: &Quadrature) -> LobeTable {
         let bands = bands.clamp(1, MAX_BANDS);
         let used = even_index(bands, 0);
         let project = |node: f64| quadrature.project(lobe, 1.0 - node * node);

@@ -1,8 +1,8 @@
 //! Representation of each material's reflection in cache records: irradiance, a series, or none.
 //!
-//! The kernel of a surface is base + lobe. The base, Lambertian and perhaps under a coat, varies with the
+//! The kernel of a surface is base + lobes. The base, Lambertian and perhaps under a coat, varies with the
 //! height of the light only, by the coat's transmittance; it takes one row of functions and has hardly any
-//! error. Both parts are projected with reflectance 1: colour and texture are factors on either, looked up at
+//! error. All parts are projected with reflectance 1: colour and texture are factors on each, looked up at
 //! the point.
 //!
 //! Deviations: the paper sets the number of bands by hand; here it is the minimum that keeps the error of the
@@ -13,8 +13,7 @@ use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
 use super::kernel::{Profile, even_index};
 use super::lobe_table::LobeTable;
 use super::projection::{Projection, Quadrature, ZonalProjection};
-use crate::material::{Bsdf, Materials, RoughLobe};
-use crate::math::Rgb;
+use crate::material::{Bsdf, DullLobe, Materials};
 use crate::scene::{MaterialId, Scene};
 use crate::setting::{DOWN, settings};
 use rayon::prelude::*;
@@ -24,7 +23,7 @@ const INCLINATIONS: [f64; 6] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0];
 
 settings! {
     /// Accuracy of series. Errors are in the L2 norm over the incoming directions, relative to the whole kernel (base
-    /// and lobe), averaged over outgoing inclinations up to 75°.
+    /// and lobes), averaged over outgoing inclinations up to 75°.
     pub struct SeriesSettings in "Records" {
         /// Roughness α from which lobes are lit by records, 2 for none: sharper ones are lit by cuts.
         min_alpha: f32 = 0.25 => [
@@ -46,7 +45,7 @@ pub enum Caching {
     Irradiance,
     /// A series of so many bands.
     Series(u8),
-    /// Too glossy for records, several broad lobes, or textured roughness: series are made for single lobes.
+    /// Too glossy for records, or of textured roughness.
     PerSample,
 }
 
@@ -58,8 +57,8 @@ pub struct MaterialSeries {
 
 struct MaterialEntry {
     caching: Caching,
-    /// Lobe that the series stands for.
-    lobe: Option<LobeUse>,
+    /// Lobes that the series stands for.
+    lobes: Vec<LobeUse>,
     /// Transmittance of the coat times cosine: functions of order 0.
     base: [f32; MAX_BANDS],
 }
@@ -79,7 +78,7 @@ impl MaterialSeries {
         let quadrature = Quadrature::standard();
         let averages: Vec<Bsdf> = materials.averages(scene).collect();
         // One lobe of each kind, and for each material the slots and kinds of its own.
-        let mut kinds: Vec<&RoughLobe> = Vec::new();
+        let mut kinds: Vec<DullLobe> = Vec::new();
         let mut used: Vec<Vec<LobeUse>> = Vec::with_capacity(averages.len());
         for bsdf in &averages {
             let mut kind_of = |lobe| {
@@ -94,33 +93,33 @@ impl MaterialSeries {
         let tests: Vec<Vec<Projection>> = kinds
             .par_iter()
             .map(|lobe| {
-                INCLINATIONS.par_iter().map(|d| quadrature.project(lobe, d.to_radians().cos())).collect()
+                INCLINATIONS.par_iter().map(|d| quadrature.project(*lobe, d.to_radians().cos())).collect()
             })
             .collect();
         let mut surfaces: Vec<MaterialEntry> = averages
             .iter()
             .zip(&used)
-            .map(|(bsdf, lobes)| match lobes[..] {
-                _ if bsdf.is_of_mean_roughness() || bsdf.has_grazing_lobes() => {
-                    MaterialEntry::without_series(bsdf, Caching::PerSample, &quadrature)
+            .map(|(bsdf, lobes)| {
+                if bsdf.is_of_mean_roughness() {
+                    return MaterialEntry::without_series(bsdf, Caching::PerSample, &quadrature);
                 }
-                [] => MaterialEntry::without_series(bsdf, Caching::Irradiance, &quadrature),
-                [lobe] => {
-                    let alpha = kinds[lobe.kind].alpha();
-                    MaterialEntry::new(bsdf, lobe, alpha, &tests[lobe.kind], &quadrature, settings)
+                if lobes.is_empty() {
+                    return MaterialEntry::without_series(bsdf, Caching::Irradiance, &quadrature);
                 }
-                _ => MaterialEntry::without_series(bsdf, Caching::PerSample, &quadrature),
+                let alpha = lobes.iter().map(|lobe| kinds[lobe.kind].alpha()).fold(f32::INFINITY, f32::min);
+                MaterialEntry::new(bsdf, lobes, alpha, &tests, &quadrature, settings)
             })
             .collect();
         // Tables for the lobes in use, with as many bands as any of their materials needs.
         let mut lobes = Vec::new();
         for (kind, lobe) in kinds.iter().enumerate() {
-            let uses_it = |s: &&mut MaterialEntry| s.lobe.is_some_and(|lobe| lobe.kind == kind);
+            let uses_it = |s: &&mut MaterialEntry| s.lobes.iter().any(|lobe| lobe.kind == kind);
             let users: Vec<&mut MaterialEntry> = surfaces.iter_mut().filter(uses_it).collect();
             let Some(bands) = users.iter().filter_map(|s| s.caching.bands()).max() else { continue };
             // There are no more tables than kinds, so none met later in this loop is taken for this one.
-            users.into_iter().filter_map(|s| s.lobe.as_mut()).for_each(|lobe| lobe.kind = lobes.len());
-            lobes.push(LobeTable::new(lobe, bands, settings.interpolation_error, &quadrature));
+            let uses = users.into_iter().flat_map(|s| &mut s.lobes);
+            uses.filter(|lobe| lobe.kind == kind).for_each(|lobe| lobe.kind = lobes.len());
+            lobes.push(LobeTable::new(*lobe, bands, settings.interpolation_error, &quadrature));
         }
         MaterialSeries { materials: surfaces, lobes }
     }
@@ -153,15 +152,17 @@ impl MaterialSeries {
     pub fn profile(&self, bsdf: &Bsdf, cos_o: f32) -> Profile {
         let surface = &self.materials[bsdf.material().0 as usize];
         let bands = surface.caching.bands().unwrap_or(MAX_BANDS);
-        let (mut coefficients, scale) = match surface.lobe {
-            Some(lobe) => (self.lobes[lobe.kind].lookup(cos_o), bsdf.lobe_scale(lobe.slot)),
-            None => ([[0.0; MAX_FUNCTIONS]; CHANNELS], Rgb::ZERO),
-        };
+        let mut coefficients = [[0.0; MAX_FUNCTIONS]; CHANNELS];
+        for lobe in &surface.lobes {
+            let (of_lobe, scale) = (self.lobes[lobe.kind].lookup(cos_o), bsdf.lobe_scale(lobe.slot));
+            for c in 0..CHANNELS {
+                for k in 0..MAX_FUNCTIONS {
+                    coefficients[c][k] += of_lobe[c][k] * scale[c];
+                }
+            }
+        }
         let base = bsdf.base_brdf() * bsdf.coat_transmittance(cos_o);
         for (c, row) in coefficients.iter_mut().enumerate() {
-            for coefficient in row.iter_mut() {
-                *coefficient *= scale[c];
-            }
             for l in 0..MAX_BANDS {
                 row[index(l, 0)] += base[c] * surface.base[l];
             }
@@ -183,30 +184,37 @@ impl Caching {
 }
 
 impl MaterialEntry {
-    /// For a material with no lobe to expand, or several.
+    /// For a material with no lobe to expand.
     fn without_series(bsdf: &Bsdf, caching: Caching, quadrature: &Quadrature) -> MaterialEntry {
         let base = project_base(bsdf, quadrature).coefficients.map(|c| c as f32);
-        MaterialEntry { caching, lobe: None, base }
+        MaterialEntry { caching, lobes: Vec::new(), base }
     }
 
-    /// For a material with one lobe to expand, given its projections at [`INCLINATIONS`].
+    /// For a material with lobes to expand, of roughness `alpha` or more, given the projections of each kind of lobe at
+    /// [`INCLINATIONS`].
     fn new(
         bsdf: &Bsdf,
-        lobe: LobeUse,
+        lobes: &[LobeUse],
         alpha: f32,
-        tests: &[Projection],
+        tests: &[Vec<Projection>],
         quadrature: &Quadrature,
         settings: &SeriesSettings,
     ) -> MaterialEntry {
         let zonal = project_base(bsdf, quadrature);
-        let error = |bands: usize| mean_error(bsdf, bsdf.lobe_scale(lobe.slot), tests, &zonal, bands);
+        let sums: Vec<Projection> = (0..INCLINATIONS.len())
+            .map(|at| {
+                let parts = lobes.iter().map(|lobe| (bsdf.lobe_scale(lobe.slot), &tests[lobe.kind][at]));
+                Projection::sum(&Vec::from_iter(parts))
+            })
+            .collect();
+        let error = |bands: usize| mean_error(bsdf, &sums, &zonal, bands);
         // Two bands hold the irradiance.
         let bands = (2..=MAX_BANDS).find(|bands| error(*bands) <= settings.error).unwrap_or(MAX_BANDS);
         let fits = error(bands) <= settings.max_error && alpha >= settings.min_alpha;
         let base = zonal.coefficients.map(|c| c as f32);
         match fits {
-            true => MaterialEntry { caching: Caching::Series(bands as u8), lobe: Some(lobe), base },
-            false => MaterialEntry { caching: Caching::PerSample, lobe: None, base },
+            true => MaterialEntry { caching: Caching::Series(bands as u8), lobes: lobes.to_vec(), base },
+            false => MaterialEntry { caching: Caching::PerSample, lobes: Vec::new(), base },
         }
     }
 }
@@ -216,29 +224,22 @@ fn project_base(bsdf: &Bsdf, quadrature: &Quadrature) -> ZonalProjection {
     quadrature.project_zonal(|z| z * f64::from(bsdf.coat_transmittance(z as f32)))
 }
 
-/// Computes the error of a kernel in its first `bands`.
-fn mean_error(
-    bsdf: &Bsdf,
-    lobe_scale: Rgb,
-    tests: &[Projection],
-    zonal: &ZonalProjection,
-    bands: usize,
-) -> f64 {
-    let errors = INCLINATIONS.iter().zip(tests).map(|(degrees, lobe)| {
+/// Computes the error of a kernel in its first `bands`, given the projections of its lobes together at
+/// [`INCLINATIONS`].
+fn mean_error(bsdf: &Bsdf, lobes: &[Projection], zonal: &ZonalProjection, bands: usize) -> f64 {
+    let errors = INCLINATIONS.iter().zip(lobes).map(|(degrees, lobes)| {
         let through = bsdf.coat_transmittance(degrees.to_radians().cos() as f32);
         let (mut left_out, mut whole) = (0.0, 0.0);
         for c in 0..CHANNELS {
             let base = f64::from(bsdf.base_brdf()[c] * through);
-            let scale = f64::from(lobe_scale[c]);
-            let row = &lobe.coefficients[c];
+            let row = &lobes.coefficients[c];
             let common: f64 = (0..MAX_BANDS).map(|l| zonal.coefficients[l] * row[even_index(l, 0)]).sum();
-            let norm_sq =
-                base * base * zonal.norm_sq + 2.0 * base * scale * common + scale * scale * lobe.norm_sq[c];
+            let norm_sq = base * base * zonal.norm_sq + 2.0 * base * common + lobes.norm_sq[c];
             let mut kept = 0.0;
             for l in 0..bands {
                 for m in 0..=l {
                     let zonal = if m == 0 { base * zonal.coefficients[l] } else { 0.0 };
-                    kept += (zonal + scale * row[even_index(l, m)]).powi(2);
+                    kept += (zonal + row[even_index(l, m)]).powi(2);
                 }
             }
             left_out += (norm_sq - kept).max(0.0);

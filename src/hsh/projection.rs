@@ -3,7 +3,7 @@
 use super::CHANNELS;
 use super::basis::{MAX_BANDS, evaluate, index};
 use super::kernel::{MAX_EVEN, even_index};
-use crate::material::RoughLobe;
+use crate::material::DullLobe;
 use crate::math::{Rgb, gauss_legendre};
 use glam::Vec3;
 use std::f64::consts::PI;
@@ -50,6 +50,31 @@ pub(super) struct ZonalProjection {
     pub norm_sq: f64,
 }
 
+impl Projection {
+    /// Sum of projections times factors; its norm is the largest that it may have, since what the parts lack may add up.
+    pub fn sum(parts: &[(Rgb, &Projection)]) -> Projection {
+        let mut sum = Projection { coefficients: [[0.0; MAX_EVEN]; CHANNELS], norm_sq: [0.0; CHANNELS] };
+        for c in 0..CHANNELS {
+            // Norm of what the coefficients do not hold.
+            let mut left_out = 0.0;
+            for (factor, part) in parts {
+                let (factor, row) = (f64::from(factor[c]), &part.coefficients[c]);
+                for (total, value) in sum.coefficients[c].iter_mut().zip(row) {
+                    *total += factor * value;
+                }
+                left_out += factor * (part.norm_sq[c] - squares(row)).max(0.0).sqrt();
+            }
+            sum.norm_sq[c] = squares(&sum.coefficients[c]) + left_out * left_out;
+        }
+        sum
+    }
+}
+
+/// Sum of squares.
+fn squares(row: &[f64]) -> f64 {
+    row.iter().map(|value| value * value).sum()
+}
+
 impl Quadrature {
     pub fn standard() -> Quadrature {
         Quadrature::new(HEIGHTS, AZIMUTHS)
@@ -81,8 +106,8 @@ impl Quadrature {
         }
     }
 
-    /// Projects BRDF · cosine of a rough lobe seen at cosine `cos_o` from azimuth 0.
-    pub fn project(&self, lobe: &RoughLobe, cos_o: f64) -> Projection {
+    /// Projects BRDF · cosine of a lobe seen at cosine `cos_o` from azimuth 0.
+    pub fn project(&self, lobe: DullLobe, cos_o: f64) -> Projection {
         let cos_o = cos_o.clamp(1e-5, 1.0);
         let wo = Vec3::new(((1.0 - cos_o) * (1.0 + cos_o)).sqrt() as f32, 0.0, cos_o as f32);
         let mut projection =

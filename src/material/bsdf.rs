@@ -2,7 +2,7 @@
 //!
 //! Units: `eval` is 1/sr, without the cosine; `pdf` is per solid angle.
 
-use super::lobe::{Directions, LobeModel, MAX_LOBES, RoughLobe, mean};
+use super::lobe::{Directions, DullLobe, LobeModel, MAX_LOBES, mean};
 use super::model::Model;
 use crate::math::Rgb;
 use crate::scene::MaterialId;
@@ -121,11 +121,6 @@ impl<'m> Bsdf<'m> {
         self.model.transmits && self.any_lobe(LobeModel::scatters_across)
     }
 
-    /// True if part of the light is scattered broadly by other lobes than rough reflection.
-    pub fn has_grazing_lobes(&self) -> bool {
-        self.any_lobe(|lobe| matches!(lobe, LobeModel::Grazing(_)))
-    }
-
     /// True if part of the light passes straight through the surface.
     pub fn passes_straight(&self) -> bool {
         self.any_lobe(LobeModel::passes_straight)
@@ -236,13 +231,14 @@ impl<'m> Bsdf<'m> {
         self.model.lobe_list == other.model.lobe_list
     }
 
-    /// Lists slot and model of each rough lobe that reflects anything and that the eye does not follow.
-    pub fn dull_lobes(&self) -> impl Iterator<Item = (usize, &'m RoughLobe)> {
+    /// Lists slot and model of each lobe that reflects anything in more than isolated directions and that the eye does
+    /// not follow.
+    pub fn dull_lobes(&self) -> impl Iterator<Item = (usize, DullLobe<'m>)> {
         let lobes = self.model.lobes.iter().zip(self.scales).enumerate();
-        lobes.filter_map(|(slot, (lobe, scale))| match lobe {
-            LobeModel::Rough(rough) if !rough.is_sharp() && scale.max_element() > 0.0 => Some((slot, rough)),
-            _ => None,
-        })
+        let is_dull = |lobe: &LobeModel| !lobe.is_sharp() && !lobe.is_delta();
+        lobes
+            .filter(move |(_, (lobe, scale))| is_dull(lobe) && scale.max_element() > 0.0)
+            .map(|(slot, (lobe, _))| (slot, DullLobe::new(lobe)))
     }
 
     /// Returns the BRDF of the base, to be multiplied by [`Bsdf::coat_transmittance`] of either direction.

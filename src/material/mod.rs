@@ -27,7 +27,7 @@ mod table;
 pub use alike16::{AlikeBsdfs16, DirectionBounds16};
 pub use bound::DirectionBound;
 pub use bsdf::{Bsdf, LobeSet};
-pub use lobe::RoughLobe;
+pub use lobe::DullLobe;
 pub use model::Materials;
 pub use packet::{BsdfSamples16, Bsdfs16};
 

@@ -7,9 +7,11 @@ use crate::hsh::kernel::even_index;
 use crate::hsh::projection::{Projection, Quadrature};
 use crate::hsh::*;
 use crate::material::tests::scene;
-use crate::material::{Materials, RoughLobe};
+use crate::material::{DullLobe, Materials};
 use crate::math::Rgb;
-use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, TextureId};
+use crate::scene::{
+    Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Principled, Reflectance, TextureId,
+};
 use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::{PI, TAU};
 
@@ -38,7 +40,14 @@ fn rough_plastic(alpha: f32, albedo: f32) -> Material {
     rough(alpha, Fresnel::Dielectric(1.5), albedo, Some(Coat { eta: 1.5, nonlinear: true }))
 }
 
-fn with_lobe<R>(material: Material, f: impl FnOnce(&RoughLobe) -> R) -> R {
+/// Several lobes over a base.
+fn principled(metallic: f32, sheen: f32) -> Material {
+    let (metallic, sheen, base_color) = (metallic.into(), sheen.into(), constant(0.6));
+    let principled = Principled { metallic, sheen, base_color, roughness: 0.7.into(), ..Principled::default() };
+    Material { principled: Some(Box::new(principled)), ..lambert(0.0) }
+}
+
+fn with_lobe<R>(material: Material, f: impl FnOnce(DullLobe) -> R) -> R {
     let scene = scene(vec![material]);
     let materials = Materials::new(&scene);
     f(materials.at(&scene, MaterialId(0), Vec2::ZERO).dull_lobes().next().unwrap().1)
@@ -118,6 +127,8 @@ fn expanded() -> Vec<Material> {
         rough(0.5, Fresnel::One, 0.4, None),
         rough_plastic(0.35, 0.5),
         rough(0.7, Fresnel::Dielectric(1.5), 0.3, None),
+        principled(0.0, 0.0),
+        principled(0.3, 0.5),
     ]
 }
 
@@ -318,6 +329,7 @@ fn each_material_gets_the_records_it_needs() {
         (metal(0.8), None),
         (rough_plastic(0.35, 0.5), None),
         (rough(0.5, Fresnel::One, 0.4, None), None),
+        (principled(0.3, 0.5), None),
     ];
     let scene = scene(list.iter().map(|(m, _)| m.clone()).collect());
     let materials = Materials::new(&scene);
@@ -334,8 +346,8 @@ fn each_material_gets_the_records_it_needs() {
     }
     // Rougher surfaces need fewer bands, as do those with a base beside the lobe.
     assert!(bands[0] >= bands[1] && bands[1] > bands[2] && bands[4] <= bands[1], "{bands:?}");
-    // One table serves the lobe of α = 0.5 with and without a base.
-    assert_eq!(surfaces.tables(), 4);
+    // One table serves the lobe of α = 0.5 with and without a base; four are of the principled material's lobes.
+    assert_eq!(surfaces.tables(), 8);
     // Bases alone, of irradiance materials too, are reflected as well as a series can.
     let bsdf = materials.at(&scene, MaterialId(1), Vec2::ZERO);
     let mut accumulator = Accumulator::new(3);

@@ -7,6 +7,7 @@
 //! lobes.
 
 mod clear_coat;
+mod dull;
 mod grazing;
 mod half_vector;
 mod interface;
@@ -15,12 +16,14 @@ mod rough;
 mod rough_interface;
 
 pub(super) use clear_coat::ClearCoat;
+pub use dull::DullLobe;
 pub(super) use grazing::{Grazing, GrazingKind};
 pub(super) use half_vector::{Directions, Directions16, FacetBound, FacetBounds16};
 pub(super) use interface::{Interface, Passage};
 pub(super) use mirror::Mirror;
-pub use rough::RoughLobe;
-pub(super) use rough::{DIFFUSE_ALPHA, albedo as rough_albedo, albedo_table, max_reflectance_table};
+pub(super) use rough::{
+    DIFFUSE_ALPHA, RoughLobe, albedo as rough_albedo, albedo_table, max_reflectance_table,
+};
 pub(super) use rough_interface::RoughInterface;
 
 use super::sample::BsdfSample;

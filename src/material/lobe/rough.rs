@@ -28,7 +28,7 @@ const SHARP_ALPHA: f32 = 0.1;
 
 /// Rough reflection lobe without its factor. Two are equal if roughness and Fresnel reflectance agree.
 #[derive(Clone, Debug)]
-pub struct RoughLobe {
+pub(in crate::material) struct RoughLobe {
     pub(in crate::material) facets: Microfacets,
     pub(in crate::material) fresnel: Fresnel,
     /// Maximum reflectance of a conductor by the least cosine: its formula costs more than the rest of a bound.
@@ -47,12 +47,6 @@ impl RoughLobe {
     /// Returns the roughness α.
     pub fn alpha(&self) -> f32 {
         self.facets.alpha
-    }
-
-    /// Returns the value in 1/sr for directions with z > 0.
-    #[inline]
-    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        Directions::new(wo, wi).map_or(Rgb::ZERO, |d| self.eval_pdf(Rgb::ONE, 1.0, &d).0)
     }
 
     /// True if the lobe is too sharp to pass for diffuse.
