@@ -69,7 +69,9 @@ impl View {
     pub fn new(cameras: &Cameras, framing: &Framing) -> Result<View, FramingError> {
         let film = framing.resolution.unwrap_or(cameras.resolution);
         let mut window = Window::whole(film);
-        if let Some([offset, [width, height]]) = framing.crop {
+        // The file's crop is one of the file's film.
+        let crop = framing.crop.or(cameras.crop.filter(|_| framing.resolution.is_none()));
+        if let Some([offset, [width, height]]) = crop {
             window = Window { film, offset, width, height };
         }
         if !window.is_valid() {
@@ -179,15 +181,18 @@ mod tests {
 
     fn cameras() -> Cameras {
         let path = (0..3).map(|i| Camera { origin: Vec3::X * i as f32, ..Camera::default() }).collect();
-        Cameras { still: Camera::default(), path, resolution: [8, 4] }
+        Cameras { still: Camera::default(), path, resolution: [8, 4], crop: None }
     }
 
     #[test]
     fn a_framing_takes_the_place_of_what_the_file_says() {
         let plain = View::new(&cameras(), &Framing::default()).unwrap();
         assert_eq!(plain, View::whole(Camera::default(), [8, 4]));
+        let cropped = Cameras { crop: Some([[1, 2], [3, 1]]), ..cameras() };
+        let view = View::new(&cropped, &Framing::default()).unwrap();
+        assert_eq!(view.window, Window { film: [8, 4], offset: [1, 2], width: 3, height: 1 });
         let framing = Framing { frame: Some(3), resolution: Some([16, 16]), crop: Some([[3, 4], [5, 6]]) };
-        let view = View::new(&cameras(), &framing).unwrap();
+        let view = View::new(&cropped, &framing).unwrap();
         assert_eq!(view.camera.origin, Vec3::X * 2.0);
         assert_eq!(view.window, Window { film: [16, 16], offset: [3, 4], width: 5, height: 6 });
     }

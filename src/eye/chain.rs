@@ -123,7 +123,8 @@ pub fn trace<'w>(
         let out = -branch.ray.direction;
         let Some(surface) = world.intersect(&branch.ray) else {
             visit(Met::Nothing { throughput: branch.throughput });
-            if let Some(environment) = &world.emitters.environment {
+            let is_hidden = branch.edges == 1 && world.scene.hides_emitters;
+            if let Some(environment) = world.emitters.environment.as_ref().filter(|_| !is_hidden) {
                 let direction = branch.ray.direction;
                 let radiance = match branch.start {
                     Some(start) => {

@@ -147,7 +147,8 @@ impl Looking<'_> {
                 let FeatureSettings { look, seed, .. } = *self.settings;
                 let (sampler, jitter) = look.eye_sampler(film_pixels[pixel], seed, sample);
                 let of = look.numbers(seed, sample);
-                rays.set(lane, &self.view.sample_ray(film_pixels[pixel], jitter, of));
+                let ray = self.view.sample_ray(film_pixels[pixel], jitter, of);
+                rays.set(lane, &self.world.behind_hidden(ray));
                 samplers[lane] = sampler;
             }
             let (valid, mut hits) = (first_lanes(count), Hits16::default());

@@ -51,7 +51,8 @@ pub(super) struct ZonalProjection {
 }
 
 impl Projection {
-    /// Sum of projections times factors; its norm is the largest that it may have, since what the parts lack may add up.
+    /// Sum of projections times factors; its norm is the largest that it may have: what the coefficients lack may add
+    /// up.
     pub fn sum(parts: &[(Rgb, &Projection)]) -> Projection {
         let mut sum = Projection { coefficients: [[0.0; MAX_EVEN]; CHANNELS], norm_sq: [0.0; CHANNELS] };
         for c in 0..CHANNELS {

@@ -162,7 +162,9 @@ impl Batch {
             let mut packet = self.packets[index].clone();
             let valid = first_lanes(self.count - index * LANES);
             let found = world.accel.closest_hit16(&packet.rays, valid, depth == 1, &mut hits);
-            self.escape(world, &packet, valid & !found, reach.learned());
+            if !(depth == 1 && world.scene.hides_emitters) {
+                self.escape(world, &packet, valid & !found, reach.learned());
+            }
             if found == 0 {
                 continue;
             }

@@ -6,6 +6,7 @@ use crate::embree::Rays16;
 use crate::math::LANES;
 use crate::sampling::Samplers16;
 use crate::view::View;
+use crate::world::World;
 
 /// A path to start.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +20,12 @@ pub struct Start {
 }
 
 /// Adds `paths` to the batch, in order. With [`Look::EyeSamples`] they take the eye samples' places in turn.
-pub fn start(batch: &mut Batch, mut paths: impl Iterator<Item = Start>, view: &View, look: Look) {
+pub fn start(
+    batch: &mut Batch,
+    mut paths: impl Iterator<Item = Start>,
+    (world, view): (&World, &View),
+    look: Look,
+) {
     loop {
         let mut samplers = Samplers16::default();
         let mut starts = [Start { pixel: [0; 2], sample: 0, seed: 0 }; LANES];
@@ -43,7 +49,7 @@ pub fn start(batch: &mut Batch, mut paths: impl Iterator<Item = Start>, view: &V
                 Look::EyeSamples { .. } => look.eye_sampler(path.pixel, path.seed, path.sample).1,
             };
             let of = look.numbers(path.seed, path.sample);
-            rays.set(i, &view.sample_ray(path.pixel, jitter, of));
+            rays.set(i, &world.behind_hidden(view.sample_ray(path.pixel, jitter, of)));
         }
         batch.push(rays, samplers, count);
     }

@@ -33,7 +33,7 @@ fn ways_tell_mirrors_apart_and_nothing_else() {
     let world = world(scene);
     let pixels = (0..64).map(|i| Start { pixel: [i % 8, i / 8], sample: 0, seed: 0 });
     let (mut batch, mut ways) = (Batch::default(), Ways::default());
-    start(&mut batch, pixels, &world.view, Look::EyeSamples { spp: 1, seed: 0 });
+    start(&mut batch, pixels, (&world, &world.view), Look::EyeSamples { spp: 1, seed: 0 });
     batch.trace(&world, 8, &mut ways, &mut Counts::default());
     assert_eq!(ways.0.len(), 64);
     let of = |mesh| -> BTreeSet<(u32, u32)> {

@@ -5,7 +5,8 @@
 //!
 //! Paper: M. Ernst, M. Stamminger, G. Greiner, *Filter Importance Sampling*, 2006.
 //!
-//! Deviations: filters with negative lobes are not modelled.
+//! Deviations: filters with negative lobes, which have no density and make pictures with negative pixels, are not
+//! modelled.
 
 use crate::sampling::uniform_disk;
 use glam::{Vec2, Vec3};
@@ -112,6 +113,8 @@ pub struct Cameras {
     pub path: Vec<Camera>,
     /// Width and height of the film in pixels.
     pub resolution: [u32; 2],
+    /// Offset and size of the only part of it that is wanted.
+    pub crop: Option<[[u32; 2]; 2]>,
 }
 
 /// At the centre, looking along -z with y up, with a horizontal field of view of a right angle.

@@ -54,6 +54,8 @@ pub(crate) struct Shot {
     pub fits: bool,
     pub path: Vec<DraftCamera>,
     pub resolution: [u32; 2],
+    /// Offset and size of the only part of the film that is wanted.
+    pub crop: Option<[[u32; 2]; 2]>,
 }
 
 /// A mesh in world coordinates.
@@ -79,6 +81,7 @@ pub(crate) struct Draft {
     pub sources: Vec<PathBuf>,
     pub shot: Shot,
     pub max_depth: Option<u32>,
+    pub hides_emitters: bool,
     pub meshes: Vec<DraftMesh>,
     pub materials: Vec<Material>,
     /// Place in the files where each material is described.

@@ -45,6 +45,8 @@ pub struct Scene {
     /// Maximum path length in edges counted from the eye (1 = emitters in view only, 2 = direct light);
     /// `None` leaves termination to Russian roulette.
     pub max_depth: Option<u32>,
+    /// True if the camera does not see emitters, nor the environment, but by way of other surfaces.
+    pub hides_emitters: bool,
     /// Triangle meshes; a mesh's index is its geometry id.
     pub meshes: Vec<Mesh>,
     /// Materials, indexed by [`MaterialId`].

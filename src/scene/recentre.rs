@@ -135,6 +135,7 @@ pub(crate) fn recentre(draft: Draft, coordinates: &Coordinates) -> (Scene, Camer
         still: camera(&draft.shot.camera),
         path: draft.shot.path.iter().map(camera).collect(),
         resolution: draft.shot.resolution,
+        crop: draft.shot.crop,
     };
     let mut materials = draft.materials;
     materials.iter_mut().for_each(|material| scale_heights(material, scale));
@@ -142,6 +143,7 @@ pub(crate) fn recentre(draft: Draft, coordinates: &Coordinates) -> (Scene, Camer
         name: draft.name,
         sources: draft.sources,
         max_depth: draft.max_depth,
+        hides_emitters: draft.hides_emitters,
         meshes: draft.meshes.into_iter().map(mesh).collect(),
         materials,
         textures: draft.textures,

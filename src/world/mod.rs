@@ -9,6 +9,7 @@ use crate::math::{Frame, Rgb};
 use crate::scene::Scene;
 use glam::{Vec2, Vec3};
 
+mod hidden;
 mod packet;
 mod relief;
 mod sheets;

@@ -219,7 +219,7 @@ pub fn world(SceneAndView { scene, view }: SceneAndView) -> WorldAndView {
 
 /// A session over a scene, with its view.
 pub fn session(SceneAndView { scene, view }: SceneAndView) -> (Session, View) {
-    let cameras = Cameras { still: view.camera, path: Vec::new(), resolution: view.window.film };
+    let cameras = Cameras { still: view.camera, path: Vec::new(), resolution: view.window.film, crop: None };
     let (warnings, repairs) = (Vec::new(), Default::default());
     let loaded = Loaded { scene, cameras, warnings, repairs, hash: 0, generator: None };
     (Session::of(loaded, Path::new("test"), Stats::new()).expect("the scene builds"), view)

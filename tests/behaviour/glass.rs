@@ -4,7 +4,7 @@ use crate::common::*;
 use glam::{DVec3, Vec2, Vec3};
 use lightsplat::math::Rgb;
 use lightsplat::method::{Renderer, cache, lightcuts, path, photon_cache, reconstruction};
-use lightsplat::scene::{DeltaLight, Distribution, Lobe, Material, MaterialId, Mesh, Parameter};
+use lightsplat::scene::{DeltaLight, Distribution, Environment, Lobe, Material, MaterialId, Mesh, Parameter};
 
 /// A change of a scene.
 type Add = fn(&mut SceneAndView);
@@ -208,6 +208,28 @@ fn the_sun_comes_through_a_thin_pane_by_its_transmittance() {
     let drawn = cache::Settings { spp: 256, max_depth: Some(2), ..Default::default() };
     let share = mean(&hung, &drawn) / mean(&open, &drawn);
     assert!((share / expected - 1.0).abs().max_element() < 1e-3, "drawn: {share} {expected}");
+}
+
+#[test]
+fn glass_ware_under_a_lamp_and_the_sky_agrees_with_paths() {
+    // Solid balls, one in the other's light, on a floor before a wall.
+    let mut scene = scene(camera(Vec3::new(0.0, 1.2, 3.0), Vec3::new(0.0, 0.3, 0.0), 0.5), [16, 16]);
+    let floor = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.7, 0.6)));
+    let (black, clear) = (add_material(&mut scene, diffuse(Rgb::ZERO)), add_material(&mut scene, glass(1.5)));
+    scene.meshes.push(quad(Vec3::new(-4.0, 0.0, -1.5), Vec3::Z * 6.0, Vec3::X * 8.0, floor));
+    scene.meshes.push(quad(Vec3::new(-4.0, 0.0, -1.5), Vec3::X * 8.0, Vec3::Y * 3.0, floor));
+    for (centre, radius) in [
+        (Vec3::new(-0.5, 0.5, -0.2), 0.45),
+        (Vec3::new(0.6, 0.4, 0.3), 0.35),
+        (Vec3::new(0.1, 1.2, -0.4), 0.3),
+    ] {
+        scene.meshes.push(sphere(centre, radius, 32, clear));
+    }
+    let lamp = quad(Vec3::new(-0.2, 2.6, -0.4), Vec3::X * 0.6, Vec3::Z * 0.6, black);
+    scene.meshes.push(emitting(lamp, Rgb::new(12.0, 11.0, 9.0)));
+    scene.environment = Some(Environment::Constant(Rgb::new(0.2, 0.25, 0.3)));
+    let world = &world(scene);
+    assert_agreement(by_default(world), by_paths(world), "glass ware");
 }
 
 mod slow_methods {

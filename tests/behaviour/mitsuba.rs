@@ -105,10 +105,15 @@ fn picture(path: &Path, texels: [[u8; 3]; 4]) {
 
 /// Renders the scene with a material in both.
 fn agrees(name: &str, bsdf: &str) {
+    agrees_in(name, &SCENE.replace("BSDF", bsdf));
+}
+
+/// Renders a scene that may have the checkered texture in both.
+fn agrees_in(name: &str, scene: &str) {
     let folder = tempfile::tempdir().expect("a folder");
     let texels = [[230, 180, 130], [25, 50, 75], [25, 50, 75], [230, 180, 130]];
     picture(&folder.path().join("checker.png"), texels);
-    scene_agrees(name, folder.path(), &SCENE.replace("BSDF", bsdf));
+    scene_agrees(name, folder.path(), scene);
 }
 
 /// Renders a scene of a film of 24 by 24 pixels, whose files are in a folder, in both; asserts that the pictures pass
@@ -136,8 +141,51 @@ pub fn scene_agrees(name: &str, folder: &Path, scene: &str) {
     }
 }
 
+#[test]
+fn hidden_emitters_shine_and_are_not_seen() {
+    let integrator = "<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/>";
+    let scene = SCENE.replace("<integrator type=\"path\">", integrator);
+    // The lamp hangs in front of the blocks, and above the floor the sky is seen.
+    let scene = scene.replace("x=\"-0.6\" y=\"3.5\" z=\"0.8\"", "x=\"0.3\" y=\"1.8\" z=\"0.9\"");
+    let scene = scene.replace("target=\"0, 0.6, 0\"", "target=\"0, 1.5, 0\"");
+    let material = r#"<bsdf type="twosided" id="material"><bsdf type="diffuse"/></bsdf>"#;
+    agrees_in("hidden emitters", &scene.replace("BSDF", material));
+}
+
 mod slow_materials {
     use super::agrees;
+
+    #[test]
+    fn plain_ones() {
+        for (name, bsdf) in [
+            ("glass", r#"<bsdf type="dielectric" id="material"/>"#),
+            (
+                "pane",
+                r#"<bsdf type="thindielectric" id="material"><float name="int_ior" value="1.7"/></bsdf>"#,
+            ),
+        ] {
+            agrees(name, bsdf);
+        }
+        for (name, bsdf) in [
+            (
+                "brushed gold",
+                r#"<bsdf type="roughconductor"><string name="material" value="Au"/>
+                <string name="distribution" value="ggx"/><float name="alpha" value="0.2"/></bsdf>"#,
+            ),
+            (
+                "smooth plastic",
+                r#"<bsdf type="plastic"><rgb name="diffuse_reflectance" value="0.6, 0.2, 0.1"/>
+                <boolean name="nonlinear" value="true"/></bsdf>"#,
+            ),
+            (
+                "rough plastic",
+                r#"<bsdf type="roughplastic"><ref name="diffuse_reflectance" id="checker"/>
+                <float name="alpha" value="0.15"/></bsdf>"#,
+            ),
+        ] {
+            agrees(name, &format!("<bsdf type=\"twosided\" id=\"material\">{bsdf}</bsdf>"));
+        }
+    }
 
     #[test]
     fn masks() {

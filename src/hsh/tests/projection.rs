@@ -43,7 +43,8 @@ fn rough_plastic(alpha: f32, albedo: f32) -> Material {
 /// Several lobes over a base.
 fn principled(metallic: f32, sheen: f32) -> Material {
     let (metallic, sheen, base_color) = (metallic.into(), sheen.into(), constant(0.6));
-    let principled = Principled { metallic, sheen, base_color, roughness: 0.7.into(), ..Principled::default() };
+    let principled =
+        Principled { metallic, sheen, base_color, roughness: 0.7.into(), ..Principled::default() };
     Material { principled: Some(Box::new(principled)), ..lambert(0.0) }
 }
 

@@ -9,6 +9,7 @@ mod check;
 mod constants;
 pub(crate) mod error;
 mod gltf;
+mod layers;
 mod mesh;
 mod mitsuba;
 mod native;

@@ -107,6 +107,9 @@ fn check_size(width: usize, height: usize, bytes: &[u8]) -> Result<(), String> {
 }
 
 fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture, String> {
+    // The other signature of Radiance HDR, which Mitsuba writes and the decoder does not know.
+    let signed = bytes.strip_prefix(b"#?RGBE").map(|rest| [b"#?RADIANCE", rest].concat());
+    let bytes = signed.as_deref().unwrap_or(bytes);
     let mut reader =
         image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     if reader.format().is_none() {
@@ -233,6 +236,11 @@ mod tests {
         let sky = decode_file(&radiance(width, height), false, "sky.hdr").unwrap();
         assert_eq!((sky.width, sky.height), (width.into(), height));
         assert!((sky.texels.get(0, height - 1) - Rgb::new(1.0, 0.5, 0.25)).length() < 1e-2);
+        // Of either signature.
+        let small = radiance(8, 2);
+        let other = [b"#?RGBE", &small[b"#?RADIANCE".len()..]].concat();
+        let decoded = |bytes: &[u8]| decode_file(bytes, false, "sky.hdr").unwrap();
+        assert_eq!(decoded(&other), decoded(&small));
         // A claim that no file of this size can keep.
         let claims = String::from_utf8_lossy(&radiance(8, 1)).replace("-Y 1 +X 8", "-Y 16384 +X 16384");
         let message = decode_file(claims.as_bytes(), false, "sky.hdr").unwrap_err().to_string();

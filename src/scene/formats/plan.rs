@@ -30,6 +30,7 @@ pub(crate) struct Plan {
     pub generator: Option<String>,
     pub shot: Shot,
     pub max_depth: Option<u32>,
+    pub hides_emitters: bool,
     pub contents: Contents,
 }
 
@@ -235,6 +236,7 @@ impl Plan {
             sources,
             shot: self.shot,
             max_depth: self.max_depth,
+            hides_emitters: self.hides_emitters,
             meshes: meshes.into_iter().flatten().collect(),
             materials: contents.materials,
             material_places: contents.material_places,

@@ -31,8 +31,9 @@ fn draft(meshes: Vec<DraftMesh>, materials: Vec<Material>) -> Draft {
     Draft {
         name: "t".into(),
         sources: vec!["t.toml".into()],
-        shot: Shot { camera, fits: false, path: vec![], resolution: [1, 1] },
+        shot: Shot { camera, fits: false, path: vec![], resolution: [1, 1], crop: None },
         max_depth: None,
+        hides_emitters: false,
         meshes,
         materials,
         material_places: vec![],

@@ -55,7 +55,7 @@ impl Viewer<'_> {
         let resolution = lens.resolution();
         let still = self.camera(&self.tree[at].to_file, &lens, resolution)?;
         let path = self.path(at, &lens, resolution, report)?;
-        Ok(Some(Shot { camera: still, fits: false, path, resolution }))
+        Ok(Some(Shot { camera: still, fits: false, path, resolution, crop: None }))
     }
 
     /// One camera a frame, if an animation moves it.

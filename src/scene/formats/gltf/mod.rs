@@ -97,7 +97,7 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
         let forward = -framing::outlook(DVec3::Y);
         let right = forward.cross(DVec3::Y).normalize_or(DVec3::X);
         let camera = DraftCamera { forward, right, up: right.cross(forward), ..DraftCamera::default() };
-        Shot { camera, fits: true, path: Vec::new(), resolution: DEFAULT_RESOLUTION }
+        Shot { camera, fits: true, path: Vec::new(), resolution: DEFAULT_RESOLUTION, crop: None }
     });
     Ok(Plan {
         name: stem_of(path),
@@ -105,6 +105,7 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
         generator: None,
         shot,
         max_depth: None,
+        hides_emitters: false,
         contents,
     })
 }

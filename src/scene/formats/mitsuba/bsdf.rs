@@ -8,7 +8,9 @@ use super::bsdf_kinds::{diffuse, glass};
 use super::tree::Object;
 use crate::math::{Rgb, luminance};
 use crate::scene::formats::error::SceneError;
-use crate::scene::material::{Blend, Coat, Fresnel, Lobe, Material, MaterialId, Reflectance, Share};
+use crate::scene::formats::layers;
+use crate::scene::formats::layers::Surface;
+use crate::scene::material::{Fresnel, Lobe, Material, MaterialId, Reflectance, Share};
 use crate::scene::relief::Relief;
 use std::rc::Rc;
 
@@ -138,23 +140,13 @@ impl Converter<'_> {
             "coating" => Lobe::Mirror { fresnel, scale },
             _ => self.rough(bsdf, fresnel, scale)?,
         };
-        let mut nested = self.nested(bsdf, depth)?;
-        let transmits = |lobe: &Lobe| matches!(lobe, Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. });
-        let is_layered = nested.coat.is_some() || nested.principled.is_some() || nested.blend.is_some();
-        if is_layered || nested.lobes.iter().any(transmits) {
-            let what = "a coating of plastic, glass, principled materials or blends is not modelled";
-            self.log.warn(&bsdf.place, what, "it is left out")?;
+        let nested = self.nested(bsdf, depth)?;
+        let coats_before = nested.lobes.len();
+        let surface = Surface { eta, lobe: coat, through };
+        let nested = layers::coated(nested, surface, &bsdf.place, self.log)?;
+        if nested.lobes.len() == coats_before {
             return Ok(nested);
         }
-        let normal = 4.0 * eta / ((eta + 1.0) * (eta + 1.0));
-        for lobe in &mut nested.lobes {
-            if let Lobe::Rough { scale, .. } | Lobe::Mirror { scale, .. } = lobe {
-                *scale = scale.times(through * (normal * normal));
-            }
-        }
-        nested.diffuse = nested.diffuse.times(through);
-        nested.coat = Some(Coat { eta, nonlinear: true });
-        nested.lobes.insert(0, coat);
         let what =
             format!("the {} reflects light between it and what it covers as plastic does", bsdf.plugin);
         self.log.note(&bsdf.place, what, "the plugin itself does not");
@@ -170,23 +162,7 @@ impl Converter<'_> {
             return Err(bsdf.place.wrong(what, "nest two"));
         };
         let (first, other) = (self.material(first, depth + 1)?, self.material(second, depth + 1)?);
-        let is_based =
-            |material: &Material| material.principled.is_some() || material.diffuse != Reflectance::BLACK;
-        let coat = |material: &Material| (material.coat, material.principled.is_some());
-        if is_based(&first) && is_based(&other) && coat(&first) != coat(&other) {
-            let fallback = "that of the first is on both";
-            self.log.warn(&bsdf.place, "a blend of bases under different coats is not modelled", fallback)?;
-        }
-        for (is_left_out, what) in [
-            (first.blend.is_some(), "a blend as the first bsdf of a blend"),
-            (other.opacity.is_some() || other.relief.is_some(), "a mask or relief of the second bsdf"),
-        ] {
-            if is_left_out {
-                self.log.warn(&bsdf.place, format!("{what} is not modelled"), "it is left out")?;
-            }
-        }
-        let blend = Some(Box::new(Blend { weight, other }));
-        Ok(Material { blend, ..first })
+        layers::blended(weight, [first, other], &bsdf.place, self.log)
     }
 
     /// The nested bsdf with a relief.

@@ -28,21 +28,30 @@ impl Converter<'_> {
     pub(super) fn conductor(&mut self, bsdf: &Object, name: String) -> Result<Material, SceneError> {
         let scale = self.reflectance(bsdf, "specular_reflectance", 1.0)?;
         let preset = bsdf.string("material")?;
+        // 0.6: the index of what is outside, to which those of the metal are relative.
+        let outside = match bsdf.has("ext_eta") {
+            true => self.ior(bsdf, "ext_eta", "vacuum")?,
+            false => 1.0,
+        } as f32;
         let fresnel = if bsdf.has("eta") || bsdf.has("k") {
-            let eta = self.colour(bsdf, "eta")?.unwrap_or(Rgb::ZERO);
-            let k = self.colour(bsdf, "k")?.unwrap_or(Rgb::ONE);
-            // In 0.6 both are relative to the medium outside.
-            let outside = match bsdf.has("ext_eta") {
-                true => self.ior(bsdf, "ext_eta", "vacuum")?,
-                false => 1.0,
-            } as f32;
+            let mut constants = [Rgb::ZERO, Rgb::ONE];
+            for (name, constant) in ["eta", "k"].into_iter().zip(&mut constants) {
+                let given = self.colour(bsdf, name)?.unwrap_or(*constant);
+                *constant = given.max(Rgb::ZERO);
+                if given != *constant {
+                    // Colours of measured spectra outside Rec. 709.
+                    let what = format!("the conductor's {name} is {given}");
+                    self.log.warn(&bsdf.place, what, "it is clamped to 0")?;
+                }
+            }
+            let [eta, k] = constants;
             Fresnel::Conductor { eta: eta / outside, k: k / outside }
         } else {
             match preset.as_deref() {
                 None | Some("none") => Fresnel::One,
                 Some(preset) => {
                     let (eta, k) = check::conductor(preset, &bsdf.place)?;
-                    Fresnel::Conductor { eta, k }
+                    Fresnel::Conductor { eta: eta / outside, k: k / outside }
                 }
             }
         };
@@ -151,7 +160,8 @@ impl Converter<'_> {
             match (u, v) {
                 _ if u == v => u,
                 (Roughness::Constant(u), Roughness::Constant(v)) => {
-                    let fallback = "the geometric mean is used";
+                    let fallback = "the geometric mean is used, which reflects within 4 % as much, without \
+                                    the direction of highlights";
                     self.log.warn(&bsdf.place, "anisotropic roughness is not modelled", fallback)?;
                     Roughness::Constant((u * v).sqrt())
                 }

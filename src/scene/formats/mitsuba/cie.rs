@@ -39,6 +39,22 @@ pub(super) fn rgb_of_samples(samples: &[(f64, f64)], is_reflectance: bool) -> DV
     XYZ_TO_RGB * (sum / white)
 }
 
+/// Radiance of a black body in W/(sr m² nm), by wavelength; `temperature` in kelvin.
+///
+/// Source: Planck's law, with the constants of the SI.
+pub(super) fn blackbody(temperature: f64) -> Vec<(f64, f64)> {
+    const PLANCK: f64 = 6.62607015e-34;
+    const LIGHT_SPEED: f64 = 299_792_458.0;
+    const BOLTZMANN: f64 = 1.380649e-23;
+    let at = |row: usize| {
+        let wavelength = FIRST + SPACING * row as f64;
+        let metres = wavelength * 1e-9;
+        let exponent = PLANCK * LIGHT_SPEED / (metres * BOLTZMANN * temperature);
+        (wavelength, 2e-9 * PLANCK * LIGHT_SPEED * LIGHT_SPEED / (metres.powi(5) * exponent.exp_m1()))
+    };
+    (0..XYZ.len()).map(at).collect()
+}
+
 fn value(samples: &[(f64, f64)], wavelength: f64) -> f64 {
     let next = samples.partition_point(|sample| sample.0 <= wavelength);
     match (next.checked_sub(1).map(|i| samples[i]), samples.get(next)) {
@@ -113,6 +129,15 @@ mod tests {
         let strong = [(400.0, 0.2), (500.0, 0.3), (600.0, 8.0), (700.0, 0.6)];
         let light = rgb_of_samples(&strong, false);
         assert!((light - DVec3::new(9.31634, 3.46937, -0.308329)).length() < 2e-2, "{light}");
+        // By scalar_spectral, whose noise is half a per cent.
+        for (temperature, expected) in [
+            (3000.0, DVec3::new(732.9, 350.0, 110.6)),
+            (5000.0, DVec3::new(15233.0, 12106.0, 9457.5)),
+            (6500.0, DVec3::new(43801.0, 41497.0, 43015.0)),
+        ] {
+            let radiance = rgb_of_samples(&blackbody(temperature), false);
+            assert!((radiance / expected - 1.0).abs().max_element() < 0.02, "{radiance} {expected}");
+        }
         assert!((rgb_of_samples(&[(300.0, 1.0), (900.0, 1.0)], true) - DVec3::ONE).length() < 2e-3);
     }
 }

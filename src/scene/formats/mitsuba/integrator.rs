@@ -1,4 +1,4 @@
-//! The only property of the integrator that affects the expected image: the maximum path length.
+//! The maximum path length, beside `hide_emitters` the only property of the integrator that affects the expected image.
 
 use super::Converter;
 use super::tree::Object;
@@ -7,13 +7,6 @@ use crate::scene::formats::error::SceneError;
 impl Converter<'_> {
     /// Maximum path length in edges, `None` for no limit.
     pub(super) fn max_depth(&mut self, integrator: &Object) -> Result<Option<u32>, SceneError> {
-        if integrator.boolean("hide_emitters", false)? {
-            self.log.warn(
-                &integrator.place,
-                "hide_emitters is not modelled",
-                "emitters in view are shown",
-            )?;
-        }
         if integrator.plugin == "direct" {
             return Ok(Some(2));
         }

@@ -51,13 +51,13 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
     let shot = converter.shot(options.camera.as_deref());
     converter.report_instances();
     let (contents, read) = (converter.contents, converter.sources);
-    let (shot, max_depth) = log.conclude(shot)?;
+    let (shot, max_depth, hides_emitters) = log.conclude(shot)?;
     let stem = stem_of(path);
     let folder_name = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
     // Scene files are usually called scene.xml; then the folder's name is used.
     let name = if stem == "scene" { folder_name.unwrap_or(stem) } else { stem };
     let sources = document.sources.iter().cloned().chain(read).collect();
-    Ok(Plan { name, sources, generator: None, shot, max_depth, contents })
+    Ok(Plan { name, sources, generator: None, shot, max_depth, hides_emitters, contents })
 }
 
 struct Converter<'a> {

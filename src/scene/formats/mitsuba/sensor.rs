@@ -9,13 +9,14 @@ use glam::{DMat4, DVec3};
 use std::rc::Rc;
 
 impl Converter<'_> {
-    /// The sensor `wanted` (a number from 1, or an id), else the first, with its film, and the longest path.
-    pub(super) fn shot(&mut self, wanted: Option<&str>) -> Result<(Shot, Option<u32>), SceneError> {
+    /// The sensor `wanted` (a number from 1, or an id), else the first, with its film; the longest path; and whether
+    /// emitters in view are hidden.
+    pub(super) fn shot(&mut self, wanted: Option<&str>) -> Result<(Shot, Option<u32>, bool), SceneError> {
         let root = &self.document.root;
         let integrators = self.tagged(root, "integrator")?;
-        let max_depth = match integrators.first() {
-            Some(integrator) => self.max_depth(integrator)?,
-            None => None,
+        let (max_depth, hides_emitters) = match integrators.first() {
+            Some(integrator) => (self.max_depth(integrator)?, integrator.boolean("hide_emitters", false)?),
+            None => (None, false),
         };
         let sensors = self.tagged(root, "sensor")?;
         let sensor = chosen(&sensors, wanted, &root.place)?;
@@ -30,7 +31,7 @@ impl Converter<'_> {
                 return Err(sensor.place.wrong(what, "use type=\"perspective\""));
             }
         }
-        let (resolution, filter) = self.film(sensor)?;
+        let (resolution, crop, filter) = self.film(sensor)?;
         let to_world = sensor.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
         let aspect = f64::from(resolution[0]) / f64::from(resolution[1]);
         let near = sensor.positive("near_clip", 1e-2)?;
@@ -60,7 +61,7 @@ impl Converter<'_> {
         let camera = self.camera(&sensor.place, &to_world, projection)?;
         let camera = DraftCamera { tan_half_x, near, far, filter, ..camera };
         sensor.report_unused(self.log)?;
-        Ok((Shot { camera, fits: false, path: Vec::new(), resolution }, max_depth))
+        Ok((Shot { camera, fits: false, path: Vec::new(), resolution, crop }, max_depth, hides_emitters))
     }
 
     /// Place of a camera; Mitsuba's looks along +z with +x to the left.
@@ -95,10 +96,13 @@ impl Converter<'_> {
         Ok(DraftCamera { origin, forward, right, up, tan_half_x, near, far, projection, filter })
     }
 
-    /// Size of the film, and its filter.
-    fn film(&mut self, sensor: &Object) -> Result<([u32; 2], PixelFilter), SceneError> {
+    /// Size of the film, offset and size of its crop, and its filter.
+    fn film(
+        &mut self,
+        sensor: &Object,
+    ) -> Result<([u32; 2], Option<[[u32; 2]; 2]>, PixelFilter), SceneError> {
         let films = self.tagged(sensor, "film")?;
-        let Some(film) = films.first() else { return Ok(([768, 576], PixelFilter::GAUSSIAN)) };
+        let Some(film) = films.first() else { return Ok(([768, 576], None, PixelFilter::GAUSSIAN)) };
         let size = |name: &str, default: i64| {
             let value = film.integer(name)?.unwrap_or(default);
             let fits = u32::try_from(value).ok().filter(|v| (1..=65536).contains(v));
@@ -106,18 +110,27 @@ impl Converter<'_> {
             fits.ok_or_else(|| film.place.wrong(what, "give 1 to 65536"))
         };
         let resolution = [size("width", 768)?, size("height", 576)?];
-        for crop in ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"] {
-            if film.property(crop).is_some() {
-                self.log.warn(
-                    &film.place,
-                    "the film's crop is not taken over",
-                    "the whole film is rendered",
-                )?;
-            }
+        let names = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
+        let whole = [0, 0, resolution[0], resolution[1]];
+        let mut crop = whole;
+        for ((name, default), value) in names.into_iter().zip(whole).zip(&mut crop) {
+            let number = film.integer(name)?.unwrap_or(default.into());
+            let what =
+                || film.place.wrong(format!("the film's {name} is {number}"), "give pixels of the film");
+            *value = u32::try_from(number).map_err(|_| what())?;
         }
+        let [x, y, width, height] = crop;
+        let fits = |offset: u32, size: u32, film: u32| {
+            size > 0 && offset.checked_add(size).is_some_and(|end| end <= film)
+        };
+        if !(fits(x, width, resolution[0]) && fits(y, height, resolution[1])) {
+            let what = "the film's crop is empty or not on the film";
+            return Err(film.place.wrong(what, "keep crop_offset + crop size within the film's size"));
+        }
+        let crop = (crop != whole).then_some([[x, y], [width, height]]);
         let filters = self.tagged(film, "rfilter")?;
         let filter = filters.first().map_or(Ok(PixelFilter::GAUSSIAN), |filter| self.filter(filter))?;
-        Ok((resolution, filter))
+        Ok((resolution, crop, filter))
     }
 
     fn filter(&mut self, object: &Object) -> Result<PixelFilter, SceneError> {
@@ -132,6 +145,9 @@ impl Converter<'_> {
             },
             "tent" => PixelFilter::Tent { radius: object.positive("radius", 1.0)? as f32 },
             "gaussian" => PixelFilter::Gaussian { deviation: object.positive("stddev", 0.5)? as f32 },
+            "mitchell" => self.tent(object, 1.02, "a tenth"),
+            "catmullrom" => self.tent(object, 0.91, "a sixth"),
+            "lanczos" => self.tent(object, 0.91, "a third"),
             other => {
                 let what = format!("the film's reconstruction filter \"{other}\" is not modelled");
                 self.log.note(&object.place, what, "a Gaussian of deviation .5 stands in");
@@ -141,6 +157,16 @@ impl Converter<'_> {
         };
         object.report_unused(self.log)?;
         Ok(filter)
+    }
+
+    /// The tent that is nearest to a filter with negative lobes, which has no density, in the mean square over the
+    /// film; `distance` is relative to the filter's norm.
+    fn tent(&mut self, object: &Object, radius: f32, distance: &str) -> PixelFilter {
+        let what = format!("the film's reconstruction filter \"{}\" is not modelled", object.plugin);
+        let fallback = format!("a tent of radius {radius} stands in, {distance} from it in the mean square");
+        self.log.note(&object.place, what, fallback);
+        object.properties.iter().for_each(|property| property.used.set(true));
+        PixelFilter::Tent { radius }
     }
 }
 

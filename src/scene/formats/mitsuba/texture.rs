@@ -24,7 +24,15 @@ impl Converter<'_> {
 
     /// The same for light given off.
     pub(super) fn emissive_colour(&mut self, object: &Object, name: &str) -> Result<Option<Rgb>, SceneError> {
-        self.spectrum(object, name, true)
+        let colour = self.spectrum(object, name, true)?;
+        let object = if colour.is_none() { self.document.named(object, name)? } else { None };
+        match object.map(|object| Ok((self.texture(&object, 0)?, object))).transpose()? {
+            Some((Reflectance::Constant(colour), _)) => Ok(Some(colour)),
+            Some((Reflectance::Textured { .. }, object)) => Err(object
+                .place
+                .wrong(format!("a picture stands for \"{name}\""), "give an <rgb> or a <spectrum>")),
+            None => Ok(colour),
+        }
     }
 
     fn spectrum(&mut self, object: &Object, name: &str, emissive: bool) -> Result<Option<Rgb>, SceneError> {
@@ -113,6 +121,11 @@ impl Converter<'_> {
                     None => self.colour(object, "value")?,
                 };
                 Reflectance::Constant(value.unwrap_or(Rgb::ONE))
+            }
+            "blackbody" => {
+                let samples = cie::blackbody(object.positive("temperature", 5000.0)?);
+                let scale = object.float("scale")?.unwrap_or(1.0);
+                Reflectance::Constant(value::rgb(self.sampled(&samples, true, &object.place) * scale))
             }
             "scale" => self.scaled(object, depth)?,
             other => {

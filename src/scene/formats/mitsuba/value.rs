@@ -1,5 +1,6 @@
 //! Property values of Mitsuba XML: numbers, colours, vectors and transforms.
 
+use super::cie;
 use crate::math::Rgb;
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::picture::srgb_to_linear;
@@ -72,6 +73,20 @@ pub(super) fn parse(tag: &str, attributes: &Attributes, place: &Place) -> Result
                     place.wrong(format!("cannot read the spectrum \"{text}\""), remedy)
                 })?)
             }
+        }
+        "blackbody" => {
+            // 0.6
+            let read =
+                |name: &str| attributes.get(name).map(|text| number(text.trim_end_matches(['k', 'K'])));
+            let positive = |value: Option<f64>| value.filter(|value| *value > 0.0);
+            let temperature = read("temperature").and_then(positive);
+            let scale = read("scale").map_or(Some(1.0), positive);
+            let (Some(temperature), Some(scale)) = (temperature, scale) else {
+                let remedy = "give a temperature in kelvin, and a scale, above 0";
+                return Err(place.wrong("cannot read the black body", remedy));
+            };
+            let spectrum = cie::blackbody(temperature).into_iter();
+            Value::Samples(spectrum.map(|(wavelength, value)| (wavelength, scale * value)).collect())
         }
         "translate" | "rotate" | "scale" | "lookat" | "lookAt" | "matrix" => {
             let what = format!("<{tag}> stands outside a <transform>");

@@ -5,6 +5,8 @@ use super::text::{ColourText, FilterText, MapText, MaterialText, Number, NumberT
 use crate::math::Rgb;
 use crate::scene::formats::check;
 use crate::scene::formats::error::{Place, SceneError};
+use crate::scene::formats::layers;
+use crate::scene::formats::layers::Surface;
 use crate::scene::formats::plan::{Image, TexturePlan};
 use crate::scene::material::{
     Coat, Distribution, Fresnel, Lobe, Material, Parameter, Reflectance, Roughness, Share,
@@ -15,27 +17,81 @@ use crate::scene::texture::{Filter, TextureId, Wrap};
 use glam::{Mat3, Vec2};
 use toml::Spanned;
 
+/// Maximum number of materials in which a material stands, one in the other.
+const MAX_DEPTH: u32 = 8;
+
 impl Builder<'_> {
     pub(super) fn material(&mut self, text: &Spanned<MaterialText>) -> Result<(), SceneError> {
         let place = self.file.place(text.span());
+        let material = self.described(text, 0)?;
         let text = text.get_ref();
-        check_keys(text, &place)?;
-        let (diffuse, coat, lobe) = self.layers(text, &place)?;
-        let principled = (text.kind == "principled").then(|| self.principled(text, &place)).transpose()?;
-        let principled = principled.map(Box::new);
-        let two_sided = text.two_sided.unwrap_or(true);
-        let lobes = Vec::from_iter(lobe);
-        let opacity = text.opacity.clone().map(|opacity| self.share(opacity, &place));
-        let name = text.name.clone();
-        let relief = self.relief(text, &place)?;
-        let material =
-            Material { name, two_sided, diffuse, coat, lobes, opacity, principled, relief, blend: None };
         let id = self.contents.add_material(material, place.clone());
         if self.material_ids.insert(text.name.clone(), id).is_some() {
             let what = format!("there are two materials called \"{}\"", text.name);
             return Err(place.wrong(what, "rename one"));
         }
         Ok(())
+    }
+
+    /// The material of a description that so many others lead to.
+    fn described(&mut self, text: &Spanned<MaterialText>, depth: u32) -> Result<Material, SceneError> {
+        let place = self.file.place(text.span());
+        let text = text.get_ref();
+        check_keys(text, &place)?;
+        let nested = match text.kind.as_str() {
+            "blend" => Some(self.blended(text, depth, &place)?),
+            "coated" => Some(self.coated(text, depth, &place)?),
+            _ => None,
+        };
+        let material = match nested {
+            Some(nested) => Material { two_sided: text.two_sided.unwrap_or(nested.two_sided), ..nested },
+            None => {
+                let (diffuse, coat, lobe) = self.layers(text, &place)?;
+                let principled =
+                    (text.kind == "principled").then(|| self.principled(text, &place)).transpose()?;
+                let principled = principled.map(Box::new);
+                let (two_sided, lobes) = (text.two_sided.unwrap_or(true), Vec::from_iter(lobe));
+                Material { two_sided, diffuse, coat, lobes, principled, ..Material::default() }
+            }
+        };
+        let opacity = text.opacity.clone().map(|opacity| self.share(opacity, &place)).or(material.opacity);
+        let relief = self.relief(text, &place)?.or(material.relief);
+        Ok(Material { name: text.name.clone(), opacity, relief, ..material })
+    }
+
+    /// The material called `name`, which one at `place` is made of.
+    fn named(&mut self, name: &Option<String>, depth: u32, place: &Place) -> Result<Material, SceneError> {
+        if depth > MAX_DEPTH {
+            return Err(place.wrong("materials are made of each other", "break the circle"));
+        }
+        let Some(name) = name else {
+            let what = "a material lacks those that it is made of";
+            return Err(place.wrong(what, "name them: first and second of a blend, base of a coated one"));
+        };
+        let texts = self.material_texts;
+        let found = texts.iter().find(|text| text.get_ref().name == *name);
+        self.described(found.ok_or_else(|| place.undefined("material", name))?, depth + 1)
+    }
+
+    fn blended(&mut self, text: &MaterialText, depth: u32, place: &Place) -> Result<Material, SceneError> {
+        let materials = [self.named(&text.first, depth, place)?, self.named(&text.second, depth, place)?];
+        let weight = match text.weight.clone() {
+            Some(weight) => self.share(weight, place),
+            None => Share::Constant(0.5),
+        };
+        layers::blended(weight, materials, place, self.log)
+    }
+
+    fn coated(&mut self, text: &MaterialText, depth: u32, place: &Place) -> Result<Material, SceneError> {
+        let nested = self.named(&text.base, depth, place)?;
+        let eta = text.ior.map_or(1.5, f64::from) as f32;
+        let scale = self.colour(&text.specular.clone().unwrap_or(ColourText::Grey(Number(1.0))), place)?;
+        let fresnel = Fresnel::Dielectric(eta);
+        let lobe = match text.alpha {
+            None => Lobe::Mirror { fresnel, scale },
+            Some(_) => self.rough(text, fresnel, scale, place)?,
+        };
+        layers::coated(nested, Surface { eta, lobe, through: Rgb::ONE }, place, self.log)
     }
 
     fn layers(
@@ -258,8 +314,10 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
             "clearcoat",
             "clearcoat_gloss",
         ],
+        "blend" => &["first", "second", "weight"],
+        "coated" => &["base", "ior", "specular", "alpha", "distribution"],
         other => {
-            let remedy = "use diffuse, glossy, plastic, roughplastic, conductor, mirror, glass or principled";
+            let remedy = "use diffuse, glossy, plastic, roughplastic, conductor, mirror, glass, principled, blend or coated";
             return Err(place.wrong(format!("unknown kind of material \"{other}\""), remedy));
         }
     };
@@ -285,6 +343,10 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
         ("sheen_tint", text.sheen_tint.is_some()),
         ("clearcoat", text.clearcoat.is_some()),
         ("clearcoat_gloss", text.clearcoat_gloss.is_some()),
+        ("first", text.first.is_some()),
+        ("second", text.second.is_some()),
+        ("weight", text.weight.is_some()),
+        ("base", text.base.is_some()),
     ];
     check::keys(&format!("{} material", text.kind), known, &given, place)
 }

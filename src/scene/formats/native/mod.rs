@@ -20,7 +20,8 @@ use lightsplat_scenes::Part;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use text::SceneText;
+use text::{MaterialText, SceneText};
+use toml::Spanned;
 
 /// Reads the description at `path`.
 pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
@@ -60,11 +61,12 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     let mut sources = vec![(path.to_owned(), hash)];
     sources.append(&mut builder.sources);
     Ok(Plan {
-        name: scene.name.unwrap_or_else(|| stem_of(path)),
+        name: scene.name.clone().unwrap_or_else(|| stem_of(path)),
         sources,
-        generator: scene.generator.map(|g| g.into_inner()),
+        generator: scene.generator.as_ref().map(|g| g.get_ref().clone()),
         shot,
         max_depth,
+        hides_emitters: scene.hide_emitters.unwrap_or(false),
         contents: builder.contents,
     })
 }
@@ -94,13 +96,15 @@ struct Builder<'a> {
     /// Files read on the way (MTL), with their hashes.
     sources: Vec<(PathBuf, u64)>,
     material_ids: BTreeMap<String, MaterialId>,
+    /// All materials as described.
+    material_texts: &'a [Spanned<MaterialText>],
     /// Cameras of the first glTF model with one.
     model_shot: Option<Shot>,
     contents: Contents,
 }
 
 impl<'a> Builder<'a> {
-    fn new(file: File<'a>, log: &'a mut Log, scene: &SceneText) -> Result<Builder<'a>, SceneError> {
+    fn new(file: File<'a>, log: &'a mut Log, scene: &'a SceneText) -> Result<Builder<'a>, SceneError> {
         let mut parts = Vec::new();
         if let Some(name) = &scene.generator {
             let unknown = || file.place(name.span()).undefined("generator", name.get_ref());
@@ -114,6 +118,7 @@ impl<'a> Builder<'a> {
             parts,
             sources: Vec::new(),
             material_ids: BTreeMap::new(),
+            material_texts: &scene.material,
             model_shot: None,
             contents: Contents::default(),
         })

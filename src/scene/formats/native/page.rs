@@ -153,7 +153,13 @@ fn kind_templates(heading: &str, list: &str) -> Vec<(String, String, Vec<Row>)> 
     let template = |(kind, rows): (String, Vec<Row>)| {
         let name = if list == "material" { "name = \"m\", " } else { "" };
         let preset = if kind == "conductor" { "preset = \"Au\", " } else { "" };
-        (format!("{heading}: {kind}"), format!("{list} = [{{ {name}kind = \"{kind}\", {preset}@ }}]"), rows)
+        // The sample of a text is the name of a material, too.
+        let other = match list {
+            "material" => "{ name = \"a.png\", kind = \"mirror\" }, ",
+            _ => "",
+        };
+        let text = format!("{list} = [{other}{{ {name}kind = \"{kind}\", {preset}@ }}]");
+        (format!("{heading}: {kind}"), text, rows)
     };
     kinds(heading).into_iter().map(template).collect()
 }

@@ -25,6 +25,32 @@ fn load_text(text: &str) -> Result<Loaded, String> {
 }
 
 #[test]
+fn materials_are_made_of_others() {
+    let layered = "[[material]]\nname = \"both\"\nkind = \"blend\"\nfirst = \"wet\"\nsecond = \"steel\"\nweight = 0.3\n\
+        [[material]]\nname = \"wet\"\nkind = \"coated\"\nbase = \"m\"\nior = 1.3\nspecular = 0.9\n\
+        [[material]]\nname = \"steel\"\nkind = \"conductor\"\npreset = \"Cr\"\ntwo_sided = false\n\
+        [[material]]\nname = \"hole\"\nkind = \"coated\"\nbase = \"steel\"\nalpha = 0.2\nopacity = 0.5\n";
+    let loaded = load_text(&format!("{HEAD}{GREY}{layered}{SKY}")).unwrap();
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    let [grey, both, wet, steel, hole] = &loaded.scene.materials[..] else { panic!() };
+    assert_eq!((wet.diffuse, wet.coat.map(|coat| coat.eta)), (grey.diffuse, Some(1.3)));
+    assert!(matches!(wet.lobes[..], [Lobe::Mirror { fresnel: Fresnel::Dielectric(1.3), .. }]));
+    let blend = both.blend.as_ref().unwrap();
+    assert_eq!((&both.lobes, both.coat, blend.weight), (&wet.lobes, wet.coat, 0.3.into()));
+    assert_eq!(blend.other, *steel);
+    assert_eq!((hole.two_sided, hole.opacity, hole.lobes.len()), (false, Some(0.5.into()), 2));
+    for (wrong, message) in [
+        ("kind = \"coated\"\nbase = \"x\"", "made of each other"),
+        ("kind = \"blend\"\nfirst = \"m\"\nsecond = \"y\"", "\"y\""),
+        ("kind = \"blend\"\nfirst = \"m\"", "name them"),
+    ] {
+        let error =
+            load_text(&format!("{HEAD}{GREY}[[material]]\nname = \"x\"\n{wrong}\n{SKY}")).unwrap_err();
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+#[test]
 fn every_kind_of_material_light_and_step_is_read() {
     let text = r#"
         name = "all"

@@ -11,6 +11,7 @@ pub(super) struct SceneText {
     pub name: Option<String>,
     pub generator: Option<Spanned<String>>,
     pub max_depth: Option<Spanned<u32>>,
+    pub hide_emitters: Option<bool>,
     pub resolution: Option<Spanned<Row<u32, 2>>>,
     pub camera: Option<Spanned<CameraText>>,
     #[serde(default)]
@@ -139,6 +140,10 @@ pub(super) struct MaterialText {
     pub sheen_tint: Option<NumberText>,
     pub clearcoat: Option<NumberText>,
     pub clearcoat_gloss: Option<Number>,
+    pub first: Option<String>,
+    pub second: Option<String>,
+    pub weight: Option<NumberText>,
+    pub base: Option<String>,
 }
 
 /// A colour: the same in every place that takes one.
