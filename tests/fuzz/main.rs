@@ -2,9 +2,9 @@
 //! bounds.
 //!
 //! Cases follow from their number. `cargo test --test fuzz` tries some hundreds of every target; with
-//! `FUZZ_SECONDS=3600` in the environment a target goes on for so long, from case `FUZZ_FIRST`, and says how many it
-//! tried. Files that fail go to `tests/scenes/fuzzed`, whose files are tried in every run. A case that ends the
-//! process, for it takes more than [`MAX_BYTES`] or [`MAX_SECONDS`], is left in `target/tmp/fuzz`.
+//! `FUZZ_SECONDS=3600` in the environment a target goes on for so much processor time, from case `FUZZ_FIRST`, and says
+//! how many it tried. Files that fail go to `tests/scenes/fuzzed`, whose files are tried in every run. A case that ends
+//! the process, for it takes more than [`MAX_BYTES`] or [`MAX_SECONDS`], is left in `target/tmp/fuzz`.
 
 mod mutate;
 mod seeds;
@@ -12,6 +12,7 @@ mod sound;
 mod target;
 
 use cap::Cap;
+use lightsplat::stats::{StageTime, Stopwatch};
 use mutate::{Random, mutate};
 use seeds::corpus;
 use std::alloc::System;
@@ -22,13 +23,15 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use target::Workplace;
 
 /// Maximum memory of all cases at hand, of which there is one a thread.
 const MAX_BYTES: usize = 3 << 30;
-/// Maximum time of a case, on a machine that does other things as well.
-const MAX_SECONDS: u64 = 60;
+/// Maximum time of a case, elapsed and of the processor.
+const MAX_SECONDS: f64 = 60.0;
+/// Maximum elapsed time of a case, where the machine does other things.
+const MAX_ELAPSED_SECONDS: f64 = 600.0;
 
 #[global_allocator]
 static MEMORY: Cap<System> = Cap::new(System, MAX_BYTES);
@@ -70,13 +73,14 @@ fn watch(folder: PathBuf) -> Arc<AtomicU64> {
     let begun = Arc::new(AtomicU64::new(0));
     let shared = Arc::downgrade(&begun);
     thread::spawn(move || {
-        let (mut last, mut since) = (0, Instant::now());
+        let (mut last, mut since) = (0, Stopwatch::start());
         while let Some(begun) = shared.upgrade() {
             let now = begun.load(Ordering::Relaxed);
             if now != last {
-                (last, since) = (now, Instant::now());
+                (last, since) = (now, Stopwatch::start());
             }
-            if since.elapsed() > Duration::from_secs(MAX_SECONDS) {
+            let StageTime { wall_seconds, cpu_seconds } = since.elapsed();
+            if wall_seconds.min(cpu_seconds) > MAX_SECONDS || wall_seconds > MAX_ELAPSED_SECONDS {
                 eprintln!("case {now} takes too long; it is in {}", folder.display());
                 std::process::abort();
             }
@@ -98,11 +102,11 @@ fn fuzz(target: &str, count: u64) {
     let (seconds, first) = (number("FUZZ_SECONDS"), number("FUZZ_FIRST").unwrap_or(0));
     let name = format!("{target}-{first}");
     let workplace = Workplace::new(Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz").join(&name));
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let begun = watch(workplace.case("*"));
     let mut failed: BTreeMap<String, String> = BTreeMap::new();
     let is_wanted = |case: u64| match seconds {
-        Some(seconds) => start.elapsed().as_secs() < seconds,
+        Some(seconds) => start.elapsed().cpu_seconds < seconds as f64,
         None => case < first + count,
     };
     let (mut case, mut loaded) = (first, 0);
@@ -125,8 +129,10 @@ fn fuzz(target: &str, count: u64) {
         case += 1;
     }
     if seconds.is_some() {
-        let (count, seconds) = (case - first, start.elapsed().as_secs_f64());
-        eprintln!("{target}: {count} cases from {first}, of which {loaded} load, in {seconds:.0} s");
+        let (count, seconds) = (case - first, start.elapsed().cpu_seconds);
+        eprintln!(
+            "{target}: {count} cases from {first}, of which {loaded} load, in {seconds:.0} s of the processor"
+        );
     }
     let _ = fs::remove_dir_all(workplace.case("").parent().unwrap());
     assert!(failed.is_empty(), "{failed:#?}");

@@ -1,5 +1,7 @@
 //! Changes of files: of bits, numbers, words and runs of bytes.
 
+use std::ops::Range;
+
 /// Numbers that readers meet seldom.
 const NUMBERS: [&str; 24] = [
     "0",
@@ -56,10 +58,19 @@ impl Random {
     }
 }
 
-/// Changes `bytes` in one to four places; runs may come from `other`.
+/// Changes `bytes`: mostly one number, so that many files load yet; else one to four places of any kind, with runs
+/// of `other`.
 pub fn mutate(bytes: &[u8], other: &[u8], random: &mut Random) -> Vec<u8> {
     let mut changed = bytes.to_vec();
     let is_text = std::str::from_utf8(bytes).is_ok();
+    if random.below(5) > 0 {
+        if is_text {
+            change_number(&mut changed, random);
+        } else if !bytes.is_empty() {
+            changed[random.below(bytes.len())] ^= 1 << random.below(8);
+        }
+        return changed;
+    }
     for _ in 0..=random.below(8) / 2 {
         if is_text && random.below(4) > 0 {
             change_text(&mut changed, other, random);
@@ -105,6 +116,35 @@ fn change_bytes(bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
     }
 }
 
+/// Changes a number of a text to one of its kind.
+fn change_number(bytes: &mut Vec<u8>, random: &mut Random) {
+    let is_word = |b: u8| b.is_ascii_alphanumeric() || b"_.+-#".contains(&b);
+    let is_number = |run: &Range<usize>| {
+        std::str::from_utf8(&bytes[run.clone()])
+            .is_ok_and(|text| text.parse::<f64>().is_ok_and(f64::is_finite))
+    };
+    let numbers: Vec<_> = runs(bytes, is_word).into_iter().filter(is_number).collect();
+    if numbers.is_empty() {
+        return;
+    }
+    let place = random.pick(&numbers).clone();
+    let own = String::from_utf8_lossy(&bytes[place.clone()]).into_owned();
+    let new = match random.below(8) {
+        0 | 1 => {
+            // Another digit.
+            let digits: Vec<usize> =
+                own.bytes().enumerate().filter(|(_, b)| b.is_ascii_digit()).map(|d| d.0).collect();
+            let at = *random.pick(&digits);
+            format!("{}{}{}", &own[..at], random.below(10), &own[at + 1..])
+        }
+        2 => own.strip_prefix('-').map_or_else(|| format!("-{own}"), str::to_owned),
+        3 | 4 if !own.contains(['e', 'E']) => format!("{own}e{}", random.below(31) as i32 - 15),
+        3..=6 => String::from_utf8_lossy(&bytes[random.pick(&numbers).clone()]).into_owned(),
+        _ => (*random.pick(&NUMBERS)).to_owned(),
+    };
+    bytes.splice(place, new.into_bytes());
+}
+
 fn change_text(bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
     let is_number = |b: u8| b.is_ascii_digit() || b == b'.' || b == b'-';
     let is_word = |b: u8| b.is_ascii_alphanumeric() || b == b'_';
@@ -144,8 +184,8 @@ fn change_text(bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
 }
 
 /// Longest runs of bytes of a kind.
-fn runs(bytes: &[u8], is_in: impl Fn(u8) -> bool) -> Vec<std::ops::Range<usize>> {
-    let mut runs: Vec<std::ops::Range<usize>> = Vec::new();
+fn runs(bytes: &[u8], is_in: impl Fn(u8) -> bool) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
     for at in (0..bytes.len()).filter(|&at| is_in(bytes[at])) {
         match runs.last_mut() {
             Some(run) if run.end == at => run.end = at + 1,
