@@ -6,7 +6,8 @@
 //! Network and weights: Open Image Denoise's filter `RT` for high dynamic range, of highest quality.
 //! Deviations: pictures less than [`MIN_SIDE`] pixels wide or high are continued by their edges up to that, since the
 //! network darkens them; black ones stay black.
-//! Units: radiance as in the picture, whatever its scale; the filter finds the exposure by itself.
+//! Units: radiance as in the picture, whatever its scale; the filter finds the exposure by itself, but for pictures far
+//! from ordinary brightness, which it would take for black: those are brought there by a power of two.
 
 pub mod guides;
 
@@ -79,20 +80,28 @@ impl Denoiser {
         };
         let albedo = guide(guides.albedo, "albedo", 0.0)?;
         let normal = guide(guides.normal, "normal", -1.0)?;
+        let scale = scale(&noisy);
         let clean = self.device.denoise(&oidn::Picture {
             size: [width, height],
-            color: &continued(&noisy, [width, height], |p| p),
+            color: &continued(&noisy, [width, height], |p| p * scale),
             albedo: albedo.as_deref(),
             normal: normal.as_deref(),
             clean_guides: guides.noise_free,
         })?;
         let rows = clean.chunks_exact(width).take(color.height as usize);
-        let clean = rows.flat_map(|row| &row[..color.width as usize]).map(|&p| Rgb::from(p));
+        let clean = rows.flat_map(|row| &row[..color.width as usize]).map(|&p| Rgb::from(p) / scale);
         // The network's own limits are far off; a picture must be finite even there.
         let finite = |(p, noisy): (Rgb, &Rgb)| if p.is_finite() { p.max(Rgb::ZERO) } else { *noisy };
         let pixels = clean.zip(&noisy.pixels).map(finite).collect();
         Ok(Image { pixels, ..noisy })
     }
+}
+
+/// Power of two that brings a picture to ordinary brightness; 1 if it is there, so that its bits stay.
+fn scale(image: &Image) -> f32 {
+    let sum: f64 = image.pixels.iter().map(|p| p.as_dvec3().element_sum()).sum();
+    let exponent = (sum / (3 * image.pixels.len()) as f64).log2().floor().clamp(-120.0, 120.0);
+    if (-10.0..20.0).contains(&exponent) { 1.0 } else { (-exponent).exp2() as f32 }
 }
 
 /// The image as three floats a pixel, continued to the right and downwards by its last column and row.

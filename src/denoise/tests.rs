@@ -81,3 +81,16 @@ fn any_number_of_threads_gives_the_same_bits() {
     });
     assert!(clean[0] == clean[1] && clean[0] == clean[2]);
 }
+
+#[test]
+fn faint_and_bright_pictures_are_denoised_as_others() {
+    let Some(denoiser) = denoiser() else { return };
+    let ordinary = denoiser.denoise(&noisy(70, 66, 1.0), &Guides::default()).unwrap();
+    for exponent in [-120, -60, -20, -9, 19, 60, 120] {
+        let factor = 2f32.powi(exponent);
+        let clean = denoiser.denoise(&noisy(70, 66, factor), &Guides::default()).unwrap();
+        for (p, q) in clean.pixels.iter().zip(&ordinary.pixels) {
+            assert!((*p / factor - *q).abs().max_element() < 0.01, "{p} {q} {factor}");
+        }
+    }
+}
