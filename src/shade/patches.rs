@@ -45,17 +45,16 @@ pub(super) fn next_group(
     group.clear();
     let Some(&first) = left.first() else { return false };
     let place = |point: u32| place(&points.geometry[point as usize]);
+    let joins = |point: &u32| CoherenceLimit::CLOSE.holds(diagonal, place(first), place(*point));
+    let count = left.iter().filter(|point| joins(point)).take(LANES).count();
+    let count = if settings.shares(count) { count } else { 1 };
     left.retain(|&point| {
-        let joins = group.len() < LANES && CoherenceLimit::CLOSE.holds(diagonal, place(first), place(point));
+        let joins = group.len() < count && (point == first || joins(&point));
         if joins {
             group.push(ShadingTask::all(point));
         }
         !joins
     });
-    if !settings.shares(group.len()) {
-        left.extend(group.drain(1..).map(|task| task.point));
-        left.sort_unstable();
-    }
     true
 }
 

@@ -5,6 +5,7 @@ use super::{Gatherers, ShadeSettings, Shaded, ShadingContext, ShadingTask};
 use crate::bias_compensation::points::CompensationCounts;
 use crate::eye::ShadingPoints;
 use crate::lightcut::CutCounts;
+use crate::progress::Control;
 use crate::shadow::{Engine, ShadowCounts};
 use crate::stats::add_fields;
 use std::mem::take;
@@ -56,13 +57,19 @@ impl<'c, 'w> Shader<'c, 'w> {
         self.gatherers.shade(self.context, &self.shadows, points, patch, self.settings, shaded);
     }
 
-    /// Shades all light of some points, in groups of up to sixteen that share a cut, and calls `shaded` with each.
-    pub fn shade_all(&mut self, points: &ShadingPoints<'w>, mut shaded: impl FnMut(ShadingTask, Shaded)) {
+    /// Shades all light of some points, in groups of up to sixteen that share a cut, and calls `shaded` with each; no
+    /// more of them once cancelled.
+    pub fn shade_all(
+        &mut self,
+        points: &ShadingPoints<'w>,
+        control: &Control,
+        mut shaded: impl FnMut(ShadingTask, Shaded),
+    ) {
         let (mut left, mut group) = (take(&mut self.left), take(&mut self.group));
         left.clear();
         left.extend(0..points.len() as u32);
         let diagonal = self.context.world.diagonal;
-        while next_group(points, self.settings, diagonal, &mut left, &mut group) {
+        while !control.is_cancelled() && next_group(points, self.settings, diagonal, &mut left, &mut group) {
             self.shade(points, &group, &mut shaded);
         }
         (self.left, self.group) = (left, group);

@@ -5,6 +5,7 @@
 use crate::eye::{ChainCounts, EyeRays, VisibleSurfaces};
 use crate::film::Window;
 use crate::math::Rgb;
+use crate::progress::Control;
 use crate::shade::{Shader, ShadingCounts};
 use std::mem::take;
 
@@ -19,6 +20,7 @@ pub struct Tiles<'a, 'w> {
     pub window: &'a Window,
     /// Eye rays a pixel.
     pub spp: u32,
+    pub control: &'a Control,
 }
 
 /// A tile's pixels in the window, and the work done for them.
@@ -33,24 +35,27 @@ pub struct Tile {
 }
 
 impl<'w> Tiles<'_, 'w> {
-    /// Shades the tile whose first film pixel is `corner`.
+    /// Shades the tile whose first film pixel is `corner`; `None` once cancelled.
     pub fn shade(
         &self,
         corner: [u32; 2],
         shader: &mut Shader<'_, 'w>,
         seen: &mut VisibleSurfaces<'w>,
-    ) -> Tile {
+    ) -> Option<Tile> {
         let mut tile = Tile::default();
         shader.begin_chunk();
         for y in (corner[1]..corner[1] + TILE).step_by(BLOCK as usize) {
             for x in (corner[0]..corner[0] + TILE).step_by(BLOCK as usize) {
                 self.block([x, y], shader, seen, &mut tile);
+                if self.control.is_cancelled() {
+                    return None;
+                }
             }
         }
         tile.counts = shader.take_counts();
         tile.chains = take(&mut seen.chains);
         tile.nonfinite += take(&mut seen.nonfinite);
-        tile
+        Some(tile)
     }
 
     fn block(
@@ -75,7 +80,7 @@ impl<'w> Tiles<'_, 'w> {
         for &(ray, emitted) in &seen.known {
             rays[ray as usize].0 = emitted;
         }
-        shader.shade_all(&seen.points, |task, shaded| {
+        shader.shade_all(&seen.points, self.control, |task, shaded| {
             let sample = &seen.visibility[task.point as usize];
             let (radiance, clusters) = &mut rays[sample.pixel as usize];
             *radiance += sample.weight * shaded.radiance;

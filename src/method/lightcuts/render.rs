@@ -57,7 +57,8 @@ impl Renderer for Settings {
         let context = lights.context(world, self.compensation);
         let shading = ShadeSettings { cut: self.cut, share: self.share, shadows: self.shadows };
         let eye = self.sampling().eye(&world.scene);
-        let tiles = Tiles { rays: EyeRays::new(world, view, eye), window: &view.window, spp: eye.spp };
+        let tiles =
+            Tiles { rays: EyeRays::new(world, view, eye), window: &view.window, spp: eye.spp, control };
 
         let corners: Vec<[u32; 2]> = view.window.film_squares(TILE).collect();
         control.begin(Stage::Render, corners.len() as u64);
@@ -67,7 +68,7 @@ impl Renderer for Settings {
                 if control.is_cancelled() {
                     return None;
                 }
-                let tile = tiles.shade(corner, shader, seen);
+                let tile = tiles.shade(corner, shader, seen)?;
                 control.advance(1);
                 Some(tile)
             });
