@@ -8,7 +8,7 @@ use super::exit::Failure;
 use super::job::RenderJob;
 use super::scene::{self, Opened};
 use super::walk_job::WalkJob;
-use super::{interrupt, render, talk, threads, walk};
+use super::{batch_outputs, interrupt, render, talk, threads, walk};
 use crate::progress::Control;
 use crate::stats::Stopwatch;
 use anyhow::{Context, anyhow};
@@ -24,6 +24,7 @@ pub fn run(args: BatchArgs) -> Result<(), Failure> {
     for path in &args.jobs {
         entries.extend(batch_file::read(path, more)?);
     }
+    batch_outputs::check_apart(&entries)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     let pool = threads::pool(threads::count(args.threads))?;

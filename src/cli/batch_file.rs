@@ -16,7 +16,7 @@ use std::ffi::OsString;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use toml::{Table, Value};
+use toml::{Spanned, Table, Value};
 
 /// Options of the batch, not of a picture.
 const OF_THE_BATCH: [&str; 2] = ["threads", "progress"];
@@ -28,6 +28,17 @@ struct JobFile {
     #[serde(default)]
     options: Table,
     picture: Vec<PictureTable>,
+}
+
+/// Outputs alone, with their places, which are lost where options stand beside them.
+#[derive(Deserialize)]
+struct Outputs {
+    picture: Vec<OutputTable>,
+}
+
+#[derive(Deserialize)]
+struct OutputTable {
+    output: Spanned<PathBuf>,
 }
 
 #[derive(Deserialize)]
@@ -48,6 +59,8 @@ pub struct Entry {
     pub reading: LoadOptions,
     /// Files to write.
     pub output: PathBuf,
+    /// Job file, and line of the output in it.
+    pub place: String,
     arguments: Vec<OsString>,
 }
 
@@ -65,15 +78,24 @@ impl Entry {
 pub fn read(path: &Path, more: &[&str]) -> Result<Vec<Entry>, Failure> {
     let text = read_regular(path).and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other));
     let text = text.with_context(|| format!("cannot read {}", path.display())).map_err(Failure::input)?;
-    let file: JobFile = toml::from_str(&text)
-        .map_err(|error| Failure::input(anyhow!("{}: {}", path.display(), error.to_string().trim_end())))?;
+    let wrong = |error: toml::de::Error| {
+        Failure::input(anyhow!("{}: {}", path.display(), error.to_string().trim_end()))
+    };
+    let file: JobFile = toml::from_str(&text).map_err(wrong)?;
+    let outputs: Outputs = toml::from_str(&text).map_err(wrong)?;
+    let places = outputs.picture.iter().map(|picture| {
+        let before = text.get(..picture.output.span().start).unwrap_or_default();
+        format!("{}, line {}", path.display(), 1 + before.matches('\n').count())
+    });
     let folder = path.parent().unwrap_or(Path::new(""));
     file.picture
         .into_iter()
-        .map(|picture| {
+        .zip(places)
+        .map(|(picture, place)| {
             let mut options = file.options.clone();
             options.extend(picture.options);
             entry(folder.join(picture.scene), folder.join(picture.output), &options, more)
+                .map(|entry| Entry { place, ..entry })
                 .map_err(|error| error.within(path))
         })
         .collect()
@@ -93,7 +115,7 @@ fn entry(scene: PathBuf, output: PathBuf, options: &Table, more: &[&str]) -> Res
         arguments.extend(option(name, value).ok_or_else(refuse)?.into_iter().map(OsString::from));
     }
     arguments.extend(more.iter().map(OsString::from));
-    let mut entry = Entry { scene, reading: LoadOptions::default(), output, arguments };
+    let mut entry = Entry { scene, reading: LoadOptions::default(), output, place: String::new(), arguments };
     entry.reading = match entry.command()? {
         Command::Render(args) => args.picture.reading.options(),
         Command::Walk(args) => args.picture.reading.options(),

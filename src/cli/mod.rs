@@ -6,6 +6,7 @@
 mod args;
 mod batch;
 mod batch_file;
+mod batch_outputs;
 mod bench;
 mod bench_args;
 mod compare;

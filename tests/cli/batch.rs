@@ -121,3 +121,27 @@ fn wrong_job_files_are_errors_before_anything_is_rendered() {
     let sandbox = Sandbox::new();
     assert!(batch(&sandbox, &[]).expect(3).stderr.contains("cannot read jobs.toml"));
 }
+
+#[test]
+fn two_entries_that_would_write_one_file_are_refused_with_their_lines() {
+    let head = "options = { method = 'path', spp = 1, resolution = '8x8' }\n";
+    let entry = |output: &str, frames: &str| {
+        let scene = if output.contains('#') { "path.toml" } else { "room.xml" };
+        format!("[[picture]]\nscene = '{scene}'\noutput = '{output}'\n{frames}\n")
+    };
+    let jobs = |entries: [(&str, &str); 2]| {
+        head.to_owned() + &entries.map(|(output, frames)| entry(output, frames)).concat()
+    };
+    for entries in [
+        [("a.exr", ""), ("out/../a.exr", "")],
+        [("w.##.exr", "frames = '1-3'"), ("w.##.exr", "frames = '3-4'")],
+        [("w.##.exr", "frames = '4'"), ("w.##.exr", "")],
+        [("w.##.exr", "frames = '1'"), ("w.01.exr", "")],
+    ] {
+        let sandbox = sandbox(&jobs(entries));
+        let stderr = batch(&sandbox, &[]).expect(2).stderr;
+        assert!(stderr.contains("line 4") && stderr.contains("line 8"), "{stderr}");
+    }
+    let apart = [("w.##.exr", "frames = '1'"), ("w.##.exr", "frames = '2'")];
+    batch(&sandbox(&jobs(apart)), &[]).expect(0);
+}
