@@ -9,6 +9,7 @@ mod bounds;
 mod bsdf;
 mod document;
 pub mod export;
+mod extremes;
 mod hsh;
 mod measure;
 mod race;
@@ -55,13 +56,23 @@ pub enum Kind {
         /// Function that studies scene files.
         run: fn(&Study, &[PathBuf]) -> Result<Results, StudyError>,
     },
+    /// Whole pictures of scenes that the study makes.
+    OwnScenes {
+        /// Default width and height of the pictures.
+        pixels: [u32; 2],
+        /// Default number of seeds of every picture.
+        repeats: usize,
+        /// Function that studies them.
+        run: fn(&Study) -> Result<Results, StudyError>,
+    },
 }
 
 /// All benchmarks.
-pub const REGISTRY: [Benchmark; 8] = [
+pub const REGISTRY: [Benchmark; 9] = [
     table1::BENCHMARK,
     trade::BENCHMARK,
     race::BENCHMARK,
+    extremes::BENCHMARK,
     shadow::BENCHMARK,
     bounds::BENCHMARK,
     trees::BENCHMARK,
@@ -105,7 +116,7 @@ impl Benchmark {
     /// Returns the name of its operand in the usage.
     pub fn operand(&self) -> &'static str {
         match self.kind {
-            Kind::Parts { needs_scene: false, .. } => "",
+            Kind::Parts { needs_scene: false, .. } | Kind::OwnScenes { .. } => "",
             Kind::Parts { needs_scene: true, .. } => " SCENE",
             Kind::Study { scenes: [], .. } => " SCENE...",
             Kind::Study { .. } => " [SCENE...]",

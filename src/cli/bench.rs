@@ -18,7 +18,7 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
     };
     let name = benchmark.name;
     let (needs_scene, measure) = match benchmark.kind {
-        Kind::Study { .. } => return study::run(benchmark, args),
+        Kind::Study { .. } | Kind::OwnScenes { .. } => return study::run(benchmark, args),
         Kind::Parts { needs_scene, run } => (needs_scene, run),
     };
     let remedy = match (needs_scene, args.scenes.len()) {

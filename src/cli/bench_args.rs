@@ -20,8 +20,8 @@ pub struct BenchArgs {
     /// Threads where all are used [default: all processors]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
-    /// Samples of every case, taken in turns; runs of every picture, of which the fastest counts [default: 7;
-    /// studies: 1]
+    /// Samples of every case, taken in turns; runs of every picture, of which the fastest counts; seeds, for
+    /// `extremes` [default: 7; studies: 1; extremes: 4]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub repeats: Option<u32>,
     /// How long a sample lasts at least, about [default: 0.05]
@@ -67,7 +67,7 @@ pub struct StudyArgs {
     /// Points of the designed sample over all settings, for `trade` [default: 32]
     #[arg(long, value_name = "N")]
     pub samples: Option<u32>,
-    /// Vary only this setting in `trade`, once for each; a wrong name lists them
+    /// Vary only this setting in `trade`, or take only this to its `extremes`, once for each; a wrong name lists them
     #[arg(long = "knob", value_name = "NAME")]
     pub knobs: Vec<String>,
 }
@@ -100,7 +100,7 @@ mod tests {
         let defaults = Settings::default();
         let reference = ReferenceSettings::default();
         for (option, default) in [
-            ("repeats", format!("{}; studies: 1", defaults.repeats)),
+            ("repeats", format!("{}; studies: 1; extremes: 4", defaults.repeats)),
             ("seconds", defaults.seconds.to_string()),
             ("reference-spp", reference.spp.to_string()),
             ("reference-seconds", reference.seconds.to_string()),

@@ -4,7 +4,7 @@ use super::bench_args::BenchArgs;
 use super::exit::Failure;
 use super::files::write;
 use super::{interrupt, talk, threads};
-use crate::bench::study::{Plan, ReferenceSettings, SAMPLES, Study, StudyError, file_of};
+use crate::bench::study::{Plan, ReferenceSettings, Results, SAMPLES, Study, StudyError, file_of};
 use crate::bench::{Benchmark, Kind};
 use crate::progress::Control;
 use crate::session::OpenError;
@@ -12,22 +12,34 @@ use anyhow::{Context as _, anyhow};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// Function that renders and judges the pictures of a study.
+type Render = Box<dyn Fn(&Study) -> Result<Results, StudyError> + Send + Sync>;
+
 /// Runs the study.
 pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     let name = benchmark.name;
-    let Kind::Study { scenes, pixels, run } = benchmark.kind else {
-        return Err(Failure::usage(anyhow!("{name} is no study")));
-    };
     let exports = [&args.export_json, &args.export_csv, &args.export_markdown, &args.export_html];
     if exports.into_iter().any(Option::is_some) || args.seconds.is_some() {
         return Err(Failure::usage(anyhow!(
             "bench {name} writes JSON, Markdown and HTML into --output FOLDER, and has no --seconds"
         )));
     }
-    let files = scene_files(&args, scenes);
-    if files.is_empty() {
-        return Err(Failure::usage(anyhow!("bench {name}: name a scene behind it")));
-    }
+    let (pixels, repeats, run): (_, _, Render) = match benchmark.kind {
+        Kind::Study { scenes, pixels, run } => {
+            let files = scene_files(&args, scenes);
+            if files.is_empty() {
+                return Err(Failure::usage(anyhow!("bench {name}: name a scene behind it")));
+            }
+            (pixels, 1, Box::new(move |study| run(study, &files)))
+        }
+        Kind::OwnScenes { pixels, repeats, run } if args.scenes.is_empty() => {
+            (pixels, repeats, Box::new(run))
+        }
+        Kind::OwnScenes { .. } => {
+            return Err(Failure::usage(anyhow!("bench {name}: leave the scene out; it makes its own")));
+        }
+        Kind::Parts { .. } => return Err(Failure::usage(anyhow!("{name} is no study"))),
+    };
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     let defaults = ReferenceSettings::default();
@@ -35,7 +47,7 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     let plan = Plan {
         folder: folder.clone(),
         threads: threads::count(args.threads),
-        repeats: args.repeats.map_or(1, |n| n as usize),
+        repeats: args.repeats.map_or(repeats, |n| n as usize),
         resolution: args.study.resolution.map_or(pixels, |r| r.0),
         reference: ReferenceSettings {
             spp: args.study.reference_spp.unwrap_or(defaults.spp),
@@ -46,7 +58,7 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     };
     let pool = threads::pool(plan.threads)?;
     let study = Study::new(plan, &control, &|what| talk::note(what)).map_err(failure)?;
-    let results = pool.install(|| run(&study, &files)).map_err(failure)?;
+    let results = pool.install(|| run(&study)).map_err(failure)?;
     let markdown = results.document.markdown();
     talk::print(&markdown)?;
     let file = |extension: &str| folder.join(name).with_extension(extension);
@@ -69,7 +81,7 @@ fn failure(error: StudyError) -> Failure {
         StudyError::Open(OpenError::Scene(_)) | StudyError::Compare(_) => Failure::input(error),
         StudyError::Knob { .. } => Failure::usage(error),
         StudyError::Open(OpenError::Build { .. }) | StudyError::Denoise(_) => Failure::render(error),
-        StudyError::Folder { .. } | StudyError::Write(_) => Failure::output(error),
+        StudyError::Folder { .. } | StudyError::Scene { .. } | StudyError::Write(_) => Failure::output(error),
         StudyError::Interrupted => Failure::interrupted(error),
     }
 }

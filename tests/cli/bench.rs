@@ -53,3 +53,26 @@ fn scenes_are_asked_for_where_they_are_needed_and_nowhere_else() {
     sandbox.run(&["bench", "bsdf", "--export-csv", "missing/a.csv"]).expect(4);
     assert!(sandbox.run(&["bench", "--help"]).expect(0).stdout.contains("shadow SCENE"));
 }
+
+#[test]
+fn the_study_of_extremes_finds_the_same_error_at_any_brightness_of_the_light() {
+    let sandbox = Sandbox::new();
+    let common = ["bench", "extremes", "--repeats", "1", "--reference-spp", "8", "--resolution", "8x8"];
+    let of = |more: &[&str]| sandbox.run(&[&common, more].concat());
+    assert!(of(&["--knob", "luck"]).expect(2).stderr.contains("scale, offset, power"));
+    assert!(of(&["room.xml"]).expect(2).stderr.contains("leave the scene out"));
+    of(&["--knob", "power", "-o", "out"]).expect(0);
+    let read = |file: &str| std::fs::read_to_string(sandbox.path(file)).unwrap();
+    assert!(read("out/extremes.md").contains("## power") && read("out/extremes.html").contains("<svg"));
+    let json: serde_json::Value = serde_json::from_str(&read("out/extremes.json")).unwrap();
+    let points = json["series"][0]["points"].as_array().unwrap();
+    let middle = points.iter().find(|point| point["value"] == 1.0).unwrap();
+    assert!(points.len() == 11 && middle["figures"].as_array().unwrap().len() >= 7);
+    for point in points {
+        let pairs = point["figures"].as_array().unwrap().iter().zip(middle["figures"].as_array().unwrap());
+        for (figures, middle) in pairs {
+            let [error, ordinary] = [figures, middle].map(|f| f["error"].as_f64().unwrap());
+            assert!(error <= 1.1 * ordinary && figures["nonfinite"] == 0, "{point}");
+        }
+    }
+}

@@ -65,7 +65,8 @@ pub struct Plan {
     pub folder: PathBuf,
     /// Number of rendering threads.
     pub threads: usize,
-    /// Number of times that each picture is rendered; the run of the least processor time counts.
+    /// Number of times that each picture is rendered; the run of the least processor time counts. Number of seeds in
+    /// studies of scenes of their own.
     pub repeats: usize,
     /// Width and height of the pictures.
     pub resolution: [u32; 2],
@@ -73,7 +74,7 @@ pub struct Plan {
     pub reference: ReferenceSettings,
     /// Number of points of a designed sample, in studies that have one.
     pub samples: u32,
-    /// Names of the settings to vary, in studies that vary any; if empty, all.
+    /// Names of the settings, or extremes, to vary, in studies that vary any; if empty, all.
     pub knobs: Vec<String>,
 }
 
@@ -96,6 +97,14 @@ pub enum StudyError {
     #[error("cannot make the folder {}: {source}", path.display())]
     Folder {
         /// Path of the folder.
+        path: PathBuf,
+        /// Error of the operating system.
+        source: std::io::Error,
+    },
+    /// A scene that the study makes cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Scene {
+        /// File of the scene.
         path: PathBuf,
         /// Error of the operating system.
         source: std::io::Error,
