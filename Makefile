@@ -2,8 +2,9 @@
 
 CARGO ?= cargo
 TARGET_DIR := $(or $(CARGO_TARGET_DIR),target)
+HOST = $(shell rustc -vV | sed -n 's/^host: //p')
 
-.PHONY: help setup build demo test quick lint doc
+.PHONY: help setup build demo test quick memory lint doc
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
@@ -26,6 +27,10 @@ test: setup ## every test
 
 quick: setup ## the tests that take seconds, not minutes
 	$(CARGO) test --workspace --locked -- --skip slow_
+
+memory: setup ## AddressSanitizer over the tests of the bindings, in a folder of its own
+	RUSTC_BOOTSTRAP=1 RUSTFLAGS=-Zsanitizer=address ASAN_OPTIONS=detect_leaks=0 CARGO_TARGET_DIR=$(TARGET_DIR)/memory \
+	    $(CARGO) test --workspace --locked --lib --target $(HOST) -- embree:: denoise:: shadow:: device
 
 lint: setup ## format and clippy, warnings denied
 	$(CARGO) fmt --all --check

@@ -9,6 +9,8 @@ mod merge;
 mod movie;
 mod output;
 mod plan;
+#[cfg(target_os = "linux")]
+mod random_interrupts;
 mod sheet;
 mod slow_studies;
 mod usage;

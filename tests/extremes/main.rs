@@ -11,5 +11,7 @@ mod chains;
 mod distances;
 mod memory;
 mod numbers;
+mod random;
+mod random_scenes;
 mod settings;
 mod units;
