@@ -1,8 +1,8 @@
-//! Error at extremes: scenes far from ordinary in size, place, light, distance, gloss, angle or depth of glass, by every
-//! method and record mode.
+//! Error at extremes: scenes far from ordinary in size, place, light, distance, gloss, angle or depth of glass, by
+//! every method and record mode.
 //!
-//! Where an extreme leaves the picture as it is but for a factor, errors are against the reference of the ordinary scene
-//! and told by their ratio to its error; elsewhere each scene has a reference of its own, by paths.
+//! Where an extreme leaves the picture as it is but for a factor, errors are against the reference of the ordinary
+//! scene and told by their ratio to its error; elsewhere each scene has a reference of its own, by paths.
 //!
 //! Units: errors are relative root mean squares, without the worst pixel of a thousand and the reference's noise.
 
