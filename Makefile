@@ -28,9 +28,9 @@ test: setup ## every test
 quick: setup ## the tests that take seconds, not minutes
 	$(CARGO) test --workspace --locked -- --skip slow_
 
-memory: setup ## AddressSanitizer over the tests of the bindings, in a folder of its own
+memory: setup ## AddressSanitizer over the tests that trace rays, in a folder of its own
 	RUSTC_BOOTSTRAP=1 RUSTFLAGS=-Zsanitizer=address ASAN_OPTIONS=detect_leaks=0:detect_odr_violation=0 CARGO_TARGET_DIR=$(TARGET_DIR)/memory \
-	    $(CARGO) test --workspace --locked --lib --target $(HOST) -- embree:: denoise:: shadow:: device
+	    $(CARGO) test --workspace --locked --lib --target $(HOST) -- embree:: shadow::
 
 lint: setup ## format and clippy, warnings denied
 	$(CARGO) fmt --all --check
