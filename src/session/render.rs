@@ -256,9 +256,12 @@ impl Session {
         let seen = finish.look(method);
         let reprojected = last.reproject(view, &seen);
         let looking = watch.elapsed();
-        let before = Before { records, settled: reprojected.settled() };
+        let settled = reprojected.settled();
+        let number = settled.pixels.iter().filter(|is_settled| **is_settled).count();
+        let before = Before { records, settled };
         let mut output = method.render_next(&self.world, &self.lights, before, view, control);
         output.stats.add_time(Stage::EyePass, looking);
+        output.stats.count("Walk/pixels settled", number as u64);
         reprojected.mix_into(&mut output.color, &seen);
         let is_denoised = finish.apply_to_seen(&seen, &mut output);
         last.replace(view, &seen, is_denoised.then_some(&output.color));
