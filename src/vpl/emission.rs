@@ -6,7 +6,7 @@ use crate::embree::Ray;
 use crate::light::spot_falloff;
 use crate::light::{DiscreteDistribution, delta_power};
 use crate::math::Frame;
-use crate::math::Rgb;
+use crate::math::{Rgb, luminance};
 use crate::sampling::{Sampler, cosine_hemisphere, uniform_disk, uniform_sphere};
 use crate::scene::DeltaLight;
 use crate::shadow;
@@ -24,10 +24,10 @@ pub struct PhotonEmitter<'w> {
     target: Target,
 }
 
-/// Target of light from infinitely far: discs that face it.
+/// Target of light from outside the scene: discs that face what is infinitely far, a sphere for other lights.
 struct Target {
     centre: Vec3,
-    /// Radius of a disc that covers all surfaces.
+    /// Radius of a disc or sphere that covers all surfaces.
     radius: f32,
     /// Radius of its middle, which half of the light is drawn to; the other half is drawn in proportion to the inverse
     /// square of the distance, so that surfaces around the camera have light however far all others reach. In ordinary
@@ -68,13 +68,63 @@ impl Target {
     }
 }
 
+/// Cone of directions in which a light outside the target shines on it.
+struct TowardsTarget {
+    /// Unit vector to the target's centre.
+    axis: Vec3,
+    /// Distance to it.
+    distance: f32,
+    /// 1 less the cosine of the cone's half angle, which may be far below the rounding of 1.
+    one_minus_cos: f32,
+}
+
+impl Target {
+    /// The cone in which a light at `position` shines on the target; `None` if it is inside, or so near that the cone
+    /// is not worth it.
+    fn towards(&self, position: Vec3) -> Option<TowardsTarget> {
+        let to_centre = self.centre - position;
+        let distance = to_centre.length();
+        if distance.is_nan() || distance < 2.0 * self.radius {
+            return None;
+        }
+        let sin_sq = (self.radius / distance).powi(2);
+        let one_minus_cos = sin_sq / (1.0 + (1.0 - sin_sq).sqrt());
+        Some(TowardsTarget { axis: to_centre / distance, distance, one_minus_cos })
+    }
+
+    /// Returns a ray of a light that is `towards` the target, even in the cone.
+    fn ray_in(&self, towards: &TowardsTarget, u: Vec2) -> Ray {
+        let TowardsTarget { axis, distance, one_minus_cos } = *towards;
+        let down = u.x * one_minus_cos;
+        let sin = (down * (2.0 - down)).sqrt();
+        let (sin_phi, cos_phi) = (TAU * u.y).sin_cos();
+        // The direction's difference from the axis: of very far lights it alone is precise.
+        let off_axis = Frame::from_normal(axis).to_world(Vec3::new(sin * cos_phi, sin * sin_phi, -down));
+        let direction = (axis + off_axis).normalize();
+        let origin = self.centre + off_axis * distance - direction * (1.01 * self.radius);
+        Ray { origin, t_near: 0.0, direction, t_far: f32::INFINITY }
+    }
+
+    /// Flux of a light that photons are drawn for, as luminance.
+    fn power(&self, light: &DeltaLight) -> f32 {
+        let all = delta_power(light, self.core);
+        match *light {
+            DeltaLight::Point { position, intensity } | DeltaLight::Spot { position, intensity, .. } => {
+                let towards = |towards: TowardsTarget| TAU * towards.one_minus_cos * luminance(intensity);
+                all.min(self.towards(position).map_or(f32::INFINITY, towards))
+            }
+            DeltaLight::Directional { .. } => all,
+        }
+    }
+}
+
 impl<'w> PhotonEmitter<'w> {
     /// Prepares sampling; `None` if there is no emitter or no surface.
     pub fn new(world: &'w World) -> Option<PhotonEmitter<'w>> {
         let target = Target::new(world)?;
         let emitters = &world.emitters;
         let areas = emitters.areas.iter().map(|a| a.power);
-        let deltas = emitters.deltas.iter().map(|d| delta_power(d, target.core));
+        let deltas = emitters.deltas.iter().map(|light| target.power(light));
         let disk = PI * target.core * target.core;
         let environment = emitters.environment.iter().map(|e| 4.0 * PI * disk * e.mean_luminance());
         let by_power = DiscreteDistribution::new(areas.chain(deltas).chain(environment));
@@ -102,11 +152,22 @@ impl<'w> PhotonEmitter<'w> {
         if let Some(light) = emitters.deltas.get(index - emitters.areas.len()) {
             return match *light {
                 DeltaLight::Point { position, intensity } => {
+                    if let Some(towards) = self.target.towards(position) {
+                        let ray = self.target.ray_in(&towards, u_direction);
+                        return carrying(ray, intensity * (TAU * towards.one_minus_cos * inv_probability));
+                    }
                     let ray = shadow::ray_from(position, Vec3::ZERO, uniform_sphere(u_direction));
                     carrying(ray, intensity * (4.0 * PI * inv_probability))
                 }
                 DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
                     let one_minus_cos = 1.0 - outer_angle.cos();
+                    let towards = self.target.towards(position);
+                    if let Some(towards) = towards.filter(|towards| towards.one_minus_cos < one_minus_cos) {
+                        let ray = self.target.ray_in(&towards, u_direction);
+                        let falloff = spot_falloff(ray.direction.dot(direction), inner_angle, outer_angle);
+                        let angle = TAU * towards.one_minus_cos;
+                        return carrying(ray, intensity * (falloff * angle * inv_probability));
+                    }
                     let cos = 1.0 - u_direction.x * one_minus_cos;
                     let sin = (1.0 - cos * cos).max(0.0).sqrt();
                     let (sin_phi, cos_phi) = (TAU * u_direction.y).sin_cos();

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::progress::Control;
+use crate::scene::{Camera, DeltaLight};
 use crate::test_scenes::*;
 use std::f32::consts::PI;
 
@@ -22,6 +23,42 @@ fn indirect_flux_is_what_the_surfaces_reflect() {
     let expected = emitted * albedo / (Rgb::ONE - albedo);
     let indirect = of(Origin::Indirect);
     assert!((indirect / expected - Rgb::ONE).abs().max_element() < 0.02, "{indirect} {expected}");
+}
+
+#[test]
+fn lights_far_off_send_their_photons_to_the_surfaces() {
+    for distance in [10.0, 1e3, 1e5, 1e8f32] {
+        let position = Vec3::new(0.0, distance, 0.0);
+        let intensity = Rgb::new(1.0, 0.5, 0.25) * distance * distance;
+        let spot = |angle: f32| DeltaLight::Spot {
+            position,
+            direction: Vec3::NEG_Y,
+            intensity,
+            inner_angle: angle,
+            outer_angle: 1.5 * angle,
+        };
+        // Spots wider and narrower than the floor, as seen from there; the latter's pool of light is even in a radius
+        // of .5 and falls to 0 at .75, up to a distance where angles round.
+        let narrow = 0.5 / distance.min(1e3);
+        let pool = if distance > 1e3 { 4.0 } else { PI * (0.25 + 7.0 / 48.0) };
+        for (light, area) in
+            [(DeltaLight::Point { position, intensity }, 4.0), (spot(0.5), 4.0), (spot(narrow), pool)]
+        {
+            let mut scene = scene(Camera::default(), [8, 8]);
+            let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+            scene.meshes.push(quad(Vec3::new(-1.0, 0.0, 1.0), Vec3::X * 2.0, Vec3::Z * -2.0, grey));
+            scene.lights.push(light);
+            let settings = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
+            let lights = light_pass(&world(scene), &settings, u32::MAX, &Control::new());
+            let indirect = lights.sets.iter().filter(|s| s.origin == Origin::Indirect);
+            let intensities: Vec<Rgb> = indirect.flat_map(|s| &s.intensities).copied().collect();
+            assert!(intensities.len() > 15_000, "{} at {distance}", intensities.len());
+            let flux = intensities.iter().copied().sum::<Rgb>() * PI;
+            let expected = Rgb::new(1.0, 0.5, 0.25) * area * 0.5;
+            let error = (flux / expected - Rgb::ONE).abs().max_element();
+            assert!(error < 0.03, "{flux} {expected}, {light:?}");
+        }
+    }
 }
 
 #[test]
