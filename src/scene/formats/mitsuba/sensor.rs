@@ -8,6 +8,15 @@ use crate::scene::{PixelFilter, Projection};
 use glam::{DMat4, DVec3};
 use std::rc::Rc;
 
+/// A sensor's film.
+struct Film {
+    /// Width and height in pixels.
+    resolution: [u32; 2],
+    /// Offset and size of the part to render, if it is not the whole.
+    crop: Option<[[u32; 2]; 2]>,
+    filter: PixelFilter,
+}
+
 impl Converter<'_> {
     /// The sensor `wanted` (a number from 1, or an id), else the first, with its film; the longest path; and whether
     /// emitters in view are hidden.
@@ -31,7 +40,7 @@ impl Converter<'_> {
                 return Err(sensor.place.wrong(what, "use type=\"perspective\""));
             }
         }
-        let (resolution, crop, filter) = self.film(sensor)?;
+        let Film { resolution, crop, filter } = self.film(sensor)?;
         let to_world = sensor.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
         let aspect = f64::from(resolution[0]) / f64::from(resolution[1]);
         let near = sensor.positive("near_clip", 1e-2)?;
@@ -96,13 +105,11 @@ impl Converter<'_> {
         Ok(DraftCamera { origin, forward, right, up, tan_half_x, near, far, projection, filter })
     }
 
-    /// Size of the film, offset and size of its crop, and its filter.
-    fn film(
-        &mut self,
-        sensor: &Object,
-    ) -> Result<([u32; 2], Option<[[u32; 2]; 2]>, PixelFilter), SceneError> {
+    fn film(&mut self, sensor: &Object) -> Result<Film, SceneError> {
         let films = self.tagged(sensor, "film")?;
-        let Some(film) = films.first() else { return Ok(([768, 576], None, PixelFilter::GAUSSIAN)) };
+        let Some(film) = films.first() else {
+            return Ok(Film { resolution: [768, 576], crop: None, filter: PixelFilter::GAUSSIAN });
+        };
         let size = |name: &str, default: i64| {
             let value = film.integer(name)?.unwrap_or(default);
             let fits = u32::try_from(value).ok().filter(|v| (1..=65536).contains(v));
@@ -130,7 +137,7 @@ impl Converter<'_> {
         let crop = (crop != whole).then_some([[x, y], [width, height]]);
         let filters = self.tagged(film, "rfilter")?;
         let filter = filters.first().map_or(Ok(PixelFilter::GAUSSIAN), |filter| self.filter(filter))?;
-        Ok((resolution, crop, filter))
+        Ok(Film { resolution, crop, filter })
     }
 
     fn filter(&mut self, object: &Object) -> Result<PixelFilter, SceneError> {
