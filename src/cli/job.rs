@@ -47,6 +47,7 @@ impl RenderJob {
     /// Checks the arguments, and that the results can be written to their paths. The run began with `run`.
     pub fn new(args: RenderArgs, run: Stopwatch) -> Result<RenderJob, Failure> {
         let held = args.method.typed();
+        let may_choose = args.method.is_open();
         let method = args.plan.method(args.method.method()?, &held);
         let verify = verify::settings(&args.verify, &method, args.plan.error.is_some());
         let wanted = args.plan.wanted(&method, held, args.verify.verify_samples, run)?;
@@ -54,6 +55,7 @@ impl RenderJob {
         check_outputs(&args.output, png.as_deref())?;
         let goal = Goal {
             method,
+            may_choose,
             wanted,
             features: args.picture.aov.into_iter().collect(),
             denoise: args.picture.denoise.denoise(),

@@ -10,7 +10,7 @@ use std::path::Path;
 /// Key of a picture of `session` for `goal`, by the version of the program, and `more` that decides; but for whether
 /// the denoiser is there.
 pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
-    let Goal { method, wanted, features, keep_noisy, verify, .. } = goal;
+    let Goal { method, may_choose, wanted, features, keep_noisy, verify, .. } = goal;
     let wanted = match wanted {
         Wanted::AsSet => Value::Null,
         Wanted::Time { seconds, held, .. } => json!([seconds, held]),
@@ -20,6 +20,7 @@ pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
         "version": env!("CARGO_PKG_VERSION"),
         "scene": session.hash,
         "method": method.name(),
+        "may_choose": may_choose,
         "settings": method.settings(),
         "wanted": wanted,
         "features": format!("{features:?}"),

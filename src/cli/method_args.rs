@@ -7,6 +7,16 @@ use anyhow::anyhow;
 use clap::builder::{PossibleValue, PossibleValuesParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
+/// Name of the default method or another, whichever a pilot finds better.
+const AUTO: &str = "auto";
+
+/// Its line for `--help`.
+const ABOUT_AUTO: &str =
+    "cache, or denoised paths where a pilot finds that they come to as good a picture by less work";
+
+/// Settings that leave the method open.
+const OF_ANY_METHOD: [&str; 2] = ["seed", "max_depth"];
+
 /// The method and the settings that were typed.
 #[derive(Clone, Debug)]
 pub struct MethodArgs {
@@ -20,8 +30,10 @@ impl MethodArgs {
     /// it would have no effect.
     pub fn method(&self) -> Result<Method, Failure> {
         let usage = |text: String| Failure::usage(anyhow!(text));
-        let mut method =
-            Method::named(&self.name).ok_or_else(|| usage(format!("no method {}", self.name)))?;
+        let mut method = match &*self.name {
+            AUTO => Method::default(),
+            name => Method::named(name).ok_or_else(|| usage(format!("no method {name}")))?,
+        };
         for (key, text) in &self.typed {
             if !method
                 .set(key, text)
@@ -29,7 +41,7 @@ impl MethodArgs {
             {
                 let setting = settings().into_iter().find(|setting| setting.spec.key == *key);
                 let of = setting.map_or(String::new(), |setting| setting.of().join(", "));
-                let (option, name) = (key.replace('_', "-"), &self.name);
+                let (option, name) = (key.replace('_', "-"), method.name());
                 return Err(usage(format!(
                     "--{option} is a setting of --method {of}; --method {name} has no such setting"
                 )));
@@ -37,6 +49,11 @@ impl MethodArgs {
         }
         method.check().map_err(usage)?;
         Ok(method)
+    }
+
+    /// True if a plan may choose the method: `auto`, without settings by which the cache is meant.
+    pub fn is_open(&self) -> bool {
+        self.name == AUTO && self.typed.iter().all(|(key, _)| OF_ANY_METHOD.contains(key))
     }
 
     /// Keys of the settings that were typed.
@@ -48,9 +65,10 @@ impl MethodArgs {
 impl Args for MethodArgs {
     fn augment_args(command: Command) -> Command {
         let names = Method::all().map(|method| PossibleValue::new(method.name()).help(method.about()));
+        let names = [PossibleValue::new(AUTO).help(ABOUT_AUTO)].into_iter().chain(names);
         let method = Arg::new("method").long("method").help("How to render").help_heading(None::<&str>);
         let method = method.value_parser(PossibleValuesParser::new(names)).value_name("METHOD");
-        command.arg(method.default_value(Method::default().name())).args(settings().iter().map(Setting::arg))
+        command.arg(method.default_value(AUTO)).args(settings().iter().map(Setting::arg))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -164,7 +182,7 @@ mod tests {
 
     /// Methods and settings as Markdown.
     fn table() -> String {
-        let mut text = "| `--method` | |\n|---|---|\n".to_owned();
+        let mut text = format!("| `--method` | |\n|---|---|\n| `{AUTO}` | {ABOUT_AUTO}; the default |\n");
         for method in Method::all() {
             text += &format!("| `{}` | {} |\n", method.name(), method.about());
         }

@@ -55,6 +55,7 @@ impl WalkJob {
         let plan = PlanArgs { quality: args.quality, ..PlanArgs::default() };
         let goal = Goal {
             method: plan.method(args.method.method()?, &held),
+            may_choose: false,
             wanted: Wanted::AsSet,
             features: args.picture.aov.into_iter().collect(),
             denoise: args.picture.denoise.denoise(),

@@ -148,10 +148,9 @@ impl<'w> EyePass<'w> {
         control: &Control,
     ) -> EyePass<'w> {
         let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
-        let mut tracer = Tracer { world, view, settings, drawn, edges: ScatteredEdges::default(), control };
         let mut counts = Counts::default();
-        tracer.edges = guide::edges(world, view, settings, &mut tracer.workspace(None).ends, &mut counts);
-        let found = tracer.learn(settings.seed);
+        let tracer = Tracer::new(world, view, settings, drawn, control, &mut counts);
+        let found = tracer.learn(settings.seed, 1);
         let learned = found.as_ref().map(|(learned, _)| learned);
         let tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
             .into_par_iter()
@@ -195,6 +194,20 @@ pub fn merged_points(spp: u32) -> u64 {
 }
 
 impl<'a, 'w> Tracer<'a, 'w> {
+    /// A tracer whose scattered edges are guided as a pilot finds best; counts its rays.
+    pub(super) fn new(
+        world: &'w World,
+        view: &'a View,
+        settings: EyeSettings,
+        drawn: &'a DrawnLight,
+        control: &'a Control,
+        counts: &mut Counts,
+    ) -> Tracer<'a, 'w> {
+        let mut tracer = Tracer { world, view, settings, drawn, edges: ScatteredEdges::default(), control };
+        tracer.edges = guide::edges(world, view, settings, &mut tracer.workspace(None).ends, counts);
+        tracer
+    }
+
     pub(super) fn workspace<'b>(&'b self, learned: Option<&'b Learned>) -> Workspace<'b, 'w> {
         let spacing_by_distance = SPACING * self.view.pixel_angle();
         let Tracer { drawn, edges, .. } = *self;

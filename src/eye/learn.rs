@@ -28,10 +28,10 @@ const LAMP_SEED: u32 = 0x51ed_270b;
 /// Factor from one ray to the tile of the next, coprime to their number.
 const STRIDE: usize = 97;
 
-/// Pixels of a film through which paths go.
-fn places(film: [u32; 2]) -> Vec<[u32; 2]> {
+/// Pixels of a film through which paths go, `fewer` times fewer than for a whole picture.
+fn places(film: [u32; 2], fewer: u64) -> Vec<[u32; 2]> {
     let pixels = u64::from(film[0]) * u64::from(film[1]);
-    let count = (pixels / PIXELS_A_PATH).clamp(64, MAX_PATHS.into()) as u32;
+    let count = ((pixels / PIXELS_A_PATH).min(MAX_PATHS.into()) / fewer).max(64) as u32;
     let place = |i| {
         let at = owen_sobol_2d(i, RAY_SEED);
         [0, 1].map(|axis| ((at[axis] * film[axis] as f32) as u32).min(film[axis] - 1))
@@ -41,14 +41,14 @@ fn places(film: [u32; 2]) -> Vec<[u32; 2]> {
 
 impl Tracer<'_, '_> {
     /// Learns by one path through each of the pilot's pixels, by fewer if cancelled; counts the rays. `None` if there
-    /// is nothing to be learned.
-    pub(super) fn learn(&self, seed: u32) -> Option<(Learned, ChainCounts)> {
+    /// is nothing to be learned. Paths are `fewer` times fewer than for a whole picture.
+    pub(super) fn learn(&self, seed: u32, fewer: u64) -> Option<(Learned, ChainCounts)> {
         let emitters = &self.world.emitters;
         let (environment, lamps) = (emitters.environment.as_ref(), emitters.may_hide());
         if environment.is_none() && !lamps {
             return None;
         }
-        let found: Vec<(Looks, LampLooks, ChainCounts)> = places(self.view.window.film)
+        let found: Vec<(Looks, LampLooks, ChainCounts)> = places(self.view.window.film, fewer)
             .par_chunks(CHUNK)
             .enumerate()
             .map_init(

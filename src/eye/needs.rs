@@ -58,7 +58,7 @@ impl<'w> Tracer<'_, 'w> {
     }
 
     /// Luminances that the first samples of groups of film pixels find; 0 where cancelled.
-    fn luminances(
+    pub(super) fn luminances(
         &self,
         groups: Vec<Vec<[u32; 2]>>,
         seed: u32,

@@ -5,6 +5,7 @@
 
 pub mod cache;
 mod counts;
+mod drawn_pixels;
 mod ladder;
 pub mod lightcuts;
 mod lights;
@@ -17,6 +18,7 @@ mod registry;
 mod renderer;
 mod sampling;
 
+pub use drawn_pixels::{DrawnPixels, PILOT_SPP};
 pub use ladder::{Move, RUNGS};
 pub use lights::LightStore;
 pub use output::Output;

@@ -3,7 +3,7 @@
 use super::ladder::Move;
 use super::lights::LightStore;
 use super::path::Begun;
-use super::{Output, Prepared, Sampled};
+use super::{DrawnPixels, Output, Prepared, Sampled};
 use crate::eye::Settled;
 use crate::film::{Image, Window};
 use crate::paths::Look;
@@ -83,6 +83,20 @@ pub trait Renderer: Settings + Sampled {
     /// True if pictures have noise that a denoiser is meant to take off: faster than by more samples.
     fn leaves_noise(&self) -> bool {
         false
+    }
+
+    /// The light that the method draws at random in groups of film pixels, by [`PILOT_SPP`] samples a pixel, twice,
+    /// whatever its seed; `None` if none is drawn, or if cancelled.
+    ///
+    /// [`PILOT_SPP`]: super::PILOT_SPP
+    fn draw_pixels(
+        &self,
+        _world: &World,
+        _view: &View,
+        _groups: &[Vec<[u32; 2]>],
+        _control: &Control,
+    ) -> Option<DrawnPixels> {
+        None
     }
 
     /// Memory in bytes for `window` besides the scene, about: what grows with pixels, samples, virtual lights and

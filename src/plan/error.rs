@@ -10,6 +10,7 @@
 //! as it may. The steps are compared with one set of paths, so that a picture met after several has had as
 //! many chances.
 
+use super::choice::Chooser;
 use super::ladder::{Ladder, options};
 use crate::film::Image;
 use crate::method::{Method, Output};
@@ -80,16 +81,70 @@ pub struct Found {
     pub measure: Settings,
     /// Pictures rendered.
     pub renders: u64,
+    /// Error that another method came to, before this one was tried.
+    pub missed: Option<f64>,
 }
 
 /// Renders `window` with the cheapest settings that meet the goal; `None` if cancelled before that film was
-/// begun.
+/// begun. With a chooser the first picture's error tells about how many samples it takes, and so whether paths take
+/// less work; they are tried too where the scale of the cache does not come down to the goal.
 pub fn for_error(
     world: &World,
     view: &View,
-    ladder: &Ladder,
+    (ladder, chooser): (&Ladder, Option<&Chooser>),
     asked: &Asked,
     control: &Control,
+) -> Option<Found> {
+    let Some(chooser) = chooser else {
+        return on_scale(world, view, (ladder, START), None, (asked, control));
+    };
+    let watch = Stopwatch::start();
+    let output = (asked.render)(&ladder.at(START as f64 / STEPS));
+    let time = watch.elapsed();
+    let measure = Settings { seed: hash(asked.measure.seed, SEED), ..asked.measure };
+    let truth = Truth::trace(world, view, &output.color, &measure, control).filter(|_| output.complete)?;
+    let first = First { output, time, truth };
+    let error = first.truth.judge(&first.output.color).relative_rms.value;
+    let further = (error / (AIM * asked.error)).ln() / FALL;
+    let needed = ((START as f64 + further) / STEPS).clamp(0.0, ladder.top());
+    let paths = || Ladder::new(chooser.of_paths(), &[]);
+    let by_paths = |spp: u32| {
+        let scale = paths()?;
+        let steps = 0..=(STEPS * scale.top()) as usize;
+        let start = steps.rev().find(|step| scale.at(*step as f64 / STEPS).spp() <= spp).unwrap_or(0);
+        on_scale(world, view, (&scale, start), None, (asked, control))
+    };
+    let choice = chooser.on_film(&ladder.at(needed)).method;
+    if let Method::Path(paths) = choice {
+        return by_paths(paths.spp);
+    }
+    let found = on_scale(world, view, (ladder, START), Some(first), (asked, control))?;
+    let missed = found.verified.map(|v| v.relative_rms.value).filter(|error| *error > asked.error);
+    let Some(missed) = missed.filter(|_| !control.is_cancelled()) else { return Some(found) };
+    let Some(other) = by_paths(found.method.spp()) else { return Some(found) };
+    let lower = other.verified.is_some_and(|v| v.relative_rms.value < missed);
+    let renders = found.renders + other.renders;
+    Some(match other.met || lower {
+        true => Found { missed: Some(missed), renders, ..other },
+        false => Found { renders, ..found },
+    })
+}
+
+/// A picture by the settings that a search begins with, before it does.
+struct First {
+    output: Output,
+    time: StageTime,
+    /// The search's paths.
+    truth: Truth,
+}
+
+/// The cheapest picture of one scale, from a search that begins at `start`.
+fn on_scale(
+    world: &World,
+    view: &View,
+    (ladder, start): (&Ladder, usize),
+    first: Option<First>,
+    (asked, control): (&Asked, &Control),
 ) -> Option<Found> {
     let mut ladder = ladder.clone();
     // Errors of the light at the picture's own samples do not go away by taking more of them.
@@ -98,7 +153,7 @@ pub fn for_error(
     }
     let top = STEPS * ladder.top();
     let Searched { mut step, error: expected, mut output, mut time, renders: searched } =
-        search(world, view, &ladder, asked, control)?;
+        search(world, view, (&ladder, start), first, (asked, control))?;
 
     let mut truth: Option<Truth> = None;
     let mut measure = asked.measure;
@@ -117,7 +172,19 @@ pub fn for_error(
         let last = met || hidden || verified.is_none() || step >= top || raises >= RAISES;
         if last || control.is_cancelled() {
             let (options, renders) = (options(&method), searched + raises);
-            return Some(Found { method, options, expected, output, time, verified, met, measure, renders });
+            let missed = None;
+            return Some(Found {
+                method,
+                options,
+                expected,
+                output,
+                time,
+                verified,
+                met,
+                measure,
+                renders,
+                missed,
+            });
         }
         // From between two steps to the upper one, or the next.
         step = (step.floor() + if over { 2.0 } else { 1.0 }).min(top);
@@ -166,16 +233,30 @@ struct Searched {
 
 /// The lowest step that seems to do, or settings between it and the one below that do too; where none is
 /// found, the last that was tried.
-fn search(world: &World, view: &View, ladder: &Ladder, asked: &Asked, control: &Control) -> Option<Searched> {
+fn search(
+    world: &World,
+    view: &View,
+    (ladder, start): (&Ladder, usize),
+    mut first: Option<First>,
+    (asked, control): (&Asked, &Control),
+) -> Option<Searched> {
     let measure = Settings { seed: hash(asked.measure.seed, SEED), ..asked.measure };
     let goal = AIM * asked.error;
     let top = (STEPS * ladder.top()) as usize;
     let mut truth: Option<Truth> = None;
     let mut renders = 0;
     let mut attempt = |step: f64| {
-        let watch = Stopwatch::start();
-        let output = (asked.render)(&ladder.at(step / STEPS));
-        let time = watch.elapsed();
+        let (output, time) = match first.take() {
+            Some(first) => {
+                truth = Some(first.truth);
+                (first.output, first.time)
+            }
+            None => {
+                let watch = Stopwatch::start();
+                let output = (asked.render)(&ladder.at(step / STEPS));
+                (output, watch.elapsed())
+            }
+        };
         if !output.complete {
             return None;
         }
@@ -188,7 +269,7 @@ fn search(world: &World, view: &View, ladder: &Ladder, asked: &Asked, control: &
     };
     let mut met: Option<(usize, Searched)> = None;
     let mut failed: Vec<(usize, f64)> = Vec::new();
-    let mut step = START;
+    let mut step = start;
     loop {
         let tried = attempt(step as f64)?;
         let error = tried.error;

@@ -8,19 +8,25 @@
 //! Both move along one [`Ladder`] of settings. Settings given by the user are pinned. For an error, settings
 //! are raised until the picture meets it.
 //!
+//! Where the user leaves the method open, a [`Chooser`] takes the cache or denoised paths first.
+//!
 //! A time's settings depend on the machine and on its other load: two runs may differ. An error's do not: the
 //! same input gives the same settings and bits. Either way the chosen settings are reported, and give the
 //! same picture again when typed.
 
+mod choice;
 mod cost;
 mod error;
 mod ladder;
+mod pilot;
 mod time;
 mod tune;
+mod work;
 
 use crate::film::Window;
 use crate::view::View;
 
+pub use choice::{Choice, Chooser};
 pub use error::{Asked, for_error};
 pub use ladder::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
 pub use time::{LATE, for_time};

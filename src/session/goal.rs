@@ -10,6 +10,8 @@ use crate::verify;
 pub struct Goal {
     /// The method and its settings, from which plans start.
     pub method: Method,
+    /// True if another method may be taken in its place, where a pilot finds it better.
+    pub may_choose: bool,
     /// Goal that settings are planned for.
     pub wanted: Wanted,
     /// Features of the surfaces seen that are wanted beside the colour.

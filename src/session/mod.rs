@@ -16,6 +16,7 @@
 mod finish;
 mod frame;
 mod goal;
+mod planned;
 mod render;
 mod report;
 

@@ -3,19 +3,20 @@
 use super::finish::Finish;
 use super::frame::{self, Frame, Remark};
 use super::goal::{Goal, Wanted};
+use super::planned::{Made, Planning};
 use super::{Session, report};
-use crate::eye::{DROPPED_BRANCHES, Settled};
+use crate::eye::DROPPED_BRANCHES;
 use crate::film::Image;
 use crate::math::Rgb;
+use crate::method::KeptRecords;
+use crate::method::Method;
 use crate::method::path::Begun;
-use crate::method::{Before, KeptRecords, LightStore, Method, Output};
-use crate::plan::{self, LATE, Ladder};
 use crate::progress::Control;
 use crate::reprojection::LastPicture;
 use crate::stats::{Counter, Stage, Stats, Stopwatch, available_bytes};
 use crate::verify::{self, Verified, verify};
 use crate::view::View;
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// Reason why there is no frame.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -58,20 +59,6 @@ pub(crate) struct Kept<'a> {
     pub last: Option<&'a mut LastPicture>,
 }
 
-/// A picture by the settings that its goal led to.
-struct Made {
-    /// The method with the settings used.
-    method: Method,
-    output: Output,
-    /// Seconds that it took to render.
-    seconds: f64,
-    /// Settings and result of the measurement of the error, where settings were planned by it; no result if
-    /// cancelled.
-    measured: Option<(verify::Settings, Option<Verified>)>,
-    /// Goal, plan and result; null if nothing was planned.
-    plan: Value,
-}
-
 impl Session {
     /// Renders the picture of `view` for `goal`. A frame that was cancelled halfway is partial, not an error.
     pub fn frame(&self, view: &View, goal: &Goal, control: &Control) -> Result<Frame, FrameError> {
@@ -107,10 +94,8 @@ impl Session {
         let mut stats = Stats::new();
         let mut remarks = Vec::new();
         let finish = Finish::new(&self.world, view, goal, control, &mut stats);
-        let made = match goal.wanted {
-            Wanted::AsSet => self.as_set(view, goal.method, former, &finish, control),
-            _ => self.planned(view, goal, &finish, control, &mut stats, &mut remarks)?,
-        };
+        let planning = Planning { session: self, view, finish: &finish, control };
+        let made = planning.picture(goal, former, &mut stats, &mut remarks)?;
         let Made { method, output, seconds, measured, plan } = made;
         stats.merge(&output.stats);
         if let Some(Counter::Count(dropped @ 1..)) = stats.get(DROPPED_BRANCHES) {
@@ -204,147 +189,5 @@ impl Session {
         stats: &mut Stats,
     ) -> Option<Verified> {
         stats.time(Stage::Verify, || verify(&self.world, view, image, settings, control))
-    }
-
-    /// The finished picture by a method as it is set.
-    fn as_set(
-        &self,
-        view: &View,
-        method: Method,
-        former: Former,
-        finish: &Finish,
-        control: &Control,
-    ) -> Made {
-        let watch = Stopwatch::start();
-        let mut seconds = 0.0;
-        let output = match former {
-            Former::Frames(kept) => self.next_frame(view, &method, kept, finish, control),
-            Former::Samples(begun) => {
-                seconds += begun.seconds;
-                let mut output = method.render_rest(&self.world, &self.lights, &begun, view, control);
-                finish.apply(&method, &mut output);
-                output
-            }
-            Former::Nothing => {
-                let mut output = method.render(&self.world, &self.lights, view, control);
-                finish.apply(&method, &mut output);
-                output
-            }
-        };
-        seconds += watch.elapsed().wall_seconds;
-        Made { method, output, seconds, measured: None, plan: Value::Null }
-    }
-
-    /// The finished next picture of a walk-through.
-    fn next_frame(
-        &self,
-        view: &View,
-        method: &Method,
-        kept: Kept,
-        finish: &Finish,
-        control: &Control,
-    ) -> Output {
-        let Kept { records, last } = kept;
-        let draws = method.keeps_records() && method.leaves_noise();
-        let Some(last) = last.filter(|_| draws && finish.denoises()) else {
-            let before = Before { records, settled: Settled::default() };
-            let mut output = method.render_next(&self.world, &self.lights, before, view, control);
-            finish.apply(method, &mut output);
-            return output;
-        };
-        let watch = Stopwatch::start();
-        let seen = finish.look(method);
-        let reprojected = last.reproject(view, &seen);
-        let looking = watch.elapsed();
-        let settled = reprojected.settled();
-        let number = settled.pixels.iter().filter(|is_settled| **is_settled).count();
-        let before = Before { records, settled };
-        let mut output = method.render_next(&self.world, &self.lights, before, view, control);
-        output.stats.add_time(Stage::EyePass, looking);
-        output.stats.count("Walk/pixels settled", number as u64);
-        reprojected.mix_into(&mut output.color, &seen);
-        let is_denoised = finish.apply_to_seen(&seen, &mut output);
-        last.replace(view, &seen, is_denoised.then_some(&output.color));
-        output
-    }
-
-    /// The finished picture by settings planned for the goal.
-    fn planned(
-        &self,
-        view: &View,
-        goal: &Goal,
-        finish: &Finish,
-        control: &Control,
-        stats: &mut Stats,
-        remarks: &mut Vec<Remark>,
-    ) -> Result<Made, FrameError> {
-        let method = goal.method;
-        let ladder = |held: &[&'static str]| {
-            let ladder = Ladder::new(method, held).ok_or(FrameError::Unplannable(method.name()))?;
-            Ok(ladder.within(&view.window))
-        };
-        match &goal.wanted {
-            Wanted::AsSet => Ok(self.as_set(view, method, Former::Nothing, finish, control)),
-            Wanted::Time { seconds, run, held } => {
-                let asked = *seconds;
-                let watch = Stopwatch::start();
-                let finishing = finish.expected_seconds(&method);
-                let left = || asked - finishing - run.elapsed().wall_seconds;
-                let found = plan::for_time(&self.world, view, &ladder(held)?, left, control)
-                    .ok_or(FrameError::Interrupted)?;
-                let spent = found.spent();
-                stats.add_time(Stage::Plan, watch.elapsed().without(spent));
-                let before = run.elapsed().wall_seconds;
-                let planned = before + found.render_seconds + finishing;
-                let in_reach = planned <= asked * LATE;
-                remarks.extend(report::of_time(asked, [before, planned], in_reach, &found.options));
-                stats.add("Plan/time asked [s]", asked);
-                stats.add("Plan/time planned, without writing [s]", planned);
-                stats.count("Plan/in time (1: yes)", u64::from(in_reach));
-                stats.count("Plan/small renders and trials", found.pilots);
-                let plan = json!({
-                    "asked_seconds": asked,
-                    "planned_seconds": planned,
-                    "in_reach": in_reach,
-                    "options": found.options,
-                });
-                let method = found.method;
-                let watch = Stopwatch::start();
-                let mut output = found.render(&self.world, view, control);
-                finish.apply(&method, &mut output);
-                let seconds = spent.wall_seconds + watch.elapsed().wall_seconds;
-                Ok(Made { method, output, seconds, measured: None, plan })
-            }
-            Wanted::Error { error, max_samples, held } => {
-                let (error, max_samples) = (*error, *max_samples);
-                let measure = goal.verify.unwrap_or_default();
-                let render = |method: &Method| {
-                    let mut output = method.render(&self.world, &LightStore::default(), view, control);
-                    finish.apply(method, &mut output);
-                    output
-                };
-                let asked = plan::Asked { error, measure, most_samples: max_samples, render: &render };
-                let watch = Stopwatch::start();
-                let found = plan::for_error(&self.world, view, &ladder(held)?, &asked, control)
-                    .ok_or(FrameError::Interrupted)?;
-                stats.add_time(Stage::Plan, watch.elapsed().without(found.time));
-                let got = found.verified.map(|v| v.relative_rms);
-                remarks.extend(report::of_error(error, &found.options, got.filter(|_| !found.met)));
-                stats.add("Plan/error asked [%]", 100.0 * error);
-                stats.add("Plan/error planned [%]", 100.0 * found.expected);
-                stats.count("Plan/error met (1: yes)", u64::from(found.met));
-                stats.count("Plan/renders", found.renders);
-                let plan = json!({
-                    "asked_error": error,
-                    "planned_error": found.expected,
-                    "got_error": got,
-                    "met": found.met,
-                    "options": found.options,
-                });
-                let measured = Some((found.measure.of(&found.method), found.verified));
-                let (method, output, seconds) = (found.method, found.output, found.time.wall_seconds);
-                Ok(Made { method, output, seconds, measured, plan })
-            }
-        }
     }
 }

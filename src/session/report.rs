@@ -2,7 +2,9 @@
 
 use super::frame::Remark;
 use crate::film::Metadata;
+use crate::method::Method;
 use crate::paths::Look;
+use crate::plan::Choice;
 use crate::stats::Stats;
 use crate::verify::{Estimate, Settings, Verified};
 use serde_json::{Value, json};
@@ -33,6 +35,43 @@ pub(super) fn of_error(asked: f64, options: &str, missed: Option<Estimate>) -> V
         )));
     }
     remarks
+}
+
+/// Remark about a method that was given up because the error that it comes to is as high as `missed`.
+pub(super) fn of_missed(missed: f64) -> Remark {
+    Remark::Note(format!("cache came to an error of {:.2} %, so paths were tried", 100.0 * missed))
+}
+
+/// Adds a choice between methods to a plan, to statistics and remarks; `spp` are the samples in the end.
+pub(super) fn add_choice(
+    choice: &Choice,
+    spp: u32,
+    plan: &mut Value,
+    stats: &mut Stats,
+    remarks: &mut Vec<Remark>,
+) {
+    let Choice { paths_a_sample, rays_ratio, ahead, pilot_rays, .. } = *choice;
+    let (name, other) = match choice.method {
+        Method::Path(_) => (format!("paths (--method path --denoise --spp {spp})"), "cache"),
+        _ => ("cache".to_owned(), "paths"),
+    };
+    remarks.push(Remark::Note(format!(
+        "chose {name}: {paths_a_sample:.1} paths of {rays_ratio:.1} times the rays are worth a sample of cache, and for as \
+         good a picture {other} would take about {ahead:.1} times the work"
+    )));
+    stats.count("Plan/paths chosen (1: yes)", u64::from(matches!(choice.method, Method::Path(_))));
+    stats.add("Plan/paths worth a sample of cache", paths_a_sample);
+    stats.add("Plan/rays of a path over those of a sample", rays_ratio);
+    stats.add("Plan/work of the other method", ahead);
+    stats.count("Plan/rays of the pilot", pilot_rays);
+    if plan.is_null() {
+        *plan = json!({});
+    }
+    plan["chosen"] = choice.method.name().into();
+    plan["paths_a_sample"] = paths_a_sample.into();
+    plan["rays_ratio"] = rays_ratio.into();
+    plan["other_work"] = ahead.into();
+    plan["pilot_rays"] = pilot_rays.into();
 }
 
 /// Stores a plan in a picture's metadata; `seconds` have passed since the start of the run.

@@ -5,6 +5,7 @@
 
 mod cache;
 mod cache_artefacts;
+mod choice;
 mod common;
 mod compensation;
 mod denoise;

@@ -107,3 +107,28 @@ fn wishes_that_make_no_sense_are_refused() {
     }
     assert_eq!(sandbox.files(), ["room.xml"]);
 }
+
+#[test]
+fn an_open_method_is_chosen_and_the_reasons_told_and_kept() {
+    let sandbox = Sandbox::new();
+    let open = render(&sandbox, "a.exr", &["--stats", "json"]).expect(0);
+    let facts = plan(&open);
+    let chosen = facts["chosen"].as_str().unwrap();
+    assert!(open.stderr.contains(&format!("chose {}", if chosen == "path" { "paths" } else { "cache" })));
+    for key in ["paths_a_sample", "rays_ratio", "other_work"] {
+        assert!(facts[key].as_f64().unwrap() > 0.0, "{key} {facts}");
+    }
+    let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
+    assert_eq!(file.metadata().text("plan_chosen"), Some(chosen));
+    assert_eq!(file.metadata().text("method"), Some(chosen));
+    let report: serde_json::Value = serde_json::from_str(&open.stdout).unwrap();
+    let rays = &report["counters"]["Plan"]["rays of the pilot"];
+    assert_eq!(*rays, facts["pilot_rays"]);
+    // A method that is named, or settings that paths lack or that say how good the picture is to be.
+    for closed in [&["--method", "cache"][..], &["--spp", "4"], &["--vpls", "500"]] {
+        let run = render(&sandbox, "b.exr", &[closed, &["--stats", "json"]].concat()).expect(0);
+        assert!(plan(&run).is_null() && !run.stderr.contains("chose"), "{closed:?}");
+        let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+        assert_eq!(report["run"]["method"], "cache");
+    }
+}

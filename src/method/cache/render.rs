@@ -1,14 +1,14 @@
 //! The picture: eye pass, light pass, trees, the cache, and the rest by cuts.
 
 use super::resolve::resolve;
-use crate::eye::EyePass;
+use crate::eye::{EyePass, EyePilot, EyeSettings, Settled};
 use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::ladder::{CUTS, DRAWN};
 use crate::method::lights::LightStore;
 use crate::method::sampling::method_settings;
-use crate::method::{Before, Move, Output, Prepared, Renderer, Sampled, counts};
+use crate::method::{Before, DrawnPixels, Move, Output, PILOT_SPP, Prepared, Renderer, Sampled, counts};
 use crate::paths::Look;
 use crate::progress::Control;
 use crate::radiance_cache::fill::CacheFrame;
@@ -152,6 +152,23 @@ impl Renderer for Settings {
             }
             false => Ok(()),
         }
+    }
+
+    fn draw_pixels(
+        &self,
+        world: &World,
+        view: &View,
+        groups: &[Vec<[u32; 2]>],
+        control: &Control,
+    ) -> Option<DrawnPixels> {
+        let glossy = Glossy::new(world, &self.cache);
+        let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default())?;
+        let settings = EyeSettings { spp: PILOT_SPP, seed: 0, ..self.sampling().eye(&world.scene) };
+        let EyePilot { luminances, sampled, learned } =
+            EyePass::pilot(world, view, settings, &drawn, groups, control);
+        let luminances = luminances.map(|by_group| by_group.into_iter().flatten().map(f64::from).collect());
+        let [sampled, learned] = [sampled, learned].map(|chains| chains.rays + chains.shadow_rays);
+        (!control.is_cancelled()).then(|| DrawnPixels::new(luminances, sampled, learned))
     }
 
     fn expected_bytes(&self, window: &Window) -> u64 {

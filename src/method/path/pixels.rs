@@ -1,12 +1,19 @@
 //! Single pixels, each with as many paths as are wanted for it.
 
+use crate::math::luminance;
+use crate::method::{DrawnPixels, PILOT_SPP};
 use crate::paths::{Batch, Counts, FullPaths, Look, Start, start};
+use crate::progress::Control;
 use crate::view::View;
 use crate::world::World;
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Maximum number of paths of one pixel that are traced together with those of the others.
 const TOGETHER: u32 = 64;
+
+/// Seeds of the two sets of samples of a pilot.
+const PILOT_SEEDS: [u32; 2] = [0x5bd1_e995, 0x2c1b_3c6d];
 
 /// A pixel whose radiance is wanted.
 #[derive(Clone, Copy, Debug)]
@@ -51,4 +58,35 @@ pub fn pixel_means(
         *sum /= f64::from(w.samples.max(1));
     }
     (sums, nonfinite)
+}
+
+/// The light of groups of film pixels by two sets of paths; `None` if cancelled.
+pub(super) fn draw_pixels(
+    world: &World,
+    view: &View,
+    max_depth: Option<u32>,
+    groups: &[Vec<[u32; 2]>],
+    control: &Control,
+) -> Option<DrawnPixels> {
+    let max_depth = world.scene.path_limit(max_depth);
+    let found: Vec<([Vec<f64>; 2], Counts)> = groups
+        .par_iter()
+        .map(|pixels| {
+            let mut counts = Counts::default();
+            let wanted: Vec<Wanted> =
+                pixels.iter().map(|&pixel| Wanted { pixel, samples: PILOT_SPP }).collect();
+            let luminances = PILOT_SEEDS.map(|seed| {
+                if control.is_cancelled() {
+                    return Vec::new();
+                }
+                let of = (seed, max_depth);
+                let (means, _) = pixel_means(world, view, Look::Pixels, &wanted, of, &mut counts);
+                means.into_iter().map(|mean| f64::from(luminance(mean.as_vec3()))).collect()
+            });
+            (luminances, counts)
+        })
+        .collect();
+    let rays = found.iter().map(|(_, counts)| counts.rays + counts.shadow_rays).sum();
+    let luminances = [0, 1].map(|set| found.iter().flat_map(|(sets, _)| &sets[set]).copied().collect());
+    (!control.is_cancelled()).then(|| DrawnPixels::new(luminances, rays, 0))
 }

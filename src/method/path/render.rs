@@ -1,11 +1,12 @@
 //! The picture: pixels in tiles, samples in passes.
 
 use super::Begun;
+use super::pixels::draw_pixels;
 use crate::film::Image;
 use crate::math::Rgb;
 use crate::method::ladder::PATHS;
 use crate::method::sampling::method_settings;
-use crate::method::{LightStore, Move, Output, Renderer};
+use crate::method::{DrawnPixels, LightStore, Move, Output, Renderer};
 use crate::paths::{Batch, Counts, FullPaths, Look, Start, start};
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
@@ -57,6 +58,16 @@ impl Renderer for Settings {
 
     fn look(&self) -> Look {
         self.look
+    }
+
+    fn draw_pixels(
+        &self,
+        world: &World,
+        view: &View,
+        groups: &[Vec<[u32; 2]>],
+        control: &Control,
+    ) -> Option<DrawnPixels> {
+        draw_pixels(world, view, self.max_depth, groups, control)
     }
 
     fn ladder(&self) -> &'static [Move] {

@@ -1,0 +1,52 @@
+//! A few pixels of the eye pass with direct light, each sampled twice, independently: from their differences plans
+//! learn how noisy the pass is.
+
+use super::drawn::Tracer;
+use super::{ChainCounts, DrawnLight, EyePass, EyeSettings};
+use crate::paths::Counts;
+use crate::progress::Control;
+use crate::view::View;
+use crate::world::World;
+
+/// Seeds of the two sets of samples over that of the settings.
+const SEEDS: [u32; 2] = [0x7ab3_11d5, 0x0c94_e2f7];
+
+/// Divisor of the number of paths by which emitters are learned: fewer do for a few pixels.
+const FEWER: u64 = 4;
+
+/// Light that the eye pass finds in some pixels.
+pub struct EyePilot {
+    /// Mean luminances of groups of pixels, by each of the two sets of samples; 0 where cancelled.
+    pub luminances: [Vec<Vec<f32>>; 2],
+    /// Rays of the samples, without those of what is learned before.
+    pub sampled: ChainCounts,
+    /// Rays of what is learned before.
+    pub learned: ChainCounts,
+}
+
+impl EyePass<'_> {
+    /// Samples groups of film pixels as [`EyePass::with_direct_light`] does with so many samples a pixel.
+    pub fn pilot(
+        world: &World,
+        view: &View,
+        settings: EyeSettings,
+        drawn: &DrawnLight,
+        groups: &[Vec<[u32; 2]>],
+        control: &Control,
+    ) -> EyePilot {
+        let mut counts = Counts::default();
+        let tracer = Tracer::new(world, view, settings, drawn, control, &mut counts);
+        let found = tracer.learn(settings.seed, FEWER);
+        let mut learned = found.as_ref().map_or(ChainCounts::default(), |(_, chains)| *chains);
+        learned.rays += counts.rays;
+        learned.shadow_rays += counts.shadow_rays;
+        let emitters = found.as_ref().map(|(learned, _)| learned);
+        let mut sampled = ChainCounts::default();
+        let luminances = SEEDS.map(|seed| {
+            let (values, chains) = tracer.luminances(groups.to_vec(), settings.seed ^ seed, emitters);
+            sampled += chains;
+            values
+        });
+        EyePilot { luminances, sampled, learned }
+    }
+}

@@ -1,0 +1,194 @@
+//! The choice between methods: the cache, or denoised paths.
+//!
+//! The cache finds indirect light without noise at a price that hardly depends on the samples; direct light, drawn, is
+//! as noisy as its samples are few. Paths have no such price, and the noise of all light. So paths win where most noise
+//! is that of the light which both draw (foliage, glossy surfaces, light by mirrors and glass), where they are cheap,
+//! and where few samples are wanted. A short [`Pilot`] of both tells which it is, by counted [`Work`].
+
+use super::ladder::Ladder;
+use super::pilot::Pilot;
+use super::work::Work;
+use crate::method::{Method, Sampling, path};
+use crate::progress::Control;
+use crate::view::View;
+use crate::world::World;
+
+/// Number of levels of the scale of settings that a time is tried with.
+const STEPS: u32 = 64;
+
+/// Least number of pixels that choices without a time are made for: small pictures are by the method of the large one
+/// that they are a preview of.
+const MIN_PIXELS: u64 = 1 << 18;
+
+/// A method and the reason for it.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice {
+    /// The method with its settings.
+    pub method: Method,
+    /// Expected work of the other method for as good a picture, over that of this one.
+    pub ahead: f64,
+    /// Number of paths that are worth a sample of the cache.
+    pub paths_a_sample: f64,
+    /// Rays of a path over those of a sample of the cache.
+    pub rays_ratio: f64,
+    /// Rays that the pilot took.
+    pub pilot_rays: u64,
+}
+
+/// The methods chosen between, after their pilot.
+pub struct Chooser {
+    /// Number of triangles, on which the price of a ray depends.
+    triangles: usize,
+    pilot: Pilot,
+    film_pixels: u64,
+    paths: path::Settings,
+}
+
+impl Chooser {
+    /// Runs the pilot of `base`, the cache, and of paths; `None` if there is nothing to choose, or if cancelled.
+    pub fn new(world: &World, view: &View, base: &Method, control: &Control) -> Option<Chooser> {
+        let Method::Cache(_) = base else { return None };
+        let Sampling { seed, max_depth, .. } = base.sampling();
+        let paths = path::Settings { seed, max_depth, ..path::Settings::default() };
+        let pilot = Pilot::of(world, view, base, &Method::Path(paths), control)?;
+        let film_pixels = view.window.film.map(u64::from).iter().product();
+        let triangles = world.scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        Some(Chooser { triangles, pilot, film_pixels, paths })
+    }
+
+    /// The cheaper of `cache`, as it is set, and as good a picture of paths, whatever the size of the film.
+    pub fn as_good_as(&self, cache: &Method) -> Choice {
+        self.cheaper(cache, self.film_pixels.max(MIN_PIXELS))
+    }
+
+    /// The same for the film as it is.
+    pub fn on_film(&self, cache: &Method) -> Choice {
+        self.cheaper(cache, self.film_pixels)
+    }
+
+    /// The better of the methods with the settings for which there is time, of those of the cache by its scale, for a
+    /// render of `seconds`, by those of the pilot.
+    pub fn for_time(&self, ladder: &Ladder, seconds: f64, pilot_seconds: f64) -> Choice {
+        let work = Work::new(self.triangles, self.film_pixels);
+        let budget = work.of_pilot(&self.pilot) * seconds.max(0.0) / pilot_seconds.max(1e-9);
+        let heights = (0..=STEPS).rev().map(|step| ladder.top() * f64::from(step) / f64::from(STEPS));
+        let in_time = |height: &f64| work.of_cache(&self.pilot, &ladder.at(*height)) <= budget;
+        let height = heights.into_iter().find(in_time);
+        let cache = ladder.at(height.unwrap_or(0.0));
+        // The cheapest settings of the cache are no use if they take too long.
+        let excess = (work.of_cache(&self.pilot, &cache) / budget.max(1e-9)).max(1.0);
+        let worth = self.paths_like(&cache) / excess;
+        let paths = budget / work.of_paths(&self.pilot, 1.0);
+        match paths > worth {
+            true => self.choice(&cache, Method::Path(self.paths), paths / worth),
+            false => self.choice(&cache, cache, worth / paths.max(1e-9)),
+        }
+    }
+
+    /// Paths, as plans start from them.
+    pub(super) fn of_paths(&self) -> Method {
+        Method::Path(self.paths)
+    }
+
+    /// A method that other means than work have chosen, with the reasons by work.
+    pub fn of(&self, method: Method) -> Choice {
+        let work = Work::new(self.triangles, self.film_pixels);
+        let mut cache = method;
+        if let Method::Path(paths) = method {
+            cache = Method::default();
+            let worth = self.pilot.paths_a_sample(f64::from(cache.spp()));
+            cache.set_number("spp", 0, (f64::from(paths.spp) / worth).max(1.0));
+        }
+        let by_cache = work.of_cache(&self.pilot, &cache);
+        let by_paths = work.of_paths(&self.pilot, self.paths_like(&cache));
+        let ahead = if matches!(method, Method::Path(_)) { by_cache / by_paths } else { by_paths / by_cache };
+        self.choice(&cache, method, ahead)
+    }
+
+    /// Number of paths a pixel that are as good as `cache`.
+    fn paths_like(&self, cache: &Method) -> f64 {
+        let spp = f64::from(cache.spp());
+        spp * self.pilot.paths_a_sample(spp)
+    }
+
+    fn cheaper(&self, cache: &Method, pixels: u64) -> Choice {
+        let work = Work::new(self.triangles, pixels);
+        let spp = self.paths_like(cache).round();
+        let paths = path::Settings { spp: spp.clamp(1.0, f64::from(u32::MAX)) as u32, ..self.paths };
+        let by_cache = work.of_cache(&self.pilot, cache);
+        let by_paths = work.of_paths(&self.pilot, spp);
+        match by_paths < by_cache {
+            true => self.choice(cache, Method::Path(paths), by_cache / by_paths),
+            false => self.choice(cache, *cache, by_paths / by_cache),
+        }
+    }
+
+    /// The choice of `method` where the other is, or is compared with, `cache`.
+    fn choice(&self, cache: &Method, method: Method, ahead: f64) -> Choice {
+        let Pilot { rays_of_drawn, rays_of_paths, rays, .. } = self.pilot;
+        Choice {
+            method,
+            ahead,
+            paths_a_sample: self.pilot.paths_a_sample(f64::from(cache.spp())),
+            rays_ratio: rays_of_paths / rays_of_drawn.max(f64::MIN_POSITIVE),
+            pilot_rays: rays,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A film of 512 by 512 in a scene of so many triangles; variances of drawn light and of paths, contrast, and rays
+    /// of both.
+    fn chooser(triangles: usize, variances: [f64; 2], contrast: f64, rays: [f64; 2]) -> Chooser {
+        let pilot = Pilot {
+            variance_of_drawn: variances[0],
+            variance_of_paths: variances[1],
+            contrast_sq: contrast * contrast,
+            rays_of_drawn: rays[0],
+            rays_of_paths: rays[1],
+            rays: 1_000_000,
+        };
+        Chooser { triangles, pilot, film_pixels: 1 << 18, paths: path::Settings::default() }
+    }
+
+    /// The findings in a box lit by its ceiling's lamp.
+    fn in_box() -> Chooser {
+        chooser(36, [0.0018, 0.2], 0.11, [1.7, 4.5])
+    }
+
+    fn is_path(choice: &Choice) -> bool {
+        assert!(choice.ahead >= 1.0, "{choice:?}");
+        matches!(choice.method, Method::Path(_))
+    }
+
+    #[test]
+    fn little_time_is_best_spent_on_paths_where_much_is_on_the_cache() {
+        let ladder = Ladder::new(Method::default(), &[]).unwrap();
+        let choices: Vec<bool> =
+            (-6..6).map(|k| is_path(&in_box().for_time(&ladder, 2f64.powi(k), 0.1))).collect();
+        assert!(choices[0] && !choices[11], "{choices:?}");
+        assert!(choices.is_sorted_by(|a, b| a >= b), "{choices:?}");
+    }
+
+    #[test]
+    fn paths_are_taken_where_the_light_that_both_draw_has_most_of_the_noise() {
+        let cache = Method::default();
+        assert!(!is_path(&in_box().as_good_as(&cache)));
+        let choice = chooser(100_000, [3.0, 3.5], 0.6, [4.0, 5.0]).as_good_as(&cache);
+        assert!(is_path(&choice) && choice.method.spp() >= cache.spp(), "{choice:?}");
+        // A film of any size is judged as if it were large, but for its time.
+        let small = Chooser { film_pixels: 1 << 10, ..in_box() };
+        assert!(!is_path(&small.as_good_as(&cache)) && is_path(&small.on_film(&cache)));
+    }
+
+    #[test]
+    fn paths_chosen_are_as_many_as_are_worth_the_samples() {
+        let chooser = chooser(100_000, [3.0, 7.0], 0.6, [4.0, 1.0]);
+        let choice = chooser.as_good_as(&Method::default());
+        let expected = 16.0 * choice.paths_a_sample;
+        assert!(is_path(&choice) && (f64::from(choice.method.spp()) - expected).abs() <= 0.5, "{choice:?}");
+    }
+}

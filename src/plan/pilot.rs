@@ -1,0 +1,211 @@
+//! A pilot of the cache's drawn light and of paths, at a few pixels: how noisy a sample of either is as a denoised
+//! picture feels it, and how many rays it takes.
+//!
+//! Every pixel is sampled twice by either method; half the squared difference estimates the variance of its mean,
+//! stratification included, and neighbours' products, one factor of either set, estimate the contrast of the picture
+//! without its noise. Both are relative to the brightness of the square of pixels around, and the greatest hundredth is
+//! left out: a denoiser removes single bright dots.
+//!
+//! Measured on six scenes by others at 512x512: by the rule of [`Pilot::paths_a_sample`] paths come to the PSNR of the
+//! cache with 16 samples within a factor of 1.4 of the number predicted, in a room of glossy floors of 3.
+//!
+//! The pilot is spread over the whole film and has seeds of its own: parts of a picture, and pictures to be merged, are
+//! by the same method.
+
+use crate::film::Window;
+use crate::method::{DrawnPixels, Method, PILOT_SPP};
+use crate::progress::Control;
+use crate::sampling::owen_sobol_2d;
+use crate::view::View;
+use crate::world::World;
+
+/// Pixels along the edge of a square.
+const SQUARE: u32 = 4;
+/// Least and largest number of squares, and the number of the film's pixels for each of them: a sixty-fourth of a
+/// film is sampled, less of a large one, by as many samples as the default has; so those of two methods take about a
+/// thirtieth of its rays.
+const MIN_SQUARES: u64 = 16;
+const MAX_SQUARES: u64 = 256;
+const PIXELS_A_SQUARE: u64 = 1024;
+/// Seed of the places of squares.
+const SEED: u32 = 0x6c62_272e;
+/// Share of the pixels, those that count most, that is left out.
+const TRIMMED: f64 = 0.01;
+/// Luminance that counts as dark, relative to that which nine tenths of the pixels keep below.
+const DARK: f64 = 0.1;
+/// Factors from the squared contrast of neighbours to the variance that edges and textures add to a sample of the
+/// cache, which takes more where contrast is great, and to a path.
+const COVERAGE: [f64; 2] = [2.0, 4.0];
+/// Variance that the cache's own errors come to at its default of so many samples, relative to the squared brightness
+/// and times their number. Levels of quality with fewer samples have fewer virtual lights and coarser cuts, too.
+const CACHED: f64 = 0.048;
+const CACHED_SPP: f64 = 16.0;
+
+/// Findings of the pilot.
+#[derive(Clone, Copy, Debug)]
+pub struct Pilot {
+    /// Variance, relative to the squared brightness, of a sample of the light that the cache draws.
+    pub variance_of_drawn: f64,
+    /// The same of a path.
+    pub variance_of_paths: f64,
+    /// Squared contrast of neighbouring pixels, relative to the squared brightness.
+    pub contrast_sq: f64,
+    /// Rays of a sample of the light that the cache draws.
+    pub rays_of_drawn: f64,
+    /// Rays of a path.
+    pub rays_of_paths: f64,
+    /// Rays traced to find all this.
+    pub rays: u64,
+}
+
+impl Pilot {
+    /// Samples squares of the film by both methods; `None` if `cache` draws no light, if none is found, or if
+    /// cancelled.
+    pub fn of(world: &World, view: &View, cache: &Method, path: &Method, control: &Control) -> Option<Pilot> {
+        let squares = squares(view.window.film);
+        let drawn = cache.draw_pixels(world, view, &squares, control)?;
+        let paths = path.draw_pixels(world, view, &squares, control)?;
+        Pilot::by(squares[0].len(), &drawn, &paths)
+    }
+
+    /// By the light of squares of so many pixels each.
+    fn by(square: usize, drawn: &DrawnPixels, paths: &DrawnPixels) -> Option<Pilot> {
+        let [a, b] = &paths.luminances;
+        let means: Vec<f64> = a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect();
+        let brightness: Vec<f64> = means.chunks(square).map(mean).collect();
+        let mut sorted = means.clone();
+        sorted.sort_by(f64::total_cmp);
+        let dark = DARK * sorted[sorted.len() * 9 / 10].max(mean(&means));
+        if !(dark > 0.0 && dark < f64::INFINITY) {
+            return None;
+        }
+        let weight = |pixel: usize| (brightness[pixel / square] + dark).powi(-2);
+        let variance = |light: &DrawnPixels| {
+            let [a, b] = &light.luminances;
+            let differences = a.iter().zip(b).enumerate();
+            let half_squares = differences.map(|(pixel, (a, b))| 0.5 * (a - b).powi(2) * weight(pixel));
+            f64::from(PILOT_SPP) * trimmed_mean(half_squares.collect())
+        };
+        let contrasts = a.chunks(square).zip(b.chunks(square)).enumerate().map(|(i, (a, b))| {
+            let (of_a, of_b) = (mean(a), mean(b));
+            let products = a.iter().zip(b).map(|(a, b)| (a - of_a) * (b - of_b));
+            products.sum::<f64>() / square as f64 * weight(i * square)
+        });
+        Some(Pilot {
+            variance_of_drawn: variance(drawn),
+            variance_of_paths: variance(paths),
+            contrast_sq: trimmed_mean(contrasts.collect()).max(0.0),
+            rays_of_drawn: drawn.rays_a_sample,
+            rays_of_paths: paths.rays_a_sample,
+            rays: drawn.rays + paths.rays,
+        })
+    }
+
+    /// Number of paths, denoised, that are worth a sample of the cache, denoised, at the level of quality with `spp`
+    /// samples; 1 at least, since edges are as jagged by either.
+    pub fn paths_a_sample(&self, spp: f64) -> f64 {
+        let [of_cache, of_paths] = COVERAGE.map(|factor| factor * self.contrast_sq);
+        let cached = CACHED * (CACHED_SPP / spp.max(1.0)).sqrt();
+        let cache = self.variance_of_drawn + of_cache + cached;
+        ((self.variance_of_paths + of_paths) / cache).max(1.0)
+    }
+}
+
+/// Pixels of the squares, the same for every crop of a film.
+fn squares(film: [u32; 2]) -> Vec<Vec<[u32; 2]>> {
+    let pixels = u64::from(film[0]) * u64::from(film[1]);
+    let count = (pixels / PIXELS_A_SQUARE).clamp(MIN_SQUARES, MAX_SQUARES) as u32;
+    let [width, height] = film.map(|length| length.min(SQUARE));
+    let square = |i| {
+        let at = owen_sobol_2d(i, SEED);
+        let offset = |at: f32, film: u32, length: u32| (at * (film - length + 1) as f32) as u32;
+        let offset = [offset(at.x, film[0], width), offset(at.y, film[1], height)];
+        Window { film, offset, width, height }.film_pixels().collect()
+    };
+    (0..count).map(square).collect()
+}
+
+fn mean(values: impl AsRef<[f64]>) -> f64 {
+    let values = values.as_ref();
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+fn trimmed_mean(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let kept = values.len() - (TRIMMED * values.len() as f64) as usize;
+    mean(&values[..kept])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::hash;
+
+    /// Light of squares of sixteen pixels that alternate between two radiances, times 1 ± noise of the given variance
+    /// a sample.
+    fn light(radiances: [f64; 2], variance: f64, seed: u32) -> DrawnPixels {
+        let sigma = (12.0 * variance / f64::from(PILOT_SPP)).sqrt();
+        let set = |set: u32| {
+            let pixel = |i: u32| {
+                let uniform = f64::from(hash(i, seed + set)) / 4_294_967_296.0 - 0.5;
+                radiances[i as usize % 2] * (1.0 + sigma * uniform)
+            };
+            (0..16 * 512).map(pixel).collect()
+        };
+        DrawnPixels::new([set(0), set(1)], 1 << 20, 5)
+    }
+
+    #[test]
+    fn variance_and_contrast_are_told_apart() {
+        for (radiances, contrast_sq) in [([1.0, 1.0], 0.0), ([0.5, 1.5], 0.25)] {
+            let pilot = Pilot::by(16, &light(radiances, 0.02, 1), &light(radiances, 0.3, 7)).unwrap();
+            // Darkness counts as a tenth of the brightest tenth, here 1 or 1.5; mean squares of the radiances are 1
+            // or 1.25; of uniform noise the hundredth left out holds a twentieth.
+            let (scale, squares) =
+                if contrast_sq > 0.0 { (1.0 / 1.15f64.powi(2), 1.25) } else { (1.0 / 1.21, 1.0) };
+            let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.12;
+            assert!(near(pilot.variance_of_drawn, 0.02 * squares * scale), "{pilot:?}");
+            assert!(near(pilot.variance_of_paths, 0.3 * squares * scale), "{pilot:?}");
+            assert!((pilot.contrast_sq - contrast_sq * scale).abs() < 0.01, "{pilot:?}");
+            assert_eq!(pilot.rays, (1 << 21) + 10);
+        }
+    }
+
+    #[test]
+    fn single_bright_dots_do_not_count() {
+        let even = light([1.0, 1.0], 0.02, 1);
+        let mut dotted = light([1.0, 1.0], 0.02, 1);
+        (0..16 * 512).step_by(200).for_each(|i| dotted.luminances[0][i] = 1e3);
+        let pilot = Pilot::by(16, &dotted, &even).unwrap();
+        assert!((pilot.variance_of_drawn / pilot.variance_of_paths - 1.0).abs() < 0.1, "{pilot:?}");
+    }
+
+    #[test]
+    fn a_dark_film_has_no_pilot() {
+        let dark = || light([0.0, 0.0], 0.0, 1);
+        assert!(Pilot::by(16, &dark(), &dark()).is_none());
+    }
+
+    #[test]
+    fn paths_are_worth_less_the_noisier_they_are_and_no_more_than_a_sample() {
+        let pilot =
+            |paths: f64| Pilot::by(16, &light([1.0, 1.0], 0.02, 1), &light([1.0, 1.0], paths, 7)).unwrap();
+        assert_eq!(pilot(0.01).paths_a_sample(16.0), 1.0);
+        let at = |paths: f64, spp: f64| pilot(paths).paths_a_sample(spp);
+        assert!(at(0.4, 16.0) > 1.8 * at(0.2, 16.0) && at(0.4, 16.0) > 1.5 * at(0.4, 2.0));
+    }
+
+    #[test]
+    fn squares_are_few_and_lie_in_the_film() {
+        for film in [[1, 1], [3, 500], [64, 64], [512, 512], [4096, 4096]] {
+            let squares = squares(film);
+            let pixels: usize = squares.iter().map(Vec::len).sum();
+            assert!(
+                squares.iter().flatten().all(|pixel| pixel[0] < film[0] && pixel[1] < film[1]),
+                "{film:?}"
+            );
+            let share = pixels as f64 / f64::from(film[0] * film[1]);
+            assert!(share <= 1.0 / 64.0 || pixels <= 256, "{film:?} {share}");
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Work that a picture is expected to take, counted before it is begun: rays, virtual lights and samples at fixed
+//! prices, so that choices by it do not depend on the machine or its load.
+//!
+//! Units: microseconds of one core of the machine on which the prices were measured. Denoising takes as long whatever
+//! made the picture and is left out.
+
+use super::pilot::Pilot;
+use crate::method::Method;
+
+/// Price of a ray in the smallest scenes, and what every doubling of the triangles adds to it.
+const RAY: f64 = 0.08;
+const RAY_BY_DOUBLING: f64 = 0.03;
+/// Number of triangles of the smallest scenes.
+const FEW: f64 = 32.0;
+/// Price of a virtual light in the light pass and the tree, and its rays.
+const VPL: f64 = 1.9;
+const VPL_RAYS: f64 = 3.0;
+/// Rays of indirect light by records and cuts, over the contrast of neighbouring pixels, at the default's samples in a
+/// film of so many pixels: points that no record reaches, times the rays of a cut.
+const CACHED_RAYS: f64 = 2.5e7;
+const CACHED_PIXELS: f64 = 65536.0;
+const CACHED_SPP: f64 = 16.0;
+/// Exponents by which they grow with the pixels, and with the samples along the levels of quality, which make cuts
+/// finer.
+const BY_PIXELS: f64 = 0.25;
+const BY_SPP: f64 = 0.5;
+/// Least contrast that counts.
+const MIN_CONTRAST: f64 = 0.03;
+
+/// Prices in a scene, and the film.
+#[derive(Clone, Copy, Debug)]
+pub struct Work {
+    ray: f64,
+    pixels: f64,
+}
+
+impl Work {
+    /// Work for so many pixels of a scene of so many triangles.
+    pub fn new(triangles: usize, pixels: u64) -> Work {
+        let doublings = (triangles as f64 / FEW).max(1.0).log2();
+        Work { ray: RAY + RAY_BY_DOUBLING * doublings, pixels: pixels as f64 }
+    }
+
+    /// Of `spp` paths a pixel.
+    pub fn of_paths(&self, pilot: &Pilot, spp: f64) -> f64 {
+        self.pixels * spp * pilot.rays_of_paths * self.ray
+    }
+
+    /// Of the cache with the settings of `method`.
+    pub fn of_cache(&self, pilot: &Pilot, method: &Method) -> f64 {
+        let number = |key| method.number(key).unwrap_or(0.0);
+        let spp = number("spp");
+        let samples = self.pixels * spp * (1.0 + number("extra_samples"));
+        let lights = number("vpls") * (VPL + VPL_RAYS * self.ray);
+        let cached = CACHED_RAYS
+            * pilot.contrast_sq.sqrt().max(MIN_CONTRAST)
+            * (self.pixels / CACHED_PIXELS).powf(BY_PIXELS)
+            * (spp / CACHED_SPP).powf(BY_SPP);
+        (samples * pilot.rays_of_drawn + cached) * self.ray + lights
+    }
+
+    /// Of the pilot itself.
+    pub fn of_pilot(&self, pilot: &Pilot) -> f64 {
+        pilot.rays as f64 * self.ray
+    }
+}

@@ -1,0 +1,225 @@
+//! The picture for a goal: by the method as it is set, by the better of two, or by settings planned for a time or an
+//! error.
+
+use super::finish::Finish;
+use super::frame::Remark;
+use super::goal::{Goal, Wanted};
+use super::render::{Former, FrameError, Kept};
+use super::{Session, report};
+use crate::eye::Settled;
+use crate::method::{Before, LightStore, Method, Output};
+use crate::plan::{self, Chooser, LATE, Ladder};
+use crate::progress::Control;
+use crate::stats::{Stage, Stats, Stopwatch};
+use crate::verify::{self, Verified};
+use crate::view::View;
+use serde_json::{Value, json};
+
+/// A picture by the settings that its goal led to.
+pub struct Made {
+    /// The method with the settings used.
+    pub method: Method,
+    /// The picture.
+    pub output: Output,
+    /// Seconds that it took to render.
+    pub seconds: f64,
+    /// Settings and result of the measurement of the error, where settings were planned by it; no result if
+    /// cancelled.
+    pub measured: Option<(verify::Settings, Option<Verified>)>,
+    /// Goal, plan and result; null if nothing was planned.
+    pub plan: Value,
+}
+
+/// A frame of a session.
+pub struct Planning<'a> {
+    /// The session.
+    pub session: &'a Session,
+    /// Its view.
+    pub view: &'a View,
+    /// Stages after the method's own.
+    pub finish: &'a Finish<'a>,
+    /// Progress and cancellation.
+    pub control: &'a Control,
+}
+
+impl Planning<'_> {
+    /// The finished picture; of `former` renders where no settings are planned.
+    pub fn picture(
+        &self,
+        goal: &Goal,
+        former: Former,
+        stats: &mut Stats,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<Made, FrameError> {
+        let watch = Stopwatch::start();
+        let chooser = goal.may_choose.then(|| self.chooser(&goal.method)).flatten();
+        let pilot_time = watch.elapsed();
+        if chooser.is_some() {
+            stats.add_time(Stage::Plan, pilot_time);
+        }
+        let mut choice = None;
+        let mut made = match &goal.wanted {
+            Wanted::AsSet => {
+                choice = chooser.map(|chooser| chooser.as_good_as(&goal.method));
+                self.as_set(choice.map_or(goal.method, |choice| choice.method), former)
+            }
+            Wanted::Time { seconds, run, held } => {
+                if let Some(chooser) = chooser {
+                    let finishing = self.finish.expected_seconds(&goal.method);
+                    let left = *seconds - run.elapsed().wall_seconds - finishing;
+                    let ladder = self.ladder(goal.method, held)?;
+                    choice = Some(chooser.for_time(&ladder, left, pilot_time.wall_seconds));
+                }
+                let method = choice.map_or(goal.method, |choice| choice.method);
+                self.for_time(&method, (*seconds, run, held), stats, remarks)?
+            }
+            Wanted::Error { error, max_samples, held } => {
+                let asked = (*error, goal.verify.unwrap_or_default(), *max_samples);
+                let ladder = self.ladder(goal.method, held)?;
+                let made = self.for_error(&ladder, chooser.as_ref(), asked, stats, remarks)?;
+                choice = chooser.map(|chooser| chooser.of(made.method));
+                made
+            }
+        };
+        if let Some(choice) = choice {
+            report::add_choice(&choice, made.method.spp(), &mut made.plan, stats, remarks);
+        }
+        Ok(made)
+    }
+
+    fn chooser(&self, method: &Method) -> Option<Chooser> {
+        Chooser::new(&self.session.world, self.view, method, self.control)
+    }
+
+    fn ladder(&self, method: Method, held: &[&'static str]) -> Result<Ladder, FrameError> {
+        let ladder = Ladder::new(method, held).ok_or(FrameError::Unplannable(method.name()))?;
+        Ok(ladder.within(&self.view.window))
+    }
+
+    /// The finished picture by a method as it is set.
+    fn as_set(&self, method: Method, former: Former) -> Made {
+        let Planning { session: Session { world, lights, .. }, view, control, .. } = *self;
+        let watch = Stopwatch::start();
+        let mut seconds = 0.0;
+        let output = match former {
+            Former::Frames(kept) => self.next_frame(&method, kept),
+            Former::Samples(begun) => {
+                seconds += begun.seconds;
+                let mut output = method.render_rest(world, lights, &begun, view, control);
+                self.finish.apply(&method, &mut output);
+                output
+            }
+            Former::Nothing => {
+                let mut output = method.render(world, lights, view, control);
+                self.finish.apply(&method, &mut output);
+                output
+            }
+        };
+        seconds += watch.elapsed().wall_seconds;
+        Made { method, output, seconds, measured: None, plan: Value::Null }
+    }
+
+    /// The finished next picture of a walk-through.
+    fn next_frame(&self, method: &Method, kept: Kept) -> Output {
+        let Planning { session: Session { world, lights, .. }, view, finish, control } = *self;
+        let Kept { records, last } = kept;
+        let draws = method.keeps_records() && method.leaves_noise();
+        let Some(last) = last.filter(|_| draws && finish.denoises()) else {
+            let before = Before { records, settled: Settled::default() };
+            let mut output = method.render_next(world, lights, before, view, control);
+            finish.apply(method, &mut output);
+            return output;
+        };
+        let watch = Stopwatch::start();
+        let seen = finish.look(method);
+        let reprojected = last.reproject(view, &seen);
+        let looking = watch.elapsed();
+        let settled = reprojected.settled();
+        let number = settled.pixels.iter().filter(|is_settled| **is_settled).count();
+        let before = Before { records, settled };
+        let mut output = method.render_next(world, lights, before, view, control);
+        output.stats.add_time(Stage::EyePass, looking);
+        output.stats.count("Walk/pixels settled", number as u64);
+        reprojected.mix_into(&mut output.color, &seen);
+        let is_denoised = finish.apply_to_seen(&seen, &mut output);
+        last.replace(view, &seen, is_denoised.then_some(&output.color));
+        output
+    }
+
+    /// The finished picture by settings planned for a time, of a run that began with `run`.
+    fn for_time(
+        &self,
+        method: &Method,
+        (asked, run, held): (f64, &Stopwatch, &[&'static str]),
+        stats: &mut Stats,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<Made, FrameError> {
+        let Planning { session: Session { world, .. }, view, finish, control } = *self;
+        let watch = Stopwatch::start();
+        let finishing = finish.expected_seconds(method);
+        let left = || asked - finishing - run.elapsed().wall_seconds;
+        let found = plan::for_time(world, view, &self.ladder(*method, held)?, left, control)
+            .ok_or(FrameError::Interrupted)?;
+        let spent = found.spent();
+        stats.add_time(Stage::Plan, watch.elapsed().without(spent));
+        let before = run.elapsed().wall_seconds;
+        let planned = before + found.render_seconds + finishing;
+        let in_reach = planned <= asked * LATE;
+        remarks.extend(report::of_time(asked, [before, planned], in_reach, &found.options));
+        stats.add("Plan/time asked [s]", asked);
+        stats.add("Plan/time planned, without writing [s]", planned);
+        stats.count("Plan/in time (1: yes)", u64::from(in_reach));
+        stats.count("Plan/small renders and trials", found.pilots);
+        let plan = json!({
+            "asked_seconds": asked,
+            "planned_seconds": planned,
+            "in_reach": in_reach,
+            "options": found.options,
+        });
+        let method = found.method;
+        let watch = Stopwatch::start();
+        let mut output = found.render(world, view, control);
+        finish.apply(&method, &mut output);
+        let seconds = spent.wall_seconds + watch.elapsed().wall_seconds;
+        Ok(Made { method, output, seconds, measured: None, plan })
+    }
+
+    /// The finished picture by the cheapest settings found whose error is as low as asked.
+    fn for_error(
+        &self,
+        ladder: &Ladder,
+        chooser: Option<&Chooser>,
+        (error, measure, most_samples): (f64, verify::Settings, u32),
+        stats: &mut Stats,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<Made, FrameError> {
+        let Planning { session: Session { world, .. }, view, finish, control } = *self;
+        let render = |method: &Method| {
+            let mut output = method.render(world, &LightStore::default(), view, control);
+            finish.apply(method, &mut output);
+            output
+        };
+        let asked = plan::Asked { error, measure, most_samples, render: &render };
+        let watch = Stopwatch::start();
+        let found = plan::for_error(world, view, (ladder, chooser), &asked, control)
+            .ok_or(FrameError::Interrupted)?;
+        stats.add_time(Stage::Plan, watch.elapsed().without(found.time));
+        let got = found.verified.map(|v| v.relative_rms);
+        remarks.extend(found.missed.map(report::of_missed));
+        remarks.extend(report::of_error(error, &found.options, got.filter(|_| !found.met)));
+        stats.add("Plan/error asked [%]", 100.0 * error);
+        stats.add("Plan/error planned [%]", 100.0 * found.expected);
+        stats.count("Plan/error met (1: yes)", u64::from(found.met));
+        stats.count("Plan/renders", found.renders);
+        let plan = json!({
+            "asked_error": error,
+            "planned_error": found.expected,
+            "got_error": got,
+            "met": found.met,
+            "options": found.options,
+        });
+        let measured = Some((found.measure.of(&found.method), found.verified));
+        let (method, output, seconds) = (found.method, found.output, found.time.wall_seconds);
+        Ok(Made { method, output, seconds, measured, plan })
+    }
+}
