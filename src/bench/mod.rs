@@ -7,6 +7,7 @@
 
 mod bounds;
 mod bsdf;
+mod choice;
 mod document;
 pub mod export;
 mod extremes;
@@ -68,11 +69,12 @@ pub enum Kind {
 }
 
 /// All benchmarks.
-pub const REGISTRY: [Benchmark; 9] = [
+pub const REGISTRY: [Benchmark; 10] = [
     table1::BENCHMARK,
     trade::BENCHMARK,
     race::BENCHMARK,
     extremes::BENCHMARK,
+    choice::BENCHMARK,
     shadow::BENCHMARK,
     bounds::BENCHMARK,
     trees::BENCHMARK,
