@@ -36,7 +36,7 @@ impl<'w> Setting<'w> {
         let samples = EyePass::trace(world, &view, eye, &Control::new());
         let LightPass { sets, spots, .. } =
             light_pass(world, &LightPassSettings::default(), depth, &Control::new());
-        let trees = LightTrees::build(&sets, spots, world.diagonal, Family::default());
+        let trees = LightTrees::build(&sets, spots, world.diagonal, Family::default(), &Control::new());
         Some(Setting { world, samples, trees })
     }
 

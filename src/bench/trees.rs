@@ -32,13 +32,13 @@ fn run(context: &Context) -> Vec<Table> {
         let sets = std::rc::Rc::new(sets);
         let against = cases.len();
         for family in [Family::Divisive, Family::Agglomerative] {
-            let trees = LightTrees::build(&sets, spots.clone(), diagonal, family);
+            let trees = LightTrees::build(&sets, spots.clone(), diagonal, family, &Control::new());
             let cuts = [0.02, 0.01].map(|epsilon| Some(mean_cut(&setting, &trees, epsilon)));
             let (sets, spots) = (sets.clone(), spots.clone());
             let labels = [&indirect.to_string(), &*format!("{family:?}").to_lowercase()];
             let lights = trees.vpls.len() as f64;
             let mut case = Case::new(&labels, against, lights, move || {
-                black_box(LightTrees::build(&sets, spots.clone(), diagonal, family));
+                black_box(LightTrees::build(&sets, spots.clone(), diagonal, family, &Control::new()));
             });
             case.figures = cuts.to_vec();
             cases.push(case);

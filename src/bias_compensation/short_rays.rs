@@ -133,6 +133,7 @@ mod tests {
     use super::*;
     use crate::light_tree::{Family, LightTrees};
     use crate::lightcut::Transfer;
+    use crate::progress::Control;
     use crate::test_scenes::{add_material, camera, diffuse, emitting, quad, scene, world};
     use crate::world::World;
     use std::f32::consts::PI;
@@ -156,7 +157,7 @@ mod tests {
     fn lacking(bound: f32, near_sq: f32) -> [f32; 2] {
         const RAYS: u32 = 4096;
         let world = ceiling();
-        let trees = LightTrees::build(&[], Vec::new(), world.diagonal, Family::default());
+        let trees = LightTrees::build(&[], Vec::new(), world.diagonal, Family::default(), &Control::new());
         let near = [near_sq];
         let c = Compensation::new(&world, Transfer::new(&trees, world.diagonal), &near);
         let point = SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, geometric_normal: Vec3::Z };

@@ -3,6 +3,7 @@
 use super::*;
 use crate::light_tree::{Family, LightTrees};
 use crate::math::{Frame, Real};
+use crate::progress::Control;
 use crate::vpl::{SpotProfile, Vpl, VplKind};
 use glam::{DVec3, Vec3};
 use std::f64::consts::TAU;
@@ -231,7 +232,7 @@ fn virtual_lights_arrive_as_the_lightcut_counts_them() {
         SpotProfile { direction: Vec3::new(-0.2, 0.1, -1.0).normalize(), inner_angle: 0.3, outer_angle: 0.8 };
     let light = position + Vec3::new(0.4, 0.3, 1.5);
     let at = |vpl: &Vpl, kind, x| Incidence::of_vpl(&frame, x, vpl, kind, &[spot], 1e-12);
-    let trees = LightTrees::build(&[], vec![spot], 1.0, Family::default());
+    let trees = LightTrees::build(&[], vec![spot], 1.0, Family::default(), &Control::new());
     let transfer = crate::lightcut::Transfer { trees: &trees, min_dist_sq: 1e-12, patches: false };
     for (vpl, kind) in [
         (Vpl::oriented(light, Vec3::new(0.1, 0.2, -1.0).normalize()), VplKind::Oriented),

@@ -7,6 +7,7 @@
 
 use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cost};
 use super::topology::Topology;
+use crate::progress::Control;
 use rayon::prelude::*;
 
 /// Distance along the curve, in clusters, up to which a cluster searches for its neighbour.
@@ -31,8 +32,9 @@ impl ActiveCluster {
     }
 }
 
-/// Builds a tree by rounds of mutual-nearest merges; `c_sq` is the square of the scene's diagonal.
-pub fn build(mut primitives: Vec<Primitive>, c_sq: f32) -> Topology {
+/// Builds a tree by rounds of mutual-nearest merges; `c_sq` is the square of the scene's diagonal. Clusters are paired
+/// as they come once `control` is cancelled.
+pub fn build(mut primitives: Vec<Primitive>, c_sq: f32, control: &Control) -> Topology {
     sort_along_curve(&mut primitives, c_sq);
     let leaf = |(i, r): (usize, &Primitive)| ActiveCluster {
         bounds: PrimitiveBounds::of(r),
@@ -42,9 +44,11 @@ pub fn build(mut primitives: Vec<Primitive>, c_sq: f32) -> Topology {
     let mut clusters: Vec<ActiveCluster> = primitives.iter().enumerate().map(leaf).collect();
     let mut pairs = Vec::with_capacity(primitives.len().saturating_sub(1));
     while clusters.len() > 1 {
-        let nearest = nearest_neighbours(&clusters, c_sq);
         let before = clusters.len();
-        merge(&mut clusters, &nearest, primitives.len(), &mut pairs);
+        if !control.is_cancelled() {
+            let nearest = nearest_neighbours(&clusters, c_sq);
+            merge(&mut clusters, &nearest, primitives.len(), &mut pairs);
+        }
         if before - clusters.len() <= before / STALLED {
             let paired: Vec<u32> = (0..clusters.len() as u32).map(|i| i ^ 1).collect();
             merge(&mut clusters, &paired, primitives.len(), &mut pairs);

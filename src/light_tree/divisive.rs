@@ -7,6 +7,7 @@
 
 use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cost};
 use super::topology::Topology;
+use crate::progress::Control;
 use rayon::prelude::*;
 
 /// Number of bins by dimension.
@@ -35,18 +36,21 @@ impl Bin {
 
 type Bins = [[Bin; BINS]; DIMENSIONS];
 
-/// Builds a tree by recursive splits; `c_sq` is the square of the scene's diagonal.
-pub fn build(mut primitives: Vec<Primitive>, c_sq: f32) -> Topology {
+/// Builds a tree by recursive splits; `c_sq` is the square of the scene's diagonal. Clusters are halved as they come
+/// once `control` is cancelled.
+pub fn build(mut primitives: Vec<Primitive>, c_sq: f32, control: &Control) -> Topology {
     let mut left_sizes = vec![0; primitives.len().saturating_sub(1)];
-    split_all(&mut primitives, &mut left_sizes, c_sq);
+    split_all(&mut primitives, &mut left_sizes, c_sq, control);
     Topology { leaves: primitives, left_sizes }
 }
 
-fn split_all(primitives: &mut [Primitive], left_sizes: &mut [u32], c_sq: f32) {
+fn split_all(primitives: &mut [Primitive], left_sizes: &mut [u32], c_sq: f32, control: &Control) {
     let n = primitives.len();
     let Some((own, rest)) = left_sizes.split_first_mut() else { return };
     let left = if n == 2 {
         1
+    } else if n > SORTED && control.is_cancelled() {
+        n / 2
     } else if n <= SORTED {
         split_sorted(primitives, c_sq)
     } else {
@@ -57,12 +61,12 @@ fn split_all(primitives: &mut [Primitive], left_sizes: &mut [u32], c_sq: f32) {
     let (left_rest, right_rest) = rest.split_at_mut(left - 1);
     if n > PARALLEL {
         rayon::join(
-            || split_all(left_records, left_rest, c_sq),
-            || split_all(right_records, right_rest, c_sq),
+            || split_all(left_records, left_rest, c_sq, control),
+            || split_all(right_records, right_rest, c_sq, control),
         );
     } else {
-        split_all(left_records, left_rest, c_sq);
-        split_all(right_records, right_rest, c_sq);
+        split_all(left_records, left_rest, c_sq, control);
+        split_all(right_records, right_rest, c_sq, control);
     }
 }
 

@@ -15,6 +15,7 @@ mod tests;
 mod topology;
 
 use crate::math::luminance;
+use crate::progress::Control;
 use crate::setting::{Each, Settings, Spec, choices};
 use crate::vpl::{Origin, SpotProfile, Vpl, VplSet};
 use cost::Primitive;
@@ -67,16 +68,22 @@ impl LightTrees {
     /// Builds a tree over each of `sets`; `diagonal` of the scene sets the weight of an angle against a
     /// length.
     ///
-    /// VPLs beyond [`MAX_VPLS`] in all are ignored.
-    pub fn build(sets: &[VplSet], spots: Vec<SpotProfile>, diagonal: f32, family: Family) -> LightTrees {
+    /// VPLs beyond [`MAX_VPLS`] in all are ignored. The trees are poor, but whole, if `control` is cancelled.
+    pub fn build(
+        sets: &[VplSet],
+        spots: Vec<SpotProfile>,
+        diagonal: f32,
+        family: Family,
+        control: &Control,
+    ) -> LightTrees {
         let mut trees = LightTrees { spots, ..LightTrees::default() };
         for set in sets {
-            trees.add(set, diagonal, family);
+            trees.add(set, diagonal, family, control);
         }
         trees
     }
 
-    fn add(&mut self, set: &VplSet, diagonal: f32, family: Family) {
+    fn add(&mut self, set: &VplSet, diagonal: f32, family: Family, control: &Control) {
         let n = set.len().min(MAX_VPLS - self.vpls.len());
         if n == 0 {
             return;
@@ -85,8 +92,8 @@ impl LightTrees {
             |i: usize| Primitive::new(&set.vpls[i], set.kind, luminance(set.intensities[i]), i as u32);
         let primitives = (0..n).map(primitive).collect();
         let topology = match family {
-            Family::Divisive => divisive::build(primitives, diagonal * diagonal),
-            Family::Agglomerative => agglomerative::build(primitives, diagonal * diagonal),
+            Family::Divisive => divisive::build(primitives, diagonal * diagonal, control),
+            Family::Agglomerative => agglomerative::build(primitives, diagonal * diagonal, control),
         };
         let (first_node, first_vpl) = (self.nodes.len(), self.vpls.len());
         let blank = Node::new(crate::math::Rgb::ZERO, 0, set.kind, set.origin);

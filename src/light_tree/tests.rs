@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::math::Rgb;
+use crate::progress::Control;
 use crate::vpl::{Origin, VplKind};
 use glam::{DVec3, Vec3};
 
@@ -40,7 +41,7 @@ fn random_set(n: usize, kind: VplKind) -> VplSet {
 }
 
 fn build(set: &VplSet, family: Family) -> LightTrees {
-    LightTrees::build(std::slice::from_ref(set), Vec::new(), 3f32.sqrt(), family)
+    LightTrees::build(std::slice::from_ref(set), Vec::new(), 3f32.sqrt(), family, &Control::new())
 }
 
 /// Checks all properties that lightcuts rely on.
@@ -101,6 +102,17 @@ fn assert_cones_hold_members(trees: &LightTrees) {
 }
 
 #[test]
+fn trees_are_whole_even_if_building_is_cancelled() {
+    let control = Control::new();
+    control.cancel();
+    for family in [Family::Divisive, Family::Agglomerative] {
+        let sets = [random_set(5000, VplKind::Oriented)];
+        let trees = LightTrees::build(&sets, Vec::new(), 3f32.sqrt(), family, &control);
+        assert_valid(&trees, &sets);
+    }
+}
+
+#[test]
 fn trees_of_every_kind_and_size_are_valid() {
     for family in FAMILIES {
         for kind in [VplKind::Omni, VplKind::Oriented, VplKind::Directional] {
@@ -122,7 +134,7 @@ fn several_sets_share_one_array_and_keep_their_origin() {
         let mut sets = vec![random_set(50, VplKind::Omni), random_set(70, VplKind::Oriented)];
         sets[0].origin = Origin::Direct;
         sets.push(VplSet::new(VplKind::Directional, Origin::Direct));
-        let trees = LightTrees::build(&sets, Vec::new(), 1.0, family);
+        let trees = LightTrees::build(&sets, Vec::new(), 1.0, family, &Control::new());
         assert_valid(&trees, &sets);
         assert_eq!(trees.roots.len(), 2, "no tree over nothing");
         let origins: Vec<_> = trees.roots.iter().map(|&r| trees.nodes[r as usize].origin()).collect();
@@ -207,7 +219,7 @@ fn representatives_are_drawn_in_proportion_to_intensity() {
             set
         })
         .collect();
-    let trees = LightTrees::build(&sets, Vec::new(), 1.0, Family::Divisive);
+    let trees = LightTrees::build(&sets, Vec::new(), 1.0, Family::Divisive, &Control::new());
     for &root in &trees.roots {
         bright += usize::from(trees.vpls[trees.nodes[root as usize].representative()].position == Vec3::Y);
     }

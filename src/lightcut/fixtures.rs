@@ -4,6 +4,7 @@ use super::{CutSettings, PacketVisibility, Receiver, ReceiverPacket, Visibility}
 use crate::light_tree::{Family, LightTrees, Node};
 use crate::material::Materials;
 use crate::math::{Frame, Rgb, lanes_in};
+use crate::progress::Control;
 use crate::sampling::{hash, uniform_sphere};
 use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene};
 use crate::vpl::{Origin, SpotProfile, Vpl, VplKind, VplSet};
@@ -170,7 +171,7 @@ pub fn low_lamps(numbers: &mut Numbers) -> LightTrees {
         let position = numbers.vec3().with_y(0.05 + 0.05 * numbers.next());
         set.push(Vpl::oriented(position, -Vec3::Y), numbers.vec3());
     }
-    LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive)
+    LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new())
 }
 
 /// A scene without surfaces, in which everything is visible.

@@ -8,6 +8,7 @@ use crate::eye::{EyeIndex, PointGeometry, PointSurface, ShadingPoints};
 use crate::light_tree::{Family, LightTrees};
 use crate::material::Materials;
 use crate::math::{Rgb, luminance};
+use crate::progress::Control;
 use crate::scene::{MaterialId, Scene};
 use crate::test_scenes::diffuse;
 use crate::vpl::{DirectIndirect, Origin, Vpl, VplKind, VplSet};
@@ -95,5 +96,5 @@ pub fn candidate(position: Vec3, normal: Vec3) -> Candidate {
 pub fn light(kind: VplKind, vpl: Vpl, intensity: Rgb) -> LightTrees {
     let mut set = VplSet::new(kind, Origin::Indirect);
     set.push(vpl, intensity);
-    LightTrees::build(&[set], Vec::new(), 1.0, Family::Divisive)
+    LightTrees::build(&[set], Vec::new(), 1.0, Family::Divisive, &Control::new())
 }

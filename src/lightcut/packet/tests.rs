@@ -9,6 +9,7 @@ use crate::lightcut::fixtures::{
 use crate::lightcut::{CutSettings, Lightcut, Receiver, Transfer, gather_all};
 use crate::material::Materials;
 use crate::math::{Rgb, luminance};
+use crate::progress::Control;
 use crate::scene::{MaterialId, Scene};
 use crate::vpl::{Vpl, VplKind};
 use glam::{Vec2, Vec3};
@@ -51,7 +52,7 @@ fn lanes_have_the_responses_of_single_points_and_bounds_above_them() {
         let mut numbers = Numbers(round << 20);
         let scale = [1e-6, 1.0, 1e6][round as usize % 3];
         let sets = three_kinds(60, scale, &mut numbers);
-        let trees = LightTrees::build(&sets, SPOTS.to_vec(), 2.0 * scale, Family::Divisive);
+        let trees = LightTrees::build(&sets, SPOTS.to_vec(), 2.0 * scale, Family::Divisive, &Control::new());
         let transfer = Transfer::new(&trees, 2.0 * scale);
         for count in [16, 1, 5] {
             points.set(neighbours(&materials, &scene, scale, count, &mut numbers));
@@ -89,7 +90,13 @@ fn errors(settings: &CutSettings) -> Vec<f32> {
     let scene = all_materials();
     let materials = Materials::new(&scene);
     let ball = Ball { centre: Vec3::splat(0.5), radius: 0.25 };
-    let trees = LightTrees::build(&[room(20_000, &mut Numbers(1))], Vec::new(), 1.73, Family::Divisive);
+    let trees = LightTrees::build(
+        &[room(20_000, &mut Numbers(1))],
+        Vec::new(),
+        1.73,
+        Family::Divisive,
+        &Control::new(),
+    );
     let transfer = Transfer::new(&trees, 1.73);
     let (mut cut, mut points) = (PacketLightcut::new(), ReceiverPacket::new());
     let mut numbers = Numbers(77);
@@ -149,7 +156,7 @@ fn one_lane_clamps_as_a_single_point_does() {
     set.push(Vpl::oriented(x + Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
     // Below the horizon.
     set.push(Vpl::oriented(x - Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
-    let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive);
+    let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let frame = crate::math::Frame::from_normal(Vec3::Y);
     let lambert = materials.at(&scene, MaterialId(0), Vec2::ZERO);
@@ -178,7 +185,8 @@ fn one_lane_clamps_as_a_single_point_does() {
 fn the_cap_holds_for_the_packet() {
     let scene = all_materials();
     let materials = Materials::new(&scene);
-    let trees = LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive);
+    let trees =
+        LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive, &Control::new());
     let mut points = ReceiverPacket::new();
     points.set(neighbours(&materials, &scene, 1.0, 16, &mut Numbers(3)));
     let settings = CutSettings { epsilon: 1e-4, max_cut: 77, clamp: None, origin: None };

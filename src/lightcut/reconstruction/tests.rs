@@ -5,6 +5,7 @@ use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::fixtures::{Ball, EXACT, Numbers, rms, room};
 use crate::lightcut::{PacketLightcut, Receiver, Visibility};
 use crate::math::{Frame, LANES, luminance};
+use crate::progress::Control;
 use glam::Vec3;
 
 /// Points of a lattice above the floor, eight a row.
@@ -18,7 +19,8 @@ fn lattice(count: usize) -> Vec<Receiver<'static>> {
 fn points_gather_nearly_the_light_of_cuts_of_their_own() {
     let mut numbers = Numbers(77);
     let ball = Ball { centre: Vec3::new(0.5, 0.5, 0.6), radius: 0.15 };
-    let trees = LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive);
+    let trees =
+        LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let receivers = lattice(32);
     let (mut packet, mut points) = (PacketLightcut::new(), ReceiverPacket::new());
@@ -45,7 +47,8 @@ fn sampled_clusters_are_right_on_average() {
     // Half in the shadow of a ball: the anchors disagree about many small clusters.
     let mut numbers = Numbers(78);
     let ball = Ball { centre: Vec3::new(0.5, 0.5, 0.25), radius: 0.15 };
-    let trees = LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive);
+    let trees =
+        LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let receivers = lattice(64);
     let (mut packet, mut points) = (PacketLightcut::new(), ReceiverPacket::new());

@@ -5,6 +5,7 @@ use crate::lightcut::fixtures::*;
 use crate::lightcut::*;
 use crate::material::Materials;
 use crate::math::{Frame, Rgb, luminance};
+use crate::progress::Control;
 use crate::vpl::{Origin, Vpl, VplKind, VplSet};
 use glam::Vec3;
 
@@ -18,8 +19,13 @@ fn no_member_contributes_more_than_the_clusters_bound() {
         let scale = [1e-6, 1.0, 1e6][round as usize % 3];
         let family = if round % 2 == 0 { Family::Divisive } else { Family::Agglomerative };
         let diagonal = scale * 2.0;
-        let trees =
-            LightTrees::build(&three_kinds(60, scale, &mut numbers), SPOTS.to_vec(), diagonal, family);
+        let trees = LightTrees::build(
+            &three_kinds(60, scale, &mut numbers),
+            SPOTS.to_vec(),
+            diagonal,
+            family,
+            &Control::new(),
+        );
         let transfer = Transfer::new(&trees, diagonal);
         for _ in 0..25 {
             let mut receiver = random_receiver(&materials, &scene, scale, &mut numbers);
@@ -76,7 +82,8 @@ fn cuts_are_within_their_error_and_shrink_with_epsilon() {
     let set = room(20_000, &mut Numbers(1));
     let ball = Ball { centre: Vec3::splat(0.5), radius: 0.25 };
     for family in [Family::Divisive, Family::Agglomerative] {
-        let trees = LightTrees::build(std::slice::from_ref(&set), Vec::new(), 3f32.sqrt(), family);
+        let trees =
+            LightTrees::build(std::slice::from_ref(&set), Vec::new(), 3f32.sqrt(), family, &Control::new());
         let at = |epsilon| {
             let (errors, size) = relative_errors(&trees, &CutSettings { epsilon, ..EXACT }, &ball);
             (rms(&errors), size)
@@ -112,15 +119,21 @@ fn no_cluster_gives_more_than_a_quarter_however_coarse_the_cut() {
 #[test]
 fn with_no_tolerance_the_cut_is_the_full_sum() {
     let mut numbers = Numbers(5);
-    let trees =
-        LightTrees::build(&three_kinds(300, 1.0, &mut numbers), SPOTS.to_vec(), 2.0, Family::Divisive);
+    let trees = LightTrees::build(
+        &three_kinds(300, 1.0, &mut numbers),
+        SPOTS.to_vec(),
+        2.0,
+        Family::Divisive,
+        &Control::new(),
+    );
     let (errors, _) = relative_errors(&trees, &CutSettings { epsilon: 0.0, ..EXACT }, &Unoccluded);
     assert!(errors.iter().all(|e| e.abs() < 1e-4), "{errors:?}");
 }
 
 #[test]
 fn the_cap_is_respected_and_counted() {
-    let trees = LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive);
+    let trees =
+        LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive, &Control::new());
     let settings = CutSettings { epsilon: 0.001, max_cut: 77, clamp: None, origin: None };
     let transfer = Transfer::new(&trees, 1.7);
     let receiver = Receiver::irradiance(Vec3::splat(0.4), Vec3::Y, &Frame::from_normal(Vec3::Y));
@@ -144,7 +157,7 @@ fn nothing_degenerate_breaks_a_cut() {
         let kind = VplKind::Oriented;
         let mut set = VplSet::new(kind, Origin::Indirect);
         vpls.iter().for_each(|&(vpl, i)| set.push(vpl, Rgb::splat(i)));
-        LightTrees::build(&[set], Vec::new(), 1.0, Family::Divisive)
+        LightTrees::build(&[set], Vec::new(), 1.0, Family::Divisive, &Control::new())
     };
     let down = |p: Vec3| Vpl::oriented(p, -Vec3::Y);
     let settings = CutSettings { epsilon: 0.0, ..EXACT };
@@ -176,7 +189,7 @@ fn the_same_room_at_any_scale_gives_the_same_cut() {
         for (vpl, &intensity) in reference.vpls.iter().zip(&reference.intensities) {
             set.push(Vpl::oriented(vpl.position * s, vpl.normal()), intensity * s * s);
         }
-        let trees = LightTrees::build(&[set], Vec::new(), 1.7 * s, Family::Divisive);
+        let trees = LightTrees::build(&[set], Vec::new(), 1.7 * s, Family::Divisive, &Control::new());
         irradiance(&trees, 1.7 * s, Vec3::new(0.3, 0.2, 0.6) * s, &EXACT)
     };
     let unit = at_scale(1.0);
@@ -192,8 +205,9 @@ fn the_same_room_at_any_scale_gives_the_same_cut() {
 fn a_weak_singularity_is_clamped_once_and_lights_are_not() {
     let mut set = room(2000, &mut Numbers(4));
     let x = Vec3::new(0.5, 0.5, 0.5);
-    let trees_of =
-        |set: &VplSet| LightTrees::build(std::slice::from_ref(set), Vec::new(), 1.7, Family::Divisive);
+    let trees_of = |set: &VplSet| {
+        LightTrees::build(std::slice::from_ref(set), Vec::new(), 1.7, Family::Divisive, &Control::new())
+    };
     let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02), origin: None };
     let without = luminance(irradiance(&trees_of(&set), 1.7, x, &settings));
     set.push(Vpl::oriented(x + Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
@@ -203,7 +217,7 @@ fn a_weak_singularity_is_clamped_once_and_lights_are_not() {
     assert!(clamped > without && clamped < 1.05 * without, "{clamped} {without}");
     let mut light = VplSet::new(VplKind::Omni, Origin::Direct);
     light.push(Vpl::omni(x + Vec3::Y * 1e-3), Rgb::splat(0.1));
-    let trees = LightTrees::build(&[set, light], Vec::new(), 1.7, Family::Divisive);
+    let trees = LightTrees::build(&[set, light], Vec::new(), 1.7, Family::Divisive, &Control::new());
     assert!(luminance(irradiance(&trees, 1.7, x, &settings)) > 0.9e5, "a lamp keeps its light");
 }
 
@@ -214,7 +228,7 @@ fn few_vpls_share_the_light_and_lose_none_of_it_while_it_is_refined() {
     for i in 0..10 {
         set.push(Vpl::oriented(Vec3::new(0.01 * i as f32, 1.0, 0.0), -Vec3::Y), Rgb::ONE);
     }
-    let trees = LightTrees::build(&[set], Vec::new(), 1.0, Family::Divisive);
+    let trees = LightTrees::build(&[set], Vec::new(), 1.0, Family::Divisive, &Control::new());
     let free = irradiance(&trees, 1.0, Vec3::ZERO, &EXACT).x;
     let clamped = irradiance(&trees, 1.0, Vec3::ZERO, &CutSettings { clamp: Some(0.02), ..EXACT }).x;
     assert!((clamped / free - 0.2).abs() < 0.002, "{clamped} {free}");
@@ -223,7 +237,8 @@ fn few_vpls_share_the_light_and_lose_none_of_it_while_it_is_refined() {
 #[test]
 fn an_unlit_node_is_no_node() {
     // The gap behind each root is never reached.
-    let trees = LightTrees::build(&[room(7, &mut Numbers(6))], Vec::new(), 1.7, Family::Divisive);
+    let trees =
+        LightTrees::build(&[room(7, &mut Numbers(6))], Vec::new(), 1.7, Family::Divisive, &Control::new());
     let blank = |n: &&Node| n.intensity == Rgb::ZERO;
     assert_eq!(trees.nodes.iter().filter(blank).count(), 1);
     assert_eq!(trees.leaves().count(), 7);
