@@ -52,7 +52,9 @@ impl Planning<'_> {
         remarks: &mut Vec<Remark>,
     ) -> Result<Made, FrameError> {
         let watch = Stopwatch::start();
-        let chooser = goal.may_choose.then(|| self.chooser(&goal.method)).flatten();
+        // Paths are worth as many samples as they are only where their noise is taken off.
+        let may_choose = goal.may_choose && self.finish.denoises();
+        let chooser = may_choose.then(|| self.chooser(&goal.method)).flatten();
         let pilot_time = watch.elapsed();
         if chooser.is_some() {
             stats.add_time(Stage::Plan, pilot_time);
