@@ -96,17 +96,23 @@ impl<'a> Finish<'a> {
         if self.wanted().is_empty() || !output.complete {
             return;
         }
-        let seen = output.stats.time(Stage::EyePass, || self.look(method));
-        self.apply_to_seen(&seen, output);
+        let wanted = self.wanted();
+        // What is seen takes more memory than its layers, and so does denoising: not at once.
+        let look = || self.look(method).layers(self.world, wanted);
+        let layers = output.stats.time(Stage::EyePass, look);
+        self.apply_to_layers(layers, output);
     }
 
     /// The same by pixels that have been looked through. Returns true if the picture is denoised.
     pub fn apply_to_seen(&self, seen: &SeenPixels, output: &mut Output) -> bool {
+        self.apply_to_layers(seen.layers(self.world, self.wanted()), output)
+    }
+
+    fn apply_to_layers(&self, mut layers: Vec<Layer>, output: &mut Output) -> bool {
         output.complete &= !self.control.is_cancelled();
         if !output.complete {
             return false;
         }
-        let mut layers = seen.layers(self.world, self.wanted());
         let mut is_denoised = false;
         if let Some(denoiser) = self.denoiser() {
             self.control.begin(Stage::Denoise, 0);
