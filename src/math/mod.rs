@@ -1,14 +1,16 @@
-//! Mathematics shared by all stages: linear colour, orthonormal frames, quadrature, and lanes of numbers.
+//! Mathematics shared by all stages: linear colour, directions, orthonormal frames, quadrature, and lanes of numbers.
 
 mod frame;
 mod lanes;
 mod quadrature;
 mod real;
+mod unit;
 
 pub use frame::Frame;
 pub use lanes::{F32x16, LANES, U32x16, Vec2x16, Vec3x16, first_lanes, lanes_in, mask_of};
 pub use quadrature::gauss_legendre;
 pub use real::{F32x8, Real, WIDTH};
+pub use unit::{right_of, unit};
 
 /// Linear colour with sRGB (Rec. 709) primaries: radiance, irradiance, flux or reflectance as the name says.
 pub type Rgb = glam::Vec3;

@@ -22,9 +22,7 @@ pub(super) fn drop_coincident_emitters(
         let before = mesh.triangles.len();
         mesh.triangles.retain(|t| {
             let corners = t.map(|i| positions.get(i as usize).copied().unwrap_or_default());
-            let [a, b, c] = corners;
-            let has_area = (b - a).cross(c - a) != DVec3::ZERO;
-            !has_area || seen.insert(turned_to_least(corners))
+            seen.insert(turned_to_least(corners))
         });
         let dropped = before - mesh.triangles.len();
         if dropped > 0 {

@@ -1,6 +1,7 @@
 //! Cameras for scenes that describe none: everything is in view.
 
 use super::draft::Draft;
+use crate::math::unit;
 use glam::{DVec2, DVec3};
 
 /// Share of the film's height and width that is left free around the scene.
@@ -9,17 +10,17 @@ const MARGIN: f64 = 0.05;
 /// Returns a direction from a scene to its viewer: above its front, to the right. The front is +z where y is up, and
 /// -y where z is.
 pub(crate) fn outlook(up: DVec3) -> DVec3 {
-    let up = up.normalize_or(DVec3::Y);
+    let up = unit(up).unwrap_or(DVec3::Y);
     let front = if up.z.abs() > up.y.abs() { DVec3::NEG_Y } else { DVec3::Z };
-    let side = up.cross(front).normalize_or(DVec3::X);
+    let side = unit(up.cross(front)).unwrap_or(DVec3::X);
     let (elevation, azimuth) = (20f64.to_radians(), 30f64.to_radians());
     let level = side * azimuth.sin() + side.cross(up) * azimuth.cos();
     level * elevation.cos() + up * elevation.sin()
 }
 
 /// Moves a camera that is to see everything to the nearest point from which it sees all vertices, for its own
-/// direction and field of view.
-pub(crate) fn frame(draft: &mut Draft) {
+/// direction and field of view; to `centre`, about which they are, if there are none.
+pub(crate) fn frame(draft: &mut Draft, centre: DVec3) {
     if !draft.shot.fits {
         return;
     }
@@ -27,20 +28,20 @@ pub(crate) fn frame(draft: &mut Draft) {
     let camera = &mut draft.shot.camera;
     let tan = (1.0 - MARGIN) * camera.tan_half_x * DVec2::new(1.0, height / width);
     // A point p is within the film's right edge if p·right - x <= tan (p·forward + d), for the camera's offset x and
-    // distance d behind the origin of coordinates; likewise for the other edges.
+    // distance d behind the centre; likewise for the other edges.
     let (mut high, mut low) = (DVec2::NEG_INFINITY, DVec2::NEG_INFINITY);
-    for &p in draft.meshes.iter().flat_map(|mesh| &mesh.positions) {
+    for p in draft.meshes.iter().flat_map(|mesh| &mesh.positions).map(|p| p - centre) {
         let (across, depth) = (DVec2::new(p.dot(camera.right), p.dot(camera.up)), p.dot(camera.forward));
         high = high.max(across - tan * depth);
         low = low.max(-across - tan * depth);
     }
     if !(high.is_finite() && low.is_finite()) {
-        camera.origin = DVec3::ZERO;
+        camera.origin = centre;
         return;
     }
     let offset = 0.5 * (high - low);
     let distance = (0.5 * (high + low) / tan).max_element();
-    camera.origin = camera.right * offset.x + camera.up * offset.y - camera.forward * distance;
+    camera.origin = centre + camera.right * offset.x + camera.up * offset.y - camera.forward * distance;
 }
 
 #[cfg(test)]

@@ -71,6 +71,36 @@ impl Coordinates {
     pub fn local(&self, world: DVec3) -> Vec3 {
         ((world - self.centre) * self.scale()).as_vec3()
     }
+
+    /// The local intensity of a light: intensities fall with the square of lengths.
+    pub fn local_intensity(&self, intensity: Rgb) -> Rgb {
+        (intensity.as_dvec3() * (self.scale() * self.scale())).as_vec3()
+    }
+
+    /// A camera in local coordinates.
+    pub fn local_camera(&self, c: &DraftCamera) -> Camera {
+        let scale = self.scale();
+        let length = |length: f32| (f64::from(length) * scale) as f32;
+        let (mut tan_half_x, mut projection) = (c.tan_half_x, c.projection);
+        match &mut projection {
+            Projection::Pinhole => {}
+            Projection::Lens { radius, distance } => {
+                (*radius, *distance) = (length(*radius), length(*distance));
+            }
+            Projection::Parallel => tan_half_x *= scale,
+        }
+        Camera {
+            origin: self.local(c.origin),
+            forward: c.forward.as_vec3(),
+            right: c.right.as_vec3(),
+            up: c.up.as_vec3(),
+            tan_half_x: tan_half_x as f32,
+            near: (c.near * scale) as f32,
+            far: (c.far * scale) as f32,
+            projection,
+            filter: c.filter,
+        }
+    }
 }
 
 /// Corners of all triangles.
@@ -100,28 +130,6 @@ fn vicinity(draft: &Draft, camera: DVec3) -> f64 {
 pub(crate) fn recentre(draft: Draft, coordinates: &Coordinates) -> (Scene, Cameras) {
     let scale = coordinates.scale();
     let local = |p: DVec3| coordinates.local(p);
-    let length = |length: f32| (f64::from(length) * scale) as f32;
-    let camera = |c: &DraftCamera| {
-        let (mut tan_half_x, mut projection) = (c.tan_half_x, c.projection);
-        match &mut projection {
-            Projection::Pinhole => {}
-            Projection::Lens { radius, distance } => {
-                (*radius, *distance) = (length(*radius), length(*distance));
-            }
-            Projection::Parallel => tan_half_x *= scale,
-        }
-        Camera {
-            origin: local(c.origin),
-            forward: c.forward.as_vec3(),
-            right: c.right.as_vec3(),
-            up: c.up.as_vec3(),
-            tan_half_x: tan_half_x as f32,
-            near: (c.near * scale) as f32,
-            far: (c.far * scale) as f32,
-            projection,
-            filter: c.filter,
-        }
-    };
     let mesh = |m: DraftMesh| Mesh {
         name: m.name,
         positions: m.positions.into_iter().map(local).collect(),
@@ -132,8 +140,8 @@ pub(crate) fn recentre(draft: Draft, coordinates: &Coordinates) -> (Scene, Camer
         emission: m.emission,
     };
     let cameras = Cameras {
-        still: camera(&draft.shot.camera),
-        path: draft.shot.path.iter().map(camera).collect(),
+        still: coordinates.local_camera(&draft.shot.camera),
+        path: draft.shot.path.iter().map(|camera| coordinates.local_camera(camera)).collect(),
         resolution: draft.shot.resolution,
         crop: draft.shot.crop,
     };
@@ -150,7 +158,7 @@ pub(crate) fn recentre(draft: Draft, coordinates: &Coordinates) -> (Scene, Camer
         lights: draft
             .lights
             .into_iter()
-            .map(|(light, position)| place_light(light, local(position), scale))
+            .map(|(light, position)| place_light(light, position, coordinates))
             .collect(),
         environment: draft.environment,
         discs: draft.discs,
@@ -164,23 +172,23 @@ pub(crate) fn recentre(draft: Draft, coordinates: &Coordinates) -> (Scene, Camer
 /// Heights of reliefs in the local unit.
 fn scale_heights(material: &mut Material, by: f64) {
     if let Some(Relief::Heights { scale, .. }) = &mut material.relief {
-        *scale = (f64::from(*scale) * by) as f32;
+        *scale = (f64::from(*scale) * by).clamp(f32::MIN.into(), f32::MAX.into()) as f32;
     }
     if let Some(blend) = &mut material.blend {
         scale_heights(&mut blend.other, by);
     }
 }
 
-/// The light at a local position; intensities, which fall with the square of lengths, are scaled by theirs.
-fn place_light(light: DeltaLight, at: Vec3, scale: f64) -> DeltaLight {
-    let of_unit = |intensity: Rgb| (intensity.as_dvec3() * (scale * scale)).as_vec3();
+/// The light at a position in the world, in local coordinates.
+fn place_light(light: DeltaLight, world: DVec3, coordinates: &Coordinates) -> DeltaLight {
+    let position = coordinates.local(world);
     match light {
         DeltaLight::Point { intensity, .. } => {
-            DeltaLight::Point { position: at, intensity: of_unit(intensity) }
+            DeltaLight::Point { position, intensity: coordinates.local_intensity(intensity) }
         }
         DeltaLight::Spot { direction, intensity, inner_angle, outer_angle, .. } => {
-            let intensity = of_unit(intensity);
-            DeltaLight::Spot { position: at, direction, intensity, inner_angle, outer_angle }
+            let intensity = coordinates.local_intensity(intensity);
+            DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle }
         }
         directional @ DeltaLight::Directional { .. } => directional,
     }

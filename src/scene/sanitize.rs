@@ -11,16 +11,20 @@ use super::draft::{Draft, DraftCamera, DraftMesh};
 use super::formats::error::{Log, Place, SceneError};
 use super::material::{Fresnel, Lobe, Material, Reflectance, Roughness, Share};
 use super::recentre::Coordinates;
-use super::{PixelFilter, Projection, Relief, Texels, Texture};
+use super::{PixelFilter, Projection, Relief, Texels, Texture, framing};
 use crate::math::Rgb;
 use glam::{DVec3, Vec2, Vec3};
 use lights::check_lights;
 use serde::Serialize;
 use std::fmt;
+use std::iter;
 use std::path::PathBuf;
 
-/// Maximum coordinate; Embree silently drops triangles beyond 1.8e18.
+/// Maximum coordinate, in the files' unit and in that of the rendered scene; Embree silently drops triangles beyond
+/// 1.8e18.
 const HUGE: f64 = 1e18;
+/// Remedy for what is beyond it.
+const IN_REACH: &str = "keep within 1e18 of the origin, and within 1e18 times the scene's size of it";
 /// Tolerance by which a reflectance may exceed 1 through rounding.
 const ALBEDO_SLACK: f32 = 1e-3;
 /// Share of triangles that may vanish by rounding without a warning: those of fine models now and then do.
@@ -41,7 +45,7 @@ pub struct SanitizeReport {
     pub out_of_range: usize,
     /// Triangles with NaN or infinite corners.
     pub not_finite: usize,
-    /// Triangles with coordinates beyond 1e18.
+    /// Triangles with coordinates beyond 1e18, or beyond 1e18 times the size of what is around the camera.
     pub huge: usize,
     /// Triangles with two equal indices, or without area in f32.
     pub degenerate: usize,
@@ -89,7 +93,8 @@ impl fmt::Display for SanitizeReport {
     }
 }
 
-/// Cleans the draft; returns the report and the coordinates to render it in.
+/// Cleans the draft, and places a camera that is to see everything; returns the report and the coordinates to render it
+/// in.
 pub(crate) fn sanitize(
     draft: &mut Draft,
     log: &mut Log,
@@ -103,7 +108,7 @@ pub(crate) fn sanitize(
     let (mut lost, mut triangles) = (0, 0);
     for mesh in &mut draft.meshes {
         triangles += mesh.triangles.len();
-        lost += drop_degenerate(mesh, &coordinates, &mut report);
+        lost += drop_rounded(mesh, &coordinates, &mut report);
         use_all_vertices(mesh);
         repair_normals(mesh, &mut report);
         let bad_uvs = mesh.uvs.iter_mut().filter(|uv| !uv.is_finite());
@@ -136,11 +141,11 @@ pub(crate) fn sanitize(
         let what = format!("the picture \"{}\" is moved or scaled beyond all numbers", texture.name);
         log.part::<()>(Err(main_file(&draft.sources).wrong(what, "correct its transform")));
     }
-    let shot = &draft.shot;
-    let checked =
-        [&shot.camera].into_iter().chain(&shot.path).try_for_each(|c| check_camera(c, &draft.sources));
+    framing::frame(draft, coordinates.centre);
+    let mut cameras = iter::once(&draft.shot.camera).chain(&draft.shot.path);
+    let checked = cameras.try_for_each(|camera| check_camera(camera, &coordinates, &draft.sources));
     log.part(checked);
-    let checked = check_lights(draft, &mut report);
+    let checked = check_lights(draft, &coordinates, &mut report);
     log.conclude(checked)?;
     Ok((report, coordinates))
 }
@@ -149,7 +154,7 @@ fn main_file(sources: &[PathBuf]) -> Place {
     Place { path: sources.first().cloned().unwrap_or_default(), line: None }
 }
 
-/// Drops triangles with impossible corners.
+/// Drops triangles with impossible corners, and those that have no area.
 fn drop_unusable(mesh: &mut DraftMesh, report: &mut SanitizeReport) {
     let positions = &mesh.positions;
     mesh.triangles.retain(|t| {
@@ -166,27 +171,30 @@ fn drop_unusable(mesh: &mut DraftMesh, report: &mut SanitizeReport) {
             report.huge += 1;
             return false;
         }
-        true
+        report.degenerate += usize::from(!has_area(corners));
+        has_area(corners)
     });
 }
 
-/// Drops triangles that have no area once their corners are rounded to f32; returns the number of those that had one
-/// before.
-fn drop_degenerate(mesh: &mut DraftMesh, coordinates: &Coordinates, report: &mut SanitizeReport) -> usize {
+fn has_area([a, b, c]: [DVec3; 3]) -> bool {
+    (b - a).cross(c - a) != DVec3::ZERO
+}
+
+/// Drops triangles that have no area once their corners are rounded to f32, or lie beyond its reach; returns their
+/// number.
+fn drop_rounded(mesh: &mut DraftMesh, coordinates: &Coordinates, report: &mut SanitizeReport) -> usize {
     let positions = &mesh.positions;
-    let rounded =
-        |i: u32| positions.get(i as usize).map_or(DVec3::ZERO, |p| coordinates.local(*p).as_dvec3());
+    let local = |i: u32| positions.get(i as usize).map_or(Vec3::INFINITY, |p| coordinates.local(*p));
     let before = mesh.triangles.len();
-    let mut lost = 0;
-    let has_area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a) != DVec3::ZERO;
     mesh.triangles.retain(|t| {
-        let kept = has_area(t.map(rounded));
-        let exact = |i: u32| positions.get(i as usize).map_or(DVec3::ZERO, |p| *p - coordinates.centre);
-        lost += usize::from(!kept && has_area(t.map(exact)));
-        kept
+        let corners = t.map(local);
+        let is_huge = corners.iter().any(|p| !(p.abs().max_element() <= HUGE as f32));
+        let is_degenerate = !is_huge && !has_area(corners.map(|p| p.as_dvec3()));
+        report.huge += usize::from(is_huge);
+        report.degenerate += usize::from(is_degenerate);
+        !is_huge && !is_degenerate
     });
-    report.degenerate += before - mesh.triangles.len();
-    lost
+    before - mesh.triangles.len()
 }
 
 /// Drops vertices that no triangle uses, and attributes that are not present for every vertex.
@@ -392,21 +400,30 @@ fn clamp_texels(texture: &mut Texture, scale: Rgb, report: &mut SanitizeReport) 
     texture.texels = Texels::new(texture.width, &texels);
 }
 
+/// True if a position is within reach of `f32`.
+fn is_within_reach(world: DVec3, coordinates: &Coordinates) -> bool {
+    world.abs().max_element() <= HUGE && coordinates.local(world).abs().max_element() <= HUGE as f32
+}
+
 /// Rejects cameras whose rays `f32` cannot hold.
-fn check_camera(camera: &DraftCamera, sources: &[PathBuf]) -> Result<(), SceneError> {
+fn check_camera(
+    camera: &DraftCamera,
+    coordinates: &Coordinates,
+    sources: &[PathBuf],
+) -> Result<(), SceneError> {
     let place = main_file(sources);
-    if !(camera.origin.abs().max_element() <= HUGE) {
-        let what = format!("a camera stands at {}", camera.origin);
-        return Err(place.wrong(what, "keep within 1e18 of the origin"));
+    if !is_within_reach(camera.origin, coordinates) {
+        return Err(place.wrong(format!("a camera stands at {}", camera.origin), IN_REACH));
     }
+    let camera = coordinates.local_camera(camera);
     let lens = match camera.projection {
         Projection::Lens { radius, distance } => [radius, distance],
         Projection::Pinhole | Projection::Parallel => [1.0; 2],
     };
     let is_length = |length: f32| length > 0.0 && length <= HUGE as f32;
-    if !is_length(camera.tan_half_x as f32) || !lens.into_iter().all(is_length) || camera.near > HUGE {
+    if !is_length(camera.tan_half_x) || !lens.into_iter().all(is_length) || camera.near > HUGE as f32 {
         let what = "a camera's film, lens, focus or near plane is no size";
-        return Err(place.wrong(what, "give numbers above 0, up to 1e18"));
+        return Err(place.wrong(what, "give numbers above 0, up to 1e18 times the scene's size"));
     }
     let (PixelFilter::Tent { radius: width } | PixelFilter::Gaussian { deviation: width }) = camera.filter
     else {

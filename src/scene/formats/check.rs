@@ -2,7 +2,7 @@
 
 use super::constants;
 use super::error::{Place, SceneError};
-use crate::math::Rgb;
+use crate::math::{self, Rgb};
 use crate::scene::light::DistantDisc;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// The direction of a light at unit length.
 pub(crate) fn unit(direction: DVec3, place: &Place) -> Result<Vec3, SceneError> {
     let none = || place.wrong("the light has no direction", "give one that is not zero");
-    Ok(direction.try_normalize().ok_or_else(none)?.as_vec3())
+    Ok(math::unit(direction).ok_or_else(none)?.as_vec3())
 }
 
 /// The disc of an even light that shines along `direction`, `angle` degrees wide, from its irradiance on a surface that

@@ -17,7 +17,7 @@ mod picture;
 mod plan;
 mod sky;
 
-use super::{Cameras, Scene, framing, recentre, sanitize};
+use super::{Cameras, Scene, recentre, sanitize};
 use error::Log;
 use std::path::Path;
 
@@ -100,7 +100,6 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let (mut draft, hash) = plan.realise(&mut log)?;
     let hash = options.hash(hash);
     let (repairs, coordinates) = sanitize::sanitize(&mut draft, &mut log)?;
-    framing::frame(&mut draft);
     let (scene, cameras) = recentre::recentre(draft, &coordinates);
     if scene.is_dark() {
         let fallback = "the picture will be black; add an emitter, a light or an environment";

@@ -1,12 +1,17 @@
 //! Lights without light are dropped; negative ones, and places beyond f32, are errors.
 
-use super::{HUGE, SanitizeReport, main_file};
+use super::{IN_REACH, SanitizeReport, is_within_reach, main_file};
 use crate::math::Rgb;
 use crate::scene::draft::Draft;
 use crate::scene::formats::error::SceneError;
+use crate::scene::recentre::Coordinates;
 use crate::scene::{DeltaLight, Environment};
 
-pub(super) fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), SceneError> {
+pub(super) fn check_lights(
+    draft: &mut Draft,
+    coordinates: &Coordinates,
+    report: &mut SanitizeReport,
+) -> Result<(), SceneError> {
     let place = main_file(&draft.sources);
     let check = |light: Rgb, what: &str| match light.is_finite() && light.min_element() >= 0.0 {
         true => Ok(()),
@@ -28,10 +33,13 @@ pub(super) fn check_lights(draft: &mut Draft, report: &mut SanitizeReport) -> Re
     };
     for (light, position) in &draft.lights {
         check(power(light), "a light's intensity")?;
-        if !(position.abs().max_element() <= HUGE) {
-            return Err(
-                place.wrong(format!("a light stands at {position}"), "keep within 1e18 of the origin")
-            );
+        if !is_within_reach(*position, coordinates) {
+            return Err(place.wrong(format!("a light stands at {position}"), IN_REACH));
+        }
+        let falls_off = !matches!(light, DeltaLight::Directional { .. });
+        if falls_off && !coordinates.local_intensity(power(light)).is_finite() {
+            let what = format!("a light's intensity {} is beyond all numbers for its scene", power(light));
+            return Err(place.wrong(what, "scale the scene up, or the light down"));
         }
     }
     for disc in &draft.discs {

@@ -71,7 +71,7 @@ fn each_kind_of_bad_triangle_is_dropped_and_counted() {
     assert_eq!(report, expected);
     assert_eq!(d.meshes[0].triangles, [[0, 1, 2], [2, 1, 3]]);
     assert_eq!(d.meshes[0].positions.len(), 4, "unused vertices go");
-    assert_eq!(coordinates.centre, DVec3::new(1.0, 0.5, 0.5), "of what could be hit or lies in line");
+    assert_eq!(coordinates.centre, DVec3::splat(0.5), "of what could be hit");
     assert!(!report.is_clean() && report.to_string().contains("2 triangles without area"));
 }
 
@@ -95,6 +95,58 @@ fn triangles_that_vanish_in_f32_are_degenerate() {
     // Alone it is kept.
     let mut d = draft(vec![mesh], vec![grey()]);
     assert!(sanitize(&mut d).unwrap().0.is_clean());
+}
+
+#[test]
+fn all_is_finite_however_small_what_is_left_of_a_scene() {
+    // Triangles without area, of vertices that differ; they alone, and beside others.
+    let mut flat = triangle_mesh();
+    flat.positions = vec![DVec3::Y, DVec3::new(5e-39, 1.0, 0.0)];
+    flat.triangles = vec![[0, 0, 0], [1, 1, 1]];
+    let tiny = |size: f64, at: DVec3| {
+        let positions = triangle_mesh().positions.iter().map(|p| *p * size + at).collect();
+        DraftMesh { positions, ..triangle_mesh() }
+    };
+    let scenes = [
+        vec![flat.clone()],
+        vec![flat, tiny(1.0, DVec3::X)],
+        vec![tiny(1e-40, DVec3::ZERO)],
+        vec![tiny(1e-120, DVec3::ZERO), tiny(1.0, DVec3::splat(1e17))],
+        vec![tiny(1e-160, DVec3::ZERO)],
+        vec![tiny(1e17, DVec3::ZERO)],
+    ];
+    for (i, meshes) in scenes.into_iter().enumerate() {
+        for fits in [true, false] {
+            let mut d = draft(meshes.clone(), vec![grey()]);
+            d.shot.fits = fits;
+            let (_, coordinates) = sanitize(&mut d).unwrap();
+            let camera = coordinates.local_camera(&d.shot.camera);
+            assert!(camera.origin.abs().max_element() <= 1e18, "{i} {fits}: {}", camera.origin);
+            for p in d.meshes.iter().flat_map(|mesh| &mesh.positions) {
+                assert!(coordinates.local(*p).abs().max_element() <= 1e18, "{i} {fits}: {p}");
+            }
+        }
+    }
+}
+
+#[test]
+fn lights_and_cameras_out_of_reach_of_a_tiny_scene_are_errors() {
+    let tiny = || {
+        let positions = triangle_mesh().positions.iter().map(|p| *p * 1e-40).collect();
+        draft(vec![DraftMesh { positions, ..triangle_mesh() }], vec![grey()])
+    };
+    let light = |at: f64, intensity: f32| {
+        let light = DeltaLight::Point { position: Vec3::ZERO, intensity: Rgb::splat(intensity) };
+        let mut d = tiny();
+        d.lights.push((light, DVec3::splat(at)));
+        sanitize(&mut d).map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert!(light(1e-40, 1.0).unwrap_err().contains("beyond all numbers"));
+    assert!(light(1.0, 0.0).unwrap_err().contains("stands at"));
+    light(1e-40, 0.0).unwrap();
+    let mut d = tiny();
+    d.shot.path.push(DraftCamera { origin: DVec3::ONE, ..d.shot.camera });
+    assert!(sanitize(&mut d).unwrap_err().to_string().contains("camera stands at"));
 }
 
 #[test]

@@ -4,6 +4,7 @@ use super::animation::{self, Track};
 use super::document::Document;
 use super::nodes::{Local, Placed};
 use super::report::Report;
+use crate::math::{right_of, unit};
 use crate::scene::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::scene::formats::error::SceneError;
 use crate::scene::{MAX_FRAMES, PixelFilter, Projection};
@@ -113,8 +114,8 @@ impl Viewer<'_> {
 
     fn camera(&self, to_file: &DMat4, lens: &Lens, resolution: [u32; 2]) -> Result<DraftCamera, SceneError> {
         let to_world = self.to_world * *to_file;
-        let forward = to_world.transform_vector3(DVec3::NEG_Z).try_normalize();
-        let right = forward.and_then(|f| f.cross(to_world.transform_vector3(DVec3::Y)).try_normalize());
+        let forward = unit(to_world.transform_vector3(DVec3::NEG_Z));
+        let right = forward.and_then(|forward| right_of(forward, to_world.transform_vector3(DVec3::Y)));
         let origin = to_world.transform_point3(DVec3::ZERO);
         let (Some(forward), Some(right), true) = (forward, right, origin.is_finite()) else {
             return Err(self.document.wrong("the camera looks nowhere".into()));

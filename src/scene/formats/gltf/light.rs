@@ -6,7 +6,7 @@
 
 use super::document::Document;
 use super::report::Report;
-use crate::math::Rgb;
+use crate::math::{Rgb, unit};
 use crate::scene::formats::error::SceneError;
 use crate::scene::light::DeltaLight;
 use glam::{DMat4, DVec3, Vec3};
@@ -32,8 +32,8 @@ pub(super) fn read(
     report: &mut Report,
 ) -> Result<(DeltaLight, DVec3), SceneError> {
     let power = Rgb::from(light.color) * (light.intensity / lumens_per_watt);
-    let axis = to_world.transform_vector3(DVec3::NEG_Z).try_normalize();
-    let Some(direction) = axis.map(|axis| axis.as_vec3()).filter(|axis| axis.is_finite()) else {
+    let axis = unit(to_world.transform_vector3(DVec3::NEG_Z));
+    let Some(direction) = axis.map(|axis| axis.as_vec3()) else {
         return Err(document.wrong(format!("{name} has no direction")));
     };
     if light.range.is_some_and(f32::is_finite) {

@@ -28,6 +28,7 @@ use super::mesh::{Normals, Placement, RawMesh};
 use super::plan::{
     Contents, Geometry, Look, MaterialPlan, MeshPlan, PictureSource, Plan, Selection, stem_of,
 };
+use crate::math::right_of;
 use crate::scene::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::scene::framing;
 use crate::scene::material::MaterialId;
@@ -95,7 +96,7 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
     let imported = import(path, &Place::file(path), &import_options, &mut contents, log)?;
     let shot = imported.shot.unwrap_or_else(|| {
         let forward = -framing::outlook(DVec3::Y);
-        let right = forward.cross(DVec3::Y).normalize_or(DVec3::X);
+        let right = right_of(forward, DVec3::Y).unwrap_or(DVec3::X);
         let camera = DraftCamera { forward, right, up: right.cross(forward), ..DraftCamera::default() };
         Shot { camera, fits: true, path: Vec::new(), resolution: DEFAULT_RESOLUTION, crop: None }
     });

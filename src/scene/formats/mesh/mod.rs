@@ -15,6 +15,7 @@ mod smooth;
 
 pub(crate) use smooth::vertex_normals as smooth_normals;
 
+use crate::math::unit;
 use crate::scene::draft::DraftMesh;
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
@@ -75,7 +76,8 @@ pub(crate) fn place(raw: RawMesh, how: &Placement) -> DraftMesh {
             // Cofactors, not the inverse: same direction up to the determinant's sign, and no division by 0.
             let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
             let cofactor = cofactor(&linear) * sign;
-            let normals = raw.normals.iter().map(|n| (cofactor * n.as_dvec3()).normalize_or_zero().as_vec3());
+            let normals =
+                raw.normals.iter().map(|n| unit(cofactor * n.as_dvec3()).unwrap_or_default().as_vec3());
             mesh.normals = normals.collect();
         }
     }

@@ -1,5 +1,6 @@
 //! Triangles of a polygon: a fan where it is convex, else by clipping ears (crate `earcut`).
 
+use crate::math::unit;
 use earcut::Earcut;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -33,7 +34,7 @@ pub(super) fn cut(corners: &[u32], position: impl Fn(&u32) -> DVec3, triangles: 
 fn flattened(points: &[DVec3]) -> Option<Vec<DVec2>> {
     let next = points.iter().cycle().skip(1);
     let double_area: DVec3 = points.iter().zip(next).map(|(a, b)| (a - points[0]).cross(b - points[0])).sum();
-    let normal = double_area.try_normalize()?;
+    let normal = unit(double_area)?;
     let across = normal.any_orthonormal_vector();
     let plane = DMat3::from_cols(across, normal.cross(across), normal).transpose();
     let flat: Vec<DVec2> = points.iter().map(|p| (plane * (p - points[0])).truncate()).collect();

@@ -4,6 +4,7 @@
 //! distance that makes the area, hence the power of an emitter, the true shape's; normals are exact.
 
 use super::RawMesh;
+use crate::math::unit;
 use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::{PI, TAU};
 
@@ -107,7 +108,7 @@ pub(crate) fn sphere(centre: DVec3, radius: f64) -> RawMesh {
 /// An open cylinder from `p0` to `p1`, facing outwards; u is the azimuth over 2π, v runs along the axis.
 pub(crate) fn cylinder(p0: DVec3, p1: DVec3, radius: f64) -> RawMesh {
     let axis = p1 - p0;
-    let (tangent, bitangent) = axis.normalize_or(DVec3::Z).any_orthonormal_pair();
+    let (tangent, bitangent) = unit(axis).unwrap_or(DVec3::Z).any_orthonormal_pair();
     let step = TAU / f64::from(AROUND);
     let push = radius * step / (2.0 * (0.5 * step).sin());
     let mut mesh = RawMesh::default();

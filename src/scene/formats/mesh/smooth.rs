@@ -3,6 +3,7 @@
 //! Paper: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*, JGT 1998: face normals
 //! weighted by the angle of the face at the vertex.
 
+use crate::math::unit;
 use glam::{DVec3, Vec3};
 
 /// Computes unit normals by vertex; zero where no face of positive area touches the vertex.
@@ -11,16 +12,16 @@ pub(crate) fn vertex_normals(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec
     for t in triangles {
         let index = t.map(|i| i as usize);
         let [Some(&a), Some(&b), Some(&c)] = index.map(|i| positions.get(i)) else { continue };
-        let Some(face_normal) = (b - a).cross(c - a).try_normalize() else { continue };
+        let Some(face_normal) = unit((b - a).cross(c - a)) else { continue };
         let corners = [a, b, c];
         for k in 0..3 {
-            let to_next = (corners[(k + 1) % 3] - corners[k]).normalize_or_zero();
-            let to_last = (corners[(k + 2) % 3] - corners[k]).normalize_or_zero();
+            let to_next = unit(corners[(k + 1) % 3] - corners[k]).unwrap_or_default();
+            let to_last = unit(corners[(k + 2) % 3] - corners[k]).unwrap_or_default();
             let angle = to_next.dot(to_last).clamp(-1.0, 1.0).acos();
             sums[index[k]] += face_normal * angle;
         }
     }
-    sums.iter().map(|n| n.normalize_or_zero().as_vec3()).collect()
+    sums.iter().map(|n| unit(*n).unwrap_or_default().as_vec3()).collect()
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::Converter;
 use super::tree::Object;
-use crate::math::Rgb;
+use crate::math::{Rgb, unit};
 use crate::scene::formats::check;
 use crate::scene::formats::error::SceneError;
 use crate::scene::formats::plan::EnvironmentPlan;
@@ -92,7 +92,7 @@ impl Converter<'_> {
     /// Returns the transform without its scale; an error where it shears or is singular.
     pub(super) fn rotation(&mut self, emitter: &Object, m: DMat4) -> Result<DMat4, SceneError> {
         let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|a| a.truncate());
-        let [Some(a), Some(b), Some(c)] = [x, y, z].map(|a| a.try_normalize()) else {
+        let [Some(a), Some(b), Some(c)] = [x, y, z].map(unit) else {
             return Err(emitter.place.wrong("to_world is singular", "use a rotation"));
         };
         if a.dot(b).abs().max(b.dot(c).abs()).max(c.dot(a).abs()) > 1e-4 {

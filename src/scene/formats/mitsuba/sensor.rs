@@ -2,6 +2,7 @@
 
 use super::Converter;
 use super::tree::Object;
+use crate::math::{right_of, unit};
 use crate::scene::draft::{DraftCamera, Shot};
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::{PixelFilter, Projection};
@@ -82,7 +83,7 @@ impl Converter<'_> {
     ) -> Result<DraftCamera, SceneError> {
         let axes = [DVec3::NEG_X, DVec3::Y, DVec3::Z].map(|a| to_world.transform_vector3(a));
         let singular = || place.wrong("the sensor's to_world is singular", "use a rotation");
-        let [right, up, forward] = axes.map(|a| a.try_normalize());
+        let [right, up, forward] = axes.map(unit);
         let (right, up, forward) =
             (right.ok_or_else(singular)?, up.ok_or_else(singular)?, forward.ok_or_else(singular)?);
         let scales = match projection {
@@ -96,9 +97,12 @@ impl Converter<'_> {
         let (mut right, mut up) = (right, up);
         if right.dot(up).abs().max(up.dot(forward).abs()).max(forward.dot(right).abs()) > 1e-3 {
             self.log.warn(place, "the sensor's to_world shears", "it looks the same way, not sheared")?;
-            up = up.reject_from_normalized(forward).try_normalize().ok_or_else(singular)?;
-            right = right.reject_from_normalized(forward).reject_from_normalized(up);
-            right = right.try_normalize().ok_or_else(singular)?;
+            let across = right_of(forward, up).ok_or_else(singular)?;
+            up = across.cross(forward);
+            right = match right.dot(across) {
+                0.0 => return Err(singular()),
+                side => across * side.signum(),
+            };
         }
         let origin = to_world.transform_point3(DVec3::ZERO);
         let (tan_half_x, near, far, filter) = (1.0, 0.0, f64::INFINITY, PixelFilter::Box);

@@ -7,6 +7,7 @@
 
 use super::Converter;
 use super::tree::Object;
+use crate::math::unit;
 use crate::scene::formats::error::SceneError;
 use crate::scene::formats::plan::EnvironmentPlan;
 use crate::scene::formats::sky::{Moment, SkyPlan, sun_position};
@@ -21,7 +22,7 @@ impl Converter<'_> {
         let to_world = self.rotation(emitter, to_world)?;
         let up = if self.document.is_old { DVec3::Y } else { DVec3::Z };
         let towards_sun = match emitter.vector("sun_direction")? {
-            Some(direction) => direction.try_normalize().ok_or_else(|| {
+            Some(direction) => unit(direction).ok_or_else(|| {
                 emitter.place.wrong("the sun has no direction", "give one that is not zero, or a date")
             })?,
             None => to_world.transform_vector3(self.sun_of_date(emitter)?),

@@ -1,7 +1,7 @@
 //! Property values of Mitsuba XML: numbers, colours, vectors and transforms.
 
 use super::cie;
-use crate::math::Rgb;
+use crate::math::{Rgb, right_of, unit};
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::picture::srgb_to_linear;
 use glam::{DMat4, DVec3, DVec4};
@@ -190,7 +190,7 @@ fn operation(tag: &str, attributes: &Attributes, place: &Place) -> Result<DMat4,
             let angle = number(need("angle")?);
             let angle =
                 angle.ok_or_else(|| bad("cannot read the rotation's angle".into(), "write degrees"))?;
-            match vector(attributes, 0.0, place)?.try_normalize() {
+            match unit(vector(attributes, 0.0, place)?) {
                 Some(axis) => DMat4::from_axis_angle(axis, angle.to_radians()),
                 // Exporters write rotations by nothing about nothing.
                 None if angle == 0.0 => DMat4::IDENTITY,
@@ -242,9 +242,9 @@ fn operation(tag: &str, attributes: &Attributes, place: &Place) -> Result<DMat4,
 
 /// Frame at `origin` with z towards `target` and x = up × z, or `None` where that has no direction.
 fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DMat4> {
-    let forward = (target - origin).try_normalize()?;
+    let forward = unit(target - origin)?;
     let up = if up == DVec3::ZERO { forward.any_orthonormal_vector() } else { up };
-    let left = up.cross(forward).try_normalize()?;
+    let left = -right_of(forward, up)?;
     let new_up = forward.cross(left);
     Some(DMat4::from_cols(left.extend(0.0), new_up.extend(0.0), forward.extend(0.0), origin.extend(1.0)))
 }

@@ -3,6 +3,7 @@
 use super::Builder;
 use super::path::{Key, KeyedPath};
 use super::text::{CameraText, KeyText, Number, PathText, SceneText};
+use crate::math::{right_of, unit};
 use crate::scene::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::framing;
@@ -177,8 +178,8 @@ fn camera(
     place: &Place,
 ) -> Result<DraftCamera, SceneError> {
     let Key { origin, target, up, fov } = *key;
-    let forward = (target - origin).try_normalize();
-    let right = forward.and_then(|f: DVec3| f.cross(up).try_normalize());
+    let forward = unit(target - origin);
+    let right = forward.and_then(|forward| right_of(forward, up));
     let (Some(forward), Some(right)) = (forward, right) else {
         let what = "the camera looks nowhere, or along its up vector";
         return Err(place.wrong(what, "move target away from origin, or turn up"));

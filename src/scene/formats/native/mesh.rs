@@ -2,6 +2,7 @@
 
 use super::Builder;
 use super::text::{ColourText, MeshText, NamesText, Number, ScaleText, StepText};
+use crate::math::unit;
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::gltf::{self, FRAMES_PER_SECOND, ImportOptions};
 use crate::scene::formats::mesh::{Normals, Placement, RawMesh, shapes};
@@ -179,7 +180,7 @@ fn matrix(step: &StepText, place: &Place) -> Result<DMat4, SceneError> {
         (Some(ScaleText::Uniform(s)), None, None, None) => DMat4::from_scale(DVec3::splat(s.0)),
         (Some(ScaleText::Axes(s)), None, None, None) => DMat4::from_scale(DVec3::from(*s)),
         (None, Some(rotate), None, None) => {
-            let axis = DVec3::from(rotate.axis).try_normalize();
+            let axis = unit(DVec3::from(rotate.axis));
             let zero = || place.wrong("the rotation's axis is zero", "give a direction");
             DMat4::from_axis_angle(axis.ok_or_else(zero)?, rotate.angle.0.to_radians())
         }

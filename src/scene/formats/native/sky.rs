@@ -2,6 +2,7 @@
 
 use super::Builder;
 use super::text::SkyText;
+use crate::math::unit;
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::formats::plan::EnvironmentPlan;
 use crate::scene::formats::sky::{Moment, SkyPlan, sun_position};
@@ -13,11 +14,10 @@ impl Builder<'_> {
     pub(super) fn sky(&mut self, text: &Spanned<SkyText>) -> Result<(), SceneError> {
         let place = self.file.place(text.span());
         let text = text.get_ref();
-        let up = text.up.map_or(DVec3::Y, DVec3::from).try_normalize();
+        let up = unit(text.up.map_or(DVec3::Y, DVec3::from));
         let up = up.ok_or_else(|| place.wrong("the sky's up is zero", "give a direction"))?;
         let towards_sun = match (text.sun_direction, &text.date, text.place) {
-            (Some(direction), None, None) if text.rotate_y.is_none() => DVec3::from(direction)
-                .try_normalize()
+            (Some(direction), None, None) if text.rotate_y.is_none() => unit(DVec3::from(direction))
                 .ok_or_else(|| place.wrong("the sun has no direction", "give one that is not zero"))?,
             (None, Some(date), Some(at)) => {
                 let [zenith, azimuth] = sun_position(&moment(date, &place)?, at.into());
