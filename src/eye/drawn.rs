@@ -252,6 +252,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 *range = start..tile.points.len();
             });
         }
+        // Tiles wait for the others.
+        tile.points.shrink_to_fit();
         tile
     }
 

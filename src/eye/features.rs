@@ -33,6 +33,9 @@ use std::str::FromStr;
 /// Pixels along the edge of the square that one task looks through.
 const TILE: u32 = 16;
 
+/// Maximum number of squares that are looked through before the pixels found are put together.
+const TILES: usize = 1024;
+
 /// Depth where there is no surface: Blender's.
 const NO_DEPTH: f32 = 1e10;
 
@@ -148,21 +151,23 @@ impl SeenPixels {
     /// Looks through the pixels of the view's window; where cancelled, nothing is there.
     pub fn new(world: &World, view: &View, settings: &FeatureSettings, control: &Control) -> SeenPixels {
         let window = &view.window;
-        let tiles: Vec<Vec<Pixel>> = (0..window.tile_count(TILE))
-            .into_par_iter()
-            .map(|tile| {
+        let mut pixels: Vec<Pixel> = vec![Pixel::default(); window.pixel_count() as usize];
+        let numbers: Vec<usize> = (0..window.tile_count(TILE)).collect();
+        // Some at a time, so that not all pixels are in memory twice.
+        for numbers in numbers.chunks(TILES) {
+            let look = |index: &usize| {
                 if control.is_cancelled() {
                     return Vec::new();
                 }
-                let mut tile = window.tile(tile, TILE).map(|at| window.film_pixel(at));
+                let mut tile = window.tile(*index, TILE).map(|at| window.film_pixel(at));
                 let Some(first) = tile.next() else { return Vec::new() };
                 Looking { world, view, settings }.pixels(first, tile.last().unwrap_or(first))
-            })
-            .collect();
-        let mut pixels: Vec<Pixel> = vec![Pixel::default(); window.pixel_count() as usize];
-        for (tile, found) in tiles.into_iter().enumerate() {
-            for (pixel, [x, y]) in found.into_iter().zip(window.tile(tile, TILE)) {
-                pixels[(y * window.width + x) as usize] = pixel;
+            };
+            let found: Vec<Vec<Pixel>> = numbers.par_iter().map(look).collect();
+            for (tile, found) in numbers.iter().zip(found) {
+                for (pixel, [x, y]) in found.into_iter().zip(window.tile(*tile, TILE)) {
+                    pixels[(y * window.width + x) as usize] = pixel;
+                }
             }
         }
         SeenPixels { pixels: Image { width: window.width, height: window.height, pixels } }

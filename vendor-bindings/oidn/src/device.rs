@@ -9,7 +9,7 @@ use std::ptr;
 
 /// Memory that the filter may take, in MB. Large pictures are then denoised in parts, as fast as whole ones, which
 /// would take three times as much at 2048x2048 pixels.
-const MAX_MEMORY: c_int = 1000;
+const MAX_MEMORY: c_int = 600;
 
 /// Version of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
