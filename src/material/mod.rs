@@ -15,6 +15,7 @@ mod base;
 mod bound;
 mod bsdf;
 mod fresnel;
+mod layers;
 mod lobe;
 mod microfacet;
 mod model;
