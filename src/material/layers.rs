@@ -3,7 +3,8 @@
 use super::base::{BaseModel, CoatInterface, RoughCoat};
 use super::bsdf::Colours;
 use super::lobe::{
-    Interface, LobeModel, MAX_LOBES, Mirror, Passage, RoughInterface, RoughLobe, albedo_table,
+    AnisotropicLobe, Interface, LobeModel, MAX_LOBES, Mirror, Passage, RoughInterface, RoughLobe,
+    albedo_table,
 };
 use super::microfacet::Microfacets;
 use super::principled::PrincipledModel;
@@ -176,6 +177,9 @@ impl Layers {
                     let facets = facets(level);
                     let lobe = RoughLobe { facets, fresnel, max_reflectance: None, albedo: None };
                     add(LobeModel::Rough(lobe), scale);
+                }
+                Lobe::Anisotropic { distribution, alpha, fresnel, scale } => {
+                    add(LobeModel::Anisotropic(AnisotropicLobe::new(distribution, alpha, fresnel)), scale);
                 }
                 Lobe::Mirror { fresnel, scale } => add(LobeModel::Mirror(Mirror { fresnel }), scale),
                 Lobe::RoughDielectric { distribution, alpha, eta, reflectance, transmittance }

@@ -5,7 +5,8 @@
 
 use super::bsdf::Colours;
 use super::lobe::{
-    ClearCoat, Grazing, GrazingKind, LobeModel, MAX_LOBES, Passage, RoughInterface, RoughLobe,
+    AnisotropicLobe, ClearCoat, Grazing, GrazingKind, LobeModel, MAX_LOBES, Passage, RoughInterface,
+    RoughLobe,
 };
 use super::microfacet::Microfacets;
 use super::roughness::{self, Level};
@@ -119,8 +120,12 @@ impl PrincipledModel {
         let not_all = |share: Share| share != Share::Constant(1.0);
         let (has_hue, eta) = (some(p.metallic) || some(p.spec_tint), p.eta);
         let is_dielectric = not_all(p.metallic);
-        let rough =
-            |fresnel| LobeModel::Rough(RoughLobe { facets, fresnel, max_reflectance: None, albedo: None });
+        let aspect = (1.0 - 0.9 * p.anisotropic).sqrt();
+        let alpha = [facets.alpha / aspect, facets.alpha * aspect].map(|alpha| alpha.max(MIN_ALPHA));
+        let rough = |fresnel| match p.anisotropic {
+            0.0 => LobeModel::Rough(RoughLobe { facets, fresnel, max_reflectance: None, albedo: None }),
+            _ => LobeModel::Anisotropic(AnisotropicLobe::new(facets.distribution, alpha, fresnel)),
+        };
         let interface = |passage, inside_only| {
             LobeModel::RoughInterface(RoughInterface { facets, eta, passage, inside_only })
         };

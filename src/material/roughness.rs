@@ -58,7 +58,7 @@ impl Levels {
         };
         let of_lobe = |lobe: &Lobe| match lobe {
             Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => textured(alpha),
-            Lobe::Mirror { .. } | Lobe::Dielectric { .. } => None,
+            Lobe::Anisotropic { .. } | Lobe::Mirror { .. } | Lobe::Dielectric { .. } => None,
         };
         let of_part = |part: &Material| match &part.principled {
             Some(principled) => textured(&principled.roughness),

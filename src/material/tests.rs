@@ -77,6 +77,14 @@ fn rough_conductor(distribution: Distribution, alpha: f32, scale: Rgb) -> Materi
     material(&name, Rgb::ZERO, None, lobe)
 }
 
+/// Metal that is rougher along x.
+fn brushed(distribution: Distribution, alpha: [f32; 2]) -> Material {
+    let scale = constant(Rgb::new(0.9, 0.8, 0.7));
+    let lobe = Lobe::Anisotropic { distribution, alpha, fresnel: GOLD, scale };
+    let name = format!("roughconductor_{}_{}_{}", label(distribution), alpha[0], alpha[1]);
+    material(&name, Rgb::ZERO, None, lobe)
+}
+
 fn glossy(diffuse: Rgb, specular: f32, alpha: f32) -> Material {
     let scale = constant(Rgb::splat(specular));
     let name = format!("glossy_{alpha}");
@@ -129,6 +137,7 @@ fn principled_materials() -> Vec<Material> {
         principled("principled_plain", of(0.0, 0.5)),
         principled("principled_metal", of(1.0, 0.4)),
         principled("principled_mixed", mixed),
+        principled("principled_brushed", Principled { anisotropic: 0.6, ..of(0.5, 0.5) }),
     ]
 }
 
@@ -151,6 +160,7 @@ fn smooth_materials() -> Vec<Material> {
             all.push(rough_plastic(distribution, alpha, alpha == 0.1));
             all.push(rough_conductor(distribution, alpha, Rgb::new(0.9, 0.8, 0.7)));
         }
+        all.extend([[0.3, 0.1], [0.2, 0.9]].map(|alpha| brushed(distribution, alpha)));
     }
     for alpha in [0.05, 0.2, 0.5, 1.0] {
         all.push(glossy(Rgb::splat(0.4), 0.3, alpha));
@@ -203,6 +213,7 @@ fn min_alpha(material: &Material) -> f32 {
     }
     let alphas = material.parts().flat_map(|part| &part.lobes).filter_map(|lobe| match lobe {
         Lobe::Rough { alpha: Roughness::Constant(alpha), .. } => Some(*alpha),
+        Lobe::Anisotropic { alpha: [u, v], .. } => Some(u.min(*v)),
         _ => None,
     });
     alphas.fold(f32::INFINITY, f32::min)

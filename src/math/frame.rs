@@ -29,6 +29,17 @@ impl Frame {
         }
     }
 
+    /// Builds a frame whose z axis is the unit vector `normal`, and whose x axis is along `tangent`, as far as that
+    /// lies across; any if it does not.
+    #[inline]
+    pub fn from_normal_and_tangent(normal: Vec3, tangent: Vec3) -> Frame {
+        let across = tangent.normalize_or_zero();
+        match (across - normal * normal.dot(across)).try_normalize() {
+            Some(tangent) => Frame { tangent, bitangent: normal.cross(tangent), normal },
+            None => Frame::from_normal(normal),
+        }
+    }
+
     /// Transforms a world-space vector to local coordinates.
     #[inline]
     pub fn to_local(&self, v: Vec3) -> Vec3 {

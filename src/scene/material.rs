@@ -113,7 +113,9 @@ impl Material {
         all.extend(self.blend.iter_mut().flat_map(|blend| blend.other.reflectances_mut()));
         for lobe in &mut self.lobes {
             match lobe {
-                Lobe::Rough { scale, .. } | Lobe::Mirror { scale, .. } => all.push(scale),
+                Lobe::Rough { scale, .. } | Lobe::Anisotropic { scale, .. } | Lobe::Mirror { scale, .. } => {
+                    all.push(scale)
+                }
                 Lobe::Dielectric { reflectance, transmittance, .. }
                 | Lobe::RoughDielectric { reflectance, transmittance, .. } => {
                     all.extend([reflectance, transmittance])
@@ -126,6 +128,14 @@ impl Material {
     /// Returns the material's own parts and, in turn, those of the ones mixed with it.
     pub fn parts(&self) -> impl Iterator<Item = &Material> {
         std::iter::successors(Some(self), |material| material.blend.as_ref().map(|blend| &blend.other))
+    }
+
+    /// True if it scatters light otherwise along u than along v.
+    pub fn is_anisotropic(&self) -> bool {
+        let lobe = |lobe: &Lobe| matches!(lobe, Lobe::Anisotropic { .. });
+        let principled = |principled: &Principled| principled.anisotropic != 0.0;
+        self.parts()
+            .any(|part| part.lobes.iter().any(lobe) || part.principled.as_deref().is_some_and(principled))
     }
 
     /// Returns every share.
@@ -151,7 +161,7 @@ impl Material {
             || self.principled.as_ref().is_some_and(|principled| principled.is_textured())
             || self.lobes.iter().any(|lobe| match lobe {
                 Lobe::Rough { alpha, scale, .. } => alpha.is_textured() || scale.is_textured(),
-                Lobe::Mirror { scale, .. } => scale.is_textured(),
+                Lobe::Anisotropic { scale, .. } | Lobe::Mirror { scale, .. } => scale.is_textured(),
                 Lobe::Dielectric { reflectance, transmittance, .. } => {
                     reflectance.is_textured() || transmittance.is_textured()
                 }
@@ -190,6 +200,18 @@ pub enum Lobe {
         distribution: Distribution,
         /// Roughness.
         alpha: Roughness,
+        /// Reflectance of a facet.
+        fresnel: Fresnel,
+        /// Factor on the lobe.
+        scale: Reflectance,
+    },
+    /// Microfacet reflection of another roughness along u than along v, texture coordinates. Where a mesh has none, u
+    /// is any direction.
+    Anisotropic {
+        /// Microfacet distribution.
+        distribution: Distribution,
+        /// Roughness along u, and along v.
+        alpha: [f32; 2],
         /// Reflectance of a facet.
         fresnel: Fresnel,
         /// Factor on the lobe.

@@ -2,7 +2,7 @@
 //!
 //! Papers: B. Burley, *Physically Based Shading at Disney*, 2012; *Extending the Disney BRDF to a BSDF with Integrated
 //! Subsurface Scattering*, 2015.
-//! Deviations: roughness is the same in all directions; there is no flatness (a stand-in for subsurface scattering).
+//! Deviations: transmission is as rough in all directions; there is no flatness (a stand-in for subsurface scattering).
 
 use super::material::{Parameter, Reflectance, Share};
 
@@ -16,6 +16,9 @@ pub struct Principled {
     pub metallic: Share,
     /// Square root of the microfacet α (GGX) of reflection and transmission.
     pub roughness: Share,
+    /// From 0 to 1: `a` reflects with α / √(1 - .9 a) along u and α √(1 - .9 a) along v, texture coordinates. Where a
+    /// mesh has none, u is any direction.
+    pub anisotropic: f32,
     /// Interior over exterior index of refraction of the dielectric. A `specular` s of Mitsuba and Blender is
     /// η = 2 / (1 - √(.08 s)) - 1.
     pub eta: f32,
@@ -46,6 +49,7 @@ impl Default for Principled {
             base_color: Reflectance::Constant(crate::math::Rgb::splat(0.5)),
             metallic: none,
             roughness: Share::Constant(0.5),
+            anisotropic: 0.0,
             eta: 1.5,
             spec_tint: none,
             spec_trans: none,

@@ -125,7 +125,7 @@ impl Requirements {
             if let Some(used) = used.get_mut(mesh.material.0 as usize) {
                 *used = true;
             }
-            let rough = |lobe: &Lobe| matches!(lobe, Lobe::Rough { .. });
+            let rough = |lobe: &Lobe| matches!(lobe, Lobe::Rough { .. } | Lobe::Anisotropic { .. });
             let is_glossy =
                 material.parts().any(|part| part.principled.is_some() || part.lobes.iter().any(rough));
             glossy_area += if is_glossy { area } else { 0.0 };
@@ -171,20 +171,22 @@ impl Requirements {
             _ if material.principled.is_some() => &mut kinds.principled,
             _ if is_glass(material) => &mut kinds.glass,
             (None | Some(Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. }), _) => &mut kinds.diffuse,
-            (Some(Lobe::Rough { .. }), Some(_)) => &mut kinds.rough_plastic,
-            (Some(Lobe::Rough { .. }), None) => &mut kinds.glossy,
+            (Some(Lobe::Rough { .. } | Lobe::Anisotropic { .. }), Some(_)) => &mut kinds.rough_plastic,
+            (Some(Lobe::Rough { .. } | Lobe::Anisotropic { .. }), None) => &mut kinds.glossy,
             (Some(Lobe::Mirror { .. }), Some(_)) => &mut kinds.plastic,
             (Some(Lobe::Mirror { .. }), None) => &mut kinds.mirror,
         };
         *kind += 1;
         for lobe in &material.lobes {
-            if let Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } = lobe {
-                let alpha = alpha.value(|id| {
+            let alpha = match lobe {
+                Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => alpha.value(|id| {
                     let texture = scene.textures.get(id.0 as usize);
                     texture.and_then(|t| t.texels.iter().map(luminance).reduce(f32::min)).unwrap_or(1.0)
-                });
-                self.smallest_alpha = Some(self.smallest_alpha.map_or(alpha, |a| a.min(alpha)));
-            }
+                }),
+                Lobe::Anisotropic { alpha: [u, v], .. } => u.min(*v),
+                Lobe::Mirror { .. } | Lobe::Dielectric { .. } => continue,
+            };
+            self.smallest_alpha = Some(self.smallest_alpha.map_or(alpha, |a| a.min(alpha)));
         }
     }
 }
@@ -192,7 +194,7 @@ impl Requirements {
 /// True if the material reflects light in all directions, so that reflected light has to be stored.
 fn stores_light(material: &Material) -> bool {
     let black = |r: &Reflectance| matches!(r, Reflectance::Constant(c) if c.max_element() <= 0.0);
-    let glossy = |lobe: &Lobe| matches!(lobe, Lobe::Rough { scale, .. } if !black(scale));
+    let glossy = |lobe: &Lobe| matches!(lobe, Lobe::Rough { scale, .. } | Lobe::Anisotropic { scale, .. } if !black(scale));
     let stores =
         |part: &Material| part.principled.is_some() || !black(&part.diffuse) || part.lobes.iter().any(glossy);
     material.parts().any(stores)

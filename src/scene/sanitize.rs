@@ -257,12 +257,19 @@ fn check_material(
     let mut etas = Vec::from_iter(material.coat.map(|coat| coat.eta));
     if let Some(principled) = &material.principled {
         etas.push(principled.eta);
+        if !(0.0..=1.0).contains(&principled.anisotropic) {
+            return wrong(
+                format!("its roughness is anisotropic by {}", principled.anisotropic),
+                "give 0 to 1",
+            );
+        }
         if !(0.0..=1.0).contains(&principled.clearcoat_gloss) {
             return wrong(format!("its clear coat's gloss is {}", principled.clearcoat_gloss), "give 0 to 1");
         }
     }
     for lobe in &mut material.lobes {
         if let Lobe::Rough { fresnel: Fresnel::Conductor { eta, k }, .. }
+        | Lobe::Anisotropic { fresnel: Fresnel::Conductor { eta, k }, .. }
         | Lobe::Mirror { fresnel: Fresnel::Conductor { eta, k }, .. } = lobe
         {
             let is_metal = |v: Rgb| v.cmpge(Rgb::ZERO).all() && v.cmple(Rgb::splat(MAX_CONDUCTOR)).all();
@@ -290,6 +297,12 @@ fn check_material(
                         }
                     }
                 }
+            }
+            Lobe::Anisotropic { alpha, .. } => {
+                if let Some(value) = alpha.iter().find(|value| !(0.0..=MAX_ALPHA).contains(*value)) {
+                    return wrong(format!("its roughness is {value}"), "give 0 to 1, at most 4");
+                }
+                *alpha = alpha.map(|value| value.max(MIN_ALPHA));
             }
             Lobe::Mirror { .. } | Lobe::Dielectric { .. } => {}
         }
@@ -358,6 +371,7 @@ fn scale_sum(
     let (None, Reflectance::Constant(base)) = (material.coat, material.diffuse) else { return Ok(()) };
     let constant = |lobe: &Lobe| match lobe {
         Lobe::Rough { fresnel: Fresnel::One, scale: Reflectance::Constant(scale), .. }
+        | Lobe::Anisotropic { fresnel: Fresnel::One, scale: Reflectance::Constant(scale), .. }
         | Lobe::Mirror { fresnel: Fresnel::One, scale: Reflectance::Constant(scale) } => *scale,
         _ => Rgb::ZERO,
     };
@@ -371,6 +385,7 @@ fn scale_sum(
         material.diffuse = Reflectance::Constant(base * factor);
         for lobe in &mut material.lobes {
             if let Lobe::Rough { fresnel: Fresnel::One, scale: Reflectance::Constant(scale), .. }
+            | Lobe::Anisotropic { fresnel: Fresnel::One, scale: Reflectance::Constant(scale), .. }
             | Lobe::Mirror { fresnel: Fresnel::One, scale: Reflectance::Constant(scale) } = lobe
             {
                 *scale *= factor;

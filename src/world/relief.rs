@@ -1,4 +1,4 @@
-//! Shading frames on surfaces with a relief.
+//! Shading frames on surfaces with a relief, and on those whose material knows a direction.
 //!
 //! Paper: J. F. Blinn, *Simulation of Wrinkled Surfaces*, 1978, for heights; definitions are those of Mitsuba 3's
 //! `bumpmap` and `normalmap`.
@@ -12,26 +12,40 @@ use crate::scene::{Mesh, Relief, Scene};
 use glam::{Vec2, Vec3};
 
 /// Reliefs of a scene, by mesh.
-pub(super) struct Reliefs(Vec<Option<Relief>>);
+pub(super) struct Reliefs(Vec<Turn>);
+
+/// How the shading frames of a mesh differ from those of the interpolated normals.
+#[derive(Clone, Copy, Default, PartialEq)]
+struct Turn {
+    relief: Option<Relief>,
+    /// True if x is along u.
+    along_u: bool,
+}
 
 impl Reliefs {
     /// Collects them; `None` if there are none.
     pub fn new(scene: &Scene) -> Option<Reliefs> {
-        let of =
-            |mesh: &Mesh| scene.materials.get(mesh.material.0 as usize).and_then(|material| material.relief);
-        let all: Vec<Option<Relief>> = scene.meshes.iter().map(of).collect();
-        all.iter().any(Option::is_some).then_some(Reliefs(all))
+        let of = |mesh: &Mesh| {
+            let material = scene.materials.get(mesh.material.0 as usize);
+            material.map_or(Turn::default(), |material| {
+                let along_u = material.is_anisotropic() && !mesh.uvs.is_empty();
+                Turn { relief: material.relief, along_u }
+            })
+        };
+        let all: Vec<Turn> = scene.meshes.iter().map(of).collect();
+        all.iter().any(|turn| *turn != Turn::default()).then_some(Reliefs(all))
     }
 }
 
 impl World {
-    /// True if any surface has a relief.
+    /// True if any surface has a relief, or a direction.
     #[inline]
     pub(super) fn has_reliefs(&self) -> bool {
         self.reliefs.is_some()
     }
 
-    /// Turns the shading frame at barycentric weights `b` of a triangle by the relief of its mesh, if it has one.
+    /// Turns the shading frame at barycentric weights `b` of a triangle by the relief of its mesh, if it has one, and
+    /// x along u, if its material asks for that.
     #[inline]
     pub(super) fn relieve(
         &self,
@@ -41,9 +55,14 @@ impl World {
         b: Vec2,
     ) {
         let Some(Reliefs(reliefs)) = &self.reliefs else { return };
-        if let Some(relief) = &reliefs[mesh as usize] {
-            let mesh = &self.scene.meshes[mesh as usize];
+        let Turn { relief, along_u } = &reliefs[mesh as usize];
+        let mesh = &self.scene.meshes[mesh as usize];
+        if let Some(relief) = relief {
             *frame = turned(&self.scene, relief, (mesh, primitive as usize), triangle, b, frame.normal);
+        }
+        if *along_u {
+            let [along_u, _] = derivatives(mesh, primitive as usize, triangle.edges);
+            *frame = Frame::from_normal_and_tangent(frame.normal, along_u);
         }
     }
 }
@@ -97,7 +116,9 @@ fn derivatives(mesh: &Mesh, primitive: usize, edges: [Vec3; 2]) -> [Vec3; 2] {
 mod tests {
     use crate::embree::{Hits16, Ray};
     use crate::math::Rgb;
-    use crate::scene::{Camera, Filter, Material, Relief, Texels, Texture, TextureId, Wrap};
+    use crate::scene::{
+        Camera, Distribution, Filter, Fresnel, Lobe, Material, Relief, Texels, Texture, TextureId, Wrap,
+    };
     use crate::test_scenes::*;
     use glam::{Mat3, Vec2, Vec3};
 
@@ -164,6 +185,28 @@ mod tests {
                 "{local} {}",
                 normal(&flat, 1.1, 0.4)
             );
+        }
+    }
+
+    #[test]
+    fn frames_are_along_u_where_a_material_knows_a_direction() {
+        let bumps = Relief::Heights { texture: TextureId(0), scale: 0.5 };
+        for relief in [None, Some(bumps)] {
+            let mut staged = staged(square(bumps, 2, vec![Rgb::ZERO, Rgb::ONE]));
+            staged.materials[0].relief = relief;
+            let fresnel = Fresnel::One;
+            let (distribution, alpha, scale) = (Distribution::Ggx, [0.1, 0.3], Rgb::ONE.into());
+            staged.materials[0].lobes = vec![Lobe::Anisotropic { distribution, alpha, fresnel, scale }];
+            // u grows across the square, from corner to corner.
+            staged.meshes[0].uvs.iter_mut().for_each(|uv| *uv = Vec2::new(uv.x + uv.y, uv.y - uv.x));
+            let world = world(staged);
+            let ray = Ray::new(Vec3::new(0.6, 0.5, 1.0), -Vec3::Z);
+            let frame = world.intersect(&ray).expect("the square").frame;
+            let across = Vec3::new(1.0, 1.0, 0.0) - frame.normal * frame.normal.dot(Vec3::new(1.0, 1.0, 0.0));
+            assert!((frame.tangent - across.normalize()).length() < 1e-5, "{frame:?}");
+            assert!((frame.tangent.cross(frame.bitangent) - frame.normal).length() < 1e-6);
+            assert_eq!(frame.normal == Vec3::Z, relief.is_none());
+            normal(&world, 0.6, 0.5);
         }
     }
 

@@ -168,9 +168,15 @@ mod slow_materials {
         }
         for (name, bsdf) in [
             (
-                "brushed gold",
+                "rough gold",
                 r#"<bsdf type="roughconductor"><string name="material" value="Au"/>
                 <string name="distribution" value="ggx"/><float name="alpha" value="0.2"/></bsdf>"#,
+            ),
+            (
+                "brushed gold",
+                r#"<bsdf type="roughconductor"><string name="material" value="Au"/>
+                <string name="distribution" value="ggx"/><float name="alpha_u" value="0.08"/>
+                <float name="alpha_v" value="0.4"/></bsdf>"#,
             ),
             (
                 "smooth plastic",
@@ -261,6 +267,9 @@ mod slow_materials {
         let number = |name: &str, value: f32| format!(r#"<float name="{name}" value="{value}"/>"#);
         agrees("plain", &format!("{colour}{}", number("roughness", 0.6)), true);
         agrees("metal", &format!("{colour}{}{}", number("metallic", 1.0), number("roughness", 0.4)), true);
+        let brushed = [("metallic", 0.8), ("roughness", 0.5), ("anisotropic", 0.8)];
+        let brushed: String = brushed.into_iter().map(|(name, value)| number(name, value)).collect();
+        agrees("brushed metal", &format!("{colour}{brushed}"), true);
         let all =
             [("metallic", 0.4), ("spec_tint", 0.5), ("sheen", 0.8), ("sheen_tint", 0.3), ("clearcoat", 0.8)];
         let all: String = all.into_iter().map(|(name, value)| number(name, value)).collect();

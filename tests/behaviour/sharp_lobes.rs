@@ -1,7 +1,7 @@
 //! Reflection by sharp lobes of emitters that their sampled directions hardly ever hit.
 
 use crate::common::*;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::render;
@@ -73,4 +73,22 @@ fn the_environment_shows_in_sharp_lobes_as_paths_see_it() {
     // Under a uniform sky the lobe's own directions are best; points sampled on it add noise in the lobe's
     // tail.
     assert_as_by_paths(&scene, 1.5);
+}
+
+#[test]
+fn lamps_show_in_brushed_metal_as_paths_see_them() {
+    let brushed = |alpha| {
+        let mut scene = below_lamps();
+        let scale = Reflectance::Constant(Rgb::new(0.9, 0.7, 0.5));
+        let (distribution, fresnel) = (Distribution::Ggx, Fresnel::One);
+        scene.materials[0].lobes = vec![Lobe::Anisotropic { distribution, alpha, fresnel, scale }];
+        let floor = scene.meshes[0].clone();
+        scene.meshes[0] = textured(floor, Vec2::ONE);
+        scene
+    };
+    let (along, across) = (brushed([0.5, 0.06]), brushed([0.06, 0.5]));
+    assert_as_by_paths(&along, 0.75);
+    assert_as_by_paths(&across, 0.75);
+    let (_, difference) = errors(&of_cuts(&along), &of_cuts(&across));
+    assert!(difference > 0.5, "{difference}");
 }

@@ -39,6 +39,7 @@ impl Directions {
 
 /// Pairs of directions, in sixteen lanes.
 pub(in crate::material) struct Directions16<'a> {
+    pub wo: &'a Vec3x16,
     pub wi: &'a Vec3x16,
     /// Squared sines of the facet normals' inclinations; 0, as the cosines, where no facet is seen.
     pub sin_sq: F32x16,
@@ -50,9 +51,9 @@ pub(in crate::material) struct Directions16<'a> {
 
 impl Directions16<'_> {
     #[inline(always)]
-    pub fn new<'a>(wo: &Vec3x16, wi: &'a Vec3x16) -> Directions16<'a> {
+    pub fn new<'a>(wo: &'a Vec3x16, wi: &'a Vec3x16) -> Directions16<'a> {
         let zero = [0.0; LANES];
-        let mut all = Directions16 { wi, sin_sq: zero, cos_sq: zero, cos_d: zero };
+        let mut all = Directions16 { wo, wi, sin_sq: zero, cos_sq: zero, cos_d: zero };
         for l in 0..LANES {
             let (wo, wi) = (wo.get(l), wi.get(l));
             let h = wo + wi;

@@ -6,6 +6,7 @@
 //! textured, comes with each call as `scale`. The dispatch in this file is the only code that enumerates the
 //! lobes.
 
+mod anisotropic;
 mod clear_coat;
 mod dull;
 mod grazing;
@@ -15,6 +16,7 @@ mod mirror;
 mod rough;
 mod rough_interface;
 
+pub(super) use anisotropic::AnisotropicLobe;
 pub(super) use clear_coat::ClearCoat;
 pub use dull::DullLobe;
 pub(super) use grazing::{Grazing, GrazingKind};
@@ -37,6 +39,7 @@ pub(super) const MAX_LOBES: usize = 6;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum LobeModel {
     Rough(RoughLobe),
+    Anisotropic(AnisotropicLobe),
     Mirror(Mirror),
     Interface(Interface),
     RoughInterface(RoughInterface),
@@ -67,7 +70,11 @@ impl LobeModel {
         match self {
             LobeModel::Mirror(_) | LobeModel::RoughInterface(_) => true,
             LobeModel::Interface(interface) => interface.bends(),
-            LobeModel::Rough(_) | LobeModel::ClearCoat(_) | LobeModel::Grazing(_) | LobeModel::Gap => false,
+            LobeModel::Rough(_)
+            | LobeModel::Anisotropic(_)
+            | LobeModel::ClearCoat(_)
+            | LobeModel::Grazing(_)
+            | LobeModel::Gap => false,
         }
     }
 
@@ -97,18 +104,19 @@ impl LobeModel {
     pub fn is_glossy(&self) -> bool {
         match self {
             LobeModel::Rough(rough) => rough.is_glossy(),
-            LobeModel::RoughInterface(_) | LobeModel::ClearCoat(_) => true,
+            LobeModel::RoughInterface(_) | LobeModel::ClearCoat(_) | LobeModel::Anisotropic(_) => true,
             _ => false,
         }
     }
 
     /// True if eye paths follow the lobe by sampling it, as they do a mirror: light cuts would show single virtual
-    /// lights in it. The place, too, for lobes that scatter light across the surface, as cuts gather on one side.
+    /// lights in it. Lobes that scatter light across the surface are followed, too, as cuts gather on one side, and
+    /// anisotropic ones, of whose direction on the surface cuts know nothing.
     #[inline]
     pub fn is_sharp(&self) -> bool {
         match self {
             LobeModel::Rough(rough) => rough.is_sharp(),
-            LobeModel::RoughInterface(_) | LobeModel::ClearCoat(_) => true,
+            LobeModel::RoughInterface(_) | LobeModel::ClearCoat(_) | LobeModel::Anisotropic(_) => true,
             _ => false,
         }
     }
@@ -127,6 +135,7 @@ impl LobeModel {
     pub fn eval_pdf(&self, scale: Rgb, probability: f32, directions: &Directions) -> (Rgb, f32) {
         match self {
             LobeModel::Rough(rough) => rough.eval_pdf(scale, probability, directions),
+            LobeModel::Anisotropic(rough) => rough.eval_pdf(scale, probability, directions),
             LobeModel::RoughInterface(rough) => rough.eval_pdf(scale, probability, directions),
             LobeModel::ClearCoat(coat) => coat.eval_pdf(scale, probability, directions),
             LobeModel::Grazing(grazing) => grazing.eval_pdf(scale, probability, directions),
@@ -140,6 +149,7 @@ impl LobeModel {
     pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
         match self {
             LobeModel::Rough(rough) => rough.sample(wo, u),
+            LobeModel::Anisotropic(rough) => rough.sample(wo, u),
             LobeModel::RoughInterface(rough) => rough.sample(wo, u),
             LobeModel::ClearCoat(coat) => coat.sample(wo, u),
             LobeModel::Grazing(grazing) => grazing.sample(wo, u),
@@ -167,6 +177,7 @@ impl LobeModel {
     pub fn sampling_weight(&self, scale: Rgb, wo: Vec3, transmittance: f32) -> f32 {
         match self {
             LobeModel::Rough(rough) => rough.sampling_weight(scale, wo.z, transmittance),
+            LobeModel::Anisotropic(rough) => rough.sampling_weight(scale, wo.z),
             LobeModel::Mirror(mirror) => mean(mirror.weight(scale, wo.z)),
             LobeModel::Interface(interface) => interface.sampling_weight(scale, wo.z),
             LobeModel::RoughInterface(rough) => rough.sampling_weight(scale, wo.z),
@@ -180,6 +191,7 @@ impl LobeModel {
     pub fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
         match self {
             LobeModel::Rough(rough) => rough.mean_reflectance(scale, cos),
+            LobeModel::Anisotropic(rough) => rough.albedo(scale, cos),
             LobeModel::RoughInterface(rough) => rough.albedo(scale, cos),
             LobeModel::ClearCoat(coat) => coat.albedo(scale, cos),
             LobeModel::Grazing(grazing) => grazing.albedo(scale, cos),
@@ -202,6 +214,7 @@ impl LobeModel {
     pub fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
         match self {
             LobeModel::Rough(rough) => rough.bound(scale, bound),
+            LobeModel::Anisotropic(rough) => rough.bound(scale, bound),
             LobeModel::ClearCoat(coat) => coat.bound(scale, bound),
             LobeModel::Grazing(grazing) => grazing.bound(scale, bound),
             _ => Rgb::ZERO,
@@ -213,6 +226,7 @@ impl LobeModel {
     pub fn set_lane(&self, lanes: &mut LobeLanes, lane: usize, scale: Rgb, wo: Vec3) {
         match self {
             LobeModel::Rough(rough) => rough.set_lane(lanes, lane, scale, wo),
+            LobeModel::Anisotropic(rough) => rough.set_lane(lanes, lane, scale, wo),
             LobeModel::ClearCoat(coat) => coat.set_lane(lanes, lane, scale, wo),
             LobeModel::Grazing(grazing) => grazing.set_lane(lanes, lane, scale, wo),
             _ => {}
@@ -224,6 +238,7 @@ impl LobeModel {
     pub fn add_value16(&self, lanes: &LobeLanes, directions: &Directions16, sum: &mut Vec3x16) {
         match self {
             LobeModel::Rough(rough) => rough.add_value16(lanes, directions, sum),
+            LobeModel::Anisotropic(rough) => rough.add_value16(lanes, directions, sum),
             LobeModel::ClearCoat(coat) => coat.add_value16(lanes, directions, sum),
             LobeModel::Grazing(grazing) => grazing.add_value16(lanes, directions, sum),
             _ => {}
@@ -235,6 +250,7 @@ impl LobeModel {
     pub fn add_bound16(&self, lanes: &LobeLanes, bounds: &FacetBounds16, sum: &mut Vec3x16) {
         match self {
             LobeModel::Rough(rough) => rough.add_bound16(lanes, bounds, sum),
+            LobeModel::Anisotropic(rough) => rough.add_bound16(lanes, bounds, sum),
             LobeModel::ClearCoat(coat) => coat.add_bound16(lanes, bounds, sum),
             LobeModel::Grazing(grazing) => grazing.add_bound16(lanes, bounds, sum),
             _ => {}

@@ -47,9 +47,19 @@ const VALUES: &[Row] = &[
     ("roughconductor_beckmann_0.7", [0.0, 0.0, 1.0], [0.38758916, 0.60363436, 0.6967067], [0.13606513, 0.10035943, 0.0355536]),
 ];
 
-/// Materials of which light may come through, too; `wi` may be behind.
+/// Materials of which light may come through, too, and anisotropic ones; `wi` may be behind.
 #[rustfmt::skip]
-const PRINCIPLED_AND_ROUGH_GLASS: &[Row] = &[
+const LATER: &[Row] = &[
+    ("roughconductor_ggx_0.3_0.1", [0.3894183, 0.0, 0.921061], [-0.4163638, 0.3813952, 0.8253356], [0.08173358, 0.060282003, 0.021396525]),
+    ("roughconductor_ggx_0.3_0.1", [0.7128628, 0.6004361, 0.3623578], [-0.9023305, -0.3380001, 0.2674988], [0.020417565, 0.015490792, 0.007090906]),
+    ("roughconductor_ggx_0.2_0.9", [0.3894183, 0.0, 0.921061], [-0.4163638, 0.3813952, 0.8253356], [0.3866863, 0.28519765, 0.1012282]),
+    ("roughconductor_ggx_0.2_0.9", [0.069708, 0.9829812, 0.1699671], [0.1073415, 0.1671745, 0.9800666], [0.36568868, 0.26967546, 0.09657124]),
+    ("roughconductor_beckmann_0.3_0.1", [0.3894183, 0.0, 0.921061], [-0.4163638, 0.3813952, 0.8253356], [0.023281673, 0.017171228, 0.0060947635]),
+    ("roughconductor_beckmann_0.2_0.9", [0.7128628, 0.6004361, 0.3623578], [-0.9023305, -0.3380001, 0.2674988], [0.11921534, 0.09044859, 0.04140282]),
+    ("roughconductor_beckmann_0.2_0.9", [0.069708, 0.9829812, 0.1699671], [0.1073415, 0.1671745, 0.9800666], [0.7386315, 0.54470044, 0.19505815]),
+    ("principled_brushed", [0.3894183, 0.0, 0.921061], [-0.4163638, 0.3813952, 0.8253356], [0.051692013, 0.12275425, 0.2175039]),
+    ("principled_brushed", [0.7128628, 0.6004361, 0.3623578], [-0.9023305, -0.3380001, 0.2674988], [0.021983666, 0.041796695, 0.06821407]),
+    ("principled_brushed", [0.069708, 0.9829812, 0.1699671], [0.1073415, 0.1671745, 0.9800666], [0.035670493, 0.088536896, 0.15902545]),
     ("principled_plain", [0.3894183, 0.0, 0.921061], [-0.4523597, 0.3379228, 0.8253356], [0.07560708, 0.15442462, 0.2595147]),
     ("principled_plain", [0.9320391, 0.0, 0.3623578], [-0.9539154, 0.1359773, 0.2674988], [0.19550881, 0.21794204, 0.247853]),
     ("principled_plain", [0.9854497, 0.0, 0.1699671], [0.1073415, 0.1671745, 0.9800666], [0.0692864, 0.16789714, 0.29937813]),
@@ -90,6 +100,7 @@ fn by_name(name: &str) -> Material {
         "diffuse" => lambert(PAINT),
         "plastic" => plastic(parts[1] == "1"),
         "roughplastic" => rough_plastic(distribution(), alpha(), parts[3] == "1"),
+        "roughconductor" if parts.len() > 3 => brushed(distribution(), [alpha(), parts[3].parse().unwrap()]),
         "roughconductor" => rough_conductor(distribution(), alpha(), Rgb::new(0.9, 0.8, 0.7)),
         "roughdielectric" => rough_glass(distribution(), alpha(), 1.5),
         other => panic!("{other}"),
@@ -98,7 +109,7 @@ fn by_name(name: &str) -> Material {
 
 #[test]
 fn values_agree_with_mitsuba() {
-    let later = PRINCIPLED_AND_ROUGH_GLASS.iter().map(|row| (row, 1e-4));
+    let later = LATER.iter().map(|row| (row, 1e-4));
     for (&(name, wo, wi, expected), tolerance) in VALUES.iter().map(|row| (row, 2e-5)).chain(later) {
         let (wo, wi) = (Vec3::from(wo), Vec3::from(wi));
         let value = with_bsdf(&by_name(name), |b| b.eval(wo, wi)) * wi.z.abs();

@@ -31,7 +31,8 @@ pub(super) fn coated(
     }
     let normal = 4.0 * eta / ((eta + 1.0) * (eta + 1.0));
     for lobe in &mut nested.lobes {
-        if let Lobe::Rough { scale, .. } | Lobe::Mirror { scale, .. } = lobe {
+        if let Lobe::Rough { scale, .. } | Lobe::Anisotropic { scale, .. } | Lobe::Mirror { scale, .. } = lobe
+        {
             *scale = scale.times(through * (normal * normal));
         }
     }

@@ -1,6 +1,6 @@
 //! Bsdfs to materials.
 //!
-//! Deviations: anisotropy and layered coatings have no counterpart; each is replaced by the
+//! Deviations: anisotropic glass and layered coatings have no counterpart; each is replaced by the
 //! nearest material, with a warning.
 
 use super::Converter;

@@ -67,7 +67,15 @@ impl Converter<'_> {
         let reflectance = self.reflectance(bsdf, "specular_reflectance", 1.0)?;
         let transmittance = self.reflectance(bsdf, "specular_transmittance", 1.0)?;
         if bsdf.plugin == "roughdielectric" {
-            let (distribution, alpha) = self.facets(bsdf)?;
+            let (distribution, [u, v]) = self.facets(bsdf)?;
+            let alpha = match (u, v) {
+                (Roughness::Constant(a), Roughness::Constant(b)) if a != b => {
+                    let fallback = "the geometric mean is used, without the direction of highlights";
+                    self.log.warn(&bsdf.place, "anisotropic glass is not modelled", fallback)?;
+                    Roughness::Constant((a * b).sqrt())
+                }
+                _ => u,
+            };
             let lobe = Lobe::RoughDielectric { distribution, alpha, eta, reflectance, transmittance };
             return Ok(Material { name, two_sided: true, lobes: vec![lobe], ..Material::default() });
         }
@@ -118,11 +126,15 @@ impl Converter<'_> {
                 0.5
             }
         };
-        for (name, what) in [("anisotropic", "anisotropic roughness"), ("flatness", "flatness")] {
-            let none = Share::Constant(0.0);
-            if self.share(bsdf, name, 0.0)? != none {
-                self.log.warn(&bsdf.place, format!("{what} is not modelled"), "it is left out")?;
+        principled.anisotropic = match self.share(bsdf, "anisotropic", 0.0)? {
+            Share::Constant(anisotropic) => anisotropic,
+            Share::Textured { .. } => {
+                self.log.warn(&bsdf.place, "a textured anisotropic is not modelled", "it is left out")?;
+                0.0
             }
+        };
+        if self.share(bsdf, "flatness", 0.0)? != Share::Constant(0.0) {
+            self.log.warn(&bsdf.place, "flatness is not modelled", "it is left out")?;
         }
         bsdf.ignore(&["main_specular_sampling_rate", "clearcoat_sampling_rate"]);
         bsdf.ignore(&["diffuse_reflectance_sampling_rate"]);
@@ -136,11 +148,16 @@ impl Converter<'_> {
         scale: Reflectance,
     ) -> Result<Lobe, SceneError> {
         let (distribution, alpha) = self.facets(bsdf)?;
-        Ok(Lobe::Rough { distribution, alpha, fresnel, scale })
+        Ok(match alpha {
+            [Roughness::Constant(u), Roughness::Constant(v)] if u != v => {
+                Lobe::Anisotropic { distribution, alpha: [u, v], fresnel, scale }
+            }
+            [alpha, _] => Lobe::Rough { distribution, alpha, fresnel, scale },
+        })
     }
 
-    /// Distribution and roughness of microfacets.
-    pub(super) fn facets(&mut self, bsdf: &Object) -> Result<(Distribution, Roughness), SceneError> {
+    /// Distribution of microfacets, and their roughness along u and v, which is one where it is textured.
+    pub(super) fn facets(&mut self, bsdf: &Object) -> Result<(Distribution, [Roughness; 2]), SceneError> {
         let distribution = match bsdf.string("distribution")?.map(|d| d.to_lowercase()).as_deref() {
             None | Some("beckmann") => Distribution::Beckmann,
             Some("ggx") => Distribution::Ggx,
@@ -157,22 +174,16 @@ impl Converter<'_> {
         bsdf.ignore(&["sample_visible"]);
         let alpha = if bsdf.has("alpha_u") || bsdf.has("alpha_v") {
             let (u, v) = (self.alpha(bsdf, "alpha_u")?, self.alpha(bsdf, "alpha_v")?);
-            match (u, v) {
-                _ if u == v => u,
-                (Roughness::Constant(u), Roughness::Constant(v)) => {
-                    let fallback = "the geometric mean is used, which reflects within 4 % as much, without \
-                                    the direction of highlights";
-                    self.log.warn(&bsdf.place, "anisotropic roughness is not modelled", fallback)?;
-                    Roughness::Constant((u * v).sqrt())
-                }
-                _ => {
-                    let fallback = "that along u is used both ways";
-                    self.log.warn(&bsdf.place, "anisotropic roughness is not modelled", fallback)?;
-                    u
-                }
+            let is_constant = |alpha| matches!(alpha, Roughness::Constant(_));
+            if u == v || is_constant(u) && is_constant(v) {
+                [u, v]
+            } else {
+                let what = "textured anisotropic roughness is not modelled";
+                self.log.warn(&bsdf.place, what, "that along u is used both ways")?;
+                [u, u]
             }
         } else {
-            self.alpha(bsdf, "alpha")?
+            [self.alpha(bsdf, "alpha")?; 2]
         };
         Ok((distribution, alpha))
     }

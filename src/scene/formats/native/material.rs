@@ -127,6 +127,10 @@ impl Builder<'_> {
                 let scale = self.colour(&text.specular.clone().unwrap_or(one()), place)?;
                 let fresnel = self.conductor(text, place)?;
                 let lobe = match text.alpha {
+                    None | Some(NumberText::Number(Number(0.0))) if text.alpha_v.is_some() => {
+                        let what = format!("the roughness of \"{}\" is given along v alone", text.name);
+                        return Err(place.wrong(what, "give alpha, that along u, above 0"));
+                    }
                     None | Some(NumberText::Number(Number(0.0))) => Lobe::Mirror { fresnel, scale },
                     Some(_) => self.rough(text, fresnel, scale, place)?,
                 };
@@ -181,7 +185,22 @@ impl Builder<'_> {
         place: &Place,
     ) -> Result<Lobe, SceneError> {
         let (distribution, alpha) = self.facets(text, place)?;
-        Ok(Lobe::Rough { distribution, alpha, fresnel, scale })
+        let Some(Number(across)) = text.alpha_v else {
+            return Ok(Lobe::Rough { distribution, alpha, fresnel, scale });
+        };
+        match alpha {
+            Roughness::Constant(along) if across > 0.0 && across <= 4.0 => {
+                Ok(Lobe::Anisotropic { distribution, alpha: [along, across as f32], fresnel, scale })
+            }
+            Roughness::Constant(_) => {
+                let what = format!("the roughness of \"{}\" along v is {across}", text.name);
+                Err(place.wrong(what, "give a number above 0, usually up to 1"))
+            }
+            Roughness::Textured { .. } => {
+                let what = format!("the roughness of \"{}\" is textured and anisotropic", text.name);
+                Err(place.wrong(what, "leave out alpha_v, or give alpha as a number"))
+            }
+        }
     }
 
     /// Distribution and roughness of microfacets.
@@ -225,6 +244,7 @@ impl Builder<'_> {
             base_color,
             metallic: share(&text.metallic, 0.0),
             roughness: share(&text.roughness, 0.5),
+            anisotropic: text.anisotropic.map_or(0.0, f64::from) as f32,
             eta: text.ior.map_or(1.5, f64::from) as f32,
             spec_tint: share(&text.spec_tint, 0.0),
             spec_trans: share(&text.spec_trans, 0.0),
@@ -300,12 +320,13 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
         "glossy" => &["diffuse", "specular", "alpha", "distribution"],
         "plastic" => &["diffuse", "specular", "ior", "nonlinear"],
         "roughplastic" => &["diffuse", "specular", "ior", "nonlinear", "alpha", "distribution"],
-        "conductor" => &["preset", "eta", "k", "specular", "alpha", "distribution"],
+        "conductor" => &["preset", "eta", "k", "specular", "alpha", "alpha_v", "distribution"],
         "glass" => &["ior", "reflectance", "transmittance", "thin", "alpha", "distribution"],
         "principled" => &[
             "base_color",
             "metallic",
             "roughness",
+            "anisotropic",
             "ior",
             "spec_tint",
             "spec_trans",
@@ -327,6 +348,7 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
         ("specular", text.specular.is_some()),
         ("transmittance", text.transmittance.is_some()),
         ("alpha", text.alpha.is_some()),
+        ("alpha_v", text.alpha_v.is_some()),
         ("distribution", text.distribution.is_some()),
         ("ior", text.ior.is_some()),
         ("nonlinear", text.nonlinear.is_some()),
@@ -337,6 +359,7 @@ fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
         ("base_color", text.base_color.is_some()),
         ("metallic", text.metallic.is_some()),
         ("roughness", text.roughness.is_some()),
+        ("anisotropic", text.anisotropic.is_some()),
         ("spec_tint", text.spec_tint.is_some()),
         ("spec_trans", text.spec_trans.is_some()),
         ("sheen", text.sheen.is_some()),

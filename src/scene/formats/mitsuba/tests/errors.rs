@@ -14,7 +14,7 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
         ("<bsdf type=\"velvet\"/>".into(), "\"velvet\""),
         ("<bsdf type=\"diffuse\"><float name=\"sheen\" value=\"1\"/></bsdf>".into(), "\"sheen\""),
         ("<emitter type=\"area\"><float name=\"glow\" value=\"1\"/></emitter>".into(), "\"glow\""),
-        ("<bsdf type=\"roughconductor\"><float name=\"alpha_u\" value=\"0.1\"/><float name=\"alpha_v\" value=\"0.4\"/></bsdf>".into(), "anisotropic"),
+        ("<bsdf type=\"roughdielectric\"><float name=\"alpha_u\" value=\"0.1\"/><float name=\"alpha_v\" value=\"0.4\"/></bsdf>".into(), "anisotropic"),
     ];
     for (text, what) in cases {
         let body = format!("{SKY}<shape type=\"rectangle\">\n{text}</shape>");
@@ -34,6 +34,12 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
     assert!(
         matches!(rough.lobes[..], [Lobe::Rough { alpha: Roughness::Textured { .. }, .. }]) && warnings == 0
     );
+    let both = "<float name=\"alpha_u\" value=\"0.1\"/><float name=\"alpha_v\" value=\"0.4\"/>";
+    let (brushed, warnings) = bsdf(&format!("<bsdf type=\"roughconductor\">{both}</bsdf>"));
+    assert!(matches!(brushed.lobes[..], [Lobe::Anisotropic { alpha: [0.1, 0.4], .. }]) && warnings == 0);
+    let (brushed, warnings) =
+        bsdf("<bsdf type=\"principled\"><float name=\"anisotropic\" value=\"0.5\"/></bsdf>");
+    assert!(brushed.principled.is_some_and(|p| p.anisotropic == 0.5) && warnings == 0);
     let (mask, _) = bsdf(&format!("<bsdf type=\"mask\">{nested}</bsdf>"));
     assert_eq!((mask.diffuse, mask.opacity), (Rgb::splat(0.3).into(), Some(0.5.into())));
     let absorbing = "<float name=\"thickness\" value=\"0.5\"/><rgb name=\"sigma_a\" value=\"1\"/>";
