@@ -1,10 +1,12 @@
+use super::materials::MIN_ALPHA;
 use super::*;
+use crate::math::Rgb;
 use crate::scene::draft::DraftCamera;
 use crate::scene::draft::Shot;
-use crate::scene::material::{Coat, Distribution, MaterialId};
+use crate::scene::material::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance};
 use crate::scene::mesh::Emission;
 use crate::scene::texture::{Filter, TextureId, Wrap};
-use crate::scene::{DeltaLight, Environment, Texels};
+use crate::scene::{DeltaLight, Environment, Texels, Texture};
 
 /// Sanitises, where warnings do not matter.
 fn sanitize(draft: &mut Draft) -> Result<(SanitizeReport, Coordinates), SceneError> {
