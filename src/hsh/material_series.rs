@@ -6,7 +6,7 @@
 //! the point.
 //!
 //! Deviations: the paper sets the number of bands by hand; here it is the minimum that keeps the error of the
-//! kernel within the tolerance.
+//! kernel within the tolerance, where each texture has the value of its mean.
 
 use super::CHANNELS;
 use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
