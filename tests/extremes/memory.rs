@@ -44,3 +44,33 @@ fn too_much_for_the_limit_of_the_shell_is_refused_before_anything_is_rendered() 
     }
     assert!(!folder.path().join("a.exr").exists());
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn copies_of_meshes_are_counted_before_they_are_made() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let group = "<shape type=\"sphere\"/>".repeat(100);
+    let instances = "<shape type=\"instance\"><ref id=\"g\"/></shape>".repeat(1000);
+    let own = format!("<shape type=\"shapegroup\" id=\"g\">{group}</shape>{instances}");
+    let mut ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+         element face 50000\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n"
+            .to_owned();
+    ply += &"3 0 1 2\n".repeat(50_000);
+    std::fs::write(folder.path().join("a.ply"), ply).expect("a mesh");
+    let of_file = "<shape type=\"ply\"><string name=\"filename\" value=\"a.ply\"/></shape>".repeat(1000);
+    let command = env!("CARGO_BIN_EXE_lightsplat");
+    for (name, shapes) in [("instances", own), ("files", of_file)] {
+        let text = format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/>{shapes}</scene>");
+        std::fs::write(folder.path().join("a.xml"), text).expect("a scene");
+        let line = format!("ulimit -v 600000; exec {command} info a.xml");
+        let run =
+            Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().expect("a shell");
+        let stderr = String::from_utf8_lossy(&run.stderr);
+        assert_eq!(run.status.code(), Some(3), "{name}: {stderr}");
+        assert!(
+            stderr.contains("a.xml") && stderr.contains("triangles that there is memory for"),
+            "{stderr}"
+        );
+    }
+}

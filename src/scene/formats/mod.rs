@@ -5,6 +5,7 @@
 //! replacement; under [`LoadOptions::strict`] they are errors. Whatever the bytes, reading ends
 //! in a scene or a [`SceneError`].
 
+mod budget;
 mod check;
 mod constants;
 pub(crate) mod error;

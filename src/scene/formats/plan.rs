@@ -3,6 +3,7 @@
 //! Both readers end in a [`Plan`]. Files are read in parallel, each once; results are in the order of the
 //! description, and so are errors.
 
+use super::budget::TriangleBudget;
 use super::error::{Log, Place, SceneError};
 use super::mesh::{self, Placement, RawMesh};
 use super::picture::{self, Channel, Picture};
@@ -45,9 +46,23 @@ pub(crate) struct Contents {
     pub lights: Vec<(DeltaLight, DVec3)>,
     pub environment: Option<EnvironmentPlan>,
     pub discs: Vec<DistantDisc>,
+    pub budget: TriangleBudget,
 }
 
 impl Contents {
+    /// Adds a mesh; an error if there is no memory for it.
+    pub fn add_mesh(&mut self, plan: MeshPlan) -> Result<(), SceneError> {
+        let triangles = match &plan.geometry {
+            Geometry::Ready(raw) => raw.triangles.len(),
+            Geometry::Shared(raw) => raw.triangles.len(),
+            // Counted when they are read.
+            Geometry::Obj(..) | Geometry::Ply(_) | Geometry::Serialized(..) => 0,
+        };
+        self.budget.take(triangles, &plan.place)?;
+        self.meshes.push(plan);
+        Ok(())
+    }
+
     /// Adds a material that is described at `place`.
     pub fn add_material(&mut self, material: Material, place: Place) -> MaterialId {
         self.materials.push(material);
@@ -174,7 +189,7 @@ impl Plan {
     pub fn realise(self, log: &mut Log) -> Result<(Draft, u64), SceneError> {
         let files = self.contents.tasks();
         let outcomes: Vec<Result<(u64, Vec<Done>), SceneError>> =
-            files.par_iter().map(|(path, tasks)| carry_out(path, tasks)).collect();
+            files.par_iter().map(|(path, tasks)| carry_out(path, tasks, &self.contents.budget)).collect();
 
         let mut sources: Vec<PathBuf> = self.sources.iter().map(|s| s.0.clone()).collect();
         let mut hashes: Vec<u64> = self.sources.iter().map(|s| s.1).collect();
@@ -335,7 +350,7 @@ pub(crate) fn stem_of(path: &Path) -> String {
     path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-fn carry_out(path: &Path, tasks: &[Task]) -> Result<(u64, Vec<Done>), SceneError> {
+fn carry_out(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<(u64, Vec<Done>), SceneError> {
     let from = match tasks.first() {
         Some(Task::Mesh(_, plan)) => &plan.place,
         Some(Task::Texture(_, plan, _)) => &plan.place,
@@ -344,11 +359,12 @@ fn carry_out(path: &Path, tasks: &[Task]) -> Result<(u64, Vec<Done>), SceneError
     };
     let bytes = read_file(path, from)?;
     let hash = fnv1a(&bytes);
-    let done: Vec<Result<Done, SceneError>> = tasks.par_iter().map(|task| one(task, &bytes, path)).collect();
+    let done: Vec<Result<Done, SceneError>> =
+        tasks.par_iter().map(|task| one(task, &bytes, path, budget)).collect();
     Ok((hash, done.into_iter().collect::<Result<_, _>>()?))
 }
 
-fn one(task: &Task, bytes: &[u8], path: &Path) -> Result<Done, SceneError> {
+fn one(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Result<Done, SceneError> {
     Ok(match task {
         Task::Mesh(i, plan) => {
             let raw = match &plan.geometry {
@@ -358,6 +374,7 @@ fn one(task: &Task, bytes: &[u8], path: &Path) -> Result<Done, SceneError> {
                 Geometry::Ready(raw) => raw.clone(),
                 Geometry::Shared(raw) => RawMesh::clone(raw),
             };
+            budget.take(raw.triangles.len(), &plan.place)?;
             Done::Meshes(*i, finish_mesh(plan, raw))
         }
         Task::Texture(i, plan, channel) => {

@@ -47,9 +47,6 @@ use std::sync::Arc;
 
 pub(crate) use camera::FRAMES_PER_SECOND;
 
-/// Most triangles of a model, all instances counted.
-const MAX_TRIANGLES: usize = 100_000_000;
-
 /// Ways in which a model becomes a part of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct ImportOptions {
@@ -132,7 +129,6 @@ pub(crate) fn import(
         surfaces: BTreeMap::new(),
         pictures: BTreeMap::new(),
         meshes: BTreeMap::new(),
-        triangles: 0,
     };
     for placed in tree.iter().filter(|placed| placed.selected) {
         importer.node(placed)?;
@@ -158,8 +154,6 @@ struct Importer<'a> {
     pictures: BTreeMap<usize, PictureSource>,
     /// Primitives that are read, by number of the mesh.
     meshes: BTreeMap<usize, Vec<(Arc<RawMesh>, Look)>>,
-    /// Triangles so far.
-    triangles: usize,
 }
 
 impl Importer<'_> {
@@ -183,23 +177,18 @@ impl Importer<'_> {
         }
         if let Some(mesh) = node.mesh {
             for (raw, look) in self.primitives(mesh)? {
-                self.triangles += raw.triangles.len();
-                if self.triangles > MAX_TRIANGLES {
-                    let what = format!("its instances come to more than {MAX_TRIANGLES} triangles");
-                    return Err(document.place.wrong(what, "leave some out: every instance is a copy"));
-                }
-                self.add(raw, look, &name, to_world);
+                self.add(raw, look, &name, to_world)?;
             }
         }
         Ok(())
     }
 
-    fn add(&mut self, raw: Arc<RawMesh>, look: Look, name: &str, to_world: DMat4) {
+    fn add(&mut self, raw: Arc<RawMesh>, look: Look, name: &str, to_world: DMat4) -> Result<(), SceneError> {
         let (material, emission) = match self.options.material {
             Some(material) => (material, None),
             None => (look.material, look.emission),
         };
-        self.contents.meshes.push(MeshPlan {
+        self.contents.add_mesh(MeshPlan {
             place: self.document.place.clone(),
             name: name.to_owned(),
             geometry: Geometry::Shared(raw),
@@ -212,7 +201,7 @@ impl Importer<'_> {
             },
             material: MaterialPlan::One(material),
             emission: self.options.emission.or(emission),
-        });
+        })
     }
 
     /// The primitives of a mesh, each read once.

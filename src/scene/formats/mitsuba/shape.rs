@@ -125,8 +125,7 @@ impl Converter<'_> {
         });
         let place = shape.place.clone();
         let material = MaterialPlan::One(material);
-        self.contents.meshes.push(MeshPlan { place, name, geometry, placement, material, emission });
-        Ok(())
+        self.contents.add_mesh(MeshPlan { place, name, geometry, placement, material, emission })
     }
 
     fn tessellated(&mut self, shape: &Object) {

@@ -46,7 +46,7 @@ impl Builder<'_> {
             v_down: text.shape.as_deref() == Some("sphere"),
             needs_uv: false,
         };
-        self.contents.meshes.push(MeshPlan { place, name, geometry, placement, material, emission });
+        self.contents.add_mesh(MeshPlan { place, name, geometry, placement, material, emission })?;
         Ok(())
     }
 

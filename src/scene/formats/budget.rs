@@ -1,0 +1,36 @@
+//! Memory for a scene's triangles, reckoned before it is spent: a description of few lines may place a mesh many times,
+//! and every instance is a copy.
+
+use super::error::{Place, SceneError};
+use crate::stats::available_bytes;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
+
+/// Memory of a triangle once a scene is ready to be rendered, about.
+const TRIANGLE_BYTES: u64 = 100;
+
+/// Triangles for which there is memory, shared by all who place some.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TriangleBudget(Arc<Counts>);
+
+#[derive(Debug, Default)]
+struct Counts {
+    placed: AtomicU64,
+    limit: OnceLock<u64>,
+}
+
+impl TriangleBudget {
+    /// Counts triangles that a mesh described at `place` is about to take memory for; an error if that is not there.
+    pub fn take(&self, triangles: usize, place: &Place) -> Result<(), SceneError> {
+        let Counts { placed, limit } = &*self.0;
+        let limit = *limit.get_or_init(|| available_bytes().map_or(u64::MAX, |bytes| bytes / TRIANGLE_BYTES));
+        let before = placed.fetch_add(triangles as u64, Ordering::Relaxed);
+        if before.saturating_add(triangles as u64) <= limit {
+            return Ok(());
+        }
+        let what = format!(
+            "its meshes, instances counted each, come to more than the {limit} triangles that there is memory for"
+        );
+        Err(Place::file(&place.path).wrong(what, "leave some of them out"))
+    }
+}
