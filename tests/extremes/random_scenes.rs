@@ -1,5 +1,6 @@
 //! Random scenes, and changes of them that no picture should show.
 
+use glam::{DQuat, DVec3};
 use std::fmt::Write;
 
 /// Random numbers that follow from a seed: splitmix64.
@@ -69,12 +70,21 @@ struct Point {
     lamp: usize,
 }
 
+/// Projection of a camera.
+#[derive(Clone)]
+enum Lens {
+    /// A pinhole of this field of view in degrees.
+    Pinhole(f64),
+    /// A parallel projection with its film's up and width.
+    Parallel([f64; 3], f64),
+}
+
 /// A scene: a room, open or closed, objects, and two lamps.
 #[derive(Clone)]
 pub struct Spec {
     origin: [f64; 3],
     target: [f64; 3],
-    fov: f64,
+    lens: Lens,
     /// Names and kinds.
     materials: Vec<(String, String)>,
     parts: Vec<Part>,
@@ -108,7 +118,7 @@ impl Spec {
         let mut spec = Spec {
             origin: [from * turn.cos(), dice.between(-1.0, 1.5), from * turn.sin()],
             target: dice.vector(-0.5, 0.5),
-            fov: dice.between(40.0, 80.0),
+            lens: Lens::Pinhole(dice.between(40.0, 80.0)),
             materials,
             parts: Vec::new(),
             points: Vec::new(),
@@ -161,6 +171,31 @@ impl Spec {
             .iter_mut()
             .for_each(|(_, kind)| *kind = format!("kind = \"diffuse\"\nreflectance = {grey:e}"));
         spec.parts.iter_mut().for_each(|part| part.emission = Some(([1.0 - grey; 3], 0)));
+        spec
+    }
+
+    /// The surfaces between two like squares; that of number `from` shines, the other fills the film.
+    pub fn exchange(&self, number: u64, from: usize) -> Spec {
+        let mut dice = Dice::new(number ^ 0xEEEE);
+        let mut spec = Spec { sky: 0.0, points: Vec::new(), ..self.clone() };
+        spec.parts.retain(|part| part.emission.is_none());
+        let material = spec.materials.len();
+        spec.materials.push(("patch".to_owned(), "kind = \"diffuse\"\nreflectance = 0.5".to_owned()));
+        let size = dice.between(0.3, 0.6);
+        for patch in 0..2 {
+            let (axis, angle, at) =
+                (dice.vector(-1.0, 1.0), dice.between(0.0, 360.0), dice.vector(-1.5, 1.5));
+            let turn = format!("{{ rotate = {{ axis = {}, angle = {angle:e} }} }}", list(axis));
+            let steps = vec![scale(size), turn, translate(at)];
+            let emission = (patch == from).then_some(([4.0; 3], 0));
+            spec.parts.push(Part { shape: "rectangle", material, steps, emission });
+            if patch != from {
+                let turn = DQuat::from_axis_angle(DVec3::from(axis).normalize(), angle.to_radians());
+                let before = DVec3::from(at) + turn * DVec3::Z * (1e-3 * size);
+                (spec.origin, spec.target) = (before.into(), at);
+                spec.lens = Lens::Parallel((turn * DVec3::Y).into(), 2.0 * size);
+            }
+        }
         spec
     }
 
@@ -229,12 +264,15 @@ impl Spec {
     /// The scene as TOML.
     pub fn text(&self) -> String {
         let mut text = format!(
-            "resolution = [12, 12]\n{}[camera]\norigin = {}\ntarget = {}\nfov = {:e}\n",
+            "resolution = [12, 12]\n{}[camera]\norigin = {}\ntarget = {}\n",
             if self.is_furnace { "" } else { "max_depth = 8\n" },
             list(self.origin),
             list(self.target),
-            self.fov
         );
+        text += &match self.lens {
+            Lens::Pinhole(fov) => format!("fov = {fov:e}\n"),
+            Lens::Parallel(up, width) => format!("up = {}\nfilm_width = {width:e}\n", list(up)),
+        };
         // Writing to a string cannot fail.
         if self.sky > 0.0 {
             let _ = writeln!(text, "[environment]\nradiance = {:e}", self.sky * self.powers[0]);
