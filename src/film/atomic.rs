@@ -2,9 +2,10 @@
 //!
 //! The bytes go to a temporary file in the target's folder, are flushed to the disk, and only then take the
 //! target's name; the folder is flushed last. A full disk, an error half-way or a kill at any moment leaves
-//! the target's former content. After a kill, a hidden `.NAME.*.tmp` may remain beside it.
+//! the target's former content. After a kill, a hidden `.NAME.*.tmp` may remain beside it, until the file is
+//! written again.
 
-use super::ImageError;
+use super::{ImageError, leftovers};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -90,29 +91,38 @@ pub fn write_atomically(
         temporary.as_file().set_permissions(present.permissions())?;
     }
     temporary.as_file().sync_all()?;
-    temporary.persist(&target).map_err(|failed| match failed.file.keep() {
-        Ok((_, kept)) => io::Error::new(
+    temporary.persist(&target).map_err(|failed| match keep(failed.file) {
+        Ok(kept) => io::Error::new(
             failed.error.kind(),
             format!("{}; what was to be written is in {}", failed.error, kept.display()),
         ),
         Err(_) => failed.error,
     })?;
-    sync_folder(&folder_of(&target))
+    let folder = folder_of(&target);
+    leftovers::remove(&target, &folder);
+    sync_folder(&folder)
+}
+
+/// Gives a temporary file a name for good, which is not that of a temporary file.
+fn keep(file: NamedTempFile) -> io::Result<PathBuf> {
+    let (_, temporary) = file.keep()?;
+    let kept = temporary.with_extension("kept");
+    fs::rename(&temporary, &kept).map(|()| kept)
 }
 
 fn temporary(target: &Path) -> io::Result<NamedTempFile> {
-    // Names have at most 255 bytes, those of temporary files included.
-    let name: String = target.file_name().unwrap_or_default().to_string_lossy().chars().take(40).collect();
     let mut builder = tempfile::Builder::new();
-    let prefix = format!(".{name}.");
-    builder.prefix(&prefix).suffix(".tmp");
+    let prefix = leftovers::prefix(target);
+    builder.prefix(&prefix).suffix(leftovers::SUFFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
         // Permissions of any newly created file, the umask applied; the default would be private to the user.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder_of(target))
+    let file = builder.tempfile_in(folder_of(target))?;
+    leftovers::lock(file.as_file());
+    Ok(file)
 }
 
 /// Returns the file behind symbolic links, which stay, whether or not it is there.
@@ -176,6 +186,20 @@ mod tests {
         assert_eq!(result.unwrap_err().kind(), io::ErrorKind::StorageFull);
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(names(folder.path()), ["picture.exr"]);
+    }
+
+    #[test]
+    fn leftovers_of_the_same_file_go_and_what_others_write_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        for name in [".a.exr.Xyz123.tmp", ".b.exr.Xyz123.tmp", ".a.exr.Xyz123.kept"] {
+            fs::write(path(name), "").unwrap();
+        }
+        let other = temporary(&path("a.exr")).unwrap();
+        write_atomically(&path("a.exr"), |file| file.write_all(b"new")).unwrap();
+        assert!(other.path().exists());
+        drop(other);
+        assert_eq!(names(folder.path()), [".a.exr.Xyz123.kept", ".b.exr.Xyz123.tmp", "a.exr"]);
     }
 
     #[test]
@@ -247,7 +271,7 @@ mod tests {
             file.write_all(b"new")
         });
         let message = failed.unwrap_err().to_string();
-        let kept = names(folder.path()).into_iter().find(|name| name.ends_with(".tmp")).unwrap();
+        let kept = names(folder.path()).into_iter().find(|name| name.ends_with(".kept")).unwrap();
         assert!(message.contains(&kept), "{message}");
         assert_eq!(fs::read_to_string(folder.path().join(kept)).unwrap(), "new");
     }

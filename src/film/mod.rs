@@ -16,6 +16,7 @@ pub mod false_colour;
 pub mod heatmap;
 mod layer;
 mod layers;
+mod leftovers;
 pub mod metrics;
 mod png;
 pub mod tone;

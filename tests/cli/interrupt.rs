@@ -166,6 +166,50 @@ fn a_killed_render_leaves_the_old_files_whole() {
     assert_eq!((read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))), before);
 }
 
+/// Kills at random moments: a few, or as many as LIGHTSPLAT_KILLS says; half of them in the last tenth of a run, when
+/// files are written.
+#[test]
+fn kills_at_random_moments_leave_the_old_files_or_the_new_ones_and_nothing_in_the_end() {
+    let kills: u32 = std::env::var("LIGHTSPLAT_KILLS").map_or(6, |kills| kills.parse().unwrap());
+    let sandbox = Sandbox::new();
+    let render = |seed| {
+        let more =
+            ["--reproducible", "--resolution", "256x256", "--aov", "albedo,normal,position", "--seed", seed];
+        Sandbox::path_tracing("2", &more).into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let bytes = || [read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))];
+    let run = |arguments: &[String]| {
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        sandbox.command(&arguments).stderr(Stdio::null()).spawn().unwrap()
+    };
+    let [old, new] = ["1", "2"].map(render);
+    let begun = std::time::Instant::now();
+    assert!(run(&new).wait().unwrap().success());
+    let span = begun.elapsed();
+    let after = bytes();
+    assert!(run(&old).wait().unwrap().success());
+    let before = bytes();
+    assert!(before != after);
+    let mut random = 1u64;
+    let (mut killed, mut left) = (0, 0);
+    while killed < kills {
+        random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        let share = (random >> 40) as f64 / f64::from(1 << 24);
+        let mut child = run(&new);
+        std::thread::sleep(span.mul_f64(if killed % 2 == 0 { share } else { 0.9 + 0.1 * share }));
+        child.kill().unwrap();
+        killed += u32::from(child.wait().unwrap().code().is_none());
+        for (i, bytes) in bytes().iter().enumerate() {
+            assert!(*bytes == before[i] || *bytes == after[i], "{i} after {killed} kills");
+        }
+        left += sandbox.files().len() - 3;
+        assert!(run(&old).wait().unwrap().success());
+        assert!(bytes() == before);
+        assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"], "after {killed} kills");
+    }
+    println!("{kills} kills left {left} temporary files");
+}
+
 #[test]
 fn a_second_signal_ends_the_run_at_once() {
     let sandbox = Sandbox::new();
