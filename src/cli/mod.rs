@@ -9,6 +9,7 @@ mod batch_file;
 mod batch_outputs;
 mod bench;
 mod bench_args;
+mod chart;
 mod compare;
 mod course;
 mod denoise;

@@ -55,8 +55,7 @@ pub fn walk(job: &WalkJob, opened: &Opened, span: Span, control: &Control) -> Re
     let mut frames =
         Frames { job, session, warnings: *warnings, control, factor: None, report, progress, said };
     let ended = chunks.into_iter().try_for_each(|chunk| frames.chunk(chunk));
-    frames.report.sum_up();
-    ended
+    ended.and(frames.report.sum_up())
 }
 
 /// A walk under way.

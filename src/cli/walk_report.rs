@@ -1,6 +1,7 @@
 //! Reports of a walk: statistics of its frames on stdout, a summary on stderr.
 
 use super::args::StatsFormat;
+use super::chart::chart;
 use super::exit::Failure;
 use super::talk;
 use crate::session::Frame;
@@ -33,7 +34,8 @@ pub struct Report {
     /// Of those, the frames rendered all the same, for their records.
     repeated: u64,
     new_records: u64,
-    max_bytes: u64,
+    /// By frame in order: its number, and bytes of the records kept after it.
+    bytes: Vec<(usize, u64)>,
     time: StageTime,
 }
 
@@ -59,7 +61,7 @@ impl Report {
         let is_first = self.rendered == 0;
         self.rendered += 1;
         self.new_records += count(stats, "Walk/new records");
-        self.max_bytes = self.max_bytes.max(count(stats, "Walk/bytes kept"));
+        self.bytes.push((number, count(stats, "Walk/bytes kept")));
         self.time += stats.stage(Stage::Total).unwrap_or_default();
         match self.format {
             Some(StatsFormat::Json) => {
@@ -74,7 +76,14 @@ impl Report {
     }
 
     /// Says how it went for all frames.
-    pub fn sum_up(&self) {
+    ///
+    /// # Errors
+    /// If statistics are wanted and cannot be printed.
+    pub fn sum_up(&self) -> Result<(), Failure> {
+        if let (Some(StatsFormat::Text), [first, .., last]) = (self.format, &self.bytes[..]) {
+            let kept: Vec<f64> = self.bytes.iter().map(|(_, bytes)| mib(*bytes)).collect();
+            talk::print(&chart("\nrecords kept by frame [MiB]", [first.0, last.0], &kept))?;
+        }
         talk::summary(&self.text(), || {
             json!({
                 "rendered": self.rendered,
@@ -84,6 +93,7 @@ impl Report {
                 "frame_cpu_seconds": self.time.cpu_seconds / self.rendered.max(1) as f64,
             })
         });
+        Ok(())
     }
 
     fn text(&self) -> String {
@@ -99,13 +109,17 @@ impl Report {
             let frames = *rendered as f64;
             text += &format!(", {:.2} s a frame", self.time.wall_seconds / frames);
         }
-        if self.max_bytes > 0 {
-            let (mean, mib) =
-                (self.new_records as f64 / *rendered as f64, self.max_bytes as f64 / f64::from(1 << 20));
-            text += &format!(", {mean:.0} new records each, at most {mib:.1} MiB of records kept");
+        let most = self.bytes.iter().map(|(_, bytes)| *bytes).max().unwrap_or(0);
+        if most > 0 {
+            let (mean, most) = (self.new_records as f64 / *rendered as f64, mib(most));
+            text += &format!(", {mean:.0} new records each, at most {most:.1} MiB of records kept");
         }
         text
     }
+}
+
+fn mib(bytes: u64) -> f64 {
+    bytes as f64 / f64::from(1 << 20)
 }
 
 fn count(stats: &Stats, name: &str) -> u64 {
