@@ -20,6 +20,7 @@
 //! - [`shadow`] answers whether segments are free, by packets of rays; [`sampling`] gives every stage its
 //!   numbers;
 //! - [`reprojection`] carries the light of a walk's picture to where the next frame sees it;
+//! - [`perception`] says which differences are seen in a walk's picture, and so in the next;
 //! - [`denoise`] takes the noise off a picture, by Open Image Denoise where that is there;
 //! - [`verify`] measures the error of a picture by path-tracing some of its pixels, [`plan`] chooses settings
 //!   for a time or an error, each of which [`setting`] declares once;
@@ -51,6 +52,7 @@ mod material;
 pub mod math;
 pub mod method;
 mod paths;
+mod perception;
 mod photon;
 mod plan;
 pub mod progress;

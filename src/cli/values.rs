@@ -23,6 +23,12 @@ pub fn feature() -> impl TypedValueParser<Value = Feature> {
     PossibleValuesParser::new(Feature::ALL.map(Feature::name)).try_map(|name| name.parse::<Feature>())
 }
 
+/// A scale of quantisation.
+pub fn q_scale(text: &str) -> Result<f32, String> {
+    let scale = text.parse().ok().filter(|scale| *scale == 0.0 || (0.01..=1000.0).contains(scale));
+    scale.ok_or_else(|| "expected 0 or a scale from 0.01 to 1000, like 4".to_owned())
+}
+
 /// `WxH`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Resolution(pub [u32; 2]);

@@ -76,7 +76,12 @@ impl WalkJob {
             reproducible: args.picture.reproducible,
             exposure: (!args.no_png).then_some(args.exposure),
             goal,
-            limits: KeepLimits { idle_frames: args.idle_frames, bytes, reprojects: !args.no_reprojection },
+            limits: KeepLimits {
+                idle_frames: args.idle_frames,
+                bytes,
+                reprojects: !args.no_reprojection,
+                q_scale: (args.q_scale > 0.0).then_some(args.q_scale),
+            },
             threads: threads::count(args.picture.threads),
             stats: args.stats,
             progress: args.picture.progress,

@@ -184,6 +184,11 @@ impl SeenPixels {
         Some(EvenSurface { position, normal, mesh: nearest.mesh })
     }
 
+    /// Distance of a pixel's nearest surface along the camera's axis; 10^10 where nothing is.
+    pub fn depth(&self, pixel: usize) -> f32 {
+        self.pixels.pixels[pixel].nearest.map_or(NO_DEPTH, |nearest| nearest.depth)
+    }
+
     /// Mean albedo of a pixel.
     pub fn albedo(&self, pixel: usize) -> Rgb {
         let pixel = &self.pixels.pixels[pixel];

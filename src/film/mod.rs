@@ -29,7 +29,7 @@ pub use exr_write::write_exr;
 pub use layer::{Layer, Pixels, Preview, SAMPLES};
 pub use layers::{CameraMatrices, Film, Metadata, Value};
 pub use png::{write_png, write_srgb8};
-pub use tone::Exposure;
+pub use tone::{Exposure, display, srgb_slope};
 pub use window::Window;
 
 use crate::math::Rgb;

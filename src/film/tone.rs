@@ -100,6 +100,13 @@ pub fn srgb_encode(linear: f32) -> f32 {
     }
 }
 
+/// Derivative of the sRGB encoding at a linear value, on white as just below it.
+#[inline]
+pub fn srgb_slope(linear: f32) -> f32 {
+    let x = linear.clamp(0.0, 1.0);
+    if x <= 0.0031308 { 12.92 } else { 1.055 / 2.4 * x.powf(1.0 / 2.4 - 1.0) }
+}
+
 /// Returns the exposed, clipped and encoded display colour.
 #[inline]
 pub fn display(radiance: Rgb, factor: f32) -> Rgb {
@@ -158,6 +165,15 @@ mod tests {
             assert!((srgb_encode(linear) - encoded).abs() < 1e-5, "{linear}");
         }
         assert_eq!([-1.0, f32::NAN, 7.0, f32::INFINITY].map(srgb_encode), [0.0, 0.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn slopes_are_differences_of_encoded_values() {
+        for linear in [0.001, 0.01, 0.18, 0.9] {
+            let difference = (srgb_encode(linear * 1.01) - srgb_encode(linear * 0.99)) / (0.02 * linear);
+            assert!((srgb_slope(linear) / difference - 1.0).abs() < 1e-3, "{linear}");
+        }
+        assert_eq!(srgb_slope(7.0), srgb_slope(1.0));
     }
 
     #[test]

@@ -7,6 +7,7 @@ use super::{DrawnPixels, Output, Prepared, Sampled};
 use crate::eye::Settled;
 use crate::film::{Image, Window};
 use crate::paths::Look;
+use crate::perception::Thresholds;
 use crate::progress::Control;
 use crate::radiance_cache::kept::KeptRecords;
 use crate::setting::Settings;
@@ -20,6 +21,8 @@ pub struct Before<'a> {
     pub records: &'a mut KeptRecords,
     /// Pixels whose light is known.
     pub settled: Settled,
+    /// Differences that are seen, if they are to be known.
+    pub thresholds: Option<&'a Thresholds>,
 }
 
 /// A method with its settings.

@@ -35,7 +35,8 @@ struct Contribution {
     light: Rgb,
 }
 
-/// Finds all discontinuities by more than the relative luminance `threshold`, leaf by leaf.
+/// Finds all discontinuities by more than the difference that is seen at a sample, or, where that is not known, by more
+/// than the relative luminance `threshold`; leaf by leaf.
 pub fn discontinuities(
     targets: &Targets,
     records: &Records,
@@ -58,7 +59,8 @@ pub fn discontinuities(
                     contributions,
                 );
                 let visible = |origin, record| Discontinuity { origin, record, sample: sample as u32 };
-                judge(contributions, threshold, |origin, record| found.push(visible(origin, record)));
+                let limits = (targets.visible(sample), threshold);
+                judge(contributions, limits, |origin, record| found.push(visible(origin, record)));
             }
             found
         })
@@ -92,10 +94,10 @@ fn contribute(
 }
 
 /// Calls `visible` with every record, but for the heaviest of its layer, without which the light would change by
-/// more than `threshold` of the luminance of both layers.
+/// more than `limit`, or by more than `threshold` of the luminance of both layers.
 fn judge(
     contributions: &DirectIndirect<Vec<Contribution>>,
-    threshold: f32,
+    (limit, threshold): (Option<f32>, f32),
     mut visible: impl FnMut(Origin, u32),
 ) {
     let sums = contributions.as_ref().map(|contributions| {
@@ -103,7 +105,7 @@ fn judge(
         contributions.iter().fold((Rgb::ZERO, 0.0), add)
     });
     let means = sums.map(|(sum, weights)| if weights > 0.0 { sum / weights } else { Rgb::ZERO });
-    let limit = threshold * luminance(means.direct + means.indirect);
+    let limit = limit.unwrap_or_else(|| threshold * luminance(means.direct + means.indirect));
     for origin in Origin::ALL {
         let (sum, weights) = sums[origin];
         let heaviest = contributions[origin].iter().fold(0.0, |w: f32, c| w.max(c.weight));
@@ -158,7 +160,7 @@ mod tests {
     fn judged(direct: &[Contribution], indirect: &[Contribution], threshold: f32) -> Vec<(Origin, u32)> {
         let contributions = DirectIndirect { direct: direct.to_vec(), indirect: indirect.to_vec() };
         let mut found = Vec::new();
-        judge(&contributions, threshold, |origin, record| found.push((origin, record)));
+        judge(&contributions, (None, threshold), |origin, record| found.push((origin, record)));
         found
     }
 

@@ -10,7 +10,10 @@
 //! | `weights` | sum of weights: direct, indirect, 0 |
 //! | `cut` | clusters in the cut of the record of the largest weight: direct, indirect, 0 |
 //! | `clamped` | share of that indirect record's light lost by clamping, share recovered, 0 |
+//! | `visible` | difference of irradiance that is seen, of radiance where series light; irradiance of records; 0 |
 //! | `seams.1`, `seams.2`, ... | eye samples at visible seams before each pass: direct, indirect, 0 |
+//!
+//! `visible` is there where the frame before of a walk-through tells it, the paper's figure 7; both are luminances.
 //!
 //! Where a pixel has several eye samples, the last in the order of the index represents all but in sums and
 //! counts.
@@ -20,7 +23,7 @@ use super::record::{Diagnostics, Record};
 use super::store::Records;
 use crate::eye::EyePass;
 use crate::film::{Image, Layer, Preview};
-use crate::math::{LUMINANCE, Rgb};
+use crate::math::{LUMINANCE, Rgb, luminance};
 use crate::vpl::{DirectIndirect, Origin};
 use rayon::prelude::*;
 
@@ -71,6 +74,15 @@ impl CacheFrame<'_> {
             Layer::color("cut", image(&cut)).shown(sum),
             Layer::color("clamped", of_indirect(clamped)).shown(first(0.0)),
         ];
+        let mut visible = blank(eye);
+        for i in 0..eye.len() {
+            let mean = self.splats.as_ref().map(|splat| splat.sums[i].mean().map_or(0.0, luminance));
+            let seen = self.targets.visible(i).map(|seen| Rgb::new(seen, mean.direct + mean.indirect, 0.0));
+            pixels(eye, i).for_each(|pixel| visible.pixels[pixel] = seen.unwrap_or(visible.pixels[pixel]));
+        }
+        if visible.pixels.iter().any(|seen| *seen != Rgb::ZERO) {
+            layers.push(Layer::color("visible", visible).shown(first(0.0)));
+        }
         for (pass, discontinuities) in (1..).zip(&self.discontinuities) {
             let mut image = blank(eye);
             for found in discontinuities {

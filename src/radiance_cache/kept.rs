@@ -19,6 +19,7 @@ use super::settings::CacheSettings;
 use super::source::NewRecord;
 use super::store::Records;
 use crate::hsh::Radiance;
+use crate::perception::Q_SCALE;
 use crate::stats::Stats;
 use crate::vpl::{DirectIndirect, Origin};
 use glam::Vec3;
@@ -32,7 +33,7 @@ const MIN_COS: f32 = 0.05;
 const RESTS_BELOW: f32 = 0.5;
 
 /// Bounds of what a walk keeps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeepLimits {
     /// Maximum number of frames for which a record is kept unused.
     pub idle_frames: u32,
@@ -40,12 +41,14 @@ pub struct KeepLimits {
     pub bytes: u64,
     /// True if drawn light is carried over from the picture before (see [`crate::reprojection`]).
     pub reprojects: bool,
+    /// Quantisation scale of the differences that are seen (see [`crate::perception`]); `None` for Weber's everywhere.
+    pub q_scale: Option<f32>,
 }
 
-/// By default a gibibyte, and a second or two of film.
+/// By default a gibibyte, a second or two of film, and differences that are seen.
 impl Default for KeepLimits {
     fn default() -> KeepLimits {
-        KeepLimits { idle_frames: 48, bytes: 1 << 30, reprojects: true }
+        KeepLimits { idle_frames: 48, bytes: 1 << 30, reprojects: true, q_scale: Some(Q_SCALE) }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::series::Glossy;
 use crate::eye::{EyeIndex, PointGeometry, ShadingPoints};
 use crate::math::{Rgb, luminance};
+use glam::Vec3;
 use rayon::prelude::*;
 use std::f32::consts::PI;
 use std::ops::Range;
@@ -24,6 +25,9 @@ pub struct Targets<'a> {
     pub cacheable: Vec<bool>,
     /// Luminance of the irradiance that gives each point the light which is known besides; empty if none is.
     known: Vec<f32>,
+    /// Difference of luminance that is seen at each point, where it is known: of irradiance, or on glossy surfaces that
+    /// series light of radiance. Empty if none is known.
+    visible: Vec<Option<f32>>,
 }
 
 impl<'a> Targets<'a> {
@@ -37,20 +41,42 @@ impl<'a> Targets<'a> {
             .zip(&bands)
             .map(|(surface, &bands)| bands > 0 || surface.bsdf.split_base(1.0).0 != Rgb::ZERO)
             .collect();
-        Targets { points, index, glossy, bands, cacheable, known: Vec::new() }
+        Targets { points, index, glossy, bands, cacheable, known: Vec::new(), visible: Vec::new() }
     }
 
     /// The same, where light of these luminances is reflected besides: records' errors are judged against the whole.
     pub fn with_known(mut self, luminance_of: impl Fn(usize) -> f32 + Sync) -> Targets<'a> {
         let irradiance = |point: usize| {
-            let surface = &self.points.surfaces[point];
-            let albedo =
-                luminance(surface.bsdf.albedo_at(surface.out.dot(self.points.geometry[point].normal)));
-            let irradiance = PI * luminance_of(point) / albedo;
+            let irradiance = self.irradiance(point, luminance_of(point));
             if irradiance < f32::INFINITY { irradiance } else { 0.0 }
         };
         self.known = (0..self.points.len()).into_par_iter().map(irradiance).collect();
         self
+    }
+
+    /// The same, where so great differences of the luminance of radiance are seen; `None` where that is not known.
+    pub fn with_visible(mut self, difference_at: impl Fn(Vec3) -> Option<f32> + Sync) -> Targets<'a> {
+        let visible = |point: usize| {
+            let difference = difference_at(self.points.geometry[point].position)?;
+            let is_glossy = self.glossy_point(point).is_some();
+            let limit = if is_glossy { difference } else { self.irradiance(point, difference) };
+            limit.is_finite().then_some(limit)
+        };
+        self.visible = (0..self.points.len()).into_par_iter().map(visible).collect();
+        self
+    }
+
+    /// Difference of luminance that is seen at a point, if it is known.
+    #[inline]
+    pub fn visible(&self, point: usize) -> Option<f32> {
+        self.visible.get(point).copied().flatten()
+    }
+
+    /// Luminance of the irradiance of which a point reflects radiance of this luminance.
+    fn irradiance(&self, point: usize, radiance: f32) -> f32 {
+        let surface = &self.points.surfaces[point];
+        let cos = surface.out.dot(self.points.geometry[point].normal);
+        PI * radiance / luminance(surface.bsdf.albedo_at(cos))
     }
 
     /// Least of the mean irradiances known in the parts of a range.

@@ -14,11 +14,15 @@
 //!
 //! Units: positions relative to the scene's centre.
 
+mod projection;
+
+pub use projection::Projection;
+
 use crate::eye::{EvenSurface, SeenPixels, Settled};
 use crate::film::{Image, Window};
 use crate::math::{Rgb, luminance};
 use crate::view::View;
-use glam::{DVec3, Vec2};
+use glam::Vec2;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -53,10 +57,7 @@ pub struct LastPicture {
 /// A picture, as far as the next may use it.
 #[derive(Serialize, Deserialize)]
 struct Picture {
-    /// Projection to the film: row vectors, as in [`crate::film::CameraMatrices`].
-    to_film: [f32; 16],
-    /// Film, offset and size of the window.
-    window: [[u32; 2]; 3],
+    projection: Projection,
     /// By pixel in rows.
     pixels: Vec<Option<Lit>>,
 }
@@ -81,9 +82,8 @@ impl LastPicture {
     pub fn is_sound(&self) -> bool {
         let is_lit = |lit: &Lit| lit.light.is_finite() && lit.light.min_element() >= 0.0;
         self.picture.as_ref().is_none_or(|picture| {
-            let window = picture.window();
-            let is_whole = window.is_valid() && picture.pixels.len() as u64 == window.pixel_count();
-            is_whole && picture.pixels.iter().flatten().all(is_lit)
+            picture.projection.is_sound_for(picture.pixels.len())
+                && picture.pixels.iter().flatten().all(is_lit)
         })
     }
 
@@ -111,44 +111,22 @@ impl LastPicture {
                 let surface = seen.even_surface(pixel)?;
                 Some(Lit { surface, light: *color / albedo(seen, pixel) })
             };
-            let Window { film, offset, width, height } = view.window;
-            Picture {
-                to_film: view.matrices(DVec3::ZERO, 1.0).world_to_ndc,
-                window: [film, offset, [width, height]],
-                pixels: color.pixels.par_iter().enumerate().map(lit).collect(),
-            }
+            let pixels = color.pixels.par_iter().enumerate().map(lit).collect();
+            Picture { projection: Projection::of(view), pixels }
         });
     }
 }
 
 impl Picture {
-    fn window(&self) -> Window {
-        let [film, offset, [width, height]] = self.window;
-        Window { film, offset, width, height }
-    }
-
     /// Light over albedo of a surface that `view` sees; `None` if the picture does not show it.
     fn light(&self, surface: &EvenSurface, view: &View) -> Option<Rgb> {
-        let window = self.window();
         let p = surface.position;
-        let [x, y, w] = [0, 1, 3].map(|c| {
-            let row = |r: usize| self.to_film[4 * r + c];
-            p.x * row(0) + p.y * row(1) + p.z * row(2) + row(3)
-        });
-        if w.is_nan() || w <= 0.0 {
-            return None;
-        }
-        // Pixels are values at their middles.
-        let place = Vec2::new(x, y) / w * Vec2::from(window.film.map(|n| n as f32)) - 0.5;
+        let (place, _) = self.projection.place(p)?;
         let (corner, between) = (place.floor(), place - place.floor());
         let spacing = view.spacing(p);
         let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
         for [dx, dy] in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]] {
-            let at = corner + Vec2::new(dx, dy);
-            if at.min_element() < 0.0 || at.max_element() > u32::MAX as f32 {
-                continue;
-            }
-            let pixel = window.index([at.x as u32, at.y as u32]);
+            let pixel = self.projection.pixel(corner + Vec2::new(dx, dy));
             let Some(lit) = pixel.and_then(|pixel| self.pixels[pixel]) else { continue };
             let apart = lit.surface.position - p;
             let is_same = lit.surface.mesh == surface.mesh

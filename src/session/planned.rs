@@ -10,6 +10,7 @@ use crate::eye::Settled;
 use crate::method::{Before, LightStore, Method, Output};
 use crate::plan::{self, Chooser, LATE, Ladder};
 use crate::progress::Control;
+use crate::reprojection::Reprojected;
 use crate::stats::{Stage, Stats, Stopwatch};
 use crate::verify::{self, Verified};
 use crate::view::View;
@@ -124,27 +125,39 @@ impl Planning<'_> {
     /// The finished next picture of a walk-through.
     fn next_frame(&self, method: &Method, kept: Kept) -> Output {
         let Planning { session: Session { world, lights, .. }, view, finish, control } = *self;
-        let Kept { records, last } = kept;
+        let Kept { records, last, thresholds } = kept;
         let draws = method.keeps_records() && method.leaves_noise();
-        let Some(last) = last.filter(|_| draws && finish.denoises()) else {
-            let before = Before { records, settled: Settled::default() };
+        let last = last.filter(|_| draws && finish.denoises());
+        let ends_clean = finish.denoises() || !draws;
+        let thresholds = thresholds.filter(|_| method.keeps_records() && ends_clean);
+        let seen_by_map = thresholds.as_ref().map(|(thresholds, _)| &**thresholds);
+        if last.is_none() && thresholds.is_none() {
+            let before = Before { records, settled: Settled::default(), thresholds: None };
             let mut output = method.render_next(world, lights, before, view, control);
             finish.apply(method, &mut output);
             return output;
-        };
+        }
         let watch = Stopwatch::start();
         let seen = finish.look(method);
-        let reprojected = last.reproject(view, &seen);
+        let reprojected = last.as_ref().map(|last| last.reproject(view, &seen));
         let looking = watch.elapsed();
-        let settled = reprojected.settled();
+        let settled = reprojected.as_ref().map(Reprojected::settled).unwrap_or_default();
         let number = settled.pixels.iter().filter(|is_settled| **is_settled).count();
-        let before = Before { records, settled };
+        let before = Before { records, settled, thresholds: seen_by_map };
         let mut output = method.render_next(world, lights, before, view, control);
         output.stats.add_time(Stage::EyePass, looking);
         output.stats.count("Walk/pixels settled", number as u64);
-        reprojected.mix_into(&mut output.color, &seen);
+        if let Some(reprojected) = reprojected {
+            reprojected.mix_into(&mut output.color, &seen);
+        }
         let is_denoised = finish.apply_to_seen(&seen, &mut output);
-        last.replace(view, &seen, is_denoised.then_some(&output.color));
+        if let Some(last) = last {
+            last.replace(view, &seen, is_denoised.then_some(&output.color));
+        }
+        if let Some((thresholds, q_scale)) = thresholds {
+            let is_clean = output.complete && (is_denoised || !draws);
+            thresholds.replace(q_scale, view, &seen, is_clean.then_some(&output.color));
+        }
         output
     }
 

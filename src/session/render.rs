@@ -11,6 +11,7 @@ use crate::math::Rgb;
 use crate::method::KeptRecords;
 use crate::method::Method;
 use crate::method::path::Begun;
+use crate::perception::Thresholds;
 use crate::progress::Control;
 use crate::reprojection::LastPicture;
 use crate::stats::{Counter, Stage, Stats, Stopwatch, available_bytes};
@@ -57,6 +58,8 @@ pub(crate) struct Kept<'a> {
     pub records: &'a mut KeptRecords,
     /// The picture before, if drawn light is to be carried over from it.
     pub last: Option<&'a mut LastPicture>,
+    /// Differences that are seen in the picture before, and the quantisation scale, if they are to be used.
+    pub thresholds: Option<(&'a mut Thresholds, f32)>,
 }
 
 impl Session {

@@ -13,10 +13,8 @@
 //! Walks are cut into chunks, which begin without records, and a chunk's records are saved beside its frames, so that a
 //! walk that was stopped goes on with the same. `docs/walk.md` has figures of time, error, flicker and memory.
 //!
-//! Deviations: footprints are adapted at differences of 2 % (Weber) in every frame, not at thresholds from 8x8 DCT
-//! blocks of the frame before. Those can do little here, where least radii and geometry bound most footprints: over
-//! frames 1 to 8 of the apartment, two and a half times the threshold saves 4 % of the new records, five times the
-//! threshold 6 %, and a threshold that nothing reaches 15 %, all of it in the first three frames (19 % in the paper).
+//! Footprints are adapted at differences that are seen beside the contrasts of the frame before (see
+//! [`crate::perception`]), which in the apartment spares a tenth of the new records, in the paper a fifth.
 //!
 //! [`frames`] lists frames, [`names`] names their files, [`exposure`] finds one exposure for all of a path.
 
@@ -27,12 +25,14 @@ pub mod names;
 pub(crate) mod saved;
 
 use crate::method::KeptRecords;
+use crate::perception::Thresholds;
 use crate::progress::Control;
 use crate::reprojection::LastPicture;
 use crate::session::{Former, Frame, FrameError, Goal, Kept, Session};
 use crate::view::View;
 
 pub use crate::method::KeepLimits;
+pub use crate::perception::Q_SCALE;
 pub use frames::FrameList;
 pub use names::FileNames;
 
@@ -43,6 +43,7 @@ pub struct Walk<'a> {
     limits: KeepLimits,
     records: KeptRecords,
     last: LastPicture,
+    thresholds: Thresholds,
 }
 
 /// Bytes of the length of a saved picture, before it and the records.
@@ -52,7 +53,7 @@ impl<'a> Walk<'a> {
     /// A walk that begins without records. Its frames are rendered for `goal`; where that plans settings, alone.
     pub fn new(session: &'a Session, goal: Goal, limits: KeepLimits) -> Walk<'a> {
         let (records, last) = (KeptRecords::new(limits), LastPicture::default());
-        Walk { session, goal, limits, records, last }
+        Walk { session, goal, limits, records, last, thresholds: Thresholds::default() }
     }
 
     /// A walk that goes on from bytes that [`Walk::save`] returned; `None` if it did not.
@@ -60,24 +61,26 @@ impl<'a> Walk<'a> {
         let (length, rest) = saved.split_at_checked(LENGTH)?;
         let length = u64::from_le_bytes(length.try_into().ok()?);
         let (last, records) = rest.split_at_checked(length.try_into().ok()?)?;
-        let (last, excess): (LastPicture, _) = postcard::take_from_bytes(last).ok()?;
-        let is_sound = excess.is_empty() && last.is_sound();
+        let ((last, thresholds), excess): ((LastPicture, Thresholds), _) =
+            postcard::take_from_bytes(last).ok()?;
+        let is_sound = excess.is_empty() && last.is_sound() && thresholds.is_sound();
         let records = KeptRecords::restored(limits, records)?;
-        is_sound.then_some(Walk { session, goal, limits, records, last })
+        is_sound.then_some(Walk { session, goal, limits, records, last, thresholds })
     }
 
     /// The records and the last picture as they are between frames: a walk that goes on from them renders the same
     /// frames, bit for bit.
     pub fn save(&self) -> Vec<u8> {
         // Plain numbers, which cannot fail to be written; without bytes there would be none to restore.
-        let last = postcard::to_stdvec(&self.last).unwrap_or_default();
+        let last = postcard::to_stdvec(&(&self.last, &self.thresholds)).unwrap_or_default();
         [&(last.len() as u64).to_le_bytes()[..], &last, &self.records.save()].concat()
     }
 
     /// Renders the next frame, seen by `view`. One that was cancelled halfway is partial, not an error.
     pub fn frame(&mut self, view: &View, control: &Control) -> Result<Frame, FrameError> {
         let last = self.limits.reprojects.then_some(&mut self.last);
-        let kept = Kept { records: &mut self.records, last };
+        let thresholds = self.limits.q_scale.map(|q_scale| (&mut self.thresholds, q_scale));
+        let kept = Kept { records: &mut self.records, last, thresholds };
         self.session.frame_by(view, &self.goal, Former::Frames(kept), control)
     }
 }

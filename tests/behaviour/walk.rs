@@ -115,7 +115,9 @@ fn frames_of_a_walk_do_not_depend_on_threads() {
 fn a_view_seen_twice_has_no_new_records_and_the_same_light() {
     let (scene, views) = room();
     let (session, _) = session(scene);
-    let mut walk = Walk::new(&session, goal(), KeepLimits::default());
+    // The first frame has no thresholds but Weber's.
+    let limits = KeepLimits { q_scale: None, ..KeepLimits::default() };
+    let mut walk = Walk::new(&session, goal(), limits);
     let mut frame = || walk.frame(&views[2], &Control::new()).unwrap();
     let first = frame();
     // The second may adapt footprints that the first has left.
@@ -173,26 +175,52 @@ fn drawn_light_is_carried_from_frame_to_frame() {
 #[test]
 fn a_walk_restored_goes_on_with_the_same_bits_on_any_number_of_threads() {
     let (scene, views) = room();
-    let by_threads = |threads: usize, save: bool| {
+    let by_threads = |threads: usize, save: bool, q_scale: Option<f32>| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let (session, _) = session(scene.clone());
-            let mut walk = Walk::new(&session, drawn(), KeepLimits::default());
+            let limits = KeepLimits { q_scale, ..KeepLimits::default() };
+            let mut walk = Walk::new(&session, drawn(), limits);
             for view in &views[..2] {
                 walk.frame(view, &Control::new()).unwrap();
             }
             if save {
                 let saved = walk.save();
-                walk = Walk::restored(&session, drawn(), KeepLimits::default(), &saved).unwrap();
+                walk = Walk::restored(&session, drawn(), limits, &saved).unwrap();
                 for length in [0, 7, 8, saved.len() / 2, saved.len() - 1] {
                     let part = &saved[..length];
-                    assert!(Walk::restored(&session, drawn(), KeepLimits::default(), part).is_none());
+                    assert!(Walk::restored(&session, drawn(), limits, part).is_none());
                 }
             }
             walk.frame(&views[2], &Control::new()).unwrap().film.color
         })
     };
-    let whole = by_threads(1, false);
-    assert!(by_threads(2, true) == whole);
-    assert!(by_threads(3, false) == whole);
+    for q_scale in [None, Some(4.0)] {
+        let whole = by_threads(1, false, q_scale);
+        assert!(by_threads(2, true, q_scale) == whole);
+        assert!(by_threads(3, false, q_scale) == whole);
+    }
+}
+
+#[test]
+fn contrasts_of_the_frame_before_spare_records() {
+    let (scene, views) = room();
+    let (session, _) = session(scene);
+    let made = |q_scale| {
+        let limits = KeepLimits { q_scale, ..KeepLimits::default() };
+        let mut walk = Walk::new(&session, goal_of_walk(), limits);
+        let frames = views.iter().map(|view| walk.frame(view, &Control::new()).unwrap());
+        let frames: Vec<[u64; 2]> = frames
+            .map(|frame| ["Walk/new records", "Cache/samples at seams"].map(|name| count(&frame, name)))
+            .collect();
+        frames
+    };
+    let [weber, fine, coarse] = [None, Some(0.01), Some(1000.0)].map(made);
+    assert_eq!(weber[0], coarse[0]);
+    let later = |made: &[[u64; 2]], i: usize| made[1..].iter().map(|frame| frame[i]).sum::<u64>();
+    assert!(
+        later(&coarse, 1) < later(&weber, 1) && later(&weber, 1) < later(&fine, 1),
+        "{weber:?} {fine:?} {coarse:?}"
+    );
+    assert!(later(&coarse, 0) < later(&fine, 0), "{weber:?} {fine:?} {coarse:?}");
 }

@@ -64,14 +64,17 @@ impl Settings {
         view: &View,
         control: &Control,
     ) -> Output {
-        let (mut kept, settled) = before.map(|before| (before.records, before.settled)).unzip();
+        let (mut kept, settled, thresholds) = match before {
+            Some(Before { records, settled, thresholds }) => (Some(records), settled, thresholds),
+            None => (None, Settled::default(), None),
+        };
         let cache = match kept {
             Some(_) => self.cache.of_walk(),
             None => self.cache,
         };
         let wanted = (self.light, self.family);
         let glossy = Glossy::new(world, &cache);
-        let drawn = drawn_light(glossy.as_ref(), &cache, settled.unwrap_or_default());
+        let drawn = drawn_light(glossy.as_ref(), &cache, settled);
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = lights.context(world, self.compensation);
@@ -86,6 +89,9 @@ impl Settings {
         let mut targets = Targets::new(&samples.points, &samples.index, glossy);
         if cache.draws_direct_light() {
             targets = targets.with_known(|point| samples.known_luminance(point));
+        }
+        if let Some(thresholds) = thresholds {
+            targets = targets.with_visible(|position| thresholds.at(position));
         }
         let frame = CacheFrame::fill(targets, records, &source, control, &mut stats);
         counts::cuts(&mut stats, "Records", &frame.cuts);
