@@ -4,6 +4,11 @@
 //! Where an extreme leaves the picture as it is but for a factor, errors are against the reference of the ordinary
 //! scene and told by their ratio to its error; elsewhere each scene has a reference of its own, by paths.
 //!
+//! There are no curves in double precision, for rounding explains none of these: along scale, offset and power errors
+//! stay within 1.1 times that of the middle. Along the others they grow by the noise of few samples a pixel, such as
+//! that of the lamp's reflection in a smooth metal ball, which covers four pixels: by 16 samples in place of one the
+//! mean is right within 0.3 %.
+//!
 //! Units: errors are relative root mean squares, without the worst pixel of a thousand and the reference's noise.
 
 mod curves;
