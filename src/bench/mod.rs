@@ -11,6 +11,7 @@ mod choice;
 mod document;
 pub mod export;
 mod extremes;
+mod growth;
 mod hsh;
 mod measure;
 mod race;
@@ -69,12 +70,13 @@ pub enum Kind {
 }
 
 /// All benchmarks.
-pub const REGISTRY: [Benchmark; 10] = [
+pub const REGISTRY: [Benchmark; 11] = [
     table1::BENCHMARK,
     trade::BENCHMARK,
     race::BENCHMARK,
     extremes::BENCHMARK,
     choice::BENCHMARK,
+    growth::BENCHMARK,
     shadow::BENCHMARK,
     bounds::BENCHMARK,
     trees::BENCHMARK,

@@ -1,6 +1,9 @@
 //! Benchmarks run on any scene and write the files asked for; no test depends on their figures.
 
 use super::Sandbox;
+use std::fs;
+
+const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
 
 #[test]
 fn every_benchmark_runs_and_exports() {
@@ -52,6 +55,27 @@ fn scenes_are_asked_for_where_they_are_needed_and_nowhere_else() {
     sandbox.run(&["bench", "bsdf", "--repeats", "0"]).expect(2);
     sandbox.run(&["bench", "bsdf", "--export-csv", "missing/a.csv"]).expect(4);
     assert!(sandbox.run(&["bench", "--help"]).expect(0).stdout.contains("shadow SCENE"));
+}
+
+#[test]
+fn the_study_of_growth_tells_time_by_pixels_and_error_by_lamps() {
+    let sandbox = Sandbox::new();
+    let common = ["bench", "growth", "cornell", "--scenes", SCENES, "-o", "out", "--resolution", "16x16"];
+    let found = sandbox.run(&[&common[..], &["--knob", "width"]].concat()).expect(2);
+    assert!(found.stderr.contains("pixels, lamps, triangles"), "{}", found.stderr);
+    let knobs = ["--knob", "pixels", "--knob", "lamps", "--reference-spp", "1024"];
+    sandbox.run(&[&common[..], &knobs].concat()).expect(0);
+    let read = |file: &str| fs::read_to_string(sandbox.path(file)).unwrap();
+    assert!(read("out/growth.md").contains("## Lamps") && read("out/growth.html").contains("<svg"));
+    let json: serde_json::Value = serde_json::from_str(&read("out/growth.json")).unwrap();
+    let values = |series: usize, key: &str| -> Vec<f64> {
+        let points = json["series"][series]["points"].as_array().unwrap();
+        points.iter().map(|point| point[key].as_f64().unwrap()).collect()
+    };
+    assert_eq!(values(0, "value"), [16.0, 64.0, 256.0, 1024.0, 4096.0]);
+    assert_eq!(values(1, "value"), [1.0, 10.0, 100.0, 1000.0]);
+    assert!(values(1, "error").iter().all(|error| *error > 0.0 && *error < 1.0));
+    assert!(values(0, "whole").iter().zip(values(0, "eye_pass")).all(|(whole, part)| *whole > part));
 }
 
 #[test]

@@ -76,7 +76,7 @@ impl Study<'_> {
         let method = &candidate.method;
         let key = json!({
             "scene": format!("{:016x}", subject.hash),
-            "film": self.plan.resolution,
+            "film": subject.view.window.film,
             "program": program(),
             "threads": self.plan.threads,
             "build": built.map(|quality| format!("{quality:?}")),
