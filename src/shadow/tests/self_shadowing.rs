@@ -2,8 +2,9 @@
 //! segment inside is a leak. Both at every scale, and far from the origin.
 
 use crate::embree::{Accel, Device, Hit, Ray, Rays16, TriangleMesh};
+use crate::sampling::{owen_sobol_2d, uniform_sphere};
 use crate::shadow;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 
 /// A convex solid and its position.
@@ -92,6 +93,24 @@ impl Solid {
         directions.iter().filter_map(seen).collect()
     }
 
+    /// True if `q` lies behind all faces but those of this normal, by more than rounding: closer to an edge, rays may
+    /// pass beside it or start beyond it.
+    fn holds(&self, q: DVec3, normal: Vec3) -> bool {
+        let rounding = 5e-7 * q.abs().max_element();
+        self.triangles.iter().all(|triangle| {
+            let [a, b, c] = triangle.map(|i| self.positions[i as usize].as_dvec3());
+            let other = (b - a).cross(c - a).normalize();
+            other.dot(normal.as_dvec3()) > 0.999 || (q - a).dot(other) < -rounding
+        })
+    }
+
+    /// Point in which a ray crosses the plane of the face at `p`.
+    fn crossing(p: &Point, ray: &Ray) -> DVec3 {
+        let [at, normal, origin, direction] =
+            [p.position, p.normal, ray.origin, ray.direction].map(Vec3::as_dvec3);
+        origin - direction * ((origin - at).dot(normal) / direction.dot(normal))
+    }
+
     /// Occlusion of segments by single rays and by packets, which must agree.
     fn occluded(&self, rays: &[Ray]) -> Vec<bool> {
         let single: Vec<bool> = rays.iter().map(|ray| self.accel.occluded(ray)).collect();
@@ -123,7 +142,7 @@ fn check(solid: &Solid, directions: &[Vec3]) -> Result<(), TestCaseError> {
         // Rays within a thousandth of the horizon go either way.
         if height > 1e-3 * solid.size {
             free.push(ray);
-        } else if height < -1e-3 * solid.size {
+        } else if height < -1e-3 * solid.size && solid.holds(Solid::crossing(p, &ray), p.normal) {
             blocked.push(ray);
         }
     }
@@ -140,7 +159,12 @@ fn check(solid: &Solid, directions: &[Vec3]) -> Result<(), TestCaseError> {
             let d = b.position - a.position;
             a.normal.dot(d) < -1e-3 * solid.size && b.normal.dot(d) > 1e-3 * solid.size
         })
-        .map(|(a, b)| shadow::segment(a.position, a.normal, b.position, b.normal))
+        .map(|(a, b)| (a, b, shadow::segment(a.position, a.normal, b.position, b.normal)))
+        .filter(|(a, b, ray)| {
+            let ends = [ray.origin, ray.origin + ray.direction].map(Vec3::as_dvec3);
+            solid.holds(ends[0], a.normal) && solid.holds(ends[1], b.normal)
+        })
+        .map(|(_, _, ray)| ray)
         .collect();
     prop_assert!(inner.len() > 20);
     prop_assert_eq!(count(&solid.occluded(&inner)), 0, "self-shadowing of {} rays inside", inner.len());
@@ -154,6 +178,12 @@ fn direction() -> impl Strategy<Value = Vec3> {
     })
 }
 
+/// Directions all around, which follow from one number: were each of them free, failures would be reduced to those of
+/// too few points.
+fn directions(seed: u32) -> Vec<Vec3> {
+    (0..400).map(|i| uniform_sphere(owen_sobol_2d(i, seed))).collect()
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
@@ -163,11 +193,11 @@ proptest! {
         // The scene's centre is the origin, so that parts of it are at multiples of their own size.
         distance in prop_oneof![Just(0.0f32), 1.0f32..1000.0],
         towards in direction(),
-        directions in prop::collection::vec(direction(), 400),
+        seed in any::<u32>(),
     ) {
         let size = 10f32.powf(exponent);
         let centre = distance * size * towards;
-        check(&Solid::sphere(size, centre), &directions)?;
+        check(&Solid::sphere(size, centre), &directions(seed))?;
     }
 
     #[test]
@@ -175,10 +205,10 @@ proptest! {
         exponent in -6.0f32..6.0,
         distance in prop_oneof![Just(0.0f32), 1.0f32..100.0],
         towards in direction(),
-        directions in prop::collection::vec(direction(), 400),
+        seed in any::<u32>(),
     ) {
         let size = 10f32.powf(exponent);
         let solid = Solid::slab(size, distance * size * towards);
-        check(&solid, &directions)?;
+        check(&solid, &directions(seed))?;
     }
 }
