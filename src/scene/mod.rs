@@ -6,6 +6,7 @@
 
 mod camera;
 mod coincident;
+mod divide;
 mod draft;
 pub mod formats;
 mod framing;

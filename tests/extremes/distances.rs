@@ -52,12 +52,17 @@ fn floor(reach: f64) -> String {
 #[test]
 fn a_ball_on_a_floor_looks_the_same_however_far_the_floor_reaches() {
     let small = toml(&floor(100.0));
-    let large = [1e4, 1e5, 1e6].map(|reach| (reach, toml(&floor(reach))));
+    let large = [1e4, 1e6, 1e8].map(|reach| (reach, toml(&floor(reach))));
     for (name, method) in all() {
         let expected = mean(&picture(&small, &method));
+        // Paths take the same ways; virtual lights are others.
+        let tolerance = if name == "path" { 0.002 } else { 0.08 };
         for (reach, world) in &large {
             let found = mean(&picture(world, &method));
-            assert!((found / expected - 1.0).abs() < 0.08, "{name} to {reach}: {found}, to 100 {expected}");
+            assert!(
+                (found / expected - 1.0).abs() < tolerance,
+                "{name} to {reach}: {found}, to 100 {expected}"
+            );
         }
     }
 }

@@ -18,7 +18,7 @@ mod picture;
 mod plan;
 mod sky;
 
-use super::{Cameras, Scene, recentre, sanitize};
+use super::{Cameras, Scene, divide, recentre, sanitize};
 use error::Log;
 use std::path::Path;
 
@@ -101,6 +101,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let (mut draft, hash) = plan.realise(&mut log)?;
     let hash = options.hash(hash);
     let (repairs, coordinates) = sanitize::sanitize(&mut draft, &mut log)?;
+    divide::divide(&mut draft, &coordinates);
     let (scene, cameras) = recentre::recentre(draft, &coordinates);
     if scene.is_dark() {
         let fallback = "the picture will be black; add an emitter, a light or an environment";
