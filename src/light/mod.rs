@@ -16,7 +16,7 @@ mod select;
 mod tests;
 mod tree;
 
-pub use area::{AreaLight, emitted};
+pub use area::{AreaLight, AreaPoint, emitted};
 pub use distribution::DiscreteDistribution;
 pub use environment::{EnvironmentLight, EnvironmentSample, LearnedSky, Looks};
 pub use learned::Learned;
@@ -98,6 +98,11 @@ impl Emitters {
     #[inline]
     pub fn is_light(&self, mesh: u32) -> bool {
         self.light_of_mesh[mesh as usize] != NO_LIGHT
+    }
+
+    /// Returns area lights, each with the centre and squared radius of a sphere around it.
+    pub fn areas_and_spheres(&self) -> impl Iterator<Item = (&AreaLight, (Vec3, f32))> {
+        self.areas.iter().zip(self.spheres.iter().copied())
     }
 
     /// True if a ray can meet an emitter by chance.

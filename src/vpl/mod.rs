@@ -15,6 +15,7 @@ mod octahedral;
 mod pass;
 mod photons;
 mod settings;
+mod target;
 #[cfg(test)]
 mod tests;
 

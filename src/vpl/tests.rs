@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::progress::Control;
-use crate::scene::{Camera, DeltaLight};
+use crate::scene::{Camera, DeltaLight, Emission};
 use crate::test_scenes::*;
 use std::f32::consts::PI;
 
@@ -58,6 +58,39 @@ fn lights_far_off_send_their_photons_to_the_surfaces() {
             let error = (flux / expected - Rgb::ONE).abs().max_element();
             assert!(error < 0.03, "{flux} {expected}, {light:?}");
         }
+    }
+}
+
+#[test]
+fn lamps_that_are_surfaces_far_off_send_half_of_their_photons_to_the_others() {
+    for (distance, two_sided) in [(4.0, false), (30.0, true), (1e3, false), (1e5, true), (1e6, false)] {
+        let mut scene = scene(Camera::default(), [8, 8]);
+        let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+        let black = add_material(&mut scene, diffuse(Rgb::ZERO));
+        scene.meshes.push(quad(Vec3::new(-1.0, 0.0, 1.0), Vec3::X * 2.0, Vec3::Z * -2.0, grey));
+        // A weak one close by, which is not to be left out.
+        let half = 0.1 * distance;
+        for (height, half, radiance) in
+            [(distance, half, Rgb::new(1.0, 0.5, 0.25)), (0.1, 0.05, Rgb::splat(0.1))]
+        {
+            let corner = Vec3::new(-half, height, -half);
+            let mut lamp = quad(corner, Vec3::X * (2.0 * half), Vec3::Z * (2.0 * half), black);
+            lamp.emission = Some(Emission { radiance, texture: None, two_sided });
+            scene.meshes.push(lamp);
+        }
+        let settings = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
+        let lights = light_pass(&world(scene), &settings, u32::MAX, &Control::new());
+        let indirect = lights.sets.iter().filter(|s| s.origin == Origin::Indirect);
+        let intensities: Vec<Rgb> = indirect.flat_map(|s| &s.intensities).copied().collect();
+        assert!(intensities.len() > 15_000, "{} at {distance}", intensities.len());
+        assert!(lights.photons.paths < 100_000, "{} paths at {distance}", lights.photons.paths);
+        let flux = intensities.iter().copied().sum::<Rgb>() * PI;
+        // The far lamp's angle is .04, over the floor of 4, but for that the corners are farther.
+        let far = Rgb::new(1.0, 0.5, 0.25) * 0.16;
+        let expected = (far + Rgb::splat(0.1 * PI * 0.01)) * 0.5;
+        let error = (flux / expected - Rgb::ONE).abs().max_element();
+        let bound = 0.03 + 1.0 / (distance * distance);
+        assert!(error < bound, "{flux} {expected} at {distance}");
     }
 }
 
