@@ -19,6 +19,7 @@
 #![allow(unsafe_code)]
 
 mod accel;
+mod crossed;
 mod device;
 mod error;
 mod occluder;

@@ -58,15 +58,16 @@ pub struct Occluders16 {
 
 /// Context of a query, which the filters find behind `RTCFilterFunctionNArguments::context`.
 #[repr(C)]
-struct Query<Found> {
-    context: sys::RTCRayQueryContext,
-    found: Found,
+pub(super) struct Query<Found> {
+    pub context: sys::RTCRayQueryContext,
+    /// Record of the filters.
+    pub found: Found,
 }
 
 impl<Found> Query<Found> {
     /// Returns the query's arguments, with `filter` to be called for every candidate. They point into `self`.
     #[inline]
-    fn arguments(
+    pub fn arguments(
         &mut self,
         coherent: bool,
         filter: unsafe extern "C" fn(*const sys::RTCFilterFunctionNArguments),
@@ -81,15 +82,17 @@ impl<Found> Query<Found> {
     }
 }
 
-const CONTEXT: sys::RTCRayQueryContext = sys::RTCRayQueryContext {
+pub(super) const CONTEXT: sys::RTCRayQueryContext = sys::RTCRayQueryContext {
     instID: [sys::RTC_INVALID_GEOMETRY_ID],
     instPrimID: [sys::RTC_INVALID_GEOMETRY_ID],
 };
 
 /// Word offsets, times the packet's size, of the fields that the filters read from `RTCRayN` and `RTCHitN`.
-mod word {
+pub(super) mod word {
     pub const RAY_T_FAR: usize = 8;
     pub const RAY_ID: usize = 10;
+    pub const HIT_U: usize = 3;
+    pub const HIT_V: usize = 4;
     pub const HIT_PRIMITIVE: usize = 5;
     pub const HIT_GEOMETRY: usize = 6;
 }

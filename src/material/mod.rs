@@ -23,6 +23,7 @@ mod packet;
 mod principled;
 mod roughness;
 mod sample;
+mod straight;
 mod table;
 
 pub use alike16::{AlikeBsdfs16, DirectionBounds16};
@@ -31,6 +32,7 @@ pub use bsdf::{Bsdf, LobeSet};
 pub use lobe::DullLobe;
 pub use model::Materials;
 pub use packet::{BsdfSamples16, Bsdfs16};
+pub use straight::LastStraight;
 
 #[cfg(test)]
 pub(crate) mod tests;

@@ -5,6 +5,7 @@ use super::bsdf::{Bsdf, Colours};
 use super::layers::{Layers, Source, Tables};
 use super::lobe::{DIFFUSE_ALPHA, LobeModel, MAX_LOBES, max_reflectance_table};
 use super::roughness::{Level, Levels};
+use super::straight::Straight;
 use crate::math::{Rgb, luminance};
 use crate::scene::{Fresnel, Material, MaterialId, Scene, Share, Texture, TextureId};
 use glam::Vec2;
@@ -50,6 +51,8 @@ pub(super) struct Model {
     opacity: Option<(Share, usize)>,
     /// The colours, if nothing is textured.
     constant: Option<Colours<Rgb>>,
+    /// Light that passes straight, likewise.
+    straight: Option<Straight>,
 }
 
 impl Materials {
@@ -67,7 +70,7 @@ impl Materials {
                 models.push(Model::new(material, id, textures, level, &mut tables));
             }
             let model = &mut models[id.0 as usize];
-            (model.levels, model.constant) = (Some(levels), None);
+            (model.levels, model.constant, model.straight) = (Some(levels), None, None);
         }
         let mut coats = vec![CoatInterface::None];
         let mut lobe_lists: Vec<Vec<LobeModel>> = Vec::new();
@@ -113,6 +116,12 @@ impl Materials {
         }
         let colours = model.constant.unwrap_or_else(|| model.colours(texel));
         Bsdf { model, base: colours.base, scales: colours.scales }
+    }
+
+    /// Lobes that light passes straight, if there are any and nothing of the material is textured.
+    #[inline]
+    pub(super) fn straight(&self, id: MaterialId) -> Option<&Straight> {
+        self.models[id.0 as usize].straight.as_ref()
     }
 
     /// Returns all materials in order, each with every texture replaced by its mean.
@@ -182,9 +191,12 @@ impl Model {
             source,
             opacity,
             constant: None,
+            straight: None,
         };
         if !is_textured {
-            model.constant = Some(model.colours(|_| Rgb::ONE));
+            let colours = model.colours(|_| Rgb::ONE);
+            model.straight = Straight::new(&model.lobes, &colours.scales);
+            model.constant = Some(colours);
         }
         model
     }

@@ -101,8 +101,11 @@ impl Bsdf<'_> {
         Some(last)
     }
 
-    /// Share of the light from `wo` that passes straight through the surface.
-    pub fn straight_transmittance(&self, wo: Vec3) -> Rgb {
+    /// Share of the light at the cosine `cos` to the shading normal, of either sign, that passes straight through the
+    /// surface.
+    #[inline]
+    pub fn straight_transmittance(&self, cos: f32) -> Rgb {
+        let wo = Vec3::new(0.0, 0.0, cos);
         let passing = self.model.lobes.iter().zip(self.scales).filter(|(lobe, _)| lobe.passes_straight());
         passing.filter_map(|(lobe, scale)| lobe.delta(scale, wo)).map(|sample| sample.weight).sum()
     }

@@ -6,7 +6,7 @@ use crate::embree::{Accel, BuildQuality, Device, Hit, TriangleId, TriangleMesh};
 use crate::light::{Emitters, emitted};
 use crate::material::{Bsdf, Materials};
 use crate::math::{Frame, Rgb};
-use crate::scene::Scene;
+use crate::scene::{Mesh, Scene};
 use glam::{Vec2, Vec3};
 
 mod hidden;
@@ -23,7 +23,7 @@ use relief::Reliefs;
 pub use sheets::beyond;
 use specular::Specular;
 pub use towards::Faces;
-use triangle::Triangles;
+use triangle::{Triangle, Triangles};
 
 /// A scene with all tables that methods need.
 pub struct World {
@@ -56,6 +56,15 @@ pub fn triangle_meshes<'a>(scene: &'a Scene, materials: &Materials) -> Vec<Trian
         occludes: !straight[mesh.material.0 as usize],
     });
     meshes.collect()
+}
+
+/// Unit interpolated normal at barycentric weights `b` of a triangle; its own where the mesh has none.
+#[inline]
+fn shading_normal(mesh: &Mesh, triangle: &Triangle, b: Vec2) -> Vec3 {
+    match mesh.normal(&triangle.vertices, b) {
+        Some(interpolated) => interpolated.try_normalize().unwrap_or(triangle.normal),
+        None => triangle.normal,
+    }
 }
 
 /// A surface point that gathers light.
@@ -125,11 +134,8 @@ impl World {
     pub fn surface(&self, hit: &Hit) -> Surface {
         let triangle = self.triangles.get(hit.geometry, hit.primitive);
         let barycentric = Vec2::new(hit.u, hit.v);
-        let shading = match self.scene.meshes[hit.geometry as usize].normal(&triangle.vertices, barycentric) {
-            Some(interpolated) => interpolated.try_normalize().unwrap_or(triangle.normal),
-            None => triangle.normal,
-        };
-        let mut frame = Frame::from_normal(shading);
+        let mesh = &self.scene.meshes[hit.geometry as usize];
+        let mut frame = Frame::from_normal(shading_normal(mesh, triangle, barycentric));
         self.relieve(&mut frame, (hit.geometry, hit.primitive), triangle, barycentric);
         Surface {
             position: triangle.position(barycentric),
@@ -173,7 +179,7 @@ impl World {
 mod tests {
     use super::*;
     use crate::embree::Hits16;
-    use crate::scene::{MaterialId, Mesh};
+    use crate::scene::MaterialId;
     use crate::test_scenes::diffuse;
 
     /// A triangle in the plane z = 2 whose front is below, and a tiny one.

@@ -2,30 +2,45 @@
 //! pass with it.
 //!
 //! Queries for occlusion leave sheets out; the light of segments found free takes the colour of the sheets that they
-//! cross, each of them once, in order.
+//! cross, each of them once, all found in one traversal.
 
-use super::{World, triangle_meshes};
-use crate::embree::{Accel, EmbreeError, Ray, Rays16};
-use crate::material::Materials;
+use super::{World, shading_normal, triangle_meshes};
+use crate::embree::{Accel, EmbreeError, Hit, Ray, Rays16};
+use crate::material::{LastStraight, Materials};
 use crate::math::{Rgb, lanes_in};
 use crate::scene::Scene;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// Maximum number of sheets that a segment crosses; it is blocked by more.
-const MAX_CROSSED: u32 = 64;
+const MAX_CROSSED: usize = 64;
 
 /// Distance by which a ray goes on behind a sheet, in units of the last place of the largest coordinate: that by which
 /// rays start off their surfaces.
 const ULPS: f32 = 8.0;
+
+/// Cosine below which that distance grows no more.
+const MIN_COS: f32 = 0.01;
 
 /// The rest of a ray behind the surface point `position` on it, of parameter `t` and geometric normal `normal`.
 #[inline]
 pub fn beyond(ray: &Ray, position: Vec3, normal: Vec3, t: f32) -> Ray {
     let length = ray.direction.length();
     let largest = position.abs().max(ray.origin.abs()).max_element().max(t * length);
-    // A ray that grazes a sheet goes on at a hundred times that distance at most.
-    let cos = normal.dot(ray.direction).abs().max(0.01 * length);
+    let cos = normal.dot(ray.direction).abs().max(MIN_COS * length);
     Ray { t_near: t + largest * (ULPS * f32::EPSILON) / cos, ..*ray }
+}
+
+/// A sheet on a segment, and the share of the light that passes it.
+#[derive(Clone, Copy)]
+struct Crossing {
+    hit: Hit,
+    share: Rgb,
+}
+
+/// The sheets on a segment.
+struct Crossed {
+    crossings: [Crossing; MAX_CROSSED],
+    count: usize,
 }
 
 /// The sheets of a scene beside the structure `whole` over all its meshes; `None` if there are none.
@@ -43,6 +58,43 @@ pub(super) fn sheets(
     Accel::build(whole.device(), &meshes).map(Some)
 }
 
+impl Crossed {
+    fn new() -> Crossed {
+        let hit = Hit { t: 0.0, u: 0.0, v: 0.0, geometry: 0, primitive: 0 };
+        Crossed { crossings: [Crossing { hit, share: Rgb::ONE }; MAX_CROSSED], count: 0 }
+    }
+
+    /// Adds one; false if no light passes, or there are too many.
+    #[inline]
+    fn add(&mut self, crossing: Crossing) -> bool {
+        let Some(next) = self.crossings.get_mut(self.count).filter(|_| crossing.share != Rgb::ZERO) else {
+            return false;
+        };
+        *next = crossing;
+        self.count += 1;
+        true
+    }
+
+    /// Share of the light that passes all of them; of those that lie within rounding of one another, the first.
+    fn transmittance(&mut self, world: &World, segment: &Ray) -> Rgb {
+        let crossings = &mut self.crossings[..self.count];
+        crossings.sort_unstable_by(|a, b| a.hit.t.total_cmp(&b.hit.t));
+        let Some(last) = crossings.last() else { return Rgb::ONE };
+        let length = segment.direction.length();
+        let largest = segment.origin.abs().max_element() + last.hit.t * length;
+        let slack = 1.01 * largest * (ULPS * f32::EPSILON) / (MIN_COS * length);
+        let (mut transmittance, mut from) = (Rgb::ONE, f32::NEG_INFINITY);
+        for (i, Crossing { hit, share }) in crossings.iter().enumerate() {
+            if hit.t > from {
+                transmittance *= *share;
+                let is_close = crossings.get(i + 1).is_some_and(|next| !(next.hit.t > hit.t + slack));
+                from = if is_close { world.behind(segment, hit) } else { hit.t };
+            }
+        }
+        transmittance
+    }
+}
+
 impl World {
     /// True if there are sheets.
     #[inline]
@@ -52,20 +104,35 @@ impl World {
 
     /// Share of the light that comes along a segment on which nothing occludes it.
     pub(crate) fn transmittance(&self, segment: &Ray) -> Rgb {
-        let mut transmittance = Rgb::ONE;
-        let Some(sheets) = &self.sheets else { return transmittance };
-        let mut rest = *segment;
-        for _ in 0..MAX_CROSSED {
-            let Some(hit) = sheets.closest_hit(&rest) else { return transmittance };
-            let surface = self.surface(&hit);
-            let out = surface.frame.to_local(-segment.direction.normalize());
-            transmittance *= self.bsdf(&surface).straight_transmittance(out);
-            if transmittance == Rgb::ZERO {
-                break;
-            }
-            rest = beyond(&rest, surface.position, surface.normal, surface.t);
-        }
-        Rgb::ZERO
+        let Some(sheets) = &self.sheets else { return Rgb::ONE };
+        let out = -segment.direction.normalize();
+        let (mut crossed, mut last) = (Crossed::new(), None);
+        let is_free = sheets.each_crossed(segment, |hit| {
+            let share = self.share_passing(&hit, out, &mut last);
+            crossed.add(Crossing { hit, share })
+        });
+        if is_free { crossed.transmittance(self, segment) } else { Rgb::ZERO }
+    }
+
+    /// Share of the light towards the unit vector `out` that passes the sheet at a hit.
+    #[inline]
+    fn share_passing(&self, hit: &Hit, out: Vec3, last: &mut Option<LastStraight>) -> Rgb {
+        let triangle = self.triangles.get(hit.geometry, hit.primitive);
+        let mesh = &self.scene.meshes[hit.geometry as usize];
+        let barycentric = Vec2::new(hit.u, hit.v);
+        let normal = match self.has_reliefs() {
+            true => self.surface(hit).frame.normal,
+            false => shading_normal(mesh, triangle, barycentric),
+        };
+        let uv = || mesh.uv(hit.primitive as usize, barycentric);
+        self.materials.straight_transmittance(&self.scene, mesh.material, (normal.dot(out), uv), last)
+    }
+
+    /// Parameter from which a segment goes on behind the sheet at a hit.
+    fn behind(&self, segment: &Ray, hit: &Hit) -> f32 {
+        let triangle = self.triangles.get(hit.geometry, hit.primitive);
+        let position = triangle.position(Vec2::new(hit.u, hit.v));
+        beyond(segment, position, triangle.normal, hit.t).t_near
     }
 
     /// Calls `through` with the lanes of `lanes` whose segments cross sheets and [`World::transmittance`] there.
@@ -74,5 +141,83 @@ impl World {
         if self.has_sheets() {
             lanes_in(lanes).for_each(|lane| through(lane, self.transmittance(&segments.get(lane))));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Camera, Material, Parameter};
+    use crate::test_scenes::*;
+
+    /// Sheets of all kinds, flat and curved, textured and not, some of which lie in others.
+    fn curtains() -> WorldAndView {
+        let mut scene = scene(Camera::default(), [1, 1]);
+        let checker =
+            checkered(&mut scene, 2, vec![Rgb::splat(0.2), Rgb::ONE, Rgb::splat(0.5), Rgb::splat(0.7)]);
+        let Parameter::Textured { texture, .. } = checker.diffuse else { unreachable!("it is textured") };
+        let opacity = Some(Parameter::Textured { texture, scale: 0.9 });
+        let kinds = [
+            pane(1.5, Rgb::new(0.9, 0.6, 0.3)),
+            Material { opacity: Some(0.3.into()), ..diffuse(Rgb::ONE) },
+            Material { opacity, ..diffuse(Rgb::ONE) },
+        ];
+        let kinds = kinds.map(|kind| add_material(&mut scene, kind));
+        for (i, x) in [0.1, 0.2, 0.2, 0.4, 0.7].into_iter().enumerate() {
+            let corner = Vec3::new(x, -1.0, -1.0);
+            let (up, along) = (Vec3::new(0.1 * i as f32, 2.0, 0.0), Vec3::Z * 2.0);
+            scene.meshes.push(textured(quad(corner, up, along, kinds[i % 3]), Vec2::splat(3.0)));
+        }
+        scene.meshes.push(sphere(Vec3::X * 0.5, 0.3, 16, kinds[0]));
+        world(scene)
+    }
+
+    /// The same by a query for each sheet.
+    fn one_by_one(world: &World, segment: &Ray) -> Rgb {
+        let (mut transmittance, mut rest) = (Rgb::ONE, *segment);
+        while let Some(surface) = world.intersect(&rest) {
+            let out = surface.frame.to_local(-segment.direction.normalize());
+            transmittance *= world.bsdf(&surface).straight_transmittance(out.z);
+            rest = beyond(&rest, surface.position, surface.normal, surface.t);
+        }
+        transmittance
+    }
+
+    #[test]
+    fn light_passes_each_sheet_once() {
+        let world = curtains();
+        let (mut clear, mut dark) = (0, 0);
+        for i in 0..2000 {
+            let at = |k: f32| (i as f32 * k).fract() * 1.6 - 0.8;
+            let (from, to) =
+                (Vec3::new(-0.5, at(0.618), at(0.414)), Vec3::new(0.85 + at(0.73), at(0.27), at(0.91)));
+            let segment = Ray::between(from, to);
+            let (found, expected) = (world.transmittance(&segment), one_by_one(&world, &segment));
+            assert_eq!(found, expected, "{segment:?}");
+            clear += usize::from(expected == Rgb::ONE);
+            dark += usize::from(expected.max_element() < 0.05);
+        }
+        assert!(clear > 10 && dark > 10, "{clear} {dark}");
+    }
+
+    #[test]
+    fn nothing_passes_more_sheets_than_are_followed() {
+        let mut scene = scene(Camera::default(), [1, 1]);
+        let veil = add_material(&mut scene, Material { opacity: Some(0.001.into()), ..diffuse(Rgb::ONE) });
+        for i in 0..80 {
+            scene.meshes.push(quad(
+                Vec3::new(0.01 * i as f32, -1.0, -1.0),
+                Vec3::Y * 2.0,
+                Vec3::Z * 2.0,
+                veil,
+            ));
+        }
+        let world = world(scene);
+        let through = |count: f32| {
+            let start = Vec3::new(-0.005, 0.2, 0.1);
+            world.transmittance(&Ray::between(start, start + Vec3::X * (0.01 * count))).x
+        };
+        assert!((through(50.0) - 0.999f32.powi(50)).abs() < 1e-4, "{}", through(50.0));
+        assert_eq!(through(80.0), 0.0);
     }
 }

@@ -51,6 +51,42 @@ fn closest_hit_is_the_brute_force_one() {
 }
 
 #[test]
+fn every_triangle_crossed_is_met_once_until_there_are_enough() {
+    let soup = Soup::random(300, 5);
+    for device in devices() {
+        let accel = soup.build(&device);
+        let mut several = 0;
+        for ray in soup.rays(4096, 6) {
+            let mut met = Vec::new();
+            let is_free = accel.each_crossed(&ray, |hit| {
+                let id = TriangleId { geometry: hit.geometry, primitive: hit.primitive };
+                let [a, b, c] = soup.corners(id);
+                let point = a + hit.u * (b - a) + hit.v * (c - a);
+                assert!(point.distance(ray.at(hit.t)) < 1e-4, "barycentrics are of corners 1 and 2");
+                met.push(id);
+                true
+            });
+            assert!(is_free);
+            let (certain, close) = soup.crossed(&ray);
+            assert!(certain.iter().all(|id| met.contains(id)), "{ray:?}: {met:?} {certain:?}");
+            assert!(met.iter().all(|id| certain.contains(id) || close.contains(id)), "{met:?} {certain:?}");
+            let mut once = met.clone();
+            once.sort_by_key(|&id| <(u32, u32)>::from(id));
+            once.dedup();
+            assert_eq!(once.len(), met.len(), "{met:?}");
+            several += usize::from(met.len() > 2);
+            let (wanted, mut count) = (met.len().min(2), 0);
+            let is_free = accel.each_crossed(&ray, |_| {
+                count += 1;
+                count < wanted
+            });
+            assert_eq!((is_free, count), (wanted == 0, wanted));
+        }
+        assert!(several > 50, "the test meets too little: {several}");
+    }
+}
+
+#[test]
 fn packets_agree_with_brute_force() {
     let soup = Soup::random(300, 3);
     let rays = soup.rays(4096, 4);

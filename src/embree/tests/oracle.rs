@@ -106,6 +106,20 @@ impl Soup {
         (margin > -ROUNDING && t >= near(ray) - ROUNDING && t <= far(ray) + ROUNDING).then_some(t)
     }
 
+    /// Triangles that the ray crosses, and those of which rounding decides.
+    pub fn crossed(&self, ray: &Ray) -> (Vec<TriangleId>, Vec<TriangleId>) {
+        let (mut certain, mut close) = (Vec::new(), Vec::new());
+        for id in self.ids() {
+            let Some((t, margin)) = moeller_trumbore(ray, self.corners(id)) else { continue };
+            match margin.min(t - near(ray)).min(far(ray) - t) {
+                inside if inside >= ROUNDING => certain.push(id),
+                inside if inside > -ROUNDING => close.push(id),
+                _ => {}
+            }
+        }
+        (certain, close)
+    }
+
     pub fn closest(&self, ray: &Ray) -> Verdict {
         let mut met: Vec<Met> = Vec::new();
         for id in self.ids() {

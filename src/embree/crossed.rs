@@ -1,0 +1,47 @@
+//! All triangles along a segment, found in one traversal.
+//!
+//! A filter passed with an occlusion query hands each candidate to the caller and rejects it, so that the traversal goes
+//! on, until the caller has enough.
+
+use super::occluder::{CONTEXT, Query, word};
+use super::ray::ALL_GEOMETRY;
+use super::{Accel, Hit, Ray};
+use embree4_sys as sys;
+
+impl Accel {
+    /// Calls `visit` with every triangle that the segment crosses, of all meshes, in no particular order, until it
+    /// returns false; true if it never did.
+    #[inline]
+    pub fn each_crossed<Visit: FnMut(Hit) -> bool>(&self, ray: &Ray, mut visit: Visit) -> bool {
+        let Some(mut segment) = ray.to_embree(ALL_GEOMETRY).filter(|_| !self.is_empty()) else { return true };
+        let mut query = Query { context: CONTEXT, found: &mut visit };
+        let mut arguments = query.arguments(false, pass_on::<Visit>);
+        // SAFETY: the scene is committed; ray, arguments and the query they point to are ours, outlive the call and
+        // have the library's layout; the filter fits the query's record.
+        unsafe { sys::rtcOccluded1(self.scene(), &mut segment, &mut arguments) };
+        segment.tfar != f32::NEG_INFINITY
+    }
+}
+
+/// Filter of a single ray, which accepts a candidate if `Visit` returns false.
+///
+/// # Safety
+/// For Embree to call during a query whose context is the head of a `Query<&mut Visit>`.
+unsafe extern "C" fn pass_on<Visit: FnMut(Hit) -> bool>(arguments: *const sys::RTCFilterFunctionNArguments) {
+    // SAFETY: Embree passes valid arguments for packets of N = 1: one valid lane, a ray and a hit of the word offsets in
+    // `word`. The context is that of the query, alive and not borrowed elsewhere while the query runs on this thread.
+    unsafe {
+        let arguments = &*arguments;
+        let hit = arguments.hit.cast::<u32>();
+        let hit = Hit {
+            t: *arguments.ray.cast::<f32>().add(word::RAY_T_FAR),
+            u: *hit.cast::<f32>().add(word::HIT_U),
+            v: *hit.cast::<f32>().add(word::HIT_V),
+            geometry: *hit.add(word::HIT_GEOMETRY),
+            primitive: *hit.add(word::HIT_PRIMITIVE),
+        };
+        if ((*arguments.context.cast::<Query<&mut Visit>>()).found)(hit) {
+            *arguments.valid = 0;
+        }
+    }
+}
