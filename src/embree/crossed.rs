@@ -1,7 +1,7 @@
 //! All triangles along a segment, found in one traversal.
 //!
-//! A filter passed with an occlusion query hands each candidate to the caller and rejects it, so that the traversal goes
-//! on, until the caller has enough.
+//! A filter passed with an occlusion query hands each candidate to the caller and rejects it, so that the traversal
+//! goes on, until the caller has enough.
 
 use super::occluder::{CONTEXT, Query, word};
 use super::ray::ALL_GEOMETRY;
@@ -28,8 +28,9 @@ impl Accel {
 /// # Safety
 /// For Embree to call during a query whose context is the head of a `Query<&mut Visit>`.
 unsafe extern "C" fn pass_on<Visit: FnMut(Hit) -> bool>(arguments: *const sys::RTCFilterFunctionNArguments) {
-    // SAFETY: Embree passes valid arguments for packets of N = 1: one valid lane, a ray and a hit of the word offsets in
-    // `word`. The context is that of the query, alive and not borrowed elsewhere while the query runs on this thread.
+    // SAFETY: Embree passes valid arguments for packets of N = 1: one valid lane, a ray and a hit of the word offsets
+    // in `word`. The context is that of the query, alive and not borrowed elsewhere while the query runs on this
+    // thread.
     unsafe {
         let arguments = &*arguments;
         let hit = arguments.hit.cast::<u32>();

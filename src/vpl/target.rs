@@ -194,8 +194,8 @@ impl LitSphere {
         };
         let cos = point.normal.dot(direction);
         let cos = if two_sided { cos.abs() } else { cos };
-        // By the square of the difference from the axis, which rounds less than a cosine. Directions drawn into cones so
-        // narrow that even this rounds count as inside.
+        // By the square of the difference from the axis, which rounds less than a cosine. Directions drawn into cones
+        // so narrow that even this rounds count as inside.
         let off_axis_sq = (direction - towards.axis).length_squared();
         let is_inside = is_drawn_there || off_axis_sq <= 2.0 * towards.one_minus_cos;
         let to_sphere = if is_inside { 1.0 / towards.solid_angle() } else { 0.0 };

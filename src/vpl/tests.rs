@@ -25,6 +25,16 @@ fn indirect_flux_is_what_the_surfaces_reflect() {
     assert!((indirect / expected - Rgb::ONE).abs().max_element() < 0.02, "{indirect} {expected}");
 }
 
+/// Flux of many indirect virtual lights, and the number of photons' paths that brought them.
+fn indirect_flux(scene: SceneAndView) -> (Rgb, u64) {
+    let settings = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
+    let lights = light_pass(&world(scene), &settings, u32::MAX, &Control::new());
+    let indirect = lights.sets.iter().filter(|s| s.origin == Origin::Indirect);
+    let intensities: Vec<Rgb> = indirect.flat_map(|s| &s.intensities).copied().collect();
+    assert!(intensities.len() > 15_000, "{}", intensities.len());
+    (intensities.iter().copied().sum::<Rgb>() * PI, lights.photons.paths)
+}
+
 #[test]
 fn lights_far_off_send_their_photons_to_the_surfaces() {
     for distance in [10.0, 1e3, 1e5, 1e8f32] {
@@ -48,12 +58,7 @@ fn lights_far_off_send_their_photons_to_the_surfaces() {
             let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
             scene.meshes.push(quad(Vec3::new(-1.0, 0.0, 1.0), Vec3::X * 2.0, Vec3::Z * -2.0, grey));
             scene.lights.push(light);
-            let settings = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
-            let lights = light_pass(&world(scene), &settings, u32::MAX, &Control::new());
-            let indirect = lights.sets.iter().filter(|s| s.origin == Origin::Indirect);
-            let intensities: Vec<Rgb> = indirect.flat_map(|s| &s.intensities).copied().collect();
-            assert!(intensities.len() > 15_000, "{} at {distance}", intensities.len());
-            let flux = intensities.iter().copied().sum::<Rgb>() * PI;
+            let (flux, _) = indirect_flux(scene);
             let expected = Rgb::new(1.0, 0.5, 0.25) * area * 0.5;
             let error = (flux / expected - Rgb::ONE).abs().max_element();
             assert!(error < 0.03, "{flux} {expected}, {light:?}");
@@ -78,13 +83,8 @@ fn lamps_that_are_surfaces_far_off_send_half_of_their_photons_to_the_others() {
             lamp.emission = Some(Emission { radiance, texture: None, two_sided });
             scene.meshes.push(lamp);
         }
-        let settings = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
-        let lights = light_pass(&world(scene), &settings, u32::MAX, &Control::new());
-        let indirect = lights.sets.iter().filter(|s| s.origin == Origin::Indirect);
-        let intensities: Vec<Rgb> = indirect.flat_map(|s| &s.intensities).copied().collect();
-        assert!(intensities.len() > 15_000, "{} at {distance}", intensities.len());
-        assert!(lights.photons.paths < 100_000, "{} paths at {distance}", lights.photons.paths);
-        let flux = intensities.iter().copied().sum::<Rgb>() * PI;
+        let (flux, paths) = indirect_flux(scene);
+        assert!(paths < 100_000, "{paths} paths at {distance}");
         // The far lamp's angle is .04, over the floor of 4, but for that the corners are farther.
         let far = Rgb::new(1.0, 0.5, 0.25) * 0.16;
         let expected = (far + Rgb::splat(0.1 * PI * 0.01)) * 0.5;
