@@ -135,7 +135,7 @@ impl Benchmark {
             ("samples a case".to_owned(), context.settings.repeats.to_string()),
         ];
         if let Some(Session { world, .. }) = context.session {
-            let triangles: usize = world.scene.meshes.iter().map(|m| m.triangles.len()).sum();
+            let triangles = world.scene.triangle_count();
             facts.push(("triangles".to_owned(), triangles.to_string()));
             facts.push(("Embree".to_owned(), world.accel.device().version().to_string()));
             facts.push(("widest packet".to_owned(), world.accel.widest().rays().to_string()));

@@ -1,6 +1,7 @@
 //! Arguments of the command line. Every option is documented here and nowhere else: `--help` is made of it.
 
 use super::bench_args::BenchArgs;
+use super::denoise_args::{DenoiseArgs, DenoiseFileArgs};
 use super::exit;
 use super::method_args::MethodArgs;
 use super::plan_args::{PlanArgs, Quality};
@@ -227,49 +228,6 @@ impl PngArgs {
         }
         Some(self.png.clone().unwrap_or_else(|| exr.with_extension("png")))
     }
-}
-
-/// Options of `render` that denoise the picture.
-#[derive(Clone, Copy, Debug, Default, Args)]
-pub struct DenoiseArgs {
-    /// Take the noise off the picture by Open Image Denoise 2, guided by albedo and normals through mirrors and glass;
-    /// a picture without it and a warning where the library is missing. The default where the method is meant for it
-    #[arg(long, overrides_with = "no_denoise")]
-    denoise: bool,
-    /// Leave the noise in the picture
-    #[arg(long, overrides_with = "denoise")]
-    no_denoise: bool,
-    /// Keep the picture as it was before denoising as layer `noisy`
-    #[arg(long)]
-    pub keep_noisy: bool,
-}
-
-impl DenoiseArgs {
-    /// True if the picture is to be denoised; `None` by default.
-    pub fn denoise(&self) -> Option<bool> {
-        (self.denoise || self.no_denoise).then_some(self.denoise)
-    }
-}
-
-/// Options of `denoise`.
-#[derive(Debug, Args)]
-#[command(after_help = exit::HELP)]
-pub struct DenoiseFileArgs {
-    /// Picture to denoise (OpenEXR), guided by its layers of albedo and normals where it has them, by the names that
-    /// this program, Blender, Mitsuba, pbrt or Arnold give them
-    pub input: PathBuf,
-    /// Picture to write: all that the other holds, its colour denoised [default: named .denoised.exr]
-    #[arg(short, long, value_name = "FILE.exr")]
-    pub output: Option<PathBuf>,
-    /// Keep the colour as it was as layer `noisy`
-    #[arg(long)]
-    pub keep_noisy: bool,
-    /// Threads to use [default: all processors]; the picture is the same for any number
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
-    pub threads: Option<u32>,
-    /// The tone-mapped picture.
-    #[command(flatten)]
-    pub png: PngArgs,
 }
 
 /// Options of `merge`.

@@ -1,6 +1,6 @@
 //! `lightsplat denoise`: takes the noise off a picture in a file; all else in the file stays.
 
-use super::args::DenoiseFileArgs;
+use super::denoise_args::DenoiseFileArgs;
 use super::exit::Failure;
 use super::outputs::{Inputs, check_outputs};
 use super::{talk, threads};
@@ -37,7 +37,7 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
     let (library, clean) = threads::pool(threads::count(args.threads))?
         .install(|| {
             let denoiser = Denoiser::load()?;
-            Ok((denoiser.name(), denoiser.denoise(&color, &found)?))
+            Ok((denoiser.name(), denoiser.denoise(&color, &found, args.quality())?))
         })
         .map_err(|error: crate::denoise::DenoiseError| Failure::render(error))?;
     let guided_by: Vec<&str> =

@@ -59,6 +59,7 @@ impl RenderJob {
             wanted,
             features: args.picture.aov.into_iter().collect(),
             denoise: args.picture.denoise.denoise(),
+            denoise_quality: args.picture.denoise.quality(),
             keep_noisy: args.picture.denoise.keep_noisy,
             verify,
         };

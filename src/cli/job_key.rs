@@ -10,7 +10,7 @@ use std::path::Path;
 /// Key of a picture of `session` for `goal`, by the version of the program, and `more` that decides; but for whether
 /// the denoiser is there.
 pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
-    let Goal { method, may_choose, wanted, features, keep_noisy, verify, .. } = goal;
+    let Goal { method, may_choose, wanted, features, denoise_quality, keep_noisy, verify, .. } = goal;
     let wanted = match wanted {
         Wanted::AsSet => Value::Null,
         Wanted::Time { seconds, held, .. } => json!([seconds, held]),
@@ -25,6 +25,7 @@ pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
         "wanted": wanted,
         "features": format!("{features:?}"),
         "denoise": goal.denoises(),
+        "denoise_quality": format!("{denoise_quality:?}"),
         "keep_noisy": keep_noisy,
         "verify": format!("{verify:?}"),
         "more": more,

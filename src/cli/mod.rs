@@ -13,6 +13,7 @@ mod chart;
 mod compare;
 mod course;
 mod denoise;
+mod denoise_args;
 mod exit;
 mod files;
 mod info;

@@ -59,6 +59,7 @@ impl WalkJob {
             wanted: Wanted::AsSet,
             features: args.picture.aov.into_iter().collect(),
             denoise: args.picture.denoise.denoise(),
+            denoise_quality: Some(args.picture.denoise.quality().unwrap_or_default()),
             keep_noisy: args.picture.denoise.keep_noisy,
             verify: None,
         };

@@ -3,18 +3,20 @@
 //! [`Denoiser::denoise`] takes a picture's colour and, as guides, albedo and normals of the surfaces seen; [`guides`]
 //! finds those among the layers of a file. The result has the same bits for any number of threads.
 //!
-//! Network and weights: Open Image Denoise's filter `RT` for high dynamic range, of highest quality.
+//! Network and weights: Open Image Denoise's filter `RT` for high dynamic range, of a [`Quality`] that [`effort`] finds.
 //! Deviations: pictures less than [`MIN_SIDE`] pixels wide or high are continued by their edges up to that, since the
 //! network darkens them; black ones stay black.
 //! Units: radiance as in the picture, whatever its scale; the filter finds the exposure by itself, but for pictures far
 //! from ordinary brightness, which it would take for black: those are brought there by a power of two.
 
+pub mod effort;
 pub mod guides;
 
 use crate::film::Image;
 use crate::math::Rgb;
 
 pub use oidn::Error as DenoiseError;
+pub use oidn::Quality;
 
 /// Layer that keeps the picture as it was before denoising.
 pub const NOISY: &str = "noisy";
@@ -59,7 +61,7 @@ impl Denoiser {
     ///
     /// # Errors
     /// If a guide's size is not the picture's, or the library fails.
-    pub fn denoise(&self, color: &Image, guides: &Guides) -> Result<Image, DenoiseError> {
+    pub fn denoise(&self, color: &Image, guides: &Guides, quality: Quality) -> Result<Image, DenoiseError> {
         let radiance = |p: Rgb| p.map(|x| if x.is_finite() { x.max(0.0) } else { 0.0 });
         let noisy = color.map(|p| radiance(*p));
         if noisy.pixels.iter().all(|p| *p == Rgb::ZERO) {
@@ -87,6 +89,7 @@ impl Denoiser {
             albedo: albedo.as_deref(),
             normal: normal.as_deref(),
             clean_guides: guides.noise_free,
+            quality,
         })?;
         let rows = clean.chunks_exact(width).take(color.height as usize);
         let clean = rows.flat_map(|row| &row[..color.width as usize]).map(|&p| Rgb::from(p) / scale);

@@ -29,7 +29,7 @@ fn small_pictures_keep_their_brightness() {
     let Some(denoiser) = denoiser() else { return };
     for (width, height) in [(1, 1), (1, 9), (5, 3), (16, 16), (40, 7), (64, 64), (200, 3), (65, 90)] {
         let color = noisy(width, height, 1.0).map(|p| 0.5 + 0.5 * *p);
-        let clean = denoiser.denoise(&color, &Guides::default()).unwrap();
+        let clean = denoiser.denoise(&color, &Guides::default(), Quality::High).unwrap();
         assert_eq!((clean.width, clean.height), (width, height));
         let ratio = mean(&clean) / mean(&color);
         // 0.18 without the continuation of a single pixel.
@@ -54,7 +54,7 @@ fn nothing_that_is_not_finite_or_is_negative_comes_out() {
         Guides { albedo: None, normal: Some(&normal), noise_free: true },
         Guides { albedo: Some(&albedo), normal: Some(&normal), noise_free: true },
     ] {
-        let clean = denoiser.denoise(&color, &guides).unwrap();
+        let clean = denoiser.denoise(&color, &guides, Quality::High).unwrap();
         assert!(clean.pixels.iter().all(|p| p.is_finite() && p.min_element() >= 0.0));
     }
 }
@@ -63,10 +63,10 @@ fn nothing_that_is_not_finite_or_is_negative_comes_out() {
 fn black_stays_black_and_guides_of_another_size_are_refused() {
     let Some(denoiser) = denoiser() else { return };
     let black = Image::new(20, 30);
-    assert_eq!(denoiser.denoise(&black, &Guides::default()).unwrap(), black);
+    assert_eq!(denoiser.denoise(&black, &Guides::default(), Quality::High).unwrap(), black);
     let (color, albedo) = (noisy(6, 4, 1.0), noisy(4, 6, 1.0));
     let guides = Guides { albedo: Some(&albedo), ..Guides::default() };
-    let refused = denoiser.denoise(&color, &guides).unwrap_err().to_string();
+    let refused = denoiser.denoise(&color, &guides, Quality::High).unwrap_err().to_string();
     assert_eq!(refused, "the albedo has 4x6 pixels, and the picture 6x4");
 }
 
@@ -77,7 +77,7 @@ fn any_number_of_threads_gives_the_same_bits() {
     let guides = Guides { albedo: Some(&color), normal: Some(&normal), noise_free: true };
     let clean = [1, 2, 4].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| Some(denoiser()?.denoise(&color, &guides).unwrap()))
+        pool.install(|| Some(denoiser()?.denoise(&color, &guides, Quality::High).unwrap()))
     });
     assert!(clean[0] == clean[1] && clean[0] == clean[2]);
 }
@@ -85,10 +85,10 @@ fn any_number_of_threads_gives_the_same_bits() {
 #[test]
 fn faint_and_bright_pictures_are_denoised_as_others() {
     let Some(denoiser) = denoiser() else { return };
-    let ordinary = denoiser.denoise(&noisy(70, 66, 1.0), &Guides::default()).unwrap();
+    let ordinary = denoiser.denoise(&noisy(70, 66, 1.0), &Guides::default(), Quality::High).unwrap();
     for exponent in [-120, -60, -20, -9, 19, 60, 120] {
         let factor = 2f32.powi(exponent);
-        let clean = denoiser.denoise(&noisy(70, 66, factor), &Guides::default()).unwrap();
+        let clean = denoiser.denoise(&noisy(70, 66, factor), &Guides::default(), Quality::High).unwrap();
         for (p, q) in clean.pixels.iter().zip(&ordinary.pixels) {
             assert!((*p / factor - *q).abs().max_element() < 0.01, "{p} {q} {factor}");
         }

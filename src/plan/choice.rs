@@ -52,8 +52,7 @@ impl Chooser {
         let paths = path::Settings { seed, max_depth, ..path::Settings::default() };
         let pilot = Pilot::of(world, view, base, &Method::Path(paths), control)?;
         let film_pixels = view.window.film.map(u64::from).iter().product();
-        let triangles = world.scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
-        Some(Chooser { triangles, pilot, film_pixels, paths })
+        Some(Chooser { triangles: world.scene.triangle_count(), pilot, film_pixels, paths })
     }
 
     /// The cheaper of `cache`, as it is set, and as good a picture of paths, whatever the size of the film.

@@ -30,6 +30,7 @@ pub use choice::{Choice, Chooser};
 pub use error::{Asked, for_error};
 pub use ladder::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
 pub use time::{LATE, for_time};
+pub use work::Work;
 
 /// The same view on a film `scale` times smaller along each side.
 pub fn smaller(view: &View, scale: u32) -> View {

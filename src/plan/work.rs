@@ -1,15 +1,18 @@
 //! Work that a picture is expected to take, counted before it is begun: rays, virtual lights and samples at fixed
 //! prices, so that choices by it do not depend on the machine or its load.
 //!
-//! Units: microseconds of one core of the machine on which the prices were measured. Denoising takes as long whatever
-//! made the picture and is left out.
+//! Units: microseconds of one core of the machine on which the prices were measured. Denoising takes about as long
+//! whatever made the picture and is left out.
 
 use super::pilot::Pilot;
 use crate::method::Method;
+use crate::stats::{Counter, Stats};
 
 /// Price of a ray in the smallest scenes, and what every doubling of the triangles adds to it.
 const RAY: f64 = 0.08;
 const RAY_BY_DOUBLING: f64 = 0.03;
+/// Price of a shadow ray over that of a ray that is traced to the surface it meets, which is looked at.
+const SHADOW: f64 = 0.5;
 /// Number of triangles of the smallest scenes.
 const FEW: f64 = 32.0;
 /// Price of a virtual light in the light pass and the tree, and its rays.
@@ -59,8 +62,44 @@ impl Work {
         (samples * pilot.rays_of_drawn + cached) * self.ray + lights
     }
 
+    /// Of a picture that is made, by the counters of its rays and virtual lights.
+    pub fn of_counted(&self, stats: &Stats) -> f64 {
+        let price = |name: &str| match name {
+            "VPLs/total" => VPL,
+            "Rays/shadow" => SHADOW * self.ray,
+            _ if name.ends_with("/shadow rays") => SHADOW * self.ray,
+            _ if name.ends_with("/closest hit") => self.ray,
+            _ => 0.0,
+        };
+        let work = |(name, counter)| match counter {
+            Counter::Count(n) => n as f64 * price(name),
+            Counter::Sum(_) | Counter::Distribution(_) => 0.0,
+        };
+        stats.counters().map(work).sum()
+    }
+
     /// Of the pilot itself.
     pub fn of_pilot(&self, pilot: &Pilot) -> f64 {
         pilot.rays as f64 * self.ray
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counted_work_is_that_of_all_rays_and_virtual_lights() {
+        let work = Work::new(32, 1);
+        let mut stats = Stats::new();
+        stats.count("Rays/closest hit", 1_000_000);
+        let of_rays = work.of_counted(&stats);
+        assert_eq!(of_rays, 1e6 * RAY);
+        for name in ["Eye/shadow rays", "Lightcut/shadow rays", "Rays/shadow"] {
+            stats.count(name, 1_000_000);
+        }
+        stats.count("VPLs/total", 1000);
+        stats.count("Cache/records, indirect", 1 << 40);
+        assert!((work.of_counted(&stats) - 2.5 * of_rays - 1000.0 * VPL).abs() < 1e-3);
     }
 }

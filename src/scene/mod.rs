@@ -86,6 +86,11 @@ impl Scene {
         wanted.or(self.max_depth).unwrap_or(u32::MAX)
     }
 
+    /// Number of triangles of all meshes.
+    pub fn triangle_count(&self) -> usize {
+        self.meshes.iter().map(|mesh| mesh.triangles.len()).sum()
+    }
+
     /// True if nothing in the scene gives light.
     pub fn is_dark(&self) -> bool {
         let emits = self.meshes.iter().any(|mesh| mesh.emission.is_some());

@@ -1,16 +1,16 @@
 //! From a method's output to the picture that is kept: features beside it, and its noise taken off.
 
 use super::goal::Goal;
-use crate::denoise::{DenoiseError, Denoiser, Guides, NOISY};
+use crate::denoise::{DenoiseError, Denoiser, Guides, NOISY, Quality, effort};
 use crate::eye::{Feature, FeatureSettings, Features, SeenPixels};
 use crate::film::{Image, Layer};
 use crate::method::{Method, Output};
-use crate::plan::smaller;
+use crate::plan::{Work, smaller};
 use crate::progress::Control;
 use crate::stats::{Stage, Stats, Stopwatch};
 use crate::view::View;
 use crate::world::World;
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 
 /// Divisor of each side of the picture that estimates how long finishing takes.
 const TRIAL_SCALE: u32 = 4;
@@ -24,6 +24,10 @@ pub(crate) struct Finish<'a> {
     features: Features,
     keep_noisy: bool,
     denoiser: Option<Denoiser>,
+    /// Quality of denoising, where it is not to go with the work on each picture.
+    quality: Cell<Option<Quality>>,
+    /// That of the last picture.
+    last_quality: Cell<Quality>,
     /// Reason why a picture is not denoised though it was asked for: the first.
     failure: OnceCell<DenoiseError>,
 }
@@ -49,8 +53,9 @@ impl<'a> Finish<'a> {
                 None
             }
         });
-        let Goal { features, keep_noisy, .. } = *goal;
-        Finish { world, view, control, features, keep_noisy, denoiser, failure }
+        let Goal { features, keep_noisy, denoise_quality, .. } = *goal;
+        let (quality, last_quality) = (Cell::new(denoise_quality), Cell::default());
+        Finish { world, view, control, features, keep_noisy, denoiser, quality, last_quality, failure }
     }
 
     /// Reason why a picture is not denoised though it was asked for.
@@ -58,9 +63,26 @@ impl<'a> Finish<'a> {
         self.failure.get()
     }
 
-    /// Name and version of the library that denoises; `None` if it was not asked for, or failed.
+    /// Name and version of the library that denoises, and its quality where that is not the highest; `None` if it was
+    /// not asked for, or failed.
     pub fn denoised_by(&self) -> Option<String> {
-        self.denoiser().map(Denoiser::name)
+        let quality = match self.last_quality.get() {
+            Quality::High => "",
+            Quality::Balanced => ", balanced quality",
+            Quality::Fast => ", fast quality",
+        };
+        self.denoiser().map(|denoiser| format!("{}{quality}", denoiser.name()))
+    }
+
+    /// Quality of denoising the picture of `output`.
+    fn quality(&self, output: &Output) -> Quality {
+        let Finish { world, view, .. } = self;
+        let pixels = view.window.pixel_count();
+        let by_work = || {
+            let work = Work::new(world.scene.triangle_count(), pixels).of_counted(&output.stats);
+            effort::for_picture(pixels, work)
+        };
+        self.quality.get().unwrap_or_else(by_work)
     }
 
     fn denoiser(&self) -> Option<&Denoiser> {
@@ -117,7 +139,10 @@ impl<'a> Finish<'a> {
         if let Some(denoiser) = self.denoiser() {
             self.control.begin(Stage::Denoise, 0);
             output.nonfinite += output.color.remove_nonfinite();
-            match output.stats.time(Stage::Denoise, || denoiser.denoise(&output.color, &guides(&layers))) {
+            let quality = self.quality(output);
+            self.last_quality.set(quality);
+            let clean = || denoiser.denoise(&output.color, &guides(&layers), quality);
+            match output.stats.time(Stage::Denoise, clean) {
                 Ok(clean) => {
                     let noisy = std::mem::replace(&mut output.color, clean);
                     output.extra.extend(self.keep_noisy.then(|| Layer::color(NOISY, noisy)));
@@ -136,24 +161,33 @@ impl<'a> Finish<'a> {
         is_denoised
     }
 
-    /// Seconds that [`Finish::apply`] is likely to take for a picture of `method`, by that of a smaller one.
-    pub fn expected_seconds(&self, method: &Method) -> f64 {
+    /// Seconds that [`Finish::apply`] is likely to take for a picture of `method`, by that of a smaller one. The
+    /// quality of denoising is from then on the one that goes with a picture made in `within` seconds.
+    pub fn expected_seconds(&self, method: &Method, within: f64) -> f64 {
         let Some(denoiser) = self.denoiser() else { return 0.0 };
         let small = smaller(self.view, TRIAL_SCALE);
         let watch = Stopwatch::start();
         let layers = self.look_at(&small, method).layers(self.world, self.wanted());
-        let mut seconds = watch.elapsed().wall_seconds;
+        let looking = watch.elapsed().wall_seconds;
+        let mut denoising = 0.0;
         let guides = guides(&layers);
         let Some(color) = guides.albedo else { return 0.0 };
         // The first picture of a device takes longer, whatever its size.
-        for is_first in [true, false] {
+        let quality = self.quality.get().unwrap_or_default();
+        for _ in 0..2 {
             let watch = Stopwatch::start();
-            if let Err(error) = denoiser.denoise(color, &guides) {
+            if let Err(error) = denoiser.denoise(color, &guides, quality) {
                 self.failure.get_or_init(|| error);
             }
-            seconds += if is_first { 0.0 } else { watch.elapsed().wall_seconds };
+            denoising = watch.elapsed().wall_seconds;
         }
-        seconds * self.view.window.pixel_count() as f64 / small.window.pixel_count() as f64
+        let scale = self.view.window.pixel_count() as f64 / small.window.pixel_count() as f64;
+        if self.quality.get().is_none() {
+            let chosen = effort::for_work(within - scale * (looking + denoising), scale * denoising);
+            self.quality.set(Some(chosen));
+            denoising *= effort::relative_price(chosen);
+        }
+        scale * (looking + denoising)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The goal of a frame.
 
+use crate::denoise::Quality;
 use crate::eye::Features;
 use crate::method::Method;
 use crate::stats::Stopwatch;
@@ -18,6 +19,8 @@ pub struct Goal {
     pub features: Features,
     /// True if the picture is to be denoised; by default, if the method's pictures are meant to be.
     pub denoise: Option<bool>,
+    /// Quality of denoising; by default, one that goes with the work on the picture.
+    pub denoise_quality: Option<Quality>,
     /// True if the picture before denoising is kept as layer `noisy`.
     pub keep_noisy: bool,
     /// Settings of the verification of the picture's error, if any.

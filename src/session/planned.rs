@@ -68,7 +68,8 @@ impl Planning<'_> {
             }
             Wanted::Time { seconds, run, held } => {
                 if let Some(chooser) = chooser {
-                    let finishing = self.finish.expected_seconds(&goal.method);
+                    let finishing =
+                        self.finish.expected_seconds(&goal.method, seconds - run.elapsed().wall_seconds);
                     let left = *seconds - run.elapsed().wall_seconds - finishing;
                     let ladder = self.ladder(goal.method, held)?;
                     choice = Some(chooser.for_time(&ladder, left, pilot_time.wall_seconds));
@@ -171,7 +172,7 @@ impl Planning<'_> {
     ) -> Result<Made, FrameError> {
         let Planning { session: Session { world, .. }, view, finish, control } = *self;
         let watch = Stopwatch::start();
-        let finishing = finish.expected_seconds(method);
+        let finishing = finish.expected_seconds(method, asked - run.elapsed().wall_seconds);
         let left = || asked - finishing - run.elapsed().wall_seconds;
         let found = plan::for_time(world, view, &self.ladder(*method, held)?, left, control)
             .ok_or(FrameError::Interrupted)?;

@@ -30,7 +30,7 @@ pub(super) struct Triangle {
 impl Triangles {
     pub fn new(scene: &Scene) -> Triangles {
         let mut first = Vec::with_capacity(scene.meshes.len());
-        let mut records = Vec::with_capacity(scene.meshes.iter().map(|m| m.triangles.len()).sum());
+        let mut records = Vec::with_capacity(scene.triangle_count());
         for mesh in &scene.meshes {
             first.push(records.len());
             records.extend(mesh.triangles.iter().map(|&vertices| {

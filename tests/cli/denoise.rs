@@ -120,3 +120,25 @@ fn a_file_is_denoised_as_its_render_would_be_and_keeps_all_else() {
     let onto = sandbox.run(&["denoise", "plain.exr", "-o", "./plain.exr"]).expect(2);
     assert!(onto.stderr.contains("another file") && read(&sandbox.path("plain.exr")) == before);
 }
+
+#[test]
+fn quality_of_denoising_goes_with_the_work_or_is_as_asked() {
+    let sandbox = Sandbox::new();
+    let said = |name: &str| file(&sandbox, name).metadata().text("denoised").unwrap().to_owned();
+    let Some(_) = denoised(&sandbox, "auto.exr", &[]) else { return };
+    for quality in ["fast", "balanced", "high"] {
+        denoised(&sandbox, &format!("{quality}.exr"), &["--denoise-quality", quality]);
+    }
+    assert!(
+        said("fast.exr").ends_with(", fast quality") && said("balanced.exr").ends_with(", balanced quality")
+    );
+    assert!(!said("high.exr").contains("quality"), "{}", said("high.exr"));
+    let [auto, fast, high] = ["auto.exr", "fast.exr", "high.exr"].map(|name| color(&sandbox, name));
+    // Two paths in a room of few triangles are less work than the best network.
+    assert_eq!((said("auto.exr"), &auto), (said("fast.exr"), &fast));
+    assert_ne!(fast, high);
+
+    noisy(&sandbox, "noisy.exr", &["--aov", "albedo,normal"]).expect(0);
+    sandbox.run(&["denoise", "noisy.exr", "-o", "later.exr", "--quality", "fast"]).expect(0);
+    assert_eq!(color(&sandbox, "later.exr"), fast);
+}

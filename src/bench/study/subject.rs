@@ -52,7 +52,7 @@ impl Subject {
         let sources = std::mem::take(&mut loaded.scene.sources);
         let hash = hash_debug(&(&loaded.scene, &loaded.cameras));
         loaded.scene.sources = sources;
-        let triangles = loaded.scene.meshes.iter().map(|m| m.triangles.len()).sum();
+        let triangles = loaded.scene.triangle_count();
         let session = Session::of(loaded, path, Stats::new())?;
         let view = View::whole(session.cameras.still, study.plan.resolution);
         Ok(Subject { name: session.world.scene.name.clone(), hash, triangles, session, view })

@@ -11,6 +11,29 @@ use std::ptr;
 /// would take three times as much at 2048x2048 pixels.
 const MAX_MEMORY: c_int = 600;
 
+/// Quality of the filter, against its time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quality {
+    /// The smallest network.
+    Fast,
+    /// A network in between.
+    Balanced,
+    /// The largest network, where both guides are free of noise; that of `Balanced` elsewhere.
+    #[default]
+    High,
+}
+
+impl Quality {
+    /// The number that a version of the library has for it, or for the next that it knows.
+    fn number(self, version: Version) -> c_int {
+        match self {
+            Quality::Fast if (version.major, version.minor) >= (2, 3) => 4,
+            Quality::Fast | Quality::Balanced => 5,
+            Quality::High => 6,
+        }
+    }
+}
+
 /// Version of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Version {
@@ -48,6 +71,8 @@ pub struct Picture<'a> {
     pub normal: Option<&'a [[f32; 3]]>,
     /// True if albedo and normals have no noise.
     pub clean_guides: bool,
+    /// Quality wanted.
+    pub quality: Quality,
 }
 
 impl Device {
@@ -122,8 +147,15 @@ impl Device {
         filter.set_image(c"output", output.as_mut_ptr().cast(), size);
         filter.set_bool(c"hdr", true);
         filter.set_bool(c"cleanAux", picture.clean_guides && normal.is_some());
-        // SAFETY: the filter is alive and the name NUL-terminated.
-        unsafe { (self.api.set_filter_int)(filter.handle, c"maxMemoryMB".as_ptr(), MAX_MEMORY) };
+        // SAFETY: the filter is alive and the names are NUL-terminated.
+        unsafe {
+            (self.api.set_filter_int)(filter.handle, c"maxMemoryMB".as_ptr(), MAX_MEMORY);
+            (self.api.set_filter_int)(
+                filter.handle,
+                c"quality".as_ptr(),
+                picture.quality.number(self.version),
+            );
+        }
         // SAFETY: the filter is alive. Its images have the size that it was told, and live as long as this function,
         // which the filter does not outlive; it writes to the output alone, which nothing else refers to.
         unsafe { (self.api.commit_filter)(filter.handle) };

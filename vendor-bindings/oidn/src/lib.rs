@@ -10,5 +10,5 @@ mod device;
 mod error;
 mod locate;
 
-pub use device::{Device, Picture, Version};
+pub use device::{Device, Picture, Quality, Version};
 pub use error::Error;

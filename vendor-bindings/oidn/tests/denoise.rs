@@ -1,6 +1,6 @@
 //! The filter on small pictures; left out, saying so, where there is no library.
 
-use oidn::{Device, Error, Picture};
+use oidn::{Device, Error, Picture, Quality};
 
 /// The device, or `None` and a note where there is no library.
 fn device(threads: usize) -> Option<Device> {
@@ -33,7 +33,14 @@ fn noisy(width: usize, height: usize, mean: f32) -> Vec<[f32; 3]> {
 }
 
 fn plain(width: usize, height: usize, color: &[[f32; 3]]) -> Picture<'_> {
-    Picture { size: [width, height], color, albedo: None, normal: None, clean_guides: false }
+    Picture {
+        size: [width, height],
+        color,
+        albedo: None,
+        normal: None,
+        clean_guides: false,
+        quality: Quality::High,
+    }
 }
 
 #[test]
@@ -53,7 +60,8 @@ fn noise_goes_and_the_edge_stays() {
         };
         let albedo_alone =
             Picture { albedo: Some(&albedo), clean_guides: true, ..plain(width, height, &color) };
-        for picture in [plain(width, height, &color), guided, albedo_alone] {
+        let lower = [Quality::Fast, Quality::Balanced].map(|quality| Picture { quality, ..guided });
+        for picture in [plain(width, height, &color), guided, albedo_alone].into_iter().chain(lower) {
             let clean = device.denoise(&picture).unwrap();
             let error = |image: &[[f32; 3]]| -> f32 {
                 let relative =
@@ -104,4 +112,18 @@ fn images_of_another_size_are_refused() {
     assert!(matches!(device.denoise(&picture), Err(Error::Size { image: "albedo", size: [11, 1], .. })));
     assert!(matches!(device.denoise(&plain(5, 3, &color)), Err(Error::Size { image: "color", .. })));
     assert!(device.denoise(&plain(0, 0, &[])).is_ok_and(|clean| clean.is_empty()));
+}
+
+#[test]
+fn qualities_differ_where_both_guides_are_free_of_noise() {
+    let Some(device) = device(2) else { return };
+    let (width, height) = (96, 64);
+    let (color, albedo) = (noisy(width, height, 1.0), vec![[0.5; 3]; width * height]);
+    let normal = vec![[0.0, 0.0, 1.0]; width * height];
+    let [fast, balanced, high] = [Quality::Fast, Quality::Balanced, Quality::High].map(|quality| {
+        let plain = plain(width, height, &color);
+        let (albedo, normal) = (Some(&albedo[..]), Some(&normal[..]));
+        device.denoise(&Picture { albedo, normal, clean_guides: true, quality, ..plain }).unwrap()
+    });
+    assert!(fast != balanced && balanced != high && fast != high);
 }
