@@ -3,7 +3,8 @@
 //! [`Denoiser::denoise`] takes a picture's colour and, as guides, albedo and normals of the surfaces seen; [`guides`]
 //! finds those among the layers of a file. The result has the same bits for any number of threads.
 //!
-//! Network and weights: Open Image Denoise's filter `RT` for high dynamic range, of a [`Quality`] that [`effort`] finds.
+//! Network and weights: Open Image Denoise's filter `RT` for high dynamic range, of a [`Quality`] that [`effort`]
+//! finds.
 //! Deviations: pictures less than [`MIN_SIDE`] pixels wide or high are continued by their edges up to that, since the
 //! network darkens them; black ones stay black.
 //! Units: radiance as in the picture, whatever its scale; the filter finds the exposure by itself, but for pictures far

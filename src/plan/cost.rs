@@ -1,9 +1,9 @@
 //! A model of the time of a render, fitted to a few renders that were smaller or cheaper.
 //!
-//! The light pass and its trees take time with the virtual lights, whatever the film. All else takes time
-//! with the eye samples: each one `c · e^(β (h - h₀)) · (n / n₀)^-γ` seconds at level h of the quality scale
-//! and n samples in all. β is the cost of finer settings, γ the gain by denser samples, as neighbours share
-//! more.
+//! The light pass and its trees take time with the virtual lights, whatever the film. The eye pass takes time with the
+//! eye samples, and some whatever their number. All else takes time with the eye samples: each one
+//! `c · e^(β (h - h₀)) · (n / n₀)^-γ` seconds at level h of the quality scale and n samples in all. β is the cost of
+//! finer settings, γ the gain by denser samples, as neighbours share more.
 
 /// Seconds a sample per height: before two heights are known, and the range in which it is believed.
 const BETA: (f64, [f64; 2]) = (0.35, [0.05, 1.4]);
@@ -23,6 +23,8 @@ pub struct Timed {
     pub vpls: f64,
     /// Of the light pass and its trees.
     pub light: f64,
+    /// Of the eye pass.
+    pub eye: f64,
     /// Of all else.
     pub rest: f64,
 }
@@ -31,6 +33,8 @@ pub struct Timed {
 #[derive(Clone, Copy, Debug)]
 pub struct Cost {
     last: Timed,
+    /// Seconds that another sample of the eye pass takes, where they are known.
+    eye: Option<f64>,
     beta: f64,
     gamma: f64,
 }
@@ -59,7 +63,7 @@ impl Cost {
             let alike = by_sample(b) - by_sample(a) + gamma * (b.samples / a.samples).ln();
             beta = (alike / (b.height - a.height)).clamp(BETA.1[0], BETA.1[1]);
         }
-        Some(Cost { last, beta, gamma })
+        Some(Cost { last, eye: eye(timed), beta, gamma })
     }
 
     /// Seconds of a render of so many samples and virtual lights at `height`.
@@ -67,8 +71,22 @@ impl Cost {
         let last = &self.last;
         let light = if last.vpls > 0.0 { last.light * vpls / last.vpls } else { last.light };
         let fewer = (samples / last.samples).powf(-self.gamma);
-        light + samples * last.rest / last.samples * (self.beta * (height - last.height)).exp() * fewer
+        let eye = match self.eye {
+            Some(another) => (last.eye + (samples - last.samples) * another).max(0.0),
+            None => last.eye * (samples / last.samples).powf(1.0 - GAMMA.0),
+        };
+        light + eye + samples * last.rest / last.samples * (self.beta * (height - last.height)).exp() * fewer
     }
+}
+
+/// Seconds that another sample of the eye pass takes, by the renders of the fewest and of the most samples, if these
+/// are far apart; at least a fifth of the mean of the latter, since clocks err.
+fn eye(timed: &[Timed]) -> Option<f64> {
+    let by_samples = |a: &&Timed, b: &&Timed| a.samples.total_cmp(&b.samples);
+    let (few, most) = timed.iter().min_by(by_samples).zip(timed.iter().max_by(by_samples))?;
+    let mean = most.eye / most.samples;
+    let another = (most.eye - few.eye) / (most.samples - few.samples);
+    ((most.samples / few.samples).ln() >= LEAST_APART).then(|| another.clamp(0.2 * mean, mean))
 }
 
 #[cfg(test)]
@@ -78,7 +96,7 @@ mod tests {
     /// A machine on which the model is exact.
     fn timed(height: f64, samples: f64, vpls: f64) -> Timed {
         let each = 1e-5 * (0.6 * height).exp() * samples.powf(-0.2);
-        Timed { height, samples, vpls, light: 3e-6 * vpls, rest: each * samples }
+        Timed { height, samples, vpls, light: 3e-6 * vpls, eye: 5e-3 + 2e-7 * samples, rest: each * samples }
     }
 
     #[test]
@@ -88,7 +106,10 @@ mod tests {
         for (height, samples, vpls) in [(0.0, 2.6e5, 2e4), (2.5, 1e6, 1e5), (6.0, 1e6, 2e6)] {
             let expected = timed(height, samples, vpls);
             let found = cost.seconds(height, samples, vpls);
-            assert!((found / (expected.light + expected.rest) - 1.0).abs() < 1e-9, "{height} {found}");
+            assert!(
+                (found / (expected.light + expected.eye + expected.rest) - 1.0).abs() < 1e-9,
+                "{height} {found}"
+            );
         }
     }
 
@@ -97,14 +118,14 @@ mod tests {
         assert!(Cost::fit(&[]).is_none());
         let one = Cost::fit(&[timed(1.0, 4e3, 2e4)]).unwrap();
         let expected = timed(1.0, 4e3, 2e4);
-        assert!((one.seconds(1.0, 4e3, 2e4) - expected.light - expected.rest).abs() < 1e-12);
+        assert!((one.seconds(1.0, 4e3, 2e4) - expected.light - expected.eye - expected.rest).abs() < 1e-12);
         assert!(one.seconds(2.0, 4e3, 2e4) > one.seconds(1.0, 4e3, 2e4));
         assert!(one.seconds(1.0, 8e3, 2e4) > one.seconds(1.0, 4e3, 2e4));
     }
 
     #[test]
     fn renders_too_fast_to_time_are_no_trouble() {
-        let nothing = Timed { height: 0.0, samples: 1.0, vpls: 0.0, light: 0.0, rest: 0.0 };
+        let nothing = Timed { height: 0.0, samples: 1.0, vpls: 0.0, light: 0.0, eye: 0.0, rest: 0.0 };
         let cost = Cost::fit(&[nothing, Timed { height: 3.0, samples: 9.0, ..nothing }]).unwrap();
         assert!(cost.seconds(6.0, 1e6, 1e6).is_finite());
     }

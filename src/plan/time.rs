@@ -180,7 +180,8 @@ fn small_renders(
         let stage = |stage| output.stats.stage(stage).map_or(0.0, |t| t.wall_seconds);
         let light = stage(Stage::LightPass) + stage(Stage::Tree);
         let (samples, vpls) = (samples(&method, &small), vpls(&method));
-        timed.push(Timed { height, samples, vpls, light, rest: (all - light).max(0.0) });
+        let eye = stage(Stage::EyePass);
+        timed.push(Timed { height, samples, vpls, light, eye, rest: (all - light - eye).max(0.0) });
         Cost::fit(&timed)
     };
     let small = |scale: u32| {
