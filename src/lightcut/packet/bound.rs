@@ -37,18 +37,26 @@ impl Transfer<'_> {
             let reflected = i.x * w.x[l] + i.y * w.y[l] + i.z * w.z[l];
             bounds[l] = reflected * (geometry[l] * cos_x[l]);
         }
-        if let Some(glossy) = &receivers.glossy {
-            let (cos_i_min, cos_mirror_max) = cluster.lobe16(receivers);
-            let most = glossy.bound(&DirectionBounds16 { cos_i_max: cos_x, cos_i_min, cos_mirror_max });
-            let w = i * LUMINANCE;
-            for l in 0..LANES {
-                let reflected = (w.x * most.x[l] + w.y * most.y[l] + w.z * most.z[l]) * geometry[l];
-                bounds[l] = if receivers.general >> l & 1 != 0 { reflected } else { bounds[l] };
+        // Lanes whose lobes a part of the cluster may reach: for many a cluster there are none.
+        let mut lit = 0;
+        for l in 0..LANES {
+            lit |= u16::from(geometry[l] * cos_x[l] > 0.0) << l;
+        }
+        let lit = lit & receivers.general;
+        match &receivers.glossy {
+            _ if lit == 0 => {}
+            Some(glossy) => {
+                let (cos_i_min, cos_mirror_max) = cluster.lobe16(receivers);
+                let most = glossy.bound(&DirectionBounds16 { cos_i_max: cos_x, cos_i_min, cos_mirror_max });
+                let w = i * LUMINANCE;
+                for l in 0..LANES {
+                    let reflected = (w.x * most.x[l] + w.y * most.y[l] + w.z * most.z[l]) * geometry[l];
+                    bounds[l] = if receivers.general >> l & 1 != 0 { reflected } else { bounds[l] };
+                }
             }
-        } else if receivers.general != 0 {
-            let (cos_min, cos_mirror) = cluster.lobe16(receivers);
-            for l in lanes_in(receivers.general) {
-                if geometry[l] * cos_x[l] > 0.0 {
+            None => {
+                let (cos_min, cos_mirror) = cluster.lobe16(receivers);
+                for l in lanes_in(lit) {
                     let bound = DirectionBound {
                         cos_i_max: cos_x[l],
                         cos_i_min: cos_min[l],

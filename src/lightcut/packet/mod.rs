@@ -40,6 +40,15 @@ pub struct PacketCluster {
     pub responses: Vec3x16,
 }
 
+/// The light of a cluster of a packet's cut before visibility.
+#[derive(Clone, Copy)]
+pub struct Unshadowed {
+    /// Contribution of a representative of unit intensity to each lane.
+    pub responses: Vec3x16,
+    /// Lanes that it lights.
+    pub lit: u16,
+}
+
 /// The light that a packet gathers from a cut.
 #[derive(Clone, Copy, Debug)]
 pub struct PacketSum {
@@ -61,12 +70,16 @@ pub struct PacketCut<'c> {
     pub sum: PacketSum,
     /// The clusters.
     pub clusters: &'c [PacketCluster],
+    /// Their light before visibility.
+    pub unshadowed: &'c [Unshadowed],
 }
 
 /// Workspace for cuts of packets; one a thread, so that its buffers are allocated once.
 #[derive(Default)]
 pub struct PacketLightcut {
     clusters: Vec<PacketCluster>,
+    /// Their light before visibility.
+    unshadowed: Vec<Unshadowed>,
     /// The clusters' errors and shares of the total.
     judgements: Vec<Judgement>,
     /// Work done so far.
@@ -94,6 +107,6 @@ impl PacketLightcut {
         self.counts.capped += count * u64::from(capped);
         let light = PacketLight { clusters: &self.clusters, strong: Vec3x16::ZERO };
         let sum = light.sum(transfer.trees, receivers, settings.clamp, &mut self.counts);
-        PacketCut { sum, clusters: &self.clusters }
+        PacketCut { sum, clusters: &self.clusters, unshadowed: &self.unshadowed }
     }
 }

@@ -1,6 +1,6 @@
 //! Refinement of a packet's cut.
 
-use super::{PacketCluster, PacketLightcut, ReceiverPacket, luminances};
+use super::{PacketCluster, PacketLightcut, ReceiverPacket, Unshadowed, luminances};
 use crate::light_tree::LightTrees;
 use crate::lightcut::clamp::{DOMINANT, DOMINANT_TO_REST, is_weak};
 use crate::lightcut::refinement::heir_and_other;
@@ -130,9 +130,10 @@ impl<'a, 't, 'm, V: PacketVisibility> Pass<'a, 't, 'm, V> {
     fn start(&mut self) -> F32x16 {
         self.cut.clusters.clear();
         self.cut.judgements.clear();
+        self.cut.unshadowed.clear();
         let mut thresholds = ZERO;
         for root in self.trees.roots_of(self.settings.origin) {
-            let (responses, sight) = self.representative_responses(root, Sight::default());
+            let (responses, sight, unshadowed) = self.representative_responses(root, Sight::default());
             let judgement = self.judge(root, &responses, sight, &[f32::MAX; LANES]);
             self.count(&judgement);
             for (threshold, error) in thresholds.iter_mut().zip(&judgement.errors) {
@@ -140,6 +141,7 @@ impl<'a, 't, 'm, V: PacketVisibility> Pass<'a, 't, 'm, V> {
             }
             self.cut.clusters.push(PacketCluster { node: root, responses });
             self.cut.judgements.push(judgement);
+            self.cut.unshadowed.push(unshadowed);
         }
         let largest = halved(thresholds, |a, b| if b > a { b } else { a });
         self.min_total = (largest / MAX_ERROR).max(f32::MIN_POSITIVE);
@@ -186,7 +188,7 @@ impl<'a, 't, 'm, V: PacketVisibility> Pass<'a, 't, 'm, V> {
         }
         let rest = self.totals;
         let known = Sight { known: sight.known & fine, seen: sight.seen };
-        let (responses, other_sight) = self.representative_responses(other, known);
+        let (responses, other_sight, unshadowed) = self.representative_responses(other, known);
         let judgement = self.judge(heir, &inherited, sight, &rest);
         self.count(&judgement);
         self.cut.clusters[place].node = heir;
@@ -195,6 +197,7 @@ impl<'a, 't, 'm, V: PacketVisibility> Pass<'a, 't, 'm, V> {
         self.count(&judgement);
         self.cut.clusters.push(PacketCluster { node: other, responses });
         self.cut.judgements.push(judgement);
+        self.cut.unshadowed.push(unshadowed);
     }
 
     /// Errors of a node whose representative responds with `responses`, in a cut whose other clusters sum up to `rest`.
@@ -223,11 +226,13 @@ impl<'a, 't, 'm, V: PacketVisibility> Pass<'a, 't, 'm, V> {
         Judgement { errors, counted, sight }
     }
 
-    /// Contribution of a node's representative at unit intensity, and its visibility, as far as that is not `known`.
-    fn representative_responses(&mut self, node: u32, known: Sight) -> (Vec3x16, Sight) {
+    /// Contribution of a node's representative at unit intensity, its visibility, as far as that is not `known`, and
+    /// the contribution without shadows.
+    fn representative_responses(&mut self, node: u32, known: Sight) -> (Vec3x16, Sight, Unshadowed) {
         let node = &self.trees.nodes[node as usize];
         let vpl = &self.trees.vpls[node.representative()];
         let (lit, mut responses) = self.transfer.unshadowed16(self.receivers, vpl, node.kind());
+        let unshadowed = Unshadowed { lit, responses };
         let doubtful = lit & !known.known;
         let mut seen = known.seen & known.known;
         if doubtful != 0 {
@@ -237,7 +242,7 @@ impl<'a, 't, 'm, V: PacketVisibility> Pass<'a, 't, 'm, V> {
         }
         responses.keep(lit & seen);
         self.visibility.attenuate16(self.receivers, lit & seen, (vpl, node), &mut responses);
-        (responses, Sight { known: known.known | lit, seen })
+        (responses, Sight { known: known.known | lit, seen }, unshadowed)
     }
 
     /// True if the cubic mean of a cluster's errors over the lanes is above that of their thresholds.

@@ -165,7 +165,7 @@ fn one_lane_clamps_as_a_single_point_does() {
     let mut points = ReceiverPacket::new();
     points.set([at(x), at(x + Vec3::X * 0.02)]);
     let mut lightcut = PacketLightcut::new();
-    let PacketCut { sum, clusters } = lightcut.gather(&transfer, &Unoccluded, &points, &settings);
+    let PacketCut { sum, clusters, .. } = lightcut.gather(&transfer, &Unoccluded, &points, &settings);
     for (lane, radiance) in sum.radiance.iter().enumerate().take(2) {
         let single = Lightcut::new().gather(&transfer, &Unoccluded, points.get(lane), &settings).radiance;
         assert!((luminance(*radiance) / luminance(single) - 1.0).abs() < 0.01, "{radiance} {single}");

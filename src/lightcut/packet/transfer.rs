@@ -32,7 +32,7 @@ impl Transfer<'_> {
         (lit & receivers.valid, responses)
     }
 
-    /// Returns the contributions of a VPL that is no spot to the lanes with uniform materials.
+    /// Sets the contributions of a VPL that is no spot to the lanes with uniform materials, where they are not 0.
     fn respond(
         &self,
         glossy: &AlikeBsdfs16,
@@ -53,6 +53,14 @@ impl Transfer<'_> {
             let local = |f: &Vec3x16| f.x[l] * towards.x + f.y[l] * towards.y + f.z[l] * towards.z;
             wi.set(l, Vec3::new(local(&frame[0]), local(&frame[1]), local(&frame[2])));
             emitted[l] = if distant { 1.0 } else { positive(-normal.dot(towards)) / limited };
+        }
+        let mut lit = 0;
+        for l in 0..LANES {
+            lit |= u16::from((wi.z[l] > 0.0) & (emitted[l] > 0.0)) << l;
+        }
+        // Most clusters of a cut that lie below one point's horizon lie below all of them.
+        if lit & receivers.general == 0 {
+            return;
         }
         let response = glossy.response(&wi);
         for l in 0..LANES {

@@ -21,7 +21,7 @@
 
 use super::fit::{Interpolant, LinearFit};
 use crate::lightcut::clamp::is_weak;
-use crate::lightcut::packet::{PacketCluster, luminances};
+use crate::lightcut::packet::{PacketCluster, Unshadowed, luminances};
 use crate::lightcut::{PacketSum, ReceiverPacket, Transfer};
 use crate::math::{F32x16, lanes_in, luminance};
 
@@ -110,9 +110,14 @@ impl<'a, 't, 'm> Anchors<'a, 't, 'm> {
     }
 
     /// Returns the class of a cluster, and the linear fit to it by the functions of `interpolant`.
-    pub fn classify(&self, cluster: &PacketCluster, interpolant: &Interpolant) -> Class {
+    pub fn classify(
+        &self,
+        cluster: &PacketCluster,
+        unshadowed: &Unshadowed,
+        interpolant: &Interpolant,
+    ) -> Class {
         let node = &self.transfer.trees.nodes[cluster.node as usize];
-        let at = self.light(cluster);
+        let at = self.light(cluster, unshadowed);
         let min_split = self.epsilon * self.luminance;
         let evaluated = |shadow_above, split_above| {
             Class::Evaluated(Evaluated { node: cluster.node, shadow_above, split_above })
@@ -148,10 +153,9 @@ impl<'a, 't, 'm> Anchors<'a, 't, 'm> {
         Class::Sampled(Sampled { node: cluster.node, probability, fit })
     }
 
-    fn light(&self, cluster: &PacketCluster) -> AtAnchors {
+    fn light(&self, cluster: &PacketCluster, unshadowed: &Unshadowed) -> AtAnchors {
         let node = &self.transfer.trees.nodes[cluster.node as usize];
-        let vpl = &self.transfer.trees.vpls[node.representative()];
-        let (lit, unshadowed) = self.transfer.unshadowed16(self.receivers, vpl, node.kind());
+        let &Unshadowed { lit, responses: ref unshadowed } = unshadowed;
         let r = &cluster.responses;
         let reached = |&l: &usize| r.x[l] + r.y[l] + r.z[l] > 0.0;
         let seen = lanes_in(lit).filter(reached).fold(0u16, |mask, lane| mask | 1 << lane);
@@ -159,7 +163,7 @@ impl<'a, 't, 'm> Anchors<'a, 't, 'm> {
         let attenuated = lanes_in(seen).any(lacks);
         // If only a few of the anchors are lit at all, little is known.
         let known = lit.count_ones() * 2 >= self.receivers.valid.count_ones();
-        let luminances = luminances(node.intensity, &unshadowed);
+        let luminances = luminances(node.intensity, unshadowed);
         let relative = lanes_in(lit).map(|l| luminances[l] * self.inverse_totals[l]);
         let share = relative.sum::<f32>() / self.receivers.len() as f32;
         AtAnchors { lit, seen, known, attenuated, luminances, share }

@@ -78,9 +78,9 @@ impl ReconstructionCut {
         self.evaluated.clear();
         self.sampled.clear();
         (self.settings, self.luminance, self.size) = (*settings, a.luminance, cut.clusters.len());
-        for cluster in cut.clusters {
+        for (cluster, unshadowed) in cut.clusters.iter().zip(cut.unshadowed) {
             let node = &transfer.trees.nodes[cluster.node as usize];
-            match a.classify(cluster, &self.interpolant) {
+            match a.classify(cluster, unshadowed, &self.interpolant) {
                 Class::Dropped => {}
                 Class::Fitted(fit) => self.interpolant.add(node, &fit),
                 Class::Evaluated(evaluated) => self.evaluated.push(evaluated),
