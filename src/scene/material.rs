@@ -130,12 +130,15 @@ impl Material {
         std::iter::successors(Some(self), |material| material.blend.as_ref().map(|blend| &blend.other))
     }
 
-    /// True if it scatters light otherwise along u than along v.
-    pub fn is_anisotropic(&self) -> bool {
-        let lobe = |lobe: &Lobe| matches!(lobe, Lobe::Anisotropic { .. });
-        let principled = |principled: &Principled| principled.anisotropic != 0.0;
-        self.parts()
-            .any(|part| part.lobes.iter().any(lobe) || part.principled.as_deref().is_some_and(principled))
+    /// Angle from u, in radians, along which it scatters light otherwise than across; `None` if it is isotropic. Of
+    /// several that are mixed, that of the first.
+    pub fn anisotropy_angle(&self) -> Option<f32> {
+        self.parts().find_map(|part| {
+            let of_lobe = |lobe: &Lobe| matches!(lobe, Lobe::Anisotropic { .. }).then_some(0.0);
+            let principled = part.principled.as_ref().filter(|p| p.anisotropic != 0.0);
+            let of_principled = principled.map(|p| p.anisotropic_rotation);
+            of_principled.or_else(|| part.lobes.iter().find_map(of_lobe))
+        })
     }
 
     /// Returns every share.

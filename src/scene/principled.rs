@@ -19,6 +19,8 @@ pub struct Principled {
     /// From 0 to 1: `a` reflects with α / √(1 - .9 a) along u and α √(1 - .9 a) along v, texture coordinates. Where a
     /// mesh has none, u is any direction.
     pub anisotropic: f32,
+    /// Angle from u, on the front counter-clockwise where v is to the left of u, to the direction in place of it.
+    pub anisotropic_rotation: f32,
     /// Interior over exterior index of refraction of the dielectric. A `specular` s of Mitsuba and Blender is
     /// η = 2 / (1 - √(.08 s)) - 1.
     pub eta: f32,
@@ -50,6 +52,7 @@ impl Default for Principled {
             metallic: none,
             roughness: Share::Constant(0.5),
             anisotropic: 0.0,
+            anisotropic_rotation: 0.0,
             eta: 1.5,
             spec_tint: none,
             spec_trans: none,

@@ -18,8 +18,8 @@ pub(super) struct Reliefs(Vec<Turn>);
 #[derive(Clone, Copy, Default, PartialEq)]
 struct Turn {
     relief: Option<Relief>,
-    /// True if x is along u.
-    along_u: bool,
+    /// Angle from u along which x is, if it is known.
+    from_u: Option<f32>,
 }
 
 impl Reliefs {
@@ -28,8 +28,8 @@ impl Reliefs {
         let of = |mesh: &Mesh| {
             let material = scene.materials.get(mesh.material.0 as usize);
             material.map_or(Turn::default(), |material| {
-                let along_u = material.is_anisotropic() && !mesh.uvs.is_empty();
-                Turn { relief: material.relief, along_u }
+                let from_u = material.anisotropy_angle().filter(|_| !mesh.uvs.is_empty());
+                Turn { relief: material.relief, from_u }
             })
         };
         let all: Vec<Turn> = scene.meshes.iter().map(of).collect();
@@ -45,7 +45,7 @@ impl World {
     }
 
     /// Turns the shading frame at barycentric weights `b` of a triangle by the relief of its mesh, if it has one, and
-    /// x along u, if its material asks for that.
+    /// x along u or at an angle from it, if its material asks for that.
     #[inline]
     pub(super) fn relieve(
         &self,
@@ -55,14 +55,20 @@ impl World {
         b: Vec2,
     ) {
         let Some(Reliefs(reliefs)) = &self.reliefs else { return };
-        let Turn { relief, along_u } = &reliefs[mesh as usize];
+        let Turn { relief, from_u } = &reliefs[mesh as usize];
         let mesh = &self.scene.meshes[mesh as usize];
         if let Some(relief) = relief {
             *frame = turned(&self.scene, relief, (mesh, primitive as usize), triangle, b, frame.normal);
         }
-        if *along_u {
-            let [along_u, _] = derivatives(mesh, primitive as usize, triangle.edges);
+        if let Some(angle) = from_u {
+            let [along_u, along_v] = derivatives(mesh, primitive as usize, triangle.edges);
             *frame = Frame::from_normal_and_tangent(frame.normal, along_u);
+            if *angle != 0.0 {
+                let (sin, cos) = angle.sin_cos();
+                let sin = if frame.bitangent.dot(along_v) < 0.0 { -sin } else { sin };
+                let turned = frame.tangent * cos + frame.bitangent * sin;
+                *frame = Frame::from_normal_and_tangent(frame.normal, turned);
+            }
         }
     }
 }
@@ -117,7 +123,8 @@ mod tests {
     use crate::embree::{Hits16, Ray};
     use crate::math::Rgb;
     use crate::scene::{
-        Camera, Distribution, Filter, Fresnel, Lobe, Material, Relief, Texels, Texture, TextureId, Wrap,
+        Camera, Distribution, Filter, Fresnel, Lobe, Material, Principled, Relief, Texels, Texture,
+        TextureId, Wrap,
     };
     use crate::test_scenes::*;
     use glam::{Mat3, Vec2, Vec3};
@@ -207,6 +214,23 @@ mod tests {
             assert!((frame.tangent.cross(frame.bitangent) - frame.normal).length() < 1e-6);
             assert_eq!(frame.normal == Vec3::Z, relief.is_none());
             normal(&world, 0.6, 0.5);
+        }
+    }
+
+    #[test]
+    fn frames_are_turned_from_u_towards_v_whichever_side_that_is() {
+        let flat = Relief::Heights { texture: TextureId(0), scale: 0.0 };
+        for mirrored in [1.0, -1.0] {
+            let mut staged = staged(square(flat, 1, vec![Rgb::ZERO]));
+            staged.materials[0].relief = None;
+            let brushed = Principled { anisotropic: 0.5, anisotropic_rotation: 0.5, ..Principled::default() };
+            staged.materials[0].principled = Some(Box::new(brushed));
+            staged.meshes[0].uvs.iter_mut().for_each(|uv| uv.y *= mirrored);
+            let world = world(staged);
+            let ray = Ray::new(Vec3::new(0.6, 0.5, 1.0), -Vec3::Z);
+            let frame = world.intersect(&ray).expect("the square").frame;
+            let expected = Vec3::new(0.5f32.cos(), mirrored * 0.5f32.sin(), 0.0);
+            assert!((frame.tangent - expected).length() < 1e-5, "{frame:?}");
         }
     }
 

@@ -35,6 +35,9 @@ pub(super) fn check_material(
                 "give 0 to 1",
             );
         }
+        if !principled.anisotropic_rotation.is_finite() {
+            return wrong("the angle of its anisotropy is not finite".into(), "give an angle");
+        }
         if !(0.0..=1.0).contains(&principled.clearcoat_gloss) {
             return wrong(format!("its clear coat's gloss is {}", principled.clearcoat_gloss), "give 0 to 1");
         }

@@ -26,6 +26,11 @@ const RAW: [&str; 3] = ["KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_m
 /// Roughness below which glass is smooth.
 const MAX_SMOOTH: f32 = 0.03;
 
+/// Roughness α below which a surface is as smooth as one of this.
+const MIN_ALPHA: f32 = 1e-3;
+/// Principled materials have a ratio of α across over along of 1 less this times their anisotropy.
+const ANISOTROPY_TO_SQUARE: f32 = 0.9;
+
 const RED: Channel = Channel::One(0);
 const GREEN: Channel = Channel::One(1);
 const BLUE: Channel = Channel::One(2);
@@ -149,14 +154,14 @@ impl Importer<'_> {
         Ok(Material { principled: Some(Box::new(principled)), ..material })
     }
 
-    /// Clear coat and sheen.
+    /// Clear coat, sheen and anisotropy.
     fn layers(
         &mut self,
         extensions: &serde_json::Map<String, Value>,
         principled: &mut Principled,
         name: &str,
     ) -> Result<(), SceneError> {
-        let [coat, sheen, _] = RAW.map(|key| extensions.get(key));
+        let [coat, sheen, anisotropy] = RAW.map(|key| extensions.get(key));
         if let Some(coat) = coat {
             let factor = number(coat, "clearcoatFactor").unwrap_or(0.0);
             let texture = slot(coat, "clearcoatTexture");
@@ -185,7 +190,38 @@ impl Importer<'_> {
                 name,
             );
         }
+        if let Some(anisotropy) = anisotropy {
+            self.stretch(anisotropy, principled, name);
+        }
         Ok(())
+    }
+
+    /// Anisotropy: α along the extension's direction is that between α and 1 at the square of its strength.
+    fn stretch(&mut self, anisotropy: &Value, principled: &mut Principled, name: &str) {
+        let strength = number(anisotropy, "anisotropyStrength").unwrap_or(0.0).clamp(0.0, 1.0);
+        if !(strength > 0.0) {
+            return;
+        }
+        if anisotropy.get("anisotropyTexture").is_some() {
+            let fallback = "its strength and rotation are the same everywhere";
+            self.report.lacks("anisotropyTexture is not modelled", fallback, name);
+        }
+        let Share::Constant(roughness) = principled.roughness else {
+            let what = "anisotropic roughness that is textured is not modelled";
+            self.report.lacks(what, "it is isotropic", name);
+            return;
+        };
+        let across = (roughness * roughness).max(MIN_ALPHA);
+        let along = across + (1.0 - across) * strength * strength;
+        let wanted = (1.0 - across / along) / ANISOTROPY_TO_SQUARE;
+        if wanted > 1.0 {
+            let what = "anisotropic roughness that differs by more than ten times";
+            self.report.lacks(what, "it differs by ten times about its mean", name);
+        }
+        principled.anisotropic = wanted.min(1.0);
+        principled.roughness = Share::Constant((along * across).sqrt().sqrt());
+        let rotation = number(anisotropy, "anisotropyRotation").unwrap_or(0.0);
+        principled.anisotropic_rotation = if rotation.is_finite() { rotation } else { 0.0 };
     }
 
     /// A factor from 0 to 1, times a channel of a texture.
@@ -266,9 +302,6 @@ impl Importer<'_> {
     fn report_unread(&mut self, source: &Source, extensions: &Extensions, name: &str) {
         for key in extensions.others.keys() {
             match key.as_str() {
-                "KHR_materials_anisotropy" => {
-                    self.report.lacks("anisotropic roughness is not modelled", "it is isotropic", name);
-                }
                 key if !RAW.contains(&key) => {
                     self.report.lacks(
                         &format!("the extension {key} is not modelled"),

@@ -245,6 +245,7 @@ impl Builder<'_> {
             metallic: share(&text.metallic, 0.0),
             roughness: share(&text.roughness, 0.5),
             anisotropic: text.anisotropic.map_or(0.0, f64::from) as f32,
+            anisotropic_rotation: 0.0,
             eta: text.ior.map_or(1.5, f64::from) as f32,
             spec_tint: share(&text.spec_tint, 0.0),
             spec_trans: share(&text.spec_trans, 0.0),

@@ -249,6 +249,20 @@ fn layers_lie_over_the_base() {
     assert_eq!(principled(&loaded, "velvet").sheen, Share::Constant(0.5));
     let eta = principled(&loaded, "dull").eta;
     assert!((((eta - 1.0) / (eta + 1.0)).powi(2) - 0.01).abs() < 1e-6);
+    // The extension's own formula: α .25 across, and .25 + .75 · .36 along.
+    for (name, [along, across]) in
+        [("brushed 0.5", [0.52, 0.25]), ("brushed 0.1", [1.0, 0.1].map(|a| a * 0.1f32.sqrt()))]
+    {
+        let brushed = principled(&loaded, name);
+        let Share::Constant(roughness) = brushed.roughness else { panic!() };
+        let aspect = (1.0 - 0.9 * brushed.anisotropic).sqrt();
+        let alpha = roughness * roughness;
+        assert!(
+            (alpha / aspect - along).abs() < 1e-5 && (alpha * aspect - across).abs() < 1e-5,
+            "{brushed:?}"
+        );
+        assert_eq!(brushed.anisotropic_rotation, 0.5);
+    }
 }
 
 #[test]

@@ -16,7 +16,7 @@ pub fn all() -> Vec<(&'static str, Model, &'static [&'static str])> {
         ("camera", camera(), &["anything but the camera", "a second animation"]),
         ("alpha", alpha(), &[]),
         ("glass", glass(), &["absorb", "sheets that transmit in part"]),
-        ("layers", layers(), &["a quarter", "sheen", "coloured reflection"]),
+        ("layers", layers(), &["a quarter", "sheen", "coloured reflection", "more than ten times"]),
         ("unlit", unlit(), &["unlit"]),
         ("topology", topology(), &["points and lines"]),
         (
@@ -29,7 +29,7 @@ pub fn all() -> Vec<(&'static str, Model, &'static [&'static str])> {
                 "KHR_materials_iridescence",
                 "EXT_x",
                 "several sets",
-                "anisotropic",
+                "anisotropyTexture",
             ],
         ),
     ]
@@ -208,7 +208,16 @@ fn layers() -> Model {
     model.shown(json!({ "name": "dull", "extensions": {
         "KHR_materials_specular": { "specularFactor": 0.25, "specularColorFactor": [1, 0.9, 0.8] },
     } }));
-    for extension in ["clearcoat", "sheen", "specular"] {
+    let brushed = |roughness: f32, strength: f32| {
+        json!({
+            "name": format!("brushed {roughness}"),
+            "pbrMetallicRoughness": { "metallicFactor": 1, "roughnessFactor": roughness },
+            "extensions": { "KHR_materials_anisotropy": { "anisotropyStrength": strength, "anisotropyRotation": 0.5 } },
+        })
+    };
+    model.shown(brushed(0.5, 0.6));
+    model.shown(brushed(0.1, 1.0));
+    for extension in ["clearcoat", "sheen", "specular", "anisotropy"] {
         model.uses(&format!("KHR_materials_{extension}"));
     }
     model
@@ -276,7 +285,7 @@ fn unmodelled() -> Model {
         "name": "all", "occlusionTexture": { "index": texture },
         "pbrMetallicRoughness": { "baseColorTexture": { "index": texture } },
         "emissiveFactor": [1, 1, 1], "emissiveTexture": { "index": texture, "texCoord": 1 },
-        "extensions": { "KHR_materials_iridescence": { "iridescenceFactor": 1 }, "KHR_materials_anisotropy": {} },
+        "extensions": { "KHR_materials_iridescence": { "iridescenceFactor": 1 }, "KHR_materials_anisotropy": { "anisotropyStrength": 0.5, "anisotropyTexture": { "index": texture } } },
     }));
     let colours = model.floats(&[[1.0, 0.0, 0.0]; 4]);
     let moved = model.floats(&[[0.0, 0.0, 1.0]; 4]);
