@@ -5,6 +5,7 @@
 
 use crate::embree::Ray;
 use crate::film::{CameraMatrices, Window};
+use crate::math::Cone;
 use crate::sampling::{Sampler, hash};
 use crate::scene::{Camera, Cameras, Projection};
 use glam::{DVec3, Vec2, Vec3};
@@ -158,6 +159,16 @@ impl View {
         match self.camera.projection {
             Projection::Parallel => spacing,
             Projection::Pinhole | Projection::Lens { .. } => spacing * position.distance(self.camera.origin),
+        }
+    }
+
+    /// Cones of eye rays where `samples` of them share a pixel.
+    pub fn cone(&self, samples: u32) -> Cone {
+        let across = 2.0 * self.camera.tan_half_x / self.window.film[0] as f32;
+        let width = across / (samples.max(1) as f32).sqrt();
+        match self.camera.projection {
+            Projection::Pinhole | Projection::Lens { .. } => Cone { width: 0.0, spread: width },
+            Projection::Parallel => Cone { width, spread: 0.0 },
         }
     }
 

@@ -68,7 +68,7 @@ impl LightBySpecularLobes {
                 }
                 let pixel = window.film_pixel([x, y]);
                 let paths = (0..samples).map(|sample| Start { pixel, sample, seed });
-                start(batch, paths, (world, view), look);
+                start(batch, paths, (world, view), (look, spp));
                 let (mut sum, mut finite) = (Rgb::ZERO, 0);
                 for radiance in
                     batch.trace(world, max_depth, &mut BySpecularLobes { glossy: true }, &mut counts)

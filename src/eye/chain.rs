@@ -14,7 +14,7 @@
 use super::sharp::{Sharp, Start};
 use crate::embree::Ray;
 use crate::material::Bsdf;
-use crate::math::Rgb;
+use crate::math::{Cone, Rgb};
 use crate::sampling::Sampler;
 use crate::shadow;
 use crate::stats::add_fields;
@@ -33,6 +33,8 @@ const MANY_EDGES: u32 = 64;
 const MAX_SURVIVAL: f32 = 0.9;
 
 /// The end of an edge of a chain.
+// It is handed on at once and stored nowhere.
+#[expect(clippy::large_enum_variant)]
 pub enum Met<'w> {
     /// A surface.
     Surface(Vertex<'w>),
@@ -99,12 +101,13 @@ struct Branch {
     start: Option<Start>,
 }
 
-/// Follows `ray` and calls `visit` for the end of every edge; returns the radiance emitted into the ray by surfaces
-/// and the environment, directly or along specular chains of at most `max_depth` edges; not all of it if chains do
-/// not follow sharp lobes.
+/// Follows `ray` in its `cone` and calls `visit` for the end of every edge; returns the radiance emitted into the ray
+/// by surfaces and the environment, directly or along specular chains of at most `max_depth` edges; not all of it if
+/// chains do not follow sharp lobes.
 pub fn trace<'w>(
     world: &'w World,
     ray: Ray,
+    cone: Cone,
     (max_depth, follow): (u32, Follow),
     sampler: &mut Sampler,
     counts: &mut ChainCounts,
@@ -121,7 +124,7 @@ pub fn trace<'w>(
     }) {
         counts.rays += 1;
         let out = -branch.ray.direction;
-        let Some(surface) = world.intersect(&branch.ray) else {
+        let Some(mut surface) = world.intersect(&branch.ray) else {
             visit(Met::Nothing { throughput: branch.throughput });
             let is_hidden = branch.edges == 1 && world.scene.hides_emitters;
             if let Some(environment) = world.emitters.environment.as_ref().filter(|_| !is_hidden) {
@@ -138,6 +141,7 @@ pub fn trace<'w>(
             continue;
         };
         let distance = branch.distance + surface.t;
+        surface.footprint = branch.ray.direction * cone.width_at(distance);
         let light = world.emitted(&surface, out);
         if light != Rgb::ZERO {
             let weight = |start: Start| start.weight_of_area(world, &surface, branch.ray.direction);

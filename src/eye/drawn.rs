@@ -333,7 +333,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 let paths = pixels
                     .iter()
                     .flat_map(|pixel| part.clone().map(move |sample| Start { pixel: *pixel, sample, seed }));
-                start(batch, paths, (self.world, self.view), look);
+                start(batch, paths, (self.world, self.view), (look, self.settings.spp));
                 ends.found.clear();
                 ends.order.clear();
                 let mut counts = Counts::default();

@@ -64,11 +64,11 @@ pub(super) fn edges<'w>(
         // Without delta lobes there is nothing to be drawn towards.
         let wanted = [(0, false), (1, true)].into_iter().filter(|(_, glossy)| *glossy || has_delta_lobes);
         for (i, glossy) in wanted {
-            start(&mut batch, paths.clone(), (world, view), Look::Pixels);
+            start(&mut batch, paths.clone(), (world, view), (Look::Pixels, 1));
             let found = batch.trace(world, settings.max_depth, &mut BySpecularLobes { glossy }, counts);
             sums[i] += found.map(finite).sum::<f64>();
         }
-        start(&mut batch, paths, (world, view), Look::Pixels);
+        start(&mut batch, paths, (world, view), (Look::Pixels, 1));
         let found = batch.trace(world, settings.max_depth, all, counts);
         sums[2] += found.map(|light| finite(light).sqrt()).sum::<f64>();
     }

@@ -2,7 +2,7 @@
 
 use super::chain::{ChainCounts, Follow, Met, trace};
 use super::points::{ShadingPoints, VisibilitySample, shading_point};
-use crate::math::Rgb;
+use crate::math::{Cone, Rgb};
 use crate::paths::eye_sampler;
 use crate::view::View;
 use crate::world::World;
@@ -26,6 +26,7 @@ pub struct EyeRays<'a, 'w> {
     settings: EyeSettings,
     /// Angle between neighbouring rays at the film's centre, in radians.
     angle: f32,
+    cone: Cone,
 }
 
 /// Surfaces that eye rays have made visible, in the order of the rays, each with one visibility sample. Weights and
@@ -60,7 +61,7 @@ impl<'a, 'w> EyeRays<'a, 'w> {
         let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
         // Angle between neighbouring samples, at the film's centre.
         let angle = view.pixel_angle() / (settings.spp as f32).sqrt();
-        EyeRays { world, view, settings, angle }
+        EyeRays { world, view, settings, angle, cone: view.cone(settings.spp) }
     }
 
     /// Follows eye ray `sample` of the film's pixel `film_pixel` and appends what it makes visible to `found`, where
@@ -82,7 +83,15 @@ impl<'a, 'w> EyeRays<'a, 'w> {
                 visibility.push(VisibilitySample { pixel, weight: vertex.throughput });
             }
         };
-        let emitted = trace(self.world, ray, (max_depth, Follow::DeltaAndSharp), &mut sampler, chains, visit);
+        let emitted = trace(
+            self.world,
+            ray,
+            self.cone,
+            (max_depth, Follow::DeltaAndSharp),
+            &mut sampler,
+            chains,
+            visit,
+        );
         if !emitted.is_finite() {
             found.nonfinite += 1;
         } else if emitted != Rgb::ZERO {

@@ -4,7 +4,7 @@
 
 use super::chain::{ChainCounts, Follow, Met, Vertex, trace};
 use crate::embree::{Hits16, Ray, Rays16};
-use crate::math::{LANES, Rgb, first_lanes};
+use crate::math::{Cone, LANES, Rgb, first_lanes};
 use crate::paths::Look;
 use crate::sampling::Sampler;
 use crate::view::View;
@@ -133,6 +133,7 @@ impl Looking<'_> {
         pixels: &mut [Pixel],
         mut samples: impl Iterator<Item = (usize, u32)>,
     ) {
+        let cone = self.view.cone(self.settings.spp);
         loop {
             let (mut packet, mut count) = ([(0, 0); LANES], 0);
             for sample in samples.by_ref().take(LANES) {
@@ -161,7 +162,7 @@ impl Looking<'_> {
                 let ray = rays.get(lane);
                 let surface = surfaces.as_ref().filter(|_| found >> lane & 1 != 0).map(|s| s.get(lane));
                 let seen = surface.map_or_else(Seen::default, |surface| {
-                    Seen::new(self.world, &ray, surface, &mut samplers[lane])
+                    Seen::new(self.world, (&ray, cone), surface, &mut samplers[lane])
                 });
                 pixels[*pixel].add(self.world, &seen, ray.direction.dot(self.view.camera.forward));
             }
@@ -226,12 +227,18 @@ struct Seen<'w> {
 
 impl<'w> Seen<'w> {
     /// Surfaces seen along an eye ray, of which `surface` is the first.
-    fn new(world: &'w World, ray: &Ray, surface: Surface, sampler: &mut Sampler) -> Seen<'w> {
+    fn new(
+        world: &'w World,
+        (ray, cone): (&Ray, Cone),
+        mut surface: Surface,
+        sampler: &mut Sampler,
+    ) -> Seen<'w> {
+        surface.footprint = ray.direction * cone.width_at(surface.t);
         let mut seen = Seen::default();
         let bsdf = world.bsdf(&surface);
         if bsdf.has_delta() {
             let visit = |met| seen.meet(world, met);
-            trace(world, *ray, (MAX_EDGES, Follow::Delta), sampler, &mut ChainCounts::default(), visit);
+            trace(world, *ray, cone, (MAX_EDGES, Follow::Delta), sampler, &mut ChainCounts::default(), visit);
         } else {
             let (out, throughput, distance) = (-ray.direction, Rgb::ONE, surface.t);
             let vertex = Vertex { surface, bsdf, out, throughput, depth: 1, distance };

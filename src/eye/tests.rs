@@ -3,7 +3,7 @@
 use super::chain::{ChainCounts, Follow, Met, Vertex, trace};
 use super::{DrawnLight, EyePass, EyeSettings, Feature, FeatureSettings, Features, SeenPixels};
 use crate::film::{Layer, Pixels, Window};
-use crate::math::Rgb;
+use crate::math::{Cone, Rgb};
 use crate::paths::Look;
 use crate::progress::Control;
 use crate::sampling::Sampler;
@@ -38,11 +38,19 @@ fn chain(world: &WorldAndView, max_depth: u32, seed: u32) -> (Vec<Vertex<'_>>, C
     let [width, height] = world.view.window.film;
     let ray = world.view.primary_ray([width / 2, height / 2], Vec2::splat(1e-3));
     let (mut vertices, mut counts) = (Vec::new(), ChainCounts::default());
-    trace(world, ray, (max_depth, Follow::DeltaAndSharp), &mut Sampler::new(seed, 0), &mut counts, |met| {
-        if let Met::Surface(vertex) = met {
-            vertices.push(vertex);
-        }
-    });
+    trace(
+        world,
+        ray,
+        Cone::default(),
+        (max_depth, Follow::DeltaAndSharp),
+        &mut Sampler::new(seed, 0),
+        &mut counts,
+        |met| {
+            if let Met::Surface(vertex) = met {
+                vertices.push(vertex);
+            }
+        },
+    );
     (vertices, counts)
 }
 

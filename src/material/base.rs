@@ -117,6 +117,11 @@ impl BaseModel {
         BaseModel { interface, mean_transmittance, internal_reflectance, factor, nonlinear: coat.nonlinear }
     }
 
+    /// True if the BRDF is proportional to the albedo.
+    pub fn is_linear(&self) -> bool {
+        !self.nonlinear || self.internal_reflectance == 0.0
+    }
+
     /// Returns the BRDF, less the coat's transmittances by angle.
     #[inline]
     pub fn brdf(&self, albedo: Rgb) -> Rgb {

@@ -45,6 +45,18 @@ impl Source {
         }
     }
 
+    /// True if the colours, on the base `base`, are linear in the texels of all textures together.
+    pub fn is_linear(&self, base: &BaseModel) -> bool {
+        match self {
+            Source::Layers(colours) => base.is_linear() || !colours.base.is_textured(),
+            Source::Principled(principled) => principled.is_linear(),
+            Source::Blend(blend) => {
+                !blend.weight.is_textured()
+                    && blend.sources.iter().all(|(source, base)| source.is_linear(base))
+            }
+        }
+    }
+
     /// Returns BRDF of the base and factors on the lobes where each texture has the value `texel` of it.
     pub fn colours(&self, base: &BaseModel, texel: &dyn Fn(TextureId) -> Rgb) -> Colours<Rgb> {
         let value = |reflectance: Reflectance| match reflectance {

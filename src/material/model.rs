@@ -4,11 +4,13 @@ use super::base::{BaseModel, CoatInterface};
 use super::bsdf::{Bsdf, Colours};
 use super::layers::{Layers, Source, Tables};
 use super::lobe::{DIFFUSE_ALPHA, LobeModel, MAX_LOBES, max_reflectance_table};
+use super::mip_maps::MipMaps;
 use super::roughness::{Level, Levels};
 use super::straight::Straight;
 use crate::math::{Rgb, luminance};
 use crate::scene::{Fresnel, Material, MaterialId, Scene, Share, Texture, TextureId};
 use glam::Vec2;
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// Materials of a scene, ready to be looked up at points.
@@ -19,6 +21,7 @@ pub struct Materials {
     count: usize,
     /// Every coat that differs from others; the first is none.
     coats: Vec<CoatInterface>,
+    mip_maps: MipMaps,
 }
 
 /// Material without its textures' values.
@@ -53,6 +56,8 @@ pub(super) struct Model {
     constant: Option<Colours<Rgb>>,
     /// Light that passes straight, likewise.
     straight: Option<Straight>,
+    /// True if light reflected by the mean of texels is the mean of that reflected by each.
+    filters: bool,
 }
 
 impl Materials {
@@ -78,7 +83,14 @@ impl Materials {
             model.coat = number(&mut coats, &model.base.interface);
             model.lobe_list = number(&mut lobe_lists, &model.lobes);
         }
-        Materials { models, count: scene.materials.len(), coats }
+        let mip_maps = MipMaps::new(textures, models.iter().flat_map(Model::filtered_textures));
+        Materials { models, count: scene.materials.len(), coats, mip_maps }
+    }
+
+    /// True if some textures are averaged over what a ray stands for.
+    #[inline]
+    pub fn filter_textures(&self) -> bool {
+        !self.mip_maps.is_empty()
     }
 
     /// Returns the number of materials.
@@ -96,21 +108,37 @@ impl Materials {
     /// Returns the material at texture coordinates `uv`. `scene` must be the one the materials were made from.
     #[inline]
     pub fn at(&self, scene: &Scene, id: MaterialId, uv: Vec2) -> Bsdf<'_> {
-        self.at_coordinates(scene, id, || uv)
+        self.at_coordinates(scene, id, || uv, || 0.0)
     }
 
-    /// Returns the material at texture coordinates that are only asked for where there is a texture.
+    /// Returns the material at texture coordinates that are only asked for where there is a texture, textures averaged
+    /// over the square around them of side `covered` if it makes no difference to the mean.
     #[inline]
-    pub fn at_coordinates(&self, scene: &Scene, id: MaterialId, uv: impl FnOnce() -> Vec2) -> Bsdf<'_> {
+    pub fn at_coordinates(
+        &self,
+        scene: &Scene,
+        id: MaterialId,
+        uv: impl FnOnce() -> Vec2,
+        covered: impl FnOnce() -> f32,
+    ) -> Bsdf<'_> {
         let model = &self.models[id.0 as usize];
         match &model.constant {
             Some(colours) => Bsdf { model, base: colours.base, scales: colours.scales },
-            None => self.textured(model, scene, uv()),
+            None => {
+                let covered = if model.filters { covered() } else { 0.0 };
+                self.textured(model, scene, uv(), covered)
+            }
         }
     }
 
-    fn textured<'m>(&'m self, mut model: &'m Model, scene: &Scene, uv: Vec2) -> Bsdf<'m> {
-        let texel = |id: TextureId| scene.textures.get(id.0 as usize).map_or(Rgb::ONE, |t| t.lookup(uv));
+    fn textured<'m>(&'m self, mut model: &'m Model, scene: &Scene, uv: Vec2, covered: f32) -> Bsdf<'m> {
+        let texel = |id: TextureId| {
+            let texture = scene.textures.get(id.0 as usize);
+            texture.map_or(Rgb::ONE, |texture| match covered > 0.0 {
+                true => self.mip_maps.level(texture, id, covered).lookup(uv),
+                false => texture.lookup(uv),
+            })
+        };
         if let Some(levels) = &model.levels {
             model = &self.models[levels.model(luminance(texel(levels.texture)))];
         }
@@ -192,13 +220,31 @@ impl Model {
             opacity,
             constant: None,
             straight: None,
+            filters: false,
         };
+        // Factors on each other vary together.
+        let is_of_one_factor = material.opacity.is_none_or(|opacity| !opacity.is_textured())
+            && material.relief.is_none()
+            && material.parts().all(|part| !part.has_textured_roughness());
+        model.filters = is_textured && is_of_one_factor && model.source.is_linear(&model.base);
         if !is_textured {
             let colours = model.colours(|_| Rgb::ONE);
             model.straight = Straight::new(&model.lobes, &colours.scales);
             model.constant = Some(colours);
         }
         model
+    }
+
+    /// Textures that are averaged.
+    fn filtered_textures(&self) -> Vec<TextureId> {
+        let found = RefCell::new(Vec::new());
+        if self.filters {
+            self.colours(|texture| {
+                found.borrow_mut().push(texture);
+                Rgb::ONE
+            });
+        }
+        found.into_inner()
     }
 
     /// Returns the colours where each texture has the value `texel` of it.

@@ -167,6 +167,16 @@ impl PrincipledModel {
         colours.is_textured()
     }
 
+    /// True if the colours are linear in the texels of all textures together.
+    pub fn is_linear(&self) -> bool {
+        let p = &self.parameters;
+        let none = |share: Share| share == Share::Constant(0.0);
+        let shares = [p.metallic, p.sheen, p.clearcoat];
+        // The hue is no linear function of the colour.
+        let without_hue = none(p.spec_tint) && (none(p.sheen_tint) || none(p.sheen));
+        without_hue && none(p.spec_trans) && !shares.iter().any(Share::is_textured)
+    }
+
     /// Returns albedo of the base and factors on the lobes where each texture has the value `texel` of it.
     pub fn colours(&self, texel: impl Fn(TextureId) -> Rgb) -> Colours<Rgb> {
         let values = Values::of(&self.parameters, texel);

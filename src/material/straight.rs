@@ -59,7 +59,7 @@ impl Materials {
         last: &mut Option<LastStraight>,
     ) -> Rgb {
         let Some(straight) = self.straight(id) else {
-            return self.at_coordinates(scene, id, uv).straight_transmittance(cos);
+            return self.at_coordinates(scene, id, uv, || 0.0).straight_transmittance(cos);
         };
         match *last {
             Some((material, at, transmittance)) if material == id && at == cos => transmittance,

@@ -5,6 +5,7 @@ mod alike;
 mod blends;
 mod bounds;
 mod energy;
+mod filtering;
 mod gaps;
 mod rough_glass;
 mod sampling;

@@ -1,11 +1,14 @@
-//! Mathematics shared by all stages: linear colour, directions, orthonormal frames, quadrature, and lanes of numbers.
+//! Mathematics shared by all stages: linear colour, directions, cones, orthonormal frames, quadrature, and lanes of
+//! numbers.
 
+mod cone;
 mod frame;
 mod lanes;
 mod quadrature;
 mod real;
 mod unit;
 
+pub use cone::Cone;
 pub use frame::Frame;
 pub use lanes::{F32x16, LANES, U32x16, Vec2x16, Vec3x16, first_lanes, lanes_in, mask_of};
 pub use quadrature::gauss_legendre;

@@ -10,7 +10,7 @@ use super::packet::{Packet, Shadows, Stage};
 use crate::embree::{Hits16, Ray, Rays16};
 use crate::light::{Learned, Receivers16};
 use crate::material::{Bsdf, LobeSet};
-use crate::math::{LANES, Rgb, Vec3x16, first_lanes, lanes_in};
+use crate::math::{Cone, LANES, Rgb, Vec3x16, first_lanes, lanes_in};
 use crate::sampling::Samplers16;
 use crate::world::{Surface, World};
 use glam::Vec3;
@@ -120,8 +120,8 @@ pub struct Batch {
 impl Batch {
     /// Adds up to sixteen paths, of which none may be missing but in the last call before [`Batch::trace`]; their
     /// results follow those of the call before.
-    pub fn push(&mut self, rays: Rays16, samplers: Samplers16, count: usize) {
-        self.packets.push(Packet::new(rays, samplers, self.count as u32));
+    pub fn push(&mut self, rays: Rays16, samplers: Samplers16, cone: Cone, count: usize) {
+        self.packets.push(Packet::new(rays, samplers, cone, self.count as u32));
         self.count += count;
         self.radiance.resize(self.count, Rgb::ZERO);
     }
@@ -169,7 +169,8 @@ impl Batch {
                 continue;
             }
             hits.repeat(found.trailing_zeros() as usize, !found);
-            let surfaces = world.surfaces(&hits);
+            let mut surfaces = world.surfaces(&hits);
+            world.cover(&mut surfaces, &packet.rays.directions(), found, |lane| packet.cones[lane]);
             packet.add_emitted(world, &surfaces, found, reach.learned(), &mut self.radiance);
             let mut followed = if R::ENDS { found & packet.followed() } else { found };
             if R::ENDS {

@@ -2,7 +2,7 @@
 
 use super::batch::Counts;
 use crate::embree::{Ray, Rays16};
-use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, first_lanes, lanes_in, mask_of};
+use crate::math::{Cone, F32x16, LANES, Rgb, U32x16, Vec3x16, first_lanes, lanes_in, mask_of};
 use crate::sampling::Samplers16;
 use crate::world::World;
 
@@ -46,6 +46,8 @@ pub(super) struct Packet {
     pub stage: U32x16,
     /// Numbers of sheets that light has passed straight; the edges before and behind count as one.
     pub sheets: U32x16,
+    /// Cones around the edges.
+    pub cones: [Cone; LANES],
 }
 
 /// Light that arrives where segments are free, gathered until a packet is full.
@@ -60,7 +62,7 @@ pub(super) struct Shadows {
 
 impl Packet {
     /// Paths along eye rays, with results from `slot` on.
-    pub fn new(rays: Rays16, samplers: Samplers16, slot: u32) -> Packet {
+    pub fn new(rays: Rays16, samplers: Samplers16, cone: Cone, slot: u32) -> Packet {
         let ones = Vec3x16 { x: [1.0; LANES], y: [1.0; LANES], z: [1.0; LANES] };
         Packet {
             rays,
@@ -75,6 +77,7 @@ impl Packet {
             way: [0; LANES],
             stage: [Stage::Chain as u32; LANES],
             sheets: [0; LANES],
+            cones: [cone; LANES],
         }
     }
 
@@ -94,6 +97,7 @@ impl Packet {
         self.way[to] = packet.way[from];
         self.stage[to] = packet.stage[from];
         self.sheets[to] = packet.sheets[from];
+        self.cones[to] = packet.cones[from];
     }
 
     /// Lanes that have fewer than `max_depth` of `edges` if sheets are not counted.

@@ -19,13 +19,18 @@ pub struct Start {
     pub seed: u32,
 }
 
-/// Adds `paths` to the batch, in order. With [`Look::EyeSamples`] they take the eye samples' places in turn.
+/// Adds `paths` to the batch, in order, of which `samples` are to share a pixel. With [`Look::EyeSamples`] they
+/// take the eye samples' places in turn.
 pub fn start(
     batch: &mut Batch,
     mut paths: impl Iterator<Item = Start>,
     (world, view): (&World, &View),
-    look: Look,
+    (look, samples): (Look, u32),
 ) {
+    let cone = view.cone(match look {
+        Look::Pixels => samples,
+        Look::EyeSamples { spp, .. } => spp,
+    });
     loop {
         let mut samplers = Samplers16::default();
         let mut starts = [Start { pixel: [0; 2], sample: 0, seed: 0 }; LANES];
@@ -51,6 +56,6 @@ pub fn start(
             let of = look.numbers(path.seed, path.sample);
             rays.set(i, &world.behind_hidden(view.sample_ray(path.pixel, jitter, of)));
         }
-        batch.push(rays, samplers, count);
+        batch.push(rays, samplers, cone, count);
     }
 }

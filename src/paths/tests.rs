@@ -1,10 +1,11 @@
-//! Ends of chains: the ways that they came.
+//! Ends of chains: the ways that they came, and the textures there.
 
 use super::{Batch, ChainEnd, Counts, Look, Reach, Start, start};
 use crate::math::Rgb;
+use crate::sampling::hash;
 use crate::scene::Camera;
 use crate::test_scenes::*;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::collections::BTreeSet;
 
 /// Ends by the mesh that they lie on: depth and way.
@@ -33,7 +34,7 @@ fn ways_tell_mirrors_apart_and_nothing_else() {
     let world = world(scene);
     let pixels = (0..64).map(|i| Start { pixel: [i % 8, i / 8], sample: 0, seed: 0 });
     let (mut batch, mut ways) = (Batch::default(), Ways::default());
-    start(&mut batch, pixels, (&world, &world.view), Look::EyeSamples { spp: 1, seed: 0 });
+    start(&mut batch, pixels, (&world, &world.view), (Look::EyeSamples { spp: 1, seed: 0 }, 1));
     batch.trace(&world, 8, &mut ways, &mut Counts::default());
     assert_eq!(ways.0.len(), 64);
     let of = |mesh| -> BTreeSet<(u32, u32)> {
@@ -43,4 +44,40 @@ fn ways_tell_mirrors_apart_and_nothing_else() {
     let mirrored: Vec<(u32, u32)> = of(2).into_iter().collect();
     assert_eq!(mirrored.iter().map(|end| end.0).collect::<Vec<_>>(), [2, 2], "one way by each mirror");
     assert!(mirrored.iter().all(|end| end.1 != 0));
+}
+
+/// Albedos of ends, by depth.
+#[derive(Default)]
+struct Albedos(Vec<(u32, f32)>);
+
+impl<'w> Reach<'w> for Albedos {
+    const ENDS: bool = true;
+
+    fn end(&mut self, end: &ChainEnd<'w>) {
+        self.0.push((end.depth, end.bsdf.base_brdf().x * std::f32::consts::PI));
+    }
+}
+
+#[test]
+fn textures_are_averaged_over_what_a_sample_stands_for_seen_in_mirrors_too() {
+    // A mirror for a floor, and walls and a ceiling of black and white texels, thousands to a pixel.
+    let mut scene = scene(Camera { tan_half_x: 0.3, ..Camera::default() }, [8, 8]);
+    let texels = (0..64 * 64).map(|i| Rgb::splat((hash(i, 3) % 2) as f32));
+    let noise = checkered(&mut scene, 64, texels.collect());
+    let noise = add_material(&mut scene, noise);
+    let mirror = add_material(&mut scene, mirror());
+    let fine = |wall| textured(wall, Vec2::splat(400.0));
+    scene.meshes.push(quad(Vec3::new(-50.0, -1.0, 50.0), Vec3::X * 100.0, Vec3::NEG_Z * 100.0, mirror));
+    scene.meshes.push(fine(quad(Vec3::new(-20.0, -1.0, -20.0), Vec3::X * 40.0, Vec3::Y * 40.0, noise)));
+    let world = world(scene);
+    let albedos = |samples: u32| {
+        let pixels = (0..64).map(|i| Start { pixel: [i % 8, i / 8], sample: i, seed: 0 });
+        let (mut batch, mut albedos) = (Batch::default(), Albedos::default());
+        start(&mut batch, pixels, (&world, &world.view), (Look::Pixels, samples));
+        batch.trace(&world, 8, &mut albedos, &mut Counts::default());
+        assert!([1, 2].iter().all(|depth| albedos.0.iter().any(|end| end.0 == *depth)));
+        albedos.0
+    };
+    assert!(albedos(4).iter().all(|(_, albedo)| (albedo - 0.5).abs() < 0.1), "{:?}", albedos(4));
+    assert!(albedos(1 << 30).iter().all(|(_, albedo)| *albedo < 1e-6 || (albedo - 1.0).abs() < 1e-6));
 }

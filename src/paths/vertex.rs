@@ -19,7 +19,7 @@ use super::packet::{Packet, Stage};
 use crate::embree::{Ray, Rays16};
 use crate::light::{Learned, Receivers16};
 use crate::material::{BsdfSamples16, Bsdfs16, LobeSet};
-use crate::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, mask_of};
+use crate::math::{Cone, F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, mask_of};
 use crate::sampling::{hash, power_heuristic};
 use crate::shadow;
 use crate::world::{Surfaces16, World, beyond};
@@ -30,6 +30,10 @@ const ROULETTE_DEPTH: u32 = 2;
 
 /// Maximum number of sheets that a path passes as if they were not there, so that it ends.
 const MAX_SHEETS: u32 = 64;
+
+/// Minimum density of directions by solid angle of lobes in which images can be seen (GGX of α .2): what others show is
+/// averaged by their directions.
+const MIN_DENSITY_OF_IMAGES: f32 = 2.0;
 
 /// Pairs of random numbers that come before the first vertex: the place in the pixel.
 const PAIRS_BEFORE: u32 = 1;
@@ -169,6 +173,15 @@ impl Packet {
                 self.emission_throughput.keep(self.at(Stage::Full));
             }
         }
+        if world.filters_textures() {
+            for i in lanes_in(found) {
+                let cone = &mut self.cones[i];
+                match samples.pdf[i] > MIN_DENSITY_OF_IMAGES {
+                    true => cone.width = cone.width_at(surfaces.t[i]),
+                    false => *cone = Cone::default(),
+                }
+            }
+        }
         for i in 0..LANES {
             let direction = surfaces.frame(i).to_world(samples.wi.get(i));
             self.rays.set(i, &shadow::ray_from(surfaces.position.get(i), surfaces.normal.get(i), direction));
@@ -206,6 +219,7 @@ impl Packet {
         self.rays.set(lane, &beyond(&before.rays.get(lane), position, normal, surfaces.t[lane]));
         self.normal.set(lane, before.normal.get(lane));
         self.pdf[lane] = before.pdf[lane];
+        self.cones[lane] = before.cones[lane];
         self.emission_throughput.set(lane, before.emission_throughput.get(lane) * weight);
         self.sheets[lane] += u32::from(self.sheets[lane] < MAX_SHEETS);
     }

@@ -152,6 +152,15 @@ impl Material {
         all
     }
 
+    /// True if the roughness of a lobe is textured, a blended material's left out.
+    pub fn has_textured_roughness(&self) -> bool {
+        self.principled.as_ref().is_some_and(|principled| principled.roughness.is_textured())
+            || self.lobes.iter().any(|lobe| match lobe {
+                Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => alpha.is_textured(),
+                Lobe::Anisotropic { .. } | Lobe::Mirror { .. } | Lobe::Dielectric { .. } => false,
+            })
+    }
+
     /// True if any parameter is textured.
     pub fn is_textured(&self) -> bool {
         self.diffuse.is_textured()

@@ -54,7 +54,7 @@ pub struct Memory {
     pub geometry: usize,
     /// The hierarchy over the triangles.
     pub hierarchy: usize,
-    /// Textures and the environment with its distributions.
+    /// Textures with mip maps, and the environment with its distributions.
     pub pictures: usize,
 }
 
@@ -156,7 +156,7 @@ impl Requirements {
         r.lights += usize::from(r.trees.environment);
         r.trees.indirect = r.lights > 0 && reflects && scene.max_depth.is_none_or(|depth| depth > 2);
         r.memory.hierarchy = BVH_BYTES_PER_TRIANGLE * r.triangles;
-        r.memory.pictures = scene.textures.iter().map(|t| t.texels.bytes()).sum();
+        r.memory.pictures = scene.textures.iter().map(|t| t.texels.bytes() / 3 * 4).sum();
         if let Some(Environment::Map(map)) = &scene.environment {
             // The texels, and cumulative sums over them.
             r.memory.pictures += (12 + 12 + 8) * map.radiance.len();

@@ -9,6 +9,7 @@ use crate::math::{Frame, Rgb};
 use crate::scene::{Mesh, Scene};
 use glam::{Vec2, Vec3};
 
+mod covered;
 mod hidden;
 mod packet;
 mod relief;
@@ -95,6 +96,9 @@ pub struct Surface {
     pub triangle: u32,
     /// Distance along the ray in units of its direction.
     pub t: f32,
+    /// Vector along the ray as long as the cone around it is wide here: textures are averaged over what the cone
+    /// covers; zero where they are looked up at the point.
+    pub footprint: Vec3,
 }
 
 impl World {
@@ -145,6 +149,7 @@ impl World {
             mesh: hit.geometry,
             triangle: hit.primitive,
             t: hit.t,
+            footprint: Vec3::ZERO,
         }
     }
 
@@ -165,7 +170,9 @@ impl World {
     #[inline]
     pub fn bsdf(&self, s: &Surface) -> Bsdf<'_> {
         let mesh = &self.scene.meshes[s.mesh as usize];
-        self.materials.at(&self.scene, mesh.material, mesh.uv(s.triangle as usize, s.barycentric))
+        let uv = || mesh.uv(s.triangle as usize, s.barycentric);
+        let covered = || self.covered(s.mesh, s.triangle, s.footprint);
+        self.materials.at_coordinates(&self.scene, mesh.material, uv, covered)
     }
 
     /// Radiance the surface emits towards the unit vector `out`.

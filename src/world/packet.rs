@@ -27,6 +27,8 @@ pub struct Surfaces16 {
     pub triangle: U32x16,
     /// Distances along the rays.
     pub t: F32x16,
+    /// Vectors along the rays as long as the cones around them are wide.
+    pub footprint: Vec3x16,
 }
 
 impl Surfaces16 {
@@ -51,6 +53,7 @@ impl Surfaces16 {
             mesh: self.mesh[lane],
             triangle: self.triangle[lane],
             t: self.t[lane],
+            footprint: self.footprint.get(lane),
         }
     }
 }
@@ -102,7 +105,8 @@ impl World {
         Bsdfs16::new(wo, |i| {
             let mesh = &self.scene.meshes[s.mesh[i] as usize];
             let uv = || mesh.uv(s.triangle[i] as usize, s.barycentric.get(i));
-            self.materials.at_coordinates(&self.scene, mesh.material, uv)
+            let covered = || self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
+            self.materials.at_coordinates(&self.scene, mesh.material, uv, covered)
         })
     }
 }

@@ -3,7 +3,7 @@
 //! Deviations: this repeats the meshes' positions, 64 bytes a triangle. Following a triangle's indices to its
 //! corners instead waits for memory twice, and up to four times.
 
-use crate::scene::Scene;
+use crate::scene::{Mesh, Scene};
 use glam::{Vec2, Vec3};
 
 /// The triangles of all meshes.
@@ -25,6 +25,8 @@ pub(super) struct Triangle {
     pub normal: Vec3,
     /// The corners' indices in the mesh.
     pub vertices: [u32; 3],
+    /// Length by texture coordinates of what is one unit long, in the mean of all directions; 0 where there are none.
+    pub uv_scale: f32,
 }
 
 impl Triangles {
@@ -36,7 +38,8 @@ impl Triangles {
             records.extend(mesh.triangles.iter().map(|&vertices| {
                 let [a, b, c] = vertices.map(|i| mesh.positions[i as usize]);
                 let edges = [b - a, c - a];
-                Triangle { corner: a, edges, normal: unit_normal(edges), vertices }
+                let uv_scale = uv_scale(mesh, vertices, edges);
+                Triangle { corner: a, edges, normal: unit_normal(edges), vertices, uv_scale }
             }));
         }
         Triangles { first, records }
@@ -61,6 +64,16 @@ impl Triangle {
 #[inline(always)]
 pub(super) fn position(corner: Vec3, edges: [Vec3; 2], b: Vec2) -> Vec3 {
     corner + (edges[0] * b.x + edges[1] * b.y)
+}
+
+/// Length by texture coordinates of what is one unit long on a triangle: the root of the ratio of its areas.
+fn uv_scale(mesh: &Mesh, vertices: [u32; 3], [e1, e2]: [Vec3; 2]) -> f32 {
+    let [a, b, c] = match mesh.uvs.as_slice() {
+        [] => return 0.0,
+        uvs => vertices.map(|i| uvs[i as usize]),
+    };
+    let scale = ((b - a).perp_dot(c - a).abs() / e1.cross(e2).length()).sqrt();
+    if scale.is_finite() { scale } else { 0.0 }
 }
 
 /// Returns the unit normal of a triangle from two edges, scaled first so that tiny triangles do not

@@ -42,7 +42,7 @@ pub fn pixel_means(
         let samples = |w: &Wanted| first.min(w.samples)..(first + TOGETHER).min(w.samples);
         let paths =
             wanted.iter().flat_map(|w| samples(w).map(|sample| Start { pixel: w.pixel, sample, seed }));
-        start(&mut batch, paths, (world, view), look);
+        start(&mut batch, paths, (world, view), (look, most));
         let mut values = batch.trace(world, max_depth, &mut FullPaths, counts);
         for (w, sum) in wanted.iter().zip(&mut sums) {
             for value in values.by_ref().take(samples(w).len()) {

@@ -186,7 +186,7 @@ impl Tile {
                 view.window.tile(index, TILE).map(|at| view.window.film_pixel(at)).flat_map(|pixel| {
                     samples.clone().map(move |sample| Start { pixel, sample, seed: settings.seed })
                 });
-            start(&mut batch, paths, (world, view), settings.look);
+            start(&mut batch, paths, (world, view), (settings.look, settings.spp));
             let mut values = batch.trace(world, max_depth, &mut FullPaths, &mut self.counts);
             for pixel in &mut self.pixels {
                 for (sample, mut value) in samples.clone().zip(values.by_ref()) {

@@ -159,7 +159,7 @@ impl Converter<'_> {
     fn bitmap(&mut self, object: &Object) -> Result<Reflectance, SceneError> {
         let path = self.file(object, "filename")?;
         let filter = match object.string("filter_type")?.as_deref() {
-            None | Some("bilinear") => Filter::Bilinear,
+            None | Some("bilinear" | "trilinear" | "ewa") => Filter::Bilinear,
             Some("nearest") => Filter::Nearest,
             Some(other) => {
                 let what = format!("the texture filter \"{other}\" is not modelled");
