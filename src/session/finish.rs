@@ -25,7 +25,7 @@ pub(crate) struct Finish<'a> {
     keep_noisy: bool,
     denoiser: Option<Denoiser>,
     /// Quality of denoising, where it is not to go with the work on each picture.
-    quality: Cell<Option<Quality>>,
+    quality: Option<Quality>,
     /// That of the last picture.
     last_quality: Cell<Quality>,
     /// Reason why a picture is not denoised though it was asked for: the first.
@@ -54,7 +54,7 @@ impl<'a> Finish<'a> {
             }
         });
         let Goal { features, keep_noisy, denoise_quality, .. } = *goal;
-        let (quality, last_quality) = (Cell::new(denoise_quality), Cell::default());
+        let (quality, last_quality) = (denoise_quality, Cell::default());
         Finish { world, view, control, features, keep_noisy, denoiser, quality, last_quality, failure }
     }
 
@@ -82,7 +82,7 @@ impl<'a> Finish<'a> {
             let work = Work::new(world.scene.triangle_count(), pixels).of_counted(&output.stats);
             effort::for_picture(pixels, work)
         };
-        self.quality.get().unwrap_or_else(by_work)
+        self.quality.unwrap_or_else(by_work)
     }
 
     fn denoiser(&self) -> Option<&Denoiser> {
@@ -161,8 +161,8 @@ impl<'a> Finish<'a> {
         is_denoised
     }
 
-    /// Seconds that [`Finish::apply`] is likely to take for a picture of `method`, by that of a smaller one. The
-    /// quality of denoising is from then on the one that goes with a picture made in `within` seconds.
+    /// Seconds that [`Finish::apply`] is likely to take for a picture of `method` made in `within` seconds, by that of
+    /// a smaller one.
     pub fn expected_seconds(&self, method: &Method, within: f64) -> f64 {
         let Some(denoiser) = self.denoiser() else { return 0.0 };
         let small = smaller(self.view, TRIAL_SCALE);
@@ -173,7 +173,7 @@ impl<'a> Finish<'a> {
         let guides = guides(&layers);
         let Some(color) = guides.albedo else { return 0.0 };
         // The first picture of a device takes longer, whatever its size.
-        let quality = self.quality.get().unwrap_or_default();
+        let quality = self.quality.unwrap_or_default();
         for _ in 0..2 {
             let watch = Stopwatch::start();
             if let Err(error) = denoiser.denoise(color, &guides, quality) {
@@ -182,10 +182,9 @@ impl<'a> Finish<'a> {
             denoising = watch.elapsed().wall_seconds;
         }
         let scale = self.view.window.pixel_count() as f64 / small.window.pixel_count() as f64;
-        if self.quality.get().is_none() {
-            let chosen = effort::for_work(within - scale * (looking + denoising), scale * denoising);
-            self.quality.set(Some(chosen));
-            denoising *= effort::relative_price(chosen);
+        if self.quality.is_none() {
+            let likely = effort::for_work(within - scale * (looking + denoising), scale * denoising);
+            denoising *= effort::relative_price(likely);
         }
         scale * (looking + denoising)
     }
