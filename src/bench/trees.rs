@@ -28,13 +28,13 @@ fn run(context: &Context) -> Vec<Table> {
         (context.say)(&format!("{indirect} indirect lights"));
         let light = LightPassSettings { indirect, ..LightPassSettings::default() };
         let depth = world.scene.path_limit(None);
-        let LightPass { sets, spots, .. } = light_pass(world, &light, depth, &Control::new());
+        let LightPass { sets, profiles, .. } = light_pass(world, &light, depth, &Control::new());
         let sets = std::rc::Rc::new(sets);
         let against = cases.len();
         for family in [Family::Divisive, Family::Agglomerative] {
-            let trees = LightTrees::build(&sets, spots.clone(), diagonal, family, &Control::new());
+            let trees = LightTrees::build(&sets, profiles.clone(), diagonal, family, &Control::new());
             let cuts = [0.02, 0.01].map(|epsilon| Some(mean_cut(&setting, &trees, epsilon)));
-            let (sets, spots) = (sets.clone(), spots.clone());
+            let (sets, spots) = (sets.clone(), profiles.clone());
             let labels = [&indirect.to_string(), &*format!("{family:?}").to_lowercase()];
             let lights = trees.vpls.len() as f64;
             let mut case = Case::new(&labels, against, lights, move || {

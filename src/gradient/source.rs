@@ -4,7 +4,7 @@
 
 use super::incidence::Incidence;
 use crate::math::{Frame, Real};
-use crate::vpl::{SpotProfile, Vpl, VplKind};
+use crate::vpl::{Profiles, Vpl, VplKind};
 use glam::Vec3;
 
 /// A virtual light in the receiver's frame.
@@ -120,7 +120,7 @@ impl<T: Real + PartialOrd> LocalVpl<T> {
 }
 
 impl LocalVpl<f32> {
-    /// Transforms a virtual light to the frame `frame` at `position`, without its spot profile, which
+    /// Transforms a virtual light to the frame `frame` at `position`, without its profile, which
     /// [`Incidence::of_vpl`] applies.
     #[inline]
     pub fn of_vpl(frame: &Frame, position: Vec3, vpl: &Vpl, kind: VplKind) -> LocalVpl<f32> {
@@ -129,27 +129,28 @@ impl LocalVpl<f32> {
             VplKind::Oriented => {
                 LocalVpl::Oriented { offset: local(vpl.position - position), normal: local(vpl.normal()) }
             }
-            VplKind::Omni => LocalVpl::Omni { offset: local(vpl.position - position) },
+            VplKind::Omni | VplKind::Lobed => LocalVpl::Omni { offset: local(vpl.position - position) },
             VplKind::Directional => LocalVpl::Directional { towards: local(vpl.position) },
         }
     }
 }
 
 impl Incidence<f32> {
-    /// Computes the light arriving from a virtual light at `position` in `frame`; spot profiles are looked up
-    /// in `spots`.
+    /// Computes the light arriving from a virtual light at `position` in `frame`; profiles are looked up
+    /// in `profiles`.
     #[inline]
     pub fn of_vpl(
         frame: &Frame,
         position: Vec3,
         vpl: &Vpl,
         kind: VplKind,
-        spots: &[SpotProfile],
+        profiles: &Profiles,
         min_dist_sq: f32,
     ) -> Option<Incidence<f32>> {
         let incidence = LocalVpl::of_vpl(frame, position, vpl, kind).incidence(min_dist_sq)?;
         match vpl.spot_profile() {
-            Some(profile) if kind == VplKind::Omni => incidence.through_spot(frame, &spots[profile]),
+            Some(profile) if kind == VplKind::Omni => incidence.through_spot(frame, &profiles.spots[profile]),
+            _ if kind == VplKind::Lobed => incidence.through_lobe(frame, &profiles.lobes[vpl.lobe()]),
             _ => Some(incidence),
         }
     }

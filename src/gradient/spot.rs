@@ -1,9 +1,9 @@
-//! The edge of a spot light's cone: its falloff by angle, and the derivatives of the falloff as the receiver
-//! moves.
+//! Light through profiles: the edge of a spot light's cone, its falloff by angle, and lobes, with the derivatives of
+//! the falloff as the receiver moves.
 
 use super::incidence::Incidence;
 use crate::math::Frame;
-use crate::vpl::SpotProfile;
+use crate::vpl::{LobeProfile, SpotProfile};
 use glam::Vec3;
 
 impl Incidence<f32> {
@@ -25,5 +25,14 @@ impl Incidence<f32> {
         let per_cos = 1.0 / (sin * (spot.outer_angle - spot.inner_angle));
         let slope = |axis_index: usize| -axis.dot(Vec3::from(self.turning(axis_index))) * per_cos;
         Some(self.attenuated(share, [slope(0), slope(1)]))
+    }
+
+    /// Applies a lobe; `None` where it sends nothing.
+    #[inline]
+    pub(super) fn through_lobe(self, frame: &Frame, lobe: &LobeProfile) -> Option<Incidence<f32>> {
+        let (share, slope) = lobe.share_and_slope(frame.to_world(-Vec3::from(self.direction)));
+        let slope = frame.to_local(slope);
+        let along = |axis: usize| -slope.dot(Vec3::from(self.turning(axis)));
+        (share > 0.0).then(|| self.attenuated(share, [along(0), along(1)]))
     }
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::light_tree::{Family, LightTrees};
 use crate::math::{Frame, Real};
 use crate::progress::Control;
-use crate::vpl::{SpotProfile, Vpl, VplKind};
+use crate::vpl::{LobeProfile, Profiles, SpotProfile, Vpl, VplKind};
 use glam::{DVec3, Vec3};
 use std::f64::consts::TAU;
 
@@ -231,14 +231,21 @@ fn virtual_lights_arrive_as_the_lightcut_counts_them() {
     let spot =
         SpotProfile { direction: Vec3::new(-0.2, 0.1, -1.0).normalize(), inner_angle: 0.3, outer_angle: 0.8 };
     let light = position + Vec3::new(0.4, 0.3, 1.5);
-    let at = |vpl: &Vpl, kind, x| Incidence::of_vpl(&frame, x, vpl, kind, &[spot], 1e-12);
-    let trees = LightTrees::build(&[], vec![spot], 1.0, Family::default(), &Control::new());
+    let lobe = LobeProfile {
+        normal: Vec3::new(0.3, 0.2, -1.0).normalize(),
+        towards_light: Vec3::new(0.2, 0.7, -0.6).normalize(),
+        ..crate::lightcut::fixtures::profiles().lobes[0]
+    };
+    let profiles = Profiles { spots: vec![spot], lobes: vec![lobe] };
+    let at = |vpl: &Vpl, kind, x| Incidence::of_vpl(&frame, x, vpl, kind, &profiles, 1e-12);
+    let trees = LightTrees::build(&[], profiles.clone(), 1.0, Family::default(), &Control::new());
     let transfer = crate::lightcut::Transfer { trees: &trees, min_dist_sq: 1e-12, patches: false };
     for (vpl, kind) in [
         (Vpl::oriented(light, Vec3::new(0.1, 0.2, -1.0).normalize()), VplKind::Oriented),
         (Vpl::omni(light), VplKind::Omni),
         (Vpl::spot(light, 0), VplKind::Omni),
         (Vpl::directional(Vec3::new(0.5, 0.0, 1.0).normalize()), VplKind::Directional),
+        (Vpl::lobed(light, 0), VplKind::Lobed),
     ] {
         let receiver = crate::lightcut::Receiver::irradiance(position, frame.normal, &frame);
         let incidence = at(&vpl, kind, position).unwrap();
@@ -255,6 +262,6 @@ fn virtual_lights_arrive_as_the_lightcut_counts_them() {
     }
     // Outside the cone.
     let outside =
-        Incidence::of_vpl(&frame, light + Vec3::Z, &Vpl::spot(light, 0), VplKind::Omni, &[spot], 0.0);
+        Incidence::of_vpl(&frame, light + Vec3::Z, &Vpl::spot(light, 0), VplKind::Omni, &profiles, 0.0);
     assert!(outside.is_none());
 }

@@ -5,7 +5,7 @@
 //! spans a cone of sin β = e/2); the finished nodes carry exact cones. The paper's c is kept, the scene's diagonal: a
 //! tenth of it gives up to a quarter smaller cuts, but their error grows as much (six scenes, against full sums).
 
-use crate::vpl::{Vpl, VplKind};
+use crate::vpl::{Profiles, Vpl, VplKind};
 use glam::Vec3;
 
 /// Coordinates of a primitive: position, normal, luminance of the intensity, and the bits of the VPL's index.
@@ -23,8 +23,9 @@ pub struct Primitive(pub Coordinates);
 
 impl Primitive {
     /// Creates the primitive of the VPL of index `index`.
-    pub fn new(vpl: &Vpl, kind: VplKind, luminance: f32, index: u32) -> Primitive {
+    pub fn new(vpl: &Vpl, kind: VplKind, profiles: &Profiles, (luminance, index): (f32, u32)) -> Primitive {
         let (p, n) = match kind {
+            VplKind::Lobed => (vpl.position, profiles.lobes[vpl.lobe()].axis()),
             VplKind::Omni => (vpl.position, Vec3::ZERO),
             VplKind::Oriented => (vpl.position, vpl.normal()),
             VplKind::Directional => (Vec3::ZERO, vpl.position),
@@ -37,7 +38,7 @@ impl Primitive {
         self.0[7].to_bits()
     }
 
-    /// Normal, or direction to the light; zero for omni VPLs.
+    /// Normal, axis of a lobe, or direction to the light; zero for omni VPLs.
     pub fn normal(&self) -> Vec3 {
         Vec3::new(self.0[3], self.0[4], self.0[5])
     }
@@ -111,7 +112,7 @@ mod tests {
     use super::*;
 
     fn oriented(p: Vec3, n: Vec3) -> Primitive {
-        Primitive::new(&Vpl::oriented(p, n), VplKind::Oriented, 1.0, 7)
+        Primitive::new(&Vpl::oriented(p, n), VplKind::Oriented, &Profiles::default(), (1.0, 7))
     }
 
     #[test]

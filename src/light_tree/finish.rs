@@ -9,7 +9,7 @@ use super::cost::{Primitive, PrimitiveBounds};
 use super::node::Node;
 use super::topology::Topology;
 use crate::math::{Rgb, luminance};
-use crate::vpl::{VplKind, VplSet};
+use crate::vpl::{Profiles, VplKind, VplSet};
 use glam::{DVec3, Vec3};
 
 /// Size above which both halves are finished in parallel.
@@ -28,14 +28,21 @@ struct Summary {
 /// The set of VPLs whose tree is finished.
 struct Finisher<'a> {
     set: &'a VplSet,
+    profiles: &'a Profiles,
     /// Index of the set's first VPL among all VPLs of all trees.
     first_vpl: u32,
 }
 
 /// Fills `nodes` (two a leaf: the root, a gap that keeps siblings aligned, then pairs of siblings, depth first)
 /// with the nodes of a tree; `first_node` is the index of `nodes[0]` among all nodes.
-pub fn finish(topology: &Topology, set: &VplSet, nodes: &mut [Node], first_node: u32, first_vpl: u32) {
-    let finisher = Finisher { set, first_vpl };
+pub fn finish(
+    topology: &Topology,
+    (set, profiles): (&VplSet, &Profiles),
+    nodes: &mut [Node],
+    first_node: u32,
+    first_vpl: u32,
+) {
+    let finisher = Finisher { set, profiles, first_vpl };
     if let Some((root, rest)) = nodes.split_first_mut() {
         let below = rest.get_mut(1..).unwrap_or_default();
         let subtree = Subtree { leaves: &topology.leaves, left_sizes: &topology.left_sizes, first_leaf: 0 };
@@ -95,10 +102,10 @@ impl Finisher<'_> {
         *node = Node::new(rounded_up(intensity), representative, self.set.kind, self.set.origin);
         node.set_children(below_index);
         self.set_box(node, &bounds);
-        if self.set.kind == VplKind::Oriented {
+        if self.has_cones() {
             let centre = Vec3::from_array(std::array::from_fn(|i| bounds.min[3 + i] + bounds.max[3 + i]));
             let axis = centre.try_normalize().unwrap_or_else(|| leaves[0].normal());
-            set_cone(node, axis, leaves);
+            self.set_cone(node, axis, leaves);
         }
         Summary { bounds, intensity, luminance, representative }
     }
@@ -109,11 +116,30 @@ impl Finisher<'_> {
         *node = Node::new(intensity, representative, self.set.kind, self.set.origin);
         let bounds = PrimitiveBounds::of(primitive);
         self.set_box(node, &bounds);
-        if self.set.kind == VplKind::Oriented {
-            set_cone(node, primitive.normal(), std::slice::from_ref(primitive));
+        if self.has_cones() {
+            self.set_cone(node, primitive.normal(), std::slice::from_ref(primitive));
         }
         let luminance = f64::from(luminance(intensity));
         Summary { bounds, intensity: intensity.as_dvec3(), luminance, representative }
+    }
+
+    fn has_cones(&self) -> bool {
+        matches!(self.set.kind, VplKind::Oriented | VplKind::Lobed)
+    }
+
+    /// Sets the cone about `axis` that contains every normal, or axis of a lobe.
+    fn set_cone(&self, node: &mut Node, axis: Vec3, members: &[Primitive]) {
+        let cos_beta = members.iter().fold(1.0f32, |least, r| {
+            let cos = r.normal().dot(axis);
+            if cos < least { cos } else { least }
+        });
+        node.axis = axis;
+        node.cos_beta = (cos_beta - COSINE_SLACK).max(-1.0);
+        node.sin_beta = (1.0 - node.cos_beta * node.cos_beta).sqrt();
+        if self.set.kind == VplKind::Lobed {
+            let lobe = |r: &Primitive| &self.profiles.lobes[self.set.vpls[r.index() as usize].lobe()];
+            node.sin_beta = members.iter().map(|r| lobe(r).width_sq()).fold(0.0, f32::max);
+        }
     }
 
     fn set_box(&self, node: &mut Node, bounds: &PrimitiveBounds) {
@@ -121,17 +147,6 @@ impl Finisher<'_> {
         node.min = Vec3::from_array(std::array::from_fn(|i| bounds.min[first + i]));
         node.max = Vec3::from_array(std::array::from_fn(|i| bounds.max[first + i]));
     }
-}
-
-/// Sets the cone about `axis` that contains every normal.
-fn set_cone(node: &mut Node, axis: Vec3, members: &[Primitive]) {
-    let cos_beta = members.iter().fold(1.0f32, |least, r| {
-        let cos = r.normal().dot(axis);
-        if cos < least { cos } else { least }
-    });
-    node.axis = axis;
-    node.cos_beta = (cos_beta - COSINE_SLACK).max(-1.0);
-    node.sin_beta = (1.0 - node.cos_beta * node.cos_beta).sqrt();
 }
 
 /// Rounds up to f32 in every channel, so that a cluster is never dimmer than its members.

@@ -17,7 +17,7 @@ mod topology;
 use crate::math::luminance;
 use crate::progress::Control;
 use crate::setting::{Each, Settings, Spec, choices};
-use crate::vpl::{Origin, SpotProfile, Vpl, VplSet};
+use crate::vpl::{Origin, Profiles, Vpl, VplKind, VplSet};
 use cost::Primitive;
 
 pub use node::{MAX_VPLS, Node};
@@ -60,8 +60,10 @@ pub struct LightTrees {
     pub roots: Vec<u32>,
     /// The VPLs in the order of the leaves, tree after tree: neighbours in a tree are neighbours in memory.
     pub vpls: Vec<Vpl>,
-    /// Profiles of the spot lights among the omni VPLs.
-    pub spots: Vec<SpotProfile>,
+    /// Profiles that they refer to.
+    pub profiles: Profiles,
+    /// Intensity per cosine of diffuse VPLs of the flux of the lobed ones, over the bounds of their intensities.
+    lobed_as_diffuse: f32,
 }
 
 impl LightTrees {
@@ -71,12 +73,12 @@ impl LightTrees {
     /// VPLs beyond [`MAX_VPLS`] in all are ignored. The trees are poor, but whole, if `control` is cancelled.
     pub fn build(
         sets: &[VplSet],
-        spots: Vec<SpotProfile>,
+        profiles: impl Into<Profiles>,
         diagonal: f32,
         family: Family,
         control: &Control,
     ) -> LightTrees {
-        let mut trees = LightTrees { spots, ..LightTrees::default() };
+        let mut trees = LightTrees { profiles: profiles.into(), ..LightTrees::default() };
         for set in sets {
             trees.add(set, diagonal, family, control);
         }
@@ -88,8 +90,9 @@ impl LightTrees {
         if n == 0 {
             return;
         }
-        let primitive =
-            |i: usize| Primitive::new(&set.vpls[i], set.kind, luminance(set.intensities[i]), i as u32);
+        let primitive = |i: usize| {
+            Primitive::new(&set.vpls[i], set.kind, &self.profiles, (luminance(set.intensities[i]), i as u32))
+        };
         let primitives = (0..n).map(primitive).collect();
         let topology = match family {
             Family::Divisive => divisive::build(primitives, diagonal * diagonal, control),
@@ -98,7 +101,11 @@ impl LightTrees {
         let (first_node, first_vpl) = (self.nodes.len(), self.vpls.len());
         let blank = Node::new(crate::math::Rgb::ZERO, 0, set.kind, set.origin);
         self.nodes.resize(first_node + 2 * n, blank);
-        finish::finish(&topology, set, &mut self.nodes[first_node..], first_node as u32, first_vpl as u32);
+        let nodes = &mut self.nodes[first_node..];
+        finish::finish(&topology, (set, &self.profiles), nodes, first_node as u32, first_vpl as u32);
+        if set.kind == VplKind::Lobed {
+            self.lobed_as_diffuse = as_diffuse(set, &self.profiles);
+        }
         self.vpls.extend(topology.leaves.iter().map(|r| set.vpls[r.index() as usize]));
         self.roots.push(first_node as u32);
     }
@@ -109,14 +116,16 @@ impl LightTrees {
         self.roots.iter().copied().filter(wanted)
     }
 
-    /// Mean luminance of the intensities of one origin's VPLs; 0 if there are none.
+    /// Mean luminance of the intensities of one origin's VPLs, lobed ones as diffuse ones of their flux; 0 if there are
+    /// none.
     pub fn mean_intensity(&self, origin: Origin) -> f32 {
         let (mut sum, mut count) = (0.0, 0);
         for (i, &root) in self.roots.iter().enumerate() {
             let node = &self.nodes[root as usize];
             if node.origin() == origin {
                 let end = self.roots.get(i + 1).map_or(self.nodes.len(), |&next| next as usize);
-                sum += f64::from(luminance(node.intensity));
+                let share = if node.kind() == VplKind::Lobed { self.lobed_as_diffuse } else { 1.0 };
+                sum += f64::from(luminance(node.intensity) * share);
                 count += (end - root as usize) / 2; // a tree of n leaves has room for 2n nodes
             }
         }
@@ -136,4 +145,15 @@ impl LightTrees {
             }
         })
     }
+}
+
+/// Mean ratio of the intensity per cosine of diffuse VPLs to the bound of that of lobed ones of the same flux.
+fn as_diffuse(set: &VplSet, profiles: &Profiles) -> f32 {
+    let (mut bounds, mut diffuse) = (0.0f64, 0.0f64);
+    for (vpl, intensity) in set.vpls.iter().zip(&set.intensities) {
+        let bound = f64::from(luminance(*intensity));
+        bounds += bound;
+        diffuse += bound * f64::from(profiles.lobes[vpl.lobe()].diffuse_equivalent());
+    }
+    if bounds > 0.0 { (diffuse / bounds) as f32 } else { 1.0 }
 }

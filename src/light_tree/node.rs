@@ -19,11 +19,12 @@ pub const MAX_VPLS: usize = 1 << INDEX_BITS;
 pub struct Node {
     /// Corner of the box around the positions (directional: around the unit directions to the light).
     pub min: Vec3,
-    /// Cosine of the half angle β of the cone around the normals; -1 for omni VPLs.
+    /// Cosine of the half angle β of the cone around the normals; -1 for omni VPLs. Of lobed ones it is
+    /// around the axes of their lobes.
     pub cos_beta: f32,
     /// The opposite corner.
     pub max: Vec3,
-    /// Sine of β.
+    /// Sine of β; of lobed VPLs the greatest of [`crate::vpl::LobeProfile::width_sq`].
     pub sin_beta: f32,
     /// Unit axis of the cone.
     pub axis: Vec3,
@@ -42,6 +43,7 @@ impl Node {
             VplKind::Oriented => 0,
             VplKind::Omni => 1,
             VplKind::Directional => 2,
+            VplKind::Lobed => 3,
         };
         let indirect = if origin == Origin::Indirect { INDIRECT } else { 0 };
         Node {
@@ -84,7 +86,8 @@ impl Node {
         match self.tag >> KIND_SHIFT {
             0 => VplKind::Oriented,
             1 => VplKind::Omni,
-            _ => VplKind::Directional,
+            2 => VplKind::Directional,
+            _ => VplKind::Lobed,
         }
     }
 
@@ -106,7 +109,7 @@ mod tests {
 
     #[test]
     fn the_tag_keeps_kind_origin_and_representative_apart() {
-        for kind in [VplKind::Omni, VplKind::Oriented, VplKind::Directional] {
+        for kind in [VplKind::Omni, VplKind::Oriented, VplKind::Directional, VplKind::Lobed] {
             for origin in [Origin::Direct, Origin::Indirect] {
                 let node = Node::new(Rgb::ONE, MAX_VPLS as u32 - 1, kind, origin);
                 assert_eq!((node.kind(), node.origin()), (kind, origin));

@@ -1,6 +1,7 @@
 //! Both families must build valid trees over any VPLs, however degenerate.
 
 use super::*;
+use crate::lightcut::fixtures::profiles;
 use crate::math::Rgb;
 use crate::progress::Control;
 use crate::vpl::{Origin, VplKind};
@@ -34,6 +35,7 @@ fn random_set(n: usize, kind: VplKind) -> VplSet {
             VplKind::Omni => Vpl::omni(rng.vec3()),
             VplKind::Oriented => Vpl::oriented(rng.vec3(), rng.direction()),
             VplKind::Directional => Vpl::directional(rng.direction()),
+            VplKind::Lobed => Vpl::lobed(rng.vec3(), (rng.next() * 36.0) as u32),
         };
         set.push(vpl, rng.vec3() + 0.01);
     }
@@ -41,7 +43,7 @@ fn random_set(n: usize, kind: VplKind) -> VplSet {
 }
 
 fn build(set: &VplSet, family: Family) -> LightTrees {
-    LightTrees::build(std::slice::from_ref(set), Vec::new(), 3f32.sqrt(), family, &Control::new())
+    LightTrees::build(std::slice::from_ref(set), profiles(), 3f32.sqrt(), family, &Control::new())
 }
 
 /// Checks all properties that lightcuts rely on.
@@ -60,8 +62,8 @@ fn assert_valid(trees: &LightTrees, sets: &[VplSet]) {
             seen[node.representative()] += 1;
             let vpl = &trees.vpls[node.representative()];
             assert_eq!((node.min, node.max), (vpl.position, vpl.position));
-            if node.kind() == VplKind::Oriented {
-                assert!(vpl.normal().dot(node.axis) >= node.cos_beta);
+            if let VplKind::Oriented | VplKind::Lobed = node.kind() {
+                assert!(axis(trees, node).dot(node.axis) >= node.cos_beta);
             }
             continue;
         };
@@ -83,16 +85,30 @@ fn assert_valid(trees: &LightTrees, sets: &[VplSet]) {
     assert_eq!(visited, sets.iter().map(|s| (2 * s.len()).saturating_sub(1)).sum::<usize>());
 }
 
-/// Checks that every member's normal lies in the cone of every cluster above it.
+/// Normal, or axis of the lobe, of the VPL of a leaf.
+fn axis(trees: &LightTrees, leaf: &Node) -> Vec3 {
+    let vpl = &trees.vpls[leaf.representative()];
+    match leaf.kind() {
+        VplKind::Lobed => trees.profiles.lobes[vpl.lobe()].axis(),
+        _ => vpl.normal(),
+    }
+}
+
+/// Checks that every member's normal lies in the cone of every cluster above it, and that no lobe is wider than it
+/// says.
 fn assert_cones_hold_members(trees: &LightTrees) {
     fn members(trees: &LightTrees, id: u32) -> Vec<Vec3> {
         let node = &trees.nodes[id as usize];
         let normals = match node.children() {
-            None => vec![trees.vpls[node.representative()].normal()],
+            None => vec![axis(trees, node)],
             Some(left) => [members(trees, left), members(trees, left + 1)].concat(),
         };
         for n in &normals {
             assert!(n.dot(node.axis) >= node.cos_beta, "{n} outside {:?}", node);
+        }
+        if let (VplKind::Lobed, Some(left)) = (node.kind(), node.children()) {
+            let width = |child: u32| trees.nodes[child as usize].sin_beta;
+            assert_eq!(node.sin_beta, width(left).max(width(left + 1)));
         }
         normals
     }
@@ -115,12 +131,12 @@ fn trees_are_whole_even_if_building_is_cancelled() {
 #[test]
 fn trees_of_every_kind_and_size_are_valid() {
     for family in FAMILIES {
-        for kind in [VplKind::Omni, VplKind::Oriented, VplKind::Directional] {
+        for kind in [VplKind::Omni, VplKind::Oriented, VplKind::Directional, VplKind::Lobed] {
             for n in [0, 1, 2, 3, 5, 16, 17, 100, 3000] {
                 let set = random_set(n, kind);
                 let trees = build(&set, family);
                 assert_valid(&trees, std::slice::from_ref(&set));
-                if kind == VplKind::Oriented {
+                if let VplKind::Oriented | VplKind::Lobed = kind {
                     assert_cones_hold_members(&trees);
                 }
             }

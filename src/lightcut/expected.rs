@@ -27,6 +27,8 @@
 //! 9 % of its light), and even its unshadowed contribution costs 1 %, as clusters with dim representatives
 //! are refined less than others.
 
+use crate::material::LobeShape;
+
 /// Error to expect relative to the bound where that is tight.
 const SCALE: f32 = 1.7;
 /// Ratio of the bound to √(bound · centre) above which it counts for less.
@@ -59,6 +61,13 @@ pub(super) fn expected_share(o: Outlook) -> f32 {
     let cosines = if cosines < 1.0 { cosines } else { 1.0 };
     let share = SPREAD * (o.near_sq / centre_sq * (FLOOR + (1.0 - FLOOR) * cosines)).sqrt();
     SCALE * if share < 1.0 { share } else { 1.0 }
+}
+
+/// Share of a lobe in the direction at `z` along its axis and the given distance, times the distance: what
+/// stands for the cosine in [`Outlook::at_centre`].
+#[inline(always)]
+pub(super) fn lobe_at(z: f32, distance: f32, width_sq: f32) -> f32 {
+    distance * LobeShape::max_share(z / if distance > 0.0 { distance } else { 1.0 }, width_sq)
 }
 
 #[cfg(test)]

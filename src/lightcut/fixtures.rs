@@ -7,7 +7,7 @@ use crate::math::{Frame, Rgb, lanes_in};
 use crate::progress::Control;
 use crate::sampling::{hash, uniform_sphere};
 use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene};
-use crate::vpl::{Origin, SpotProfile, Vpl, VplKind, VplSet};
+use crate::vpl::{LobeProfile, Origin, Profiles, SpotProfile, Vpl, VplKind, VplSet};
 use glam::{Vec2, Vec3};
 
 /// A stream of numbers in [0, 1), not of samples.
@@ -75,6 +75,7 @@ fn grouped(n: usize, kind: VplKind, scale: f32, numbers: &mut Numbers) -> VplSet
                 VplKind::Omni => Vpl::omni(position),
                 VplKind::Oriented => Vpl::oriented(position, direction),
                 VplKind::Directional => Vpl::directional(direction),
+                VplKind::Lobed => Vpl::lobed(position, (numbers.next() * 36.0) as u32),
             };
             set.push(vpl, numbers.vec3() + 0.05);
         }
@@ -82,10 +83,33 @@ fn grouped(n: usize, kind: VplKind, scale: f32, numbers: &mut Numbers) -> VplSet
     set
 }
 
-pub const SPOTS: [SpotProfile; 1] = [SpotProfile { direction: Vec3::Y, inner_angle: 0.4, outer_angle: 1.0 }];
+/// Profiles of one spot light and of 36 lobes of metals and mirrors of all roughness.
+pub fn profiles() -> Profiles {
+    let scene = all_materials();
+    let materials = Materials::new(&scene);
+    let mut numbers = Numbers(7);
+    let mut lobes = Vec::new();
+    while lobes.len() < 36 {
+        let id = MaterialId((numbers.next() * scene.materials.len() as f32) as u32);
+        let frame = Frame::from_normal(numbers.direction());
+        let towards_light = numbers.direction();
+        let wi = frame.to_local(towards_light);
+        let bsdf = materials.at(&scene, id, Vec2::ZERO);
+        let normal = frame.normal * wi.z.signum();
+        lobes.extend(bsdf.reflected_lobes(wi).map(|lobe| LobeProfile {
+            normal,
+            towards_light,
+            shape: lobe.shape,
+            peak: lobe.peak,
+        }));
+    }
+    let spot = SpotProfile { direction: Vec3::Y, inner_angle: 0.4, outer_angle: 1.0 };
+    Profiles { spots: vec![spot], lobes }
+}
 
-pub fn three_kinds(n: usize, scale: f32, numbers: &mut Numbers) -> Vec<VplSet> {
-    [VplKind::Omni, VplKind::Oriented, VplKind::Directional].map(|k| grouped(n, k, scale, numbers)).into()
+pub fn all_kinds(n: usize, scale: f32, numbers: &mut Numbers) -> Vec<VplSet> {
+    let kinds = [VplKind::Omni, VplKind::Oriented, VplKind::Directional, VplKind::Lobed];
+    kinds.map(|k| grouped(n, k, scale, numbers)).into()
 }
 
 pub fn random_receiver<'m>(

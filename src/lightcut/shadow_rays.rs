@@ -11,7 +11,7 @@ use glam::Vec3;
 pub fn to_vpl(x: Vec3, normal: Vec3, vpl: &Vpl, kind: VplKind) -> Ray {
     match kind {
         VplKind::Oriented => segment(x, normal, vpl.position, vpl.normal()),
-        VplKind::Omni => segment(x, normal, vpl.position, Vec3::ZERO),
+        VplKind::Omni | VplKind::Lobed => segment(x, normal, vpl.position, Vec3::ZERO),
         VplKind::Directional => ray_from(x, normal, vpl.position),
     }
 }

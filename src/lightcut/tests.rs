@@ -20,7 +20,7 @@ fn vpls_of_a_furnace_give_the_irradiance_of_the_geometric_series() {
     let settings = LightPassSettings { direct: 6000, indirect: 40_000, seed: 3 };
     let lights = light_pass(&world, &settings, u32::MAX, &Control::new());
     let trees =
-        LightTrees::build(&lights.sets, lights.spots, world.diagonal, Family::Divisive, &Control::new());
+        LightTrees::build(&lights.sets, lights.profiles, world.diagonal, Family::Divisive, &Control::new());
     let transfer = Transfer::new(&trees, world.diagonal);
     let expected = PI * emitted / (Rgb::ONE - albedo);
     for normal in [Vec3::Y, -Vec3::X, Vec3::new(1.0, 1.0, 1.0).normalize()] {
@@ -43,7 +43,7 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
     let lights = light_pass(&world, &settings, u32::MAX, &Control::new());
     for family in [Family::Divisive, Family::Agglomerative] {
         let trees =
-            LightTrees::build(&lights.sets, lights.spots.clone(), world.diagonal, family, &Control::new());
+            LightTrees::build(&lights.sets, lights.profiles.clone(), world.diagonal, family, &Control::new());
         let transfer = Transfer::new(&trees, world.diagonal);
         let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
         let mut cut = Lightcut::new();
@@ -84,7 +84,7 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
     for seed in 0..8 {
         let light = LightPassSettings { direct: 1000, indirect: 19_000, seed };
         let lights = light_pass(&world, &light, u32::MAX, &Control::new());
-        let trees = LightTrees::build(&lights.sets, lights.spots, world.diagonal, family, &Control::new());
+        let trees = LightTrees::build(&lights.sets, lights.profiles, world.diagonal, family, &Control::new());
         let transfer = Transfer::new(&trees, world.diagonal);
         let shift = [seed % 4 * 16, seed / 4 * 32];
         for block in 0..16 {

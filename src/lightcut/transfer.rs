@@ -50,9 +50,10 @@ impl<'a> Transfer<'a> {
         let wi = offset / dist_sq.sqrt();
         let emitted = match kind {
             VplKind::Oriented => -vpl.normal().dot(wi),
+            VplKind::Lobed => self.trees.profiles.lobes[vpl.lobe()].share(-wi),
             _ => match vpl.spot_profile() {
                 None => 1.0,
-                Some(profile) => self.trees.spots[profile].falloff(-wi),
+                Some(profile) => self.trees.profiles.spots[profile].falloff(-wi),
             },
         };
         if emitted <= 0.0 {

@@ -2,7 +2,7 @@
 //!
 //! Units: `eval` is 1/sr, without the cosine; `pdf` is per solid angle.
 
-use super::lobe::{Directions, DullLobe, LobeModel, MAX_LOBES, mean};
+use super::lobe::{Directions, DullLobe, LobeModel, MAX_LOBES, ReflectedLobe, mean};
 use super::model::Model;
 use crate::math::Rgb;
 use crate::scene::MaterialId;
@@ -277,6 +277,13 @@ impl<'m> Bsdf<'m> {
             }
         }
         albedo
+    }
+
+    /// Lists the part of that which lobes reflect that a virtual light should not radiate diffusely.
+    pub fn reflected_lobes(&self, wi: Vec3) -> impl Iterator<Item = ReflectedLobe> {
+        let cos = wi.z * self.side(wi);
+        let lobes = self.model.lobes.iter().zip(self.scales);
+        lobes.filter_map(move |(lobe, scale)| if cos > 0.0 { lobe.reflected(scale, cos) } else { None })
     }
 
     /// Share of the light from `wo` that is scattered, delta lobes excluded.

@@ -187,7 +187,8 @@ impl Layers {
                     let coat_level = level.map(|(texture, level)| (texture, level.of_coat()));
                     coat_facets = coat_facets.or_else(|| Some(facets(coat_level)));
                     let facets = facets(level);
-                    let lobe = RoughLobe { facets, fresnel, max_reflectance: None, albedo: None };
+                    let lobe =
+                        RoughLobe { facets, fresnel, max_reflectance: None, albedo: None, white: None };
                     add(LobeModel::Rough(lobe), scale);
                 }
                 Lobe::Anisotropic { distribution, alpha, fresnel, scale } => {

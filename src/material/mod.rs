@@ -30,7 +30,7 @@ mod table;
 pub use alike16::{AlikeBsdfs16, DirectionBounds16};
 pub use bound::DirectionBound;
 pub use bsdf::{Bsdf, LobeSet};
-pub use lobe::DullLobe;
+pub use lobe::{DullLobe, LobeShape};
 pub use model::Materials;
 pub use packet::{BsdfSamples16, Bsdfs16};
 pub use straight::LastStraight;

@@ -194,6 +194,9 @@ impl Model {
             if needs_albedo || rough.facets.alpha >= DIFFUSE_ALPHA {
                 rough.albedo = Some(tables.albedo(rough.facets, rough.fresnel));
             }
+            if !rough.is_glossy() {
+                rough.white = Some(tables.albedo(rough.facets, Fresnel::One));
+            }
             if let Fresnel::Conductor { .. } | Fresnel::Schlick { .. } = rough.fresnel {
                 rough.max_reflectance = Some(Arc::new(max_reflectance_table(&rough.fresnel)));
             }

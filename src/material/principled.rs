@@ -123,7 +123,13 @@ impl PrincipledModel {
         let aspect = (1.0 - 0.9 * p.anisotropic).sqrt();
         let alpha = [facets.alpha / aspect, facets.alpha * aspect].map(|alpha| alpha.max(MIN_ALPHA));
         let rough = |fresnel| match p.anisotropic {
-            0.0 => LobeModel::Rough(RoughLobe { facets, fresnel, max_reflectance: None, albedo: None }),
+            0.0 => LobeModel::Rough(RoughLobe {
+                facets,
+                fresnel,
+                max_reflectance: None,
+                albedo: None,
+                white: None,
+            }),
             _ => LobeModel::Anisotropic(AnisotropicLobe::new(facets.distribution, alpha, fresnel)),
         };
         let interface = |passage, inside_only| {

@@ -80,7 +80,7 @@ impl Lights {
         stats.count("Rays/closest hit", found.photons.rays);
 
         control.begin(Stage::Tree, 0);
-        let build = || LightTrees::build(&found.sets, found.spots, world.diagonal, wanted.family, control);
+        let build = || LightTrees::build(&found.sets, found.profiles, world.diagonal, wanted.family, control);
         let trees = stats.time(Stage::Tree, build);
         let least_sq = min_dist_sq(world.diagonal);
         let near_sq = |&size: &u32| if size > 0 { near_sq_of_size(size, least_sq) } else { 0.0 };

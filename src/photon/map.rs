@@ -9,7 +9,7 @@ use crate::eye::EyeIndex;
 use crate::math::Rgb;
 use crate::progress::Control;
 use crate::sampling::hash;
-use crate::vpl::{Photon, PhotonCounts, PhotonSettings, trace_photons};
+use crate::vpl::{Photon, PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
 use crate::world::World;
 use glam::Vec3;
 
@@ -43,7 +43,7 @@ pub struct PhotonMap {
 impl PhotonMap {
     /// Traces the photons.
     pub fn new(world: &World, settings: &PhotonSettings, control: &Control) -> PhotonMap {
-        let (mut photons, mut counts) = trace_photons(world, settings, control, |photon| *photon);
+        let (mut photons, mut counts) = trace_photons(world, settings, control, |hit| hit.photon);
         let share = 1.0 / counts.paths.max(1) as f32;
         for photon in &mut photons {
             photon.flux = (photon.flux * share).max(Rgb::ZERO);
@@ -56,7 +56,7 @@ impl PhotonMap {
             seed: hash(settings.seed, 0x517e),
             ..*settings
         };
-        let site = |photon: &Photon| Site { position: photon.position, normal: photon.normal };
+        let site = |hit: &PhotonHit| Site { position: hit.photon.position, normal: hit.photon.normal };
         let (mut sites, more) = trace_photons(world, &other, control, site);
         sites.retain(|site| site.position.is_finite());
         let (site_index, sites) = indexed(&sites, |site| site.position);

@@ -11,7 +11,7 @@ use crate::math::{Rgb, luminance};
 use crate::progress::Control;
 use crate::scene::{MaterialId, Scene};
 use crate::test_scenes::diffuse;
-use crate::vpl::{DirectIndirect, Origin, Vpl, VplKind, VplSet};
+use crate::vpl::{DirectIndirect, Origin, Profiles, Vpl, VplKind, VplSet};
 use crate::world::SurfacePoint;
 use glam::{Mat3, Vec2, Vec3};
 use std::sync::LazyLock;
@@ -96,5 +96,9 @@ pub fn candidate(position: Vec3, normal: Vec3) -> Candidate {
 pub fn light(kind: VplKind, vpl: Vpl, intensity: Rgb) -> LightTrees {
     let mut set = VplSet::new(kind, Origin::Indirect);
     set.push(vpl, intensity);
-    LightTrees::build(&[set], Vec::new(), 1.0, Family::Divisive, &Control::new())
+    lit_by(&[set], Profiles::default())
+}
+
+pub fn lit_by(sets: &[VplSet], profiles: Profiles) -> LightTrees {
+    LightTrees::build(sets, profiles, 1.0, Family::Divisive, &Control::new())
 }

@@ -12,7 +12,7 @@
 
 use super::lit_cluster::{ArrivingLight, LitCluster, RecordPoints};
 use crate::math::{F32x16, LANES, Rgb, Vec3x16, luminance};
-use crate::vpl::VplKind;
+use crate::vpl::{LobeProfile, VplKind};
 use glam::{Mat3, Vec3};
 
 /// Least cosine of an emitter that its relative change is divided by: where the light is seen edge-on, both vanish.
@@ -105,6 +105,7 @@ impl GatheredLayer16 {
     ) -> ArrivingLight {
         let light = points.arriving(cluster, responses, kept);
         let oriented = cluster.node.kind() == VplKind::Oriented;
+        let lobe = cluster.lobe();
         let normal = if oriented { cluster.vpl.normal() } else { Vec3::ZERO };
         // Powers of the distance in the falloff over the constant height.
         let power = if oriented { 4.0 } else { 3.0 };
@@ -121,7 +122,10 @@ impl GatheredLayer16 {
             let moves = lit && kept[l] >= 1.0 && inverse * inverse < max_inverse_sq;
             let rate = if moves { inverse } else { 0.0 };
             let cos = if oriented { -normal.dot(direction) } else { 1.0 };
-            let turning = normal * (1.0 / if cos > MIN_COS { cos } else { MIN_COS });
+            let turning = match lobe {
+                Some(lobe) if lit => relative_slope(lobe, -direction),
+                _ => normal * (1.0 / if cos > MIN_COS { cos } else { MIN_COS }),
+            };
             let gradient = (turning + direction * power) * rate;
             for c in 0..3 {
                 let (v, g) = (&mut self.vector[c], &mut self.gradient[c]);
@@ -209,13 +213,20 @@ fn outer(v: Vec3, c: Rgb) -> Mat3 {
     Mat3::from_cols(v * c.x, v * c.y, v * c.z)
 }
 
+/// Derivative of the light that a lobe sends in the unit direction `away`, by that, relative to the light.
+fn relative_slope(lobe: &LobeProfile, away: Vec3) -> Vec3 {
+    let (share, slope) = lobe.share_and_slope(away);
+    slope / share.max(MIN_COS)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::fixtures::{MATERIALS, candidate, light};
+    use super::super::fixtures::{MATERIALS, candidate, light, lit_by};
     use super::*;
     use crate::light_tree::LightTrees;
     use crate::lightcut::Transfer;
-    use crate::vpl::Vpl;
+    use crate::lightcut::fixtures::profiles;
+    use crate::vpl::{Origin, Profiles, Vpl, VplSet};
     use glam::Vec3;
 
     const INTENSITY: Rgb = Rgb::new(3.0, 1.0, 2.0);
@@ -244,12 +255,17 @@ mod tests {
     fn lights() -> Vec<LightTrees> {
         let (near, far) = (Vec3::new(0.4, -0.3, 0.9), Vec3::new(-2.0, 1.0, 3.0));
         let facing = Vec3::new(-0.2, 0.5, -0.8).normalize();
+        let towards_light = Vec3::new(-0.6, 0.1, -0.3).normalize();
+        let lobe = LobeProfile { normal: facing, towards_light, ..profiles().lobes[0] };
+        let mut lobed = VplSet::new(VplKind::Lobed, Origin::Indirect);
+        lobed.push(Vpl::lobed(near, 0), INTENSITY);
         vec![
             light(VplKind::Omni, Vpl::omni(near), INTENSITY),
             light(VplKind::Omni, Vpl::omni(far), INTENSITY),
             light(VplKind::Oriented, Vpl::oriented(near, facing), INTENSITY),
             light(VplKind::Oriented, Vpl::oriented(far, -Vec3::Z), INTENSITY),
             light(VplKind::Directional, Vpl::directional(far.normalize()), INTENSITY),
+            lit_by(&[lobed], Profiles { lobes: vec![lobe], ..Profiles::default() }),
         ]
     }
 

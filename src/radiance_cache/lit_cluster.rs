@@ -6,7 +6,7 @@ use crate::light_tree::Node;
 use crate::lightcut::Transfer;
 use crate::material::Materials;
 use crate::math::{F32x16, Frame, LANES, Vec3x16, lanes_in};
-use crate::vpl::{Origin, Vpl, VplKind};
+use crate::vpl::{LobeProfile, Origin, Vpl, VplKind};
 use glam::Vec3;
 
 /// Cluster of a cut, as its representative lights points.
@@ -33,6 +33,13 @@ impl<'t> LitCluster<'t> {
     pub fn kept(&self, clamps: &Clamps, responses: &Vec3x16) -> F32x16 {
         let weak = self.node.is_leaf() && self.node.origin() == Origin::Indirect;
         if weak { clamps.kept(self.node.intensity, responses) } else { [1.0; LANES] }
+    }
+
+    /// Lobe by which its representative radiates, if it does.
+    #[inline]
+    pub fn lobe(&self) -> Option<&'t LobeProfile> {
+        let is_lobed = self.node.kind() == VplKind::Lobed;
+        is_lobed.then(|| &self.transfer.trees.profiles.lobes[self.vpl.lobe()])
     }
 
     /// Returns the minimum squared distance that the geometry term of the representative divides by.

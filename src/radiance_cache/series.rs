@@ -54,8 +54,8 @@ impl SeriesGatherer {
     pub fn add(&mut self, cluster: &LitCluster, kept: f32) {
         let Some((frame, position)) = &self.place else { return };
         let &LitCluster { transfer, node, vpl } = cluster;
-        let spots = &transfer.trees.spots;
-        let incidence = Incidence::of_vpl(frame, *position, vpl, node.kind(), spots, cluster.near_sq());
+        let profiles = &transfer.trees.profiles;
+        let incidence = Incidence::of_vpl(frame, *position, vpl, node.kind(), profiles, cluster.near_sq());
         if let Some(incidence) = incidence {
             let incidence = if kept < 1.0 { incidence.held(kept) } else { incidence };
             self.add_incidence(node.origin(), &incidence, node.intensity);

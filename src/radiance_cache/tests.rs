@@ -42,7 +42,8 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
     let light = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
     let mut pass = light_pass(world, &light, 8, &Control::new());
     pass.sets.retain(|set| set.origin == Origin::Indirect);
-    let trees = LightTrees::build(&pass.sets, pass.spots, world.diagonal, Family::Divisive, &Control::new());
+    let trees =
+        LightTrees::build(&pass.sets, pass.profiles, world.diagonal, Family::Divisive, &Control::new());
     let transfer = Transfer::new(&trees, world.diagonal);
     let cut = CutSettings { epsilon: 0.002, max_cut: 20_000, clamp: None, ..CutSettings::default() };
     let cache = CacheSettings { cut, footprints, probe_rays, ..CacheSettings::default() };

@@ -5,7 +5,8 @@
 //! separate array, which only the tree builder and the leaves of a cut read.
 //!
 //! Units: intensity is radiant intensity (W/sr) of omni VPLs, radiant intensity per cosine of oriented ones,
-//! irradiance on a facing surface (W/m²) of directional ones.
+//! irradiance on a facing surface (W/m²) of directional ones, a bound of the
+//! radiant intensity (W/sr) of lobed ones.
 
 mod direct;
 mod direct_indirect;
@@ -14,18 +15,19 @@ mod indirect;
 mod octahedral;
 mod pass;
 mod photons;
+mod profile;
 mod settings;
 mod target;
 #[cfg(test)]
 mod tests;
 
-use crate::light::spot_falloff;
 use crate::math::{Rgb, luminance};
 use glam::Vec3;
 
 pub use direct_indirect::DirectIndirect;
 pub use pass::{LightPass, light_pass};
-pub use photons::{Photon, PhotonCounts, PhotonSettings, trace_photons};
+pub use photons::{Photon, PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
+pub use profile::{LobeProfile, Profiles, SpotProfile};
 pub use settings::LightPassSettings;
 
 /// Directional distribution of a VPL.
@@ -37,6 +39,8 @@ pub enum VplKind {
     Oriented,
     /// From infinitely far, without falloff: a directional light, or a patch of the environment.
     Directional,
+    /// In a lobe: a patch of a rough surface that reflects much as metals do.
+    Lobed,
 }
 
 /// Origin of a VPL's light.
@@ -54,7 +58,8 @@ pub enum Origin {
 pub struct Vpl {
     /// Position, or for [`VplKind::Directional`] the unit direction towards the light.
     pub position: Vec3,
-    /// Oriented: size in the upper four bits, normal in the others. Omni: index of the spot profile + 1, or 0.
+    /// Oriented: size in the upper four bits, normal in the others. Omni: index of the spot profile + 1, or 0. Lobed:
+    /// index of the lobe.
     word: u32,
 }
 
@@ -87,6 +92,12 @@ impl Vpl {
         Vpl { position: towards, word: 0 }
     }
 
+    /// Creates a VPL with the lobe of index `lobe`, a little in front of its surface, so that shadow rays need not know
+    /// that.
+    pub fn lobed(position: Vec3, lobe: u32) -> Vpl {
+        Vpl { position, word: lobe }
+    }
+
     /// Normal of an oriented VPL, unit length.
     #[inline]
     pub fn normal(&self) -> Vec3 {
@@ -97,6 +108,12 @@ impl Vpl {
     #[inline]
     pub fn size(&self) -> u32 {
         self.word >> SIZE_SHIFT
+    }
+
+    /// Index of the lobe of a lobed VPL.
+    #[inline]
+    pub fn lobe(&self) -> usize {
+        self.word as usize
     }
 
     /// Index of the spot profile that restricts an omni VPL.
@@ -130,24 +147,6 @@ pub fn size_of_area(area: f32, diagonal: f32) -> u32 {
 #[inline]
 pub fn near_sq_of_size(size: u32, min_dist_sq: f32) -> f32 {
     min_dist_sq * f32::from_bits((127 + 2 * size) << 23)
-}
-
-/// Angular profile of a spot light: 1 within `inner_angle`, falling linearly in angle to 0 at `outer_angle`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpotProfile {
-    /// Unit axis, away from the light.
-    pub direction: Vec3,
-    /// Half angle of full intensity, radians.
-    pub inner_angle: f32,
-    /// Half angle of the cone, radians.
-    pub outer_angle: f32,
-}
-
-impl SpotProfile {
-    /// Fraction of the axial intensity sent in the unit direction `away`, in [0, 1].
-    pub fn falloff(&self, away: Vec3) -> f32 {
-        spot_falloff(self.direction.dot(away), self.inner_angle, self.outer_angle)
-    }
 }
 
 /// VPLs of one kind and origin, over which one light tree is built.

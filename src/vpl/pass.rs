@@ -1,9 +1,9 @@
 //! The light pass: all VPLs of a scene.
 
 use super::direct::{DirectVpls, direct_vpls};
-use super::indirect::indirect_vpls;
+use super::indirect::{IndirectVpls, indirect_vpls};
 use super::photons::PhotonCounts;
-use super::{LightPassSettings, SpotProfile, VplSet};
+use super::{LightPassSettings, Profiles, VplSet};
 use crate::progress::Control;
 use crate::world::World;
 
@@ -12,8 +12,8 @@ use crate::world::World;
 pub struct LightPass {
     /// VPLs by kind and origin; some sets may be empty.
     pub sets: Vec<VplSet>,
-    /// Profiles that spot lights among the omni VPLs refer to.
-    pub spots: Vec<SpotProfile>,
+    /// Profiles that VPLs refer to.
+    pub profiles: Profiles,
     /// Size code of the patches of direct VPLs on each mesh (see [`super::size_of_area`]).
     pub sizes: Vec<u32>,
     /// Counts of photon tracing.
@@ -36,7 +36,7 @@ pub fn light_pass(
     control: &Control,
 ) -> LightPass {
     let DirectVpls { mut sets, spots, sizes } = direct_vpls(world, settings);
-    let (indirect, photons) = indirect_vpls(world, settings, max_depth, control);
-    sets.push(indirect);
-    LightPass { sets, spots, sizes, photons }
+    let IndirectVpls { sets: indirect, lobes, photons } = indirect_vpls(world, settings, max_depth, control);
+    sets.extend(indirect);
+    LightPass { sets, profiles: Profiles { spots, lobes }, sizes, photons }
 }

@@ -9,6 +9,7 @@
 //! Units: flux in watts, to be divided by the number of paths.
 
 use super::emission::PhotonEmitter;
+use crate::material::Bsdf;
 use crate::math::{Rgb, luminance};
 use crate::progress::Control;
 use crate::sampling::{Sampler, hash};
@@ -55,6 +56,18 @@ pub struct Photon {
     pub albedo: Rgb,
 }
 
+/// A photon, and how the surface reflects it.
+pub struct PhotonHit<'a> {
+    /// The photon.
+    pub photon: Photon,
+    /// Reflection of the surface.
+    pub bsdf: &'a Bsdf<'a>,
+    /// Direction back along its path in the shading frame.
+    pub wi: Vec3,
+    /// Unit shading normal on the side it arrives at.
+    pub shading_normal: Vec3,
+}
+
 /// Settings of photon tracing.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotonSettings {
@@ -73,12 +86,12 @@ struct Chunk<T> {
     rays: u64,
 }
 
-/// Traces photons, maps each by `keep`, and returns the results in order.
+/// Traces photons, maps what is known of each by `keep`, and returns the results in order.
 pub fn trace_photons<T: Send>(
     world: &World,
     settings: &PhotonSettings,
     control: &Control,
-    keep: impl Fn(&Photon) -> T + Sync,
+    keep: impl Fn(&PhotonHit) -> T + Sync,
 ) -> (Vec<T>, PhotonCounts) {
     let mut counts = PhotonCounts::default();
     let max_edges = settings.max_edges.min(MAX_EDGES);
@@ -129,13 +142,13 @@ fn trace_chunk<T>(
     chunk: u32,
     seed: u32,
     max_edges: u32,
-    keep: &impl Fn(&Photon) -> T,
+    keep: &impl Fn(&PhotonHit) -> T,
 ) -> Chunk<T> {
     let mut kept = Vec::new();
     let mut rays = 0;
     for path in chunk * CHUNK..(chunk + 1) * CHUNK {
         let sampler = &mut Sampler::new(seed, path);
-        rays += trace_path(world, source, sampler, max_edges, &mut |photon| kept.push(keep(photon)));
+        rays += trace_path(world, source, sampler, max_edges, &mut |hit| kept.push(keep(hit)));
     }
     Chunk { kept, rays }
 }
@@ -146,7 +159,7 @@ fn trace_path(
     source: &PhotonEmitter,
     sampler: &mut Sampler,
     max_edges: u32,
-    met: &mut impl FnMut(&Photon),
+    met: &mut impl FnMut(&PhotonHit),
 ) -> u64 {
     let Some((mut ray, mut flux)) = source.sample(sampler) else { return 0 };
     for edge in 1..=max_edges {
@@ -164,7 +177,9 @@ fn trace_path(
         if albedo != Rgb::ZERO {
             let normal: Vec3 = if cos_g > 0.0 { surface.normal } else { -surface.normal };
             let (position, flux) = (surface.position, flux * correction);
-            met(&Photon { position, normal, towards_light, flux, albedo });
+            let photon = Photon { position, normal, towards_light, flux, albedo };
+            let shading_normal = surface.frame.normal * wi.z.signum();
+            met(&PhotonHit { photon, bsdf: &bsdf, wi, shading_normal });
         }
         if edge == max_edges {
             return rays;

@@ -1,7 +1,11 @@
 //! VPLs one by one, and those of whole scenes against closed forms.
 
 use super::*;
+use crate::lightcut::fixtures::{Numbers, profiles};
+use crate::material::LobeShape;
+use crate::math::{LANES, Vec3x16};
 use crate::progress::Control;
+use crate::sampling::{owen_sobol_2d, uniform_sphere};
 use crate::scene::{Camera, DeltaLight, Emission};
 use crate::test_scenes::*;
 use std::f32::consts::PI;
@@ -132,4 +136,87 @@ fn black_negative_and_non_finite_vpls_are_left_out() {
     assert!(set.is_empty());
     set.push(Vpl::omni(Vec3::ZERO), Rgb::ONE);
     assert_eq!(set.len(), 1);
+}
+
+#[test]
+fn lobes_send_all_the_light_that_is_reflected_and_nowhere_more_than_their_bounds() {
+    const COUNT: u32 = 1 << 15;
+    for lobe in profiles().lobes {
+        let (axis, width_sq) = (lobe.axis(), lobe.width_sq());
+        let mut sent = 0.0;
+        for i in 0..COUNT {
+            let away = uniform_sphere(owen_sobol_2d(i, 1));
+            let share = lobe.share(away);
+            let bound = LobeShape::max_share(axis.dot(away), width_sq);
+            assert!(
+                (0.0..=1.0).contains(&share) && share <= bound * 1.0001 + 1e-6,
+                "{share} {bound} {lobe:?}"
+            );
+            assert!(share == 0.0 || lobe.normal.dot(away) > 0.0);
+            sent += f64::from(share * lobe.peak);
+        }
+        let flux = sent * f64::from(4.0 * PI) / f64::from(COUNT);
+        // Tables of albedo are linear between 64 angles.
+        let tolerance = if lobe.normal.dot(lobe.towards_light) < 0.05 { 0.1 } else { 0.02 };
+        assert!((flux - 1.0).abs() < tolerance, "{flux} {lobe:?}");
+    }
+}
+
+#[test]
+fn lanes_of_lobes_are_those_of_single_directions() {
+    let mut numbers = Numbers(3);
+    for lobe in profiles().lobes {
+        let mut away = Vec3x16::ZERO;
+        (0..LANES - 1).for_each(|lane| away.set(lane, numbers.direction()));
+        let shares = lobe.share16(&away);
+        for (lane, share) in shares.into_iter().enumerate() {
+            let single = if lane < LANES - 1 { lobe.share(away.get(lane)) } else { 0.0 };
+            assert!((share - single).abs() < 1e-5, "{share} {single}");
+        }
+    }
+}
+
+#[test]
+fn slopes_of_lobes_are_perpendicular_and_those_of_their_shares() {
+    let mut numbers = Numbers(5);
+    for lobe in profiles().lobes {
+        let away = (lobe.axis() + 0.3 * numbers.direction()).normalize();
+        let (share, slope) = lobe.share_and_slope(away);
+        assert!(share == lobe.share(away) && slope.dot(away).abs() < 1e-4 * slope.length().max(1.0));
+        let side = away.any_orthonormal_vector();
+        let at = |step: f32| lobe.share((away + side * step).normalize());
+        let difference = (at(0.01) - at(-0.01)) / 0.02;
+        let least = [0.03, -0.03].map(at).into_iter().fold(share, f32::min);
+        // A horizon has a kink.
+        assert!(least == 0.0 || (slope.dot(side) - difference).abs() < 0.1, "{slope} {difference} {lobe:?}");
+    }
+}
+
+#[test]
+fn metals_radiate_by_lobes_and_plastics_diffusely() {
+    let settings = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
+    let flux_of = |material| {
+        let mut scene = scene(Camera::default(), [8, 8]);
+        let wall = add_material(&mut scene, material);
+        scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
+        scene.lights.push(DeltaLight::Point { position: Vec3::ZERO, intensity: Rgb::ONE });
+        let lights = light_pass(&world(scene), &settings, 3, &Control::new());
+        let flux = |kind: VplKind| -> f32 {
+            let sets = lights.sets.iter().filter(|s| s.kind == kind && s.origin == Origin::Indirect);
+            let one = |(vpl, intensity): (&Vpl, &Rgb)| match kind {
+                VplKind::Lobed => intensity.x * PI * lights.profiles.lobes[vpl.lobe()].diffuse_equivalent(),
+                _ => intensity.x * PI,
+            };
+            sets.flat_map(|s| s.vpls.iter().zip(&s.intensities)).map(one).sum()
+        };
+        [flux(VplKind::Oriented), flux(VplKind::Lobed)]
+    };
+    let emitted = 4.0 * PI;
+    // Light that facets pass on to each other is lost: 32 % at roughness .5.
+    let [diffuse, lobed] = flux_of(rough_metal(0.5, 0.8));
+    assert!(diffuse == 0.0 && (lobed / emitted - 0.8 * 0.68).abs() < 0.01, "{diffuse} {lobed}");
+    let [diffuse, lobed] = flux_of(rough_metal(0.5, 0.05));
+    assert!(lobed == 0.0 && (diffuse / emitted - 0.05 * 0.68).abs() < 0.001, "{diffuse} {lobed}");
+    let [diffuse, lobed] = flux_of(rough_metal(0.2, 0.8));
+    assert!(lobed == 0.0 && diffuse == 0.0, "{diffuse} {lobed}");
 }

@@ -9,8 +9,8 @@ use lightsplat::method::{LightStore, Output, Renderer, cache, lightcuts};
 use lightsplat::progress::Control;
 use lightsplat::scene::formats::{LoadOptions, Loaded, load};
 use lightsplat::scene::{
-    Camera, Cameras, Emission, Filter, Fresnel, Lobe, Material, MaterialId, Mesh, Parameter, Reflectance,
-    Scene, Texels, Texture, TextureId, Wrap,
+    Camera, Cameras, Distribution, Emission, Filter, Fresnel, Lobe, Material, MaterialId, Mesh, Parameter,
+    Reflectance, Roughness, Scene, Texels, Texture, TextureId, Wrap,
 };
 use lightsplat::session::{Frame, Remark, Session};
 use lightsplat::stats::Stats;
@@ -92,6 +92,17 @@ pub fn mirror() -> Material {
         lobes: vec![Lobe::Mirror { fresnel: Fresnel::One, scale: Reflectance::Constant(Rgb::ONE) }],
         ..diffuse(Rgb::ZERO)
     }
+}
+
+/// A metal of a roughness, whose facets reflect a share of the light.
+pub fn rough_metal(alpha: f32, reflectance: f32) -> Material {
+    let lobe = Lobe::Rough {
+        distribution: Distribution::Ggx,
+        alpha: Roughness::Constant(alpha),
+        fresnel: Fresnel::One,
+        scale: Reflectance::Constant(Rgb::splat(reflectance)),
+    };
+    Material { lobes: vec![lobe], ..diffuse(Rgb::ZERO) }
 }
 
 pub fn glass(eta: f32) -> Material {

@@ -183,10 +183,12 @@ impl Found {
     }
 }
 
-/// Tries a property by all methods, with a tolerance each, in `few` scenes, or as many as the environment says, each of
-/// which is told in some ways; `pair` makes what should be the same of the means of pictures of these.
+/// Tries a property by all methods, with a tolerance each, in `few` scenes, or as many as the environment says, and in
+/// those that were `mended`, each of which is told in some ways; `pair` makes what should be the same of the means of
+/// pictures of these.
 fn over_scenes(
     few: u64,
+    mended: impl Fn(&str) -> Vec<u64>,
     tolerance: impl Fn(&str) -> f64,
     told: impl Fn(u64) -> Vec<Spec>,
     pair: impl Fn(u64, &dyn Fn(usize) -> [f64; 5]) -> Pair,
@@ -194,7 +196,7 @@ fn over_scenes(
     let mut wrong = Vec::new();
     for (name, method) in methods().into_iter().filter(|(name, _)| is_wanted(name)) {
         let mut found = Found::default();
-        for number in 0..count(few) {
+        for number in (0..count(few)).chain(mended(name).into_iter().filter(|&n| n >= count(few))) {
             let worlds: Vec<WorldAndView> = told(number).iter().map(|spec| toml(&spec.text())).collect();
             found.count(&format!("scene {number} by {name}"), tolerance(name), |seed| {
                 // Of its own: errors that scenes share would not average out.
@@ -220,6 +222,7 @@ fn scenes_told_otherwise_look_the_same_by_every_method() {
     };
     over_scenes(
         7,
+        |_| vec![],
         |_| TOLERANCE,
         told,
         |number, of| {
@@ -234,6 +237,7 @@ fn lamps_together_are_the_sum_of_each_alone_by_every_method() {
     let told = |number| [[1.0, 1.0], [1.0, 0.0], [0.0, 1.0]].map(|on| Spec::random(number).lit(on)).into();
     over_scenes(
         2,
+        |_| vec![],
         |_| TOLERANCE,
         told,
         |_, of| {
@@ -247,19 +251,27 @@ fn lamps_together_are_the_sum_of_each_alone_by_every_method() {
 fn pictures_are_in_proportion_to_the_light_by_every_method() {
     let factor = |number| 10f64.powf(Dice::new(number).between(-9.0, 9.0));
     let told = |number| [1.0, factor(number)].map(|power| Spec::random(number).lit([power; 2])).into();
-    over_scenes(2, |_| TOLERANCE, told, |number, of| [of(0), of(1).map(|mean| mean / factor(number))]);
+    over_scenes(
+        2,
+        |_| vec![],
+        |_| TOLERANCE,
+        told,
+        |number, of| [of(0), of(1).map(|mean| mean / factor(number))],
+    );
 }
 
 #[test]
 fn where_all_is_equally_bright_the_picture_is_by_every_method() {
     let told = |number| vec![Spec::random(number).furnace(number)];
     let tolerance = |name: &str| if name == "photons" { BLUR_TOLERANCE } else { TOLERANCE };
-    over_scenes(2, tolerance, told, |_, of| [of(0), [1.0, 0.25, 0.25, 0.25, 0.25]]);
+    over_scenes(2, |_| vec![], tolerance, told, |_, of| [of(0), [1.0, 0.25, 0.25, 0.25, 0.25]]);
 }
 
 #[test]
 fn as_much_light_goes_from_here_to_there_as_from_there_to_here_by_every_method() {
     let told = |number| [0, 1].map(|from| Spec::random(number).exchange(number, from)).into();
+    // Rooms of rough metal, which photon maps take to be diffuse.
+    let mended = |name: &str| if name == "photons" { vec![] } else { vec![62, 81] };
     // The whole alone: the patches' quarters do not see each other alike.
-    over_scenes(2, |_| TOLERANCE, told, |_, of| [0, 1].map(|way| [of(way)[0]; 5]));
+    over_scenes(2, mended, |_| TOLERANCE, told, |_, of| [0, 1].map(|way| [of(way)[0]; 5]));
 }

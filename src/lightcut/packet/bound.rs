@@ -6,8 +6,8 @@ use super::receivers::Frames16;
 use super::transfer::positive;
 use crate::light_tree::Node;
 use crate::lightcut::Transfer;
-use crate::lightcut::expected::{Outlook, expected_share};
-use crate::material::{DirectionBound, DirectionBounds16};
+use crate::lightcut::expected::{Outlook, expected_share, lobe_at};
+use crate::material::{DirectionBound, DirectionBounds16, LobeShape};
 use crate::math::{F32x16, Frame, LANES, LUMINANCE, Vec3x16, lanes_in, luminance};
 use crate::vpl::VplKind;
 use glam::Vec3;
@@ -76,6 +76,8 @@ impl Transfer<'_> {
     fn geometry16(&self, cluster: &ClusterBox, receivers: &ReceiverPacket, node: &Node) -> Geometry {
         let &ClusterBox { local, half, rounding, .. } = cluster;
         let oriented = local && node.cos_beta > -1.0;
+        let lobed = node.kind() == VplKind::Lobed;
+        let sin_beta = if lobed { sine(node.cos_beta) } else { node.sin_beta };
         let emitter = Frame::from_normal(-node.axis);
         let axes = [emitter.tangent, emitter.bitangent, emitter.normal];
         let half_along = |axis: Vec3| axis.abs().dot(half) + rounding;
@@ -90,8 +92,10 @@ impl Transfer<'_> {
             let (x, y) = (c.dot(axes[0]).abs(), c.dot(axes[1]).abs());
             let cos_theta = max_cos(x, emitter_half[0], y, emitter_half[1], z);
             let sin_theta = positive(1.0 - cos_theta * cos_theta).sqrt();
-            let turned = cos_theta * node.cos_beta + sin_theta * node.sin_beta + 1e-6;
-            let cos_y = if !oriented || cos_theta >= node.cos_beta { 1.0 } else { positive(turned).min(1.0) };
+            let turned = cos_theta * node.cos_beta + sin_theta * sin_beta + 1e-6;
+            let turned = if cos_theta >= node.cos_beta { 1.0 } else { turned };
+            let cos_y = if !oriented { 1.0 } else { positive(turned).min(1.0) };
+            let cos_y = if lobed { LobeShape::max_share(turned.min(1.0), node.sin_beta) } else { cos_y };
 
             let gap =
                 [positive(c.x.abs() - half.x), positive(c.y.abs() - half.y), positive(c.z.abs() - half.z)];
@@ -103,7 +107,11 @@ impl Transfer<'_> {
                 centre_sq,
                 at_centre: [
                     c.x * normals.x[l] + c.y * normals.y[l] + c.z * normals.z[l],
-                    if oriented { centre_z } else { centre_sq.sqrt() },
+                    match (lobed, oriented) {
+                        (true, _) => lobe_at(centre_z, centre_sq.sqrt(), node.sin_beta),
+                        (_, true) => centre_z,
+                        _ => centre_sq.sqrt(),
+                    },
                 ],
                 largest: [cos_x, cos_y],
             });
@@ -112,6 +120,10 @@ impl Transfer<'_> {
         }
         all
     }
+}
+
+fn sine(cos: f32) -> f32 {
+    positive(1.0 - cos * cos).sqrt()
 }
 
 /// A cluster's geometry term for each receiver.

@@ -3,8 +3,8 @@
 use super::*;
 use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::fixtures::{
-    Ball, EXACT, Numbers, SPOTS, Unoccluded, all_materials, low_lamps, members, points_near_vpls,
-    random_receiver, rms, room, three_kinds,
+    Ball, EXACT, Numbers, Unoccluded, all_kinds, all_materials, low_lamps, members, points_near_vpls,
+    profiles, random_receiver, rms, room,
 };
 use crate::lightcut::{CutSettings, Lightcut, Receiver, Transfer, gather_all};
 use crate::material::Materials;
@@ -51,8 +51,8 @@ fn lanes_have_the_responses_of_single_points_and_bounds_above_them() {
     for round in 0..60u32 {
         let mut numbers = Numbers(round << 20);
         let scale = [1e-6, 1.0, 1e6][round as usize % 3];
-        let sets = three_kinds(60, scale, &mut numbers);
-        let trees = LightTrees::build(&sets, SPOTS.to_vec(), 2.0 * scale, Family::Divisive, &Control::new());
+        let sets = all_kinds(60, scale, &mut numbers);
+        let trees = LightTrees::build(&sets, profiles(), 2.0 * scale, Family::Divisive, &Control::new());
         let transfer = Transfer::new(&trees, 2.0 * scale);
         for count in [16, 1, 5] {
             points.set(neighbours(&materials, &scene, scale, count, &mut numbers));

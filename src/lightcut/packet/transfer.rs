@@ -4,7 +4,7 @@
 use super::ReceiverPacket;
 use crate::lightcut::Transfer;
 use crate::material::AlikeBsdfs16;
-use crate::math::{LANES, Vec3x16, lanes_in};
+use crate::math::{F32x16, LANES, Vec3x16, lanes_in};
 use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;
 
@@ -16,6 +16,7 @@ impl Transfer<'_> {
         match kind {
             VplKind::Oriented => self.lambert_oriented(receivers, vpl, &mut responses),
             VplKind::Directional => lambert_directional(receivers, vpl.position, &mut responses),
+            VplKind::Lobed => self.lambert_lobed(receivers, vpl, &mut responses),
             VplKind::Omni => one_by_one = receivers.valid,
         }
         if let (Some(glossy), false) = (&receivers.glossy, kind == VplKind::Omni) {
@@ -54,6 +55,9 @@ impl Transfer<'_> {
             wi.set(l, Vec3::new(local(&frame[0]), local(&frame[1]), local(&frame[2])));
             emitted[l] = if distant { 1.0 } else { positive(-normal.dot(towards)) / limited };
         }
+        if kind == VplKind::Lobed {
+            emitted = self.lobe_irradiance(receivers, vpl);
+        }
         let mut lit = 0;
         for l in 0..LANES {
             lit |= u16::from((wi.z[l] > 0.0) & (emitted[l] > 0.0)) << l;
@@ -81,6 +85,7 @@ impl Transfer<'_> {
         let mut vector = Vec3x16::ZERO;
         let n = receivers.frame.normal();
         let near_sq = self.near_sq(vpl, kind);
+        let lobe = if kind == VplKind::Lobed { self.lobe_irradiance(receivers, vpl) } else { [0.0; LANES] };
         for l in 0..LANES {
             let distant = kind == VplKind::Directional;
             let offset = if distant { vpl.position } else { vpl.position - receivers.position.get(l) };
@@ -91,6 +96,7 @@ impl Transfer<'_> {
                 VplKind::Directional => 1.0,
                 VplKind::Oriented => positive(-offset.dot(vpl.normal())) * unit / limited,
                 VplKind::Omni => unit.sqrt() / limited,
+                VplKind::Lobed => unit.sqrt() * lobe[l],
             };
             let above = offset.x * n.x[l] + offset.y * n.y[l] + offset.z * n.z[l] > 0.0;
             vector.set(l, offset * if above { scale } else { 0.0 });
@@ -98,11 +104,44 @@ impl Transfer<'_> {
         if let (VplKind::Omni, Some(profile)) = (kind, vpl.spot_profile()) {
             for l in lanes_in(receivers.valid) {
                 let offset = vpl.position - receivers.get(l).position();
-                let falloff = self.trees.spots[profile].falloff(-offset.normalize_or_zero());
+                let falloff = self.trees.profiles.spots[profile].falloff(-offset.normalize_or_zero());
                 vector.set(l, vector.get(l) * falloff);
             }
         }
         vector
+    }
+
+    /// Irradiance on a surface at each receiver that faces a lobed VPL of unit intensity.
+    fn lobe_irradiance(&self, receivers: &ReceiverPacket, vpl: &Vpl) -> F32x16 {
+        let (mut away, mut falloff) = (Vec3x16::ZERO, [0.0; LANES]);
+        let (y, x) = (vpl.position, &receivers.position);
+        for l in 0..LANES {
+            let (dx, dy, dz) = (x.x[l] - y.x, x.y[l] - y.y, x.z[l] - y.z);
+            let dist_sq = dx * dx + dy * dy + dz * dz;
+            let limited = if dist_sq > self.min_dist_sq { dist_sq } else { self.min_dist_sq };
+            let unit = if dist_sq > 0.0 { 1.0 / dist_sq.sqrt() } else { 0.0 };
+            (away.x[l], away.y[l], away.z[l]) = (dx * unit, dy * unit, dz * unit);
+            falloff[l] = 1.0 / limited;
+        }
+        let mut sent = self.trees.profiles.lobes[vpl.lobe()].share16(&away);
+        for l in 0..LANES {
+            sent[l] *= falloff[l];
+        }
+        sent
+    }
+
+    fn lambert_lobed(&self, receivers: &ReceiverPacket, vpl: &Vpl, responses: &mut Vec3x16) {
+        let sent = self.lobe_irradiance(receivers, vpl);
+        let (y, x, n, brdf) = (vpl.position, &receivers.position, receivers.frame.normal(), &receivers.brdf);
+        for l in 0..LANES {
+            let (dx, dy, dz) = (y.x - x.x[l], y.y - x.y[l], y.z - x.z[l]);
+            let dist_sq = dx * dx + dy * dy + dz * dz;
+            let at_x = positive(dx * n.x[l] + dy * n.y[l] + dz * n.z[l]);
+            let geometry = if dist_sq > 0.0 { at_x * sent[l] / dist_sq.sqrt() } else { 0.0 };
+            responses.x[l] = brdf.x[l] * geometry;
+            responses.y[l] = brdf.y[l] * geometry;
+            responses.z[l] = brdf.z[l] * geometry;
+        }
     }
 
     fn lambert_oriented(&self, receivers: &ReceiverPacket, vpl: &Vpl, responses: &mut Vec3x16) {

@@ -3,10 +3,11 @@
 //! Paper: Walter et al. 2005, section 3.2: bound = I · M⁺ · G⁺, visibility bounded by 1.
 //! Units: all per unit intensity, before visibility.
 
-use super::{OffsetBox, max_cos_to_cone};
+use super::{OffsetBox, max_cos_to_cone, max_cos_to_cone_signed};
 use crate::light_tree::Node;
-use crate::lightcut::expected::{Outlook, expected_share};
+use crate::lightcut::expected::{Outlook, expected_share, lobe_at};
 use crate::lightcut::{Receiver, Transfer};
+use crate::material::LobeShape;
 use crate::math::{Frame, Rgb};
 use crate::vpl::VplKind;
 use glam::Vec3;
@@ -34,11 +35,19 @@ impl Transfer<'_> {
         }
         let centre_sq = offsets.centre().length_squared();
         let near_sq = if directional { centre_sq } else { offsets.min_dist_sq().max(self.min_dist_sq) };
-        let (emitted, emitted_centre) = if node.cos_beta <= -1.0 || directional {
+        let lobed = node.kind() == VplKind::Lobed;
+        let (emitted, emitted_centre) = if directional || node.cos_beta <= -1.0 && !lobed {
             (1.0, centre_sq.sqrt())
         } else {
             let turned = offsets.turned(&Frame::from_normal(-node.axis));
-            (max_cos_to_cone(turned.max_cos_z(), node.cos_beta, node.sin_beta), turned.centre().z)
+            let (most, z) = (turned.max_cos_z(), turned.centre().z);
+            if lobed {
+                let sin_beta = (1.0 - node.cos_beta * node.cos_beta).max(0.0).sqrt();
+                let cos = max_cos_to_cone_signed(most, node.cos_beta, sin_beta);
+                (LobeShape::max_share(cos, node.sin_beta), lobe_at(z, centre_sq.sqrt(), node.sin_beta))
+            } else {
+                (max_cos_to_cone(most, node.cos_beta, node.sin_beta), z)
+            }
         };
         let share = expected_share(Outlook {
             near_sq,

@@ -77,10 +77,16 @@ impl OffsetBox {
 /// angle of at least acos(`cos_theta`) with every direction.
 #[inline]
 pub fn max_cos_to_cone(cos_theta: f32, cos_beta: f32, sin_beta: f32) -> f32 {
+    max_cos_to_cone_signed(cos_theta, cos_beta, sin_beta).max(0.0)
+}
+
+/// The same, which may be negative.
+#[inline]
+pub fn max_cos_to_cone_signed(cos_theta: f32, cos_beta: f32, sin_beta: f32) -> f32 {
     if cos_theta >= cos_beta {
         return 1.0;
     }
     let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
     // cos(θ - β), a hair up: sin θ loses digits where cos θ is near 1.
-    (cos_theta * cos_beta + sin_theta * sin_beta + 1e-6).clamp(0.0, 1.0)
+    (cos_theta * cos_beta + sin_theta * sin_beta + 1e-6).min(1.0)
 }

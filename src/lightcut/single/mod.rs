@@ -26,7 +26,7 @@ use refine::Pass;
 
 #[cfg(test)]
 pub use exhaustive::gather_all;
-pub use geometry::{OffsetBox, max_cos_to_cone};
+pub use geometry::{OffsetBox, max_cos_to_cone, max_cos_to_cone_signed};
 
 /// A cluster of a cut.
 #[derive(Clone, Copy, Debug)]

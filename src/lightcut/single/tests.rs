@@ -20,8 +20,8 @@ fn no_member_contributes_more_than_the_clusters_bound() {
         let family = if round % 2 == 0 { Family::Divisive } else { Family::Agglomerative };
         let diagonal = scale * 2.0;
         let trees = LightTrees::build(
-            &three_kinds(60, scale, &mut numbers),
-            SPOTS.to_vec(),
+            &all_kinds(60, scale, &mut numbers),
+            profiles(),
             diagonal,
             family,
             &Control::new(),
@@ -120,8 +120,8 @@ fn no_cluster_gives_more_than_a_quarter_however_coarse_the_cut() {
 fn with_no_tolerance_the_cut_is_the_full_sum() {
     let mut numbers = Numbers(5);
     let trees = LightTrees::build(
-        &three_kinds(300, 1.0, &mut numbers),
-        SPOTS.to_vec(),
+        &all_kinds(300, 1.0, &mut numbers),
+        profiles(),
         2.0,
         Family::Divisive,
         &Control::new(),

@@ -15,6 +15,7 @@ mod interface;
 mod mirror;
 mod rough;
 mod rough_interface;
+mod shape;
 
 pub(super) use anisotropic::AnisotropicLobe;
 pub(super) use clear_coat::ClearCoat;
@@ -27,6 +28,7 @@ pub(super) use rough::{
     DIFFUSE_ALPHA, RoughLobe, albedo as rough_albedo, albedo_table, max_reflectance_table,
 };
 pub(super) use rough_interface::RoughInterface;
+pub use shape::{LobeShape, ReflectedLobe};
 
 use super::sample::BsdfSample;
 use crate::math::{F32x16, LANES, Rgb, Vec3x16};
@@ -205,6 +207,16 @@ impl LobeModel {
         match self {
             LobeModel::Rough(rough) => rough.diffuse_albedo(scale, cos),
             LobeModel::Grazing(grazing) => Some(grazing.albedo(scale, cos)),
+            _ => None,
+        }
+    }
+
+    /// Returns what a virtual light radiates for light at the cosine `cos` > 0, where the lobe is wide enough for one
+    /// and reflects too much to pass for diffuse.
+    #[inline]
+    pub fn reflected(&self, scale: Rgb, cos: f32) -> Option<ReflectedLobe> {
+        match self {
+            LobeModel::Rough(rough) => rough.reflected(scale, cos),
             _ => None,
         }
     }

@@ -7,11 +7,11 @@
 //! Paper: Walter et al., *Lightcuts*, 2005, section 4.1, for the use made of such bounds.
 //! Deviations: single scattering only; the energy that masking takes is lost.
 
-use super::{Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};
+use super::{Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, LobeShape, ReflectedLobe, mean};
 use crate::material::DirectionBound;
 use crate::material::microfacet::Microfacets;
 use crate::material::table::{ANGLES, AngleTable, rule};
-use crate::math::{LANES, Rgb, Vec3x16};
+use crate::math::{LANES, Rgb, Vec3x16, luminance};
 use crate::scene::Fresnel;
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
@@ -21,6 +21,9 @@ use std::sync::Arc;
 /// places and too dark in the others. With 0.4 for 0.25 a polished knot gains a tenth in FLIP, a church with a glossy
 /// floor takes an eighth more time for .2 dB less.
 pub(in crate::material) const DIFFUSE_ALPHA: f32 = 0.25;
+
+/// Maximum reflectance at normal incidence of lobes that count as diffuse in virtual lights: those of plastics.
+const DIFFUSE_REFLECTANCE: f32 = 0.1;
 
 /// Lobes up to this rough are followed from the eye like mirrors, by a sampled direction: light sampled along them
 /// says more than a sum over virtual lights, each of which would show as a highlight.
@@ -35,6 +38,8 @@ pub(in crate::material) struct RoughLobe {
     pub(in crate::material) max_reflectance: Option<Arc<AngleTable<Rgb>>>,
     /// Albedo by angle, where something asks for it.
     pub(in crate::material) albedo: Option<Arc<AngleTable<Rgb>>>,
+    /// Albedo of facets that absorb nothing, where virtual lights may radiate by the lobe.
+    pub(in crate::material) white: Option<Arc<AngleTable<Rgb>>>,
 }
 
 impl PartialEq for RoughLobe {
@@ -99,6 +104,16 @@ impl RoughLobe {
     pub(super) fn diffuse_albedo(&self, scale: Rgb, cos: f32) -> Option<Rgb> {
         let table = self.albedo.as_ref().filter(|_| !self.is_glossy())?;
         Some(scale * table.lookup(cos))
+    }
+
+    /// See [`super::LobeModel::reflected`].
+    pub(super) fn reflected(&self, scale: Rgb, cos: f32) -> Option<ReflectedLobe> {
+        let albedo = self.diffuse_albedo(scale, cos)?;
+        let white = self.white.as_ref()?.lookup(cos).x;
+        let facing = luminance(scale * self.fresnel.reflectance(1.0));
+        let shape = LobeShape::new(self.facets);
+        let peak = shape.peak(cos.min(1.0), white);
+        (facing > DIFFUSE_REFLECTANCE && peak.is_finite()).then_some(ReflectedLobe { albedo, peak, shape })
     }
 
     #[inline]
