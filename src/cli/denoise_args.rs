@@ -16,33 +16,32 @@ pub struct DenoiseArgs {
     /// Leave the noise in the picture
     #[arg(long, overrides_with = "denoise")]
     no_denoise: bool,
-    /// Quality of denoising against its time. `auto` takes a lower one where the best takes a good part of all the work
-    /// on a still picture, as counted, which is better spent on samples; walks, whose frames are to be alike, have the
-    /// best
-    #[arg(long, value_enum, value_name = "QUALITY", default_value_t)]
-    denoise_quality: AutoQuality,
+    /// Quality of denoising against its time [default: lower ones where the best takes a good part of all the work on a
+    /// still picture, as counted, which is better spent on samples; walks, whose frames are to be alike, have the best]
+    #[arg(long, value_enum, value_name = "QUALITY")]
+    denoise_quality: Option<NamedQuality>,
     /// Keep the picture as it was before denoising as layer `noisy`
     #[arg(long)]
     pub keep_noisy: bool,
 }
 
-/// Quality of denoising, or a rule for it.
+/// Quality of denoising.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-enum AutoQuality {
+enum NamedQuality {
     #[default]
-    Auto,
     High,
     Balanced,
     Fast,
 }
 
-/// Quality of denoising.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-enum FileQuality {
-    #[default]
-    High,
-    Balanced,
-    Fast,
+impl From<NamedQuality> for Quality {
+    fn from(quality: NamedQuality) -> Quality {
+        match quality {
+            NamedQuality::High => Quality::High,
+            NamedQuality::Balanced => Quality::Balanced,
+            NamedQuality::Fast => Quality::Fast,
+        }
+    }
 }
 
 impl DenoiseArgs {
@@ -53,12 +52,7 @@ impl DenoiseArgs {
 
     /// Quality of denoising; `None` if it is to go with the work on the picture.
     pub fn quality(&self) -> Option<Quality> {
-        match self.denoise_quality {
-            AutoQuality::Auto => None,
-            AutoQuality::High => Some(Quality::High),
-            AutoQuality::Balanced => Some(Quality::Balanced),
-            AutoQuality::Fast => Some(Quality::Fast),
-        }
+        self.denoise_quality.map(Quality::from)
     }
 }
 
@@ -74,7 +68,7 @@ pub struct DenoiseFileArgs {
     pub output: Option<PathBuf>,
     /// Quality against time; it matters where the guides are free of noise
     #[arg(long, value_enum, value_name = "QUALITY", default_value_t)]
-    quality: FileQuality,
+    quality: NamedQuality,
     /// Keep the colour as it was as layer `noisy`
     #[arg(long)]
     pub keep_noisy: bool,
@@ -89,10 +83,6 @@ pub struct DenoiseFileArgs {
 impl DenoiseFileArgs {
     /// Quality of denoising.
     pub fn quality(&self) -> Quality {
-        match self.quality {
-            FileQuality::High => Quality::High,
-            FileQuality::Balanced => Quality::Balanced,
-            FileQuality::Fast => Quality::Fast,
-        }
+        self.quality.into()
     }
 }

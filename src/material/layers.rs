@@ -17,7 +17,8 @@ use std::sync::Arc;
 /// Colours of a material before textures are looked up.
 #[derive(Clone, Debug)]
 pub(super) enum Source {
-    Layers(Colours<Reflectance>),
+    /// Of a base and so many lobes.
+    Layers(Colours<Reflectance>, usize),
     Principled(PrincipledModel),
     Blend(Box<BlendSource>),
 }
@@ -35,7 +36,7 @@ pub(super) struct BlendSource {
 impl Source {
     pub fn is_textured(&self) -> bool {
         match self {
-            Source::Layers(colours) => {
+            Source::Layers(colours, _) => {
                 colours.base.is_textured() || colours.scales.iter().any(Reflectance::is_textured)
             }
             Source::Principled(principled) => principled.is_textured(),
@@ -48,7 +49,7 @@ impl Source {
     /// True if the colours, on the base `base`, are linear in the texels of all textures together.
     pub fn is_linear(&self, base: &BaseModel) -> bool {
         match self {
-            Source::Layers(colours) => base.is_linear() || !colours.base.is_textured(),
+            Source::Layers(colours, _) => base.is_linear() || !colours.base.is_textured(),
             Source::Principled(principled) => principled.is_linear(),
             Source::Blend(blend) => {
                 !blend.weight.is_textured()
@@ -64,8 +65,12 @@ impl Source {
             textured => textured.value(texel).max(Rgb::ZERO),
         };
         match self {
-            Source::Layers(colours) => {
-                Colours { base: base.brdf(value(colours.base)), scales: colours.scales.map(value) }
+            Source::Layers(colours, count) => {
+                let mut scales = [Rgb::ZERO; MAX_LOBES];
+                for (scale, reflectance) in scales[..*count].iter_mut().zip(colours.scales) {
+                    *scale = value(reflectance);
+                }
+                Colours { base: base.brdf(value(colours.base)), scales }
             }
             Source::Principled(principled) => {
                 let colours = principled.colours(texel);
@@ -227,6 +232,7 @@ impl Layers {
             (Some(coat), None) => CoatInterface::Smooth(coat.eta),
         };
         let base = BaseModel::new(coat, interface);
-        Layers { source: Source::Layers(source), base, black, coated: coat.is_some(), lobes }
+        let source = Source::Layers(source, lobes.len().min(MAX_LOBES));
+        Layers { source, base, black, coated: coat.is_some(), lobes }
     }
 }

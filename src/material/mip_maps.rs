@@ -16,38 +16,50 @@ use crate::scene::{Texture, TextureId};
 /// Coarser versions of textures.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MipMaps {
-    /// By texture: each half as wide and high as that before it, the first as the texture; none where it is not
-    /// averaged.
-    levels: Vec<Vec<Texture>>,
+    /// By texture; none where it is not averaged.
+    pyramids: Vec<Pyramid>,
+}
+
+/// Coarser versions of a texture.
+#[derive(Clone, Debug, Default)]
+struct Pyramid {
+    /// Each half as wide and high as that before it, the first as the texture.
+    levels: Vec<Texture>,
+    /// Half the number of texels along the side of a unit square of texture coordinates.
+    half_texels: f32,
 }
 
 impl MipMaps {
     /// Makes those of the textures `wanted`.
     pub fn new(textures: &[Texture], wanted: impl Iterator<Item = TextureId>) -> MipMaps {
-        let mut levels: Vec<Vec<Texture>> = Vec::new();
+        let mut pyramids: Vec<Pyramid> = Vec::new();
         for TextureId(id) in wanted {
             let Some(texture) = textures.get(id as usize).filter(|t| t.texels.len() > 1) else { continue };
-            levels.resize(textures.len(), Vec::new());
-            if levels[id as usize].is_empty() {
-                levels[id as usize] = coarser(texture);
+            pyramids.resize(textures.len(), Pyramid::default());
+            let pyramid = &mut pyramids[id as usize];
+            if pyramid.levels.is_empty() {
+                let texels = texture.width as f32 * texture.height as f32 * texture.to_uv.determinant().abs();
+                *pyramid = Pyramid { levels: coarser(texture), half_texels: 0.5 * texels.sqrt() };
             }
         }
-        MipMaps { levels }
+        MipMaps { pyramids }
     }
 
     /// True if there are none.
     pub fn is_empty(&self) -> bool {
-        self.levels.is_empty()
+        self.pyramids.is_empty()
     }
 
     /// Version of a texture for lookups that stand for a square of side `covered` by texture coordinates.
     #[inline]
     pub fn level<'a>(&'a self, finest: &'a Texture, id: TextureId, covered: f32) -> &'a Texture {
-        let levels = self.levels.get(id.0 as usize).map_or(&[][..], |levels| levels);
-        let texels_a_uv =
-            (finest.width as f32 * finest.height as f32 * finest.to_uv.determinant().abs()).sqrt();
-        let level = ((0.5 * covered * texels_a_uv).max(1.0).log2() as usize).min(levels.len());
-        level.checked_sub(1).map_or(finest, |level| &levels[level])
+        let Some(Pyramid { levels, half_texels }) = self.pyramids.get(id.0 as usize) else { return finest };
+        // The binary exponent is the whole part of the logarithm.
+        let level = ((covered * half_texels).max(1.0).to_bits() >> 23) as usize - 127;
+        match level.min(levels.len()) {
+            0 => finest,
+            level => &levels[level - 1],
+        }
     }
 }
 
@@ -90,7 +102,7 @@ mod tests {
     fn levels_have_texels_half_as_large_as_what_is_covered() {
         let texture = checker();
         let maps = MipMaps::new(std::slice::from_ref(&texture), [TextureId(0)].into_iter());
-        let levels: Vec<usize> = maps.levels[0].iter().map(|level| level.texels.len()).collect();
+        let levels: Vec<usize> = maps.pyramids[0].levels.iter().map(|level| level.texels.len()).collect();
         assert_eq!(levels, [512, 128, 32, 8, 2, 1]);
         // A texel is a square of this side, in the mean: 128 by 32 of them a unit.
         let texel = 1.0 / 64.0;

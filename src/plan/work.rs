@@ -1,5 +1,5 @@
-//! Work that a picture is expected to take, counted before it is begun: rays, virtual lights and samples at fixed
-//! prices, so that choices by it do not depend on the machine or its load.
+//! Work that a picture is expected to take, or took: rays, virtual lights and samples at fixed prices, so that choices
+//! by it do not depend on the machine or its load.
 //!
 //! Units: microseconds of one core of the machine on which the prices were measured. Denoising takes about as long
 //! whatever made the picture and is left out.
