@@ -8,6 +8,7 @@
 //! [`learn`]: super::learn
 
 use super::adaptive::MULTIPLES;
+use super::guides::{FirstSurfaces, Guide};
 use super::merge::{MergedPoint, merge};
 use super::needs::Needs;
 use super::pass::TILE;
@@ -21,6 +22,7 @@ use crate::progress::Control;
 use crate::sampling::hash;
 use crate::view::View;
 use crate::world::World;
+use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -43,6 +45,8 @@ pub struct DrawnLight {
     pub extra_samples: f32,
     /// Pixels that need few samples.
     pub settled: Settled,
+    /// True if a denoiser's guides are to be found on the way.
+    pub guides: bool,
 }
 
 /// The ends of paths, in the order of the paths' edges.
@@ -55,6 +59,8 @@ pub(super) struct Ends<'a, 'w> {
     found: Vec<MergedPoint<'w>>,
     /// Their paths, and their numbers.
     order: Vec<(u32, u32)>,
+    /// Where guides are wanted.
+    first_surfaces: Option<FirstSurfaces>,
 }
 
 impl<'w> Reach<'w> for Ends<'_, 'w> {
@@ -73,6 +79,17 @@ impl<'w> Reach<'w> for Ends<'_, 'w> {
 
     fn edges(&self) -> ScatteredEdges {
         self.edges
+    }
+
+    fn sees(&self) -> bool {
+        self.first_surfaces.is_some()
+    }
+
+    #[inline]
+    fn see(&mut self, path: u32, bsdf: &Bsdf, wo: Vec3, normal: Vec3) {
+        if let Some(first) = &mut self.first_surfaces {
+            first.see(path, bsdf, wo, normal);
+        }
     }
 
     #[inline]
@@ -110,6 +127,7 @@ pub(super) struct Found<'b, 'w> {
     pub(super) sum: Rgb,
     /// Radiances that were not finite and left out.
     nonfinite: u64,
+    guide: Guide,
     ends: &'b [MergedPoint<'w>],
     /// Those of the pixel, by path.
     order: &'b [(u32, u32)],
@@ -130,6 +148,8 @@ pub(super) struct Tile<'w> {
     pub(super) sums: Vec<Rgb>,
     /// By pixel: number of samples.
     pub(super) samples: Vec<u32>,
+    /// By pixel: what a denoiser is to know of it, if that is wanted.
+    guides: Vec<Guide>,
     points: Vec<MergedPoint<'w>>,
     /// By pixel: its points.
     ranges: Vec<Range<usize>>,
@@ -155,7 +175,7 @@ impl<'w> EyePass<'w> {
         let tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
             .into_par_iter()
             .map_init(
-                || tracer.workspace(learned),
+                || tracer.workspace_with_guides(learned),
                 |work, index| {
                     if control.is_cancelled() {
                         return None;
@@ -171,7 +191,7 @@ impl<'w> EyePass<'w> {
         let tiles = tiles
             .into_par_iter()
             .map_init(
-                || tracer.workspace(learned),
+                || tracer.workspace_with_guides(learned),
                 |work, tile| tracer.more_samples(tile, needs.as_ref(), work),
             )
             .collect();
@@ -211,8 +231,28 @@ impl<'a, 'w> Tracer<'a, 'w> {
     pub(super) fn workspace<'b>(&'b self, learned: Option<&'b Learned>) -> Workspace<'b, 'w> {
         let spacing_by_distance = SPACING * self.view.pixel_angle();
         let Tracer { drawn, edges, .. } = *self;
-        let ends = Ends { drawn, learned, spacing_by_distance, edges, found: Vec::new(), order: Vec::new() };
+        let ends = Ends {
+            drawn,
+            learned,
+            spacing_by_distance,
+            edges,
+            found: Vec::new(),
+            order: Vec::new(),
+            first_surfaces: None,
+        };
         Workspace { batch: Batch::default(), ends, merged: Vec::new() }
+    }
+
+    /// The same for samples of which guides are to be found, if any are.
+    fn workspace_with_guides<'b>(&'b self, learned: Option<&'b Learned>) -> Workspace<'b, 'w> {
+        let mut workspace = self.workspace(learned);
+        workspace.ends.first_surfaces = self.finds_guides().then(FirstSurfaces::default);
+        workspace
+    }
+
+    /// True if a denoiser's guides are to be found: paths that may not go on say nothing of surfaces.
+    fn finds_guides(&self) -> bool {
+        self.drawn.guides && self.settings.spp > 1 && self.settings.max_depth > 1
     }
 
     /// Takes the first samples of all pixels of a tile.
@@ -226,6 +266,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         let mut tile = Tile {
             sums: vec![Rgb::ZERO; pixels.len()],
             samples: vec![spp; pixels.len()],
+            guides: vec![Guide::default(); if self.finds_guides() { pixels.len() } else { 0 }],
             points: Vec::with_capacity(2 * pixels.len()),
             ranges: vec![0..0; pixels.len()],
             chains: ChainCounts::default(),
@@ -242,6 +283,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 let i = chosen[found.index];
                 tile.sums[i] += found.sum;
                 tile.samples[i] = number;
+                tile.guides.iter_mut().skip(i).take(1).for_each(|guide| guide.add(found.guide));
                 tile.nonfinite += found.nonfinite;
                 let draw = self.draw(film_pixels[found.index], found.first);
                 merge(found.ends(), draw, merged);
@@ -294,6 +336,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 let chains = self.sample(&chosen_pixels, spp..total, seed, work, |more, merged| {
                     let i = chosen[more.index];
                     tile.sums[i] += more.sum;
+                    tile.guides.iter_mut().skip(i).take(1).for_each(|guide| guide.add(more.guide));
                     found.nonfinite += more.nonfinite;
                     let before = if more.first == spp { first_points(i) } else { &[] };
                     let points = before.iter().chain(more.ends());
@@ -309,6 +352,9 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 found.known.push((pixel, tile.sums[i] / tile.samples[i] as f32));
             }
         }
+        let of_window = |[x, y]: [u32; 2]| y * window.width + x;
+        let kept = tile.guides.iter().zip(&tile.samples).map(|(guide, samples)| guide.kept(*samples));
+        found.guides = tile.pixels.iter().map(|pixel| of_window(*pixel)).zip(kept).collect();
         found
     }
 
@@ -336,11 +382,18 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 start(batch, paths, (self.world, self.view), (look, self.settings.spp));
                 ends.found.clear();
                 ends.order.clear();
+                if let Some(first_surfaces) = &mut ends.first_surfaces {
+                    first_surfaces.begin(pixels.len(), n as u32);
+                }
                 let mut counts = Counts::default();
                 let mut radiance = batch.trace(self.world, self.settings.max_depth, ends, &mut counts);
                 chains.rays += counts.rays;
                 chains.shadow_rays += counts.shadow_rays;
                 ends.order.sort_unstable();
+                if let Some(first_surfaces) = &mut ends.first_surfaces {
+                    let eye = (self.world, self.view);
+                    first_surfaces.finish(eye, (pixels, part.start), (self.settings.spp, seed));
+                }
                 let (found, mut rest) = (&ends.found[..], &ends.order[..]);
                 for i in 0..pixels.len() {
                     let (mut sum, mut nonfinite) = (Rgb::ZERO, 0);
@@ -355,7 +408,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
                     (own, rest) =
                         rest.split_at(rest.partition_point(|(path, _)| *path < ((i + 1) * n) as u32));
                     let index = chunk * together + i;
-                    each(Found { index, first, sum, nonfinite, ends: found, order: own }, merged);
+                    let guide = ends.first_surfaces.as_ref().map_or_else(Guide::default, |first| first.of(i));
+                    each(Found { index, first, sum, nonfinite, guide, ends: found, order: own }, merged);
                 }
             }
         }

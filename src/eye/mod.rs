@@ -6,6 +6,7 @@ mod chain;
 mod drawn;
 mod features;
 mod guide;
+mod guides;
 mod index;
 mod learn;
 mod merge;

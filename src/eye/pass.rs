@@ -3,6 +3,7 @@
 //!
 //! Paper: Herzog et al. 2009, section 4: eye samples are stored through specular chains and sorted by a kd-tree.
 
+use super::guides::{KeptGuide, KeptGuides};
 use super::points::{PointGeometry, PointSurface, VisibilitySample};
 use super::{
     ChainCounts, DrawnLight, EyeIndex, EyeRays, EyeSettings, LightBySpecularLobes, ShadingPoints,
@@ -33,6 +34,8 @@ pub struct EyePass<'w> {
     /// Light known: that which reaches the eye from emitters, directly or along specular chains; that which comes to
     /// surfaces seen by mirrors and glass; and direct light if it is drawn.
     pub known: Image,
+    /// What a denoiser is to know of the pixels, if that is wanted.
+    pub guides: Option<KeptGuides>,
     /// Rays traced.
     pub chains: ChainCounts,
     /// Radiances that were not finite and left out.
@@ -109,7 +112,12 @@ impl<'w> EyePass<'w> {
         let mut known = Image::new(window.width, window.height);
         let mut chains = ChainCounts::default();
         let mut nonfinite = 0;
+        let mut guides = Vec::new();
         for tile in &mut tiles {
+            for (pixel, guide) in mem::take(&mut tile.guides) {
+                guides.resize(known.pixels.len(), KeptGuide::default());
+                guides[pixel as usize] = guide;
+            }
             for (pixel, radiance) in mem::take(&mut tile.known) {
                 known.pixels[pixel as usize] += radiance / spp;
             }
@@ -128,6 +136,7 @@ impl<'w> EyePass<'w> {
             index,
             visibility: VisibilitySamples::one_each(samples),
             known,
+            guides: (!guides.is_empty()).then_some(KeptGuides(guides)),
             chains,
             nonfinite,
             complete,

@@ -1,6 +1,7 @@
 //! Eye rays one by one: their random numbers, their places in pixels, and the surfaces that they make visible.
 
 use super::chain::{ChainCounts, Follow, Met, trace};
+use super::guides::KeptGuide;
 use super::points::{ShadingPoints, VisibilitySample, shading_point};
 use crate::math::{Cone, Rgb};
 use crate::paths::eye_sampler;
@@ -39,6 +40,8 @@ pub struct VisibleSurfaces<'w> {
     pub visibility: Vec<VisibilitySample>,
     /// By pixel: light, other than 0, that is known (see [`super::EyePass::known`]).
     pub known: Vec<(u32, Rgb)>,
+    /// By pixel: what a denoiser is to know of it, if that is wanted.
+    pub guides: Vec<(u32, KeptGuide)>,
     /// Rays traced.
     pub chains: ChainCounts,
     /// Radiances that were not finite and left out.

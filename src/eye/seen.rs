@@ -127,7 +127,7 @@ impl Looking<'_> {
     }
 
     /// Adds samples, each by the index of its pixel and its number there.
-    fn add(
+    pub fn add(
         &self,
         film_pixels: &[[u32; 2]],
         pixels: &mut [Pixel],

@@ -12,6 +12,8 @@ pub struct Output {
     pub variance: Option<Image>,
     /// Further images.
     pub extra: Vec<Layer>,
+    /// Features that were found on the way and are those of all its samples, by which it may be denoised.
+    pub guides: Vec<Layer>,
     /// Layers by which the picture can go on where it is interrupted; none where the method cannot.
     pub begun: Vec<Layer>,
     /// Counters and times.

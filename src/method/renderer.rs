@@ -77,6 +77,11 @@ pub trait Renderer: Settings + Sampled {
         Ok(())
     }
 
+    /// True if a denoiser's guides come with pictures ([`Output::guides`]).
+    fn finds_guides(&self) -> bool {
+        false
+    }
+
     /// Value that a pixel is to have.
     fn look(&self) -> Look {
         let sampling = self.sampling();

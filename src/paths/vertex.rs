@@ -100,6 +100,11 @@ impl Packet {
             self.normal.set(i, if local.z < 0.0 { -frame.normal } else { frame.normal });
         }
         let mut bsdfs = world.bsdfs(surfaces, wo);
+        if R::ENDS && depth == 1 && reach.sees() {
+            for lane in lanes_in(found) {
+                reach.see(self.slot[lane], bsdfs.lane(lane), wo.get(lane), self.normal.get(lane));
+            }
+        }
         if world.specular.scatter_across() {
             // Light comes to them from both sides.
             let across = |lane: &usize| bsdfs.lane(*lane).scatters_across();

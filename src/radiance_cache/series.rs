@@ -133,6 +133,7 @@ pub fn drawn_light(
         followed: followed(),
         extra_samples: settings.extra_samples,
         settled,
+        guides: false,
     })
 }
 

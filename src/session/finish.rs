@@ -120,8 +120,14 @@ impl<'a> Finish<'a> {
         }
         let wanted = self.wanted();
         // What is seen takes more memory than its layers, and so does denoising: not at once.
-        let look = || self.look(method).layers(self.world, wanted);
-        let layers = output.stats.time(Stage::EyePass, look);
+        let found = std::mem::take(&mut output.guides);
+        let layers = match self.features.is_empty() && !found.is_empty() {
+            true => found,
+            false => {
+                let look = || self.look(method).layers(self.world, wanted);
+                output.stats.time(Stage::EyePass, look)
+            }
+        };
         self.apply_to_layers(layers, output);
     }
 
@@ -168,7 +174,8 @@ impl<'a> Finish<'a> {
         let small = smaller(self.view, TRIAL_SCALE);
         let watch = Stopwatch::start();
         let layers = self.look_at(&small, method).layers(self.world, self.wanted());
-        let looking = watch.elapsed().wall_seconds;
+        let finds_guides = self.features.is_empty() && method.finds_guides();
+        let looking = if finds_guides { 0.0 } else { watch.elapsed().wall_seconds };
         let mut denoising = 0.0;
         let guides = guides(&layers);
         let Some(color) = guides.albedo else { return 0.0 };

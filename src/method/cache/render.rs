@@ -74,7 +74,10 @@ impl Settings {
         };
         let wanted = (self.light, self.family);
         let glossy = Glossy::new(world, &cache);
-        let drawn = drawn_light(glossy.as_ref(), &cache, settled);
+        let mut drawn = drawn_light(glossy.as_ref(), &cache, settled);
+        if let (Some(drawn), true) = (&mut drawn, self.finds_guides() && kept.is_none()) {
+            drawn.guides = true;
+        }
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = lights.context(world, self.compensation);
@@ -118,7 +121,8 @@ impl Settings {
         if let Some(kept) = kept {
             kept.end(&frame, view.camera.origin, &mut stats);
         }
-        Output { color, variance: None, extra, begun: Vec::new(), stats, complete, nonfinite }
+        let guides = samples.guides.as_ref().map_or_else(Vec::new, |guides| guides.layers(&view.window));
+        Output { color, variance: None, extra, guides, begun: Vec::new(), stats, complete, nonfinite }
     }
 }
 
@@ -144,6 +148,10 @@ impl Renderer for Settings {
         control: &Control,
     ) -> Output {
         self.picture(world, lights, Some(before), view, control)
+    }
+
+    fn finds_guides(&self) -> bool {
+        self.cache.draws_direct_light() && self.spp > 1
     }
 
     fn keeps_records(&self) -> bool {

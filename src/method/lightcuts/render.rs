@@ -96,7 +96,16 @@ impl Renderer for Settings {
         counts::eye(&mut stats, &chains);
         let complete = done.iter().all(Option::is_some) && !control.is_cancelled();
         let extra = vec![Layer::scalar("cut", cut_size)];
-        Output { color, variance: None, extra, begun: Vec::new(), stats, complete, nonfinite }
+        Output {
+            color,
+            variance: None,
+            extra,
+            guides: Vec::new(),
+            begun: Vec::new(),
+            stats,
+            complete,
+            nonfinite,
+        }
     }
 
     fn ladder(&self) -> &'static [Move] {

@@ -147,7 +147,16 @@ impl Renderer for Settings {
         if self.inspect {
             extra.extend(frame.iter().flat_map(|frame| frame.inspect(&records, &samples)));
         }
-        Output { color, variance: None, extra, begun: Vec::new(), stats, complete, nonfinite }
+        Output {
+            color,
+            variance: None,
+            extra,
+            guides: Vec::new(),
+            begun: Vec::new(),
+            stats,
+            complete,
+            nonfinite,
+        }
     }
 
     fn expected_bytes(&self, window: &Window) -> u64 {
