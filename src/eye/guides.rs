@@ -141,7 +141,7 @@ mod tests {
     fn guides_are_the_features_of_all_eye_samples() {
         const SPP: u32 = 16;
         let world = room_with_ball(Some(mirror()));
-        let view = world.view.clone();
+        let view = world.view;
         for max_depth in [5, 1] {
             let settings = EyeSettings { spp: SPP, seed: 3, max_depth };
             let drawn = DrawnLight { guides: true, ..DrawnLight::default() };

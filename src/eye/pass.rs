@@ -34,7 +34,7 @@ pub struct EyePass<'w> {
     /// Light known: that which reaches the eye from emitters, directly or along specular chains; that which comes to
     /// surfaces seen by mirrors and glass; and direct light if it is drawn.
     pub known: Image,
-    /// What a denoiser is to know of the pixels, if that is wanted.
+    /// Guides for a denoiser, if they are wanted.
     pub guides: Option<KeptGuides>,
     /// Rays traced.
     pub chains: ChainCounts,
