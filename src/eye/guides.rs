@@ -1,6 +1,6 @@
 //! Guides for a denoiser that the eye pass finds on its way: mean albedo and normal by pixel.
 //!
-//! They are what [`super::features`] says, of all eye samples of a pixel. Only samples that meet a mirror or glass first
+//! They are as [`super::features`] says, of all eye samples of a pixel. Only samples that meet a mirror or glass first
 //! are looked at by themselves.
 //!
 //! Errors: values are kept to 16 bits, so 1e-5 of an albedo and 3e-5 of a normal.
@@ -124,7 +124,7 @@ impl FirstSurfaces {
         }
     }
 
-    /// What was seen in a pixel.
+    /// The surfaces seen in a pixel.
     pub fn of(&self, pixel: usize) -> Guide {
         self.pixels.get(pixel).copied().unwrap_or_default()
     }
