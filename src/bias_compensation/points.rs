@@ -36,6 +36,9 @@ const MAX_STEPS: u32 = 8;
 /// Share of the luminance to which a VPL is clamped in them: more than elsewhere, since light lost here is lost.
 const CLAMP: f32 = 0.05;
 
+/// Cosine between the normals of surfaces that face opposite ways.
+const OPPOSITE: f32 = -0.5;
+
 /// Weight of surfaces that face away, relative to those of the same orientation.
 const ASIDE: f32 = 1e-3;
 
@@ -191,14 +194,16 @@ impl Compensator {
 }
 
 impl NearLight {
-    /// Returns the mean irradiance of the points, weighted towards those close by of the same orientation.
+    /// Returns the mean irradiance of the places, weighted towards those close by of the same orientation. Places that
+    /// face the other way, which may be on the other side of a wall, count as dark.
     fn interpolated(&self, near: &NearSurface, least_sq: f32) -> Rgb {
         let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
         for (place, irradiance) in &self.places {
-            let facing = place.normal.dot(near.normal).max(0.0);
+            let cos = place.normal.dot(near.normal);
+            let facing = cos.max(0.0);
             let dist_sq = place.position.distance_squared(near.surface.position);
             let weight = (ASIDE + facing * facing) / (dist_sq + least_sq);
-            sum += *irradiance * weight;
+            sum += if cos > OPPOSITE { *irradiance * weight } else { Rgb::ZERO };
             weights += weight;
         }
         if weights > 0.0 { sum / weights } else { Rgb::ZERO }
@@ -239,4 +244,41 @@ fn mean_irradiance(receivers: &ReceiverPacket, radiance: &[Rgb; LANES]) -> f32 {
     let (sum, count) =
         (0..receivers.len()).filter_map(irradiance).fold((0.0, 0), |(sum, n), e| (sum + e, n + 1));
     sum / count.max(1) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::embree::Ray;
+    use crate::scene::Camera;
+    use crate::test_scenes::*;
+    use glam::Vec3;
+
+    #[test]
+    fn light_on_one_side_of_a_sheet_says_nothing_of_the_other() {
+        let mut scene = scene(Camera::default(), [1, 1]);
+        let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+        scene.meshes.push(quad(Vec3::ZERO, Vec3::X, Vec3::Y, grey));
+        let origin = Vec3::new(0.3, 0.3, 1.0);
+        let ray = Ray { origin, t_near: 0.0, direction: -Vec3::Z, t_far: f32::INFINITY };
+        let surface = world(scene).intersect(&ray).expect("the sheet");
+        let place = |normal| SurfacePoint { position: surface.position, normal, geometric_normal: Vec3::Z };
+        let seen = |normal| NearSurface {
+            surface,
+            distance: 1.0,
+            cos: 1.0,
+            normal,
+            weight: Rgb::ONE,
+            emitted: Rgb::ZERO,
+        };
+        let light = NearLight { origin: None, places: vec![(place(Vec3::Z), Rgb::ONE)] };
+        assert_eq!(light.interpolated(&seen(-Vec3::Z), 1e-12), Rgb::ZERO);
+        let slanted = Vec3::new(0.6, 0.0, 0.8);
+        for normal in [Vec3::Z, slanted, Vec3::X] {
+            let error = light.interpolated(&seen(normal), 1e-12) - Rgb::ONE;
+            assert!(error.abs().max_element() < 1e-6, "{normal}");
+        }
+        let both = NearLight { places: vec![(place(Vec3::Z), Rgb::ONE), (place(-Vec3::Z), Rgb::X)], ..light };
+        assert!((both.interpolated(&seen(-Vec3::Z), 1e-12) - Rgb::X).abs().max_element() < 2e-3);
+    }
 }

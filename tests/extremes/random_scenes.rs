@@ -191,7 +191,8 @@ impl Spec {
             spec.parts.push(Part { shape: "rectangle", material, steps, emission });
             if patch != from {
                 let turn = DQuat::from_axis_angle(DVec3::from(axis).normalize(), angle.to_radians());
-                let before = DVec3::from(at) + turn * DVec3::Z * (1e-3 * size);
+                // So close that little of what crosses the patch is between.
+                let before = DVec3::from(at) + turn * DVec3::Z * (1e-5 * size);
                 (spec.origin, spec.target) = (before.into(), at);
                 spec.lens = Lens::Parallel((turn * DVec3::Y).into(), 2.0 * size);
             }
