@@ -122,9 +122,9 @@ impl GatheredLayer16 {
             let moves = lit && kept[l] >= 1.0 && inverse * inverse < max_inverse_sq;
             let rate = if moves { inverse } else { 0.0 };
             let cos = if oriented { -normal.dot(direction) } else { 1.0 };
-            let turning = match lobe {
-                Some(lobe) if lit => relative_slope(lobe, -direction),
-                _ => normal * (1.0 / if cos > MIN_COS { cos } else { MIN_COS }),
+            let (turning, bending) = match lobe {
+                Some(lobe) if lit => relative_derivatives(lobe, -direction),
+                _ => (normal * (1.0 / if cos > MIN_COS { cos } else { MIN_COS }), 0.0),
             };
             let gradient = (turning + direction * power) * rate;
             for c in 0..3 {
@@ -146,9 +146,9 @@ impl GatheredLayer16 {
             let (n_u, n_v) = (turning.dot(axes[0].get(l)), turning.dot(axes[1].get(l)));
             let crossed = power * (power + 2.0);
             let second = y * rate * inverse;
-            self.held[0][l] += second * (8.0 * n_u * u + crossed * u * u - power);
+            self.held[0][l] += second * (8.0 * n_u * u + crossed * u * u - power - bending);
             self.held[1][l] += second * (4.0 * (n_u * v + n_v * u) + crossed * u * v);
-            self.held[2][l] += second * (8.0 * n_v * v + crossed * v * v - power);
+            self.held[2][l] += second * (8.0 * n_v * v + crossed * v * v - power - bending);
         }
         light
     }
@@ -213,10 +213,12 @@ fn outer(v: Vec3, c: Rgb) -> Mat3 {
     Mat3::from_cols(v * c.x, v * c.y, v * c.z)
 }
 
-/// Derivative of the light that a lobe sends in the unit direction `away`, by that, relative to the light.
-fn relative_slope(lobe: &LobeProfile, away: Vec3) -> Vec3 {
-    let (share, slope) = lobe.share_and_slope(away);
-    slope / share.max(MIN_COS)
+/// First derivative of the light that a lobe sends in the unit direction `away`, by that, relative to the light, and
+/// the magnitude of the second ones.
+fn relative_derivatives(lobe: &LobeProfile, away: Vec3) -> (Vec3, f32) {
+    let (share, slope, curvature) = lobe.share_and_derivatives(away);
+    let share = share.max(MIN_COS);
+    (slope / share, curvature / share)
 }
 
 #[cfg(test)]

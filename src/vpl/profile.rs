@@ -55,12 +55,21 @@ impl LobeProfile {
 
     /// That, and its derivative by `away`, perpendicular to it, from differences.
     pub fn share_and_slope(&self, away: Vec3) -> (f32, Vec3) {
+        let (share, slope, _) = self.share_and_derivatives(away);
+        (share, slope)
+    }
+
+    /// Those, and the sum of the magnitudes of the second derivatives along two axes.
+    pub fn share_and_derivatives(&self, away: Vec3) -> (f32, Vec3, f32) {
+        let share = self.share(away);
         let (u, v) = away.any_orthonormal_pair();
-        let along = |axis: Vec3| {
-            let at = |step: f32| self.share((away + axis * step).normalize());
-            axis * ((at(STEP) - at(-STEP)) / (2.0 * STEP))
-        };
-        (self.share(away), along(u) + along(v))
+        let (mut slope, mut curvature) = (Vec3::ZERO, 0.0);
+        for axis in [u, v] {
+            let [after, before] = [STEP, -STEP].map(|step| self.share((away + axis * step).normalize()));
+            slope += axis * ((after - before) / (2.0 * STEP));
+            curvature += (after + before - 2.0 * share).abs() / (STEP * STEP);
+        }
+        (share, slope, curvature)
     }
 
     /// Squared roughness by which [`LobeShape::max_share`] bounds it.
