@@ -283,7 +283,9 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 let i = chosen[found.index];
                 tile.sums[i] += found.sum;
                 tile.samples[i] = number;
-                tile.guides.iter_mut().skip(i).take(1).for_each(|guide| guide.add(found.guide));
+                if let Some(guide) = tile.guides.get_mut(i) {
+                    guide.add(found.guide);
+                }
                 tile.nonfinite += found.nonfinite;
                 let draw = self.draw(film_pixels[found.index], found.first);
                 merge(found.ends(), draw, merged);
@@ -336,7 +338,9 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 let chains = self.sample(&chosen_pixels, spp..total, seed, work, |more, merged| {
                     let i = chosen[more.index];
                     tile.sums[i] += more.sum;
-                    tile.guides.iter_mut().skip(i).take(1).for_each(|guide| guide.add(more.guide));
+                    if let Some(guide) = tile.guides.get_mut(i) {
+                        guide.add(more.guide);
+                    }
                     found.nonfinite += more.nonfinite;
                     let before = if more.first == spp { first_points(i) } else { &[] };
                     let points = before.iter().chain(more.ends());

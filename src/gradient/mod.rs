@@ -13,8 +13,8 @@
 //! because records of radiance have none; irradiance gets it from the direction.
 
 mod incidence;
+mod profile;
 mod source;
-mod spot;
 
 pub use incidence::Incidence;
 pub use source::LocalVpl;

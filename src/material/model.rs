@@ -194,7 +194,7 @@ impl Model {
             if needs_albedo || rough.facets.alpha >= DIFFUSE_ALPHA {
                 rough.albedo = Some(tables.albedo(rough.facets, rough.fresnel));
             }
-            if !rough.is_glossy() {
+            if rough.may_radiate() {
                 rough.white = Some(tables.albedo(rough.facets, Fresnel::One));
             }
             if let Fresnel::Conductor { .. } | Fresnel::Schlick { .. } = rough.fresnel {

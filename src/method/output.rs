@@ -23,3 +23,19 @@ pub struct Output {
     /// Samples that were not finite and were dropped; anything but 0 is a defect worth reporting.
     pub nonfinite: u64,
 }
+
+impl Output {
+    /// A complete picture and nothing besides.
+    pub fn new(color: Image, stats: Stats) -> Output {
+        Output {
+            color,
+            variance: None,
+            extra: Vec::new(),
+            guides: Vec::new(),
+            begun: Vec::new(),
+            stats,
+            complete: true,
+            nonfinite: 0,
+        }
+    }
+}

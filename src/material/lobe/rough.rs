@@ -106,6 +106,11 @@ impl RoughLobe {
         Some(scale * table.lookup(cos))
     }
 
+    /// True if virtual lights may radiate by the lobe, whatever its factor below 1.
+    pub(in crate::material) fn may_radiate(&self) -> bool {
+        !self.is_glossy() && luminance(self.fresnel.reflectance(1.0)) > DIFFUSE_REFLECTANCE
+    }
+
     /// See [`super::LobeModel::reflected`].
     pub(super) fn reflected(&self, scale: Rgb, cos: f32) -> Option<ReflectedLobe> {
         let albedo = self.diffuse_albedo(scale, cos)?;

@@ -1,7 +1,7 @@
 //! The picture: eye pass, light pass, trees, the cache, and the rest by cuts.
 
 use super::resolve::resolve;
-use crate::eye::{EyePass, EyePilot, EyeSettings, Settled};
+use crate::eye::{DrawnLight, EyePass, EyePilot, EyeSettings, Settled};
 use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
@@ -74,10 +74,8 @@ impl Settings {
         };
         let wanted = (self.light, self.family);
         let glossy = Glossy::new(world, &cache);
-        let mut drawn = drawn_light(glossy.as_ref(), &cache, settled);
-        if let (Some(drawn), true) = (&mut drawn, self.finds_guides() && kept.is_none()) {
-            drawn.guides = true;
-        }
+        let drawn = drawn_light(glossy.as_ref(), &cache, settled);
+        let drawn = drawn.map(|drawn| DrawnLight { guides: kept.is_none(), ..drawn });
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = lights.context(world, self.compensation);
@@ -122,7 +120,7 @@ impl Settings {
             kept.end(&frame, view.camera.origin, &mut stats);
         }
         let guides = samples.guides.as_ref().map_or_else(Vec::new, |guides| guides.layers(&view.window));
-        Output { color, variance: None, extra, guides, begun: Vec::new(), stats, complete, nonfinite }
+        Output { extra, guides, complete, nonfinite, ..Output::new(color, stats) }
     }
 }
 

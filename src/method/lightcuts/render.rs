@@ -96,16 +96,7 @@ impl Renderer for Settings {
         counts::eye(&mut stats, &chains);
         let complete = done.iter().all(Option::is_some) && !control.is_cancelled();
         let extra = vec![Layer::scalar("cut", cut_size)];
-        Output {
-            color,
-            variance: None,
-            extra,
-            guides: Vec::new(),
-            begun: Vec::new(),
-            stats,
-            complete,
-            nonfinite,
-        }
+        Output { extra, complete, nonfinite, ..Output::new(color, stats) }
     }
 
     fn ladder(&self) -> &'static [Move] {

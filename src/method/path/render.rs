@@ -119,7 +119,7 @@ impl Settings {
         // With a single sample there is no spread to measure.
         let variance = (self.spp > 1).then(|| variance(&squares, &samples));
         let begun = Begun::layers(squares, samples);
-        Output { color, variance, extra: Vec::new(), guides: Vec::new(), begun, stats, complete, nonfinite }
+        Output { variance, begun, complete, nonfinite, ..Output::new(color, stats) }
     }
 }
 

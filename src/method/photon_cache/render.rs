@@ -147,16 +147,7 @@ impl Renderer for Settings {
         if self.inspect {
             extra.extend(frame.iter().flat_map(|frame| frame.inspect(&records, &samples)));
         }
-        Output {
-            color,
-            variance: None,
-            extra,
-            guides: Vec::new(),
-            begun: Vec::new(),
-            stats,
-            complete,
-            nonfinite,
-        }
+        Output { extra, complete, nonfinite, ..Output::new(color, stats) }
     }
 
     fn expected_bytes(&self, window: &Window) -> u64 {

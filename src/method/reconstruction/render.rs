@@ -44,7 +44,7 @@ pub fn light(settings: &Settings, world: &World, prepared: Prepared, control: &C
     counts.shadows.report(&mut stats);
     let complete = eye.complete && !control.is_cancelled();
     let (color, extra, nonfinite) = picture.finish();
-    Output { color, variance: None, extra, guides: Vec::new(), begun: Vec::new(), stats, complete, nonfinite }
+    Output { extra, complete, nonfinite, ..Output::new(color, stats) }
 }
 
 /// All light of all shading points.
