@@ -45,6 +45,7 @@ mod eye;
 pub mod film;
 mod gradient;
 mod hsh;
+mod kd_tree;
 mod light;
 mod light_tree;
 mod lightcut;

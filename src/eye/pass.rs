@@ -6,10 +6,11 @@
 use super::guides::{KeptGuide, KeptGuides};
 use super::points::{PointGeometry, PointSurface, VisibilitySample};
 use super::{
-    ChainCounts, DrawnLight, EyeIndex, EyeRays, EyeSettings, LightBySpecularLobes, ShadingPoints,
-    VisibilitySamples, VisibleSurfaces,
+    ChainCounts, DrawnLight, EyeRays, EyeSettings, LightBySpecularLobes, ShadingPoints, VisibilitySamples,
+    VisibleSurfaces,
 };
 use crate::film::{Image, Window};
+use crate::kd_tree::KdTree;
 use crate::math::luminance;
 use crate::progress::Control;
 use crate::view::View;
@@ -28,7 +29,7 @@ pub struct EyePass<'w> {
     /// The surfaces seen, in the order of the index.
     pub points: ShadingPoints<'w>,
     /// The hierarchy over `points`.
-    pub index: EyeIndex,
+    pub index: KdTree,
     /// Shares of the points' radiances that reach the pixels.
     pub visibility: VisibilitySamples,
     /// Light known: that which reaches the eye from emitters, directly or along specular chains; that which comes to
@@ -126,7 +127,7 @@ impl<'w> EyePass<'w> {
         }
         // One array after the other, so that only one at a time is in memory twice.
         let geometry = joined(&mut tiles, |tile| mem::take(&mut tile.points.geometry));
-        let (index, order) = EyeIndex::build(geometry.iter().map(|point| point.position));
+        let (index, order) = KdTree::build(geometry.iter().map(|point| point.position));
         let geometry = ordered(geometry, &order);
         let surfaces = ordered(joined(&mut tiles, |tile| mem::take(&mut tile.points.surfaces)), &order);
         let mut samples = ordered(joined(&mut tiles, |tile| mem::take(&mut tile.visibility)), &order);

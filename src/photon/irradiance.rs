@@ -3,8 +3,7 @@
 //! Paper: Christensen 1999: one look-up at each hit of a final gathering, instead of an estimate.
 
 use super::density::{IrradianceEstimate, MIN_COS, surface_distance_sq};
-use super::wide_kd_tree::WideKdTree;
-use crate::eye::EyeIndex;
+use crate::kd_tree::{KdTree, WideKdTree};
 use crate::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, lanes_in, mask_of};
 use glam::Vec3;
 
@@ -33,7 +32,7 @@ pub struct IrradianceMap {
 
 impl IrradianceMap {
     /// Builds the map from estimates in the order of the index.
-    pub fn new(estimates: &[IrradianceEstimate], index: &EyeIndex) -> IrradianceMap {
+    pub fn new(estimates: &[IrradianceEstimate], index: &KdTree) -> IrradianceMap {
         let leaves = (0..index.leaves())
             .map(|leaf| Leaf::new(estimates, index.leaf(leaf).start, index.leaf(leaf).len()));
         let positions: Vec<Vec3> = estimates.iter().map(|e| e.position).collect();
@@ -125,7 +124,7 @@ mod tests {
             IrradianceEstimate { position, normal, irradiance: Rgb::splat(i as f32), radius: 0.1 }
         };
         let estimates: Vec<IrradianceEstimate> = (0..3000).map(estimate).collect();
-        let (index, order) = EyeIndex::build(estimates.iter().map(|e| e.position));
+        let (index, order) = KdTree::build(estimates.iter().map(|e| e.position));
         let estimates: Vec<IrradianceEstimate> = order.iter().map(|&i| estimates[i as usize]).collect();
         let map = IrradianceMap::new(&estimates, &index);
         for (point, normal, near) in [
@@ -142,6 +141,6 @@ mod tests {
             assert_eq!(map.at(point, normal), expected);
         }
         assert_eq!(map.at(Vec3::ZERO, Vec3::NEG_Y), None);
-        assert_eq!(IrradianceMap::new(&[], &EyeIndex::build([].into_iter()).0).at(Vec3::ZERO, Vec3::Z), None);
+        assert_eq!(IrradianceMap::new(&[], &KdTree::build([].into_iter()).0).at(Vec3::ZERO, Vec3::Z), None);
     }
 }

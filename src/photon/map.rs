@@ -5,7 +5,7 @@
 //!
 //! Units: flux in watts.
 
-use crate::eye::EyeIndex;
+use crate::kd_tree::KdTree;
 use crate::math::Rgb;
 use crate::progress::Control;
 use crate::sampling::hash;
@@ -31,11 +31,11 @@ pub struct PhotonMap {
     /// The photons; their flux has been divided by the number of paths.
     pub photons: Vec<Photon>,
     /// The hierarchy over them.
-    pub index: EyeIndex,
+    pub index: KdTree,
     /// Sites at which irradiance is estimated.
     pub sites: Vec<Site>,
     /// The hierarchy over those.
-    pub site_index: EyeIndex,
+    pub site_index: KdTree,
     /// Counts of tracing.
     pub counts: PhotonCounts,
 }
@@ -67,7 +67,7 @@ impl PhotonMap {
 }
 
 /// Builds a hierarchy over positions, and returns it with the items in its order.
-fn indexed<T: Copy>(items: &[T], position: impl Fn(&T) -> Vec3) -> (EyeIndex, Vec<T>) {
-    let (index, order) = EyeIndex::build(items.iter().map(position));
+fn indexed<T: Copy>(items: &[T], position: impl Fn(&T) -> Vec3) -> (KdTree, Vec<T>) {
+    let (index, order) = KdTree::build(items.iter().map(position));
     (index, order.iter().map(|&i| items[i as usize]).collect())
 }

@@ -7,7 +7,7 @@
 //! - [`map`]: the photons, in an order in which neighbours in space are neighbours in memory;
 //! - [`density`]: irradiance from the photons around a point; [`disc`]: the part of the disc around it that
 //!   is surface;
-//! - [`irradiance`]: look-ups of it anywhere, by [`wide_kd_tree`];
+//! - [`irradiance`]: look-ups of it anywhere;
 //! - [`strata`]: the directions of a final gathering; [`hemisphere`]: the surfaces they hit, and gradients;
 //! - [`indirect_light`]: light that a surface reflects along a ray; [`near`]: from surfaces nearer than the
 //!   map resolves; [`radiance`]: light along packets of rays;
@@ -26,7 +26,6 @@ pub mod records;
 pub mod strata;
 #[cfg(test)]
 mod tests;
-pub mod wide_kd_tree;
 
 pub use irradiance::IrradianceMap;
 pub use map::PhotonMap;

@@ -4,7 +4,8 @@ use super::footprint::Footprint;
 use super::record::{Diagnostics, Record};
 use super::source::Candidate;
 use super::targets::Targets;
-use crate::eye::{EyeIndex, PointGeometry, PointSurface, ShadingPoints};
+use crate::eye::{PointGeometry, PointSurface, ShadingPoints};
+use crate::kd_tree::KdTree;
 use crate::light_tree::{Family, LightTrees};
 use crate::material::Materials;
 use crate::math::{Rgb, luminance};
@@ -33,12 +34,12 @@ pub fn point(position: Vec3) -> PointGeometry {
 /// Shading points on a floor, in the order of their index.
 pub struct Floor {
     pub points: ShadingPoints<'static>,
-    pub index: EyeIndex,
+    pub index: KdTree,
 }
 
 impl Floor {
     pub fn new(positions: &[Vec3]) -> Floor {
-        let (index, order) = EyeIndex::build(positions.iter().copied());
+        let (index, order) = KdTree::build(positions.iter().copied());
         let surface = PointSurface {
             bsdf: MATERIALS.at(&SCENE, MaterialId(0), Vec2::ZERO),
             geometric_normal: Vec3::Z,

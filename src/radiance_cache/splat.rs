@@ -8,7 +8,7 @@
 use super::record::Record;
 use super::store::RecordStore;
 use super::targets::Targets;
-use crate::eye::EyeIndex;
+use crate::kd_tree::KdTree;
 use crate::math::Rgb;
 use rayon::prelude::*;
 
@@ -85,7 +85,7 @@ impl Splat {
 }
 
 /// The sums of the samples of each leaf that is marked.
-fn by_leaf<'a>(sums: &'a mut [Sum], index: &EyeIndex, marked: &[bool]) -> Vec<(usize, &'a mut [Sum])> {
+fn by_leaf<'a>(sums: &'a mut [Sum], index: &KdTree, marked: &[bool]) -> Vec<(usize, &'a mut [Sum])> {
     let mut rest = sums;
     let mut start = 0;
     let leaves = (0..index.leaves()).filter(|&leaf| marked[leaf]);

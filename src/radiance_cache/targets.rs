@@ -1,7 +1,8 @@
 //! The shading points of one frame, as far as records light them.
 
 use super::series::Glossy;
-use crate::eye::{EyeIndex, PointGeometry, ShadingPoints};
+use crate::eye::{PointGeometry, ShadingPoints};
+use crate::kd_tree::KdTree;
 use crate::math::{Rgb, luminance};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -16,7 +17,7 @@ pub struct Targets<'a> {
     /// The points, in the order of the index.
     pub points: &'a ShadingPoints<'a>,
     /// The hierarchy over them.
-    pub index: &'a EyeIndex,
+    pub index: &'a KdTree,
     /// Lobes that series light, if there are any.
     pub glossy: Option<&'a Glossy>,
     /// Bands of the series that each point needs; 0 where irradiance is enough.
@@ -32,7 +33,7 @@ pub struct Targets<'a> {
 
 impl<'a> Targets<'a> {
     /// All `points`; lobes are lit by series where `glossy` has enough bands for them.
-    pub fn new(points: &'a ShadingPoints, index: &'a EyeIndex, glossy: Option<&'a Glossy>) -> Targets<'a> {
+    pub fn new(points: &'a ShadingPoints, index: &'a KdTree, glossy: Option<&'a Glossy>) -> Targets<'a> {
         let bands = |surface| glossy.map_or(0, |glossy: &Glossy| glossy.bands(surface));
         let bands: Vec<u8> = points.surfaces.iter().map(bands).collect();
         let cacheable = points

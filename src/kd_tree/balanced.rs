@@ -1,15 +1,14 @@
-//! A balanced kd-tree over eye samples: splatting asks it for the samples in a footprint, and sampling for
-//! cells that spread records evenly.
+//! A balanced kd-tree: splatting asks it for the points in a footprint, and sampling for cells that spread records
+//! evenly.
 //!
-//! Every node splits its samples in halves along the longest side of their box, so that node `i` of level `l`
-//! is the range of samples from `n·i / 2^l` to `n·(i + 1) / 2^l`: no pointers, and the order of the samples
-//! is the order in space.
+//! Every node splits its points in halves along the longest side of their box, so that node `i` of level `l` is the
+//! range of points from `n·i / 2^l` to `n·(i + 1) / 2^l`: no pointers, and the order of the points is the order in space.
 
 use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Maximum number of samples in a leaf.
+/// Maximum number of points in a leaf.
 const LEAF: usize = 32;
 /// Smaller ranges are sorted by one thread.
 const PARALLEL: usize = 8192;
@@ -37,17 +36,17 @@ impl Bounds {
     }
 }
 
-/// The hierarchy; samples must be stored in its order.
-pub struct EyeIndex {
+/// The hierarchy; points must be stored in its order.
+pub struct KdTree {
     count: usize,
     depth: u32,
     /// Boxes of all nodes, level after level.
     bounds: Vec<Bounds>,
 }
 
-impl EyeIndex {
+impl KdTree {
     /// Builds the hierarchy over `positions`; returns it with the order in which to store the items.
-    pub fn build(positions: impl ExactSizeIterator<Item = Vec3>) -> (EyeIndex, Vec<u32>) {
+    pub fn build(positions: impl ExactSizeIterator<Item = Vec3>) -> (KdTree, Vec<u32>) {
         let mut items: Vec<(Vec3, u32)> = positions.zip(0..).collect();
         let count = items.len();
         let mut depth = 0;
@@ -55,7 +54,7 @@ impl EyeIndex {
             depth += 1;
         }
         sort(&mut items, count, 0, 0, depth);
-        let mut index = EyeIndex { count, depth, bounds: vec![Bounds::EMPTY; 2 << depth] };
+        let mut index = KdTree { count, depth, bounds: vec![Bounds::EMPTY; 2 << depth] };
         for leaf in 0..1usize << depth {
             let box_of = |b: Bounds, item: &(Vec3, u32)| b.union(Bounds { min: item.0, max: item.0 });
             index.bounds[(1 << depth) + leaf] =
@@ -77,13 +76,13 @@ impl EyeIndex {
         1 << self.depth
     }
 
-    /// Samples of node `i` of a level. Levels below the leaves divide leaves in the same way, in storage order.
+    /// Points of node `i` of a level. Levels below the leaves divide leaves in the same way, in storage order.
     #[inline]
     pub fn range(&self, level: u32, i: usize) -> Range<usize> {
         range(self.count, level, i)
     }
 
-    /// Samples of a leaf.
+    /// Points of a leaf.
     #[inline]
     pub fn leaf(&self, leaf: usize) -> Range<usize> {
         self.range(self.depth, leaf)
@@ -162,10 +161,10 @@ mod tests {
     }
 
     #[test]
-    fn leaves_share_out_all_samples_and_queries_miss_none() {
+    fn leaves_share_out_all_points_and_queries_miss_none() {
         for n in [0u32, 1, 2, 31, 32, 33, 1000, 20_000] {
             let points = points(n);
-            let (index, order) = EyeIndex::build(points.iter().copied());
+            let (index, order) = KdTree::build(points.iter().copied());
             let mut sorted = order.clone();
             sorted.sort();
             assert!(sorted.into_iter().eq(0..n));
@@ -184,8 +183,8 @@ mod tests {
     }
 
     #[test]
-    fn coinciding_samples_are_no_trouble() {
-        let (index, order) = EyeIndex::build(vec![Vec3::ONE; 500].into_iter());
+    fn coinciding_points_are_no_trouble() {
+        let (index, order) = KdTree::build(vec![Vec3::ONE; 500].into_iter());
         assert_eq!(order.len(), 500);
         let mut found = 0;
         index.leaves_near(Vec3::ONE, 0.0, |leaf| found += index.leaf(leaf).len());

@@ -1,10 +1,10 @@
 //! The nearest of many points, by a hierarchy of boxes of which sixteen are tested at once.
 //!
 //! Paper: Wald, Benthin and Boulos, *Getting Rid of Packets*, 2008 (sixteen children a node, for rays). Every
-//! fourth level of an [`EyeIndex`], from its leaves up: a query is bound by the latency of one node after the
+//! fourth level of an [`KdTree`], from its leaves up: a query is bound by the latency of one node after the
 //! other, and there are three or four instead of twelve to sixteen.
 
-use crate::eye::EyeIndex;
+use super::KdTree;
 use crate::math::{F32x16, LANES, U32x16, lanes_in, mask_of};
 use glam::Vec3;
 
@@ -53,7 +53,7 @@ pub struct WideKdTree {
 
 impl WideKdTree {
     /// Builds the hierarchy over the leaves of an index, whose points are at `positions`.
-    pub fn new(index: &EyeIndex, positions: &[Vec3]) -> WideKdTree {
+    pub fn new(index: &KdTree, positions: &[Vec3]) -> WideKdTree {
         let first = match index.depth() % BITS {
             0 if index.depth() > 0 => BITS,
             rest => rest,
@@ -133,7 +133,7 @@ mod tests {
     fn the_nearest_is_found_among_all_in_few_leaves() {
         for n in [0u32, 1, 40, 100, 600, 5000, 70_000] {
             let at = |i: u32| owen_sobol_2d(i, 1).extend(owen_sobol_2d(i, 2).x);
-            let (index, order) = EyeIndex::build((0..n).map(at).collect::<Vec<_>>().into_iter());
+            let (index, order) = KdTree::build((0..n).map(at).collect::<Vec<_>>().into_iter());
             let points: Vec<Vec3> = order.iter().map(|&i| at(i)).collect();
             let nearest_index = WideKdTree::new(&index, &points);
             for x in [
