@@ -8,6 +8,7 @@
 //! - [`world`] makes it ready: [`embree`] for rays, [`material`] for scattering, [`light`] for emitters;
 //! - [`view`] says from where it is seen and which part of the [`film`] is rendered;
 //! - [`vpl`] turns lights and photon paths into virtual point lights, [`light_tree`] clusters them;
+//! - [`caustics`] sends photons by mirrors and glass to the surfaces behind;
 //! - [`paths`] follows paths from the eye in packets, whole or as far as other stages leave light to be found;
 //! - [`eye`] follows each pixel through mirrors and glass to the points that scatter light into it;
 //! - [`lightcut`] finds, for each of those, the coarsest clusters whose expected errors stay below the
@@ -38,6 +39,7 @@ mod test_scenes;
 
 mod bench;
 mod bias_compensation;
+mod caustics;
 pub mod cli;
 mod denoise;
 mod embree;

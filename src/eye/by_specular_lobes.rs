@@ -4,11 +4,13 @@
 //!
 //! Deviations: it is found by paths, and leaves noise where all else in the picture is smooth.
 
+use super::caustic_looks::CausticLooks;
 use super::pass::TILE;
 use super::{ChainCounts, EyeSettings};
+use crate::caustics::Caustics;
 use crate::film::Image;
 use crate::math::Rgb;
-use crate::paths::{Batch, Counts, Look, Reach, ScatteredEdges, Start, start};
+use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, ScatteredEdges, Start, start};
 use crate::progress::Control;
 use crate::view::View;
 use crate::world::World;
@@ -21,12 +23,16 @@ const PATHS: u32 = 4;
 pub(super) const MAX_GUIDED: f32 = 0.5;
 
 /// Of the light that surfaces seen reflect, that which comes to them by specular lobes.
-pub(super) struct BySpecularLobes {
+pub(super) struct BySpecularLobes<'a> {
     /// True if that counts which comes by lobes too sharp to pass for diffuse, too.
     pub glossy: bool,
+    /// Photons that find part of it.
+    pub caustics: Option<&'a Caustics>,
+    /// Paths that look for the photons.
+    pub looks: CausticLooks,
 }
 
-impl Reach<'_> for BySpecularLobes {
+impl<'w> Reach<'w> for BySpecularLobes<'_> {
     const ENDS: bool = true;
     const ONLY_BY_SPECULAR_LOBES: bool = true;
 
@@ -36,6 +42,14 @@ impl Reach<'_> for BySpecularLobes {
 
     fn goes_on_by_glossy_lobes(&self) -> bool {
         self.glossy
+    }
+
+    fn reflected(&self, end: &ChainEnd<'w>) -> Rgb {
+        self.caustics.map_or(Rgb::ZERO, |caustics| self.looks.reflected(caustics, end))
+    }
+
+    fn share_of_paths(&self, radiance: Rgb, distance: f32) -> f32 {
+        self.caustics.map_or(1.0, |caustics| caustics.share_of_paths(radiance, distance))
     }
 }
 
@@ -51,7 +65,13 @@ pub struct LightBySpecularLobes {
 
 impl LightBySpecularLobes {
     /// Finds it by paths from the eye samples of `settings`; not in all tiles if cancelled.
-    pub fn new(world: &World, view: &View, settings: EyeSettings, control: &Control) -> LightBySpecularLobes {
+    pub fn new(
+        world: &World,
+        view: &View,
+        settings: EyeSettings,
+        caustics: Option<&Caustics>,
+        control: &Control,
+    ) -> LightBySpecularLobes {
         let mut light = LightBySpecularLobes { image: None, chains: ChainCounts::default(), nonfinite: 0 };
         if !world.specular.bends_light() {
             return light;
@@ -70,9 +90,9 @@ impl LightBySpecularLobes {
                 let paths = (0..samples).map(|sample| Start { pixel, sample, seed });
                 start(batch, paths, (world, view), (look, spp));
                 let (mut sum, mut finite) = (Rgb::ZERO, 0);
-                for radiance in
-                    batch.trace(world, max_depth, &mut BySpecularLobes { glossy: true }, &mut counts)
-                {
+                let looks = CausticLooks::new(samples);
+                let mut reach = BySpecularLobes { glossy: true, caustics, looks };
+                for radiance in batch.trace(world, max_depth, &mut reach, &mut counts) {
                     if radiance.is_finite() {
                         sum += radiance;
                         finite += 1;

@@ -8,12 +8,14 @@
 //! [`learn`]: super::learn
 
 use super::adaptive::MULTIPLES;
+use super::caustic_looks::CausticLooks;
 use super::guides::{FirstSurfaces, Guide};
 use super::merge::{MergedPoint, merge};
 use super::needs::Needs;
 use super::pass::TILE;
 use super::points::VisibilitySample;
 use super::{ChainCounts, EyePass, EyeSettings, Settled, VisibleSurfaces, guide};
+use crate::caustics::Caustics;
 use crate::light::Learned;
 use crate::material::{Bsdf, LobeSet};
 use crate::math::Rgb;
@@ -53,6 +55,8 @@ pub struct DrawnLight {
 pub(super) struct Ends<'a, 'w> {
     drawn: &'a DrawnLight,
     learned: Option<&'a Learned>,
+    caustics: Option<&'a Caustics>,
+    looks: CausticLooks,
     /// Distance between neighbouring points over that from the eye, on surfaces that face it.
     spacing_by_distance: f32,
     edges: ScatteredEdges,
@@ -79,6 +83,14 @@ impl<'w> Reach<'w> for Ends<'_, 'w> {
 
     fn edges(&self) -> ScatteredEdges {
         self.edges
+    }
+
+    fn reflected(&self, end: &ChainEnd<'w>) -> Rgb {
+        self.caustics.map_or(Rgb::ZERO, |caustics| self.looks.reflected(caustics, end))
+    }
+
+    fn share_of_paths(&self, radiance: Rgb, distance: f32) -> f32 {
+        self.caustics.map_or(1.0, |caustics| caustics.share_of_paths(radiance, distance))
     }
 
     fn sees(&self) -> bool {
@@ -114,6 +126,7 @@ pub(super) struct Tracer<'a, 'w> {
     pub(super) view: &'a View,
     pub(super) settings: EyeSettings,
     pub(super) drawn: &'a DrawnLight,
+    caustics: Option<&'a Caustics>,
     edges: ScatteredEdges,
     pub(super) control: &'a Control,
 }
@@ -164,12 +177,12 @@ impl<'w> EyePass<'w> {
         world: &'w World,
         view: &View,
         settings: EyeSettings,
-        drawn: &DrawnLight,
+        (drawn, caustics): (&DrawnLight, Option<&Caustics>),
         control: &Control,
     ) -> EyePass<'w> {
         let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
         let mut counts = Counts::default();
-        let tracer = Tracer::new(world, view, settings, drawn, control, &mut counts);
+        let tracer = Tracer::new(world, view, settings, (drawn, caustics), control, &mut counts);
         let found = tracer.learn(settings.seed, 1);
         let learned = found.as_ref().map(|(learned, _)| learned);
         let tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
@@ -219,21 +232,25 @@ impl<'a, 'w> Tracer<'a, 'w> {
         world: &'w World,
         view: &'a View,
         settings: EyeSettings,
-        drawn: &'a DrawnLight,
+        (drawn, caustics): (&'a DrawnLight, Option<&'a Caustics>),
         control: &'a Control,
         counts: &mut Counts,
     ) -> Tracer<'a, 'w> {
-        let mut tracer = Tracer { world, view, settings, drawn, edges: ScatteredEdges::default(), control };
-        tracer.edges = guide::edges(world, view, settings, &mut tracer.workspace(None).ends, counts);
+        let mut tracer =
+            Tracer { world, view, settings, drawn, caustics, edges: ScatteredEdges::default(), control };
+        tracer.edges =
+            guide::edges(world, view, settings, (&mut tracer.workspace(None).ends, caustics), counts);
         tracer
     }
 
     pub(super) fn workspace<'b>(&'b self, learned: Option<&'b Learned>) -> Workspace<'b, 'w> {
         let spacing_by_distance = SPACING * self.view.pixel_angle();
-        let Tracer { drawn, edges, .. } = *self;
+        let Tracer { drawn, caustics, edges, .. } = *self;
         let ends = Ends {
             drawn,
             learned,
+            caustics,
+            looks: CausticLooks::default(),
             spacing_by_distance,
             edges,
             found: Vec::new(),
@@ -384,6 +401,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
                     .iter()
                     .flat_map(|pixel| part.clone().map(move |sample| Start { pixel: *pixel, sample, seed }));
                 start(batch, paths, (self.world, self.view), (look, self.settings.spp));
+                ends.looks = CausticLooks::new(n as u32);
                 ends.found.clear();
                 ends.order.clear();
                 if let Some(first_surfaces) = &mut ends.first_surfaces {

@@ -2,14 +2,16 @@
 //! and share that is followed of those that look for nothing but light sent on by polished surfaces.
 //!
 //! Some paths through the whole film tell how much light comes to surfaces seen by specular lobes, beside all that the
-//! eye pass with direct light finds. Of the latter the square of the mean root counts, so that lamps and windows in
-//! view count little.
+//! eye pass with direct light finds; light that photons find does not count. Of all the light the square of the mean
+//! root counts, so that lamps and windows in view count little.
 //!
 //! Measured in rooms that are lit through panes and by bulbs: 1 to 2 dB of denoised pictures for the same time. Where
 //! little light comes that way nothing is drawn so, and pictures are the same.
 
 use super::EyeSettings;
 use super::by_specular_lobes::{BySpecularLobes, MAX_GUIDED};
+use super::caustic_looks::CausticLooks;
+use crate::caustics::Caustics;
 use crate::math::{Rgb, luminance};
 use crate::paths::{Batch, Counts, Look, Reach, ScatteredEdges, Start, start};
 use crate::sampling::owen_sobol_2d;
@@ -41,7 +43,7 @@ pub(super) fn edges<'w>(
     world: &'w World,
     view: &View,
     settings: EyeSettings,
-    all: &mut impl Reach<'w>,
+    (all, caustics): (&mut impl Reach<'w>, Option<&Caustics>),
     counts: &mut Counts,
 ) -> ScatteredEdges {
     let mut edges = ScatteredEdges::default();
@@ -65,7 +67,12 @@ pub(super) fn edges<'w>(
         let wanted = [(0, false), (1, true)].into_iter().filter(|(_, glossy)| *glossy || has_delta_lobes);
         for (i, glossy) in wanted {
             start(&mut batch, paths.clone(), (world, view), (Look::Pixels, 1));
-            let found = batch.trace(world, settings.max_depth, &mut BySpecularLobes { glossy }, counts);
+            let found = batch.trace(
+                world,
+                settings.max_depth,
+                &mut BySpecularLobes { glossy, caustics, looks: CausticLooks::NONE },
+                counts,
+            );
             sums[i] += found.map(finite).sum::<f64>();
         }
         start(&mut batch, paths, (world, view), (Look::Pixels, 1));

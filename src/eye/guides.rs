@@ -145,7 +145,7 @@ mod tests {
         for max_depth in [5, 1] {
             let settings = EyeSettings { spp: SPP, seed: 3, max_depth };
             let drawn = DrawnLight { guides: true, ..DrawnLight::default() };
-            let pass = EyePass::with_direct_light(&world, &view, settings, &drawn, &Control::new());
+            let pass = EyePass::with_direct_light(&world, &view, settings, (&drawn, None), &Control::new());
             let Some(guides) = pass.guides else {
                 assert_eq!(max_depth, 1, "paths end at emitters");
                 continue;

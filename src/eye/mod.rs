@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod by_specular_lobes;
+mod caustic_looks;
 mod chain;
 mod drawn;
 mod features;

@@ -9,6 +9,7 @@ use super::{
     ChainCounts, DrawnLight, EyeRays, EyeSettings, LightBySpecularLobes, ShadingPoints, VisibilitySamples,
     VisibleSurfaces,
 };
+use crate::caustics::Caustics;
 use crate::film::{Image, Window};
 use crate::kd_tree::KdTree;
 use crate::math::luminance;
@@ -52,14 +53,14 @@ impl<'w> EyePass<'w> {
         world: &'w World,
         view: &View,
         settings: EyeSettings,
-        drawn: Option<&DrawnLight>,
+        (drawn, caustics): (Option<&DrawnLight>, Option<&Caustics>),
         control: &Control,
     ) -> EyePass<'w> {
         match drawn {
-            Some(drawn) => EyePass::with_direct_light(world, view, settings, drawn, control),
+            Some(drawn) => EyePass::with_direct_light(world, view, settings, (drawn, caustics), control),
             None => {
                 let mut pass = EyePass::trace(world, view, settings, control);
-                let light = LightBySpecularLobes::new(world, view, settings, control);
+                let light = LightBySpecularLobes::new(world, view, settings, caustics, control);
                 light.add_to(&mut pass.known);
                 pass.chains += light.chains;
                 pass.nonfinite += light.nonfinite;

@@ -35,7 +35,7 @@ impl EyePass<'_> {
         control: &Control,
     ) -> EyePilot {
         let mut counts = Counts::default();
-        let tracer = Tracer::new(world, view, settings, drawn, control, &mut counts);
+        let tracer = Tracer::new(world, view, settings, (drawn, None), control, &mut counts);
         let found = tracer.learn(settings.seed, FEWER);
         let mut learned = found.as_ref().map_or(ChainCounts::default(), |(_, chains)| *chains);
         learned.rays += counts.rays;

@@ -174,7 +174,7 @@ fn drawn<'w>(world: &'w WorldAndView, view: &View, spp: u32) -> EyePass<'w> {
 fn drawn_with<'w>(world: &'w World, view: &View, spp: u32, extra_samples: f32) -> EyePass<'w> {
     let settings = EyeSettings { spp, seed: 1, max_depth: 32 };
     let drawn = DrawnLight { extra_samples, ..DrawnLight::default() };
-    EyePass::with_direct_light(world, view, settings, &drawn, &Control::new())
+    EyePass::with_direct_light(world, view, settings, (&drawn, None), &Control::new())
 }
 
 #[test]

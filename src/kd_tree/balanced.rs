@@ -2,7 +2,7 @@
 //! evenly.
 //!
 //! Every node splits its points in halves along the longest side of their box, so that node `i` of level `l` is the
-//! range of points from `n·i / 2^l` to `n·(i + 1) / 2^l`: no pointers, and the order of the points is the order in space.
+//! range of points from `n·i / 2^l` to `n·(i + 1) / 2^l`: no pointers, and the order of the points is that in space.
 
 use glam::Vec3;
 use rayon::prelude::*;

@@ -2,12 +2,14 @@
 //! keeps them from frame to frame.
 
 use crate::bias_compensation::Compensation;
+use crate::caustics::{CausticPhotons, Caustics};
 use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::Transfer;
 use crate::method::Sampling;
 use crate::progress::Control;
 use crate::shade::ShadingContext;
 use crate::stats::{Stage, Stats};
+use crate::view::View;
 use crate::vpl::{LightPassSettings, light_pass, min_dist_sq, near_sq_of_size};
 use crate::world::World;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -66,6 +68,8 @@ pub struct Lights {
     /// Squared distance below which a point cannot represent the patch around it, by mesh; 0 for meshes that
     /// do not emit.
     near_sq: Vec<f32>,
+    /// Photons that come by mirrors and glass alone.
+    caustics: CausticPhotons,
     diagonal: f32,
 }
 
@@ -79,12 +83,31 @@ impl Lights {
         stats.count("VPLs/photon paths", found.photons.paths);
         stats.count("Rays/closest hit", found.photons.rays);
 
+        let seed = wanted.pass.seed;
+        let caustics = || CausticPhotons::new(world, seed, wanted.max_depth, control);
+        let caustics = stats.time(Stage::LightPass, caustics);
+        if caustics.paths > 0 {
+            stats.count("Caustics/photons", caustics.len() as u64);
+            stats.count("Caustics/photon paths", caustics.paths);
+            stats.count("Rays/closest hit", caustics.rays);
+        }
+
         control.begin(Stage::Tree, 0);
         let build = || LightTrees::build(&found.sets, found.profiles, world.diagonal, wanted.family, control);
         let trees = stats.time(Stage::Tree, build);
         let least_sq = min_dist_sq(world.diagonal);
         let near_sq = |&size: &u32| if size > 0 { near_sq_of_size(size, least_sq) } else { 0.0 };
-        Lights { trees, near_sq: found.sizes.iter().map(near_sq).collect(), diagonal: world.diagonal }
+        Lights {
+            trees,
+            near_sq: found.sizes.iter().map(near_sq).collect(),
+            caustics,
+            diagonal: world.diagonal,
+        }
+    }
+
+    /// Light that mirrors and glass throw onto the surfaces of a view, along paths of at most `max_depth` edges.
+    pub fn caustics(&self, view: &View, max_depth: u32) -> Option<Caustics> {
+        self.caustics.seen(view.camera.origin, view.pixel_angle(), max_depth)
     }
 
     /// Transfer from the lights to a point; `compensated` where short rays find the light lost close to them.

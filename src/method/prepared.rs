@@ -22,7 +22,7 @@ pub struct Prepared<'w> {
 }
 
 impl<'w> Prepared<'w> {
-    /// Runs the eye pass, and the light pass unless `lights` holds what it would make.
+    /// Runs the light pass, unless `lights` holds what it would make, and the eye pass.
     pub fn new(
         world: &'w World,
         lights: &LightStore,
@@ -33,11 +33,14 @@ impl<'w> Prepared<'w> {
     ) -> Prepared<'w> {
         let mut stats = Stats::new();
         let rays = sampling.eye(&world.scene);
-        control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
-        let eye = stats.time(Stage::EyePass, || EyePass::of(world, view, rays, drawn.as_ref(), control));
-        counts::eye(&mut stats, &eye.chains);
         let wanted = LightsWanted::new(world, sampling, wanted);
         let lights = lights.get(world, wanted, control, &mut stats);
+        control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
+        let caustics = stats.time(Stage::LightPass, || lights.caustics(view, rays.max_depth));
+        let eye = stats.time(Stage::EyePass, || {
+            EyePass::of(world, view, rays, (drawn.as_ref(), caustics.as_ref()), control)
+        });
+        counts::eye(&mut stats, &eye.chains);
         Prepared { eye, lights, stats }
     }
 }

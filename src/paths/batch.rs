@@ -96,6 +96,17 @@ pub trait Reach<'w> {
 
     /// Called at every surface that ends a chain, in an order that does not depend on threads.
     fn end(&mut self, _end: &ChainEnd<'w>) {}
+
+    /// Radiance that such a surface reflects of the light that is found otherwise than by paths.
+    fn reflected(&self, _end: &ChainEnd<'w>) -> Rgb {
+        Rgb::ZERO
+    }
+
+    /// Share of an emitter's light, of that radiance, that is for paths to find where it comes by delta lobes to a
+    /// surface at the end of a chain of length `distance`; the rest is found otherwise.
+    fn share_of_paths(&self, _radiance: Rgb, _distance: f32) -> f32 {
+        1.0
+    }
 }
 
 /// Paths of full length.
@@ -172,7 +183,7 @@ impl Batch {
             let valid = first_lanes(self.count - index * LANES);
             let found = world.accel.closest_hit16(&packet.rays, valid, depth == 1, &mut hits);
             if !(depth == 1 && world.scene.hides_emitters) {
-                self.escape(world, &packet, valid & !found, reach.learned());
+                self.escape(world, &packet, valid & !found, reach);
             }
             if found == 0 {
                 continue;
@@ -180,14 +191,18 @@ impl Batch {
             hits.repeat(found.trailing_zeros() as usize, !found);
             let mut surfaces = world.surfaces(&hits);
             world.cover(&mut surfaces, &packet.rays.directions(), found, |lane| packet.cones[lane]);
-            packet.add_emitted(world, &surfaces, found, reach.learned(), &mut self.radiance);
+            packet.add_emitted(world, &surfaces, found, reach, &mut self.radiance);
             let mut followed = if R::ENDS { found & packet.followed() } else { found };
             if R::ENDS {
                 followed &= !packet.at(Stage::Scattered) | world.specular.lanes(&surfaces.mesh);
             }
             followed &= packet.may_go_on(depth, max_depth);
             if followed != 0 {
-                let arrives = |segment: &Ray, radiance: Rgb, slot: u32| {
+                let arrives = |segment: Option<&Ray>, radiance: Rgb, slot: u32| {
+                    let Some(segment) = segment else {
+                        self.radiance[slot as usize] += radiance;
+                        return;
+                    };
                     if self.shadows.push(segment, radiance, slot) {
                         self.shadows.trace(world, depth == 1, &mut self.radiance, counts);
                     }
@@ -197,13 +212,13 @@ impl Batch {
                     let blind = reach.edges().blind;
                     let (kept, outward) = looked_along(world, &mut packet, going_on, (blind, depth));
                     going_on = kept;
-                    self.look_outward(world, &packet, outward, reach.learned(), counts);
+                    self.look_outward(world, &packet, outward, reach, counts);
                 }
                 self.keep(&packet, going_on, &mut kept);
             }
         }
         self.shadows.trace(world, depth == 1, &mut self.radiance, counts);
-        self.trace_outward(world, reach.learned(), counts);
+        self.trace_outward(world, reach, counts);
         self.count = kept;
     }
 
@@ -221,12 +236,12 @@ impl Batch {
     }
 
     /// Adds the environment's light to the paths of a packet in the lanes of `sought` whose edges are free.
-    fn look_outward(
+    fn look_outward<'w, R: Reach<'w>>(
         &mut self,
         world: &World,
         packet: &Packet,
         sought: u16,
-        learned: Option<&Learned>,
+        reach: &R,
         counts: &mut Counts,
     ) {
         if world.emitters.environment.is_none() {
@@ -237,12 +252,12 @@ impl Batch {
             outward.copy_lane(*count, packet, lane);
             *count += 1;
             if *count == LANES {
-                self.trace_outward(world, learned, counts);
+                self.trace_outward(world, reach, counts);
             }
         }
     }
 
-    fn trace_outward(&mut self, world: &World, learned: Option<&Learned>, counts: &mut Counts) {
+    fn trace_outward<'w, R: Reach<'w>>(&mut self, world: &World, reach: &R, counts: &mut Counts) {
         if self.outward.1 == 0 {
             return;
         }
@@ -253,24 +268,25 @@ impl Batch {
         let throughput = &mut outward.emission_throughput;
         let attenuate = |lane, share| throughput.set(lane, throughput.get(lane) * share);
         world.transmittance16(&outward.rays, free, attenuate);
-        self.escape(world, &outward, free, learned);
+        self.escape(world, &outward, free, reach);
         self.outward.0 = outward;
     }
 
     /// Adds the environment's light to the paths of a packet that met nothing.
-    fn escape(&mut self, world: &World, packet: &Packet, escaped: u16, learned: Option<&Learned>) {
+    fn escape<'w, R: Reach<'w>>(&mut self, world: &World, packet: &Packet, escaped: u16, reach: &R) {
         let Some(environment) = &world.emitters.environment else { return };
         if escaped == 0 {
             return;
         }
-        let origins = packet.rays.origins();
+        let (origins, learned) = (packet.rays.origins(), reach.learned());
         let at = Receivers16 { position: &origins, normal: &packet.normal, learned };
         let choice = world.emitters.environment_choice(at);
         let guided = learned.and_then(|learned| learned.sky.as_ref()).map(|sky| (sky, &origins));
         let light = environment.radiance_pdf16(&packet.rays.directions(), escaped, guided);
         for lane in lanes_in(escaped) {
             let (radiance, pdf) = light[lane];
-            let weight = packet.weight_against(lane, pdf * choice[lane]);
+            let share = packet.share_of_paths(lane, radiance, reach);
+            let weight = share * packet.weight_against(lane, pdf * choice[lane]);
             self.radiance[packet.slot[lane] as usize] +=
                 packet.emission_throughput.get(lane) * radiance * weight;
         }

@@ -15,7 +15,9 @@ pub(super) enum Stage {
     /// That which comes to the end of a chain from emitters, or by the next surface's delta lobes and those too sharp
     /// to pass for diffuse.
     Scattered,
-    /// All light, beyond such a lobe.
+    /// All light, beyond such a delta lobe and no others.
+    Bent,
+    /// All light, beyond other lobes.
     Full,
 }
 
@@ -38,7 +40,7 @@ pub(super) struct Packet {
     pub samplers: Samplers16,
     /// Index of the result that each path adds to.
     pub slot: U32x16,
-    /// Lengths up to where the edges start.
+    /// Lengths of the chains up to where the edges start; of paths that have left them, those of the whole chains.
     pub distance: F32x16,
     /// Hashes of the surfaces and lobes on the way.
     pub way: U32x16,

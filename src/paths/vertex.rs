@@ -17,7 +17,7 @@ use super::batch::{ChainEnd, Reach, ScatteredEdges};
 use super::guided::Guided;
 use super::packet::{Packet, Stage};
 use crate::embree::{Ray, Rays16};
-use crate::light::{Learned, Receivers16};
+use crate::light::Receivers16;
 use crate::material::{BsdfSamples16, Bsdfs16, LobeSet};
 use crate::math::{Cone, F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, mask_of};
 use crate::sampling::{hash, power_heuristic};
@@ -50,12 +50,12 @@ fn first_pair(depth: u32) -> u32 {
 impl Packet {
     /// Adds to `results` the emission of the surfaces that the edges have hit, in the lanes of `found`.
     #[inline]
-    pub fn add_emitted(
+    pub fn add_emitted<'w, R: Reach<'w>>(
         &self,
         world: &World,
         surfaces: &Surfaces16,
         found: u16,
-        learned: Option<&Learned>,
+        reach: &R,
         results: &mut [Rgb],
     ) {
         let lit = lanes_in(found).filter(|i| world.emitters.is_light(surfaces.mesh[*i]));
@@ -68,11 +68,12 @@ impl Packet {
         for i in 0..LANES {
             cos[i] = surfaces.normal.get(i).dot(directions.get(i));
         }
-        let start = Receivers16 { position: &self.rays.origins(), normal: &self.normal, learned };
+        let start =
+            Receivers16 { position: &self.rays.origins(), normal: &self.normal, learned: reach.learned() };
         let light_pdf = world.emitters.pdf_areas(start, &surfaces.mesh, &surfaces.t, &cos);
         for i in lanes_in(lit) {
             let emitted = world.emitted(&surfaces.get(i), -directions.get(i));
-            let weight = self.weight_against(i, light_pdf[i]);
+            let weight = self.share_of_paths(i, emitted, reach) * self.weight_against(i, light_pdf[i]);
             results[self.slot[i] as usize] += self.emission_throughput.get(i) * emitted * weight;
         }
     }
@@ -88,7 +89,7 @@ impl Packet {
         depth: u32,
         found: u16,
         reach: &mut R,
-        arrives: impl FnMut(&Ray, Rgb, u32),
+        mut arrives: impl FnMut(Option<&Ray>, Rgb, u32),
     ) -> u16 {
         let pair = first_pair(depth);
         let before = world.has_sheets().then(|| self.clone());
@@ -126,12 +127,18 @@ impl Packet {
         let share = edges.guided;
         let guided = Guided { lanes: if share > 0.0 { at_end & bsdfs.lambertian() } else { 0 }, share };
         let unlit = (scattered & !glossy) | if R::ONLY_BY_SPECULAR_LOBES { at_end } else { 0 };
+        // Before the light samples: a path's light is summed up in the same order whatever paths are traced with it.
+        let chained = if R::ENDS {
+            self.end_chains(&bsdfs, surfaces, depth, at_end, (reach, &mut arrives))
+        } else {
+            [LobeSet::default(); LANES]
+        };
         let lit = bsdfs.smooth() & found & !unlit;
         if lit != 0 {
             let numbers = (&choices.x, &self.samplers.point(pair));
             let at =
                 Receivers16 { position: &surfaces.position, normal: &self.normal, learned: reach.learned() };
-            self.light(world, surfaces, (&bsdfs, at), numbers, (lit, alone, &guided), arrives);
+            self.light(world, surfaces, (&bsdfs, at), numbers, (lit, alone, &guided), &mut arrives);
         }
         let places = self.samplers.point(pair + 1);
         let mut samples = bsdfs.sample(&choices.y, &places, found);
@@ -141,11 +148,6 @@ impl Packet {
             guided.turn(world, at, &surfaces.frame(lane), (&bsdfs, lane), numbers, &mut samples);
         }
         let roulette = if depth >= ROULETTE_DEPTH { self.samplers.number(pair + 3) } else { [0.0; LANES] };
-        let chained = if R::ENDS {
-            self.end_chains(&bsdfs, surfaces, depth, at_end, reach)
-        } else {
-            [LobeSet::default(); LANES]
-        };
         let (mut survives, mut survivals) = ([0; LANES], [1.0; LANES]);
         for i in 0..LANES {
             let throughput = self.throughput.get(i) * samples.weight.get(i);
@@ -173,9 +175,14 @@ impl Packet {
                 found &= !blind;
             }
             let leaving = found & scattered & !samples.straight();
-            lanes_in(leaving).for_each(|lane| self.stage[lane] = Stage::Full as u32);
+            let bent = samples.delta();
+            for lane in lanes_in(leaving) {
+                self.stage[lane] = if bent >> lane & 1 != 0 { Stage::Bent } else { Stage::Full } as u32;
+            }
+            let spread = found & self.at(Stage::Bent) & !bent;
+            lanes_in(spread).for_each(|lane| self.stage[lane] = Stage::Full as u32);
             if R::ONLY_BY_SPECULAR_LOBES {
-                self.emission_throughput.keep(self.at(Stage::Full));
+                self.emission_throughput.keep(self.at(Stage::Full) | self.at(Stage::Bent));
             }
         }
         if world.filters_textures() {
@@ -236,7 +243,7 @@ impl Packet {
         surfaces: &Surfaces16,
         depth: u32,
         found: u16,
-        reach: &mut R,
+        (reach, arrives): (&mut R, &mut impl FnMut(Option<&Ray>, Rgb, u32)),
     ) -> [LobeSet; LANES] {
         let mut chained = [LobeSet::default(); LANES];
         for lane in lanes_in(bsdfs.smooth() & found) {
@@ -246,7 +253,7 @@ impl Packet {
             if !bsdf.has_smooth() {
                 continue;
             }
-            reach.end(&ChainEnd {
+            let end = ChainEnd {
                 path: self.slot[lane],
                 surface: surfaces.get(lane),
                 bsdf,
@@ -255,7 +262,12 @@ impl Packet {
                 distance: self.distance[lane] + surfaces.t[lane],
                 way: self.way[lane],
                 depth: depth - self.sheets[lane],
-            });
+            };
+            let reflected = reach.reflected(&end);
+            if reflected != Rgb::ZERO {
+                arrives(None, end.throughput * reflected, end.path);
+            }
+            reach.end(&end);
         }
         chained
     }
@@ -274,7 +286,9 @@ impl Packet {
         let delta = samples.delta() & at_end;
         let may_go_on = lanes_in(at_end).filter(|lane| !chained[*lane].is_empty());
         let sharp = may_go_on.fold(0, |mask, lane| mask | 1u16 << lane) & !delta;
-        lanes_in(at_end & !(delta | sharp)).for_each(|lane| self.stage[lane] = Stage::Scattered as u32);
+        for lane in lanes_in(at_end & !(delta | sharp)) {
+            self.leave_chain(lane, surfaces);
+        }
         if delta | sharp == 0 {
             return;
         }
@@ -288,13 +302,13 @@ impl Packet {
             let (share, probability) = match draws[lane] < survival {
                 true => (share, survival),
                 false => {
-                    self.stage[lane] = Stage::Scattered as u32;
+                    self.leave_chain(lane, surfaces);
                     ((Rgb::ONE - share).max(Rgb::ZERO), 1.0 - survival)
                 }
             };
             self.throughput.set(lane, self.throughput.get(lane) * share / probability);
         }
-        for lane in lanes_in((delta | sharp) & !samples.straight()) {
+        for lane in lanes_in((delta | sharp) & !samples.straight() & self.at(Stage::Chain)) {
             self.distance[lane] += surfaces.t[lane];
             let same_side = (bsdfs.wo(lane).z > 0.0) == (samples.wi.z[lane] > 0.0);
             let side = u32::from(same_side) + 2 * u32::from((delta >> lane) & 1 != 0);
@@ -312,7 +326,7 @@ impl Packet {
         (bsdfs, at): (&Bsdfs16, Receivers16),
         (u_choice, u_light): (&F32x16, &Vec2x16),
         (wanted, alone, guided): (u16, u16, &Guided),
-        mut arrives: impl FnMut(&Ray, Rgb, u32),
+        mut arrives: impl FnMut(Option<&Ray>, Rgb, u32),
     ) {
         let lights = world.emitters.sample_direct(&world.scene, at, u_choice, u_light, wanted);
         let mut wi = Vec3x16::default();
@@ -343,7 +357,22 @@ impl Packet {
             segments.set(i, &if distance < f32::INFINITY { near } else { far });
         }
         for i in lanes_in(wanted & mask_of(&scattered)) {
-            arrives(&segments.get(i), radiance.get(i), self.slot[i]);
+            arrives(Some(&segments.get(i)), radiance.get(i), self.slot[i]);
+        }
+    }
+
+    /// Ends a lane's chain at the surface that its edge has met.
+    fn leave_chain(&mut self, lane: usize, surfaces: &Surfaces16) {
+        self.stage[lane] = Stage::Scattered as u32;
+        self.distance[lane] += surfaces.t[lane];
+    }
+
+    /// Share of an emitter's radiance that a lane's path is to find.
+    #[inline]
+    pub fn share_of_paths<'w, R: Reach<'w>>(&self, lane: usize, radiance: Rgb, reach: &R) -> f32 {
+        match self.stage[lane] == Stage::Bent as u32 {
+            true => reach.share_of_paths(radiance, self.distance[lane]),
+            false => 1.0,
         }
     }
 

@@ -45,9 +45,13 @@ pub struct Chooser {
 }
 
 impl Chooser {
-    /// Runs the pilot of `base`, the cache, and of paths; `None` if there is nothing to choose, or if cancelled.
+    /// Runs the pilot of `base`, the cache, and of paths; `None` if there is nothing to choose, as where paths miss
+    /// part of the light, or if cancelled.
     pub fn new(world: &World, view: &View, base: &Method, control: &Control) -> Option<Chooser> {
         let Method::Cache(_) = base else { return None };
+        if world.scene.focuses_lights() {
+            return None;
+        }
         let Sampling { seed, max_depth, .. } = base.sampling();
         let paths = path::Settings { seed, max_depth, ..path::Settings::default() };
         let pilot = Pilot::of(world, view, base, &Method::Path(paths), control)?;

@@ -97,17 +97,16 @@ impl Scene {
         !emits && self.lights.is_empty() && self.environment.is_none() && self.discs.is_empty()
     }
 
-    /// True if light from single points or directions may come to surfaces through solid glass, by ways that no
-    /// sampling finds.
-    pub fn focuses_point_lights(&self) -> bool {
-        !self.lights.is_empty() && self.has_solid_glass()
+    /// True if there are lights of points and directions, or discs as small as the sun: paths from the eye hardly find
+    /// the light that mirrors and glass throw from these onto surfaces.
+    pub fn has_small_lights(&self) -> bool {
+        const SMALL: f32 = 0.05;
+        !self.lights.is_empty() || self.discs.iter().any(|disc| disc.half_angle < SMALL)
     }
 
-    /// True if light of the sun, or another disc as small, may come to surfaces through solid glass, by ways that few
-    /// samples find.
-    pub fn focuses_the_sun(&self) -> bool {
-        const SMALL: f32 = 0.05;
-        self.discs.iter().any(|disc| disc.half_angle < SMALL) && self.has_solid_glass()
+    /// True if such light may come to surfaces through solid glass.
+    pub fn focuses_lights(&self) -> bool {
+        self.has_small_lights() && self.has_solid_glass()
     }
 
     fn has_solid_glass(&self) -> bool {

@@ -10,6 +10,10 @@ use crate::stats::Stats;
 use crate::view::View;
 use serde_json::Value;
 
+/// Warning of light that paths miss, with its remedy.
+pub(super) const FOCUSED: &str = "paths hardly find light of the sun, and none of points and directions, that comes \
+    through solid glass; use --method cache or another with virtual lights";
+
 /// Warning of a black picture, with its remedies.
 pub const BLACK: &str = "the picture is black: no light reaches what the camera sees; check the camera's place and \
                          direction, and that lights are on the near side of walls and face the scene";

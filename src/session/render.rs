@@ -107,6 +107,9 @@ impl Session {
                  other: their light is missing"
             )));
         }
+        if matches!(method, Method::Path(_)) && self.world.scene.focuses_lights() {
+            remarks.push(Remark::Warning(frame::FOCUSED.to_owned()));
+        }
         if let Some(error) = finish.failure() {
             remarks.push(Remark::Warning(format!("the picture is not denoised: {error}")));
         }

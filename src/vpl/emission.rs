@@ -5,13 +5,42 @@
 use super::target::{LitSphere, Target};
 use crate::embree::Ray;
 use crate::light::{DiscreteDistribution, spot_falloff};
-use crate::math::{Frame, Rgb};
+use crate::math::{Frame, Rgb, luminance};
 use crate::sampling::{Sampler, uniform_sphere};
 use crate::scene::DeltaLight;
 use crate::shadow;
 use crate::world::World;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
+
+/// The beginning of a path.
+#[derive(Clone, Copy, Debug)]
+pub struct Emission {
+    /// The first edge.
+    pub ray: Ray,
+    /// Flux along it.
+    pub flux: Rgb,
+    /// Luminance of the radiance along it; infinite of lights of points and directions.
+    pub radiance: f32,
+}
+
+/// Random numbers that the beginning of a path takes, in [0, 1).
+#[derive(Clone, Copy, Debug)]
+pub struct EmissionNumbers {
+    /// For the place on the emitter, or the line of one that is infinitely far.
+    pub place: Vec2,
+    /// For the direction.
+    pub direction: Vec2,
+    /// For the side of a part of the directions.
+    pub side: f32,
+}
+
+impl EmissionNumbers {
+    /// Draws them.
+    pub fn new(sampler: &mut Sampler) -> EmissionNumbers {
+        EmissionNumbers { place: sampler.next_2d(), direction: sampler.next_2d(), side: sampler.next_1d() }
+    }
+}
 
 /// The flux of a scene's emitters, sampled in proportion to power.
 pub struct PhotonEmitter<'w> {
@@ -35,28 +64,57 @@ impl<'w> PhotonEmitter<'w> {
         (!by_power.is_empty()).then_some(PhotonEmitter { world, by_power, target, lit })
     }
 
-    /// Samples the first ray of a path and its flux; `None` where an emitter is dark.
-    pub fn sample(&self, sampler: &mut Sampler) -> Option<(Ray, Rgb)> {
+    /// Flux of all emitters, as luminance, that paths carry on the average.
+    pub fn power(&self) -> f32 {
+        self.by_power.total() as f32
+    }
+
+    /// Share of the flux that is that of emitter `index`, by emitter.
+    pub fn shares(&self) -> impl ExactSizeIterator<Item = f32> {
+        (0..self.by_power.len()).map(|index| self.by_power.probability(index))
+    }
+
+    /// True if paths are aimed by the number for places rather than by that for directions.
+    pub fn aims_by_place(&self, index: usize) -> bool {
+        let emitters = &self.world.emitters;
+        match index.checked_sub(emitters.areas.len()).map(|delta| emitters.deltas.get(delta)) {
+            None => false,
+            Some(delta) => matches!(delta, None | Some(DeltaLight::Directional { .. })),
+        }
+    }
+
+    /// Samples the beginning of a path; `None` where an emitter is dark.
+    pub fn sample(&self, sampler: &mut Sampler) -> Option<Emission> {
         let (index, _) = self.by_power.sample(sampler.next_1d());
-        let (u_place, u_direction, u_side) = (sampler.next_2d(), sampler.next_2d(), sampler.next_1d());
+        self.sample_of(index, &EmissionNumbers::new(sampler))
+    }
+
+    /// Begins a path at emitter `index`, with the flux of paths that choose emitters in proportion to power.
+    pub fn sample_of(&self, index: usize, numbers: &EmissionNumbers) -> Option<Emission> {
+        let EmissionNumbers { place: u_place, direction: u_direction, side: u_side } = *numbers;
         let inv_probability = 1.0 / self.by_power.probability(index);
         let emitters = &self.world.emitters;
         if let Some(light) = emitters.areas.get(index) {
             let point = light.sample(u_place);
             let (direction, projected) = self.lit.direction(light, &point, (u_direction, u_side))?;
-            let flux = light.radiance(&self.world.scene, &point, point.normal)
-                * (projected * light.area * inv_probability);
-            return carrying(shadow::ray_from(point.position, point.normal, direction), flux);
+            let radiance = light.radiance(&self.world.scene, &point, point.normal);
+            let flux = radiance * (projected * light.area * inv_probability);
+            let ray = shadow::ray_from(point.position, point.normal, direction);
+            return Emission::new(ray, flux, Some(radiance));
         }
         if let Some(light) = emitters.deltas.get(index - emitters.areas.len()) {
             return match *light {
                 DeltaLight::Point { position, intensity } => {
                     if let Some(towards) = self.target.towards(position) {
                         let ray = self.target.ray_in(&towards, u_direction);
-                        return carrying(ray, intensity * (towards.solid_angle() * inv_probability));
+                        return Emission::new(
+                            ray,
+                            intensity * (towards.solid_angle() * inv_probability),
+                            None,
+                        );
                     }
                     let ray = shadow::ray_from(position, Vec3::ZERO, uniform_sphere(u_direction));
-                    carrying(ray, intensity * (4.0 * PI * inv_probability))
+                    Emission::new(ray, intensity * (4.0 * PI * inv_probability), None)
                 }
                 DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
                     let one_minus_cos = 1.0 - outer_angle.cos();
@@ -65,7 +123,7 @@ impl<'w> PhotonEmitter<'w> {
                         let ray = self.target.ray_in(&towards, u_direction);
                         let falloff = spot_falloff(ray.direction.dot(direction), inner_angle, outer_angle);
                         let angle = towards.solid_angle();
-                        return carrying(ray, intensity * (falloff * angle * inv_probability));
+                        return Emission::new(ray, intensity * (falloff * angle * inv_probability), None);
                     }
                     let cos = 1.0 - u_direction.x * one_minus_cos;
                     let sin = (1.0 - cos * cos).max(0.0).sqrt();
@@ -74,20 +132,23 @@ impl<'w> PhotonEmitter<'w> {
                     let ray =
                         shadow::ray_from(position, Vec3::ZERO, Frame::from_normal(direction).to_world(local));
                     let falloff = spot_falloff(cos, inner_angle, outer_angle);
-                    carrying(ray, intensity * (falloff * TAU * one_minus_cos * inv_probability))
+                    Emission::new(ray, intensity * (falloff * TAU * one_minus_cos * inv_probability), None)
                 }
                 DeltaLight::Directional { direction, irradiance } => {
                     let (ray, area) = self.target.ray(direction, u_place);
-                    carrying(ray, irradiance * (area * inv_probability))
+                    Emission::new(ray, irradiance * (area * inv_probability), None)
                 }
             };
         }
         let s = emitters.environment.as_ref()?.sample(u_direction)?;
         let (ray, area) = self.target.ray(-s.direction, u_place);
-        carrying(ray, s.radiance * (area * inv_probability / s.pdf))
+        Emission::new(ray, s.radiance * (area * inv_probability / s.pdf), Some(s.radiance))
     }
 }
 
-fn carrying(ray: Ray, flux: Rgb) -> Option<(Ray, Rgb)> {
-    (flux.is_finite() && flux.max_element() > 0.0).then_some((ray, flux))
+impl Emission {
+    fn new(ray: Ray, flux: Rgb, radiance: Option<Rgb>) -> Option<Emission> {
+        let useful = flux.is_finite() && flux.max_element() > 0.0;
+        useful.then(|| Emission { ray, flux, radiance: radiance.map_or(f32::INFINITY, luminance) })
+    }
 }

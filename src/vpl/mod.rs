@@ -25,8 +25,9 @@ use crate::math::{Rgb, luminance};
 use glam::Vec3;
 
 pub use direct_indirect::DirectIndirect;
+pub use emission::{Emission, EmissionNumbers, PhotonEmitter};
 pub use pass::{LightPass, light_pass};
-pub use photons::{Photon, PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
+pub use photons::{MAX_CORRECTION, Photon, PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
 pub use profile::{LobeProfile, Profiles, SpotProfile};
 pub use settings::LightPassSettings;
 

@@ -8,7 +8,7 @@
 //! threads.
 //! Units: flux in watts, to be divided by the number of paths.
 
-use super::emission::PhotonEmitter;
+use super::emission::{Emission, PhotonEmitter};
 use crate::material::Bsdf;
 use crate::math::{Rgb, luminance};
 use crate::progress::Control;
@@ -30,7 +30,7 @@ const MAX_EDGES: u32 = 256;
 const MAX_SURVIVAL: f32 = 0.98;
 /// Maximum correction for the difference between shading and geometric normal; a grazing photon would
 /// otherwise leave a VPL brighter than all others together.
-const MAX_CORRECTION: f32 = 8.0;
+pub const MAX_CORRECTION: f32 = 8.0;
 
 /// Counts of tracing photons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -161,7 +161,7 @@ fn trace_path(
     max_edges: u32,
     met: &mut impl FnMut(&PhotonHit),
 ) -> u64 {
-    let Some((mut ray, mut flux)) = source.sample(sampler) else { return 0 };
+    let Some(Emission { mut ray, mut flux, .. }) = source.sample(sampler) else { return 0 };
     for edge in 1..=max_edges {
         let rays = u64::from(edge);
         let Some(surface) = world.intersect(&ray) else { return rays };

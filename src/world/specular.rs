@@ -11,7 +11,7 @@ use glam::Vec3;
 const MAX_BOXES: usize = LANES;
 
 /// Coordinate of a direction that stands for smaller ones, 0 among them.
-const MIN_DIRECTION: f32 = 1e-20;
+pub(super) const MIN_DIRECTION: f32 = 1e-20;
 
 /// The specular surfaces of a scene.
 #[derive(Clone, Debug, Default)]

@@ -5,7 +5,8 @@
 //!
 //! Units: densities are by solid angle.
 
-use super::specular::Specular;
+use super::specular::{MIN_DIRECTION, Specular};
+use crate::embree::Ray;
 use crate::math::{F32x16, LANES, Vec3x16};
 use glam::{Vec2, Vec3};
 
@@ -79,6 +80,29 @@ impl Specular {
         }
         faces.total = faces.weights.iter().flatten().sum();
         faces
+    }
+}
+
+impl Specular {
+    /// True if a ray may meet a surface that has delta lobes, or is of rough glass.
+    #[inline]
+    pub fn may_meet_delta_lobes(&self, ray: &Ray) -> bool {
+        let (low, high) = (self.delta_boxes.low.rows(), self.delta_boxes.high.rows());
+        let (mut near, mut far) = ([0.0f32; LANES], [f32::INFINITY; LANES]);
+        for axis in 0..3 {
+            let d = ray.direction[axis];
+            let inverse = 1.0 / if d.abs() < MIN_DIRECTION { MIN_DIRECTION } else { d };
+            for i in 0..LANES {
+                let (a, b) = (
+                    (low[axis][i] - ray.origin[axis]) * inverse,
+                    (high[axis][i] - ray.origin[axis]) * inverse,
+                );
+                let (least, most) = if a < b { (a, b) } else { (b, a) };
+                near[i] = if least > near[i] { least } else { near[i] };
+                far[i] = if most < far[i] { most } else { far[i] };
+            }
+        }
+        (0..LANES).any(|i| near[i] <= far[i] && low[0][i] < high[0][i])
     }
 }
 

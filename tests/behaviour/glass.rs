@@ -6,9 +6,6 @@ use lightsplat::math::Rgb;
 use lightsplat::method::{Renderer, cache, lightcuts, path, photon_cache, reconstruction};
 use lightsplat::scene::{DeltaLight, Distribution, Environment, Lobe, Material, MaterialId, Mesh, Parameter};
 
-/// A change of a scene.
-type Add = fn(&mut SceneAndView);
-
 /// A room seen from inside, dark but for what comes through a hole in its wall towards +x, from a lamp in another room.
 fn two_rooms(add: impl FnOnce(&mut SceneAndView)) -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(0.5, 0.1, 0.9), Vec3::new(-0.4, -0.3, -0.6), 0.9), [16, 16]);
@@ -42,7 +39,7 @@ fn sheet(scene: &mut SceneAndView, x: f32, material: Material) {
 }
 
 /// A closed room with a ball and a small lamp.
-fn lamp_room(add: Add) -> WorldAndView {
+fn lamp_room(add: impl Fn(&mut SceneAndView)) -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [16, 16]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.6, 0.5, 0.4)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
@@ -160,6 +157,44 @@ fn sun(scene: &mut SceneAndView) {
     scene.meshes.retain(|mesh| !mesh.positions.iter().all(|p| p.x == 2.2) && mesh.emission.is_none());
     let direction = Vec3::new(-1.0, -0.4, -0.1).normalize();
     scene.lights.push(DeltaLight::Directional { direction, irradiance: Rgb::new(9.0, 8.0, 7.0) });
+}
+
+#[test]
+fn the_sun_comes_through_a_solid_pane_as_through_a_thin_one() {
+    let lit = |pane: &dyn Fn(&mut SceneAndView)| {
+        two_rooms(|scene| {
+            pane(scene);
+            sun(scene);
+        })
+    };
+    let (solid, thin) = (lit(&solid_pane), lit(&|scene| sheet(scene, 1.1, pane(1.5, Rgb::ONE))));
+    assert_agreement_within(0.03, by_default(&solid), by_default(&thin), "sun through a solid pane");
+}
+
+/// A ball of glass before a lamp.
+fn lens(scene: &mut SceneAndView) {
+    let material = add_material(scene, glass(1.5));
+    scene.meshes.push(sphere(Vec3::new(0.2, -0.2, 0.0), 0.3, 48, material));
+}
+
+#[test]
+fn a_point_of_light_shines_through_a_ball_as_a_small_lamp_does() {
+    const RADIUS: f32 = 0.05;
+    let position = Vec3::new(0.2, 0.6, 0.0);
+    let radiance = Rgb::new(9.0, 8.0, 6.0);
+    let lamp = lamp_room(|scene| {
+        lens(scene);
+        let black = add_material(scene, diffuse(Rgb::ZERO));
+        scene.meshes.push(emitting(sphere(position, RADIUS, 48, black), radiance));
+    });
+    let point = lamp_room(|scene| {
+        lens(scene);
+        let intensity = radiance * (std::f32::consts::PI * RADIUS * RADIUS);
+        scene.lights.push(DeltaLight::Point { position, intensity });
+    });
+    let found = by_default(&point);
+    assert_agreement_within(0.02, found, by_default(&lamp), "a point of light and a small lamp");
+    assert_agreement_within(0.02, by_default(&lamp), by_paths(&lamp), "a small lamp");
 }
 
 #[test]

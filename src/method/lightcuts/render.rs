@@ -54,6 +54,8 @@ impl Renderer for Settings {
         let mut stats = Stats::new();
         let wanted = LightsWanted::new(world, self.sampling(), (self.light, self.family));
         let lights = lights.get(world, wanted, control, &mut stats);
+        let max_depth = world.scene.path_limit(self.max_depth);
+        let caustics = stats.time(Stage::LightPass, || lights.caustics(view, max_depth));
         let context = lights.context(world, self.compensation);
         let shading = ShadeSettings { cut: self.cut, share: self.share, shadows: self.shadows };
         let eye = self.sampling().eye(&world.scene);
@@ -77,7 +79,8 @@ impl Renderer for Settings {
 
         let mut color = Image::new(view.window.width, view.window.height);
         let mut cut_size = color.map(|_| 0.0);
-        let light = stats.time(Stage::Render, || LightBySpecularLobes::new(world, view, eye, control));
+        let light = stats
+            .time(Stage::Render, || LightBySpecularLobes::new(world, view, eye, caustics.as_ref(), control));
         let (mut work, mut chains, mut nonfinite) = (ShadingCounts::default(), light.chains, light.nonfinite);
         for tile in done.iter().flatten() {
             for &(pixel, radiance, clusters) in &tile.pixels {

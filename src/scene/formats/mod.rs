@@ -107,16 +107,5 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
         let fallback = "the picture will be black; add an emitter, a light or an environment";
         log.warn(&Place::file(path), "the scene has no light that is modelled", fallback)?;
     }
-    if scene.focuses_point_lights() {
-        let what = "light of point, spot and directional lights that comes through solid glass is not found";
-        let fallback =
-            "surfaces behind the glass lack it; thin glass lets it pass, and light of small lamps is found";
-        log.warn(&Place::file(path), what, fallback)?;
-    }
-    if scene.focuses_the_sun() {
-        let what = "light of the sun that comes through solid glass is found by few paths";
-        let fallback = "surfaces behind the glass are spotted; thin glass lets it pass";
-        log.warn(&Place::file(path), what, fallback)?;
-    }
     Ok(Loaded { scene, cameras, warnings: log.into_warnings(), repairs, hash, generator })
 }

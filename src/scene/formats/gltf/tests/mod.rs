@@ -51,9 +51,7 @@ fn every_sample_loads_and_names_what_it_does_not_get() {
         let warnings: Vec<&str> = loaded
             .warnings
             .iter()
-            .filter(|w| {
-                w.level == Level::Warning && !w.what.contains("no light") && !w.what.contains("solid glass")
-            })
+            .filter(|w| w.level == Level::Warning && !w.what.contains("no light"))
             .map(|w| w.what.as_str())
             .collect();
         assert_eq!(warnings.len(), lacks.len(), "{name}: {warnings:?}");
