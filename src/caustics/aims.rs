@@ -26,7 +26,7 @@ pub struct Aims<'a, 'w> {
     boosts: Vec<f32>,
 }
 
-/// What the first paths have done, by cell.
+/// Yield of the first paths, by cell.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Yield {
     /// Paths that may meet a mirror or glass.

@@ -9,7 +9,7 @@
 //! an emitter's light that the balance heuristic gives it for a Lambertian surface under an emitter that sends photons
 //! evenly: a function of the emitter's radiance and the distance from the eye alone, so that both sides know it.
 //!
-//! Deviations: the width of discs does not shrink from pass to pass; what is finer than they are is blurred.
+//! Deviations: the width of discs does not shrink from pass to pass, and blurs whatever is finer.
 //!
 //! - [`aims`]: where paths are worth beginning; [`photons`]: the paths;
 //! - [`levels`]: photons by the radii of their discs.
