@@ -6,6 +6,7 @@
 use super::Converter;
 use super::bsdf_kinds::{diffuse, glass};
 use super::tree::Object;
+use super::value::numbers;
 use crate::math::{Rgb, luminance};
 use crate::scene::formats::error::SceneError;
 use crate::scene::formats::layers;
@@ -13,6 +14,9 @@ use crate::scene::formats::layers::Surface;
 use crate::scene::material::{Fresnel, Lobe, Material, MaterialId, Reflectance, Share};
 use crate::scene::relief::Relief;
 use std::rc::Rc;
+
+/// Share of the light lost by the weights of a mixture, above which it is absorbed: less is rounding.
+const MIN_LOST: f64 = 1e-4;
 
 impl Converter<'_> {
     /// The material of a shape: its bsdf's, or Mitsuba's default, which is black on emitters.
@@ -85,7 +89,7 @@ impl Converter<'_> {
             "bumpmap" | "bump" | "normalmap" => self.relieved(bsdf, depth)?,
             "blendbsdf" => self.blended(bsdf, depth)?,
             "coating" | "roughcoating" => self.coated(bsdf, depth)?,
-            "mixturebsdf" => self.wrapped(bsdf, depth)?,
+            "mixturebsdf" => self.mixed(bsdf, depth)?,
             other => {
                 let what = format!("the bsdf \"{other}\" is not modelled");
                 self.log.warn(&bsdf.place, what, "a diffuse grey of 0.5 stands in")?;
@@ -194,15 +198,44 @@ impl Converter<'_> {
         Ok(Material { relief: relief.or(nested.relief), ..nested })
     }
 
-    /// Modifiers that are left out.
-    fn wrapped(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
-        let what = format!("the bsdf \"{}\" is not modelled", bsdf.plugin);
-        self.log.warn(&bsdf.place, what, "the (first) bsdf inside it is used alone")?;
-        let nested = self.nested(bsdf, depth)?;
-        // The warning covers the maps and weights too.
-        self.tagged(bsdf, "texture")?;
-        bsdf.properties.iter().for_each(|p| p.used.set(true));
-        Ok(nested)
+    /// Nested bsdfs, each with a share of the light; what is left is absorbed.
+    fn mixed(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        let text = bsdf.string("weights")?.unwrap_or_default();
+        let nested = self.tagged(bsdf, "bsdf")?;
+        let weights = numbers(&text).filter(|weights| {
+            let are_shares = weights.iter().all(|weight| (0.0..f64::INFINITY).contains(weight));
+            are_shares && weights.len() == nested.len() && weights.iter().sum::<f64>() > 0.0
+        });
+        let Some(weights) = weights else {
+            let what = format!("the weights \"{text}\" are not those of {} bsdfs", nested.len());
+            return Err(bsdf
+                .place
+                .wrong(what, "write a number of 0 or more for each bsdf, with commas between"));
+        };
+        let mut parts: Vec<(f64, Material)> = Vec::with_capacity(nested.len() + 1);
+        for (weight, nested) in weights.iter().zip(&nested) {
+            parts.push((*weight, self.material(nested, depth + 1)?));
+        }
+        let lost = 1.0 - weights.iter().sum::<f64>();
+        if lost > MIN_LOST {
+            parts.push((lost, diffuse(bsdf.plugin.clone(), Reflectance::BLACK)));
+        }
+        // From the last to the first, each with those behind it as one.
+        let mut whole: Option<(f64, Material)> = None;
+        for (weight, part) in parts.into_iter().filter(|(weight, _)| *weight > 0.0).rev() {
+            whole = Some(match whole {
+                None => (weight, part),
+                Some((rest, others)) => {
+                    let sum = weight + rest;
+                    let share = Share::Constant((rest / sum) as f32);
+                    (sum, layers::blended(share, [part, others], &bsdf.place, self.log)?)
+                }
+            });
+        }
+        let Some((_, mixed)) = whole else {
+            return Err(bsdf.place.wrong("all weights are 0", "give one that is more"));
+        };
+        Ok(mixed)
     }
 
     fn nested(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {

@@ -3,7 +3,9 @@ mod films;
 
 use crate::math::Rgb;
 use crate::scene::formats::{Level, LoadOptions, Loaded, load};
-use crate::scene::{DeltaLight, Distribution, Environment, Fresnel, Lobe, Material, Reflectance, Roughness};
+use crate::scene::{
+    DeltaLight, Distribution, Environment, Fresnel, Lobe, Material, Reflectance, Roughness, Share,
+};
 use crate::scene::{PixelFilter, Projection};
 use glam::{DVec3, Vec3};
 use std::fs;

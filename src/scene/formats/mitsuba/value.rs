@@ -126,7 +126,8 @@ fn number(text: &str) -> Option<f64> {
     text.trim().parse::<f64>().ok().filter(|v| v.is_finite())
 }
 
-fn numbers(text: &str) -> Option<Vec<f64>> {
+/// Parses finite numbers with commas or spaces between.
+pub fn numbers(text: &str) -> Option<Vec<f64>> {
     text.split(|c: char| c == ',' || c.is_whitespace()).filter(|s| !s.is_empty()).map(number).collect()
 }
 

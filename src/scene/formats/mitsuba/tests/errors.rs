@@ -6,15 +6,17 @@ use super::*;
 fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
     let nested = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.3\"/></bsdf>";
     let cases = [
-        (format!("<bsdf type=\"mixturebsdf\">{nested}</bsdf>"), "\"mixturebsdf\""),
-        ("<bsdf type=\"coating\"><bsdf type=\"dielectric\"/></bsdf>".into(), "coating of"),
-        ("<bsdf type=\"principled\"><float name=\"flatness\" value=\"0.5\"/></bsdf>".into(), "flatness"),
-        ("<bsdf type=\"roughdiffuse\"><rgb name=\"reflectance\" value=\"0.3\"/></bsdf>".into(), "rough diffuse"),
-        ("<bsdf type=\"phong\"><float name=\"exponent\" value=\"98\"/></bsdf>".into(), "\"phong\""),
-        ("<bsdf type=\"velvet\"/>".into(), "\"velvet\""),
-        ("<bsdf type=\"diffuse\"><float name=\"sheen\" value=\"1\"/></bsdf>".into(), "\"sheen\""),
-        ("<emitter type=\"area\"><float name=\"glow\" value=\"1\"/></emitter>".into(), "\"glow\""),
-        ("<bsdf type=\"roughdielectric\"><float name=\"alpha_u\" value=\"0.1\"/><float name=\"alpha_v\" value=\"0.4\"/></bsdf>".into(), "anisotropic"),
+        ("<bsdf type=\"coating\"><bsdf type=\"dielectric\"/></bsdf>", "coating of"),
+        ("<bsdf type=\"principled\"><float name=\"flatness\" value=\"0.5\"/></bsdf>", "flatness"),
+        ("<bsdf type=\"roughdiffuse\"><rgb name=\"reflectance\" value=\"0.3\"/></bsdf>", "rough diffuse"),
+        ("<bsdf type=\"phong\"><float name=\"exponent\" value=\"98\"/></bsdf>", "\"phong\""),
+        ("<bsdf type=\"velvet\"/>", "\"velvet\""),
+        ("<bsdf type=\"diffuse\"><float name=\"sheen\" value=\"1\"/></bsdf>", "\"sheen\""),
+        ("<emitter type=\"area\"><float name=\"glow\" value=\"1\"/></emitter>", "\"glow\""),
+        (
+            "<bsdf type=\"roughdielectric\"><float name=\"alpha_u\" value=\"0.1\"/><float name=\"alpha_v\" value=\"0.4\"/></bsdf>",
+            "anisotropic",
+        ),
     ];
     for (text, what) in cases {
         let body = format!("{SKY}<shape type=\"rectangle\">\n{text}</shape>");
@@ -50,6 +52,23 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
     let (mixed, warnings) =
         bsdf(&format!("<bsdf type=\"blendbsdf\">{nested}<bsdf type=\"conductor\"/></bsdf>"));
     assert!(mixed.blend.is_some_and(|b| b.weight == 0.5.into() && b.other.lobes.len() == 1) && warnings == 0);
+    let weights = "<string name=\"weights\" value=\"0.2, 0.3, 0.25\"/>";
+    let three = format!("{nested}{nested}<bsdf type=\"conductor\"/>");
+    let (mixed, warnings) = bsdf(&format!("<bsdf type=\"mixturebsdf\">{weights}{three}</bsdf>"));
+    let shares: Vec<f32> = mixed
+        .parts()
+        .filter_map(|part| part.blend.as_ref())
+        .map(|blend| if let Share::Constant(weight) = blend.weight { weight } else { panic!() })
+        .collect();
+    assert_eq!(warnings, 0);
+    // Of the last three, of the last two, and of black, which takes the rest.
+    let expected = [0.8, 0.5 / 0.8, 0.25 / 0.5];
+    assert!(
+        shares.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6) && shares.len() == 3,
+        "{shares:?}"
+    );
+    let black = mixed.parts().last().expect("one");
+    assert!(black.diffuse == Reflectance::BLACK && black.lobes.is_empty());
     let (car, _) = bsdf("<bsdf type=\"principled\"><float name=\"specular\" value=\"0.5\"/></bsdf>");
     assert!((car.principled.expect("one").eta - 1.5).abs() < 1e-6);
 }
@@ -77,6 +96,11 @@ fn errors_name_the_line_and_a_remedy() {
             "cheese",
         ),
         ("<shape type=\"rectangle\"><bsdf type=\"twosided\"/></shape>", "holds no other"),
+        (
+            "<bsdf type=\"mixturebsdf\" id=\"a\"><string name=\"weights\" value=\"0.5\"/></bsdf>\
+             <shape type=\"cube\"><ref id=\"a\"/></shape>",
+            "not those of 0 bsdfs",
+        ),
         ("<shape type=\"rectangle\"><boolean name=\"flip_normals\" value=\"2\"/></shape>", "boolean"),
         ("<bsdf type=\"diffuse\" id=\"a\"/><bsdf type=\"diffuse\" id=\"a\"/>", "already taken"),
         (
