@@ -3,6 +3,7 @@
 
 use super::drawn::Tracer;
 use super::{ChainCounts, DrawnLight, EyePass, EyeSettings};
+use crate::caustics::Caustics;
 use crate::paths::Counts;
 use crate::progress::Control;
 use crate::view::View;
@@ -30,12 +31,12 @@ impl EyePass<'_> {
         world: &World,
         view: &View,
         settings: EyeSettings,
-        drawn: &DrawnLight,
+        (drawn, caustics): (&DrawnLight, Option<&Caustics>),
         groups: &[Vec<[u32; 2]>],
         control: &Control,
     ) -> EyePilot {
         let mut counts = Counts::default();
-        let tracer = Tracer::new(world, view, settings, (drawn, None), control, &mut counts);
+        let tracer = Tracer::new(world, view, settings, (drawn, caustics), control, &mut counts);
         let found = tracer.learn(settings.seed, FEWER);
         let mut learned = found.as_ref().map_or(ChainCounts::default(), |(_, chains)| *chains);
         learned.rays += counts.rays;

@@ -34,9 +34,16 @@ impl LightsWanted {
     }
 }
 
-/// Virtual lights kept from frame to frame: those made last, for as long as the same are wanted.
+/// Seed and longest path in edges that photons depend on, besides the scene.
+type PhotonsWanted = (u32, u32);
+
+/// Virtual lights, and photons by mirrors and glass, kept from frame to frame: those made last, for as long as the same
+/// are wanted.
 #[derive(Default)]
-pub struct LightStore(Mutex<Option<(LightsWanted, Arc<Lights>)>>);
+pub struct LightStore {
+    lights: Mutex<Option<(LightsWanted, Arc<Lights>)>>,
+    photons: Mutex<Option<(PhotonsWanted, Arc<CausticPhotons>)>>,
+}
 
 impl LightStore {
     /// Returns the lights of `world`, made anew if others were made last. Lights are not kept if `control` is
@@ -48,17 +55,59 @@ impl LightStore {
         control: &Control,
         stats: &mut Stats,
     ) -> Arc<Lights> {
-        // The lights are complete when they are stored: a panic elsewhere cannot have left them half-made.
-        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((made_for, lights)) = &*kept
-            && *made_for == wanted
-        {
-            return Arc::clone(lights);
-        }
-        let lights = Arc::new(Lights::new(world, &wanted, control, stats));
-        *kept = (!control.is_cancelled()).then(|| (wanted, Arc::clone(&lights)));
-        lights
+        kept(&self.lights, wanted, control, || Lights::new(world, &wanted, control, stats))
     }
+
+    /// The same for photons by mirrors and glass.
+    pub fn caustic_photons(
+        &self,
+        world: &World,
+        wanted: PhotonsWanted,
+        control: &Control,
+    ) -> Arc<CausticPhotons> {
+        let (seed, max_depth) = wanted;
+        kept(&self.photons, wanted, control, || CausticPhotons::new(world, seed, max_depth, control))
+    }
+
+    /// Photons by mirrors and glass as they light the surfaces of a view; `None` if there are none. Reports them.
+    pub fn caustics(
+        &self,
+        (world, view): (&World, &View),
+        wanted: PhotonsWanted,
+        control: &Control,
+        stats: &mut Stats,
+    ) -> Option<Caustics> {
+        let (photons, caustics) = stats.time(Stage::LightPass, || {
+            let photons = self.caustic_photons(world, wanted, control);
+            let caustics = photons.seen(view.camera.origin, view.pixel_angle(), wanted.1);
+            (photons, caustics)
+        });
+        if photons.paths > 0 {
+            stats.count("Caustics/photons", photons.len() as u64);
+            stats.count("Caustics/photon paths", photons.paths);
+            stats.count("Rays/closest hit", photons.rays);
+        }
+        caustics
+    }
+}
+
+/// The value in a store if it was made for the same, or one made anew, which stays in the store unless cancelled.
+fn kept<K: PartialEq, V>(
+    store: &Mutex<Option<(K, Arc<V>)>>,
+    wanted: K,
+    control: &Control,
+    make: impl FnOnce() -> V,
+) -> Arc<V> {
+    // Values are complete when they are stored: a panic elsewhere cannot have left them half-made.
+    let mut kept = store.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((made_for, value)) = &*kept
+        && *made_for == wanted
+    {
+        return Arc::clone(value);
+    }
+    let value = Arc::new(make());
+    *kept = (!control.is_cancelled()).then(|| (wanted, Arc::clone(&value)));
+    value
 }
 
 /// Virtual lights of a scene.
@@ -68,8 +117,6 @@ pub struct Lights {
     /// Squared distance below which a point cannot represent the patch around it, by mesh; 0 for meshes that
     /// do not emit.
     near_sq: Vec<f32>,
-    /// Photons that come by mirrors and glass alone.
-    caustics: CausticPhotons,
     diagonal: f32,
 }
 
@@ -83,31 +130,12 @@ impl Lights {
         stats.count("VPLs/photon paths", found.photons.paths);
         stats.count("Rays/closest hit", found.photons.rays);
 
-        let seed = wanted.pass.seed;
-        let caustics = || CausticPhotons::new(world, seed, wanted.max_depth, control);
-        let caustics = stats.time(Stage::LightPass, caustics);
-        if caustics.paths > 0 {
-            stats.count("Caustics/photons", caustics.len() as u64);
-            stats.count("Caustics/photon paths", caustics.paths);
-            stats.count("Rays/closest hit", caustics.rays);
-        }
-
         control.begin(Stage::Tree, 0);
         let build = || LightTrees::build(&found.sets, found.profiles, world.diagonal, wanted.family, control);
         let trees = stats.time(Stage::Tree, build);
         let least_sq = min_dist_sq(world.diagonal);
         let near_sq = |&size: &u32| if size > 0 { near_sq_of_size(size, least_sq) } else { 0.0 };
-        Lights {
-            trees,
-            near_sq: found.sizes.iter().map(near_sq).collect(),
-            caustics,
-            diagonal: world.diagonal,
-        }
-    }
-
-    /// Light that mirrors and glass throw onto the surfaces of a view, along paths of at most `max_depth` edges.
-    pub fn caustics(&self, view: &View, max_depth: u32) -> Option<Caustics> {
-        self.caustics.seen(view.camera.origin, view.pixel_angle(), max_depth)
+        Lights { trees, near_sq: found.sizes.iter().map(near_sq).collect(), diagonal: world.diagonal }
     }
 
     /// Transfer from the lights to a point; `compensated` where short rays find the light lost close to them.

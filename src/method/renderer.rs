@@ -100,6 +100,7 @@ pub trait Renderer: Settings + Sampled {
     fn draw_pixels(
         &self,
         _world: &World,
+        _lights: &LightStore,
         _view: &View,
         _groups: &[Vec<[u32; 2]>],
         _control: &Control,

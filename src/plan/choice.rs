@@ -8,7 +8,7 @@
 use super::ladder::Ladder;
 use super::pilot::Pilot;
 use super::work::Work;
-use crate::method::{Method, Sampling, path};
+use crate::method::{LightStore, Method, Sampling, path};
 use crate::progress::Control;
 use crate::view::View;
 use crate::world::World;
@@ -47,14 +47,19 @@ pub struct Chooser {
 impl Chooser {
     /// Runs the pilot of `base`, the cache, and of paths; `None` if there is nothing to choose, as where paths miss
     /// part of the light, or if cancelled.
-    pub fn new(world: &World, view: &View, base: &Method, control: &Control) -> Option<Chooser> {
+    pub fn new(
+        (world, lights): (&World, &LightStore),
+        view: &View,
+        base: &Method,
+        control: &Control,
+    ) -> Option<Chooser> {
         let Method::Cache(_) = base else { return None };
         if world.scene.focuses_lights() {
             return None;
         }
         let Sampling { seed, max_depth, .. } = base.sampling();
         let paths = path::Settings { seed, max_depth, ..path::Settings::default() };
-        let pilot = Pilot::of(world, view, base, &Method::Path(paths), control)?;
+        let pilot = Pilot::of((world, lights), view, base, &Method::Path(paths), control)?;
         let film_pixels = view.window.film.map(u64::from).iter().product();
         Some(Chooser { triangles: world.scene.triangle_count(), pilot, film_pixels, paths })
     }

@@ -13,7 +13,7 @@
 //! by the same method.
 
 use crate::film::Window;
-use crate::method::{DrawnPixels, Method, PILOT_SPP};
+use crate::method::{DrawnPixels, LightStore, Method, PILOT_SPP};
 use crate::progress::Control;
 use crate::sampling::owen_sobol_2d;
 use crate::view::View;
@@ -61,10 +61,16 @@ pub struct Pilot {
 impl Pilot {
     /// Samples squares of the film by both methods; `None` if `cache` draws no light, if none is found, or if
     /// cancelled.
-    pub fn of(world: &World, view: &View, cache: &Method, path: &Method, control: &Control) -> Option<Pilot> {
+    pub fn of(
+        (world, lights): (&World, &LightStore),
+        view: &View,
+        cache: &Method,
+        path: &Method,
+        control: &Control,
+    ) -> Option<Pilot> {
         let squares = squares(view.window.film);
-        let drawn = cache.draw_pixels(world, view, &squares, control)?;
-        let paths = path.draw_pixels(world, view, &squares, control)?;
+        let drawn = cache.draw_pixels(world, lights, view, &squares, control)?;
+        let paths = path.draw_pixels(world, lights, view, &squares, control)?;
         Pilot::by(squares[0].len(), &drawn, &paths)
     }
 

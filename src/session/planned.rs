@@ -92,7 +92,7 @@ impl Planning<'_> {
     }
 
     fn chooser(&self, method: &Method) -> Option<Chooser> {
-        Chooser::new(&self.session.world, self.view, method, self.control)
+        Chooser::new((&self.session.world, &self.session.lights), self.view, method, self.control)
     }
 
     fn ladder(&self, method: Method, held: &[&'static str]) -> Result<Ladder, FrameError> {

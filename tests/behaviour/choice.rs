@@ -54,6 +54,8 @@ fn caustics() -> SceneAndView {
     scene.meshes.push(quad(Vec3::new(-5.0, -1.0, 5.0), 10.0 * Vec3::X, -10.0 * Vec3::Z, floor));
     scene.meshes.push(sphere(Vec3::ZERO, 0.4, 24, glass));
     scene.meshes.push(emitting(sphere(Vec3::ZERO, 0.15, 16, black), Rgb::splat(30.0)));
+    // The larger the film, the less is left to photons.
+    scene.view.window = Window::whole([256, 256]);
     scene
 }
 

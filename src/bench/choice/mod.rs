@@ -10,7 +10,7 @@ mod document;
 
 use super::study::{Candidate, Errors, Noise, Results, Run, Study, StudyError, Subject};
 use super::{Benchmark, Kind};
-use crate::method::Method;
+use crate::method::{LightStore, Method};
 use crate::paths::Look;
 use crate::plan::{Chooser, DRAFT, FINAL, Ladder, PREVIEW, options};
 use crate::stats::{Stage, Stopwatch};
@@ -125,7 +125,8 @@ fn scene(study: &Study, subject: &Subject) -> Result<Option<SceneChoices>, Study
     let figures = |run: &Run| Ok::<_, StudyError>(Figures::of(&Errors::against(&run.color, &reference)?));
     let base = Method::default();
     let watch = Stopwatch::start();
-    let chooser = Chooser::new(&subject.session.world, &subject.view, &base, study.control);
+    let chooser =
+        Chooser::new((&subject.session.world, &LightStore::default()), &subject.view, &base, study.control);
     let pilot_seconds = watch.elapsed().cpu_seconds;
     let (Some(chooser), Some(ladder)) = (chooser, Ladder::new(base, &[])) else {
         (study.say)(&format!("{}: there is no light, and nothing to choose", subject.name));

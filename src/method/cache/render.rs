@@ -169,6 +169,7 @@ impl Renderer for Settings {
     fn draw_pixels(
         &self,
         world: &World,
+        lights: &LightStore,
         view: &View,
         groups: &[Vec<[u32; 2]>],
         control: &Control,
@@ -176,11 +177,13 @@ impl Renderer for Settings {
         let glossy = Glossy::new(world, &self.cache);
         let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default())?;
         let settings = EyeSettings { spp: PILOT_SPP, seed: 0, ..self.sampling().eye(&world.scene) };
+        let photons = lights.caustic_photons(world, (settings.seed, settings.max_depth), control);
+        let caustics = photons.seen(view.camera.origin, view.pixel_angle(), settings.max_depth);
         let EyePilot { luminances, sampled, learned } =
-            EyePass::pilot(world, view, settings, &drawn, groups, control);
+            EyePass::pilot(world, view, settings, (&drawn, caustics.as_ref()), groups, control);
         let luminances = luminances.map(|by_group| by_group.into_iter().flatten().map(f64::from).collect());
         let [sampled, learned] = [sampled, learned].map(|chains| chains.rays + chains.shadow_rays);
-        (!control.is_cancelled()).then(|| DrawnPixels::new(luminances, sampled, learned))
+        (!control.is_cancelled()).then(|| DrawnPixels::new(luminances, sampled, learned + photons.rays))
     }
 
     fn expected_bytes(&self, window: &Window) -> u64 {

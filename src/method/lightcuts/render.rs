@@ -53,9 +53,9 @@ impl Renderer for Settings {
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
         let mut stats = Stats::new();
         let wanted = LightsWanted::new(world, self.sampling(), (self.light, self.family));
+        let max_depth = wanted.max_depth;
+        let caustics = lights.caustics((world, view), (self.seed, max_depth), control, &mut stats);
         let lights = lights.get(world, wanted, control, &mut stats);
-        let max_depth = world.scene.path_limit(self.max_depth);
-        let caustics = stats.time(Stage::LightPass, || lights.caustics(view, max_depth));
         let context = lights.context(world, self.compensation);
         let shading = ShadeSettings { cut: self.cut, share: self.share, shadows: self.shadows };
         let eye = self.sampling().eye(&world.scene);

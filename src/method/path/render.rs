@@ -63,6 +63,7 @@ impl Renderer for Settings {
     fn draw_pixels(
         &self,
         world: &World,
+        _: &LightStore,
         view: &View,
         groups: &[Vec<[u32; 2]>],
         control: &Control,

@@ -198,7 +198,7 @@ impl Converter<'_> {
         Ok(Material { relief: relief.or(nested.relief), ..nested })
     }
 
-    /// Nested bsdfs, each with a share of the light; what is left is absorbed.
+    /// Nested bsdfs, each with a share of the light; the rest is absorbed.
     fn mixed(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let text = bsdf.string("weights")?.unwrap_or_default();
         let nested = self.tagged(bsdf, "bsdf")?;
