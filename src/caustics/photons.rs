@@ -9,6 +9,7 @@ use crate::vpl::{Emission, MAX_CORRECTION, PhotonEmitter};
 use crate::world::{World, beyond};
 use glam::Vec3;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Number of paths traced by one task.
 const CHUNK: u32 = 1024;
@@ -137,10 +138,11 @@ pub fn trace(world: &World, emitter: &PhotonEmitter, seed: u32, max_edges: u32, 
     traced
 }
 
+/// Photons of some tasks, of paths that begin by `aims`.
 fn chunks(
     world: &World,
     aims: &Aims,
-    (seed, tasks): (u32, std::ops::Range<u32>),
+    (seed, tasks): (u32, Range<u32>),
     max_edges: u32,
     control: &Control,
 ) -> Vec<Chunk> {

@@ -79,8 +79,9 @@ impl Packet {
     }
 
     /// Samples light and the next directions at the surfaces that the edges, number `depth` of their paths, have
-    /// met in the lanes of `found`. Calls `arrives` with the segments that light would come along, its radiance at
-    /// the eye and the result it is for. Turns the paths into their continuations and returns those that go on.
+    /// met in the lanes of `found`. Calls `arrives` with the segments that light would come along, none of light that
+    /// is known to arrive, its radiance at the eye and the result it is for. Turns the paths into their continuations
+    /// and returns those that go on.
     #[inline]
     pub fn scatter<'w, R: Reach<'w>>(
         &mut self,
