@@ -102,7 +102,7 @@ impl FinalGatherSource<'_> {
     ) -> Option<NewRecord> {
         let &Candidate { sample, point, coat, bands, .. } = candidate;
         let settings = self.settings();
-        let limits = |distance| FootprintLimits::new(settings, Origin::Indirect, candidate.spacing, distance);
+        let limits = |distance| FootprintLimits::new(settings, Origin::Indirect, candidate, distance);
         let max_nearness = 1.0 / limits(0.0).radii[0].max(f32::MIN_POSITIVE);
         let at = GatherPoint { point, coat, seed: hash(sample, self.seed), max_nearness };
         let g = gather(&self.light, &self.strata, &at, &mut work.met, counts);

@@ -88,7 +88,7 @@ impl LightcutSource<'_> {
             tangential(g.gradient.z_axis),
         );
         let distance = light.hessian.as_ref().map_or_else(|| g.distance(), |hessian| hessian.distance());
-        let limits = FootprintLimits::new(self.settings, origin, candidate.spacing, distance);
+        let limits = FootprintLimits::new(self.settings, origin, candidate, distance);
         let footprint = match &light.hessian {
             Some(hessian) => {
                 let derivatives = hessian.derivatives(origin);

@@ -76,13 +76,14 @@ impl<'a> CacheFrame<'a> {
     ) {
         let count = self.targets.points.len();
         let mut level = FIRST_LEVEL;
+        let reach = source.settings().farthest();
         while count >> level >= source.settings().least_cell.max(1) as usize {
             for parity in 0..2 {
                 if control.is_cancelled() {
                     return;
                 }
                 let candidates = stats.time(Stage::Splat, || {
-                    candidates(&self.targets, &self.splats, self.cached, level, parity)
+                    candidates(&self.targets, &self.splats, self.cached, reach, (level, parity))
                 });
                 let (new, cuts) = stats.time(Stage::Records, || source.records(&candidates));
                 self.cuts += cuts;

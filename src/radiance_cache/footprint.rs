@@ -1,14 +1,17 @@
 //! The footprint of a record: how large it is, and which way it is long.
 //!
 //! Paper: Herzog et al. 2009, section 5.1, Eqs. 11 and 12 (circles, and ellipses by gradients); Schwarzhaupt et
-//! al. 2012 (ellipses by second derivatives that know of occlusion).
+//! al. 2012 (ellipses by second derivatives that know of occlusion); Krivanek et al., *Making Radiance and Irradiance
+//! Caching Practical*, 2006 (footprints end before geometry that the rays of a record may miss).
 //! Units: metres.
 //!
 //! Deviations: footprints by second derivatives are at most twice as long as wide, those by gradients about
-//! eleven times (1/0.3²).
+//! eleven times (1/0.3²). Geometry near a record is that which the frame's shading points lie on, not what the rays of
+//! records around hit.
 
 use super::occlusion_hessian::Derivatives;
 use super::settings::{CacheSettings, Footprints};
+use super::source::Candidate;
 use crate::math::Frame;
 use crate::vpl::Origin;
 use glam::Vec3;
@@ -19,6 +22,10 @@ const NORMAL_SCALE: f32 = 5.0;
 
 /// Smallest ratio of the radius along the gradient to that of the circle of the same area.
 const MIN_SQUEEZE: f32 = 0.3;
+
+/// Largest radius over the distance of the nearest point that rises from the surface: what is low and near throws
+/// shadows that a record's rays miss, and its light does not reach into them.
+const CLEARANCE: f32 = 0.7;
 
 /// Maximum ratio of the axes of footprints by second derivatives.
 const MAX_ASPECT: f32 = 2.0;
@@ -50,9 +57,10 @@ pub struct FootprintLimits<'a> {
 }
 
 impl<'a> FootprintLimits<'a> {
-    /// Bounds for a record of light of `origin`, where eye samples lie `spacing` apart.
-    pub fn new(settings: &'a CacheSettings, origin: Origin, spacing: f32, distance: f32) -> Self {
-        let radii = settings.reach[origin as usize].map(|r| r * spacing);
+    /// Bounds for a record of light of `origin` at `candidate`, which geometry at a `distance` lights and shadows.
+    pub fn new(settings: &'a CacheSettings, origin: Origin, candidate: &Candidate, distance: f32) -> Self {
+        let [min, max] = settings.reach[origin as usize].map(|r| r * candidate.spacing);
+        let radii = [min, max.min(CLEARANCE * candidate.clearance).max(min)];
         FootprintLimits { settings, accuracy: settings.accuracy[origin as usize], distance, radii }
     }
 }
@@ -132,6 +140,7 @@ fn within(radius: f32, [min, max]: [f32; 2]) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::fixtures::candidate;
     use super::*;
     use glam::Mat3;
 
@@ -147,9 +156,18 @@ mod tests {
     fn limits_are_those_of_the_layer_in_spacings() {
         let settings = CacheSettings::default();
         for origin in Origin::ALL {
-            let limits = FootprintLimits::new(&settings, origin, 0.5, 7.0);
+            let mut at = Candidate { spacing: 0.5, ..candidate(Vec3::ZERO, Vec3::Z) };
+            let [least, largest] = settings.reach[origin as usize].map(|r| 0.5 * r);
+            let limits = FootprintLimits::new(&settings, origin, &at, 7.0);
             assert_eq!((limits.accuracy, limits.distance), (settings.accuracy[origin as usize], 7.0));
-            assert_eq!(limits.radii, settings.reach[origin as usize].map(|r| 0.5 * r));
+            assert_eq!(limits.radii, [least, largest]);
+            // Nearby geometry lowers the largest radius, though not below the least.
+            for (clearance, radius) in [(0.5 * largest / CLEARANCE, 0.5 * largest), (0.0, least)] {
+                at.clearance = clearance;
+                let limits = FootprintLimits::new(&settings, origin, &at, 7.0);
+                assert_eq!(limits.radii[0], least);
+                assert_near(limits.radii[1], radius);
+            }
         }
     }
 

@@ -33,13 +33,13 @@ pub fn missing(
 }
 
 /// Returns the candidates of every other cell of `level` (`parity` 0 or 1): siblings take turns, so that the
-/// need of one may be covered already by the other's record.
+/// need of one may be covered already by the other's record. No footprint is to be larger than `reach` spacings.
 pub fn candidates(
     targets: &Targets,
     splats: &DirectIndirect<Splat>,
     cached: DirectIndirect<bool>,
-    level: u32,
-    parity: usize,
+    reach: f32,
+    (level, parity): (u32, usize),
 ) -> Vec<Candidate> {
     let cells = (1usize << level) / 2;
     (0..cells.max(1))
@@ -63,6 +63,7 @@ pub fn candidates(
             // The footprint may reach beyond the cell.
             let up = level.min(WIDER);
             candidate.baseline_luminance += targets.least_known(targets.index.range(level - up, cell >> up));
+            candidate.clearance = targets.clearance(&candidate.point, reach * candidate.spacing);
             Some(candidate)
         })
         .collect()
@@ -81,6 +82,7 @@ fn candidate(
         sample: sample as u32,
         point: SurfacePoint { position: point.position, normal: point.normal, geometric_normal },
         spacing: point.spacing,
+        clearance: f32::INFINITY,
         coat: point.coat,
         bands: targets.bands[sample],
         missing,
@@ -97,6 +99,7 @@ mod tests {
     use crate::math::Rgb;
     use crate::vpl::Origin;
 
+    const REACH: f32 = 10.0;
     const BOTH: DirectIndirect<bool> = DirectIndirect { direct: true, indirect: true };
 
     fn splats(targets: &Targets, records: &Records) -> DirectIndirect<Splat> {
@@ -121,7 +124,7 @@ mod tests {
         for level in 0..6 {
             let mut cells = Vec::new();
             for parity in 0..2 {
-                let found = candidates(&targets, &splats, BOTH, level, parity);
+                let found = candidates(&targets, &splats, BOTH, REACH, (level, parity));
                 assert_eq!(found.len(), (1 << level) / 2 + usize::from(level == 0));
                 for (pair, candidate) in found.iter().enumerate() {
                     let cell = if level == 0 { 0 } else { 2 * pair + parity };
@@ -149,7 +152,7 @@ mod tests {
         let splats = splats(&targets, &half);
         let one = |origin| DirectIndirect::from_fn(|other| other == origin);
         let all = |cached| -> Vec<Candidate> {
-            (0..2).flat_map(|parity| candidates(&targets, &splats, cached, 10, parity)).collect()
+            (0..2).flat_map(|parity| candidates(&targets, &splats, cached, REACH, (10, parity))).collect()
         };
         // At level 10 a cell is a sample.
         assert_eq!(all(BOTH).len(), 1024);
@@ -163,7 +166,7 @@ mod tests {
         assert!(direct.len() == 512 && direct.iter().all(|c| c.point.position.x > 0.5));
         assert_eq!(all(one(Origin::Indirect)).len(), 1024);
         // The middle of the uncovered samples, not of the cell.
-        let coarse = candidates(&targets, &splats, one(Origin::Direct), 0, 0);
+        let coarse = candidates(&targets, &splats, one(Origin::Direct), REACH, (0, 0));
         assert!(coarse.len() == 1 && (coarse[0].point.position - Vec3::new(0.75, 0.5, 0.0)).length() < 0.04);
     }
 
@@ -177,7 +180,7 @@ mod tests {
         let albedo = luminance(floor.points.surfaces[0].bsdf.base_brdf() * std::f32::consts::PI);
         let (mut bright, mut dark) = (0, 0);
         for parity in 0..2 {
-            for found in candidates(&targets, &splats, BOTH, 6, parity) {
+            for found in candidates(&targets, &splats, BOTH, REACH, (6, parity)) {
                 let cell = floor.index.range(6, 0).len();
                 let wider = floor.index.range(4, found.sample as usize / (4 * cell));
                 if wider.clone().all(lit) {
@@ -191,7 +194,7 @@ mod tests {
             }
         }
         assert_eq!((bright, dark), (32, 0), "the middle of the floor divides cells of that level");
-        let coarse = candidates(&targets, &splats, BOTH, 0, 0);
+        let coarse = candidates(&targets, &splats, BOTH, REACH, (0, 0));
         assert_eq!(coarse[0].baseline_luminance, 0.0);
     }
 
@@ -202,7 +205,7 @@ mod tests {
         targets.cacheable.fill(false);
         targets.cacheable[11] = true;
         let splats = splats(&targets, &Records::default());
-        let found = candidates(&targets, &splats, BOTH, 0, 0);
+        let found = candidates(&targets, &splats, BOTH, REACH, (0, 0));
         assert!(found.len() == 1 && found[0].sample == 11);
     }
 }

@@ -127,6 +127,11 @@ impl CacheSettings {
         settings
     }
 
+    /// Largest radius of any footprint, in spacings of eye samples.
+    pub fn farthest(&self) -> f32 {
+        self.reach.into_iter().map(|[_, largest]| largest).fold(0.0, f32::max)
+    }
+
     /// Layers whose light is found by records.
     pub fn cached(&self) -> DirectIndirect<bool> {
         DirectIndirect {

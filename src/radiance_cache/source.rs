@@ -18,6 +18,8 @@ pub struct Candidate {
     pub point: SurfacePoint,
     /// Distance to the next eye sample, about: the unit of footprints' radii.
     pub spacing: f32,
+    /// Distance to the nearest point seen that rises from the surface; infinite if there is none nearby.
+    pub clearance: f32,
     /// Coat that the light has to pass (see [`crate::material::Bsdf::coat`]); 0 for none.
     pub coat: u32,
     /// Bands of the series that the surface needs; 0 where irradiance is enough.

@@ -68,6 +68,7 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
             sample: i as u32,
             point: SurfacePoint { position, normal, geometric_normal },
             spacing: point.spacing,
+            clearance: f32::INFINITY,
             coat: 0,
             bands: 0,
             missing: DirectIndirect { direct: false, indirect: true },

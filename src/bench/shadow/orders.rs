@@ -76,7 +76,8 @@ impl<'s> Orders<'s> {
         let level = (samples.len() / least).checked_ilog2().unwrap_or(0);
         let targets = Targets::new(&samples.points, &samples.index, None);
         let splats = DirectIndirect::from_fn(|_| Splat::new(&targets, &RecordStore::default()));
-        let all = candidates(&targets, &splats, DirectIndirect { direct: false, indirect: true }, level, 0);
+        let cached = DirectIndirect { direct: false, indirect: true };
+        let all = candidates(&targets, &splats, cached, cache.farthest(), (level, 0));
         let candidates = setting.spread(all.len()).into_iter().map(|s| all[s].to_vec()).collect();
         Orders { setting, cache, stretches, tasks, candidates }
     }
