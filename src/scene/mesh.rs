@@ -12,7 +12,8 @@ pub struct Mesh {
     pub name: String,
     /// Vertex positions relative to the scene's centre.
     pub positions: Vec<Vec3>,
-    /// Unit shading normals by vertex, or empty: then the geometric normal is used.
+    /// Shading normals by vertex, or empty: then the geometric normal is used. Of unit length, but for vertices within
+    /// an edge that was cut, whose shorter ones are interpolated as on the whole edge.
     pub normals: Vec<Vec3>,
     /// Texture coordinates by vertex, v up, or empty: then the barycentric coordinates are used.
     pub uvs: Vec<Vec2>,
