@@ -43,6 +43,9 @@ const CURVE: [f32; 4] = [0.5, 2.0, 4.0, 8.0];
 /// Numbers of rays of photon-cache that make its curve, relative to the default.
 const RAYS: [f32; 3] = [0.25, 0.5, 2.0];
 
+/// Largest error bound of a cluster in the cut of a record, in the paper.
+const PAPER_EPSILON: f32 = 0.01;
+
 /// Frames of the walk-through.
 const WALK: usize = 24;
 
@@ -51,14 +54,17 @@ const DENOISED_SPP: u32 = 16;
 
 /// Returns all rows for a scene, that of the walk-through only where its camera path passes the picture; denoised paths
 /// only if the study denoises. Other methods but those and the default take the eye samples of reconstruction cuts,
-/// lightcuts per pixel their virtual lights and cuts too.
+/// the paper's caches and lightcuts per pixel their virtual lights and cuts too.
 pub fn entries(study: &Study, subject: &Subject) -> Vec<Entry> {
     let reconstruction = reconstruction::Settings::default();
     let shaped = |footprints| {
         let mut settings = cache::Settings::default();
         settings.cache.footprints = footprints;
         settings.cache.direct = DirectBy::Records;
+        settings.cache.cut.epsilon = PAPER_EPSILON;
         settings.spp = reconstruction.spp;
+        settings.light = reconstruction.light;
+        settings.cut = reconstruction.cut;
         settings.cache.indirect = FoundBy::Records;
         Method::Cache(settings)
     };

@@ -28,7 +28,7 @@ method_settings! {
     /// Settings of the method.
     spp = 16, "Records" {
         /// Numbers of VPLs; their seed is not used.
-        light: LightPassSettings = LightPassSettings::default() => [group];
+        light: LightPassSettings = LightPassSettings { indirect: 400_000, ..LightPassSettings::default() } => [group];
         /// Accuracy of the cut of an eye sample.
         cut: CutSettings = CutSettings::default() => [by Settings::each_of_cut];
         /// Compensation by short rays for light lost to clamping.
