@@ -14,7 +14,7 @@ use super::kernel::{Profile, even_index};
 use super::lobe_table::LobeTable;
 use super::projection::{Projection, Quadrature, ZonalProjection};
 use crate::material::{Bsdf, DullLobe, Materials};
-use crate::scene::{MaterialId, Scene};
+use crate::scene::MaterialId;
 use crate::setting::{DOWN, settings};
 use rayon::prelude::*;
 
@@ -73,10 +73,10 @@ struct LobeUse {
 }
 
 impl MaterialSeries {
-    /// Projects the materials of a scene. Materials whose lobes differ only by a factor share one table.
-    pub fn new(scene: &Scene, materials: &Materials, settings: &SeriesSettings) -> MaterialSeries {
+    /// Projects materials, textured ones by their means. Materials whose lobes differ only by a factor share one table.
+    pub fn new(materials: &Materials, settings: &SeriesSettings) -> MaterialSeries {
         let quadrature = Quadrature::standard();
-        let averages: Vec<Bsdf> = materials.averages(scene).collect();
+        let averages: Vec<Bsdf> = materials.averages().collect();
         // One lobe of each kind, and for each material the slots and kinds of its own.
         let mut kinds: Vec<DullLobe> = Vec::new();
         let mut used: Vec<Vec<LobeUse>> = Vec::with_capacity(averages.len());

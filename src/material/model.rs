@@ -10,6 +10,7 @@ use super::straight::Straight;
 use crate::math::{Rgb, luminance};
 use crate::scene::{Fresnel, Material, MaterialId, Scene, Share, Texture, TextureId};
 use glam::Vec2;
+use rayon::prelude::*;
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -22,6 +23,8 @@ pub struct Materials {
     /// Every coat that differs from others; the first is none.
     coats: Vec<CoatInterface>,
     mip_maps: MipMaps,
+    /// Colours of the materials with every texture replaced by its mean.
+    averages: Vec<Colours<Rgb>>,
 }
 
 /// Material without its textures' values.
@@ -84,7 +87,11 @@ impl Materials {
             model.lobe_list = number(&mut lobe_lists, &model.lobes);
         }
         let mip_maps = MipMaps::new(textures, models.iter().flat_map(Model::filtered_textures));
-        Materials { models, count: scene.materials.len(), coats, mip_maps }
+        let count = scene.materials.len();
+        let means: Vec<Rgb> = textures.par_iter().map(Texture::mean).collect();
+        let mean = |id: TextureId| means.get(id.0 as usize).copied().unwrap_or(Rgb::ONE);
+        let averages = models[..count].iter().map(|model| model.colours(mean)).collect();
+        Materials { models, count, coats, mip_maps, averages }
     }
 
     /// True if some textures are averaged over what a ray stands for.
@@ -153,15 +160,13 @@ impl Materials {
     }
 
     /// Returns all materials in order, each with every texture replaced by its mean.
-    pub fn averages(&self, scene: &Scene) -> impl Iterator<Item = Bsdf<'_>> {
-        (0..self.count() as u32).map(|id| self.average(scene, MaterialId(id)))
+    pub fn averages(&self) -> impl Iterator<Item = Bsdf<'_>> {
+        (0..self.count as u32).map(|id| self.average(MaterialId(id)))
     }
 
     /// Returns the material with every texture replaced by its mean.
-    pub fn average(&self, scene: &Scene, id: MaterialId) -> Bsdf<'_> {
-        let model = &self.models[id.0 as usize];
-        let colours =
-            model.colours(|id| scene.textures.get(id.0 as usize).map_or(Rgb::ONE, |texture| texture.mean()));
+    pub fn average(&self, id: MaterialId) -> Bsdf<'_> {
+        let (model, colours) = (&self.models[id.0 as usize], &self.averages[id.0 as usize]);
         Bsdf { model, base: colours.base, scales: colours.scales }
     }
 }

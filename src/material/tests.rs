@@ -292,7 +292,7 @@ fn textured_roughness_is_that_of_the_place() {
         let scene = scene(vec![lambert(PAINT), with(textured)]);
         let materials = Materials::new(&scene);
         assert_eq!(materials.count(), 2);
-        assert!(materials.average(&scene, MaterialId(1)).is_of_mean_roughness());
+        assert!(materials.average(MaterialId(1)).is_of_mean_roughness());
         for (u, texel) in [(0.25, 0.2126), (0.75, 0.7152)] {
             let bsdf = materials.at(&scene, MaterialId(1), Vec2::new(u, 0.5));
             assert_eq!(bsdf.material(), MaterialId(1));

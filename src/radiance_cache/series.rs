@@ -95,8 +95,8 @@ impl Glossy {
     /// Series of the lobes of a scene; `None` if its materials have no rough lobe.
     pub fn new(world: &World, settings: &CacheSettings) -> Option<Glossy> {
         let materials = 0..world.materials.count() as u32;
-        let rough = |id| world.materials.average(&world.scene, MaterialId(id)).split_base(1.0).1.is_some();
-        let surfaces = || MaterialSeries::new(&world.scene, &world.materials, &settings.series);
+        let rough = |id| world.materials.average(MaterialId(id)).split_base(1.0).1.is_some();
+        let surfaces = || MaterialSeries::new(&world.materials, &settings.series);
         materials.into_iter().any(rough).then(|| Glossy { surfaces: surfaces() })
     }
 

@@ -50,7 +50,7 @@ pub struct World {
 
 /// Returns the meshes of a scene as input of an acceleration structure.
 pub fn triangle_meshes<'a>(scene: &'a Scene, materials: &Materials) -> Vec<TriangleMesh<'a>> {
-    let straight: Vec<bool> = materials.averages(scene).map(|average| average.passes_straight()).collect();
+    let straight: Vec<bool> = materials.averages().map(|average| average.passes_straight()).collect();
     let meshes = scene.meshes.iter().map(|mesh| TriangleMesh {
         positions: &mesh.positions,
         triangles: &mesh.triangles,

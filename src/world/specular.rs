@@ -32,7 +32,7 @@ impl Specular {
     /// Finds them.
     pub fn new(scene: &Scene, materials: &Materials) -> Specular {
         // By material, since a mean is taken over all texels.
-        let averages: Vec<Bsdf> = materials.averages(scene).collect();
+        let averages: Vec<Bsdf> = materials.averages().collect();
         let average = |mesh: &Mesh| &averages[mesh.material.0 as usize];
         let by_delta = |mesh: &Mesh| average(mesh).bends_light();
         let bends =

@@ -138,7 +138,7 @@ fn kernels_are_projections_from_any_azimuth() {
     let scene = scene(expanded());
     let materials = Materials::new(&scene);
     let settings = SeriesSettings { error: 0.0, max_error: 1.0, ..SeriesSettings::default() };
-    let surfaces = MaterialSeries::new(&scene, &materials, &settings);
+    let surfaces = MaterialSeries::new(&materials, &settings);
     let directions = hemisphere();
     for i in 0..scene.materials.len() {
         let id = MaterialId(i as u32);
@@ -208,7 +208,7 @@ fn from(direction: DVec3) -> Incidence<f32> {
 fn smooth_light_is_reflected_within_the_product_of_what_both_series_leave_out() {
     let scene = scene(expanded());
     let materials = Materials::new(&scene);
-    let surfaces = MaterialSeries::new(&scene, &materials, &SeriesSettings::default());
+    let surfaces = MaterialSeries::new(&materials, &SeriesSettings::default());
     let directions = hemisphere();
     let values: Vec<_> = directions.iter().map(|(wi, _)| evaluate(MAX_BANDS, wi.to_array())).collect();
     let sun = outgoing(0.9, 0.4);
@@ -263,7 +263,7 @@ fn smooth_light_is_reflected_within_the_product_of_what_both_series_leave_out() 
 fn hundreds_of_virtual_lights_are_reflected_as_by_the_brdf() {
     let scene = scene(vec![metal(0.5), rough_plastic(0.35, 0.5)]);
     let materials = Materials::new(&scene);
-    let surfaces = MaterialSeries::new(&scene, &materials, &SeriesSettings::default());
+    let surfaces = MaterialSeries::new(&materials, &SeriesSettings::default());
     for i in 0..2 {
         let id = MaterialId(i);
         let bsdf = materials.at(&scene, id, Vec2::ZERO);
@@ -335,7 +335,7 @@ fn each_material_gets_the_records_it_needs() {
     let scene = scene(list.iter().map(|(m, _)| m.clone()).collect());
     let materials = Materials::new(&scene);
     let settings = SeriesSettings::default();
-    let surfaces = MaterialSeries::new(&scene, &materials, &settings);
+    let surfaces = MaterialSeries::new(&materials, &settings);
     let mut bands = Vec::new();
     for (i, (_, expected)) in list.iter().enumerate() {
         let id = MaterialId(i as u32);
@@ -370,7 +370,7 @@ fn textures_scale_base_and_lobe_at_each_point() {
     }
     let scene = scene(vec![metal, Material { diffuse: textured, ..rough_plastic(0.4, 0.5) }]);
     let materials = Materials::new(&scene);
-    let surfaces = MaterialSeries::new(&scene, &materials, &SeriesSettings::default());
+    let surfaces = MaterialSeries::new(&materials, &SeriesSettings::default());
     let wo = outgoing(0.6, 0.0);
     for i in 0..2 {
         let id = MaterialId(i);
