@@ -46,6 +46,7 @@ impl Primitive {
 
 /// Box around primitives, in all coordinates at once.
 #[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
 pub struct PrimitiveBounds {
     /// Minimum of each coordinate.
     pub min: Coordinates,
@@ -57,6 +58,12 @@ impl PrimitiveBounds {
     /// The empty box.
     pub const EMPTY: PrimitiveBounds =
         PrimitiveBounds { min: [f32::INFINITY; 8], max: [f32::NEG_INFINITY; 8] };
+
+    /// True if nothing has been added.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.min[0] == f32::INFINITY
+    }
 
     /// Box around one primitive.
     #[inline]
@@ -86,6 +93,12 @@ impl PrimitiveBounds {
     #[inline]
     pub fn extent(&self, i: usize) -> f32 {
         self.max[i] - self.min[i]
+    }
+
+    /// Extent along one dimension in units of length; `half_c` is half the scene's diagonal.
+    #[inline]
+    pub fn width(&self, i: usize, half_c: f32) -> f32 {
+        self.extent(i) * if i < 3 { 1.0 } else { half_c }
     }
 }
 

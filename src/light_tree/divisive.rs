@@ -12,6 +12,8 @@ use rayon::prelude::*;
 
 /// Number of bins by dimension.
 const BINS: usize = 16;
+/// Width of a dimension over that of the widest below which a cluster is not split along it.
+const NARROW: f32 = 0.1;
 /// Maximum size of a cluster that is sorted, not binned.
 const SORTED: usize = 16;
 /// Size above which both halves are built in parallel.
@@ -19,22 +21,43 @@ const PARALLEL: usize = 4096;
 /// Number of primitives binned by one task; fixed, so that sums do not depend on the number of threads.
 const CHUNK: usize = 1 << 15;
 
-#[derive(Clone, Copy)]
-struct Bin {
+/// Bins along one dimension. Bounds fill a cache line each, so intensities stand apart.
+#[derive(Clone)]
+struct Row {
+    bounds: [PrimitiveBounds; BINS],
+    intensity: [f64; BINS],
+}
+
+const EMPTY_ROW: Row = Row { bounds: [PrimitiveBounds::EMPTY; BINS], intensity: [0.0; BINS] };
+
+/// Bins of the dimensions that a cluster extends along, in order.
+type Bins = [Row; DIMENSIONS];
+
+/// Union of the bins on one side of a border.
+struct Sweep {
     bounds: PrimitiveBounds,
     intensity: f64,
 }
 
-const EMPTY_BIN: Bin = Bin { bounds: PrimitiveBounds::EMPTY, intensity: 0.0 };
+impl Sweep {
+    const EMPTY: Sweep = Sweep { bounds: PrimitiveBounds::EMPTY, intensity: 0.0 };
 
-impl Bin {
-    fn add(&mut self, other: &Bin) {
-        self.bounds.add(&other.bounds);
-        self.intensity += other.intensity;
+    #[inline]
+    fn add(&mut self, bounds: &PrimitiveBounds, intensity: f64) {
+        self.bounds.add(bounds);
+        self.intensity += intensity;
+    }
+
+    #[inline]
+    fn add_one(&mut self, r: &Primitive) {
+        self.add(&PrimitiveBounds::of(r), luminance(r));
     }
 }
 
-type Bins = [[Bin; BINS]; DIMENSIONS];
+#[inline]
+fn luminance(r: &Primitive) -> f64 {
+    f64::from(r.0[LUMINANCE])
+}
 
 /// Builds a tree by recursive splits; `c_sq` is the square of the scene's diagonal. Clusters are halved as they come
 /// once `control` is cancelled.
@@ -74,7 +97,7 @@ fn split_all(primitives: &mut [Primitive], left_sizes: &mut [u32], c_sq: f32, co
 fn split_sorted(primitives: &mut [Primitive], c_sq: f32) -> usize {
     let bounds = PrimitiveBounds::around(primitives);
     let half_c = 0.5 * c_sq.sqrt();
-    let width = |lane: usize| bounds.extent(lane) * if lane < 3 { 1.0 } else { half_c };
+    let width = |lane: usize| bounds.width(lane, half_c);
     let widest = (1..DIMENSIONS).fold(0, |a, b| if width(b) > width(a) { b } else { a });
     // Insertion sort: stable, and the fastest for so few.
     for i in 1..primitives.len() {
@@ -86,15 +109,15 @@ fn split_sorted(primitives: &mut [Primitive], c_sq: f32) -> usize {
     }
     let n = primitives.len();
     let mut right_costs = [0.0; SORTED];
-    let mut sweep = EMPTY_BIN;
+    let mut sweep = Sweep::EMPTY;
     for i in (1..n).rev() {
-        sweep.add(&Bin::of(&primitives[i]));
+        sweep.add_one(&primitives[i]);
         right_costs[i] = cluster_cost(&sweep.bounds, sweep.intensity, c_sq);
     }
-    let mut sweep = EMPTY_BIN;
+    let mut sweep = Sweep::EMPTY;
     let mut best = (f64::INFINITY, n / 2);
     for i in 1..n {
-        sweep.add(&Bin::of(&primitives[i - 1]));
+        sweep.add_one(&primitives[i - 1]);
         let cost = cluster_cost(&sweep.bounds, sweep.intensity, c_sq) + right_costs[i];
         // Equal costs (coincident VPLs) halve the cluster.
         let balance = |k: usize| k.abs_diff(n / 2);
@@ -103,13 +126,6 @@ fn split_sorted(primitives: &mut [Primitive], c_sq: f32) -> usize {
         }
     }
     best.1
-}
-
-impl Bin {
-    #[inline]
-    fn of(r: &Primitive) -> Bin {
-        Bin { bounds: PrimitiveBounds::of(r), intensity: f64::from(r.0[LUMINANCE]) }
-    }
 }
 
 /// Partitions a large cluster at the cheapest of all bin borders in all dimensions and returns the left size.
@@ -124,20 +140,23 @@ fn split_binned(primitives: &mut [Primitive], c_sq: f32) -> usize {
     } else {
         PrimitiveBounds::around(primitives)
     };
-    let binning = Binning::new(&bounds);
-    let mut bins: Bins = [[EMPTY_BIN; BINS]; DIMENSIONS];
+    let binning = Binning::new(&bounds, 0.5 * c_sq.sqrt());
+    let mut bins: Bins = [EMPTY_ROW; DIMENSIONS];
     if primitives.len() > CHUNK {
         let parts: Vec<Box<Bins>> = primitives
             .par_chunks(CHUNK)
             .map(|chunk| {
-                let mut bins: Box<Bins> = Box::new([[EMPTY_BIN; BINS]; DIMENSIONS]);
+                let mut bins: Box<Bins> = Box::new([EMPTY_ROW; DIMENSIONS]);
                 binning.fill(chunk, &mut bins);
                 bins
             })
             .collect();
         for part in &parts {
-            for (a, b) in bins.as_flattened_mut().iter_mut().zip(part.as_flattened()) {
-                a.add(b);
+            for (row, part) in bins.iter_mut().zip(part.iter()) {
+                for i in 0..BINS {
+                    row.bounds[i].add(&part.bounds[i]);
+                    row.intensity[i] += part.intensity[i];
+                }
             }
         }
     } else {
@@ -145,7 +164,8 @@ fn split_binned(primitives: &mut [Primitive], c_sq: f32) -> usize {
     }
     let n = primitives.len();
     let Some((dimension, border)) = cheapest_border(&bins, &binning, c_sq) else { return n / 2 };
-    let left = partition(primitives, |r| binning.bin(r)[dimension] < border as i32);
+    let border = Binning::border(border);
+    let left = partition(primitives, |r| binning.place(r, dimension) < border);
     if left == 0 || left == n { n / 2 } else { left }
 }
 
@@ -153,34 +173,51 @@ fn split_binned(primitives: &mut [Primitive], c_sq: f32) -> usize {
 struct Binning {
     min: [f32; 8],
     scale: [f32; 8],
+    /// Dimensions that the primitives extend along, the first `count`: on a flat wall there are two of six.
+    dimensions: [usize; DIMENSIONS],
+    count: usize,
 }
 
 impl Binning {
-    fn new(bounds: &PrimitiveBounds) -> Binning {
-        let mut scale = [0.0; 8];
-        for (d, s) in scale.iter_mut().enumerate().take(DIMENSIONS) {
-            // Slightly below BINS, so that the maximum itself falls into the last bin; 0 where flat.
-            let inverse = (BINS as f32 * (1.0 - 1e-6)) / bounds.extent(d);
-            *s = if inverse.is_finite() { inverse } else { 0.0 };
+    fn new(bounds: &PrimitiveBounds, half_c: f32) -> Binning {
+        let mut binning = Binning { min: bounds.min, scale: [0.0; 8], dimensions: [0; DIMENSIONS], count: 0 };
+        let width = |d: usize| bounds.width(d, half_c);
+        let widest = (0..DIMENSIONS).map(width).fold(0.0, f32::max);
+        for d in 0..DIMENSIONS {
+            // Slightly below 1, so that the maximum itself falls into the last bin.
+            let scale = (1.0 - 1e-6) / bounds.extent(d);
+            if scale.is_finite() && width(d) >= NARROW * widest {
+                binning.scale[d] = scale;
+                binning.dimensions[binning.count] = d;
+                binning.count += 1;
+            }
         }
-        Binning { min: bounds.min, scale }
+        binning
     }
 
+    /// Place along a dimension, in [1, 2): there the first bits of the mantissa are the number of the bin. Conversions
+    /// to integers do not compile to vector code.
     #[inline]
-    fn bin(&self, r: &Primitive) -> [i32; 8] {
-        let mut bin = [0; 8];
-        for (i, b) in bin.iter_mut().enumerate() {
-            *b = (((r.0[i] - self.min[i]) * self.scale[i]) as i32).min(BINS as i32 - 1);
-        }
-        bin
+    fn place(&self, r: &Primitive, d: usize) -> f32 {
+        (r.0[d] - self.min[d]) * self.scale[d] + 1.0
+    }
+
+    /// Place at which a bin begins.
+    fn border(bin: usize) -> f32 {
+        1.0 + bin as f32 / BINS as f32
     }
 
     fn fill(&self, primitives: &[Primitive], bins: &mut Bins) {
         for r in primitives {
-            let single = Bin::of(r);
-            let bin = self.bin(r);
-            for (d, row) in bins.iter_mut().enumerate() {
-                row[bin[d] as usize & (BINS - 1)].add(&single);
+            let (bounds, luminance) = (PrimitiveBounds::of(r), luminance(r));
+            let mut bin = [0; 8];
+            for (d, bin) in bin.iter_mut().enumerate() {
+                *bin = self.place(r, d).to_bits() >> (f32::MANTISSA_DIGITS - 1 - BINS.ilog2());
+            }
+            for (d, row) in self.dimensions[..self.count].iter().zip(bins.iter_mut()) {
+                let bin = bin[*d] as usize % BINS;
+                row.bounds[bin].add(&bounds);
+                row.intensity[bin] += luminance;
             }
         }
     }
@@ -190,28 +227,31 @@ impl Binning {
 fn cheapest_border(bins: &Bins, binning: &Binning, c_sq: f32) -> Option<(usize, usize)> {
     let mut best = None;
     let mut best_cost = f64::INFINITY;
-    for (d, row) in bins.iter().enumerate() {
-        if binning.scale[d] == 0.0 {
-            continue;
-        }
-        let mut right_costs = [0.0; BINS];
-        let mut sweep = EMPTY_BIN;
+    for (d, row) in binning.dimensions[..binning.count].iter().zip(bins) {
+        let mut right_costs = [f64::INFINITY; BINS + 1];
+        let mut sweep = Sweep::EMPTY;
         for i in (1..BINS).rev() {
-            sweep.add(&row[i]);
-            right_costs[i] = if sweep.intensity > 0.0 {
-                cluster_cost(&sweep.bounds, sweep.intensity, c_sq)
-            } else {
-                f64::INFINITY
-            };
-        }
-        let mut sweep = EMPTY_BIN;
-        for i in 1..BINS {
-            sweep.add(&row[i - 1]);
+            right_costs[i] = right_costs[i + 1];
+            if row.bounds[i].is_empty() {
+                continue;
+            }
+            sweep.add(&row.bounds[i], row.intensity[i]);
             if sweep.intensity > 0.0 {
+                right_costs[i] = cluster_cost(&sweep.bounds, sweep.intensity, c_sq);
+            }
+        }
+        let mut sweep = Sweep::EMPTY;
+        for i in 1..BINS {
+            // Behind an empty bin the parts are those before it.
+            if row.bounds[i - 1].is_empty() {
+                continue;
+            }
+            sweep.add(&row.bounds[i - 1], row.intensity[i - 1]);
+            if sweep.intensity > 0.0 && right_costs[i] < best_cost {
                 let cost = cluster_cost(&sweep.bounds, sweep.intensity, c_sq) + right_costs[i];
                 if cost < best_cost {
                     best_cost = cost;
-                    best = Some((d, i));
+                    best = Some((*d, i));
                 }
             }
         }

@@ -19,6 +19,7 @@ use crate::progress::Control;
 use crate::setting::{Each, Settings, Spec, choices};
 use crate::vpl::{Origin, Profiles, Vpl, VplKind, VplSet};
 use cost::Primitive;
+use rayon::prelude::*;
 
 pub use node::{MAX_VPLS, Node};
 
@@ -28,10 +29,10 @@ choices! {
     /// Seconds of processor time to build (one thread's worth) and mean uncapped cuts at ε = 2 % / 1 %, by
     /// `lightsplat bench trees SCENE`:
     ///
-    /// | | nave, 500k | nave, 1M | sibenik, 500k | sibenik, 1M |
+    /// | | nave, 300k | nave, 1M | sibenik, 300k | sibenik, 1M |
     /// |---|--:|--:|--:|--:|
-    /// | divisive | 0.65 s, 1058 / 1504 | 1.36 s, 1091 / 1549 | 0.64 s, 560 / 783 | 1.41 s, 570 / 798 |
-    /// | agglomerative | 0.45 s, 1251 / 1701 | 1.01 s, 1335 / 1801 | 0.47 s, 673 / 902 | 0.91 s, 696 / 926 |
+    /// | divisive | 0.19 s, 1143 / 1748 | 0.72 s, 1208 / 1840 | 0.18 s, 608 / 922 | 0.71 s, 630 / 953 |
+    /// | agglomerative | 0.23 s, 1291 / 1903 | 0.81 s, 1397 / 2034 | 0.23 s, 694 / 1015 | 0.81 s, 735 / 1066 |
     pub enum Family = Divisive {
         /// Top-down: binned splits in position and normal.
         Divisive = "divisive",
@@ -93,20 +94,20 @@ impl LightTrees {
         let primitive = |i: usize| {
             Primitive::new(&set.vpls[i], set.kind, &self.profiles, (luminance(set.intensities[i]), i as u32))
         };
-        let primitives = (0..n).map(primitive).collect();
+        let primitives = (0..n).into_par_iter().map(primitive).collect();
         let topology = match family {
             Family::Divisive => divisive::build(primitives, diagonal * diagonal, control),
             Family::Agglomerative => agglomerative::build(primitives, diagonal * diagonal, control),
         };
         let (first_node, first_vpl) = (self.nodes.len(), self.vpls.len());
         let blank = Node::new(crate::math::Rgb::ZERO, 0, set.kind, set.origin);
-        self.nodes.resize(first_node + 2 * n, blank);
+        self.nodes.par_extend(rayon::iter::repeat_n(blank, 2 * n));
         let nodes = &mut self.nodes[first_node..];
         finish::finish(&topology, (set, &self.profiles), nodes, first_node as u32, first_vpl as u32);
         if set.kind == VplKind::Lobed {
             self.lobed_as_diffuse = as_diffuse(set, &self.profiles);
         }
-        self.vpls.extend(topology.leaves.iter().map(|r| set.vpls[r.index() as usize]));
+        self.vpls.par_extend(topology.leaves.par_iter().map(|r| set.vpls[r.index() as usize]));
         self.roots.push(first_node as u32);
     }
 
