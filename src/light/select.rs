@@ -34,7 +34,7 @@ impl<'a> Receivers16<'a> {
     #[inline]
     fn lamp_factors(&self) -> [Option<&'a [f32]>; LANES] {
         match self.learned.and_then(|learned| learned.lamps.as_ref()) {
-            Some(lamps) => std::array::from_fn(|lane| Some(lamps.at(self.position.get(lane)))),
+            Some(lamps) => lamps.at(self.position).map(Some),
             None => [None; LANES],
         }
     }

@@ -11,6 +11,7 @@
 use super::EnvironmentLight;
 use super::table::Table;
 use crate::light::regions::Regions;
+use crate::math::{LANES, Vec3x16};
 use glam::Vec3;
 
 /// Share of the samples that are drawn by flux alone.
@@ -69,9 +70,9 @@ impl LearnedSky {
         LearnedSky { tables: members.iter().map(table).collect(), regions }
     }
 
-    /// Distribution at `x`.
+    /// Distributions at sixteen points.
     #[inline]
-    pub(super) fn at(&self, x: Vec3) -> &Table {
-        &self.tables[self.regions.find(x)]
+    pub(super) fn at(&self, x: &Vec3x16) -> [&Table; LANES] {
+        self.regions.find(x).map(|region| &self.tables[region])
     }
 }

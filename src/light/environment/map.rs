@@ -103,7 +103,17 @@ impl Map {
     #[inline]
     pub fn direction(&self, Place { column, row, f }: Place) -> Vec3 {
         let (sin_theta, cos_theta) = self.polar_angle(row, f).sin_cos();
-        let (sin_phi, cos_phi) = (TAU * (column as f32 + f.x + 0.5) / self.map.width as f32).sin_cos();
+        self.towards((sin_theta, cos_theta), column as f32 + f.x)
+    }
+
+    /// Unit world direction at height `z` above the horizon and `x` cells from the first column's left edge.
+    #[inline]
+    pub fn direction_at(&self, z: f32, x: f32) -> Vec3 {
+        self.towards(((1.0 - z * z).max(0.0).sqrt(), z), x)
+    }
+
+    fn towards(&self, (sin_theta, cos_theta): (f32, f32), x: f32) -> Vec3 {
+        let (sin_phi, cos_phi) = (TAU * (x + 0.5) / self.map.width as f32).sin_cos();
         // The map's frame is a rotation, so the transpose is the inverse.
         let local = Vec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta);
         (self.map.to_local.transpose() * local).normalize()

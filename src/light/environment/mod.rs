@@ -126,10 +126,11 @@ impl EnvironmentLight {
     pub fn radiance_pdf16(&self, d: &Vec3x16, wanted: u16, learned: Learned) -> [(Rgb, f32); LANES] {
         let mut found = self.source_radiance_pdf16(d, wanted, learned);
         if !self.discs.is_empty() {
+            let tables = self.tables(learned);
             for i in lanes_in(wanted) {
                 for (tile, disc) in self.discs.around(d.get(i)) {
                     found[i].0 += disc;
-                    found[i].1 += self.table(learned, i).density(tile);
+                    found[i].1 += tables[i].density(tile);
                 }
             }
         }
@@ -141,9 +142,10 @@ impl EnvironmentLight {
         let map = match &self.source {
             Source::Constant(radiance) => {
                 let even = learned.is_none() && self.discs.is_empty();
+                let tables = self.tables(learned);
                 return each(wanted, |i| {
                     let (column, row) = EqualCells::cell(d.get(i));
-                    let density = || self.table(learned, i).density(self.tiles.of_cell(column, row));
+                    let density = || tables[i].density(self.tiles.of_cell(column, row));
                     (*radiance, if even { 0.25 * FRAC_1_PI } else { density() })
                 });
             }
@@ -152,7 +154,8 @@ impl EnvironmentLight {
         let places = each(wanted, |i| map.locate(d.get(i)));
         let corners = each(wanted, |i| map.corners(places[i].column, places[i].row));
         let tiles = each(wanted, |i| self.tiles.of_cell(places[i].column, places[i].row));
-        let tables = each(wanted, |i| self.table(learned, i).density(tiles[i]));
+        let tables = self.tables(learned);
+        let of_tiles = each(wanted, |i| tables[i].density(tiles[i]));
         each(wanted, |i| {
             let radiance = bilinear(&corners[i], places[i].f);
             let within = match self.tiles.all()[tiles[i]].rows {
@@ -162,7 +165,7 @@ impl EnvironmentLight {
                     density => density,
                 },
             };
-            (radiance, tables[i] * within)
+            (radiance, of_tiles[i] * within)
         })
     }
 
@@ -179,10 +182,10 @@ impl EnvironmentLight {
                 Some(EnvironmentSample { direction: uniform_sphere(u.get(i)), radiance, pdf })
             });
         }
+        let tables = self.tables(learned);
         let drawn = each(wanted, |i| {
-            let table = self.table(learned, i);
-            let (tile, rest) = table.sample(u.x[i]);
-            Drawn { tile, u: Vec2::new(rest, u.y[i]), density: table.density(tile) }
+            let (tile, rest) = tables[i].sample(u.x[i]);
+            Drawn { tile, u: Vec2::new(rest, u.y[i]), density: tables[i].density(tile) }
         });
         let mut samples = self.sample_tiles(&drawn, wanted);
         if !self.discs.is_empty() {
@@ -252,29 +255,30 @@ impl EnvironmentLight {
         });
         let places = each(wanted, |i| {
             if !even(i) && blocks[i].density == 0.0 {
-                return map.sample(&self.tiles.cells(&blocks[i]), blocks[i].u);
+                let place = map.sample(&self.tiles.cells(&blocks[i]), blocks[i].u);
+                return (place, map.direction(place));
             }
             let (z, x) = if even(i) { tile(i).place(drawn[i].u) } else { self.tiles.place(&blocks[i]) };
-            map.place_at(z, x)
+            (map.place_at(z, x), map.direction_at(z, x))
         });
-        let corners = each(wanted, |i| map.corners(places[i].column, places[i].row));
+        let corners = each(wanted, |i| map.corners(places[i].0.column, places[i].0.row));
         each(wanted, |i| {
-            let radiance = bilinear(&corners[i], places[i].f);
+            let (place, direction) = places[i];
+            let radiance = bilinear(&corners[i], place.f);
             let within = match blocks[i].density {
                 _ if even(i) => 1.0,
-                0.0 => map.density(places[i], &corners[i], radiance),
+                0.0 => map.density(place, &corners[i], radiance),
                 density => density,
             };
             let pdf = drawn[i].density * within;
-            let direction = map.direction(places[i]);
             (pdf > 0.0 && pdf.is_finite()).then_some(EnvironmentSample { direction, radiance, pdf })
         })
     }
 
-    /// Distribution over tiles in a lane.
+    /// Distributions over tiles, by lane.
     #[inline]
-    fn table<'a>(&'a self, learned: Learned<'a>, lane: usize) -> &'a Table {
-        learned.map_or(&self.by_flux, |(sky, x)| sky.at(x.get(lane)))
+    fn tables<'a>(&'a self, learned: Learned<'a>) -> [&'a Table; LANES] {
+        learned.map_or([&self.by_flux; LANES], |(sky, x)| sky.at(x))
     }
 }
 

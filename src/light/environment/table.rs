@@ -2,11 +2,18 @@
 
 use super::tiles::Tile;
 
+/// Sums that are compared at once: a cache line.
+const WIDTH: usize = 16;
+
 /// Probabilities of tiles.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
-    /// Sums of the probabilities before each tile, and at last of all.
-    cumulative: Vec<f32>,
+    /// Sums of the probabilities before each tile, then of all, then infinity, by lines.
+    cumulative: Vec<[f32; WIDTH]>,
+    /// The first of each line but the first, then infinity, by lines.
+    firsts: Vec<[f32; WIDTH]>,
+    /// Sum of all probabilities.
+    total: f32,
     /// Factor by which the densities of directions within each tile are multiplied: its probability times
     /// [`Tile::density`].
     density: Vec<f32>,
@@ -27,23 +34,23 @@ impl Table {
             probability * tile.density
         });
         let density = density.collect();
-        Table { cumulative, density }
+        let cumulative = lines(&cumulative);
+        let firsts: Vec<f32> = cumulative[1..].iter().map(|line| line[0]).collect();
+        Table { firsts: lines(&firsts), cumulative, total: sum as f32, density }
     }
 
     /// Returns the tile at `u` in [0, 1), and `u` stretched to [0, 1) within it.
     #[inline]
     pub fn sample(&self, u: f32) -> (usize, f32) {
-        let count = self.density.len();
-        let u = u * self.cumulative[count];
-        let (mut first, mut size) = (0, count);
-        while size > 1 {
-            let half = size / 2;
-            first = if self.cumulative[first + half] <= u { first + half } else { first };
-            size -= half;
-        }
-        let (low, high) = (self.cumulative[first], self.cumulative[first + 1]);
+        let u = u * self.total;
+        // Sums do not fall, so those that are passed can be counted, in any order.
+        let passed = |line: &[f32; WIDTH]| line.iter().map(|sum| usize::from(*sum <= u)).sum::<usize>();
+        let line = self.firsts.iter().map(passed).sum::<usize>();
+        let tile = (line * WIDTH + passed(&self.cumulative[line])).clamp(1, self.density.len()) - 1;
+        let at = |i: usize| self.cumulative[i / WIDTH][i % WIDTH];
+        let (low, high) = (at(tile), at(tile + 1));
         let rest = if high > low { (u - low) / (high - low) } else { 0.0 };
-        (first, rest.clamp(0.0, 1.0 - f32::EPSILON))
+        (tile, rest.clamp(0.0, 1.0 - f32::EPSILON))
     }
 
     /// Factor on the densities of directions within a tile.
@@ -51,4 +58,10 @@ impl Table {
     pub fn density(&self, tile: usize) -> f32 {
         self.density[tile]
     }
+}
+
+/// Numbers by lines, the last of which infinity fills.
+fn lines(numbers: &[f32]) -> Vec<[f32; WIDTH]> {
+    let line = |part: &[f32]| std::array::from_fn(|i| part.get(i).copied().unwrap_or(f32::INFINITY));
+    numbers.chunks(WIDTH).map(line).collect()
 }

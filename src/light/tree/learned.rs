@@ -11,6 +11,7 @@
 use super::EmitterTree;
 use super::node::ARITY;
 use crate::light::regions::Regions;
+use crate::math::{LANES, Vec3x16};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -68,10 +69,10 @@ impl LearnedLamps {
         Some(LearnedLamps { factors: factors.collect(), regions, slots })
     }
 
-    /// Factors at `x`, by node.
+    /// Factors at sixteen points, by node.
     #[inline]
-    pub(in crate::light) fn at(&self, x: Vec3) -> &[f32] {
-        &self.factors[self.regions.find(x) * self.slots..][..self.slots]
+    pub(in crate::light) fn at(&self, x: &Vec3x16) -> [&[f32]; LANES] {
+        self.regions.find(x).map(|region| &self.factors[region * self.slots..][..self.slots])
     }
 }
 
