@@ -238,8 +238,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
     ) -> Tracer<'a, 'w> {
         let mut tracer =
             Tracer { world, view, settings, drawn, caustics, edges: ScatteredEdges::default(), control };
-        tracer.edges =
-            guide::edges(world, view, settings, (&mut tracer.workspace(None).ends, caustics), counts);
+        let all = || tracer.workspace(None).ends;
+        tracer.edges = guide::edges(world, view, settings, (all, caustics), counts);
         tracer
     }
 
