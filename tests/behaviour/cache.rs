@@ -21,6 +21,7 @@ fn settings(direct: DirectBy, footprints: Footprints) -> cache::Settings {
     settings.compensation = false;
     settings.cache.direct = direct;
     settings.cache.indirect = FoundBy::Records;
+    settings.cache.cut.epsilon = 0.01; // the paper's
     // Records even for small cells: in small pictures cuts would be used instead.
     settings.cache.least_cell = 8;
     settings.cache.accuracy[1] = 0.3;
