@@ -171,7 +171,41 @@ fn joined<'w, T>(
     all
 }
 
-/// The items in another order.
-fn ordered<T: Copy + Send + Sync>(items: Vec<T>, order: &[u32]) -> Vec<T> {
-    order.par_iter().map(|&i| items[i as usize]).collect()
+/// The items in another order, a permutation: each at `i` is that which was at `order[i]`. They are moved along its
+/// cycles, one by one: a second array would be the most memory that large pictures take.
+fn ordered<T: Copy>(mut items: Vec<T>, order: &[u32]) -> Vec<T> {
+    let mut moved = vec![false; items.len()];
+    for start in 0..items.len() {
+        if moved[start] {
+            continue;
+        }
+        let (first, mut at) = (items[start], start);
+        loop {
+            moved[at] = true;
+            let from = order[at] as usize;
+            if from == start {
+                break;
+            }
+            items[at] = items[from];
+            at = from;
+        }
+        items[at] = first;
+    }
+    items
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn items_are_ordered_along_cycles_of_any_length() {
+        let items: Vec<u32> = (100..108).collect();
+        let order = [0, 2, 3, 1, 5, 4, 7, 6];
+        let expected: Vec<u32> = order.iter().map(|i| items[*i as usize]).collect();
+        assert_eq!(ordered(items, &order), expected);
+        assert!(ordered(Vec::<u32>::new(), &[]).is_empty());
+        let turned: Vec<u32> = (0..1000).map(|i| (i + 7) % 1000).collect();
+        assert_eq!(ordered((0..1000).collect(), &turned), turned);
+    }
 }

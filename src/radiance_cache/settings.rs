@@ -62,8 +62,9 @@ settings! {
         indirect: FoundBy = FoundBy::Records => [.values(&["records", "cuts"])];
         /// Largest error bound of a cluster in a record's cut, relative to its luminance.
         ///
-        /// The paper has 1 %. Errors of representatives are the same for many records and do not average; half of that,
-        /// at a few per cent of the time, is worth .2 to .5 dB of the denoised picture on the box, the knot and Sibenik.
+        /// The paper has 1 %. Errors of representatives are the same for many records and do not average; half of
+        /// that, at a few per cent of the time, is worth .2 to .5 dB of the denoised picture on the box, the knot and
+        /// Sibenik.
         cut: CutSettings = CutSettings { epsilon: 0.005, ..CutSettings::default() } => [
             at epsilon .named("record_epsilon").fraction().scaled(&DOWN)
         ];
