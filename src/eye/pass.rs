@@ -14,6 +14,7 @@ use crate::film::{Image, Window};
 use crate::kd_tree::KdTree;
 use crate::math::luminance;
 use crate::progress::Control;
+use crate::stats::give_back;
 use crate::view::View;
 use crate::world::World;
 use rayon::prelude::*;
@@ -21,6 +22,10 @@ use std::mem;
 
 /// Pixels along the edge of the square whose eye rays one task traces.
 pub const TILE: u32 = 16;
+
+/// Bytes of tiles that are freed before they are given back: more than there are in ordinary pictures, where that would
+/// take time and spare nothing.
+const GIVEN_BACK: usize = 64 << 20;
 
 /// Maximum luminance known in a pixel that counts, so that sums stay finite.
 const MAX_KNOWN: f32 = 1e12;
@@ -160,14 +165,22 @@ impl<'w> EyePass<'w> {
     }
 }
 
-/// One part of all tiles in one array; the tiles' are freed one by one.
+/// One part of all tiles in one array; the tiles' are freed one by one, and given back by and by.
 fn joined<'w, T>(
     tiles: &mut [VisibleSurfaces<'w>],
     part: impl Fn(&mut VisibleSurfaces<'w>) -> Vec<T>,
 ) -> Vec<T> {
     let mut parts: Vec<Vec<T>> = tiles.iter_mut().map(part).collect();
     let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
-    parts.iter_mut().for_each(|part| all.append(&mut mem::take(part)));
+    let mut freed = 0;
+    for part in &mut parts {
+        freed += size_of_val(&part[..]);
+        all.append(&mut mem::take(part));
+        if freed > GIVEN_BACK {
+            give_back();
+            freed = 0;
+        }
+    }
     all
 }
 

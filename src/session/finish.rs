@@ -7,10 +7,14 @@ use crate::film::{Image, Layer};
 use crate::method::{Method, Output};
 use crate::plan::{Work, smaller};
 use crate::progress::Control;
-use crate::stats::{Stage, Stats, Stopwatch};
+use crate::stats::{Stage, Stats, Stopwatch, give_back};
 use crate::view::View;
 use crate::world::World;
 use std::cell::{Cell, OnceCell};
+
+/// Number of pixels from which on the memory of the picture's making is given back before it is denoised, by a library
+/// with an allocator of its own.
+const LARGE: u64 = 1 << 20;
 
 /// Divisor of each side of the picture that estimates how long finishing takes.
 const TRIAL_SCALE: u32 = 4;
@@ -147,6 +151,9 @@ impl<'a> Finish<'a> {
             output.nonfinite += output.color.remove_nonfinite();
             let quality = self.quality(output);
             self.last_quality.set(quality);
+            if self.view.window.pixel_count() > LARGE {
+                give_back();
+            }
             let clean = || denoiser.denoise(&output.color, &guides(&layers), quality);
             match output.stats.time(Stage::Denoise, clean) {
                 Ok(clean) => {

@@ -2,6 +2,11 @@
 
 use std::path::Path;
 
+/// Gives back to the system what the threads of the current pool have freed, and keep for what they allocate next.
+pub fn give_back() {
+    rayon::broadcast(|_| allocator::give_back());
+}
+
 /// Peak resident set size of this process, in bytes; `None` where the system does not report it.
 pub fn peak_resident_bytes() -> Option<u64> {
     field(&std::fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")

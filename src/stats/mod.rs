@@ -16,7 +16,7 @@ mod sum;
 use std::collections::BTreeMap;
 
 pub use counter::{Counter, Distribution};
-pub use memory::{available_bytes, peak_resident_bytes};
+pub use memory::{available_bytes, give_back, peak_resident_bytes};
 pub use stage::{Stage, StageTime, Stopwatch};
 pub(crate) use sum::add_fields;
 
