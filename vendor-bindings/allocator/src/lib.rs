@@ -1,5 +1,5 @@
-//! What the allocator keeps: mimalloc gives free memory back to the system a second late, and only when more is freed
-//! then.
+//! Memory that the allocator keeps: mimalloc gives free memory back to the system a second late, and only when more is
+//! freed then.
 
 /// Gives all free memory back to the system at once, that which the calling thread's own small blocks leave aside too.
 /// Using it again costs page faults: a call is for the moments between large arrays. Where another allocator is used,
