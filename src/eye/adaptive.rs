@@ -45,7 +45,7 @@ pub struct Luminances {
 #[derive(Clone, Copy, Debug)]
 pub struct Choice {
     /// Luminance that counts as dark.
-    dark: f32,
+    pub dark: f32,
     /// Least contrast around a pixel that gets more samples.
     threshold: f32,
 }

@@ -19,7 +19,7 @@ use crate::caustics::Caustics;
 use crate::light::Learned;
 use crate::material::{Bsdf, LobeSet};
 use crate::math::Rgb;
-use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, ScatteredEdges, Start, start};
+use crate::paths::{Batch, ChainEnd, Counts, LightSamples, Look, Reach, ScatteredEdges, Start, start};
 use crate::progress::Control;
 use crate::sampling::hash;
 use crate::view::View;
@@ -60,6 +60,7 @@ pub(super) struct Ends<'a, 'w> {
     /// Distance between neighbouring points over that from the eye, on surfaces that face it.
     spacing_by_distance: f32,
     edges: ScatteredEdges,
+    light_samples: LightSamples,
     found: Vec<MergedPoint<'w>>,
     /// Their paths, and their numbers.
     order: Vec<(u32, u32)>,
@@ -83,6 +84,10 @@ impl<'w> Reach<'w> for Ends<'_, 'w> {
 
     fn edges(&self) -> ScatteredEdges {
         self.edges
+    }
+
+    fn light_samples(&self) -> LightSamples {
+        self.light_samples
     }
 
     fn reflected(&self, end: &ChainEnd<'w>) -> Rgb {
@@ -128,6 +133,7 @@ pub(super) struct Tracer<'a, 'w> {
     pub(super) drawn: &'a DrawnLight,
     caustics: Option<&'a Caustics>,
     edges: ScatteredEdges,
+    pub(super) light_samples: LightSamples,
     pub(super) control: &'a Control,
 }
 
@@ -138,6 +144,8 @@ pub(super) struct Found<'b, 'w> {
     first: u32,
     /// Sum of the samples' radiances.
     pub(super) sum: Rgb,
+    /// Sum of those in the first half of the samples wanted.
+    pub(super) half: Rgb,
     /// Radiances that were not finite and left out.
     nonfinite: u64,
     guide: Guide,
@@ -182,9 +190,11 @@ impl<'w> EyePass<'w> {
     ) -> EyePass<'w> {
         let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
         let mut counts = Counts::default();
-        let tracer = Tracer::new(world, view, settings, (drawn, caustics), control, &mut counts);
+        let mut tracer = Tracer::new(world, view, settings, (drawn, caustics), control, &mut counts);
         let found = tracer.learn(settings.seed, 1);
         let learned = found.as_ref().map(|(learned, _)| learned);
+        let effort = tracer.effort(learned);
+        tracer.light_samples.count = effort.as_ref().map_or(1, |effort| effort.light_samples);
         let tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
             .into_par_iter()
             .map_init(
@@ -200,7 +210,7 @@ impl<'w> EyePass<'w> {
             )
             .flatten()
             .collect();
-        let needs = tracer.needs(&tiles, learned);
+        let needs = effort.as_ref().and_then(|effort| tracer.needs(effort, &tiles, learned));
         let tiles = tiles
             .into_par_iter()
             .map_init(
@@ -216,6 +226,10 @@ impl<'w> EyePass<'w> {
         }
         if let Some(needs) = needs {
             pass.chains += needs.chains;
+        }
+        if let Some(effort) = effort {
+            pass.chains += effort.chains;
+            pass.light_samples = effort.light_samples;
         }
         pass
     }
@@ -236,8 +250,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
         control: &'a Control,
         counts: &mut Counts,
     ) -> Tracer<'a, 'w> {
-        let mut tracer =
-            Tracer { world, view, settings, drawn, caustics, edges: ScatteredEdges::default(), control };
+        let (edges, light_samples) = (ScatteredEdges::default(), LightSamples::ONE);
+        let mut tracer = Tracer { world, view, settings, drawn, caustics, edges, light_samples, control };
         let all = || tracer.workspace(None).ends;
         tracer.edges = guide::edges(world, view, settings, (all, caustics), counts);
         tracer
@@ -245,7 +259,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
 
     pub(super) fn workspace<'b>(&'b self, learned: Option<&'b Learned>) -> Workspace<'b, 'w> {
         let spacing_by_distance = SPACING * self.view.pixel_angle();
-        let Tracer { drawn, caustics, edges, .. } = *self;
+        let Tracer { drawn, caustics, edges, light_samples, .. } = *self;
         let ends = Ends {
             drawn,
             learned,
@@ -253,6 +267,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
             looks: CausticLooks::default(),
             spacing_by_distance,
             edges,
+            light_samples,
             found: Vec::new(),
             order: Vec::new(),
             first_surfaces: None,
@@ -392,6 +407,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         let Workspace { batch, ends, merged } = work;
         let look = if self.settings.spp > 1 { Look::Pixels } else { Look::EyeSamples { spp: 1, seed } };
         let mut chains = ChainCounts::default();
+        let middle = samples.start + samples.len() as u32 / 2;
         let together = (BATCH / samples.len().max(1) as u32).max(1) as usize;
         for (chunk, pixels) in pixels.chunks(together).enumerate() {
             for first in samples.clone().step_by(BATCH as usize) {
@@ -418,10 +434,11 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 }
                 let (found, mut rest) = (&ends.found[..], &ends.order[..]);
                 for i in 0..pixels.len() {
-                    let (mut sum, mut nonfinite) = (Rgb::ZERO, 0);
-                    for value in radiance.by_ref().take(n) {
+                    let (mut sum, mut half, mut nonfinite) = (Rgb::ZERO, Rgb::ZERO, 0);
+                    for (number, value) in part.clone().zip(radiance.by_ref().take(n)) {
                         if value.is_finite() {
                             sum += value;
+                            half += if number < middle { value } else { Rgb::ZERO };
                         } else {
                             nonfinite += 1;
                         }
@@ -431,7 +448,10 @@ impl<'a, 'w> Tracer<'a, 'w> {
                         rest.split_at(rest.partition_point(|(path, _)| *path < ((i + 1) * n) as u32));
                     let index = chunk * together + i;
                     let guide = ends.first_surfaces.as_ref().map_or_else(Guide::default, |first| first.of(i));
-                    each(Found { index, first, sum, nonfinite, guide, ends: found, order: own }, merged);
+                    each(
+                        Found { index, first, sum, half, nonfinite, guide, ends: found, order: own },
+                        merged,
+                    );
                 }
             }
         }

@@ -5,6 +5,7 @@ mod by_specular_lobes;
 mod caustic_looks;
 mod chain;
 mod drawn;
+mod effort;
 mod features;
 mod guide;
 mod guides;

@@ -45,6 +45,8 @@ pub struct EyePass<'w> {
     pub guides: Option<KeptGuides>,
     /// Rays traced.
     pub chains: ChainCounts,
+    /// Light samples at each surface seen for which direct light is drawn.
+    pub light_samples: u32,
     /// Radiances that were not finite and left out.
     pub nonfinite: u64,
     /// False if the pass was cancelled.
@@ -145,6 +147,7 @@ impl<'w> EyePass<'w> {
             known,
             guides: (!guides.is_empty()).then_some(KeptGuides(guides)),
             chains,
+            light_samples: 1,
             nonfinite,
             complete,
         }

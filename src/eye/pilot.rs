@@ -46,7 +46,7 @@ impl EyePass<'_> {
         let luminances = SEEDS.map(|seed| {
             let (values, chains) = tracer.luminances(groups.to_vec(), settings.seed ^ seed, emitters);
             sampled += chains;
-            values
+            values.into_iter().map(|group| group.into_iter().map(|[mean, _]| mean).collect()).collect()
         });
         EyePilot { luminances, sampled, learned }
     }

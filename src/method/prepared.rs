@@ -41,6 +41,9 @@ impl<'w> Prepared<'w> {
             EyePass::of(world, view, rays, (drawn.as_ref(), caustics.as_ref()), control)
         });
         counts::eye(&mut stats, &eye.chains);
+        if drawn.is_some() {
+            stats.count("Eye/light samples", eye.light_samples.into());
+        }
         Prepared { eye, lights, stats }
     }
 }

@@ -47,6 +47,22 @@ pub struct ScatteredEdges {
     pub blind: f32,
 }
 
+/// Light samples at a chain's end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightSamples {
+    /// Their number, where the end is worth [`LightSamples::WORTH`].
+    pub count: u32,
+    /// Number of the first among those of the sequence by which light is sampled.
+    pub first: u32,
+}
+
+impl LightSamples {
+    /// One.
+    pub const ONE: LightSamples = LightSamples { count: 1, first: 0 };
+    /// Share of the radiance leaving an end that must reach the eye for more than one to be worth while.
+    pub const WORTH: f32 = 0.5;
+}
+
 impl Default for ScatteredEdges {
     fn default() -> ScatteredEdges {
         ScatteredEdges { guided: 0.0, blind: 1.0 }
@@ -72,6 +88,11 @@ pub trait Reach<'w> {
     /// Knowledge of the emitters by which they are sampled, if any.
     fn learned(&self) -> Option<&Learned> {
         None
+    }
+
+    /// The light samples at ends.
+    fn light_samples(&self) -> LightSamples {
+        LightSamples::ONE
     }
 
     /// The edges that are scattered at ends.

@@ -36,6 +36,8 @@ pub(super) struct Packet {
     pub normal: Vec3x16,
     /// Densities of the edges' directions; infinite where light sampling could not have chosen them.
     pub pdf: F32x16,
+    /// Numbers of light samples where the edges start.
+    pub light_samples: F32x16,
     /// Random number generators.
     pub samplers: Samplers16,
     /// Index of the result that each path adds to.
@@ -73,6 +75,7 @@ impl Packet {
             eta_sq: [1.0; LANES],
             normal: Vec3x16::default(),
             pdf: [f32::INFINITY; LANES],
+            light_samples: [1.0; LANES],
             samplers,
             slot: std::array::from_fn(|i| slot + i as u32),
             distance: [0.0; LANES],
@@ -92,6 +95,7 @@ impl Packet {
         self.eta_sq[to] = packet.eta_sq[from];
         self.normal.set(to, packet.normal.get(from));
         self.pdf[to] = packet.pdf[from];
+        self.light_samples[to] = packet.light_samples[from];
         self.samplers.seed[to] = packet.samplers.seed[from];
         self.samplers.index[to] = packet.samplers.index[from];
         self.slot[to] = packet.slot[from];

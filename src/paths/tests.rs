@@ -1,7 +1,7 @@
 //! Ends of chains: the ways that they came, and the textures there.
 
-use super::{Batch, ChainEnd, Counts, Look, Reach, Start, start};
-use crate::math::Rgb;
+use super::{Batch, ChainEnd, Counts, LightSamples, Look, Reach, Start, start};
+use crate::math::{Rgb, luminance};
 use crate::sampling::hash;
 use crate::scene::Camera;
 use crate::test_scenes::*;
@@ -80,4 +80,37 @@ fn textures_are_averaged_over_what_a_sample_stands_for_seen_in_mirrors_too() {
     };
     assert!(albedos(4).iter().all(|(_, albedo)| (albedo - 0.5).abs() < 0.1), "{:?}", albedos(4));
     assert!(albedos(1 << 30).iter().all(|(_, albedo)| *albedo < 1e-6 || (albedo - 1.0).abs() < 1e-6));
+}
+
+/// Ends with light samples.
+struct Lit(LightSamples);
+
+impl Reach<'_> for Lit {
+    const ENDS: bool = true;
+
+    fn light_samples(&self) -> LightSamples {
+        self.0
+    }
+}
+
+#[test]
+fn light_has_the_same_mean_by_any_number_of_light_samples_and_less_noise_by_more() {
+    // The ball's lobe scatters to where light samples fall, too.
+    let world = room_with_ball(Some(rough_metal(0.3, 0.7)));
+    let pixels = |count: u32, first: u32, seed: u32| -> Vec<f64> {
+        let starts = (0..1 << 16).map(|i| Start { pixel: [i / 64 % 32, i / 64 / 32], sample: i % 64, seed });
+        let (mut batch, mut lit) = (Batch::default(), Lit(LightSamples { count, first }));
+        start(&mut batch, starts, (&world, &world.view), (Look::Pixels, 64));
+        let found: Vec<Rgb> = batch.trace(&world, 8, &mut lit, &mut Counts::default()).collect();
+        found.chunks(64).map(|pixel| f64::from(luminance(pixel.iter().sum())) / 64.0).collect()
+    };
+    let mean = |pixels: &[f64]| pixels.iter().sum::<f64>() / pixels.len() as f64;
+    let variance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+    let [[one, again], [four, anew]] = [1, 4].map(|count| [1, 2].map(|seed| pixels(count, 0, seed)));
+    for other in [&four, &pixels(3, 7, 1), &pixels(1, 1 << 20, 1)] {
+        assert!((mean(other) / mean(&one) - 1.0).abs() < 0.004, "{} {}", mean(other), mean(&one));
+        assert_ne!(other, &one);
+    }
+    let (one, four) = (variance(&one, &again), variance(&four, &anew));
+    assert!(four < 0.6 * one, "{four} {one}");
 }

@@ -13,7 +13,7 @@
 //! 7 % less time in a Cornell box, a glossy knot and a church, at the same variance a sample (the knot: a
 //! tenth less).
 
-use super::batch::{ChainEnd, Reach, ScatteredEdges};
+use super::batch::{ChainEnd, LightSamples, Reach, ScatteredEdges};
 use super::guided::Guided;
 use super::packet::{Packet, Stage};
 use crate::embree::{Ray, Rays16};
@@ -134,12 +134,24 @@ impl Packet {
         } else {
             [LobeSet::default(); LANES]
         };
-        let lit = bsdfs.smooth() & found & !unlit;
-        if lit != 0 {
-            let numbers = (&choices.x, &self.samplers.point(pair));
-            let at =
-                Receivers16 { position: &surfaces.position, normal: &self.normal, learned: reach.learned() };
-            self.light(world, surfaces, (&bsdfs, at), numbers, (lit, alone, &guided), &mut arrives);
+        let mut lit = bsdfs.smooth() & found & !unlit;
+        self.light_samples = [1.0; LANES];
+        let drawn = if R::ENDS { reach.light_samples() } else { LightSamples::ONE };
+        let many = if drawn == LightSamples::ONE { 0 } else { lit & at_end & self.worth(drawn) };
+        lanes_in(many).for_each(|lane| self.light_samples[lane] = drawn.count as f32);
+        for sample in 0..drawn.count {
+            if lit != 0 {
+                let (mut samplers, step) = (self.samplers, drawn.first.wrapping_add(sample));
+                for lane in lanes_in(many) {
+                    samplers.index[lane] = samplers.index[lane].wrapping_mul(drawn.count).wrapping_add(step);
+                }
+                let choice = if many == 0 { choices.x } else { samplers.number(pair + 2) };
+                let numbers = (&choice, &samplers.point(pair));
+                let learned = reach.learned();
+                let at = Receivers16 { position: &surfaces.position, normal: &self.normal, learned };
+                self.light(world, surfaces, (&bsdfs, at), numbers, (lit, alone, &guided), &mut arrives);
+            }
+            lit &= many;
         }
         let places = self.samplers.point(pair + 1);
         let mut samples = bsdfs.sample(&choices.y, &places, found);
@@ -225,6 +237,12 @@ impl Packet {
         left
     }
 
+    /// Lanes whose next surfaces are worth `drawn` light samples.
+    fn worth(&self, drawn: LightSamples) -> u16 {
+        let least = if drawn.count > 1 { LightSamples::WORTH } else { 0.0 };
+        mask_of(&std::array::from_fn(|lane| u32::from(self.throughput.get(lane).max_element() >= least)))
+    }
+
     /// Lengthens a lane's edge, as it was `before`, beyond the sheet that it has met. It stays the same edge, also in
     /// multiple importance sampling, as shadow rays pass sheets too.
     fn pass_sheet(&mut self, lane: usize, before: &Packet, surfaces: &Surfaces16, weight: Rgb) {
@@ -232,6 +250,7 @@ impl Packet {
         self.rays.set(lane, &beyond(&before.rays.get(lane), position, normal, surfaces.t[lane]));
         self.normal.set(lane, before.normal.get(lane));
         self.pdf[lane] = before.pdf[lane];
+        self.light_samples[lane] = before.light_samples[lane];
         self.cones[lane] = before.cones[lane];
         self.emission_throughput.set(lane, before.emission_throughput.get(lane) * weight);
         self.sheets[lane] += u32::from(self.sheets[lane] < MAX_SHEETS);
@@ -343,9 +362,10 @@ impl Packet {
         let (mut radiance, mut segments, mut scattered) = (Vec3x16::default(), Rays16::default(), [0; LANES]);
         for i in 0..LANES {
             let only = (lights.delta[i] != 0) | ((alone >> i) & 1 != 0);
-            let weight = if only { 1.0 } else { power_heuristic(lights.pdf[i], pdf[i]) };
+            let light_pdf = self.light_samples[i] * lights.pdf[i];
+            let weight = if only { 1.0 } else { power_heuristic(light_pdf, pdf[i]) };
             let value = value.get(i);
-            let factor = wi.z[i].abs() * weight / lights.pdf[i];
+            let factor = wi.z[i].abs() * weight / light_pdf;
             radiance.set(i, self.throughput.get(i) * value * lights.radiance.get(i) * factor);
             scattered[i] = u32::from((value.x != 0.0) | (value.y != 0.0) | (value.z != 0.0));
         }
@@ -381,6 +401,7 @@ impl Packet {
     #[inline]
     pub fn weight_against(&self, lane: usize, light_pdf: f32) -> f32 {
         let pdf = self.pdf[lane];
+        let light_pdf = self.light_samples[lane] * light_pdf;
         if pdf == f32::INFINITY { 1.0 } else { power_heuristic(pdf, light_pdf) }
     }
 }
