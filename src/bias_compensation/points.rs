@@ -25,7 +25,9 @@ const RAYS: u32 = 16;
 const NEGLIGIBLE: f32 = 0.01;
 
 /// Error of the lightcuts at surfaces met, relative to the light of the points.
-const EPSILON: f32 = 0.3;
+///
+/// Against .3, a knot in a room gains .1 dB of the denoised picture, and 1 % of the time of cuts goes.
+const EPSILON: f32 = 0.1;
 
 /// Maximum number of clusters in them.
 const MAX_CUT: usize = 600;

@@ -140,6 +140,10 @@ impl<'w> EyePass<'w> {
         let surfaces = ordered(joined(&mut tiles, |tile| mem::take(&mut tile.points.surfaces)), &order);
         let mut samples = ordered(joined(&mut tiles, |tile| mem::take(&mut tile.visibility)), &order);
         samples.par_iter_mut().for_each(|sample| sample.weight /= spp);
+        drop(tiles);
+        if size_of_val(&samples[..]) > GIVEN_BACK {
+            give_back();
+        }
         EyePass {
             points: ShadingPoints { geometry, surfaces },
             index,

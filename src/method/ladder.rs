@@ -40,7 +40,7 @@ pub static DRAWN: [Move; 6] = [
     Move { key: "spp", fine: false, factors: [0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0] },
     Move { key: "epsilon", fine: true, factors: [12.0, 6.0, 3.0, 1.5, 1.0, 0.6, 0.4, 0.28, 0.2] },
     Move { key: "max_cut", fine: true, factors: [0.06, 0.125, 0.25, 0.5, 1.0, 1.0, 2.0, 4.0, 8.0] },
-    Move { key: "vpls", fine: false, factors: [0.1, 0.17, 0.33, 0.6, 1.0, 1.4, 2.2, 4.5, 9.0] },
+    Move { key: "vpls", fine: false, factors: [0.07, 0.12, 0.25, 0.5, 1.0, 1.4, 2.0, 3.0, 6.0] },
     Move { key: "patches", fine: false, factors: [0.125, 0.25, 0.5, 1.0, 1.0, 1.0, 1.0, 2.0, 2.0] },
     Move { key: "record_epsilon", fine: true, factors: [16.0, 6.0, 3.0, 1.5, 1.0, 0.6, 0.4, 0.3, 0.2] },
 ];

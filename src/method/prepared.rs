@@ -35,7 +35,6 @@ impl<'w> Prepared<'w> {
         let rays = sampling.eye(&world.scene);
         let wanted = LightsWanted::new(world, sampling, wanted);
         let caustics = lights.caustics((world, view), (sampling.seed, rays.max_depth), control, &mut stats);
-        let lights = lights.get(world, wanted, control, &mut stats);
         control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
         let eye = stats.time(Stage::EyePass, || {
             EyePass::of(world, view, rays, (drawn.as_ref(), caustics.as_ref()), control)
@@ -44,6 +43,8 @@ impl<'w> Prepared<'w> {
         if drawn.is_some() {
             stats.count("Eye/light samples", eye.light_samples.into());
         }
+        // Afterwards, since most memory is taken where the eye pass is put in order.
+        let lights = lights.get(world, wanted, control, &mut stats);
         Prepared { eye, lights, stats }
     }
 }

@@ -307,7 +307,8 @@ mod slow_default {
         let noisy = frame(false).film.color;
         let denoised = frame(true);
         let world = WorldAndView { world: session.world, view };
-        let references = references(&world, Look::Pixels, 4096);
+        // With 4096 paths their own noise is part of the error: they cover 70 of 80, with these 75.
+        let references = references(&world, Look::Pixels, 32768);
         let mut pictures = vec![noisy];
         if !lacks_denoiser(&denoised) {
             pictures.push(denoised.film.color);
@@ -315,7 +316,7 @@ mod slow_default {
         let (mut covered, mut trials) = ([0; 3], 0);
         for image in pictures {
             let truth = known(&image, &references);
-            for seed in 0..5 {
+            for seed in 0..20 {
                 let settings = Settings { pixels: 400, seed, ..Settings::default() };
                 let found = check(&world, &image, &settings);
                 let square = |e: Estimate| e.map(|e| e * e);
@@ -327,6 +328,6 @@ mod slow_default {
                 trials += 1;
             }
         }
-        assert!(covered.iter().all(|&c| c + 1 >= trials), "{covered:?} of {trials}");
+        assert!(covered.iter().all(|&c| c * 10 >= trials * 9), "{covered:?} of {trials}");
     }
 }

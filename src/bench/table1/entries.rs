@@ -1,6 +1,7 @@
 //! Rows of the table. Settings are the methods' own defaults but for the exceptions stated here.
 
 use crate::bench::study::{Candidate, Study, Subject};
+use crate::lightcut::CutSettings;
 use crate::method::{Method, cache, lightcuts, photon_cache, reconstruction};
 use crate::radiance_cache::{DirectBy, Footprints, FoundBy};
 
@@ -61,7 +62,7 @@ pub fn entries(study: &Study, subject: &Subject) -> Vec<Entry> {
         let mut settings = cache::Settings::default();
         settings.cache.footprints = footprints;
         settings.cache.direct = DirectBy::Records;
-        settings.cache.cut.epsilon = PAPER_EPSILON;
+        settings.cache.cut = CutSettings { epsilon: PAPER_EPSILON, ..reconstruction.cut };
         settings.spp = reconstruction.spp;
         settings.light = reconstruction.light;
         settings.cut = reconstruction.cut;
