@@ -9,6 +9,7 @@
 
 use super::adaptive::MULTIPLES;
 use super::caustic_looks::CausticLooks;
+use super::ends::Ends;
 use super::guides::{FirstSurfaces, Guide};
 use super::merge::{MergedPoint, merge};
 use super::needs::Needs;
@@ -17,14 +18,12 @@ use super::points::VisibilitySample;
 use super::{ChainCounts, EyePass, EyeSettings, Settled, VisibleSurfaces, guide};
 use crate::caustics::Caustics;
 use crate::light::Learned;
-use crate::material::{Bsdf, LobeSet};
 use crate::math::Rgb;
-use crate::paths::{Batch, ChainEnd, Counts, LightSamples, Look, Reach, ScatteredEdges, Start, start};
+use crate::paths::{Batch, Counts, LightSamples, Look, ScatteredEdges, Start, start};
 use crate::progress::Control;
 use crate::sampling::hash;
 use crate::view::View;
 use crate::world::World;
-use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -49,73 +48,6 @@ pub struct DrawnLight {
     pub settled: Settled,
     /// True if a denoiser's guides are to be found on the way.
     pub guides: bool,
-}
-
-/// The ends of paths, in the order of the paths' edges.
-pub(super) struct Ends<'a, 'w> {
-    drawn: &'a DrawnLight,
-    learned: Option<&'a Learned>,
-    caustics: Option<&'a Caustics>,
-    looks: CausticLooks,
-    /// Distance between neighbouring points over that from the eye, on surfaces that face it.
-    spacing_by_distance: f32,
-    edges: ScatteredEdges,
-    light_samples: LightSamples,
-    found: Vec<MergedPoint<'w>>,
-    /// Their paths, and their numbers.
-    order: Vec<(u32, u32)>,
-    /// Where guides are wanted.
-    first_surfaces: Option<FirstSurfaces>,
-}
-
-impl<'w> Reach<'w> for Ends<'_, 'w> {
-    const ENDS: bool = true;
-
-    fn followed(&self, bsdf: &Bsdf) -> LobeSet {
-        match self.drawn.followed.get(bsdf.material().0 as usize) {
-            Some(true) => bsdf.rough_lobes(),
-            _ => bsdf.sharp_lobes(),
-        }
-    }
-
-    fn learned(&self) -> Option<&Learned> {
-        self.learned
-    }
-
-    fn edges(&self) -> ScatteredEdges {
-        self.edges
-    }
-
-    fn light_samples(&self) -> LightSamples {
-        self.light_samples
-    }
-
-    fn reflected(&self, end: &ChainEnd<'w>) -> Rgb {
-        self.caustics.map_or(Rgb::ZERO, |caustics| self.looks.reflected(caustics, end))
-    }
-
-    fn share_of_paths(&self, radiance: Rgb, distance: f32) -> f32 {
-        self.caustics.map_or(1.0, |caustics| caustics.share_of_paths(radiance, distance))
-    }
-
-    fn sees(&self) -> bool {
-        self.first_surfaces.is_some()
-    }
-
-    #[inline]
-    fn see(&mut self, path: u32, bsdf: &Bsdf, wo: Vec3, normal: Vec3) {
-        if let Some(first) = &mut self.first_surfaces {
-            first.see(path, bsdf, wo, normal);
-        }
-    }
-
-    #[inline]
-    fn end(&mut self, end: &ChainEnd<'w>) {
-        if let Some(point) = MergedPoint::new(end, self.spacing_by_distance * end.distance) {
-            self.order.push((end.path, self.found.len() as u32));
-            self.found.push(point);
-        }
-    }
 }
 
 /// A thread's buffers.

@@ -6,6 +6,7 @@ mod caustic_looks;
 mod chain;
 mod drawn;
 mod effort;
+mod ends;
 mod features;
 mod guide;
 mod guides;

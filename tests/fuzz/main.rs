@@ -16,6 +16,7 @@ use lightsplat::stats::{StageTime, Stopwatch};
 use mutate::{Random, mutate};
 use seeds::corpus;
 use std::alloc::System;
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::fs;
 use std::panic::{self, AssertUnwindSafe, catch_unwind};
@@ -39,13 +40,21 @@ static MEMORY: Cap<System> = Cap::new(System, MAX_BYTES);
 /// Message and place of the last panic.
 static LAST_PANIC: Mutex<Option<(String, String)>> = Mutex::new(None);
 
-/// Keeps panics for [`tried`], which tells them.
+thread_local! {
+    /// True while a case is tried on this thread.
+    static TRYING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Keeps panics for [`tried`], which tells them; those beside cases are printed.
 fn listen() {
     panic::set_hook(Box::new(|info| {
         let place = info.location().map_or("nowhere".to_owned(), |place| {
             let name = Path::new(place.file()).file_stem().unwrap_or_default().to_string_lossy();
             format!("{name}-{}", place.line())
         });
+        if !TRYING.get() {
+            eprintln!("{info}");
+        }
         *LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner) = Some((place, info.to_string()));
     }));
 }
@@ -57,15 +66,17 @@ fn tried(
     renders: bool,
     random: &mut Random,
 ) -> Result<bool, (String, String)> {
-    catch_unwind(AssertUnwindSafe(|| {
+    TRYING.set(true);
+    let result = catch_unwind(AssertUnwindSafe(|| {
         let loaded = workplace.read(extension);
         let loads = loaded.is_some();
         if let Some(loaded) = loaded.filter(|_| renders) {
             workplace.render(loaded, random);
         }
         loads
-    }))
-    .map_err(|_| LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default())
+    }));
+    TRYING.set(false);
+    result.map_err(|_| LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default())
 }
 
 /// Ends the process if a case takes too long.

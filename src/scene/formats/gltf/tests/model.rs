@@ -99,8 +99,8 @@ impl Model {
 
     pub fn glb(&self) -> Vec<u8> {
         let mut json = self.json.clone();
-        if !self.binary.is_empty() {
-            json["buffers"] = json!([{ "byteLength": self.binary.len() }]);
+        if let (Some(object), false) = (json.as_object_mut(), self.binary.is_empty()) {
+            object.insert("buffers".to_owned(), json!([{ "byteLength": self.binary.len() }]));
         }
         let padded = |bytes: &[u8], with: u8| {
             let mut bytes = bytes.to_vec();
