@@ -9,6 +9,9 @@ use crate::math::{Rgb, luminance};
 use crate::vpl::{DirectIndirect, Origin};
 use rayon::prelude::*;
 
+/// Leaves of the index whose light is found at a time.
+const LEAVES: usize = 16384;
+
 /// Part of a layer's light at an eye sample that records do not give.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Left {
@@ -34,14 +37,17 @@ pub struct Interpolated {
 }
 
 impl CacheFrame<'_> {
-    /// Light of the records at every eye sample.
-    pub fn interpolate(&self, records: &Records) -> Vec<Interpolated> {
+    /// Light of the records at every eye sample, in order. It is found by and by: that of all would be the most memory
+    /// that large pictures take.
+    pub fn interpolate(&self, records: &Records) -> impl Iterator<Item = Interpolated> {
         let index = self.targets.index;
-        let by_leaf: Vec<Vec<Interpolated>> = (0..index.leaves())
-            .into_par_iter()
-            .map(|leaf| index.leaf(leaf).map(|sample| self.at_sample(records, leaf, sample)).collect())
-            .collect();
-        by_leaf.concat()
+        let of_leaf = move |leaf| -> Vec<Interpolated> {
+            index.leaf(leaf).map(|sample| self.at_sample(records, leaf, sample)).collect()
+        };
+        (0..index.leaves()).step_by(LEAVES).flat_map(move |first| {
+            let leaves = first..(first + LEAVES).min(index.leaves());
+            leaves.into_par_iter().map(of_leaf).collect::<Vec<_>>().into_iter().flatten()
+        })
     }
 
     fn at_sample(&self, records: &Records, leaf: usize, sample: usize) -> Interpolated {
@@ -114,7 +120,7 @@ mod tests {
                 discontinuities: Vec::new(),
                 cuts: CutCounts::default(),
             };
-            let light = frame.interpolate(&records);
+            let light: Vec<Interpolated> = frame.interpolate(&records).collect();
             assert_eq!(light.len(), floor.points.len());
             for (point, light) in floor.points.geometry.iter().zip(light) {
                 let distance = point.position.distance(Vec3::new(0.5, 0.5, 0.0));

@@ -99,7 +99,7 @@ impl Settings {
 
         let mut picture = Picture::new(&samples, self.inspect);
         let tasks = stats.time(Stage::Splat, || {
-            resolve(&frame.interpolate(records), &samples, cache.draws_direct_light(), &mut picture)
+            resolve(frame.interpolate(records), &samples, cache.draws_direct_light(), &mut picture)
         });
         control.begin(Stage::Render, tasks.len() as u64);
         let counts = stats.time(Stage::Render, || {

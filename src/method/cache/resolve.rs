@@ -8,14 +8,13 @@ use crate::vpl::Origin;
 /// Adds the light of records to the picture. Returns tasks for the rest, which is shaded by cuts; if `drawn`, the eye
 /// pass has found the direct light.
 pub fn resolve(
-    light: &[Interpolated],
+    light: impl Iterator<Item = Interpolated>,
     eye: &EyePass,
     drawn: bool,
     picture: &mut Picture,
 ) -> Vec<ShadingTask> {
     let mut tasks = Vec::new();
-    for (point, light) in light.iter().enumerate() {
-        let mut light = *light;
+    for (point, mut light) in light.enumerate() {
         if drawn {
             light.left.direct = Left::Nothing;
             light.baseline_luminance += eye.known_luminance(point);

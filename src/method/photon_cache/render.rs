@@ -112,7 +112,7 @@ impl Renderer for Settings {
         let mut picture = Picture::new(&samples, self.inspect);
         let tasks = stats.time(Stage::Splat, || match &frame {
             Some(frame) => {
-                resolve(&frame.interpolate(&records), &samples, self.cache.draws_direct_light(), &mut picture)
+                resolve(frame.interpolate(&records), &samples, self.cache.draws_direct_light(), &mut picture)
             }
             None => (0..samples.len() as u32).map(ShadingTask::all).collect(),
         });
