@@ -62,11 +62,12 @@ impl Luminances {
     fn contrast_around(&self, [x, y]: [u32; 2], dark: f32) -> f32 {
         let near = |x: u32| [x.wrapping_sub(1), x, x.wrapping_add(1)];
         let around = near(y).into_iter().flat_map(|y| near(x).map(|x| [x, y])).filter(|at| *at != [x, y]);
-        let values = around.filter_map(|at| self.window.index(at)).map(|i| self.values[i]);
+        // Squares of bright light exceed 32 bits.
+        let values = around.filter_map(|at| self.window.index(at)).map(|i| f64::from(self.values[i]));
         let (n, sum, squares) =
             values.fold((0.0, 0.0, 0.0), |(n, sum, squares), v| (n + 1.0, sum + v, squares + v * v));
         let mean = sum / n;
-        (squares / n - mean * mean).max(0.0).sqrt() / (mean + dark)
+        ((squares / n - mean * mean).max(0.0).sqrt() / (mean + f64::from(dark))) as f32
     }
 }
 
@@ -186,6 +187,16 @@ mod tests {
             assert!((0.7 * share..1.3 * share).contains(&taken), "{share} {taken}");
             let row = &found[256 * 50..256 * 51];
             assert!(row[..255].is_sorted() && row[254] == 1 || row[254] == 3, "{row:?}");
+        }
+    }
+
+    #[test]
+    fn the_choice_does_not_depend_on_the_scale_of_light() {
+        for scale in [1e-15, 1.0, 3e19, 1e25] {
+            // Contrast grows from left to right.
+            let stripes = |[x, y]: [u32; 2]| scale * (1.0 + x as f32 / 256.0 * (y / 2 % 2) as f32);
+            let taken = mean(&multiples(stripes, 0.2));
+            assert!((0.14..0.26).contains(&taken), "{scale}: {taken}");
         }
     }
 

@@ -44,12 +44,12 @@ choices! {
     }
 }
 
-/// Cuts beside records.
+/// Most that one virtual light may give of the light at a point, in cuts of records and in those beside them.
 ///
 /// The paper lets a virtual light give 2 %. Those that give nearly as much are the noise of creases, which short rays
 /// do not have: 1 % is worth .1 to .3 dB of the denoised picture in the box, the knot, Sibenik and a kitchen. With half
 /// a per cent light is lost that glossy surfaces reflect.
-pub const CUT: CutSettings = CutSettings { epsilon: 0.02, max_cut: 5000, clamp: Some(0.01), origin: None };
+pub const CLAMP: Option<f32> = Some(0.01);
 
 /// Settings with which both layers have records.
 const RECORDS: &[(&str, &str)] = &[("direct", "records"), ("indirect", "records")];
@@ -72,7 +72,7 @@ settings! {
         /// The paper has 1 %. Errors of representatives are the same for many records and do not average; half of
         /// that, at a few per cent of the time, is worth .2 to .5 dB of the denoised picture on the box, the knot and
         /// Sibenik.
-        cut: CutSettings = CutSettings { epsilon: 0.005, ..CUT } => [
+        cut: CutSettings = CutSettings { epsilon: 0.005, clamp: CLAMP, ..CutSettings::default() } => [
             at epsilon .named("record_epsilon").fraction().scaled(&DOWN)
         ];
         /// Shape of footprints.

@@ -250,7 +250,7 @@ pub fn per_pixel(world: &WorldAndView, like: &cache::Settings) -> Image {
     let mut settings =
         lightcuts::Settings { light: like.light, spp: like.spp, ..lightcuts::Settings::default() };
     (settings.cut.epsilon, settings.cut.max_cut, settings.cut.clamp) = (0.005, 10_000, like.cut.clamp);
-    settings.compensation = like.compensation;
+    (settings.compensation, settings.seed) = (like.compensation, like.seed);
     render(world, &world.view, &settings, &Control::new()).color
 }
 
