@@ -54,6 +54,7 @@ mod lightcut;
 mod material;
 pub mod math;
 pub mod method;
+mod parallel;
 mod paths;
 mod perception;
 mod photon;

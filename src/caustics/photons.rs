@@ -2,6 +2,7 @@
 
 use super::aims::{Aimed, Aims, Yield};
 use crate::math::{Rgb, luminance};
+use crate::parallel::ShortRuns;
 use crate::progress::Control;
 use crate::sampling::{Sampler, hash};
 use crate::shadow;
@@ -165,7 +166,7 @@ fn chunks(
         }
         chunk
     };
-    tasks.into_par_iter().map(trace).collect()
+    tasks.into_par_iter().one_by_one().map(trace).collect()
 }
 
 /// Follows a path by delta lobes and keeps a photon at every surface behind one that has other lobes, too. Returns the

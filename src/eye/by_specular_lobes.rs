@@ -10,6 +10,7 @@ use super::{ChainCounts, EyeSettings};
 use crate::caustics::Caustics;
 use crate::film::Image;
 use crate::math::Rgb;
+use crate::parallel::ShortRuns;
 use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, ScatteredEdges, Start, start};
 use crate::progress::Control;
 use crate::view::View;
@@ -103,7 +104,7 @@ impl LightBySpecularLobes {
             }
             (found, counts, nonfinite)
         };
-        let tiles = (0..window.tile_count(TILE)).into_par_iter();
+        let tiles = (0..window.tile_count(TILE)).into_par_iter().in_short_runs();
         let tiles: Vec<_> = tiles.map_init(Batch::default, trace).collect();
         let mut image = Image::new(window.width, window.height);
         for (found, counts, nonfinite) in tiles {

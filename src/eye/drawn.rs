@@ -19,6 +19,7 @@ use super::{ChainCounts, EyePass, EyeSettings, Settled, VisibleSurfaces, guide};
 use crate::caustics::Caustics;
 use crate::light::Learned;
 use crate::math::Rgb;
+use crate::parallel::ShortRuns;
 use crate::paths::{Batch, Counts, LightSamples, Look, ScatteredEdges, Start, start};
 use crate::progress::Control;
 use crate::sampling::hash;
@@ -129,6 +130,7 @@ impl<'w> EyePass<'w> {
         tracer.light_samples.count = effort.as_ref().map_or(1, |effort| effort.light_samples);
         let tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
             .into_par_iter()
+            .in_short_runs()
             .map_init(
                 || tracer.workspace_with_guides(learned),
                 |work, index| {
@@ -145,6 +147,7 @@ impl<'w> EyePass<'w> {
         let needs = effort.as_ref().and_then(|effort| tracer.needs(effort, &tiles, learned));
         let tiles = tiles
             .into_par_iter()
+            .in_short_runs()
             .map_init(
                 || tracer.workspace_with_guides(learned),
                 |work, tile| tracer.more_samples(tile, needs.as_ref(), work),

@@ -14,6 +14,7 @@ use super::drawn::{Found, Tracer};
 use super::{ChainCounts, EyeSettings};
 use crate::light::Learned;
 use crate::math::{Rgb, luminance};
+use crate::parallel::ShortRuns;
 use crate::paths::LightSamples;
 use rayon::prelude::*;
 
@@ -80,6 +81,7 @@ impl<'w> Tracer<'_, 'w> {
         let spp = self.settings.spp;
         let found: Vec<(Vec<[f32; 2]>, ChainCounts)> = groups
             .into_par_iter()
+            .in_short_runs()
             .map_init(
                 || self.workspace(learned),
                 |work, pixels| {

@@ -13,6 +13,7 @@ use super::by_specular_lobes::{BySpecularLobes, MAX_GUIDED};
 use super::caustic_looks::CausticLooks;
 use crate::caustics::Caustics;
 use crate::math::{Rgb, luminance};
+use crate::parallel::ShortRuns;
 use crate::paths::{Batch, Counts, Look, Reach, ScatteredEdges, Start, start};
 use crate::sampling::owen_sobol_2d;
 use crate::view::View;
@@ -87,7 +88,7 @@ pub(super) fn edges<'w, R: Reach<'w>>(
         (sums, counts)
     };
     let found: Vec<([f64; 4], Counts)> =
-        (0..PATHS / BATCH).into_par_iter().map(|batch| sums_of(batch * BATCH)).collect();
+        (0..PATHS / BATCH).into_par_iter().in_short_runs().map(|batch| sums_of(batch * BATCH)).collect();
     let mut sums = [0.0; 4];
     for (of_batch, traced) in found {
         sums.iter_mut().zip(of_batch).for_each(|(sum, of_batch)| *sum += of_batch);

@@ -6,6 +6,7 @@ use super::drawn::Tracer;
 use crate::embree::Rays16;
 use crate::light::{EnvironmentLight, LampLooks, Learned, LearnedSky, Looks, Receivers16};
 use crate::math::{LANES, Vec2x16, Vec3x16, lanes_in};
+use crate::parallel::ShortRuns;
 use crate::sampling::{Sampler, hash, owen_sobol_2d};
 use crate::shadow;
 use glam::Vec3;
@@ -50,6 +51,7 @@ impl Tracer<'_, '_> {
         }
         let found: Vec<(Looks, LampLooks, ChainCounts)> = places(self.view.window.film, fewer)
             .par_chunks(CHUNK)
+            .in_short_runs()
             .enumerate()
             .map_init(
                 || self.workspace(None),

@@ -13,6 +13,7 @@ use crate::caustics::Caustics;
 use crate::film::{Image, Window};
 use crate::kd_tree::KdTree;
 use crate::math::luminance;
+use crate::parallel::ShortRuns;
 use crate::progress::Control;
 use crate::stats::give_back;
 use crate::view::View;
@@ -26,6 +27,10 @@ pub const TILE: u32 = 16;
 /// Bytes of tiles that are freed before they are given back: more than there are in ordinary pictures, where that would
 /// take time and spare nothing.
 const GIVEN_BACK: usize = 64 << 20;
+
+/// Maximum size in bytes of an array that may be in memory twice: that of the points of large pictures would be the
+/// most memory that they take.
+const TWICE: usize = 128 << 20;
 
 /// Maximum luminance known in a pixel that counts, so that sums stay finite.
 const MAX_KNOWN: f32 = 1e12;
@@ -97,6 +102,7 @@ impl<'w> EyePass<'w> {
         let window = &view.window;
         let tiles: Vec<VisibleSurfaces> = (0..window.tile_count(TILE))
             .into_par_iter()
+            .in_short_runs()
             .filter_map(|tile| {
                 if control.is_cancelled() {
                     return None;
@@ -191,9 +197,16 @@ fn joined<'w, T>(
     all
 }
 
-/// The items in another order, a permutation: each at `i` is that which was at `order[i]`. They are moved along its
-/// cycles, one by one: a second array would be the most memory that large pictures take.
-fn ordered<T: Copy>(mut items: Vec<T>, order: &[u32]) -> Vec<T> {
+/// The items in another order, a permutation: each at `i` is that which was at `order[i]`.
+fn ordered<T: Copy + Send + Sync>(items: Vec<T>, order: &[u32]) -> Vec<T> {
+    match size_of_val(&items[..]) > TWICE {
+        true => moved(items, order),
+        false => order.par_iter().map(|i| items[*i as usize]).collect(),
+    }
+}
+
+/// The same, moved along the permutation's cycles, one by one.
+fn moved<T: Copy>(mut items: Vec<T>, order: &[u32]) -> Vec<T> {
     let mut moved = vec![false; items.len()];
     for start in 0..items.len() {
         if moved[start] {
@@ -223,9 +236,10 @@ mod tests {
         let items: Vec<u32> = (100..108).collect();
         let order = [0, 2, 3, 1, 5, 4, 7, 6];
         let expected: Vec<u32> = order.iter().map(|i| items[*i as usize]).collect();
-        assert_eq!(ordered(items, &order), expected);
-        assert!(ordered(Vec::<u32>::new(), &[]).is_empty());
+        assert_eq!(moved(items, &order), expected);
+        assert!(moved(Vec::<u32>::new(), &[]).is_empty());
         let turned: Vec<u32> = (0..1000).map(|i| (i + 7) % 1000).collect();
-        assert_eq!(ordered((0..1000).collect(), &turned), turned);
+        assert_eq!(moved((0..1000).collect(), &turned), turned);
+        assert_eq!(ordered((0..1000).collect::<Vec<u32>>(), &turned), turned);
     }
 }

@@ -198,6 +198,8 @@ impl Batch {
     ) {
         counts.rays += self.count as u64;
         let mut kept = 0;
+        // Neighbours' rays to lamps go about the same way, those to a sky all ways.
+        let coherent = depth == 1 && world.emitters.environment.is_none();
         let mut hits = Hits16::default();
         for index in 0..self.count.div_ceil(LANES) {
             let mut packet = self.packets[index].clone();
@@ -225,7 +227,7 @@ impl Batch {
                         return;
                     };
                     if self.shadows.push(segment, radiance, slot) {
-                        self.shadows.trace(world, depth == 1, &mut self.radiance, counts);
+                        self.shadows.trace(world, coherent, &mut self.radiance, counts);
                     }
                 };
                 let mut going_on = packet.scatter(world, &surfaces, depth, followed, reach, arrives);
@@ -238,7 +240,7 @@ impl Batch {
                 self.keep(&packet, going_on, &mut kept);
             }
         }
-        self.shadows.trace(world, depth == 1, &mut self.radiance, counts);
+        self.shadows.trace(world, coherent, &mut self.radiance, counts);
         self.trace_outward(world, reach, counts);
         self.count = kept;
     }

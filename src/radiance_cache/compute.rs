@@ -20,6 +20,7 @@ use crate::lightcut::{
     CutCounts, CutSettings, PacketCluster, PacketCut, PacketLightcut, ReceiverPacket, Transfer, group_compact,
 };
 use crate::math::{LUMINANCE, Rgb, lanes_in, luminance};
+use crate::parallel::ShortRuns;
 use crate::shadow::Engine;
 use crate::vpl::{DirectIndirect, Origin};
 use glam::{Mat3, Vec3};
@@ -34,6 +35,7 @@ impl RecordSource for LightcutSource<'_> {
         let done: Vec<(Vec<NewRecord>, CutCounts)> = self
             .groups(candidates)
             .par_iter()
+            .one_by_one()
             .map_init(|| Workspace::new(self), |work, group| work.compute(self, group))
             .collect();
         let mut counts = CutCounts::default();
@@ -123,7 +125,7 @@ struct Workspace<'w> {
 impl<'w> Workspace<'w> {
     fn new(s: &LightcutSource<'w>) -> Workspace<'w> {
         Workspace {
-            shadows: Engine::new(s.context.world),
+            shadows: Engine::scattered(s.context.world),
             cut: PacketLightcut::new(),
             points: ReceiverPacket::new(),
             series: SeriesGatherer::default(),

@@ -24,7 +24,7 @@ pub struct OccluderLog<'w> {
 impl<'w> OccluderLog<'w> {
     /// Nothing noted yet.
     pub fn new(world: &'w World) -> OccluderLog<'w> {
-        OccluderLog { engine: Engine::new(world), log: RefCell::new(Vec::new()) }
+        OccluderLog { engine: Engine::scattered(world), log: RefCell::new(Vec::new()) }
     }
 
     /// Distances noted, sorted.

@@ -66,13 +66,12 @@ impl Probes {
     }
 
     /// Traces `rays` in whole rings from each of some points on the side of its normal; the number of a point turns its
-    /// sectors. Rays of neighbours through the same cell share packets.
+    /// sectors.
     pub fn trace(world: &World, points: &[(SurfacePoint, u32)], rays: u32) -> Vec<Probes> {
         let rings = rays.div_ceil(SECTORS as u32).clamp(1, MAX_RINGS) as usize;
         let mut probes: Vec<Probes> =
             points.iter().map(|(point, seed)| Probes::new(point.normal, rings, *seed)).collect();
         let count = points.len() * rings * SECTORS;
-        let coherent = points.len() > LANES / 2;
         let (mut rays, mut hits) = (Rays16::default(), Hits16::default());
         for first in (0..count).step_by(LANES) {
             let place = |lane: usize| ((first + lane) % points.len(), (first + lane) / points.len());
@@ -83,7 +82,7 @@ impl Probes {
                 let direction = probes.frame.to_world(probes.direction[cell]);
                 rays.set(lane, &shadow::ray_from(point.position, point.geometric_normal, direction));
             }
-            for lane in lanes_in(world.accel.closest_hit16(&rays, valid, coherent, &mut hits)) {
+            for lane in lanes_in(world.accel.closest_hit16(&rays, valid, false, &mut hits)) {
                 let (i, cell) = place(lane);
                 let normal = world.geometric_normal(hits.geometry[lane], hits.primitive[lane]);
                 let normal = probes[i].frame.to_local(normal);

@@ -3,6 +3,7 @@
 use super::{ShadeSettings, Shader, ShadingContext, ShadingCounts, ShadingTask};
 use crate::eye::ShadingPoints;
 use crate::math::Rgb;
+use crate::parallel::ShortRuns;
 use crate::progress::Control;
 use rayon::prelude::*;
 
@@ -28,6 +29,7 @@ pub fn shade<'w>(
 ) -> Shading {
     let done: Vec<(ShadedPatch, ShadingCounts)> = patches
         .par_iter()
+        .one_by_one()
         .map_init(
             || Shader::new(context, settings),
             |shader, patch| {

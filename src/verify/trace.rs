@@ -5,6 +5,7 @@ use super::measure::{MEANS, Measured};
 use super::picks::Pick;
 use crate::film::Image;
 use crate::method::path::{Counts, Wanted, pixel_means};
+use crate::parallel::ShortRuns;
 use crate::paths::Look;
 use crate::progress::Control;
 use crate::sampling::hash;
@@ -78,7 +79,7 @@ pub fn trace(
         traced.pixels = tracing.measure(picks, &wanted, 1, &mut traced)?;
         Some(traced)
     };
-    let parts: Vec<Option<Traced>> = picks.par_chunks(TASK).map(task).collect();
+    let parts: Vec<Option<Traced>> = picks.par_chunks(TASK).one_by_one().map(task).collect();
     let mut all = Traced { pixels: Vec::with_capacity(picks.len()), at_cap: 0, paths: 0, nonfinite: 0 };
     for part in parts {
         let part = part?;

@@ -11,6 +11,7 @@
 use super::emission::{Emission, PhotonEmitter};
 use crate::material::Bsdf;
 use crate::math::{Rgb, luminance};
+use crate::parallel::ShortRuns;
 use crate::progress::Control;
 use crate::sampling::{Sampler, hash};
 use crate::shadow;
@@ -108,6 +109,7 @@ pub fn trace_photons<T: Send>(
         let wave = next_wave(chunks, photons.len(), wanted).min(chunks_limit - chunks);
         let traced: Vec<Chunk<T>> = (chunks..chunks + wave)
             .into_par_iter()
+            .one_by_one()
             .map(|chunk| trace_chunk(world, &source, chunk, seed, max_edges, &keep))
             .collect();
         for chunk in traced {

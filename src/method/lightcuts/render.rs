@@ -9,6 +9,7 @@ use crate::method::ladder::CUTS;
 use crate::method::lights::{LightStore, LightsWanted};
 use crate::method::sampling::method_settings;
 use crate::method::{Move, Output, Renderer, Sampled, counts};
+use crate::parallel::ShortRuns;
 use crate::progress::Control;
 use crate::setting::{COMPENSATION, SHARE};
 use crate::shade::{ShadeSettings, Shader, ShadingCounts};
@@ -66,7 +67,7 @@ impl Renderer for Settings {
         control.begin(Stage::Render, corners.len() as u64);
         let workspace = || (Shader::new(&context, &shading), VisibleSurfaces::default());
         let done: Vec<Option<Tile>> = stats.time(Stage::Render, || {
-            let shade = corners.par_iter().map_init(workspace, |(shader, seen), &corner| {
+            let shade = corners.par_iter().in_short_runs().map_init(workspace, |(shader, seen), &corner| {
                 if control.is_cancelled() {
                     return None;
                 }

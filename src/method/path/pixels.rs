@@ -2,6 +2,7 @@
 
 use crate::math::luminance;
 use crate::method::{DrawnPixels, PILOT_SPP};
+use crate::parallel::ShortRuns;
 use crate::paths::{Batch, Counts, FullPaths, Look, Start, start};
 use crate::progress::Control;
 use crate::view::View;
@@ -71,6 +72,7 @@ pub(super) fn draw_pixels(
     let max_depth = world.scene.path_limit(max_depth);
     let found: Vec<([Vec<f64>; 2], Counts)> = groups
         .par_iter()
+        .in_short_runs()
         .map(|pixels| {
             let mut counts = Counts::default();
             let wanted: Vec<Wanted> =

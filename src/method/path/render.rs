@@ -7,6 +7,7 @@ use crate::math::Rgb;
 use crate::method::ladder::PATHS;
 use crate::method::sampling::method_settings;
 use crate::method::{DrawnPixels, LightStore, Move, Output, Renderer};
+use crate::parallel::ShortRuns;
 use crate::paths::{Batch, Counts, FullPaths, Look, Start, start};
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
@@ -87,7 +88,7 @@ impl Settings {
         stats.time(Stage::Render, || {
             for pass in 0..passes {
                 let end = ((pass + 1) * PASS).min(self.spp);
-                tiles.par_iter_mut().enumerate().for_each(|(i, tile)| {
+                tiles.par_iter_mut().in_short_runs().enumerate().for_each(|(i, tile)| {
                     if !control.is_cancelled() {
                         tile.render(world, view, self, i, end);
                         control.advance(1);
