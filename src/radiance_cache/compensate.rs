@@ -29,7 +29,7 @@ const NEGLIGIBLE: f32 = 5e-3;
 const EPSILON: f32 = 0.3;
 
 /// Divisor of a record's maximum number of clusters that gives the maximum in those lightcuts.
-const CUT_FRACTION: usize = 8;
+const CUT_FRACTION: usize = 16;
 
 /// Limits of the contributions of indirect virtual lights to the points of a packet.
 #[derive(Clone, Copy, Debug)]

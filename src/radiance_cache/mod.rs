@@ -49,4 +49,4 @@ pub mod targets;
 #[cfg(test)]
 mod tests;
 
-pub use settings::{CLAMP, CacheSettings, DirectBy, Footprints, FoundBy};
+pub use settings::{CLAMP, CacheSettings, DirectBy, Footprints, FoundBy, MAX_CUT};

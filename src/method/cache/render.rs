@@ -16,7 +16,7 @@ use crate::radiance_cache::series::{Glossy, drawn_light};
 use crate::radiance_cache::source::LightcutSource;
 use crate::radiance_cache::store::Records;
 use crate::radiance_cache::targets::Targets;
-use crate::radiance_cache::{CLAMP, CacheSettings, DirectBy};
+use crate::radiance_cache::{CLAMP, CacheSettings, DirectBy, MAX_CUT};
 use crate::setting::{COMPENSATION, Each, INSPECT, Settings as _};
 use crate::shade::{Picture, ShadeSettings};
 use crate::stats::Stage;
@@ -30,7 +30,7 @@ method_settings! {
         /// Numbers of VPLs; their seed is not used.
         light: LightPassSettings = LightPassSettings { indirect: 600_000, ..LightPassSettings::default() } => [group];
         /// Accuracy of the cut of an eye sample.
-        cut: CutSettings = CutSettings { clamp: CLAMP, ..CutSettings::default() } => [by Settings::each_of_cut];
+        cut: CutSettings = CutSettings { clamp: CLAMP, max_cut: MAX_CUT, ..CutSettings::default() } => [by Settings::each_of_cut];
         /// Compensation by short rays for light lost to clamping.
         compensation: bool = true => [is COMPENSATION];
         /// Builder of the light trees.

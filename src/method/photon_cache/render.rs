@@ -22,7 +22,7 @@ use crate::radiance_cache::series::{Glossy, drawn_light};
 use crate::radiance_cache::source::LightcutSource;
 use crate::radiance_cache::store::Records;
 use crate::radiance_cache::targets::Targets;
-use crate::radiance_cache::{CacheSettings, DirectBy};
+use crate::radiance_cache::{CacheSettings, DirectBy, MAX_CUT};
 use crate::setting::{Each, INSPECT, Settings as _};
 use crate::shade::{Picture, ShadeSettings, ShadingTask};
 use crate::stats::{Stage, Stats};
@@ -58,7 +58,7 @@ method_settings! {
             group without ["indirect"]
         ];
         /// Accuracy of the cut of an eye sample.
-        cut: CutSettings = CutSettings::default() => [by Settings::each_of_cut];
+        cut: CutSettings = CutSettings { max_cut: MAX_CUT, ..CutSettings::default() } => [by Settings::each_of_cut];
         /// Builder of the light trees.
         family: Family = Family::default() => [group];
         /// Images of the records, beside the picture; see `radiance_cache::inspect`.
