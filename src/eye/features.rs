@@ -164,7 +164,7 @@ impl SeenPixels {
                 let Some(first) = tile.next() else { return Vec::new() };
                 Looking { world, view, settings }.pixels(first, tile.last().unwrap_or(first))
             };
-            let found: Vec<Vec<Pixel>> = numbers.par_iter().in_short_runs().map(look).collect();
+            let found: Vec<Vec<Pixel>> = numbers.par_iter().one_by_one().map(look).collect();
             for (tile, found) in numbers.iter().zip(found) {
                 for (pixel, [x, y]) in found.into_iter().zip(window.tile(*tile, TILE)) {
                     pixels[(y * window.width + x) as usize] = pixel;

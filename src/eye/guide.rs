@@ -88,7 +88,7 @@ pub(super) fn edges<'w, R: Reach<'w>>(
         (sums, counts)
     };
     let found: Vec<([f64; 4], Counts)> =
-        (0..PATHS / BATCH).into_par_iter().in_short_runs().map(|batch| sums_of(batch * BATCH)).collect();
+        (0..PATHS / BATCH).into_par_iter().one_by_one().map(|batch| sums_of(batch * BATCH)).collect();
     let mut sums = [0.0; 4];
     for (of_batch, traced) in found {
         sums.iter_mut().zip(of_batch).for_each(|(sum, of_batch)| *sum += of_batch);

@@ -102,7 +102,7 @@ impl<'w> EyePass<'w> {
         let window = &view.window;
         let tiles: Vec<VisibleSurfaces> = (0..window.tile_count(TILE))
             .into_par_iter()
-            .in_short_runs()
+            .one_by_one()
             .filter_map(|tile| {
                 if control.is_cancelled() {
                     return None;

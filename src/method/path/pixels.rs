@@ -72,7 +72,7 @@ pub(super) fn draw_pixels(
     let max_depth = world.scene.path_limit(max_depth);
     let found: Vec<([Vec<f64>; 2], Counts)> = groups
         .par_iter()
-        .in_short_runs()
+        .one_by_one()
         .map(|pixels| {
             let mut counts = Counts::default();
             let wanted: Vec<Wanted> =

@@ -88,7 +88,7 @@ impl Settings {
         stats.time(Stage::Render, || {
             for pass in 0..passes {
                 let end = ((pass + 1) * PASS).min(self.spp);
-                tiles.par_iter_mut().in_short_runs().enumerate().for_each(|(i, tile)| {
+                tiles.par_iter_mut().one_by_one().enumerate().for_each(|(i, tile)| {
                     if !control.is_cancelled() {
                         tile.render(world, view, self, i, end);
                         control.advance(1);
