@@ -16,9 +16,8 @@ use crate::world::World;
 /// Number of levels of the scale of settings that a time is tried with.
 const STEPS: u32 = 64;
 
-/// Least number of pixels that choices without a time are made for: small pictures are by the method of the large one
-/// that they are a preview of.
-const MIN_PIXELS: u64 = 1 << 18;
+/// Least number of pixels that choices without a time are made for: icons are by the method of a small picture.
+const MIN_PIXELS: u64 = 1 << 15;
 
 /// A method and the reason for it.
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +63,7 @@ impl Chooser {
         Some(Chooser { triangles: world.scene.triangle_count(), pilot, film_pixels, paths })
     }
 
-    /// The cheaper of `cache`, as it is set, and as good a picture of paths, whatever the size of the film.
+    /// The cheaper of `cache`, as it is set, and as good a picture of paths; icons are judged as small pictures.
     pub fn as_good_as(&self, cache: &Method) -> Choice {
         self.cheaper(cache, self.film_pixels.max(MIN_PIXELS))
     }
@@ -187,9 +186,11 @@ mod tests {
         assert!(!is_path(&in_box().as_good_as(&cache)));
         let choice = chooser(100_000, [3.0, 3.5], 0.6, [4.0, 5.0]).as_good_as(&cache);
         assert!(is_path(&choice) && choice.method.spp() >= cache.spp(), "{choice:?}");
-        // A film of any size is judged as if it were large, but for its time.
-        let small = Chooser { film_pixels: 1 << 10, ..in_box() };
+        // Virtual lights are as many on a small film; an icon is judged as if it were less small, but for its time.
+        let noisier = |film_pixels| Chooser { film_pixels, ..chooser(36, [0.0018, 0.6], 0.11, [1.7, 4.5]) };
+        let small = noisier(1 << 13);
         assert!(!is_path(&small.as_good_as(&cache)) && is_path(&small.on_film(&cache)));
+        assert!(!is_path(&noisier(1 << 15).on_film(&cache)));
     }
 
     #[test]

@@ -6,8 +6,8 @@
 //! without its noise. Both are relative to the brightness of the square of pixels around, and the greatest hundredth is
 //! left out: a denoiser removes single bright dots.
 //!
-//! Measured on six scenes by others at 512x512: by the rule of [`Pilot::paths_a_sample`] paths come to the PSNR of the
-//! cache with 16 samples within a factor of 1.4 of the number predicted, in a room of glossy floors of 3.
+//! Measured on 18 scenes by others, 256x144 to 512x910: the work of as good a picture by paths, over that of the cache,
+//! comes within a factor of 2 of the one predicted by the rule of [`Pilot::paths_a_sample`] for most of them.
 //!
 //! The pilot is spread over the whole film and has seeds of its own: parts of a picture, and pictures to be merged, are
 //! by the same method.
@@ -33,12 +33,12 @@ const SEED: u32 = 0x6c62_272e;
 const TRIMMED: f64 = 0.01;
 /// Luminance that counts as dark, relative to that which nine tenths of the pixels keep below.
 const DARK: f64 = 0.1;
-/// Factors from the squared contrast of neighbours to the variance that edges and textures add to a sample of the
-/// cache, which takes more where contrast is great, and to a path.
-const COVERAGE: [f64; 2] = [2.0, 4.0];
+/// Factor from the squared contrast of neighbours to the variance that edges and textures add to a path. The cache
+/// takes more samples where contrast is great.
+const COVERAGE: f64 = 2.0;
 /// Variance that the cache's own errors come to at its default of so many samples, relative to the squared brightness
 /// and times their number. Levels of quality with fewer samples have fewer virtual lights and coarser cuts, too.
-const CACHED: f64 = 0.048;
+const CACHED: f64 = 0.07;
 const CACHED_SPP: f64 = 16.0;
 
 /// Findings of the pilot.
@@ -110,10 +110,9 @@ impl Pilot {
     /// Number of paths, denoised, that are worth a sample of the cache, denoised, at the level of quality with `spp`
     /// samples; 1 at least, since edges are as jagged by either.
     pub fn paths_a_sample(&self, spp: f64) -> f64 {
-        let [of_cache, of_paths] = COVERAGE.map(|factor| factor * self.contrast_sq);
         let cached = CACHED * (CACHED_SPP / spp.max(1.0)).sqrt();
-        let cache = self.variance_of_drawn + of_cache + cached;
-        ((self.variance_of_paths + of_paths) / cache).max(1.0)
+        let paths = self.variance_of_paths + COVERAGE * self.contrast_sq;
+        (paths / (self.variance_of_drawn + cached)).max(1.0)
     }
 }
 
