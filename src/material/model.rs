@@ -55,6 +55,8 @@ pub(super) struct Model {
     source: Source,
     /// Share of the surface that is there, and the slot of the rest.
     opacity: Option<(Share, usize)>,
+    /// True if light passes straight by that rest alone.
+    only_by_gaps: bool,
     /// The colours, if nothing is textured.
     constant: Option<Colours<Rgb>>,
     /// Light that passes straight, likewise.
@@ -153,6 +155,17 @@ impl Materials {
         Bsdf { model, base: colours.base, scales: colours.scales }
     }
 
+    /// Share of the surface that is not there, where light passes straight by such gaps alone and something is
+    /// textured; `None` elsewhere.
+    #[inline]
+    pub(super) fn gaps(&self, scene: &Scene, id: MaterialId, uv: impl FnOnce() -> Vec2) -> Option<f32> {
+        let model = &self.models[id.0 as usize];
+        let (share, _) = model.opacity.filter(|_| model.only_by_gaps && model.constant.is_none())?;
+        let uv = uv();
+        let texel = |id: TextureId| scene.textures.get(id.0 as usize).map_or(Rgb::ONE, |t| t.lookup(uv));
+        Some(1.0 - opaque(&share, texel))
+    }
+
     /// Lobes that light passes straight, if there are any and nothing of the material is textured.
     #[inline]
     pub(super) fn straight(&self, id: MaterialId) -> Option<&Straight> {
@@ -169,6 +182,11 @@ impl Materials {
         let (model, colours) = (&self.models[id.0 as usize], &self.averages[id.0 as usize]);
         Bsdf { model, base: colours.base, scales: colours.scales }
     }
+}
+
+/// Share of a surface that is there where each texture has the value `texel` of it.
+fn opaque(opacity: &Share, texel: impl Fn(TextureId) -> Rgb) -> f32 {
+    opacity.value(|id| luminance(texel(id))).clamp(0.0, 1.0)
 }
 
 /// Returns the place of `item` among `known`, to which it is added if it is not there.
@@ -209,6 +227,7 @@ impl Model {
         let transmits = lobes.iter().any(LobeModel::transmits);
         let opacity = material.opacity.map(|opacity| (opacity, lobes.len()));
         lobes.extend(opacity.map(|_| LobeModel::Gap));
+        let only_by_gaps = lobes.iter().all(|lobe| matches!(lobe, LobeModel::Gap) || !lobe.passes_straight());
         let is_textured =
             source.is_textured() || material.opacity.is_some_and(|opacity| opacity.is_textured());
         let mut model = Model {
@@ -226,6 +245,7 @@ impl Model {
             levels: None,
             source,
             opacity,
+            only_by_gaps,
             constant: None,
             straight: None,
             filters: false,
@@ -259,7 +279,7 @@ impl Model {
     fn colours(&self, texel: impl Fn(TextureId) -> Rgb) -> Colours<Rgb> {
         let mut colours = self.source.colours(&self.base, &texel);
         if let Some((opacity, gap)) = self.opacity {
-            let share = opacity.value(|id| luminance(texel(id))).clamp(0.0, 1.0);
+            let share = opaque(&opacity, texel);
             colours.base *= share;
             colours.scales.iter_mut().for_each(|scale| *scale *= share);
             colours.scales[gap] = Rgb::splat(1.0 - share);

@@ -49,18 +49,22 @@ pub type LastStraight = (MaterialId, f32, Rgb);
 
 impl Materials {
     /// Share of the light at the cosine to the shading normal, of either sign, that passes straight through a surface.
-    /// Its texture coordinates are only asked for where there is a texture.
+    /// The cosine is only asked for where it counts, and texture coordinates where there is a texture.
     #[inline]
     pub fn straight_transmittance(
         &self,
         scene: &Scene,
         id: MaterialId,
-        (cos, uv): (f32, impl FnOnce() -> Vec2),
+        (cos, uv): (impl FnOnce() -> f32, impl Fn() -> Vec2),
         last: &mut Option<LastStraight>,
     ) -> Rgb {
         let Some(straight) = self.straight(id) else {
-            return self.at_coordinates(scene, id, uv, || 0.0).straight_transmittance(cos);
+            if let Some(gaps) = self.gaps(scene, id, &uv) {
+                return Rgb::splat(gaps);
+            }
+            return self.at_coordinates(scene, id, uv, || 0.0).straight_transmittance(cos());
         };
+        let cos = cos();
         match *last {
             Some((material, at, transmittance)) if material == id && at == cos => transmittance,
             _ => {

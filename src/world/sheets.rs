@@ -117,15 +117,15 @@ impl World {
     /// Share of the light towards the unit vector `out` that passes the sheet at a hit.
     #[inline]
     fn share_passing(&self, hit: &Hit, out: Vec3, last: &mut Option<LastStraight>) -> Rgb {
-        let triangle = self.triangles.get(hit.geometry, hit.primitive);
         let mesh = &self.scene.meshes[hit.geometry as usize];
         let barycentric = Vec2::new(hit.u, hit.v);
-        let normal = match self.has_reliefs() {
+        let normal = || match self.has_reliefs() {
             true => self.surface(hit).frame.normal,
-            false => shading_normal(mesh, triangle, barycentric),
+            false => shading_normal(mesh, self.triangles.get(hit.geometry, hit.primitive), barycentric),
         };
         let uv = || mesh.uv(hit.primitive as usize, barycentric);
-        self.materials.straight_transmittance(&self.scene, mesh.material, (normal.dot(out), uv), last)
+        let cos = || normal().dot(out);
+        self.materials.straight_transmittance(&self.scene, mesh.material, (cos, uv), last)
     }
 
     /// Parameter from which a segment goes on behind the sheet at a hit.
