@@ -14,20 +14,22 @@
 //! r²/A) of its radiance.
 //!
 //! Deviations: light of the second kind is not in the paper, which limits no direct light. b comes from the
-//! mean intensity of all indirect virtual lights, so one that is much brighter than the mean may give more
-//! than the limit. Every point is compensated, also where no light of its cut happens to be clamped: the two
-//! parts complement each other on average only. All points use the same directions, in frames of their own,
-//! so that their errors are similar and no noise is visible between them. Where the path length is limited,
-//! paths over surfaces that rays hit may have an edge more.
+//! mean intensity of the indirect virtual lights around the point ([`intensities`]), so one that is much
+//! brighter than those may give more than the limit. Every point is compensated, also where no light of its
+//! cut happens to be clamped: the two parts complement each other on average only. All points use the same
+//! directions, in frames of their own, so that their errors are similar and no noise is visible between them.
+//! Where the path length is limited, paths over surfaces that rays hit may have an edge more.
 //!
 //! Units: b in 1/m².
 
+pub mod intensities;
 pub mod points;
 pub mod short_rays;
 
 use crate::lightcut::Transfer;
-use crate::vpl::Origin;
 use crate::world::World;
+use glam::Vec3;
+use intensities::Intensities;
 
 /// Compensation at all points of a scene.
 #[derive(Clone, Copy)]
@@ -36,24 +38,31 @@ pub struct Compensation<'a> {
     pub world: &'a World,
     /// Transfer from its virtual lights.
     pub transfer: Transfer<'a>,
-    mean_intensity: f32,
+    /// `None` if no light is indirect.
+    intensities: Option<&'a Intensities>,
     /// Squared distance from surfaces that shine, by mesh, below which their virtual lights give less; 0 for others.
     near_sq: &'a [f32],
     max_near_sq: f32,
 }
 
 impl<'a> Compensation<'a> {
-    /// For all points lit through `transfer`. `near_sq` is the squared distance from each mesh that shines below which
-    /// its virtual lights give less than they should, and 0 for others.
-    pub fn new(world: &'a World, transfer: Transfer<'a>, near_sq: &'a [f32]) -> Compensation<'a> {
+    /// For all points lit through `transfer`, by lights of the given `intensities`. `near_sq` is the squared distance
+    /// from each mesh that shines below which its virtual lights give less than they should, and 0 for others.
+    pub fn new(
+        world: &'a World,
+        transfer: Transfer<'a>,
+        intensities: Option<&'a Intensities>,
+        near_sq: &'a [f32],
+    ) -> Compensation<'a> {
         let max_near_sq = near_sq.iter().copied().fold(0.0, f32::max);
-        let mean_intensity = transfer.trees.mean_intensity(Origin::Indirect);
-        Compensation { world, transfer, mean_intensity, near_sq, max_near_sq }
+        Compensation { world, transfer, intensities, near_sq, max_near_sq }
     }
 
-    /// The bound of the geometry term that keeps the irradiance from a light of mean intensity below `limit`.
-    pub fn bound(&self, limit: f32) -> f32 {
-        if self.mean_intensity > 0.0 { limit / self.mean_intensity } else { f32::INFINITY }
+    /// The bound of the geometry term that keeps the irradiance at a point from a light of the mean intensity around it
+    /// below `limit`.
+    pub fn bound(&self, x: Vec3, limit: f32) -> f32 {
+        let intensity = self.intensities.map_or(0.0, |intensities| intensities.around(x));
+        if intensity > 0.0 { limit / intensity } else { f32::INFINITY }
     }
 }
 

@@ -4,7 +4,7 @@
 //! of the surfaces that the anchors' rays meet, and interpolated to all other surfaces met from the patch.
 //!
 //! Deviations: light that lobes reflect is not compensated, only that of bases. Cuts limit the luminance that
-//! a virtual light gives, not its geometry term: the same for lights of mean intensity.
+//! a virtual light gives, not its geometry term: the same for lights of the mean intensity around.
 
 use super::short_rays::{self, ClampedPoint, NearSurface};
 use super::{Compensation, choose_evenly};
@@ -130,8 +130,9 @@ impl Compensator {
             .map(|lane| {
                 let r = receivers.get(lane);
                 let base = luminance(r.base_brdf());
-                let bound = if indirect && base > 0.0 { c.bound(limits[lane] / base) } else { f32::INFINITY };
                 let (position, normal) = r.place();
+                let limit = limits[lane] / base;
+                let bound = if indirect && base > 0.0 { c.bound(position, limit) } else { f32::INFINITY };
                 let point = SurfacePoint { position, normal, geometric_normal: r.geometric_normal() };
                 ClampedPoint { point, bound, direct: direct && base > 0.0 }
             })

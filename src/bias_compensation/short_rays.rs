@@ -159,7 +159,7 @@ mod tests {
         let world = ceiling();
         let trees = LightTrees::build(&[], Vec::new(), world.diagonal, Family::default(), &Control::new());
         let near = [near_sq];
-        let c = Compensation::new(&world, Transfer::new(&trees, world.diagonal), &near);
+        let c = Compensation::new(&world, Transfer::new(&trees, world.diagonal), None, &near);
         let point = SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, geometric_normal: Vec3::Z };
         let mut sums = [0.0; 2];
         let clamped = ClampedPoint { point, bound, direct: near_sq > 0.0 };

@@ -20,6 +20,7 @@ pub use area::{AreaLight, AreaPoint, emitted};
 pub use distribution::DiscreteDistribution;
 pub use environment::{EnvironmentLight, EnvironmentSample, LearnedSky, Looks};
 pub use learned::Learned;
+pub use regions::Regions;
 pub use select::Receivers16;
 pub use tree::{LampLooks, LearnedLamps};
 

@@ -59,6 +59,20 @@ impl Regions {
         self.split(points, few, (right, depth + 1), members);
     }
 
+    /// Region of a point.
+    #[inline]
+    pub fn of(&self, x: Vec3) -> usize {
+        let mut node = 0;
+        loop {
+            let Node { plane, word } = self.nodes[node];
+            match word & LEAF {
+                LEAF => return (word >> 2) as usize,
+                axis if x[axis as usize] < plane => node += 1,
+                _ => node = (word >> 2) as usize,
+            }
+        }
+    }
+
     /// Regions of sixteen points. They go down the tree together, as far as the deepest goes: nothing depends on where
     /// the others go, so that they wait for memory together.
     #[inline]

@@ -17,7 +17,7 @@ mod topology;
 use crate::math::luminance;
 use crate::progress::Control;
 use crate::setting::{Each, Settings, Spec, choices};
-use crate::vpl::{Origin, Profiles, Vpl, VplKind, VplSet};
+use crate::vpl::{Origin, Profiles, Vpl, VplSet};
 use cost::Primitive;
 use rayon::prelude::*;
 
@@ -63,8 +63,6 @@ pub struct LightTrees {
     pub vpls: Vec<Vpl>,
     /// Profiles that they refer to.
     pub profiles: Profiles,
-    /// Intensity per cosine of diffuse VPLs of the flux of the lobed ones, over the bounds of their intensities.
-    lobed_as_diffuse: f32,
 }
 
 impl LightTrees {
@@ -104,9 +102,6 @@ impl LightTrees {
         self.nodes.par_extend(rayon::iter::repeat_n(blank, 2 * n));
         let nodes = &mut self.nodes[first_node..];
         finish::finish(&topology, (set, &self.profiles), nodes, first_node as u32, first_vpl as u32);
-        if set.kind == VplKind::Lobed {
-            self.lobed_as_diffuse = as_diffuse(set, &self.profiles);
-        }
         self.vpls.par_extend(topology.leaves.par_iter().map(|r| set.vpls[r.index() as usize]));
         self.roots.push(first_node as u32);
     }
@@ -115,22 +110,6 @@ impl LightTrees {
     pub fn roots_of(&self, origin: Option<Origin>) -> impl Iterator<Item = u32> + '_ {
         let wanted = move |&root: &u32| origin.is_none_or(|o| self.nodes[root as usize].origin() == o);
         self.roots.iter().copied().filter(wanted)
-    }
-
-    /// Mean luminance of the intensities of one origin's VPLs, lobed ones as diffuse ones of their flux; 0 if there are
-    /// none.
-    pub fn mean_intensity(&self, origin: Origin) -> f32 {
-        let (mut sum, mut count) = (0.0, 0);
-        for (i, &root) in self.roots.iter().enumerate() {
-            let node = &self.nodes[root as usize];
-            if node.origin() == origin {
-                let end = self.roots.get(i + 1).map_or(self.nodes.len(), |&next| next as usize);
-                let share = if node.kind() == VplKind::Lobed { self.lobed_as_diffuse } else { 1.0 };
-                sum += f64::from(luminance(node.intensity) * share);
-                count += (end - root as usize) / 2; // a tree of n leaves has room for 2n nodes
-            }
-        }
-        if count == 0 { 0.0 } else { (sum / count as f64) as f32 }
     }
 
     /// Returns the leaves, in order of their VPLs within each tree.
@@ -146,15 +125,4 @@ impl LightTrees {
             }
         })
     }
-}
-
-/// Mean ratio of the intensity per cosine of diffuse VPLs to the bound of that of lobed ones of the same flux.
-fn as_diffuse(set: &VplSet, profiles: &Profiles) -> f32 {
-    let (mut bounds, mut diffuse) = (0.0f64, 0.0f64);
-    for (vpl, intensity) in set.vpls.iter().zip(&set.intensities) {
-        let bound = f64::from(luminance(*intensity));
-        bounds += bound;
-        diffuse += bound * f64::from(profiles.lobes[vpl.lobe()].diffuse_equivalent());
-    }
-    if bounds > 0.0 { (diffuse / bounds) as f32 } else { 1.0 }
 }

@@ -2,6 +2,7 @@
 //! keeps them from frame to frame.
 
 use crate::bias_compensation::Compensation;
+use crate::bias_compensation::intensities::Intensities;
 use crate::caustics::{CausticPhotons, Caustics};
 use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::Transfer;
@@ -117,6 +118,8 @@ pub struct Lights {
     /// Squared distance below which a point cannot represent the patch around it, by mesh; 0 for meshes that
     /// do not emit.
     near_sq: Vec<f32>,
+    /// `None` if no light is indirect.
+    intensities: Option<Intensities>,
     diagonal: f32,
 }
 
@@ -131,11 +134,17 @@ impl Lights {
         stats.count("Rays/closest hit", found.photons.rays);
 
         control.begin(Stage::Tree, 0);
-        let build = || LightTrees::build(&found.sets, found.profiles, world.diagonal, wanted.family, control);
-        let trees = stats.time(Stage::Tree, build);
+        let build = || {
+            let intensities = Intensities::new(&found.sets, &found.profiles);
+            let trees =
+                LightTrees::build(&found.sets, found.profiles, world.diagonal, wanted.family, control);
+            (trees, intensities)
+        };
+        let (trees, intensities) = stats.time(Stage::Tree, build);
         let least_sq = min_dist_sq(world.diagonal);
         let near_sq = |&size: &u32| if size > 0 { near_sq_of_size(size, least_sq) } else { 0.0 };
-        Lights { trees, near_sq: found.sizes.iter().map(near_sq).collect(), diagonal: world.diagonal }
+        let near_sq = found.sizes.iter().map(near_sq).collect();
+        Lights { trees, near_sq, intensities, diagonal: world.diagonal }
     }
 
     /// Transfer from the lights to a point; `compensated` where short rays find the light lost close to them.
@@ -151,6 +160,6 @@ impl Lights {
 
     /// Compensation for light lost close to the lights.
     pub fn compensation<'a>(&'a self, world: &'a World) -> Compensation<'a> {
-        Compensation::new(world, self.transfer(true), &self.near_sq)
+        Compensation::new(world, self.transfer(true), self.intensities.as_ref(), &self.near_sq)
     }
 }

@@ -40,12 +40,14 @@ pub struct Clamps {
 }
 
 impl Clamps {
-    /// Limits such that none gives more than the luminances `limits`.
-    pub fn new(compensation: &Option<Compensation>, limits: &F32x16) -> Clamps {
-        match compensation {
-            Some(c) => Clamps { limits: limits.map(|limit| c.bound(limit)), geometry: true },
-            None => Clamps { limits: *limits, geometry: false },
+    /// Limits such that none gives more than the luminances `limits` to the points of `task`.
+    pub fn new(compensation: &Option<Compensation>, limits: &F32x16, task: &[Candidate]) -> Clamps {
+        let Some(c) = compensation else { return Clamps { limits: *limits, geometry: false } };
+        let mut bounds = [f32::INFINITY; LANES];
+        for ((bound, limit), candidate) in bounds.iter_mut().zip(limits).zip(task) {
+            *bound = c.bound(candidate.point.position, *limit);
         }
+        Clamps { limits: bounds, geometry: true }
     }
 
     /// Shares that are kept of the contributions of a light, by the irradiance `responses` to one of unit intensity.
@@ -174,7 +176,7 @@ mod tests {
             assert_eq!(kept(4.0, true) * term, term.min(4.0));
             assert_eq!(kept(f32::INFINITY, false), 1.0);
         }
-        let clamps = Clamps::new(&None, &[2.0; LANES]);
+        let clamps = Clamps::new(&None, &[2.0; LANES], &[]);
         assert_eq!((clamps.bound(0), Clamps { geometry: true, ..clamps }.bound(0)), (f32::INFINITY, 2.0));
     }
 }

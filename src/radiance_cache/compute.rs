@@ -164,7 +164,7 @@ impl<'w> Workspace<'w> {
             Some(log) => self.cut.gather(&s.context.transfer, log, &self.points, &settings),
             None => self.cut.gather(&s.context.transfer, &self.shadows, &self.points, &settings),
         };
-        let clamps = Clamps::new(&s.context.compensation, &cut.sum.limits);
+        let clamps = Clamps::new(&s.context.compensation, &cut.sum.limits, group);
         let points = RecordPoints::new(group, &world.materials);
         let mut hessians = Vec::new();
         if !s.needs_occluders() {
