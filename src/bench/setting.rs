@@ -35,7 +35,7 @@ impl<'w> Setting<'w> {
         let eye = EyeSettings { spp: 1, seed: 0, max_depth: depth };
         let samples = EyePass::trace(world, &view, eye, &Control::new());
         let LightPass { sets, profiles, .. } =
-            light_pass(world, &LightPassSettings::default(), depth, &Control::new());
+            light_pass(world, &LightPassSettings::default(), &[], depth, &Control::new());
         let trees = LightTrees::build(&sets, profiles, world.diagonal, Family::default(), &Control::new());
         Some(Setting { world, samples, trees })
     }

@@ -28,7 +28,7 @@ fn run(context: &Context) -> Vec<Table> {
         (context.say)(&format!("{indirect} indirect lights"));
         let light = LightPassSettings { indirect, ..LightPassSettings::default() };
         let depth = world.scene.path_limit(None);
-        let LightPass { sets, profiles, .. } = light_pass(world, &light, depth, &Control::new());
+        let LightPass { sets, profiles, .. } = light_pass(world, &light, &[], depth, &Control::new());
         let sets = std::rc::Rc::new(sets);
         let against = cases.len();
         for family in [Family::Divisive, Family::Agglomerative] {

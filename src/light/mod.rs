@@ -112,6 +112,12 @@ impl Emitters {
         !self.areas.is_empty() || self.environment.is_some()
     }
 
+    /// True if there is light from infinitely far.
+    pub fn have_far(&self) -> bool {
+        let is_directional = |light: &DeltaLight| matches!(light, DeltaLight::Directional { .. });
+        self.environment.is_some() || self.deltas.iter().any(is_directional)
+    }
+
     /// True if lamps are so many that it pays to learn which are seen from where.
     pub fn may_hide(&self) -> bool {
         self.areas.len() + self.deltas.len() >= MIN_HIDDEN

@@ -18,7 +18,7 @@ fn vpls_of_a_furnace_give_the_irradiance_of_the_geometric_series() {
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall).into_iter().map(|m| emitting(m, emitted)));
     let world = world(scene);
     let settings = LightPassSettings { direct: 6000, indirect: 40_000, seed: 3 };
-    let lights = light_pass(&world, &settings, u32::MAX, &Control::new());
+    let lights = light_pass(&world, &settings, &[], u32::MAX, &Control::new());
     let trees =
         LightTrees::build(&lights.sets, lights.profiles, world.diagonal, Family::Divisive, &Control::new());
     let transfer = Transfer::new(&trees, world.diagonal);
@@ -40,7 +40,7 @@ fn vpls_of_a_furnace_give_the_irradiance_of_the_geometric_series() {
 fn cuts_in_a_scene_with_shadows_are_within_their_error() {
     let world = room_with_ball(Some(diffuse(Rgb::splat(0.5))));
     let settings = LightPassSettings { direct: 1024, indirect: 19_000, seed: 1 };
-    let lights = light_pass(&world, &settings, u32::MAX, &Control::new());
+    let lights = light_pass(&world, &settings, &[], u32::MAX, &Control::new());
     for family in [Family::Divisive, Family::Agglomerative] {
         let trees =
             LightTrees::build(&lights.sets, lights.profiles.clone(), world.diagonal, family, &Control::new());
@@ -83,7 +83,7 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
     let (mut single_errors, mut shared_errors) = (Vec::new(), Vec::new());
     for seed in 0..8 {
         let light = LightPassSettings { direct: 1000, indirect: 19_000, seed };
-        let lights = light_pass(&world, &light, u32::MAX, &Control::new());
+        let lights = light_pass(&world, &light, &[], u32::MAX, &Control::new());
         let trees = LightTrees::build(&lights.sets, lights.profiles, world.diagonal, family, &Control::new());
         let transfer = Transfer::new(&trees, world.diagonal);
         let shift = [seed % 4 * 16, seed / 4 * 32];

@@ -12,7 +12,7 @@ use crate::shade::ShadingContext;
 use crate::stats::{Stage, Stats};
 use crate::view::View;
 use crate::vpl::{LightPassSettings, light_pass, min_dist_sq, near_sq_of_size};
-use crate::world::World;
+use crate::world::{SurfacePoint, World};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Facts that virtual lights depend on, besides the scene.
@@ -35,6 +35,9 @@ impl LightsWanted {
     }
 }
 
+/// Facts that virtual lights depend on, and the points whose indirect light is wanted: of all where there are none.
+type LightsFor = (LightsWanted, Vec<SurfacePoint>);
+
 /// Seed and longest path in edges that photons depend on, besides the scene.
 type PhotonsWanted = (u32, u32);
 
@@ -42,21 +45,22 @@ type PhotonsWanted = (u32, u32);
 /// are wanted.
 #[derive(Default)]
 pub struct LightStore {
-    lights: Mutex<Option<(LightsWanted, Arc<Lights>)>>,
+    lights: Mutex<Option<(LightsFor, Arc<Lights>)>>,
     photons: Mutex<Option<(PhotonsWanted, Arc<CausticPhotons>)>>,
 }
 
 impl LightStore {
-    /// Returns the lights of `world`, made anew if others were made last. Lights are not kept if `control` is
-    /// cancelled while they are made.
+    /// Returns the lights of `world`, for the indirect light of the points `seen` or of all if there are none; made
+    /// anew if others were made last. Lights are not kept if `control` is cancelled while they are made.
     pub fn get(
         &self,
         world: &World,
-        wanted: LightsWanted,
+        (wanted, seen): (LightsWanted, Vec<SurfacePoint>),
         control: &Control,
         stats: &mut Stats,
     ) -> Arc<Lights> {
-        kept(&self.lights, wanted, control, || Lights::new(world, &wanted, control, stats))
+        let make = |(wanted, seen): &LightsFor| Lights::new(world, (wanted, seen), control, stats);
+        kept(&self.lights, (wanted, seen), control, make)
     }
 
     /// The same for photons by mirrors and glass.
@@ -67,7 +71,7 @@ impl LightStore {
         control: &Control,
     ) -> Arc<CausticPhotons> {
         let (seed, max_depth) = wanted;
-        kept(&self.photons, wanted, control, || CausticPhotons::new(world, seed, max_depth, control))
+        kept(&self.photons, wanted, control, |_| CausticPhotons::new(world, seed, max_depth, control))
     }
 
     /// Photons by mirrors and glass as they light the surfaces of a view; `None` if there are none. Reports them.
@@ -97,7 +101,7 @@ fn kept<K: PartialEq, V>(
     store: &Mutex<Option<(K, Arc<V>)>>,
     wanted: K,
     control: &Control,
-    make: impl FnOnce() -> V,
+    make: impl FnOnce(&K) -> V,
 ) -> Arc<V> {
     // Values are complete when they are stored: a panic elsewhere cannot have left them half-made.
     let mut kept = store.lock().unwrap_or_else(PoisonError::into_inner);
@@ -106,7 +110,7 @@ fn kept<K: PartialEq, V>(
     {
         return Arc::clone(value);
     }
-    let value = Arc::new(make());
+    let value = Arc::new(make(&wanted));
     *kept = (!control.is_cancelled()).then(|| (wanted, Arc::clone(&value)));
     value
 }
@@ -125,12 +129,20 @@ pub struct Lights {
 
 impl Lights {
     /// Makes them; stops early if `control` is cancelled.
-    fn new(world: &World, wanted: &LightsWanted, control: &Control, stats: &mut Stats) -> Lights {
+    fn new(
+        world: &World,
+        (wanted, seen): (&LightsWanted, &[SurfacePoint]),
+        control: &Control,
+        stats: &mut Stats,
+    ) -> Lights {
         control.begin(Stage::LightPass, u64::from(wanted.pass.indirect));
-        let pass = || light_pass(world, &wanted.pass, wanted.max_depth, control);
+        let pass = || light_pass(world, &wanted.pass, seen, wanted.max_depth, control);
         let found = stats.time(Stage::LightPass, pass);
         stats.count("VPLs/total", found.len() as u64);
         stats.count("VPLs/photon paths", found.photons.paths);
+        if found.photons.gain > 0.0 {
+            stats.add("VPLs/gain of aims", found.photons.gain.into());
+        }
         stats.count("Rays/closest hit", found.photons.rays);
 
         control.begin(Stage::Tree, 0);

@@ -2,14 +2,19 @@
 
 use super::lights::{LightStore, Lights, LightsWanted};
 use super::{Sampling, counts};
-use crate::eye::{DrawnLight, EyePass};
+use crate::eye::{DrawnLight, EyePass, PointGeometry, PointSurface, ShadingPoints};
 use crate::light_tree::Family;
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
 use crate::view::View;
 use crate::vpl::LightPassSettings;
-use crate::world::World;
+use crate::world::{SurfacePoint, World};
 use std::sync::Arc;
+
+/// Maximum number of points that photons are aimed for, each the beginning of a path that finds where light comes in,
+/// and the number of shading points for each of them.
+const SEEN: usize = 16384;
+const POINTS_A_PATH: usize = 4;
 
 /// Shading points and virtual lights: all of a picture but its lighting.
 pub struct Prepared<'w> {
@@ -22,13 +27,14 @@ pub struct Prepared<'w> {
 }
 
 impl<'w> Prepared<'w> {
-    /// Runs the light pass, unless `lights` holds what it would make, and the eye pass.
+    /// Runs the light pass, unless `lights` holds what it would make, and the eye pass. Photons are `aimed` at what
+    /// gives light to what the eye sees, or lights are those of all frames.
     pub fn new(
         world: &'w World,
         lights: &LightStore,
         view: &View,
         (sampling, drawn): (Sampling, Option<DrawnLight>),
-        wanted: (LightPassSettings, Family),
+        (wanted, aimed): ((LightPassSettings, Family), bool),
         control: &Control,
     ) -> Prepared<'w> {
         let mut stats = Stats::new();
@@ -44,7 +50,23 @@ impl<'w> Prepared<'w> {
             stats.count("Eye/light samples", eye.light_samples.into());
         }
         // Afterwards, since most memory is taken where the eye pass is put in order.
-        let lights = lights.get(world, wanted, control, &mut stats);
+        let seen = if aimed { seen(world, &eye) } else { Vec::new() };
+        let lights = lights.get(world, (wanted, seen), control, &mut stats);
         Prepared { eye, lights, stats }
     }
+}
+
+/// Points that photons from infinitely far are aimed for, if there is such light.
+fn seen(world: &World, eye: &EyePass) -> Vec<SurfacePoint> {
+    if !world.emitters.have_far() {
+        return Vec::new();
+    }
+    let ShadingPoints { geometry, surfaces } = &eye.points;
+    let step = geometry.len().div_ceil(SEEN).max(POINTS_A_PATH);
+    let point = |(geometry, surface): (&PointGeometry, &PointSurface)| SurfacePoint {
+        position: geometry.position,
+        normal: geometry.normal,
+        geometric_normal: surface.geometric_normal,
+    };
+    geometry.iter().zip(surfaces).step_by(step).map(point).collect()
 }

@@ -17,7 +17,7 @@ use crate::world::SurfacePoint;
 use glam::{Vec2, Vec3};
 
 fn map(world: &WorldAndView, photons: u32) -> PhotonMap {
-    PhotonMap::new(world, &PhotonSettings { photons, max_edges: 6, seed: 0 }, &Control::new())
+    PhotonMap::new(world, &PhotonSettings { photons, seen: &[], max_edges: 6, seed: 0 }, &Control::new())
 }
 
 /// A dark floor from -1 to 1 with a thin wall along z, in sunlight that comes over the wall from +x.

@@ -40,7 +40,7 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
     let settings = EyeSettings { spp: 1, seed: 0, max_depth: 8 };
     let samples = EyePass::trace(world, &world.view, settings, &Control::new());
     let light = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
-    let mut pass = light_pass(world, &light, 8, &Control::new());
+    let mut pass = light_pass(world, &light, &[], 8, &Control::new());
     pass.sets.retain(|set| set.origin == Origin::Indirect);
     let trees =
         LightTrees::build(&pass.sets, pass.profiles, world.diagonal, Family::Divisive, &Control::new());

@@ -2,6 +2,7 @@
 //!
 //! Units: flux in watts by channel, for a single path; to be divided by the number of paths.
 
+use super::openings::Openings;
 use super::target::{LitSphere, Target};
 use crate::embree::Ray;
 use crate::light::{DiscreteDistribution, spot_falloff};
@@ -9,7 +10,7 @@ use crate::math::{Frame, Rgb, luminance};
 use crate::sampling::{Sampler, uniform_sphere};
 use crate::scene::DeltaLight;
 use crate::shadow;
-use crate::world::World;
+use crate::world::{SurfacePoint, World};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
@@ -48,6 +49,24 @@ pub struct PhotonEmitter<'w> {
     by_power: DiscreteDistribution,
     target: Target,
     lit: LitSphere,
+    /// Aims that paths from infinitely far are drawn to.
+    pub aims: Option<Aims<'w>>,
+}
+
+/// Aims of paths from infinitely far, which carry so much less flux.
+pub struct Aims<'w> {
+    openings: Openings<'w>,
+    by_power: DiscreteDistribution,
+    /// Share of the paths that begin infinitely far.
+    share: f32,
+}
+
+impl Aims<'_> {
+    /// Mean flux of the paths that bring light to what the eye sees if all go anywhere, over that of those aimed, of as
+    /// many paths.
+    pub fn gain(&self) -> f32 {
+        self.openings.gain
+    }
 }
 
 impl<'w> PhotonEmitter<'w> {
@@ -61,7 +80,31 @@ impl<'w> PhotonEmitter<'w> {
         let disk = PI * target.core * target.core;
         let environment = emitters.environment.iter().map(|e| 4.0 * PI * disk * e.mean_luminance());
         let by_power = DiscreteDistribution::new(areas.chain(deltas).chain(environment));
-        (!by_power.is_empty()).then_some(PhotonEmitter { world, by_power, target, lit })
+        (!by_power.is_empty()).then_some(PhotonEmitter { world, by_power, target, lit, aims: None })
+    }
+
+    /// Aims for photons whose light is wanted that points `seen` by the eye reflect; `None` if photons that go anywhere
+    /// come there as well.
+    pub fn aims(&self, seen: &[SurfacePoint], seed: u32) -> Option<Aims<'w>> {
+        let openings = Openings::new(self.world, &self.target, seen, seed)?;
+        let far = |index: &usize| self.is_far(*index);
+        let weight =
+            |index: usize| self.by_power.probability(index) / if far(&index) { openings.gain } else { 1.0 };
+        let by_power = DiscreteDistribution::new((0..self.by_power.len()).map(weight));
+        let share = (0..by_power.len()).filter(far).map(|index| by_power.probability(index)).sum();
+        Some(Aims { openings, by_power, share })
+    }
+
+    /// Emitters by the power that paths carry.
+    fn by_power(&self) -> &DiscreteDistribution {
+        self.aims.as_ref().map_or(&self.by_power, |aims| &aims.by_power)
+    }
+
+    /// True of emitters that are infinitely far.
+    fn is_far(&self, index: usize) -> bool {
+        let emitters = &self.world.emitters;
+        let delta = index.checked_sub(emitters.areas.len()).map(|delta| emitters.deltas.get(delta));
+        matches!(delta, Some(None | Some(DeltaLight::Directional { .. })))
     }
 
     /// Flux of all emitters, as luminance, that paths carry on the average.
@@ -76,23 +119,23 @@ impl<'w> PhotonEmitter<'w> {
 
     /// True if paths are aimed by the number for places rather than by that for directions.
     pub fn aims_by_place(&self, index: usize) -> bool {
-        let emitters = &self.world.emitters;
-        match index.checked_sub(emitters.areas.len()).map(|delta| emitters.deltas.get(delta)) {
-            None => false,
-            Some(delta) => matches!(delta, None | Some(DeltaLight::Directional { .. })),
-        }
+        self.is_far(index)
     }
 
     /// Samples the beginning of a path; `None` where an emitter is dark.
     pub fn sample(&self, sampler: &mut Sampler) -> Option<Emission> {
-        let (index, _) = self.by_power.sample(sampler.next_1d());
+        let (index, _) = self.by_power().sample(sampler.next_1d());
         self.sample_of(index, &EmissionNumbers::new(sampler))
     }
 
     /// Begins a path at emitter `index`, with the flux of paths that choose emitters in proportion to power.
     pub fn sample_of(&self, index: usize, numbers: &EmissionNumbers) -> Option<Emission> {
         let EmissionNumbers { place: u_place, direction: u_direction, side: u_side } = *numbers;
-        let inv_probability = 1.0 / self.by_power.probability(index);
+        if let Some(Aims { openings, share, .. }) = self.aims.as_ref().filter(|_| self.is_far(index)) {
+            let emission = openings.sample(&self.target, u_side, u_place, u_direction)?;
+            return Some(Emission { flux: emission.flux / *share, ..emission });
+        }
+        let inv_probability = 1.0 / self.by_power().probability(index);
         let emitters = &self.world.emitters;
         if let Some(light) = emitters.areas.get(index) {
             let point = light.sample(u_place);
@@ -100,7 +143,7 @@ impl<'w> PhotonEmitter<'w> {
             let radiance = light.radiance(&self.world.scene, &point, point.normal);
             let flux = radiance * (projected * light.area * inv_probability);
             let ray = shadow::ray_from(point.position, point.normal, direction);
-            return Emission::new(ray, flux, Some(radiance));
+            return Emission::new(ray, flux, Some(luminance(radiance)));
         }
         if let Some(light) = emitters.deltas.get(index - emitters.areas.len()) {
             return match *light {
@@ -142,13 +185,13 @@ impl<'w> PhotonEmitter<'w> {
         }
         let s = emitters.environment.as_ref()?.sample(u_direction)?;
         let (ray, area) = self.target.ray(-s.direction, u_place);
-        Emission::new(ray, s.radiance * (area * inv_probability / s.pdf), Some(s.radiance))
+        Emission::new(ray, s.radiance * (area * inv_probability / s.pdf), Some(luminance(s.radiance)))
     }
 }
 
 impl Emission {
-    fn new(ray: Ray, flux: Rgb, radiance: Option<Rgb>) -> Option<Emission> {
+    pub(super) fn new(ray: Ray, flux: Rgb, radiance: Option<f32>) -> Option<Emission> {
         let useful = flux.is_finite() && flux.max_element() > 0.0;
-        useful.then(|| Emission { ray, flux, radiance: radiance.map_or(f32::INFINITY, luminance) })
+        useful.then(|| Emission { ray, flux, radiance: radiance.unwrap_or(f32::INFINITY) })
     }
 }

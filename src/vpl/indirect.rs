@@ -11,7 +11,7 @@ use super::{LightPassSettings, Origin, Vpl, VplKind, VplSet};
 use crate::math::Rgb;
 use crate::progress::Control;
 use crate::shadow;
-use crate::world::World;
+use crate::world::{SurfacePoint, World};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
@@ -63,16 +63,18 @@ impl Left {
 }
 
 /// Returns about `settings.indirect` indirect VPLs (whole chunks of paths, so a few more, and up to as many that
-/// radiate by lobes), or fewer where few paths hit a surface.
+/// radiate by lobes) for the indirect light of points `seen`, or fewer where few paths hit a surface, or where they are
+/// aimed at what lights these.
 pub fn indirect_vpls(
     world: &World,
     settings: &LightPassSettings,
+    seen: &[SurfacePoint],
     max_depth: u32,
     control: &Control,
 ) -> IndirectVpls {
     // One edge is the eye's, one joins VPL and receiver.
     let max_edges = max_depth.saturating_sub(2);
-    let wanted = PhotonSettings { photons: settings.indirect, max_edges, seed: settings.seed };
+    let wanted = PhotonSettings { photons: settings.indirect, seen, max_edges, seed: settings.seed };
     let (found, photons) = trace_photons(world, &wanted, control, Left::of);
     let mut diffuse = VplSet::new(VplKind::Oriented, Origin::Indirect);
     let mut lobed = VplSet::new(VplKind::Lobed, Origin::Indirect);

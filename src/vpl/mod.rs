@@ -11,8 +11,13 @@
 mod direct;
 mod direct_indirect;
 mod emission;
+mod entries;
+mod far;
 mod indirect;
 mod octahedral;
+mod openings;
+#[cfg(test)]
+mod openings_tests;
 mod pass;
 mod photons;
 mod profile;

@@ -5,7 +5,7 @@ use super::indirect::{IndirectVpls, indirect_vpls};
 use super::photons::PhotonCounts;
 use super::{LightPassSettings, Profiles, VplSet};
 use crate::progress::Control;
-use crate::world::World;
+use crate::world::{SurfacePoint, World};
 
 /// VPLs of a scene.
 #[derive(Clone, Debug)]
@@ -27,16 +27,19 @@ impl LightPass {
     }
 }
 
-/// Creates the VPLs of a scene for paths of at most `max_depth` edges. Stops early, with fewer indirect VPLs
+/// Creates the VPLs of a scene for paths of at most `max_depth` edges, and for the indirect light of the points `seen`;
+/// of all points if there are none. Stops early, with fewer indirect VPLs
 /// of the right total flux, if `control` is cancelled.
 pub fn light_pass(
     world: &World,
     settings: &LightPassSettings,
+    seen: &[SurfacePoint],
     max_depth: u32,
     control: &Control,
 ) -> LightPass {
     let DirectVpls { mut sets, spots, sizes } = direct_vpls(world, settings);
-    let IndirectVpls { sets: indirect, lobes, photons } = indirect_vpls(world, settings, max_depth, control);
+    let IndirectVpls { sets: indirect, lobes, photons } =
+        indirect_vpls(world, settings, seen, max_depth, control);
     sets.extend(indirect);
     LightPass { sets, profiles: Profiles { spots, lobes }, sizes, photons }
 }

@@ -15,7 +15,7 @@ use crate::parallel::ShortRuns;
 use crate::progress::Control;
 use crate::sampling::{Sampler, hash};
 use crate::shadow;
-use crate::world::World;
+use crate::world::{SurfacePoint, World};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -29,17 +29,28 @@ const PATHS_PER_PHOTON: u32 = 32;
 const MAX_EDGES: u32 = 256;
 /// Maximum probability of survival, so that a path ends even if nothing absorbs.
 const MAX_SURVIVAL: f32 = 0.98;
+/// Number of chunks of aimed paths, and of others, that tell how many photons they leave.
+const TRIED: u32 = 4;
+/// Gain from which on paths are aimed; that from which on fewer photons do, in inverse proportion; and their least
+/// share.
+///
+/// Rare photons that were not aimed bring more noise than the gain says.
+const LEAST_GAIN: f32 = 1.5;
+const ENOUGH: f32 = 2.0;
+const LEAST_SHARE: f32 = 0.25;
 /// Maximum correction for the difference between shading and geometric normal; a grazing photon would
 /// otherwise leave a VPL brighter than all others together.
 pub const MAX_CORRECTION: f32 = 8.0;
 
 /// Counts of tracing photons.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PhotonCounts {
     /// Number of paths, by which flux is divided.
     pub paths: u64,
     /// Number of closest-hit queries.
     pub rays: u64,
+    /// Photons that would be as good if none were aimed, over their number; 0 if none is.
+    pub gain: f32,
 }
 
 /// A photon: light arriving at a surface.
@@ -71,10 +82,12 @@ pub struct PhotonHit<'a> {
 
 /// Settings of photon tracing.
 #[derive(Clone, Copy, Debug)]
-pub struct PhotonSettings {
-    /// Approximate number of photons (whole chunks of paths, so a few more), or fewer where few paths hit a
-    /// surface.
+pub struct PhotonSettings<'a> {
+    /// Approximate number of photons (whole chunks of paths, so a few more), or fewer where few paths hit a surface, or
+    /// where they are aimed.
     pub photons: u32,
+    /// Points whose indirect light is wanted; if there are none, photons are not aimed.
+    pub seen: &'a [SurfacePoint],
     /// Maximum number of edges of a path.
     pub max_edges: u32,
     /// Seed of the paths.
@@ -96,11 +109,15 @@ pub fn trace_photons<T: Send>(
 ) -> (Vec<T>, PhotonCounts) {
     let mut counts = PhotonCounts::default();
     let max_edges = settings.max_edges.min(MAX_EDGES);
-    let wanted = settings.photons as usize;
-    let source = match PhotonEmitter::new(world) {
-        Some(source) if wanted > 0 && max_edges > 0 => source,
+    let mut source = match PhotonEmitter::new(world) {
+        Some(source) if settings.photons > 0 && max_edges > 0 => source,
         _ => return (Vec::new(), counts),
     };
+    let mut wanted = settings.photons as usize;
+    if let Some(gain) = aim(world, &mut source, settings, max_edges, &mut counts) {
+        counts.gain = gain;
+        wanted = (wanted as f32 * (ENOUGH / gain).clamp(LEAST_SHARE, 1.0)) as usize;
+    }
     let seed = hash(settings.seed, 0x1d1d);
     let chunks_limit = (settings.photons.saturating_mul(PATHS_PER_PHOTON) / CHUNK).max(FIRST_WAVE);
     let mut photons: Vec<T> = Vec::with_capacity(wanted + wanted / 8);
@@ -125,6 +142,34 @@ pub fn trace_photons<T: Send>(
     }
     counts.paths = u64::from(chunks) * u64::from(CHUNK);
     (photons, counts)
+}
+
+/// Aims the paths of a source; returns the gain, or `None` if aims were not worth it and none are set. Gain is the mean
+/// flux of photons that bring light to points seen if paths are not aimed, over that of as many photons of paths that
+/// are: most of the former leave fewer photons, outside.
+fn aim(
+    world: &World,
+    source: &mut PhotonEmitter,
+    settings: &PhotonSettings,
+    max_edges: u32,
+    counts: &mut PhotonCounts,
+) -> Option<f32> {
+    let aims = source.aims(settings.seen, settings.seed)?;
+    let seed = hash(settings.seed, 0xa14d);
+    let mut photons = |source: &PhotonEmitter| -> f32 {
+        let trace = |chunk| trace_chunk(world, source, chunk, seed, max_edges, &|_| ());
+        let traced: Vec<Chunk<()>> = (0..TRIED).into_par_iter().one_by_one().map(trace).collect();
+        counts.rays += traced.iter().map(|chunk| chunk.rays).sum::<u64>();
+        traced.iter().map(|chunk| chunk.kept.len() as f32).sum()
+    };
+    let (gain, anywhere) = (aims.gain(), photons(source));
+    source.aims = Some(aims);
+    let gain = gain * anywhere / photons(source).max(1.0);
+    if gain >= LEAST_GAIN {
+        return Some(gain);
+    }
+    source.aims = None;
+    None
 }
 
 /// Number of chunks to trace next, according to the yield so far, less a tenth, so that little is discarded.

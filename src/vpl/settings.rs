@@ -16,6 +16,8 @@ settings! {
         ];
         /// Virtual point lights where light is reflected, about, and at least those of 1024 paths; 0: direct light
         /// only.
+        ///
+        /// To a quarter of them where light of sky and sun comes in by openings and is aimed at them.
         indirect: u32 = 300_000 => [.named("vpls").at_least(0.0).scaled(&FEWER).judged_by(JudgedBy::Light)];
         /// Seed of the VPLs.
         seed: u32 = 0;

@@ -46,6 +46,25 @@ impl Target {
         Some(Target { centre, radius, core: radius })
     }
 
+    /// Density by area, across the unit vector `towards` a light, with which [`Target::ray`] draws lines of its light
+    /// through a place.
+    pub fn density(&self, place: Vec3, towards: Vec3) -> f32 {
+        let Target { centre, radius, core } = *self;
+        let area = if core == radius {
+            PI * radius * radius
+        } else {
+            let distance_sq = (place - centre).cross(towards).length_squared();
+            let is_in_core = distance_sq < core * core;
+            if is_in_core { 2.0 * PI * core * core } else { 4.0 * PI * (radius / core).ln() * distance_sq }
+        };
+        area.recip()
+    }
+
+    /// The point on the line from a place `towards` a light that is a little before all surfaces.
+    pub fn before(&self, place: Vec3, towards: Vec3) -> Vec3 {
+        place + towards * (1.01 * self.radius + (self.centre - place).dot(towards))
+    }
+
     /// Returns a ray along `direction` through a point of the disc that faces it, and the inverse of its density by
     /// area.
     pub fn ray(&self, direction: Vec3, u: Vec2) -> (Ray, f32) {

@@ -15,7 +15,7 @@ fn indirect_flux_is_what_the_surfaces_reflect() {
     // In a closed room each watt emitted is reflected ρ + ρ² + ... = ρ/(1-ρ) times.
     let world = room_with_ball(None);
     let settings = LightPassSettings { indirect: 50_000, ..LightPassSettings::default() };
-    let lights = light_pass(&world, &settings, u32::MAX, &Control::new());
+    let lights = light_pass(&world, &settings, &[], u32::MAX, &Control::new());
     let of = |origin| {
         let sets = lights.sets.iter().filter(|s| s.origin == origin);
         sets.flat_map(|s| &s.intensities).copied().sum::<Rgb>() * PI
@@ -32,7 +32,7 @@ fn indirect_flux_is_what_the_surfaces_reflect() {
 /// Flux of many indirect virtual lights, and the number of photons' paths that brought them.
 fn indirect_flux(scene: SceneAndView) -> (Rgb, u64) {
     let settings = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
-    let lights = light_pass(&world(scene), &settings, u32::MAX, &Control::new());
+    let lights = light_pass(&world(scene), &settings, &[], u32::MAX, &Control::new());
     let indirect = lights.sets.iter().filter(|s| s.origin == Origin::Indirect);
     let intensities: Vec<Rgb> = indirect.flat_map(|s| &s.intensities).copied().collect();
     assert!(intensities.len() > 15_000, "{}", intensities.len());
@@ -101,7 +101,7 @@ fn lamps_that_are_surfaces_far_off_send_half_of_their_photons_to_the_others() {
 #[test]
 fn a_direct_only_depth_makes_no_indirect_vpls() {
     let world = room_with_ball(None);
-    let lights = light_pass(&world, &LightPassSettings::default(), 2, &Control::new());
+    let lights = light_pass(&world, &LightPassSettings::default(), &[], 2, &Control::new());
     assert!(lights.sets.iter().all(|s| s.origin == Origin::Direct || s.is_empty()));
     assert_eq!(lights.photons.rays, 0);
 }
@@ -200,7 +200,7 @@ fn metals_radiate_by_lobes_and_plastics_diffusely() {
         let wall = add_material(&mut scene, material);
         scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
         scene.lights.push(DeltaLight::Point { position: Vec3::ZERO, intensity: Rgb::ONE });
-        let lights = light_pass(&world(scene), &settings, 3, &Control::new());
+        let lights = light_pass(&world(scene), &settings, &[], 3, &Control::new());
         let flux = |kind: VplKind| -> f32 {
             let sets = lights.sets.iter().filter(|s| s.kind == kind && s.origin == Origin::Indirect);
             let one = |(vpl, intensity): (&Vpl, &Rgb)| match kind {

@@ -69,7 +69,7 @@ fn shading_normal(mesh: &Mesh, triangle: &Triangle, b: Vec2) -> Vec3 {
 }
 
 /// A surface point that gathers light.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// Position.
     pub position: Vec3,

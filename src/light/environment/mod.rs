@@ -221,6 +221,19 @@ impl EnvironmentLight {
         self.sample_tiles(&drawn, u16::MAX)
     }
 
+    /// Share of all flux that a tile has.
+    pub fn flux_of_tile(&self, tile: usize) -> f32 {
+        self.tiles.all()[tile].flux
+    }
+
+    /// Samples a direction of a tile, by itself: a disc adds nothing to tiles that it is before. The density is that
+    /// within the tile.
+    pub fn sample_of_tile(&self, tile: usize, u: Vec2) -> Option<EnvironmentSample> {
+        let mut drawn = [Drawn::default(); LANES];
+        drawn[0] = Drawn { tile, u, density: self.tiles.all()[tile].density };
+        self.sample_tiles(&drawn, 1)[0]
+    }
+
     /// Samples directions in tiles, in the lanes of `wanted`.
     fn sample_tiles(&self, drawn: &[Drawn; LANES], wanted: u16) -> [Option<EnvironmentSample>; LANES] {
         let on_discs =

@@ -72,7 +72,7 @@ impl Settings {
             Some(_) => self.cache.of_walk(),
             None => self.cache,
         };
-        let wanted = (self.light, self.family);
+        let wanted = ((self.light, self.family), kept.is_none());
         let glossy = Glossy::new(world, &cache);
         let drawn = drawn_light(glossy.as_ref(), &cache, settled);
         let drawn = drawn.map(|drawn| DrawnLight { guides: kept.is_none(), ..drawn });

@@ -56,7 +56,7 @@ impl Renderer for Settings {
         let wanted = LightsWanted::new(world, self.sampling(), (self.light, self.family));
         let max_depth = wanted.max_depth;
         let caustics = lights.caustics((world, view), (self.seed, max_depth), control, &mut stats);
-        let lights = lights.get(world, wanted, control, &mut stats);
+        let lights = lights.get(world, (wanted, Vec::new()), control, &mut stats);
         let context = lights.context(world, self.compensation);
         let shading = ShadeSettings { cut: self.cut, share: self.share, shadows: self.shadows };
         let eye = self.sampling().eye(&world.scene);

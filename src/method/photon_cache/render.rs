@@ -92,7 +92,7 @@ impl Renderer for Settings {
         let glossy = Glossy::new(world, &self.cache);
         let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default());
         let Prepared { eye: samples, lights, mut stats } =
-            Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
+            Prepared::new(world, lights, view, (self.sampling(), drawn), (wanted, false), control);
         let context = lights.context(world, true);
         let direct = LightcutSource { context, settings: &self.cache };
 
@@ -169,7 +169,7 @@ impl Renderer for Settings {
 fn irradiance(world: &World, settings: &Settings, control: &Control, stats: &mut Stats) -> IrradianceMap {
     // One edge is the eye's, one that of the gathering.
     let max_edges = world.scene.path_limit(settings.max_depth).saturating_sub(2);
-    let wanted = PhotonSettings { photons: settings.photons, max_edges, seed: settings.seed };
+    let wanted = PhotonSettings { photons: settings.photons, seen: &[], max_edges, seed: settings.seed };
     control.begin(Stage::LightPass, u64::from(settings.photons));
     let photons = stats.time(Stage::LightPass, || PhotonMap::new(world, &wanted, control));
     stats.count("Photons/total", photons.photons.len() as u64);

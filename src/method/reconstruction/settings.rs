@@ -48,7 +48,8 @@ impl Settings {
         view: &View,
         control: &Control,
     ) -> Prepared<'w> {
-        Prepared::new(world, lights, view, (self.sampling(), None), (self.light, self.family), control)
+        let wanted = ((self.light, self.family), true);
+        Prepared::new(world, lights, view, (self.sampling(), None), wanted, control)
     }
 
     /// Settings of the shading stage.
