@@ -12,11 +12,15 @@ use glam::Vec3;
 const SAMPLES: usize = 1 << 15;
 const IN_REGION: usize = 32;
 
+/// Intensity over the geometric mean of a region from which on a virtual light does not count: that of a stray photon,
+/// around which all others would be thought as bright.
+const UNUSUAL: f64 = 3.0;
+
 /// Mean intensities of indirect virtual lights.
 #[derive(Clone, Debug)]
 pub struct Intensities {
     regions: Regions,
-    /// By region: mean luminance of the intensities per cosine, by flux.
+    /// By region: mean luminance of the intensities per cosine, by flux, without unusual ones.
     means: Vec<f32>,
 }
 
@@ -39,8 +43,10 @@ impl Intensities {
         let (regions, members) = Regions::new(&places, IN_REGION);
         let mean = |members: &Vec<u32>| {
             let of_members = || members.iter().map(|i| intensities[*i as usize]);
-            let squares: f64 = of_members().map(|intensity| intensity * intensity).sum();
-            (squares / of_members().sum::<f64>()) as f32
+            let middle = (of_members().map(f64::ln).sum::<f64>() / members.len() as f64).exp();
+            let usual = || of_members().filter(|intensity| *intensity <= UNUSUAL * middle);
+            let squares: f64 = usual().map(|intensity| intensity * intensity).sum();
+            (squares / usual().sum::<f64>()) as f32
         };
         (!places.is_empty()).then(|| Intensities { means: members.iter().map(mean).collect(), regions })
     }
@@ -91,6 +97,16 @@ mod tests {
         }
         let found = Intensities::new(&[set], &Profiles::default()).expect("there are lights");
         assert!((found.around(Vec3::ZERO) - 2.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn stray_lights_do_not_count() {
+        let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
+        for i in 0..20 {
+            set.push(Vpl::oriented(Vec3::ZERO, Vec3::Z), Rgb::splat(if i == 7 { 500.0 } else { 1.0 }));
+        }
+        let found = Intensities::new(&[set], &Profiles::default()).expect("there are lights");
+        assert!((found.around(Vec3::ZERO) - 1.0).abs() < 1e-6);
     }
 
     #[test]

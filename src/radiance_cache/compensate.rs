@@ -31,23 +31,31 @@ const EPSILON: f32 = 0.3;
 /// Divisor of a record's maximum number of clusters that gives the maximum in those lightcuts.
 const CUT_FRACTION: usize = 16;
 
+/// Luminance that a virtual light may give over the limit where geometry terms are limited: one much brighter than
+/// those around would leave a spot.
+const BRIGHTER: f32 = 2.0;
+
 /// Limits of the contributions of indirect virtual lights to the points of a packet.
 #[derive(Clone, Copy, Debug)]
 pub struct Clamps {
     limits: F32x16,
-    /// True if they limit geometry terms, false for luminances.
+    /// Limits of luminances besides.
+    luminances: F32x16,
+    /// True if the first limit geometry terms, false for luminances.
     geometry: bool,
 }
 
 impl Clamps {
     /// Limits such that none gives more than the luminances `limits` to the points of `task`.
     pub fn new(compensation: &Option<Compensation>, limits: &F32x16, task: &[Candidate]) -> Clamps {
-        let Some(c) = compensation else { return Clamps { limits: *limits, geometry: false } };
+        let Some(c) = compensation else {
+            return Clamps { limits: *limits, luminances: [f32::INFINITY; LANES], geometry: false };
+        };
         let mut bounds = [f32::INFINITY; LANES];
         for ((bound, limit), candidate) in bounds.iter_mut().zip(limits).zip(task) {
             *bound = c.bound(candidate.point.position, *limit);
         }
-        Clamps { limits: bounds, geometry: true }
+        Clamps { limits: bounds, luminances: limits.map(|limit| limit * BRIGHTER), geometry: true }
     }
 
     /// Shares that are kept of the contributions of a light, by the irradiance `responses` to one of unit intensity.
@@ -58,6 +66,10 @@ impl Clamps {
         for l in 0..LANES {
             let (value, limit) = (weights.dot(responses.get(l)), self.limits[l]);
             kept[l] = if value > limit { limit / value } else { 1.0 };
+            let given = (intensity * LUMINANCE).dot(responses.get(l)) * kept[l];
+            if given > self.luminances[l] {
+                kept[l] *= self.luminances[l] / given;
+            }
         }
         kept
     }
@@ -169,7 +181,8 @@ mod tests {
         for (intensity, term) in [(0.5, 8.0), (2.0, 0.25), (4.0, 16.0)] {
             let kept = |limit: f32, geometry: bool| {
                 let responses = Vec3x16::splat(Rgb::splat(term));
-                Clamps { limits: [limit; LANES], geometry }.kept(Rgb::splat(intensity), &responses)[3]
+                Clamps { limits: [limit; LANES], luminances: [f32::INFINITY; LANES], geometry }
+                    .kept(Rgb::splat(intensity), &responses)[3]
             };
             let luminance = kept(2.0, false) * intensity * term;
             assert!((luminance - (intensity * term).min(2.0)).abs() < 1e-5);

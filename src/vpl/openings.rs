@@ -1,8 +1,8 @@
 //! Aims for photons from infinitely far: where their light comes to what the eye may see the reflection of.
 //!
-//! From within a room, nearly all photons of the sky are lost on what is outside. Short paths from surfaces that the eye
-//! sees find the places that light comes to ([`super::entries`]); spheres around these are the aims, by source. Some
-//! photons still go anywhere, so that flux is the same on the average, however little was found.
+//! Seen from within a room, nearly all photons of the sky are lost on what is outside. Short paths from surfaces that
+//! the eye sees find the places that light comes to ([`super::entries`]); spheres around these are the aims, by source.
+//! Some photons still go anywhere, so that flux is the same on the average, however little was found.
 //!
 //! Paper: Georgiev & Slusallek, *Simple and Robust Iterative Importance Sampling of Virtual Point Lights*, 2010, for
 //! the aim: virtual lights in proportion to what they give to the picture.
@@ -85,8 +85,8 @@ impl<'w> Openings<'w> {
         (openings.gain >= LEAST_GAIN && openings.gain.is_finite()).then_some(openings)
     }
 
-    /// Chooses the share that goes anywhere by which photons that bring the light of the places `entries`, none of which
-    /// the aims were made of, have the least flux in the mean, and measures the gain.
+    /// Chooses the share that goes anywhere by which photons that bring the light of the places `entries`, none of
+    /// which the aims were made of, have the least flux in the mean, and measures the gain.
     fn weigh(&mut self, target: &Target, entries: &[Entry]) {
         let gain = |anywhere: f32| {
             let (mut flux, mut all) = (0.0f64, 0.0f64);
