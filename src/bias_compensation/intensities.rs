@@ -36,8 +36,11 @@ impl Intensities {
                     VplKind::Lobed => profiles.lobes[vpl.lobe()].diffuse_equivalent(),
                     _ => 1.0,
                 };
-                places.push(vpl.position);
-                intensities.push(f64::from(luminance(*intensity) * as_diffuse));
+                let intensity = f64::from(luminance(*intensity)) * f64::from(as_diffuse);
+                if intensity > 0.0 {
+                    places.push(vpl.position);
+                    intensities.push(intensity);
+                }
             }
         }
         let (regions, members) = Regions::new(&places, IN_REGION);

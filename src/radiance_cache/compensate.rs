@@ -188,6 +188,10 @@ mod tests {
             assert!((luminance - (intensity * term).min(2.0)).abs() < 1e-5);
             assert_eq!(kept(4.0, true) * term, term.min(4.0));
             assert_eq!(kept(f32::INFINITY, false), 1.0);
+            let both = Clamps { limits: [4.0; LANES], luminances: [2.0; LANES], geometry: true };
+            let given =
+                intensity * term * both.kept(Rgb::splat(intensity), &Vec3x16::splat(Rgb::splat(term)))[3];
+            assert!((given - (intensity * f32::min(term, 4.0)).min(2.0)).abs() < 1e-5);
         }
         let clamps = Clamps::new(&None, &[2.0; LANES], &[]);
         assert_eq!((clamps.bound(0), Clamps { geometry: true, ..clamps }.bound(0)), (f32::INFINITY, 2.0));

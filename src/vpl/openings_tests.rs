@@ -1,13 +1,17 @@
 //! Aimed photons against those that go anywhere.
 
 use super::photons::{PhotonCounts, PhotonSettings, trace_photons};
-use super::{LightPassSettings, light_pass};
+use super::{LightPassSettings, PhotonEmitter, light_pass};
+use crate::embree::Ray;
 use crate::math::{Rgb, luminance};
 use crate::progress::Control;
+use crate::sampling::Sampler;
 use crate::scene::{Camera, DeltaLight, DistantDisc, Environment, Mesh};
 use crate::test_scenes::{SceneAndView, add_material, diffuse, quad, room, scene, world};
 use crate::world::{SurfacePoint, World};
 use glam::Vec3;
+use rayon::prelude::*;
+use std::f32::consts::PI;
 
 /// A wide plain.
 fn plain() -> SceneAndView {
@@ -80,6 +84,38 @@ fn aimed_photons_carry_the_flux_of_others_and_vary_less() {
         assert!((aimed - even).abs() < 4.0 * error, "{aimed} for {even} ± {error}");
         assert!(error < 0.04 * even, "{error} of {even}");
         assert!(share * aimed_variance < 0.7 * even_variance, "{share} {aimed_variance} {even_variance}");
+    }
+}
+
+/// Lines through a ball of radius r have the flux π r² (4π L + the irradiances of the suns), wherever it is.
+#[test]
+fn aimed_paths_have_the_flux_of_sky_and_suns() {
+    const PATHS: u32 = 8_000_000;
+    const CHUNKS: u32 = 64;
+    let world = room_with_window();
+    let mut source = PhotonEmitter::new(&world).expect("there is a sky");
+    source.aims = source.aims(&floor(), 0);
+    assert!(source.aims.is_some());
+    // Of half angle .005 and radiance 2e4.
+    let disc = PI * 0.005 * 0.005 * 2e4;
+    let irradiance = 4.0 * PI * 0.5 + disc + 0.5;
+    for (centre, radius) in [(Vec3::splat(0.5), 0.5f32), (Vec3::X * -4.0, 2.0)] {
+        let passes = |ray: &Ray| (centre - ray.origin).cross(ray.direction).length() < radius;
+        let sums: Vec<[f64; 2]> = (0..CHUNKS)
+            .into_par_iter()
+            .map(|chunk| {
+                (chunk * (PATHS / CHUNKS)..(chunk + 1) * (PATHS / CHUNKS))
+                    .filter_map(|path| source.sample(&mut Sampler::new(5, path)))
+                    .filter(|emission| passes(&emission.ray))
+                    .map(|emission| f64::from(luminance(emission.flux)))
+                    .fold([0.0; 2], |[sum, squares], flux| [sum + flux, squares + flux * flux])
+            })
+            .collect();
+        let [mean, squares] = [0, 1].map(|i| sums.iter().map(|s| s[i]).sum::<f64>() / f64::from(PATHS));
+        let error = ((squares - mean * mean) / f64::from(PATHS)).sqrt();
+        let expected = f64::from(PI * radius * radius * irradiance);
+        assert!((mean - expected).abs() < 4.0 * error, "{mean} ± {error} for {expected} around {centre}");
+        assert!(error < 0.015 * expected, "{error} of {expected}");
     }
 }
 

@@ -28,8 +28,8 @@ impl LightPass {
 }
 
 /// Creates the VPLs of a scene for paths of at most `max_depth` edges, and for the indirect light of the points `seen`;
-/// of all points if there are none. Stops early, with fewer indirect VPLs
-/// of the right total flux, if `control` is cancelled.
+/// of all points if there are none. Stops early, with fewer indirect VPLs of the right total flux, if `control` is
+/// cancelled.
 pub fn light_pass(
     world: &World,
     settings: &LightPassSettings,
