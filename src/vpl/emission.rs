@@ -67,6 +67,11 @@ impl Aims<'_> {
     pub fn gain(&self) -> f32 {
         self.openings.gain
     }
+
+    /// Share of the paths that begin infinitely far which go anywhere.
+    pub fn anywhere(&self) -> f32 {
+        self.openings.share
+    }
 }
 
 impl<'w> PhotonEmitter<'w> {

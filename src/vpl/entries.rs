@@ -24,7 +24,8 @@ pub(super) struct Entry {
     pub source: usize,
     /// Unit vector to it.
     pub towards: Vec3,
-    /// Luminance that it adds to the indirect light of what the eye sees, up to a factor.
+    /// Luminance that it adds to the indirect light of a point that the eye sees, over the light of that point and of
+    /// the mean one, up to a factor: errors are as visible in places with less of it.
     pub weight: f32,
 }
 
@@ -36,7 +37,13 @@ pub(super) fn entries(world: &World, lights: &FarLights, seen: &[SurfacePoint], 
         follow(world, lights, start, &mut Sampler::new(seed, number as u32), &mut found);
         found
     };
-    let found: Vec<Vec<Entry>> = seen.par_iter().in_short_runs().enumerate().map(from).collect();
+    let mut found: Vec<Vec<Entry>> = seen.par_iter().in_short_runs().enumerate().map(from).collect();
+    let light = |entries: &Vec<Entry>| entries.iter().map(|entry| f64::from(entry.weight)).sum::<f64>();
+    let mean = found.iter().map(light).sum::<f64>() / found.len().max(1) as f64;
+    for entries in &mut found {
+        let scale = 1.0 / (light(entries) + mean);
+        entries.iter_mut().for_each(|entry| entry.weight = (f64::from(entry.weight) * scale) as f32);
+    }
     found.into_iter().flatten().collect()
 }
 

@@ -50,7 +50,7 @@ pub(super) struct Openings<'w> {
     /// Pairs of source and aim.
     pairs: DiscreteDistribution,
     /// Share of the photons that go anywhere.
-    share: f32,
+    pub share: f32,
     /// Mean flux of the photons that bring light to what the eye sees if all go anywhere, over that of those aimed.
     pub gain: f32,
 }
