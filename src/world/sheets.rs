@@ -14,6 +14,9 @@ use glam::{Vec2, Vec3};
 /// Maximum number of sheets that a segment crosses; it is blocked by more.
 const MAX_CROSSED: usize = 64;
 
+/// Number of them that are kept without an allocation.
+const FEW_CROSSED: usize = 8;
+
 /// Distance by which a ray goes on behind a sheet, in units of the last place of the largest coordinate: that by which
 /// rays start off their surfaces.
 const ULPS: f32 = 8.0;
@@ -39,8 +42,10 @@ struct Crossing {
 
 /// The sheets on a segment.
 struct Crossed {
-    crossings: [Crossing; MAX_CROSSED],
+    few: [Crossing; FEW_CROSSED],
     count: usize,
+    /// All of them if they are more than few, else empty.
+    many: Vec<Crossing>,
 }
 
 /// The sheets of a scene beside the structure `whole` over all its meshes; `None` if there are none.
@@ -61,23 +66,35 @@ pub(super) fn sheets(
 impl Crossed {
     fn new() -> Crossed {
         let hit = Hit { t: 0.0, u: 0.0, v: 0.0, geometry: 0, primitive: 0 };
-        Crossed { crossings: [Crossing { hit, share: Rgb::ONE }; MAX_CROSSED], count: 0 }
+        Crossed { few: [Crossing { hit, share: Rgb::ONE }; FEW_CROSSED], count: 0, many: Vec::new() }
     }
 
     /// Adds one; false if no light passes, or there are too many.
     #[inline]
     fn add(&mut self, crossing: Crossing) -> bool {
-        let Some(next) = self.crossings.get_mut(self.count).filter(|_| crossing.share != Rgb::ZERO) else {
+        if self.count == MAX_CROSSED || crossing.share == Rgb::ZERO {
             return false;
-        };
-        *next = crossing;
+        }
+        match self.few.get_mut(self.count) {
+            Some(next) => *next = crossing,
+            None => {
+                if self.many.is_empty() {
+                    self.many.extend_from_slice(&self.few);
+                }
+                self.many.push(crossing);
+            }
+        }
         self.count += 1;
         true
     }
 
+    fn all(&mut self) -> &mut [Crossing] {
+        if self.many.is_empty() { &mut self.few[..self.count] } else { &mut self.many }
+    }
+
     /// Share of the light that passes all of them; of those that lie within rounding of one another, the first.
     fn transmittance(&mut self, world: &World, segment: &Ray) -> Rgb {
-        let crossings = &mut self.crossings[..self.count];
+        let crossings = self.all();
         crossings.sort_unstable_by(|a, b| a.hit.t.total_cmp(&b.hit.t));
         let Some(last) = crossings.last() else { return Rgb::ONE };
         let length = segment.direction.length();

@@ -61,24 +61,29 @@ impl Specular {
             }
         }
         let mut faces = Faces { boxes, x, at: [[0.0; LANES]; 3], weights: [[0.0; LANES]; 3], total: 0.0 };
+        let mut totals = [0.0; LANES];
         for axis in 0..3 {
             let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+            let (low, high, x) = (&low[axis], &high[axis], x[axis]);
+            let (centre_b, centre_c, half_b, half_c) = (&centre[b], &centre[c], &half[b], &half[c]);
+            let (n_a, n_b, n_c) = (n[axis], n[b], n[c]);
+            let (at, weights) = (&mut faces.at[axis], &mut faces.weights[axis]);
             for i in 0..LANES {
-                let below = low[axis][i] - x[axis];
-                let distance = below.max(x[axis] - high[axis][i]);
-                let at = if below > 0.0 { low[axis][i] } else { high[axis][i] };
-                let to_face = [at - x[axis], centre[b][i], centre[c][i]];
-                let area = 4.0 * half[b][i] * half[c][i];
-                let dist_sq = to_face.iter().map(|d| d * d).sum::<f32>() + 0.25 * area;
+                let below = low[i] - x;
+                let distance = below.max(x - high[i]);
+                at[i] = if below > 0.0 { low[i] } else { high[i] };
+                let (to_a, to_b, to_c) = (at[i] - x, centre_b[i], centre_c[i]);
+                let area = 4.0 * half_b[i] * half_c[i];
+                let dist_sq = to_a * to_a + to_b * to_b + to_c * to_c + 0.25 * area;
                 let inv_dist = 1.0 / dist_sq.sqrt();
-                let cos = (n[axis] * to_face[0] + n[b] * to_face[1] + n[c] * to_face[2]) * inv_dist;
+                let cos = (n_a * to_a + n_b * to_b + n_c * to_c) * inv_dist;
                 let weight = cos.max(MIN_COS) * area * distance * inv_dist * inv_dist * inv_dist;
                 let is_front = (distance > 0.0) & (height[i] > 0.0) & (weight > 0.0);
-                faces.at[axis][i] = at;
-                faces.weights[axis][i] = if is_front { weight } else { 0.0 };
+                weights[i] = if is_front { weight } else { 0.0 };
+                totals[i] += weights[i];
             }
         }
-        faces.total = faces.weights.iter().flatten().sum();
+        faces.total = totals.iter().sum();
         faces
     }
 }
