@@ -15,7 +15,7 @@ use super::merge::{MergedPoint, merge};
 use super::needs::Needs;
 use super::pass::TILE;
 use super::points::VisibilitySample;
-use super::{ChainCounts, EyePass, EyeSettings, Settled, VisibleSurfaces, guide};
+use super::{ChainCounts, ExtraSamples, EyePass, EyeSettings, Settled, VisibleSurfaces, guide};
 use crate::caustics::Caustics;
 use crate::light::Learned;
 use crate::math::Rgb;
@@ -43,8 +43,8 @@ const SPACING: f32 = 0.5;
 pub struct DrawnLight {
     /// True of materials all of whose rough lobes chains follow, by material; of others they follow the sharp ones.
     pub followed: Vec<bool>,
-    /// Samples beside the first ones for the pixels that need them most, as a share of the first ones.
-    pub extra_samples: f32,
+    /// Samples beside the first ones for the pixels that need them most.
+    pub extra_samples: ExtraSamples,
     /// Pixels that need few samples.
     pub settled: Settled,
     /// True if a denoiser's guides are to be found on the way.

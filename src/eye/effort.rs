@@ -64,7 +64,10 @@ impl<'w> Tracer<'_, 'w> {
         chains += traced;
         let means = |group: &Vec<[f32; 2]>| group.iter().map(|[mean, _]| *mean).collect();
         let filled = |(window, group)| Luminances { window, values: means(group) };
-        let share = self.drawn.extra_samples;
+        let sampled: usize = 2 * values.iter().map(Vec::len).sum::<usize>() * spp as usize;
+        let film: f64 = self.view.window.film.map(f64::from).iter().product();
+        let a_sample = (chains.rays + chains.shadow_rays) as f64 / sampled.max(1) as f64;
+        let share = self.drawn.extra_samples.share(a_sample * f64::from(spp) * film);
         let choice = Choice::new(&squares.into_iter().zip(&values).map(filled).collect::<Vec<_>>(), share);
         let light_samples = light_samples(&values, &again, spp, choice.dark);
         Some(Effort { choice: (share > 0.0).then_some(choice), light_samples, chains })

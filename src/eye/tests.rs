@@ -1,5 +1,6 @@
 //! Chains through mirrors and glass, visibility samples and features, against closed forms.
 
+use super::ExtraSamples;
 use super::chain::{ChainCounts, Follow, Met, Vertex, trace};
 use super::{DrawnLight, EyePass, EyeSettings, Feature, FeatureSettings, Features, SeenPixels};
 use crate::film::{Layer, Pixels, Window};
@@ -173,6 +174,7 @@ fn drawn<'w>(world: &'w WorldAndView, view: &View, spp: u32) -> EyePass<'w> {
 /// The eye pass with extra samples.
 fn drawn_with<'w>(world: &'w World, view: &View, spp: u32, extra_samples: f32) -> EyePass<'w> {
     let settings = EyeSettings { spp, seed: 1, max_depth: 32 };
+    let extra_samples = ExtraSamples { most: extra_samples, other_rays: None };
     let drawn = DrawnLight { extra_samples, ..DrawnLight::default() };
     EyePass::with_direct_light(world, view, settings, (&drawn, None), &Control::new())
 }

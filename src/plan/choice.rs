@@ -16,6 +16,9 @@ use crate::world::World;
 /// Number of levels of the scale of settings that a time is tried with.
 const STEPS: u32 = 64;
 
+/// Samples beside the first ones, as a share of these, of the pictures by which paths were compared with samples.
+const KNOWN_EXTRA_SAMPLES: f64 = 0.2;
+
 /// Least number of pixels that choices without a time are made for: icons are by the method of a small picture.
 const MIN_PIXELS: u64 = 1 << 15;
 
@@ -26,7 +29,7 @@ pub struct Choice {
     pub method: Method,
     /// Expected work of the other method for as good a picture, over that of this one.
     pub ahead: f64,
-    /// Number of paths that are worth a sample of the cache.
+    /// Number of paths that are worth a first sample of the cache, with the samples that follow it.
     pub paths_a_sample: f64,
     /// Rays of a path over those of a sample of the cache.
     pub rays_ratio: f64,
@@ -84,11 +87,11 @@ impl Chooser {
         let cache = ladder.at(height.unwrap_or(0.0));
         // The cheapest settings of the cache are no use if they take too long.
         let excess = (work.of_cache(&self.pilot, &cache) / budget.max(1e-9)).max(1.0);
-        let worth = self.paths_like(&cache) / excess;
+        let worth = self.paths_like(&cache, &work) / excess;
         let paths = budget / work.of_paths(&self.pilot, 1.0);
         match paths > worth {
-            true => self.choice(&cache, Method::Path(self.paths), paths / worth),
-            false => self.choice(&cache, cache, worth / paths.max(1e-9)),
+            true => self.choice(&cache, Method::Path(self.paths), (paths / worth, &work)),
+            false => self.choice(&cache, cache, (worth / paths.max(1e-9), &work)),
         }
     }
 
@@ -107,36 +110,37 @@ impl Chooser {
             cache.set_number("spp", 0, (f64::from(paths.spp) / worth).max(1.0));
         }
         let by_cache = work.of_cache(&self.pilot, &cache);
-        let by_paths = work.of_paths(&self.pilot, self.paths_like(&cache));
+        let by_paths = work.of_paths(&self.pilot, self.paths_like(&cache, &work));
         let ahead = if matches!(method, Method::Path(_)) { by_cache / by_paths } else { by_paths / by_cache };
-        self.choice(&cache, method, ahead)
+        self.choice(&cache, method, (ahead, &work))
     }
 
-    /// Number of paths a pixel that are as good as `cache`.
-    fn paths_like(&self, cache: &Method) -> f64 {
+    /// Number of paths a pixel that are as good as `cache` on a film of so many pixels.
+    fn paths_like(&self, cache: &Method, work: &Work) -> f64 {
         let spp = f64::from(cache.spp());
-        spp * self.pilot.paths_a_sample(spp)
+        let extra = (1.0 + work.extra_samples(&self.pilot, cache)) / (1.0 + KNOWN_EXTRA_SAMPLES);
+        spp * extra * self.pilot.paths_a_sample(spp)
     }
 
     fn cheaper(&self, cache: &Method, pixels: u64) -> Choice {
         let work = Work::new(self.triangles, pixels);
-        let spp = self.paths_like(cache).round();
+        let spp = self.paths_like(cache, &work).round();
         let paths = path::Settings { spp: spp.clamp(1.0, f64::from(u32::MAX)) as u32, ..self.paths };
         let by_cache = work.of_cache(&self.pilot, cache);
         let by_paths = work.of_paths(&self.pilot, spp);
         match by_paths < by_cache {
-            true => self.choice(cache, Method::Path(paths), by_cache / by_paths),
-            false => self.choice(cache, *cache, by_paths / by_cache),
+            true => self.choice(cache, Method::Path(paths), (by_cache / by_paths, &work)),
+            false => self.choice(cache, *cache, (by_paths / by_cache, &work)),
         }
     }
 
     /// The choice of `method` where the other is, or is compared with, `cache`.
-    fn choice(&self, cache: &Method, method: Method, ahead: f64) -> Choice {
+    fn choice(&self, cache: &Method, method: Method, (ahead, work): (f64, &Work)) -> Choice {
         let Pilot { rays_of_drawn, rays_of_paths, rays, .. } = self.pilot;
         Choice {
             method,
             ahead,
-            paths_a_sample: self.pilot.paths_a_sample(f64::from(cache.spp())),
+            paths_a_sample: self.paths_like(cache, work) / f64::from(cache.spp()),
             rays_ratio: rays_of_paths / rays_of_drawn.max(f64::MIN_POSITIVE),
             pilot_rays: rays,
         }

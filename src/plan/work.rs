@@ -5,7 +5,9 @@
 //! whatever made the picture and is left out.
 
 use super::pilot::Pilot;
+use crate::eye::ExtraSamples;
 use crate::method::Method;
+use crate::radiance_cache::work::{indirect_rays, rays_beside_samples};
 use crate::stats::{Counter, Stats};
 
 /// Price of a ray in the smallest scenes, and what every doubling of the triangles adds to it.
@@ -22,16 +24,6 @@ const VPL_RAYS: f64 = 2.5;
 /// between its rays, and price of a virtual light, its photon path included.
 const COUNTED_RAY_BY_DOUBLING: f64 = 0.03;
 const COUNTED_VPL: f64 = 1.9;
-/// Rays of indirect light by records and cuts, at the default's samples in a film of so many pixels: points that no
-/// record reaches, times the rays of a cut. 1 million (a smooth object on a plane) to 30 million (clutter), whatever
-/// the contrast.
-const CACHED_RAYS: f64 = 5.5e6;
-const CACHED_PIXELS: f64 = 65536.0;
-const CACHED_SPP: f64 = 16.0;
-/// Exponents by which they grow with the pixels, and with the samples along the levels of quality, which make cuts
-/// finer.
-const BY_PIXELS: f64 = 0.6;
-const BY_SPP: f64 = 0.5;
 
 /// Prices in a scene, and the film.
 #[derive(Clone, Copy, Debug)]
@@ -59,11 +51,17 @@ impl Work {
     pub fn of_cache(&self, pilot: &Pilot, method: &Method) -> f64 {
         let number = |key| method.number(key).unwrap_or(0.0);
         let spp = number("spp");
-        let samples = self.pixels * spp * (1.0 + number("extra_samples"));
+        let samples = self.pixels * spp * (1.0 + self.extra_samples(pilot, method));
         let lights = number("vpls") * (VPL + VPL_RAYS * self.ray);
-        let cached =
-            CACHED_RAYS * (self.pixels / CACHED_PIXELS).powf(BY_PIXELS) * (spp / CACHED_SPP).powf(BY_SPP);
-        (samples * pilot.rays_of_drawn + cached) * self.ray + lights
+        (samples * pilot.rays_of_drawn + indirect_rays(self.pixels, spp)) * self.ray + lights
+    }
+
+    /// Samples of the cache beside the first ones, as a share of these, if as many are needed as are worth their time.
+    pub fn extra_samples(&self, pilot: &Pilot, method: &Method) -> f64 {
+        let number = |key| method.number(key).unwrap_or(0.0);
+        let other_rays = Some(rays_beside_samples(self.pixels, number("spp"), number("vpls")));
+        let extra = ExtraSamples { most: number("extra_samples") as f32, other_rays };
+        extra.share(self.pixels * number("spp") * pilot.rays_of_drawn).into()
     }
 
     /// Of a picture that is made, by the counters of its rays and virtual lights.

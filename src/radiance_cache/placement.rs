@@ -19,7 +19,13 @@ use rayon::prelude::*;
 /// Levels up from a cell to the one whose darkest part the errors of its record are judged against.
 const WIDER: u32 = 2;
 
-/// Layers among those `cached` that have no record at a sample, though records could light it.
+/// Sum of weights up to which records say nothing of a sample: it lies beyond nine tenths of the way to the edge of the
+/// only footprint that reaches it.
+///
+/// Such samples are where a wall goes on behind a picture's frame, which hides them from the light of the record.
+const LITTLE_WEIGHT: f32 = 0.1;
+
+/// Layers among those `cached` that no record tells of at a sample, though records could light it.
 #[inline]
 pub fn missing(
     targets: &Targets,
@@ -28,7 +34,7 @@ pub fn missing(
     sample: usize,
 ) -> DirectIndirect<bool> {
     DirectIndirect::from_fn(|origin| {
-        cached[origin] && targets.cacheable[sample] && splats[origin].sums[sample].weight <= 0.0
+        cached[origin] && targets.cacheable[sample] && splats[origin].sums[sample].weight <= LITTLE_WEIGHT
     })
 }
 
@@ -110,7 +116,7 @@ mod tests {
     fn half(origin: Origin, irradiance: Rgb) -> Records {
         let mut records = DirectIndirect::from_fn(|_| RecordStore::default());
         for y in 0..100 {
-            let record = record(Vec3::new(0.0, y as f32 / 100.0, 0.0), [0.5, 0.1], irradiance);
+            let record = record(Vec3::new(0.0, y as f32 / 100.0, 0.0), [0.51, 0.1], irradiance);
             records[origin].push(NewRecord { origin, sample: 0, record, series: None });
         }
         records

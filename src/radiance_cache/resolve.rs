@@ -100,7 +100,7 @@ mod tests {
         let mut records = Records::default();
         for origin in Origin::ALL {
             // Indirect light covers less.
-            let radius = if origin == Origin::Direct { 0.4 } else { 0.2 };
+            let radius = if origin == Origin::Direct { 0.44 } else { 0.22 };
             let record = record(Vec3::new(0.5, 0.5, 0.0), [radius; 2], IRRADIANCE[origin]);
             records[origin].push(NewRecord { origin, sample: 0, record, series: None });
         }

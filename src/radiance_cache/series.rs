@@ -14,7 +14,7 @@ use super::source::Candidate;
 use super::splat::Splat;
 use super::store::RecordStore;
 use super::targets::Targets;
-use crate::eye::{DrawnLight, PointGeometry, PointSurface, Settled, ShadingPoints};
+use crate::eye::{DrawnLight, ExtraSamples, PointGeometry, PointSurface, Settled, ShadingPoints};
 use crate::gradient::Incidence;
 use crate::hsh::{Accumulator, Caching, Kernel, MaterialSeries, Radiance};
 use crate::material::Bsdf;
@@ -122,16 +122,18 @@ impl Glossy {
     }
 }
 
-/// Direct light to be drawn, if it is: chains follow the lobes that records cannot light.
+/// Direct light to be drawn, if it is: chains follow the lobes that records cannot light. All else in the picture of the
+/// whole film takes `other_rays`, about, if that is known.
 pub fn drawn_light(
     glossy: Option<&Glossy>,
     settings: &CacheSettings,
     settled: Settled,
+    other_rays: Option<f64>,
 ) -> Option<DrawnLight> {
     let followed = || glossy.map_or(Vec::new(), Glossy::too_sharp);
     settings.draws_direct_light().then(|| DrawnLight {
         followed: followed(),
-        extra_samples: settings.extra_samples,
+        extra_samples: ExtraSamples { most: settings.extra_samples, other_rays },
         settled,
         guides: false,
     })

@@ -66,12 +66,12 @@ settings! {
     pub struct CacheSettings in "Records" {
         /// Source of direct light.
         direct: DirectBy = DirectBy::Drawn => [.values(&["drawn", "records", "cuts"]).judged_by(JudgedBy::Flip)];
-        /// Samples beside `spp` for the pixels with the greatest contrast around them, at most three times `spp` each,
-        /// as a share of all pixels' `spp`.
+        /// Most samples beside `spp` for the pixels with the greatest contrast around them, three times `spp` each, as a
+        /// share of all pixels' `spp`; a fifth where samples take most of the time.
         ///
         /// A fifth is worth .6, .7 and .9 dB of the denoised picture on the knot, Sibenik and the living room, twice
         /// the samples everywhere .6, 1.3 and 1.3 dB.
-        extra_samples: f32 = 0.2 => [.fraction().values(&["0", "0.2", "0.5", "1"]).with(&[("direct", "drawn")])];
+        extra_samples: f32 = 1.0 => [.fraction().values(&["0", "0.2", "0.5", "1"]).with(&[("direct", "drawn")])];
         /// Source of indirect light.
         indirect: FoundBy = FoundBy::Records => [.values(&["records", "cuts"])];
         /// Largest error bound of a cluster in a record's cut, relative to its luminance.
@@ -128,6 +128,9 @@ settings! {
 /// Number of frames of a walk-through, about, in which a record has to make good what it costs.
 const WALK_FRAMES: u32 = 8;
 
+/// Most samples beside the first ones in a frame of a walk-through, as a share of these: they take most of its time.
+const WALK_EXTRA_SAMPLES: f32 = 0.2;
+
 /// Factor on the minimum radius of footprints in walk-throughs: eye samples on fine detail lie elsewhere in each frame,
 /// and are to find the records of the last.
 ///
@@ -139,6 +142,7 @@ impl CacheSettings {
     pub fn of_walk(&self) -> CacheSettings {
         let mut settings = *self;
         settings.least_cell = (self.least_cell / WALK_FRAMES).max(1);
+        settings.extra_samples = self.extra_samples.min(WALK_EXTRA_SAMPLES);
         for [least, largest] in &mut settings.reach {
             *least = (*least * WALK_REACH).min(*largest);
         }

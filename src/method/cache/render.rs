@@ -16,6 +16,7 @@ use crate::radiance_cache::series::{Glossy, drawn_light};
 use crate::radiance_cache::source::LightcutSource;
 use crate::radiance_cache::store::Records;
 use crate::radiance_cache::targets::Targets;
+use crate::radiance_cache::work::rays_beside_samples;
 use crate::radiance_cache::{CLAMP, CacheSettings, DirectBy, MAX_CUT};
 use crate::setting::{COMPENSATION, Each, INSPECT, Settings as _};
 use crate::shade::{Picture, ShadeSettings};
@@ -55,6 +56,12 @@ impl Settings {
         ShadeSettings { cut: self.cut, share: self.cache.share, shadows: self.cache.shadows }
     }
 
+    /// Rays of a still picture of the view's whole film, about, but for its samples.
+    fn rays_beside_samples(&self, view: &View) -> f64 {
+        let pixels = view.window.film.map(f64::from).iter().product();
+        rays_beside_samples(pixels, self.spp.into(), self.light.indirect.into())
+    }
+
     /// The picture, by records of the frames before where they are `kept`.
     fn picture(
         &self,
@@ -74,7 +81,8 @@ impl Settings {
         };
         let wanted = ((self.light, self.family), kept.is_none());
         let glossy = Glossy::new(world, &cache);
-        let drawn = drawn_light(glossy.as_ref(), &cache, settled);
+        let besides = kept.is_none().then(|| self.rays_beside_samples(view));
+        let drawn = drawn_light(glossy.as_ref(), &cache, settled, besides);
         let drawn = drawn.map(|drawn| DrawnLight { guides: kept.is_none(), ..drawn });
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
@@ -175,7 +183,7 @@ impl Renderer for Settings {
         control: &Control,
     ) -> Option<DrawnPixels> {
         let glossy = Glossy::new(world, &self.cache);
-        let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default())?;
+        let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default(), None)?;
         let settings = EyeSettings { spp: PILOT_SPP, seed: 0, ..self.sampling().eye(&world.scene) };
         let photons = lights.caustic_photons(world, (settings.seed, settings.max_depth), control);
         let caustics = photons.seen(view.camera.origin, view.pixel_angle(), settings.max_depth);

@@ -22,6 +22,7 @@ use crate::radiance_cache::series::{Glossy, drawn_light};
 use crate::radiance_cache::source::LightcutSource;
 use crate::radiance_cache::store::Records;
 use crate::radiance_cache::targets::Targets;
+use crate::radiance_cache::work::rays_beside_samples;
 use crate::radiance_cache::{CacheSettings, DirectBy, MAX_CUT};
 use crate::setting::{Each, INSPECT, Settings as _};
 use crate::shade::{Picture, ShadeSettings, ShadingTask};
@@ -90,7 +91,9 @@ impl Renderer for Settings {
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
         let wanted = (self.light, self.family);
         let glossy = Glossy::new(world, &self.cache);
-        let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default());
+        let pixels = view.window.film.map(f64::from).iter().product();
+        let other_rays = rays_beside_samples(pixels, self.spp.into(), self.photons.into());
+        let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default(), Some(other_rays));
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), (wanted, false), control);
         let context = lights.context(world, true);
