@@ -16,9 +16,6 @@ use crate::world::World;
 /// Number of levels of the scale of settings that a time is tried with.
 const STEPS: u32 = 64;
 
-/// Samples beside the first ones, as a share of these, of the pictures by which paths were compared with samples.
-const KNOWN_EXTRA_SAMPLES: f64 = 0.2;
-
 /// Least number of pixels that choices without a time are made for: icons are by the method of a small picture.
 const MIN_PIXELS: u64 = 1 << 15;
 
@@ -87,11 +84,11 @@ impl Chooser {
         let cache = ladder.at(height.unwrap_or(0.0));
         // The cheapest settings of the cache are no use if they take too long.
         let excess = (work.of_cache(&self.pilot, &cache) / budget.max(1e-9)).max(1.0);
-        let worth = self.paths_like(&cache, &work) / excess;
+        let worth = self.paths_like(&cache) / excess;
         let paths = budget / work.of_paths(&self.pilot, 1.0);
         match paths > worth {
-            true => self.choice(&cache, Method::Path(self.paths), (paths / worth, &work)),
-            false => self.choice(&cache, cache, (worth / paths.max(1e-9), &work)),
+            true => self.choice(&cache, Method::Path(self.paths), paths / worth),
+            false => self.choice(&cache, cache, worth / paths.max(1e-9)),
         }
     }
 
@@ -110,37 +107,36 @@ impl Chooser {
             cache.set_number("spp", 0, (f64::from(paths.spp) / worth).max(1.0));
         }
         let by_cache = work.of_cache(&self.pilot, &cache);
-        let by_paths = work.of_paths(&self.pilot, self.paths_like(&cache, &work));
+        let by_paths = work.of_paths(&self.pilot, self.paths_like(&cache));
         let ahead = if matches!(method, Method::Path(_)) { by_cache / by_paths } else { by_paths / by_cache };
-        self.choice(&cache, method, (ahead, &work))
+        self.choice(&cache, method, ahead)
     }
 
-    /// Number of paths a pixel that are as good as `cache` on a film of so many pixels.
-    fn paths_like(&self, cache: &Method, work: &Work) -> f64 {
+    /// Number of paths a pixel that are as good as `cache`.
+    fn paths_like(&self, cache: &Method) -> f64 {
         let spp = f64::from(cache.spp());
-        let extra = (1.0 + work.extra_samples(&self.pilot, cache)) / (1.0 + KNOWN_EXTRA_SAMPLES);
-        spp * extra * self.pilot.paths_a_sample(spp)
+        spp * self.pilot.paths_a_sample(spp)
     }
 
     fn cheaper(&self, cache: &Method, pixels: u64) -> Choice {
         let work = Work::new(self.triangles, pixels);
-        let spp = self.paths_like(cache, &work).round();
+        let spp = self.paths_like(cache).round();
         let paths = path::Settings { spp: spp.clamp(1.0, f64::from(u32::MAX)) as u32, ..self.paths };
         let by_cache = work.of_cache(&self.pilot, cache);
         let by_paths = work.of_paths(&self.pilot, spp);
         match by_paths < by_cache {
-            true => self.choice(cache, Method::Path(paths), (by_cache / by_paths, &work)),
-            false => self.choice(cache, *cache, (by_paths / by_cache, &work)),
+            true => self.choice(cache, Method::Path(paths), by_cache / by_paths),
+            false => self.choice(cache, *cache, by_paths / by_cache),
         }
     }
 
     /// The choice of `method` where the other is, or is compared with, `cache`.
-    fn choice(&self, cache: &Method, method: Method, (ahead, work): (f64, &Work)) -> Choice {
+    fn choice(&self, cache: &Method, method: Method, ahead: f64) -> Choice {
         let Pilot { rays_of_drawn, rays_of_paths, rays, .. } = self.pilot;
         Choice {
             method,
             ahead,
-            paths_a_sample: self.paths_like(cache, work) / f64::from(cache.spp()),
+            paths_a_sample: self.pilot.paths_a_sample(f64::from(cache.spp())),
             rays_ratio: rays_of_paths / rays_of_drawn.max(f64::MIN_POSITIVE),
             pilot_rays: rays,
         }
@@ -151,13 +147,12 @@ impl Chooser {
 mod tests {
     use super::*;
 
-    /// A film of 512 by 512 in a scene of so many triangles; variances of drawn light and of paths, contrast, and rays
+    /// A film of 512 by 512 in a scene of so many triangles; variances of drawn light and of paths, and rays
     /// of both.
-    fn chooser(triangles: usize, variances: [f64; 2], contrast: f64, rays: [f64; 2]) -> Chooser {
+    fn chooser(triangles: usize, variances: [f64; 2], rays: [f64; 2]) -> Chooser {
         let pilot = Pilot {
             variance_of_drawn: variances[0],
             variance_of_paths: variances[1],
-            contrast_sq: contrast * contrast,
             rays_of_drawn: rays[0],
             rays_of_paths: rays[1],
             rays: 1_000_000,
@@ -167,7 +162,7 @@ mod tests {
 
     /// The findings in a box lit by its ceiling's lamp.
     fn in_box() -> Chooser {
-        chooser(36, [0.0018, 0.2], 0.11, [1.7, 4.5])
+        chooser(36, [0.0018, 0.2], [1.7, 4.5])
     }
 
     fn is_path(choice: &Choice) -> bool {
@@ -188,10 +183,10 @@ mod tests {
     fn paths_are_taken_where_the_light_that_both_draw_has_most_of_the_noise() {
         let cache = Method::default();
         assert!(!is_path(&in_box().as_good_as(&cache)));
-        let choice = chooser(100_000, [3.0, 3.5], 0.6, [4.0, 5.0]).as_good_as(&cache);
+        let choice = chooser(100_000, [3.0, 3.5], [4.0, 5.0]).as_good_as(&cache);
         assert!(is_path(&choice) && choice.method.spp() >= cache.spp(), "{choice:?}");
         // Virtual lights are as many on a small film; an icon is judged as if it were less small, but for its time.
-        let noisier = |film_pixels| Chooser { film_pixels, ..chooser(36, [0.0018, 0.6], 0.11, [1.7, 4.5]) };
+        let noisier = |film_pixels| Chooser { film_pixels, ..chooser(36, [0.0018, 4.0], [1.7, 4.5]) };
         let small = noisier(1 << 13);
         assert!(!is_path(&small.as_good_as(&cache)) && is_path(&small.on_film(&cache)));
         assert!(!is_path(&noisier(1 << 15).on_film(&cache)));
@@ -199,7 +194,7 @@ mod tests {
 
     #[test]
     fn paths_chosen_are_as_many_as_are_worth_the_samples() {
-        let chooser = chooser(100_000, [3.0, 7.0], 0.6, [4.0, 1.0]);
+        let chooser = chooser(100_000, [3.0, 7.0], [4.0, 1.0]);
         let choice = chooser.as_good_as(&Method::default());
         let expected = 16.0 * choice.paths_a_sample;
         assert!(is_path(&choice) && (f64::from(choice.method.spp()) - expected).abs() <= 0.5, "{choice:?}");

@@ -2,12 +2,12 @@
 //! picture feels it, and how many rays it takes.
 //!
 //! Every pixel is sampled twice by either method; half the squared difference estimates the variance of its mean,
-//! stratification included, and neighbours' products, one factor of either set, estimate the contrast of the picture
-//! without its noise. Both are relative to the brightness of the square of pixels around, and the greatest hundredth is
-//! left out: a denoiser removes single bright dots.
+//! stratification included. It is relative to the brightness of the square of pixels around, and the greatest hundredth
+//! is left out: a denoiser removes single bright dots.
 //!
-//! Measured on 18 scenes by others, 256x144 to 512x910: the work of as good a picture by paths, over that of the cache,
-//! comes within a factor of 2 of the one predicted by the rule of [`Pilot::paths_a_sample`] for most of them.
+//! Measured on 17 scenes, 256x144 to 512x910 (23 pictures): paths as many as [`Pilot::paths_a_sample`] says make as
+//! good a picture within a factor of 1.6 (root mean square; of as many in all scenes, 1.75; of as many as variances are
+//! in proportion, 2.3), and the work of one method over that of the other is as predicted within a factor of 1.9.
 //!
 //! The pilot is spread over the whole film and has seeds of its own: parts of a picture, and pictures to be merged, are
 //! by the same method.
@@ -33,12 +33,16 @@ const SEED: u32 = 0x6c62_272e;
 const TRIMMED: f64 = 0.01;
 /// Luminance that counts as dark, relative to that which nine tenths of the pixels keep below.
 const DARK: f64 = 0.1;
-/// Factor from the squared contrast of neighbours to the variance that edges and textures add to a path. The cache
-/// takes more samples where contrast is great.
-const COVERAGE: f64 = 2.0;
+/// Paths that are worth a sample and those that follow it, where paths have as much variance, and the exponent by which
+/// they grow with it. A denoiser takes off most of the noise, whatever its variance, and leaves edges.
+const WORTH: f64 = 2.76;
+const BY_VARIANCE: f64 = 0.3;
+/// The same at most, over the quotient of the variances: where all noise is that of drawn light, paths are as good.
+const MOST: f64 = 1.2;
 /// Variance that the cache's own errors come to at its default of so many samples, relative to the squared brightness
-/// and times their number. Levels of quality with fewer samples have fewer virtual lights and coarser cuts, too.
-const CACHED: f64 = 0.07;
+/// and times their number; inversely as the square of the samples, since levels of quality with fewer samples have
+/// fewer virtual lights and coarser cuts, too.
+const CACHED: f64 = 0.02;
 const CACHED_SPP: f64 = 16.0;
 
 /// Findings of the pilot.
@@ -48,8 +52,6 @@ pub struct Pilot {
     pub variance_of_drawn: f64,
     /// The same of a path.
     pub variance_of_paths: f64,
-    /// Squared contrast of neighbouring pixels, relative to the squared brightness.
-    pub contrast_sq: f64,
     /// Rays of a sample of the light that the cache draws.
     pub rays_of_drawn: f64,
     /// Rays of a path.
@@ -92,15 +94,9 @@ impl Pilot {
             let half_squares = differences.map(|(pixel, (a, b))| 0.5 * (a - b).powi(2) * weight(pixel));
             f64::from(PILOT_SPP) * trimmed_mean(half_squares.collect())
         };
-        let contrasts = a.chunks(square).zip(b.chunks(square)).enumerate().map(|(i, (a, b))| {
-            let (of_a, of_b) = (mean(a), mean(b));
-            let products = a.iter().zip(b).map(|(a, b)| (a - of_a) * (b - of_b));
-            products.sum::<f64>() / square as f64 * weight(i * square)
-        });
         Some(Pilot {
             variance_of_drawn: variance(drawn),
             variance_of_paths: variance(paths),
-            contrast_sq: trimmed_mean(contrasts.collect()).max(0.0),
             rays_of_drawn: drawn.rays_a_sample,
             rays_of_paths: paths.rays_a_sample,
             rays: drawn.rays + paths.rays,
@@ -110,9 +106,10 @@ impl Pilot {
     /// Number of paths, denoised, that are worth a sample of the cache, denoised, at the level of quality with `spp`
     /// samples; 1 at least, since edges are as jagged by either.
     pub fn paths_a_sample(&self, spp: f64) -> f64 {
-        let cached = CACHED * (CACHED_SPP / spp.max(1.0)).sqrt();
-        let paths = self.variance_of_paths + COVERAGE * self.contrast_sq;
-        (paths / (self.variance_of_drawn + cached)).max(1.0)
+        let cached = CACHED * (CACHED_SPP / spp.max(1.0)).powi(2);
+        let quotient =
+            |own: f64| self.variance_of_paths / (self.variance_of_drawn + own).max(f64::MIN_POSITIVE);
+        (WORTH * quotient(cached).powf(BY_VARIANCE)).min(MOST * quotient(0.0)).max(1.0)
     }
 }
 
@@ -161,17 +158,15 @@ mod tests {
     }
 
     #[test]
-    fn variance_and_contrast_are_told_apart() {
-        for (radiances, contrast_sq) in [([1.0, 1.0], 0.0), ([0.5, 1.5], 0.25)] {
+    fn variances_are_those_of_samples() {
+        for (radiances, has_edges) in [([1.0, 1.0], false), ([0.5, 1.5], true)] {
             let pilot = Pilot::by(16, &light(radiances, 0.02, 1), &light(radiances, 0.3, 7)).unwrap();
             // Darkness counts as a tenth of the brightest tenth, here 1 or 1.5; mean squares of the radiances are 1
             // or 1.25; of uniform noise the hundredth left out holds a twentieth.
-            let (scale, squares) =
-                if contrast_sq > 0.0 { (1.0 / 1.15f64.powi(2), 1.25) } else { (1.0 / 1.21, 1.0) };
+            let (scale, squares) = if has_edges { (1.0 / 1.15f64.powi(2), 1.25) } else { (1.0 / 1.21, 1.0) };
             let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.12;
             assert!(near(pilot.variance_of_drawn, 0.02 * squares * scale), "{pilot:?}");
             assert!(near(pilot.variance_of_paths, 0.3 * squares * scale), "{pilot:?}");
-            assert!((pilot.contrast_sq - contrast_sq * scale).abs() < 0.01, "{pilot:?}");
             assert_eq!(pilot.rays, (1 << 21) + 10);
         }
     }
@@ -197,7 +192,7 @@ mod tests {
             |paths: f64| Pilot::by(16, &light([1.0, 1.0], 0.02, 1), &light([1.0, 1.0], paths, 7)).unwrap();
         assert_eq!(pilot(0.01).paths_a_sample(16.0), 1.0);
         let at = |paths: f64, spp: f64| pilot(paths).paths_a_sample(spp);
-        assert!(at(0.4, 16.0) > 1.8 * at(0.2, 16.0) && at(0.4, 16.0) > 1.5 * at(0.4, 2.0));
+        assert!(at(0.4, 16.0) > 1.2 * at(0.2, 16.0) && at(0.4, 16.0) > 1.5 * at(0.4, 2.0));
     }
 
     #[test]

@@ -122,8 +122,8 @@ impl Glossy {
     }
 }
 
-/// Direct light to be drawn, if it is: chains follow the lobes that records cannot light. All else in the picture of the
-/// whole film takes `other_rays`, about, if that is known.
+/// Direct light to be drawn, if it is: chains follow the lobes that records cannot light. All else in the picture of
+/// the whole film takes `other_rays`, about, if that is known.
 pub fn drawn_light(
     glossy: Option<&Glossy>,
     settings: &CacheSettings,

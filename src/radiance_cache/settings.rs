@@ -66,8 +66,8 @@ settings! {
     pub struct CacheSettings in "Records" {
         /// Source of direct light.
         direct: DirectBy = DirectBy::Drawn => [.values(&["drawn", "records", "cuts"]).judged_by(JudgedBy::Flip)];
-        /// Most samples beside `spp` for the pixels with the greatest contrast around them, three times `spp` each, as a
-        /// share of all pixels' `spp`; a fifth where samples take most of the time.
+        /// Most samples beside `spp` for the pixels with the greatest contrast around them, three times `spp` each, as
+        /// a share of all pixels' `spp`; a fifth where samples take most of the time.
         ///
         /// A fifth is worth .6, .7 and .9 dB of the denoised picture on the knot, Sibenik and the living room, twice
         /// the samples everywhere .6, 1.3 and 1.3 dB.
