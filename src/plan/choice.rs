@@ -183,7 +183,7 @@ mod tests {
     fn paths_are_taken_where_the_light_that_both_draw_has_most_of_the_noise() {
         let cache = Method::default();
         assert!(!is_path(&in_box().as_good_as(&cache)));
-        let choice = chooser(100_000, [3.0, 3.5], [4.0, 5.0]).as_good_as(&cache);
+        let choice = chooser(100_000, [3.0, 3.5], [5.0, 4.5]).as_good_as(&cache);
         assert!(is_path(&choice) && choice.method.spp() >= cache.spp(), "{choice:?}");
         // Virtual lights are as many on a small film; an icon is judged as if it were less small, but for its time.
         let noisier = |film_pixels| Chooser { film_pixels, ..chooser(36, [0.0018, 4.0], [1.7, 4.5]) };

@@ -37,8 +37,6 @@ const DARK: f64 = 0.1;
 /// they grow with it. A denoiser takes off most of the noise, whatever its variance, and leaves edges.
 const WORTH: f64 = 2.76;
 const BY_VARIANCE: f64 = 0.3;
-/// The same at most, over the quotient of the variances: where all noise is that of drawn light, paths are as good.
-const MOST: f64 = 1.2;
 /// Variance that the cache's own errors come to at its default of so many samples, relative to the squared brightness
 /// and times their number; inversely as the square of the samples, since levels of quality with fewer samples have
 /// fewer virtual lights and coarser cuts, too.
@@ -107,9 +105,8 @@ impl Pilot {
     /// samples; 1 at least, since edges are as jagged by either.
     pub fn paths_a_sample(&self, spp: f64) -> f64 {
         let cached = CACHED * (CACHED_SPP / spp.max(1.0)).powi(2);
-        let quotient =
-            |own: f64| self.variance_of_paths / (self.variance_of_drawn + own).max(f64::MIN_POSITIVE);
-        (WORTH * quotient(cached).powf(BY_VARIANCE)).min(MOST * quotient(0.0)).max(1.0)
+        let quotient = self.variance_of_paths / (self.variance_of_drawn + cached);
+        (WORTH * quotient.powf(BY_VARIANCE)).max(1.0)
     }
 }
 
@@ -190,7 +187,7 @@ mod tests {
     fn paths_are_worth_less_the_noisier_they_are_and_no_more_than_a_sample() {
         let pilot =
             |paths: f64| Pilot::by(16, &light([1.0, 1.0], 0.02, 1), &light([1.0, 1.0], paths, 7)).unwrap();
-        assert_eq!(pilot(0.01).paths_a_sample(16.0), 1.0);
+        assert_eq!(pilot(1e-4).paths_a_sample(16.0), 1.0);
         let at = |paths: f64, spp: f64| pilot(paths).paths_a_sample(spp);
         assert!(at(0.4, 16.0) > 1.2 * at(0.2, 16.0) && at(0.4, 16.0) > 1.5 * at(0.4, 2.0));
     }

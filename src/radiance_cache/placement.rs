@@ -19,22 +19,18 @@ use rayon::prelude::*;
 /// Levels up from a cell to the one whose darkest part the errors of its record are judged against.
 const WIDER: u32 = 2;
 
-/// Sum of weights up to which records say nothing of a sample: it lies beyond nine tenths of the way to the edge of the
-/// only footprint that reaches it.
-///
-/// Such samples are where a wall goes on behind a picture's frame, which hides them from the light of the record.
-const LITTLE_WEIGHT: f32 = 0.1;
-
-/// Layers among those `cached` that no record tells of at a sample, though records could light it.
+/// Layers among those `cached` whose records have no more than a sum of weights `least` at a sample, though records
+/// could light it.
 #[inline]
 pub fn missing(
     targets: &Targets,
     splats: &DirectIndirect<Splat>,
     cached: DirectIndirect<bool>,
     sample: usize,
+    least: f32,
 ) -> DirectIndirect<bool> {
     DirectIndirect::from_fn(|origin| {
-        cached[origin] && targets.cacheable[sample] && splats[origin].sums[sample].weight <= LITTLE_WEIGHT
+        cached[origin] && targets.cacheable[sample] && splats[origin].sums[sample].weight <= least
     })
 }
 
@@ -53,7 +49,7 @@ pub fn candidates(
         .filter_map(|pair| {
             let cell = if level == 0 { 0 } else { 2 * pair + parity };
             let range = targets.index.range(level, cell);
-            let uncovered = |&i: &usize| missing(targets, splats, cached, i).any();
+            let uncovered = |&i: &usize| missing(targets, splats, cached, i, 0.0).any();
             let (mut sum, mut count) = (Vec3::ZERO, 0.0);
             for i in range.clone().filter(uncovered) {
                 sum += targets.points.geometry[i].position;
@@ -65,7 +61,8 @@ pub fn candidates(
             let middle = sum / count;
             let distance = |i: &usize| targets.points.geometry[*i].position.distance_squared(middle);
             let sample = range.filter(uncovered).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-            let mut candidate = candidate(targets, splats, sample, missing(targets, splats, cached, sample));
+            let mut candidate =
+                candidate(targets, splats, sample, missing(targets, splats, cached, sample, 0.0));
             // The footprint may reach beyond the cell.
             let up = level.min(WIDER);
             candidate.baseline_luminance += targets.least_known(targets.index.range(level - up, cell >> up));
@@ -116,7 +113,7 @@ mod tests {
     fn half(origin: Origin, irradiance: Rgb) -> Records {
         let mut records = DirectIndirect::from_fn(|_| RecordStore::default());
         for y in 0..100 {
-            let record = record(Vec3::new(0.0, y as f32 / 100.0, 0.0), [0.51, 0.1], irradiance);
+            let record = record(Vec3::new(0.0, y as f32 / 100.0, 0.0), [0.5, 0.1], irradiance);
             records[origin].push(NewRecord { origin, sample: 0, record, series: None });
         }
         records

@@ -12,6 +12,12 @@ use rayon::prelude::*;
 /// Leaves of the index whose light is found at a time.
 const LEAVES: usize = 16384;
 
+/// Sum of weights up to which records say nothing of a sample: it lies beyond nine tenths of the way to the edge of the
+/// only footprint that reaches it.
+///
+/// Such samples are where a wall goes on behind a picture's frame, which hides them from the light of the record.
+const LITTLE_WEIGHT: f32 = 0.1;
+
 /// Part of a layer's light at an eye sample that records do not give.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Left {
@@ -59,7 +65,7 @@ impl CacheFrame<'_> {
             baseline_luminance: 0.0,
             left: DirectIndirect { direct: Left::All, indirect: Left::All },
         };
-        if missing(targets, &self.splats, self.cached, sample).any() {
+        if missing(targets, &self.splats, self.cached, sample, LITTLE_WEIGHT).any() {
             return light;
         }
         let (base, lobe) = surface.bsdf.split_base(surface.out.dot(point.normal));
