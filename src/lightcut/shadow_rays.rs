@@ -2,7 +2,7 @@
 
 use crate::embree::{Ray, Rays16};
 use crate::math::{LANES, Vec3x16};
-use crate::shadow::{ULPS, ray_from, segment};
+use crate::shadow::{FAR_END, ULPS, ray_from, segment};
 use crate::vpl::{Vpl, VplKind};
 use glam::Vec3;
 
@@ -25,7 +25,7 @@ pub fn to_vpl16(x: &Vec3x16, normal: &Vec3x16, vpl: &Vpl, kind: VplKind) -> Rays
     if kind == VplKind::Directional {
         for l in 0..LANES {
             let (o, n) = (x.get(l), normal.get(l));
-            set_origin(&mut rays, l, moved(o, n, light));
+            set_origin(&mut rays, l, moved(o, n, light, f32::MIN_POSITIVE));
             (rays.direction_x[l], rays.direction_y[l], rays.direction_z[l]) = (light.x, light.y, light.z);
             rays.t_far[l] = f32::INFINITY;
         }
@@ -35,8 +35,9 @@ pub fn to_vpl16(x: &Vec3x16, normal: &Vec3x16, vpl: &Vpl, kind: VplKind) -> Rays
     for l in 0..LANES {
         let (o, n) = (x.get(l), normal.get(l));
         let direction = light - o;
-        let origin = moved(o, n, direction);
-        let direction = moved(light, light_normal, -direction) - origin;
+        let origin = moved(o, n, direction, f32::MIN_POSITIVE);
+        let extent = larger(FAR_END * largest(direction), f32::MIN_POSITIVE);
+        let direction = moved(light, light_normal, -direction, extent) - origin;
         set_origin(&mut rays, l, origin);
         (rays.direction_x[l], rays.direction_y[l], rays.direction_z[l]) =
             (direction.x, direction.y, direction.z);
@@ -50,12 +51,21 @@ fn set_origin(rays: &mut Rays16, l: usize, origin: Vec3) {
     (rays.origin_x[l], rays.origin_y[l], rays.origin_z[l]) = (origin.x, origin.y, origin.z);
 }
 
-/// `shadow::offset` by comparisons that vector code has.
+/// The larger number by a comparison that vector code has.
 #[inline(always)]
-fn moved(p: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
-    let larger = |a: f32, b: f32| if a > b { a } else { b };
-    let largest = larger(larger(p.x.abs(), p.y.abs()), larger(p.z.abs(), f32::MIN_POSITIVE));
-    let step = largest * (ULPS * f32::EPSILON);
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+fn largest(v: Vec3) -> f32 {
+    larger(larger(v.x.abs(), v.y.abs()), v.z.abs())
+}
+
+/// `shadow::offset` by such comparisons, by the units of the coordinate `least` at least.
+#[inline(always)]
+fn moved(p: Vec3, normal: Vec3, direction: Vec3, least: f32) -> Vec3 {
+    let step = larger(largest(p), least) * (ULPS * f32::EPSILON);
     let facing = normal.x * direction.x + normal.y * direction.y + normal.z * direction.z;
     let side = if facing < 0.0 { -step } else { step };
     Vec3::new(p.x + normal.x * side, p.y + normal.y * side, p.z + normal.z * side)

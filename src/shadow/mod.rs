@@ -15,6 +15,6 @@ mod tests;
 pub use cache::OccluderCacheSettings;
 pub use counts::ShadowCounts;
 pub use engine::Engine;
-pub(crate) use segment::ULPS;
+pub(crate) use segment::{FAR_END, ULPS};
 pub use segment::{arriving, between, ray_from, segment};
 pub use settings::ShadowSettings;

@@ -2,7 +2,8 @@
 //!
 //! A ray that starts on a surface is moved off it along the geometric normal, to the side it leaves towards,
 //! by 8 units in the last place of the position's largest coordinate. The offset scales with the rounding of
-//! the position itself, so it holds for any scene size or offset, where a constant would not.
+//! the position itself, so it holds for any scene size or offset, where a constant would not. The far end of a segment
+//! is known no better than a part of its length, which counts as a coordinate there.
 
 use crate::embree::Ray;
 use crate::math::Rgb;
@@ -12,10 +13,19 @@ use glam::Vec3;
 /// Offset in units of the last place of the largest coordinate.
 pub(crate) const ULPS: f32 = 8.0;
 
+/// Part of a segment's extent along an axis that counts as a coordinate of its far end.
+pub(crate) const FAR_END: f32 = 0.25;
+
 /// Returns `position` moved off its surface towards the side of `direction`.
 #[inline]
 pub fn offset(position: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
-    let step = position.abs().max_element().max(f32::MIN_POSITIVE) * (ULPS * f32::EPSILON);
+    offset_from(position, normal, direction, f32::MIN_POSITIVE)
+}
+
+/// The same by the units of the coordinate `least` at least.
+#[inline]
+fn offset_from(position: Vec3, normal: Vec3, direction: Vec3, least: f32) -> Vec3 {
+    let step = position.abs().max_element().max(least) * (ULPS * f32::EPSILON);
     let side = if normal.dot(direction) < 0.0 { -step } else { step };
     position + normal * side
 }
@@ -31,7 +41,8 @@ pub fn ray_from(position: Vec3, normal: Vec3, direction: Vec3) -> Ray {
 pub fn segment(a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> Ray {
     let direction = b - a;
     let origin = offset(a, a_normal, direction);
-    let target = offset(b, b_normal, -direction);
+    let extent = (FAR_END * direction.abs().max_element()).max(f32::MIN_POSITIVE);
+    let target = offset_from(b, b_normal, -direction, extent);
     Ray { origin, t_near: 0.0, direction: target - origin, t_far: 1.0 }
 }
 

@@ -212,3 +212,10 @@ proptest! {
         check(&solid, &directions(seed))?;
     }
 }
+
+/// A segment's end that lies near the origin, found only as exactly as the segment is long.
+#[test]
+fn ends_near_the_origin_are_free_from_afar() {
+    let result = check(&Solid::sphere(1.0, Vec3::X), &directions(54_657_067));
+    assert!(result.is_ok(), "{result:?}");
+}
