@@ -65,7 +65,7 @@ impl<'w> Tracer<'_, 'w> {
         let means = |group: &Vec<[f32; 2]>| group.iter().map(|[mean, _]| *mean).collect();
         let filled = |(window, group)| Luminances { window, values: means(group) };
         let sampled: usize = 2 * values.iter().map(Vec::len).sum::<usize>() * spp as usize;
-        let film: f64 = self.view.window.film.map(f64::from).iter().product();
+        let film = self.view.window.film_pixel_count() as f64;
         let a_sample = (chains.rays + chains.shadow_rays) as f64 / sampled.max(1) as f64;
         let share = self.drawn.extra_samples.share(a_sample * f64::from(spp) * film);
         let choice = Choice::new(&squares.into_iter().zip(&values).map(filled).collect::<Vec<_>>(), share);

@@ -24,6 +24,11 @@ impl Window {
         self.width as u64 * self.height as u64
     }
 
+    /// Number of pixels of the whole film.
+    pub fn film_pixel_count(&self) -> u64 {
+        self.film.map(u64::from).iter().product()
+    }
+
     /// True if the rectangle lies on the film and has at least one pixel.
     pub fn is_valid(&self) -> bool {
         let end = |offset: u32, length: u32| offset as u64 + length as u64;

@@ -59,7 +59,7 @@ impl Chooser {
         let Sampling { seed, max_depth, .. } = base.sampling();
         let paths = path::Settings { seed, max_depth, ..path::Settings::default() };
         let pilot = Pilot::of((world, lights), view, base, &Method::Path(paths), control)?;
-        let film_pixels = view.window.film.map(u64::from).iter().product();
+        let film_pixels = view.window.film_pixel_count();
         Some(Chooser { triangles: world.scene.triangle_count(), pilot, film_pixels, paths })
     }
 
@@ -147,8 +147,8 @@ impl Chooser {
 mod tests {
     use super::*;
 
-    /// A film of 512 by 512 in a scene of so many triangles; variances of drawn light and of paths, and rays
-    /// of both.
+    /// A film of 512 by 512 in a scene of so many triangles; variances of drawn light and of paths, and rays of
+    /// both.
     fn chooser(triangles: usize, variances: [f64; 2], rays: [f64; 2]) -> Chooser {
         let pilot = Pilot {
             variance_of_drawn: variances[0],

@@ -62,7 +62,7 @@ impl Work {
     }
 
     /// Samples of the cache beside the first ones, as a share of these, if as many are needed as are worth their time.
-    pub fn extra_samples(&self, pilot: &Pilot, method: &Method) -> f64 {
+    fn extra_samples(&self, pilot: &Pilot, method: &Method) -> f64 {
         let number = |key| method.number(key).unwrap_or(0.0);
         let other_rays = Some(rays_beside_samples(self.pixels, number("spp"), number("vpls")));
         let extra = ExtraSamples { most: number("extra_samples") as f32, other_rays };

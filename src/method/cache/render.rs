@@ -58,8 +58,11 @@ impl Settings {
 
     /// Rays of a still picture of the view's whole film, about, but for its samples.
     fn rays_beside_samples(&self, view: &View) -> f64 {
-        let pixels = view.window.film.map(f64::from).iter().product();
-        rays_beside_samples(pixels, self.spp.into(), self.light.indirect.into())
+        rays_beside_samples(
+            view.window.film_pixel_count() as f64,
+            self.spp.into(),
+            self.light.indirect.into(),
+        )
     }
 
     /// The picture, by records of the frames before where they are `kept`.

@@ -91,7 +91,7 @@ impl Renderer for Settings {
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
         let wanted = (self.light, self.family);
         let glossy = Glossy::new(world, &self.cache);
-        let pixels = view.window.film.map(f64::from).iter().product();
+        let pixels = view.window.film_pixel_count() as f64;
         let other_rays = rays_beside_samples(pixels, self.spp.into(), self.photons.into());
         let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default(), Some(other_rays));
         let Prepared { eye: samples, lights, mut stats } =
