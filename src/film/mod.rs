@@ -19,6 +19,7 @@ mod layers;
 mod leftovers;
 pub mod metrics;
 mod png;
+pub mod sharpen;
 pub mod tone;
 mod window;
 

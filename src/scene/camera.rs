@@ -1,13 +1,6 @@
-//! Cameras with square pixels: pinholes, thin lenses, parallel projection; filters of their film's pixels.
-//!
-//! Filters are sampled, not splatted: a pixel's samples lie around it by the filter's density, and count alike. So the
-//! noise of neighbours is independent, as denoisers expect, and every method filters by the places of its eye rays.
-//!
-//! Paper: M. Ernst, M. Stamminger, G. Greiner, *Filter Importance Sampling*, 2006.
-//!
-//! Deviations: filters with negative lobes, which have no density and make pictures with negative pixels, are not
-//! modelled.
+//! Cameras with square pixels: pinholes, thin lenses, parallel projection.
 
+use super::PixelFilter;
 use crate::sampling::uniform_disk;
 use glam::{Vec2, Vec3};
 
@@ -50,55 +43,6 @@ pub enum Projection {
     },
     /// Along `forward`.
     Parallel,
-}
-
-/// Density of a pixel's samples around its middle.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum PixelFilter {
-    /// Even over the pixel itself.
-    #[default]
-    Box,
-    /// Falling linearly along each axis, to 0 at the distance `radius`, in pixels.
-    Tent {
-        /// Half its width.
-        radius: f32,
-    },
-    /// A normal distribution, cut off at four times its deviation, in pixels.
-    Gaussian {
-        /// Standard deviation.
-        deviation: f32,
-    },
-}
-
-impl PixelFilter {
-    /// Tent and Gaussian as wide as Mitsuba's by default.
-    pub const TENT: PixelFilter = PixelFilter::Tent { radius: 1.0 };
-    /// See [`PixelFilter::TENT`].
-    pub const GAUSSIAN: PixelFilter = PixelFilter::Gaussian { deviation: 0.5 };
-
-    /// Maps the unit square to the place of a sample, in pixels from the pixel's top-left corner, and its middle to the
-    /// pixel's.
-    #[inline]
-    pub fn place(&self, u: Vec2) -> Vec2 {
-        match *self {
-            PixelFilter::Box => u,
-            PixelFilter::Tent { radius } => {
-                let tent =
-                    |u: f32| if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
-                Vec2::splat(0.5) + radius * Vec2::new(tent(u.x), tent(u.y))
-            }
-            PixelFilter::Gaussian { deviation } => {
-                let disk = uniform_disk(u);
-                let radius_sq = disk.length_squared();
-                if radius_sq == 0.0 {
-                    return Vec2::splat(0.5);
-                }
-                let cut = 1.0 - (-8.0f32).exp();
-                let distance = deviation * (-2.0 * (1.0 - (cut * radius_sq).min(cut)).ln()).sqrt();
-                Vec2::splat(0.5) + disk * (distance / radius_sq.sqrt())
-            }
-        }
-    }
 }
 
 /// Maximum number of frames in a camera path.
@@ -172,33 +116,6 @@ impl Camera {
 mod tests {
     use super::*;
     use crate::sampling::owen_sobol_2d;
-
-    #[test]
-    fn samples_lie_around_the_pixel_by_the_filters_density() {
-        let n = 1 << 14;
-        for (filter, variance, reach) in [
-            (PixelFilter::Box, 1.0 / 12.0, 0.5),
-            (PixelFilter::TENT, 1.0 / 6.0, 1.0),
-            (PixelFilter::Tent { radius: 2.0 }, 4.0 / 6.0, 2.0),
-            (PixelFilter::GAUSSIAN, 0.25, 2.0),
-        ] {
-            let offsets = (0..n).map(|i| filter.place(owen_sobol_2d(i, 5)) - 0.5);
-            let (mut mean, mut squares) = (Vec2::ZERO, Vec2::ZERO);
-            for offset in offsets {
-                assert!(offset.abs().max_element() <= reach + 1e-5, "{filter:?} {offset}");
-                mean += offset / n as f32;
-                squares += offset * offset / n as f32;
-            }
-            assert!(
-                mean.length() < 2e-3 && (squares / variance - 1.0).abs().max_element() < 0.01,
-                "{filter:?} {squares}"
-            );
-            assert_eq!(filter.place(Vec2::splat(0.5)), Vec2::splat(0.5));
-            for corner in [Vec2::ZERO, Vec2::ONE, Vec2::new(0.0, 1.0)] {
-                assert!(filter.place(corner).is_finite());
-            }
-        }
-    }
 
     #[test]
     fn rays_through_a_lens_meet_in_the_plane_in_focus_and_parallel_ones_never() {

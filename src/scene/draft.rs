@@ -3,7 +3,8 @@
 //! Every reader ends in a [`Draft`]; [`super::sanitize`] and [`super::recentre`] make the
 //! [`Scene`](super::Scene) of it.
 
-use super::camera::{PixelFilter, Projection};
+use super::PixelFilter;
+use super::camera::Projection;
 use super::formats::Place;
 use super::light::{DeltaLight, DistantDisc, Environment};
 use super::material::{Material, MaterialId};

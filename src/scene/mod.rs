@@ -13,6 +13,7 @@ mod framing;
 mod light;
 mod material;
 mod mesh;
+mod pixel_filter;
 mod principled;
 mod recentre;
 mod relief;
@@ -24,12 +25,13 @@ mod texture;
 use glam::DVec3;
 use std::path::PathBuf;
 
-pub use camera::{Camera, Cameras, MAX_FRAMES, PixelFilter, Projection};
+pub use camera::{Camera, Cameras, MAX_FRAMES, Projection};
 pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap};
 pub use material::{
     Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Parameter, Reflectance, Roughness, Share,
 };
 pub use mesh::{Emission, Mesh};
+pub use pixel_filter::PixelFilter;
 pub use principled::Principled;
 pub use relief::Relief;
 pub use requirements::Requirements;

@@ -1,4 +1,5 @@
-//! From a method's output to the picture that is kept: features beside it, and its noise taken off.
+//! From a method's output to the picture that is kept: features beside it, its noise taken off, and sharpened where its
+//! pixels' filter has negative lobes.
 
 use super::goal::Goal;
 use crate::denoise::{DenoiseError, Denoiser, Guides, NOISY, Quality, effort};
@@ -116,9 +117,14 @@ impl<'a> Finish<'a> {
         SeenPixels::new(self.world, view, &settings, self.control)
     }
 
-    /// Adds the features of the method's own eye samples to its picture, and denoises that, where it is complete. The
-    /// times are the output's.
+    /// Adds the features of the method's own eye samples to its picture, and denoises and sharpens that, where it is
+    /// complete. The times are the output's.
     pub fn apply(&self, method: &Method, output: &mut Output) {
+        self.clean(method, output);
+        self.sharpen(output);
+    }
+
+    fn clean(&self, method: &Method, output: &mut Output) {
         if self.wanted().is_empty() || !output.complete {
             return;
         }
@@ -135,7 +141,23 @@ impl<'a> Finish<'a> {
         self.apply_to_layers(layers, output);
     }
 
-    /// The same by pixels that have been looked through. Returns true if the picture is denoised.
+    /// Sharpens a complete picture, the noisy one kept beside it and its variance, where the pixels' filter says.
+    pub fn sharpen(&self, output: &mut Output) {
+        let a = self.view.camera.filter.sharpening();
+        if a == 0.0 || !output.complete {
+            return;
+        }
+        output.nonfinite += output.color.remove_nonfinite();
+        output.color = output.color.sharpened(a);
+        for layer in output.extra.iter_mut().filter(|layer| layer.name == NOISY) {
+            if let Some(noisy) = layer.triples() {
+                *layer = Layer::color(NOISY, noisy.sharpened(a));
+            }
+        }
+        output.variance = output.variance.take().map(|variance| variance.sharpened_variance(a));
+    }
+
+    /// The same, but for sharpening, by pixels that have been looked through. Returns true if the picture is denoised.
     pub fn apply_to_seen(&self, seen: &SeenPixels, output: &mut Output) -> bool {
         self.apply_to_layers(seen.layers(self.world, self.wanted()), output)
     }

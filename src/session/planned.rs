@@ -159,6 +159,7 @@ impl Planning<'_> {
             let is_clean = output.complete && (is_denoised || !draws);
             thresholds.replace(q_scale, view, &seen, is_clean.then_some(&output.color));
         }
+        finish.sharpen(&mut output);
         output
     }
 

@@ -3,7 +3,7 @@
 use super::Settings;
 use super::measure::{MEANS, Measured};
 use super::picks::Pick;
-use crate::film::Image;
+use crate::film::{Image, sharpen};
 use crate::method::path::{Counts, Wanted, pixel_means};
 use crate::parallel::ShortRuns;
 use crate::paths::Look;
@@ -63,20 +63,14 @@ pub fn trace(
     let tracing = Tracing { world, view, image, settings, control };
     let task = |picks: &[Pick]| {
         let mut traced = Traced { pixels: Vec::new(), at_cap: 0, paths: 0, nonfinite: 0 };
-        let place = |pick: &Pick| {
-            let (column, row) =
-                (pick.index as u32 % view.window.width, pick.index as u32 / view.window.width);
-            view.window.film_pixel([column, row])
-        };
-        let mut wanted: Vec<Wanted> =
-            picks.iter().map(|pick| Wanted { pixel: place(pick), samples: least }).collect();
-        let pilot = tracing.measure(picks, &wanted, 0, &mut traced)?;
-        for (wanted, pixel) in wanted.iter_mut().zip(&pilot) {
+        let mut samples = vec![least; picks.len()];
+        let pilot = tracing.measure(picks, &samples, 0, &mut traced)?;
+        for (samples, pixel) in samples.iter_mut().zip(&pilot) {
             let needed = f64::from(least) * pixel.relative_variance(floor) / (TARGET * TARGET);
             traced.at_cap += usize::from(needed > f64::from(most));
-            wanted.samples = (needed.min(f64::from(most)) as u32).max(least).next_multiple_of(spp);
+            *samples = (needed.min(f64::from(most)) as u32).max(least).next_multiple_of(spp);
         }
-        traced.pixels = tracing.measure(picks, &wanted, 1, &mut traced)?;
+        traced.pixels = tracing.measure(picks, &samples, 1, &mut traced)?;
         Some(traced)
     };
     let parts: Vec<Option<Traced>> = picks.par_chunks(TASK).one_by_one().map(task).collect();
@@ -101,11 +95,33 @@ struct Tracing<'a> {
 }
 
 impl Tracing<'_> {
-    /// Traces all means of some pixels. Another `round` gives independent ones.
+    /// The pixels that a picked one is made of, with their weights: itself, and those around it if the picture is
+    /// sharpened.
+    fn parts(&self, pick: &Pick) -> Vec<([u32; 2], f32)> {
+        let View { camera, window } = self.view;
+        let (column, row) = (pick.index as u32 % window.width, pick.index as u32 / window.width);
+        let a = camera.filter.sharpening();
+        if a == 0.0 {
+            return vec![(window.film_pixel([column, row]), 1.0)];
+        }
+        let along = |i: u32, n: u32| {
+            [-1, 0, 1].map(|d| i.wrapping_add_signed(d)).into_iter().zip(sharpen::weights(a, i, n))
+        };
+        let rows = along(row, window.height);
+        let parts = rows.flat_map(|(y, by_row)| {
+            along(column, window.width).map(move |(x, by_column)| ([x, y], by_row * by_column))
+        });
+        parts
+            .filter(|(_, weight)| *weight != 0.0)
+            .map(|(pixel, weight)| (window.film_pixel(pixel), weight))
+            .collect()
+    }
+
+    /// Traces all means of some pixels, each of so many samples. Another `round` gives independent ones.
     fn measure(
         &self,
         picks: &[Pick],
-        wanted: &[Wanted],
+        samples: &[u32],
         round: u32,
         traced: &mut Traced,
     ) -> Option<Vec<Measured>> {
@@ -117,6 +133,11 @@ impl Tracing<'_> {
             weight: pick.weight,
         };
         let mut pixels: Vec<Measured> = picks.iter().map(held).collect();
+        let parts = picks.iter().zip(samples).enumerate().flat_map(|(i, (pick, &samples))| {
+            self.parts(pick).into_iter().map(move |(pixel, weight)| (i, weight, Wanted { pixel, samples }))
+        });
+        let parts: Vec<(usize, f32, Wanted)> = parts.collect();
+        let wanted: Vec<Wanted> = parts.iter().map(|(.., wanted)| *wanted).collect();
         let mut counts = Counts::default();
         for k in 0..MEANS {
             if self.control.is_cancelled() {
@@ -124,9 +145,9 @@ impl Tracing<'_> {
             }
             let seed = hash(hash(settings.seed, SEED), round * MEANS as u32 + k as u32);
             let (means, nonfinite) =
-                pixel_means(world, view, settings.look, wanted, (seed, max_depth), &mut counts);
-            for (pixel, mean) in pixels.iter_mut().zip(means) {
-                pixel.means[k] = mean;
+                pixel_means(world, view, settings.look, &wanted, (seed, max_depth), &mut counts);
+            for (&(pixel, weight, _), mean) in parts.iter().zip(means) {
+                pixels[pixel].means[k] += f64::from(weight) * mean;
             }
             traced.nonfinite += nonfinite;
         }

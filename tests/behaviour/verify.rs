@@ -12,6 +12,7 @@ use lightsplat::method::path::{Counts, Wanted, pixel_means};
 use lightsplat::method::render;
 use lightsplat::method::{Method, cache, lightcuts, path, reconstruction};
 use lightsplat::progress::Control;
+use lightsplat::scene::PixelFilter;
 use lightsplat::session::Goal;
 use lightsplat::verify::{Estimate, Settings, Verified, verify};
 use lightsplat::view::View;
@@ -126,6 +127,23 @@ fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
         |look: Look| check(&world, &picture.color, &Settings { pixels: 700, look, ..Settings::default() });
     assert!(at(Look::EyeSamples { spp: 4, seed: 3 }).relative_rms.high < 1e-6);
     assert!(at(Look::EyeSamples { spp: 4, seed: 4 }).relative_rms.low > 0.02);
+}
+
+#[test]
+fn pictures_by_filters_with_negative_lobes_are_measured_as_they_are() {
+    let mut world = lit_room();
+    world.view.camera.filter = PixelFilter::Lanczos;
+    let a = world.view.camera.filter.sharpening();
+    let converged = path::Settings { spp: 4096, ..path::Settings::default() };
+    let output = render(&world, &world.view, &converged, &Control::new());
+    let settings = Settings { pixels: 600, ..Settings::default() };
+    let sharp = check(&world, &output.color.sharpened(a), &settings);
+    let soft = check(&world, &output.color, &settings);
+    let noise = rel_mse_of_variance(&output.variance.unwrap().sharpened_variance(a), &output.color).sqrt();
+    assert!(
+        sharp.relative_rms.low < noise && soft.relative_rms.low > 1.5 * noise,
+        "{noise} {sharp:?} {soft:?}"
+    );
 }
 
 #[test]

@@ -156,9 +156,18 @@ impl Converter<'_> {
             },
             "tent" => PixelFilter::Tent { radius: object.positive("radius", 1.0)? as f32 },
             "gaussian" => PixelFilter::Gaussian { deviation: object.positive("stddev", 0.5)? as f32 },
-            "mitchell" => self.tent(object, 1.02, "a tenth"),
-            "catmullrom" => self.tent(object, 0.91, "a sixth"),
-            "lanczos" => self.tent(object, 0.91, "a third"),
+            "mitchell" => {
+                // Version 3 calls A and B what version 0.6 and the paper call B and C.
+                for name in ["A", "B", "C"] {
+                    self.usual(object, name, 1.0 / 3.0)?;
+                }
+                PixelFilter::Mitchell
+            }
+            "catmullrom" => PixelFilter::CatmullRom,
+            "lanczos" => {
+                self.usual(object, "lobes", 3.0)?;
+                PixelFilter::Lanczos
+            }
             other => {
                 let what = format!("the film's reconstruction filter \"{other}\" is not modelled");
                 self.log.note(&object.place, what, "a Gaussian of deviation .5 stands in");
@@ -170,14 +179,14 @@ impl Converter<'_> {
         Ok(filter)
     }
 
-    /// The tent that is nearest to a filter with negative lobes, which has no density, in the mean square over the
-    /// film; `distance` is relative to the filter's norm.
-    fn tent(&mut self, object: &Object, radius: f32, distance: &str) -> PixelFilter {
-        let what = format!("the film's reconstruction filter \"{}\" is not modelled", object.plugin);
-        let fallback = format!("a tent of radius {radius} stands in, {distance} from it in the mean square");
-        self.log.note(&object.place, what, fallback);
-        object.properties.iter().for_each(|property| property.used.set(true));
-        PixelFilter::Tent { radius }
+    /// Notes a filter's parameter that is not the usual one, which stands in.
+    fn usual(&mut self, object: &Object, name: &str, usual: f64) -> Result<(), SceneError> {
+        let given = object.float(name)?.unwrap_or(usual);
+        if (given - usual).abs() > 1e-3 {
+            let what = format!("a {} filter with {name} = {given} is not modelled", object.plugin);
+            self.log.note(&object.place, what, format!("it is {usual:.3}"));
+        }
+        Ok(())
     }
 }
 

@@ -128,7 +128,7 @@ impl Builder<'_> {
     fn check_filter(&self, text: &CameraText) -> Result<(), SceneError> {
         match text.filter.as_ref().map(|f| (filter(f.get_ref()), f.span())) {
             Some((None, span)) => {
-                let remedy = "use box, tent or gaussian";
+                let remedy = "use box, tent, gaussian, blackman-harris, mitchell, catmull-rom or lanczos";
                 Err(self.file.place(span).wrong("the film's filter is not known", remedy))
             }
             _ => Ok(()),
@@ -151,6 +151,10 @@ fn filter(name: &str) -> Option<PixelFilter> {
         "box" => Some(PixelFilter::Box),
         "tent" => Some(PixelFilter::TENT),
         "gaussian" => Some(PixelFilter::GAUSSIAN),
+        "blackman-harris" => Some(PixelFilter::BlackmanHarris),
+        "mitchell" => Some(PixelFilter::Mitchell),
+        "catmull-rom" => Some(PixelFilter::CatmullRom),
+        "lanczos" => Some(PixelFilter::Lanczos),
         _ => None,
     }
 }
