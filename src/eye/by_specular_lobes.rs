@@ -9,10 +9,11 @@ use super::pass::TILE;
 use super::{ChainCounts, EyeSettings};
 use crate::caustics::Caustics;
 use crate::film::Image;
-use crate::math::Rgb;
+use crate::math::{Rgb, luminance};
 use crate::parallel::ShortRuns;
 use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, ScatteredEdges, Start, start};
 use crate::progress::Control;
+use crate::stats::Ways;
 use crate::view::View;
 use crate::world::World;
 use rayon::prelude::*;
@@ -45,7 +46,7 @@ impl<'w> Reach<'w> for BySpecularLobes<'_> {
         self.glossy
     }
 
-    fn reflected(&self, end: &ChainEnd<'w>) -> Rgb {
+    fn reflected(&mut self, end: &ChainEnd<'w>) -> Rgb {
         self.caustics.map_or(Rgb::ZERO, |caustics| self.looks.reflected(caustics, end))
     }
 
@@ -83,6 +84,7 @@ impl LightBySpecularLobes {
         let trace = |batch: &mut Batch, index| {
             let mut found: Vec<(usize, Rgb)> = Vec::new();
             let (mut counts, mut nonfinite) = (Counts::default(), 0);
+            let (mut light, mut by_photons) = (0.0, 0.0);
             for [x, y] in window.tile(index, TILE) {
                 if control.is_cancelled() {
                     break;
@@ -95,30 +97,42 @@ impl LightBySpecularLobes {
                 let mut reach = BySpecularLobes { glossy: true, caustics, looks };
                 for radiance in batch.trace(world, max_depth, &mut reach, &mut counts) {
                     if radiance.is_finite() {
+                        light += f64::from(luminance(radiance));
                         sum += radiance;
                         finite += 1;
                     }
                 }
+                by_photons += reach.looks.found;
                 nonfinite += u64::from(samples - finite);
                 found.push(((y * window.width + x) as usize, sum / samples as f32));
             }
-            (found, counts, nonfinite)
+            let chains = ChainCounts {
+                rays: counts.rays,
+                shadow_rays: counts.shadow_rays,
+                light,
+                by_photons,
+                ..ChainCounts::default()
+            };
+            (found, chains, nonfinite)
         };
         let tiles = (0..window.tile_count(TILE)).into_par_iter().in_short_runs();
         let tiles: Vec<_> = tiles.map_init(Batch::default, trace).collect();
         let mut image = Image::new(window.width, window.height);
-        for (found, counts, nonfinite) in tiles {
+        for (found, chains, nonfinite) in tiles {
             found.into_iter().for_each(|(pixel, radiance)| image.pixels[pixel] = radiance);
-            light.chains.rays += counts.rays;
-            light.chains.shadow_rays += counts.shadow_rays;
+            light.chains += chains;
             light.nonfinite += nonfinite;
         }
         light.image = Some(image);
         light
     }
 
-    /// Adds the light to a picture of the window.
-    pub fn add_to(&self, picture: &mut Image) {
+    /// Adds the light to a picture of the window, and to the ways that its light came.
+    pub fn add_to(&self, picture: &mut Image, ways: &mut Ways) {
+        let found = self.image.as_ref().map_or(0.0, Image::luminance);
+        let by_photons = self.chains.by_photons(found);
+        ways.add("photons through glass or by mirrors", by_photons);
+        ways.add("paths through glass or by mirrors", found - by_photons);
         for (pixel, light) in picture.pixels.iter_mut().zip(self.image.iter().flat_map(|image| &image.pixels))
         {
             *pixel += *light;

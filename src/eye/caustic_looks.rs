@@ -1,7 +1,7 @@
 //! Samples of a pixel that look for photons: those that find the same ones need not all look.
 
 use crate::caustics::Caustics;
-use crate::math::Rgb;
+use crate::math::{Rgb, luminance};
 use crate::paths::ChainEnd;
 
 /// Samples for one that looks.
@@ -13,6 +13,8 @@ pub(super) struct CausticLooks {
     samples: u32,
     /// The first of them, which are as even over the pixel as all are.
     looking: u32,
+    /// Luminance of the photons' light that reached the eye, as a sum over the samples.
+    pub found: f64,
 }
 
 impl Default for CausticLooks {
@@ -23,21 +25,24 @@ impl Default for CausticLooks {
 
 impl CausticLooks {
     /// None of the paths.
-    pub const NONE: CausticLooks = CausticLooks { samples: 1, looking: 0 };
+    pub const NONE: CausticLooks = CausticLooks { samples: 1, looking: 0, found: 0.0 };
 
     /// Of pixels with `samples` samples each.
     pub fn new(samples: u32) -> CausticLooks {
-        CausticLooks { samples: samples.max(1), looking: samples.div_ceil(SAMPLES).max(1) }
+        CausticLooks { samples: samples.max(1), looking: samples.div_ceil(SAMPLES).max(1), found: 0.0 }
     }
 
     /// Radiance that the surface at the end of a chain reflects of the light of photons, if its path looks, for those
     /// that do not, too.
     #[inline]
-    pub fn reflected(&self, caustics: &Caustics, end: &ChainEnd) -> Rgb {
+    pub fn reflected(&mut self, caustics: &Caustics, end: &ChainEnd) -> Rgb {
         if end.path % self.samples >= self.looking {
             return Rgb::ZERO;
         }
         let found = caustics.reflected(&end.surface, &end.bsdf, end.out, (end.distance, end.depth));
-        found * (self.samples as f32 / self.looking as f32)
+        let radiance = found * (self.samples as f32 / self.looking as f32);
+        let seen = luminance(end.throughput * radiance);
+        self.found += if seen.is_finite() { f64::from(seen) } else { 0.0 };
+        radiance
     }
 }

@@ -74,7 +74,7 @@ pub enum Follow {
 /// Name of the counter of [`ChainCounts::overflow`].
 pub const DROPPED_BRANCHES: &str = "Eye/branches dropped";
 
-/// Rays traced by eye chains.
+/// Rays traced by eye chains, and the light that paths behind them found.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ChainCounts {
     /// Closest-hit queries.
@@ -85,8 +85,19 @@ pub struct ChainCounts {
     pub overflow: u64,
     /// Samples that some pixels have and others have not.
     pub extra_samples: u64,
+    /// Luminance of all light found where photons are looked for, as a sum over the samples.
+    pub light: f64,
+    /// Luminance of that of the photons.
+    pub by_photons: f64,
 }
-add_fields!(ChainCounts { rays, shadow_rays, overflow, extra_samples });
+impl ChainCounts {
+    /// The photons' part of such light whose luminance is `found`.
+    pub fn by_photons(&self, found: f64) -> f64 {
+        if self.light > 0.0 { found * (self.by_photons / self.light) } else { 0.0 }
+    }
+}
+
+add_fields!(ChainCounts { rays, shadow_rays, overflow, extra_samples, light, by_photons });
 
 struct Branch {
     ray: Ray,

@@ -18,7 +18,7 @@ use super::points::VisibilitySample;
 use super::{ChainCounts, ExtraSamples, EyePass, EyeSettings, Settled, VisibleSurfaces, guide};
 use crate::caustics::Caustics;
 use crate::light::Learned;
-use crate::math::Rgb;
+use crate::math::{Rgb, luminance};
 use crate::parallel::ShortRuns;
 use crate::paths::{Batch, Counts, LightSamples, Look, ScatteredEdges, Start, start};
 use crate::progress::Control;
@@ -362,6 +362,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 let mut radiance = batch.trace(self.world, self.settings.max_depth, ends, &mut counts);
                 chains.rays += counts.rays;
                 chains.shadow_rays += counts.shadow_rays;
+                chains.by_photons += ends.looks.found;
                 ends.order.sort_unstable();
                 if let Some(first_surfaces) = &mut ends.first_surfaces {
                     let eye = (self.world, self.view);
@@ -372,6 +373,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
                     let (mut sum, mut half, mut nonfinite) = (Rgb::ZERO, Rgb::ZERO, 0);
                     for (number, value) in part.clone().zip(radiance.by_ref().take(n)) {
                         if value.is_finite() {
+                            chains.light += f64::from(luminance(value));
                             sum += value;
                             half += if number < middle { value } else { Rgb::ZERO };
                         } else {

@@ -50,7 +50,7 @@ impl<'w> Reach<'w> for Ends<'_, 'w> {
         self.light_samples
     }
 
-    fn reflected(&self, end: &ChainEnd<'w>) -> Rgb {
+    fn reflected(&mut self, end: &ChainEnd<'w>) -> Rgb {
         self.caustics.map_or(Rgb::ZERO, |caustics| self.looks.reflected(caustics, end))
     }
 

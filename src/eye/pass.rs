@@ -15,7 +15,7 @@ use crate::kd_tree::KdTree;
 use crate::math::luminance;
 use crate::parallel::ShortRuns;
 use crate::progress::Control;
-use crate::stats::give_back;
+use crate::stats::{Ways, give_back};
 use crate::view::View;
 use crate::world::World;
 use rayon::prelude::*;
@@ -46,6 +46,8 @@ pub struct EyePass<'w> {
     /// Light known: that which reaches the eye from emitters, directly or along specular chains; that which comes to
     /// surfaces seen by mirrors and glass; and direct light if it is drawn.
     pub known: Image,
+    /// The ways by which it came.
+    pub ways: Ways,
     /// Guides for a denoiser, if they are wanted.
     pub guides: Option<KeptGuides>,
     /// Rays traced.
@@ -69,11 +71,18 @@ impl<'w> EyePass<'w> {
         control: &Control,
     ) -> EyePass<'w> {
         match drawn {
-            Some(drawn) => EyePass::with_direct_light(world, view, settings, (drawn, caustics), control),
+            Some(drawn) => {
+                let mut pass = EyePass::with_direct_light(world, view, settings, (drawn, caustics), control);
+                let found = pass.known.luminance();
+                pass.ways.add("photons through glass or by mirrors", pass.chains.by_photons(found));
+                pass.ways.rest("eye samples", found);
+                pass
+            }
             None => {
                 let mut pass = EyePass::trace(world, view, settings, control);
                 let light = LightBySpecularLobes::new(world, view, settings, caustics, control);
-                light.add_to(&mut pass.known);
+                pass.ways.add("emitters in view", pass.known.luminance());
+                light.add_to(&mut pass.known, &mut pass.ways);
                 pass.chains += light.chains;
                 pass.nonfinite += light.nonfinite;
                 pass
@@ -155,6 +164,7 @@ impl<'w> EyePass<'w> {
             index,
             visibility: VisibilitySamples::one_each(samples),
             known,
+            ways: Ways::default(),
             guides: (!guides.is_empty()).then_some(KeptGuides(guides)),
             chains,
             light_samples: 1,

@@ -33,7 +33,7 @@ pub use png::{write_png, write_srgb8};
 pub use tone::{Exposure, display, srgb_slope};
 pub use window::Window;
 
-use crate::math::Rgb;
+use crate::math::{Rgb, luminance};
 
 /// An image, of linear colours if nothing else is said; row-major, top row first.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +70,11 @@ impl Image {
     /// A black image.
     pub fn new(width: u32, height: u32) -> Image {
         Image { width, height, pixels: vec![Rgb::ZERO; width as usize * height as usize] }
+    }
+
+    /// Sum of the pixels' luminances.
+    pub fn luminance(&self) -> f64 {
+        self.pixels.iter().map(|pixel| f64::from(luminance(*pixel))).sum()
     }
 
     /// Replaces every channel that is not finite by 0 and returns their number.

@@ -119,7 +119,7 @@ pub trait Reach<'w> {
     fn end(&mut self, _end: &ChainEnd<'w>) {}
 
     /// Radiance that such a surface reflects of the light that is found otherwise than by paths.
-    fn reflected(&self, _end: &ChainEnd<'w>) -> Rgb {
+    fn reflected(&mut self, _end: &ChainEnd<'w>) -> Rgb {
         Rgb::ZERO
     }
 

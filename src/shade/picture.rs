@@ -5,6 +5,7 @@ use crate::eye::EyePass;
 use crate::film::{Image, Layer, Preview};
 use crate::math::Rgb;
 use crate::progress::Control;
+use crate::stats::{Stats, Ways};
 use crate::vpl::Origin;
 
 /// Sums at each pixel.
@@ -15,6 +16,8 @@ pub struct Picture {
     parts: Option<[Image; 3]>,
     /// Radiances that were not finite and left out.
     pub nonfinite: u64,
+    /// The ways by which the light came.
+    ways: Ways,
 }
 
 impl Picture {
@@ -23,7 +26,7 @@ impl Picture {
         let color = eye.known.clone();
         let blank = || Image::new(color.width, color.height);
         let parts = with_parts.then(|| [blank(), blank(), blank()]);
-        Picture { color, parts, nonfinite: eye.nonfinite }
+        Picture { color, parts, nonfinite: eye.nonfinite, ways: eye.ways.clone() }
     }
 
     /// Adds radiance that a shading point reflects, of one origin or of both.
@@ -64,8 +67,14 @@ impl Picture {
         shading.counts
     }
 
-    /// The picture, its parts, and the number of radiances that were left out.
-    pub fn finish(self) -> (Image, Vec<Layer>, u64) {
+    /// Tells the way by which the light came that was added since this was called last.
+    pub fn came_by(&mut self, way: &'static str) {
+        self.ways.rest(way, self.color.luminance());
+    }
+
+    /// The picture, its parts, and the number of radiances that were left out; reports the ways that its light came.
+    pub fn finish(self, stats: &mut Stats) -> (Image, Vec<Layer>, u64) {
+        self.ways.report(stats);
         let parts = ["direct", "indirect", "both"].into_iter().zip(self.parts.into_iter().flatten());
         let parts = parts.map(|(name, image)| Layer::color(name, image).shown(Preview::Exposed));
         (self.color, parts.collect(), self.nonfinite)

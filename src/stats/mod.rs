@@ -12,6 +12,7 @@ mod memory;
 mod report;
 mod stage;
 mod sum;
+mod ways;
 
 use std::collections::BTreeMap;
 
@@ -19,6 +20,7 @@ pub use counter::{Counter, Distribution};
 pub use memory::{available_bytes, give_back, peak_resident_bytes};
 pub use stage::{Stage, StageTime, Stopwatch};
 pub(crate) use sum::add_fields;
+pub use ways::Ways;
 
 /// Counters by name and times by stage.
 #[derive(Clone, Debug, Default, PartialEq)]

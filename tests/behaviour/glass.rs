@@ -5,6 +5,7 @@ use glam::{DVec3, Vec2, Vec3};
 use lightsplat::math::Rgb;
 use lightsplat::method::{Renderer, cache, lightcuts, path, photon_cache, reconstruction};
 use lightsplat::scene::{DeltaLight, Distribution, Environment, Lobe, Material, MaterialId, Mesh, Parameter};
+use lightsplat::stats::Counter;
 
 /// A room seen from inside, dark but for what comes through a hole in its wall towards +x, from a lamp in another room.
 fn two_rooms(add: impl FnOnce(&mut SceneAndView)) -> WorldAndView {
@@ -195,6 +196,9 @@ fn a_point_of_light_shines_through_a_ball_as_a_small_lamp_does() {
         let intensity = radiance * (std::f32::consts::PI * RADIUS * RADIUS);
         scene.lights.push(DeltaLight::Point { position, intensity });
     });
+    let stats = rendered(&point, &cache::Settings { spp: 4, ..Default::default() }).stats;
+    let share = stats.get("Light/by photons through glass or by mirrors [%]");
+    assert!(matches!(share, Some(Counter::Sum(percent)) if percent > 1.0 && percent < 50.0), "{share:?}");
     let found = by_default(&point);
     assert_agreement_within(0.02, found, by_default(&lamp), "a point of light and a small lamp");
     assert_agreement_within(0.02, by_default(&lamp), by_paths(&lamp), "a small lamp");

@@ -112,10 +112,12 @@ impl Settings {
         let tasks = stats.time(Stage::Splat, || {
             resolve(frame.interpolate(records), &samples, cache.draws_direct_light(), &mut picture)
         });
+        picture.came_by("records");
         control.begin(Stage::Render, tasks.len() as u64);
         let counts = stats.time(Stage::Render, || {
             picture.shade(&context, &samples, &tasks, cache.patches, &self.shading(), control)
         });
+        picture.came_by("cuts");
         stats.count("Shading/tasks by cuts", tasks.len() as u64);
         counts::cuts(&mut stats, "Lightcut", &counts.cuts);
         if cache.direct == DirectBy::Cuts && !cache.cached().indirect {
@@ -123,7 +125,7 @@ impl Settings {
         }
         counts.shadows.report(&mut stats);
         let complete = samples.complete && !control.is_cancelled();
-        let (color, mut extra, nonfinite) = picture.finish();
+        let (color, mut extra, nonfinite) = picture.finish(&mut stats);
         if self.inspect {
             extra.extend(frame.inspect(records, &samples));
         }

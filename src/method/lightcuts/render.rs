@@ -14,7 +14,7 @@ use crate::progress::Control;
 use crate::setting::{COMPENSATION, SHARE};
 use crate::shade::{ShadeSettings, Shader, ShadingCounts};
 use crate::shadow::ShadowSettings;
-use crate::stats::{Stage, Stats};
+use crate::stats::{Stage, Stats, Ways};
 use crate::view::View;
 use crate::vpl::LightPassSettings;
 use crate::world::World;
@@ -92,7 +92,10 @@ impl Renderer for Settings {
             chains += tile.chains;
             nonfinite += tile.nonfinite;
         }
-        light.add_to(&mut color);
+        let mut ways = Ways::default();
+        ways.add("cuts and emitters in view", color.luminance());
+        light.add_to(&mut color, &mut ways);
+        ways.report(&mut stats);
         stats.count("Rays/shadow packets", work.cuts.packets);
         work.shadows.report(&mut stats);
         counts::cuts(&mut stats, "Lightcut", &work.cuts);

@@ -119,6 +119,7 @@ impl Renderer for Settings {
             }
             None => (0..samples.len() as u32).map(ShadingTask::all).collect(),
         });
+        picture.came_by("records");
         let direct: Vec<ShadingTask> = tasks
             .iter()
             .filter(|task| task.origin != Some(Origin::Indirect))
@@ -131,6 +132,7 @@ impl Renderer for Settings {
         let counts = stats.time(Stage::Render, || {
             picture.shade(&context, &samples, &direct, self.cache.patches, &shading, control)
         });
+        picture.came_by("cuts");
         counts::cuts(&mut stats, "Lightcut", &counts.cuts);
         counts.shadows.report(&mut stats);
         let gathered = stats.time(Stage::Render, || own_gathers(&source, &samples, &indirect, self, control));
@@ -139,6 +141,7 @@ impl Renderer for Settings {
             picture.add(&samples, task.point as usize, Some(Origin::Indirect), radiance);
             rays += used;
         }
+        picture.came_by("gathering");
         stats.count("Shading/tasks by cuts", direct.len() as u64);
         stats.count("Shading/tasks by gathering", indirect.len() as u64);
         stats.count("Gathering/rays of records", rays.record_rays);
@@ -146,7 +149,7 @@ impl Renderer for Settings {
         stats.count("Gathering/rays followed", rays.followed);
         stats.count("Gathering/near surfaces", rays.near);
         let complete = samples.complete && !control.is_cancelled();
-        let (color, mut extra, nonfinite) = picture.finish();
+        let (color, mut extra, nonfinite) = picture.finish(&mut stats);
         if self.inspect {
             extra.extend(frame.iter().flat_map(|frame| frame.inspect(&records, &samples)));
         }

@@ -38,12 +38,13 @@ pub fn light(settings: &Settings, world: &World, prepared: Prepared, control: &C
     let counts = stats.time(Stage::Render, || {
         picture.shade(&context, &eye, &tasks, settings.patches, &settings.shading(), control)
     });
+    picture.came_by("cuts");
     stats.count("Shading/tasks by cuts", tasks.len() as u64);
     counts::cuts(&mut stats, "Lightcut", &counts.cuts);
     counts::clamping(&mut stats, &counts.cuts, settings.compensation.then_some(&counts.compensation));
     counts.shadows.report(&mut stats);
     let complete = eye.complete && !control.is_cancelled();
-    let (color, extra, nonfinite) = picture.finish();
+    let (color, extra, nonfinite) = picture.finish(&mut stats);
     Output { extra, complete, nonfinite, ..Output::new(color, stats) }
 }
 
