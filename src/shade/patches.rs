@@ -25,11 +25,12 @@ pub fn patches(
     };
     let all = tasks.iter().copied();
     let patches = group_coherent(CoherenceLimit::CLOSE, all, max_size, diagonal, place, same);
-    // A cut costs nearly as much for few points as for sixteen: remnants make do with less coherence.
+    // A cut costs nearly as much for few points as for sixteen: remnants make do with less coherence. They are all
+    // anchors: far apart as they are, light that reaches one of them need not reach any of its neighbours.
     let (mut patches, remnants): (Vec<_>, Vec<_>) =
         patches.into_iter().partition(|patch| patch.len() >= MIN_PATCH);
     let remnants = remnants.into_iter().flatten();
-    patches.extend(group_coherent(CoherenceLimit::REMOTE, remnants, MIN_PATCH, diagonal, place, same));
+    patches.extend(group_coherent(CoherenceLimit::REMOTE, remnants, LANES, diagonal, place, same));
     patches
 }
 
