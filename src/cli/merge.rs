@@ -144,6 +144,7 @@ fn difference(a: (&ExrFile, &Metadata), b: (&ExrFile, &Metadata)) -> Option<&'st
         ("camera or frame", a.0.camera() != b.0.camera() || a.1.number("frame") != b.1.number("frame")),
         ("film or crop", a.0.window() != b.0.window()),
         ("method", a.1.text("method") != b.1.text("method")),
+        ("sharpening, which interrupted pictures lack,", a.1.text("sharpened") != b.1.text("sharpened")),
         ("setting, besides --seed and --spp,", settings(a.1) != settings(b.1)),
     ];
     differs.into_iter().find(|(_, differs)| *differs).map(|(what, _)| what)

@@ -97,11 +97,11 @@ impl LightBySpecularLobes {
                 let mut reach = BySpecularLobes { glossy: true, caustics, looks };
                 for radiance in batch.trace(world, max_depth, &mut reach, &mut counts) {
                     if radiance.is_finite() {
-                        light += f64::from(luminance(radiance));
                         sum += radiance;
                         finite += 1;
                     }
                 }
+                light += f64::from(luminance(sum));
                 by_photons += reach.looks.found;
                 nonfinite += u64::from(samples - finite);
                 found.push(((y * window.width + x) as usize, sum / samples as f32));
@@ -131,7 +131,7 @@ impl LightBySpecularLobes {
     pub fn add_to(&self, picture: &mut Image, ways: &mut Ways) {
         let found = self.image.as_ref().map_or(0.0, Image::luminance);
         let by_photons = self.chains.by_photons(found);
-        ways.add("photons through glass or by mirrors", by_photons);
+        ways.add(Ways::PHOTONS, by_photons);
         ways.add("paths through glass or by mirrors", found - by_photons);
         for (pixel, light) in picture.pixels.iter_mut().zip(self.image.iter().flat_map(|image| &image.pixels))
         {

@@ -90,14 +90,14 @@ pub struct ChainCounts {
     /// Luminance of that of the photons.
     pub by_photons: f64,
 }
+add_fields!(ChainCounts { rays, shadow_rays, overflow, extra_samples, light, by_photons });
+
 impl ChainCounts {
     /// The photons' part of such light whose luminance is `found`.
     pub fn by_photons(&self, found: f64) -> f64 {
         if self.light > 0.0 { found * (self.by_photons / self.light) } else { 0.0 }
     }
 }
-
-add_fields!(ChainCounts { rays, shadow_rays, overflow, extra_samples, light, by_photons });
 
 struct Branch {
     ray: Ray,

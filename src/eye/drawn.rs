@@ -373,13 +373,13 @@ impl<'a, 'w> Tracer<'a, 'w> {
                     let (mut sum, mut half, mut nonfinite) = (Rgb::ZERO, Rgb::ZERO, 0);
                     for (number, value) in part.clone().zip(radiance.by_ref().take(n)) {
                         if value.is_finite() {
-                            chains.light += f64::from(luminance(value));
                             sum += value;
                             half += if number < middle { value } else { Rgb::ZERO };
                         } else {
                             nonfinite += 1;
                         }
                     }
+                    chains.light += f64::from(luminance(sum));
                     let own;
                     (own, rest) =
                         rest.split_at(rest.partition_point(|(path, _)| *path < ((i + 1) * n) as u32));

@@ -74,7 +74,7 @@ impl<'w> EyePass<'w> {
             Some(drawn) => {
                 let mut pass = EyePass::with_direct_light(world, view, settings, (drawn, caustics), control);
                 let found = pass.known.luminance();
-                pass.ways.add("photons through glass or by mirrors", pass.chains.by_photons(found));
+                pass.ways.add(Ways::PHOTONS, pass.chains.by_photons(found));
                 pass.ways.rest("eye samples", found);
                 pass
             }

@@ -157,7 +157,8 @@ impl<'a> Finish<'a> {
         output.variance = output.variance.take().map(|variance| variance.sharpened_variance(a));
     }
 
-    /// The same, but for sharpening, by pixels that have been looked through. Returns true if the picture is denoised.
+    /// As [`Finish::apply`], but for sharpening, by pixels that have been looked through. Returns true if the picture
+    /// is denoised.
     pub fn apply_to_seen(&self, seen: &SeenPixels, output: &mut Output) -> bool {
         self.apply_to_layers(seen.layers(self.world, self.wanted()), output)
     }

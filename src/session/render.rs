@@ -134,6 +134,9 @@ impl Session {
         let nonfinite = nonfinite_samples + nonfinite_channels;
         self.describe(&method, &mut film.metadata);
         film.metadata.set("partial", if complete { "false" } else { "true" });
+        if complete && view.camera.filter.sharpening() > 0.0 {
+            film.metadata.set("sharpened", "true");
+        }
         film.metadata.set("render_seconds", seconds);
         film.metadata.set("nonfinite", nonfinite as f64);
         if goal.denoises() {

@@ -7,6 +7,9 @@ use super::Stats;
 pub struct Ways(Vec<(&'static str, f64)>);
 
 impl Ways {
+    /// Photons that came by mirrors and smooth glass alone.
+    pub const PHOTONS: &str = "photons through glass or by mirrors";
+
     /// Adds light that came by `way`.
     pub fn add(&mut self, way: &'static str, luminance: f64) {
         match self.0.iter_mut().find(|(known, _)| *known == way) {
@@ -42,7 +45,7 @@ mod tests {
     fn shares_of_all_ways_come_to_the_whole() {
         let mut ways = Ways::default();
         ways.add("eye samples", 1.0);
-        ways.add("photons", 0.0);
+        ways.add(Ways::PHOTONS, 0.0);
         ways.add("eye samples", 1.0);
         ways.rest("records", 3.0);
         ways.rest("cuts", 8.0);
@@ -52,7 +55,7 @@ mod tests {
         assert_eq!(share("eye samples"), Some(Counter::Sum(25.0)));
         assert_eq!(share("records"), Some(Counter::Sum(12.5)));
         assert_eq!(share("cuts"), Some(Counter::Sum(62.5)));
-        assert_eq!(share("photons"), None);
+        assert_eq!(share(Ways::PHOTONS), None);
         let mut black = Stats::new();
         Ways::default().report(&mut black);
         assert_eq!(black.get("Light/by eye samples [%]"), None);

@@ -20,7 +20,7 @@ fn render(sandbox: &Sandbox, name: &str, seed: &str, spp: &str, more: &[&str]) {
 fn assert_mean(c: &Image, a: &Image, b: &Image, weights: [f32; 2]) {
     for ((c, a), b) in c.pixels.iter().zip(&a.pixels).zip(&b.pixels) {
         let mean = *a * weights[0] + *b * weights[1];
-        assert!((mean - *c).abs().max_element() <= 1e-5 * mean.max_element(), "{c} for {mean}");
+        assert!((mean - *c).abs().max_element() <= 1e-5 * mean.abs().max_element(), "{c} for {mean}");
     }
 }
 
@@ -55,6 +55,22 @@ fn pictures_count_as_much_as_they_have_samples_and_merged_ones_can_be_merged_aga
     let ratio = error(&all) / error(&file(&sandbox, "whole.exr"));
     assert!((0.9..1.1).contains(&ratio), "{ratio}");
     assert!(merge(&sandbox, &["ab.exr", "b.exr"]).expect(3).stderr.contains("seed 2 too"));
+}
+
+#[test]
+fn pictures_are_merged_with_those_alone_that_are_sharpened_as_they_are() {
+    let sandbox = Sandbox::new();
+    let scene = super::ROOM.replace("rfilter type=\"box\"", "rfilter type=\"mitchell\"");
+    std::fs::write(sandbox.path("room.xml"), scene).unwrap();
+    for (name, seed) in [("a.exr", "1"), ("b.exr", "2")] {
+        render(&sandbox, name, seed, "4", &["--method", "path"]);
+    }
+    merge(&sandbox, &["a.exr", "b.exr"]).expect(0);
+    let [a, mut b, m] = ["a.exr", "b.exr", "m.exr"].map(|name| file(&sandbox, name));
+    assert_mean(&m.color().unwrap(), &a.color().unwrap(), &b.color().unwrap(), [0.5, 0.5]);
+    b.remove_fact("sharpened");
+    b.write(&sandbox.path("b.exr")).unwrap();
+    assert!(merge(&sandbox, &["a.exr", "b.exr"]).expect(3).stderr.contains("sharpening"));
 }
 
 #[test]
