@@ -142,5 +142,8 @@ fn texture_factor(
     triangle: u32,
     barycentric: Vec2,
 ) -> Rgb {
-    texture.map_or(Rgb::ONE, |t| scene.textures[t.0 as usize].lookup(mesh.uv(triangle as usize, barycentric)))
+    texture.map_or(Rgb::ONE, |t| {
+        let uv = mesh.uv(&mesh.triangles[triangle as usize], barycentric);
+        scene.textures[t.0 as usize].lookup(uv)
+    })
 }

@@ -57,6 +57,8 @@ pub(super) struct Model {
     opacity: Option<(Share, usize)>,
     /// True if light passes straight by that rest alone.
     only_by_gaps: bool,
+    /// The first texture read, if any.
+    first_texture: Option<TextureId>,
     /// The colours, if nothing is textured.
     constant: Option<Colours<Rgb>>,
     /// Light that passes straight, likewise.
@@ -80,6 +82,7 @@ impl Materials {
                 models.push(Model::new(material, id, textures, level, &mut tables));
             }
             let model = &mut models[id.0 as usize];
+            model.first_texture = Some(levels.texture);
             (model.levels, model.constant, model.straight) = (Some(levels), None, None);
         }
         let mut coats = vec![CoatInterface::None];
@@ -138,6 +141,13 @@ impl Materials {
                 self.textured(model, scene, uv(), covered)
             }
         }
+    }
+
+    /// Texture of the material that a look-up reads first; `None` if it has none.
+    #[inline]
+    pub fn texture<'s>(&self, scene: &'s Scene, id: MaterialId) -> Option<&'s Texture> {
+        let first = self.models[id.0 as usize].first_texture?;
+        scene.textures.get(first.0 as usize)
     }
 
     fn textured<'m>(&'m self, mut model: &'m Model, scene: &Scene, uv: Vec2, covered: f32) -> Bsdf<'m> {
@@ -246,6 +256,7 @@ impl Model {
             source,
             opacity,
             only_by_gaps,
+            first_texture: None,
             constant: None,
             straight: None,
             filters: false,
@@ -255,7 +266,9 @@ impl Model {
             && material.relief.is_none()
             && material.parts().all(|part| !part.has_textured_roughness());
         model.filters = is_textured && is_of_one_factor && model.source.is_linear(&model.base);
-        if !is_textured {
+        if is_textured {
+            model.first_texture = model.textures().first().copied();
+        } else {
             let colours = model.colours(|_| Rgb::ONE);
             model.straight = Straight::new(&model.lobes, &colours.scales);
             model.constant = Some(colours);
@@ -265,13 +278,16 @@ impl Model {
 
     /// Textures that are averaged.
     fn filtered_textures(&self) -> Vec<TextureId> {
+        if self.filters { self.textures() } else { Vec::new() }
+    }
+
+    /// Textures in the order in which they are read, but for those of levels.
+    fn textures(&self) -> Vec<TextureId> {
         let found = RefCell::new(Vec::new());
-        if self.filters {
-            self.colours(|texture| {
-                found.borrow_mut().push(texture);
-                Rgb::ONE
-            });
-        }
+        self.colours(|texture| {
+            found.borrow_mut().push(texture);
+            Rgb::ONE
+        });
         found.into_inner()
     }
 

@@ -54,14 +54,14 @@ impl Mesh {
         Some(n0 * (1.0 - b.x - b.y) + n1 * b.x + n2 * b.y)
     }
 
-    /// Texture coordinates at barycentric weights `b` of corners 1 and 2 of triangle `t`;
-    /// the weights themselves where the mesh has no coordinates.
+    /// Texture coordinates at barycentric weights `b` of the last two of a triangle's `vertices`; the weights
+    /// themselves where the mesh has no coordinates.
     #[inline]
-    pub fn uv(&self, t: usize, b: Vec2) -> Vec2 {
+    pub fn uv(&self, vertices: &[u32; 3], b: Vec2) -> Vec2 {
         if self.uvs.is_empty() {
             return b;
         }
-        let [u0, u1, u2] = self.triangles[t].map(|i| self.uvs[i as usize]);
+        let [u0, u1, u2] = vertices.map(|i| self.uvs[i as usize]);
         u0 * (1.0 - b.x - b.y) + u1 * b.x + u2 * b.y
     }
 }

@@ -97,6 +97,21 @@ impl Texels {
         }
     }
 
+    /// Place in memory of the texel in column `x` of row `y`, for [`Texels::peek`].
+    #[inline]
+    pub fn line(&self, x: usize, y: usize) -> usize {
+        self.place(x, y).0
+    }
+
+    /// A number that depends on the texels of a line of memory: reads them ahead, and nothing waits for it.
+    #[inline]
+    pub fn peek(&self, line: usize) -> u32 {
+        match &self.store {
+            Store::Coded { squares, .. } => squares[line].0[0][0].into(),
+            Store::Plain { squares } => squares[line].0[0].x.to_bits(),
+        }
+    }
+
     /// Means of half as many columns and rows, one at least, each over what its texel covers. Of coded texels the error
     /// of coding goes to the next in its row, so that their mean stays the same.
     pub fn halved(&self) -> Texels {

@@ -65,6 +65,14 @@ impl Texture {
         }
     }
 
+    /// Line of memory that [`Texture::lookup`] reads at `uv`, among others.
+    #[inline]
+    pub fn line(&self, uv: Vec2) -> usize {
+        let uv = self.to_uv.transform_point2(uv);
+        let (x, y) = (uv.x * self.width as f32, (1.0 - uv.y) * self.height as f32);
+        self.texels.line(self.column(x.floor() as i64), self.row(y.floor() as i64))
+    }
+
     /// Returns the derivatives by u and v of the luminance at `uv`, texels joined linearly.
     pub fn luminance_gradient(&self, uv: Vec2) -> Vec2 {
         let at = self.to_uv.transform_point2(uv);

@@ -140,7 +140,7 @@ impl World {
         let barycentric = Vec2::new(hit.u, hit.v);
         let mesh = &self.scene.meshes[hit.geometry as usize];
         let mut frame = Frame::from_normal(shading_normal(mesh, triangle, barycentric));
-        self.relieve(&mut frame, (hit.geometry, hit.primitive), triangle, barycentric);
+        self.relieve(&mut frame, hit.geometry, triangle, barycentric);
         Surface {
             position: triangle.position(barycentric),
             normal: triangle.normal,
@@ -170,7 +170,7 @@ impl World {
     #[inline]
     pub fn bsdf(&self, s: &Surface) -> Bsdf<'_> {
         let mesh = &self.scene.meshes[s.mesh as usize];
-        let uv = || mesh.uv(s.triangle as usize, s.barycentric);
+        let uv = || mesh.uv(&self.triangles.get(s.mesh, s.triangle).vertices, s.barycentric);
         let covered = || self.covered(s.mesh, s.triangle, s.footprint);
         self.materials.at_coordinates(&self.scene, mesh.material, uv, covered)
     }

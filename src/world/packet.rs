@@ -5,6 +5,7 @@ use super::{Surface, World};
 use crate::embree::Hits16;
 use crate::material::Bsdfs16;
 use crate::math::{F32x16, Frame, LANES, U32x16, Vec2x16, Vec3x16};
+use glam::Vec2;
 
 /// Surfaces hit by sixteen rays; see [`Surface`] for the members.
 #[derive(Clone, Debug, Default)]
@@ -89,8 +90,8 @@ impl World {
         }
         if self.has_reliefs() {
             for i in 0..LANES {
-                let (mut frame, at) = (s.frame(i), (s.mesh[i], s.triangle[i]));
-                self.relieve(&mut frame, at, self.triangles.get(at.0, at.1), s.barycentric.get(i));
+                let (mut frame, triangle) = (s.frame(i), self.triangles.get(s.mesh[i], s.triangle[i]));
+                self.relieve(&mut frame, s.mesh[i], triangle, s.barycentric.get(i));
                 s.tangent.set(i, frame.tangent);
                 s.bitangent.set(i, frame.bitangent);
                 s.shading_normal.set(i, frame.normal);
@@ -102,11 +103,38 @@ impl World {
     /// Returns the BSDFs of the surfaces, seen from `wo` in their shading frames, textures looked up.
     #[inline]
     pub fn bsdfs(&self, s: &Surfaces16, wo: Vec3x16) -> Bsdfs16<'_> {
+        let at = self.textured(s);
         Bsdfs16::new(wo, |i| {
             let mesh = &self.scene.meshes[s.mesh[i] as usize];
-            let uv = || mesh.uv(s.triangle[i] as usize, s.barycentric.get(i));
+            let uv = || at[i].unwrap_or_else(|| self.coordinates(s, i));
             let covered = || self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
             self.materials.at_coordinates(&self.scene, mesh.material, uv, covered)
         })
+    }
+
+    /// Texture coordinates in a lane.
+    #[inline]
+    fn coordinates(&self, s: &Surfaces16, lane: usize) -> Vec2 {
+        let vertices = &self.triangles.get(s.mesh[lane], s.triangle[lane]).vertices;
+        self.scene.meshes[s.mesh[lane] as usize].uv(vertices, s.barycentric.get(lane))
+    }
+
+    /// Texture coordinates of the surfaces that are textured. Some of their texels are read here, so that the lanes
+    /// wait for memory together.
+    #[inline]
+    fn textured(&self, s: &Surfaces16) -> [Option<Vec2>; LANES] {
+        let (mut at, mut lines) = ([None; LANES], [None; LANES]);
+        for i in 0..LANES {
+            let mesh = &self.scene.meshes[s.mesh[i] as usize];
+            if let Some(texture) = self.materials.texture(&self.scene, mesh.material) {
+                let uv = self.coordinates(s, i);
+                at[i] = Some(uv);
+                lines[i] = Some((&texture.texels, texture.line(uv)));
+            }
+        }
+        // In a loop of its own, which is short enough for the processor to look ahead over all lanes.
+        let read = lines.iter().flatten().fold(0, |read, (texels, line)| read ^ texels.peek(*line));
+        std::hint::black_box(read);
+        at
     }
 }

@@ -47,21 +47,15 @@ impl World {
     /// Turns the shading frame at barycentric weights `b` of a triangle by the relief of its mesh, if it has one, and
     /// x along u or at an angle from it, if its material asks for that.
     #[inline]
-    pub(super) fn relieve(
-        &self,
-        frame: &mut Frame,
-        (mesh, primitive): (u32, u32),
-        triangle: &Triangle,
-        b: Vec2,
-    ) {
+    pub(super) fn relieve(&self, frame: &mut Frame, mesh: u32, triangle: &Triangle, b: Vec2) {
         let Some(Reliefs(reliefs)) = &self.reliefs else { return };
         let Turn { relief, from_u } = &reliefs[mesh as usize];
         let mesh = &self.scene.meshes[mesh as usize];
         if let Some(relief) = relief {
-            *frame = turned(&self.scene, relief, (mesh, primitive as usize), triangle, b, frame.normal);
+            *frame = turned(&self.scene, relief, mesh, triangle, b, frame.normal);
         }
         if let Some(angle) = from_u {
-            let [along_u, along_v] = derivatives(mesh, primitive as usize, triangle.edges);
+            let [along_u, along_v] = derivatives(mesh, triangle);
             *frame = Frame::from_normal_and_tangent(frame.normal, along_u);
             if *angle != 0.0 {
                 let (sin, cos) = angle.sin_cos();
@@ -75,16 +69,9 @@ impl World {
 
 /// Returns the frame of a relief where the shading normal is `normal`; the tangent is not along u.
 #[inline(never)]
-fn turned(
-    scene: &Scene,
-    relief: &Relief,
-    (mesh, primitive): (&Mesh, usize),
-    triangle: &Triangle,
-    b: Vec2,
-    normal: Vec3,
-) -> Frame {
-    let [along_u, along_v] = derivatives(mesh, primitive, triangle.edges);
-    let uv = mesh.uv(primitive, b);
+fn turned(scene: &Scene, relief: &Relief, mesh: &Mesh, triangle: &Triangle, b: Vec2, normal: Vec3) -> Frame {
+    let [along_u, along_v] = derivatives(mesh, triangle);
+    let uv = mesh.uv(&triangle.vertices, b);
     let texture = |id: crate::scene::TextureId| scene.textures.get(id.0 as usize);
     let level = |v: Vec3| v - normal * normal.dot(v);
     let turned = match *relief {
@@ -105,8 +92,8 @@ fn turned(
 }
 
 /// Derivatives of the position by u and v, on the plane of a triangle.
-fn derivatives(mesh: &Mesh, primitive: usize, edges: [Vec3; 2]) -> [Vec3; 2] {
-    let corner = |b: Vec2| mesh.uv(primitive, b);
+fn derivatives(mesh: &Mesh, triangle: &Triangle) -> [Vec3; 2] {
+    let (edges, corner) = (triangle.edges, |b: Vec2| mesh.uv(&triangle.vertices, b));
     let origin = corner(Vec2::ZERO);
     let (d1, d2) = (corner(Vec2::X) - origin, corner(Vec2::Y) - origin);
     let determinant = d1.perp_dot(d2);

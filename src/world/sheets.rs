@@ -140,7 +140,7 @@ impl World {
             true => self.surface(hit).frame.normal,
             false => shading_normal(mesh, self.triangles.get(hit.geometry, hit.primitive), barycentric),
         };
-        let uv = || mesh.uv(hit.primitive as usize, barycentric);
+        let uv = || mesh.uv(&self.triangles.get(hit.geometry, hit.primitive).vertices, barycentric);
         let cos = || normal().dot(out);
         self.materials.straight_transmittance(&self.scene, mesh.material, (cos, uv), last)
     }

@@ -6,7 +6,7 @@
 
 use super::tiles::Grid;
 use crate::light::DiscreteDistribution;
-use crate::math::{Rgb, luminance};
+use crate::math::{LANES, Rgb, lanes_in, luminance};
 use crate::scene::EnvironmentMap;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
@@ -127,10 +127,33 @@ impl Map {
 
     #[inline]
     pub fn corners(&self, column: usize, row: usize) -> Corners {
-        let EnvironmentMap { width, height, radiance, .. } = &self.map;
+        self.texels(column, row).map(|i| self.map.radiance[i])
+    }
+
+    /// [`Map::corners`] at places in the lanes of `wanted`. They are read in loops of their own, short enough for the
+    /// processor to look ahead over all lanes: a large map lies outside the caches.
+    #[inline]
+    pub fn corners16(&self, places: &[Place; LANES], wanted: u16) -> [Corners; LANES] {
+        let (mut texels, mut corners) = ([[0; 4]; LANES], [Corners::default(); LANES]);
+        for i in lanes_in(wanted) {
+            texels[i] = self.texels(places[i].column, places[i].row);
+        }
+        for [above, below] in [[0, 2], [1, 3]] {
+            for i in lanes_in(wanted) {
+                corners[i][above] = self.map.radiance[texels[i][above]];
+                corners[i][below] = self.map.radiance[texels[i][below]];
+            }
+        }
+        corners
+    }
+
+    /// Indices of the texels at a cell's corners.
+    #[inline]
+    fn texels(&self, column: usize, row: usize) -> [usize; 4] {
+        let EnvironmentMap { width, height, .. } = &self.map;
         let right = if column + 1 == *width { 0 } else { column + 1 };
         let (top, bottom) = (row * width, (row + 1).min(height - 1) * width);
-        [top + column, top + right, bottom + column, bottom + right].map(|i| radiance[i])
+        [top + column, top + right, bottom + column, bottom + right]
     }
 
     /// Draws a place among a few cells.

@@ -152,7 +152,7 @@ impl EnvironmentLight {
             Source::Map(map) => map,
         };
         let places = each(wanted, |i| map.locate(d.get(i)));
-        let corners = each(wanted, |i| map.corners(places[i].column, places[i].row));
+        let corners = map.corners16(&places, wanted);
         let tiles = each(wanted, |i| self.tiles.of_cell(places[i].column, places[i].row));
         let tables = self.tables(learned);
         let of_tiles = each(wanted, |i| tables[i].density(tiles[i]));
@@ -266,17 +266,20 @@ impl EnvironmentLight {
             Some(rows) => self.tiles.sample(tile(i), rows, drawn[i].u),
             None => Block::default(),
         });
+        let mut directions = [Vec3::ZERO; LANES];
         let places = each(wanted, |i| {
             if !even(i) && blocks[i].density == 0.0 {
                 let place = map.sample(&self.tiles.cells(&blocks[i]), blocks[i].u);
-                return (place, map.direction(place));
+                directions[i] = map.direction(place);
+                return place;
             }
             let (z, x) = if even(i) { tile(i).place(drawn[i].u) } else { self.tiles.place(&blocks[i]) };
-            (map.place_at(z, x), map.direction_at(z, x))
+            directions[i] = map.direction_at(z, x);
+            map.place_at(z, x)
         });
-        let corners = each(wanted, |i| map.corners(places[i].0.column, places[i].0.row));
+        let corners = map.corners16(&places, wanted);
         each(wanted, |i| {
-            let (place, direction) = places[i];
+            let (place, direction) = (places[i], directions[i]);
             let radiance = bilinear(&corners[i], place.f);
             let within = match blocks[i].density {
                 _ if even(i) => 1.0,
