@@ -107,6 +107,16 @@ impl CausticPhotons {
     }
 }
 
+/// Light of photons that a surface reflects.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Reflected {
+    /// Radiance.
+    pub radiance: Rgb,
+    /// Luminance times that of the radiance emitted, which is what a path finds, rarely, in place of photons: their
+    /// product is the mean square of paths. As large as can be of emitters that no path can meet.
+    pub by_emitted: f32,
+}
+
 impl Caustics {
     /// Share of an emitter's light, of a radiance of that luminance, that photons find on surfaces at a distance from
     /// the eye.
@@ -122,12 +132,18 @@ impl Caustics {
         1.0 - self.share(luminance(radiance), distance)
     }
 
-    /// Radiance that a surface, seen at vertex `depth` by a chain of length `distance`, reflects along `out` of the
-    /// light that photons find.
-    pub fn reflected(&self, surface: &Surface, bsdf: &Bsdf, out: Vec3, (distance, depth): (f32, u32)) -> Rgb {
+    /// Light that a surface, seen at vertex `depth` by a chain of length `distance`, reflects along `out` of that which
+    /// photons find.
+    pub fn reflected(
+        &self,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        out: Vec3,
+        (distance, depth): (f32, u32),
+    ) -> Reflected {
         let wo = surface.frame.to_local(out);
         let unit = self.radius_by_distance * distance;
-        let mut sum = Rgb::ZERO;
+        let mut sum = Reflected::default();
         let lambert = bsdf.lambert_albedo().map(|_| bsdf.eval(wo, Vec3::new(0.0, 0.0, wo.z.signum())));
         for level in &self.levels {
             level.visit(surface.position, surface.normal, unit, |photon, kernel| {
@@ -140,7 +156,9 @@ impl Caustics {
                     Some(value) => value,
                     None => bsdf.eval(wo, wi),
                 };
-                sum += value * photon.flux * (kernel * self.share(photon.radiance, distance));
+                let radiance = value * photon.flux * (kernel * self.share(photon.radiance, distance));
+                sum.radiance += radiance;
+                sum.by_emitted += luminance(radiance) * photon.radiance.min(f32::MAX);
             });
         }
         sum

@@ -15,6 +15,8 @@ pub(super) struct CausticLooks {
     looking: u32,
     /// Luminance of the photons' light that reached the eye, as a sum over the samples.
     pub found: f64,
+    /// Mean square of that which paths find in its place, as a sum over the samples.
+    pub square: f64,
 }
 
 impl Default for CausticLooks {
@@ -25,11 +27,12 @@ impl Default for CausticLooks {
 
 impl CausticLooks {
     /// None of the paths.
-    pub const NONE: CausticLooks = CausticLooks { samples: 1, looking: 0, found: 0.0 };
+    pub const NONE: CausticLooks = CausticLooks { samples: 1, looking: 0, found: 0.0, square: 0.0 };
 
     /// Of pixels with `samples` samples each.
     pub fn new(samples: u32) -> CausticLooks {
-        CausticLooks { samples: samples.max(1), looking: samples.div_ceil(SAMPLES).max(1), found: 0.0 }
+        let looking = samples.div_ceil(SAMPLES).max(1);
+        CausticLooks { samples: samples.max(1), looking, found: 0.0, square: 0.0 }
     }
 
     /// Radiance that the surface at the end of a chain reflects of the light of photons, if its path looks, for those
@@ -40,9 +43,14 @@ impl CausticLooks {
             return Rgb::ZERO;
         }
         let found = caustics.reflected(&end.surface, &end.bsdf, end.out, (end.distance, end.depth));
-        let radiance = found * (self.samples as f32 / self.looking as f32);
+        let scale = self.samples as f32 / self.looking as f32;
+        let radiance = found.radiance * scale;
         let seen = luminance(end.throughput * radiance);
-        self.found += if seen.is_finite() { f64::from(seen) } else { 0.0 };
+        if seen.is_finite() {
+            self.found += f64::from(seen);
+            let by_emitted = f64::from(found.by_emitted.min(f32::MAX));
+            self.square += f64::from(luminance(end.throughput)).powi(2) * by_emitted * f64::from(scale);
+        }
         radiance
     }
 }

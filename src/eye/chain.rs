@@ -20,6 +20,7 @@ use crate::shadow;
 use crate::stats::add_fields;
 use crate::world::{Surface, World};
 use glam::Vec3;
+use std::iter::Sum;
 
 /// Branches waiting to be followed; two a bounce at most, one of them followed at once.
 const PENDING: usize = 32;
@@ -89,8 +90,19 @@ pub struct ChainCounts {
     pub light: f64,
     /// Luminance of that of the photons.
     pub by_photons: f64,
+    /// Mean square of the luminance that paths find in place of the photons, as a sum over the samples.
+    pub square_by_photons: f64,
 }
-add_fields!(ChainCounts { rays, shadow_rays, overflow, extra_samples, light, by_photons });
+add_fields!(ChainCounts { rays, shadow_rays, overflow, extra_samples, light, by_photons, square_by_photons });
+
+impl Sum for ChainCounts {
+    fn sum<I: Iterator<Item = ChainCounts>>(counts: I) -> ChainCounts {
+        counts.fold(ChainCounts::default(), |mut sum, counts| {
+            sum += counts;
+            sum
+        })
+    }
+}
 
 impl ChainCounts {
     /// The photons' part of such light whose luminance is `found`.

@@ -363,6 +363,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 chains.rays += counts.rays;
                 chains.shadow_rays += counts.shadow_rays;
                 chains.by_photons += ends.looks.found;
+                chains.square_by_photons += ends.looks.square;
                 ends.order.sort_unstable();
                 if let Some(first_surfaces) = &mut ends.first_surfaces {
                     let eye = (self.world, self.view);

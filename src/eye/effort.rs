@@ -57,11 +57,11 @@ impl<'w> Tracer<'_, 'w> {
         let squares = pilot(self.view.window.film);
         let pixels: Vec<Vec<[u32; 2]>> =
             squares.iter().map(|square| square.film_pixels().collect()).collect();
-        let (values, mut chains) = self.luminances(pixels.clone(), seed ^ PILOT_SEED, learned);
+        let (values, traced) = self.luminances(pixels.clone(), seed ^ PILOT_SEED, learned);
         self.light_samples.first = ANOTHER_TIME;
-        let (again, traced) = self.luminances(pixels, seed ^ PILOT_SEED, learned);
+        let (again, traced_again) = self.luminances(pixels, seed ^ PILOT_SEED, learned);
         self.light_samples = LightSamples::ONE;
-        chains += traced;
+        let chains: ChainCounts = traced.into_iter().chain(traced_again).sum();
         let means = |group: &Vec<[f32; 2]>| group.iter().map(|[mean, _]| *mean).collect();
         let filled = |(window, group)| Luminances { window, values: means(group) };
         let sampled: usize = 2 * values.iter().map(Vec::len).sum::<usize>() * spp as usize;
@@ -73,16 +73,16 @@ impl<'w> Tracer<'_, 'w> {
         Some(Effort { choice: (share > 0.0).then_some(choice), light_samples, chains })
     }
 
-    /// Luminances that the first samples of groups of film pixels find, of all of them and of the first half; 0 where
-    /// cancelled.
+    /// Luminances that the first samples of groups of film pixels find, of all of them and of the first half, and the
+    /// groups' rays; 0 where cancelled.
     pub(super) fn luminances(
         &self,
         groups: Vec<Vec<[u32; 2]>>,
         seed: u32,
         learned: Option<&Learned>,
-    ) -> (Means, ChainCounts) {
+    ) -> (Means, Vec<ChainCounts>) {
         let spp = self.settings.spp;
-        let found: Vec<(Vec<[f32; 2]>, ChainCounts)> = groups
+        groups
             .into_par_iter()
             .in_short_runs()
             .map_init(
@@ -103,10 +103,7 @@ impl<'w> Tracer<'_, 'w> {
                     (sums.into_iter().map(mean).collect(), chains)
                 },
             )
-            .collect();
-        let mut chains = ChainCounts::default();
-        found.iter().for_each(|(_, traced)| chains += *traced);
-        (found.into_iter().map(|(values, _)| values).collect(), chains)
+            .unzip()
     }
 }
 

@@ -30,7 +30,7 @@ pub use drawn::{DrawnLight, merged_points};
 pub use extra::ExtraSamples;
 pub use features::{EvenSurface, Feature, Features, SeenPixels, UnknownFeature};
 pub use pass::EyePass;
-pub use pilot::EyePilot;
+pub use pilot::{ByPhotons, EyePilot};
 pub use points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySamples};
 pub use rays::{EyeRays, EyeSettings, VisibleSurfaces};
 pub use seen::FeatureSettings;

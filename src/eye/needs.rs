@@ -37,6 +37,6 @@ impl<'w> Tracer<'_, 'w> {
             .flatten()
             .zip(values.iter().flatten())
             .for_each(|(pixel, [mean, _])| luminances.set(*pixel, *mean));
-        Some(Needs { choice, luminances, chains })
+        Some(Needs { choice, luminances, chains: chains.into_iter().sum() })
     }
 }

@@ -1,5 +1,7 @@
 //! A few pixels by the light that a method draws at random: what plans learn of its noise and its work.
 
+use crate::eye::ByPhotons;
+
 /// Samples a pixel of each of two sets.
 pub const PILOT_SPP: u32 = 8;
 
@@ -7,6 +9,8 @@ pub const PILOT_SPP: u32 = 8;
 pub struct DrawnPixels {
     /// Mean luminances of the pixels, in order, by set.
     pub luminances: [Vec<f64>; 2],
+    /// Light that the method has by photons, by group of pixels; empty if it has no photons.
+    pub photons: Vec<ByPhotons>,
     /// Rays a sample.
     pub rays_a_sample: f64,
     /// All rays traced, also those of what the method learns first.
@@ -18,6 +22,6 @@ impl DrawnPixels {
     pub fn new(luminances: [Vec<f64>; 2], rays_of_samples: u64, other_rays: u64) -> DrawnPixels {
         let samples = 2.0 * f64::from(PILOT_SPP) * luminances[0].len().max(1) as f64;
         let rays = rays_of_samples + other_rays;
-        DrawnPixels { luminances, rays_a_sample: rays_of_samples as f64 / samples, rays }
+        DrawnPixels { luminances, photons: Vec::new(), rays_a_sample: rays_of_samples as f64 / samples, rays }
     }
 }

@@ -5,6 +5,9 @@
 //! stratification included. It is relative to the brightness of the square of pixels around, and the greatest hundredth
 //! is left out: a denoiser removes single bright dots.
 //!
+//! Light of small lamps by glass and mirrors is rarely found by paths, and not at all by so few. The photons of the
+//! cache tell how much of it there is, and how noisy paths are that find it.
+//!
 //! Measured on 17 scenes, 256x144 to 512x910 (23 pictures): paths as many as [`Pilot::paths_a_sample`] says make as
 //! good a picture within a factor of 1.6 (root mean square; of as many in all scenes, 1.75; of as many as variances are
 //! in proportion, 2.3), and the work of one method over that of the other is as predicted within a factor of 1.9.
@@ -12,6 +15,7 @@
 //! The pilot is spread over the whole film and has seeds of its own: parts of a picture, and pictures to be merged, are
 //! by the same method.
 
+use crate::eye::ByPhotons;
 use crate::film::Window;
 use crate::method::{DrawnPixels, LightStore, Method, PILOT_SPP};
 use crate::progress::Control;
@@ -42,6 +46,10 @@ const BY_VARIANCE: f64 = 0.3;
 /// fewer virtual lights and coarser cuts, too.
 const CACHED: f64 = 0.02;
 const CACHED_SPP: f64 = 16.0;
+
+/// Paths that a denoiser takes together: light that fewer than one of them finds is taken off as single bright dots,
+/// and its whole is the error. Light that more of them find is in the noise of the pilot's paths.
+const POOLED: f64 = 10_000.0;
 
 /// Findings of the pilot.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +85,11 @@ impl Pilot {
     /// By the light of squares of so many pixels each.
     fn by(square: usize, drawn: &DrawnPixels, paths: &DrawnPixels) -> Option<Pilot> {
         let [a, b] = &paths.luminances;
-        let means: Vec<f64> = a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect();
+        let is_lost = |photons: &&ByPhotons| photons.square > POOLED * photons.mean.powi(2);
+        let lost =
+            |square: usize| drawn.photons.get(square).filter(is_lost).map_or(0.0, |photons| photons.mean);
+        let found = a.iter().zip(b).enumerate();
+        let means: Vec<f64> = found.map(|(pixel, (a, b))| 0.5 * (a + b) + lost(pixel / square)).collect();
         let brightness: Vec<f64> = means.chunks(square).map(mean).collect();
         let mut sorted = means.clone();
         sorted.sort_by(f64::total_cmp);
@@ -92,9 +104,11 @@ impl Pilot {
             let half_squares = differences.map(|(pixel, (a, b))| 0.5 * (a - b).powi(2) * weight(pixel));
             f64::from(PILOT_SPP) * trimmed_mean(half_squares.collect())
         };
+        let lost_squares = (0..brightness.len()).map(|i| lost(i).powi(2) * weight(i * square));
+        let variance_of_lost = POOLED * mean(lost_squares.collect::<Vec<_>>());
         Some(Pilot {
             variance_of_drawn: variance(drawn),
-            variance_of_paths: variance(paths),
+            variance_of_paths: variance(paths).max(variance_of_lost),
             rays_of_drawn: drawn.rays_a_sample,
             rays_of_paths: paths.rays_a_sample,
             rays: drawn.rays + paths.rays,
@@ -175,6 +189,26 @@ mod tests {
         (0..16 * 512).step_by(200).for_each(|i| dotted.luminances[0][i] = 1e3);
         let pilot = Pilot::by(16, &dotted, &even).unwrap();
         assert!((pilot.variance_of_drawn / pilot.variance_of_paths - 1.0).abs() < 0.1, "{pilot:?}");
+    }
+
+    #[test]
+    fn light_that_photons_find_counts_as_the_noise_of_paths() {
+        let [even, paths] = [1, 7].map(|seed| light([1.0, 1.0], 0.02, seed));
+        let with = |mean: f64, square: f64| {
+            let photons = vec![ByPhotons { mean, square }; 512];
+            Pilot::by(16, &DrawnPixels { photons, ..light([1.0, 1.0], 0.02, 1) }, &paths).unwrap()
+        };
+        let none = Pilot::by(16, &even, &paths).unwrap();
+        assert_eq!(with(0.0, 0.0).variance_of_paths, none.variance_of_paths);
+        let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.05;
+        // Relative to the squared brightness, and a tenth of it that counts as dark.
+        let of_lost = |mean: f64| POOLED * (mean / (1.1 * (1.0 + mean))).powi(2);
+        assert!(near(with(0.1, 101.0).variance_of_paths, of_lost(0.1)));
+        // Light that they find often enough is in their own noise.
+        assert_eq!(with(0.1, 99.0).variance_of_paths, none.variance_of_paths);
+        // A lamp that no path can meet.
+        assert!(near(with(0.01, f64::MAX).variance_of_paths, of_lost(0.01)));
+        assert!(with(0.3, 1e18).paths_a_sample(16.0) > 5.0 * none.paths_a_sample(16.0));
     }
 
     #[test]

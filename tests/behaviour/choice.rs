@@ -46,14 +46,14 @@ fn gloss() -> SceneAndView {
     scene
 }
 
-/// A lamp in a shell of glass above a dark floor.
-fn caustics() -> SceneAndView {
+/// A lamp of some radius, of the same flux whatever that is, in a shell of glass above a dark floor.
+fn caustics(radius: f32) -> SceneAndView {
     let mut scene = scene(camera(Vec3::new(0.0, 1.0, 3.0), Vec3::new(0.0, -0.5, 0.0), 0.6), FILM);
     let floor = add_material(&mut scene, diffuse(Rgb::splat(0.3)));
     let (glass, black) = (add_material(&mut scene, glass(1.5)), add_material(&mut scene, diffuse(Rgb::ZERO)));
     scene.meshes.push(quad(Vec3::new(-5.0, -1.0, 5.0), 10.0 * Vec3::X, -10.0 * Vec3::Z, floor));
     scene.meshes.push(sphere(Vec3::ZERO, 0.4, 24, glass));
-    scene.meshes.push(emitting(sphere(Vec3::ZERO, 0.15, 16, black), Rgb::splat(30.0)));
+    scene.meshes.push(emitting(sphere(Vec3::ZERO, radius, 16, black), Rgb::splat(0.675 / radius.powi(2))));
     // The larger the film, the less is left to photons.
     scene.view.window = Window::whole([256, 256]);
     scene
@@ -168,7 +168,7 @@ mod slow_judged_by_converged_paths {
 
     #[test]
     fn scenes_that_the_cache_does_not_suit_are_left_to_paths() {
-        for (name, scene) in [("foliage", foliage()), ("gloss", gloss()), ("caustics", caustics())] {
+        for (name, scene) in [("foliage", foliage()), ("gloss", gloss()), ("caustics", caustics(0.15))] {
             let chosen = chosen(&scene, 0, |_| ());
             if lacks_denoiser(&chosen) {
                 return;
@@ -183,6 +183,28 @@ mod slow_judged_by_converged_paths {
             assert!(rays(&chosen) < rays(&cache) && errors[0] < 2.0 * errors[1], "{name} {errors:?}");
             assert!(errors[2] < errors[1], "{name} {errors:?}");
         }
+    }
+
+    #[test]
+    fn light_of_a_small_lamp_by_glass_is_left_to_the_photons_of_the_cache() {
+        let scene = caustics(0.005);
+        let chosen = chosen(&scene, 0, |_| ());
+        assert_eq!(chosen.method.name(), "cache", "{}", chosen.facts["plan"]);
+        if lacks_denoiser(&chosen) {
+            return;
+        }
+        // As few paths as the pilot would take for enough, if it saw no photons.
+        let by_paths = by(&scene, paths(32));
+        // A large lamp of the same flux lights the floor as much, and paths find it.
+        let truth = by(&caustics(0.15), paths(1024)).film.color;
+        let mean = |image: &Image| {
+            let floor = image.pixels.iter().skip(image.pixels.len() * 3 / 4);
+            floor.map(|pixel| f64::from(pixel.element_sum())).sum::<f64>() / truth.pixels.len() as f64
+        };
+        let found = [&chosen.film.color, &by_paths.film.color, &truth].map(mean);
+        println!("small lamp {found:?}");
+        let [chosen, by_paths, truth] = found;
+        assert!((chosen / truth - 1.0).abs() < 0.1 && by_paths < 0.6 * truth, "{found:?}");
     }
 
     #[test]

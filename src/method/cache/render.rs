@@ -192,11 +192,12 @@ impl Renderer for Settings {
         let settings = EyeSettings { spp: PILOT_SPP, seed: 0, ..self.sampling().eye(&world.scene) };
         let photons = lights.caustic_photons(world, (settings.seed, settings.max_depth), control);
         let caustics = photons.seen(view.camera.origin, view.pixel_angle(), settings.max_depth);
-        let EyePilot { luminances, sampled, learned } =
-            EyePass::pilot(world, view, settings, (&drawn, caustics.as_ref()), groups, control);
+        let found = EyePass::pilot(world, view, settings, (&drawn, caustics.as_ref()), groups, control);
+        let EyePilot { luminances, photons: by_photons, sampled, learned } = found;
         let luminances = luminances.map(|by_group| by_group.into_iter().flatten().map(f64::from).collect());
         let [sampled, learned] = [sampled, learned].map(|chains| chains.rays + chains.shadow_rays);
-        (!control.is_cancelled()).then(|| DrawnPixels::new(luminances, sampled, learned + photons.rays))
+        let pixels = DrawnPixels::new(luminances, sampled, learned + photons.rays);
+        (!control.is_cancelled()).then_some(DrawnPixels { photons: by_photons, ..pixels })
     }
 
     fn expected_bytes(&self, window: &Window) -> u64 {
