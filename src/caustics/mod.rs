@@ -29,7 +29,7 @@ use crate::vpl::PhotonEmitter;
 use crate::world::{Surface, World};
 use glam::Vec3;
 use levels::Level;
-use photons::CausticPhoton;
+use photons::{CausticPhoton, First};
 use std::f32::consts::PI;
 
 /// Photons in the disc of a photon, about.
@@ -55,6 +55,14 @@ pub struct CausticPhotons {
     pub rays: u64,
 }
 
+/// The first paths, which tell where photons come from.
+pub struct FirstPaths {
+    /// `None` if there can be no photons.
+    first: Option<First>,
+    seed: u32,
+    max_edges: u32,
+}
+
 /// The photons, as they light the surfaces of a view.
 pub struct Caustics {
     levels: Vec<Level>,
@@ -65,17 +73,32 @@ pub struct Caustics {
     max_depth: u32,
 }
 
-impl CausticPhotons {
-    /// Traces photons for paths of at most `max_depth` edges from the eye; there may be none. Fewer if `control` is
-    /// cancelled.
-    pub fn new(world: &World, seed: u32, max_depth: u32, control: &Control) -> CausticPhotons {
-        let mut found = CausticPhotons { photons: Vec::new(), density: 0.0, paths: 0, rays: 0 };
+impl FirstPaths {
+    /// Traces them for paths of at most `max_depth` edges from the eye.
+    pub fn new(world: &World, seed: u32, max_depth: u32, control: &Control) -> FirstPaths {
         // Those of the lights come by three edges at least, the one to the eye included.
-        if !world.specular.has_delta_lobes() || max_depth < 3 {
-            return found;
-        }
-        let Some(emitter) = PhotonEmitter::new(world) else { return found };
-        let traced = photons::trace(world, &emitter, seed, max_depth - 1, control);
+        let max_edges = max_depth.saturating_sub(1);
+        let may_be = world.specular.has_delta_lobes() && max_edges >= 2;
+        let emitter = if may_be { PhotonEmitter::new(world) } else { None };
+        let first = emitter.map(|emitter| photons::first(world, &emitter, seed, max_edges, control));
+        FirstPaths { first, seed, max_edges }
+    }
+
+    /// Number of the paths.
+    pub fn paths(&self) -> u64 {
+        self.first.as_ref().map_or(0, |_| photons::FIRST_PATHS.into())
+    }
+
+    /// Closest-hit queries.
+    pub fn rays(&self) -> u64 {
+        self.first.as_ref().map_or(0, |first| first.rays)
+    }
+
+    /// Traces photons, `many` times as many as usual; there may be none. Fewer if `control` is cancelled.
+    pub fn photons(&self, world: &World, many: f32, control: &Control) -> CausticPhotons {
+        let mut found = CausticPhotons { photons: Vec::new(), density: 0.0, paths: 0, rays: 0 };
+        let Some((first, emitter)) = self.first.as_ref().zip(PhotonEmitter::new(world)) else { return found };
+        let traced = photons::trace(world, (&emitter, first), (self.seed, many), self.max_edges, control);
         (found.paths, found.rays) = (traced.paths, traced.rays);
         let (index, order) = KdTree::build(traced.photons.iter().map(|photon| photon.position));
         found.photons = order.iter().map(|i| traced.photons[*i as usize]).collect();
@@ -87,7 +110,9 @@ impl CausticPhotons {
         found.density = traced.even_paths * PI * PI / (PATHS_WORTH * emitter.power());
         found
     }
+}
 
+impl CausticPhotons {
     /// Number of photons.
     pub fn len(&self) -> usize {
         self.photons.len()

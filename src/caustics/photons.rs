@@ -24,17 +24,15 @@ const WAVE: u32 = 64;
 /// Number of photons without which the first paths have found nothing.
 const MIN_FOUND: usize = 8;
 
-/// Share of the flux that mirrors and glass send on, from which the numbers below are those of photons, paths and rays
-/// of which the first to be reached ends the tracing. Where they send on less, there are fewer photons in proportion,
-/// and paths and rays by its root.
-const MUCH: f32 = 0.01;
-const MAX_PHOTONS: f32 = 300_000.0;
-const MAX_PATHS: f32 = 2_000_000.0;
-const MAX_RAYS: f32 = 1_200_000.0;
+/// Numbers of photons, paths and rays of which the first to be reached ends the tracing, for one time as many photons
+/// as usual.
+const PHOTONS: f32 = 300_000.0;
+const PATHS: f32 = 2_000_000.0;
+const RAYS: f32 = 1_200_000.0;
 
-/// Share of those numbers below which photons are not worth it, and paths are to find all; but light that these cannot
-/// find has that share at least.
-const LITTLE: f32 = 0.03;
+/// Share of the flux that mirrors and glass send on below which photons are not worth it, and paths are to find all;
+/// but not of light that these cannot find.
+const LITTLE: f32 = 3e-4;
 
 /// Maximum number of edges of a path: only a closed scene of mirrors reaches it.
 const MAX_EDGES: u32 = 256;
@@ -83,16 +81,25 @@ struct Chunk {
     cells: Vec<(usize, usize)>,
 }
 
-/// Traces photons from `emitter`, of paths of at most `max_edges` edges; fewer if `control` is cancelled.
-pub fn trace(world: &World, emitter: &PhotonEmitter, seed: u32, max_edges: u32, control: &Control) -> Traced {
-    let max_edges = max_edges.min(MAX_EDGES);
+/// The first paths.
+pub struct First {
+    /// Their yield, by cell of [`Aims`]; empty if photons are not worth it.
+    found: Vec<Yield>,
+    /// Closest-hit queries.
+    pub rays: u64,
+}
+
+/// Number of the first paths.
+pub const FIRST_PATHS: u32 = CHUNK * FIRST;
+
+/// Traces the first paths, whose photons are not kept.
+pub fn first(world: &World, emitter: &PhotonEmitter, seed: u32, max_edges: u32, control: &Control) -> First {
     let even = Aims::even(emitter);
-    let first: Vec<Chunk> = chunks(world, &even, (hash(seed, 0xca57), 0..FIRST), max_edges, control);
-    let mut traced = Traced { paths: u64::from(CHUNK * FIRST), ..Traced::default() };
-    let mut found = vec![Yield::default(); even.cells()];
+    let (mut found, mut rays) = (vec![Yield::default(); even.cells()], 0);
     let (mut flux, mut count) = (0.0, 0);
-    for chunk in first {
-        traced.rays += chunk.rays;
+    let tasks = (hash(seed, 0xca57), 0..FIRST);
+    for chunk in chunks(world, &even, tasks, max_edges.min(MAX_EDGES), control) {
+        rays += chunk.rays;
         count += chunk.photons.len();
         flux += chunk.photons.iter().map(|photon| luminance(photon.flux)).sum::<f32>();
         for (cell, photons) in chunk.cells {
@@ -100,42 +107,50 @@ pub fn trace(world: &World, emitter: &PhotonEmitter, seed: u32, max_edges: u32, 
             found[cell].photons += photons as f32;
         }
     }
-    if count < MIN_FOUND {
+    let share = flux / (FIRST_PATHS as f32 * emitter.power());
+    let is_little = !(share >= LITTLE) && !world.scene.has_small_lights();
+    if count < MIN_FOUND || is_little {
+        found.clear();
+    }
+    First { found, rays }
+}
+
+/// Traces photons from `emitter`, `many` times as many as usual, of paths of at most `max_edges` edges; none if they
+/// are not worth it, fewer if `control` is cancelled.
+pub fn trace(
+    world: &World,
+    (emitter, first): (&PhotonEmitter, &First),
+    (seed, many): (u32, f32),
+    max_edges: u32,
+    control: &Control,
+) -> Traced {
+    let mut traced = Traced::default();
+    if first.found.is_empty() {
         return traced;
     }
-    let paths = (CHUNK * FIRST) as f32;
-    let mut much = (flux / (MUCH * paths * emitter.power())).min(1.0);
-    if world.scene.has_small_lights() {
-        much = much.max(LITTLE);
-    }
-    if !(much >= LITTLE) {
-        return traced;
-    }
-    let max_photons = (MAX_PHOTONS * much) as usize;
-    let [max_paths, max_rays] = [MAX_PATHS, MAX_RAYS].map(|max| (max * much.sqrt()) as u64);
-    let aims = even.learned(&found, paths);
-    let (mut wave, mut evenly, mut drawn, mut rays) = (0, 0.0, 0, 0);
-    while traced.photons.len() < max_photons
-        && drawn < max_paths
-        && rays < max_rays
+    let [photons, paths, rays] = [PHOTONS, PATHS, RAYS].map(|usual| (usual * many) as u64);
+    let aims = Aims::even(emitter).learned(&first.found, FIRST_PATHS as f32);
+    let (mut wave, mut evenly) = (0, 0.0);
+    while (traced.photons.len() as u64) < photons
+        && traced.paths < paths
+        && traced.rays < rays
         && !control.is_cancelled()
     {
         let tasks = wave * WAVE..(wave + 1) * WAVE;
-        for chunk in chunks(world, &aims, (hash(seed, 0xca58), tasks), max_edges, control) {
+        for chunk in chunks(world, &aims, (hash(seed, 0xca58), tasks), max_edges.min(MAX_EDGES), control) {
             traced.photons.extend(chunk.photons);
-            rays += chunk.rays;
+            traced.rays += chunk.rays;
             evenly += chunk.evenly;
         }
         wave += 1;
-        drawn += u64::from(WAVE * CHUNK);
+        traced.paths += u64::from(WAVE * CHUNK);
     }
-    traced.paths += drawn;
-    traced.rays += rays;
-    let share = 1.0 / drawn.max(1) as f32;
+    let share = 1.0 / traced.paths.max(1) as f32;
     for photon in &mut traced.photons {
         photon.flux *= share;
     }
-    traced.even_paths = drawn as f32 * traced.photons.len() as f32 / f32::max(evenly, f32::MIN_POSITIVE);
+    let count = traced.photons.len() as f32;
+    traced.even_paths = traced.paths as f32 * count / f32::max(evenly, f32::MIN_POSITIVE);
     traced
 }
 

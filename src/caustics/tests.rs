@@ -2,7 +2,7 @@
 
 use super::aims::{Aims, Yield};
 use super::levels::levels;
-use super::photons::{CausticPhoton, trace};
+use super::photons::{CausticPhoton, first, trace};
 use super::*;
 use crate::sampling::{Sampler, owen_sobol_2d};
 use crate::scene::{Camera, DeltaLight};
@@ -86,10 +86,14 @@ fn photons_come_by_mirrors_and_glass_alone_and_scenes_without_have_none() {
         world(scene)
     };
     let control = Control::new();
-    assert_eq!(CausticPhotons::new(&lamp_room(diffuse(Rgb::ONE)), 0, u32::MAX, &control).len(), 0);
+    let none = FirstPaths::new(&lamp_room(diffuse(Rgb::ONE)), 0, u32::MAX, &control);
+    assert_eq!(none.paths(), 0);
     let world = lamp_room(glass(1.5));
     let emitter = PhotonEmitter::new(&world).expect("there is a lamp");
-    let traced = trace(&world, &emitter, 0, u32::MAX, &control);
+    let first = first(&world, &emitter, 0, u32::MAX, &control);
+    let photons =
+        |many: f32, max_edges: u32| trace(&world, (&emitter, &first), (0, many), max_edges, &control);
+    let traced = photons(1.0, u32::MAX);
     // Of the light on the ball all goes on, in the end.
     let cos = (1.0f32 - (0.3f32 / 0.8).powi(2)).sqrt();
     let expected = 2.0 * PI * (1.0 - cos);
@@ -99,6 +103,13 @@ fn photons_come_by_mirrors_and_glass_alone_and_scenes_without_have_none() {
     assert!(traced.photons.iter().all(|photon| on_wall(photon) && photon.edges >= 2));
     assert!(traced.photons.iter().any(|photon| photon.edges == 2), "the ball reflects");
     assert!(traced.photons.iter().any(|photon| photon.edges == 3), "the ball refracts");
-    let short = trace(&world, &emitter, 0, 2, &control);
+    let short = photons(1.0, 2);
     assert!(!short.photons.is_empty() && short.photons.iter().all(|photon| photon.edges == 2));
+    // Fewer are the first of them, and of the same flux.
+    let few = photons(0.25, u32::MAX);
+    let flux_of_few: f32 = few.photons.iter().map(|photon| luminance(photon.flux)).sum();
+    assert!((flux_of_few / flux - 1.0).abs() < 0.03, "{flux_of_few} {flux}");
+    let places = |photons: &[CausticPhoton]| photons.iter().map(|photon| photon.position).collect::<Vec<_>>();
+    assert!(3 * few.photons.len() < traced.photons.len());
+    assert_eq!(places(&few.photons), places(&traced.photons[..few.photons.len()]));
 }

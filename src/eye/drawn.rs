@@ -64,8 +64,8 @@ pub(super) struct Tracer<'a, 'w> {
     pub(super) view: &'a View,
     pub(super) settings: EyeSettings,
     pub(super) drawn: &'a DrawnLight,
-    caustics: Option<&'a Caustics>,
-    edges: ScatteredEdges,
+    pub(super) caustics: Option<&'a Caustics>,
+    pub(super) edges: ScatteredEdges,
     pub(super) light_samples: LightSamples,
     pub(super) control: &'a Control,
 }

@@ -15,6 +15,7 @@ mod learn;
 mod merge;
 mod needs;
 mod pass;
+mod photons_worth;
 mod pilot;
 mod points;
 mod rays;

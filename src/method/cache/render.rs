@@ -6,7 +6,7 @@ use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::ladder::{CUTS, DRAWN};
-use crate::method::lights::LightStore;
+use crate::method::lights::{FoundCaustics, LightStore};
 use crate::method::sampling::method_settings;
 use crate::method::{Before, DrawnPixels, Move, Output, PILOT_SPP, Prepared, Renderer, Sampled, counts};
 use crate::paths::Look;
@@ -190,14 +190,14 @@ impl Renderer for Settings {
         let glossy = Glossy::new(world, &self.cache);
         let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default(), None)?;
         let settings = EyeSettings { spp: PILOT_SPP, seed: 0, ..self.sampling().eye(&world.scene) };
-        let photons = lights.caustic_photons(world, (settings.seed, settings.max_depth), control);
-        let caustics = photons.seen(view.camera.origin, view.pixel_angle(), settings.max_depth);
+        let FoundCaustics { caustics, rays, shadow_rays, .. } =
+            lights.caustics((world, view), settings, control);
         let found = EyePass::pilot(world, view, settings, (&drawn, caustics.as_ref()), groups, control);
-        let EyePilot { luminances, photons: by_photons, sampled, learned } = found;
+        let EyePilot { luminances, photons, sampled, learned } = found;
         let luminances = luminances.map(|by_group| by_group.into_iter().flatten().map(f64::from).collect());
         let [sampled, learned] = [sampled, learned].map(|chains| chains.rays + chains.shadow_rays);
-        let pixels = DrawnPixels::new(luminances, sampled, learned + photons.rays);
-        (!control.is_cancelled()).then_some(DrawnPixels { photons: by_photons, ..pixels })
+        let pixels = DrawnPixels::new(luminances, sampled, learned + rays + shadow_rays);
+        (!control.is_cancelled()).then_some(DrawnPixels { photons, ..pixels })
     }
 
     fn expected_bytes(&self, window: &Window) -> u64 {

@@ -54,12 +54,11 @@ impl Renderer for Settings {
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
         let mut stats = Stats::new();
         let wanted = LightsWanted::new(world, self.sampling(), (self.light, self.family));
-        let max_depth = wanted.max_depth;
-        let caustics = lights.caustics((world, view), (self.seed, max_depth), control, &mut stats);
+        let eye = self.sampling().eye(&world.scene);
+        let caustics = lights.caustics_of_picture((world, view), eye, control, &mut stats);
         let lights = lights.get(world, (wanted, Vec::new()), control, &mut stats);
         let context = lights.context(world, self.compensation);
         let shading = ShadeSettings { cut: self.cut, share: self.share, shadows: self.shadows };
-        let eye = self.sampling().eye(&world.scene);
         let tiles =
             Tiles { rays: EyeRays::new(world, view, eye), window: &view.window, spp: eye.spp, control };
 
