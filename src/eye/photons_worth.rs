@@ -1,13 +1,13 @@
 //! Photons that a view is worth, by some samples of it that look for a few.
 //!
-//! Photons of discs that hold as many have the same noise whatever their number, and blur as much as discs are wide: the
-//! error falls with the number to the power of 2/3 where discs are as wide as is best. It counts as the square of the
-//! photons' part of the light. So the number of the least error in all for the time rises with the mean of those
+//! Photons in discs that hold as many have the same noise whatever their number, and blur as much as discs are wide:
+//! the error falls with the number to the power of 2/3 where discs are as wide as is best. It counts as the square of
+//! the photons' part of the light. So the number of the least error in all for the time rises with the mean of those
 //! squares to the power of 3/5.
 //!
 //! Measured where photons find a third to two thirds of the light (glass ware, lamps in polished cans): four times the
-//! usual number are worth 1.2 to 2.6 dB at 10 to 33 % of the time, half as many samples more nothing; in a box with a glass
-//! figure, where they find .4 %, an eighth costs .1 dB and spares 18 %.
+//! usual number are worth 1.2 to 2.6 dB at 10 to 33 % of the time, half as many samples more nothing; in a box with a
+//! glass figure, where they find .4 %, an eighth costs .1 dB and spares 18 %.
 
 use super::drawn::Tracer;
 use super::{ChainCounts, DrawnLight, EyePass, EyeSettings, adaptive};
