@@ -6,12 +6,14 @@
 pub mod cache;
 mod counts;
 mod drawn_pixels;
+mod kept;
 mod ladder;
 pub mod lightcuts;
 mod lights;
 pub mod output;
 pub mod path;
 pub mod photon_cache;
+mod photon_store;
 mod prepared;
 pub mod reconstruction;
 mod registry;

@@ -40,7 +40,7 @@ impl<'w> Prepared<'w> {
         let mut stats = Stats::new();
         let rays = sampling.eye(&world.scene);
         let wanted = LightsWanted::new(world, sampling, wanted);
-        let caustics = lights.caustics_of_picture((world, view), rays, control, &mut stats);
+        let caustics = lights.photons.of_picture((world, view), rays, control, &mut stats);
         control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
         let eye = stats.time(Stage::EyePass, || {
             EyePass::of(world, view, rays, (drawn.as_ref(), caustics.as_ref()), control)

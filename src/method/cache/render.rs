@@ -6,7 +6,8 @@ use crate::film::Window;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::method::ladder::{CUTS, DRAWN};
-use crate::method::lights::{FoundCaustics, LightStore};
+use crate::method::lights::LightStore;
+use crate::method::photon_store::FoundCaustics;
 use crate::method::sampling::method_settings;
 use crate::method::{Before, DrawnPixels, Move, Output, PILOT_SPP, Prepared, Renderer, Sampled, counts};
 use crate::paths::Look;
@@ -191,7 +192,7 @@ impl Renderer for Settings {
         let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default(), None)?;
         let settings = EyeSettings { spp: PILOT_SPP, seed: 0, ..self.sampling().eye(&world.scene) };
         let FoundCaustics { caustics, rays, shadow_rays, .. } =
-            lights.caustics((world, view), settings, control);
+            lights.photons.few((world, view), settings, control);
         let found = EyePass::pilot(world, view, settings, (&drawn, caustics.as_ref()), groups, control);
         let EyePilot { luminances, photons, sampled, learned } = found;
         let luminances = luminances.map(|by_group| by_group.into_iter().flatten().map(f64::from).collect());

@@ -55,7 +55,7 @@ impl Renderer for Settings {
         let mut stats = Stats::new();
         let wanted = LightsWanted::new(world, self.sampling(), (self.light, self.family));
         let eye = self.sampling().eye(&world.scene);
-        let caustics = lights.caustics_of_picture((world, view), eye, control, &mut stats);
+        let caustics = lights.photons.of_picture((world, view), eye, control, &mut stats);
         let lights = lights.get(world, (wanted, Vec::new()), control, &mut stats);
         let context = lights.context(world, self.compensation);
         let shading = ShadeSettings { cut: self.cut, share: self.share, shadows: self.shadows };
