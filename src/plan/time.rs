@@ -8,13 +8,13 @@
 //!
 //! The plan assumes a steady machine: if other work takes the processors later on, the run is late.
 
-use super::cost::{Cost, Timed};
+use super::cost::{Cost, Size, Timed};
 use super::ladder::{Ladder, options};
 use super::smaller;
 use super::tune::tune;
 use crate::method::{LightStore, Method, Output, Prepared};
 use crate::progress::Control;
-use crate::stats::{Stage, StageTime, Stopwatch};
+use crate::stats::{Counter, Stage, StageTime, Stopwatch};
 use crate::view::View;
 use crate::world::World;
 
@@ -110,10 +110,7 @@ fn tuned<'w>(
     // Samples and lights with cuts as cheap as can be; the model knows lights of the first small renders alone, so what
     // they take in truth corrects it.
     let mut correction = 1.0;
-    let preparing = |height: f64| {
-        let method = ladder.at(height);
-        cost.seconds(0.0, samples(&method, view), vpls(&method))
-    };
+    let preparing = |height: f64| cost.seconds(0.0, &size(&ladder.at(height), view));
     for round in 1.. {
         coarse = highest_within(ladder, coarse, |height| {
             correction * preparing(height) <= PREPARE_SHARE * usable()
@@ -179,9 +176,15 @@ fn small_renders(
         let all = watch.elapsed().wall_seconds;
         let stage = |stage| output.stats.stage(stage).map_or(0.0, |t| t.wall_seconds);
         let light = stage(Stage::LightPass) + stage(Stage::Tree);
-        let (samples, vpls) = (samples(&method, &small), vpls(&method));
-        let eye = stage(Stage::EyePass);
-        timed.push(Timed { height, samples, vpls, light, eye, rest: (all - light - eye).max(0.0) });
+        let size = size(&method, &small);
+        // Without virtual lights all time goes with the samples.
+        let eye = if size.vpls > 0.0 { stage(Stage::EyePass) } else { all };
+        let extra = match output.stats.get("Eye/extra samples") {
+            Some(Counter::Count(extra)) => extra as f64,
+            _ => 0.0,
+        };
+        let drawn = size.samples + extra;
+        timed.push(Timed { height, size, drawn, light, eye, rest: (all - light - eye).max(0.0) });
         Cost::fit(&timed)
     };
     let small = |scale: u32| {
@@ -224,17 +227,21 @@ fn highest_within(ladder: &Ladder, top: f64, fits: impl Fn(f64) -> bool) -> f64 
 }
 
 fn whole(cost: &Cost, ladder: &Ladder, view: &View, height: f64) -> f64 {
-    let method = ladder.at(height);
-    cost.seconds(height, samples(&method, view), vpls(&method))
+    cost.seconds(height, &size(&ladder.at(height), view))
 }
 
-fn samples(method: &Method, view: &View) -> f64 {
-    view.window.pixel_count() as f64 * f64::from(method.spp())
-}
-
-/// Number of all virtual lights asked for, never 0, since it is a divisor.
-fn vpls(method: &Method) -> f64 {
-    ["vpls", "direct_vpls"].iter().filter_map(|key| method.number(key)).sum()
+fn size(method: &Method, view: &View) -> Size {
+    let pixels = view.window.pixel_count() as f64;
+    // Methods that draw light merge the samples of a pixel before all else.
+    let merged = method.leaves_noise();
+    let extra = method.number("extra_samples").filter(|_| merged);
+    Size {
+        pixels,
+        samples: pixels * f64::from(method.spp()),
+        merged,
+        most_extra: extra.unwrap_or(0.0) as f32,
+        vpls: ["vpls", "direct_vpls"].iter().filter_map(|key| method.number(key)).sum(),
+    }
 }
 
 #[cfg(test)]
