@@ -23,6 +23,11 @@ const TOLERANCE: f64 = 0.005;
 /// The same of the brightness by few photons, whose density is blurred: in a closed cube 2,000 photons lack 1 % of the
 /// light, 20,000 half of that, and 200,000 a tenth.
 const BLUR_TOLERANCE: f64 = 0.03;
+/// The same of the light that reaches a small square by photons, of which few lie on it: 16,000 in the room are up to
+/// 7 % off, 1,600,000 within 2 %.
+const SQUARE_TOLERANCE: f64 = 0.1;
+/// The same of direct light by records: where light ends, footprints do, and they follow all the light there is.
+const EDGE_TOLERANCE: f64 = 0.15;
 /// The same of the mean difference over many scenes.
 const MEAN_TOLERANCE: f64 = 0.002;
 
@@ -135,7 +140,7 @@ struct Found {
 impl Found {
     /// Counts a scene by few seeds, or by many where it deviates.
     fn count(&mut self, scene: &str, tolerance: f64, pair: impl Fn(u32) -> Pair) {
-        let (mut first, mut deviation) = (0, 0.0);
+        let (mut first, mut deviation, mut of_whole) = (0, 0.0, f64::NAN);
         for (stage, seeds) in SEEDS.into_iter().enumerate() {
             let pairs: Vec<Pair> = (first..first + seeds).map(&pair).collect();
             let difference = Difference::of(&pairs, tolerance);
@@ -145,13 +150,15 @@ impl Found {
                 self.errors.push(difference.error);
             }
             (first, deviation) = (first + seeds, difference.deviation);
+            of_whole = difference.relative.unwrap_or(of_whole);
             if deviation <= MAX_DEVIATION {
                 break;
             }
         }
         self.worst = self.worst.max(deviation);
         if deviation > MAX_DEVIATION {
-            self.wrong.push(format!("{scene}: {deviation:.1} standard errors"));
+            let percent = 100.0 * of_whole;
+            self.wrong.push(format!("{scene}: {deviation:.1} standard errors, the whole by {percent:.2} %"));
         }
     }
 
@@ -190,14 +197,15 @@ fn over_scenes(
     few: u64,
     mended: impl Fn(&str) -> Vec<u64>,
     tolerance: impl Fn(&str) -> f64,
-    told: impl Fn(u64) -> Vec<Spec>,
+    told: impl Fn(u64, &str) -> Vec<Spec>,
     pair: impl Fn(u64, &dyn Fn(usize) -> [f64; 5]) -> Pair,
 ) {
     let mut wrong = Vec::new();
     for (name, method) in methods().into_iter().filter(|(name, _)| is_wanted(name)) {
         let mut found = Found::default();
         for number in (0..count(few)).chain(mended(name).into_iter().filter(|&n| n >= count(few))) {
-            let worlds: Vec<WorldAndView> = told(number).iter().map(|spec| toml(&spec.text())).collect();
+            let worlds: Vec<WorldAndView> =
+                told(number, name).iter().map(|spec| toml(&spec.text())).collect();
             found.count(&format!("scene {number} by {name}"), tolerance(name), |seed| {
                 // Of its own: errors that scenes share would not average out.
                 let seed = number as u32 * 1000 + seed;
@@ -216,7 +224,7 @@ fn change(number: u64) -> Change {
 
 #[test]
 fn scenes_told_otherwise_look_the_same_by_every_method() {
-    let told = |number| {
+    let told = |number, _: &str| {
         let spec = Spec::random(number);
         vec![spec.changed(change(number), number), spec]
     };
@@ -234,11 +242,13 @@ fn scenes_told_otherwise_look_the_same_by_every_method() {
 
 #[test]
 fn lamps_together_are_the_sum_of_each_alone_by_every_method() {
-    let told = |number| [[1.0, 1.0], [1.0, 0.0], [0.0, 1.0]].map(|on| Spec::random(number).lit(on)).into();
+    let told =
+        |number, _: &str| [[1.0, 1.0], [1.0, 0.0], [0.0, 1.0]].map(|on| Spec::random(number).lit(on)).into();
+    let tolerance = |name: &str| if name == "records" { EDGE_TOLERANCE } else { TOLERANCE };
     over_scenes(
         2,
         |_| vec![],
-        |_| TOLERANCE,
+        tolerance,
         told,
         |_, of| {
             let alone = [of(1), of(2)];
@@ -250,7 +260,8 @@ fn lamps_together_are_the_sum_of_each_alone_by_every_method() {
 #[test]
 fn pictures_are_in_proportion_to_the_light_by_every_method() {
     let factor = |number| 10f64.powf(Dice::new(number).between(-9.0, 9.0));
-    let told = |number| [1.0, factor(number)].map(|power| Spec::random(number).lit([power; 2])).into();
+    let told =
+        |number, _: &str| [1.0, factor(number)].map(|power| Spec::random(number).lit([power; 2])).into();
     over_scenes(
         2,
         |_| vec![],
@@ -262,16 +273,24 @@ fn pictures_are_in_proportion_to_the_light_by_every_method() {
 
 #[test]
 fn where_all_is_equally_bright_the_picture_is_by_every_method() {
-    let told = |number| vec![Spec::random(number).furnace(number)];
+    let told = |number, _: &str| vec![Spec::random(number).furnace(number)];
     let tolerance = |name: &str| if name == "photons" { BLUR_TOLERANCE } else { TOLERANCE };
     over_scenes(2, |_| vec![], tolerance, told, |_, of| [of(0), [1.0, 0.25, 0.25, 0.25, 0.25]]);
 }
 
 #[test]
 fn as_much_light_goes_from_here_to_there_as_from_there_to_here_by_every_method() {
-    let told = |number| [0, 1].map(|from| Spec::random(number).exchange(number, from)).into();
-    // Rooms of rough metal, which photon maps take to be diffuse.
+    let told = |number, name: &str| {
+        let mut spec = Spec::random(number);
+        // Photon maps take all surfaces to be so.
+        if name == "photons" {
+            spec.make_diffuse(number);
+        }
+        [0, 1].map(|from| spec.exchange(number, from)).into()
+    };
+    // Rooms of rough metal.
     let mended = |name: &str| if name == "photons" { vec![] } else { vec![62, 81] };
+    let tolerance = |name: &str| if name == "photons" { SQUARE_TOLERANCE } else { TOLERANCE };
     // The whole alone: the patches' quarters do not see each other alike.
-    over_scenes(2, mended, |_| TOLERANCE, told, |_, of| [0, 1].map(|way| [of(way)[0]; 5]));
+    over_scenes(2, mended, tolerance, told, |_, of| [0, 1].map(|way| [of(way)[0]; 5]));
 }

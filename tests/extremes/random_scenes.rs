@@ -174,6 +174,14 @@ impl Spec {
         spec
     }
 
+    /// Takes gloss from the surfaces.
+    pub fn make_diffuse(&mut self, number: u64) {
+        let mut dice = Dice::new(!number);
+        for (_, kind) in &mut self.materials {
+            *kind = format!("kind = \"diffuse\"\nreflectance = {}", list(dice.vector(0.1, 0.8)));
+        }
+    }
+
     /// The surfaces between two like squares; that of number `from` shines, the other fills the film.
     pub fn exchange(&self, number: u64, from: usize) -> Spec {
         let mut dice = Dice::new(number ^ 0xEEEE);
