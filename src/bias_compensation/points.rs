@@ -4,9 +4,9 @@
 //! of the surfaces that the anchors' rays meet, and interpolated to all other surfaces met from the patch.
 //!
 //! Deviations: light that lobes reflect is not compensated, only that of bases. Cuts limit the luminance that
-//! a virtual light gives, not its geometry term: the same for lights of the mean intensity around.
+//! a virtual light gives, not its geometry term: the same for lights of the mean intensity around the surface met.
 
-use super::short_rays::{self, ClampedPoint, NearSurface};
+use super::short_rays::{self, ClampedPoint, Limit, NearSurface};
 use super::{Compensation, choose_evenly};
 use crate::light_tree::LightTrees;
 use crate::lightcut::{
@@ -131,10 +131,9 @@ impl Compensator {
                 let r = receivers.get(lane);
                 let base = luminance(r.base_brdf());
                 let (position, normal) = r.place();
-                let limit = limits[lane] / base;
-                let bound = if indirect && base > 0.0 { c.bound(position, limit) } else { f32::INFINITY };
+                let limit = if indirect && base > 0.0 { limits[lane] / base } else { f32::INFINITY };
                 let point = SurfacePoint { position, normal, geometric_normal: r.geometric_normal() };
-                ClampedPoint { point, bound, direct: direct && base > 0.0 }
+                ClampedPoint { point, limit: Limit::Irradiance(limit), direct: direct && base > 0.0 }
             })
             .collect();
         self.met.clear();

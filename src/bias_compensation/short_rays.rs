@@ -12,14 +12,26 @@ use std::f32::consts::FRAC_1_PI;
 /// Seed of the directions.
 const SEED: u32 = 0x5eed;
 
+/// Intensity of virtual lights near a point, over the mean around it, up to which rays reach far enough where
+/// irradiances are limited.
+const MOST_AROUND: f32 = 4.0;
+
+/// What an indirect virtual light gives at most; none is limited where it is not positive and finite.
+#[derive(Clone, Copy, Debug)]
+pub enum Limit {
+    /// The geometry term.
+    Geometry(f32),
+    /// The luminance of the irradiance.
+    Irradiance(f32),
+}
+
 /// A point whose virtual lights are limited.
 #[derive(Clone, Copy, Debug)]
 pub struct ClampedPoint {
     /// Position and normals.
     pub point: SurfacePoint,
-    /// Maximum geometry term of an indirect virtual light; none is clamped where it is not positive and
-    /// finite.
-    pub bound: f32,
+    /// Limit of each indirect virtual light.
+    pub limit: Limit,
     /// True if light from area lights is to be compensated too.
     pub direct: bool,
 }
@@ -52,7 +64,11 @@ pub fn trace(
 ) -> u64 {
     let points = &points[..points.len().min(LANES)];
     let reach_sq = |p: &ClampedPoint| {
-        let clamped = if p.bound > 0.0 && p.bound.is_finite() { p.bound.recip() } else { 0.0 };
+        let bound = match p.limit {
+            Limit::Geometry(bound) => bound,
+            Limit::Irradiance(limit) => c.bound(p.point.position, limit) / MOST_AROUND,
+        };
+        let clamped = if bound > 0.0 && bound.is_finite() { bound.recip() } else { 0.0 };
         clamped.max(if p.direct { c.max_near_sq } else { 0.0 })
     };
     let valid = (0..points.len()).filter(|&l| reach_sq(&points[l]) > 0.0).fold(0u16, |mask, l| mask | 1 << l);
@@ -94,8 +110,13 @@ fn weighed(
     cos: f32,
     point: &ClampedPoint,
 ) -> Option<NearSurface> {
-    let bound = point.bound;
     let distance = hit.t;
+    let bound = match point.limit {
+        Limit::Geometry(bound) => bound,
+        // Of the virtual lights that the surface met has.
+        Limit::Irradiance(limit) => c.bound(point.point.position + direction * distance, limit),
+    };
+    let bound = if bound > 0.0 { bound } else { f32::INFINITY };
     let dist_sq = distance * distance;
     let lit_sq = if point.direct { c.near_sq[hit.geometry as usize] } else { 0.0 };
     // G is no more than this.
@@ -131,10 +152,12 @@ fn weighed(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bias_compensation::intensities::Intensities;
     use crate::light_tree::{Family, LightTrees};
     use crate::lightcut::Transfer;
     use crate::progress::Control;
     use crate::test_scenes::{add_material, camera, diffuse, emitting, quad, scene, world};
+    use crate::vpl::{Origin, Profiles, Vpl, VplKind, VplSet};
     use crate::world::World;
     use std::f32::consts::PI;
 
@@ -142,6 +165,7 @@ mod tests {
     const RADIANCE: f32 = 3.0;
     /// Height of the ceiling over the point.
     const HEIGHT: f32 = 0.5;
+    const NONE: Limit = Limit::Geometry(f32::INFINITY);
 
     /// A wide ceiling that shines down, and nothing else.
     fn ceiling() -> World {
@@ -154,15 +178,15 @@ mod tests {
     }
 
     /// Estimates of the reflected and of the emitted light that a point below the ceiling lacks, by π/N Σ.
-    fn lacking(bound: f32, near_sq: f32) -> [f32; 2] {
+    fn lacking(limit: Limit, intensities: Option<&Intensities>, near_sq: f32) -> [f32; 2] {
         const RAYS: u32 = 4096;
         let world = ceiling();
         let trees = LightTrees::build(&[], Vec::new(), world.diagonal, Family::default(), &Control::new());
         let near = [near_sq];
-        let c = Compensation::new(&world, Transfer::new(&trees, world.diagonal), None, &near);
+        let c = Compensation::new(&world, Transfer::new(&trees, world.diagonal), intensities, &near);
         let point = SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, geometric_normal: Vec3::Z };
         let mut sums = [0.0; 2];
-        let clamped = ClampedPoint { point, bound, direct: near_sq > 0.0 };
+        let clamped = ClampedPoint { point, limit, direct: near_sq > 0.0 };
         trace(&c, &[clamped], RAYS, |_, near| {
             sums[0] += luminance(near.weight);
             sums[1] += luminance(near.emitted);
@@ -177,12 +201,32 @@ mod tests {
         for root in [0.1f32, 0.4, 0.8] {
             let bound = (root / HEIGHT).powi(2);
             let expected = ALBEDO * (1.0 - root).powi(2);
-            let [reflected, emitted] = lacking(bound, 0.0);
+            let [reflected, emitted] = lacking(Limit::Geometry(bound), None, 0.0);
             assert!((reflected - expected).abs() < 0.01 * ALBEDO, "{root}: {reflected} for {expected}");
             assert_eq!(emitted, 0.0);
         }
         // Nothing lies as near as b^(-1/2).
-        assert_eq!(lacking(1.01 / (HEIGHT * HEIGHT), 0.0), [0.0; 2]);
+        assert_eq!(lacking(Limit::Geometry(1.01 / (HEIGHT * HEIGHT)), None, 0.0), [0.0; 2]);
+    }
+
+    /// Virtual lights at the point are brighter, or darker, than those of the ceiling.
+    #[test]
+    fn limits_of_irradiance_are_for_the_virtual_lights_of_the_surface_met() {
+        const LIMIT: f32 = 1.0;
+        for around in [0.5, 1.0, 4.0] {
+            let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
+            let root = 0.4f32;
+            let of_ceiling = LIMIT / (root / HEIGHT).powi(2);
+            for i in 0..1 << 14 {
+                let [x, y] = [i % 128, i / 128].map(|i| (i as f32 - 63.5) * 0.02);
+                set.push(Vpl::oriented(Vec3::new(x, y, HEIGHT), Vec3::NEG_Z), Rgb::splat(of_ceiling));
+                set.push(Vpl::oriented(Vec3::new(x, y, 0.0), Vec3::Z), Rgb::splat(of_ceiling * around));
+            }
+            let intensities = Intensities::new(&[set], &Profiles::default()).expect("there are lights");
+            let expected = ALBEDO * (1.0 - root).powi(2);
+            let [reflected, _] = lacking(Limit::Irradiance(LIMIT), Some(&intensities), 0.0);
+            assert!((reflected - expected).abs() < 0.02 * ALBEDO, "{around}: {reflected} for {expected}");
+        }
     }
 
     /// With r² = h²/cos²θ the mean of max(0, 1 - r²/A) is 1 - a + a ln a, a = h²/A.
@@ -190,10 +234,10 @@ mod tests {
     fn light_from_emitters_nearer_than_their_patches_comes_back() {
         for a in [0.05f32, 0.3, 0.9] {
             let expected = PI * RADIANCE * (1.0 - a + a * a.ln());
-            let [reflected, emitted] = lacking(f32::INFINITY, HEIGHT * HEIGHT / a);
+            let [reflected, emitted] = lacking(NONE, None, HEIGHT * HEIGHT / a);
             assert!((emitted - expected).abs() < 0.01 * PI * RADIANCE, "{a}: {emitted} for {expected}");
             assert_eq!(reflected, 0.0);
         }
-        assert_eq!(lacking(f32::INFINITY, 0.99 * HEIGHT * HEIGHT), [0.0; 2]);
+        assert_eq!(lacking(NONE, None, 0.99 * HEIGHT * HEIGHT), [0.0; 2]);
     }
 }

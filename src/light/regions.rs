@@ -52,8 +52,11 @@ impl Regions {
         }
         let middle = order.len() / 2;
         order.select_nth_unstable_by(middle, |a, b| at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(b)));
-        self.nodes.push(Node { plane: at(&order[middle])[axis], word: 0 });
         let (left, right) = order.split_at_mut(middle);
+        // Midway, so that what lies on a wall of the scene to within rounding has the region of its points.
+        let [below, above] = [left.iter().map(at).fold(low, Vec3::max)[axis], at(&right[0])[axis]];
+        let midway = below + 0.5 * (above - below);
+        self.nodes.push(Node { plane: if midway > below { midway } else { above }, word: 0 });
         self.split(points, few, (left, depth + 1), members);
         self.nodes[own].word = axis as u32 | (self.nodes.len() as u32) << 2;
         self.split(points, few, (right, depth + 1), members);

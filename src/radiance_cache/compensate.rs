@@ -9,7 +9,7 @@
 
 use super::gather::GatheredLayer;
 use super::source::{Candidate, LightcutSource};
-use crate::bias_compensation::short_rays::{self, ClampedPoint, NearSurface};
+use crate::bias_compensation::short_rays::{self, ClampedPoint, Limit, NearSurface};
 use crate::bias_compensation::{Compensation, choose_evenly};
 use crate::lightcut::{CutSettings, PacketLightcut, Receiver, ReceiverPacket, group_compact};
 use crate::math::{F32x16, Frame, LANES, LUMINANCE, Rgb, Vec3x16, luminance};
@@ -107,7 +107,11 @@ pub fn add(
     let world = source.context.world;
     let clamped = |(candidate, gathered): (&Candidate, &&mut DirectIndirect<GatheredLayer>)| ClampedPoint {
         point: candidate.point,
-        bound: if candidate.missing.indirect { gathered.indirect.bound } else { f32::INFINITY },
+        limit: Limit::Geometry(if candidate.missing.indirect {
+            gathered.indirect.bound
+        } else {
+            f32::INFINITY
+        }),
         direct: candidate.missing.direct,
     };
     let points: Vec<ClampedPoint> = task.iter().zip(gathered.iter()).map(clamped).collect();
