@@ -16,7 +16,7 @@ const SEED: u32 = 0x5eed;
 /// irradiances are limited.
 const MOST_AROUND: f32 = 4.0;
 
-/// What an indirect virtual light gives at most; none is limited where it is not positive and finite.
+/// Most of an indirect virtual light; none is limited where it is not positive and finite.
 #[derive(Clone, Copy, Debug)]
 pub enum Limit {
     /// The geometry term.
