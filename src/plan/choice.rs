@@ -32,6 +32,8 @@ pub struct Choice {
     pub rays_ratio: f64,
     /// Rays that the pilot took.
     pub pilot_rays: u64,
+    /// Share of the light that paths seldom find.
+    pub seldom: f64,
 }
 
 /// The methods chosen between, after their pilot.
@@ -132,13 +134,14 @@ impl Chooser {
 
     /// The choice of `method` where the other is, or is compared with, `cache`.
     fn choice(&self, cache: &Method, method: Method, ahead: f64) -> Choice {
-        let Pilot { rays_of_drawn, rays_of_paths, rays, .. } = self.pilot;
+        let Pilot { rays_of_drawn, rays_of_paths, rays, seldom, .. } = self.pilot;
         Choice {
             method,
             ahead,
             paths_a_sample: self.pilot.paths_a_sample(f64::from(cache.spp())),
             rays_ratio: rays_of_paths / rays_of_drawn.max(f64::MIN_POSITIVE),
             pilot_rays: rays,
+            seldom,
         }
     }
 }
@@ -156,6 +159,7 @@ mod tests {
             rays_of_drawn: rays[0],
             rays_of_paths: rays[1],
             rays: 1_000_000,
+            seldom: 0.0,
         };
         Chooser { triangles, pilot, film_pixels: 1 << 18, paths: path::Settings::default() }
     }

@@ -64,6 +64,8 @@ pub struct Pilot {
     pub rays_of_paths: f64,
     /// Rays traced to find all this.
     pub rays: u64,
+    /// Share of the light that so few paths find that it is not in their noise.
+    pub seldom: f64,
 }
 
 impl Pilot {
@@ -112,6 +114,7 @@ impl Pilot {
             rays_of_drawn: drawn.rays_a_sample,
             rays_of_paths: paths.rays_a_sample,
             rays: drawn.rays + paths.rays,
+            seldom: mean((0..brightness.len()).map(lost).collect::<Vec<_>>()) / mean(&brightness),
         })
     }
 
@@ -204,8 +207,10 @@ mod tests {
         // Relative to the squared brightness, and a tenth of it that counts as dark.
         let of_lost = |mean: f64| POOLED * (mean / (1.1 * (1.0 + mean))).powi(2);
         assert!(near(with(0.1, 101.0).variance_of_paths, of_lost(0.1)));
+        assert!(near(with(0.1, 101.0).seldom, 0.1 / 1.1));
         // Light that they find often enough is in their own noise.
         assert_eq!(with(0.1, 99.0).variance_of_paths, none.variance_of_paths);
+        assert_eq!(with(0.1, 99.0).seldom, 0.0);
         // A lamp that no path can meet.
         assert!(near(with(0.01, f64::MAX).variance_of_paths, of_lost(0.01)));
         assert!(with(0.3, 1e18).paths_a_sample(16.0) > 5.0 * none.paths_a_sample(16.0));

@@ -86,7 +86,8 @@ impl Planning<'_> {
             }
         };
         if let Some(choice) = choice {
-            report::add_choice(&choice, made.method.spp(), &mut made.plan, stats, remarks);
+            let is_measured = made.measured.is_some() || goal.verify.is_some();
+            report::add_choice(&choice, made.method.spp(), is_measured, &mut made.plan, stats, remarks);
         }
         Ok(made)
     }

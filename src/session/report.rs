@@ -42,15 +42,20 @@ pub(super) fn of_missed(missed: f64) -> Remark {
     Remark::Note(format!("cache came to an error of {:.2} %, so paths were tried", 100.0 * missed))
 }
 
-/// Adds a choice between methods to a plan, to statistics and remarks; `spp` are the samples in the end.
+/// Share of the light that paths seldom find from which on a measurement by paths comes with a warning.
+const MUCH_SELDOM: f64 = 0.01;
+
+/// Adds a choice between methods to a plan, to statistics and remarks; `spp` are the samples in the end. `is_measured`
+/// is true where the picture's error is measured by paths.
 pub(super) fn add_choice(
     choice: &Choice,
     spp: u32,
+    is_measured: bool,
     plan: &mut Value,
     stats: &mut Stats,
     remarks: &mut Vec<Remark>,
 ) {
-    let Choice { paths_a_sample, rays_ratio, ahead, pilot_rays, .. } = *choice;
+    let Choice { paths_a_sample, rays_ratio, ahead, pilot_rays, seldom, .. } = *choice;
     let (name, other) = match choice.method {
         Method::Path(_) => (format!("paths (--method path --denoise --spp {spp})"), "cache"),
         _ => ("cache".to_owned(), "paths"),
@@ -59,11 +64,19 @@ pub(super) fn add_choice(
         "chose {name}: {paths_a_sample:.1} paths of {rays_ratio:.1} times the rays are worth a sample of cache, and for as \
          good a picture {other} would take about {ahead:.1} times the work"
     )));
+    if is_measured && seldom > MUCH_SELDOM {
+        remarks.push(Remark::Warning(format!(
+            "{:.0} % of the light, that of small lamps by glass and mirrors, is seldom found by paths, which the error is \
+             measured by: it tells little of that light",
+            100.0 * seldom
+        )));
+    }
     stats.count("Plan/paths chosen (1: yes)", u64::from(matches!(choice.method, Method::Path(_))));
     stats.add("Plan/paths worth a sample of cache", paths_a_sample);
     stats.add("Plan/rays of a path over those of a sample", rays_ratio);
     stats.add("Plan/work of the other method", ahead);
     stats.count("Plan/rays of the pilot", pilot_rays);
+    stats.add("Plan/light that paths seldom find [%]", 100.0 * seldom);
     if plan.is_null() {
         *plan = json!({});
     }
@@ -72,6 +85,7 @@ pub(super) fn add_choice(
     plan["rays_ratio"] = rays_ratio.into();
     plan["other_work"] = ahead.into();
     plan["pilot_rays"] = pilot_rays.into();
+    plan["seldom_found_by_paths"] = seldom.into();
 }
 
 /// Stores a plan in a picture's metadata; `seconds` have passed since the start of the run.

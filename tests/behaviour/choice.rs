@@ -7,7 +7,8 @@ use lightsplat::math::Rgb;
 use lightsplat::method::{Method, cache, path};
 use lightsplat::progress::Control;
 use lightsplat::scene::{Distribution, Environment, Fresnel, Lobe, Material, Reflectance};
-use lightsplat::session::{Frame, Goal};
+use lightsplat::session::{Frame, Goal, Remark};
+use lightsplat::verify;
 use lightsplat::view::View;
 
 const FILM: [u32; 2] = [64, 64];
@@ -145,6 +146,26 @@ fn without_denoising_there_is_no_choice() {
     let goal = Goal { may_choose: true, denoise: Some(false), ..Goal::default() };
     let frame = session.frame(&view, &goal, &Control::new()).unwrap();
     assert!(frame.method.name() == "cache" && frame.facts["plan"].is_null());
+}
+
+#[test]
+fn errors_measured_by_paths_come_with_a_warning_where_paths_seldom_find_the_light() {
+    for (radius, is_seldom) in [(0.005, true), (0.15, false)] {
+        let (session, view) = session(caustics(radius));
+        let verify = verify::Settings { pixels: 16, ..verify::Settings::default() };
+        for verify in [None, Some(verify)] {
+            let goal = Goal { may_choose: true, verify, ..Goal::default() };
+            let frame = session.frame(&view, &goal, &Control::new()).unwrap();
+            if lacks_denoiser(&frame) {
+                return;
+            }
+            let warns =
+                |remark: &Remark| matches!(remark, Remark::Warning(text) if text.contains("seldom found"));
+            assert_eq!(frame.remarks.iter().any(warns), is_seldom && verify.is_some(), "{:?}", frame.remarks);
+            let share = frame.facts["plan"]["seldom_found_by_paths"].as_f64().unwrap();
+            assert_eq!(share > 0.3, is_seldom, "{share}");
+        }
+    }
 }
 
 #[test]
