@@ -6,17 +6,21 @@
 //! seconds at level h of the quality scale and n points in all. β is the cost of finer settings, γ the gain by denser
 //! points, as neighbours share more.
 //!
-//! Measured: where the samples of a pixel are merged, n is the number of pixels, and γ between films an eighth as wide
-//! and whole ones .38 to .45 in six scenes at three levels; films a sixteenth as wide say nothing of it.
+//! Measured: γ between films an eighth as wide and whole ones is .38 to .45 in six scenes at three levels, n the number
+//! of pixels, where their samples are merged; .2 to .4 where each sample is lit by records, the less the more there
+//! are; .1 where every pixel has its cuts. Films a sixteenth as wide say nothing of it.
 
 use crate::eye::ExtraSamples;
 
 /// Seconds a point per height: before two heights are known, and the range in which it is believed.
 const BETA: (f64, [f64; 2]) = (0.35, [0.05, 1.4]);
-/// The exponent of density: the same, and of merged samples.
-const GAMMA: (f64, [f64; 2]) = (0.35, [0.0, 0.8]);
+/// The exponent of density where samples are merged, where others share light by patches, and where they do not; and of
+/// the eye pass where one render alone is known.
 const MERGED_GAMMA: f64 = 0.4;
-/// Heights and logarithms of densities closer than this say nothing of exponents.
+const PATCHES_GAMMA: f64 = 0.25;
+const OTHER_GAMMA: f64 = 0.1;
+const EYE_GAMMA: f64 = 0.35;
+/// Heights and logarithms of numbers of samples closer than this say nothing of exponents and slopes.
 const LEAST_APART: f64 = 0.5;
 
 /// Numbers of what a render takes time with.
@@ -28,6 +32,8 @@ pub struct Size {
     pub samples: f64,
     /// True if the samples of a pixel are merged before they are lit.
     pub merged: bool,
+    /// True if points share light by patches.
+    pub patches: bool,
     /// Extra samples at most, as a share of the others.
     pub most_extra: f32,
     /// Virtual lights asked for.
@@ -58,13 +64,20 @@ pub struct Cost {
     /// Seconds that another sample of the eye pass takes, where they are known.
     eye: Option<f64>,
     beta: f64,
-    gamma: f64,
 }
 
 impl Size {
     /// Number of points that are lit.
     fn points(&self) -> f64 {
         if self.merged { self.pixels } else { self.samples }
+    }
+
+    fn gamma(&self) -> f64 {
+        match self {
+            Size { merged: true, .. } => MERGED_GAMMA,
+            Size { patches: true, .. } => PATCHES_GAMMA,
+            _ => OTHER_GAMMA,
+        }
     }
 }
 
@@ -74,26 +87,21 @@ impl Cost {
     pub fn fit(timed: &[Timed]) -> Option<Cost> {
         let last = *timed.last()?;
         let by_point = |t: &Timed| (t.rest / t.size.points()).max(f64::MIN_POSITIVE).ln();
-        let mut gamma = GAMMA.0;
-        // Two of one height, as different in size as there are.
         let pairs = timed.iter().enumerate().flat_map(|(i, a)| timed[i + 1..].iter().map(move |b| (a, b)));
         let density = |(a, b): &(&Timed, &Timed)| (b.size.points() / a.size.points()).ln();
-        let sizes = pairs.clone().filter(|(a, b)| a.height == b.height);
-        let apart = sizes.max_by(|x, y| density(x).abs().total_cmp(&density(y).abs()));
-        if last.size.merged {
-            gamma = MERGED_GAMMA;
-        } else if let Some(pair) = apart.filter(|pair| density(pair).abs() >= LEAST_APART) {
-            let slope = (by_point(pair.0) - by_point(pair.1)) / density(&pair);
-            gamma = slope.clamp(GAMMA.1[0], GAMMA.1[1]);
-        }
         let mut beta = BETA.0;
         let mut heights = pairs.filter(|(a, b)| (a.height - b.height).abs() >= LEAST_APART);
         // The latest pair: its second is the last, and its first the largest before it.
         if let Some((a, b)) = heights.next_back() {
-            let alike = by_point(b) - by_point(a) + gamma * density(&(a, b));
+            let alike = by_point(b) - by_point(a) + last.size.gamma() * density(&(a, b));
             beta = (alike / (b.height - a.height)).clamp(BETA.1[0], BETA.1[1]);
         }
-        Some(Cost { last, eye: eye(timed), beta, gamma })
+        Some(Cost { last, eye: eye(timed), beta })
+    }
+
+    /// Level of the last render that the model was fitted to.
+    pub fn height(&self) -> f64 {
+        self.last.height
     }
 
     /// Seconds of a render of a size at `height`.
@@ -104,14 +112,16 @@ impl Cost {
             _ => last.light,
         };
         let points = size.points() / last.size.points();
-        let rest = last.rest * (self.beta * (height - last.height)).exp() * points.powf(1.0 - self.gamma);
+        let rest = last.rest * (self.beta * (height - last.height)).exp() * points.powf(1.0 - size.gamma());
         let eye = match self.eye {
             Some(another) => {
                 let extra = ExtraSamples { most: size.most_extra, other_rays: Some(rest) };
                 let drawn = size.samples * f64::from(1.0 + extra.share(size.samples * another));
                 (last.eye + (drawn - last.drawn) * another).max(0.0)
             }
-            None if last.size.vpls > 0.0 => last.eye * (size.samples / last.size.samples).powf(1.0 - GAMMA.0),
+            None if last.size.vpls > 0.0 => {
+                last.eye * (size.samples / last.size.samples).powf(1.0 - EYE_GAMMA)
+            }
             None => last.eye * size.samples / last.size.samples,
         };
         light + eye + rest
@@ -133,13 +143,13 @@ mod tests {
     use super::*;
 
     fn size(pixels: f64, spp: f64, vpls: f64, merged: bool) -> Size {
-        Size { pixels, samples: pixels * spp, merged, most_extra: if merged { 1.0 } else { 0.0 }, vpls }
+        let most_extra = if merged { 1.0 } else { 0.0 };
+        Size { pixels, samples: pixels * spp, merged, patches: merged, most_extra, vpls }
     }
 
     /// A machine on which the model is exact.
     fn timed(height: f64, size: Size) -> Timed {
-        let gamma = if size.merged { MERGED_GAMMA } else { 0.2 };
-        let rest = 1e-5 * (0.6 * height).exp() * size.points().powf(1.0 - gamma);
+        let rest = 1e-5 * (0.6 * height).exp() * size.points().powf(1.0 - size.gamma());
         let another = 2e-7;
         let extra = ExtraSamples { most: size.most_extra, other_rays: Some(rest) };
         let drawn = size.samples * f64::from(1.0 + extra.share(another * size.samples));

@@ -1,6 +1,6 @@
 //! Settings for a time.
 //!
-//! Small renders of the film, cheap ones at two sizes and one near the settings that those suggest, fit the
+//! Small renders of the film, cheap ones at two sizes and some near the settings that those before suggest, fit the
 //! model of [`super::cost`]; the highest settings that fit the time by the model are taken. Where the cache
 //! lights by cuts, the cheap ones only suggest the numbers of samples and virtual lights; once those exist,
 //! the fineness of cuts is tuned by shading some patches of the picture itself ([`super::tune`]). All of it
@@ -18,7 +18,7 @@ use crate::stats::{Counter, Stage, StageTime, Stopwatch};
 use crate::view::View;
 use crate::world::World;
 
-/// Share of the remaining time that the last small render may take.
+/// Share of the remaining time that a small render near the settings wanted may take.
 const PILOT_SHARE: f64 = 0.08;
 /// Share that a trial may take of the time that lighting is thought to take.
 const TRIAL_SHARE: f64 = 0.03;
@@ -36,6 +36,9 @@ const PREPARE_SHARE: f64 = 0.4;
 const ROUNDS: u32 = 3;
 /// Share reserved for costs outside the model.
 const RESERVE: f64 = 0.02;
+/// Maximum number of small renders near the settings wanted, and levels within which they are near enough.
+const NEAR_RENDERS: u32 = 3;
+const NEAR: f64 = 0.75;
 /// Seconds to encode and write a pixel, and to sum up its samples.
 const WRITE: f64 = 5e-7;
 /// Divisors of each side of the first two small renders.
@@ -202,12 +205,19 @@ fn small_renders(
     if only_rough {
         return Some((cost, pilots));
     }
-    // As near to the settings wanted as the time for this render lets, smaller first, then cheaper.
-    let allowed = PILOT_SHARE * usable();
-    let wanted = highest(&cost, ladder, view, usable() - allowed);
-    let scale = [4, 6, 8].into_iter().find(|&s| whole(&cost, ladder, &small(s), wanted) < allowed);
-    let near = scale.map_or_else(|| highest(&cost, ladder, &second, allowed), |_| wanted);
-    if near > 0.0 {
+    // As near to the settings wanted as the time for this render lets, smaller first, then cheaper; again where these
+    // turn out to be others.
+    for round in 0..NEAR_RENDERS {
+        let allowed = PILOT_SHARE * usable();
+        let wanted = highest(&cost, ladder, view, usable() - allowed);
+        if round > 0 && (wanted - cost.height()).abs() < NEAR {
+            break;
+        }
+        let scale = [4, 6, 8].into_iter().find(|&s| whole(&cost, ladder, &small(s), wanted) < allowed);
+        let near = scale.map_or_else(|| highest(&cost, ladder, &second, allowed), |_| wanted);
+        if near == 0.0 || near == cost.height() {
+            break;
+        }
         cost = time(near, small(scale.unwrap_or(SCALES[1])))?;
         pilots += 1;
     }
@@ -239,6 +249,7 @@ fn size(method: &Method, view: &View) -> Size {
         pixels,
         samples: pixels * f64::from(method.spp()),
         merged,
+        patches: method.number("patches").is_some(),
         most_extra: extra.unwrap_or(0.0) as f32,
         vpls: ["vpls", "direct_vpls"].iter().filter_map(|key| method.number(key)).sum(),
     }
