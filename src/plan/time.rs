@@ -210,12 +210,10 @@ fn small_renders(
     for round in 0..NEAR_RENDERS {
         let allowed = PILOT_SHARE * usable();
         let wanted = highest(&cost, ladder, view, usable() - allowed);
-        if round > 0 && (wanted - cost.height()).abs() < NEAR {
-            break;
-        }
         let scale = [4, 6, 8].into_iter().find(|&s| whole(&cost, ladder, &small(s), wanted) < allowed);
         let near = scale.map_or_else(|| highest(&cost, ladder, &second, allowed), |_| wanted);
-        if near == 0.0 || near == cost.height() {
+        let is_known = |height: f64| (height - cost.height()).abs() < if round > 0 { NEAR } else { 1e-9 };
+        if near == 0.0 || is_known(near) || is_known(wanted) {
             break;
         }
         cost = time(near, small(scale.unwrap_or(SCALES[1])))?;
