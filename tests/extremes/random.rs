@@ -23,14 +23,8 @@ const TOLERANCE: f64 = 0.005;
 /// The same of the brightness by few photons, whose density is blurred: in a closed cube 2,000 photons lack 1 % of the
 /// light, 20,000 half of that, and 200,000 a tenth.
 const BLUR_TOLERANCE: f64 = 0.03;
-/// The same by photons of which few lie where it counts: on a small square, or outside of a box with a lamp in it. Of
-/// 16,000 in the room such are up to 8 % off, of 160,000 or 1,600,000 up to 2 %.
-const FEW_PHOTONS_TOLERANCE: f64 = 0.1;
-/// The same of direct light by records: where light ends, footprints do, and they follow all the light there is.
-const EDGE_TOLERANCE: f64 = 0.15;
-/// The same of the mean difference over many scenes: few virtual lights, 500, lack .4 % of the light where all is
-/// equally bright, 8,000 nothing.
-const MEAN_TOLERANCE: f64 = 0.005;
+/// The same of the mean difference over many scenes.
+const MEAN_TOLERANCE: f64 = 0.002;
 
 /// Number of scenes, `few` unless the environment says another.
 fn count(few: u64) -> u64 {
@@ -245,15 +239,10 @@ fn scenes_told_otherwise_look_the_same_by_every_method() {
 fn lamps_together_are_the_sum_of_each_alone_by_every_method() {
     let told =
         |number, _: &str| [[1.0, 1.0], [1.0, 0.0], [0.0, 1.0]].map(|on| Spec::random(number).lit(on)).into();
-    let tolerance = |name: &str| match name {
-        "records" => EDGE_TOLERANCE,
-        "photons" => FEW_PHOTONS_TOLERANCE,
-        _ => TOLERANCE,
-    };
     over_scenes(
         2,
         |_| vec![],
-        tolerance,
+        |_| TOLERANCE,
         told,
         |_, of| {
             let alone = [of(1), of(2)];
@@ -295,7 +284,6 @@ fn as_much_light_goes_from_here_to_there_as_from_there_to_here_by_every_method()
     };
     // Rooms of rough metal, and short rays between surfaces that are not alike.
     let mended = |name: &str| if name == "photons" { vec![] } else { vec![62, 81, 82] };
-    let tolerance = |name: &str| if name == "photons" { FEW_PHOTONS_TOLERANCE } else { TOLERANCE };
     // The whole alone: the patches' quarters do not see each other alike.
-    over_scenes(2, mended, tolerance, told, |_, of| [0, 1].map(|way| [of(way)[0]; 5]));
+    over_scenes(2, mended, |_| TOLERANCE, told, |_, of| [0, 1].map(|way| [of(way)[0]; 5]));
 }
