@@ -17,8 +17,9 @@
 //! mean intensity of the indirect virtual lights around the point, or where all light that one gives is limited, around
 //! the surface met ([`intensities`]), so one that is much brighter than those may give more than the limit. Every point
 //! is compensated, also where no light of its cut happens to be clamped: the two parts complement each other on average
-//! only. All points use the same directions, in frames of their own, so that their errors are similar and no noise is
-//! visible between them. Where the path length is limited, paths over surfaces that rays hit may have an edge more.
+//! only. All points of a picture use the same directions, in frames of their own, so that their errors are similar and
+//! no noise is visible between them; pictures by other seeds use others. Surfaces that rays meet reflect as if they were
+//! diffuse, rough metals too. Where the path length is limited, paths over surfaces that rays hit may have an edge more.
 //!
 //! Units: b in 1/m².
 
@@ -43,19 +44,23 @@ pub struct Compensation<'a> {
     /// Squared distance from surfaces that shine, by mesh, below which their virtual lights give less; 0 for others.
     near_sq: &'a [f32],
     max_near_sq: f32,
+    /// Seed of the directions of short rays.
+    seed: u32,
 }
 
 impl<'a> Compensation<'a> {
     /// For all points lit through `transfer`, by lights of the given `intensities`. `near_sq` is the squared distance
     /// from each mesh that shines below which its virtual lights give less than they should, and 0 for others.
+    /// Directions of short rays follow from `seed`.
     pub fn new(
         world: &'a World,
         transfer: Transfer<'a>,
         intensities: Option<&'a Intensities>,
         near_sq: &'a [f32],
+        seed: u32,
     ) -> Compensation<'a> {
         let max_near_sq = near_sq.iter().copied().fold(0.0, f32::max);
-        Compensation { world, transfer, intensities, near_sq, max_near_sq }
+        Compensation { world, transfer, intensities, near_sq, max_near_sq, seed }
     }
 
     /// The bound of the geometry term that keeps the irradiance at a point from a light of the mean intensity around it

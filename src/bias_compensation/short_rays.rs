@@ -9,8 +9,8 @@ use crate::world::{Surface, SurfacePoint};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
-/// Seed of the directions.
-const SEED: u32 = 0x5eed;
+/// Part of the seed of the directions, which no other samples of the picture's seed share.
+const SALT: u32 = 0x5eed;
 
 /// Intensity of virtual lights near a point, over the mean around it, up to which rays reach far enough where
 /// irradiances are limited.
@@ -78,8 +78,9 @@ pub fn trace(
     let frames: Vec<Frame> = points.iter().map(|p| Frame::from_normal(p.point.normal)).collect();
     let mut rays = Rays16::default();
     let mut hits = Hits16::default();
+    let seed = c.seed ^ SALT;
     for index in 0..count {
-        let local = cosine_hemisphere(owen_sobol_2d(index, SEED));
+        let local = cosine_hemisphere(owen_sobol_2d(index, seed));
         for lane in lanes_in(valid) {
             let SurfacePoint { position, geometric_normal, .. } = points[lane].point;
             let start = shadow::ray_from(position, geometric_normal, frames[lane].to_world(local));
@@ -177,21 +178,30 @@ mod tests {
         world(scene).world
     }
 
-    /// Estimates of the reflected and of the emitted light that a point below the ceiling lacks, by π/N Σ.
+    /// Estimates of the reflected and of the emitted light that a point below the ceiling lacks, by many rays.
     fn lacking(limit: Limit, intensities: Option<&Intensities>, near_sq: f32) -> [f32; 2] {
-        const RAYS: u32 = 4096;
+        estimates(limit, intensities, near_sq, (4096, 0))
+    }
+
+    /// The same by π/N Σ of so many rays of a seed.
+    fn estimates(
+        limit: Limit,
+        intensities: Option<&Intensities>,
+        near_sq: f32,
+        (count, seed): (u32, u32),
+    ) -> [f32; 2] {
         let world = ceiling();
         let trees = LightTrees::build(&[], Vec::new(), world.diagonal, Family::default(), &Control::new());
         let near = [near_sq];
-        let c = Compensation::new(&world, Transfer::new(&trees, world.diagonal), intensities, &near);
+        let c = Compensation::new(&world, Transfer::new(&trees, world.diagonal), intensities, &near, seed);
         let point = SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, geometric_normal: Vec3::Z };
         let mut sums = [0.0; 2];
         let clamped = ClampedPoint { point, limit, direct: near_sq > 0.0 };
-        trace(&c, &[clamped], RAYS, |_, near| {
+        trace(&c, &[clamped], count, |_, near| {
             sums[0] += luminance(near.weight);
             sums[1] += luminance(near.emitted);
         });
-        sums.map(|sum| sum * PI / RAYS as f32)
+        sums.map(|sum| sum * PI / count as f32)
     }
 
     /// Under a ceiling at height h, G = cos⁴θ/h² and cos²θ is uniform, so that the mean of max(0, 1 - b/G) is
@@ -207,6 +217,18 @@ mod tests {
         }
         // Nothing lies as near as b^(-1/2).
         assert_eq!(lacking(Limit::Geometry(1.01 / (HEIGHT * HEIGHT)), None, 0.0), [0.0; 2]);
+    }
+
+    #[test]
+    fn errors_of_few_directions_average_out_over_seeds() {
+        const SEEDS: u32 = 256;
+        let root = 0.4f32;
+        let by = |seed| estimates(Limit::Geometry((root / HEIGHT).powi(2)), None, 0.0, (4, seed))[0];
+        let expected = ALBEDO * (1.0 - root).powi(2);
+        let errors: Vec<f32> = (0..SEEDS).map(|seed| by(seed) / expected - 1.0).collect();
+        let mean = errors.iter().sum::<f32>() / SEEDS as f32;
+        let rms = (errors.iter().map(|error| error * error).sum::<f32>() / SEEDS as f32).sqrt();
+        assert!(rms > 0.02 && mean.abs() < 4.0 * rms / (SEEDS as f32).sqrt(), "{mean} of {rms}");
     }
 
     /// Virtual lights at the point are brighter, or darker, than those of the ceiling.

@@ -71,6 +71,8 @@ pub struct Lights {
     /// `None` if no light is indirect.
     intensities: Option<Intensities>,
     diagonal: f32,
+    /// Of the short rays' directions.
+    seed: u32,
 }
 
 impl Lights {
@@ -102,7 +104,7 @@ impl Lights {
         let least_sq = min_dist_sq(world.diagonal);
         let near_sq = |&size: &u32| if size > 0 { near_sq_of_size(size, least_sq) } else { 0.0 };
         let near_sq = found.sizes.iter().map(near_sq).collect();
-        Lights { trees, near_sq, intensities, diagonal: world.diagonal }
+        Lights { trees, near_sq, intensities, diagonal: world.diagonal, seed: wanted.pass.seed }
     }
 
     /// Transfer from the lights to a point; `compensated` where short rays find the light lost close to them.
@@ -118,6 +120,6 @@ impl Lights {
 
     /// Compensation for light lost close to the lights.
     pub fn compensation<'a>(&'a self, world: &'a World) -> Compensation<'a> {
-        Compensation::new(world, self.transfer(true), self.intensities.as_ref(), &self.near_sq)
+        Compensation::new(world, self.transfer(true), self.intensities.as_ref(), &self.near_sq, self.seed)
     }
 }

@@ -3,8 +3,8 @@
 //! equally bright, so is the picture.
 //!
 //! `LIGHTSPLAT_RANDOM_SCENES=1000 cargo test --release --test extremes random -- --nocapture` tries so many scenes and
-//! says how far pictures were from what they should be, in standard errors; by those methods alone with
-//! `LIGHTSPLAT_RANDOM_METHODS=path,records`.
+//! says how far pictures were from what they should be, in standard errors; with `200..300`, the scenes of these numbers;
+//! by those methods alone with `LIGHTSPLAT_RANDOM_METHODS=path,records`.
 
 use crate::all_methods::{all, toml};
 use crate::common::*;
@@ -13,6 +13,7 @@ use lightsplat::film::Image;
 use lightsplat::math::luminance;
 use lightsplat::method::{LightStore, Method};
 use lightsplat::progress::Control;
+use std::ops::Range;
 
 /// Numbers of seeds of each picture: at first, and of those that seem to be wrong by the ones before.
 const SEEDS: [u32; 3] = [4, 40, 400];
@@ -26,10 +27,13 @@ const BLUR_TOLERANCE: f64 = 0.03;
 /// The same of the mean difference over many scenes.
 const MEAN_TOLERANCE: f64 = 0.002;
 
-/// Number of scenes, `few` unless the environment says another.
-fn count(few: u64) -> u64 {
-    let wanted = std::env::var("LIGHTSPLAT_RANDOM_SCENES").ok();
-    wanted.and_then(|number| number.parse().ok()).unwrap_or(few)
+/// Numbers of scenes: the first `few` unless the environment says others.
+fn scenes(few: u64) -> Range<u64> {
+    let Ok(wanted) = std::env::var("LIGHTSPLAT_RANDOM_SCENES") else { return 0..few };
+    let (first, end) = wanted.split_once("..").unwrap_or(("0", &wanted));
+    let number =
+        |text: &str| text.parse().expect("LIGHTSPLAT_RANDOM_SCENES is a number, or two with .. between");
+    number(first)..number(end)
 }
 
 /// True for methods that the environment does not leave out.
@@ -198,7 +202,8 @@ fn over_scenes(
     let mut wrong = Vec::new();
     for (name, method) in methods().into_iter().filter(|(name, _)| is_wanted(name)) {
         let mut found = Found::default();
-        for number in (0..count(few)).chain(mended(name).into_iter().filter(|&n| n >= count(few))) {
+        let numbers = scenes(few);
+        for number in numbers.clone().chain(mended(name).into_iter().filter(|n| !numbers.contains(n))) {
             let worlds: Vec<WorldAndView> =
                 told(number, name).iter().map(|spec| toml(&spec.text())).collect();
             found.count(&format!("scene {number} by {name}"), tolerance(name), |seed| {
