@@ -1,4 +1,4 @@
-//! Guides for a denoiser that the eye pass finds on its way: mean albedo and normal by pixel.
+//! Guides for a denoiser that eye samples and paths find on their way: mean albedo and normal by pixel.
 //!
 //! They are as [`super::features`] says, of all eye samples of a pixel. Only samples that meet a mirror or glass first
 //! are looked at by themselves.
@@ -9,7 +9,7 @@ use super::seen::{FeatureSettings, Looking, Pixel};
 use crate::film::{Image, Layer, Window};
 use crate::material::Bsdf;
 use crate::math::Rgb;
-use crate::paths::Look;
+use crate::paths::{Look, Reach};
 use crate::view::View;
 use crate::world::World;
 use glam::Vec3;
@@ -19,12 +19,13 @@ const MOST: f32 = u16::MAX as f32;
 
 /// Albedo and shading normal towards the viewer, added up over samples.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Guide {
+pub struct Guide {
     albedo: Rgb,
     normal: Vec3,
 }
 
 impl Guide {
+    /// Adds those of other samples.
     pub fn add(&mut self, other: Guide) {
         self.albedo += other.albedo;
         self.normal += other.normal;
@@ -73,7 +74,7 @@ impl KeptGuides {
 
 /// The first surfaces of paths that are traced together.
 #[derive(Default)]
-pub(super) struct FirstSurfaces {
+pub struct FirstSurfaces {
     /// Number of paths of a pixel, which follow each other.
     paths: u32,
     pixels: Vec<Guide>,
@@ -127,6 +128,28 @@ impl FirstSurfaces {
     /// The surfaces seen in a pixel.
     pub fn of(&self, pixel: usize) -> Guide {
         self.pixels.get(pixel).copied().unwrap_or_default()
+    }
+}
+
+/// Paths of full length from the eye.
+#[derive(Default)]
+pub struct FullPaths {
+    /// The surfaces that they meet first, where guides are wanted.
+    pub first_surfaces: Option<FirstSurfaces>,
+}
+
+impl Reach<'_> for FullPaths {
+    const ENDS: bool = false;
+
+    fn sees(&self) -> bool {
+        self.first_surfaces.is_some()
+    }
+
+    #[inline]
+    fn see(&mut self, path: u32, bsdf: &Bsdf, wo: Vec3, normal: Vec3) {
+        if let Some(first) = &mut self.first_surfaces {
+            first.see(path, bsdf, wo, normal);
+        }
     }
 }
 

@@ -77,7 +77,10 @@ pub trait Renderer: Settings + Sampled {
         Ok(())
     }
 
-    /// True if a denoiser's guides come with pictures ([`Output::guides`]).
+    /// Has a denoiser's guides found with pictures, by methods that can.
+    fn find_guides(&mut self) {}
+
+    /// True if they come with pictures ([`Output::guides`]).
     fn finds_guides(&self) -> bool {
         false
     }

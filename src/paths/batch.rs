@@ -130,13 +130,6 @@ pub trait Reach<'w> {
     }
 }
 
-/// Paths of full length.
-pub struct FullPaths;
-
-impl Reach<'_> for FullPaths {
-    const ENDS: bool = false;
-}
-
 /// Rays traced.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counts {

@@ -12,6 +12,6 @@ mod start;
 mod tests;
 mod vertex;
 
-pub use batch::{Batch, ChainEnd, Counts, FullPaths, LightSamples, Reach, ScatteredEdges};
+pub use batch::{Batch, ChainEnd, Counts, LightSamples, Reach, ScatteredEdges};
 pub use look::{Look, eye_sampler};
 pub use start::{Start, start};

@@ -102,7 +102,7 @@ impl Packet {
             self.normal.set(i, if local.z < 0.0 { -frame.normal } else { frame.normal });
         }
         let mut bsdfs = world.bsdfs(surfaces, wo);
-        if R::ENDS && depth == 1 && reach.sees() {
+        if depth == 1 && reach.sees() {
             for lane in lanes_in(found) {
                 reach.see(self.slot[lane], bsdfs.lane(lane), wo.get(lane), self.normal.get(lane));
             }

@@ -64,6 +64,8 @@ pub struct Cost {
     /// Seconds that another sample of the eye pass takes, where they are known.
     eye: Option<f64>,
     beta: f64,
+    /// Seconds that a sample takes after the render.
+    looking: f64,
 }
 
 impl Size {
@@ -83,8 +85,8 @@ impl Size {
 
 impl Cost {
     /// Fits the model to renders, of which the last is the most similar to the one planned; `None` if there
-    /// are none.
-    pub fn fit(timed: &[Timed]) -> Option<Cost> {
+    /// are none. Each eye sample takes `looking` seconds after the render.
+    pub fn fit(timed: &[Timed], looking: f64) -> Option<Cost> {
         let last = *timed.last()?;
         let by_point = |t: &Timed| (t.rest / t.size.points()).max(f64::MIN_POSITIVE).ln();
         let pairs = timed.iter().enumerate().flat_map(|(i, a)| timed[i + 1..].iter().map(move |b| (a, b)));
@@ -96,7 +98,7 @@ impl Cost {
             let alike = by_point(b) - by_point(a) + last.size.gamma() * density(&(a, b));
             beta = (alike / (b.height - a.height)).clamp(BETA.1[0], BETA.1[1]);
         }
-        Some(Cost { last, eye: eye(timed), beta })
+        Some(Cost { last, eye: eye(timed), beta, looking })
     }
 
     /// Level of the last render that the model was fitted to.
@@ -125,6 +127,11 @@ impl Cost {
             None => last.eye * size.samples / last.size.samples,
         };
         light + eye + rest
+    }
+
+    /// Seconds that the samples of a size take after the render.
+    pub fn looking(&self, size: &Size) -> f64 {
+        self.looking * size.samples
     }
 }
 
@@ -161,7 +168,7 @@ mod tests {
         for merged in [false, true] {
             let of = |height, pixels, spp, vpls| timed(height, size(pixels, spp, vpls, merged));
             let known = [of(0.0, 4e3, 1.0, 2e4), of(0.0, 1.6e4, 1.0, 2e4), of(2.5, 1.6e4, 3.0, 1e5)];
-            let cost = Cost::fit(&known).unwrap();
+            let cost = Cost::fit(&known, 0.0).unwrap();
             for (height, pixels, spp, vpls) in
                 [(0.0, 2.6e5, 1.0, 2e4), (2.5, 1e6, 4.0, 1e5), (6.0, 1e6, 64.0, 2e6)]
             {
@@ -174,9 +181,10 @@ mod tests {
 
     #[test]
     fn one_render_makes_a_model_and_none_does_not() {
-        assert!(Cost::fit(&[]).is_none());
+        assert!(Cost::fit(&[], 0.0).is_none());
         let expected = timed(1.0, size(4e3, 1.0, 2e4, false));
-        let one = Cost::fit(&[expected]).unwrap();
+        let one = Cost::fit(&[expected], 1e-6).unwrap();
+        assert_eq!(one.looking(&size(4e3, 2.0, 2e4, false)), 8e-3);
         let seconds = |height, spp| one.seconds(height, &size(4e3, spp, 2e4, false));
         assert!((seconds(1.0, 1.0) - expected.light - expected.eye - expected.rest).abs() < 1e-12);
         assert!(seconds(2.0, 1.0) > seconds(1.0, 1.0));
@@ -194,7 +202,7 @@ mod tests {
             rest: 0.0,
         };
         let other = Timed { height: 3.0, size: size(9.0, 1.0, 0.0, false), drawn: 9.0, ..nothing };
-        let cost = Cost::fit(&[nothing, other]).unwrap();
+        let cost = Cost::fit(&[nothing, other], 0.0).unwrap();
         assert!(cost.seconds(6.0, &size(1e6, 1.0, 1e6, false)).is_finite());
     }
 }

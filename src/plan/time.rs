@@ -54,8 +54,8 @@ pub struct Planned<'w> {
     pub method: Method,
     /// The settings as options.
     pub options: String,
-    /// Seconds until the picture is there.
-    pub render_seconds: f64,
+    /// Seconds until the picture is there and its samples have been looked through.
+    pub seconds: f64,
     /// Small renders made, and trials of the picture itself.
     pub pilots: u64,
     /// Prepared part of the picture, and its time.
@@ -75,25 +75,25 @@ impl Planned<'_> {
     }
 }
 
-/// Plans a render of `window` that ends when `left()` seconds, as of its call, have passed; `None` if cancelled.
+/// Plans a render of a view that ends when `left()` seconds, as of its call, have passed; `None` if cancelled. Each eye
+/// sample takes `looking` seconds after the render.
 pub fn for_time<'w>(
     world: &'w World,
     view: &View,
     ladder: &Ladder,
-    left: impl Fn() -> f64,
+    (left, looking): (impl Fn() -> f64, f64),
     control: &Control,
 ) -> Option<Planned<'w>> {
     let usable = || left() * (1.0 - RESERVE) - WRITE * view.window.pixel_count() as f64;
     let tunes = ladder.at(0.0).prepares();
-    let (cost, pilots) = small_renders(world, view, ladder, tunes, &usable, control)?;
+    let (cost, pilots) = small_renders(world, view, ladder, (tunes, looking), &usable, control)?;
     let coarse = highest(&cost, ladder, view, usable());
-    let seconds = whole(&cost, ladder, view, coarse);
     if tunes {
         return tuned(world, view, ladder, (&cost, coarse), pilots, &usable, control);
     }
-    let method = ladder.at(coarse);
+    let (method, seconds) = (ladder.at(coarse), whole(&cost, ladder, view, coarse));
     let options = options(&method);
-    Some(Planned { method, options, render_seconds: seconds, pilots, prepared: None })
+    Some(Planned { method, options, seconds, pilots, prepared: None })
 }
 
 /// Plans cuts as fine as trials allow, on eye samples and virtual lights of about the same level. `guess` is
@@ -119,6 +119,8 @@ fn tuned<'w>(
             correction * preparing(height) <= PREPARE_SHARE * usable()
         });
         let method = ladder.at(coarse);
+        let looking = cost.looking(&size(&method, view));
+        let usable = || usable() - looking;
         let seconds = usable();
         let watch = Stopwatch::start();
         let there = method.prepare(world, view, control)?;
@@ -134,7 +136,7 @@ fn tuned<'w>(
             tried += time;
             Some(time.cpu_seconds * tried.wall_seconds / tried.cpu_seconds.max(f64::MIN_POSITIVE))
         };
-        let first = tune(coarse, ladder.top(), 1, usable, &mut try_at)?;
+        let first = tune(coarse, ladder.top(), 1, &usable, &mut try_at)?;
         // Samples and lights that do not go with how fine cuts can be are given up.
         let late = first.seconds > LATE * usable();
         let next = if late { LESS * coarse } else { 0.5 * (coarse + first.height) };
@@ -150,11 +152,12 @@ fn tuned<'w>(
             coarse = next;
             continue;
         }
-        let tuned = tune(first.height, ladder.top(), TRIALS, usable, &mut try_at)?;
+        let tuned = tune(first.height, ladder.top(), TRIALS, &usable, &mut try_at)?;
         let method = ladder.between(coarse, tuned.height);
         let (options, prepared) = (options(&method), Some((there, spent)));
         pilots += tuned.trials;
-        return Some(Planned { method, options, render_seconds: tuned.seconds, pilots, prepared });
+        let seconds = tuned.seconds + looking;
+        return Some(Planned { method, options, seconds, pilots, prepared });
     }
     None
 }
@@ -164,7 +167,7 @@ fn small_renders(
     world: &World,
     view: &View,
     ladder: &Ladder,
-    only_rough: bool,
+    (only_rough, looking): (bool, f64),
     usable: &impl Fn() -> f64,
     control: &Control,
 ) -> Option<(Cost, u64)> {
@@ -188,7 +191,7 @@ fn small_renders(
         };
         let drawn = size.samples + extra;
         timed.push(Timed { height, size, drawn, light, eye, rest: (all - light - eye).max(0.0) });
-        Cost::fit(&timed)
+        Cost::fit(&timed, looking)
     };
     let small = |scale: u32| {
         let scales = (1..=scale).rev();
@@ -235,7 +238,8 @@ fn highest_within(ladder: &Ladder, top: f64, fits: impl Fn(f64) -> bool) -> f64 
 }
 
 fn whole(cost: &Cost, ladder: &Ladder, view: &View, height: f64) -> f64 {
-    cost.seconds(height, &size(&ladder.at(height), view))
+    let size = size(&ladder.at(height), view);
+    cost.seconds(height, &size) + cost.looking(&size)
 }
 
 fn size(method: &Method, view: &View) -> Size {

@@ -17,8 +17,18 @@ use std::cell::{Cell, OnceCell};
 /// with an allocator of its own.
 const LARGE: u64 = 1 << 20;
 
-/// Divisor of each side of the picture that estimates how long finishing takes.
+/// Divisor of each side of the picture that estimates how long finishing takes, and its samples a pixel at most.
 const TRIAL_SCALE: u32 = 4;
+const TRIAL_SPP: u32 = 4;
+
+/// Time that finishing a picture takes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct FinishingTime {
+    /// Seconds of denoising.
+    pub denoising: f64,
+    /// Seconds for each eye sample that is looked through anew.
+    pub a_sample: f64,
+}
 
 /// The features and the denoiser that a goal asks for, for pictures of one view.
 pub(crate) struct Finish<'a> {
@@ -109,12 +119,20 @@ impl<'a> Finish<'a> {
 
     /// Looks through the pixels by the method's own eye samples.
     pub fn look(&self, method: &Method) -> SeenPixels {
-        self.look_at(self.view, method)
+        self.look_at(self.view, method, method.spp())
     }
 
-    fn look_at(&self, view: &View, method: &Method) -> SeenPixels {
-        let settings = FeatureSettings { look: method.look(), spp: method.spp(), seed: method.seed() };
+    fn look_at(&self, view: &View, method: &Method, spp: u32) -> SeenPixels {
+        let settings = FeatureSettings { look: method.look(), spp, seed: method.seed() };
         SeenPixels::new(self.world, view, &settings, self.control)
+    }
+
+    /// The method, which finds a denoiser's guides itself where it can and nobody keeps them.
+    pub fn guided(&self, mut method: Method) -> Method {
+        if self.denoises() && self.features.is_empty() {
+            method.find_guides();
+        }
+        method
     }
 
     /// Adds the features of the method's own eye samples to its picture, and denoises and sharpens that, where it is
@@ -197,18 +215,19 @@ impl<'a> Finish<'a> {
         is_denoised
     }
 
-    /// Seconds that [`Finish::apply`] is likely to take for a picture of `method` made in `within` seconds, by that of
+    /// Time that [`Finish::apply`] is likely to take for a picture of `method` made in `within` seconds, by that of
     /// a smaller one.
-    pub fn expected_seconds(&self, method: &Method, within: f64) -> f64 {
-        let Some(denoiser) = self.denoiser() else { return 0.0 };
+    pub fn expected_time(&self, method: &Method, within: f64) -> FinishingTime {
+        let Some(denoiser) = self.denoiser() else { return FinishingTime::default() };
         let small = smaller(self.view, TRIAL_SCALE);
+        let spp = method.spp().min(TRIAL_SPP);
         let watch = Stopwatch::start();
-        let layers = self.look_at(&small, method).layers(self.world, self.wanted());
+        let layers = self.look_at(&small, method, spp).layers(self.world, self.wanted());
         let finds_guides = self.features.is_empty() && method.finds_guides();
         let looking = if finds_guides { 0.0 } else { watch.elapsed().wall_seconds };
         let mut denoising = 0.0;
         let guides = guides(&layers);
-        let Some(color) = guides.albedo else { return 0.0 };
+        let Some(color) = guides.albedo else { return FinishingTime::default() };
         // The first picture of a device takes longer, whatever its size.
         let quality = self.quality.unwrap_or_default();
         for _ in 0..2 {
@@ -218,12 +237,15 @@ impl<'a> Finish<'a> {
             }
             denoising = watch.elapsed().wall_seconds;
         }
-        let scale = self.view.window.pixel_count() as f64 / small.window.pixel_count() as f64;
+        let [all, few] = [self.view, &small].map(|view| view.window.pixel_count() as f64);
+        let a_sample = looking / (few * f64::from(spp));
+        denoising *= all / few;
         if self.quality.is_none() {
-            let likely = effort::for_work(within - scale * (looking + denoising), scale * denoising);
+            let looking = a_sample * all * f64::from(method.spp());
+            let likely = effort::for_work(within - looking - denoising, denoising);
             denoising *= effort::relative_price(likely);
         }
-        scale * (looking + denoising)
+        FinishingTime { denoising, a_sample }
     }
 }
 

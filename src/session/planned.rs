@@ -69,8 +69,8 @@ impl Planning<'_> {
             Wanted::Time { seconds, run, held } => {
                 if let Some(chooser) = chooser {
                     let finishing =
-                        self.finish.expected_seconds(&goal.method, seconds - run.elapsed().wall_seconds);
-                    let left = *seconds - run.elapsed().wall_seconds - finishing;
+                        self.finish.expected_time(&goal.method, seconds - run.elapsed().wall_seconds);
+                    let left = *seconds - run.elapsed().wall_seconds - finishing.denoising;
                     let ladder = self.ladder(goal.method, held)?;
                     choice = Some(chooser.for_time(&ladder, left, pilot_time.wall_seconds));
                 }
@@ -97,7 +97,8 @@ impl Planning<'_> {
     }
 
     fn ladder(&self, method: Method, held: &[&'static str]) -> Result<Ladder, FrameError> {
-        let ladder = Ladder::new(method, held).ok_or(FrameError::Unplannable(method.name()))?;
+        let ladder =
+            Ladder::new(self.finish.guided(method), held).ok_or(FrameError::Unplannable(method.name()))?;
         Ok(ladder.within(&self.view.window))
     }
 
@@ -105,6 +106,7 @@ impl Planning<'_> {
     fn as_set(&self, method: Method, former: Former) -> Made {
         let Planning { session: Session { world, lights, .. }, view, control, .. } = *self;
         let watch = Stopwatch::start();
+        let method = self.finish.guided(method);
         let mut seconds = 0.0;
         let output = match former {
             Former::Frames(kept) => self.next_frame(&method, kept),
@@ -174,14 +176,15 @@ impl Planning<'_> {
     ) -> Result<Made, FrameError> {
         let Planning { session: Session { world, .. }, view, finish, control } = *self;
         let watch = Stopwatch::start();
-        let finishing = finish.expected_seconds(method, asked - run.elapsed().wall_seconds);
-        let left = || asked - finishing - run.elapsed().wall_seconds;
-        let found = plan::for_time(world, view, &self.ladder(*method, held)?, left, control)
-            .ok_or(FrameError::Interrupted)?;
+        let finishing = finish.expected_time(&finish.guided(*method), asked - run.elapsed().wall_seconds);
+        let left = || asked - finishing.denoising - run.elapsed().wall_seconds;
+        let found =
+            plan::for_time(world, view, &self.ladder(*method, held)?, (left, finishing.a_sample), control)
+                .ok_or(FrameError::Interrupted)?;
         let spent = found.spent();
         stats.add_time(Stage::Plan, watch.elapsed().without(spent));
         let before = run.elapsed().wall_seconds;
-        let planned = before + found.render_seconds + finishing;
+        let planned = before + found.seconds + finishing.denoising;
         let in_reach = planned <= asked * LATE;
         remarks.extend(report::of_time(asked, [before, planned], in_reach, &found.options));
         stats.add("Plan/time asked [s]", asked);
@@ -213,8 +216,9 @@ impl Planning<'_> {
     ) -> Result<Made, FrameError> {
         let Planning { session: Session { world, .. }, view, finish, control } = *self;
         let render = |method: &Method| {
+            let method = finish.guided(*method);
             let mut output = method.render(world, &LightStore::default(), view, control);
-            finish.apply(method, &mut output);
+            finish.apply(&method, &mut output);
             output
         };
         let asked = plan::Asked { error, measure, most_samples, render: &render };

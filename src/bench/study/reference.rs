@@ -125,7 +125,8 @@ impl Progress {
         for half in 0..2 {
             // Seed 0 is the default of all methods, none of which should share random numbers with its
             // reference.
-            let settings = path::Settings { spp, seed: 1 + 2 * self.rounds + half, max_depth: None, look };
+            let settings =
+                path::Settings { spp, seed: 1 + 2 * self.rounds + half, look, ..Default::default() };
             let output = render(&subject.session.world, &subject.view, &settings, study.control);
             if !output.complete {
                 return Err(StudyError::Interrupted);

@@ -146,9 +146,9 @@ impl Study<'_> {
             let goal = Goal { denoise: Some(candidate.denoise && self.denoises()), ..Goal::default() };
             let mut loading = Stats::new();
             let finish = Finish::new(&session.world, view, &goal, self.control, &mut loading);
-            let mut output =
-                candidate.method.render(&session.world, &LightStore::default(), view, self.control);
-            finish.apply(&candidate.method, &mut output);
+            let method = finish.guided(candidate.method);
+            let mut output = method.render(&session.world, &LightStore::default(), view, self.control);
+            finish.apply(&method, &mut output);
             output.stats.merge(&loading);
             if let Some(error) = finish.failure() {
                 return Err(StudyError::Denoise(error.clone()));

@@ -1,9 +1,10 @@
 //! Single pixels, each with as many paths as are wanted for it.
 
+use crate::eye::FullPaths;
 use crate::math::luminance;
 use crate::method::{DrawnPixels, PILOT_SPP};
 use crate::parallel::ShortRuns;
-use crate::paths::{Batch, Counts, FullPaths, Look, Start, start};
+use crate::paths::{Batch, Counts, Look, Start, start};
 use crate::progress::Control;
 use crate::view::View;
 use crate::world::World;
@@ -44,7 +45,7 @@ pub fn pixel_means(
         let paths =
             wanted.iter().flat_map(|w| samples(w).map(|sample| Start { pixel: w.pixel, sample, seed }));
         start(&mut batch, paths, (world, view), (look, most));
-        let mut values = batch.trace(world, max_depth, &mut FullPaths, counts);
+        let mut values = batch.trace(world, max_depth, &mut FullPaths::default(), counts);
         for (w, sum) in wanted.iter().zip(&mut sums) {
             for value in values.by_ref().take(samples(w).len()) {
                 if value.is_finite() {

@@ -2,13 +2,14 @@
 
 use super::Begun;
 use super::pixels::draw_pixels;
+use crate::eye::{FirstSurfaces, FullPaths, Guide, KeptGuide, KeptGuides};
 use crate::film::Image;
 use crate::math::Rgb;
 use crate::method::ladder::PATHS;
 use crate::method::sampling::method_settings;
 use crate::method::{DrawnPixels, LightStore, Move, Output, Renderer};
 use crate::parallel::ShortRuns;
-use crate::paths::{Batch, Counts, FullPaths, Look, Start, start};
+use crate::paths::{Batch, Counts, Look, Start, start};
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
 use crate::view::View;
@@ -30,6 +31,8 @@ method_settings! {
     spp = 64, "" {
         /// Value that a pixel is to have.
         look: Look = Look::Pixels;
+        /// True if a denoiser's guides are to be found on the way.
+        guides: bool = false;
     }
 }
 
@@ -61,6 +64,14 @@ impl Renderer for Settings {
         self.look
     }
 
+    fn find_guides(&mut self) {
+        self.guides = self.look == Look::Pixels;
+    }
+
+    fn finds_guides(&self) -> bool {
+        self.guides
+    }
+
     fn draw_pixels(
         &self,
         world: &World,
@@ -84,13 +95,16 @@ impl Settings {
         let tile = |i| begun.and_then(|begun| Tile::of(begun, view, self.spp, i)).unwrap_or_default();
         let mut tiles: Vec<Tile> = (0..view.window.tile_count(TILE)).map(tile).collect();
         let passes = self.spp.div_ceil(PASS);
+        // Those of earlier samples are gone, and paths that may not go on say nothing of surfaces.
+        let goes_on = world.scene.path_limit(self.max_depth) > 1;
+        let finds_guides = self.guides && goes_on && tiles.iter().all(|tile| tile.samples == 0);
         control.begin(Stage::Render, passes as u64 * tiles.len() as u64);
         stats.time(Stage::Render, || {
             for pass in 0..passes {
                 let end = ((pass + 1) * PASS).min(self.spp);
                 tiles.par_iter_mut().one_by_one().enumerate().for_each(|(i, tile)| {
                     if !control.is_cancelled() {
-                        tile.render(world, view, self, i, end);
+                        tile.render(world, view, &Settings { guides: finds_guides, ..*self }, i, end);
                         control.advance(1);
                     }
                 });
@@ -99,6 +113,7 @@ impl Settings {
         let mut color = Image::new(view.window.width, view.window.height);
         let mut squares = Image::new(view.window.width, view.window.height);
         let mut samples = squares.map(|_| 0);
+        let mut guides = vec![KeptGuide::default(); if finds_guides { color.pixels.len() } else { 0 }];
         let (mut rays, mut shadow_rays, mut paths) = (0, 0, 0);
         let mut nonfinite = begun.map_or(0, |begun| begun.nonfinite);
         for (i, tile) in tiles.iter().enumerate() {
@@ -108,6 +123,9 @@ impl Settings {
                 // Squares of radiances that f32 holds may be beyond it.
                 squares.pixels[at] = pixel.squares.min(Rgb::splat(f32::MAX));
                 samples.pixels[at] = tile.samples;
+            }
+            for (guide, [x, y]) in tile.guides.iter().zip(view.window.tile(i, TILE)) {
+                guides[(y * view.window.width + x) as usize] = guide.kept(tile.samples);
             }
             paths += tile.paths;
             rays += tile.counts.rays;
@@ -121,7 +139,8 @@ impl Settings {
         // With a single sample there is no spread to measure.
         let variance = (self.spp > 1).then(|| variance(&squares, &samples));
         let begun = Begun::layers(squares, samples);
-        Output { variance, begun, complete, nonfinite, ..Output::new(color, stats) }
+        let guides = if finds_guides { KeptGuides(guides).layers(&view.window) } else { Vec::new() };
+        Output { variance, begun, guides, complete, nonfinite, ..Output::new(color, stats) }
     }
 }
 
@@ -145,6 +164,8 @@ struct Pixel {
 #[derive(Default)]
 struct Tile {
     pixels: Vec<Pixel>,
+    /// Of the pixels, where they are wanted.
+    guides: Vec<Guide>,
     samples: u32,
     /// Paths traced in this run.
     paths: u64,
@@ -176,20 +197,33 @@ impl Tile {
         if begin >= end {
             return;
         }
-        let coordinates = view.window.tile(index, TILE);
+        // The film's own coordinates, so that a crop repeats the whole picture's pixels.
+        let film_pixels: Vec<[u32; 2]> =
+            view.window.tile(index, TILE).map(|at| view.window.film_pixel(at)).collect();
         if self.pixels.is_empty() {
-            self.pixels = vec![Pixel::default(); coordinates.count()];
+            self.pixels = vec![Pixel::default(); film_pixels.len()];
         }
         let mut batch = Batch::default();
+        let mut paths = FullPaths::default();
+        if settings.guides {
+            self.guides.resize(film_pixels.len(), Guide::default());
+            paths.first_surfaces = Some(FirstSurfaces::default());
+        }
         for first in (begin..end).step_by(BATCH as usize) {
             let samples = first..(first + BATCH).min(end);
-            // The film's own coordinates, so that a crop repeats the whole picture's pixels.
-            let paths =
-                view.window.tile(index, TILE).map(|at| view.window.film_pixel(at)).flat_map(|pixel| {
-                    samples.clone().map(move |sample| Start { pixel, sample, seed: settings.seed })
-                });
-            start(&mut batch, paths, (world, view), (settings.look, settings.spp));
-            let mut values = batch.trace(world, max_depth, &mut FullPaths, &mut self.counts);
+            let starts = film_pixels.iter().flat_map(|&pixel| {
+                samples.clone().map(move |sample| Start { pixel, sample, seed: settings.seed })
+            });
+            start(&mut batch, starts, (world, view), (settings.look, settings.spp));
+            if let Some(first) = &mut paths.first_surfaces {
+                first.begin(film_pixels.len(), samples.len() as u32);
+            }
+            let mut values = batch.trace(world, max_depth, &mut paths, &mut self.counts);
+            if let Some(first) = &mut paths.first_surfaces {
+                let of = (settings.spp, settings.seed);
+                first.finish((world, view), (&film_pixels, samples.start), of);
+                self.guides.iter_mut().enumerate().for_each(|(i, guide)| guide.add(first.of(i)));
+            }
             for pixel in &mut self.pixels {
                 for (sample, mut value) in samples.clone().zip(values.by_ref()) {
                     if !value.is_finite() {
@@ -204,5 +238,43 @@ impl Tile {
         }
         self.paths += u64::from(end - begin) * self.pixels.len() as u64;
         self.samples = end;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eye::{Feature, FeatureSettings, Features, SeenPixels};
+    use crate::test_scenes::*;
+
+    #[test]
+    fn guides_are_the_features_of_all_paths_and_change_none() {
+        let world = room_with_ball(Some(mirror()));
+        let (view, control) = (&world.view, &Control::new());
+        let plain = Settings { spp: 18, seed: 3, ..Settings::default() };
+        let mut guided = plain;
+        guided.find_guides();
+        let render = |settings: &Settings| settings.render(&world, &LightStore::default(), view, control);
+        let (expected, found) = (render(&plain), render(&guided));
+        assert_eq!(found.color, expected.color);
+        assert!(expected.guides.is_empty());
+        let settings = FeatureSettings { look: plain.look(), spp: plain.spp, seed: plain.seed };
+        let wanted = Features::default().with(Feature::Albedo).with(Feature::Normal);
+        let features = SeenPixels::new(&world, view, &settings, control).layers(&world, wanted);
+        for (feature, guide) in features.iter().zip(&found.guides) {
+            assert_eq!(feature.name, guide.name);
+            let [feature, guide] = [feature, guide].map(|layer| &layer.triples().expect("a vector").pixels);
+            let off = |(a, b): (&Rgb, &Rgb)| (*a - *b).abs().max_element();
+            let error = feature.iter().zip(guide).map(off).fold(0.0, f32::max);
+            assert!(error < 1e-4, "{error}");
+        }
+        assert_eq!(found.guides.len(), 2);
+        // Samples that were taken before have none.
+        let (color, squares, samples) =
+            (expected.color.clone(), expected.color.clone(), expected.color.map(|_| 16));
+        let begun = Begun { color, squares, samples, nonfinite: 0, seconds: 0.0 };
+        let rest = guided.render_rest(&world, &LightStore::default(), &begun, view, control);
+        assert!(rest.complete && rest.guides.is_empty());
+        assert!(render(&Settings { max_depth: Some(1), ..guided }).guides.is_empty());
     }
 }
