@@ -18,8 +18,8 @@
 //! the surface met ([`intensities`]), so one that is much brighter than those may give more than the limit. Every point
 //! is compensated, also where no light of its cut happens to be clamped: the two parts complement each other on average
 //! only. All points of a picture use the same directions, in frames of their own, so that their errors are similar and
-//! no noise is visible between them; pictures by other seeds use others. Surfaces that rays meet reflect as if they were
-//! diffuse, rough metals too. Where the path length is limited, paths over surfaces that rays hit may have an edge more.
+//! no noise is visible between them; other seeds use others. Surfaces that rays meet reflect as if they were diffuse,
+//! rough metals too. Where the path length is limited, paths over surfaces that rays hit may have an edge more.
 //!
 //! Units: b in 1/m².
 

@@ -136,7 +136,7 @@ fn tuned<'w>(
             tried += time;
             Some(time.cpu_seconds * tried.wall_seconds / tried.cpu_seconds.max(f64::MIN_POSITIVE))
         };
-        let first = tune(coarse, ladder.top(), 1, &usable, &mut try_at)?;
+        let first = tune(coarse, ladder.top(), 1, usable, &mut try_at)?;
         // Samples and lights that do not go with how fine cuts can be are given up.
         let late = first.seconds > LATE * usable();
         let next = if late { LESS * coarse } else { 0.5 * (coarse + first.height) };
@@ -152,7 +152,7 @@ fn tuned<'w>(
             coarse = next;
             continue;
         }
-        let tuned = tune(first.height, ladder.top(), TRIALS, &usable, &mut try_at)?;
+        let tuned = tune(first.height, ladder.top(), TRIALS, usable, &mut try_at)?;
         let method = ladder.between(coarse, tuned.height);
         let (options, prepared) = (options(&method), Some((there, spent)));
         pilots += tuned.trials;

@@ -3,8 +3,8 @@
 //! equally bright, so is the picture.
 //!
 //! `LIGHTSPLAT_RANDOM_SCENES=1000 cargo test --release --test extremes random -- --nocapture` tries so many scenes and
-//! says how far pictures were from what they should be, in standard errors; with `200..300`, the scenes of these numbers;
-//! by those methods alone with `LIGHTSPLAT_RANDOM_METHODS=path,records`.
+//! says how far pictures were from what they should be, in standard errors; with `200..300`, the scenes of these
+//! numbers; by those methods alone with `LIGHTSPLAT_RANDOM_METHODS=path,records`.
 
 use crate::all_methods::{all, toml};
 use crate::common::*;
