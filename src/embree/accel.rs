@@ -93,7 +93,7 @@ impl Accel {
         let scene = unsafe { sys::rtcNewScene(device.handle()) };
         device.check("making a scene")?;
         // From here on, dropping releases the scene.
-        let widest = if device.native_packets16() { Width::Sixteen } else { Width::Eight };
+        let widest = device.widest_packets();
         let mut accel = Accel { scene, bounds: None, widest, device: device.clone() };
         let (quality, flags) = quality.to_embree();
         // SAFETY: the scene is live and not yet committed. The flag allows a query to pass its own filter;

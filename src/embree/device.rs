@@ -1,6 +1,6 @@
 //! The Embree device: version check and error messages.
 
-use super::{EmbreeError, Version};
+use super::{EmbreeError, Version, Width};
 use embree4_sys as sys;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::fmt;
@@ -83,12 +83,19 @@ impl Device {
         self.shared.version
     }
 
-    /// True if sixteen-wide packets run natively (AVX-512). Otherwise the packet queries give the same
-    /// answers by single rays, and packing rays gains nothing.
-    pub fn native_packets16(&self) -> bool {
-        // SAFETY: the handle is a live device.
-        unsafe {
-            sys::rtcGetDeviceProperty(self.handle(), sys::RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0
+    /// Width of the widest packets that run natively: sixteen by AVX-512, eight by AVX2, four otherwise. Embree takes
+    /// wider ones apart into single rays.
+    pub fn widest_packets(&self) -> Width {
+        let is_native = |which| {
+            // SAFETY: the handle is a live device.
+            unsafe { sys::rtcGetDeviceProperty(self.handle(), which) != 0 }
+        };
+        if is_native(sys::RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) {
+            Width::Sixteen
+        } else if is_native(sys::RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) {
+            Width::Eight
+        } else {
+            Width::Four
         }
     }
 

@@ -8,7 +8,7 @@
 
 use super::query::query_flags;
 use super::ray::OCCLUDING;
-use super::{Accel, Ray, Rays16};
+use super::{Accel, Ray, Rays16, Width};
 use embree4_sys as sys;
 
 /// Identifier of a triangle of an [`Accel`].
@@ -114,16 +114,23 @@ impl Accel {
     /// As [`Accel::occluded16`], but also writes the occluders to the returned lanes of `found`.
     #[inline]
     pub fn occluders16(&self, rays: &Rays16, valid: u16, coherent: bool, found: &mut Occluders16) -> u16 {
-        let lanes = rays.lanes(valid);
-        if self.is_empty() || !lanes.any() {
-            return 0;
-        }
+        self.occluders_by(self.widest(), rays, valid, coherent, found)
+    }
+
+    /// [`Accel::occluders16`] by queries of `width` rays, four at least.
+    #[inline]
+    pub(super) fn occluders_by(
+        &self,
+        width: Width,
+        rays: &Rays16,
+        valid: u16,
+        coherent: bool,
+        found: &mut Occluders16,
+    ) -> u16 {
         let mut query = Query { context: CONTEXT, found };
         let mut arguments = query.arguments(coherent, record_occluders);
-        let mut packet = rays.to_embree(OCCLUDING);
-        // SAFETY: as above; mask and packet have the required 64-byte alignment.
-        unsafe { sys::rtcOccluded16(lanes.0.as_ptr(), self.scene(), &mut packet, &mut arguments) };
-        lanes.mask_where(|i| packet.tfar[i] == f32::NEG_INFINITY)
+        // SAFETY: the arguments and the query they point to outlive the call; the filter fits the query's record.
+        unsafe { self.occluded_with(width, rays, valid, &mut arguments) }
     }
 }
 
@@ -191,8 +198,8 @@ fn blend(mask: u32, new: u32, old: u32) -> u32 {
     (mask & new) | (!mask & old)
 }
 
-/// The same filter where Embree has no sixteen-wide kernels and traces the rays of the packet one by one, or
-/// in smaller packets: the lane is then the ray's id.
+/// The same filter where Embree has no sixteen-wide kernels and the rays of the packet are traced in smaller
+/// packets, or one by one: the lane is then the ray's id.
 ///
 /// # Safety
 /// As for [`record_occluders`], from which it is called.

@@ -104,24 +104,6 @@ impl Rays16 {
         }
         lanes
     }
-
-    #[inline]
-    pub(super) fn to_embree(&self, mask: u32) -> sys::RTCRay16 {
-        sys::RTCRay16 {
-            org_x: self.origin_x,
-            org_y: self.origin_y,
-            org_z: self.origin_z,
-            tnear: self.t_near,
-            dir_x: self.direction_x,
-            dir_y: self.direction_y,
-            dir_z: self.direction_z,
-            time: [0.0; 16],
-            tfar: self.t_far,
-            mask: [mask; 16],
-            id: LANE_IDS,
-            flags: [0; 16],
-        }
-    }
 }
 
 /// Ids of the rays, their lanes, which a filter needs where Embree splits the packet into single rays.

@@ -85,7 +85,7 @@ fn prepare<'a, P: EmbreePacket>(
             let mut lanes = LaneMask([0; 16]);
             lanes.0[..width].copy_from_slice(&all.0[first..first + width]);
             if lanes.any() {
-                prepared.push((lanes, P::of(rays, first)));
+                prepared.push((lanes, P::of(rays, first, OCCLUDING)));
             }
         }
     }

@@ -9,6 +9,7 @@ use super::packet::LANE_IDS;
 use super::ray::{ALL_GEOMETRY, OCCLUDING};
 use super::{Accel, Hits16, Rays16, Width};
 use embree4_sys as sys;
+use std::mem::MaybeUninit;
 
 /// Query flags for a coherence hint.
 #[inline]
@@ -30,26 +31,41 @@ pub(super) fn occluded_arguments(coherent: bool) -> sys::RTCOccludedArguments {
 
 /// A packet of Embree's own layout.
 pub(super) trait EmbreePacket: Copy {
-    /// Takes lanes `first..first + width` of sixteen.
-    fn of(rays: &Rays16, first: usize) -> Self;
+    /// Takes lanes `first..first + width` of sixteen, with a mask of the meshes that they meet.
+    fn of(rays: &Rays16, first: usize, mask: u32) -> Self;
     /// Traces the lanes of the mask `lanes`, and returns those found occluded as bits from 0 on.
     ///
     /// # Safety
-    /// The scene is committed, and `lanes` is as long as the packet is wide and as aligned as the packet.
+    /// The scene is committed, and `lanes` is as long as the packet is wide and as aligned as the packet. Filters in
+    /// the arguments fit their context.
     unsafe fn occluded(
         self,
         lanes: *const i32,
         scene: sys::RTCScene,
         arguments: &mut sys::RTCOccludedArguments,
     ) -> u16;
+    /// Traces the lanes of the mask `lanes`, and writes hits to those of `hits` from `first` on; returns the lanes that
+    /// hit as bits from 0 on.
+    ///
+    /// # Safety
+    /// As for [`EmbreePacket::occluded`].
+    unsafe fn closest_hit(
+        self,
+        lanes: *const i32,
+        scene: sys::RTCScene,
+        arguments: &mut sys::RTCIntersectArguments,
+        hits: &mut Hits16,
+        first: usize,
+    ) -> u16;
 }
 
 macro_rules! packet {
-    ($packet:ident, $width:literal, $query:ident) => {
+    ($packet:ident, $hit:ident, $both:ident, $width:literal, $occluded:ident, $intersect:ident) => {
         impl EmbreePacket for sys::$packet {
             #[inline(always)]
-            fn of(rays: &Rays16, first: usize) -> Self {
+            fn of(rays: &Rays16, first: usize, mask: u32) -> Self {
                 // Copied as whole vectors, as Embree reads them.
+                #[inline(always)]
                 fn part<T: Copy + Default>(row: &[T; 16], first: usize) -> [T; $width] {
                     let mut part = [T::default(); $width];
                     part.copy_from_slice(&row[first..first + $width]);
@@ -66,7 +82,7 @@ macro_rules! packet {
                     dir_z: row(&rays.direction_z),
                     time: [0.0; $width],
                     tfar: row(&rays.t_far),
-                    mask: [OCCLUDING; $width],
+                    mask: [mask; $width],
                     id: part(&LANE_IDS, first),
                     flags: [0; $width],
                 }
@@ -74,26 +90,74 @@ macro_rules! packet {
 
             #[inline(always)]
             unsafe fn occluded(
-                mut self,
+                self,
                 lanes: *const i32,
                 scene: sys::RTCScene,
                 arguments: &mut sys::RTCOccludedArguments,
             ) -> u16 {
-                // SAFETY: by contract; the packet has its type's alignment, which Embree requires.
-                unsafe { sys::$query(lanes, scene, &mut self, arguments) };
+                // Room for hits: where Embree has no kernels of this width, it copies single rays out of the packet and
+                // back as if hits followed it.
+                let mut both = MaybeUninit::<sys::$both>::uninit();
                 let mut bits = [0u32; $width];
-                for (i, bit) in bits.iter_mut().enumerate() {
-                    *bit = if self.tfar[i] == f32::NEG_INFINITY { 1 << i } else { 0 };
+                // SAFETY: by contract. The packet is written before it is read, has its type's alignment, which Embree
+                // requires, and the pointer is to all of `both`.
+                unsafe {
+                    let packet = &raw mut (*both.as_mut_ptr()).ray;
+                    packet.write(self);
+                    sys::$occluded(lanes, scene, packet, arguments);
+                    for (i, bit) in bits.iter_mut().enumerate() {
+                        *bit = if (*packet).tfar[i] == f32::NEG_INFINITY { 1 << i } else { 0 };
+                    }
                 }
                 bits.into_iter().fold(0, |mask, bit| mask | bit) as u16
+            }
+
+            #[inline(always)]
+            unsafe fn closest_hit(
+                self,
+                lanes: *const i32,
+                scene: sys::RTCScene,
+                arguments: &mut sys::RTCIntersectArguments,
+                hits: &mut Hits16,
+                first: usize,
+            ) -> u16 {
+                const NONE: [u32; $width] = [sys::RTC_INVALID_GEOMETRY_ID; $width];
+                let mut both = sys::$both {
+                    ray: self,
+                    hit: sys::$hit {
+                        Ng_x: [0.0; $width],
+                        Ng_y: [0.0; $width],
+                        Ng_z: [0.0; $width],
+                        u: [0.0; $width],
+                        v: [0.0; $width],
+                        primID: NONE,
+                        geomID: NONE,
+                        instID: [NONE],
+                        instPrimID: [NONE],
+                    },
+                };
+                // SAFETY: by contract; the packet has its type's alignment, which Embree requires.
+                unsafe { sys::$intersect(lanes, scene, &mut both, arguments) };
+                let mut found = 0;
+                for i in 0..$width {
+                    if both.hit.geomID[i] != sys::RTC_INVALID_GEOMETRY_ID {
+                        hits.t[first + i] = both.ray.tfar[i];
+                        hits.u[first + i] = both.hit.u[i];
+                        hits.v[first + i] = both.hit.v[i];
+                        hits.geometry[first + i] = both.hit.geomID[i];
+                        hits.primitive[first + i] = both.hit.primID[i];
+                        found |= 1 << i;
+                    }
+                }
+                found
             }
         }
     };
 }
 
-packet!(RTCRay4, 4, rtcOccluded4);
-packet!(RTCRay8, 8, rtcOccluded8);
-packet!(RTCRay16, 16, rtcOccluded16);
+packet!(RTCRay4, RTCHit4, RTCRayHit4, 4, rtcOccluded4, rtcIntersect4);
+packet!(RTCRay8, RTCHit8, RTCRayHit8, 8, rtcOccluded8, rtcIntersect8);
+packet!(RTCRay16, RTCHit16, RTCRayHit16, 16, rtcOccluded16, rtcIntersect16);
 
 impl Accel {
     /// [`Accel::closest_hit`] for the lanes in `valid`. Returns the lanes that hit, and writes those of
@@ -101,25 +165,25 @@ impl Accel {
     /// the speed, not the meaning.
     #[inline]
     pub fn closest_hit16(&self, rays: &Rays16, valid: u16, coherent: bool, hits: &mut Hits16) -> u16 {
-        let lanes = rays.lanes(valid);
-        if self.is_empty() || !lanes.any() {
+        match self.widest() {
+            Width::Sixteen => self.closest_hit_in::<sys::RTCRay16>(16, rays, valid, coherent, hits),
+            Width::Eight => self.closest_hit_in::<sys::RTCRay8>(8, rays, valid, coherent, hits),
+            _ => self.closest_hit_in::<sys::RTCRay4>(4, rays, valid, coherent, hits),
+        }
+    }
+
+    #[inline]
+    fn closest_hit_in<P: EmbreePacket>(
+        &self,
+        width: usize,
+        rays: &Rays16,
+        valid: u16,
+        coherent: bool,
+        hits: &mut Hits16,
+    ) -> u16 {
+        if self.is_empty() {
             return 0;
         }
-        const NONE: [u32; 16] = [sys::RTC_INVALID_GEOMETRY_ID; 16];
-        let mut rayhit = sys::RTCRayHit16 {
-            ray: rays.to_embree(ALL_GEOMETRY),
-            hit: sys::RTCHit16 {
-                Ng_x: [0.0; 16],
-                Ng_y: [0.0; 16],
-                Ng_z: [0.0; 16],
-                u: [0.0; 16],
-                v: [0.0; 16],
-                primID: NONE,
-                geomID: NONE,
-                instID: [NONE],
-                instPrimID: [NONE],
-            },
-        };
         let mut arguments = sys::RTCIntersectArguments {
             flags: query_flags(coherent),
             feature_mask: sys::RTC_FEATURE_FLAG_ALL,
@@ -127,18 +191,18 @@ impl Accel {
             filter: None,
             intersect: None,
         };
-        // SAFETY: the scene is committed; mask, packet and arguments are ours, outlive the call, have the
-        // library's layout (the version is checked) and the required 64-byte alignment.
-        unsafe { sys::rtcIntersect16(lanes.0.as_ptr(), self.scene(), &mut rayhit, &mut arguments) };
-        let hit = &rayhit.hit;
-        let found = lanes.mask_where(|i| hit.geomID[i] != sys::RTC_INVALID_GEOMETRY_ID);
-        for i in 0..16 {
-            if (found >> i) & 1 != 0 {
-                hits.t[i] = rayhit.ray.tfar[i];
-                hits.u[i] = hit.u[i];
-                hits.v[i] = hit.v[i];
-                hits.geometry[i] = hit.geomID[i];
-                hits.primitive[i] = hit.primID[i];
+        let lanes = rays.lanes(valid);
+        let mut found = 0;
+        for first in (0..16).step_by(width) {
+            let part = &lanes.0[first..first + width];
+            if part.iter().any(|&lane| lane != 0) {
+                let packet = P::of(rays, first, ALL_GEOMETRY);
+                // SAFETY: the scene is committed; mask, packet and arguments are ours, outlive the call and have the
+                // library's layout (the version is checked). The mask is 64-byte aligned as a whole, and so its parts
+                // of 4 and 8 words as the packets of that width.
+                let bits =
+                    unsafe { packet.closest_hit(part.as_ptr(), self.scene(), &mut arguments, hits, first) };
+                found |= bits << first;
             }
         }
         found
@@ -148,15 +212,7 @@ impl Accel {
     /// see [`Accel::closest_hit16`].
     #[inline]
     pub fn occluded16(&self, rays: &Rays16, valid: u16, coherent: bool) -> u16 {
-        let lanes = rays.lanes(valid);
-        if self.is_empty() || !lanes.any() {
-            return 0;
-        }
-        let mut packet = rays.to_embree(OCCLUDING);
-        let mut arguments = occluded_arguments(coherent);
-        // SAFETY: as for `rtcIntersect16` above.
-        unsafe { sys::rtcOccluded16(lanes.0.as_ptr(), self.scene(), &mut packet, &mut arguments) };
-        lanes.mask_where(|i| packet.tfar[i] == f32::NEG_INFINITY)
+        self.occluded_by(self.widest(), rays, valid, coherent)
     }
 
     /// [`Accel::occluded16`] by queries of `width` rays.
@@ -166,27 +222,57 @@ impl Accel {
             Width::One => crate::math::lanes_in(valid)
                 .filter(|&lane| self.occluded(&rays.get(lane)))
                 .fold(0, |occluded, lane| occluded | 1 << lane),
-            Width::Four => self.occluded_in::<sys::RTCRay4>(4, rays, valid, coherent),
-            Width::Eight => self.occluded_in::<sys::RTCRay8>(8, rays, valid, coherent),
-            Width::Sixteen => self.occluded16(rays, valid, coherent),
+            // SAFETY: the arguments have no filter.
+            _ => unsafe { self.occluded_with(width, rays, valid, &mut occluded_arguments(coherent)) },
         }
     }
 
+    /// The lanes that queries of `width` rays, four at least, find occluded.
+    ///
+    /// # Safety
+    /// Filters in the arguments fit their context, which outlives the call.
     #[inline]
-    fn occluded_in<P: EmbreePacket>(&self, width: usize, rays: &Rays16, valid: u16, coherent: bool) -> u16 {
+    pub(super) unsafe fn occluded_with(
+        &self,
+        width: Width,
+        rays: &Rays16,
+        valid: u16,
+        arguments: &mut sys::RTCOccludedArguments,
+    ) -> u16 {
+        // SAFETY: by contract.
+        unsafe {
+            match width {
+                Width::Sixteen => self.occluded_in::<sys::RTCRay16>(16, rays, valid, arguments),
+                Width::Eight => self.occluded_in::<sys::RTCRay8>(8, rays, valid, arguments),
+                _ => self.occluded_in::<sys::RTCRay4>(4, rays, valid, arguments),
+            }
+        }
+    }
+
+    /// The same for packets of `width` rays.
+    ///
+    /// # Safety
+    /// As for [`Accel::occluded_with`].
+    #[inline]
+    unsafe fn occluded_in<P: EmbreePacket>(
+        &self,
+        width: usize,
+        rays: &Rays16,
+        valid: u16,
+        arguments: &mut sys::RTCOccludedArguments,
+    ) -> u16 {
         if self.is_empty() {
             return 0;
         }
         let lanes = rays.lanes(valid);
-        let mut arguments = occluded_arguments(coherent);
         let mut occluded = 0;
         for first in (0..16).step_by(width) {
             let part = &lanes.0[first..first + width];
             if part.iter().any(|&lane| lane != 0) {
+                let packet = P::of(rays, first, OCCLUDING);
                 // SAFETY: the scene is committed; the mask is 64-byte aligned as a whole, and so its parts of
-                // 4 and 8 words as the packets of that width.
-                let found =
-                    unsafe { P::of(rays, first).occluded(part.as_ptr(), self.scene(), &mut arguments) };
+                // 4 and 8 words as the packets of that width; the rest by contract.
+                let found = unsafe { packet.occluded(part.as_ptr(), self.scene(), arguments) };
                 occluded |= found << first;
             }
         }

@@ -135,13 +135,18 @@ fn assert_real(soup: &Soup, ray: &Ray, occluder: Occluder) {
 fn only_valid_lanes_are_traced_and_written() {
     let soup = Soup::random(300, 7);
     let rays = soup.rays(256, 8);
-    let accel = soup.build(&Device::new(1).unwrap());
-    for (packet, valid) in packets(&rays).iter().zip([0, 1, 0x8000, 0x5555, 0xf00f, 0x7fff].iter().cycle()) {
-        for coherent in [false, true] {
-            let all = accel.occluded16(packet, u16::MAX, coherent);
-            assert_eq!(accel.occluded16(packet, *valid, coherent), all & valid);
+    // Widths without kernels are traced by single rays.
+    let widths = [Width::Four, Width::Eight, Width::Sixteen];
+    let masks = [0, 1, 0x8000, 0x5555, 0xf00f, 0x7fff];
+    for (accel, width) in devices().iter().flat_map(|device| widths.map(|width| (soup.build(device), width)))
+    {
+        for (packet, (valid, coherent)) in
+            packets(&rays).iter().zip(masks.iter().flat_map(|mask| [(mask, false), (mask, true)]).cycle())
+        {
+            let all = accel.occluded_by(width, packet, u16::MAX, coherent);
+            assert_eq!(accel.occluded_by(width, packet, *valid, coherent), all & valid);
             let mut found = Occluders16 { t: [-1.0; 16], ..Default::default() };
-            let lanes = accel.occluders16(packet, *valid, coherent, &mut found);
+            let lanes = accel.occluders_by(width, packet, *valid, coherent, &mut found);
             assert_eq!(lanes, all & valid);
             let mut hits = Hits16 { t: [-1.0; 16], ..Default::default() };
             assert_eq!(accel.closest_hit16(packet, *valid, coherent, &mut hits), all & valid);

@@ -16,7 +16,7 @@ const FUNCTIONS: &[&str] = &[
     "rtcSetNewGeometryBuffer",
     "rtcAttachGeometryByID",
     "rtcGetSceneBounds",
-    "rtcIntersect(1|16)",
+    "rtcIntersect(1|4|8|16)",
     "rtcOccluded(1|4|8|16)",
 ];
 /// Types that occur only in casts: the views of a packet inside a filter, and the flags.

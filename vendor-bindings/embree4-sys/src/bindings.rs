@@ -113,6 +113,27 @@ pub struct RTCRay4 {
     pub flags: [::core::ffi::c_uint; 4usize],
 }
 #[repr(C)]
+#[repr(align(16))]
+#[derive(Debug, Copy, Clone)]
+pub struct RTCHit4 {
+    pub Ng_x: [f32; 4usize],
+    pub Ng_y: [f32; 4usize],
+    pub Ng_z: [f32; 4usize],
+    pub u: [f32; 4usize],
+    pub v: [f32; 4usize],
+    pub primID: [::core::ffi::c_uint; 4usize],
+    pub geomID: [::core::ffi::c_uint; 4usize],
+    pub instID: [[::core::ffi::c_uint; 4usize]; 1usize],
+    pub instPrimID: [[::core::ffi::c_uint; 4usize]; 1usize],
+}
+#[repr(C)]
+#[repr(align(16))]
+#[derive(Debug, Copy, Clone)]
+pub struct RTCRayHit4 {
+    pub ray: RTCRay4,
+    pub hit: RTCHit4,
+}
+#[repr(C)]
 #[repr(align(32))]
 #[derive(Debug, Copy, Clone)]
 pub struct RTCRay8 {
@@ -128,6 +149,27 @@ pub struct RTCRay8 {
     pub mask: [::core::ffi::c_uint; 8usize],
     pub id: [::core::ffi::c_uint; 8usize],
     pub flags: [::core::ffi::c_uint; 8usize],
+}
+#[repr(C)]
+#[repr(align(32))]
+#[derive(Debug, Copy, Clone)]
+pub struct RTCHit8 {
+    pub Ng_x: [f32; 8usize],
+    pub Ng_y: [f32; 8usize],
+    pub Ng_z: [f32; 8usize],
+    pub u: [f32; 8usize],
+    pub v: [f32; 8usize],
+    pub primID: [::core::ffi::c_uint; 8usize],
+    pub geomID: [::core::ffi::c_uint; 8usize],
+    pub instID: [[::core::ffi::c_uint; 8usize]; 1usize],
+    pub instPrimID: [[::core::ffi::c_uint; 8usize]; 1usize],
+}
+#[repr(C)]
+#[repr(align(32))]
+#[derive(Debug, Copy, Clone)]
+pub struct RTCRayHit8 {
+    pub ray: RTCRay8,
+    pub hit: RTCHit8,
 }
 #[repr(C)]
 #[repr(align(64))]
@@ -498,6 +540,27 @@ const _: () = {
 };
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 const _: () = {
+    ["Size of RTCHit4"][::core::mem::size_of::<RTCHit4>() - 144usize];
+    ["Alignment of RTCHit4"][::core::mem::align_of::<RTCHit4>() - 16usize];
+    ["Offset of field: RTCHit4::Ng_x"][::core::mem::offset_of!(RTCHit4, Ng_x) - 0usize];
+    ["Offset of field: RTCHit4::Ng_y"][::core::mem::offset_of!(RTCHit4, Ng_y) - 16usize];
+    ["Offset of field: RTCHit4::Ng_z"][::core::mem::offset_of!(RTCHit4, Ng_z) - 32usize];
+    ["Offset of field: RTCHit4::u"][::core::mem::offset_of!(RTCHit4, u) - 48usize];
+    ["Offset of field: RTCHit4::v"][::core::mem::offset_of!(RTCHit4, v) - 64usize];
+    ["Offset of field: RTCHit4::primID"][::core::mem::offset_of!(RTCHit4, primID) - 80usize];
+    ["Offset of field: RTCHit4::geomID"][::core::mem::offset_of!(RTCHit4, geomID) - 96usize];
+    ["Offset of field: RTCHit4::instID"][::core::mem::offset_of!(RTCHit4, instID) - 112usize];
+    ["Offset of field: RTCHit4::instPrimID"][::core::mem::offset_of!(RTCHit4, instPrimID) - 128usize];
+};
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+const _: () = {
+    ["Size of RTCRayHit4"][::core::mem::size_of::<RTCRayHit4>() - 336usize];
+    ["Alignment of RTCRayHit4"][::core::mem::align_of::<RTCRayHit4>() - 16usize];
+    ["Offset of field: RTCRayHit4::ray"][::core::mem::offset_of!(RTCRayHit4, ray) - 0usize];
+    ["Offset of field: RTCRayHit4::hit"][::core::mem::offset_of!(RTCRayHit4, hit) - 192usize];
+};
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+const _: () = {
     ["Size of RTCRay8"][::core::mem::size_of::<RTCRay8>() - 384usize];
     ["Alignment of RTCRay8"][::core::mem::align_of::<RTCRay8>() - 32usize];
     ["Offset of field: RTCRay8::org_x"][::core::mem::offset_of!(RTCRay8, org_x) - 0usize];
@@ -512,6 +575,27 @@ const _: () = {
     ["Offset of field: RTCRay8::mask"][::core::mem::offset_of!(RTCRay8, mask) - 288usize];
     ["Offset of field: RTCRay8::id"][::core::mem::offset_of!(RTCRay8, id) - 320usize];
     ["Offset of field: RTCRay8::flags"][::core::mem::offset_of!(RTCRay8, flags) - 352usize];
+};
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+const _: () = {
+    ["Size of RTCHit8"][::core::mem::size_of::<RTCHit8>() - 288usize];
+    ["Alignment of RTCHit8"][::core::mem::align_of::<RTCHit8>() - 32usize];
+    ["Offset of field: RTCHit8::Ng_x"][::core::mem::offset_of!(RTCHit8, Ng_x) - 0usize];
+    ["Offset of field: RTCHit8::Ng_y"][::core::mem::offset_of!(RTCHit8, Ng_y) - 32usize];
+    ["Offset of field: RTCHit8::Ng_z"][::core::mem::offset_of!(RTCHit8, Ng_z) - 64usize];
+    ["Offset of field: RTCHit8::u"][::core::mem::offset_of!(RTCHit8, u) - 96usize];
+    ["Offset of field: RTCHit8::v"][::core::mem::offset_of!(RTCHit8, v) - 128usize];
+    ["Offset of field: RTCHit8::primID"][::core::mem::offset_of!(RTCHit8, primID) - 160usize];
+    ["Offset of field: RTCHit8::geomID"][::core::mem::offset_of!(RTCHit8, geomID) - 192usize];
+    ["Offset of field: RTCHit8::instID"][::core::mem::offset_of!(RTCHit8, instID) - 224usize];
+    ["Offset of field: RTCHit8::instPrimID"][::core::mem::offset_of!(RTCHit8, instPrimID) - 256usize];
+};
+#[allow(clippy::unnecessary_operation, clippy::identity_op)]
+const _: () = {
+    ["Size of RTCRayHit8"][::core::mem::size_of::<RTCRayHit8>() - 672usize];
+    ["Alignment of RTCRayHit8"][::core::mem::align_of::<RTCRayHit8>() - 32usize];
+    ["Offset of field: RTCRayHit8::ray"][::core::mem::offset_of!(RTCRayHit8, ray) - 0usize];
+    ["Offset of field: RTCRayHit8::hit"][::core::mem::offset_of!(RTCRayHit8, hit) - 384usize];
 };
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 const _: () = {
@@ -687,6 +771,18 @@ unsafe extern "C" {
     pub fn rtcSetSceneFlags(scene: RTCScene, flags: RTCSceneFlags);
     pub fn rtcGetSceneBounds(scene: RTCScene, bounds_o: *mut RTCBounds);
     pub fn rtcIntersect1(scene: RTCScene, rayhit: *mut RTCRayHit, args: *mut RTCIntersectArguments);
+    pub fn rtcIntersect4(
+        valid: *const ::core::ffi::c_int,
+        scene: RTCScene,
+        rayhit: *mut RTCRayHit4,
+        args: *mut RTCIntersectArguments,
+    );
+    pub fn rtcIntersect8(
+        valid: *const ::core::ffi::c_int,
+        scene: RTCScene,
+        rayhit: *mut RTCRayHit8,
+        args: *mut RTCIntersectArguments,
+    );
     pub fn rtcIntersect16(
         valid: *const ::core::ffi::c_int,
         scene: RTCScene,

@@ -22,6 +22,10 @@ layout! {
     RTCRay4: size 192, align 16, org_x at 0, tnear at 48, dir_x at 64, time at 112, tfar at 128, mask at 144, id at 160, flags at 176;
     RTCRay8: size 384, align 32, org_x at 0, tnear at 96, dir_x at 128, time at 224, tfar at 256, mask at 288, id at 320, flags at 352;
     RTCRay16: size 768, align 64, org_x at 0, tnear at 192, dir_x at 256, time at 448, tfar at 512, mask at 576, id at 640, flags at 704;
+    RTCHit4: size 144, align 16, Ng_x at 0, u at 48, v at 64, primID at 80, geomID at 96, instID at 112, instPrimID at 128;
+    RTCRayHit4: size 336, align 16, ray at 0, hit at 192;
+    RTCHit8: size 288, align 32, Ng_x at 0, u at 96, v at 128, primID at 160, geomID at 192, instID at 224, instPrimID at 256;
+    RTCRayHit8: size 672, align 32, ray at 0, hit at 384;
     RTCHit16: size 576, align 64, Ng_x at 0, u at 192, v at 256, primID at 320, geomID at 384, instID at 448, instPrimID at 512;
     RTCRayHit16: size 1344, align 64, ray at 0, hit at 768;
     RTCRayQueryContext: size 8, align 4, instID at 0, instPrimID at 4;
