@@ -2,6 +2,7 @@
 
 use super::{Finished, Sandbox, read};
 use lightsplat::film::{ExrFile, Image};
+use lightsplat::math::Rgb;
 
 /// Renders the room with few paths.
 fn noisy(sandbox: &Sandbox, name: &str, more: &[&str]) -> Finished {
@@ -140,5 +141,9 @@ fn quality_of_denoising_goes_with_the_work_or_is_as_asked() {
 
     noisy(&sandbox, "noisy.exr", &["--aov", "albedo,normal"]).expect(0);
     sandbox.run(&["denoise", "noisy.exr", "-o", "later.exr", "--quality", "fast"]).expect(0);
-    assert_eq!(color(&sandbox, "later.exr"), fast);
+    // But for guides of sixteen bits that paths find on their way.
+    let later = color(&sandbox, "later.exr");
+    let off = |(a, b): (&Rgb, &Rgb)| (*a - *b).abs().max_element() / (0.01 + b.max_element());
+    let error = later.pixels.iter().zip(&fast.pixels).map(off).fold(0.0, f32::max);
+    assert!(error < 1e-4, "{error}");
 }
