@@ -138,18 +138,21 @@ macro_rules! packet {
                 };
                 // SAFETY: by contract; the packet has its type's alignment, which Embree requires.
                 unsafe { sys::$intersect(lanes, scene, &mut both, arguments) };
-                let mut found = 0;
+                let mut bits = [0u32; $width];
+                for (i, bit) in bits.iter_mut().enumerate() {
+                    *bit = if both.hit.geomID[i] == sys::RTC_INVALID_GEOMETRY_ID { 0 } else { 1 << i };
+                }
+                let found = bits.into_iter().fold(0, |mask, bit| mask | bit);
                 for i in 0..$width {
-                    if both.hit.geomID[i] != sys::RTC_INVALID_GEOMETRY_ID {
+                    if (found >> i) & 1 != 0 {
                         hits.t[first + i] = both.ray.tfar[i];
                         hits.u[first + i] = both.hit.u[i];
                         hits.v[first + i] = both.hit.v[i];
                         hits.geometry[first + i] = both.hit.geomID[i];
                         hits.primitive[first + i] = both.hit.primID[i];
-                        found |= 1 << i;
                     }
                 }
-                found
+                found as u16
             }
         }
     };
