@@ -83,8 +83,7 @@ impl<'w> Engine<'w> {
     /// Returns the lanes of `valid` that are occluded, of rays towards one light.
     #[inline]
     pub fn occluded16(&self, rays: &Rays16, valid: u16) -> u16 {
-        let accel = &self.world.accel;
-        let occluded = accel.occluded_by(accel.widest(), rays, valid, self.coherent);
+        let occluded = self.world.accel.occluded16(rays, valid, self.coherent);
         self.counters.packets.count(valid.count_ones(), occluded.count_ones(), 0);
         occluded
     }
