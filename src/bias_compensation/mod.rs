@@ -13,17 +13,19 @@
 //! within a factor of 2, see [`crate::vpl::size_of_area`]); rays that hit the light at r find max(0, 1 -
 //! r²/A) of its radiance.
 //!
-//! Deviations: light of the second kind is not in the paper, which limits no direct light. b comes from the
-//! mean intensity of the indirect virtual lights around the point, or where all light that one gives is limited, around
-//! the surface met ([`intensities`]), so one that is much brighter than those may give more than the limit. Every point
-//! is compensated, also where no light of its cut happens to be clamped: the two parts complement each other on average
-//! only. All points of a picture use the same directions, in frames of their own, so that their errors are similar and
-//! no noise is visible between them; other seeds use others. Surfaces that rays meet reflect as if they were diffuse,
-//! rough metals too. Where the path length is limited, paths over surfaces that rays hit may have an edge more.
+//! Deviations: light of the second kind is not in the paper, which limits no direct light. b comes from the mean
+//! intensity of the indirect virtual lights around the point, or where all light that one gives is limited, around
+//! the surface met ([`intensities`]), so one that is much brighter than those may give more than the limit. Every
+//! point is compensated, also where no light of its cut happens to be clamped: the two parts complement each other on
+//! average only. All points of a picture use the same directions, in frames of their own, so that their errors are
+//! similar and no noise is visible between them; other seeds use others. Surfaces that rays meet reflect as virtual
+//! lights do: rough metals by their lobes ([`lobes`]), all else as if it were diffuse. Where the path length is
+//! limited, paths over surfaces that rays hit may have an edge more.
 //!
 //! Units: b in 1/m².
 
 pub mod intensities;
+pub mod lobes;
 pub mod points;
 pub mod short_rays;
 

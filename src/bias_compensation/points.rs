@@ -7,8 +7,7 @@
 //! a virtual light gives, not its geometry term: the same for lights of the mean intensity around the surface met.
 
 use super::short_rays::{self, ClampedPoint, Limit, NearSurface};
-use super::{Compensation, choose_evenly};
-use crate::light_tree::LightTrees;
+use super::{Compensation, choose_evenly, lobes};
 use crate::lightcut::{
     CutCounts, CutSettings, PacketCut, PacketLightcut, PacketSum, Receiver, ReceiverPacket, frozen_luminance,
 };
@@ -153,10 +152,12 @@ impl Compensator {
         }
         let met = |i: u32| &self.met[i as usize].1;
         let mut places = Vec::with_capacity(LANES);
+        let mut of_places = Vec::with_capacity(LANES);
         choose_evenly(order.iter().map(|&i| luminance(met(i).weight)), total, LANES, |i, _| {
             let near = met(order[i]);
             let (position, geometric_normal) = (near.surface.position, near.surface.normal);
             places.push((SurfacePoint { position, normal: near.normal, geometric_normal }, Rgb::ZERO));
+            of_places.push(*near);
         });
         let receiver = |(p, _): &(SurfacePoint, Rgb)| {
             Receiver::irradiance(p.position, p.geometric_normal, &Frame::from_normal(p.normal))
@@ -166,8 +167,8 @@ impl Compensator {
         let settings =
             CutSettings { epsilon: EPSILON, max_cut: MAX_CUT, clamp: Some(CLAMP), ..CutSettings::default() };
         let cut = self.packet.gather(&c.transfer, c.world, &self.receivers, &settings);
-        for (lane, (_, irradiance)) in places.iter_mut().enumerate() {
-            let found = limited(c.transfer.trees, &cut, lane, baseline);
+        for (lane, ((_, irradiance), near)) in places.iter_mut().zip(&of_places).enumerate() {
+            let found = limited(c, &cut, near, lane, baseline);
             *irradiance = if found.is_finite() { found } else { Rgb::ZERO };
         }
         places
@@ -214,10 +215,10 @@ impl NearLight {
 
 /// Irradiance of a lane by a `cut`, of which no indirect cluster may give more than ε of the light that it
 /// is added to: so coarse a cut leaves clusters whose representative happens to be next to the point.
-fn limited(trees: &LightTrees, cut: &PacketCut, lane: usize, baseline: f32) -> Rgb {
+fn limited(c: &Compensation, cut: &PacketCut, near: &NearSurface, lane: usize, baseline: f32) -> Rgb {
     let sum = |limit: f32| {
-        let given = cut.clusters.iter().map(|cluster| {
-            let node = &trees.nodes[cluster.node as usize];
+        lobes::irradiance(c, near, cut, |cluster| {
+            let node = &c.transfer.trees.nodes[cluster.node as usize];
             let given = node.intensity * cluster.responses.get(lane);
             let most = match node.origin() {
                 Origin::Direct => f32::INFINITY,
@@ -226,8 +227,7 @@ fn limited(trees: &LightTrees, cut: &PacketCut, lane: usize, baseline: f32) -> R
             };
             let y = luminance(given);
             if y > most { given * (most / y) } else { given }
-        });
-        given.sum::<Rgb>()
+        })
     };
     let mut irradiance = sum(f32::INFINITY);
     frozen_luminance(luminance(irradiance) + baseline, MAX_STEPS, |total| {
@@ -251,6 +251,7 @@ fn mean_irradiance(receivers: &ReceiverPacket, radiance: &[Rgb; LANES]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bias_compensation::lobes::Lack;
     use crate::embree::Ray;
     use crate::scene::Camera;
     use crate::test_scenes::*;
@@ -265,8 +266,10 @@ mod tests {
         let ray = Ray { origin, t_near: 0.0, direction: -Vec3::Z, t_far: f32::INFINITY };
         let surface = world(scene).intersect(&ray).expect("the sheet");
         let place = |normal| SurfacePoint { position: surface.position, normal, geometric_normal: Vec3::Z };
+        let lack = Lack { out: Vec3::Z, kept: 0.0, limit: Limit::Irradiance(1.0), by_lobes: false };
         let seen = |normal| NearSurface {
             surface,
+            lack,
             distance: 1.0,
             cos: 1.0,
             normal,

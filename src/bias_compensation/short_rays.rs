@@ -1,6 +1,7 @@
 //! Short rays from up to sixteen points at once, and the surfaces that they meet.
 
 use super::Compensation;
+use super::lobes::Lack;
 use crate::embree::{Hit, Hits16, Ray, Rays16};
 use crate::math::{Frame, LANES, Rgb, lanes_in, luminance};
 use crate::sampling::{cosine_hemisphere, owen_sobol_2d};
@@ -47,8 +48,10 @@ pub struct NearSurface {
     pub cos: f32,
     /// Unit shading normal on the side of the ray.
     pub normal: Vec3,
-    /// Radiance back along the ray for an irradiance of 1, times max(0, 1 - b/G).
+    /// Radiance back along the ray for an irradiance of 1, times max(0, 1 - b/G), or more where lobes radiate.
     pub weight: Rgb,
+    /// How it gives that light.
+    pub lack: Lack,
     /// Radiance emitted back along the ray, times max(0, 1 - r²/A).
     pub emitted: Rgb,
 }
@@ -68,7 +71,7 @@ pub fn trace(
             Limit::Geometry(bound) => bound,
             Limit::Irradiance(limit) => c.bound(p.point.position, limit) / MOST_AROUND,
         };
-        let clamped = if bound > 0.0 && bound.is_finite() { bound.recip() } else { 0.0 };
+        let clamped = if bound > 0.0 && bound.is_finite() { c.most_of_lobes() / bound } else { 0.0 };
         clamped.max(if p.direct { c.max_near_sq } else { 0.0 })
     };
     let valid = (0..points.len()).filter(|&l| reach_sq(&points[l]) > 0.0).fold(0u16, |mask, l| mask | 1 << l);
@@ -121,16 +124,17 @@ fn weighed(
     let dist_sq = distance * distance;
     let lit_sq = if point.direct { c.near_sq[hit.geometry as usize] } else { 0.0 };
     // G is no more than this.
-    if cos <= bound * dist_sq && lit_sq <= dist_sq {
+    if c.most_of_lobes() * cos <= bound * dist_sq && lit_sq <= dist_sq {
         return None;
     }
     let world = c.world;
     let surface = world.surface(hit);
-    let out = surface.frame.to_local(-direction);
     // Virtual lights radiate by the cosine to the geometric normal.
     let geometry = cos * surface.normal.dot(direction).abs() / dist_sq;
+    let lack = Lack { out: -direction, kept: bound / geometry, limit: point.limit, by_lobes: false };
     let mut near = NearSurface {
         surface,
+        lack,
         distance,
         cos,
         normal: surface.frame.normal,
@@ -140,8 +144,10 @@ fn weighed(
     if surface.frame.normal.dot(direction) > 0.0 {
         near.normal = -near.normal;
     }
-    if geometry > bound {
-        near.weight = world.bsdf(&surface).diffuse_albedo(out) * ((1.0 - bound / geometry) * FRAC_1_PI);
+    if c.most_of_lobes() * geometry > bound {
+        let (bsdf, out) = (world.bsdf(&surface), surface.frame.to_local(-direction));
+        near.lack.by_lobes = bsdf.reflected_lobes(out).next().is_some();
+        near.weight = bsdf.diffuse_albedo(out) * (near.lack.weight() * FRAC_1_PI);
     }
     if lit_sq > dist_sq {
         near.emitted = world.emitted(&surface, -direction) * (1.0 - dist_sq / lit_sq);

@@ -9,6 +9,7 @@
 
 use super::gather::GatheredLayer;
 use super::source::{Candidate, LightcutSource};
+use crate::bias_compensation::lobes::{self, BRIGHTER};
 use crate::bias_compensation::short_rays::{self, ClampedPoint, Limit, NearSurface};
 use crate::bias_compensation::{Compensation, choose_evenly};
 use crate::lightcut::{CutSettings, PacketLightcut, Receiver, ReceiverPacket, group_compact};
@@ -30,10 +31,6 @@ const EPSILON: f32 = 0.3;
 
 /// Divisor of a record's maximum number of clusters that gives the maximum in those lightcuts.
 const CUT_FRACTION: usize = 16;
-
-/// Luminance that a virtual light may give over the limit where geometry terms are limited: one much brighter than
-/// those around would leave a spot.
-const BRIGHTER: f32 = 2.0;
 
 /// Limits of the contributions of indirect virtual lights to the points of a packet.
 #[derive(Clone, Copy, Debug)]
@@ -134,7 +131,7 @@ pub fn add(
     }
     let place = |lookup: &Lookup| (lookup.near.surface.position, lookup.near.normal);
     for group in group_compact(lookups, world.diagonal, place) {
-        let irradiance = cutter.irradiance(source, &group);
+        let irradiance = cutter.irradiance(c, source, &group);
         for (lookup, irradiance) in group.iter().zip(irradiance) {
             let found = lookup.factor * irradiance;
             if found.is_finite() {
@@ -161,7 +158,7 @@ fn choose(near: &[NearSurface], record: usize, lookups: &mut Vec<Lookup>) {
 
 impl Cutter<'_> {
     /// Irradiance at points met, on the side of the records.
-    fn irradiance(&mut self, source: &LightcutSource, group: &[Lookup]) -> [Rgb; LANES] {
+    fn irradiance(&mut self, c: &Compensation, source: &LightcutSource, group: &[Lookup]) -> [Rgb; LANES] {
         let settings = CutSettings {
             epsilon: EPSILON,
             max_cut: source.settings.cut.max_cut.div_ceil(CUT_FRACTION),
@@ -172,7 +169,14 @@ impl Cutter<'_> {
             Receiver::irradiance(s.position, s.normal, &Frame::from_normal(lookup.near.normal))
         }));
         let (transfer, world) = (&source.context.transfer, source.context.world);
-        self.cut.gather(transfer, world, self.points, &settings).sum.radiance
+        let cut = self.cut.gather(transfer, world, self.points, &settings);
+        let mut irradiance = cut.sum.radiance;
+        for (lane, Lookup { near, .. }) in group.iter().enumerate().filter(|(_, l)| l.near.lack.by_lobes) {
+            irradiance[lane] = lobes::irradiance(c, near, &cut, |cluster| {
+                transfer.trees.nodes[cluster.node as usize].intensity * cluster.responses.get(lane)
+            });
+        }
+        irradiance
     }
 }
 
