@@ -10,7 +10,7 @@ use super::{ChainCounts, EyeSettings};
 use crate::caustics::Caustics;
 use crate::film::Image;
 use crate::math::{Rgb, luminance};
-use crate::parallel::ShortRuns;
+use crate::parallel::{ShortRuns, Workspaces};
 use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, ScatteredEdges, Start, start};
 use crate::progress::Control;
 use crate::stats::Ways;
@@ -115,8 +115,9 @@ impl LightBySpecularLobes {
             };
             (found, chains, nonfinite)
         };
-        let tiles = (0..window.tile_count(TILE)).into_par_iter().in_short_runs();
-        let tiles: Vec<_> = tiles.map_init(Batch::default, trace).collect();
+        let batches = Workspaces::new(Batch::default);
+        let tiles = (0..window.tile_count(TILE)).into_par_iter().one_by_one();
+        let tiles: Vec<_> = tiles.map(|index| batches.with(|batch| trace(batch, index))).collect();
         let mut image = Image::new(window.width, window.height);
         for (found, chains, nonfinite) in tiles {
             found.into_iter().for_each(|(pixel, radiance)| image.pixels[pixel] = radiance);

@@ -19,7 +19,7 @@ use super::{ChainCounts, ExtraSamples, EyePass, EyeSettings, Settled, VisibleSur
 use crate::caustics::Caustics;
 use crate::light::Learned;
 use crate::math::{Rgb, luminance};
-use crate::parallel::ShortRuns;
+use crate::parallel::{ShortRuns, Workspaces};
 use crate::paths::{Batch, Counts, LightSamples, Look, ScatteredEdges, Start, start};
 use crate::progress::Control;
 use crate::sampling::hash;
@@ -128,31 +128,20 @@ impl<'w> EyePass<'w> {
         let learned = found.as_ref().map(|(learned, _)| learned);
         let effort = tracer.effort(learned);
         tracer.light_samples.count = effort.as_ref().map_or(1, |effort| effort.light_samples);
-        let tiles: Vec<Tile> = (0..view.window.tile_count(TILE))
-            .into_par_iter()
-            .in_short_runs()
-            .map_init(
-                || tracer.workspace_with_guides(learned),
-                |work, index| {
-                    if control.is_cancelled() {
-                        return None;
-                    }
-                    let found = tracer.first_samples(index, work);
-                    control.advance(1);
-                    Some(found)
-                },
-            )
-            .flatten()
-            .collect();
+        let works = Workspaces::new(|| tracer.workspace_with_guides(learned));
+        let first = |index| {
+            if control.is_cancelled() {
+                return None;
+            }
+            let found = works.with(|work| tracer.first_samples(index, work));
+            control.advance(1);
+            Some(found)
+        };
+        let tiles = (0..view.window.tile_count(TILE)).into_par_iter().one_by_one();
+        let tiles: Vec<Tile> = tiles.map(first).flatten().collect();
         let needs = effort.as_ref().and_then(|effort| tracer.needs(effort, &tiles, learned));
-        let tiles = tiles
-            .into_par_iter()
-            .in_short_runs()
-            .map_init(
-                || tracer.workspace_with_guides(learned),
-                |work, tile| tracer.more_samples(tile, needs.as_ref(), work),
-            )
-            .collect();
+        let more = |tile| works.with(|work| tracer.more_samples(tile, needs.as_ref(), work));
+        let tiles = tiles.into_par_iter().one_by_one().map(more).collect();
         let mut pass = EyePass::gather(&view.window, tiles, 1);
         pass.chains.rays += counts.rays;
         pass.chains.shadow_rays += counts.shadow_rays;

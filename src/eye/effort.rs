@@ -14,7 +14,7 @@ use super::drawn::{Found, Tracer};
 use super::{ChainCounts, EyeSettings};
 use crate::light::Learned;
 use crate::math::{Rgb, luminance};
-use crate::parallel::ShortRuns;
+use crate::parallel::{ShortRuns, Workspaces};
 use crate::paths::LightSamples;
 use rayon::prelude::*;
 
@@ -82,28 +82,23 @@ impl<'w> Tracer<'_, 'w> {
         learned: Option<&Learned>,
     ) -> (Means, Vec<ChainCounts>) {
         let spp = self.settings.spp;
-        groups
-            .into_par_iter()
-            .in_short_runs()
-            .map_init(
-                || self.workspace(learned),
-                |work, pixels| {
-                    let mut sums = vec![[Rgb::ZERO; 2]; pixels.len()];
-                    if self.control.is_cancelled() {
-                        return (vec![[0.0; 2]; pixels.len()], ChainCounts::default());
-                    }
-                    let each = |found: Found<'_, 'w>, _: &mut Vec<_>| {
-                        let [sum, half] = &mut sums[found.index];
-                        *sum += found.sum;
-                        *half += found.half;
-                    };
-                    let chains = self.sample(&pixels, 0..spp, seed, work, each);
-                    let counts = [spp, (spp / 2).max(1)].map(|count| count as f32);
-                    let mean = |sums: [Rgb; 2]| [0, 1].map(|i| luminance(sums[i] / counts[i]));
-                    (sums.into_iter().map(mean).collect(), chains)
-                },
-            )
-            .unzip()
+        let works = Workspaces::new(|| self.workspace(learned));
+        let look = |pixels: Vec<[u32; 2]>| {
+            let mut sums = vec![[Rgb::ZERO; 2]; pixels.len()];
+            if self.control.is_cancelled() {
+                return (vec![[0.0; 2]; pixels.len()], ChainCounts::default());
+            }
+            let each = |found: Found<'_, 'w>, _: &mut Vec<_>| {
+                let [sum, half] = &mut sums[found.index];
+                *sum += found.sum;
+                *half += found.half;
+            };
+            let chains = works.with(|work| self.sample(&pixels, 0..spp, seed, work, each));
+            let counts = [spp, (spp / 2).max(1)].map(|count| count as f32);
+            let mean = |sums: [Rgb; 2]| [0, 1].map(|i| luminance(sums[i] / counts[i]));
+            (sums.into_iter().map(mean).collect(), chains)
+        };
+        groups.into_par_iter().one_by_one().map(look).unzip()
     }
 }
 

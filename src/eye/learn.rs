@@ -2,11 +2,11 @@
 //! that a crop learns what the whole picture does.
 
 use super::ChainCounts;
-use super::drawn::Tracer;
+use super::drawn::{Found, Tracer};
 use crate::embree::Rays16;
 use crate::light::{EnvironmentLight, LampLooks, Learned, LearnedSky, Looks, Receivers16};
 use crate::math::{LANES, Vec2x16, Vec3x16, lanes_in};
-use crate::parallel::ShortRuns;
+use crate::parallel::{ShortRuns, Workspaces};
 use crate::sampling::{Sampler, hash, owen_sobol_2d};
 use crate::shadow;
 use glam::Vec3;
@@ -49,39 +49,36 @@ impl Tracer<'_, '_> {
         if environment.is_none() && !lamps {
             return None;
         }
-        let found: Vec<(Looks, LampLooks, ChainCounts)> = places(self.view.window.film, fewer)
-            .par_chunks(CHUNK)
-            .in_short_runs()
-            .enumerate()
-            .map_init(
-                || self.workspace(None),
-                |work, (chunk, pixels)| {
-                    let (mut sky, mut seen) = (Looks::default(), LampLooks::default());
-                    if self.control.is_cancelled() {
-                        return (sky, seen, ChainCounts::default());
+        let works = Workspaces::new(|| self.workspace(None));
+        let look = |(chunk, pixels): (usize, &[[u32; 2]])| {
+            let (mut sky, mut seen) = (Looks::default(), LampLooks::default());
+            if self.control.is_cancelled() {
+                return (sky, seen, ChainCounts::default());
+            }
+            let mut points = 0;
+            let each = |found: Found<'_, '_>, _: &mut Vec<_>| {
+                for end in found.ends() {
+                    let number = (chunk * CHUNK + points) as u32;
+                    points += 1;
+                    let x = end.geometry.position;
+                    let normals = [end.geometry.normal, end.surface.geometric_normal];
+                    if let Some(environment) = environment {
+                        sky.points.push(x);
+                        self.look_at_sky(environment, x, normals, (number, seed), &mut sky.rays);
                     }
-                    let mut points = 0;
-                    let mut chains = self.sample(pixels, 0..1, seed, work, |found, _| {
-                        for end in found.ends() {
-                            let number = (chunk * CHUNK + points) as u32;
-                            points += 1;
-                            let x = end.geometry.position;
-                            let normals = [end.geometry.normal, end.surface.geometric_normal];
-                            if let Some(environment) = environment {
-                                sky.points.push(x);
-                                self.look_at_sky(environment, x, normals, (number, seed), &mut sky.rays);
-                            }
-                            if lamps {
-                                seen.points.push(x);
-                                self.look_at_lamps(x, normals, (number, seed), &mut seen.rays);
-                            }
-                        }
-                    });
-                    chains.shadow_rays += (sky.rays.len() + seen.rays.iter().flatten().count()) as u64;
-                    (sky, seen, chains)
-                },
-            )
-            .collect();
+                    if lamps {
+                        seen.points.push(x);
+                        self.look_at_lamps(x, normals, (number, seed), &mut seen.rays);
+                    }
+                }
+            };
+            let mut chains = works.with(|work| self.sample(pixels, 0..1, seed, work, each));
+            chains.shadow_rays += (sky.rays.len() + seen.rays.iter().flatten().count()) as u64;
+            (sky, seen, chains)
+        };
+        let places = places(self.view.window.film, fewer);
+        let found: Vec<(Looks, LampLooks, ChainCounts)> =
+            places.par_chunks(CHUNK).one_by_one().enumerate().map(look).collect();
         let (mut all, mut seen, mut chains) =
             (Looks::default(), LampLooks::default(), ChainCounts::default());
         for (mut looks, mut lamp_looks, traced) in found {

@@ -20,7 +20,7 @@ use crate::lightcut::{
     CutCounts, CutSettings, PacketCluster, PacketCut, PacketLightcut, ReceiverPacket, Transfer, group_compact,
 };
 use crate::math::{LUMINANCE, Rgb, lanes_in, luminance};
-use crate::parallel::ShortRuns;
+use crate::parallel::{ShortRuns, Workspaces};
 use crate::shadow::Engine;
 use crate::vpl::{DirectIndirect, Origin};
 use glam::{Mat3, Vec3};
@@ -32,12 +32,10 @@ impl RecordSource for LightcutSource<'_> {
     }
 
     fn records(&self, candidates: &[Candidate]) -> (Vec<NewRecord>, CutCounts) {
-        let done: Vec<(Vec<NewRecord>, CutCounts)> = self
-            .groups(candidates)
-            .par_iter()
-            .one_by_one()
-            .map_init(|| Workspace::new(self), |work, group| work.compute(self, group))
-            .collect();
+        let works = Workspaces::new(|| Workspace::new(self));
+        let compute = |group: &Vec<Candidate>| works.with(|work| work.compute(self, group));
+        let done: Vec<(Vec<NewRecord>, CutCounts)> =
+            self.groups(candidates).par_iter().one_by_one().map(compute).collect();
         let mut counts = CutCounts::default();
         let mut records = Vec::with_capacity(candidates.len());
         for (new, used) in done {

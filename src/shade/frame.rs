@@ -3,7 +3,7 @@
 use super::{ShadeSettings, Shader, ShadingContext, ShadingCounts, ShadingTask};
 use crate::eye::ShadingPoints;
 use crate::math::Rgb;
-use crate::parallel::ShortRuns;
+use crate::parallel::{ShortRuns, Workspaces};
 use crate::progress::Control;
 use rayon::prelude::*;
 
@@ -27,22 +27,20 @@ pub fn shade<'w>(
     settings: &ShadeSettings,
     control: &Control,
 ) -> Shading {
-    let done: Vec<(ShadedPatch, ShadingCounts)> = patches
-        .par_iter()
-        .one_by_one()
-        .map_init(
-            || Shader::new(context, settings),
-            |shader, patch| {
-                let mut radiance = Vec::with_capacity(patch.len());
-                if !control.is_cancelled() {
-                    shader.begin_chunk();
-                    shader.shade(points, patch, |task, shaded| radiance.push((task, shaded.radiance)));
-                    control.advance(patch.len() as u64);
-                }
-                (radiance, shader.take_counts())
-            },
-        )
-        .collect();
+    let shaders = Workspaces::new(|| Shader::new(context, settings));
+    let shade = |patch: &Vec<ShadingTask>| {
+        let mut radiance = Vec::with_capacity(patch.len());
+        if control.is_cancelled() {
+            return (radiance, ShadingCounts::default());
+        }
+        shaders.with(|shader| {
+            shader.begin_chunk();
+            shader.shade(points, patch, |task, shaded| radiance.push((task, shaded.radiance)));
+            control.advance(patch.len() as u64);
+            (radiance, shader.take_counts())
+        })
+    };
+    let done: Vec<(ShadedPatch, ShadingCounts)> = patches.par_iter().one_by_one().map(shade).collect();
     let mut all = Shading { patches: Vec::with_capacity(done.len()), ..Shading::default() };
     for (patch, counts) in done {
         all.patches.push(patch);

@@ -9,7 +9,7 @@ use crate::method::ladder::CUTS;
 use crate::method::lights::{LightStore, LightsWanted};
 use crate::method::sampling::method_settings;
 use crate::method::{Move, Output, Renderer, Sampled, counts};
-use crate::parallel::ShortRuns;
+use crate::parallel::{ShortRuns, Workspaces};
 use crate::progress::Control;
 use crate::setting::{COMPENSATION, SHARE};
 use crate::shade::{ShadeSettings, Shader, ShadingCounts};
@@ -64,17 +64,17 @@ impl Renderer for Settings {
 
         let corners: Vec<[u32; 2]> = view.window.film_squares(TILE).collect();
         control.begin(Stage::Render, corners.len() as u64);
-        let workspace = || (Shader::new(&context, &shading), VisibleSurfaces::default());
+        let works = Workspaces::new(|| (Shader::new(&context, &shading), VisibleSurfaces::default()));
         let done: Vec<Option<Tile>> = stats.time(Stage::Render, || {
-            let shade = corners.par_iter().in_short_runs().map_init(workspace, |(shader, seen), &corner| {
+            let shade = |&corner: &[u32; 2]| {
                 if control.is_cancelled() {
                     return None;
                 }
-                let tile = tiles.shade(corner, shader, seen)?;
+                let tile = works.with(|(shader, seen)| tiles.shade(corner, shader, seen))?;
                 control.advance(1);
                 Some(tile)
-            });
-            shade.collect()
+            };
+            corners.par_iter().one_by_one().map(shade).collect()
         });
 
         let mut color = Image::new(view.window.width, view.window.height);

@@ -8,7 +8,7 @@ use crate::math::Rgb;
 use crate::method::ladder::PATHS;
 use crate::method::sampling::method_settings;
 use crate::method::{DrawnPixels, LightStore, Move, Output, Renderer};
-use crate::parallel::ShortRuns;
+use crate::parallel::{ShortRuns, Workspaces};
 use crate::paths::{Batch, Counts, Look, Start, start};
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
@@ -99,12 +99,14 @@ impl Settings {
         let goes_on = world.scene.path_limit(self.max_depth) > 1;
         let finds_guides = self.guides && goes_on && tiles.iter().all(|tile| tile.samples == 0);
         control.begin(Stage::Render, passes as u64 * tiles.len() as u64);
+        let batches = Workspaces::new(Batch::default);
         stats.time(Stage::Render, || {
             for pass in 0..passes {
                 let end = ((pass + 1) * PASS).min(self.spp);
                 tiles.par_iter_mut().one_by_one().enumerate().for_each(|(i, tile)| {
                     if !control.is_cancelled() {
-                        tile.render(world, view, &Settings { guides: finds_guides, ..*self }, i, end);
+                        let settings = Settings { guides: finds_guides, ..*self };
+                        batches.with(|batch| tile.render((world, view), &settings, (i, end), batch));
                         control.advance(1);
                     }
                 });
@@ -190,8 +192,14 @@ impl Tile {
         Some(Tile { pixels, samples, ..Tile::default() })
     }
 
-    /// Takes the samples up to `end` of every pixel.
-    fn render(&mut self, world: &World, view: &View, settings: &Settings, index: usize, end: u32) {
+    /// Takes the samples up to `end` of every pixel of the tile of this index.
+    fn render(
+        &mut self,
+        (world, view): (&World, &View),
+        settings: &Settings,
+        (index, end): (usize, u32),
+        batch: &mut Batch,
+    ) {
         let max_depth = world.scene.path_limit(settings.max_depth);
         let begin = self.samples;
         if begin >= end {
@@ -203,7 +211,6 @@ impl Tile {
         if self.pixels.is_empty() {
             self.pixels = vec![Pixel::default(); film_pixels.len()];
         }
-        let mut batch = Batch::default();
         let mut paths = FullPaths::default();
         if settings.guides {
             self.guides.resize(film_pixels.len(), Guide::default());
@@ -214,7 +221,7 @@ impl Tile {
             let starts = film_pixels.iter().flat_map(|&pixel| {
                 samples.clone().map(move |sample| Start { pixel, sample, seed: settings.seed })
             });
-            start(&mut batch, starts, (world, view), (settings.look, settings.spp));
+            start(batch, starts, (world, view), (settings.look, settings.spp));
             if let Some(first) = &mut paths.first_surfaces {
                 first.begin(film_pixels.len(), samples.len() as u32);
             }
