@@ -58,7 +58,7 @@ pub fn build(mut primitives: Vec<Primitive>, c_sq: f32, control: &Control) -> To
 }
 
 fn sort_along_curve(primitives: &mut [Primitive], c_sq: f32) {
-    let bounds = PrimitiveBounds::around(primitives);
+    let bounds = PrimitiveBounds::around(primitives.iter());
     let half_c = 0.5 * c_sq.sqrt();
     let weight = |d: usize| if d < 3 { 1.0 } else { half_c };
     let widest = (0..DIMENSIONS).map(|d| bounds.extent(d) * weight(d)).fold(0.0, f32::max);

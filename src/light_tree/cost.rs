@@ -72,7 +72,7 @@ impl PrimitiveBounds {
     }
 
     /// Box around many primitives.
-    pub fn around(primitives: &[Primitive]) -> PrimitiveBounds {
+    pub fn around<'a>(primitives: impl Iterator<Item = &'a Primitive>) -> PrimitiveBounds {
         let mut b = PrimitiveBounds::EMPTY;
         for r in primitives {
             b.add(&PrimitiveBounds::of(r));
@@ -132,14 +132,14 @@ mod tests {
     fn a_primitive_keeps_its_index_and_bounds_ignore_its_bits() {
         let r = oriented(Vec3::ONE, Vec3::Y);
         assert_eq!(r.index(), 7);
-        let b = PrimitiveBounds::around(&[r, oriented(Vec3::ZERO, Vec3::X)]);
+        let b = PrimitiveBounds::around([r, oriented(Vec3::ZERO, Vec3::X)].iter());
         assert_eq!((b.extent(0), b.extent(3), b.extent(4)), (1.0, 1.0, 1.0));
     }
 
     #[test]
     fn cost_grows_with_size_angle_and_intensity() {
         let cost = |p: Vec3, n: Vec3, intensity| {
-            let b = PrimitiveBounds::around(&[oriented(Vec3::ZERO, Vec3::Z), oriented(p, n)]);
+            let b = PrimitiveBounds::around([oriented(Vec3::ZERO, Vec3::Z), oriented(p, n)].iter());
             cluster_cost(&b, intensity, 4.0)
         };
         assert_eq!(cost(Vec3::ZERO, Vec3::Z, 1.0), 0.0);

@@ -3,12 +3,12 @@
 //! Paper: the cost is that of Walter et al. 2005 (see `cost`); binning as in Wald, *On fast Construction of
 //! SAH-based Bounding Volume Hierarchies*, 2007, over six dimensions in place of three.
 //! Deviations: clusters of at most [`SORTED`] are sorted along their widest dimension and split at the best
-//! of all places, which is cheaper than clearing bins and at least as good.
+//! of all places, which is cheaper than clearing bins and at least as good. Splits of large clusters are judged by a
+//! part of their members.
 
 use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cost};
 use super::topology::Topology;
 use crate::progress::Control;
-use rayon::prelude::*;
 
 /// Number of bins by dimension.
 const BINS: usize = 16;
@@ -18,8 +18,8 @@ const NARROW: f32 = 0.1;
 const SORTED: usize = 16;
 /// Size above which both halves are built in parallel.
 const PARALLEL: usize = 4096;
-/// Number of primitives binned by one task; fixed, so that sums do not depend on the number of threads.
-const CHUNK: usize = 1 << 15;
+/// Maximum number of primitives by which a split is judged, evenly spaced among all as they come.
+const JUDGED: usize = 4096;
 
 /// Bins along one dimension. Bounds fill a cache line each, so intensities stand apart.
 #[derive(Clone)]
@@ -95,7 +95,7 @@ fn split_all(primitives: &mut [Primitive], left_sizes: &mut [u32], c_sq: f32, co
 
 /// Sorts a small cluster along its widest dimension and returns the size of the cheapest left part.
 fn split_sorted(primitives: &mut [Primitive], c_sq: f32) -> usize {
-    let bounds = PrimitiveBounds::around(primitives);
+    let bounds = PrimitiveBounds::around(primitives.iter());
     let half_c = 0.5 * c_sq.sqrt();
     let width = |lane: usize| bounds.width(lane, half_c);
     let widest = (1..DIMENSIONS).fold(0, |a, b| if width(b) > width(a) { b } else { a });
@@ -131,37 +131,10 @@ fn split_sorted(primitives: &mut [Primitive], c_sq: f32) -> usize {
 /// Partitions a large cluster at the cheapest of all bin borders in all dimensions and returns the left size.
 #[inline(never)] // Its bins must not stay on the stack during the recursion.
 fn split_binned(primitives: &mut [Primitive], c_sq: f32) -> usize {
-    let bounds = if primitives.len() > CHUNK {
-        let parts: Vec<PrimitiveBounds> = primitives.par_chunks(CHUNK).map(PrimitiveBounds::around).collect();
-        parts.iter().fold(PrimitiveBounds::EMPTY, |mut a, b| {
-            a.add(b);
-            a
-        })
-    } else {
-        PrimitiveBounds::around(primitives)
-    };
-    let binning = Binning::new(&bounds, 0.5 * c_sq.sqrt());
+    let judged = || primitives.iter().step_by(primitives.len().div_ceil(JUDGED));
+    let binning = Binning::new(&PrimitiveBounds::around(judged()), 0.5 * c_sq.sqrt());
     let mut bins: Bins = [EMPTY_ROW; DIMENSIONS];
-    if primitives.len() > CHUNK {
-        let parts: Vec<Box<Bins>> = primitives
-            .par_chunks(CHUNK)
-            .map(|chunk| {
-                let mut bins: Box<Bins> = Box::new([EMPTY_ROW; DIMENSIONS]);
-                binning.fill(chunk, &mut bins);
-                bins
-            })
-            .collect();
-        for part in &parts {
-            for (row, part) in bins.iter_mut().zip(part.iter()) {
-                for i in 0..BINS {
-                    row.bounds[i].add(&part.bounds[i]);
-                    row.intensity[i] += part.intensity[i];
-                }
-            }
-        }
-    } else {
-        binning.fill(primitives, &mut bins);
-    }
+    binning.fill(judged(), &mut bins);
     let n = primitives.len();
     let Some((dimension, border)) = cheapest_border(&bins, &binning, c_sq) else { return n / 2 };
     let border = Binning::border(border);
@@ -207,7 +180,7 @@ impl Binning {
         1.0 + bin as f32 / BINS as f32
     }
 
-    fn fill(&self, primitives: &[Primitive], bins: &mut Bins) {
+    fn fill<'a>(&self, primitives: impl Iterator<Item = &'a Primitive>, bins: &mut Bins) {
         for r in primitives {
             let (bounds, luminance) = (PrimitiveBounds::of(r), luminance(r));
             let mut bin = [0; 8];
