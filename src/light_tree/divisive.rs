@@ -19,7 +19,7 @@ const SORTED: usize = 16;
 /// Size above which both halves are built in parallel.
 const PARALLEL: usize = 4096;
 /// Maximum number of primitives by which a split is judged, evenly spaced among all as they come.
-const JUDGED: usize = 4096;
+const JUDGED: usize = 1 << 14;
 
 /// Bins along one dimension. Bounds fill a cache line each, so intensities stand apart.
 #[derive(Clone)]

@@ -148,21 +148,27 @@ fn glossy_surfaces_are_lit_by_series_as_by_lightcuts_per_pixel() {
 
 #[test]
 fn reconstruction_cuts_agree_with_lightcuts_per_pixel() {
+    // Clusters' representatives alone change the mean of a picture by .16 %.
+    const SEEDS: u32 = 4;
     for world in [lit_room(), glossy_room()] {
         let mut settings = settings(DirectBy::Cuts, Footprints::Occlusion);
         settings.spp = 4;
         settings.cache.indirect = FoundBy::Cuts;
         settings.cut.epsilon = 0.01;
-        let output = rendered(&world, &settings);
-        let (records, own) = ("Cache/records, indirect", "Shading/tasks by cuts");
-        assert_eq!(count(&output, records).unwrap_or(0), 0);
-        assert!(count(&output, own).is_some_and(|own| own > 3 * 96 * 96));
-        let exact = per_pixel(&world, &settings);
-        let error = rms(&output.color, &exact);
-        assert!(error < 0.02, "{error}");
         let mean = |image: &Image| image.pixels.iter().map(|p| luminance(*p)).sum::<f32>();
-        let bias = mean(&output.color) / mean(&exact);
-        assert!((bias - 1.0).abs() < 0.003, "{bias}");
+        let mut bias = 0.0;
+        for seed in 0..SEEDS {
+            settings.seed = seed;
+            let output = rendered(&world, &settings);
+            let (records, own) = ("Cache/records, indirect", "Shading/tasks by cuts");
+            assert_eq!(count(&output, records).unwrap_or(0), 0);
+            assert!(count(&output, own).is_some_and(|own| own > 3 * 96 * 96));
+            let exact = per_pixel(&world, &settings);
+            let error = rms(&output.color, &exact);
+            assert!(error < 0.02, "{error}");
+            bias += (mean(&output.color) / mean(&exact) - 1.0) / SEEDS as f32;
+        }
+        assert!(bias.abs() < 0.003, "{bias}");
     }
 }
 
