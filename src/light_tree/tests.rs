@@ -215,6 +215,7 @@ fn trees_are_the_same_for_any_number_of_threads() {
             pool.install(|| build(&set, family))
         };
         let one = with(1);
+        assert_valid(&one, std::slice::from_ref(&set));
         for threads in [2, 4] {
             let other = with(threads);
             assert!(one.nodes == other.nodes && one.vpls == other.vpls, "{family:?}, {threads} threads");
