@@ -5,7 +5,7 @@
 //! what the diffuse one would give without a limit, where the diffuse one lacks max(0, 1 - b/G).
 
 use super::Compensation;
-use super::short_rays::{Limit, NearSurface};
+use super::short_rays::{BRIGHTER, Limit, NearSurface};
 use crate::lightcut::{PacketCluster, PacketCut};
 use crate::material::Bsdf;
 use crate::math::Rgb;
@@ -15,10 +15,6 @@ use std::f32::consts::PI;
 
 /// Light that a lobe may give, over a diffuse surface of its flux, as far as short rays look.
 const MOST: f32 = 4.0;
-
-/// Luminance that a virtual light may give over the limit where geometry terms are limited: one much brighter than
-/// those around would leave a spot.
-pub const BRIGHTER: f32 = 2.0;
 
 impl Compensation<'_> {
     /// Light that a virtual light of the scene may give, over a diffuse one of its flux, as far as short rays look.
@@ -41,56 +37,54 @@ pub struct Lack {
 }
 
 impl Lack {
-    /// Share that virtual lights lack at most of what a diffuse surface of the same flux gives, over what they do of a
-    /// lobe's greatest.
+    /// Returns a bound of what is lacking, up to a constant factor: that of a diffuse surface, max(0, 1 - b/G), or that
+    /// of a lobe at its greatest.
     pub fn weight(&self) -> f32 {
         let most = if self.by_lobes { MOST } else { 1.0 };
         (1.0 - self.kept / most).max(0.0)
     }
 }
 
-/// Returns how much a surface met gives of what virtual lights lack for light from the unit vector `wi`, over what its
-/// weight says.
-fn over_weight(near: &NearSurface, bsdf: &Bsdf, wi: Vec3) -> Rgb {
-    let (lack, frame) = (&near.lack, &near.surface.frame);
-    let (cos, local) = (near.normal.dot(lack.out), frame.to_local(wi));
-    let mut diffuse = bsdf.diffuse_albedo(local);
-    let mut lacking = Rgb::ZERO;
-    for lobe in bsdf.reflected_lobes(local) {
-        let peak = PI * lobe.peak;
-        let given = peak * lobe.shape.share(near.normal, wi, lack.out) / cos;
-        let limited = if let Limit::Geometry(_) = lack.limit { peak.min(BRIGHTER) } else { 1.0 };
-        lacking += lobe.albedo * (given - limited * lack.kept).max(0.0);
-        diffuse -= lobe.albedo;
-    }
-    lacking += diffuse * (1.0 - lack.kept).max(0.0);
-    let usual = bsdf.diffuse_albedo(frame.to_local(lack.out)) * lack.weight();
-    Rgb::select(usual.cmpgt(Rgb::ZERO), lacking / usual, Rgb::ZERO)
-}
-
-/// Irradiance at a surface met, such that its weight gives what virtual lights lack. Cluster by cluster of a `cut` it
-/// has the irradiance `light`.
-pub fn irradiance(
-    c: &Compensation,
-    near: &NearSurface,
-    cut: &PacketCut,
-    light: impl Fn(&PacketCluster) -> Rgb,
-) -> Rgb {
+/// Factors of the irradiance from each cluster of a `cut` at a surface met, by which its weight gives what virtual
+/// lights lack; `None` if all are 1.
+pub fn factors(c: &Compensation, near: &NearSurface, cut: &PacketCut) -> Option<Vec<Rgb>> {
     if !near.lack.by_lobes {
-        return cut.clusters.iter().map(light).sum();
+        return None;
     }
     let (trees, bsdf) = (c.transfer.trees, c.world.bsdf(&near.surface));
-    let given = cut.clusters.iter().map(|cluster| {
-        let light = light(cluster);
-        if light == Rgb::ZERO {
-            return light;
-        }
+    let usual = near.usual(&bsdf);
+    let factor = |cluster: &PacketCluster| {
         let node = &trees.nodes[cluster.node as usize];
         let place = trees.vpls[node.representative()].position;
         let towards = if node.kind() == VplKind::Directional { place } else { place - near.surface.position };
-        light * over_weight(near, &bsdf, towards.normalize_or_zero())
-    });
-    given.sum()
+        let lacking = near.lacking(&bsdf, towards.normalize_or_zero());
+        Rgb::select(usual.cmpgt(Rgb::ZERO), lacking / usual, Rgb::ZERO)
+    };
+    Some(cut.clusters.iter().map(factor).collect())
+}
+
+impl NearSurface {
+    /// Reflectance that the weight stands for.
+    fn usual(&self, bsdf: &Bsdf) -> Rgb {
+        bsdf.diffuse_albedo(self.surface.frame.to_local(self.lack.out)) * self.lack.weight()
+    }
+
+    /// Returns what virtual lights lack for light from the unit vector `wi`, as a reflectance: a diffuse surface of it
+    /// would give as much.
+    fn lacking(&self, bsdf: &Bsdf, wi: Vec3) -> Rgb {
+        let lack = &self.lack;
+        let (cos, local) = (self.normal.dot(lack.out), self.surface.frame.to_local(wi));
+        let mut diffuse = bsdf.diffuse_albedo(local);
+        let mut lacking = Rgb::ZERO;
+        for lobe in bsdf.reflected_lobes(local) {
+            let peak = PI * lobe.peak;
+            let given = peak * lobe.shape.share(self.normal, wi, lack.out) / cos;
+            let limited = if let Limit::Geometry(_) = lack.limit { peak.min(BRIGHTER) } else { 1.0 };
+            lacking += lobe.albedo * (given - limited * lack.kept).max(0.0);
+            diffuse -= lobe.albedo;
+        }
+        lacking + diffuse * (1.0 - lack.kept).max(0.0)
+    }
 }
 
 #[cfg(test)]
@@ -100,7 +94,6 @@ mod tests {
     use crate::scene::Camera;
     use crate::test_scenes::*;
     use crate::world::{Surface, World};
-    use std::f32::consts::FRAC_1_PI;
 
     fn plate() -> (World, Surface) {
         let mut scene = scene(Camera::default(), [1, 1]);
@@ -130,23 +123,18 @@ mod tests {
             (Vec3::new(0.8, 0.0, 0.6), Vec3::new(0.0, 0.6, 0.8)),
         ] {
             let [local_out, local_in] = [out, wi].map(|v| surface.frame.to_local(v));
-            let usual = bsdf.diffuse_albedo(local_out).x * FRAC_1_PI;
-            let reflected = bsdf.eval(local_out, local_in).x / usual;
-            let given = |limit, kept| {
-                let near = seen(surface, out, limit, kept);
-                over_weight(&near, &bsdf, wi).x * near.lack.weight()
-            };
+            let reflected = bsdf.eval(local_out, local_in).x * PI;
+            let given = |limit, kept| seen(surface, out, limit, kept).lacking(&bsdf, wi).x;
             let whole = given(limit, 0.0);
             // Facets' Fresnel reflectance is not that of the whole lobe.
             assert!((whole / reflected - 1.0).abs() < 0.03, "{out} {wi}: {whole} for {reflected}");
             for kept in [0.3, 1.5, 3.0] {
-                let scale = bsdf.diffuse_albedo(local_in).x / bsdf.diffuse_albedo(local_out).x;
-                let lacking = (whole - kept * scale).max(0.0);
+                let lacking = (whole - kept * bsdf.diffuse_albedo(local_in).x).max(0.0);
                 assert!((given(limit, kept) - lacking).abs() < 1e-4, "{out} {wi} {kept}");
                 // Geometry terms are limited where lobes may give more.
                 assert!(given(Limit::Geometry(1.0), kept) <= given(limit, kept));
             }
-            assert_eq!(given(limit, MOST), 0.0);
+            assert_eq!(seen(surface, out, limit, MOST).usual(&bsdf), Rgb::ZERO);
         }
     }
 

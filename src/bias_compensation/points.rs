@@ -216,8 +216,9 @@ impl NearLight {
 /// Irradiance of a lane by a `cut`, of which no indirect cluster may give more than ε of the light that it
 /// is added to: so coarse a cut leaves clusters whose representative happens to be next to the point.
 fn limited(c: &Compensation, cut: &PacketCut, near: &NearSurface, lane: usize, baseline: f32) -> Rgb {
+    let factors = lobes::factors(c, near, cut);
     let sum = |limit: f32| {
-        lobes::irradiance(c, near, cut, |cluster| {
+        let given = cut.clusters.iter().enumerate().map(|(i, cluster)| {
             let node = &c.transfer.trees.nodes[cluster.node as usize];
             let given = node.intensity * cluster.responses.get(lane);
             let most = match node.origin() {
@@ -226,8 +227,10 @@ fn limited(c: &Compensation, cut: &PacketCut, near: &NearSurface, lane: usize, b
                 Origin::Indirect => limit,
             };
             let y = luminance(given);
-            if y > most { given * (most / y) } else { given }
-        })
+            let given = if y > most { given * (most / y) } else { given };
+            factors.as_ref().map_or(given, |factors| given * factors[i])
+        });
+        given.sum::<Rgb>()
     };
     let mut irradiance = sum(f32::INFINITY);
     frozen_luminance(luminance(irradiance) + baseline, MAX_STEPS, |total| {

@@ -17,6 +17,10 @@ const SALT: u32 = 0x5eed;
 /// irradiances are limited.
 const MOST_AROUND: f32 = 4.0;
 
+/// Luminance that a virtual light may give over the limit where geometry terms are limited: one much brighter than
+/// those around would leave a spot.
+pub const BRIGHTER: f32 = 2.0;
+
 /// Most of an indirect virtual light; none is limited where it is not positive and finite.
 #[derive(Clone, Copy, Debug)]
 pub enum Limit {

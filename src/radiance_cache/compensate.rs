@@ -9,9 +9,8 @@
 
 use super::gather::GatheredLayer;
 use super::source::{Candidate, LightcutSource};
-use crate::bias_compensation::lobes::{self, BRIGHTER};
-use crate::bias_compensation::short_rays::{self, ClampedPoint, Limit, NearSurface};
-use crate::bias_compensation::{Compensation, choose_evenly};
+use crate::bias_compensation::short_rays::{self, BRIGHTER, ClampedPoint, Limit, NearSurface};
+use crate::bias_compensation::{Compensation, choose_evenly, lobes};
 use crate::lightcut::{CutSettings, PacketLightcut, Receiver, ReceiverPacket, group_compact};
 use crate::math::{F32x16, Frame, LANES, LUMINANCE, Rgb, Vec3x16, luminance};
 use crate::vpl::DirectIndirect;
@@ -171,10 +170,13 @@ impl Cutter<'_> {
         let (transfer, world) = (&source.context.transfer, source.context.world);
         let cut = self.cut.gather(transfer, world, self.points, &settings);
         let mut irradiance = cut.sum.radiance;
-        for (lane, Lookup { near, .. }) in group.iter().enumerate().filter(|(_, l)| l.near.lack.by_lobes) {
-            irradiance[lane] = lobes::irradiance(c, near, &cut, |cluster| {
-                transfer.trees.nodes[cluster.node as usize].intensity * cluster.responses.get(lane)
+        for (lane, lookup) in group.iter().enumerate() {
+            let Some(factors) = lobes::factors(c, &lookup.near, &cut) else { continue };
+            let given = cut.clusters.iter().zip(factors).map(|(cluster, factor)| {
+                let intensity = transfer.trees.nodes[cluster.node as usize].intensity;
+                intensity * cluster.responses.get(lane) * factor
             });
+            irradiance[lane] = given.sum();
         }
         irradiance
     }
