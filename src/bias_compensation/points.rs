@@ -9,7 +9,8 @@
 use super::short_rays::{self, ClampedPoint, Limit, NearSurface};
 use super::{Compensation, choose_evenly, lobes};
 use crate::lightcut::{
-    CutCounts, CutSettings, PacketCut, PacketLightcut, PacketSum, Receiver, ReceiverPacket, frozen_luminance,
+    CutCounts, CutSettings, PacketCut, PacketLightcut, PacketSum, Receiver, ReceiverPacket, SampledCut,
+    Samples, frozen_luminance,
 };
 use crate::math::{Frame, LANES, Rgb, luminance};
 use crate::stats::add_fields;
@@ -37,6 +38,9 @@ const MAX_STEPS: u32 = 8;
 /// Share of the luminance to which a VPL is clamped in them: more than elsewhere, since light lost here is lost.
 const CLAMP: f32 = 0.05;
 
+/// Samples of a cut at a surface met, where points have no cuts.
+const SAMPLES: Samples = Samples { whole: 16.0, least: 16.0 };
+
 /// Cosine between the normals of surfaces that face opposite ways.
 const OPPOSITE: f32 = -0.5;
 
@@ -49,6 +53,7 @@ pub struct Compensator {
     /// Surfaces met, with the lanes of the rays.
     met: Vec<(usize, NearSurface)>,
     packet: PacketLightcut,
+    sampled: SampledCut,
     receivers: ReceiverPacket<'static>,
     counts: CompensationCounts,
 }
@@ -83,6 +88,30 @@ impl Compensator {
         receivers: &ReceiverPacket,
         sum: &mut PacketSum,
     ) -> Option<NearLight> {
+        self.find(c, origin, receivers, sum, None)
+    }
+
+    /// The same for points that are lit by samples, as the surfaces are that their rays meet, and have no others
+    /// between them.
+    pub fn by_samples(
+        &mut self,
+        c: &Compensation,
+        origin: Option<Origin>,
+        receivers: &ReceiverPacket,
+        sum: &mut PacketSum,
+        seed: u32,
+    ) {
+        self.find(c, origin, receivers, sum, Some(seed));
+    }
+
+    fn find(
+        &mut self,
+        c: &Compensation,
+        origin: Option<Origin>,
+        receivers: &ReceiverPacket,
+        sum: &mut PacketSum,
+        seed: Option<u32>,
+    ) -> Option<NearLight> {
         self.trace(c, origin, receivers, &sum.limits);
         let irradiance = mean_irradiance(receivers, &sum.radiance);
         let mut lacking = [0.0; LANES];
@@ -93,7 +122,7 @@ impl Compensator {
         if !lacking.iter().any(|&lacking| lacking > NEGLIGIBLE * irradiance) {
             return None;
         }
-        let light = NearLight { origin, places: self.gather(c, irradiance) };
+        let light = NearLight { origin, places: self.gather(c, irradiance, seed) };
         self.add_met(c, &light, receivers, sum);
         Some(light)
     }
@@ -112,7 +141,8 @@ impl Compensator {
 
     /// Work done since this was last asked.
     pub fn take_counts(&mut self) -> CompensationCounts {
-        let cuts = std::mem::take(&mut self.packet.counts);
+        let mut cuts = std::mem::take(&mut self.packet.counts);
+        cuts += std::mem::take(&mut self.sampled.counts);
         CompensationCounts { cuts, ..std::mem::take(&mut self.counts) }
     }
 
@@ -140,9 +170,10 @@ impl Compensator {
         self.counts.rays += short_rays::trace(c, &clamped, RAYS, |lane, near| met.push((lane, near)));
     }
 
-    /// Irradiance at some of the surfaces met, chosen in proportion to their weights. It is added to points
-    /// that have the irradiance `baseline`, so its error need only be small relative to that.
-    fn gather(&mut self, c: &Compensation, baseline: f32) -> Vec<(SurfacePoint, Rgb)> {
+    /// Irradiance at some of the surfaces met, chosen in proportion to their weights, by a cut or by samples of this
+    /// `seed`. It is added to points that have the irradiance `baseline`, so its error need only be small relative to
+    /// that.
+    fn gather(&mut self, c: &Compensation, baseline: f32, seed: Option<u32>) -> Vec<(SurfacePoint, Rgb)> {
         // One surface after the other.
         let mut order: Vec<u32> = (0..self.met.len() as u32).collect();
         order.sort_by_key(|&i| (self.met[i as usize].1.surface.mesh, self.met[i as usize].0));
@@ -166,6 +197,17 @@ impl Compensator {
         self.receivers.set(places.iter().map(receiver));
         let settings =
             CutSettings { epsilon: EPSILON, max_cut: MAX_CUT, clamp: Some(CLAMP), ..CutSettings::default() };
+        // Clusters tell what lobes reflect.
+        let seed = seed.filter(|_| of_places.iter().all(|near| !near.lack.by_lobes));
+        let samples = seed.and_then(|seed| {
+            self.sampled.gather(&c.transfer, c.world, &self.receivers, (&settings, &SAMPLES), seed)
+        });
+        if let Some(sum) = samples {
+            for ((_, irradiance), found) in places.iter_mut().zip(sum.radiance) {
+                *irradiance = if found.is_finite() { found } else { Rgb::ZERO };
+            }
+            return places;
+        }
         let cut = self.packet.gather(&c.transfer, c.world, &self.receivers, &settings);
         for (lane, ((_, irradiance), near)) in places.iter_mut().zip(&of_places).enumerate() {
             let found = limited(c, &cut, near, lane, baseline);

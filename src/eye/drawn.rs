@@ -154,6 +154,7 @@ impl<'w> EyePass<'w> {
         if let Some(effort) = effort {
             pass.chains += effort.chains;
             pass.light_samples = effort.light_samples;
+            pass.noise = effort.noise;
         }
         pass
     }

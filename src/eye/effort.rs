@@ -40,6 +40,8 @@ pub(super) struct Effort {
     pub choice: Option<Choice>,
     /// Light samples at each chain's end.
     pub light_samples: u32,
+    /// Relative variance of a pixel, limited to 1 where it is greater, on average.
+    pub noise: f32,
     /// Rays traced to learn them.
     pub chains: ChainCounts,
 }
@@ -69,8 +71,9 @@ impl<'w> Tracer<'_, 'w> {
         let a_sample = (chains.rays + chains.shadow_rays) as f64 / sampled.max(1) as f64;
         let share = self.drawn.extra_samples.share(a_sample * f64::from(spp) * film);
         let choice = Choice::new(&squares.into_iter().zip(&values).map(filled).collect::<Vec<_>>(), share);
-        let light_samples = light_samples(&values, &again, spp, choice.dark);
-        Some(Effort { choice: (share > 0.0).then_some(choice), light_samples, chains })
+        let Noise { all, by_light } = Noise::of(&values, &again, spp, choice.dark);
+        let light_samples = light_samples(by_light / all.max(f32::MIN_POSITIVE));
+        Some(Effort { choice: (share > 0.0).then_some(choice), light_samples, noise: all, chains })
     }
 
     /// Luminances that the first samples of groups of film pixels find, of all of them and of the first half, and the
@@ -102,18 +105,33 @@ impl<'w> Tracer<'_, 'w> {
     }
 }
 
-/// The best number of light samples for pixels with `spp` samples that were sampled twice; `dark` counts as dark.
-fn light_samples(values: &Means, again: &Means, spp: u32, dark: f32) -> u32 {
-    // A share f of the samples differs from the mean of all by √((1 - f) / f) times the error of that mean.
-    let first = (spp / 2) as f32 / spp as f32;
-    let to_error = (first / (1.0 - first)).sqrt();
-    let square = |error: f32, mean: f32| (error / (mean + dark)).powi(2).min(1.0);
-    let (mut all, mut by_light) = (0.0, 0.0);
-    for ([a, half_a], [b, half_b]) in values.iter().flatten().zip(again.iter().flatten()) {
-        all += 0.5 * (square(to_error * (half_a - a), *a) + square(to_error * (half_b - b), *b));
-        by_light += square(0.5f32.sqrt() * (a - b), 0.5 * (a + b));
+/// Relative variance of a pixel, limited to 1 where it is greater, on average over pixels.
+struct Noise {
+    all: f32,
+    /// Of light samples.
+    by_light: f32,
+}
+
+impl Noise {
+    /// Of pixels with `spp` samples that were sampled twice; `dark` counts as dark.
+    fn of(values: &Means, again: &Means, spp: u32, dark: f32) -> Noise {
+        // A share f of the samples differs from the mean of all by √((1 - f) / f) times the error of that mean.
+        let first = (spp / 2) as f32 / spp as f32;
+        let to_error = (first / (1.0 - first)).sqrt();
+        let square = |error: f32, mean: f32| (error / (mean + dark)).powi(2).min(1.0);
+        let (mut all, mut by_light, mut count) = (0.0, 0.0, 0.0f32);
+        for ([a, half_a], [b, half_b]) in values.iter().flatten().zip(again.iter().flatten()) {
+            all += 0.5 * (square(to_error * (half_a - a), *a) + square(to_error * (half_b - b), *b));
+            by_light += square(0.5f32.sqrt() * (a - b), 0.5 * (a + b));
+            count += 1.0;
+        }
+        Noise { all: all / count.max(1.0), by_light: by_light / count.max(1.0) }
     }
-    let part = (by_light / all.max(f32::MIN_POSITIVE)).min(1.0);
+}
+
+/// The best number of light samples where they have that part of the variance.
+fn light_samples(part: f32) -> u32 {
+    let part = part.min(1.0);
     (COST * part / (1.0 - part)).sqrt().clamp(1.0, MAX_LIGHT_SAMPLES).round() as u32
 }
 
@@ -121,6 +139,11 @@ fn light_samples(values: &Means, again: &Means, spp: u32, dark: f32) -> u32 {
 mod tests {
     use super::*;
     use crate::sampling::owen_sobol_2d;
+
+    fn number(values: &Means, again: &Means, spp: u32) -> u32 {
+        let Noise { all, by_light } = Noise::of(values, again, spp, 0.08);
+        light_samples(by_light / all.max(f32::MIN_POSITIVE))
+    }
 
     /// The best number for a thousand pixels of mean 1 whose light samples have that part of their noise.
     fn best(part: f32, spp: u32, noise: f32) -> u32 {
@@ -137,7 +160,7 @@ mod tests {
             values.push(pixel(3));
             again.push(pixel(5));
         }
-        light_samples(&vec![values], &vec![again], spp, 0.08)
+        number(&vec![values], &vec![again], spp)
     }
 
     #[test]
@@ -147,6 +170,6 @@ mod tests {
             assert_eq!(found, [1, 1, 2, 3, 4, 4], "{spp}");
         }
         // Without light nothing is known.
-        assert_eq!(light_samples(&vec![vec![[0.0; 2]; 9]], &vec![vec![[0.0; 2]; 9]], 16, 0.08), 1);
+        assert_eq!(number(&vec![vec![[0.0; 2]; 9]], &vec![vec![[0.0; 2]; 9]], 16), 1);
     }
 }

@@ -54,6 +54,9 @@ pub struct EyePass<'w> {
     pub chains: ChainCounts,
     /// Light samples at each surface seen for which direct light is drawn.
     pub light_samples: u32,
+    /// Relative variance of a pixel by light that is drawn, limited to 1 where it is greater, on average over pixels;
+    /// 0 if it is not known.
+    pub noise: f32,
     /// Radiances that were not finite and left out.
     pub nonfinite: u64,
     /// False if the pass was cancelled.
@@ -168,6 +171,7 @@ impl<'w> EyePass<'w> {
             guides: (!guides.is_empty()).then_some(KeptGuides(guides)),
             chains,
             light_samples: 1,
+            noise: 0.0,
             nonfinite,
             complete,
         }

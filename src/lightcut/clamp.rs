@@ -18,7 +18,7 @@ pub(super) const DOMINANT: f32 = 0.25;
 pub(super) const DOMINANT_TO_REST: f32 = DOMINANT / (1.0 - DOMINANT);
 
 /// Maximum number of steps towards the frozen luminance of a cut.
-const MAX_STEPS: u32 = 12;
+pub(super) const MAX_STEPS: u32 = 12;
 
 /// Indirect leaves, the only nodes that are clamped.
 #[inline]

@@ -1,9 +1,10 @@
 //! Random points, materials and virtual lights for tests of cuts.
 
-use super::{CutSettings, PacketVisibility, Receiver, ReceiverPacket, Visibility};
+use super::{CutSettings, PacketVisibility, RayVisibility, Receiver, ReceiverPacket, Visibility};
+use crate::embree::Rays16;
 use crate::light_tree::{Family, LightTrees, Node};
 use crate::material::Materials;
-use crate::math::{Frame, Rgb, lanes_in};
+use crate::math::{Frame, Rgb, Vec3x16, lanes_in};
 use crate::progress::Control;
 use crate::sampling::{hash, uniform_sphere};
 use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene};
@@ -154,6 +155,17 @@ impl PacketVisibility for Ball {
     fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
         let sees = |&lane: &usize| self.visible(receivers.get(lane).position(), Vec3::ZERO, vpl, node);
         lanes_in(lanes).filter(sees).fold(0, |mask, lane| mask | 1 << lane)
+    }
+}
+
+impl RayVisibility for Ball {
+    fn arriving16(&self, rays: &Rays16, count: usize, _: &mut Vec3x16) -> u16 {
+        let is_free = |&lane: &usize| {
+            let ray = rays.get(lane);
+            let along = (self.centre - ray.origin).dot(ray.direction) / ray.direction.length_squared();
+            (ray.origin + ray.direction * along.clamp(0.0, ray.t_far) - self.centre).length() > self.radius
+        };
+        (0..count).filter(is_free).fold(0, |mask, lane| mask | 1 << lane)
     }
 }
 

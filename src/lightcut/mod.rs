@@ -28,7 +28,7 @@ mod visibility;
 
 pub use clamp::frozen_luminance;
 pub use coherence::{CoherenceLimit, MIN_SHARED, group_coherent, group_compact};
-pub use packet::{PacketCluster, PacketCut, PacketLightcut, PacketSum, ReceiverPacket};
+pub use packet::{PacketCluster, PacketCut, PacketLightcut, PacketSum, ReceiverPacket, SampledCut, Samples};
 pub use receiver::Receiver;
 pub use reconstruction::ReconstructionCut;
 pub use settings::{CutCounts, CutSettings};
@@ -37,4 +37,4 @@ pub use shadow_rays::{to_vpl, to_vpl16};
 pub use single::gather_all;
 pub use single::{Lightcut, OffsetBox};
 pub use transfer::Transfer;
-pub use visibility::{PacketVisibility, Visibility};
+pub use visibility::{PacketVisibility, RayVisibility, Visibility};

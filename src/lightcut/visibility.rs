@@ -1,8 +1,9 @@
 //! Visibility of virtual lights in a scene: from a single point and from a packet.
 
 use super::{ReceiverPacket, to_vpl};
+use crate::embree::Rays16;
 use crate::light_tree::Node;
-use crate::math::{Rgb, Vec3x16};
+use crate::math::{Rgb, Vec3x16, first_lanes};
 use crate::shadow::Engine;
 use crate::vpl::Vpl;
 use crate::world::World;
@@ -34,6 +35,13 @@ pub trait PacketVisibility {
         _light: &mut Vec3x16,
     ) {
     }
+}
+
+/// Visibility along rays to VPLs, each to another.
+pub trait RayVisibility {
+    /// The lanes of the first `count` whose rays are free; their `light` is multiplied by the share of it that passes
+    /// the sheets on its way.
+    fn arriving16(&self, rays: &Rays16, count: usize, light: &mut Vec3x16) -> u16;
 }
 
 impl Visibility for Engine<'_> {
@@ -74,6 +82,19 @@ impl PacketVisibility for Engine<'_> {
     }
 }
 
+impl RayVisibility for Engine<'_> {
+    #[inline]
+    fn arriving16(&self, rays: &Rays16, count: usize, light: &mut Vec3x16) -> u16 {
+        let lanes = first_lanes(count);
+        let free = lanes & !self.occluded16(rays, lanes);
+        if self.world().has_sheets() {
+            let attenuate = |lane, transmittance| light.set(lane, light.get(lane) * transmittance);
+            self.world().transmittance16(rays, free, attenuate);
+        }
+        free
+    }
+}
+
 impl Visibility for World {
     #[inline]
     fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
@@ -95,5 +116,12 @@ impl PacketVisibility for World {
     #[inline]
     fn attenuate16(&self, receivers: &ReceiverPacket, lanes: u16, of: (&Vpl, &Node), light: &mut Vec3x16) {
         Engine::new(self).attenuate16(receivers, lanes, of, light)
+    }
+}
+
+impl RayVisibility for World {
+    #[inline]
+    fn arriving16(&self, rays: &Rays16, count: usize, light: &mut Vec3x16) -> u16 {
+        Engine::new(self).arriving16(rays, count, light)
     }
 }

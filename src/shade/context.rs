@@ -2,7 +2,7 @@
 
 use crate::bias_compensation::Compensation;
 use crate::eye::ShadingPoints;
-use crate::lightcut::{CutSettings, MIN_SHARED, Receiver, Transfer};
+use crate::lightcut::{CutSettings, MIN_SHARED, Receiver, Samples, Transfer};
 use crate::math::Frame;
 use crate::shadow::ShadowSettings;
 use crate::vpl::Origin;
@@ -26,6 +26,9 @@ pub struct ShadeSettings {
     pub cut: CutSettings,
     /// True if neighbours share cuts.
     pub share: bool,
+    /// Samples of the cuts of patches without other points than anchors, where fewer do than a cut has clusters; `None`
+    /// for cuts everywhere.
+    pub samples: Option<Samples>,
     /// Shadow rays that ask an occluder cache.
     pub shadows: ShadowSettings,
 }

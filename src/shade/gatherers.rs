@@ -9,15 +9,19 @@ use super::{ShadeSettings, ShadingContext, ShadingTask};
 use crate::bias_compensation::points::{CompensationCounts, Compensator};
 use crate::eye::ShadingPoints;
 use crate::lightcut::{
-    CutCounts, CutSettings, Lightcut, PacketLightcut, PacketSum, PacketVisibility, ReceiverPacket,
-    ReconstructionCut, Visibility,
+    CutCounts, CutSettings, Lightcut, PacketLightcut, PacketSum, PacketVisibility, RayVisibility,
+    ReceiverPacket, ReconstructionCut, SampledCut, Samples, Visibility,
 };
 use crate::math::{LANES, Rgb};
 use crate::sampling::hash;
+use crate::vpl::Origin;
 use std::mem::take;
 
 /// Step of the random numbers of a patch's packets: its multiples, modulo 1, stay far from each other.
 const GOLDEN: f32 = 0.618_034;
+
+/// Seed of the samples of cuts.
+const SAMPLES_SEED: u32 = 0x3d4d_51cb;
 
 /// Light that a point reflects.
 #[derive(Clone, Copy, Debug)]
@@ -34,13 +38,14 @@ pub struct Gatherers<'w> {
     single: Lightcut,
     packet: PacketLightcut,
     reconstruction: ReconstructionCut,
+    sampled: SampledCut,
     compensator: Compensator,
     receivers: ReceiverPacket<'w>,
 }
 
 impl<'w> Gatherers<'w> {
     /// Shades a patch of tasks that differ in nothing but their points, and calls `shaded` with each.
-    pub fn shade<V: Visibility + PacketVisibility>(
+    pub fn shade<V: Visibility + PacketVisibility + RayVisibility>(
         &mut self,
         c: &ShadingContext,
         rays: &V,
@@ -51,6 +56,13 @@ impl<'w> Gatherers<'w> {
     ) {
         let Some(first) = patch.first() else { return };
         let cut = CutSettings { origin: first.origin, ..settings.cut };
+        let samples =
+            settings.samples.filter(|_| patch.len() <= LANES && first.origin == Some(Origin::Indirect));
+        if let Some(samples) = samples
+            && self.by_samples(c, rays, points, patch, (&cut, &samples), &mut shaded)
+        {
+            return;
+        }
         if settings.shares(patch.len()) {
             self.together(c, rays, points, patch, &cut, &mut shaded);
         } else {
@@ -65,7 +77,29 @@ impl<'w> Gatherers<'w> {
         let mut cuts = take(&mut self.single.counts);
         cuts += take(&mut self.packet.counts);
         cuts += take(&mut self.reconstruction.counts);
+        cuts += take(&mut self.sampled.counts);
         (cuts, self.compensator.take_counts())
+    }
+
+    /// Shades up to sixteen points by samples of a cut; false if a cut takes less time.
+    fn by_samples<V: RayVisibility>(
+        &mut self,
+        c: &ShadingContext,
+        rays: &V,
+        points: &ShadingPoints<'w>,
+        patch: &[ShadingTask],
+        wanted: (&CutSettings, &Samples),
+        shaded: &mut impl FnMut(ShadingTask, Shaded),
+    ) -> bool {
+        self.receivers.set(patch.iter().map(|task| task.receiver(points)));
+        let seed = hash(patch[0].point, SAMPLES_SEED);
+        let found = self.sampled.gather(&c.transfer, rays, &self.receivers, wanted, seed);
+        let Some(mut sum) = found else { return false };
+        if let Some(c) = &c.compensation {
+            self.compensator.by_samples(c, wanted.0.origin, &self.receivers, &mut sum, seed);
+        }
+        report(patch.iter().copied(), &sum, 0, shaded);
+        true
     }
 
     fn together<V: PacketVisibility>(

@@ -8,7 +8,8 @@
 
 use crate::bench::setting::Setting;
 use crate::lightcut::{
-    CutSettings, Lightcut, MIN_SHARED, PacketLightcut, PacketVisibility, Receiver, ReceiverPacket, Visibility,
+    CutSettings, Lightcut, MIN_SHARED, PacketLightcut, PacketVisibility, RayVisibility, Receiver,
+    ReceiverPacket, Visibility,
 };
 use crate::math::{Rgb, luminance};
 use crate::radiance_cache::CacheSettings;
@@ -98,7 +99,7 @@ impl<'s> Orders<'s> {
     /// Shades the points of a stretch. Returns the sum of the reflected radiance.
     pub fn light<V>(&self, order: Order, chunk: usize, shared: bool, rays: &V) -> Rgb
     where
-        V: Visibility + PacketVisibility,
+        V: Visibility + PacketVisibility + RayVisibility,
     {
         let setting = self.setting;
         match order {
@@ -113,8 +114,12 @@ impl<'s> Orders<'s> {
                 self.cut(&groups, Candidate::receiver, shared, &cut, rays)
             }
             Order::Samples => {
-                let settings =
-                    ShadeSettings { cut: CutSettings::default(), share: shared, shadows: self.cache.shadows };
+                let settings = ShadeSettings {
+                    cut: CutSettings::default(),
+                    share: shared,
+                    samples: None,
+                    shadows: self.cache.shadows,
+                };
                 let context = self.context();
                 let points = &setting.samples.points;
                 let (mut gatherers, mut sum) = (Gatherers::default(), Rgb::ZERO);

@@ -4,8 +4,8 @@ use super::orders::{Order, Orders};
 use crate::bench::setting::{Dice, Setting};
 use crate::embree::{Ray, Rays16};
 use crate::light_tree::Node;
-use crate::lightcut::{PacketVisibility, Receiver, ReceiverPacket, Visibility, to_vpl};
-use crate::math::{LANES, Rgb, lanes_in};
+use crate::lightcut::{PacketVisibility, RayVisibility, Receiver, ReceiverPacket, Visibility, to_vpl};
+use crate::math::{LANES, Rgb, Vec3x16, first_lanes, lanes_in};
 use crate::vpl::Vpl;
 use glam::Vec3;
 use std::cell::RefCell;
@@ -230,6 +230,17 @@ impl PacketVisibility for Recorder<'_> {
         packer.flush();
         packer.packets.push(packet);
         seen
+    }
+}
+
+impl RayVisibility for Recorder<'_> {
+    fn arriving16(&self, rays: &Rays16, count: usize, light: &mut Vec3x16) -> u16 {
+        let packet =
+            SegmentPacket { neighbours: true, rays: rays.clone(), valid: first_lanes(count), keys: [0; 16] };
+        let mut packer = self.packer.borrow_mut();
+        packer.flush();
+        packer.packets.push(packet);
+        self.setting.world.arriving16(rays, count, light)
     }
 }
 

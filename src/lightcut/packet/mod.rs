@@ -18,6 +18,7 @@
 mod bound;
 mod receivers;
 mod refine;
+mod sampled;
 mod sum;
 #[cfg(test)]
 mod tests;
@@ -29,6 +30,7 @@ use refine::{Judgement, Pass};
 
 pub use receivers::ReceiverPacket;
 pub(super) use refine::halved;
+pub use sampled::{SampledCut, Samples};
 pub(super) use sum::{PacketLight, luminances};
 
 /// A cluster of a packet's cut.

@@ -32,7 +32,7 @@ const ZERO: F32x16 = [0.0; LANES];
 #[derive(Clone, Copy)]
 pub(super) struct Judgement {
     /// Error to expect in each lane, luminance; 0 for a leaf.
-    errors: F32x16,
+    pub(super) errors: F32x16,
     /// Luminance with which the cluster counts in the running totals.
     counted: F32x16,
     /// Visibility of its representative, or of an ancestor's.

@@ -4,7 +4,7 @@ use super::resolve::resolve;
 use crate::eye::{DrawnLight, EyePass, EyePilot, EyeSettings, Settled};
 use crate::film::Window;
 use crate::light_tree::Family;
-use crate::lightcut::CutSettings;
+use crate::lightcut::{CutSettings, Samples};
 use crate::method::ladder::{CUTS, DRAWN};
 use crate::method::lights::LightStore;
 use crate::method::photon_store::FoundCaustics;
@@ -25,6 +25,11 @@ use crate::stats::Stage;
 use crate::view::View;
 use crate::vpl::LightPassSettings;
 use crate::world::World;
+
+/// Samples of a cut, at a point that is lit by it alone, times the relative error of a pixel's drawn light; and their
+/// minimum number.
+const SAMPLES_BY_NOISE: f32 = 17.0;
+const LEAST_SAMPLES: f32 = 4.0;
 
 method_settings! {
     /// Settings of the method.
@@ -52,9 +57,11 @@ impl Settings {
         self.cache.cut.clamp = self.cut.clamp;
     }
 
-    /// Settings of the shading stage.
-    fn shading(&self) -> ShadeSettings {
-        ShadeSettings { cut: self.cut, share: self.cache.share, shadows: self.cache.shadows }
+    /// Settings of the shading stage of a picture whose pixels have this relative variance.
+    fn shading(&self, noise: f32) -> ShadeSettings {
+        let samples = Samples { whole: SAMPLES_BY_NOISE / noise.sqrt(), least: LEAST_SAMPLES };
+        let samples = (noise > 0.0).then_some(samples);
+        ShadeSettings { cut: self.cut, share: self.cache.share, samples, shadows: self.cache.shadows }
     }
 
     /// Rays of a still picture of the view's whole film, about, but for its samples.
@@ -83,11 +90,12 @@ impl Settings {
             Some(_) => self.cache.of_walk(),
             None => self.cache,
         };
-        let wanted = ((self.light, self.family), kept.is_none());
+        let is_still = kept.is_none();
+        let wanted = ((self.light, self.family), is_still);
         let glossy = Glossy::new(world, &cache);
-        let besides = kept.is_none().then(|| self.rays_beside_samples(view));
+        let besides = is_still.then(|| self.rays_beside_samples(view));
         let drawn = drawn_light(glossy.as_ref(), &cache, settled, besides);
-        let drawn = drawn.map(|drawn| DrawnLight { guides: kept.is_none(), ..drawn });
+        let drawn = drawn.map(|drawn| DrawnLight { guides: is_still, ..drawn });
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = lights.context(world, self.compensation);
@@ -115,8 +123,10 @@ impl Settings {
         });
         picture.came_by("records");
         control.begin(Stage::Render, tasks.len() as u64);
+        // Noise that the frame before did not have would flicker.
+        let shading = self.shading(if is_still { samples.noise } else { 0.0 });
         let counts = stats.time(Stage::Render, || {
-            picture.shade(&context, &samples, &tasks, cache.patches, &self.shading(), control)
+            picture.shade(&context, &samples, &tasks, cache.patches, &shading, control)
         });
         picture.came_by("cuts");
         stats.count("Shading/tasks by cuts", tasks.len() as u64);

@@ -58,7 +58,8 @@ impl Renderer for Settings {
         let caustics = lights.photons.of_picture((world, view), eye, control, &mut stats);
         let lights = lights.get(world, (wanted, Vec::new()), control, &mut stats);
         let context = lights.context(world, self.compensation);
-        let shading = ShadeSettings { cut: self.cut, share: self.share, shadows: self.shadows };
+        let shading =
+            ShadeSettings { cut: self.cut, share: self.share, samples: None, shadows: self.shadows };
         let tiles =
             Tiles { rays: EyeRays::new(world, view, eye), window: &view.window, spp: eye.spp, control };
 

@@ -128,7 +128,12 @@ impl Renderer for Settings {
         let indirect: Vec<ShadingTask> =
             tasks.into_iter().filter(|task| task.origin != Some(Origin::Direct)).collect();
         control.begin(Stage::Render, (direct.len() + indirect.len()) as u64);
-        let shading = ShadeSettings { cut: self.cut, share: self.cache.share, shadows: self.cache.shadows };
+        let shading = ShadeSettings {
+            cut: self.cut,
+            share: self.cache.share,
+            samples: None,
+            shadows: self.cache.shadows,
+        };
         let counts = stats.time(Stage::Render, || {
             picture.shade(&context, &samples, &direct, self.cache.patches, &shading, control)
         });

@@ -54,7 +54,7 @@ impl Settings {
 
     /// Settings of the shading stage.
     pub(super) fn shading(&self) -> ShadeSettings {
-        ShadeSettings { cut: self.cut, share: self.share, shadows: self.shadows }
+        ShadeSettings { cut: self.cut, share: self.share, samples: None, shadows: self.shadows }
     }
 }
 

@@ -1,0 +1,248 @@
+//! Light of a packet's points by samples of a coarse cut, for pictures that have noise anyhow: it takes a fraction of the
+//! shadow rays of a cut, and what is left of its errors is noise, not a pattern.
+//!
+//! Paper: Yuksel, *Stochastic Lightcuts*, 2019: representatives are drawn anew for each point.
+//!
+//! A point draws clusters in proportion to what they give it unshadowed, or to what they might by their bounds, and goes
+//! down a few levels of the tree from there, by the members' intensities. The mean over all numbers is the light of all
+//! virtual lights, limited as in a cut, but for the fixed representatives of the nodes where it ends.
+//!
+//! Deviations: clusters share a number of samples, instead of having one each, and the cut is that of sixteen points, in
+//! which all virtual lights count as seen.
+
+#[cfg(test)]
+mod tests;
+
+use super::refine::Pass;
+use super::{PacketLightcut, PacketSum, ReceiverPacket, luminances};
+use crate::embree::Rays16;
+use crate::light_tree::Node;
+use crate::lightcut::clamp::{DOMINANT, MAX_STEPS, frozen_luminance, is_weak};
+use crate::lightcut::{CutCounts, CutSettings, PacketVisibility, RayVisibility, Transfer, to_vpl};
+use crate::math::{F32x16, LANES, Rgb, Vec3x16, lanes_in, luminance};
+use crate::sampling::hash;
+use crate::vpl::Vpl;
+
+/// Error of the coarse cut.
+const EPSILON: f32 = 0.3;
+
+/// Share of a cluster's bound that counts as its light where its representative gives less.
+const DOUBT: f32 = 0.3;
+
+/// Number of levels below a cluster at which its samples have their representatives.
+const LEVELS: u32 = 5;
+
+/// Mean number of samples of the points of a packet from which on a cut takes less time, and how many times as many at a
+/// point that reflects nothing besides are so rarely fewer that no coarse cut is made to find out.
+const MOST: f32 = 150.0;
+const TOO_MANY: f32 = 3.0;
+
+/// Numbers of samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Samples {
+    /// Number at a point that reflects nothing besides; at others it falls with the share that their light has of all.
+    pub whole: f32,
+    /// Minimum number.
+    pub least: f32,
+}
+
+/// Workspace for samples of cuts; one a thread, so that its buffers are allocated once.
+#[derive(Default)]
+pub struct SampledCut {
+    cut: PacketLightcut,
+    /// By cluster: luminance by which it is drawn, in each lane.
+    importance: Vec<F32x16>,
+    found: Vec<Sample>,
+    /// Work done so far.
+    pub counts: CutCounts,
+}
+
+/// A cut in which everything is seen.
+struct Unshadowed;
+
+impl PacketVisibility for Unshadowed {
+    fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &Node) -> u16 {
+        lanes
+    }
+}
+
+/// A sample whose virtual light is seen.
+#[derive(Clone, Copy)]
+struct Sample {
+    light: Rgb,
+    /// Inverse of the density, of samples of single lights that may be clamped; else infinite.
+    factor: f32,
+}
+
+/// Samples of one point whose rays are yet to be traced.
+#[derive(Default)]
+struct Pending {
+    rays: Rays16,
+    light: Vec3x16,
+    factors: F32x16,
+    count: usize,
+}
+
+impl Samples {
+    /// Numbers for points that have these `totals` of luminance to gather, by lane; `None` if a cut takes less time.
+    fn of(&self, receivers: &ReceiverPacket, totals: &F32x16) -> Option<F32x16> {
+        let mut numbers = [0.0; LANES];
+        for lane in lanes_in(receivers.valid) {
+            let share = totals[lane] / (totals[lane] + receivers.baseline[lane]);
+            let wanted = self.whole * share;
+            numbers[lane] = if wanted > self.least { wanted } else { self.least };
+        }
+        // False of infinite ones, too.
+        (numbers.iter().sum::<f32>() <= MOST * receivers.len() as f32).then_some(numbers)
+    }
+}
+
+impl SampledCut {
+    /// Gathers the light of all VPLs by `samples`, which depend on nothing but the cut and `seed`; `None` if a cut
+    /// takes less time. The number of clusters in a cut is that of samples.
+    pub fn gather<V: RayVisibility>(
+        &mut self,
+        transfer: &Transfer,
+        visibility: &V,
+        receivers: &ReceiverPacket,
+        (settings, samples): (&CutSettings, &Samples),
+        seed: u32,
+    ) -> Option<PacketSum> {
+        if !(samples.whole < TOO_MANY * MOST) {
+            return None;
+        }
+        let coarse = CutSettings { epsilon: EPSILON, ..*settings };
+        Pass::new(&mut self.cut, transfer, &Unshadowed, receivers, &coarse).run();
+        self.counts.bounds += std::mem::take(&mut self.cut.counts).bounds;
+        let totals = self.weigh(transfer);
+        let numbers = samples.of(receivers, &totals)?;
+        let mut sum = PacketSum::default();
+        for lane in lanes_in(receivers.valid) {
+            self.found.clear();
+            self.counts.cuts += 1;
+            if totals[lane] > 0.0 {
+                self.draw(
+                    transfer,
+                    visibility,
+                    (receivers, lane),
+                    totals[lane] / numbers[lane],
+                    hash(seed, lane as u32),
+                );
+            }
+            (sum.radiance[lane], sum.limits[lane]) = self.clamped(receivers.baseline[lane], settings.clamp);
+        }
+        Some(sum)
+    }
+
+    /// Sets the importance of the clusters of the cut; returns its sums.
+    fn weigh(&mut self, transfer: &Transfer) -> F32x16 {
+        self.importance.clear();
+        let mut totals = [0.0; LANES];
+        for (cluster, judgement) in self.cut.clusters.iter().zip(&self.cut.judgements) {
+            let node = &transfer.trees.nodes[cluster.node as usize];
+            let mut importance = luminances(node.intensity, &cluster.responses);
+            for l in 0..LANES {
+                let doubt = DOUBT * judgement.errors[l];
+                importance[l] = if doubt > importance[l] { doubt } else { importance[l] };
+                totals[l] += importance[l];
+            }
+            self.importance.push(importance);
+        }
+        totals
+    }
+
+    /// Finds the samples of a lane, one for each `step` of importance.
+    fn draw<V: RayVisibility>(
+        &mut self,
+        transfer: &Transfer,
+        visibility: &V,
+        (receivers, lane): (&ReceiverPacket, usize),
+        step: f32,
+        seed: u32,
+    ) {
+        let (trees, receiver) = (transfer.trees, receivers.get(lane));
+        let mut pending = Pending::default();
+        let (mut next, mut reached, mut number) = (step * unit(seed, 0), 0.0, 0);
+        for (cluster, importance) in self.cut.clusters.iter().zip(&self.importance) {
+            reached += importance[lane];
+            while next < reached {
+                next += step;
+                number += 1;
+                let of_cluster = importance[lane] / step;
+                let (node, density) = descend(&trees.nodes, cluster.node, unit(seed, number));
+                let (density, vpl) = (of_cluster * density, &trees.vpls[node.representative()]);
+                let response = transfer.unshadowed(receiver, vpl, node.kind());
+                if response == Rgb::ZERO {
+                    continue;
+                }
+                let ray = to_vpl(receiver.position(), receiver.geometric_normal(), vpl, node.kind());
+                let factor = if is_weak(node) { density.recip() } else { f32::INFINITY };
+                pending.rays.set(pending.count, &ray);
+                pending.light.set(pending.count, response * (node.intensity / density));
+                pending.factors[pending.count] = factor;
+                pending.count += 1;
+                if pending.count == LANES {
+                    pending.trace(visibility, &mut self.found, &mut self.counts);
+                }
+            }
+        }
+        pending.trace(visibility, &mut self.found, &mut self.counts);
+        self.counts.clusters += u64::from(number);
+    }
+
+    /// The sum of the samples found, in which no weak singularity has more than the share `clamp` of all light, and the
+    /// luminance of that share.
+    fn clamped(&mut self, baseline: f32, clamp: Option<f32>) -> (Rgb, f32) {
+        let limited = |limit: f32| -> Rgb {
+            let limited = |sample: &Sample| {
+                let (y, most) = (luminance(sample.light), limit * sample.factor);
+                if y > most { sample.light * (most / y) } else { sample.light }
+            };
+            self.found.iter().map(limited).sum()
+        };
+        let sum = limited(f32::INFINITY);
+        let total = luminance(sum);
+        self.counts.luminance += f64::from(total);
+        let Some(clamp) = clamp else { return (sum, f32::INFINITY) };
+        let frozen = frozen_luminance(total + baseline, MAX_STEPS, |frozen| {
+            luminance(limited(DOMINANT * frozen)) + baseline
+        });
+        let kept = limited(clamp * frozen);
+        self.counts.lost += f64::from(total - luminance(kept));
+        (kept, clamp * frozen)
+    }
+}
+
+impl Pending {
+    /// Traces the rays and keeps the samples that are seen.
+    fn trace<V: RayVisibility>(&mut self, visibility: &V, found: &mut Vec<Sample>, counts: &mut CutCounts) {
+        let count = std::mem::take(&mut self.count);
+        if count == 0 {
+            return;
+        }
+        counts.rays += count as u64;
+        counts.packets += 1;
+        for lane in lanes_in(visibility.arriving16(&self.rays, count, &mut self.light)) {
+            found.push(Sample { light: self.light.get(lane), factor: self.factors[lane] });
+        }
+    }
+}
+
+/// A descendant of a node, drawn by luminance, and its probability.
+fn descend(nodes: &[Node], node: u32, mut u: f32) -> (&Node, f32) {
+    let (mut at, mut density) = (&nodes[node as usize], 1.0);
+    for _ in 0..LEVELS {
+        let Some(left) = at.children() else { break };
+        let [a, b] = [left, left + 1].map(|child| &nodes[child as usize]);
+        let [of_a, of_b] = [a, b].map(|child| luminance(child.intensity));
+        let p = of_a / (of_a + of_b);
+        (at, u, density) =
+            if u < p { (a, u / p, density * p) } else { (b, (u - p) / (1.0 - p), density * (1.0 - p)) };
+    }
+    (at, density)
+}
+
+/// Number in [0, 1).
+fn unit(seed: u32, number: u32) -> f32 {
+    (hash(seed, number) >> 8) as f32 * (1.0 / (1 << 24) as f32)
+}

@@ -1,0 +1,112 @@
+//! Samples of cuts against all virtual lights.
+
+use super::*;
+use crate::light_tree::{Family, LightTrees};
+use crate::lightcut::fixtures::{Ball, Numbers, all_kinds, all_materials, profiles, random_receiver, room};
+use crate::lightcut::{Receiver, gather_all};
+use crate::material::Materials;
+use crate::math::Frame;
+use crate::progress::Control;
+use glam::Vec3;
+
+const SETTINGS: CutSettings = CutSettings { epsilon: 0.02, max_cut: usize::MAX, clamp: None, origin: None };
+const FEW: Samples = Samples { whole: 20.0, least: 4.0 };
+const BALL: Ball = Ball { centre: Vec3::splat(0.5), radius: 0.2 };
+
+/// Mean radiance of each lane over so many seeds, and the variance of that mean's luminance.
+fn mean(transfer: &Transfer, points: &ReceiverPacket, settings: &CutSettings, seeds: u32) -> Vec<(Rgb, f32)> {
+    let mut cut = SampledCut::default();
+    let mut sums = vec![(Rgb::ZERO, 0.0, 0.0); points.len()];
+    for seed in 0..seeds {
+        let found = cut.gather(transfer, &BALL, points, (settings, &FEW), seed).expect("few samples");
+        for ((sum, y, squares), radiance) in sums.iter_mut().zip(found.radiance) {
+            *sum += radiance;
+            *y += luminance(radiance);
+            *squares += luminance(radiance).powi(2);
+        }
+    }
+    let n = seeds as f32;
+    let of = |(sum, y, squares): (Rgb, f32, f32)| (sum / n, (squares / n - (y / n).powi(2)).max(0.0) / n);
+    sums.into_iter().map(of).collect()
+}
+
+#[test]
+fn samples_have_the_mean_of_all_virtual_lights() {
+    let scene = all_materials();
+    let materials = Materials::new(&scene);
+    let mut points = ReceiverPacket::new();
+    let (mut squares, mut count) = (0.0, 0);
+    for round in 0..8u32 {
+        let mut numbers = Numbers(round << 20);
+        let trees = LightTrees::build(
+            &all_kinds(60, 1.0, &mut numbers),
+            profiles(),
+            2.0,
+            Family::Divisive,
+            &Control::new(),
+        );
+        let transfer = Transfer::new(&trees, 2.0);
+        let receivers: Vec<Receiver> =
+            (0..16).map(|_| random_receiver(&materials, &scene, 1.0, &mut numbers)).collect();
+        points.set(receivers.iter().map(|receiver| receiver.with_baseline(numbers.next())));
+        for (lane, (mean, variance)) in mean(&transfer, &points, &SETTINGS, 1000).into_iter().enumerate() {
+            let exact = gather_all(&transfer, &BALL, &receivers[lane]);
+            let error = luminance(mean) - luminance(exact);
+            let tolerated = 1e-4 * luminance(exact);
+            assert!(
+                error.abs() <= 6.0 * variance.sqrt() + tolerated,
+                "{round} {lane}: {mean} for {exact} +- {}",
+                variance.sqrt()
+            );
+            squares += error * error / (variance + tolerated * tolerated).max(f32::MIN_POSITIVE);
+            count += 1;
+        }
+    }
+    let deviation = (squares / count as f32).sqrt();
+    assert!(deviation < 1.3, "{deviation} standard errors");
+}
+
+#[test]
+fn single_lights_give_no_more_than_their_share() {
+    let mut numbers = Numbers(3);
+    let trees =
+        LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let transfer = Transfer::new(&trees, 1.7);
+    let frame = Frame::from_normal(Vec3::Y);
+    let at = |i: usize| Vec3::new(0.1 + 0.05 * i as f32, 0.01, 0.3);
+    let mut points = ReceiverPacket::new();
+    points.set((0..16).map(|i| Receiver::irradiance(at(i), Vec3::Y, &frame)));
+    let clamped = CutSettings { clamp: Some(0.02), ..SETTINGS };
+    let mut cuts = PacketLightcut::new();
+    let expected = cuts.gather(&transfer, &BALL, &points, &CutSettings { epsilon: 0.002, ..clamped }).sum;
+    for (lane, (mean, variance)) in mean(&transfer, &points, &clamped, 500).into_iter().enumerate() {
+        let error = luminance(mean) / luminance(expected.radiance[lane]) - 1.0;
+        let tolerated = 0.03 + 4.0 * variance.sqrt() / luminance(mean);
+        assert!(error.abs() < tolerated, "{lane}: {error} of {tolerated}");
+    }
+}
+
+#[test]
+fn samples_are_as_many_as_the_light_is_worth() {
+    let mut numbers = Numbers(5);
+    let trees =
+        LightTrees::build(&[room(500, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let transfer = Transfer::new(&trees, 1.7);
+    let receiver = Receiver::irradiance(Vec3::new(0.3, 0.4, 0.2), Vec3::Y, &Frame::from_normal(Vec3::Y));
+    let total = luminance(gather_all(&transfer, &BALL, &receiver));
+    let mut cut = SampledCut::default();
+    let mut points = ReceiverPacket::new();
+    let mut number = |baseline: f32, whole: f32| {
+        points.set([receiver.with_baseline(baseline)]);
+        let samples = Samples { whole, least: 4.0 };
+        cut.counts = CutCounts::default();
+        cut.gather(&transfer, &BALL, &points, (&SETTINGS, &samples), 1).map(|_| cut.counts.clusters)
+    };
+    assert_eq!(number(0.0, 20.0), Some(20));
+    let shared = number(total, 100.0).expect("few");
+    assert!((40..90).contains(&shared), "{shared}");
+    assert!((4..=6).contains(&number(1000.0 * total, 100.0).expect("few")));
+    // Where a cut takes less time.
+    assert_eq!((number(0.0, 200.0), number(0.0, f32::INFINITY), number(0.0, f32::NAN)), (None, None, None));
+    assert!(number(10.0 * total, 200.0).is_some());
+}
