@@ -22,8 +22,8 @@ const CACHED: f64 = 0.56;
 const GUIDED: f64 = 0.82;
 /// Price of a shadow ray over that of a ray that is traced to the surface it meets, which is looked at.
 const SHADOW: f64 = 0.5;
-/// Relative variance of a pixel of the drawn light up to which points have cuts, the exponent by which their rays are
-/// fewer beyond, as ever more of them have samples of cuts, and the least share: .9 in a stairwell, .45 in a living room.
+/// Relative variance of a pixel's drawn light up to which points have cuts; exponent by which these take less time
+/// beyond, as ever more points have samples of cuts; least share: .9 in a stairwell, .45 in a living room.
 const CALM: f64 = 0.003;
 const BY_NOISE: f64 = -0.28;
 const LEAST_BY_NOISE: f64 = 0.45;

@@ -1,14 +1,14 @@
-//! Light of a packet's points by samples of a coarse cut, for pictures that have noise anyhow: it takes a fraction of the
-//! shadow rays of a cut, and what is left of its errors is noise, not a pattern.
+//! Light of a packet's points by samples of a coarse cut, for pictures that have noise anyhow: with a fraction of a
+//! cut's shadow rays, and errors that are noise, not a pattern.
 //!
 //! Paper: Yuksel, *Stochastic Lightcuts*, 2019: representatives are drawn anew for each point.
 //!
-//! A point draws clusters in proportion to what they give it unshadowed, or to what they might by their bounds, and goes
-//! down a few levels of the tree from there, by the members' intensities. The mean over all numbers is the light of all
-//! virtual lights, limited as in a cut, but for the fixed representatives of the nodes where it ends.
+//! A point draws clusters in proportion to what they give it unshadowed, or to what they might by their bounds, and
+//! goes down a few levels of the tree from there, by the members' intensities. The mean is the light of all virtual
+//! lights, limited as in a cut, but for the fixed representatives of the nodes where it ends.
 //!
-//! Deviations: clusters share a number of samples, instead of having one each, and the cut is that of sixteen points, in
-//! which all virtual lights count as seen.
+//! Deviations: clusters share a number of samples, instead of having one each, and the cut is that of sixteen points,
+//! in which all virtual lights count as seen.
 
 #[cfg(test)]
 mod tests;
@@ -32,8 +32,8 @@ const DOUBT: f32 = 0.3;
 /// Number of levels below a cluster at which its samples have their representatives.
 const LEVELS: u32 = 5;
 
-/// Mean number of samples of the points of a packet from which on a cut takes less time, and how many times as many at a
-/// point that reflects nothing besides are so rarely fewer that no coarse cut is made to find out.
+/// Mean number of samples of a packet's points from which on a cut takes less time, and how many times as many are
+/// wanted at points that reflect nothing besides if no coarse cut is made to find out.
 const MOST: f32 = 150.0;
 const TOO_MANY: f32 = 3.0;
 
@@ -58,9 +58,9 @@ pub struct SampledCut {
 }
 
 /// A cut in which everything is seen.
-struct Unshadowed;
+struct AllSeen;
 
-impl PacketVisibility for Unshadowed {
+impl PacketVisibility for AllSeen {
     fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &Node) -> u16 {
         lanes
     }
@@ -112,7 +112,7 @@ impl SampledCut {
             return None;
         }
         let coarse = CutSettings { epsilon: EPSILON, ..*settings };
-        Pass::new(&mut self.cut, transfer, &Unshadowed, receivers, &coarse).run();
+        Pass::new(&mut self.cut, transfer, &AllSeen, receivers, &coarse).run();
         self.counts.bounds += std::mem::take(&mut self.cut.counts).bounds;
         let totals = self.weigh(transfer);
         let numbers = samples.of(receivers, &totals)?;
