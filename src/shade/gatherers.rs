@@ -2,7 +2,8 @@
 //!
 //! Sixteen anchors spread over a patch share a cut; the points between them are shaded by the reconstruction
 //! cut made of it, in packets spread over the patch, so that neighbours leave different clusters to chance. A
-//! patch of few points has no other points than anchors, or cuts of their own for all.
+//! patch of few points has no other points than anchors, or cuts of their own for all; or samples of a cut, where few
+//! of them do.
 
 use super::patches::anchors;
 use super::{ShadeSettings, ShadingContext, ShadingTask};

@@ -29,8 +29,8 @@ use crate::world::World;
 /// Samples of a cut, at a point that is lit by it alone, times the relative error of a pixel's drawn light: the
 /// product of variance and time is least if they are in inverse proportion. And their minimum number.
 ///
-/// Measured (16 samples a pixel, denoised): the cuts of a living room take .45 of the time for .1 dB, those of a kitchen
-/// and a stairwell .5 and .8 for .01 dB; in calm light hardly any point has them.
+/// Measured (16 samples a pixel, denoised): the cuts of a living room take .45 of the time for .1 dB, those of a
+/// kitchen and a stairwell .5 and .8 for .01 dB; in calm light hardly any point has them.
 const SAMPLES_BY_NOISE: f32 = 17.0;
 const LEAST_SAMPLES: f32 = 4.0;
 
