@@ -33,7 +33,7 @@ const GIVEN_BACK: usize = 64 << 20;
 const TWICE: usize = 128 << 20;
 
 /// Maximum luminance known in a pixel that counts, so that sums stay finite.
-const MAX_KNOWN: f32 = 1e12;
+const MAX_KNOWN: f32 = 1e30;
 
 /// All that a window sees.
 pub struct EyePass<'w> {

@@ -7,7 +7,8 @@
 //! it from one VPL, and [`expected`] the expected error of a cluster. Four workspaces gather the light of
 //! all VPLs: [`Lightcut`] at a single point ([`single`]), [`PacketLightcut`] at up to sixteen neighbours,
 //! which share a cut ([`packet`]), and [`ReconstructionCut`] at the points between such neighbours
-//! ([`reconstruction`]); [`SampledCut`] takes some samples for each of up to sixteen points. `gather_all` is the exact sum that they approximate.
+//! ([`reconstruction`]); [`SampledCut`] takes some samples for each of up to sixteen points. `gather_all` is the
+//! exact sum that they approximate.
 
 mod clamp;
 mod coherence;
