@@ -65,7 +65,7 @@ impl Settings {
     /// Settings of the shading stage of a picture whose pixels have this relative variance.
     fn shading(&self, noise: f32) -> ShadeSettings {
         let samples = Samples { whole: SAMPLES / (self.cut.epsilon * noise.sqrt()), least: LEAST_SAMPLES };
-        let samples = (noise > 0.0).then_some(samples);
+        let samples = (noise > 0.0 && self.cache.share).then_some(samples);
         ShadeSettings { cut: self.cut, share: self.cache.share, samples, shadows: self.cache.shadows }
     }
 
