@@ -80,31 +80,8 @@ pub struct NearLight {
 impl Compensator {
     /// Adds the light that the anchors of a patch lack to their `sum` of the light of one origin or of both.
     /// Returns the light near the patch, unless there is so little that its other points need no
-    /// compensation.
+    /// compensation. With a `seed` the surfaces met are lit by samples, as their points then are.
     pub fn anchors(
-        &mut self,
-        c: &Compensation,
-        origin: Option<Origin>,
-        receivers: &ReceiverPacket,
-        sum: &mut PacketSum,
-    ) -> Option<NearLight> {
-        self.find(c, origin, receivers, sum, None)
-    }
-
-    /// The same for points that are lit by samples, as the surfaces are that their rays meet, and have no others
-    /// between them.
-    pub fn by_samples(
-        &mut self,
-        c: &Compensation,
-        origin: Option<Origin>,
-        receivers: &ReceiverPacket,
-        sum: &mut PacketSum,
-        seed: u32,
-    ) {
-        self.find(c, origin, receivers, sum, Some(seed));
-    }
-
-    fn find(
         &mut self,
         c: &Compensation,
         origin: Option<Origin>,

@@ -71,9 +71,9 @@ impl<'w> Tracer<'_, 'w> {
         let a_sample = (chains.rays + chains.shadow_rays) as f64 / sampled.max(1) as f64;
         let share = self.drawn.extra_samples.share(a_sample * f64::from(spp) * film);
         let choice = Choice::new(&squares.into_iter().zip(&values).map(filled).collect::<Vec<_>>(), share);
-        let Noise { all, by_light } = Noise::of(&values, &again, spp, choice.dark);
-        let light_samples = light_samples(by_light / all.max(f32::MIN_POSITIVE));
-        Some(Effort { choice: (share > 0.0).then_some(choice), light_samples, noise: all, chains })
+        let noise = Noise::of(&values, &again, spp, choice.dark);
+        let choice = (share > 0.0).then_some(choice);
+        Some(Effort { choice, light_samples: noise.light_samples(), noise: noise.all, chains })
     }
 
     /// Luminances that the first samples of groups of film pixels find, of all of them and of the first half, and the
@@ -127,12 +127,12 @@ impl Noise {
         }
         Noise { all: all / count.max(1.0), by_light: by_light / count.max(1.0) }
     }
-}
 
-/// The best number of light samples where they have that part of the variance.
-fn light_samples(part: f32) -> u32 {
-    let part = part.min(1.0);
-    (COST * part / (1.0 - part)).sqrt().clamp(1.0, MAX_LIGHT_SAMPLES).round() as u32
+    /// The best number of light samples.
+    fn light_samples(&self) -> u32 {
+        let part = (self.by_light / self.all.max(f32::MIN_POSITIVE)).min(1.0);
+        (COST * part / (1.0 - part)).sqrt().clamp(1.0, MAX_LIGHT_SAMPLES).round() as u32
+    }
 }
 
 #[cfg(test)]
@@ -141,8 +141,7 @@ mod tests {
     use crate::sampling::owen_sobol_2d;
 
     fn number(values: &Means, again: &Means, spp: u32) -> u32 {
-        let Noise { all, by_light } = Noise::of(values, again, spp, 0.08);
-        light_samples(by_light / all.max(f32::MIN_POSITIVE))
+        Noise::of(values, again, spp, 0.08).light_samples()
     }
 
     /// The best number for a thousand pixels of mean 1 whose light samples have that part of their noise.

@@ -23,10 +23,10 @@ const GUIDED: f64 = 0.82;
 /// Price of a shadow ray over that of a ray that is traced to the surface it meets, which is looked at.
 const SHADOW: f64 = 0.5;
 /// Relative variance of a pixel's drawn light up to which points have cuts; exponent by which these take less time
-/// beyond, as ever more points have samples of cuts; least share: .9 in a stairwell, .45 in a living room.
-const CALM: f64 = 0.003;
-const BY_NOISE: f64 = -0.28;
-const LEAST_BY_NOISE: f64 = 0.45;
+/// beyond, as ever more points have samples of cuts; least share: 1 in a stairwell, .55 in a living room and a nave.
+const CALM: f64 = 0.005;
+const BY_NOISE: f64 = -0.25;
+const LEAST_BY_NOISE: f64 = 0.55;
 /// Number of triangles of the smallest scenes.
 const FEW: f64 = 32.0;
 /// Price of a virtual light in the light pass and the tree, and its rays.

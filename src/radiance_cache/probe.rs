@@ -10,7 +10,7 @@
 
 use crate::embree::{Hits16, Rays16};
 use crate::math::{F32x16, Frame, LANES, Vec3x16, first_lanes, lanes_in};
-use crate::sampling::hash;
+use crate::sampling::{hash, unit};
 use crate::shadow;
 use crate::world::{SurfacePoint, World};
 use glam::Vec3;
@@ -48,7 +48,7 @@ impl Probes {
         let mut probes = Probes {
             frame: Frame::from_normal(normal),
             rings,
-            turn: (hash(seed, 0x9b05) >> 8) as f32 * (1.0 / 16_777_216.0),
+            turn: unit(hash(seed, 0x9b05)),
             direction: vec![Vec3::Z; cells],
             inverse: vec![0.0; cells],
             plane: vec![Vec3::ZERO; cells],

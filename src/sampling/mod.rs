@@ -5,7 +5,7 @@ mod sobol;
 mod warp;
 
 pub use packet::Samplers16;
-pub use sobol::{Sampler, hash, owen_sobol_2d};
+pub use sobol::{Sampler, hash, owen_sobol_2d, unit};
 pub use warp::{cosine_hemisphere, uniform_disk, uniform_sphere, uniform_triangle};
 
 /// Weight of a sample of density `a` against another technique of density `b` (Veach, β = 2).

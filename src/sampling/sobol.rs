@@ -59,7 +59,7 @@ fn sobol_second_reversed(mut x: u32) -> u32 {
 
 /// Maps 32 random bits to [0, 1), never 1.
 #[inline(always)]
-fn unit(bits: u32) -> f32 {
+pub fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 

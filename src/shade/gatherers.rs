@@ -29,7 +29,7 @@ const SAMPLES_SEED: u32 = 0x3d4d_51cb;
 pub struct Shaded {
     /// Radiance.
     pub radiance: Rgb,
-    /// Clusters in the cut that it was gathered from.
+    /// Clusters in the cut that it was gathered from; 0 if it was by samples.
     pub clusters: u32,
 }
 
@@ -97,7 +97,7 @@ impl<'w> Gatherers<'w> {
         let found = self.sampled.gather(&c.transfer, rays, &self.receivers, wanted, seed);
         let Some(mut sum) = found else { return false };
         if let Some(c) = &c.compensation {
-            self.compensator.by_samples(c, wanted.0.origin, &self.receivers, &mut sum, seed);
+            self.compensator.anchors(c, wanted.0.origin, &self.receivers, &mut sum, Some(seed));
         }
         report(patch.iter().copied(), &sum, 0, shaded);
         true
@@ -124,7 +124,7 @@ impl<'w> Gatherers<'w> {
         let near = c
             .compensation
             .as_ref()
-            .and_then(|c| Some((c, self.compensator.anchors(c, cut.origin, &self.receivers, sum)?)));
+            .and_then(|c| Some((c, self.compensator.anchors(c, cut.origin, &self.receivers, sum, None)?)));
         report(of(true), sum, clusters, shaded);
         let others: Vec<ShadingTask> = of(false).collect();
         if others.is_empty() {
@@ -163,7 +163,7 @@ impl<'w> Gatherers<'w> {
         }
         if let Some(c) = &c.compensation {
             self.receivers.set(tasks.iter().map(|task| task.receiver(points)));
-            self.compensator.anchors(c, cut.origin, &self.receivers, &mut sum);
+            self.compensator.anchors(c, cut.origin, &self.receivers, &mut sum, None);
         }
         for ((task, radiance), clusters) in tasks.iter().zip(sum.radiance).zip(clusters) {
             shaded(*task, Shaded { radiance, clusters });

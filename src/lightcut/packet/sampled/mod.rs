@@ -20,7 +20,7 @@ use crate::light_tree::Node;
 use crate::lightcut::clamp::{DOMINANT, MAX_STEPS, frozen_luminance, is_weak};
 use crate::lightcut::{CutCounts, CutSettings, PacketVisibility, RayVisibility, Transfer, to_vpl};
 use crate::math::{F32x16, LANES, Rgb, Vec3x16, lanes_in, luminance};
-use crate::sampling::hash;
+use crate::sampling::{hash, unit};
 use crate::vpl::Vpl;
 
 /// Error of the coarse cut.
@@ -84,7 +84,8 @@ struct Pending {
 }
 
 impl Samples {
-    /// Numbers for points that have these `totals` of luminance to gather, by lane; `None` if a cut takes less time.
+    /// Numbers for points that have these `totals` of luminance to gather, by lane; `None` if a cut takes less time, or
+    /// a total is not finite.
     fn of(&self, receivers: &ReceiverPacket, totals: &F32x16) -> Option<F32x16> {
         let mut numbers = [0.0; LANES];
         for lane in lanes_in(receivers.valid) {
@@ -92,8 +93,8 @@ impl Samples {
             let wanted = self.whole * share;
             numbers[lane] = if wanted > self.least { wanted } else { self.least };
         }
-        // False of infinite ones, too.
-        (numbers.iter().sum::<f32>() <= MOST * receivers.len() as f32).then_some(numbers)
+        let few = numbers.iter().sum::<f32>() <= MOST * receivers.len() as f32;
+        (few && totals.iter().all(|total| total.is_finite())).then_some(numbers)
     }
 }
 
@@ -162,14 +163,14 @@ impl SampledCut {
     ) {
         let (trees, receiver) = (transfer.trees, receivers.get(lane));
         let mut pending = Pending::default();
-        let (mut next, mut reached, mut number) = (step * unit(seed, 0), 0.0, 0);
+        let (mut next, mut reached, mut number) = (step * unit(hash(seed, 0)), 0.0, 0);
         for (cluster, importance) in self.cut.clusters.iter().zip(&self.importance) {
             reached += importance[lane];
             while next < reached {
                 next += step;
                 number += 1;
                 let of_cluster = importance[lane] / step;
-                let (node, density) = descend(&trees.nodes, cluster.node, unit(seed, number));
+                let (node, density) = descend(&trees.nodes, cluster.node, unit(hash(seed, number)));
                 let (density, vpl) = (of_cluster * density, &trees.vpls[node.representative()]);
                 let response = transfer.unshadowed(receiver, vpl, node.kind());
                 if response == Rgb::ZERO {
@@ -240,9 +241,4 @@ fn descend(nodes: &[Node], node: u32, mut u: f32) -> (&Node, f32) {
             if u < p { (a, u / p, density * p) } else { (b, (u - p) / (1.0 - p), density * (1.0 - p)) };
     }
     (at, density)
-}
-
-/// Number in [0, 1).
-fn unit(seed: u32, number: u32) -> f32 {
-    (hash(seed, number) >> 8) as f32 * (1.0 / (1 << 24) as f32)
 }

@@ -79,6 +79,12 @@ fn single_lights_give_no_more_than_their_share() {
     let clamped = CutSettings { clamp: Some(0.02), ..SETTINGS };
     let mut cuts = PacketLightcut::new();
     let expected = cuts.gather(&transfer, &BALL, &points, &CutSettings { epsilon: 0.002, ..clamped }).sum;
+    let lost = |lane: usize| {
+        let all = gather_all(&transfer, &BALL, points.get(lane));
+        1.0 - luminance(expected.radiance[lane]) / luminance(all)
+    };
+    let most_lost = (0..16).map(lost).fold(0.0, f32::max);
+    assert!(most_lost > 0.2, "{most_lost}");
     for (lane, (mean, variance)) in mean(&transfer, &points, &clamped, 500).into_iter().enumerate() {
         let error = luminance(mean) / luminance(expected.radiance[lane]) - 1.0;
         let tolerated = 0.03 + 4.0 * variance.sqrt() / luminance(mean);
