@@ -11,14 +11,15 @@
 //! cut would clamp, since nodes above leaves are not.
 //!
 //! Deviations: clusters share a number of samples, instead of having one each, and the cut is that of sixteen points,
-//! in which all virtual lights count as seen.
+//! in which all virtual lights count as seen. Rays of all points to a cluster are traced together, since they are
+//! alike.
 
 #[cfg(test)]
 mod tests;
 
 use super::refine::Pass;
 use super::{PacketLightcut, PacketSum, ReceiverPacket, luminances};
-use crate::embree::Rays16;
+use crate::embree::{Ray, Rays16};
 use crate::light_tree::Node;
 use crate::lightcut::clamp::{DOMINANT, MAX_STEPS, frozen_luminance, is_weak};
 use crate::lightcut::{CutCounts, CutSettings, PacketVisibility, RayVisibility, Transfer, to_vpl};
@@ -55,7 +56,8 @@ pub struct SampledCut {
     cut: PacketLightcut,
     /// By cluster: luminance by which it is drawn, in each lane.
     importance: Vec<F32x16>,
-    found: Vec<Sample>,
+    /// By lane: samples whose virtual lights are seen.
+    found: [Vec<Sample>; LANES],
     /// Work done so far.
     pub counts: CutCounts,
 }
@@ -77,13 +79,28 @@ struct Sample {
     factor: f32,
 }
 
-/// Samples of one point whose rays are yet to be traced.
+/// Samples of points whose rays are yet to be traced.
 #[derive(Default)]
 struct Pending {
     rays: Rays16,
     light: Vec3x16,
     factors: F32x16,
+    /// Lanes of the points.
+    points: [u8; LANES],
     count: usize,
+}
+
+/// Where the samples of a point are, on a line along which clusters follow one another by their importance.
+#[derive(Clone, Copy, Default)]
+struct Progress {
+    /// Place of the next sample, and the distance between samples.
+    next: f32,
+    step: f32,
+    /// End of the clusters so far.
+    reached: f32,
+    /// Number of samples so far.
+    number: u32,
+    seed: u32,
 }
 
 impl Samples {
@@ -116,24 +133,23 @@ impl SampledCut {
             return None;
         }
         let coarse = CutSettings { epsilon: EPSILON, ..*settings };
-        Pass::new(&mut self.cut, transfer, &AllSeen, receivers, &coarse).run();
+        let capped = Pass::new(&mut self.cut, transfer, &AllSeen, receivers, &coarse).run();
         self.counts.bounds += std::mem::take(&mut self.cut.counts).bounds;
         let totals = self.weigh(transfer);
         let numbers = samples.of(receivers, &totals)?;
+        self.counts.capped += receivers.len() as u64 * u64::from(capped);
+        self.counts.cuts += receivers.len() as u64;
+        let mut progress = [Progress::default(); LANES];
+        for lane in lanes_in(receivers.valid) {
+            self.found[lane].clear();
+            let (step, seed) = (totals[lane] / numbers[lane], hash(seed, lane as u32));
+            progress[lane] = Progress { next: step * unit(hash(seed, 0)), step, seed, ..Progress::default() };
+        }
+        self.draw(transfer, visibility, receivers, &mut progress);
         let mut sum = PacketSum::default();
         for lane in lanes_in(receivers.valid) {
-            self.found.clear();
-            self.counts.cuts += 1;
-            if totals[lane] > 0.0 {
-                self.draw(
-                    transfer,
-                    visibility,
-                    (receivers, lane),
-                    totals[lane] / numbers[lane],
-                    hash(seed, lane as u32),
-                );
-            }
-            (sum.radiance[lane], sum.limits[lane]) = self.clamped(receivers.baseline[lane], settings.clamp);
+            (sum.radiance[lane], sum.limits[lane]) =
+                self.clamped(lane, receivers.baseline[lane], settings.clamp);
         }
         Some(sum)
     }
@@ -155,54 +171,58 @@ impl SampledCut {
         totals
     }
 
-    /// Finds the samples of a lane, one for each `step` of importance.
+    /// Finds the samples of all lanes, one for each step of importance.
     fn draw<V: RayVisibility>(
         &mut self,
         transfer: &Transfer,
         visibility: &V,
-        (receivers, lane): (&ReceiverPacket, usize),
-        step: f32,
-        seed: u32,
+        receivers: &ReceiverPacket,
+        progress: &mut [Progress; LANES],
     ) {
-        let (trees, receiver) = (transfer.trees, receivers.get(lane));
+        let trees = transfer.trees;
+        // A total that is too small to be divided gives no light.
+        let lanes =
+            lanes_in(receivers.valid).filter(|lane| progress[*lane].step > 0.0).fold(0, |l, i| l | 1 << i);
         let mut pending = Pending::default();
-        let (mut next, mut reached, mut number) = (step * unit(hash(seed, 0)), 0.0, 0);
         for (cluster, importance) in self.cut.clusters.iter().zip(&self.importance) {
-            reached += importance[lane];
-            while next < reached {
-                next += step;
-                number += 1;
-                let of_cluster = importance[lane] / step;
-                let (node, density) = descend(&trees.nodes, cluster.node, unit(hash(seed, number)));
-                let (density, vpl) = (of_cluster * density, &trees.vpls[node.representative()]);
-                let response = transfer.unshadowed(receiver, vpl, node.kind());
-                if response == Rgb::ZERO {
-                    continue;
-                }
-                let ray = to_vpl(receiver.position(), receiver.geometric_normal(), vpl, node.kind());
-                let factor = if is_weak(node) { density.recip() } else { f32::INFINITY };
-                pending.rays.set(pending.count, &ray);
-                pending.light.set(pending.count, response * (node.intensity / density));
-                pending.factors[pending.count] = factor;
-                pending.count += 1;
-                if pending.count == LANES {
-                    pending.trace(visibility, &mut self.found, &mut self.counts);
+            for lane in lanes_in(lanes) {
+                let progress = &mut progress[lane];
+                progress.reached += importance[lane];
+                while progress.next < progress.reached {
+                    progress.next += progress.step;
+                    progress.number += 1;
+                    let u = unit(hash(progress.seed, progress.number));
+                    let (node, density) = descend(&trees.nodes, cluster.node, u);
+                    let density = importance[lane] / progress.step * density;
+                    let (vpl, receiver) = (&trees.vpls[node.representative()], receivers.get(lane));
+                    let response = transfer.unshadowed(receiver, vpl, node.kind());
+                    if response == Rgb::ZERO {
+                        continue;
+                    }
+                    let ray = to_vpl(receiver.position(), receiver.geometric_normal(), vpl, node.kind());
+                    let factor = if is_weak(node) { density.recip() } else { f32::INFINITY };
+                    let sample = Sample { light: response * (node.intensity / density), factor };
+                    if pending.push(&ray, sample, lane) {
+                        pending.trace(visibility, &mut self.found, &mut self.counts);
+                    }
                 }
             }
         }
         pending.trace(visibility, &mut self.found, &mut self.counts);
-        self.counts.clusters += u64::from(number);
+        self.counts.clusters += progress.iter().map(|progress| u64::from(progress.number)).sum::<u64>();
     }
 
-    /// The sum of the samples found, in which no weak singularity has more than the share `clamp` of all light, and the
-    /// luminance of that share.
-    fn clamped(&mut self, baseline: f32, clamp: Option<f32>) -> (Rgb, f32) {
+    /// The sum of the samples found in a lane, in which no weak singularity has more than the share `clamp` of all
+    /// light, and the luminance of that share.
+    fn clamped(&mut self, lane: usize, baseline: f32, clamp: Option<f32>) -> (Rgb, f32) {
+        let found = &self.found[lane];
+        let is_limited = |sample: &Sample, limit: f32| luminance(sample.light) > limit * sample.factor;
         let limited = |limit: f32| -> Rgb {
-            let limited = |sample: &Sample| {
-                let (y, most) = (luminance(sample.light), limit * sample.factor);
-                if y > most { sample.light * (most / y) } else { sample.light }
+            let limited = |sample: &Sample| match is_limited(sample, limit) {
+                true => sample.light * (limit * sample.factor / luminance(sample.light)),
+                false => sample.light,
             };
-            self.found.iter().map(limited).sum()
+            found.iter().map(limited).sum()
         };
         let sum = limited(f32::INFINITY);
         let total = luminance(sum);
@@ -211,23 +231,42 @@ impl SampledCut {
         let frozen = frozen_luminance(total + baseline, MAX_STEPS, |frozen| {
             luminance(limited(DOMINANT * frozen)) + baseline
         });
-        let kept = limited(clamp * frozen);
+        let limit = clamp * frozen;
+        let kept = limited(limit);
+        self.counts.clamped += found.iter().filter(|sample| is_limited(sample, limit)).count() as u64;
         self.counts.lost += f64::from(total - luminance(kept));
-        (kept, clamp * frozen)
+        (kept, limit)
     }
 }
 
 impl Pending {
+    /// Adds a sample of the point in `lane`; true if there is no room for another.
+    #[inline]
+    fn push(&mut self, ray: &Ray, sample: Sample, lane: usize) -> bool {
+        self.rays.set(self.count, ray);
+        self.light.set(self.count, sample.light);
+        self.factors[self.count] = sample.factor;
+        self.points[self.count] = lane as u8;
+        self.count += 1;
+        self.count == LANES
+    }
+
     /// Traces the rays and keeps the samples that are seen.
-    fn trace<V: RayVisibility>(&mut self, visibility: &V, found: &mut Vec<Sample>, counts: &mut CutCounts) {
+    fn trace<V: RayVisibility>(
+        &mut self,
+        visibility: &V,
+        found: &mut [Vec<Sample>; LANES],
+        counts: &mut CutCounts,
+    ) {
         let count = std::mem::take(&mut self.count);
         if count == 0 {
             return;
         }
         counts.rays += count as u64;
         counts.packets += 1;
-        for lane in lanes_in(visibility.arriving16(&self.rays, count, &mut self.light)) {
-            found.push(Sample { light: self.light.get(lane), factor: self.factors[lane] });
+        for i in lanes_in(visibility.arriving16(&self.rays, count, &mut self.light)) {
+            let sample = Sample { light: self.light.get(i), factor: self.factors[i] };
+            found[usize::from(self.points[i])].push(sample);
         }
     }
 }
@@ -240,8 +279,13 @@ fn descend(nodes: &[Node], node: u32, mut u: f32) -> (&Node, f32) {
         let [a, b] = [left, left + 1].map(|child| &nodes[child as usize]);
         let [of_a, of_b] = [a, b].map(|child| luminance(child.intensity));
         let p = of_a / (of_a + of_b);
-        (at, u, density) =
-            if u < p { (a, u / p, density * p) } else { (b, (u - p) / (1.0 - p), density * (1.0 - p)) };
+        if u < p {
+            (at, u, density) = (a, u / p, density * p);
+        } else {
+            // Rounding must not make it 1, by which the other child would be drawn where it gives everything.
+            let rest = ((u - p) / (1.0 - p)).min(1.0 - f32::EPSILON);
+            (at, u, density) = (b, rest, density * (1.0 - p));
+        }
     }
     (at, density)
 }
