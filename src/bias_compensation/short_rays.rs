@@ -1,4 +1,7 @@
 //! Short rays from up to sixteen points at once, and the surfaces that they meet.
+//!
+//! Deviations: rays end at sheets of thin glass, which the shadow rays to virtual lights pass: light that was clamped of
+//! lights close behind a pane is not found again.
 
 use super::Compensation;
 use super::lobes::Lack;
@@ -95,14 +98,9 @@ pub fn trace(
         }
         // Alike as far as the points' frames are.
         for lane in lanes_in(c.world.accel.closest_hit16(&rays, valid, true, &mut hits)) {
-            let hit = Hit {
-                t: hits.t[lane],
-                u: hits.u[lane],
-                v: hits.v[lane],
-                geometry: hits.geometry[lane],
-                primitive: hits.primitive[lane],
-            };
-            if let Some(near) = weighed(c, &hit, frames[lane].to_world(local), local.z, &points[lane]) {
+            if let Some(near) =
+                weighed(c, &hits.get(lane), frames[lane].to_world(local), local.z, &points[lane])
+            {
                 met(lane, near);
             }
         }

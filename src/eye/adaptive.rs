@@ -16,7 +16,6 @@
 
 use crate::film::{Exposure, Image, Window};
 use crate::math::Rgb;
-use crate::sampling::owen_sobol_2d;
 
 /// Pixels along the edge of a square of the pilot.
 const SQUARE: u32 = 4;
@@ -75,13 +74,7 @@ impl Luminances {
 pub fn pilot(film: [u32; 2]) -> Vec<Window> {
     let pixels = u64::from(film[0]) * u64::from(film[1]);
     let squares = (pixels / PIXELS_A_SQUARE).clamp(1, MAX_SQUARES.into()) as u32;
-    let [width, height] = film.map(|length| length.min(SQUARE));
-    let square = |i| {
-        let at = owen_sobol_2d(i, 0);
-        let offset = |at: f32, film: u32, length: u32| (at * (film - length + 1) as f32) as u32;
-        Window { film, offset: [offset(at.x, film[0], width), offset(at.y, film[1], height)], width, height }
-    };
-    (0..squares).map(square).collect()
+    Window::spread(film, SQUARE, squares, 0).collect()
 }
 
 impl Choice {
@@ -131,6 +124,7 @@ fn more(contrast: f32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sampling::owen_sobol_2d;
 
     /// The film's luminances in a window.
     fn seen(window: Window, luminance: impl Fn([u32; 2]) -> f32) -> Luminances {

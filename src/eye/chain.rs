@@ -193,9 +193,8 @@ pub fn trace<'w>(
             let carried = throughput.max_element() * eta_sq;
             let limit = if branch.edges >= MANY_EDGES { MAX_SURVIVAL } else { 1.0 };
             let survival = (carried / ROULETTE_THROUGHPUT).min(limit);
-            // The comparisons also end branches whose throughput is not a number.
-            if carried.is_nan() || survival < 1.0 {
-                if !(sampler.next_1d() < survival) {
+            if survival < 1.0 {
+                if sampler.next_1d() >= survival {
                     continue;
                 }
                 throughput /= survival;

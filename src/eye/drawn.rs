@@ -22,7 +22,7 @@ use crate::math::{Rgb, luminance};
 use crate::parallel::{ShortRuns, Workspaces};
 use crate::paths::{Batch, Counts, LightSamples, Look, ScatteredEdges, Start, start};
 use crate::progress::Control;
-use crate::sampling::hash;
+use crate::sampling::{hash, unit};
 use crate::view::View;
 use crate::world::World;
 use rayon::prelude::*;
@@ -388,6 +388,6 @@ impl<'a, 'w> Tracer<'a, 'w> {
 
     /// Random number by which points of a film pixel are thinned whose samples start with `first`.
     fn draw(&self, [x, y]: [u32; 2], first: u32) -> f32 {
-        hash(hash(x, y), self.settings.seed ^ 0x7e11 ^ first) as f32 * (1.0 / 4_294_967_296.0)
+        unit(hash(hash(x, y), self.settings.seed ^ 0x7e11 ^ first))
     }
 }

@@ -31,7 +31,7 @@ pub use drawn::{DrawnLight, merged_points};
 pub use extra::ExtraSamples;
 pub use features::{EvenSurface, Feature, Features, SeenPixels, UnknownFeature};
 pub use guides::{FirstSurfaces, FullPaths, Guide, KeptGuide, KeptGuides};
-pub use pass::EyePass;
+pub use pass::{EyePass, TILE};
 pub use pilot::{ByPhotons, EyePilot};
 pub use points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySamples};
 pub use rays::{EyeRays, EyeSettings, VisibleSurfaces};

@@ -77,6 +77,11 @@ impl Image {
         self.pixels.iter().map(|pixel| f64::from(luminance(*pixel))).sum()
     }
 
+    /// True if all pixels are black.
+    pub fn is_black(&self) -> bool {
+        self.pixels.iter().all(|pixel| *pixel == Rgb::ZERO)
+    }
+
     /// Replaces every channel that is not finite by 0 and returns their number.
     pub fn remove_nonfinite(&mut self) -> u64 {
         remove_nonfinite(self.pixels.iter_mut().flat_map(|pixel| pixel.as_mut()))

@@ -1,5 +1,7 @@
 //! The part of the film that is rendered.
 
+use crate::sampling::owen_sobol_2d;
+
 /// A rectangle of pixels of a film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
@@ -17,6 +19,21 @@ impl Window {
     /// The whole film.
     pub fn whole(film: [u32; 2]) -> Window {
         Window { film, offset: [0, 0], width: film[0], height: film[1] }
+    }
+
+    /// `count` squares with edges of `length` pixels, shorter only on smaller films, spread evenly over a film.
+    pub fn spread(film: [u32; 2], length: u32, count: u32, seed: u32) -> impl Iterator<Item = Window> {
+        let [width, height] = film.map(|pixels| pixels.min(length));
+        (0..count).map(move |i| {
+            let at = owen_sobol_2d(i, seed);
+            let offset = |at: f32, film: u32, length: u32| (at * (film - length + 1) as f32) as u32;
+            Window {
+                film,
+                offset: [offset(at.x, film[0], width), offset(at.y, film[1], height)],
+                width,
+                height,
+            }
+        })
     }
 
     /// Number of pixels rendered.

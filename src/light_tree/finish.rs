@@ -133,13 +133,10 @@ impl Finisher<'_> {
             let cos = r.normal().dot(axis);
             if cos < least { cos } else { least }
         });
-        node.axis = axis;
-        node.cos_beta = (cos_beta - COSINE_SLACK).max(-1.0);
-        node.sin_beta = (1.0 - node.cos_beta * node.cos_beta).sqrt();
-        if self.set.kind == VplKind::Lobed {
-            let lobe = |r: &Primitive| &self.profiles.lobes[self.set.vpls[r.index() as usize].lobe()];
-            node.sin_beta = members.iter().map(|r| lobe(r).width_sq()).fold(0.0, f32::max);
-        }
+        let lobe = |r: &Primitive| &self.profiles.lobes[self.set.vpls[r.index() as usize].lobe()];
+        let width_sq = || members.iter().map(|r| lobe(r).width_sq()).fold(0.0, f32::max);
+        let width_sq = (self.set.kind == VplKind::Lobed).then(width_sq);
+        node.set_cone(axis, (cos_beta - COSINE_SLACK).max(-1.0), width_sq);
     }
 
     fn set_box(&self, node: &mut Node, bounds: &PrimitiveBounds) {

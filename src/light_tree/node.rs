@@ -24,8 +24,8 @@ pub struct Node {
     pub cos_beta: f32,
     /// The opposite corner.
     pub max: Vec3,
-    /// Sine of β; of lobed VPLs the greatest of [`crate::vpl::LobeProfile::width_sq`].
-    pub sin_beta: f32,
+    /// Sine of β, or of lobed VPLs, for which there is no other room, the greatest squared width.
+    sine_or_width: f32,
     /// Unit axis of the cone.
     pub axis: Vec3,
     /// Index of the left child, the right one follows; 0 for a leaf (no child is ever at 0).
@@ -50,12 +50,30 @@ impl Node {
             min: Vec3::ZERO,
             cos_beta: -1.0,
             max: Vec3::ZERO,
-            sin_beta: 0.0,
+            sine_or_width: 0.0,
             axis: Vec3::Z,
             children: 0,
             intensity,
             tag: kind << KIND_SHIFT | indirect | (representative & INDEX_MASK),
         }
+    }
+
+    /// Sets the half angle of the cone; of lobed VPLs also the greatest of [`crate::vpl::LobeProfile::width_sq`].
+    pub(super) fn set_cone(&mut self, axis: Vec3, cos_beta: f32, width_sq: Option<f32>) {
+        (self.axis, self.cos_beta) = (axis, cos_beta);
+        self.sine_or_width = width_sq.unwrap_or_else(|| sine(cos_beta));
+    }
+
+    /// Sine of β.
+    #[inline]
+    pub fn sin_beta(&self) -> f32 {
+        if self.kind() == VplKind::Lobed { sine(self.cos_beta) } else { self.sine_or_width }
+    }
+
+    /// Greatest squared width of the members' lobes; only of lobed VPLs.
+    #[inline]
+    pub fn width_sq(&self) -> f32 {
+        self.sine_or_width
     }
 
     pub(super) fn set_children(&mut self, left: u32) {
@@ -96,6 +114,11 @@ impl Node {
     pub fn origin(&self) -> Origin {
         if self.tag & INDIRECT != 0 { Origin::Indirect } else { Origin::Direct }
     }
+}
+
+#[inline]
+fn sine(cos: f32) -> f32 {
+    (1.0 - cos * cos).max(0.0).sqrt()
 }
 
 #[cfg(test)]

@@ -56,7 +56,7 @@ fn assert_valid(trees: &LightTrees, sets: &[VplSet]) {
     while let Some(id) = stack.pop() {
         visited += 1;
         let node = &trees.nodes[id as usize];
-        assert!(node.cos_beta >= -1.0 && node.cos_beta <= 1.0 && node.sin_beta >= 0.0);
+        assert!(node.cos_beta >= -1.0 && node.cos_beta <= 1.0 && node.sin_beta() >= 0.0);
         assert!((node.axis.length() - 1.0).abs() < 1e-5);
         let Some(left) = node.children() else {
             seen[node.representative()] += 1;
@@ -107,8 +107,8 @@ fn assert_cones_hold_members(trees: &LightTrees) {
             assert!(n.dot(node.axis) >= node.cos_beta, "{n} outside {:?}", node);
         }
         if let (VplKind::Lobed, Some(left)) = (node.kind(), node.children()) {
-            let width = |child: u32| trees.nodes[child as usize].sin_beta;
-            assert_eq!(node.sin_beta, width(left).max(width(left + 1)));
+            let width = |child: u32| trees.nodes[child as usize].width_sq();
+            assert_eq!(node.width_sq(), width(left).max(width(left + 1)));
         }
         normals
     }

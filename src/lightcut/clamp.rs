@@ -22,7 +22,7 @@ pub(super) const MAX_STEPS: u32 = 12;
 
 /// Indirect leaves, the only nodes that are clamped.
 #[inline]
-pub(super) fn is_weak(node: &Node) -> bool {
+pub fn is_weak(node: &Node) -> bool {
     node.is_leaf() && node.origin() == Origin::Indirect
 }
 

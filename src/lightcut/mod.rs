@@ -27,7 +27,7 @@ mod tests;
 mod transfer;
 mod visibility;
 
-pub use clamp::frozen_luminance;
+pub use clamp::{frozen_luminance, is_weak};
 pub use coherence::{CoherenceLimit, MIN_SHARED, group_coherent, group_compact};
 pub use packet::{PacketCluster, PacketCut, PacketLightcut, PacketSum, ReceiverPacket, SampledCut, Samples};
 pub use receiver::Receiver;

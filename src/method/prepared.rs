@@ -2,7 +2,7 @@
 
 use super::lights::{LightStore, Lights, LightsWanted};
 use super::{Sampling, counts};
-use crate::eye::{DrawnLight, EyePass, PointGeometry, PointSurface, ShadingPoints};
+use crate::eye::{DrawnLight, EyePass, PointGeometry, PointSurface, ShadingPoints, TILE};
 use crate::light_tree::Family;
 use crate::progress::Control;
 use crate::stats::{Stage, Stats};
@@ -41,7 +41,7 @@ impl<'w> Prepared<'w> {
         let rays = sampling.eye(&world.scene);
         let wanted = LightsWanted::new(world, sampling, wanted);
         let caustics = lights.photons.of_picture((world, view), rays, control, &mut stats);
-        control.begin(Stage::EyePass, view.window.tile_count(16) as u64);
+        control.begin(Stage::EyePass, view.window.tile_count(TILE) as u64);
         let eye = stats.time(Stage::EyePass, || {
             EyePass::of(world, view, rays, (drawn.as_ref(), caustics.as_ref()), control)
         });

@@ -167,7 +167,6 @@ impl Packet {
             self.eta_sq[i] *= samples.eta[i] * samples.eta[i];
             let survival = (throughput.max_element() * self.eta_sq[i]).sqrt().min(0.95);
             let survival = if depth >= ROULETTE_DEPTH { survival } else { 1.0 };
-            // The comparison also ends paths whose throughput is not a number.
             survives[i] = u32::from(roulette[i] < survival);
             survivals[i] = survival;
             self.throughput.set(i, throughput / survival);

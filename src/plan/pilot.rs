@@ -19,7 +19,6 @@ use crate::eye::ByPhotons;
 use crate::film::Window;
 use crate::method::{DrawnPixels, LightStore, Method, PILOT_SPP};
 use crate::progress::Control;
-use crate::sampling::owen_sobol_2d;
 use crate::view::View;
 use crate::world::World;
 
@@ -131,14 +130,7 @@ impl Pilot {
 fn squares(film: [u32; 2]) -> Vec<Vec<[u32; 2]>> {
     let pixels = u64::from(film[0]) * u64::from(film[1]);
     let count = (pixels / PIXELS_A_SQUARE).clamp(MIN_SQUARES, MAX_SQUARES) as u32;
-    let [width, height] = film.map(|length| length.min(SQUARE));
-    let square = |i| {
-        let at = owen_sobol_2d(i, SEED);
-        let offset = |at: f32, film: u32, length: u32| (at * (film - length + 1) as f32) as u32;
-        let offset = [offset(at.x, film[0], width), offset(at.y, film[1], height)];
-        Window { film, offset, width, height }.film_pixels().collect()
-    };
-    (0..count).map(square).collect()
+    Window::spread(film, SQUARE, count, SEED).map(|square| square.film_pixels().collect()).collect()
 }
 
 fn mean(values: impl AsRef<[f64]>) -> f64 {

@@ -219,7 +219,8 @@ fn hidden(
         let (lit, unshadowed) = transfer.unshadowed16(points, cluster.vpl, cluster.node.kind());
         let kept = cluster.kept(clamps, &unshadowed);
         let y = luminance(cluster.node.intensity);
-        for lane in lanes_in(lit).filter(|&lane| responses.x[lane] == 0.0) {
+        // A pane may take one colour of light that arrives.
+        for lane in lanes_in(lit).filter(|&lane| responses.get(lane) == Rgb::ZERO) {
             let distance = occluders.get(cluster.node, lane);
             layers[cluster.node.origin()].hidden(lane, y * unshadowed.x[lane] * kept[lane], distance);
         }

@@ -3,10 +3,10 @@
 use super::compensate::Clamps;
 use super::source::Candidate;
 use crate::light_tree::Node;
-use crate::lightcut::Transfer;
+use crate::lightcut::{Transfer, is_weak};
 use crate::material::Materials;
 use crate::math::{F32x16, Frame, LANES, Vec3x16, lanes_in};
-use crate::vpl::{LobeProfile, Origin, Vpl, VplKind};
+use crate::vpl::{LobeProfile, Vpl, VplKind};
 use glam::Vec3;
 
 /// Cluster of a cut, as its representative lights points.
@@ -31,8 +31,7 @@ impl<'t> LitCluster<'t> {
     /// Shares that are kept of its contributions, by the irradiance `responses` to its representative.
     #[inline]
     pub fn kept(&self, clamps: &Clamps, responses: &Vec3x16) -> F32x16 {
-        let weak = self.node.is_leaf() && self.node.origin() == Origin::Indirect;
-        if weak { clamps.kept(self.node.intensity, responses) } else { [1.0; LANES] }
+        if is_weak(self.node) { clamps.kept(self.node.intensity, responses) } else { [1.0; LANES] }
     }
 
     /// Lobe by which its representative radiates, if it does.

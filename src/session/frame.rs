@@ -3,7 +3,6 @@
 use crate::denoise::NOISY_VARIANCE;
 use crate::film::metrics::{rel_mse_of_variance, standard_error};
 use crate::film::{Film, Layer, Metadata};
-use crate::math::Rgb;
 use crate::method::{Method, Output};
 use crate::scene::Scene;
 use crate::stats::Stats;
@@ -48,7 +47,7 @@ pub enum Remark {
 impl Frame {
     /// True if the picture is black everywhere.
     pub fn is_black(&self) -> bool {
-        self.film.color.pixels.iter().all(|p| *p == Rgb::ZERO)
+        self.film.color.is_black()
     }
 }
 

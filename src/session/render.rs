@@ -7,7 +7,6 @@ use super::planned::{Made, Planning};
 use super::{Session, report};
 use crate::eye::DROPPED_BRANCHES;
 use crate::film::Image;
-use crate::math::Rgb;
 use crate::method::KeptRecords;
 use crate::method::Method;
 use crate::method::path::Begun;
@@ -115,9 +114,8 @@ impl Session {
         }
 
         let complete = output.complete;
-        let black = || output.color.pixels.iter().all(|pixel| *pixel == Rgb::ZERO);
         // Of a scene without light, people have been warned.
-        if complete && !self.world.scene.is_dark() && black() {
+        if complete && !self.world.scene.is_dark() && output.color.is_black() {
             remarks.push(Remark::Warning(frame::BLACK.to_owned()));
         }
         let nonfinite_samples = output.nonfinite;

@@ -14,7 +14,7 @@ use crate::lightcut::{
     ReceiverPacket, ReconstructionCut, SampledCut, Samples, Visibility,
 };
 use crate::math::{LANES, Rgb};
-use crate::sampling::hash;
+use crate::sampling::{hash, unit};
 use crate::vpl::Origin;
 use std::mem::take;
 
@@ -131,7 +131,7 @@ impl<'w> Gatherers<'w> {
             return;
         }
         self.reconstruction.set(&c.transfer, &self.receivers, &anchors_cut, cut);
-        let first = hash(patch[0].point, 0) as f32 * (1.0 / 4_294_967_296.0);
+        let first = unit(hash(patch[0].point, 0));
         let packets = others.len().div_ceil(LANES);
         for packet in 0..packets {
             let tasks = || others.iter().skip(packet).step_by(packets).copied();

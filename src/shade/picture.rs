@@ -31,12 +31,12 @@ impl Picture {
 
     /// Adds radiance that a shading point reflects, of one origin or of both.
     pub fn add(&mut self, eye: &EyePass, point: usize, origin: Option<Origin>, radiance: Rgb) {
-        if !radiance.is_finite() {
-            self.nonfinite += 1;
-            return;
-        }
         for seen in eye.visibility.of(point) {
             let light = seen.weight * radiance;
+            if !light.is_finite() {
+                self.nonfinite += 1;
+                continue;
+            }
             self.color.pixels[seen.pixel as usize] += light;
             if let Some(parts) = &mut self.parts {
                 let part = match origin {

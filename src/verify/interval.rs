@@ -7,7 +7,7 @@ use crate::sampling::hash;
 use serde::Serialize;
 
 /// Number of resamples.
-const RESAMPLES: u32 = 2000;
+pub const RESAMPLES: u32 = 2000;
 
 /// Standard normal quantile of 97.5 %.
 pub const NORMAL_975: f64 = 1.959963984540054;
@@ -35,19 +35,16 @@ impl Estimate {
     }
 }
 
-/// Draws, for each resample, the number of times that each of `count` items occurs.
-pub fn resamples(count: usize, seed: u32) -> Vec<Vec<u16>> {
-    (0..RESAMPLES)
-        .map(|r| {
-            let mut times = vec![0u16; count];
-            let stream = hash(seed, r);
-            for k in 0..count as u32 {
-                let chosen = (u64::from(hash(k, stream)) * count as u64) >> 32;
-                times[chosen as usize] += 1;
-            }
-            times
-        })
-        .collect()
+/// Draws for resample `r` the number of times that each of `count` items occurs. One resample at a time: all of those
+/// of a large picture would not fit into memory.
+pub fn resample(times: &mut Vec<u16>, count: usize, seed: u32, r: u32) {
+    times.clear();
+    times.resize(count, 0);
+    let stream = hash(seed, r);
+    for k in 0..count as u32 {
+        let chosen = (u64::from(hash(k, stream)) * count as u64) >> 32;
+        times[chosen as usize] += 1;
+    }
 }
 
 /// Computes the interval around `value`, given the estimates from resamples and the acceleration: a sixth of
@@ -126,7 +123,12 @@ mod tests {
                 times.iter().zip(&values).map(|(&t, v)| f64::from(t) * v).sum::<f64>() / f64::from(n)
             };
             let value = mean(&vec![1; n as usize]);
-            let again = resamples(n as usize, trial).iter().map(|times| mean(times)).collect();
+            let mut times = Vec::new();
+            let again = (0..RESAMPLES).map(|r| {
+                resample(&mut times, n as usize, trial, r);
+                mean(&times)
+            });
+            let again = again.collect();
             let skew = acceleration(values.iter().map(|v| v - value));
             covered += u32::from(bca(value, again, skew).covers(1.0));
         }

@@ -17,9 +17,11 @@
 //! of probability 1 varies by the noise of its means alone, and others by a mixture according to their
 //! probability; for the percentile all vary as if drawn at random.
 
-use super::interval::{Estimate, acceleration, bca, resamples};
+use super::interval::{Estimate, RESAMPLES, acceleration, bca, resample};
+use crate::film::metrics::REL_MSE_FLOOR;
 use crate::sampling::hash;
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Number of independent means at each pixel.
 pub const MEANS: usize = 16;
@@ -29,10 +31,6 @@ const PERCENTILE: f64 = 0.95;
 
 /// Maximum share of noise in the percentile's square for the extrapolation to zero noise to be trusted.
 const RESOLVED: f64 = 0.5;
-
-/// Share of the squared mean added to the denominator, as in [`crate::film::metrics::rel_mse`], so that dark
-/// pixels do not dominate.
-const FLOOR: f64 = 0.01;
 
 /// A pixel whose error is measured.
 #[derive(Clone, Copy, Debug)]
@@ -60,25 +58,21 @@ pub struct Errors {
     pub noise: f64,
 }
 
+/// Estimates by a resample of the pixels.
+struct Again {
+    difference: f64,
+    square: f64,
+    /// The percentile's square with noise, and extrapolated to none.
+    noisy: f64,
+    clean: f64,
+}
+
 /// Computes the errors of a picture whose mean over pixels and channels is `mean`.
 pub fn errors(pixels: &[Measured], mean: f64, seed: u32) -> Errors {
-    let again = resamples(pixels.len(), seed);
-    let interval = |values: &[(f64, f64)]| {
-        let value = mean_of(pixels, values);
-        let weights: f64 = pixels.iter().map(|p| p.weight).sum();
-        let influences =
-            pixels.iter().zip(values).map(|(p, v)| p.chance() * p.weight / weights * (v.0 - value));
-        let acceleration = acceleration(influences);
-        let found = (0u32..).zip(&again).map(|(r, times)| resampled(pixels, values, times, hash(seed, r)));
-        bca(value, found.collect(), acceleration)
-    };
-
     let differences: Vec<(f64, f64)> = pixels.iter().map(Measured::difference).collect();
     let difference = mean_of(pixels, &differences);
-    let bias = interval(&differences).map(|d| ratio(d, mean - d));
-    let floor = FLOOR * (mean - difference) * (mean - difference);
+    let floor = REL_MSE_FLOOR * (mean - difference) * (mean - difference);
     let squares: Vec<(f64, f64)> = pixels.iter().map(|p| p.relative_square(floor)).collect();
-    let rms = interval(&squares).map(|square| square.max(0.0).sqrt());
     let variances: Vec<(f64, f64)> = pixels.iter().map(|p| (p.relative_variance(floor), 0.0)).collect();
     let noise = mean_of(pixels, &variances).sqrt();
 
@@ -88,12 +82,32 @@ pub fn errors(pixels: &[Measured], mean: f64, seed: u32) -> Errors {
         let [all, even, odd] = [0, 1, 2].map(|part| ranked[part].percentile(pixels, times));
         (all, 2.0 * all - 0.5 * (even + odd))
     };
+    let again: Vec<Again> = (0..RESAMPLES)
+        .into_par_iter()
+        .map_init(Vec::new, |times, r| {
+            resample(times, pixels.len(), seed, r);
+            let seed = hash(seed, r);
+            let [difference, square] =
+                [&differences, &squares].map(|values| resampled(pixels, values, times, seed));
+            let (noisy, clean) = percentile(Some(times));
+            Again { difference, square, noisy, clean }
+        })
+        .collect();
+    let all = |value: fn(&Again) -> f64| again.iter().map(value).collect::<Vec<f64>>();
+    let interval = |values: &[(f64, f64)], again| {
+        let value = mean_of(pixels, values);
+        let weights: f64 = pixels.iter().map(|p| p.weight).sum();
+        let influences =
+            pixels.iter().zip(values).map(|(p, v)| p.chance() * p.weight / weights * (v.0 - value));
+        bca(value, again, acceleration(influences))
+    };
+    let bias = interval(&differences, all(|again| again.difference)).map(|d| ratio(d, mean - d));
+    let rms = interval(&squares, all(|again| again.square)).map(|square| square.max(0.0).sqrt());
     let (noisy, clean) = percentile(None);
-    let (noisy_again, clean_again) = again.iter().map(|times| percentile(Some(times))).unzip();
     let percentile_resolved = noisy - clean <= RESOLVED * noisy;
-    let mut square = bca(clean, clean_again, 0.0);
+    let mut square = bca(clean, all(|again| again.clean), 0.0);
     if !percentile_resolved {
-        (square.low, square.high) = (0.0, bca(noisy, noisy_again, 0.0).high.max(clean));
+        (square.low, square.high) = (0.0, bca(noisy, all(|again| again.noisy), 0.0).high.max(clean));
     }
     let percentile_95 = square.map(|square| square.max(0.0).sqrt());
     Errors { bias, rms, percentile_95, percentile_resolved, noise }

@@ -3,6 +3,7 @@
 use super::Settings;
 use super::measure::{MEANS, Measured};
 use super::picks::Pick;
+use crate::film::metrics::REL_MSE_FLOOR;
 use crate::film::{Image, sharpen};
 use crate::method::path::{Counts, Wanted, pixel_means};
 use crate::parallel::ShortRuns;
@@ -19,10 +20,6 @@ const PILOT: u32 = 4;
 
 /// Standard error to reach, relative to the pixel's radiance.
 const TARGET: f64 = 0.01;
-
-/// Share of the squared mean of the picture in the denominator, as in [`crate::film::metrics::rel_mse`], so
-/// that dark pixels need not reach a standard error relative to themselves.
-const FLOOR: f64 = 0.01;
 
 /// Number of pixels of one task.
 const TASK: usize = 16;
@@ -59,7 +56,8 @@ pub fn trace(
     let least = PILOT.next_multiple_of(spp);
     let sum: DVec3 = image.pixels.iter().map(|p| p.as_dvec3()).sum();
     let mean = sum.element_sum() / (3 * image.pixels.len().max(1)) as f64;
-    let floor = FLOOR * mean * mean;
+    // Dark pixels need not reach a standard error relative to themselves.
+    let floor = REL_MSE_FLOOR * mean * mean;
     let tracing = Tracing { world, view, image, settings, control };
     let task = |picks: &[Pick]| {
         let mut traced = Traced { pixels: Vec::new(), at_cap: 0, paths: 0, nonfinite: 0 };

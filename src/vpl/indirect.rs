@@ -3,7 +3,9 @@
 //! Paper: Keller, *Instant Radiosity*, 1997; Herzog et al. 2009, section 3: the first hit's reflected light
 //! is already indirect, and moderately glossy reflection counts as diffuse where light is deposited.
 //! Deviations: only what reflects little of the light, as plastics do, counts as diffuse. Metals have VPLs that radiate
-//! by their lobes: in a room of a metal of roughness .27, evenly spread light was up to 16 % too bright.
+//! by their lobes: in a room of a metal of roughness .27, evenly spread light was up to 16 % too bright. A limit on the
+//! edges of a path takes the receiver to be what the eye sees: behind mirrors and glass, light comes by up to as many
+//! edges more as are before it.
 
 use super::photons::{PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
 use super::profile::LobeProfile;

@@ -10,7 +10,7 @@ settings! {
     pub struct LightPassSettings in "Lightcuts" {
         /// Virtual point lights on area lights and directions of the environment, about.
         ///
-        /// Shared out among all area lights by power; each gets at least 256.
+        /// Shared out among all area lights by power; each gets at least 256, of more than 1024 fewer.
         direct: u32 = 4096 => [
             .named("direct_vpls").at_least(1.0).scaled(&FEWER).judged_by(JudgedBy::Light).with(&[("direct", "cuts")])
         ];

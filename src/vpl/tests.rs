@@ -107,6 +107,23 @@ fn a_direct_only_depth_makes_no_indirect_vpls() {
 }
 
 #[test]
+fn many_lamps_have_few_virtual_lights_each() {
+    for (lamps, most) in [(1000, 256_000), (5000, 1 << 18)] {
+        let mut scene = scene(camera(Vec3::ZERO, Vec3::Z, 0.5), [4, 4]);
+        let material = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+        for i in 0..lamps {
+            let mut lamp = quad(Vec3::new(i as f32, 3.0, 0.0), 0.1 * Vec3::X, 0.1 * Vec3::Z, material);
+            lamp.emission = Some(Emission { radiance: Rgb::ONE, texture: None, two_sided: false });
+            scene.meshes.push(lamp);
+        }
+        let settings = LightPassSettings { direct: 1, indirect: 0, ..LightPassSettings::default() };
+        let lights = light_pass(&world(scene), &settings, &[], u32::MAX, &Control::new());
+        let count: usize = lights.sets.iter().map(VplSet::len).sum();
+        assert!(count <= most && count > most / 2, "{lamps} lamps: {count}");
+    }
+}
+
+#[test]
 fn a_vpl_fills_a_quarter_of_a_cache_line() {
     assert_eq!((size_of::<Vpl>(), align_of::<Vpl>()), (16, 16));
 }

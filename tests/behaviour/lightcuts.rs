@@ -203,3 +203,14 @@ fn polished_metal_is_followed_from_the_eye() {
         assert!(error < 0.03, "α {alpha}: {found} against {expected}");
     }
 }
+
+#[test]
+fn very_many_eye_rays_are_averaged_in_parts() {
+    let world = floor_under(|scene| {
+        let intensity = Rgb::new(1.0, 2.0, 3.0);
+        scene.lights.push(DeltaLight::Point { position: Vec3::new(0.5, 1.0, 0.0), intensity });
+    });
+    let [few, many] =
+        [1024, 1500].map(|spp| mean(&lightcuts(&world, &Settings { spp, ..Settings::default() }).color));
+    assert!((few / many - Rgb::ONE).abs().max_element() < 1e-3, "{few} {many}");
+}

@@ -13,7 +13,9 @@ use super::{Image, ImageError, tone};
 use serde::Serialize;
 
 pub use flip::{PIXELS_PER_DEGREE, flip_map, magma};
-pub use pixelwise::{psnr, rel_mse, rel_mse_of_variance, relative_error_map, rmse, standard_error};
+pub use pixelwise::{
+    REL_MSE_FLOOR, psnr, rel_mse, rel_mse_of_variance, relative_error_map, rmse, standard_error,
+};
 pub use ztest::{BLOCK, SHARE_REQUIRED, SIGNIFICANCE, ZTest, z_test, z_test_blocks};
 
 /// All measures of one image against a reference.

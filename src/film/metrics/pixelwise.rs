@@ -6,7 +6,7 @@ use glam::DVec3;
 
 /// Share of the reference's squared mean that is added to the denominator, so that dark pixels do not
 /// dominate the relative error.
-const REL_MSE_FLOOR: f64 = 0.01;
+pub const REL_MSE_FLOOR: f64 = 0.01;
 
 /// Root mean square difference over pixels and channels.
 pub fn rmse(test: &Image, reference: &Image) -> f64 {

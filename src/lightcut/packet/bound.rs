@@ -77,7 +77,7 @@ impl Transfer<'_> {
         let &ClusterBox { local, half, rounding, .. } = cluster;
         let oriented = local && node.cos_beta > -1.0;
         let lobed = node.kind() == VplKind::Lobed;
-        let sin_beta = if lobed { sine(node.cos_beta) } else { node.sin_beta };
+        let (sin_beta, width_sq) = (node.sin_beta(), node.width_sq());
         let emitter = Frame::from_normal(-node.axis);
         let axes = [emitter.tangent, emitter.bitangent, emitter.normal];
         let half_along = |axis: Vec3| axis.abs().dot(half) + rounding;
@@ -95,7 +95,7 @@ impl Transfer<'_> {
             let turned = cos_theta * node.cos_beta + sin_theta * sin_beta + 1e-6;
             let turned = if cos_theta >= node.cos_beta { 1.0 } else { turned };
             let cos_y = if !oriented { 1.0 } else { positive(turned).min(1.0) };
-            let cos_y = if lobed { LobeShape::max_share(turned.min(1.0), node.sin_beta) } else { cos_y };
+            let cos_y = if lobed { LobeShape::max_share(turned.min(1.0), width_sq) } else { cos_y };
 
             let gap =
                 [positive(c.x.abs() - half.x), positive(c.y.abs() - half.y), positive(c.z.abs() - half.z)];
@@ -108,7 +108,7 @@ impl Transfer<'_> {
                 at_centre: [
                     c.x * normals.x[l] + c.y * normals.y[l] + c.z * normals.z[l],
                     match (lobed, oriented) {
-                        (true, _) => lobe_at(centre_z, centre_sq.sqrt(), node.sin_beta),
+                        (true, _) => lobe_at(centre_z, centre_sq.sqrt(), width_sq),
                         (_, true) => centre_z,
                         _ => centre_sq.sqrt(),
                     },
@@ -120,10 +120,6 @@ impl Transfer<'_> {
         }
         all
     }
-}
-
-fn sine(cos: f32) -> f32 {
-    positive(1.0 - cos * cos).sqrt()
 }
 
 /// A cluster's geometry term for each receiver.

@@ -42,11 +42,10 @@ impl Transfer<'_> {
             let turned = offsets.turned(&Frame::from_normal(-node.axis));
             let (most, z) = (turned.max_cos_z(), turned.centre().z);
             if lobed {
-                let sin_beta = (1.0 - node.cos_beta * node.cos_beta).max(0.0).sqrt();
-                let cos = max_cos_to_cone_signed(most, node.cos_beta, sin_beta);
-                (LobeShape::max_share(cos, node.sin_beta), lobe_at(z, centre_sq.sqrt(), node.sin_beta))
+                let cos = max_cos_to_cone_signed(most, node.cos_beta, node.sin_beta());
+                (LobeShape::max_share(cos, node.width_sq()), lobe_at(z, centre_sq.sqrt(), node.width_sq()))
             } else {
-                (max_cos_to_cone(most, node.cos_beta, node.sin_beta), z)
+                (max_cos_to_cone(most, node.cos_beta, node.sin_beta()), z)
             }
         };
         let share = expected_share(Outlook {

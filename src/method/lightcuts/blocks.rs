@@ -8,11 +8,14 @@ use crate::math::Rgb;
 use crate::progress::Control;
 use crate::shade::{Shader, ShadingCounts};
 use std::mem::take;
+use std::ops::Range;
 
 /// Pixels along the edge of a tile, within which occluders are remembered.
 pub const TILE: u32 = 16;
 /// Pixels along the edge of a block, within which eye samples may share a cut.
 const BLOCK: u32 = 4;
+/// Maximum number of eye rays of a pixel that are held at a time: all of very many would not fit into memory.
+const MOST_RAYS: u32 = 1024;
 
 /// The tiles of a frame.
 pub struct Tiles<'a, 'w> {
@@ -65,18 +68,40 @@ impl<'w> Tiles<'_, 'w> {
         seen: &mut VisibleSurfaces<'w>,
         tile: &mut Tile,
     ) {
-        let pixels = || (top..top + BLOCK).flat_map(move |y| (left..left + BLOCK).map(move |x| [x, y]));
-        if pixels().all(|pixel| self.window.index(pixel).is_none()) {
+        if pixels_of([left, top]).all(|pixel| self.window.index(pixel).is_none()) {
             return;
         }
-        // Each ray counts as a pixel of its own until all its light is known.
-        seen.clear();
-        for (place, pixel) in pixels().enumerate().filter(|(_, pixel)| self.window.on_film(*pixel)) {
-            for sample in 0..self.spp {
-                self.rays.trace(pixel, sample, place as u32 * self.spp + sample, seen);
+        let mut sums = [(Rgb::ZERO, 0.0); (BLOCK * BLOCK) as usize];
+        for first in (0..self.spp).step_by(MOST_RAYS as usize) {
+            let samples = first..first + MOST_RAYS.min(self.spp - first);
+            tile.nonfinite += self.add_samples([left, top], samples, &mut sums, shader, seen);
+        }
+        for (pixel, (sum, clusters)) in pixels_of([left, top]).zip(sums) {
+            if let Some(index) = self.window.index(pixel) {
+                tile.pixels.push((index, sum / self.spp as f32, clusters / self.spp as f32));
             }
         }
-        let mut rays = vec![(Rgb::ZERO, 0.0); (BLOCK * BLOCK * self.spp) as usize];
+    }
+
+    /// Adds the radiance and the clusters of some eye rays of each pixel of a block; returns the number of rays whose
+    /// radiance is not finite.
+    fn add_samples(
+        &self,
+        corner: [u32; 2],
+        samples: Range<u32>,
+        sums: &mut [(Rgb, f32)],
+        shader: &mut Shader<'_, 'w>,
+        seen: &mut VisibleSurfaces<'w>,
+    ) -> u64 {
+        let count = samples.len() as u32;
+        // Each ray counts as a pixel of its own until all its light is known.
+        seen.clear();
+        for (place, pixel) in pixels_of(corner).enumerate().filter(|(_, pixel)| self.window.on_film(*pixel)) {
+            for (i, sample) in samples.clone().enumerate() {
+                self.rays.trace(pixel, sample, place as u32 * count + i as u32, seen);
+            }
+        }
+        let mut rays = vec![(Rgb::ZERO, 0.0); (BLOCK * BLOCK * count) as usize];
         for &(ray, emitted) in &seen.known {
             rays[ray as usize].0 = emitted;
         }
@@ -86,18 +111,22 @@ impl<'w> Tiles<'_, 'w> {
             *radiance += sample.weight * shaded.radiance;
             *clusters += shaded.clusters as f32;
         });
-        for (pixel, rays) in pixels().zip(rays.chunks(self.spp as usize)) {
-            let Some(index) = self.window.index(pixel) else { continue };
-            let (mut sum, mut clusters) = (Rgb::ZERO, 0.0);
+        let mut nonfinite = 0;
+        for ((sum, clusters), rays) in sums.iter_mut().zip(rays.chunks(count as usize)) {
             for (radiance, size) in rays {
-                clusters += size;
+                *clusters += size;
                 if radiance.is_finite() {
-                    sum += *radiance;
+                    *sum += *radiance;
                 } else {
-                    tile.nonfinite += 1;
+                    nonfinite += 1;
                 }
             }
-            tile.pixels.push((index, sum / self.spp as f32, clusters / self.spp as f32));
         }
+        nonfinite
     }
+}
+
+/// Pixels of the block whose first one is `corner`.
+fn pixels_of([left, top]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+    (top..top + BLOCK).flat_map(move |y| (left..left + BLOCK).map(move |x| [x, y]))
 }

@@ -102,7 +102,10 @@ impl Settings {
         let batches = Workspaces::new(Batch::default);
         stats.time(Stage::Render, || {
             for pass in 0..passes {
-                let end = ((pass + 1) * PASS).min(self.spp);
+                if control.is_cancelled() {
+                    break;
+                }
+                let end = (pass * PASS).saturating_add(PASS).min(self.spp);
                 tiles.par_iter_mut().one_by_one().enumerate().for_each(|(i, tile)| {
                     if !control.is_cancelled() {
                         let settings = Settings { guides: finds_guides, ..*self };

@@ -96,6 +96,37 @@ fn single_lights_give_no_more_than_their_share() {
 }
 
 #[test]
+fn light_too_faint_to_divide_among_samples_is_none() {
+    let mut numbers = Numbers(5);
+    let mut set = room(500, &mut numbers);
+    set.intensities.iter_mut().for_each(|intensity| *intensity *= 1e-46);
+    let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let transfer = Transfer::new(&trees, 1.7);
+    let receiver = Receiver::irradiance(Vec3::new(0.3, 0.4, 0.2), Vec3::Y, &Frame::from_normal(Vec3::Y));
+    let mut points = ReceiverPacket::new();
+    points.set([receiver]);
+    let samples = Samples { whole: 100.0, least: 4.0 };
+    let sum = SampledCut::default().gather(&transfer, &BALL, &points, (&SETTINGS, &samples), 1).expect("few");
+    assert!(luminance(sum.radiance[0]) < 1e-40, "{}", sum.radiance[0]);
+}
+
+#[test]
+fn what_is_drawn_stands_for_all_light() {
+    // A right child that has all but the last bits of the light, below one that has half of it.
+    let mut numbers = Numbers(9);
+    let mut set = room(4, &mut numbers);
+    for (intensity, y) in set.intensities.iter_mut().zip([1.0, 1e-30, 1.0, 1e-30]) {
+        *intensity = Rgb::splat(y);
+    }
+    let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    for u in [0.0, 0.25, 0.499_999_97, 0.5, 0.75, 0.999_999_94] {
+        let (node, density) = descend(&trees.nodes, trees.roots[0], u);
+        let of_all = luminance(node.intensity) / density;
+        assert!(node.is_leaf() && (of_all - 2.0).abs() < 1e-3, "{u}: {of_all}");
+    }
+}
+
+#[test]
 fn samples_are_as_many_as_the_light_is_worth() {
     let mut numbers = Numbers(5);
     let trees =
