@@ -118,6 +118,12 @@ impl Emitters {
         self.environment.is_some() || self.deltas.iter().any(is_directional)
     }
 
+    /// True if photons may come from emitters of which some give more of what the eye sees than others: where there are
+    /// several, or light from infinitely far, of which little may come in.
+    pub fn may_be_uneven(&self) -> bool {
+        self.areas.len() + self.deltas.len() + usize::from(self.environment.is_some()) > 1 || self.have_far()
+    }
+
     /// True if lamps are so many that it pays to learn which are seen from where.
     pub fn may_hide(&self) -> bool {
         self.areas.len() + self.deltas.len() >= MIN_HIDDEN

@@ -75,6 +75,18 @@ impl Emitters {
         self.sample_chosen(scene, at, (&chosen, &choice), u, wanted)
     }
 
+    /// [`Emitters::sample_direct`] in all lanes; returns the emitters, too.
+    pub fn sample_all(
+        &self,
+        scene: &Scene,
+        at: Receivers16,
+        u_choice: &F32x16,
+        u: &Vec2x16,
+    ) -> (U32x16, DirectSamples16) {
+        let (chosen, choice) = self.selection.sample(self, at, u_choice, u16::MAX);
+        (chosen, self.sample_chosen(scene, at, (&chosen, &choice), u, u16::MAX))
+    }
+
     /// [`Emitters::sample_direct`] of all emitters but the environment; returns the emitters, too.
     pub fn sample_lamps(
         &self,

@@ -58,7 +58,7 @@ impl<'w> Prepared<'w> {
 
 /// Points that photons from infinitely far are aimed for, if there is such light.
 fn seen(world: &World, eye: &EyePass) -> Vec<SurfacePoint> {
-    if !world.emitters.have_far() {
+    if !world.emitters.may_be_uneven() {
         return Vec::new();
     }
     let ShadingPoints { geometry, surfaces } = &eye.points;

@@ -2,6 +2,7 @@
 //!
 //! Units: flux in watts by channel, for a single path; to be divided by the number of paths.
 
+use super::contributions;
 use super::openings::Openings;
 use super::target::{LitSphere, Target};
 use crate::embree::Ray;
@@ -43,10 +44,12 @@ impl EmissionNumbers {
     }
 }
 
-/// The flux of a scene's emitters, sampled in proportion to power.
+/// The flux of a scene's emitters, sampled in proportion to power, or to what it brings to the eye.
 pub struct PhotonEmitter<'w> {
     world: &'w World,
     by_power: DiscreteDistribution,
+    /// By the light that they bring to the eye, where that is another.
+    by_worth: Option<DiscreteDistribution>,
     target: Target,
     lit: LitSphere,
     /// Aims that paths from infinitely far are drawn to.
@@ -56,7 +59,7 @@ pub struct PhotonEmitter<'w> {
 /// Aims of paths from infinitely far, which carry so much less flux.
 pub struct Aims<'w> {
     openings: Openings<'w>,
-    by_power: DiscreteDistribution,
+    by_paths: DiscreteDistribution,
     /// Share of the paths that begin infinitely far.
     share: f32,
 }
@@ -85,7 +88,14 @@ impl<'w> PhotonEmitter<'w> {
         let disk = PI * target.core * target.core;
         let environment = emitters.environment.iter().map(|e| 4.0 * PI * disk * e.mean_luminance());
         let by_power = DiscreteDistribution::new(areas.chain(deltas).chain(environment));
-        (!by_power.is_empty()).then_some(PhotonEmitter { world, by_power, target, lit, aims: None })
+        (!by_power.is_empty()).then_some(PhotonEmitter {
+            world,
+            by_power,
+            by_worth: None,
+            target,
+            lit,
+            aims: None,
+        })
     }
 
     /// Aims for photons whose light is wanted that points `seen` by the eye reflect; `None` if photons that go anywhere
@@ -95,14 +105,30 @@ impl<'w> PhotonEmitter<'w> {
         let far = |index: &usize| self.is_far(*index);
         let weight =
             |index: usize| self.by_power.probability(index) / if far(&index) { openings.gain } else { 1.0 };
-        let by_power = DiscreteDistribution::new((0..self.by_power.len()).map(weight));
-        let share = (0..by_power.len()).filter(far).map(|index| by_power.probability(index)).sum();
-        Some(Aims { openings, by_power, share })
+        let by_paths = DiscreteDistribution::new((0..self.by_power.len()).map(weight));
+        let share = (0..by_paths.len()).filter(far).map(|index| by_paths.probability(index)).sum();
+        Some(Aims { openings, by_paths, share })
     }
 
-    /// Emitters by the power that paths carry.
-    fn by_power(&self) -> &DiscreteDistribution {
-        self.aims.as_ref().map_or(&self.by_power, |aims| &aims.by_power)
+    /// Has as many paths begin at emitters as these are worth for the light of points `seen`, if that is not about as
+    /// many as their power says; returns the share of those that begin infinitely far if it is changed.
+    pub fn share_by_worth(&mut self, seen: &[SurfacePoint], seed: u32) -> Option<f32> {
+        let shares = contributions::shares(self.world, self.by_paths(), seen, seed)?;
+        let far = (0..shares.len())
+            .filter(|index| self.is_far(*index))
+            .map(|index| shares.probability(index))
+            .sum();
+        match &mut self.aims {
+            Some(aims) => (aims.by_paths, aims.share) = (shares, far),
+            None => self.by_worth = Some(shares),
+        }
+        Some(far)
+    }
+
+    /// Emitters by their numbers of paths.
+    fn by_paths(&self) -> &DiscreteDistribution {
+        let otherwise = self.by_worth.as_ref().unwrap_or(&self.by_power);
+        self.aims.as_ref().map_or(otherwise, |aims| &aims.by_paths)
     }
 
     /// True of emitters that are infinitely far.
@@ -129,7 +155,7 @@ impl<'w> PhotonEmitter<'w> {
 
     /// Samples the beginning of a path; `None` where an emitter is dark.
     pub fn sample(&self, sampler: &mut Sampler) -> Option<Emission> {
-        let (index, _) = self.by_power().sample(sampler.next_1d());
+        let (index, _) = self.by_paths().sample(sampler.next_1d());
         self.sample_of(index, &EmissionNumbers::new(sampler))
     }
 
@@ -140,7 +166,7 @@ impl<'w> PhotonEmitter<'w> {
             let emission = openings.sample(&self.target, u_side, u_place, u_direction)?;
             return Some(Emission { flux: emission.flux / *share, ..emission });
         }
-        let inv_probability = 1.0 / self.by_power().probability(index);
+        let inv_probability = 1.0 / self.by_paths().probability(index);
         let emitters = &self.world.emitters;
         if let Some(light) = emitters.areas.get(index) {
             let point = light.sample(u_place);

@@ -8,6 +8,7 @@
 //! irradiance on a facing surface (W/m²) of directional ones, a bound of the
 //! radiant intensity (W/sr) of lobed ones.
 
+mod contributions;
 mod direct;
 mod direct_indirect;
 mod emission;

@@ -115,9 +115,13 @@ pub fn trace_photons<T: Send>(
         _ => return (Vec::new(), counts),
     };
     let mut wanted = settings.photons as usize;
-    if let Some((gain, anywhere)) = aim(world, &mut source, settings, max_edges, &mut counts) {
+    let aimed = aim(world, &mut source, settings, max_edges, &mut counts);
+    let far = source.share_by_worth(settings.seen, settings.seed);
+    if let Some((gain, anywhere)) = aimed {
         counts.gain = gain;
-        wanted = (wanted as f32 * (ENOUGH / gain).max(LEAST_ANYWHERE / anywhere).min(1.0)) as usize;
+        let fewer = (ENOUGH / gain).max(LEAST_ANYWHERE / anywhere).min(1.0);
+        // Lamps are not aimed: where they count, they have as many as without aims.
+        wanted = (wanted as f32 * (1.0 - far.unwrap_or(1.0) * (1.0 - fewer))) as usize;
     }
     let seed = hash(settings.seed, 0x1d1d);
     let chunks_limit = (settings.photons.saturating_mul(PATHS_PER_PHOTON) / CHUNK).max(FIRST_WAVE);
