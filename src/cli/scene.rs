@@ -3,14 +3,18 @@
 use super::exit::Failure;
 use super::outputs::Inputs;
 use super::talk;
-use crate::scene::formats::{Level, LoadOptions, Loaded, Warning, load};
+use crate::scene::formats::{Level, LoadOptions, Loaded, SceneError, Warning, load};
 use crate::session::{OpenError, Session};
 use crate::stats::{Stage, Stats};
 use std::path::Path;
 
 /// Reads the scene at `path`.
 pub fn read(path: &Path, options: &LoadOptions) -> Result<Loaded, Failure> {
-    let loaded = load(path, options).map_err(Failure::input)?;
+    let loaded = load(path, options).map_err(|error| match error {
+        // The scene is right; the command line asks for what it has not.
+        SceneError::Camera { .. } => Failure::usage(error),
+        _ => Failure::input(error),
+    })?;
     for (warning, times) in grouped(&loaded.warnings) {
         let more = if times > 1 { format!(" (and {} times more)", times - 1) } else { String::new() };
         match warning.level {

@@ -54,7 +54,7 @@ impl WalkJob {
         let held = args.method.typed();
         let plan = PlanArgs { quality: args.quality, ..PlanArgs::default() };
         let goal = Goal {
-            method: plan.method(args.method.method()?, &held),
+            method: plan.method(args.method.method()?, &held)?,
             may_choose: false,
             wanted: Wanted::AsSet,
             features: args.picture.aov.into_iter().collect(),
@@ -63,9 +63,7 @@ impl WalkJob {
             keep_noisy: args.picture.denoise.keep_noisy,
             verify: None,
         };
-        if goal.keep_noisy && !goal.denoises() {
-            return Err(Failure::usage(anyhow!("--keep-noisy goes with --denoise")));
-        }
+        args.picture.denoise.check(goal.denoises())?;
         let defaults = KeepLimits::default();
         let bytes = args.memory_limit.map_or(defaults.bytes, |bytes| bytes.0);
         let job = WalkJob {
@@ -97,7 +95,7 @@ impl WalkJob {
         // Without a list the first frame speaks for all.
         for frame in listed.chain(job.frames.is_none().then_some(1)) {
             let (exr, png) = job.files(frame);
-            check_outputs(&exr, png.as_deref())?;
+            check_outputs(&exr, png.as_deref(), job.resume)?;
         }
         Ok(job)
     }
@@ -122,9 +120,9 @@ impl WalkJob {
         let frames = session.cameras.path.len();
         let scene = self.scene.display();
         if frames == 0 {
-            return Err(Failure::input(anyhow!(
+            return Err(Failure::usage(anyhow!(
                 "{scene} has no camera path: give a TOML scene keys in a table [camera.path], as in \
-                 scenes/apartment.toml, or render its still camera by `lightsplat render`"
+                 scenes/apartment.toml, or a glTF model an animated camera, or render the still camera by `lightsplat render`"
             )));
         }
         let Some(list) = &self.frames else { return Ok((1..=frames).collect()) };
@@ -213,6 +211,11 @@ impl PlannedChunk {
     /// Numbers of the frames that are there and stay.
     pub fn untouched(&self) -> impl Iterator<Item = usize> {
         self.frames.iter().zip(&self.done).filter(|(_, done)| **done).map(|(number, _)| *number)
+    }
+
+    /// Numbers of the frames whose files are to be written.
+    pub fn unwritten(&self) -> impl Iterator<Item = usize> {
+        self.frames.iter().zip(&self.done).filter(|(_, done)| !**done).map(|(number, _)| *number)
     }
 
     /// True if no frame of the chunk comes after this one.

@@ -45,6 +45,9 @@ pub enum Projection {
     Parallel,
 }
 
+/// Maximum number of pixels along a side of the film.
+pub const MAX_SIDE: u32 = 65536;
+
 /// Maximum number of frames in a camera path.
 pub const MAX_FRAMES: usize = 1 << 20;
 

@@ -25,7 +25,7 @@ mod texture;
 use glam::DVec3;
 use std::path::PathBuf;
 
-pub use camera::{Camera, Cameras, MAX_FRAMES, Projection};
+pub use camera::{Camera, Cameras, MAX_FRAMES, MAX_SIDE, Projection};
 pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap};
 pub use material::{
     Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Parameter, Reflectance, Roughness, Share,

@@ -34,6 +34,11 @@ impl Place {
         SceneError::Reference { place: self.clone(), kind, name: name.to_owned() }
     }
 
+    /// Returns the error of a camera asked for that is not in the scene.
+    pub(crate) fn no_camera(&self, name: &str, remedy: impl Into<String>) -> SceneError {
+        SceneError::Camera { place: self.clone(), name: name.to_owned(), remedy: remedy.into() }
+    }
+
     /// Returns the error of text that is not well-formed here.
     pub(crate) fn malformed(&self, message: impl Into<String>) -> SceneError {
         SceneError::Syntax { place: self.clone(), message: message.into() }
@@ -81,7 +86,7 @@ impl fmt::Display for Warning {
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// A file that cannot be opened or read.
-    #[error("{}: cannot read {}: {error}; check the name and its permissions", .from, .path.display())]
+    #[error("{}cannot read {}: {error}; check the name and its permissions", asker(.from, .path), .path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -121,6 +126,16 @@ pub enum SceneError {
         /// The name.
         name: String,
     },
+    /// A camera that was asked for, and is not in the scene.
+    #[error("{place}: there is no camera \"{name}\"; {remedy}")]
+    Camera {
+        /// The scene.
+        place: Place,
+        /// Number or name of the camera.
+        name: String,
+        /// Remedy, with the cameras that there are.
+        remedy: String,
+    },
     /// A mesh file with wrong contents.
     #[error("{place}: {what}; repair or re-export the mesh")]
     Mesh {
@@ -154,6 +169,11 @@ pub enum SceneError {
 
 /// Maximum number of errors that are told at once.
 const MAX_ERRORS: usize = 10;
+
+/// The place that asks for a file, where that is another file.
+fn asker(from: &Place, path: &Path) -> String {
+    if *from == Place::file(path) { String::new() } else { format!("{from}: ") }
+}
 
 fn lines(errors: &[SceneError]) -> String {
     errors.iter().map(SceneError::to_string).collect::<Vec<_>>().join("\n")

@@ -40,12 +40,13 @@ pub struct LoadOptions {
 }
 
 impl LoadOptions {
-    /// Rejects the choice of a camera, for formats with one, and parameters.
+    /// Rejects the choice of a camera but the first, for formats with one, and parameters.
     fn no_choice(&self, path: &Path) -> Result<(), SceneError> {
         self.no_parameters(path)?;
-        let Some(camera) = &self.camera else { return Ok(()) };
-        let remedy = "leave --camera out; it chooses among those of a Mitsuba scene (.xml) or a glTF model";
-        Err(Place::file(path).wrong(format!("there is no choice of a camera \"{camera}\""), remedy))
+        let Some(camera) = self.camera.as_deref().filter(|camera| *camera != "1") else { return Ok(()) };
+        let remedy = "a TOML scene has one: leave --camera out, which chooses among those of a Mitsuba scene (.xml) or a \
+                      glTF model";
+        Err(Place::file(path).no_camera(camera, remedy))
     }
 
     /// Rejects parameters, for formats without.

@@ -34,6 +34,14 @@ impl Viewer<'_> {
             }
         }
         let name = |at: usize| nodes[self.tree[at].node].name.as_deref().unwrap_or_default();
+        // Numbers and names, of cameras without name in the file the numbers alone.
+        let names = |cameras: &[(usize, &Camera)]| {
+            let named = |(i, (at, _)): (usize, &(usize, &Camera))| match name(*at) {
+                "" => (i + 1).to_string(),
+                name => format!("{} ({name})", i + 1),
+            };
+            cameras.iter().enumerate().map(named).collect::<Vec<_>>().join(", ")
+        };
         let found = match wanted {
             None => cameras.first(),
             Some(wanted) => {
@@ -42,13 +50,20 @@ impl Viewer<'_> {
                     .iter()
                     .find(|(at, camera)| name(*at) == wanted || camera.name.as_deref() == Some(wanted));
                 let found = by_name.or_else(|| cameras.get(number?));
-                let unknown = || self.document.place.undefined("camera", wanted);
+                let unknown = || {
+                    let remedy = match cameras.len() {
+                        0 => "the model has none: leave --camera out".to_owned(),
+                        _ => format!("--camera chooses among {}", names(&cameras)),
+                    };
+                    self.document.place.no_camera(wanted, remedy)
+                };
                 Some(found.ok_or_else(unknown)?)
             }
         };
         let Some(&(at, camera)) = found else { return Ok(None) };
         if cameras.len() > 1 && wanted.is_none() {
-            report.note("there is more than one camera; --camera chooses", "the first is used", name(at));
+            let what = format!("there are {} cameras: {}", cameras.len(), names(&cameras));
+            report.note(&what, "the first is used; choose another with --camera", "");
         }
         let Some(lens) = Lens::of(camera) else {
             return Err(self.document.wrong(format!("the camera {} has no lens", name(at))));

@@ -5,7 +5,7 @@ use super::tree::Object;
 use crate::math::{right_of, unit};
 use crate::scene::draft::{DraftCamera, Shot};
 use crate::scene::formats::error::{Place, SceneError};
-use crate::scene::{PixelFilter, Projection};
+use crate::scene::{MAX_SIDE, PixelFilter, Projection};
 use glam::{DMat4, DVec3};
 use std::rc::Rc;
 
@@ -116,9 +116,9 @@ impl Converter<'_> {
         };
         let size = |name: &str, default: i64| {
             let value = film.integer(name)?.unwrap_or(default);
-            let fits = u32::try_from(value).ok().filter(|v| (1..=65536).contains(v));
+            let fits = u32::try_from(value).ok().filter(|v| (1..=MAX_SIDE).contains(v));
             let what = format!("the film's {name} is {value}");
-            fits.ok_or_else(|| film.place.wrong(what, "give 1 to 65536"))
+            fits.ok_or_else(|| film.place.wrong(what, format!("give 1 to {MAX_SIDE}")))
         };
         let resolution = [size("width", 768)?, size("height", 576)?];
         let names = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
@@ -202,10 +202,7 @@ fn chosen<'a>(
     let wanted = wanted.unwrap_or("1");
     let number = wanted.parse().ok().and_then(|number: usize| sensors.get(number.checked_sub(1)?));
     let named = || sensors.iter().find(|sensor| sensor.id.as_deref() == Some(wanted));
-    let missing = || {
-        let what = format!("there is no sensor \"{wanted}\"");
-        place.wrong(what, format!("give --camera a number from 1, or one of {}", names(sensors)))
-    };
+    let missing = || place.no_camera(wanted, format!("--camera chooses among {}", names(sensors)));
     number.or_else(named).ok_or_else(missing)
 }
 

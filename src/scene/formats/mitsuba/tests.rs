@@ -223,7 +223,7 @@ fn parameters_and_sensors_are_chosen() {
     assert!(turned.hash != hash && near(fov(turned), 30.0));
     assert!(near(fov(read(Some("b"), &[]).unwrap()), 60.0) && near(fov(read(Some("2"), &[]).unwrap()), 60.0));
     for (camera, parameters, what) in
-        [(Some("4"), &[][..], "one of 1 (a)"), (Some("0"), &[], "\"0\""), (None, &[("fow", "1")], "$fow")]
+        [(Some("4"), &[][..], "among 1 (a)"), (Some("0"), &[], "\"0\""), (None, &[("fow", "1")], "$fow")]
     {
         let message = read(camera, parameters).unwrap_err().to_string();
         assert!(message.contains(what), "{message}");

@@ -7,7 +7,7 @@ use crate::math::{right_of, unit};
 use crate::scene::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::scene::formats::error::{Place, SceneError};
 use crate::scene::framing;
-use crate::scene::{MAX_FRAMES, PixelFilter, Projection};
+use crate::scene::{MAX_FRAMES, MAX_SIDE, PixelFilter, Projection};
 use glam::DVec3;
 use toml::Spanned;
 
@@ -57,9 +57,9 @@ impl Builder<'_> {
     fn resolution(&self, scene: &SceneText, default: [u32; 2]) -> Result<[u32; 2], SceneError> {
         let Some(text) = &scene.resolution else { return Ok(default) };
         let resolution = text.get_ref().0;
-        if resolution.iter().any(|r| !(1..=65536).contains(r)) {
+        if resolution.iter().any(|r| !(1..=MAX_SIDE).contains(r)) {
             let what = format!("the resolution is {} x {}", resolution[0], resolution[1]);
-            return Err(self.file.place(text.span()).wrong(what, "give 1 to 65536 each"));
+            return Err(self.file.place(text.span()).wrong(what, format!("give 1 to {MAX_SIDE} each")));
         }
         Ok(resolution)
     }

@@ -7,6 +7,7 @@ mod colour;
 mod light;
 mod material;
 mod mesh;
+mod mistake;
 mod mtl;
 mod path;
 mod sky;
@@ -27,10 +28,7 @@ use toml::Spanned;
 pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     let (text, hash) = read_text(path, &Place::file(path))?;
     let file = File { path, text: &text };
-    let scene: SceneText = toml::from_str(&text).map_err(|e| {
-        let place = e.span().map_or(Place::file(path), |span| file.place(span));
-        place.malformed(e.message())
-    })?;
+    let scene: SceneText = toml::from_str(&text).map_err(|error| mistake::of(file, &error))?;
     let mut builder = Builder::new(file, log, &scene)?;
     for material in &scene.material {
         let read = builder.material(material);

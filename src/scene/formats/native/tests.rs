@@ -113,7 +113,9 @@ fn every_kind_of_material_light_and_step_is_read() {
 #[test]
 fn what_is_wrong_is_named_with_its_line() {
     let cases = [
-        ("colour = 3\n".to_string(), 1, "unknown field"),
+        ("colour = 3\n".to_string(), 1, "correct the key"),
+        ("name = 3\n".to_string(), 1, "name: invalid type"),
+        ("[[material]]\nname = \"m\"\n".to_string(), 1, "missing field `kind`; add it"),
         (HEAD.replace("fov = 90", "fov = 190"), 2, "fov"),
         (HEAD.replace("target = [0, 0, 0]", "target = [0, 0, 5]"), 2, "looks nowhere"),
         (HEAD.replace("resolution = [8, 4]", "resolution = [8, 0]"), 1, "resolution"),
@@ -138,7 +140,7 @@ fn what_is_wrong_is_named_with_its_line() {
         (format!("{HEAD}[[light]]\nkind = \"point\"\n"), 6, "lacks intensity"),
         (format!("generator = \"castle\"\n{HEAD}"), 1, "\"castle\""),
         (format!("{HEAD}[environment]\nscale = 2\n"), 6, "environment"),
-        (format!("{HEAD}nonsense"), 6, "expected"),
+        (format!("{HEAD}nonsense"), 6, "correct the file's syntax"),
     ];
     for (text, line, what) in cases {
         let message = load_text(&text).unwrap_err();
@@ -155,7 +157,7 @@ fn numbers_without_a_sense_are_refused_with_their_line() {
     let sky = |line: &str| format!("{HEAD}[environment]\nfile = \"tile.png\"\n{line}\n");
     let cases = [
         // Surplus numbers.
-        (HEAD.replace("[8, 4]", "[8, 4, 2]"), 1, "length 2"),
+        (HEAD.replace("[8, 4]", "[8, 4, 2]"), 1, "resolution: expected an array of length 2"),
         (HEAD.replace("origin = [0, 0, 5]", "origin = [0, 0, 5, 1]"), 3, "length 3"),
         (step("{ translate = [1, 2, 3, 4] }"), 13, "length 3"),
         (step("{ matrix = [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1, 7] }"), 13, "length 16"),

@@ -200,7 +200,10 @@ fn a_camera_is_chosen_by_name_or_number() {
         let loaded = choose(name).unwrap();
         assert!((loaded.cameras.still.origin + loaded.scene.centre.as_vec3()).distance(Vec3::Y * 9.0) < 1e-5);
     }
-    assert!(choose("4").unwrap_err().to_string().contains("no camera called \"4\""));
+    let error = choose("4").unwrap_err().to_string();
+    assert!(error.contains("no camera \"4\"") && error.contains("2 (top), 3 (plan)"), "{error}");
+    let loaded = load(&path, &LoadOptions::default()).unwrap();
+    assert!(loaded.warnings.iter().any(|note| note.what.contains("3 cameras: 1")), "{:?}", loaded.warnings);
 }
 
 #[test]
