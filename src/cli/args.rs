@@ -5,12 +5,13 @@ use super::denoise_args::{DenoiseArgs, DenoiseFileArgs};
 use super::exit;
 use super::method_args::MethodArgs;
 use super::plan_args::{PlanArgs, Quality};
-use super::values::{Bytes, Crop, ProgressMode, Resolution, feature, q_scale};
+use super::values::{Bytes, Crop, ProgressMode, Resolution, counted, feature, q_scale};
 use crate::film::Exposure;
 use crate::scene::formats::LoadOptions;
 use crate::session::Feature;
 use crate::walk::{FileNames, FrameList, KeepLimits, Q_SCALE};
-use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use clap::{Arg, ArgGroup, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use std::ffi::OsString;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +22,20 @@ pub struct Cli {
     /// The command.
     #[command(subcommand)]
     pub command: Command,
+}
+
+impl Cli {
+    /// Parses `arguments`, the program's name first. Negative numbers are values, which are refused with the range of
+    /// those expected, and not options.
+    pub fn of(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Result<Cli, clap::Error> {
+        let negative = |arg: Arg| match arg.is_positional() || !arg.get_action().takes_values() {
+            true => arg,
+            false => arg.allow_negative_numbers(true),
+        };
+        let mut command = Cli::command().mut_subcommands(|command| command.mut_args(negative));
+        let matches = command.try_get_matches_from_mut(arguments)?;
+        Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+    }
 }
 
 /// The commands.
@@ -62,8 +77,8 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub picture: PictureArgs,
     /// Frame of the scene's camera path, counted from 1, instead of its still camera
-    #[arg(long)]
-    pub frame: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = counted)]
+    pub frame: Option<NonZeroUsize>,
     /// The tone-mapped picture.
     #[command(flatten)]
     pub png: PngArgs,
@@ -142,7 +157,7 @@ fn definition(text: &str) -> Result<(String, String), String> {
 #[derive(Debug, Args)]
 #[command(after_help = exit::HELP)]
 pub struct WalkArgs {
-    /// Scene with a camera path: native (.toml)
+    /// Scene with a camera path: native (.toml), or glTF (.glb, .gltf) with an animated camera
     pub scene: PathBuf,
     /// Pictures to write, with a place for the frame's number: f.####.exr or f.%04d.exr
     #[arg(short, long, value_name = "NAME.####.exr")]
@@ -152,13 +167,13 @@ pub struct WalkArgs {
     pub frames: Option<FrameList>,
     /// Begin without records at frames 1, N+1, 2N+1 and so on: chunks so long may be rendered by runs of their own, on
     /// many machines, with the same pictures [default: one chunk]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = counted)]
     pub chunk: Option<NonZeroUsize>,
     /// Most frames for which a record that lights nothing in view is kept
     #[arg(long, value_name = "FRAMES", default_value_t = KeepLimits::default().idle_frames)]
     pub idle_frames: u32,
     /// Most memory for records between frames, like 512M or 2G [default: 1G]; the longest unused go first
-    #[arg(long, value_name = "BYTES")]
+    #[arg(long, value_name = "BYTES", allow_hyphen_values = true)]
     pub memory_limit: Option<Bytes>,
     /// Draw the direct light of every pixel anew in every frame, instead of mixing in that of the frame before: errors
     /// are less, and a frame takes longer
@@ -172,7 +187,7 @@ pub struct WalkArgs {
     #[command(flatten)]
     pub method: MethodArgs,
     /// Settings by name; those that are typed are held
-    #[arg(long, value_enum, conflicts_with = "method")]
+    #[arg(long, value_enum)]
     pub quality: Option<Quality>,
     /// Options of pictures in general.
     #[command(flatten)]
@@ -298,6 +313,7 @@ pub enum VerifyAgainst {
 
 /// Options of `info`.
 #[derive(Debug, Args)]
+#[command(after_help = exit::HELP)]
 pub struct InfoArgs {
     /// Scene: native (.toml), Mitsuba (.xml) or glTF (.glb, .gltf)
     pub scene: PathBuf,
@@ -356,7 +372,6 @@ pub enum HeatmapError {
 mod tests {
     use super::*;
     use crate::verify;
-    use clap::CommandFactory;
 
     #[test]
     fn the_definition_is_consistent() {

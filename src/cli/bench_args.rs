@@ -1,5 +1,6 @@
 //! Options of `bench`.
 
+use super::exit;
 use super::values::Resolution;
 use crate::bench::{Benchmark, REGISTRY};
 use clap::Args;
@@ -82,7 +83,7 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 /// Returns the list of benchmarks for `--help`.
 fn list() -> String {
     let line = |b: &Benchmark| format!("  {:<18}{}\n", format!("{}{}", b.name, b.operand()), b.about);
-    format!("Benchmarks:\n{}", REGISTRY.iter().map(line).collect::<String>())
+    format!("Benchmarks:\n{}\n{}", REGISTRY.iter().map(line).collect::<String>(), exit::HELP)
 }
 
 #[cfg(test)]

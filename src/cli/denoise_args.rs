@@ -2,7 +2,9 @@
 
 use super::args::PngArgs;
 use super::exit;
+use super::exit::Failure;
 use crate::denoise::Quality;
+use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -53,6 +55,17 @@ impl DenoiseArgs {
     /// Quality of denoising; `None` if it is to go with the work on the picture.
     pub fn quality(&self) -> Option<Quality> {
         self.denoise_quality.map(Quality::from)
+    }
+
+    /// Refuses options that would have no effect on a picture that is not denoised.
+    pub fn check(&self, denoises: bool) -> Result<(), Failure> {
+        let idle = [("--keep-noisy", self.keep_noisy), ("--denoise-quality", self.denoise_quality.is_some())];
+        match idle.iter().find(|(_, is_there)| *is_there && !denoises) {
+            Some((option, _)) => {
+                Err(Failure::usage(anyhow!("{option} goes with --denoise; the picture is not denoised here")))
+            }
+            None => Ok(()),
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use std::path::Path;
 pub const SUCCESS: u8 = 0;
 /// Rendering failed.
 pub const RENDER: u8 = 1;
-/// The command line is wrong.
+/// The command line is wrong, or asks for what the scene has not.
 pub const USAGE: u8 = 2;
 /// A scene or picture that was given is invalid.
 pub const INPUT: u8 = 3;
@@ -22,9 +22,11 @@ pub const INTERRUPTED: u8 = 75;
 pub const ABORTED: u8 = 130;
 
 /// Text of `--help` about exit codes.
-pub const HELP: &str = "Exit codes: 0 done; 1 rendering failed; 2 wrong command line; 3 invalid scene or \
-picture; 4 the result cannot be written; 5 some pictures of a batch failed, the others are done; 75 stopped by a signal (a still is written as far as it is rendered, marked as partial; \
-frames of a walk are whole or not written): queue it again; 130 stopped at once by a second signal.";
+pub const HELP: &str = "Exit codes: 0 done; 1 rendering failed; 2 wrong command line, or one that asks for what the \
+scene has not; 3 invalid scene or picture; 4 the result cannot be written; 5 some pictures of a batch failed, the \
+others are done; 75 stopped by a signal (a still is written as far as it is rendered, marked as partial, and nothing \
+while planning or before its first pixel; frames of a walk are whole or not written): queue it again; 130 stopped at \
+once by a second signal.";
 
 /// Why a run ended without success.
 #[derive(Debug)]
@@ -62,6 +64,11 @@ impl Failure {
     /// The same, with the file that it is about.
     pub fn within(self, path: &Path) -> Failure {
         Failure { error: self.error.context(path.display().to_string()), ..self }
+    }
+
+    /// The same, with its place in a job file.
+    pub fn at(self, place: &str) -> Failure {
+        Failure { error: self.error.context(place.to_owned()), ..self }
     }
 
     /// Interrupted by a signal.

@@ -39,7 +39,6 @@ mod walk_job;
 mod walk_report;
 
 use args::{Cli, Command};
-use clap::Parser;
 use exit::Failure;
 use std::ffi::OsString;
 use std::io;
@@ -48,7 +47,7 @@ use std::process::ExitCode;
 
 /// Parses `arguments` (the program's name first), runs the command and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let cli = match Cli::try_parse_from(arguments) {
+    let cli = match Cli::of(arguments) {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version go to stdout with code 0, the rest to stderr with code 2.

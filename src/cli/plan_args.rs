@@ -41,25 +41,26 @@ impl Quality {
 #[command(next_help_heading = "Planned settings")]
 pub struct PlanArgs {
     /// Settings by name; those that are typed are held
-    #[arg(long, value_enum, conflicts_with_all = ["method", "time", "error"])]
+    #[arg(long, value_enum, conflicts_with_all = ["time", "error"])]
     pub quality: Option<Quality>,
     /// Plan the settings so that the whole run, from start to written files, takes about this long (10s,
     /// 500ms, 2m); only --verify comes on top. Settings that are typed are held. They depend on the machine;
     /// the run says which they are
-    #[arg(long, value_name = "TIME", value_parser = parse_time, conflicts_with = "error")]
+    #[arg(long, value_name = "TIME", value_parser = parse_time, allow_hyphen_values = true, conflicts_with = "error")]
     pub time: Option<f64>,
     /// Find the cheapest settings whose measured relative RMS error is this or less (like 2%), known in 95 of
     /// 100 cases; settings that are typed are held. --verify says how many pixels are measured [default:
     /// 1000]
-    #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
+    #[arg(long, value_name = "PERCENT", value_parser = parse_percent, allow_hyphen_values = true)]
     pub error: Option<f64>,
 }
 
 impl PlanArgs {
     /// Returns `method` with the settings of a quality, except those pinned in `held`.
-    pub fn method(&self, method: Method, held: &[&'static str]) -> Method {
-        let named = self.quality.zip(Ladder::new(method, held));
-        named.map_or(method, |(quality, ladder)| ladder.at(quality.height()))
+    pub fn method(&self, method: Method, held: &[&'static str]) -> Result<Method, Failure> {
+        let Some(quality) = self.quality else { return Ok(method) };
+        let ladder = Ladder::new(method, held).ok_or_else(|| unplannable("--quality has"))?;
+        Ok(ladder.at(quality.height()))
     }
 
     /// Returns the goal that settings of `method` are planned for, except those pinned in `held`;
@@ -78,13 +79,17 @@ impl PlanArgs {
             (None, None) => return Ok(Wanted::AsSet),
         };
         if method.ladder().is_empty() {
-            let planned = Method::all().filter(|method| !method.ladder().is_empty());
-            let planned: Vec<_> = planned.map(|method| method.name()).collect();
-            let planned = planned.join(", ");
-            return Err(Failure::usage(anyhow!("--time and --error plan settings of --method {planned}")));
+            return Err(unplannable("--time and --error plan"));
         }
         Ok(wanted)
     }
+}
+
+/// Error of a method without a scale of settings, with those that have one.
+fn unplannable(options: &str) -> Failure {
+    let planned = Method::all().filter(|method| !method.ladder().is_empty());
+    let planned: Vec<_> = planned.map(|method| method.name()).collect();
+    Failure::usage(anyhow!("{options} settings of --method {}", planned.join(", ")))
 }
 
 /// Seconds.

@@ -1,8 +1,10 @@
 //! Values that options may have.
 
+use crate::scene::MAX_SIDE;
 use crate::session::Feature;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::num::NonZeroUsize;
 use std::str::FromStr;
 
 /// Ways of telling progress.
@@ -23,6 +25,11 @@ pub fn feature() -> impl TypedValueParser<Value = Feature> {
     PossibleValuesParser::new(Feature::ALL.map(Feature::name)).try_map(|name| name.parse::<Feature>())
 }
 
+/// A number of things, or of one among them.
+pub fn counted(text: &str) -> Result<NonZeroUsize, String> {
+    text.parse().map_err(|_| "expected a whole number, 1 or more".to_owned())
+}
+
 /// A scale of quantisation.
 pub fn q_scale(text: &str) -> Result<f32, String> {
     let scale = text.parse().ok().filter(|scale| *scale == 0.0 || (0.01..=1000.0).contains(scale));
@@ -32,9 +39,6 @@ pub fn q_scale(text: &str) -> Result<f32, String> {
 /// `WxH`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Resolution(pub [u32; 2]);
-
-/// Maximum number of pixels along a side: the limit that OpenEXR and PNG readers commonly accept.
-const MAX_SIDE: u32 = 1 << 20;
 
 impl FromStr for Resolution {
     type Err = String;

@@ -152,11 +152,14 @@ impl Spec {
     pub fn set(&self, value: &mut dyn Value, text: &str) -> Result<(), String> {
         let before = value.text();
         let [low, high] = self.range;
-        value.parse(text.trim())?;
-        if value.numbers().iter().all(|number| (low..=high).contains(number)) {
-            return Ok(());
+        let is_in = |number: &f64| (low..=high).contains(number);
+        match value.parse(text.trim()) {
+            Ok(()) if value.numbers().iter().all(is_in) => return Ok(()),
+            Ok(()) => value.parse(&before)?,
+            // The range of the setting says more than that of its type.
+            Err(_) if text.trim().parse().is_ok_and(|number: f64| number.is_finite() && !is_in(&number)) => {}
+            Err(error) => return Err(error),
         }
-        value.parse(&before)?;
         Err(match (low, high) {
             (f64::MIN_POSITIVE, f64::MAX) => "expected more than 0".to_owned(),
             (f64::MIN, f64::MAX) => "expected a finite number".to_owned(),

@@ -63,16 +63,16 @@ impl Choice {
     }
 }
 
-/// Numbers; `$put` makes one from an `f64`.
+/// Numbers; `$expected` says which are, of what is none, and `$put` makes one from an `f64`.
 macro_rules! number {
-    ($($Number:ty, $expected:literal, $put:expr;)+) => {$(
+    ($($Number:ty, $expected:expr, $put:expr;)+) => {$(
         impl Value for $Number {
             fn text(&self) -> String {
                 self.to_string()
             }
 
             fn parse(&mut self, text: &str) -> Result<(), String> {
-                *self = text.parse().map_err(|_| concat!("expected ", $expected).to_owned())?;
+                *self = text.parse().map_err(|_| $expected(text))?;
                 Ok(())
             }
 
@@ -84,10 +84,18 @@ macro_rules! number {
 }
 
 number! {
-    u32, "a whole number", |x: f64| x.round() as u32;
-    usize, "a whole number", |x: f64| x.round() as usize;
-    f32, "a number", |x: f64| x as f32;
-    f64, "a number", |x: f64| x;
+    u32, |text| whole_number(text, u64::from(u32::MAX)), |x: f64| x.round() as u32;
+    usize, |text| whole_number(text, usize::MAX as u64), |x: f64| x.round() as usize;
+    f32, |_| "expected a number".to_owned(), |x: f64| x as f32;
+    f64, |_| "expected a number".to_owned(), |x: f64| x;
+}
+
+/// The whole numbers that are expected; those that are out of their range learn what it is.
+fn whole_number(text: &str, most: u64) -> String {
+    match text.parse::<f64>() {
+        Ok(number) if number.fract() == 0.0 => format!("expected a whole number from 0 to {most}"),
+        _ => "expected a whole number".to_owned(),
+    }
 }
 
 const SWITCH: [Choice; 2] = [Choice { name: "on", doc: "Do" }, Choice { name: "off", doc: "Do not" }];
