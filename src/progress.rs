@@ -22,8 +22,21 @@ pub struct Control {
 struct Begun {
     /// The current stage, and its total.
     current: Option<(Stage, u64)>,
-    /// Stages begun that [`Control::news`] has not returned.
+    /// True while settings are planned.
+    is_planning: bool,
+    /// Stages of the frame that [`Control::news`] has returned, or is to return.
+    told: Vec<Stage>,
     news: Vec<Stage>,
+}
+
+impl Begun {
+    /// Each stage of a frame is news once.
+    fn tell(&mut self, stage: Stage) {
+        if !self.told.contains(&stage) {
+            self.told.push(stage);
+            self.news.push(stage);
+        }
+    }
 }
 
 /// A snapshot of a method's progress.
@@ -31,6 +44,8 @@ struct Begun {
 pub struct Progress {
     /// The current stage.
     pub stage: Stage,
+    /// True if it is a part of planning settings.
+    pub is_planning: bool,
     /// Units of work done in this stage, at most `total`.
     pub done: u64,
     /// Units of work in this stage; 0 if not known.
@@ -54,12 +69,29 @@ impl Control {
         self.cancelled.load(Ordering::Relaxed)
     }
 
+    /// Forgets the stages of the frame before.
+    pub fn begin_frame(&self) {
+        *self.lock() = Begun::default();
+    }
+
     /// Starts a stage of `total` units (0 if their number is not known). Stages follow one another.
     pub fn begin(&self, stage: Stage, total: u64) {
         let mut begun = self.lock();
         self.done.store(0, Ordering::Relaxed);
         begun.current = Some((stage, total));
-        begun.news.push(stage);
+        if !begun.is_planning {
+            begun.tell(stage);
+        }
+    }
+
+    /// Does `work`, whose stages are parts of planning settings and not of the picture.
+    pub fn plan<R>(&self, work: impl FnOnce() -> R) -> R {
+        self.begin(Stage::Plan, 0);
+        self.lock().is_planning = true;
+        let result = work();
+        let mut begun = self.lock();
+        (begun.is_planning, begun.current) = (false, Some((Stage::Plan, 0)));
+        result
     }
 
     /// Counts `n` more finished units of the current stage. Callable from any worker.
@@ -73,7 +105,7 @@ impl Control {
         self.progress_of(&self.lock())
     }
 
-    /// Returns the stages begun since the last call, and the progress.
+    /// Returns the stages of the frame that began since the last call, each once, and the progress.
     pub fn news(&self) -> (Vec<Stage>, Option<Progress>) {
         let mut begun = self.lock();
         (mem::take(&mut begun.news), self.progress_of(&begun))
@@ -82,7 +114,8 @@ impl Control {
     fn progress_of(&self, begun: &Begun) -> Option<Progress> {
         let (stage, total) = begun.current?;
         let done = self.done.load(Ordering::Relaxed);
-        Some(Progress { stage, done: if total > 0 { done.min(total) } else { done }, total })
+        let done = if total > 0 { done.min(total) } else { done };
+        Some(Progress { stage, is_planning: begun.is_planning, done, total })
     }
 
     fn lock(&self) -> MutexGuard<'_, Begun> {
@@ -101,13 +134,31 @@ mod tests {
         assert_eq!(control.progress(), None);
         control.begin(Stage::LightPass, 10);
         control.advance(25);
-        assert_eq!(control.progress(), Some(Progress { stage: Stage::LightPass, done: 10, total: 10 }));
+        let all = Progress { stage: Stage::LightPass, is_planning: false, done: 10, total: 10 };
+        assert_eq!(control.progress(), Some(all));
         control.begin(Stage::Render, 0);
         control.advance(3);
-        let now = Some(Progress { stage: Stage::Render, done: 3, total: 0 });
+        let now = Some(Progress { stage: Stage::Render, done: 3, total: 0, ..all });
         assert_eq!(control.progress(), now);
         assert_eq!(control.news(), (vec![Stage::LightPass, Stage::Render], now));
         assert_eq!(control.news(), (vec![], now));
+        control.begin(Stage::LightPass, 0);
+        assert_eq!(control.news().0, []);
+        control.begin_frame();
+        assert_eq!(control.news(), (vec![], None));
+    }
+
+    #[test]
+    fn stages_of_plans_are_told_as_planning() {
+        let control = Control::new();
+        let planned = control.plan(|| {
+            control.begin(Stage::Render, 5);
+            control.news()
+        });
+        let now = Progress { stage: Stage::Render, is_planning: true, done: 0, total: 5 };
+        assert_eq!(planned, (vec![Stage::Plan], Some(now)));
+        control.begin(Stage::Render, 5);
+        assert_eq!(control.news(), (vec![Stage::Render], Some(Progress { is_planning: false, ..now })));
     }
 
     #[test]

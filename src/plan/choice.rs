@@ -19,12 +19,26 @@ const STEPS: u32 = 64;
 /// Least number of pixels that choices without a time are made for: icons are by the method of a small picture.
 const MIN_PIXELS: u64 = 1 << 15;
 
+/// Reason for a method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// As good a picture takes less work.
+    Work,
+    /// There is no time for either, and its cheapest picture takes less work.
+    NoTime,
+    /// The other did not come to the error that was asked for.
+    Missed,
+}
+
 /// A method and the reason for it.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice {
     /// The method with its settings.
     pub method: Method,
-    /// Expected work of the other method for as good a picture, over that of this one.
+    /// The reason.
+    pub reason: Reason,
+    /// Expected work of the other method for as good a picture, or for its cheapest where there is no time, over that of
+    /// this one.
     pub ahead: f64,
     /// Number of paths that are worth a first sample of the cache, with the samples that follow it.
     pub paths_a_sample: f64,
@@ -80,6 +94,16 @@ impl Chooser {
     pub fn for_time(&self, ladder: &Ladder, seconds: f64, pilot_seconds: f64) -> Choice {
         let work = Work::new(self.triangles, self.film_pixels);
         let budget = work.of_pilot(&self.pilot) * seconds.max(0.0) / pilot_seconds.max(1e-9);
+        let cheapest = ladder.at(0.0);
+        let by_cache = work.of_cache(&self.pilot, &cheapest);
+        let by_paths = work.of_paths(&self.pilot, 1.0);
+        if budget < by_cache.min(by_paths) {
+            let (method, ahead) = match by_paths < by_cache {
+                true => (Method::Path(self.paths), by_cache / by_paths),
+                false => (cheapest, by_paths / by_cache),
+            };
+            return Choice { reason: Reason::NoTime, ..self.choice(&cheapest, method, ahead) };
+        }
         let heights = (0..=STEPS).rev().map(|step| ladder.top() * f64::from(step) / f64::from(STEPS));
         let in_time = |height: &f64| work.of_cache(&self.pilot, &ladder.at(*height)) <= budget;
         let height = heights.into_iter().find(in_time);
@@ -87,7 +111,7 @@ impl Chooser {
         // The cheapest settings of the cache are no use if they take too long.
         let excess = (work.of_cache(&self.pilot, &cache) / budget.max(1e-9)).max(1.0);
         let worth = self.paths_like(&cache) / excess;
-        let paths = budget / work.of_paths(&self.pilot, 1.0);
+        let paths = budget / by_paths;
         match paths > worth {
             true => self.choice(&cache, Method::Path(self.paths), paths / worth),
             false => self.choice(&cache, cache, worth / paths.max(1e-9)),
@@ -99,8 +123,9 @@ impl Chooser {
         Method::Path(self.paths)
     }
 
-    /// A method that other means than work have chosen, with the reasons by work.
-    pub fn of(&self, method: Method) -> Choice {
+    /// The method that a search for an error has chosen, with the reasons by work; the other was tried before if
+    /// `missed`.
+    pub fn of(&self, method: Method, missed: bool) -> Choice {
         let work = Work::new(self.triangles, self.film_pixels);
         let mut cache = method;
         if let Method::Path(paths) = method {
@@ -111,7 +136,8 @@ impl Chooser {
         let by_cache = work.of_cache(&self.pilot, &cache);
         let by_paths = work.of_paths(&self.pilot, self.paths_like(&cache));
         let ahead = if matches!(method, Method::Path(_)) { by_cache / by_paths } else { by_paths / by_cache };
-        self.choice(&cache, method, ahead)
+        let reason = if missed { Reason::Missed } else { Reason::Work };
+        Choice { reason, ..self.choice(&cache, method, ahead) }
     }
 
     /// Number of paths a pixel that are as good as `cache`.
@@ -137,6 +163,7 @@ impl Chooser {
         let Pilot { rays_of_drawn, rays_of_paths, rays, seldom, .. } = self.pilot;
         Choice {
             method,
+            reason: Reason::Work,
             ahead,
             paths_a_sample: self.pilot.paths_a_sample(f64::from(cache.spp())),
             rays_ratio: rays_of_paths / rays_of_drawn.max(f64::MIN_POSITIVE),
@@ -181,6 +208,19 @@ mod tests {
             (-6..6).map(|k| is_path(&in_box().for_time(&ladder, 2f64.powi(k), 0.1))).collect();
         assert!(choices[0] && !choices[11], "{choices:?}");
         assert!(choices.is_sorted_by(|a, b| a >= b), "{choices:?}");
+    }
+
+    #[test]
+    fn without_time_the_cheapest_picture_is_taken() {
+        let ladder = Ladder::new(Method::default(), &[]).unwrap();
+        for seconds in [-1.0, 0.0, 1e-9] {
+            let choice = in_box().for_time(&ladder, seconds, 0.1);
+            assert!(is_path(&choice) && choice.reason == Reason::NoTime, "{choice:?}");
+            // Paths of many rays.
+            let choice = chooser(36, [0.0018, 0.2], [1.7, 1e9]).for_time(&ladder, seconds, 0.1);
+            assert!(!is_path(&choice) && choice.reason == Reason::NoTime, "{choice:?}");
+        }
+        assert_eq!(in_box().for_time(&ladder, 30.0, 0.1).reason, Reason::Work);
     }
 
     #[test]

@@ -26,7 +26,7 @@ mod work;
 use crate::film::Window;
 use crate::view::View;
 
-pub use choice::{Choice, Chooser};
+pub use choice::{Choice, Chooser, Reason};
 pub use error::{Asked, for_error};
 pub use ladder::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
 pub use time::{LATE, for_time};

@@ -29,6 +29,8 @@ pub struct Frame {
     pub facts: Value,
     /// Remarks for the user.
     pub remarks: Vec<Remark>,
+    /// Remarks on the picture's measured error.
+    pub measured: Vec<Remark>,
     /// False if rendering was cancelled: the picture is partial.
     pub complete: bool,
     /// True if measuring the picture's error was cancelled.

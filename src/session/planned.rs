@@ -52,10 +52,15 @@ impl Planning<'_> {
         stats: &mut Stats,
         remarks: &mut Vec<Remark>,
     ) -> Result<Made, FrameError> {
+        let control = self.control;
         let watch = Stopwatch::start();
         // Paths are worth as many samples as they are only where their noise is taken off.
         let may_choose = goal.may_choose && self.finish.denoises();
-        let chooser = may_choose.then(|| self.chooser(&goal.method)).flatten();
+        let plan = || control.plan(|| self.chooser(&goal.method));
+        let chooser = may_choose.then(plan).flatten();
+        if may_choose && control.is_cancelled() {
+            return Err(FrameError::Unplanned);
+        }
         let pilot_time = watch.elapsed();
         if chooser.is_some() {
             stats.add_time(Stage::Plan, pilot_time);
@@ -68,8 +73,8 @@ impl Planning<'_> {
             }
             Wanted::Time { seconds, run, held } => {
                 if let Some(chooser) = chooser {
-                    let finishing =
-                        self.finish.expected_time(&goal.method, seconds - run.elapsed().wall_seconds);
+                    let left = seconds - run.elapsed().wall_seconds;
+                    let finishing = control.plan(|| self.finish.expected_time(&goal.method, left));
                     let left = *seconds - run.elapsed().wall_seconds - finishing.denoising;
                     let ladder = self.ladder(goal.method, held)?;
                     choice = Some(chooser.for_time(&ladder, left, pilot_time.wall_seconds));
@@ -80,8 +85,8 @@ impl Planning<'_> {
             Wanted::Error { error, max_samples, held } => {
                 let asked = (*error, goal.verify.unwrap_or_default(), *max_samples);
                 let ladder = self.ladder(goal.method, held)?;
-                let made = self.for_error(&ladder, chooser.as_ref(), asked, stats, remarks)?;
-                choice = chooser.map(|chooser| chooser.of(made.method));
+                let (made, missed) = self.for_error(&ladder, chooser.as_ref(), asked, stats, remarks)?;
+                choice = chooser.map(|chooser| chooser.of(made.method, missed));
                 made
             }
         };
@@ -176,11 +181,12 @@ impl Planning<'_> {
     ) -> Result<Made, FrameError> {
         let Planning { session: Session { world, .. }, view, finish, control } = *self;
         let watch = Stopwatch::start();
-        let finishing = finish.expected_time(&finish.guided(*method), asked - run.elapsed().wall_seconds);
-        let left = || asked - finishing.denoising - run.elapsed().wall_seconds;
-        let found =
-            plan::for_time(world, view, &self.ladder(*method, held)?, (left, finishing.a_sample), control)
-                .ok_or(FrameError::Interrupted)?;
+        let ladder = self.ladder(*method, held)?;
+        let passed = || run.elapsed().wall_seconds;
+        let finishing = control.plan(|| finish.expected_time(&finish.guided(*method), asked - passed()));
+        let left = (|| asked - finishing.denoising - passed(), finishing.a_sample);
+        let found = control.plan(|| plan::for_time(world, view, &ladder, left, control));
+        let found = found.ok_or(FrameError::Unplanned)?;
         let spent = found.spent();
         stats.add_time(Stage::Plan, watch.elapsed().without(spent));
         let before = run.elapsed().wall_seconds;
@@ -205,7 +211,8 @@ impl Planning<'_> {
         Ok(Made { method, output, seconds, measured: None, plan })
     }
 
-    /// The finished picture by the cheapest settings found whose error is as low as asked.
+    /// The finished picture by the cheapest settings found whose error is as low as asked, and whether another method
+    /// did not come to it before.
     fn for_error(
         &self,
         ladder: &Ladder,
@@ -213,7 +220,7 @@ impl Planning<'_> {
         (error, measure, most_samples): (f64, verify::Settings, u32),
         stats: &mut Stats,
         remarks: &mut Vec<Remark>,
-    ) -> Result<Made, FrameError> {
+    ) -> Result<(Made, bool), FrameError> {
         let Planning { session: Session { world, .. }, view, finish, control } = *self;
         let render = |method: &Method| {
             let method = finish.guided(*method);
@@ -223,8 +230,8 @@ impl Planning<'_> {
         };
         let asked = plan::Asked { error, measure, most_samples, render: &render };
         let watch = Stopwatch::start();
-        let found = plan::for_error(world, view, (ladder, chooser), &asked, control)
-            .ok_or(FrameError::Interrupted)?;
+        let found = control.plan(|| plan::for_error(world, view, (ladder, chooser), &asked, control));
+        let found = found.ok_or(FrameError::Unplanned)?;
         stats.add_time(Stage::Plan, watch.elapsed().without(found.time));
         let got = found.verified.map(|v| v.relative_rms);
         remarks.extend(found.missed.map(report::of_missed));
@@ -240,8 +247,9 @@ impl Planning<'_> {
             "met": found.met,
             "options": found.options,
         });
+        let missed = found.missed.is_some();
         let measured = Some((found.measure.of(&found.method), found.verified));
         let (method, output, seconds) = (found.method, found.output, found.time.wall_seconds);
-        Ok(Made { method, output, seconds, measured, plan })
+        Ok((Made { method, output, seconds, measured, plan }, missed))
     }
 }

@@ -24,6 +24,9 @@ pub enum FrameError {
     /// Rendering was cancelled before there was anything to keep.
     #[error("interrupted before the first pixel; nothing is written")]
     Interrupted,
+    /// Rendering was cancelled before its settings were planned.
+    #[error("interrupted while planning; nothing is written")]
+    Unplanned,
     /// The frame needs more memory than there is.
     #[error(
         "the picture would take about {needed:.1} GiB, and {available:.1} GiB of memory are available: take fewer \
@@ -150,8 +153,10 @@ impl Session {
             let settings = goal.verify.filter(|_| complete)?.of(&method);
             Some((settings, self.measure(view, &film.color, &settings, control, &mut stats)))
         });
+        let mut measured_remarks = Vec::new();
         let verified = measured.map(|(settings, found)| {
             let found = found?;
+            measured_remarks = report::of_measured(&found);
             report::store_error(&found, &settings, &mut stats, &mut film.metadata);
             Some(report::error_facts(&found, &settings))
         });
@@ -172,7 +177,7 @@ impl Session {
             "verified": verified,
             "plan": plan,
         });
-        Ok(Frame { film, method, stats, facts, remarks, complete, unverified })
+        Ok(Frame { film, method, stats, facts, remarks, measured: measured_remarks, complete, unverified })
     }
 
     /// States the scene, the method and its settings.

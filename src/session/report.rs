@@ -4,7 +4,7 @@ use super::frame::Remark;
 use crate::film::Metadata;
 use crate::method::Method;
 use crate::paths::Look;
-use crate::plan::Choice;
+use crate::plan::{Choice, Reason};
 use crate::stats::Stats;
 use crate::verify::{Estimate, Settings, Verified};
 use serde_json::{Value, json};
@@ -42,6 +42,41 @@ pub(super) fn of_missed(missed: f64) -> Remark {
     Remark::Note(format!("cache came to an error of {:.2} %, so paths were tried", 100.0 * missed))
 }
 
+/// Width of an interval of the measured error, over the RMS error or a hundredth, from which on it tells little.
+const WIDE: f64 = 2.0;
+
+/// Remarks on the measured error: the figures, and whether their intervals tell anything.
+pub(super) fn of_measured(found: &Verified) -> Vec<Remark> {
+    let told = |estimate: Estimate| {
+        // Rounded, and without the sign of zero.
+        let percent = |x: f64| (1e4 * x).round() / 1e2 + 0.0;
+        let [value, low, high] = [estimate.value, estimate.low, estimate.high].map(percent);
+        format!("{value:.2} % ({low:.2} to {high:.2})")
+    };
+    let Verified { relative_rms, relative_bias, relative_error_95, pixels, .. } = *found;
+    let hidden = if found.error_95_resolved { "" } else { ", which the noise of the paths hides" };
+    let mut remarks = vec![Remark::Note(format!(
+        "error by paths at {pixels} pixels: RMS {}, bias {}, of 95 % of the pixels at most {}{hidden}; each interval \
+         holds in 95 of 100 cases",
+        told(relative_rms),
+        told(relative_bias),
+        told(relative_error_95)
+    ))];
+    let most = WIDE * relative_rms.value.max(0.01);
+    let is_wide = |estimate: Estimate| {
+        let width = estimate.high - estimate.low;
+        width.is_nan() || width > most
+    };
+    if is_wide(relative_rms) || is_wide(relative_bias) {
+        let capped = 2 * found.pixels_at_cap > pixels;
+        let more = if capped { "more --verify and --verify-samples" } else { "more --verify" };
+        remarks.push(Remark::Warning(format!(
+            "{pixels} pixels are too few to tell the error: an interval is more than twice as wide as it; {more} narrow it"
+        )));
+    }
+    remarks
+}
+
 /// Share of the light that paths seldom find from which on a measurement by paths comes with a warning.
 const MUCH_SELDOM: f64 = 0.01;
 
@@ -55,15 +90,22 @@ pub(super) fn add_choice(
     stats: &mut Stats,
     remarks: &mut Vec<Remark>,
 ) {
-    let Choice { paths_a_sample, rays_ratio, ahead, pilot_rays, seldom, .. } = *choice;
+    let Choice { paths_a_sample, rays_ratio, ahead, pilot_rays, seldom, reason, .. } = *choice;
     let (name, other) = match choice.method {
         Method::Path(_) => (format!("paths (--method path --denoise --spp {spp})"), "cache"),
         _ => ("cache".to_owned(), "paths"),
     };
-    remarks.push(Remark::Note(format!(
-        "chose {name}: {paths_a_sample:.1} paths of {rays_ratio:.1} times the rays are worth a sample of cache, and for as \
-         good a picture {other} would take about {ahead:.1} times the work"
-    )));
+    let why = match reason {
+        Reason::Work => format!(
+            "{paths_a_sample:.1} paths of {rays_ratio:.1} times the rays are worth a sample of cache, and for as good a \
+             picture {other} would take about {ahead:.1} times the work"
+        ),
+        Reason::NoTime => format!(
+            "no time is left for either, and the cheapest picture by {other} would take about {ahead:.1} times the work"
+        ),
+        Reason::Missed => format!("{other} did not come to the error"),
+    };
+    remarks.push(Remark::Note(format!("chose {name}: {why}")));
     if is_measured && seldom > MUCH_SELDOM {
         remarks.push(Remark::Warning(format!(
             "{:.0} % of the light, that of small lamps by glass and mirrors, is seldom found by paths, which the error is \
@@ -146,5 +188,35 @@ fn against(look: Look) -> &'static str {
     match look {
         Look::Pixels => "pixels",
         Look::EyeSamples { .. } => "eye-samples",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn measurements_that_tell_nothing_are_warned_of() {
+        let estimate = |value: f64, width: f64| Estimate { value, low: value - width, high: value + width };
+        let found = |bias: Estimate| Verified {
+            relative_bias: bias,
+            relative_rms: estimate(0.03, 0.01),
+            relative_error_95: estimate(0.06, 0.02),
+            error_95_resolved: true,
+            noise: 0.01,
+            pixels: 50,
+            pixels_at_cap: 0,
+            paths: 5000,
+            nonfinite: 0,
+        };
+        let [Remark::Note(text)] = &of_measured(&found(estimate(-0.001, 0.01)))[..] else { panic!() };
+        assert!(
+            text.contains("50 pixels: RMS 3.00 % (2.00 to 4.00), bias -0.10 % (-1.10 to 0.90)"),
+            "{text}"
+        );
+        for wide in [estimate(0.0, 7.64), estimate(0.0, f64::NAN), estimate(f64::INFINITY, 0.0)] {
+            let [_, Remark::Warning(text)] = &of_measured(&found(wide))[..] else { panic!("{wide:?}") };
+            assert!(text.contains("more --verify narrow"), "{text}");
+        }
     }
 }

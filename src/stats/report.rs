@@ -4,6 +4,11 @@ use super::{Counter, Stats};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
+/// The number without the sign of one that is shown as 0.
+fn unsigned_zero(x: f64) -> f64 {
+    if x.abs() < 5e-7 { 0.0 } else { x }
+}
+
 impl Stats {
     /// An aligned table: stage times first, then the counters by group.
     pub fn to_text(&self) -> String {
@@ -30,7 +35,7 @@ impl Stats {
             }
             let _ = match counter {
                 Counter::Count(n) => writeln!(text, "  {name:<32}{:>12}", grouped(n)),
-                Counter::Sum(x) => writeln!(text, "  {name:<32}{x:>12.6}"),
+                Counter::Sum(x) => writeln!(text, "  {name:<32}{:>12.6}", unsigned_zero(x)),
                 Counter::Distribution(d) if d.count == 0 => writeln!(text, "  {name:<32}{:>12}", "none"),
                 Counter::Distribution(d) => writeln!(
                     text,
@@ -96,6 +101,7 @@ mod tests {
         stats.observe("Lightcut/cut size", 3);
         stats.observe("Lightcut/cut size", 6);
         stats.add("Light/flux [W]", 2.5);
+        stats.add("Light/lost [W]", -1e-9);
         stats
     }
 
@@ -105,7 +111,7 @@ mod tests {
         assert_eq!(text.matches("Rays\n").count(), 1, "{text}");
         assert!(text.contains("1 234 567"), "{text}");
         assert!(text.contains("4.50  (3 to 6, of 2)"), "{text}");
-        assert!(text.contains("light pass"), "{text}");
+        assert!(text.contains("light pass") && !text.contains("-0.0"), "{text}");
     }
 
     #[test]
