@@ -12,6 +12,7 @@ use crate::stats::Stopwatch;
 use crate::view::Framing;
 use anyhow::anyhow;
 use serde_json::json;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 /// A validated render: scene, method and output files.
@@ -48,11 +49,11 @@ impl RenderJob {
     pub fn new(args: RenderArgs, run: Stopwatch) -> Result<RenderJob, Failure> {
         let held = args.method.typed();
         let may_choose = args.method.is_open();
-        let method = args.plan.method(args.method.method()?, &held);
+        let method = args.plan.method(args.method.method()?, &held)?;
         let verify = verify::settings(&args.verify, &method, args.plan.error.is_some());
         let wanted = args.plan.wanted(&method, held, args.verify.verify_samples, run)?;
         let png = args.png.file(&args.output);
-        check_outputs(&args.output, png.as_deref())?;
+        check_outputs(&args.output, png.as_deref(), args.picture.resume)?;
         let goal = Goal {
             method,
             may_choose,
@@ -63,9 +64,7 @@ impl RenderJob {
             keep_noisy: args.picture.denoise.keep_noisy,
             verify,
         };
-        if goal.keep_noisy && !goal.denoises() {
-            return Err(Failure::usage(anyhow!("--keep-noisy goes with --denoise")));
-        }
+        args.picture.denoise.check(goal.denoises())?;
         if args.picture.reproducible && args.plan.time.is_some() {
             return Err(Failure::usage(anyhow!(
                 "--reproducible: settings planned by --time differ from run to run"
@@ -81,7 +80,7 @@ impl RenderJob {
             goal,
             threads: threads::count(args.picture.threads),
             framing: Framing {
-                frame: args.frame,
+                frame: args.frame.map(NonZeroUsize::get),
                 resolution: args.picture.resolution.map(|r| r.0),
                 crop: args.picture.crop.map(|crop| [crop.offset, crop.size]),
             },

@@ -7,19 +7,32 @@ use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// Checks names of a picture's files, and that they can be written.
-pub fn check_outputs(exr: &Path, png: Option<&Path>) -> Result<(), Failure> {
+/// Checks names of a picture's files, and that they can be written; where they `may_stay`, whether they are
+/// write-protected is looked at later ([`check_unprotected`]).
+pub fn check_outputs(exr: &Path, png: Option<&Path>, may_stay: bool) -> Result<(), Failure> {
     check_name(exr, "exr", "--output")?;
     if let Some(path) = png {
         check_name(path, "png", "--png")?;
     }
     let paths = || std::iter::once(exr).chain(png);
-    paths().try_for_each(|path| atomic::check_writable(path).map_err(Failure::output))?;
+    let check = if may_stay { atomic::check_place } else { atomic::check_writable };
+    paths().try_for_each(|path| check(path).map_err(Failure::output))?;
     Inputs::default().check_apart(paths())
+}
+
+/// Checks that none of a picture's files is there and write-protected.
+pub fn check_unprotected<'a>(files: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
+    files.into_iter().try_for_each(|path| atomic::check_unprotected(path).map_err(Failure::output))
 }
 
 /// Checks the ending of a file's name that `option` gives.
 pub fn check_name(path: &Path, extension: &str, option: &str) -> Result<(), Failure> {
+    if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+        let path = path.display();
+        return Err(Failure::usage(anyhow!(
+            "{option} {path}: this names a folder; name a file, without / at its end"
+        )));
+    }
     let right = path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case(extension));
     if right {
         return Ok(());

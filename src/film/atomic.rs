@@ -11,10 +11,26 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
+/// Checks that a file that is at `path` may be replaced: that not everybody is forbidden to write to it.
+pub fn check_unprotected(path: &Path) -> Result<(), ImageError> {
+    let present = resolve(path).and_then(fs::metadata);
+    if present.is_ok_and(|present| present.is_file() && present.permissions().readonly()) {
+        let reason = "it is write-protected; allow it by chmod u+w, or name another file".to_owned();
+        return Err(ImageError::Output { path: path.to_owned(), reason });
+    }
+    Ok(())
+}
+
 /// Checks, by creating and removing a temporary file, that `path` can be written; call it before hours of work.
 ///
 /// Not guaranteed: that the disk still has room, or the folder its permissions, when the work is done.
 pub fn check_writable(path: &Path) -> Result<(), ImageError> {
+    check_place(path)?;
+    check_unprotected(path)
+}
+
+/// The same for a file that may stay as it is where it is there.
+pub fn check_place(path: &Path) -> Result<(), ImageError> {
     let refuse = |reason: String| Err(ImageError::Output { path: path.to_owned(), reason });
     if path.file_name().is_none() {
         return refuse("the path does not end in a file name".to_owned());
@@ -120,9 +136,16 @@ fn temporary(target: &Path) -> io::Result<NamedTempFile> {
         // Permissions of any newly created file, the umask applied; the default would be private to the user.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let file = builder.tempfile_in(folder_of(target))?;
+    let file = builder.tempfile_in(folder_of(target)).map_err(without_path)?;
     leftovers::lock(file.as_file());
     Ok(file)
+}
+
+/// The same error without the name of the temporary file, which says nothing to people.
+fn without_path(error: io::Error) -> io::Error {
+    let text = error.to_string();
+    let reason = text.split_once(" at path ").map_or(text.as_str(), |(reason, _)| reason);
+    io::Error::new(error.kind(), reason)
 }
 
 /// Returns the file behind symbolic links, which stay, whether or not it is there.
@@ -300,6 +323,11 @@ mod tests {
         assert!(reason(Path::new("..")).contains("file name"));
         check_writable(&file).unwrap();
         check_writable(&folder.path().join("new.exr")).unwrap();
+        let mut permissions = fs::metadata(&file).unwrap().permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(&file, permissions).unwrap();
+        check_place(&file).unwrap();
+        assert!(reason(&file).contains("chmod u+w"));
         assert_eq!(fs::read_to_string(&file).unwrap(), "kept");
         assert_eq!(names(folder.path()), ["file"]);
     }
@@ -308,6 +336,7 @@ mod tests {
     #[test]
     fn devices_and_kernel_folders_are_refused() {
         assert!(check_writable(Path::new("/dev/null")).is_err());
-        assert!(check_writable(Path::new("/proc/picture.exr")).is_err());
+        let refused = check_writable(Path::new("/proc/picture.exr")).unwrap_err().to_string();
+        assert!(!refused.contains(".tmp"), "{refused}");
     }
 }
