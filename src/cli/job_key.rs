@@ -47,6 +47,11 @@ pub fn is_done((exr, png): (&Path, Option<&Path>), frame: Option<usize>, key: &s
         && png.is_none_or(|png| image::open(png).is_ok())
 }
 
+/// True if the file is a part of the picture that has this key.
+pub fn is_part(exr: &Path, frame: Option<usize>, key: &str) -> bool {
+    ExrFile::read(exr).is_ok_and(|file| is_it(&file, frame, key, "true"))
+}
+
 /// The samples of the picture that has this key, where it was interrupted and can go on.
 pub fn begun(exr: &Path, frame: Option<usize>, key: &str) -> Option<Begun> {
     let file = ExrFile::read(exr).ok()?;

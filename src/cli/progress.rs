@@ -3,7 +3,8 @@
 use super::course::Course;
 use super::talk;
 use super::values::ProgressMode;
-use crate::progress::Control;
+use crate::progress::{Control, Progress};
+use crate::stats::Stage;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 use std::io::IsTerminal;
@@ -31,21 +32,44 @@ impl Watch {
     }
 
     /// Runs `work`, which renders a frame, while another thread tells of its progress; all is told when this returns.
-    pub fn frame<R>(&mut self, number: Option<usize>, control: &Control, work: impl FnOnce() -> R) -> R {
+    /// The frame is done if `is_done` says so of the result.
+    pub fn frame<R>(
+        &mut self,
+        number: Option<usize>,
+        control: &Control,
+        work: impl FnOnce() -> R,
+        is_done: impl FnOnce(&R) -> bool,
+    ) -> R {
+        control.begin_frame();
         let bar = std::io::stderr().is_terminal();
+        let [done, frames] = self.course.frames();
         let course = &mut self.course;
         let result = match self.mode {
             ProgressMode::None => work(),
             ProgressMode::Auto if !bar => work(),
             ProgressMode::Auto => beside(work, |stop| show_bar(control, stop)),
             ProgressMode::Ndjson => beside(work, |stop| {
-                tell(stop, LINE_INTERVAL, || write_events(course, number, control));
+                while goes_on(&stop, LINE_INTERVAL) {
+                    write_events(control, number, |now| told(course, Some(now)));
+                }
             }),
             ProgressMode::Openjd => beside(work, |stop| {
-                tell(stop, AGENT_INTERVAL, || write_for_agents(course, control));
+                while goes_on(&stop, AGENT_INTERVAL) {
+                    write_for_agents(control, (done, frames), |now| course.fraction(Some(now)));
+                }
             }),
         };
-        self.course.frame_done();
+        if is_done(&result) {
+            self.course.frame_done();
+        }
+        // The fraction of a frame that is not done stays as it was told last.
+        match self.mode {
+            ProgressMode::Ndjson => write_events(control, number, |_| told(&mut self.course, None)),
+            ProgressMode::Openjd => {
+                write_for_agents(control, (done, frames), |_| self.course.fraction(None));
+            }
+            ProgressMode::Auto | ProgressMode::None => {}
+        }
         result
     }
 
@@ -72,17 +96,22 @@ fn goes_on(stop: &Receiver<()>, interval: Duration) -> bool {
 }
 
 fn show_bar(control: &Control, stop: Receiver<()>) {
-    let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
     let known = style("{msg:<10} [{bar:40}] {percent:>3} %  {elapsed_precise}  (ends in {eta})");
     let unknown = style("{msg:<10} {spinner} {pos}  {elapsed_precise}");
+    // Whatever is set draws the bar anew, by the style that it has then.
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(unknown.clone());
     let mut stage = None;
     while goes_on(&stop, BAR_INTERVAL) {
         let Some(progress) = control.progress() else { continue };
-        if stage != Some(progress.stage) {
-            stage = Some(progress.stage);
-            bar.reset();
-            bar.set_message(progress.stage.name());
+        if stage != Some((progress.stage, progress.is_planning)) {
             bar.set_style(if progress.total > 0 { known.clone() } else { unknown.clone() });
+            bar.set_message(if progress.is_planning { Stage::Plan.name() } else { progress.stage.name() });
+            bar.set_length(progress.total);
+            bar.reset();
+            if stage.is_none() {
+                bar.set_draw_target(ProgressDrawTarget::stderr());
+            }
+            stage = Some((progress.stage, progress.is_planning));
         }
         bar.set_length(progress.total);
         bar.set_position(progress.done);
@@ -96,28 +125,30 @@ fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
-/// Tells at intervals, and once more when the work has ended.
-fn tell(stop: Receiver<()>, interval: Duration, mut tell: impl FnMut()) {
-    while goes_on(&stop, interval) {
-        tell();
-    }
-    tell();
+/// Fraction of the run that is done, and the seconds that the rest will take; at the end of a frame, there is no `now`.
+fn told(course: &mut Course, now: Option<&Progress>) -> (f64, Option<f64>) {
+    (course.fraction(now), course.eta_seconds())
 }
 
 /// Writes the stages begun since the last time, and the progress if there is any.
-fn write_events(course: &mut Course, number: Option<usize>, control: &Control) {
+fn write_events(
+    control: &Control,
+    number: Option<usize>,
+    told: impl FnOnce(&Progress) -> (f64, Option<f64>),
+) {
     let (begun, now) = control.news();
     for stage in begun {
         talk::event("stage", || with_frame(number, json!({ "stage": stage, "seconds": talk::seconds() })));
     }
     let Some(now) = now else { return };
     talk::event("progress", || {
+        let (fraction, eta_seconds) = told(&now);
         let fields = json!({
-            "stage": now.stage,
+            "stage": if now.is_planning { Stage::Plan } else { now.stage },
             "done": now.done,
             "total": now.total,
-            "fraction": course.fraction(Some(&now)),
-            "eta_seconds": course.eta_seconds(),
+            "fraction": fraction,
+            "eta_seconds": eta_seconds,
             "seconds": talk::seconds(),
         });
         with_frame(number, fields)
@@ -131,26 +162,32 @@ fn with_frame(number: Option<usize>, mut fields: Value) -> Value {
     fields
 }
 
-/// Writes the percentage and the stage at hand, as Open Job Description's sessions read them.
-fn write_for_agents(course: &mut Course, control: &Control) {
+/// Writes the percentage and the stage at hand, as Open Job Description's sessions read them, of the frame at `place`
+/// among `frames`.
+fn write_for_agents(
+    control: &Control,
+    (place, frames): (usize, usize),
+    fraction: impl FnOnce(&Progress) -> f64,
+) {
     if let (_, Some(now)) = control.news() {
-        talk::line(&format!("openjd_progress: {:.2}", 100.0 * course.fraction(Some(&now))));
-        let [done, frames] = course.frames();
-        talk::line(&format!("openjd_status: picture {} of {frames}: {}", done + 1, now.stage.name()));
+        talk::line(&format!("openjd_progress: {:.2}", 100.0 * fraction(&now)));
+        let stage = if now.is_planning { Stage::Plan } else { now.stage };
+        talk::line(&format!("openjd_status: picture {} of {frames}: {}", place + 1, stage.name()));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::course::Span;
+    use crate::cli::course::{Span, Stages};
 
     #[test]
     fn the_watcher_ends_with_the_work_and_the_result_comes_through() {
         let control = Control::new();
         for mode in [ProgressMode::None, ProgressMode::Auto, ProgressMode::Ndjson, ProgressMode::Openjd] {
-            let mut watch = Watch::new(mode, Course::new(2, Span::whole()));
-            assert_eq!(watch.frame(None, &control, || 7), 7);
+            let mut watch = Watch::new(mode, Course::new(2, Stages::default(), Span::whole()));
+            assert_eq!(watch.frame(None, &control, || 7, |result| *result == 7), 7);
+            assert_eq!(watch.frame(None, &control, || 8, |result| *result == 7), 8);
             assert_eq!(watch.course.frames(), [1, 2]);
         }
     }

@@ -1,13 +1,13 @@
 //! `lightsplat render`: opens a session, renders the frame, writes it; whatever happens, no file is left half-written.
 
 use super::args::{RenderArgs, StatsFormat};
-use super::course::{Course, Span};
+use super::course::{Course, Span, Stages};
 use super::exit::Failure;
 use super::job::RenderJob;
 use super::job_key;
 use super::progress::Watch;
 use super::scene::Opened;
-use super::{interrupt, picture, scene, talk, threads};
+use super::{interrupt, outputs, picture, scene, talk, threads};
 use crate::film::SAMPLES;
 use crate::method::path::Begun;
 use crate::progress::Control;
@@ -15,6 +15,7 @@ use crate::session::{BLACK, Frame, FrameError, Remark};
 use crate::stats::{Stage, Stopwatch, peak_resident_bytes};
 use crate::view::View;
 use anyhow::{Context, anyhow};
+use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -39,34 +40,39 @@ pub fn still(job: &RenderJob, opened: &Opened, span: Span, control: &Control) ->
         talk::note(&format!("{} is there already, left as it is", exr.display()));
         return Ok(());
     }
-    opened.inputs.check_apart([exr.as_path()].into_iter().chain(png))?;
+    let paths = || [exr.as_path()].into_iter().chain(png);
+    opened.inputs.check_apart(paths())?;
+    outputs::check_unprotected(paths())?;
     if let Some(png) = png.filter(|_| job.goal.method.text("inspect").is_some_and(|inspect| inspect == "on"))
     {
         opened.inputs.check_layers(png)?;
     }
     let parts = [exr.clone(), picture::beside(exr)];
     let begun = parts.iter().filter(|_| job.resume);
-    let begun = begun.filter_map(|part| job_key::begun(part, job.framing.frame, &key)).next();
+    let begun = begun.filter_map(|part| Some((part, job_key::begun(part, job.framing.frame, &key)?))).next();
+    let begun = begun.map(|(part, begun)| {
+        talk::note(&format!("goes on with the samples of {}", part.display()));
+        begun
+    });
     let mut frame = render(job, opened, begun, (span, control))?;
     let (exr, png) = files(job, frame.complete);
     frame.facts["output"] = exr.to_string_lossy().into();
     frame.facts["png"] = png.as_ref().map(|path| path.to_string_lossy()).into();
-    frame.film.metadata.set("job", key);
+    frame.film.metadata.set("job", key.as_str());
     if job.reproducible {
         picture::forget_circumstances(&mut frame.film);
     }
     let is_black = frame.is_black();
     let can_go_on = frame.film.layers.iter().any(|layer| layer.name == SAMPLES);
-    let Frame { film, mut stats, mut facts, remarks, complete, unverified, .. } = frame;
-    for remark in remarks {
-        match remark {
-            Remark::Note(text) => talk::note(&text),
-            Remark::Warning(text) => talk::warning(&text),
-        }
-    }
+    let Frame { film, mut stats, mut facts, remarks, measured, complete, unverified, .. } = frame;
+    say(&remarks);
     let exposed = png.as_deref().zip(job.png.as_ref().map(|(_, exposure)| exposure.factor(&film.color)));
     let written = stats.time(Stage::Write, || picture::write(&exr, exposed, film))?;
     talk::wrote(&written.said, &written.files);
+    say(&measured);
+    if complete {
+        remove_parts(job, &key);
+    }
     stats.add_time(Stage::Total, job.run.elapsed());
     if facts["plan"]["asked_seconds"].is_number() {
         let seconds = |stage| stats.stage(stage).map_or(0.0, |t| t.wall_seconds);
@@ -100,6 +106,15 @@ pub fn still(job: &RenderJob, opened: &Opened, span: Span, control: &Control) ->
     }
 }
 
+fn say(remarks: &[Remark]) {
+    for remark in remarks {
+        match remark {
+            Remark::Note(text) => talk::note(text),
+            Remark::Warning(text) => talk::warning(text),
+        }
+    }
+}
+
 /// The frame, with the times of opening its session and the facts that only the command knows.
 fn render(
     job: &RenderJob,
@@ -112,16 +127,17 @@ fn render(
     if control.is_cancelled() {
         return Err(Failure::interrupted(FrameError::Interrupted));
     }
-    let mut progress = Watch::new(job.progress, Course::new(1, span));
-    let frame = progress.frame(job.framing.frame, control, || match begun {
-        Some(begun) => {
-            talk::note(&format!("goes on with the samples of {}", job.output.display()));
-            session.rest_of_frame(&view, &job.goal, begun, control)
-        }
+    let mut progress = Watch::new(job.progress, Course::new(1, Stages::of(&job.goal), span));
+    let work = || match begun {
+        Some(begun) => session.rest_of_frame(&view, &job.goal, begun, control),
         None => session.frame(&view, &job.goal, control),
-    });
+    };
+    let is_done = |frame: &Result<Frame, FrameError>| {
+        frame.as_ref().is_ok_and(|frame| frame.complete && !frame.unverified)
+    };
+    let frame = progress.frame(job.framing.frame, control, work, is_done);
     let mut frame = frame.map_err(|error| match error {
-        FrameError::Interrupted => Failure::interrupted(error),
+        FrameError::Interrupted | FrameError::Unplanned => Failure::interrupted(error),
         FrameError::Memory { .. } | FrameError::Unplannable(_) => Failure::usage(error),
     })?;
     if !frame.complete && frame.is_black() {
@@ -133,6 +149,19 @@ fn render(
     }
     frame.facts["scene_warnings"] = (*warnings).into();
     Ok(frame)
+}
+
+/// Removes the part of the picture that was written beside a former one, now that the whole is there. That it cannot be
+/// removed is no harm.
+fn remove_parts(job: &RenderJob, key: &str) {
+    let exr = picture::beside(&job.output);
+    if !job_key::is_part(&exr, job.framing.frame, key) {
+        return;
+    }
+    let png = job.png.as_ref().map(|(path, _)| picture::beside(path));
+    for file in [exr].into_iter().chain(png) {
+        let _ = fs::remove_file(file);
+    }
 }
 
 /// The job's files, OpenEXR and PNG; for a part of a picture ones beside them, where one is that may be whole.

@@ -1,13 +1,13 @@
 //! `lightsplat walk`: renders frame after frame of a camera path; each is written whole before the next begins.
 
 use super::args::WalkArgs;
-use super::course::{Course, Span};
+use super::course::{Course, Span, Stages};
 use super::exit::Failure;
 use super::progress::Watch;
 use super::scene::Opened;
 use super::walk_job::{PlannedChunk, WalkJob};
 use super::walk_report::Report;
-use super::{interrupt, picture, scene, talk, threads};
+use super::{interrupt, outputs, picture, scene, talk, threads};
 use crate::film::{Exposure, Film, Image};
 use crate::progress::Control;
 use crate::session::{BLACK, Frame, FrameError, Remark, Session};
@@ -44,13 +44,17 @@ pub fn walk(job: &WalkJob, opened: &Opened, span: Span, control: &Control) -> Re
         let (exr, png) = job.files(*number);
         opened.inputs.check_apart([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
     }
+    for number in chunks.iter().flat_map(PlannedChunk::unwritten) {
+        let (exr, png) = job.files(number);
+        outputs::check_unprotected([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
+    }
     let mut report = Report::new(job.stats);
     for number in chunks.iter().flat_map(PlannedChunk::untouched) {
         report.skip();
         talk::event("frame", || json!({ "frame": number, "state": "skipped" }));
     }
     let count = chunks.iter().map(PlannedChunk::count).sum();
-    let progress = Watch::new(job.progress, Course::new(count, span));
+    let progress = Watch::new(job.progress, Course::new(count, Stages::of(&job.goal), span));
     let said = BTreeSet::new();
     let mut frames =
         Frames { job, session, warnings: *warnings, control, factor: None, report, progress, said };
@@ -124,9 +128,11 @@ impl Frames<'_> {
             || json!({ "frame": number, "state": "start", "index": place, "count": count, "is_there": is_there }),
         );
         let view = View::new(&session.cameras, &job.framing(number)).map_err(Failure::usage)?;
-        let frame = self.progress.frame(Some(number), control, || walk.frame(&view, control));
+        let work = || walk.frame(&view, control);
+        let is_done = |frame: &Result<Frame, FrameError>| frame.as_ref().is_ok_and(|frame| frame.complete);
+        let frame = self.progress.frame(Some(number), control, work, is_done);
         let mut frame = frame.map_err(|error| match error {
-            FrameError::Interrupted => interrupted(number),
+            FrameError::Interrupted | FrameError::Unplanned => interrupted(number),
             FrameError::Memory { .. } | FrameError::Unplannable(_) => Failure::usage(error),
         })?;
         if !frame.complete {

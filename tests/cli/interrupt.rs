@@ -156,6 +156,36 @@ fn a_part_of_a_picture_does_not_replace_a_whole_one() {
 }
 
 #[test]
+fn a_part_beside_a_whole_picture_is_gone_on_from_and_goes_when_it_is_whole() {
+    let sandbox = Sandbox::new();
+    let arguments = Sandbox::path_tracing("3000", &["--resume"]);
+    let is_interrupted = (0..50).any(|_| {
+        sandbox.render("a.exr", &[]).expect(0);
+        interrupted(&sandbox, &arguments)
+    });
+    assert!(is_interrupted && sandbox.path("a.partial.exr").exists());
+    let stderr = sandbox.run(&arguments).expect(0).stderr;
+    assert!(stderr.contains("goes on with the samples of a.partial.exr"), "{stderr}");
+    assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"]);
+    assert_eq!(ExrFile::read(&sandbox.path("a.exr")).unwrap().metadata().number("spp"), Some(3000.0));
+}
+
+#[test]
+fn plans_that_are_interrupted_say_so_and_write_nothing() {
+    let sandbox = Sandbox::new();
+    let arguments = ["render", "room.xml", "-o", "a.exr", "--error", "0.0001%", "--progress", "ndjson"];
+    let mut child =
+        sandbox.command(&arguments).args(["--method", "path"]).stderr(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+    assert!(lines.any(|line| line.contains(r#""stage":"plan""#)));
+    signal(&child, "-INT");
+    assert!(lines.any(|line| line.contains("interrupted while planning; nothing is written")));
+    lines.for_each(drop);
+    assert_eq!(child.wait().unwrap().code(), Some(75));
+    assert_eq!(sandbox.files(), ["room.xml"]);
+}
+
+#[test]
 fn a_killed_render_leaves_the_old_files_whole() {
     let sandbox = Sandbox::new();
     sandbox.render("a.exr", &[]).expect(0);

@@ -105,11 +105,26 @@ fn messages_for_programs_are_one_object_a_line_from_start_to_end() {
     assert_eq!(find("stage")["stage"], "render");
     let last = find("progress");
     assert_eq!((&last["stage"], &last["done"]), (&"render".into(), &last["total"]));
-    assert!(last["fraction"].as_f64() > Some(0.5) && last["eta_seconds"].is_number());
+    assert_eq!((last["fraction"].as_f64(), last["eta_seconds"].as_f64()), (Some(1.0), Some(0.0)));
     assert_eq!(find("wrote")["files"], serde_json::json!(["a.exr", "a.png"]));
     // An invalid scene is an error, and an end all the same.
     let stderr = sandbox.run(&["render", "none.xml", "-o", "b.exr", "--progress", "ndjson"]).expect(3).stderr;
     assert!(stderr.contains(r#""event":"error""#) && stderr.contains(r#""exit":3"#), "{stderr}");
+}
+
+#[test]
+fn a_run_is_not_over_before_its_error_is_measured() {
+    let sandbox = Sandbox::new();
+    let more = ["--verify", "300", "--progress", "ndjson"];
+    let stderr = sandbox.render("a.exr", &more).expect(0).stderr;
+    let events = stderr.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+    let (stages, told): (Vec<_>, Vec<_>) =
+        events.filter(|e| e["stage"].is_string()).partition(|e| e["event"] == "stage");
+    let stages: Vec<&str> = stages.iter().map(|e| e["stage"].as_str().unwrap()).collect();
+    assert_eq!(stages, ["render", "verify"]);
+    let (last, before) = told.split_last().unwrap();
+    assert_eq!((&last["fraction"], &last["eta_seconds"]), (&1.0.into(), &0.0.into()));
+    assert!(before.iter().all(|e| e["fraction"].as_f64() < Some(1.0)), "{before:?}");
 }
 
 #[test]
@@ -143,7 +158,8 @@ fn agents_are_told_percentage_status_and_failure() {
         .filter_map(|l| l.strip_prefix("openjd_progress: "))
         .map(|p| p.parse().unwrap())
         .collect();
-    assert!(told.last() > Some(&50.0) && told.iter().all(|p| *p <= 100.0), "{stderr}");
+    let (last, before) = told.split_last().unwrap();
+    assert!(*last == 100.0 && before.iter().all(|p| *p < 100.0), "{stderr}");
     assert!(stderr.contains("openjd_status: picture 1 of 1: render") && stderr.contains("wrote a.exr"));
     let stderr = sandbox.run(&["render", "none.xml", "-o", "b.exr", "--progress", "openjd"]).expect(3).stderr;
     assert!(stderr.contains("openjd_fail: ") && stderr.contains("error: "), "{stderr}");
@@ -161,6 +177,27 @@ fn unwritable_outputs_end_with_4_before_rendering() {
     }
     sandbox.run(&[&long[..], &["a.exr", "--png", "none/a.png"]].concat()).expect(4);
     assert!(!sandbox.path("a.exr").exists());
+    assert!(sandbox.run(&[&long[..], &["a.exr/"]].concat()).expect(2).stderr.contains("without /"));
+}
+
+#[cfg(unix)]
+#[test]
+fn write_protected_pictures_are_refused_before_rendering_and_may_stay() {
+    let sandbox = Sandbox::new();
+    for name in ["a.exr", "a.png"] {
+        sandbox.render("a.exr", &["--resume"]).expect(0);
+        let mut permissions = std::fs::metadata(sandbox.path(name)).unwrap().permissions();
+        permissions.set_readonly(true);
+        std::fs::set_permissions(sandbox.path(name), permissions).unwrap();
+        let before = read(&sandbox.path(name));
+        for more in [&[][..], &["--resume"]] {
+            let stderr = sandbox.run(&Sandbox::path_tracing("4000000000", more)).expect(4).stderr;
+            assert!(stderr.contains(name) && stderr.contains("write-protected"), "{stderr}");
+        }
+        assert!(read(&sandbox.path(name)) == before);
+        assert!(sandbox.render("a.exr", &["--resume"]).expect(0).stderr.contains("left as it is"));
+        std::fs::remove_file(sandbox.path(name)).unwrap();
+    }
 }
 
 /// Runs the command under a limit of 4096 or 8192 bytes a file, with SIGXFSZ ignored or not.

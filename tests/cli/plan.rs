@@ -49,6 +49,7 @@ fn an_error_is_met_and_the_same_for_any_number_of_threads() {
         let plan = plan(&run);
         assert_eq!((&plan["asked_error"], &plan["met"]), (&0.2.into(), &true.into()), "{plan}");
         assert!(plan["got_error"]["high"].as_f64().unwrap() <= 0.2, "{plan}");
+        assert!(run.stderr.contains("error by paths at"), "{}", run.stderr);
         let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
         assert!(file.metadata().number("verified_rms_high").unwrap() <= 0.2);
         assert_eq!(file.metadata().number("plan_got_error"), plan["got_error"]["value"].as_f64());
@@ -88,6 +89,16 @@ fn qualities_are_settings_from_rough_to_fine_and_typed_ones_are_held() {
     let of = |key: &str| [0, 1, 2, 3].map(|k| found[k].1[key].as_f64().unwrap());
     assert!(of("epsilon").is_sorted_by(|a, b| a > b), "{:?}", of("epsilon"));
     assert!(of("spp").is_sorted() && of("spp")[0] < of("spp")[3], "{:?}", of("spp"));
+    let (method, by_paths) = settings(&["--quality", "draft", "--method", "path"]);
+    assert!(method == "path" && by_paths["spp"].as_f64() < Some(64.0), "{by_paths}");
+}
+
+#[test]
+fn without_time_the_cheapest_picture_is_taken_and_the_reason_is_told() {
+    let sandbox = Sandbox::new();
+    let stderr = render(&sandbox, "a.exr", &["--time", "1ms"]).expect(0).stderr;
+    assert!(stderr.contains("no time is left") || stderr.contains("not denoised"), "{stderr}");
+    assert!(!stderr.contains("about 0.0 times"), "{stderr}");
 }
 
 #[test]
@@ -101,7 +112,7 @@ fn wishes_that_make_no_sense_are_refused() {
         &["--time", "2s", "--method", "photon-cache"],
         &["--quality", "best"],
         &["--quality", "draft", "--time", "2s"],
-        &["--quality", "draft", "--method", "path"],
+        &["--quality", "draft", "--method", "photon-cache"],
     ] {
         render(&sandbox, "a.exr", wrong).expect(2);
     }

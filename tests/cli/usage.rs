@@ -61,6 +61,7 @@ fn errors_of_the_system_are_told_once() {
     {
         let stderr = sandbox.run(arguments).expect(3).stderr;
         assert_eq!(stderr.matches("No such file").count(), 1, "{stderr}");
+        assert_eq!(stderr.matches(arguments[1]).count(), 1, "{stderr}");
     }
 }
 
@@ -72,11 +73,28 @@ fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
     sandbox.run(&["paint"]).expect(2);
     sandbox.run(&["render", "room.xml"]).expect(2);
     render(&["--method", "guess"]);
-    render(&["--spp", "0"]);
     render(&["--threads", "0"]);
     render(&["--max-depth", "0"]);
     render(&["--exposure", "bright"]);
     render(&["--crop", "1,2,3"]);
+    for (option, value, expected) in [
+        ("--spp", "0", "expected at least 1"),
+        ("--spp", "-3", "expected at least 1"),
+        ("--seed", "4294967296", "from 0 to 4294967295"),
+        ("--seed", "-1", "from 0 to 4294967295"),
+        ("--threads", "-1", "1..=4096"),
+        ("--verify", "-1", "16.."),
+        ("--time", "-1s", "like 10s"),
+        ("--error", "-2%", "like 2%"),
+        ("--frame", "-1", "1 or more"),
+        ("--resolution", "65537x1", "from 1 to 65536"),
+        ("--camera", "bob", "chooses among 1"),
+        ("--denoise-quality", "fast", "goes with --denoise"),
+    ] {
+        let typed = ["render", "room.xml", "-o", "a.exr", "--method", "path", option, value];
+        let stderr = sandbox.run(&typed).expect(2).stderr;
+        assert!(stderr.contains(expected), "{option} {value}: {stderr}");
+    }
     assert!(render(&["--vpls", "9"]).contains("lightcuts"));
     render(&["--method", "lightcuts", "--epsilon", "2"]);
     assert!(render(&["--method", "cache", "--photons", "9"]).contains("photon-cache"));

@@ -92,6 +92,24 @@ fn frames_are_whole_pictures_of_one_exposure_each_by_its_own_camera() {
 }
 
 #[test]
+fn stages_are_told_once_a_frame_and_the_fraction_ends_at_one() {
+    let sandbox = sandbox();
+    let stderr = walk(&sandbox, "1-3", &["--progress", "ndjson"]).expect(0).stderr;
+    let events: Vec<serde_json::Value> =
+        stderr.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let of = |kind: &str| events.iter().filter(|e| e["event"] == kind).cloned().collect::<Vec<_>>();
+    let mut stages: Vec<String> =
+        of("stage").iter().map(|e| format!("{} {}", e["frame"], e["stage"])).collect();
+    let count = stages.len();
+    stages.sort();
+    stages.dedup();
+    assert!(count > 6 && stages.len() == count, "{stages:?}");
+    let fractions: Vec<f64> = of("progress").iter().map(|e| e["fraction"].as_f64().unwrap()).collect();
+    let (last, before) = fractions.split_last().unwrap();
+    assert!(*last == 1.0 && before.iter().all(|f| *f < 1.0) && before.is_sorted(), "{fractions:?}");
+}
+
+#[test]
 fn resuming_leaves_whole_frames_alone_and_does_others_anew() {
     let sandbox = sandbox();
     walk(&sandbox, "1-5", &[]).expect(0);
@@ -137,11 +155,19 @@ fn wrong_names_ranges_and_scenes_are_errors_and_nothing_is_written() {
     let beyond = error("5-7", &[], 2);
     assert!(beyond.contains("no frame 7") && beyond.contains("has 6"), "{beyond}");
     assert!(error("1", &["--memory-limit", "much"], 2).contains("512M"));
+    assert!(error("1", &["--memory-limit", "-1M"], 2).contains("512M"));
+    for chunk in ["0", "-1", "x"] {
+        assert!(error("1", &["--chunk", chunk], 2).contains("expected a whole number, 1 or more"));
+    }
+    assert!(error("1", &["--q-scale", "-1"], 2).contains("from 0.01 to 1000"));
+    assert!(error("1", &["--denoise-quality", "fast"], 2).contains("goes with --denoise"));
+    assert!(error("1", &["--camera", "2"], 2).contains("no camera \"2\""));
+    sandbox.run(&["info", "path.toml", "--camera", "1"]).expect(0);
     assert!(error("1", &["--time", "3s"], 2).contains("--time"));
     let named = |name: &str| sandbox.run(&["walk", "path.toml", "-o", name, "--frames", "1"]);
     assert!(named("f/a.exr").expect(2).stderr.contains("####"));
     assert!(named("none/a.#.exr").expect(4).stderr.contains("does not exist"));
-    let pathless = sandbox.run(&["walk", "room.xml", "-o", "f/a.#.exr"]).expect(3).stderr;
+    let pathless = sandbox.run(&["walk", "room.xml", "-o", "f/a.#.exr"]).expect(2).stderr;
     assert!(pathless.contains("no camera path") && pathless.contains("[camera.path]"), "{pathless}");
     assert_eq!(frames(&sandbox), [""; 0]);
 }
