@@ -4,7 +4,7 @@
 use super::args::{BatchArgs, Command};
 use super::batch_file::{self, Entry};
 use super::course::Span;
-use super::exit::Failure;
+use super::exit::{self, Failure};
 use super::job::RenderJob;
 use super::scene::{self, Opened};
 use super::walk_job::WalkJob;
@@ -72,10 +72,11 @@ impl Batch {
         );
         match self.failed {
             0 => Ok(()),
-            failed => Err(Failure::in_part(anyhow!(
-                "{failed} of {} pictures and walks failed; the others are done",
-                self.count
-            ))),
+            failed => {
+                let others = if done > 0 { "; the others are done" } else { "" };
+                let message = anyhow!("{failed} of {} pictures and walks failed{others}", self.count);
+                Err(Failure::in_part(message))
+            }
         }
     }
 
@@ -145,7 +146,9 @@ impl Batch {
     fn settle(&mut self, entry: &Entry, done: Result<(), Failure>) -> Option<()> {
         done.map_err(|failure| {
             self.failed += 1;
-            talk::error(&failure.within(&entry.output));
+            let is_of_job = failure.code() == exit::USAGE;
+            let failure = failure.within(&entry.output);
+            talk::error(&if is_of_job { failure.at(&entry.place) } else { failure });
         })
         .ok()
     }

@@ -9,8 +9,9 @@ use crate::scene::formats::LoadOptions;
 use crate::scene::formats::read_regular;
 use crate::walk::FileNames;
 use anyhow::{Context, anyhow};
-use clap::Parser;
+use clap::error::{ContextKind, ContextValue};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 #[cfg(test)]
 use std::fs;
@@ -21,6 +22,9 @@ use toml::{Spanned, Table, Value};
 /// Options of the batch, not of a picture.
 const OF_THE_BATCH: [&str; 2] = ["threads", "progress"];
 
+/// Options that name a file.
+const FILES: [&str; 1] = ["png"];
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct JobFile {
@@ -30,15 +34,12 @@ struct JobFile {
     picture: Vec<PictureTable>,
 }
 
-/// Outputs alone, with their places, which are lost where options stand beside them.
+/// Keys alone, with their places, which are lost where their values are of any type.
 #[derive(Deserialize)]
-struct Outputs {
-    picture: Vec<OutputTable>,
-}
-
-#[derive(Deserialize)]
-struct OutputTable {
-    output: Spanned<PathBuf>,
+struct Keys {
+    #[serde(default)]
+    options: BTreeMap<Spanned<String>, Value>,
+    picture: Vec<BTreeMap<Spanned<String>, Value>>,
 }
 
 #[derive(Deserialize)]
@@ -61,17 +62,43 @@ pub struct Entry {
     pub output: PathBuf,
     /// Job file, and line of the output in it.
     pub place: String,
+    /// Lines of the keys in it.
+    lines: BTreeMap<String, usize>,
+    file: PathBuf,
     arguments: Vec<OsString>,
 }
 
 impl Entry {
     /// The command of the entry.
     pub fn command(&self) -> Result<Command, Failure> {
-        let parsed = Cli::try_parse_from(&self.arguments).map(|cli| cli.command);
-        parsed.map_err(|error| {
-            Failure::usage(anyhow!("{}: {}", self.output.display(), error.to_string().trim_end()))
+        Cli::of(&self.arguments).map(|cli| cli.command).map_err(|error| {
+            let argument = match error.get(ContextKind::InvalidArg) {
+                Some(ContextValue::String(argument)) => argument.as_str(),
+                Some(ContextValue::Strings(arguments)) => arguments.first().map_or("", String::as_str),
+                _ => "",
+            };
+            let key = argument.trim_start_matches("--").split([' ', '=']).next().unwrap_or_default();
+            self.wrong(key, &of_command_line(&error))
         })
     }
+
+    /// The error of an option, with its place.
+    fn wrong(&self, key: &str, what: &str) -> Failure {
+        let place = match self.lines.get(key) {
+            Some(line) => format!("{}, line {line}", self.file.display()),
+            None => self.place.clone(),
+        };
+        Failure::usage(anyhow!("{place}: {}: {what}", self.output.display()))
+    }
+}
+
+/// The parser's message without what says how to call the program.
+fn of_command_line(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let lines = text.strip_prefix("error: ").unwrap_or(&text).lines().map(str::trim);
+    let own =
+        lines.take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more information"));
+    own.filter(|line| !line.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
 /// Reads a job file. Paths in it are relative to its folder; `more` are arguments for every picture.
@@ -82,46 +109,71 @@ pub fn read(path: &Path, more: &[&str]) -> Result<Vec<Entry>, Failure> {
         Failure::input(anyhow!("{}: {}", path.display(), error.to_string().trim_end()))
     };
     let file: JobFile = toml::from_str(&text).map_err(wrong)?;
-    let outputs: Outputs = toml::from_str(&text).map_err(wrong)?;
-    let places = outputs.picture.iter().map(|picture| {
-        let before = text.get(..picture.output.span().start).unwrap_or_default();
-        format!("{}, line {}", path.display(), 1 + before.matches('\n').count())
-    });
+    let keys: Keys = toml::from_str(&text).map_err(wrong)?;
+    let line_of =
+        |key: &Spanned<String>| 1 + text.get(..key.span().start).unwrap_or_default().matches('\n').count();
+    let lines_of = |keys: &BTreeMap<Spanned<String>, Value>| -> BTreeMap<String, usize> {
+        keys.keys().map(|key| (key.get_ref().clone(), line_of(key))).collect()
+    };
+    let of_all = lines_of(&keys.options);
     let folder = path.parent().unwrap_or(Path::new(""));
     file.picture
         .into_iter()
-        .zip(places)
-        .map(|(picture, place)| {
+        .zip(&keys.picture)
+        .map(|(picture, keys)| {
+            let mut lines = of_all.clone();
+            lines.extend(lines_of(keys));
+            let line = lines.get("output").copied().unwrap_or_default();
             let mut options = file.options.clone();
             options.extend(picture.options);
-            entry(folder.join(picture.scene), folder.join(picture.output), &options, more)
-                .map(|entry| Entry { place, ..entry })
-                .map_err(|error| error.within(path))
+            let entry = Entry {
+                scene: folder.join(picture.scene),
+                reading: LoadOptions::default(),
+                output: folder.join(picture.output),
+                place: format!("{}, line {line}", path.display()),
+                lines,
+                file: path.to_owned(),
+                arguments: Vec::new(),
+            };
+            entry.with(folder, &options, more)
         })
         .collect()
 }
 
-fn entry(scene: PathBuf, output: PathBuf, options: &Table, more: &[&str]) -> Result<Entry, Failure> {
-    let is_walk = output.to_str().is_some_and(|name| name.parse::<FileNames>().is_ok());
-    let command = if is_walk { "walk" } else { "render" };
-    let mut arguments: Vec<OsString> = ["lightsplat", command].map(OsString::from).into();
-    arguments.extend([scene.clone().into(), "-o".into(), output.clone().into()]);
-    for (name, value) in options {
-        if OF_THE_BATCH.contains(&name.as_str()) {
-            let remedy = format!("`{name}` is not a picture's: lightsplat batch --{name}");
-            return Err(Failure::usage(anyhow!("{}: {remedy}", output.display())));
+impl Entry {
+    /// The entry with its options, of which those that name files are relative to `folder`.
+    fn with(mut self, folder: &Path, options: &Table, more: &[&str]) -> Result<Entry, Failure> {
+        let is_walk = self.output.to_str().is_some_and(|name| name.parse::<FileNames>().is_ok());
+        let command = if is_walk { "walk" } else { "render" };
+        let mut arguments: Vec<OsString> = ["lightsplat", command].map(OsString::from).into();
+        arguments.extend([self.scene.clone().into(), "-o".into(), self.output.clone().into()]);
+        for (name, value) in options {
+            if OF_THE_BATCH.contains(&name.as_str()) {
+                let remedy = format!("`{name}` is not a picture's: lightsplat batch --{name}");
+                return Err(self.wrong(name, &remedy));
+            }
+            match value {
+                Value::String(file) if FILES.contains(&name.as_str()) => {
+                    let mut argument = OsString::from(format!("--{name}="));
+                    argument.push(folder.join(file));
+                    arguments.push(argument);
+                }
+                _ => {
+                    let refuse = || self.wrong(name, &format!("`{name}` cannot be {value}"));
+                    let option = option(name, value).ok_or_else(refuse)?;
+                    arguments.extend(option.into_iter().map(OsString::from));
+                }
+            }
         }
-        let refuse = || Failure::usage(anyhow!("{}: `{name}` cannot be {value}", output.display()));
-        arguments.extend(option(name, value).ok_or_else(refuse)?.into_iter().map(OsString::from));
+        arguments.extend(more.iter().map(OsString::from));
+        self.arguments = arguments;
+        self.reading = match self.command()? {
+            Command::Render(args) => args.picture.reading.options(),
+            Command::Walk(args) => args.picture.reading.options(),
+            _ => LoadOptions::default(),
+        };
+        Ok(self)
     }
-    arguments.extend(more.iter().map(OsString::from));
-    let mut entry = Entry { scene, reading: LoadOptions::default(), output, place: String::new(), arguments };
-    entry.reading = match entry.command()? {
-        Command::Render(args) => args.picture.reading.options(),
-        Command::Walk(args) => args.picture.reading.options(),
-        _ => LoadOptions::default(),
-    };
-    Ok(entry)
 }
 
 /// Arguments of an option: true stands for a flag, words in a list for the option as many times, numbers in a list for
@@ -170,6 +222,7 @@ mod tests {
             scene = "a.toml"
             output = "a.exr"
             spp = 2
+            png = "shown.png"
             accuracy = [0.5, 0.25]
             [[picture]]
             scene = "b.xml"
@@ -186,6 +239,9 @@ mod tests {
         let Command::Walk(walk) = found[1].command().unwrap() else { panic!("{found:?}") };
         assert_eq!((walk.method.method().unwrap().spp(), walk.frames.unwrap().last()), (8, 4));
         assert_eq!(found[1].reading.parameters.len(), 2);
+        // Files are relative to the job file.
+        let folder = found[0].output.parent().unwrap();
+        assert_eq!(still.png.file(&found[0].output), Some(folder.join("shown.png")));
         assert!(found[1].scene.is_absolute() && found[1].scene.ends_with("b.xml"));
     }
 
@@ -196,7 +252,11 @@ mod tests {
         assert!(error("[[picture]]\nscene = 'a.toml'").contains("output"));
         assert!(error("[[picture]\n").contains("line 1"));
         assert!(error("[[pictures]]\nscene = 'a.toml'").contains("pictures"));
-        assert!(with("spq = 3").contains("--spq") && with("spp = 'many'").contains("many"));
+        let unknown = with("spq = 3");
+        assert!(unknown.contains("job.toml, line 4: ") && unknown.contains("'--spq'"), "{unknown}");
+        assert!(!unknown.contains("error:") && !unknown.contains("Usage"), "{unknown}");
+        let of_all = error("options = {\n spp = 'many' }\n[[picture]]\nscene = 'a.toml'\noutput = 'a.exr'");
+        assert!(of_all.contains("line 2: ") && of_all.contains("many"), "{of_all}");
         assert!(with("spp = { a = 1 }").contains("`spp` cannot be"));
         assert!(with("threads = 3").contains("batch --threads"));
         assert!(with("frames = '1-4'").contains("--frames"));
