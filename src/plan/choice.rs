@@ -37,8 +37,8 @@ pub struct Choice {
     pub method: Method,
     /// The reason.
     pub reason: Reason,
-    /// Expected work of the other method for as good a picture, or for its cheapest where there is no time, over that of
-    /// this one.
+    /// Expected work of the other method for as good a picture, or for its cheapest where there is no time, over that
+    /// of this one.
     pub ahead: f64,
     /// Number of paths that are worth a first sample of the cache, with the samples that follow it.
     pub paths_a_sample: f64,
