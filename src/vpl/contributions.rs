@@ -13,6 +13,7 @@ use crate::parallel::ShortRuns;
 use crate::sampling::{Sampler, cosine_hemisphere, hash};
 use crate::shadow;
 use crate::world::{Surface, SurfacePoint, World};
+use glam::Vec3;
 use rayon::prelude::*;
 
 /// Number of the points seen for each that a path begins at.
@@ -117,9 +118,9 @@ fn follow(world: &World, start: &SurfacePoint, sampler: &mut Sampler, found: &mu
 fn look(
     world: &World,
     surface: &Surface,
-    out: glam::Vec3,
+    out: Vec3,
     sampler: &mut Sampler,
-    reflected: impl Fn(glam::Vec3, Rgb) -> f32,
+    reflected: impl Fn(Vec3, Rgb) -> f32,
     found: &mut Found,
 ) {
     let (mut choices, mut places) = ([0.0; LANES], Vec2x16::default());
@@ -149,4 +150,96 @@ fn look(
     }
     let free = lit & !world.accel.occluded16(&segments, lit, false);
     found.extend(lanes_in(free).map(|lane| (chosen[lane], f64::from(light[lane]))));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::progress::Control;
+    use crate::scene::{Camera, Environment};
+    use crate::test_scenes::{SceneAndView, add_material, diffuse, emitting, quad, room, scene, world};
+    use crate::vpl::PhotonEmitter;
+    use crate::vpl::photons::{PhotonSettings, trace_photons};
+
+    /// A closed room of edge 1 with a lamp of some power.
+    fn add_room(scene: &mut SceneAndView, low: Vec3, radiance: f32) {
+        let grey = add_material(scene, diffuse(Rgb::splat(0.6)));
+        scene.meshes.extend(room(low, low + Vec3::ONE, grey));
+        let corner = low + Vec3::new(0.4, 0.4, 0.95);
+        let lamp = quad(corner, 0.2 * Vec3::Y, 0.2 * Vec3::X, grey);
+        scene.meshes.push(emitting(lamp, Rgb::splat(radiance)));
+    }
+
+    /// Points of the floor of the room at the origin.
+    fn floor() -> Vec<SurfacePoint> {
+        let point = |i: u32| SurfacePoint {
+            position: Vec3::new((i % 64) as f32 + 0.5, (i / 64) as f32 + 0.5, 0.0) / 64.0,
+            normal: Vec3::Z,
+            geometric_normal: Vec3::Z,
+        };
+        (0..64 * 64).map(point).collect()
+    }
+
+    /// Number of photons in the room at the origin of so many, and their flux over that of all paths.
+    fn inside(world: &World, seen: &[SurfacePoint], seed: u32) -> (usize, f32) {
+        let settings = PhotonSettings { photons: 20_000, seen, max_edges: 4, seed };
+        let (photons, counts) = trace_photons(world, &settings, &Control::new(), |hit| hit.photon);
+        let is_in = |p: Vec3| p.cmpge(Vec3::splat(-1e-3)).all() && p.cmple(Vec3::splat(1.001)).all();
+        let inside = || photons.iter().filter(|photon| is_in(photon.position));
+        (inside().count(), inside().map(|p| luminance(p.flux)).sum::<f32>() / counts.paths as f32)
+    }
+
+    #[test]
+    fn a_dim_room_has_the_photons_and_a_bright_one_beside_it_its_flux() {
+        let mut scene = scene(Camera::default(), [8, 8]);
+        add_room(&mut scene, Vec3::ZERO, 1.0);
+        add_room(&mut scene, Vec3::X * 2.0, 300.0);
+        let world = world(scene).world;
+        let (mut by_power, mut by_worth, mut count) = ([0.0; 2], [0.0; 2], [0; 2]);
+        for seed in 0..40 {
+            let ([few, many], [a, b]) = {
+                let [a, b] = [inside(&world, &[], seed), inside(&world, &floor(), seed)];
+                ([a.0, b.0], [a.1, b.1])
+            };
+            for (sums, value) in [(&mut by_power, a), (&mut by_worth, b)] {
+                sums[0] += value / 40.0;
+                sums[1] += value * value / 40.0;
+            }
+            count = [count[0] + few, count[1] + many];
+        }
+        assert!(count[1] > 100 * count[0] && count[0] > 0, "{count:?}");
+        let deviation = ((by_power[1] - by_power[0] * by_power[0]) / 40.0).sqrt();
+        assert!((by_worth[0] - by_power[0]).abs() < 4.0 * deviation, "{by_worth:?} {by_power:?} {deviation}");
+        let spread = |[mean, squares]: [f32; 2]| (squares - mean * mean).max(0.0).sqrt() / mean;
+        assert!(spread(by_worth) < 0.2 * spread(by_power), "{by_worth:?} {by_power:?}");
+    }
+
+    #[test]
+    fn a_lamp_has_photons_beside_a_sky_that_does_not_come_in() {
+        let mut scene = scene(Camera::default(), [8, 8]);
+        add_room(&mut scene, Vec3::ZERO, 1.0);
+        let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+        let plain = quad(Vec3::new(-500.0, -500.0, -0.5), Vec3::X * 1e3, Vec3::Y * 1e3, grey);
+        scene.meshes.push(plain);
+        scene.environment = Some(Environment::Constant(Rgb::splat(0.5)));
+        let world = world(scene).world;
+        let [few, many] = [&[][..], &floor()].map(|seen| inside(&world, seen, 1).0);
+        assert!(many > 5000 && few < 50, "{few} {many}");
+    }
+
+    #[test]
+    fn lamps_that_give_what_their_power_says_share_by_power() {
+        let mut scene = scene(Camera::default(), [8, 8]);
+        let grey = add_material(&mut scene, diffuse(Rgb::splat(0.6)));
+        scene.meshes.extend(room(Vec3::ZERO, Vec3::ONE, grey));
+        for (x, radiance) in [(0.2, 3.0), (0.4, 1.0), (0.6, 2.0), (0.7, 0.1)] {
+            let lamp = quad(Vec3::new(x, 0.5, 0.95), 0.1 * Vec3::Y, 0.1 * Vec3::X, grey);
+            scene.meshes.push(emitting(lamp, Rgb::splat(radiance)));
+        }
+        let world = world(scene).world;
+        let mut emitter = PhotonEmitter::new(&world).expect("there are lamps");
+        assert_eq!(emitter.share_by_worth(&floor(), 1), None);
+        let shares: Vec<f32> = emitter.shares().collect();
+        assert!((shares[0] / shares[1] - 3.0).abs() < 1e-3, "{shares:?}");
+    }
 }
