@@ -1,6 +1,6 @@
 //! Short rays from up to sixteen points at once, and the surfaces that they meet.
 //!
-//! Deviations: rays end at sheets of thin glass, which the shadow rays to virtual lights pass: light that was clamped of
+//! Deviations: rays end at sheets of thin glass, which shadow rays to virtual lights pass: light that was clamped of
 //! lights close behind a pane is not found again.
 
 use super::Compensation;

@@ -4,7 +4,7 @@
 //! window shows a little: the lamp in the room has a few virtual lights, each so bright that it is clamped.
 //!
 //! Deviations: emitters share paths by what these bring to the eye, where Keller's *Instant Radiosity* and the paper
-//! have them in proportion to power. What an emitter gives is estimated by short paths from some of the points seen.
+//! have them in proportion to power. The parts are found by short paths from some of the points seen.
 
 use crate::embree::Rays16;
 use crate::light::{DiscreteDistribution, Receivers16};
