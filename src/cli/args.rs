@@ -28,7 +28,11 @@ impl Cli {
     /// Parses `arguments`, the program's name first. Negative numbers are values, which are refused with the range of
     /// those expected, and not options.
     pub fn of(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Result<Cli, clap::Error> {
-        let negative = |arg: Arg| match arg.is_positional() || !arg.get_action().takes_values() {
+        let has_no_value = |arg: &Arg| {
+            !arg.get_action().takes_values()
+                || arg.get_num_args().is_some_and(|range| range.max_values() == 0)
+        };
+        let negative = |arg: Arg| match arg.is_positional() || has_no_value(&arg) {
             true => arg,
             false => arg.allow_negative_numbers(true),
         };
