@@ -52,6 +52,13 @@ pub struct Progress {
     pub total: u64,
 }
 
+impl Progress {
+    /// The stage that people are told: planning, or the current one.
+    pub fn told(&self) -> Stage {
+        if self.is_planning { Stage::Plan } else { self.stage }
+    }
+}
+
 impl Control {
     /// Creates a control: not cancelled, no stage begun.
     pub fn new() -> Control {

@@ -136,7 +136,7 @@ impl Course {
     }
 
     fn in_frame(&mut self, now: &Progress) -> f64 {
-        if now.is_planning || now.stage == Stage::Plan {
+        if now.told() == Stage::Plan {
             return 0.0;
         }
         let first = *self.first.get_or_insert(now.stage);

@@ -4,7 +4,6 @@ use super::course::Course;
 use super::talk;
 use super::values::ProgressMode;
 use crate::progress::{Control, Progress};
-use crate::stats::Stage;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 use std::io::IsTerminal;
@@ -105,7 +104,7 @@ fn show_bar(control: &Control, stop: Receiver<()>) {
         let Some(progress) = control.progress() else { continue };
         if stage != Some((progress.stage, progress.is_planning)) {
             bar.set_style(if progress.total > 0 { known.clone() } else { unknown.clone() });
-            bar.set_message(if progress.is_planning { Stage::Plan.name() } else { progress.stage.name() });
+            bar.set_message(progress.told().name());
             bar.set_length(progress.total);
             bar.reset();
             if stage.is_none() {
@@ -144,7 +143,7 @@ fn write_events(
     talk::event("progress", || {
         let (fraction, eta_seconds) = told(&now);
         let fields = json!({
-            "stage": if now.is_planning { Stage::Plan } else { now.stage },
+            "stage": now.told(),
             "done": now.done,
             "total": now.total,
             "fraction": fraction,
@@ -171,8 +170,8 @@ fn write_for_agents(
 ) {
     if let (_, Some(now)) = control.news() {
         talk::line(&format!("openjd_progress: {:.2}", 100.0 * fraction(&now)));
-        let stage = if now.is_planning { Stage::Plan } else { now.stage };
-        talk::line(&format!("openjd_status: picture {} of {frames}: {}", place + 1, stage.name()));
+        let stage = now.told().name();
+        talk::line(&format!("openjd_status: picture {} of {frames}: {stage}", place + 1));
     }
 }
 

@@ -75,19 +75,21 @@ impl Emitters {
         self.sample_chosen(scene, at, (&chosen, &choice), u, wanted)
     }
 
-    /// [`Emitters::sample_direct`] in all lanes; returns the emitters, too.
-    pub fn sample_all(
+    /// [`Emitters::sample_direct`] in all lanes, where the emitter chosen `is_wanted`; returns the emitters, too.
+    pub fn sample_of(
         &self,
         scene: &Scene,
         at: Receivers16,
         u_choice: &F32x16,
         u: &Vec2x16,
+        is_wanted: impl Fn(u32) -> bool,
     ) -> (U32x16, DirectSamples16) {
         let (chosen, choice) = self.selection.sample(self, at, u_choice, u16::MAX);
-        (chosen, self.sample_chosen(scene, at, (&chosen, &choice), u, u16::MAX))
+        let wanted = mask_of(&chosen.map(|emitter| u32::from(is_wanted(emitter))));
+        (chosen, self.sample_chosen(scene, at, (&chosen, &choice), u, wanted))
     }
 
-    /// [`Emitters::sample_direct`] of all emitters but the environment; returns the emitters, too.
+    /// [`Emitters::sample_of`] all but the environment.
     pub fn sample_lamps(
         &self,
         scene: &Scene,
@@ -95,9 +97,7 @@ impl Emitters {
         u_choice: &F32x16,
         u: &Vec2x16,
     ) -> (U32x16, DirectSamples16) {
-        let (chosen, choice) = self.selection.sample(self, at, u_choice, u16::MAX);
-        let lamps = mask_of(&chosen.map(|emitter| u32::from(emitter != self.environment_index())));
-        (chosen, self.sample_chosen(scene, at, (&chosen, &choice), u, lamps))
+        self.sample_of(scene, at, u_choice, u, |emitter| emitter != self.environment_index())
     }
 
     /// Samples light of emitters chosen with their probabilities, in the lanes of `wanted`.

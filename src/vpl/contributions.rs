@@ -6,14 +6,13 @@
 //! Deviations: emitters share paths by what these bring to the eye, where Keller's *Instant Radiosity* and the paper
 //! have them in proportion to power. The parts are found by short paths from some of the points seen.
 
-use crate::embree::Rays16;
+use super::short_paths::{Met, follow, is_free};
 use crate::light::{DiscreteDistribution, Receivers16};
-use crate::math::{Frame, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
+use crate::math::{LANES, Vec2x16, Vec3x16, lanes_in, luminance};
 use crate::parallel::ShortRuns;
-use crate::sampling::{Sampler, cosine_hemisphere, hash};
+use crate::sampling::{Sampler, hash};
 use crate::shadow;
-use crate::world::{Surface, SurfacePoint, World};
-use glam::Vec3;
+use crate::world::{SurfacePoint, World};
 use rayon::prelude::*;
 
 /// Number of the points seen for each that a path begins at.
@@ -21,10 +20,6 @@ const POINTS_A_PATH: usize = 4;
 
 /// Number of points below which they say too little.
 const FEW: usize = 256;
-
-/// Number of surfaces that a path finds, each lit by sixteen samples, and the maximum number of its edges.
-const SURFACES: u32 = 2;
-const MAX_EDGES: u32 = 8;
 
 /// Share of the paths that emitters have by power as before, since few paths say nothing of what rarely lights.
 const BY_POWER: f32 = 0.25;
@@ -49,7 +44,9 @@ pub(super) fn shares(
     let seed = hash(seed, 0x5ea2);
     let from = |(number, start): (usize, &SurfacePoint)| {
         let mut found = Vec::new();
-        follow(world, start, &mut Sampler::new(seed, number as u32), &mut found);
+        follow(world, start, &mut Sampler::new(seed, number as u32), |met, sampler| {
+            look(world, met, sampler, &mut found);
+        });
         found
     };
     let found: Vec<Found> = starts.par_iter().in_short_runs().enumerate().map(from).collect();
@@ -87,79 +84,40 @@ fn mixed(by_power: &DiscreteDistribution, parts: &[f64]) -> DiscreteDistribution
     DiscreteDistribution::new(parts.iter().enumerate().map(share))
 }
 
-/// Follows a path from a point, and finds the light that emitters bring to it by one more reflection.
-fn follow(world: &World, start: &SurfacePoint, sampler: &mut Sampler, found: &mut Found) {
-    let direction = Frame::from_normal(start.normal).to_world(cosine_hemisphere(sampler.next_2d()));
-    let mut ray = shadow::ray_from(start.position, start.geometric_normal, direction);
-    let (mut throughput, mut surfaces) = (Rgb::ONE, 0);
-    for _ in 0..MAX_EDGES {
-        let Some(surface) = world.intersect(&ray) else { return };
-        let bsdf = world.bsdf(&surface);
-        let wo = surface.frame.to_local(-ray.direction);
-        if bsdf.has_smooth() {
-            surfaces += 1;
-            let reflected = |direction, radiance| {
-                let wi = surface.frame.to_local(direction);
-                luminance(throughput * bsdf.eval(wo, wi) * radiance * wi.z.abs())
-            };
-            look(world, &surface, -ray.direction, sampler, reflected, found);
-            if surfaces == SURFACES {
-                return;
-            }
-        }
-        let Some(s) = bsdf.sample(wo, sampler.next_1d(), sampler.next_2d()) else { return };
-        throughput *= s.weight;
-        ray = shadow::ray_from(surface.position, surface.normal, surface.frame.to_world(s.wi));
-    }
-}
-
-/// Adds what sixteen samples of the emitters give at a surface, by the luminance `reflected` of radiance from a
-/// direction.
-fn look(
-    world: &World,
-    surface: &Surface,
-    out: Vec3,
-    sampler: &mut Sampler,
-    reflected: impl Fn(Vec3, Rgb) -> f32,
-    found: &mut Found,
-) {
+/// Adds what sixteen samples of the emitters give at a surface.
+fn look(world: &World, met: &Met, sampler: &mut Sampler, found: &mut Found) {
     let (mut choices, mut places) = ([0.0; LANES], Vec2x16::default());
     for (lane, choice) in choices.iter_mut().enumerate() {
         *choice = sampler.next_1d();
         places.set(lane, sampler.next_2d());
     }
-    let (x, normal) = (surface.position, surface.frame.normal);
-    let (position, normals) =
-        (Vec3x16::splat(x), Vec3x16::splat(if out.dot(normal) < 0.0 { -normal } else { normal }));
-    let at = Receivers16 { position: &position, normal: &normals, learned: None };
-    let (chosen, samples) = world.emitters.sample_all(&world.scene, at, &choices, &places);
-    let (mut segments, mut lit, mut light) = (Rays16::default(), 0u16, [0.0; LANES]);
+    let (x, normal) = (met.surface.position, met.surface.normal);
+    let side = met.surface.frame.normal * met.wo.z.signum();
+    let at = Receivers16 { position: &Vec3x16::splat(x), normal: &Vec3x16::splat(side), learned: None };
+    let (chosen, samples) = world.emitters.sample_of(&world.scene, at, &choices, &places, |_| true);
     for lane in lanes_in(samples.useful()) {
         let (direction, distance) = (samples.direction.get(lane), samples.distance[lane]);
-        let y = reflected(direction, samples.radiance.get(lane)) / samples.pdf[lane];
-        if !(y > 0.0 && y.is_finite()) {
-            continue;
-        }
-        let segment = match distance < f32::INFINITY {
-            true => shadow::segment(x, surface.normal, x + direction * distance, samples.normal.get(lane)),
-            false => shadow::ray_from(x, surface.normal, direction),
+        let y = luminance(met.reflected(direction, samples.radiance.get(lane))) / samples.pdf[lane];
+        let ray = match distance < f32::INFINITY {
+            true => shadow::segment(x, normal, x + direction * distance, samples.normal.get(lane)),
+            false => shadow::ray_from(x, normal, direction),
         };
-        segments.set(lane, &segment);
-        light[lane] = y;
-        lit |= 1 << lane;
+        if y > 0.0 && y.is_finite() && is_free(world, ray) {
+            found.push((chosen[lane], f64::from(y)));
+        }
     }
-    let free = lit & !world.accel.occluded16(&segments, lit, false);
-    found.extend(lanes_in(free).map(|lane| (chosen[lane], f64::from(light[lane]))));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Rgb;
     use crate::progress::Control;
     use crate::scene::{Camera, Environment};
     use crate::test_scenes::{SceneAndView, add_material, diffuse, emitting, quad, room, scene, world};
     use crate::vpl::PhotonEmitter;
     use crate::vpl::photons::{PhotonSettings, trace_photons};
+    use glam::Vec3;
 
     /// A closed room of edge 1 with a lamp of some power.
     fn add_room(scene: &mut SceneAndView, low: Vec3, radiance: f32) {

@@ -2,20 +2,17 @@
 //! from surfaces that it sees.
 
 use super::far::FarLights;
-use crate::math::{Frame, Rgb, luminance};
+use super::short_paths::{follow, is_free};
+use crate::math::luminance;
 use crate::parallel::ShortRuns;
-use crate::sampling::{Sampler, cosine_hemisphere, hash};
+use crate::sampling::{Sampler, hash};
 use crate::shadow;
 use crate::world::{SurfacePoint, World};
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Number of surfaces that a path finds, and of looks from each to the lights.
-const SURFACES: u32 = 2;
+/// Number of looks from each surface that a path finds to the lights.
 const LOOKS: u32 = 12;
-
-/// Maximum number of edges, mirrors and glass included.
-const MAX_EDGES: u32 = 8;
 
 /// A place where light comes to a surface.
 pub(super) struct Entry {
@@ -34,7 +31,19 @@ pub(super) fn entries(world: &World, lights: &FarLights, seen: &[SurfacePoint], 
     let seed = hash(seed, 0x51c1);
     let from = |(number, start): (usize, &SurfacePoint)| {
         let mut found = Vec::new();
-        follow(world, lights, start, &mut Sampler::new(seed, number as u32), &mut found);
+        follow(world, start, &mut Sampler::new(seed, number as u32), |met, sampler| {
+            for _ in 0..LOOKS {
+                let source = lights.source(sampler.next_1d());
+                let Some(light) = lights.sample(source, sampler.next_2d()) else { continue };
+                let weight =
+                    luminance(met.reflected(light.towards, light.irradiance)) / lights.probability(source);
+                let (place, normal) = (met.surface.position, met.surface.normal);
+                let is_free = || is_free(world, shadow::ray_from(place, normal, light.towards));
+                if weight > 0.0 && weight.is_finite() && is_free() {
+                    found.push(Entry { place, source, towards: light.towards, weight });
+                }
+            }
+        });
         found
     };
     let mut found: Vec<Vec<Entry>> = seen.par_iter().in_short_runs().enumerate().map(from).collect();
@@ -45,59 +54,4 @@ pub(super) fn entries(world: &World, lights: &FarLights, seen: &[SurfacePoint], 
         entries.iter_mut().for_each(|entry| entry.weight = (f64::from(entry.weight) * scale) as f32);
     }
     found.into_iter().flatten().collect()
-}
-
-fn follow(
-    world: &World,
-    lights: &FarLights,
-    start: &SurfacePoint,
-    sampler: &mut Sampler,
-    found: &mut Vec<Entry>,
-) {
-    let direction = Frame::from_normal(start.normal).to_world(cosine_hemisphere(sampler.next_2d()));
-    let mut ray = shadow::ray_from(start.position, start.geometric_normal, direction);
-    let (mut throughput, mut surfaces) = (Rgb::ONE, 0);
-    for _ in 0..MAX_EDGES {
-        let Some(surface) = world.intersect(&ray) else { return };
-        let bsdf = world.bsdf(&surface);
-        let wo = surface.frame.to_local(-ray.direction);
-        if bsdf.has_smooth() {
-            surfaces += 1;
-            for _ in 0..LOOKS {
-                let source = lights.source(sampler.next_1d());
-                let Some(light) = lights.sample(source, sampler.next_2d()) else { continue };
-                let wi = surface.frame.to_local(light.towards);
-                let reflected = throughput * bsdf.eval(wo, wi) * light.irradiance * wi.z.abs();
-                let weight = luminance(reflected) / lights.probability(source);
-                if weight > 0.0
-                    && weight.is_finite()
-                    && is_free(world, surface.position, surface.normal, light.towards)
-                {
-                    found.push(Entry { place: surface.position, source, towards: light.towards, weight });
-                }
-            }
-            if surfaces == SURFACES {
-                return;
-            }
-        }
-        let Some(s) = bsdf.sample(wo, sampler.next_1d(), sampler.next_2d()) else { return };
-        throughput *= s.weight;
-        ray = shadow::ray_from(surface.position, surface.normal, surface.frame.to_world(s.wi));
-    }
-}
-
-/// True if light may come straight to a point, also through glass as if it did not bend light.
-fn is_free(world: &World, x: Vec3, normal: Vec3, towards: Vec3) -> bool {
-    let mut ray = shadow::ray_from(x, normal, towards);
-    if !world.specular.has_delta_lobes() {
-        return !world.accel.occluded(&ray);
-    }
-    for _ in 0..MAX_EDGES {
-        let Some(surface) = world.intersect(&ray) else { return true };
-        if !world.bsdf(&surface).has_delta() {
-            return false;
-        }
-        ray = shadow::ray_from(surface.position, surface.normal, towards);
-    }
-    false
 }

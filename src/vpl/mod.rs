@@ -23,6 +23,7 @@ mod pass;
 mod photons;
 mod profile;
 mod settings;
+mod short_paths;
 mod target;
 #[cfg(test)]
 mod tests;
