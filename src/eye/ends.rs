@@ -63,9 +63,9 @@ impl<'w> Reach<'w> for Ends<'_, 'w> {
     }
 
     #[inline]
-    fn see(&mut self, path: u32, bsdf: &Bsdf, wo: Vec3, normal: Vec3) {
+    fn see(&mut self, path: u32, look: Option<Rgb>, normal: Vec3) {
         if let Some(first) = &mut self.first_surfaces {
-            first.see(path, bsdf, wo, normal);
+            first.see(path, look, normal);
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! | feature | layer | value of a pixel |
 //! |---|---|---|
-//! | albedo | `albedo.R`, `.G`, `.B` | mean share of light that is reflected, through mirrors and glass |
+//! | albedo | `albedo.R`, `.G`, `.B` | mean share of light that is reflected, through mirrors and glass; lamps below |
 //! | normal | `normal.X`, `.Y`, `.Z` | mean unit shading normal towards the viewer, in world space; 0 if none |
 //! | geometric-normal | `geometricNormal.X`, ... | the same of the triangles |
 //! | position | `position.X`, ... | mean position in the coordinates of the scene's file |
@@ -16,6 +16,9 @@
 //! they are those of the first mirror or glass. Its albedo is the sum over all surfaces seen, by their shares of the
 //! light: the Fresnel blend that Open Image Denoise asks for. Rough lobes count as reflecting, however sharp they
 //! are.
+//!
+//! Lamps have, where that is more, what they emit over the most that their mesh does, by channel: a sign's picture, and
+//! white of a plain lamp. Otherwise a denoiser would blur the one, and take the edges of the other for noise.
 //!
 //! Positions are averaged over the samples that meet a surface, albedo and normals over all.
 
@@ -43,7 +46,7 @@ const NO_DEPTH: f32 = 1e10;
 /// A quantity of the surfaces in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
-    /// Share of light that is reflected.
+    /// Share of light that is reflected, or emitted of the most.
     Albedo,
     /// Shading normal.
     Normal,

@@ -7,7 +7,6 @@
 
 use super::seen::{FeatureSettings, Looking, Pixel};
 use crate::film::{Image, Layer, Window};
-use crate::material::Bsdf;
 use crate::math::Rgb;
 use crate::paths::{Look, Reach};
 use crate::view::View;
@@ -92,14 +91,13 @@ impl FirstSurfaces {
         self.chained.clear();
     }
 
-    /// Adds the surface that a path meets, seen from `wo` in its shading frame, with the shading normal on that side.
+    /// Adds the look of the surface that a path meets, `None` of mirrors and glass, and the shading normal on that
+    /// side.
     #[inline]
-    pub fn see(&mut self, path: u32, bsdf: &Bsdf, wo: Vec3, normal: Vec3) {
-        if bsdf.has_delta() {
-            self.chained.push(path);
-        } else {
-            let albedo = bsdf.albedo(wo).min(Rgb::ONE);
-            self.pixels[(path / self.paths) as usize].add(Guide { albedo, normal });
+    pub fn see(&mut self, path: u32, look: Option<Rgb>, normal: Vec3) {
+        match look {
+            Some(albedo) => self.pixels[(path / self.paths) as usize].add(Guide { albedo, normal }),
+            None => self.chained.push(path),
         }
     }
 
@@ -146,9 +144,9 @@ impl Reach<'_> for FullPaths {
     }
 
     #[inline]
-    fn see(&mut self, path: u32, bsdf: &Bsdf, wo: Vec3, normal: Vec3) {
+    fn see(&mut self, path: u32, look: Option<Rgb>, normal: Vec3) {
         if let Some(first) = &mut self.first_surfaces {
-            first.see(path, bsdf, wo, normal);
+            first.see(path, look, normal);
         }
     }
 }

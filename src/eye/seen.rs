@@ -258,8 +258,8 @@ impl<'w> Seen<'w> {
                 self.first = self.first.or(Some(vertex));
                 let whole = world.bsdf(&vertex.surface);
                 self.reflects |= whole.has_delta() || !whole.sharp_lobes().is_empty();
-                let albedo = whole.albedo(vertex.surface.frame.to_local(vertex.out));
-                self.albedo += vertex.throughput * albedo.min(Rgb::ONE);
+                let albedo = world.look(&vertex.surface, &whole, vertex.out);
+                self.albedo += vertex.throughput * albedo;
                 let passes_on = whole.has_delta() && albedo == Rgb::ZERO;
                 if !passes_on && vertex.throughput.max_element() > self.share {
                     (self.share, self.main) = (vertex.throughput.max_element(), Some(vertex));

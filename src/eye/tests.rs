@@ -9,12 +9,13 @@ use crate::paths::Look;
 use crate::progress::Control;
 use crate::sampling::Sampler;
 use crate::scene::{
-    Camera, Coat, DeltaLight, Distribution, Fresnel, Lobe, Material, MaterialId, Mesh, Reflectance,
+    Camera, Coat, DeltaLight, Distribution, Emission, Filter, Fresnel, Lobe, Material, MaterialId, Mesh,
+    Reflectance, Texels, Texture, TextureId, Wrap,
 };
 use crate::test_scenes::*;
 use crate::view::View;
 use crate::world::World;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Mat3, Vec2, Vec3};
 
 /// Index of refraction of an interface that reflects a quarter of the light at normal incidence.
 const ETA: f32 = 3.0;
@@ -323,6 +324,33 @@ fn a_plane_half_in_view_has_its_own_features_and_the_rest_none() {
         assert_near(of("geometricNormal")[i], Vec3::Z);
         assert_near(of("depth.Z")[i], Vec3::X * 4.0);
         assert_eq!([of("materialId")[i].x, of("objectId")[i].x, of("A")[i].x], [2.0, 2.0, 1.0]);
+    }
+}
+
+#[test]
+fn a_sign_has_its_picture_for_albedo_whatever_its_brightness() {
+    for brightness in [1e-6, 14.0] {
+        let mut scene = seen_from_origin([8, 4]);
+        let dark = add_material(&mut scene, diffuse(Rgb::new(0.1, 0.02, 0.02)));
+        let texels = Texels::new(2, &[Rgb::new(0.5, 0.0, 0.05), Rgb::new(0.0, 0.25, 0.125)]);
+        scene.textures.push(Texture {
+            name: "sign".to_owned(),
+            width: 2,
+            height: 1,
+            texels,
+            filter: Filter::Nearest,
+            wrap: Wrap::Clamp,
+            to_uv: Mat3::IDENTITY,
+        });
+        let mut sign = wall(-4.0, dark);
+        sign.uvs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from).to_vec();
+        let texture = Some(TextureId(0));
+        sign.emission = Some(Emission { radiance: Rgb::splat(brightness), texture, two_sided: true });
+        scene.meshes.push(sign);
+        let layers = all_features(&world(scene), 4);
+        let albedo = values(&layers, "albedo");
+        assert_near(albedo[8], Rgb::new(1.0, 0.02, 0.1));
+        assert_near(albedo[15], Rgb::new(0.1, 0.5, 0.25));
     }
 }
 

@@ -17,6 +17,8 @@ pub struct AreaLight {
     pub area: f32,
     /// Flux of all sides, W, as luminance (textured emission by its mean).
     pub power: f32,
+    /// Greatest radiance of a channel that a point emits.
+    greatest: f32,
     triangles: DiscreteDistribution,
     /// First corner, two edges and unit normal of each triangle.
     shapes: Vec<[Vec3; 4]>,
@@ -58,9 +60,10 @@ impl AreaLight {
             (0..mesh.triangles.len()).map(|t| normal_and_area(mesh.corners(t))).collect();
         let triangles = DiscreteDistribution::new(shapes.iter().map(|s| s.1));
         let area = triangles.total() as f32;
-        let mean_texture = emission.texture.map_or(Rgb::ONE, |t| {
+        let (mean_texture, greatest) = emission.texture.map_or((Rgb::ONE, Rgb::ONE), |t| {
             let texels = &scene.textures[t.0 as usize].texels;
-            texels.iter().sum::<Rgb>() / texels.len().max(1) as f32
+            let mean = texels.iter().sum::<Rgb>() / texels.len().max(1) as f32;
+            (mean, texels.iter().fold(Rgb::ZERO, Rgb::max))
         });
         let sides = if emission.two_sided { 2.0 } else { 1.0 };
         let power = luminance(emission.radiance * mean_texture) * area * std::f32::consts::PI * sides;
@@ -72,6 +75,7 @@ impl AreaLight {
             emission,
             area,
             power,
+            greatest: (emission.radiance * greatest).max_element(),
             triangles,
             shapes: (0..mesh.triangles.len())
                 .map(|t| {
@@ -101,6 +105,11 @@ impl AreaLight {
     pub(super) fn choose_triangle(&self, u: Vec2) -> (u32, [Vec3; 4], Vec2) {
         let (triangle, rest) = self.triangles.sample(u.x);
         (triangle as u32, self.shapes[triangle], Vec2::new(rest, u.y))
+    }
+
+    /// Radiance that a point of the light emits over the greatest that any does, from 0 to 1.
+    pub(super) fn relative(&self, emitted: Rgb) -> Rgb {
+        (emitted / self.greatest).min(Rgb::ONE)
     }
 
     /// First corner, two edges and unit normal of each triangle.

@@ -101,6 +101,15 @@ impl Emitters {
         self.light_of_mesh[mesh as usize] != NO_LIGHT
     }
 
+    /// Radiance that a point of a mesh emits over the greatest that any of its points does, from 0 to 1.
+    #[inline]
+    pub fn relative(&self, mesh: u32, emitted: Rgb) -> Rgb {
+        match self.light_of_mesh[mesh as usize] {
+            NO_LIGHT => Rgb::ZERO,
+            light => self.areas[light as usize].relative(emitted),
+        }
+    }
+
     /// Returns area lights, each with the centre and squared radius of a sphere around it.
     pub fn areas_and_spheres(&self) -> impl Iterator<Item = (&AreaLight, (Vec3, f32))> {
         self.areas.iter().zip(self.spheres.iter().copied())

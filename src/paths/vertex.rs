@@ -104,7 +104,9 @@ impl Packet {
         let mut bsdfs = world.bsdfs(surfaces, wo);
         if depth == 1 && reach.sees() {
             for lane in lanes_in(found) {
-                reach.see(self.slot[lane], bsdfs.lane(lane), wo.get(lane), self.normal.get(lane));
+                let (bsdf, out) = (bsdfs.lane(lane), -self.rays.get(lane).direction);
+                let look = (!bsdf.has_delta()).then(|| world.look(&surfaces.get(lane), bsdf, out));
+                reach.see(self.slot[lane], look, self.normal.get(lane));
             }
         }
         if world.specular.scatter_across() {

@@ -180,6 +180,17 @@ impl World {
     pub fn emitted(&self, s: &Surface, out: Vec3) -> Rgb {
         emitted(&self.scene, s.mesh, s.triangle, s.barycentric, s.normal, out)
     }
+
+    /// The surface's own look towards the unit vector `out`, whatever light there is: the share that BSDF `bsdf`
+    /// reflects, or the radiance emitted over the greatest of its mesh, whichever is more, from 0 to 1.
+    #[inline]
+    pub fn look(&self, s: &Surface, bsdf: &Bsdf, out: Vec3) -> Rgb {
+        let albedo = bsdf.albedo(s.frame.to_local(out)).min(Rgb::ONE);
+        match self.emitters.is_light(s.mesh) {
+            true => albedo.max(self.emitters.relative(s.mesh, self.emitted(s, out))),
+            false => albedo,
+        }
+    }
 }
 
 #[cfg(test)]
