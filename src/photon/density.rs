@@ -18,6 +18,7 @@
 use super::disc::{self, Disc};
 use super::map::{PhotonMap, Site};
 use crate::math::{LANES, Rgb, Vec3x16, lanes_in, mask_of};
+use crate::progress::Control;
 use crate::vpl::Photon;
 use crate::world::World;
 use glam::Vec3;
@@ -58,12 +59,26 @@ pub fn surface_distance_sq(offset: Vec3, normal: Vec3) -> f32 {
     offset.length_squared() + height * height
 }
 
-/// Computes the estimates at the sites of the map, in their order, and the number of rays traced.
-pub fn estimates(world: &World, map: &PhotonMap, nearest: usize) -> (Vec<IrradianceEstimate>, u64) {
-    let by_leaf: Vec<Vec<IrradianceEstimate>> = (0..map.site_index.leaves())
-        .into_par_iter()
-        .map_init(Candidates::default, |near, leaf| leaf_estimates(world, map, nearest, leaf, near))
-        .collect();
+/// Computes the estimates at the sites of the map, in their order, and the number of rays traced; once cancelled, the
+/// others are dark.
+pub fn estimates(
+    world: &World,
+    map: &PhotonMap,
+    nearest: usize,
+    control: &Control,
+) -> (Vec<IrradianceEstimate>, u64) {
+    let dark = |&Site { position, normal }: &Site| IrradianceEstimate {
+        position,
+        normal,
+        irradiance: Rgb::ZERO,
+        radius: 0.0,
+    };
+    let of_leaf = |near: &mut Candidates, leaf| match control.is_cancelled() {
+        true => map.sites[map.site_index.leaf(leaf)].iter().map(dark).collect(),
+        false => leaf_estimates(world, map, nearest, leaf, near),
+    };
+    let by_leaf: Vec<Vec<IrradianceEstimate>> =
+        (0..map.site_index.leaves()).into_par_iter().map_init(Candidates::default, of_leaf).collect();
     let all = by_leaf.concat();
     let rays = all.len() as u64 * disc::RAYS;
     (all, rays)

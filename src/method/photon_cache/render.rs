@@ -188,7 +188,7 @@ fn irradiance(world: &World, settings: &Settings, control: &Control, stats: &mut
     stats.count("Rays/closest hit", photons.counts.rays);
     control.begin(Stage::Tree, 0);
     let (map, rays) = stats.time(Stage::Tree, || {
-        let (estimates, rays) = estimates(world, &photons, settings.nearest);
+        let (estimates, rays) = estimates(world, &photons, settings.nearest, control);
         (IrradianceMap::new(&estimates, &photons.site_index), rays)
     });
     stats.count("Photons/estimates of irradiance", map.len() as u64);
