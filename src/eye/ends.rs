@@ -63,9 +63,9 @@ impl<'w> Reach<'w> for Ends<'_, 'w> {
     }
 
     #[inline]
-    fn see(&mut self, path: u32, look: Option<Rgb>, normal: Vec3) {
+    fn see(&mut self, path: u32, albedo: Option<Rgb>, normal: Vec3) {
         if let Some(first) = &mut self.first_surfaces {
-            first.see(path, look, normal);
+            first.see(path, albedo, normal);
         }
     }
 

@@ -17,8 +17,8 @@
 //! light: the Fresnel blend that Open Image Denoise asks for. Rough lobes count as reflecting, however sharp they
 //! are.
 //!
-//! Lamps have, where that is more, what they emit over the most that their mesh does, by channel: a sign's picture, and
-//! white of a plain lamp. Otherwise a denoiser would blur the one, and take the edges of the other for noise.
+//! Lamps have, where that is more, what they emit over the most that their mesh does in any channel: a sign's picture,
+//! and the hue of a plain lamp. Otherwise a denoiser would blur the one, and take the edges of the other for noise.
 //!
 //! Positions are averaged over the samples that meet a surface, albedo and normals over all.
 

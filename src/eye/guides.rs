@@ -91,11 +91,11 @@ impl FirstSurfaces {
         self.chained.clear();
     }
 
-    /// Adds the look of the surface that a path meets, `None` of mirrors and glass, and the shading normal on that
+    /// Adds the albedo of the surface that a path meets, `None` of mirrors and glass, and the shading normal on that
     /// side.
     #[inline]
-    pub fn see(&mut self, path: u32, look: Option<Rgb>, normal: Vec3) {
-        match look {
+    pub fn see(&mut self, path: u32, albedo: Option<Rgb>, normal: Vec3) {
+        match albedo {
             Some(albedo) => self.pixels[(path / self.paths) as usize].add(Guide { albedo, normal }),
             None => self.chained.push(path),
         }
@@ -144,9 +144,9 @@ impl Reach<'_> for FullPaths {
     }
 
     #[inline]
-    fn see(&mut self, path: u32, look: Option<Rgb>, normal: Vec3) {
+    fn see(&mut self, path: u32, albedo: Option<Rgb>, normal: Vec3) {
         if let Some(first) = &mut self.first_surfaces {
-            first.see(path, look, normal);
+            first.see(path, albedo, normal);
         }
     }
 }

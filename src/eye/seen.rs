@@ -258,7 +258,7 @@ impl<'w> Seen<'w> {
                 self.first = self.first.or(Some(vertex));
                 let whole = world.bsdf(&vertex.surface);
                 self.reflects |= whole.has_delta() || !whole.sharp_lobes().is_empty();
-                let albedo = world.look(&vertex.surface, &whole, vertex.out);
+                let albedo = world.guide_albedo(&vertex.surface, &whole, vertex.out);
                 self.albedo += vertex.throughput * albedo;
                 let passes_on = whole.has_delta() && albedo == Rgb::ZERO;
                 if !passes_on && vertex.throughput.max_element() > self.share {

@@ -108,7 +108,7 @@ impl AreaLight {
     }
 
     /// Radiance that a point of the light emits over the greatest that any does, from 0 to 1.
-    pub(super) fn relative(&self, emitted: Rgb) -> Rgb {
+    pub fn relative(&self, emitted: Rgb) -> Rgb {
         (emitted / self.greatest).min(Rgb::ONE)
     }
 

@@ -101,13 +101,10 @@ impl Emitters {
         self.light_of_mesh[mesh as usize] != NO_LIGHT
     }
 
-    /// Radiance that a point of a mesh emits over the greatest that any of its points does, from 0 to 1.
+    /// The light that a mesh is; `None` if it is none.
     #[inline]
-    pub fn relative(&self, mesh: u32, emitted: Rgb) -> Rgb {
-        match self.light_of_mesh[mesh as usize] {
-            NO_LIGHT => Rgb::ZERO,
-            light => self.areas[light as usize].relative(emitted),
-        }
+    pub fn area(&self, mesh: u32) -> Option<&AreaLight> {
+        self.areas.get(self.light_of_mesh[mesh as usize] as usize)
     }
 
     /// Returns area lights, each with the centre and squared radius of a sphere around it.

@@ -111,10 +111,10 @@ pub trait Reach<'w> {
         false
     }
 
-    /// Called with the look ([`World::look`]) of the first surface that each path meets, `None` of mirrors and glass,
+    /// Called with the [`World::guide_albedo`] of the first surface that each path meets, `None` of mirrors and glass,
     /// and with the shading normal on that side, if paths may go on from it; in an order that does not depend on
     /// threads.
-    fn see(&mut self, _path: u32, _look: Option<Rgb>, _normal: Vec3) {}
+    fn see(&mut self, _path: u32, _albedo: Option<Rgb>, _normal: Vec3) {}
 
     /// Called at every surface that ends a chain, in an order that does not depend on threads.
     fn end(&mut self, _end: &ChainEnd<'w>) {}

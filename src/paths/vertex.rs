@@ -105,8 +105,8 @@ impl Packet {
         if depth == 1 && reach.sees() {
             for lane in lanes_in(found) {
                 let (bsdf, out) = (bsdfs.lane(lane), -self.rays.get(lane).direction);
-                let look = (!bsdf.has_delta()).then(|| world.look(&surfaces.get(lane), bsdf, out));
-                reach.see(self.slot[lane], look, self.normal.get(lane));
+                let albedo = (!bsdf.has_delta()).then(|| world.guide_albedo(&surfaces.get(lane), bsdf, out));
+                reach.see(self.slot[lane], albedo, self.normal.get(lane));
             }
         }
         if world.specular.scatter_across() {

@@ -181,14 +181,14 @@ impl World {
         emitted(&self.scene, s.mesh, s.triangle, s.barycentric, s.normal, out)
     }
 
-    /// The surface's own look towards the unit vector `out`, whatever light there is: the share that BSDF `bsdf`
-    /// reflects, or the radiance emitted over the greatest of its mesh, whichever is more, from 0 to 1.
+    /// The albedo that guides denoisers, towards the unit vector `out`: the share of light that `bsdf` reflects, or the
+    /// radiance emitted over the greatest of the surface's mesh, whichever is more, from 0 to 1.
     #[inline]
-    pub fn look(&self, s: &Surface, bsdf: &Bsdf, out: Vec3) -> Rgb {
+    pub fn guide_albedo(&self, s: &Surface, bsdf: &Bsdf, out: Vec3) -> Rgb {
         let albedo = bsdf.albedo(s.frame.to_local(out)).min(Rgb::ONE);
-        match self.emitters.is_light(s.mesh) {
-            true => albedo.max(self.emitters.relative(s.mesh, self.emitted(s, out))),
-            false => albedo,
+        match self.emitters.area(s.mesh) {
+            Some(light) => albedo.max(light.relative(self.emitted(s, out))),
+            None => albedo,
         }
     }
 }
