@@ -134,6 +134,7 @@ impl Settings {
             picture.shade(&context, &samples, &tasks, cache.patches, &shading, control)
         });
         picture.came_by("cuts");
+        stats.count("Shading/points", samples.points.len() as u64);
         stats.count("Shading/tasks by cuts", tasks.len() as u64);
         counts::cuts(&mut stats, "Lightcut", &counts.cuts);
         if cache.direct == DirectBy::Cuts && !cache.cached().indirect {
