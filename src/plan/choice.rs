@@ -92,7 +92,8 @@ impl Chooser {
     /// The better of the methods with the settings for which there is time, of those of the cache by its scale, for a
     /// render of `seconds`, by those of the pilot.
     pub fn for_time(&self, ladder: &Ladder, seconds: f64, pilot_seconds: f64) -> Choice {
-        let work = Work::new(self.triangles, self.film_pixels);
+        let pixels = self.film_pixels;
+        let work = Work::new(self.triangles, pixels);
         let budget = work.of_pilot(&self.pilot) * seconds.max(0.0) / pilot_seconds.max(1e-9);
         let cheapest = ladder.at(0.0);
         let by_cache = work.of_cache(&self.pilot, &cheapest);
@@ -102,7 +103,7 @@ impl Chooser {
                 true => (Method::Path(self.paths), by_cache / by_paths),
                 false => (cheapest, by_paths / by_cache),
             };
-            return Choice { reason: Reason::NoTime, ..self.choice(&cheapest, method, ahead) };
+            return Choice { reason: Reason::NoTime, ..self.choice(&cheapest, method, ahead, pixels) };
         }
         let heights = (0..=STEPS).rev().map(|step| ladder.top() * f64::from(step) / f64::from(STEPS));
         let in_time = |height: &f64| work.of_cache(&self.pilot, &ladder.at(*height)) <= budget;
@@ -110,11 +111,11 @@ impl Chooser {
         let cache = ladder.at(height.unwrap_or(0.0));
         // The cheapest settings of the cache are no use if they take too long.
         let excess = (work.of_cache(&self.pilot, &cache) / budget.max(1e-9)).max(1.0);
-        let worth = self.paths_like(&cache) / excess;
+        let worth = self.paths_like(&cache, pixels) / excess;
         let paths = budget / by_paths;
         match paths > worth {
-            true => self.choice(&cache, Method::Path(self.paths), paths / worth),
-            false => self.choice(&cache, cache, worth / paths.max(1e-9)),
+            true => self.choice(&cache, Method::Path(self.paths), paths / worth, pixels),
+            false => self.choice(&cache, cache, worth / paths.max(1e-9), pixels),
         }
     }
 
@@ -126,46 +127,47 @@ impl Chooser {
     /// The method that a search for an error has chosen, with the reasons by work; the other was tried before if
     /// `missed`.
     pub fn of(&self, method: Method, missed: bool) -> Choice {
-        let work = Work::new(self.triangles, self.film_pixels);
+        let pixels = self.film_pixels;
+        let work = Work::new(self.triangles, pixels);
         let mut cache = method;
         if let Method::Path(paths) = method {
             cache = Method::default();
-            let worth = self.pilot.paths_a_sample(f64::from(cache.spp()));
+            let worth = self.pilot.paths_a_sample(f64::from(cache.spp()), pixels);
             cache.set_number("spp", 0, (f64::from(paths.spp) / worth).max(1.0));
         }
         let by_cache = work.of_cache(&self.pilot, &cache);
-        let by_paths = work.of_paths(&self.pilot, self.paths_like(&cache));
+        let by_paths = work.of_paths(&self.pilot, self.paths_like(&cache, pixels));
         let ahead = if matches!(method, Method::Path(_)) { by_cache / by_paths } else { by_paths / by_cache };
         let reason = if missed { Reason::Missed } else { Reason::Work };
-        Choice { reason, ..self.choice(&cache, method, ahead) }
+        Choice { reason, ..self.choice(&cache, method, ahead, pixels) }
     }
 
-    /// Number of paths a pixel that are as good as `cache`.
-    fn paths_like(&self, cache: &Method) -> f64 {
+    /// Number of paths a pixel that are as good as `cache` on a film of so many pixels.
+    fn paths_like(&self, cache: &Method, pixels: u64) -> f64 {
         let spp = f64::from(cache.spp());
-        spp * self.pilot.paths_a_sample(spp)
+        spp * self.pilot.paths_a_sample(spp, pixels)
     }
 
     fn cheaper(&self, cache: &Method, pixels: u64) -> Choice {
         let work = Work::new(self.triangles, pixels);
-        let spp = self.paths_like(cache).round();
+        let spp = self.paths_like(cache, pixels).round();
         let paths = path::Settings { spp: spp.clamp(1.0, f64::from(u32::MAX)) as u32, ..self.paths };
         let by_cache = work.of_cache(&self.pilot, cache);
         let by_paths = work.of_paths(&self.pilot, spp);
         match by_paths < by_cache {
-            true => self.choice(cache, Method::Path(paths), by_cache / by_paths),
-            false => self.choice(cache, *cache, by_paths / by_cache),
+            true => self.choice(cache, Method::Path(paths), by_cache / by_paths, pixels),
+            false => self.choice(cache, *cache, by_paths / by_cache, pixels),
         }
     }
 
-    /// The choice of `method` where the other is, or is compared with, `cache`.
-    fn choice(&self, cache: &Method, method: Method, ahead: f64) -> Choice {
+    /// The choice of `method` on a film of so many pixels, where the other is, or is compared with, `cache`.
+    fn choice(&self, cache: &Method, method: Method, ahead: f64, pixels: u64) -> Choice {
         let Pilot { rays_of_drawn, rays_of_paths, rays, seldom, .. } = self.pilot;
         Choice {
             method,
             reason: Reason::Work,
             ahead,
-            paths_a_sample: self.pilot.paths_a_sample(f64::from(cache.spp())),
+            paths_a_sample: self.pilot.paths_a_sample(f64::from(cache.spp()), pixels),
             rays_ratio: rays_of_paths / rays_of_drawn.max(f64::MIN_POSITIVE),
             pilot_rays: rays,
             seldom,
@@ -231,7 +233,7 @@ mod tests {
         assert!(is_path(&choice) && choice.method.spp() >= cache.spp(), "{choice:?}");
         // Virtual lights are as many on a small film; an icon is judged as if it were less small, but for its time.
         let noisier = |film_pixels| Chooser { film_pixels, ..chooser(36, [0.0018, 4.0], [1.7, 4.5]) };
-        let small = noisier(1 << 13);
+        let small = noisier(1 << 10);
         assert!(!is_path(&small.as_good_as(&cache)) && is_path(&small.on_film(&cache)));
         assert!(!is_path(&noisier(1 << 15).on_film(&cache)));
     }

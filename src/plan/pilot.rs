@@ -8,9 +8,10 @@
 //! Light of small lamps by glass and mirrors is rarely found by paths, and not at all by so few. The photons of the
 //! cache tell how much of it there is, and how noisy paths are that find it.
 //!
-//! Measured on 17 scenes, 256x144 to 512x910 (23 pictures): paths as many as [`Pilot::paths_a_sample`] says make as
-//! good a picture within a factor of 1.6 (root mean square; of as many in all scenes, 1.75; of as many as variances are
-//! in proportion, 2.3), and the work of one method over that of the other is as predicted within a factor of 1.9.
+//! Measured on 32 scenes, 128x128 to 512x910 (38 pictures, half of them of scenes made to find what the cache does
+//! badly): paths as many as [`Pilot::paths_a_sample`] says make as good a picture within a factor of 1.9 (root mean
+//! square), and the work of one method over that of the other is as predicted within a factor of 2.1. The
+//! pilot does not see errors of the cache itself, as of light through small windows and by sharp lobes.
 //!
 //! The pilot is spread over the whole film and has seeds of its own: parts of a picture, and pictures to be merged, are
 //! by the same method.
@@ -38,12 +39,16 @@ const TRIMMED: f64 = 0.01;
 const DARK: f64 = 0.1;
 /// Paths that are worth a sample and those that follow it, where paths have as much variance, and the exponent by which
 /// they grow with it. A denoiser takes off most of the noise, whatever its variance, and leaves edges.
-const WORTH: f64 = 2.76;
-const BY_VARIANCE: f64 = 0.3;
+const WORTH: f64 = 1.8;
+const BY_VARIANCE: f64 = 0.33;
+/// Exponent by which they grow as the film gets smaller than so many pixels: the more of a film is edges, the more the
+/// further samples gain that go there.
+const BY_SMALLNESS: f64 = 0.25;
+const SMALL: f64 = 262_144.0;
 /// Variance that the cache's own errors come to at its default of so many samples, relative to the squared brightness
 /// and times their number; inversely as the square of the samples, since levels of quality with fewer samples have
 /// fewer virtual lights and coarser cuts, too.
-const CACHED: f64 = 0.02;
+const CACHED: f64 = 0.004;
 const CACHED_SPP: f64 = 16.0;
 
 /// Paths that a denoiser takes together: light that fewer than one of them finds is taken off as single bright dots,
@@ -118,11 +123,12 @@ impl Pilot {
     }
 
     /// Number of paths, denoised, that are worth a sample of the cache, denoised, at the level of quality with `spp`
-    /// samples; 1 at least, since edges are as jagged by either.
-    pub fn paths_a_sample(&self, spp: f64) -> f64 {
+    /// samples on a film of so many pixels; 1 at least, since edges are as jagged by either.
+    pub fn paths_a_sample(&self, spp: f64, film_pixels: u64) -> f64 {
         let cached = CACHED * (CACHED_SPP / spp.max(1.0)).powi(2);
         let quotient = self.variance_of_paths / (self.variance_of_drawn + cached);
-        (WORTH * quotient.powf(BY_VARIANCE)).max(1.0)
+        let smallness = (SMALL / film_pixels.max(1) as f64).max(1.0);
+        (WORTH * quotient.powf(BY_VARIANCE) * smallness.powf(BY_SMALLNESS)).max(1.0)
     }
 }
 
@@ -205,7 +211,7 @@ mod tests {
         assert_eq!(with(0.1, 99.0).seldom, 0.0);
         // A lamp that no path can meet.
         assert!(near(with(0.01, f64::MAX).variance_of_paths, of_lost(0.01)));
-        assert!(with(0.3, 1e18).paths_a_sample(16.0) > 5.0 * none.paths_a_sample(16.0));
+        assert!(with(0.3, 1e18).paths_a_sample(16.0, 1 << 18) > 5.0 * none.paths_a_sample(16.0, 1 << 18));
     }
 
     #[test]
@@ -218,9 +224,16 @@ mod tests {
     fn paths_are_worth_less_the_noisier_they_are_and_no_more_than_a_sample() {
         let pilot =
             |paths: f64| Pilot::by(16, &light([1.0, 1.0], 0.02, 1), &light([1.0, 1.0], paths, 7)).unwrap();
-        assert_eq!(pilot(1e-4).paths_a_sample(16.0), 1.0);
-        let at = |paths: f64, spp: f64| pilot(paths).paths_a_sample(spp);
+        assert_eq!(pilot(1e-4).paths_a_sample(16.0, 1 << 18), 1.0);
+        let at = |paths: f64, spp: f64| pilot(paths).paths_a_sample(spp, 1 << 18);
         assert!(at(0.4, 16.0) > 1.2 * at(0.2, 16.0) && at(0.4, 16.0) > 1.5 * at(0.4, 2.0));
+    }
+
+    #[test]
+    fn samples_of_small_films_are_worth_more_paths() {
+        let pilot = Pilot::by(16, &light([1.0, 1.0], 0.02, 1), &light([1.0, 1.0], 0.4, 7)).unwrap();
+        let at = [14, 18, 22].map(|log| pilot.paths_a_sample(16.0, 1 << log));
+        assert!((at[0] / at[1] - 2.0).abs() < 1e-9 && at[1] == at[2], "{at:?}");
     }
 
     #[test]

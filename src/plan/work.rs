@@ -15,8 +15,10 @@ const RAY: f64 = 0.08;
 const RAY_BY_DOUBLING: f64 = 0.018;
 /// Price of a ray of the cache's samples over that of a path, for light samples, shading points and guides, and of rays
 /// of its records and cuts.
-const SAMPLED: f64 = 1.9;
-const CACHED: f64 = 0.56;
+const SAMPLED: f64 = 1.25;
+const CACHED: f64 = 0.94;
+/// Price of a ray of the pilot over that of a path: it is done by few rays at a time.
+const PILOT: f64 = 1.9;
 /// Price of a ray of a path over the same when guides were found by further rays: .71 to .89 in three scenes. The other
 /// prices were measured against that.
 const GUIDED: f64 = 0.82;
@@ -30,8 +32,8 @@ const LEAST_BY_NOISE: f64 = 0.55;
 /// Number of triangles of the smallest scenes.
 const FEW: f64 = 32.0;
 /// Price of a virtual light in the light pass and the tree, and its rays.
-const VPL: f64 = 2.2;
-const VPL_RAYS: f64 = 5.5;
+const VPL: f64 = 0.8;
+const VPL_RAYS: f64 = 2.6;
 /// The same of a picture that is made: price added to a ray by every doubling of the triangles, for all that is done
 /// between its rays, and price of a virtual light, its photon path included.
 const COUNTED_RAY_BY_DOUBLING: f64 = 0.03;
@@ -96,9 +98,9 @@ impl Work {
         stats.counters().map(work).sum()
     }
 
-    /// Of the pilot itself, about half of whose rays are paths'.
+    /// Of the pilot itself.
     pub fn of_pilot(&self, pilot: &Pilot) -> f64 {
-        0.5 * (1.0 + SAMPLED) * pilot.rays as f64 * self.ray
+        PILOT * pilot.rays as f64 * self.ray
     }
 }
 
