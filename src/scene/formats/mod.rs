@@ -9,6 +9,7 @@ mod budget;
 mod check;
 mod constants;
 pub(crate) mod error;
+mod file;
 mod gltf;
 mod layers;
 mod mesh;
@@ -24,9 +25,8 @@ use std::path::Path;
 
 pub use super::sanitize::SanitizeReport;
 pub use error::{Level, Place, SceneError, Warning};
+pub(crate) use file::{fnv1a, read_regular};
 pub(crate) use mesh::smooth_normals;
-pub(crate) use plan::fnv1a;
-pub(crate) use plan::read_regular;
 
 /// Options for reading a scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! The container: JSON, binary chunk and buffers of a `.gltf` or `.glb` file.
 
 use crate::scene::formats::error::{Place, SceneError};
-use crate::scene::formats::plan::{fnv1a, folder_of, read_file};
+use crate::scene::formats::file::{fnv1a, folder_of, read_file};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use gltf_json::{Index, Root, buffer, root::Get};

@@ -24,10 +24,9 @@ mod texture;
 
 use super::LoadOptions;
 use super::error::{Log, Place, SceneError};
+use super::file::stem_of;
 use super::mesh::{Normals, Placement, RawMesh};
-use super::plan::{
-    Contents, Geometry, Look, MaterialPlan, MeshPlan, PictureSource, Plan, Selection, stem_of,
-};
+use super::plan::{Contents, Geometry, Look, MaterialPlan, MeshPlan, PictureSource, Plan, Selection};
 use crate::math::right_of;
 use crate::scene::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::scene::framing;

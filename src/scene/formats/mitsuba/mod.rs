@@ -25,7 +25,8 @@ mod value;
 
 use super::LoadOptions;
 use super::error::{Log, Place, SceneError};
-use super::plan::{Contents, Plan, folder_of, stem_of};
+use super::file::{folder_of, stem_of};
+use super::plan::{Contents, Plan};
 use crate::scene::material::MaterialId;
 use glam::DMat4;
 use std::path::{Path, PathBuf};

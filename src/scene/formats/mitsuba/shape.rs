@@ -3,8 +3,9 @@
 use super::Converter;
 use super::tree::Object;
 use crate::scene::formats::error::SceneError;
+use crate::scene::formats::file::stem_of;
 use crate::scene::formats::mesh::{Normals, Placement, shapes};
-use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan, Selection, stem_of};
+use crate::scene::formats::plan::{Geometry, MaterialPlan, MeshPlan, Selection};
 use crate::scene::material::{Material, MaterialId};
 use glam::{DMat4, DVec3};
 

@@ -3,7 +3,7 @@
 
 use super::value::{self, Value};
 use crate::scene::formats::error::{Log, Place, SceneError};
-use crate::scene::formats::plan::{folder_of, read_text};
+use crate::scene::formats::file::{folder_of, read_text};
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

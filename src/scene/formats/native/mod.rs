@@ -14,7 +14,8 @@ mod sky;
 mod text;
 
 use super::error::{Log, Place, SceneError};
-use super::plan::{Contents, Plan, folder_of, read_text, stem_of};
+use super::file::{folder_of, read_text, stem_of};
+use super::plan::{Contents, Plan};
 use crate::scene::draft::Shot;
 use crate::scene::material::MaterialId;
 use lightsplat_scenes::Part;

@@ -1,0 +1,46 @@
+//! Files that scene descriptions are, or refer to.
+
+use super::error::{Place, SceneError};
+use std::fs;
+use std::io;
+use std::path::Path;
+
+/// Reads a file that `from` refers to.
+pub(crate) fn read_file(path: &Path, from: &Place) -> Result<Vec<u8>, SceneError> {
+    let fail = |error| SceneError::Read { path: path.to_owned(), from: from.clone(), error };
+    read_regular(path).map_err(fail)
+}
+
+/// Reads a regular file: devices have no end, and pipes may never have a beginning.
+pub(crate) fn read_regular(path: &Path) -> io::Result<Vec<u8>> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::other("it is not a regular file"));
+    }
+    fs::read(path)
+}
+
+/// Reads a description's own file, to which `from` refers; returns its text and the hash of its bytes.
+pub(crate) fn read_text(path: &Path, from: &Place) -> Result<(String, u64), SceneError> {
+    let bytes = read_file(path, from)?;
+    let hash = fnv1a(&bytes);
+    let text = String::from_utf8(bytes).map_err(|e| {
+        let line = e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
+        Place::line(path, line as u32 + 1).malformed("the text is not UTF-8")
+    })?;
+    Ok((text, hash))
+}
+
+/// Returns the folder of a file.
+pub(crate) fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+/// Returns a file's name without its folder and extension.
+pub(crate) fn stem_of(path: &Path) -> String {
+    path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// 64-bit FNV-1a: negligible beside parsing, and sufficient to tell scenes apart.
+pub(crate) fn fnv1a(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
+}
