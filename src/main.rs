@@ -8,5 +8,6 @@ use std::process::ExitCode;
 static ALLOCATOR: MiMalloc = MiMalloc;
 
 fn main() -> ExitCode {
+    isa::is_checked();
     lightsplat::cli::run(std::env::args_os())
 }

@@ -1,6 +1,8 @@
 //! Wrong command lines end with 2, wrong scenes with 3, before any work is done.
 
 use super::Sandbox;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 #[test]
 fn help_and_version_are_data_and_no_error() {
@@ -23,6 +25,35 @@ fn help_that_cannot_be_printed_ends_with_4() {
         let status = sandbox.command(arguments).stdout(full).stderr(std::process::Stdio::null()).status();
         assert_eq!(status.unwrap().code(), Some(4), "{arguments:?}");
     }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_program_that_is_moved_with_its_libraries_takes_these() {
+    let sandbox = Sandbox::new();
+    // Asked so, the loader lists what it loads: "name => path (address)".
+    let libraries = |program: &Path| {
+        let mut command = Command::new(program);
+        let output =
+            command.env_remove("LD_LIBRARY_PATH").env("LD_TRACE_LOADED_OBJECTS", "1").output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        let paths = text.lines().filter_map(|line| line.split_once("=> ")?.1.split(' ').next());
+        let of_embree = |path: &&str| ["/libembree", "/libtbb"].iter().any(|name| path.contains(name));
+        paths.filter(of_embree).map(PathBuf::from).collect::<Vec<_>>()
+    };
+    let here = libraries(Path::new(env!("CARGO_BIN_EXE_lightsplat")));
+    assert!(!here.is_empty());
+    for library in &here {
+        std::fs::copy(library, sandbox.path(library.file_name().unwrap().to_str().unwrap())).unwrap();
+    }
+    let moved = sandbox.path("lightsplat");
+    std::fs::copy(env!("CARGO_BIN_EXE_lightsplat"), &moved).unwrap();
+    let folder = sandbox.folder.path().canonicalize().unwrap();
+    let there = libraries(&moved);
+    assert_eq!(there.len(), here.len());
+    assert!(there.iter().all(|library| library.parent() == Some(&folder)), "{there:?}");
+    let run = Command::new(&moved).env_remove("LD_LIBRARY_PATH").arg("--version").output().unwrap();
+    assert!(run.status.success());
 }
 
 #[cfg(target_os = "linux")]
