@@ -282,6 +282,40 @@ mod signals {
         }
     }
 
+    /// On a disk in memory, which needs a namespace in which this user may mount one.
+    #[test]
+    fn a_disk_that_fills_up_leaves_whole_frames_and_resuming_does_the_rest() {
+        let sandbox = sandbox();
+        walk(&sandbox, "1-6", &["--reproducible"]).expect(0);
+        let whole = bytes(&sandbox);
+        fs::remove_dir_all(sandbox.path("f")).unwrap();
+        fs::create_dir(sandbox.path("f")).unwrap();
+        let kilobytes = whole.iter().map(|(_, bytes)| bytes.len()).sum::<usize>() / 1024;
+        // All that was written leaves the disk before its namespace ends.
+        let script = format!(
+            "mkdir disk && mount -t tmpfs -o size={}k none disk || exit 99; cd disk; mkdir f; cp ../path.toml .
+            \"$0\" \"$@\"; code=$?; cp f/* ../f; exit $code",
+            kilobytes * 2 / 3
+        );
+        let output = Command::new("unshare")
+            .args(["--user", "--map-root-user", "--mount", "sh", "-c", &script])
+            .arg(env!("CARGO_BIN_EXE_lightsplat"))
+            .args(arguments("1-6", &["--reproducible", "--spp", "4"]))
+            .current_dir(sandbox.folder.path())
+            .output();
+        let Ok(run) = output.map(Finished::from) else { return eprintln!("skipped: no unshare") };
+        if run.code == Some(99) || run.stderr.starts_with("unshare:") {
+            return eprintln!("skipped: no disk in memory for this user: {}", run.stderr);
+        }
+        let stderr = run.expect(4).stderr;
+        assert!(stderr.contains("No space left") && stderr.contains("as it was before"), "{stderr}");
+        let there = bytes(&sandbox);
+        assert!(there.len() >= 5 && there.len() < 12, "{:?}", frames(&sandbox));
+        assert!(there.iter().all(|file| whole.contains(file)));
+        walk(&sandbox, "1-6", &["--reproducible", "--resume"]).expect(0);
+        assert!(bytes(&sandbox) == whole);
+    }
+
     /// Kills: a few, or as many as LIGHTSPLAT_KILLS says.
     #[test]
     fn kills_at_random_moments_leave_whole_files_and_the_bytes_of_an_undisturbed_walk() {
