@@ -11,7 +11,7 @@ use serde::Serialize;
 use std::fmt;
 
 /// Size of Embree's MEDIUM-quality hierarchy, with its copy of the indices, per triangle; an estimate.
-const BVH_BYTES_PER_TRIANGLE: usize = 110;
+pub(crate) const BVH_BYTES_PER_TRIANGLE: usize = 110;
 
 /// Number of materials in use, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]

@@ -29,7 +29,7 @@ pub enum FrameError {
     Unplanned,
     /// The frame needs more memory than there is.
     #[error(
-        "the picture would take about {needed:.1} GiB, and {available:.1} GiB of memory are available: take fewer \
+        "the picture would take about {needed:.2} GiB, and {available:.2} GiB of memory are available: take fewer \
          samples (--spp), virtual lights (--vpls, --direct-vpls) or photons (--photons), render the film in parts with \
          --crop, or use --method lightcuts"
     )]

@@ -74,3 +74,23 @@ fn copies_of_meshes_are_counted_before_they_are_made() {
         );
     }
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_mesh_too_long_for_the_memory_there_is_is_not_begun() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    std::fs::write(path("a.obj"), corners.to_owned() + &"# nothing\n".repeat(20_000_000)).expect("a mesh");
+    std::fs::write(path("a.toml"), "[[mesh]]\nfile = \"a.obj\"\n").expect("a scene");
+    let command = env!("CARGO_BIN_EXE_lightsplat");
+    let info = |limit: &str| {
+        let line = format!("{limit} exec {command} info a.toml");
+        Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().expect("a shell")
+    };
+    let run = info("ulimit -v 700000;");
+    let stderr = String::from_utf8_lossy(&run.stderr);
+    assert_eq!(run.status.code(), Some(3), "{stderr}");
+    assert!(stderr.contains("a.obj: reading it takes about 572 MiB of memory, and "), "{stderr}");
+    assert_eq!(info("").status.code(), Some(0));
+}

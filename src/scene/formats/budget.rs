@@ -2,12 +2,14 @@
 //! and every instance is a copy.
 
 use super::error::{Place, SceneError};
+use crate::scene::requirements::BVH_BYTES_PER_TRIANGLE;
 use crate::stats::available_bytes;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
-/// Memory of a triangle once a scene is ready to be rendered, about.
-const TRIANGLE_BYTES: u64 = 100;
+/// Memory of a triangle once a scene is ready to be rendered, about: half a vertex, three indices, and its part of the
+/// hierarchy.
+const TRIANGLE_BYTES: u64 = 36 + BVH_BYTES_PER_TRIANGLE as u64;
 
 /// Triangles for which there is memory, shared by all who place some.
 #[derive(Clone, Debug, Default)]

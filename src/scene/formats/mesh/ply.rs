@@ -136,6 +136,9 @@ trait Values {
     fn line(&self) -> Option<u32> {
         None
     }
+
+    /// Bytes that are left.
+    fn left(&self) -> usize;
 }
 
 struct Ascii<'a> {
@@ -160,6 +163,10 @@ impl Values for Ascii<'_> {
     fn line(&self) -> Option<u32> {
         Some(self.line + 1)
     }
+
+    fn left(&self) -> usize {
+        self.rest.len()
+    }
 }
 
 struct Binary<'a> {
@@ -183,6 +190,16 @@ impl Values for Binary<'_> {
     fn next(&mut self, scalar: Scalar) -> Result<f64, String> {
         scalar(self)
     }
+
+    fn left(&self) -> usize {
+        self.rest.len()
+    }
+}
+
+/// Elements for which memory is taken at once: as many as the header claims, if the bytes that are left can hold them.
+fn expected(element: &Element, values: &dyn Values) -> usize {
+    let most = values.left() / element.properties.len().max(1);
+    usize::try_from(element.count).map_or(most, |count| count.min(most))
 }
 
 fn contents(header: &Header, values: &mut dyn Values) -> Result<RawMesh, String> {
@@ -237,6 +254,7 @@ fn vertices(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> R
     let position = triple(["x", "y", "z"]).ok_or("the vertices have no x, y, z")?;
     let normal = triple(["nx", "ny", "nz"]);
     let uv = [["u", "s", "texture_u"], ["v", "t", "texture_v"]].map(|names| find(&names));
+    mesh.positions.reserve_exact(expected(element, values));
     let mut row = vec![0.0; element.properties.len()];
     for _ in 0..element.count {
         for (value, property) in row.iter_mut().zip(&element.properties) {
@@ -259,6 +277,7 @@ fn faces(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> Resu
     if !element.properties.iter().any(is_corners) {
         return Err("the faces have no list of vertex indices".into());
     }
+    mesh.triangles.reserve(expected(element, values));
     let mut corners = Vec::new();
     for _ in 0..element.count {
         for property in &element.properties {
