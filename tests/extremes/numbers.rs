@@ -123,6 +123,20 @@ fn films_may_be_a_pixel_wide_or_very_long() {
 }
 
 #[test]
+fn crops_of_very_large_films_show_what_is_there_by_every_method() {
+    let mut scene = staged(crate::all_methods::toml(&crate::all_methods::room(1.0)));
+    for offset in [[0, 0], [9000, 12_000], [16_376, 16_376]] {
+        scene.view.window = Window { offset, width: 8, height: 8, ..Window::whole([16_384, 16_384]) };
+        let world = world(scene.clone());
+        let by_path = mean(&by_path(&world, 512).color);
+        for (name, method) in crate::all_methods::all() {
+            let ratio = mean(&crate::all_methods::picture(&world, &method)) / by_path;
+            assert!((0.9..1.1).contains(&ratio), "{name} at {offset:?}: {ratio}");
+        }
+    }
+}
+
+#[test]
 fn lights_twenty_orders_apart_share_a_scene() {
     let mut scene = staged(room_at(1.0));
     let material = scene.meshes[0].material;

@@ -350,6 +350,22 @@ mod tests {
     }
 
     #[test]
+    fn more_elements_and_greater_indices_than_32_bits_hold_are_errors() {
+        let error = |text: String| read(text.as_bytes(), Path::new("t.ply")).unwrap_err().to_string();
+        for count in [1u64 << 31, (1 << 32) + 1, u64::MAX] {
+            for element in ["element vertex 4", "element face 1"] {
+                let (name, _) = element.rsplit_once(' ').unwrap();
+                let message = error(ascii().replace(element, &format!("{name} {count}")));
+                assert!(message.starts_with("t.ply"), "{message}");
+            }
+        }
+        for index in ["2147483648", "4294967295", "4294967298", "-1"] {
+            let message = error(ascii().replace("4 0 1 2 3", &format!("4 0 1 2 {index}")));
+            assert!(message.contains("of 4"), "{message}");
+        }
+    }
+
+    #[test]
     fn all_three_encodings_read_the_same() {
         let path = Path::new("t.ply");
         let from_ascii = read(ascii().as_bytes(), path).unwrap();
