@@ -13,6 +13,9 @@ use std::fmt;
 /// Size of Embree's MEDIUM-quality hierarchy, with its copy of the indices, per triangle; an estimate.
 pub(crate) const BVH_BYTES_PER_TRIANGLE: usize = 110;
 
+/// Size of a texel of an environment, and of the cumulative sums over it.
+pub(crate) const ENVIRONMENT_TEXEL_BYTES: u64 = 12 + 12 + 8;
+
 /// Number of materials in use, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct MaterialKinds {
@@ -158,8 +161,7 @@ impl Requirements {
         r.memory.hierarchy = BVH_BYTES_PER_TRIANGLE * r.triangles;
         r.memory.pictures = scene.textures.iter().map(|t| t.texels.bytes() / 3 * 4).sum();
         if let Some(Environment::Map(map)) = &scene.environment {
-            // The texels, and cumulative sums over them.
-            r.memory.pictures += (12 + 12 + 8) * map.radiance.len();
+            r.memory.pictures += ENVIRONMENT_TEXEL_BYTES as usize * map.radiance.len();
         }
         r
     }

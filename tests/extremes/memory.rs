@@ -94,3 +94,25 @@ fn a_mesh_too_long_for_the_memory_there_is_is_not_begun() {
     assert!(stderr.contains("a.obj: reading it takes about 572 MiB of memory, and "), "{stderr}");
     assert_eq!(info("").status.code(), Some(0));
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn pictures_too_large_for_the_memory_there_is_are_not_decoded() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    // Of one colour: a small file.
+    image::GrayImage::new(16_000, 16_000).save(path("a.png")).expect("a picture");
+    let texture = "[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = { file = \"a.png\" }\n\
+        [[mesh]]\nshape = \"cube\"\nmaterial = \"m\"\n";
+    std::fs::write(path("texture.toml"), texture).expect("a scene");
+    std::fs::write(path("sky.toml"), "[environment]\nfile = \"a.png\"\n").expect("a scene");
+    let command = env!("CARGO_BIN_EXE_lightsplat");
+    for scene in ["texture.toml", "sky.toml"] {
+        let line = format!("ulimit -v 2000000; exec {command} info {scene}");
+        let run =
+            Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().expect("a shell");
+        let stderr = String::from_utf8_lossy(&run.stderr);
+        assert_eq!(run.status.code(), Some(3), "{scene}: {stderr}");
+        assert!(stderr.contains("a.png: its 16000 x 16000 pixels take about 2929 MiB of memory"), "{stderr}");
+    }
+}

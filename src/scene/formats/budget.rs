@@ -1,5 +1,5 @@
-//! Memory for a scene's triangles, reckoned before it is spent: a description of few lines may place a mesh many times,
-//! and every instance is a copy.
+//! Memory for a scene's files, pictures and triangles, reckoned before it is spent: a description of few lines may name
+//! large files, and place a mesh many times, of which every instance is a copy.
 
 use super::error::{Place, SceneError};
 use crate::scene::requirements::BVH_BYTES_PER_TRIANGLE;
@@ -10,6 +10,16 @@ use std::sync::{Arc, OnceLock};
 /// Memory of a triangle once a scene is ready to be rendered, about: half a vertex, three indices, and its part of the
 /// hierarchy.
 const TRIANGLE_BYTES: u64 = 36 + BVH_BYTES_PER_TRIANGLE as u64;
+
+/// Memory from which on it is compared with what is available.
+const MUCH: u64 = 48 << 20;
+
+/// Says how much memory `bytes` are and how much is available, if that is less.
+pub(crate) fn lacking(bytes: u64) -> Option<String> {
+    let available = if bytes > MUCH { available_bytes()? } else { return None };
+    let [needed, left] = [bytes, available].map(|bytes| bytes >> 20);
+    (bytes > available).then(|| format!("about {needed} MiB of memory, and {left} MiB are available"))
+}
 
 /// Triangles for which there is memory, shared by all who place some.
 #[derive(Clone, Debug, Default)]

@@ -1,13 +1,10 @@
 //! Files that scene descriptions are, or refer to.
 
+use super::budget::lacking;
 use super::error::{Place, SceneError};
-use crate::stats::available_bytes;
 use std::fs;
 use std::io;
 use std::path::Path;
-
-/// Length from which a file is compared with the memory there is.
-const LONG: u64 = 16 << 20;
 
 /// Memory over length of a file of a mesh: its bytes, and those of the arrays that grow from it, old and new.
 const READING: u64 = 3;
@@ -15,12 +12,8 @@ const READING: u64 = 3;
 /// Reads a file that `from` refers to.
 pub(crate) fn read_file(path: &Path, from: &Place) -> Result<Vec<u8>, SceneError> {
     let length = fs::metadata(path).map_or(0, |metadata| metadata.len());
-    let needed = length.saturating_mul(READING);
-    let available = if length > LONG { available_bytes() } else { None };
-    if let Some(available) = available.filter(|available| needed > *available) {
-        let [needed, available] = [needed, available].map(|bytes| bytes >> 20);
-        let what =
-            format!("reading it takes about {needed} MiB of memory, and {available} MiB are available");
+    if let Some(lack) = lacking(length.saturating_mul(READING)) {
+        let what = format!("reading it takes {lack}");
         return Err(Place::file(path).wrong(what, "divide or simplify it, or give more memory"));
     }
     let fail = |error| SceneError::Read { path: path.to_owned(), from: from.clone(), error };

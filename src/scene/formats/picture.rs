@@ -3,6 +3,7 @@
 //! 8- and 16-bit pictures are sRGB unless read raw; floating-point ones are linear. Alpha is dropped, as in
 //! Mitsuba.
 
+use super::budget::lacking;
 use super::error::{Place, SceneError};
 use crate::math::Rgb;
 use crate::scene::Texels;
@@ -17,6 +18,14 @@ const MAX_SMALL: usize = 1 << 24;
 const MAX_PIXELS_PER_BYTE: usize = 1 << 13;
 /// Maximum number of bytes of a decoded pixel: four channels of 32 bits.
 const MAX_PIXEL_BYTES: u64 = 16;
+
+/// Memory of a pixel while its picture is decoded and put into squares, about: in 8 bits a channel, and in more, beside
+/// the channels of OpenEXR.
+const SHORT_PIXEL_BYTES: u64 = 12;
+const LONG_PIXEL_BYTES: u64 = 36;
+
+/// Remedy for a picture that there is no memory for.
+pub(super) const SMALLER: &str = "make it smaller, or give more memory";
 
 /// A decoded picture, top row first.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +48,20 @@ pub(crate) enum Channel {
     AlphaFrom(f32),
 }
 
+/// Reason why there is no picture.
+enum Refusal {
+    /// Bytes that are no picture.
+    Undecodable(String),
+    /// A picture that there is no memory for.
+    TooLarge(String),
+}
+
+impl<E: std::fmt::Display> From<E> for Refusal {
+    fn from(error: E) -> Refusal {
+        Refusal::Undecodable(error.to_string())
+    }
+}
+
 /// Decodes a part of `bytes`; `path` tells the format of files without a signature.
 pub(crate) fn decode(
     bytes: &[u8],
@@ -47,24 +70,30 @@ pub(crate) fn decode(
     place: &Place,
 ) -> Result<Picture, SceneError> {
     let picture = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
-        decode_exr(bytes).map_err(|e| e.to_string())
+        decode_exr(bytes)
     } else {
         decode_common(bytes, channel, path)
     };
     let picture = picture.and_then(|p| match p.texels.is_empty() {
-        true => Err("it has no pixels".to_string()),
+        true => Err("it has no pixels".into()),
         false => Ok(p),
     });
-    picture.map_err(|what| SceneError::Picture { place: place.clone(), path: path.to_owned(), what })
+    picture.map_err(|refusal| match refusal {
+        Refusal::Undecodable(what) => {
+            SceneError::Picture { place: place.clone(), path: path.to_owned(), what }
+        }
+        Refusal::TooLarge(what) => place.wrong(format!("{}: {what}", path.display()), SMALLER),
+    })
 }
 
-fn decode_exr(bytes: &[u8]) -> Result<Picture, exr::error::Error> {
+fn decode_exr(bytes: &[u8]) -> Result<Picture, Refusal> {
     use exr::prelude::*;
     // The size is checked before any allocation that depends on it.
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)?;
     for header in &meta.headers {
         let (width, height) = (header.layer_size.width(), header.layer_size.height());
-        check_size(width, height, bytes).map_err(|what| exr::error::Error::Invalid(what.into()))?;
+        let of_channels = 4 * header.channels.list.len() as u64;
+        check_size(width, height, of_channels + LONG_PIXEL_BYTES, bytes)?;
     }
     // Mitsuba names luminance images Y; `rgb_channels` would refuse those.
     let image = read()
@@ -86,45 +115,53 @@ fn decode_exr(bytes: &[u8]) -> Result<Picture, exr::error::Error> {
     let grey = find(&["Y", "L"]);
     let channels = [find(&["R", "r"]).or(grey), find(&["G", "g"]).or(grey), find(&["B", "b"]).or(grey)];
     let [Some(r), Some(g), Some(b)] = channels else {
-        return Err(exr::error::Error::Invalid("no R, G, B or Y channels".into()));
+        return Err("no R, G, B or Y channels".into());
     };
     let values = [r, g, b].map(|c| c.sample_data.values_as_f32().collect::<Vec<f32>>());
     let [r, g, b] = values;
     let texels = r.iter().zip(&g).zip(&b).map(|((&r, &g), &b)| Rgb::new(r, g, b)).collect::<Vec<_>>();
     if texels.len() != width * height {
-        return Err(exr::error::Error::Invalid("subsampled channels".into()));
+        return Err("subsampled channels".into());
     }
     Ok(Picture { width, height, texels: Texels::new(width, &texels) })
 }
 
-/// Rejects sizes that no picture has, or none of so few bytes, before anything is allocated for them.
-fn check_size(width: usize, height: usize, bytes: &[u8]) -> Result<(), String> {
+/// Rejects sizes that no picture has, or none of so few bytes, or for which there is no memory, before anything is
+/// allocated for them.
+fn check_size(width: usize, height: usize, pixel_bytes: u64, bytes: &[u8]) -> Result<(), Refusal> {
     let most = bytes.len().saturating_mul(MAX_PIXELS_PER_BYTE).clamp(MAX_SMALL, MAX_PIXELS);
-    match width.checked_mul(height) {
-        Some(pixels) if pixels <= most => Ok(()),
-        _ => Err(format!("{width} x {height} pixels are more than a file of {} bytes may have", bytes.len())),
+    let Some(pixels) = width.checked_mul(height).filter(|pixels| *pixels <= most) else {
+        let length = bytes.len();
+        return Err(
+            format!("{width} x {height} pixels are more than a file of {length} bytes may have").into()
+        );
+    };
+    match lacking(pixels as u64 * pixel_bytes) {
+        Some(lack) => Err(Refusal::TooLarge(format!("its {width} x {height} pixels take {lack}"))),
+        None => Ok(()),
     }
 }
 
-fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture, String> {
+fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture, Refusal> {
     // The other signature of Radiance HDR, which Mitsuba writes and the decoder does not know.
     let signed = bytes.strip_prefix(b"#?RGBE").map(|rest| [b"#?RADIANCE", rest].concat());
     let bytes = signed.as_deref().unwrap_or(bytes);
-    let mut reader =
-        image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+    let mut reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
     if reader.format().is_none() {
         // TGA has no signature.
-        let format = image::ImageFormat::from_path(path).map_err(|e| e.to_string())?;
+        let format = image::ImageFormat::from_path(path)?;
         reader.set_format(format);
     }
     let mut limits = image::Limits::no_limits();
     limits.max_alloc = Some(MAX_PIXELS as u64 * MAX_PIXEL_BYTES);
     reader.limits(limits.clone());
-    let mut decoder = reader.into_decoder().map_err(|e| e.to_string())?;
-    decoder.set_limits(limits).map_err(|e| e.to_string())?;
+    let mut decoder = reader.into_decoder()?;
+    decoder.set_limits(limits)?;
     let (width, height) = decoder.dimensions();
-    check_size(width as usize, height as usize, bytes)?;
-    let image = DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())?;
+    let is_short = decoder.color_type().bytes_per_pixel() == decoder.color_type().channel_count();
+    let pixel_bytes = if is_short { SHORT_PIXEL_BYTES } else { LONG_PIXEL_BYTES };
+    check_size(width as usize, height as usize, pixel_bytes, bytes)?;
+    let image = DynamicImage::from_decoder(decoder)?;
     let (width, height) = (image.width() as usize, image.height() as usize);
     let grey = |code: &dyn Fn(&[u8; 4]) -> u8| {
         let codes: Vec<[u8; 4]> = image.to_rgba8().pixels().map(|p| [code(&p.0); 4]).collect();

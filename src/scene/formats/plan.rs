@@ -3,7 +3,7 @@
 //! Both readers end in a [`Plan`]. Files are read in parallel, each once; results are in the order of the
 //! description, and so are errors.
 
-use super::budget::TriangleBudget;
+use super::budget::{TriangleBudget, lacking};
 use super::error::{Log, Place, SceneError};
 use super::file::{fnv1a, read_file};
 use super::mesh::{self, Placement, RawMesh};
@@ -14,12 +14,16 @@ use crate::scene::draft::{Draft, DraftMesh, Shot};
 use crate::scene::light::{DeltaLight, DistantDisc, Environment, EnvironmentMap};
 use crate::scene::material::{Material, MaterialId};
 use crate::scene::mesh::Emission;
+use crate::scene::requirements::ENVIRONMENT_TEXEL_BYTES;
 use crate::scene::texture::{Filter, Texture, TextureId, Wrap};
 use glam::{DMat3, DMat4, DVec3, Mat3};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// Size of a texel that is copied while an environment is made.
+const COPY_BYTES: u64 = 12;
 
 /// The whole content of a scene description.
 #[derive(Clone, Debug)]
@@ -344,7 +348,15 @@ fn one(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Resul
         Task::Texture(i, plan, channel) => {
             Done::Texture(*i, picture::decode(bytes, *channel, path, &plan.place)?)
         }
-        Task::Environment(place) => Done::Environment(picture::decode(bytes, Channel::Colour, path, place)?),
+        Task::Environment(place) => {
+            let picture = picture::decode(bytes, Channel::Colour, path, place)?;
+            let Picture { width, height, .. } = picture;
+            if let Some(lack) = lacking((width * height) as u64 * (ENVIRONMENT_TEXEL_BYTES + COPY_BYTES)) {
+                let what = format!("{}: light of its {width} x {height} texels takes {lack}", path.display());
+                return Err(place.wrong(what, picture::SMALLER));
+            }
+            Done::Environment(picture)
+        }
     })
 }
 
