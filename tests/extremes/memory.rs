@@ -2,7 +2,17 @@
 
 use crate::all_methods::all;
 use lightsplat::film::Window;
-use std::process::Command;
+
+/// Runs the program in `folder` with so many KiB of address space, or without a limit; returns its exit code and
+/// what it says.
+#[cfg(target_os = "linux")]
+fn run(folder: &std::path::Path, kibibytes: Option<u32>, arguments: &str) -> (Option<i32>, String) {
+    let limit = kibibytes.map_or(String::new(), |most| format!("ulimit -v {most}; "));
+    let line = format!("{limit}exec {} {arguments}", env!("CARGO_BIN_EXE_lightsplat"));
+    let run =
+        std::process::Command::new("sh").args(["-c", &line]).current_dir(folder).output().expect("a shell");
+    (run.status.code(), String::from_utf8_lossy(&run.stderr).into_owned())
+}
 
 #[test]
 fn every_method_reckons_with_pixels_samples_lights_and_photons() {
@@ -29,17 +39,13 @@ fn every_method_reckons_with_pixels_samples_lights_and_photons() {
 fn too_much_for_the_limit_of_the_shell_is_refused_before_anything_is_rendered() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("room.toml"), crate::all_methods::room(1.0)).expect("a scene");
-    let command = env!("CARGO_BIN_EXE_lightsplat");
     for wanted in ["--vpls 100000000", "--direct-vpls 100000000", "--method photon-cache --photons 100000000"]
         .into_iter()
         .chain(["--method path --resolution 16384x8192", "--method lightcuts --resolution 16384x8192"])
     {
-        let line =
-            format!("ulimit -v 3000000; exec {command} render room.toml -o a.exr --threads 1 {wanted}");
-        let run =
-            Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().expect("a shell");
-        let stderr = String::from_utf8_lossy(&run.stderr);
-        assert_eq!(run.status.code(), Some(2), "{wanted}: {stderr}");
+        let arguments = format!("render room.toml -o a.exr --threads 1 {wanted}");
+        let (code, stderr) = run(folder.path(), Some(3_000_000), &arguments);
+        assert_eq!(code, Some(2), "{wanted}: {stderr}");
         assert!(stderr.contains("GiB") && stderr.contains("--crop"), "{stderr}");
     }
     assert!(!folder.path().join("a.exr").exists());
@@ -59,15 +65,11 @@ fn copies_of_meshes_are_counted_before_they_are_made() {
     ply += &"3 0 1 2\n".repeat(50_000);
     std::fs::write(folder.path().join("a.ply"), ply).expect("a mesh");
     let of_file = "<shape type=\"ply\"><string name=\"filename\" value=\"a.ply\"/></shape>".repeat(1000);
-    let command = env!("CARGO_BIN_EXE_lightsplat");
     for (name, shapes) in [("instances", own), ("files", of_file)] {
         let text = format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/>{shapes}</scene>");
         std::fs::write(folder.path().join("a.xml"), text).expect("a scene");
-        let line = format!("ulimit -v 600000; exec {command} info a.xml");
-        let run =
-            Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().expect("a shell");
-        let stderr = String::from_utf8_lossy(&run.stderr);
-        assert_eq!(run.status.code(), Some(3), "{name}: {stderr}");
+        let (code, stderr) = run(folder.path(), Some(600_000), "info a.xml");
+        assert_eq!(code, Some(3), "{name}: {stderr}");
         assert!(
             stderr.contains("a.xml") && stderr.contains("triangles that there is memory for"),
             "{stderr}"
@@ -83,16 +85,10 @@ fn a_mesh_too_long_for_the_memory_there_is_is_not_begun() {
     let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     std::fs::write(path("a.obj"), corners.to_owned() + &"# nothing\n".repeat(20_000_000)).expect("a mesh");
     std::fs::write(path("a.toml"), "[[mesh]]\nfile = \"a.obj\"\n").expect("a scene");
-    let command = env!("CARGO_BIN_EXE_lightsplat");
-    let info = |limit: &str| {
-        let line = format!("{limit} exec {command} info a.toml");
-        Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().expect("a shell")
-    };
-    let run = info("ulimit -v 700000;");
-    let stderr = String::from_utf8_lossy(&run.stderr);
-    assert_eq!(run.status.code(), Some(3), "{stderr}");
+    let (code, stderr) = run(folder.path(), Some(700_000), "info a.toml");
+    assert_eq!(code, Some(3), "{stderr}");
     assert!(stderr.contains("a.obj: reading it takes about 572 MiB of memory, and "), "{stderr}");
-    assert_eq!(info("").status.code(), Some(0));
+    assert_eq!(run(folder.path(), None, "info a.toml").0, Some(0));
 }
 
 #[cfg(target_os = "linux")]
@@ -106,13 +102,9 @@ fn pictures_too_large_for_the_memory_there_is_are_not_decoded() {
         [[mesh]]\nshape = \"cube\"\nmaterial = \"m\"\n";
     std::fs::write(path("texture.toml"), texture).expect("a scene");
     std::fs::write(path("sky.toml"), "[environment]\nfile = \"a.png\"\n").expect("a scene");
-    let command = env!("CARGO_BIN_EXE_lightsplat");
     for scene in ["texture.toml", "sky.toml"] {
-        let line = format!("ulimit -v 2000000; exec {command} info {scene}");
-        let run =
-            Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().expect("a shell");
-        let stderr = String::from_utf8_lossy(&run.stderr);
-        assert_eq!(run.status.code(), Some(3), "{scene}: {stderr}");
+        let (code, stderr) = run(folder.path(), Some(2_000_000), &format!("info {scene}"));
+        assert_eq!(code, Some(3), "{scene}: {stderr}");
         assert!(stderr.contains("a.png: its 16000 x 16000 pixels take about 2929 MiB of memory"), "{stderr}");
     }
 }

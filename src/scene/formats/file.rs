@@ -11,21 +11,28 @@ const READING: u64 = 3;
 
 /// Reads a file that `from` refers to.
 pub(crate) fn read_file(path: &Path, from: &Place) -> Result<Vec<u8>, SceneError> {
-    let length = fs::metadata(path).map_or(0, |metadata| metadata.len());
+    let fail = |error| SceneError::Read { path: path.to_owned(), from: from.clone(), error };
+    let length = regular_length(path).map_err(fail)?;
     if let Some(lack) = lacking(length.saturating_mul(READING)) {
         let what = format!("reading it takes {lack}");
         return Err(Place::file(path).wrong(what, "divide or simplify it, or give more memory"));
     }
-    let fail = |error| SceneError::Read { path: path.to_owned(), from: from.clone(), error };
-    read_regular(path).map_err(fail)
+    fs::read(path).map_err(fail)
 }
 
-/// Reads a regular file: devices have no end, and pipes may never have a beginning.
+/// Reads a regular file.
 pub(crate) fn read_regular(path: &Path) -> io::Result<Vec<u8>> {
-    if !fs::metadata(path)?.is_file() {
+    regular_length(path)?;
+    fs::read(path)
+}
+
+/// Returns the length of a file that is regular: devices have no end, and pipes may never have a beginning.
+fn regular_length(path: &Path) -> io::Result<u64> {
+    let metadata = fs::metadata(path)?;
+    if !metadata.is_file() {
         return Err(io::Error::other("it is not a regular file"));
     }
-    fs::read(path)
+    Ok(metadata.len())
 }
 
 /// Reads a description's own file, to which `from` refers; returns its text and the hash of its bytes.
