@@ -2,7 +2,7 @@
 
 use super::exit::Failure;
 use super::outputs::Inputs;
-use super::talk;
+use super::{interrupt, talk};
 use crate::scene::formats::{Level, LoadOptions, Loaded, SceneError, Warning, load};
 use crate::session::{OpenError, Session};
 use crate::stats::{Stage, Stats};
@@ -40,6 +40,10 @@ pub struct Opened {
 
 /// Opens a session on the scene at `path`.
 pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
+    interrupt::while_opening(|| open_now(path, options))
+}
+
+fn open_now(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
     let mut stats = Stats::new();
     let loaded = stats.time(Stage::Load, || read(path, options))?;
     let warnings = loaded.warnings.len();

@@ -142,7 +142,7 @@ impl<'w> EyePass<'w> {
         let needs = effort.as_ref().and_then(|effort| tracer.needs(effort, &tiles, learned));
         let more = |tile| works.with(|work| tracer.more_samples(tile, needs.as_ref(), work));
         let tiles = tiles.into_par_iter().one_by_one().map(more).collect();
-        let mut pass = EyePass::gather(&view.window, tiles, 1);
+        let mut pass = EyePass::gather(&view.window, tiles, 1, control);
         pass.chains.rays += counts.rays;
         pass.chains.shadow_rays += counts.shadow_rays;
         if let Some((_, chains)) = &found {
@@ -270,7 +270,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
         let mut found =
             VisibleSurfaces { chains: tile.chains, nonfinite: tile.nonfinite, ..Default::default() };
         let film_pixels: Vec<[u32; 2]> = tile.pixels.iter().map(|pixel| window.film_pixel(*pixel)).collect();
-        let needs = needs.filter(|_| !self.control.is_cancelled());
+        let cancelled = self.control.is_cancelled();
+        let needs = needs.filter(|_| !cancelled);
         let more = |(pixel, samples): (&[u32; 2], &u32)| match needs {
             Some(needs) if *samples == spp => needs.choice.more(&needs.luminances, *pixel),
             _ => 0,
@@ -288,7 +289,9 @@ impl<'a, 'w> Tracer<'a, 'w> {
         for multiple in [0].into_iter().chain(MULTIPLES) {
             let chosen: Vec<usize> = (0..multiples.len()).filter(|i| multiples[*i] == multiple).collect();
             if multiple == 0 {
-                chosen.iter().for_each(|i| put(&mut found, *i, first_points(*i), tile.samples[*i]));
+                // Points that nothing will light need not be.
+                let lit = if cancelled { &[] } else { &chosen[..] };
+                lit.iter().for_each(|i| put(&mut found, *i, first_points(*i), tile.samples[*i]));
             } else {
                 let total = spp * (1 + multiple);
                 let chosen_pixels: Vec<[u32; 2]> = chosen.iter().map(|i| film_pixels[*i]).collect();

@@ -129,11 +129,17 @@ impl<'w> EyePass<'w> {
                 Some(found)
             })
             .collect();
-        EyePass::gather(window, tiles, settings.spp.max(1))
+        EyePass::gather(window, tiles, settings.spp.max(1), control)
     }
 
-    /// Joins the tiles of a window with `spp` rays a pixel; some are missing if the pass was cancelled.
-    pub(super) fn gather(window: &Window, mut tiles: Vec<VisibleSurfaces<'w>>, spp: u32) -> EyePass<'w> {
+    /// Joins the tiles of a window with `spp` rays a pixel. If `control` is cancelled, some are missing, and there are
+    /// no points: nothing lights them.
+    pub(super) fn gather(
+        window: &Window,
+        mut tiles: Vec<VisibleSurfaces<'w>>,
+        spp: u32,
+        control: &Control,
+    ) -> EyePass<'w> {
         let spp = spp as f32;
         let complete = tiles.len() == window.tile_count(TILE);
         let mut known = Image::new(window.width, window.height);
@@ -151,19 +157,15 @@ impl<'w> EyePass<'w> {
             chains += tile.chains;
             nonfinite += tile.nonfinite;
         }
-        // One array after the other, so that only one at a time is in memory twice.
-        let geometry = joined(&mut tiles, |tile| mem::take(&mut tile.points.geometry));
-        let (index, order) = KdTree::build(geometry.iter().map(|point| point.position));
-        let geometry = ordered(geometry, &order);
-        let surfaces = ordered(joined(&mut tiles, |tile| mem::take(&mut tile.points.surfaces)), &order);
-        let mut samples = ordered(joined(&mut tiles, |tile| mem::take(&mut tile.visibility)), &order);
+        let Arranged { points, index, mut samples } =
+            Arranged::new(&mut tiles, control).unwrap_or_else(Arranged::empty);
         samples.par_iter_mut().for_each(|sample| sample.weight /= spp);
         drop(tiles);
         if size_of_val(&samples[..]) > GIVEN_BACK {
             give_back();
         }
         EyePass {
-            points: ShadingPoints { geometry, surfaces },
+            points,
             index,
             visibility: VisibilitySamples::one_each(samples),
             known,
@@ -192,15 +194,48 @@ impl<'w> EyePass<'w> {
     }
 }
 
-/// One part of all tiles in one array; the tiles' are freed one by one, and given back by and by.
+/// Shading points of all tiles and their visibility samples, in the order of the hierarchy over them.
+struct Arranged<'w> {
+    points: ShadingPoints<'w>,
+    index: KdTree,
+    samples: Vec<VisibilitySample>,
+}
+
+impl<'w> Arranged<'w> {
+    /// Takes them out of the tiles; `None` if `control` is cancelled.
+    fn new(tiles: &mut [VisibleSurfaces<'w>], control: &Control) -> Option<Arranged<'w>> {
+        // One array after the other, so that only one at a time is in memory twice.
+        let geometry = joined(tiles, |tile| mem::take(&mut tile.points.geometry), control)?;
+        let (index, order) =
+            KdTree::build_unless_cancelled(geometry.iter().map(|point| point.position), control);
+        let geometry = ordered(geometry, &order, control)?;
+        let surfaces = joined(tiles, |tile| mem::take(&mut tile.points.surfaces), control)?;
+        let surfaces = ordered(surfaces, &order, control)?;
+        let samples = joined(tiles, |tile| mem::take(&mut tile.visibility), control)?;
+        let samples = ordered(samples, &order, control)?;
+        Some(Arranged { points: ShadingPoints { geometry, surfaces }, index, samples })
+    }
+
+    fn empty() -> Arranged<'w> {
+        let points = ShadingPoints { geometry: Vec::new(), surfaces: Vec::new() };
+        Arranged { points, index: KdTree::build([].into_iter()).0, samples: Vec::new() }
+    }
+}
+
+/// One part of all tiles in one array, unless `control` is cancelled; the tiles' are freed one by one, and given back
+/// by and by.
 fn joined<'w, T>(
     tiles: &mut [VisibleSurfaces<'w>],
     part: impl Fn(&mut VisibleSurfaces<'w>) -> Vec<T>,
-) -> Vec<T> {
+    control: &Control,
+) -> Option<Vec<T>> {
     let mut parts: Vec<Vec<T>> = tiles.iter_mut().map(part).collect();
     let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
     let mut freed = 0;
     for part in &mut parts {
+        if control.is_cancelled() {
+            return None;
+        }
         freed += size_of_val(&part[..]);
         all.append(&mut mem::take(part));
         if freed > GIVEN_BACK {
@@ -208,19 +243,21 @@ fn joined<'w, T>(
             freed = 0;
         }
     }
-    all
+    Some(all)
 }
 
-/// The items in another order, a permutation: each at `i` is that which was at `order[i]`.
-fn ordered<T: Copy + Send + Sync>(items: Vec<T>, order: &[u32]) -> Vec<T> {
+/// The items in another order, a permutation: each at `i` is that which was at `order[i]`; `None` if `control` is
+/// cancelled.
+fn ordered<T: Copy + Send + Sync>(items: Vec<T>, order: &[u32], control: &Control) -> Option<Vec<T>> {
     match size_of_val(&items[..]) > TWICE {
-        true => moved(items, order),
-        false => order.par_iter().map(|i| items[*i as usize]).collect(),
+        true => moved(items, order, control),
+        false if control.is_cancelled() => None,
+        false => Some(order.par_iter().map(|i| items[*i as usize]).collect()),
     }
 }
 
 /// The same, moved along the permutation's cycles, one by one.
-fn moved<T: Copy>(mut items: Vec<T>, order: &[u32]) -> Vec<T> {
+fn moved<T: Copy>(mut items: Vec<T>, order: &[u32], control: &Control) -> Option<Vec<T>> {
     let mut moved = vec![false; items.len()];
     for start in 0..items.len() {
         if moved[start] {
@@ -228,6 +265,9 @@ fn moved<T: Copy>(mut items: Vec<T>, order: &[u32]) -> Vec<T> {
         }
         let (first, mut at) = (items[start], start);
         loop {
+            if control.is_cancelled() {
+                return None;
+            }
             moved[at] = true;
             let from = order[at] as usize;
             if from == start {
@@ -238,7 +278,7 @@ fn moved<T: Copy>(mut items: Vec<T>, order: &[u32]) -> Vec<T> {
         }
         items[at] = first;
     }
-    items
+    Some(items)
 }
 
 #[cfg(test)]
@@ -250,10 +290,13 @@ mod tests {
         let items: Vec<u32> = (100..108).collect();
         let order = [0, 2, 3, 1, 5, 4, 7, 6];
         let expected: Vec<u32> = order.iter().map(|i| items[*i as usize]).collect();
-        assert_eq!(moved(items, &order), expected);
-        assert!(moved(Vec::<u32>::new(), &[]).is_empty());
+        let control = Control::new();
+        assert_eq!(moved(items.clone(), &order, &control), Some(expected));
+        assert_eq!(moved(Vec::<u32>::new(), &[], &control), Some(vec![]));
         let turned: Vec<u32> = (0..1000).map(|i| (i + 7) % 1000).collect();
-        assert_eq!(moved((0..1000).collect(), &turned), turned);
-        assert_eq!(ordered((0..1000).collect::<Vec<u32>>(), &turned), turned);
+        assert_eq!(moved((0..1000).collect(), &turned, &control).as_ref(), Some(&turned));
+        assert_eq!(ordered((0..1000).collect(), &turned, &control).as_ref(), Some(&turned));
+        control.cancel();
+        assert_eq!(moved(items, &order, &control), None);
     }
 }

@@ -4,6 +4,7 @@
 //! Every node splits its points in halves along the longest side of their box, so that node `i` of level `l` is the
 //! range of points from `n·i / 2^l` to `n·(i + 1) / 2^l`: no pointers, and the order of the points is that in space.
 
+use crate::progress::Control;
 use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -47,13 +48,21 @@ pub struct KdTree {
 impl KdTree {
     /// Builds the hierarchy over `positions`; returns it with the order in which to store the items.
     pub fn build(positions: impl ExactSizeIterator<Item = Vec3>) -> (KdTree, Vec<u32>) {
+        KdTree::build_unless_cancelled(positions, &Control::new())
+    }
+
+    /// The same, but the order may be any once `control` is cancelled: boxes are right, and large.
+    pub fn build_unless_cancelled(
+        positions: impl ExactSizeIterator<Item = Vec3>,
+        control: &Control,
+    ) -> (KdTree, Vec<u32>) {
         let mut items: Vec<(Vec3, u32)> = positions.zip(0..).collect();
         let count = items.len();
         let mut depth = 0;
         while count >> depth > LEAF {
             depth += 1;
         }
-        sort(&mut items, count, 0, 0, depth);
+        sort(&mut items, count, 0, 0, depth, control);
         let mut index = KdTree { count, depth, bounds: vec![Bounds::EMPTY; 2 << depth] };
         for leaf in 0..1usize << depth {
             let box_of = |b: Bounds, item: &(Vec3, u32)| b.union(Bounds { min: item.0, max: item.0 });
@@ -119,8 +128,8 @@ fn range(count: usize, level: u32, i: usize) -> Range<usize> {
 }
 
 /// Sorts the items of node `i` of a level, whose range they are.
-fn sort(items: &mut [(Vec3, u32)], count: usize, level: u32, i: usize, depth: u32) {
-    if level == depth {
+fn sort(items: &mut [(Vec3, u32)], count: usize, level: u32, i: usize, depth: u32, control: &Control) {
+    if level == depth || control.is_cancelled() {
         return;
     }
     let (min, max) = items
@@ -140,9 +149,9 @@ fn sort(items: &mut [(Vec3, u32)], count: usize, level: u32, i: usize, depth: u3
     let (left, right) = items.split_at_mut(middle);
     let mut halves = [(left, 2 * i), (right, 2 * i + 1)];
     if count >> level > PARALLEL {
-        halves.par_iter_mut().for_each(|(half, i)| sort(half, count, level + 1, *i, depth));
+        halves.par_iter_mut().for_each(|(half, i)| sort(half, count, level + 1, *i, depth, control));
     } else {
-        halves.iter_mut().for_each(|(half, i)| sort(half, count, level + 1, *i, depth));
+        halves.iter_mut().for_each(|(half, i)| sort(half, count, level + 1, *i, depth, control));
     }
 }
 

@@ -32,9 +32,9 @@ impl ActiveCluster {
     }
 }
 
-/// Builds a tree by rounds of mutual-nearest merges; `c_sq` is the square of the scene's diagonal. Clusters are paired
-/// as they come once `control` is cancelled.
-pub fn build(mut primitives: Vec<Primitive>, c_sq: f32, control: &Control) -> Topology {
+/// Builds a tree by rounds of mutual-nearest merges, unless `control` is cancelled; `c_sq` is the square of the scene's
+/// diagonal.
+pub fn build(mut primitives: Vec<Primitive>, c_sq: f32, control: &Control) -> Option<Topology> {
     sort_along_curve(&mut primitives, c_sq);
     let leaf = |(i, r): (usize, &Primitive)| ActiveCluster {
         bounds: PrimitiveBounds::of(r),
@@ -44,17 +44,18 @@ pub fn build(mut primitives: Vec<Primitive>, c_sq: f32, control: &Control) -> To
     let mut clusters: Vec<ActiveCluster> = primitives.iter().enumerate().map(leaf).collect();
     let mut pairs = Vec::with_capacity(primitives.len().saturating_sub(1));
     while clusters.len() > 1 {
-        let before = clusters.len();
-        if !control.is_cancelled() {
-            let nearest = nearest_neighbours(&clusters, c_sq);
-            merge(&mut clusters, &nearest, primitives.len(), &mut pairs);
+        if control.is_cancelled() {
+            return None;
         }
+        let before = clusters.len();
+        let nearest = nearest_neighbours(&clusters, c_sq);
+        merge(&mut clusters, &nearest, primitives.len(), &mut pairs);
         if before - clusters.len() <= before / STALLED {
             let paired: Vec<u32> = (0..clusters.len() as u32).map(|i| i ^ 1).collect();
             merge(&mut clusters, &paired, primitives.len(), &mut pairs);
         }
     }
-    Topology::from_pairs(&primitives, &pairs)
+    Some(Topology::from_pairs(&primitives, &pairs))
 }
 
 fn sort_along_curve(primitives: &mut [Primitive], c_sq: f32) {

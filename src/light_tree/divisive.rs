@@ -59,21 +59,21 @@ fn luminance(r: &Primitive) -> f64 {
     f64::from(r.0[LUMINANCE])
 }
 
-/// Builds a tree by recursive splits; `c_sq` is the square of the scene's diagonal. Clusters are halved as they come
-/// once `control` is cancelled.
-pub fn build(mut primitives: Vec<Primitive>, c_sq: f32, control: &Control) -> Topology {
+/// Builds a tree by recursive splits, unless `control` is cancelled; `c_sq` is the square of the scene's diagonal.
+pub fn build(mut primitives: Vec<Primitive>, c_sq: f32, control: &Control) -> Option<Topology> {
     let mut left_sizes = vec![0; primitives.len().saturating_sub(1)];
     split_all(&mut primitives, &mut left_sizes, c_sq, control);
-    Topology { leaves: primitives, left_sizes }
+    (!control.is_cancelled()).then_some(Topology { leaves: primitives, left_sizes })
 }
 
 fn split_all(primitives: &mut [Primitive], left_sizes: &mut [u32], c_sq: f32, control: &Control) {
     let n = primitives.len();
     let Some((own, rest)) = left_sizes.split_first_mut() else { return };
+    if n > SORTED && control.is_cancelled() {
+        return;
+    }
     let left = if n == 2 {
         1
-    } else if n > SORTED && control.is_cancelled() {
-        n / 2
     } else if n <= SORTED {
         split_sorted(primitives, c_sq)
     } else {

@@ -9,6 +9,7 @@ use super::cost::{Primitive, PrimitiveBounds};
 use super::node::Node;
 use super::topology::Topology;
 use crate::math::{Rgb, luminance};
+use crate::progress::Control;
 use crate::vpl::{Profiles, VplKind, VplSet};
 use glam::{DVec3, Vec3};
 
@@ -25,29 +26,39 @@ struct Summary {
     representative: u32,
 }
 
+impl Summary {
+    const NONE: Summary =
+        Summary { bounds: PrimitiveBounds::EMPTY, intensity: DVec3::ZERO, luminance: 0.0, representative: 0 };
+}
+
 /// The set of VPLs whose tree is finished.
 struct Finisher<'a> {
     set: &'a VplSet,
     profiles: &'a Profiles,
     /// Index of the set's first VPL among all VPLs of all trees.
     first_vpl: u32,
+    control: &'a Control,
 }
 
 /// Fills `nodes` (two a leaf: the root, a gap that keeps siblings aligned, then pairs of siblings, depth first)
-/// with the nodes of a tree; `first_node` is the index of `nodes[0]` among all nodes.
+/// with the nodes of a tree, unless `control` is cancelled; `first_node` is the index of `nodes[0]` among all nodes.
 pub fn finish(
     topology: &Topology,
     (set, profiles): (&VplSet, &Profiles),
     nodes: &mut [Node],
-    first_node: u32,
-    first_vpl: u32,
-) {
-    let finisher = Finisher { set, profiles, first_vpl };
+    [first_node, first_vpl]: [usize; 2],
+    control: &Control,
+) -> Option<()> {
+    if control.is_cancelled() {
+        return None;
+    }
+    let finisher = Finisher { set, profiles, first_vpl: first_vpl as u32, control };
     if let Some((root, rest)) = nodes.split_first_mut() {
         let below = rest.get_mut(1..).unwrap_or_default();
         let subtree = Subtree { leaves: &topology.leaves, left_sizes: &topology.left_sizes, first_leaf: 0 };
-        finisher.subtree(subtree, SubtreeNodes { root, below, below_index: first_node + 2 });
+        finisher.subtree(subtree, SubtreeNodes { root, below, below_index: first_node as u32 + 2 });
     }
+    (!control.is_cancelled()).then_some(())
 }
 
 /// A subtree of a topology.
@@ -68,9 +79,12 @@ struct SubtreeNodes<'a> {
 }
 
 impl Finisher<'_> {
-    /// Fills the nodes of a subtree.
+    /// Fills the nodes of a subtree; nothing is right once building is cancelled.
     fn subtree(&self, subtree: Subtree, nodes: SubtreeNodes) -> Summary {
         let Subtree { leaves, left_sizes, first_leaf } = subtree;
+        if leaves.len() > PARALLEL && self.control.is_cancelled() {
+            return Summary::NONE;
+        }
         let SubtreeNodes { root: node, below, below_index } = nodes;
         let Some((&left, rest)) = left_sizes.split_first() else {
             return self.leaf(&leaves[0], first_leaf, node);

@@ -52,6 +52,10 @@ impl Settings for Family {
     }
 }
 
+/// Number of nodes that are laid out between two looks at whether building is cancelled: their memory takes longer to
+/// be had than they to be written.
+const LAID_OUT: usize = 1 << 18;
+
 /// The light trees of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct LightTrees {
@@ -69,7 +73,7 @@ impl LightTrees {
     /// Builds a tree over each of `sets`; `diagonal` of the scene sets the weight of an angle against a
     /// length.
     ///
-    /// VPLs beyond [`MAX_VPLS`] in all are ignored. The trees are poor, but whole, if `control` is cancelled.
+    /// VPLs beyond [`MAX_VPLS`] in all are ignored. Trees that are not whole when `control` is cancelled are left out.
     pub fn build(
         sets: &[VplSet],
         profiles: impl Into<Profiles>,
@@ -79,31 +83,41 @@ impl LightTrees {
     ) -> LightTrees {
         let mut trees = LightTrees { profiles: profiles.into(), ..LightTrees::default() };
         for set in sets {
-            trees.add(set, diagonal, family, control);
+            let whole = trees.nodes.len();
+            if trees.add(set, diagonal, family, control).is_none() {
+                trees.nodes.truncate(whole);
+                break;
+            }
         }
         trees
     }
 
-    fn add(&mut self, set: &VplSet, diagonal: f32, family: Family, control: &Control) {
+    /// Adds a tree over a set, unless that is empty; `None` if `control` is cancelled, with some nodes left behind.
+    fn add(&mut self, set: &VplSet, diagonal: f32, family: Family, control: &Control) -> Option<()> {
         let n = set.len().min(MAX_VPLS - self.vpls.len());
         if n == 0 {
-            return;
+            return Some(());
         }
         let primitive = |i: usize| {
             Primitive::new(&set.vpls[i], set.kind, &self.profiles, (luminance(set.intensities[i]), i as u32))
         };
         let primitives = (0..n).into_par_iter().map(primitive).collect();
         let topology = match family {
-            Family::Divisive => divisive::build(primitives, diagonal * diagonal, control),
-            Family::Agglomerative => agglomerative::build(primitives, diagonal * diagonal, control),
+            Family::Divisive => divisive::build(primitives, diagonal * diagonal, control)?,
+            Family::Agglomerative => agglomerative::build(primitives, diagonal * diagonal, control)?,
         };
         let (first_node, first_vpl) = (self.nodes.len(), self.vpls.len());
         let blank = Node::new(crate::math::Rgb::ZERO, 0, set.kind, set.origin);
-        self.nodes.par_extend(rayon::iter::repeat_n(blank, 2 * n));
+        let end = first_node + 2 * n;
+        self.nodes.reserve(2 * n);
+        while self.nodes.len() < end && !control.is_cancelled() {
+            self.nodes.par_extend(rayon::iter::repeat_n(blank, LAID_OUT.min(end - self.nodes.len())));
+        }
         let nodes = &mut self.nodes[first_node..];
-        finish::finish(&topology, (set, &self.profiles), nodes, first_node as u32, first_vpl as u32);
+        finish::finish(&topology, (set, &self.profiles), nodes, [first_node, first_vpl], control)?;
         self.vpls.par_extend(topology.leaves.par_iter().map(|r| set.vpls[r.index() as usize]));
         self.roots.push(first_node as u32);
+        Some(())
     }
 
     /// Returns the roots of all trees, or of those for light of one origin.

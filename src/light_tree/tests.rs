@@ -6,6 +6,7 @@ use crate::math::Rgb;
 use crate::progress::Control;
 use crate::vpl::{Origin, VplKind};
 use glam::{DVec3, Vec3};
+use std::time::Duration;
 
 const FAMILIES: [Family; 2] = [Family::Divisive, Family::Agglomerative];
 
@@ -118,14 +119,35 @@ fn assert_cones_hold_members(trees: &LightTrees) {
 }
 
 #[test]
-fn trees_are_whole_even_if_building_is_cancelled() {
+fn trees_are_left_out_if_building_is_cancelled() {
     let control = Control::new();
     control.cancel();
     for family in [Family::Divisive, Family::Agglomerative] {
         let sets = [random_set(5000, VplKind::Oriented)];
         let trees = LightTrees::build(&sets, Vec::new(), 3f32.sqrt(), family, &control);
-        assert_valid(&trees, &sets);
+        assert!(trees.roots.is_empty() && trees.nodes.is_empty() && trees.vpls.is_empty());
     }
+}
+
+#[test]
+fn trees_that_are_there_when_building_is_cancelled_are_whole() {
+    let sets = [random_set(20_000, VplKind::Oriented), random_set(20_000, VplKind::Omni)];
+    let mut left_out = 0;
+    for family in FAMILIES {
+        for delay in (0..30).map(|step| Duration::from_micros(700 * step)) {
+            let control = Control::new();
+            let trees = std::thread::scope(|scope| {
+                scope.spawn(|| {
+                    std::thread::sleep(delay);
+                    control.cancel();
+                });
+                LightTrees::build(&sets, Vec::new(), 3f32.sqrt(), family, &control)
+            });
+            assert_valid(&trees, &sets[..trees.roots.len()]);
+            left_out += sets.len() - trees.roots.len();
+        }
+    }
+    assert!(left_out > 0);
 }
 
 #[test]

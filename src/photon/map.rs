@@ -41,15 +41,15 @@ pub struct PhotonMap {
 }
 
 impl PhotonMap {
-    /// Traces the photons.
+    /// Traces the photons; there may be none once `control` is cancelled.
     pub fn new(world: &World, settings: &PhotonSettings, control: &Control) -> PhotonMap {
         let (mut photons, mut counts) = trace_photons(world, settings, control, |hit| hit.photon);
         let share = 1.0 / counts.paths.max(1) as f32;
-        for photon in &mut photons {
+        photons.retain_mut(|photon| {
             photon.flux = (photon.flux * share).max(Rgb::ZERO);
-        }
-        photons.retain(|photon| photon.position.is_finite() && photon.flux.is_finite());
-        let (index, photons) = indexed(&photons, |photon| photon.position);
+            photon.position.is_finite() && photon.flux.is_finite()
+        });
+        let (index, photons) = indexed(photons, |photon| photon.position, control);
 
         let other = PhotonSettings {
             photons: settings.photons.div_ceil(PHOTONS_PER_SITE),
@@ -59,15 +59,19 @@ impl PhotonMap {
         let site = |hit: &PhotonHit| Site { position: hit.photon.position, normal: hit.photon.normal };
         let (mut sites, more) = trace_photons(world, &other, control, site);
         sites.retain(|site| site.position.is_finite());
-        let (site_index, sites) = indexed(&sites, |site| site.position);
+        let (site_index, sites) = indexed(sites, |site| site.position, control);
         counts.paths += more.paths;
         counts.rays += more.rays;
         PhotonMap { photons, index, sites, site_index, counts }
     }
 }
 
-/// Builds a hierarchy over positions, and returns it with the items in its order.
-fn indexed<T: Copy>(items: &[T], position: impl Fn(&T) -> Vec3) -> (KdTree, Vec<T>) {
-    let (index, order) = KdTree::build(items.iter().map(position));
+/// Builds a hierarchy over positions, and returns it with the items in its order; both are empty if `control` is
+/// cancelled.
+fn indexed<T: Copy>(items: Vec<T>, position: impl Fn(&T) -> Vec3, control: &Control) -> (KdTree, Vec<T>) {
+    let (index, order) = KdTree::build_unless_cancelled(items.iter().map(position), control);
+    if control.is_cancelled() {
+        return (KdTree::build([].into_iter()).0, Vec::new());
+    }
     (index, order.iter().map(|&i| items[i as usize]).collect())
 }

@@ -3,6 +3,7 @@
 
 use super::{LightPassSettings, Origin, SpotProfile, Vpl, VplKind, VplSet, size_of_area};
 use crate::light::{AreaLight, EnvironmentLight};
+use crate::progress::Control;
 use crate::sampling::{hash, owen_sobol_2d};
 use crate::scene::DeltaLight;
 use crate::world::World;
@@ -23,8 +24,8 @@ pub struct DirectVpls {
     pub sizes: Vec<u32>,
 }
 
-/// Makes the VPLs of emitted light.
-pub fn direct_vpls(world: &World, settings: &LightPassSettings) -> DirectVpls {
+/// Makes the VPLs of emitted light; some of them if `control` is cancelled.
+pub fn direct_vpls(world: &World, settings: &LightPassSettings, control: &Control) -> DirectVpls {
     let emitters = &world.emitters;
     let mut oriented = VplSet::new(VplKind::Oriented, Origin::Direct);
     let total_power: f64 = emitters.areas.iter().map(|a| f64::from(a.power)).sum();
@@ -36,7 +37,7 @@ pub fn direct_vpls(world: &World, settings: &LightPassSettings) -> DirectVpls {
         let size = size_of_area(light.area / count as f32, world.diagonal);
         sizes[light.mesh as usize] = size;
         let patches = Patches { count, size, seed: hash(settings.seed, 0x0a1e_a000 ^ i as u32) };
-        add_area_light(world, light, patches, &mut oriented);
+        add_area_light(world, light, patches, &mut oriented, control);
     }
     let mut omni = VplSet::new(VplKind::Omni, Origin::Direct);
     let mut directional = VplSet::new(VplKind::Directional, Origin::Direct);
@@ -55,7 +56,8 @@ pub fn direct_vpls(world: &World, settings: &LightPassSettings) -> DirectVpls {
     }
     let mut environment = VplSet::new(VplKind::Directional, Origin::Direct);
     if let Some(light) = &emitters.environment {
-        add_environment(light, settings.direct.max(1), hash(settings.seed, 0x0e57), &mut environment);
+        let seed = hash(settings.seed, 0x0e57);
+        add_environment(light, settings.direct.max(1), seed, &mut environment, control);
     }
     DirectVpls { sets: vec![oriented, omni, directional, environment], spots, sizes }
 }
@@ -68,9 +70,10 @@ struct Patches {
     seed: u32,
 }
 
-fn add_area_light(world: &World, light: &AreaLight, patches: Patches, set: &mut VplSet) {
+fn add_area_light(world: &World, light: &AreaLight, patches: Patches, set: &mut VplSet, control: &Control) {
     let area = light.area / patches.count as f32;
-    for i in 0..patches.count {
+    set.reserve(patches.count as usize * if light.emission.two_sided { 2 } else { 1 });
+    for i in (0..patches.count).take_while(|_| !control.is_cancelled()) {
         let point = light.sample(owen_sobol_2d(i, patches.seed));
         let radiance = light.radiance(&world.scene, &point, point.normal);
         set.push(Vpl::patch(point.position, point.normal, patches.size), radiance * area);
@@ -80,8 +83,9 @@ fn add_area_light(world: &World, light: &AreaLight, patches: Patches, set: &mut 
     }
 }
 
-fn add_environment(light: &EnvironmentLight, count: u32, seed: u32, set: &mut VplSet) {
-    for i in 0..count {
+fn add_environment(light: &EnvironmentLight, count: u32, seed: u32, set: &mut VplSet, control: &Control) {
+    set.reserve(count as usize);
+    for i in (0..count).take_while(|_| !control.is_cancelled()) {
         if let Some(s) = light.sample(owen_sobol_2d(i, seed)) {
             set.push(Vpl::directional(s.direction), s.radiance / (s.pdf * count as f32));
         }

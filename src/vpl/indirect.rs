@@ -82,7 +82,11 @@ pub fn indirect_vpls(
     let mut lobed = VplSet::new(VplKind::Lobed, Origin::Indirect);
     let mut lobes = Vec::new();
     let share = 1.0 / photons.paths.max(1) as f32;
+    diffuse.reserve(found.len());
     for left in found {
+        if control.is_cancelled() {
+            break;
+        }
         let place = left.place();
         let (vpl, intensity) = left.diffuse;
         diffuse.push(vpl, intensity * share);

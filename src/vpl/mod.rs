@@ -176,6 +176,12 @@ impl VplSet {
         VplSet { kind, origin, vpls: Vec::new(), intensities: Vec::new() }
     }
 
+    /// Makes room for so many more.
+    pub fn reserve(&mut self, more: usize) {
+        self.vpls.reserve(more);
+        self.intensities.reserve(more);
+    }
+
     /// Adds a VPL, unless it is black or not finite: it would add no light, or spoil every sum.
     pub fn push(&mut self, vpl: Vpl, intensity: Rgb) {
         let usable = vpl.position.is_finite() && intensity.is_finite() && intensity.min_element() >= 0.0;

@@ -28,8 +28,7 @@ impl LightPass {
 }
 
 /// Creates the VPLs of a scene for paths of at most `max_depth` edges, and for the indirect light of the points `seen`;
-/// of all points if there are none. Stops early, with fewer indirect VPLs of the right total flux, if `control` is
-/// cancelled.
+/// of all points if there are none. Stops early, with some of them, if `control` is cancelled.
 pub fn light_pass(
     world: &World,
     settings: &LightPassSettings,
@@ -37,7 +36,7 @@ pub fn light_pass(
     max_depth: u32,
     control: &Control,
 ) -> LightPass {
-    let DirectVpls { mut sets, spots, sizes } = direct_vpls(world, settings);
+    let DirectVpls { mut sets, spots, sizes } = direct_vpls(world, settings, control);
     let IndirectVpls { sets: indirect, lobes, photons } =
         indirect_vpls(world, settings, seen, max_depth, control);
     sets.extend(indirect);

@@ -132,9 +132,16 @@ pub fn trace_photons<T: Send>(
         let traced: Vec<Chunk<T>> = (chunks..chunks + wave)
             .into_par_iter()
             .one_by_one()
-            .map(|chunk| trace_chunk(world, &source, chunk, seed, max_edges, &keep))
+            .map(|chunk| match control.is_cancelled() {
+                true => Chunk { kept: Vec::new(), rays: 0 },
+                false => trace_chunk(world, &source, chunk, seed, max_edges, &keep),
+            })
             .collect();
         for chunk in traced {
+            // Some of the wave may not have been traced.
+            if control.is_cancelled() {
+                break;
+            }
             counts.rays += chunk.rays;
             // Chunks beyond the one that fills the quota are dropped, so that the result does not depend on
             // the waves.

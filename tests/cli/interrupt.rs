@@ -1,6 +1,7 @@
 //! Signals: the first one ends the render with a partial picture, which can go on; SIGKILL leaves the former file.
 #![cfg(target_os = "linux")]
 
+use super::random_interrupts::wait_for;
 use super::{Sandbox, read};
 use lightsplat::film::ExrFile;
 use std::fs::File;
@@ -238,6 +239,26 @@ fn kills_at_random_moments_leave_the_old_files_or_the_new_ones_and_nothing_in_th
         assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"], "after {killed} kills");
     }
     println!("{kills} kills left {left} temporary files");
+}
+
+#[test]
+fn a_signal_while_a_scene_is_read_ends_the_run_at_once() {
+    let sandbox = Sandbox::new();
+    // Seconds to read and to build over.
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\n".to_owned() + &"f 1 2 3\n".repeat(4_000_000);
+    std::fs::write(sandbox.path("a.obj"), mesh).unwrap();
+    std::fs::write(sandbox.path("a.toml"), "[[mesh]]\nfile = \"a.obj\"\n").unwrap();
+    for name in ["-INT", "-TERM"] {
+        let mut command = sandbox.command(&["render", "a.toml", "-o", "b.exr", "--progress", "none"]);
+        let child = command.stderr(Stdio::piped()).spawn().unwrap();
+        wait_for(&child, 0.1);
+        signal(&child, name);
+        let output = child.wait_with_output().unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(75), "{name}: {stderr}");
+        assert_eq!(stderr, "error: interrupted while the scene is read\n");
+    }
+    assert!(!sandbox.path("b.exr").exists());
 }
 
 #[test]

@@ -2,13 +2,13 @@
 //! files.
 //!
 //! `LIGHTSPLAT_INTERRUPTS=100 cargo test --release --test cli random_interrupts -- --nocapture` tries so many, and says
-//! after how much processor time the runs ended.
+//! after how much processor time, and by the clock, the runs ended.
 
 use super::Sandbox;
 use lightsplat::film::ExrFile;
 use std::process::{Child, Command, Stdio};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
 
@@ -54,7 +54,7 @@ fn spent(child: &Child) -> (f64, bool) {
 }
 
 /// Waits until a process has used so much time, or has ended; returns the time used.
-fn wait_for(child: &Child, seconds: f64) -> (f64, bool) {
+pub(super) fn wait_for(child: &Child, seconds: f64) -> (f64, bool) {
     loop {
         let (used, ended) = spent(child);
         if ended || used >= seconds {
@@ -71,15 +71,17 @@ fn start(sandbox: &Sandbox, run: &str) -> Child {
     command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
 }
 
-/// Sends a signal after a share of the time that a run takes; returns the time until it ended.
-fn interrupt(sandbox: &Sandbox, run: &str, after: f64) -> f64 {
+/// Sends a signal once a run has used so many processor seconds; returns those until it ended, and the clock's.
+fn interrupt(sandbox: &Sandbox, run: &str, after: f64) -> [f64; 2] {
     let mut child = start(sandbox, run);
     let (before, ended) = wait_for(&child, after);
+    let signalled = Instant::now();
     if !ended {
         let id = child.id().to_string();
         assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
     }
     let (all, _) = wait_for(&child, f64::INFINITY);
+    let elapsed = signalled.elapsed().as_secs_f64();
     let code = child.wait().unwrap().code();
     // Before its handlers are there, a signal ends the process.
     assert!(matches!(code, Some(0 | 75)) || after < 0.2 && code.is_none(), "{run} after {after} s: {code:?}");
@@ -87,7 +89,7 @@ fn interrupt(sandbox: &Sandbox, run: &str, after: f64) -> f64 {
         assert!(ExrFile::read(&sandbox.path(name)).unwrap().color().is_ok(), "{run} after {after} s: {name}");
         std::fs::remove_file(sandbox.path(name)).unwrap();
     }
-    all - before
+    [all - before, elapsed]
 }
 
 /// A share from 0 to 1 of a trial: of the golden ratio, which spreads them evenly.
@@ -114,8 +116,10 @@ fn runs_end_wherever_they_are_interrupted() {
         assert_eq!(child.wait().unwrap().code(), Some(0), "{run}");
         for trial in own {
             let after = whole * share(trial);
-            let seconds = interrupt(&sandbox, run, after);
-            let told = format!("{run} after {after:.2} of {whole:.2} s: {seconds:.2} s");
+            let [seconds, elapsed] = interrupt(&sandbox, run, after);
+            let told = format!(
+                "{run} after {after:.2} of {whole:.2} s: {seconds:.2} s, {elapsed:.2} s by the clock"
+            );
             if wanted.is_some() {
                 eprintln!("{told}");
             }
