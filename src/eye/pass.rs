@@ -141,7 +141,7 @@ impl<'w> EyePass<'w> {
         control: &Control,
     ) -> EyePass<'w> {
         let spp = spp as f32;
-        let complete = tiles.len() == window.tile_count(TILE);
+        let all_traced = tiles.len() == window.tile_count(TILE);
         let mut known = Image::new(window.width, window.height);
         let mut chains = ChainCounts::default();
         let mut nonfinite = 0;
@@ -157,8 +157,9 @@ impl<'w> EyePass<'w> {
             chains += tile.chains;
             nonfinite += tile.nonfinite;
         }
-        let Arranged { points, index, mut samples } =
-            Arranged::new(&mut tiles, control).unwrap_or_else(Arranged::empty);
+        let arranged = Arranged::new(&mut tiles, control);
+        let complete = all_traced && arranged.is_some();
+        let Arranged { points, index, mut samples } = arranged.unwrap_or_else(Arranged::empty);
         samples.par_iter_mut().for_each(|sample| sample.weight /= spp);
         drop(tiles);
         if size_of_val(&samples[..]) > GIVEN_BACK {

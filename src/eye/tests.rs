@@ -16,6 +16,7 @@ use crate::test_scenes::*;
 use crate::view::View;
 use crate::world::World;
 use glam::{DVec3, Mat3, Vec2, Vec3};
+use std::time::Duration;
 
 /// Index of refraction of an interface that reflects a quarter of the light at normal incidence.
 const ETA: f32 = 3.0;
@@ -204,6 +205,24 @@ fn check_weights(pass: EyePass, spp: u32, extra: bool) {
     assert!((mean - Rgb::ONE).abs().max_element() < 0.02, "{mean}");
     // Ends of first samples and of more are merged together.
     assert!(pass.len() >= 400 && (pass.len() < 800 || spp > 512), "{}", pass.len());
+}
+
+#[test]
+fn passes_that_are_cancelled_have_no_points() {
+    let world = room_with_chains();
+    let settings = EyeSettings { spp: 4, seed: 0, max_depth: 8 };
+    for delay in (0..40).map(|step| Duration::from_micros(100 * step)) {
+        let control = Control::new();
+        let pass = std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(delay);
+                control.cancel();
+            });
+            EyePass::trace(&world, &world.view, settings, &control)
+        });
+        assert_eq!(pass.len() > 0, pass.complete);
+        assert!((0..pass.len()).all(|point| !pass.visibility.of(point).is_empty()));
+    }
 }
 
 #[test]
