@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
 
 /// Arguments of runs of some seconds, most of which is spent in different stages.
-const RUNS: [&str; 11] = [
+const RUNS: [&str; 14] = [
     "render SCENES/hall.toml -o a.exr --resolution 64x64",
     "render SCENES/apartment.toml -o a.exr --resolution 96x64 --spp 64",
     "render SCENES/kitchen.toml -o a.exr --resolution 96x64 --direct records",
@@ -24,6 +24,9 @@ const RUNS: [&str; 11] = [
     "render SCENES/cornell.toml -o a.exr --resolution 96x96 --time 3s",
     "render SCENES/cornell.toml -o a.exr --resolution 96x96 --verify 2000",
     "walk SCENES/apartment.toml -o a.##.exr --resolution 64x64 --frames 1-3",
+    "render SCENES/cornell.toml -o a.exr --resolution 96x96 --vpls 4000000",
+    "render SCENES/cornell.toml -o a.exr --resolution 96x96 --method photon-cache --photons 4000000",
+    "render SCENES/knot.toml -o a.exr --resolution 1500x1500 --method reconstruction --spp 2",
     "render sheets.toml -o a.exr --resolution 48x48",
 ];
 
