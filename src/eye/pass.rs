@@ -219,7 +219,7 @@ impl<'w> Arranged<'w> {
 
     fn empty() -> Arranged<'w> {
         let points = ShadingPoints { geometry: Vec::new(), surfaces: Vec::new() };
-        Arranged { points, index: KdTree::build([].into_iter()).0, samples: Vec::new() }
+        Arranged { points, index: KdTree::empty(), samples: Vec::new() }
     }
 }
 

@@ -46,6 +46,11 @@ pub struct KdTree {
 }
 
 impl KdTree {
+    /// The hierarchy over no points.
+    pub fn empty() -> KdTree {
+        KdTree::build([].into_iter()).0
+    }
+
     /// Builds the hierarchy over `positions`; returns it with the order in which to store the items.
     pub fn build(positions: impl ExactSizeIterator<Item = Vec3>) -> (KdTree, Vec<u32>) {
         KdTree::build_unless_cancelled(positions, &Control::new())

@@ -59,29 +59,22 @@ pub fn surface_distance_sq(offset: Vec3, normal: Vec3) -> f32 {
     offset.length_squared() + height * height
 }
 
-/// Computes the estimates at the sites of the map, in their order, and the number of rays traced; once cancelled, the
-/// others are dark.
+/// Computes the estimates at the sites of the map, in their order, and the number of rays traced, unless `control` is
+/// cancelled.
 pub fn estimates(
     world: &World,
     map: &PhotonMap,
     nearest: usize,
     control: &Control,
-) -> (Vec<IrradianceEstimate>, u64) {
-    let dark = |&Site { position, normal }: &Site| IrradianceEstimate {
-        position,
-        normal,
-        irradiance: Rgb::ZERO,
-        radius: 0.0,
+) -> Option<(Vec<IrradianceEstimate>, u64)> {
+    let of_leaf = |near: &mut Candidates, leaf| {
+        (!control.is_cancelled()).then(|| leaf_estimates(world, map, nearest, leaf, near))
     };
-    let of_leaf = |near: &mut Candidates, leaf| match control.is_cancelled() {
-        true => map.sites[map.site_index.leaf(leaf)].iter().map(dark).collect(),
-        false => leaf_estimates(world, map, nearest, leaf, near),
-    };
-    let by_leaf: Vec<Vec<IrradianceEstimate>> =
+    let by_leaf: Option<Vec<Vec<IrradianceEstimate>>> =
         (0..map.site_index.leaves()).into_par_iter().map_init(Candidates::default, of_leaf).collect();
-    let all = by_leaf.concat();
+    let all = by_leaf?.concat();
     let rays = all.len() as u64 * disc::RAYS;
-    (all, rays)
+    Some((all, rays))
 }
 
 /// Computes the estimates at the sites of a leaf, which share the search for photons around.

@@ -71,7 +71,7 @@ impl PhotonMap {
 fn indexed<T: Copy>(items: Vec<T>, position: impl Fn(&T) -> Vec3, control: &Control) -> (KdTree, Vec<T>) {
     let (index, order) = KdTree::build_unless_cancelled(items.iter().map(position), control);
     if control.is_cancelled() {
-        return (KdTree::build([].into_iter()).0, Vec::new());
+        return (KdTree::empty(), Vec::new());
     }
     (index, order.iter().map(|&i| items[i as usize]).collect())
 }

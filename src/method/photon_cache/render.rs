@@ -2,6 +2,7 @@
 
 use crate::eye::{EyePass, Settled};
 use crate::film::Window;
+use crate::kd_tree::KdTree;
 use crate::light_tree::Family;
 use crate::lightcut::CutSettings;
 use crate::math::Rgb;
@@ -187,10 +188,11 @@ fn irradiance(world: &World, settings: &Settings, control: &Control, stats: &mut
     stats.count("Photons/paths", photons.counts.paths);
     stats.count("Rays/closest hit", photons.counts.rays);
     control.begin(Stage::Tree, 0);
-    let (map, rays) = stats.time(Stage::Tree, || {
-        let (estimates, rays) = estimates(world, &photons, settings.nearest, control);
-        (IrradianceMap::new(&estimates, &photons.site_index), rays)
-    });
+    let (map, rays) =
+        stats.time(Stage::Tree, || match estimates(world, &photons, settings.nearest, control) {
+            Some((estimates, rays)) => (IrradianceMap::new(&estimates, &photons.site_index), rays),
+            None => (IrradianceMap::new(&[], &KdTree::empty()), 0),
+        });
     stats.count("Photons/estimates of irradiance", map.len() as u64);
     stats.count("Rays/closest hit", rays);
     map
