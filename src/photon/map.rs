@@ -12,6 +12,7 @@ use crate::sampling::hash;
 use crate::vpl::{Photon, PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
 use crate::world::World;
 use glam::Vec3;
+use rayon::prelude::*;
 
 /// Number of photons for each site.
 const PHOTONS_PER_SITE: u32 = 4;
@@ -66,12 +67,23 @@ impl PhotonMap {
     }
 }
 
+/// Number of items that are put in order between two looks at whether that is cancelled.
+const TOGETHER: usize = 1 << 18;
+
 /// Builds a hierarchy over positions, and returns it with the items in its order; both are empty if `control` is
 /// cancelled.
-fn indexed<T: Copy>(items: Vec<T>, position: impl Fn(&T) -> Vec3, control: &Control) -> (KdTree, Vec<T>) {
+fn indexed<T: Copy + Send + Sync>(
+    items: Vec<T>,
+    position: impl Fn(&T) -> Vec3,
+    control: &Control,
+) -> (KdTree, Vec<T>) {
     let (index, order) = KdTree::build_unless_cancelled(items.iter().map(position), control);
-    if control.is_cancelled() {
-        return (KdTree::empty(), Vec::new());
+    let mut ordered = Vec::with_capacity(items.len());
+    for part in order.chunks(TOGETHER) {
+        if control.is_cancelled() {
+            return (KdTree::empty(), Vec::new());
+        }
+        ordered.par_extend(part.par_iter().map(|i| items[*i as usize]));
     }
-    (index, order.iter().map(|&i| items[i as usize]).collect())
+    (index, ordered)
 }
