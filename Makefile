@@ -30,7 +30,7 @@ quick: setup ## the tests that take seconds, not minutes
 
 memory: setup ## AddressSanitizer over the tests that trace rays, in a folder of its own
 	RUSTC_BOOTSTRAP=1 RUSTFLAGS=-Zsanitizer=address ASAN_OPTIONS=detect_leaks=0:detect_odr_violation=0 CARGO_TARGET_DIR=$(TARGET_DIR)/memory \
-	    $(CARGO) test --workspace --locked --lib --target $(HOST) -- embree:: shadow::
+	    $(CARGO) test -p embree -p world --locked --lib --target $(HOST)
 
 lint: setup ## format and clippy, warnings denied
 	$(CARGO) fmt --all --check

@@ -3,10 +3,10 @@
 use super::measure::Case;
 use super::setting::{Dice, Setting};
 use super::{Benchmark, Clock, Context, Kind, Table};
-use crate::light_tree::Node;
-use crate::lightcut::{Receiver, ReceiverPacket};
-use crate::math::luminance;
+use base::math::luminance;
 use std::hint::black_box;
+use transport::light_tree::Node;
+use transport::lightcut::{Receiver, ReceiverPacket};
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "bounds",

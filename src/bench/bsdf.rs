@@ -3,12 +3,12 @@
 use super::measure::Case;
 use super::setting::Dice;
 use super::{Benchmark, Clock, Context, Kind, Table};
-use crate::material::{Bsdf, DirectionBound, Materials};
-use crate::math::Rgb;
-use crate::sampling::uniform_sphere;
-use crate::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene};
+use base::math::Rgb;
+use base::sampling::uniform_sphere;
 use glam::{Vec2, Vec3};
+use scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene};
 use std::hint::black_box;
+use world::material::{Bsdf, DirectionBound, Materials};
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "bsdf",

@@ -4,11 +4,11 @@
 use super::measure::Case;
 use super::setting::Dice;
 use super::{Benchmark, Clock, Context, Kind, Table};
-use crate::gradient::{Incidence, LocalVpl};
-use crate::hsh::{Accumulator, Kernel, Reflected};
-use crate::math::Rgb;
+use base::math::Rgb;
 use glam::Vec3;
 use std::hint::black_box;
+use transport::gradient::{Incidence, LocalVpl};
+use transport::hsh::{Accumulator, Kernel, Reflected};
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "hsh",

@@ -1,17 +1,17 @@
 //! Inputs of benchmarks on a scene: its eye samples, its virtual lights in their trees.
 
 use super::Context;
-use crate::eye::{EyePass, EyeSettings};
-use crate::light_tree::{Family, LightTrees, Node};
-use crate::lightcut::{CoherenceLimit, Receiver, Transfer, group_coherent};
-use crate::math::{Frame, LANES};
-use crate::progress::Control;
-use crate::sampling::hash;
-use crate::session::Session;
-use crate::view::View;
-use crate::vpl::{LightPass, LightPassSettings, light_pass};
-use crate::world::World;
+use base::math::{Frame, LANES};
+use base::progress::Control;
+use base::sampling::hash;
+use render::session::Session;
 use std::ops::Range;
+use transport::eye::{EyePass, EyeSettings};
+use transport::light_tree::{Family, LightTrees, Node};
+use transport::lightcut::{CoherenceLimit, Receiver, Transfer, group_coherent};
+use transport::vpl::{LightPass, LightPassSettings, light_pass};
+use world::World;
+use world::view::View;
 
 /// Number of neighbouring eye samples in a stretch.
 const STRETCH: usize = 64;

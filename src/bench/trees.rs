@@ -3,11 +3,11 @@
 use super::measure::Case;
 use super::setting::Setting;
 use super::{Benchmark, Clock, Context, Kind, Table};
-use crate::light_tree::{Family, LightTrees};
-use crate::lightcut::{CutSettings, Lightcut, Transfer};
-use crate::progress::Control;
-use crate::vpl::{LightPass, LightPassSettings, light_pass};
+use base::progress::Control;
 use std::hint::black_box;
+use transport::light_tree::{Family, LightTrees};
+use transport::lightcut::{CutSettings, Lightcut, Transfer};
+use transport::vpl::{LightPass, LightPassSettings, light_pass};
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "trees",

@@ -6,11 +6,11 @@ use super::exit;
 use super::method_args::MethodArgs;
 use super::plan_args::{PlanArgs, Quality};
 use super::values::{Bytes, Crop, ProgressMode, Resolution, counted, feature, q_scale};
-use crate::film::Exposure;
-use crate::scene::formats::LoadOptions;
-use crate::session::Feature;
-use crate::walk::{FileNames, FrameList, KeepLimits, Q_SCALE};
+use base::film::Exposure;
 use clap::{Arg, ArgGroup, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use readers::LoadOptions;
+use render::session::Feature;
+use render::walk::{FileNames, FrameList, KeepLimits, Q_SCALE};
 use std::ffi::OsString;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -375,7 +375,7 @@ pub enum HeatmapError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::verify;
+    use render::verify;
 
     #[test]
     fn the_definition_is_consistent() {

@@ -6,12 +6,12 @@ use super::batch_file::{self, Entry};
 use super::course::Span;
 use super::exit::{self, Failure};
 use super::job::RenderJob;
-use super::scene::{self, Opened};
+use super::opened::{self, Opened};
 use super::walk_job::WalkJob;
 use super::{batch_outputs, interrupt, render, talk, threads, walk};
-use crate::progress::Control;
-use crate::stats::Stopwatch;
 use anyhow::{Context, anyhow};
+use base::progress::Control;
+use base::stats::Stopwatch;
 use serde_json::json;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -120,7 +120,7 @@ impl Batch {
         let job = self.command(entry)?;
         let opened = match opened {
             Some(opened) => opened,
-            None => opened.insert(scene::open(&entry.scene, &entry.reading)?),
+            None => opened.insert(opened::open(&entry.scene, &entry.reading)?),
         };
         match job {
             Job::Still(job) => render::still(&job, opened, span, &self.control),

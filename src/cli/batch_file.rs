@@ -5,11 +5,11 @@
 
 use super::args::{Cli, Command};
 use super::exit::Failure;
-use crate::scene::formats::LoadOptions;
-use crate::scene::formats::read_regular;
-use crate::walk::FileNames;
 use anyhow::{Context, anyhow};
 use clap::error::{ContextKind, ContextValue};
+use readers::LoadOptions;
+use readers::read_regular;
+use render::walk::FileNames;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ffi::OsString;

@@ -3,9 +3,9 @@
 use super::args::Command;
 use super::batch_file::Entry;
 use super::exit::Failure;
-use crate::film::atomic;
-use crate::walk::FileNames;
 use anyhow::anyhow;
+use base::film::atomic;
+use render::walk::FileNames;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 

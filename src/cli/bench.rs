@@ -3,12 +3,12 @@
 use super::bench_args::{BenchArgs, StudyArgs};
 use super::exit::Failure;
 use super::outputs::Inputs;
-use super::{files, scene, study, talk, threads};
-use crate::bench::export::{WRITERS, terminal};
-use crate::bench::{Benchmark, Context, Kind, Settings};
-use crate::film::atomic;
-use crate::scene::formats::LoadOptions;
+use super::{files, opened, study, talk, threads};
 use anyhow::anyhow;
+use base::film::atomic;
+use bench::export::{WRITERS, terminal};
+use bench::{Benchmark, Context, Kind, Settings};
+use readers::LoadOptions;
 use std::path::PathBuf;
 
 /// Runs the command.
@@ -51,7 +51,7 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
     let session = args
         .scenes
         .first()
-        .map(|path| pool.install(|| scene::open(path, &LoadOptions::default())))
+        .map(|path| pool.install(|| opened::open(path, &LoadOptions::default())))
         .transpose()?;
     if let Some(opened) = &session {
         opened.inputs.check_apart(files())?;

@@ -2,7 +2,7 @@
 
 use super::exit;
 use super::values::Resolution;
-use crate::bench::{Benchmark, REGISTRY};
+use bench::{Benchmark, REGISTRY};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
@@ -90,8 +90,8 @@ fn list() -> String {
 mod tests {
     use super::super::args::Cli;
     use super::*;
-    use crate::bench::Settings;
-    use crate::bench::study::{ReferenceSettings, SAMPLES};
+    use bench::Settings;
+    use bench::study::{ReferenceSettings, SAMPLES};
     use clap::CommandFactory;
 
     #[test]

@@ -4,9 +4,9 @@ use super::args::{CompareArgs, HeatmapError};
 use super::exit::Failure;
 use super::outputs::{Inputs, check_name};
 use super::talk;
-use crate::film::metrics::{self, Comparison, Variances, ZTest};
-use crate::film::{ExrFile, Image, ImageError, atomic, heatmap, write_srgb8};
-use crate::math::Rgb;
+use base::film::metrics::{self, Comparison, Variances, ZTest};
+use base::film::{ExrFile, Image, ImageError, atomic, heatmap, write_srgb8};
+use base::math::Rgb;
 use std::fmt::Write;
 use std::path::Path;
 

@@ -3,9 +3,9 @@
 //! Frames count alike. Within a frame stages count by their usual shares of the time, from the first that the method
 //! has on, and those that the goal asks for. How far a plan is nobody knows: it counts as a whole once it is over.
 
-use crate::progress::Progress;
-use crate::session::{Goal, Wanted};
-use crate::stats::Stage;
+use base::progress::Progress;
+use base::stats::Stage;
+use render::session::{Goal, Wanted};
 use std::time::Instant;
 
 /// Stages in the order in which they begin, and their usual shares of a picture's time.
@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn plans_and_measurements_have_their_shares() {
-        let verify = Some(crate::verify::Settings::default());
+        let verify = Some(render::verify::Settings::default());
         let choice = Stages::of(&Goal { may_choose: true, verify, ..Goal::default() });
         let mut course = Course::new(1, choice, Span::whole());
         assert_eq!(course.fraction(Some(&Progress { is_planning: true, ..at(Stage::Verify, 9) })), 0.0);

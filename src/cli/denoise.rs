@@ -4,9 +4,9 @@ use super::denoise_args::DenoiseFileArgs;
 use super::exit::Failure;
 use super::outputs::{Inputs, check_outputs};
 use super::{talk, threads};
-use crate::denoise::{Denoiser, Guides, NOISY, NOISY_VARIANCE, guides};
-use crate::film::{ExrFile, Image, ImageError, write_png};
 use anyhow::anyhow;
+use base::film::{ExrFile, Image, ImageError, write_png};
+use render::denoise::{Denoiser, Guides, NOISY, NOISY_VARIANCE, guides};
 use std::path::PathBuf;
 
 /// Runs the command.
@@ -39,7 +39,7 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
             let denoiser = Denoiser::load()?;
             Ok((denoiser.name(), denoiser.denoise(&color, &found, args.quality())?))
         })
-        .map_err(|error: crate::denoise::DenoiseError| Failure::render(error))?;
+        .map_err(|error: render::denoise::DenoiseError| Failure::render(error))?;
     let guided_by: Vec<&str> =
         [&albedo, &normal].into_iter().flatten().map(|(name, _)| name.as_str()).collect();
 

@@ -3,9 +3,9 @@
 use super::args::PngArgs;
 use super::exit;
 use super::exit::Failure;
-use crate::denoise::Quality;
 use anyhow::anyhow;
 use clap::{Args, ValueEnum};
+use render::denoise::Quality;
 use std::path::PathBuf;
 
 /// Options of `render` that denoise the picture.

@@ -2,7 +2,7 @@
 
 use super::exit::Failure;
 use super::talk;
-use crate::film::{ImageError, atomic};
+use base::film::{ImageError, atomic};
 use std::io::Write;
 use std::path::Path;
 

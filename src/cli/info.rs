@@ -2,15 +2,15 @@
 
 use super::args::InfoArgs;
 use super::exit::Failure;
-use super::{scene, talk};
-use crate::scene::formats::{Loaded, SanitizeReport};
-use crate::scene::{Requirements, Scene};
+use super::{opened, talk};
+use readers::{Loaded, SanitizeReport};
+use scene::{Requirements, Scene};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// Runs the command.
 pub fn run(args: InfoArgs) -> Result<(), Failure> {
-    let loaded = scene::read(&args.scene, &args.reading.options())?;
+    let loaded = opened::read(&args.scene, &args.reading.options())?;
     let facts = facts(&loaded);
     let requires = Requirements::of(&loaded.scene);
     if args.json {

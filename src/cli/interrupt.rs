@@ -4,9 +4,9 @@
 
 use super::exit::{self, Failure};
 use super::talk;
-use crate::embree::leave;
-use crate::progress::Control;
 use anyhow::anyhow;
+use base::progress::Control;
+use embree::leave;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 

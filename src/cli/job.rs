@@ -5,15 +5,15 @@ use super::exit::Failure;
 use super::outputs::check_outputs;
 use super::values::ProgressMode;
 use super::{job_key, threads, verify};
-use crate::film::Exposure;
-use crate::scene::formats::LoadOptions;
-use crate::session::{Goal, Session};
-use crate::stats::Stopwatch;
-use crate::view::Framing;
 use anyhow::anyhow;
+use base::film::Exposure;
+use base::stats::Stopwatch;
+use readers::LoadOptions;
+use render::session::{Goal, Session};
 use serde_json::json;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use world::view::Framing;
 
 /// A validated render: scene, method and output files.
 #[derive(Debug)]

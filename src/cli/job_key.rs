@@ -1,9 +1,9 @@
 //! The key of a picture: a hash of all that decides what is in its files, by which `--resume` knows them again.
 
-use crate::film::ExrFile;
-use crate::method::path::Begun;
-use crate::scene::formats::fnv1a;
-use crate::session::{Goal, Session, Wanted};
+use base::film::ExrFile;
+use readers::fnv1a;
+use render::method::path::Begun;
+use render::session::{Goal, Session, Wanted};
 use serde_json::{Value, json};
 use std::path::Path;
 

@@ -5,11 +5,11 @@ use super::args::MergeArgs;
 use super::exit::Failure;
 use super::outputs::{Inputs, check_outputs};
 use super::talk;
-use crate::denoise::{NOISY, NOISY_VARIANCE};
-use crate::film::metrics::{rel_mse_of_variance, standard_error};
-use crate::film::{ExrFile, Metadata, SAMPLES, Weight, write_png};
-use crate::method::path::Begun;
 use anyhow::anyhow;
+use base::film::metrics::{rel_mse_of_variance, standard_error};
+use base::film::{ExrFile, Metadata, SAMPLES, Weight, write_png};
+use render::denoise::{NOISY, NOISY_VARIANCE};
+use render::method::path::Begun;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 

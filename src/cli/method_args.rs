@@ -1,11 +1,11 @@
 //! `--method` and an option for every setting that a method has.
 
 use super::exit::Failure;
-use crate::method::Method;
-use crate::setting::{Choice, Spec};
 use anyhow::anyhow;
+use base::setting::{Choice, Spec};
 use clap::builder::{PossibleValue, PossibleValuesParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
+use render::method::Method;
 
 /// Name of the default method or another, whichever a pilot finds better.
 const AUTO: &str = "auto";
@@ -206,7 +206,7 @@ mod tests {
 
     #[test]
     fn the_readme_lists_methods_and_settings() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md");
         let text = fs::read_to_string(path).unwrap();
         let (before, rest) = text.split_once(MARKS[0]).unwrap();
         let (found, after) = rest.split_once(MARKS[1]).unwrap();

@@ -1,8 +1,8 @@
 //! Files that a command writes: their names, that they can be written, and that they replace nothing it reads.
 
 use super::exit::Failure;
-use crate::film::atomic;
 use anyhow::anyhow;
+use base::film::atomic;
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

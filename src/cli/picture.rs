@@ -1,7 +1,7 @@
 //! Files of a picture: OpenEXR, tone-mapped PNG, and PNGs of the layers that are meant to be shown.
 
 use super::exit::Failure;
-use crate::film::{ExrFile, Film, false_colour, write_exr, write_png, write_srgb8};
+use base::film::{ExrFile, Film, false_colour, write_exr, write_png, write_srgb8};
 use std::path::{Path, PathBuf};
 
 /// Files that have been written, and a line that says so.

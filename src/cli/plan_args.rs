@@ -1,12 +1,12 @@
 //! Options of `render` that set a goal instead of settings.
 
 use super::exit::Failure;
-use crate::method::Method;
-use crate::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE};
-use crate::session::Wanted;
-use crate::stats::Stopwatch;
 use anyhow::anyhow;
+use base::stats::Stopwatch;
 use clap::{Args, ValueEnum};
+use render::method::Method;
+use render::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE};
+use render::session::Wanted;
 
 /// Default of the maximum number of paths a pixel where its error is measured.
 const MAX_SAMPLES: u32 = 1 << 16;

@@ -3,7 +3,7 @@
 use super::course::Course;
 use super::talk;
 use super::values::ProgressMode;
-use crate::progress::{Control, Progress};
+use base::progress::{Control, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 use std::io::IsTerminal;
@@ -178,7 +178,7 @@ fn write_for_agents(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::course::{Span, Stages};
+    use crate::course::{Span, Stages};
 
     #[test]
     fn the_watcher_ends_with_the_work_and_the_result_comes_through() {

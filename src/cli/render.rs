@@ -5,19 +5,19 @@ use super::course::{Course, Span, Stages};
 use super::exit::Failure;
 use super::job::RenderJob;
 use super::job_key;
+use super::opened::Opened;
 use super::progress::Watch;
-use super::scene::Opened;
-use super::{interrupt, outputs, picture, scene, talk, threads};
-use crate::film::SAMPLES;
-use crate::method::path::Begun;
-use crate::progress::Control;
-use crate::session::{BLACK, Frame, FrameError, Remark};
-use crate::stats::{Stage, Stopwatch, peak_resident_bytes};
-use crate::view::View;
+use super::{interrupt, opened, outputs, picture, talk, threads};
 use anyhow::{Context, anyhow};
+use base::film::SAMPLES;
+use base::progress::Control;
+use base::stats::{Stage, Stopwatch, peak_resident_bytes};
+use render::method::path::Begun;
+use render::session::{BLACK, Frame, FrameError, Remark};
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
+use world::view::View;
 
 /// Runs the command.
 pub fn run(args: RenderArgs) -> Result<(), Failure> {
@@ -27,7 +27,7 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     threads::pool(job.threads)?.install(|| {
-        let opened = scene::open(&job.scene, &job.reading)?;
+        let opened = opened::open(&job.scene, &job.reading)?;
         still(&job, &opened, Span::whole(), &control)
     })
 }

@@ -4,8 +4,8 @@ use super::args::SheetArgs;
 use super::exit::Failure;
 use super::outputs::{Inputs, check_name};
 use super::talk;
-use crate::film::{atomic, write_srgb8};
 use anyhow::anyhow;
+use base::film::{atomic, write_srgb8};
 use image::RgbImage;
 use image::imageops::{replace, thumbnail};
 

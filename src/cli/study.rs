@@ -4,11 +4,11 @@ use super::bench_args::BenchArgs;
 use super::exit::Failure;
 use super::files::write;
 use super::{interrupt, talk, threads};
-use crate::bench::study::{Plan, ReferenceSettings, Results, SAMPLES, Study, StudyError, file_of};
-use crate::bench::{Benchmark, Kind};
-use crate::progress::Control;
-use crate::session::OpenError;
 use anyhow::{Context as _, anyhow};
+use base::progress::Control;
+use bench::study::{Plan, ReferenceSettings, Results, SAMPLES, Study, StudyError, file_of};
+use bench::{Benchmark, Kind};
+use render::session::OpenError;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

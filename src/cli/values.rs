@@ -1,9 +1,9 @@
 //! Values that options may have.
 
-use crate::scene::MAX_SIDE;
-use crate::session::Feature;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use render::session::Feature;
+use scene::MAX_SIDE;
 use std::num::NonZeroUsize;
 use std::str::FromStr;
 

@@ -1,9 +1,9 @@
 //! `render --verify`: how the error of a picture is measured.
 
 use super::args::{VerifyAgainst, VerifyArgs};
-use crate::method::Method;
-use crate::paths::Look;
-use crate::verify::Settings;
+use render::method::Method;
+use render::verify::Settings;
+use transport::paths::Look;
 
 /// Returns the settings of the verification, if asked for; `always` (where settings are planned by the error)
 /// even if not.

@@ -3,19 +3,18 @@
 use super::args::WalkArgs;
 use super::course::{Course, Span, Stages};
 use super::exit::Failure;
+use super::opened::Opened;
 use super::progress::Watch;
-use super::scene::Opened;
 use super::walk_job::{PlannedChunk, WalkJob};
 use super::walk_report::Report;
-use super::{interrupt, outputs, picture, scene, talk, threads};
-use crate::film::{Exposure, Film, Image};
-use crate::progress::Control;
-use crate::session::{BLACK, Frame, FrameError, Remark, Session};
-use crate::stats::{Stage, Stopwatch};
-use crate::view::View;
-use crate::walk::saved::{self, Pace};
-use crate::walk::{Walk, exposure};
+use super::{interrupt, opened, outputs, picture, talk, threads};
 use anyhow::{Context, anyhow};
+use base::film::{Exposure, Film, Image};
+use base::progress::Control;
+use base::stats::{Stage, Stopwatch};
+use render::session::{BLACK, Frame, FrameError, Remark, Session};
+use render::walk::saved::{self, Pace};
+use render::walk::{Walk, exposure};
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::fs;
@@ -23,6 +22,7 @@ use std::mem;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
+use world::view::View;
 
 /// Runs the command.
 pub fn run(args: WalkArgs) -> Result<(), Failure> {
@@ -31,7 +31,7 @@ pub fn run(args: WalkArgs) -> Result<(), Failure> {
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     threads::pool(job.threads)?.install(|| {
-        let opened = scene::open(&job.scene, &job.reading)?;
+        let opened = opened::open(&job.scene, &job.reading)?;
         walk(&job, &opened, Span::whole(), &control)
     })
 }

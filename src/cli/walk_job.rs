@@ -6,16 +6,16 @@ use super::outputs::check_outputs;
 use super::plan_args::PlanArgs;
 use super::values::ProgressMode;
 use super::{job_key, threads};
-use crate::film::Exposure;
-use crate::scene::formats::LoadOptions;
-use crate::session::{Goal, Session, Wanted};
-use crate::view::Framing;
-use crate::walk::chunk::{self, Chunk, Run};
-use crate::walk::{FileNames, FrameList, KeepLimits, saved};
 use anyhow::anyhow;
+use base::film::Exposure;
+use readers::LoadOptions;
+use render::session::{Goal, Session, Wanted};
+use render::walk::chunk::{self, Chunk, Run};
+use render::walk::{FileNames, FrameList, KeepLimits, saved};
 use serde_json::json;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use world::view::Framing;
 
 /// A validated walk: scene, method, frames and their files.
 #[derive(Debug)]

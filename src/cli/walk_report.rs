@@ -4,8 +4,8 @@ use super::args::StatsFormat;
 use super::chart::chart;
 use super::exit::Failure;
 use super::talk;
-use crate::session::Frame;
-use crate::stats::{Counter, Stage, StageTime, Stats};
+use base::stats::{Counter, Stage, StageTime, Stats};
+use render::session::Frame;
 use serde_json::json;
 
 /// Columns of the table of frames, their widths, and the counters or stages that they show.

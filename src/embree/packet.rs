@@ -1,7 +1,7 @@
 //! Packets of sixteen rays and of their hits.
 
 use super::{Hit, Ray};
-use crate::math::Vec3x16;
+use base::math::Vec3x16;
 use embree4_sys as sys;
 use glam::Vec3;
 

@@ -28,7 +28,7 @@ impl PreparedRays {
                 packets
                     .flat_map(|(rays, valid)| {
                         let valid = rays.lanes(valid).mask_where(|_| true);
-                        crate::math::lanes_in(valid).filter_map(|i| rays.get(i).to_embree(OCCLUDING))
+                        base::math::lanes_in(valid).filter_map(|i| rays.get(i).to_embree(OCCLUDING))
                     })
                     .collect(),
             ),

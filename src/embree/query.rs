@@ -222,7 +222,7 @@ impl Accel {
     #[inline]
     pub fn occluded_by(&self, width: Width, rays: &Rays16, valid: u16, coherent: bool) -> u16 {
         match width {
-            Width::One => crate::math::lanes_in(valid)
+            Width::One => base::math::lanes_in(valid)
                 .filter(|&lane| self.occluded(&rays.get(lane)))
                 .fold(0, |occluded, lane| occluded | 1 << lane),
             // SAFETY: the arguments have no filter.

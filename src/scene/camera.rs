@@ -1,7 +1,7 @@
 //! Cameras with square pixels: pinholes, thin lenses, parallel projection.
 
 use super::PixelFilter;
-use crate::sampling::uniform_disk;
+use base::sampling::uniform_disk;
 use glam::{Vec2, Vec3};
 
 /// A camera. Pixel (0, 0) is the top-left corner of the film.
@@ -118,7 +118,7 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::owen_sobol_2d;
+    use base::sampling::owen_sobol_2d;
 
     #[test]
     fn rays_through_a_lens_meet_in_the_plane_in_focus_and_parallel_ones_never() {

@@ -2,7 +2,7 @@
 //!
 //! Light from surfaces is [`super::Emission`] on a mesh.
 
-use crate::math::Rgb;
+use base::math::Rgb;
 use glam::{Mat3, Vec3};
 
 /// A light that no ray can hit by chance.

@@ -8,7 +8,7 @@
 use super::principled::Principled;
 use super::relief::Relief;
 use super::texture::TextureId;
-use crate::math::Rgb;
+use base::math::Rgb;
 use std::ops::Mul;
 
 /// Index into [`super::Scene::materials`].
@@ -62,7 +62,7 @@ impl<T> From<T> for Parameter<T> {
 
 impl Reflectance {
     /// Returns the parameter times a factor.
-    pub(super) fn times(self, factor: Rgb) -> Reflectance {
+    pub fn times(self, factor: Rgb) -> Reflectance {
         match self {
             Reflectance::Constant(value) => Reflectance::Constant(value * factor),
             Reflectance::Textured { texture, scale } => {
@@ -107,7 +107,7 @@ pub struct Material {
 
 impl Material {
     /// Returns every colour.
-    pub(super) fn reflectances_mut(&mut self) -> Vec<&mut Reflectance> {
+    pub fn reflectances_mut(&mut self) -> Vec<&mut Reflectance> {
         let mut all = vec![&mut self.diffuse];
         all.extend(self.principled.as_mut().map(|principled| &mut principled.base_color));
         all.extend(self.blend.iter_mut().flat_map(|blend| blend.other.reflectances_mut()));
@@ -142,7 +142,7 @@ impl Material {
     }
 
     /// Returns every share.
-    pub(super) fn shares_mut(&mut self) -> Vec<&mut Share> {
+    pub fn shares_mut(&mut self) -> Vec<&mut Share> {
         let mut all = Vec::from_iter(&mut self.opacity);
         all.extend(self.principled.iter_mut().flat_map(|principled| principled.shares_mut()));
         if let Some(blend) = &mut self.blend {

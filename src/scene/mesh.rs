@@ -2,7 +2,7 @@
 
 use super::material::MaterialId;
 use super::texture::TextureId;
-use crate::math::Rgb;
+use base::math::Rgb;
 use glam::{Vec2, Vec3};
 
 /// An indexed triangle mesh with one material.

@@ -13,7 +13,7 @@
 //! *Reconstruction Filters in Computer Graphics*, 1988. F. Harris, *On the Use of Windows for Harmonic Analysis with
 //! the Discrete Fourier Transform*, 1978.
 
-use crate::sampling::uniform_disk;
+use base::sampling::uniform_disk;
 use glam::Vec2;
 use std::f32::consts::PI;
 use std::sync::OnceLock;
@@ -200,7 +200,7 @@ fn sinc(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::owen_sobol_2d;
+    use base::sampling::owen_sobol_2d;
     use std::f32::consts::TAU;
 
     const TABLED: [PixelFilter; 4] =

@@ -39,7 +39,7 @@ pub struct Principled {
 }
 
 /// Returns the index of refraction that Mitsuba's and Blender's `specular` stands for.
-pub(super) fn eta_of_specular(specular: f64) -> f32 {
+pub fn eta_of_specular(specular: f64) -> f32 {
     (2.0 / (1.0 - (0.08 * specular.max(0.0)).sqrt()) - 1.0) as f32
 }
 
@@ -48,7 +48,7 @@ impl Default for Principled {
     fn default() -> Principled {
         let none = Share::Constant(0.0);
         Principled {
-            base_color: Reflectance::Constant(crate::math::Rgb::splat(0.5)),
+            base_color: Reflectance::Constant(base::math::Rgb::splat(0.5)),
             metallic: none,
             roughness: Share::Constant(0.5),
             anisotropic: 0.0,
@@ -66,7 +66,7 @@ impl Default for Principled {
 
 impl Principled {
     /// Returns every share.
-    pub(super) fn shares_mut(&mut self) -> [&mut Share; 7] {
+    pub fn shares_mut(&mut self) -> [&mut Share; 7] {
         [
             &mut self.metallic,
             &mut self.roughness,

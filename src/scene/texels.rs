@@ -1,7 +1,7 @@
 //! The texels of a picture, laid out for random access: squares of 4 × 4 lie together, so that the four nearest to a
 //! point come from 1.6 squares on average; and those of 8-bit pictures stay bytes, so that a square is a cache line.
 
-use crate::math::Rgb;
+use base::math::Rgb;
 use rayon::prelude::*;
 
 /// Texels of a square.
@@ -242,7 +242,7 @@ impl Coding<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::hash;
+    use base::sampling::hash;
 
     #[test]
     fn texels_come_back_to_the_bit_whatever_the_size() {

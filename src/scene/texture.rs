@@ -1,7 +1,7 @@
 //! Image textures, stored as linear colour.
 
 use super::texels::Texels;
-use crate::math::{Rgb, luminance};
+use base::math::{Rgb, luminance};
 use glam::{DVec3, Mat3, Vec2};
 
 /// Index into [`super::Scene::textures`].

@@ -6,7 +6,7 @@
 //! Deviations: the root of the cosine, where the paper has the cosine: what is covered is as large, and not as long.
 
 use super::{Surfaces16, World};
-use crate::math::{Cone, Vec3x16, lanes_in};
+use base::math::{Cone, Vec3x16, lanes_in};
 use glam::Vec3;
 
 /// Minimum cosine between a ray and the normal: beyond it, what the cone covers grows no longer.
@@ -52,9 +52,9 @@ impl World {
 
 #[cfg(test)]
 mod tests {
-    use crate::embree::Ray;
-    use crate::math::Rgb;
-    use crate::test_scenes::*;
+    use crate::testkit::*;
+    use base::math::Rgb;
+    use embree::Ray;
     use glam::{Vec2, Vec3};
 
     #[test]

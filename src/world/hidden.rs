@@ -1,7 +1,7 @@
 //! Emitters that the camera is not to show.
 
 use super::{World, beyond};
-use crate::embree::Ray;
+use embree::Ray;
 
 /// Maximum number of emitting surfaces one behind the other that are hidden.
 const MAX_HIDDEN: u32 = 64;
@@ -9,7 +9,7 @@ const MAX_HIDDEN: u32 = 64;
 impl World {
     /// The rest of a ray of the camera behind the emitters that are hidden from it.
     #[inline]
-    pub(crate) fn behind_hidden(&self, ray: Ray) -> Ray {
+    pub fn behind_hidden(&self, ray: Ray) -> Ray {
         if !self.scene.hides_emitters { ray } else { self.behind_emitters(ray) }
     }
 

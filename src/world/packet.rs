@@ -2,9 +2,9 @@
 
 use super::triangle::position;
 use super::{Surface, World};
-use crate::embree::Hits16;
 use crate::material::Bsdfs16;
-use crate::math::{F32x16, Frame, LANES, U32x16, Vec2x16, Vec3x16};
+use base::math::{F32x16, Frame, LANES, U32x16, Vec2x16, Vec3x16};
+use embree::Hits16;
 use glam::Vec2;
 
 /// Surfaces hit by sixteen rays; see [`Surface`] for the members.

@@ -7,9 +7,9 @@
 
 use super::World;
 use super::triangle::Triangle;
-use crate::math::Frame;
-use crate::scene::{Mesh, Relief, Scene};
+use base::math::Frame;
 use glam::{Vec2, Vec3};
+use scene::{Mesh, Relief, Scene};
 
 /// Reliefs of a scene, by mesh.
 pub(super) struct Reliefs(Vec<Turn>);
@@ -72,7 +72,7 @@ impl World {
 fn turned(scene: &Scene, relief: &Relief, mesh: &Mesh, triangle: &Triangle, b: Vec2, normal: Vec3) -> Frame {
     let [along_u, along_v] = derivatives(mesh, triangle);
     let uv = mesh.uv(&triangle.vertices, b);
-    let texture = |id: crate::scene::TextureId| scene.textures.get(id.0 as usize);
+    let texture = |id: scene::TextureId| scene.textures.get(id.0 as usize);
     let level = |v: Vec3| v - normal * normal.dot(v);
     let turned = match *relief {
         Relief::Normals { texture: id, strength, y_along_v } => texture(id).map(|texture| {
@@ -107,14 +107,14 @@ fn derivatives(mesh: &Mesh, triangle: &Triangle) -> [Vec3; 2] {
 
 #[cfg(test)]
 mod tests {
-    use crate::embree::{Hits16, Ray};
-    use crate::math::Rgb;
-    use crate::scene::{
+    use crate::testkit::*;
+    use base::math::Rgb;
+    use embree::{Hits16, Ray};
+    use glam::{Mat3, Vec2, Vec3};
+    use scene::{
         Camera, Distribution, Filter, Fresnel, Lobe, Material, Principled, Relief, Texels, Texture,
         TextureId, Wrap,
     };
-    use crate::test_scenes::*;
-    use glam::{Mat3, Vec2, Vec3};
 
     /// A square from 0 to 2 in the plane z = 0, u from 0 to 1 along x and v along y, and its relief.
     fn square(relief: Relief, width: usize, texels: Vec<Rgb>) -> WorldAndView {

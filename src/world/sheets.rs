@@ -5,11 +5,11 @@
 //! cross, each of them once, all found in one traversal.
 
 use super::{World, shading_normal, triangle_meshes};
-use crate::embree::{Accel, EmbreeError, Hit, Ray, Rays16};
 use crate::material::{LastStraight, Materials};
-use crate::math::{Rgb, lanes_in};
-use crate::scene::Scene;
+use base::math::{Rgb, lanes_in};
+use embree::{Accel, EmbreeError, Hit, Ray, Rays16};
 use glam::{Vec2, Vec3};
+use scene::Scene;
 
 /// Maximum number of sheets that a segment crosses; it is blocked by more.
 const MAX_CROSSED: usize = 64;
@@ -115,12 +115,12 @@ impl Crossed {
 impl World {
     /// True if there are sheets.
     #[inline]
-    pub(crate) fn has_sheets(&self) -> bool {
+    pub fn has_sheets(&self) -> bool {
         self.sheets.is_some()
     }
 
     /// Share of the light that comes along a segment on which nothing occludes it.
-    pub(crate) fn transmittance(&self, segment: &Ray) -> Rgb {
+    pub fn transmittance(&self, segment: &Ray) -> Rgb {
         let Some(sheets) = &self.sheets else { return Rgb::ONE };
         let out = -segment.direction.normalize();
         let (mut crossed, mut last) = (Crossed::new(), None);
@@ -154,7 +154,7 @@ impl World {
 
     /// Calls `through` with the lanes of `lanes` whose segments cross sheets and [`World::transmittance`] there.
     #[inline]
-    pub(crate) fn transmittance16(&self, segments: &Rays16, lanes: u16, mut through: impl FnMut(usize, Rgb)) {
+    pub fn transmittance16(&self, segments: &Rays16, lanes: u16, mut through: impl FnMut(usize, Rgb)) {
         if self.has_sheets() {
             lanes_in(lanes).for_each(|lane| through(lane, self.transmittance(&segments.get(lane))));
         }
@@ -164,8 +164,8 @@ impl World {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Camera, Material, Parameter};
-    use crate::test_scenes::*;
+    use crate::testkit::*;
+    use scene::{Camera, Material, Parameter};
 
     /// Sheets of all kinds, flat and curved, textured and not, some of which lie in others.
     fn curtains() -> WorldAndView {

@@ -3,9 +3,9 @@
 
 use super::towards::Boxes16;
 use crate::material::{Bsdf, Materials};
-use crate::math::{LANES, U32x16, Vec3x16, mask_of};
-use crate::scene::{Mesh, Scene};
+use base::math::{LANES, U32x16, Vec3x16, mask_of};
 use glam::Vec3;
+use scene::{Mesh, Scene};
 
 /// Maximum number of boxes that rays are tested against.
 const MAX_BOXES: usize = LANES;
@@ -136,13 +136,13 @@ fn group(mut boxes: Vec<(Vec3, Vec3)>, count: usize, found: &mut Vec<(Vec3, Vec3
 
 #[cfg(test)]
 mod tests {
-    use crate::embree::{Hits16, Rays16};
-    use crate::math::{Rgb, lanes_in};
-    use crate::sampling::owen_sobol_2d;
-    use crate::scene::Camera;
     use crate::shadow::ray_from;
-    use crate::test_scenes::*;
+    use crate::testkit::*;
+    use base::math::{Rgb, lanes_in};
+    use base::sampling::owen_sobol_2d;
+    use embree::{Hits16, Rays16};
     use glam::Vec3;
+    use scene::Camera;
 
     #[test]
     fn no_ray_that_meets_a_specular_surface_is_missed_and_most_others_are() {

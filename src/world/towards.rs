@@ -6,8 +6,8 @@
 //! Units: densities are by solid angle.
 
 use super::specular::{MIN_DIRECTION, Specular};
-use crate::embree::Ray;
-use crate::math::{F32x16, LANES, Vec3x16};
+use base::math::{F32x16, LANES, Vec3x16};
+use embree::Ray;
 use glam::{Vec2, Vec3};
 
 /// Least cosine that counts for a face: its centre may be below a horizon that the face rises above.
@@ -154,7 +154,7 @@ impl Faces<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::owen_sobol_2d;
+    use base::sampling::owen_sobol_2d;
     use std::f32::consts::PI;
 
     #[test]

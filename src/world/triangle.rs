@@ -3,8 +3,8 @@
 //! Deviations: this repeats the meshes' positions, 64 bytes a triangle. Following a triangle's indices to its
 //! corners instead waits for memory twice, and up to four times.
 
-use crate::scene::{Mesh, Scene};
 use glam::{Vec2, Vec3};
+use scene::{Mesh, Scene};
 
 /// The triangles of all meshes.
 pub(super) struct Triangles {

@@ -4,7 +4,7 @@ use crate::common::lacks_denoiser;
 use lightsplat::film::metrics::{Variances, compare};
 use lightsplat::method::{Method, path};
 use lightsplat::progress::Control;
-use lightsplat::scene::formats::LoadOptions;
+use lightsplat::readers::LoadOptions;
 use lightsplat::session::{Frame, Goal, Session};
 use lightsplat::view::{Framing, View};
 use std::path::Path;

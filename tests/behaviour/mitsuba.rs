@@ -7,7 +7,7 @@ use lightsplat::film::{Image, Window};
 use lightsplat::math::Rgb;
 use lightsplat::method::{path, render};
 use lightsplat::progress::Control;
-use lightsplat::scene::formats::{LoadOptions, load};
+use lightsplat::readers::{LoadOptions, load};
 use lightsplat::view::View;
 use lightsplat::world::World;
 use std::path::Path;

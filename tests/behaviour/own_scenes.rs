@@ -2,9 +2,9 @@
 //! and the walk-through keeps clear of the furniture.
 
 use glam::Vec3;
+use lightsplat::readers::{LoadOptions, load};
 use lightsplat::scene::Camera;
 use lightsplat::scene::Cameras;
-use lightsplat::scene::formats::{LoadOptions, load};
 use lightsplat::world::Ray;
 use lightsplat::world::World;
 use std::path::Path;

@@ -4,7 +4,7 @@
 #[path = "../fuzz/sound.rs"]
 mod sound;
 
-use lightsplat::scene::formats::{LoadOptions, load};
+use lightsplat::readers::{LoadOptions, load};
 use sound::assert_sound;
 use std::fs;
 use std::path::{Path, PathBuf};

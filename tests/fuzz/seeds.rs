@@ -1,8 +1,8 @@
 //! Files that cases are made of: the corpus of valid scenes, and small files of every other format.
 
-#[path = "../../src/scene/formats/gltf/tests/model.rs"]
+#[path = "../../src/readers/gltf/tests/model.rs"]
 mod model;
-#[path = "../../src/scene/formats/gltf/tests/samples.rs"]
+#[path = "../../src/readers/gltf/tests/samples.rs"]
 mod samples;
 
 use base64::Engine;
@@ -14,7 +14,7 @@ use lightsplat::film::{Film, Image, Layer, write_exr};
 use lightsplat::math::Rgb;
 use lightsplat::method::Method;
 use lightsplat::progress::Control;
-use lightsplat::scene::formats::{LoadOptions, load};
+use lightsplat::readers::{LoadOptions, load};
 use lightsplat::session::{Goal, Session};
 use lightsplat::view::{Framing, View};
 use lightsplat::walk::{KeepLimits, Walk};

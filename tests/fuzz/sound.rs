@@ -1,6 +1,6 @@
 //! Properties of scenes that every stage relies on.
 
-use lightsplat::scene::formats::Loaded;
+use lightsplat::readers::Loaded;
 
 /// Asserts the properties of a scene that has been read.
 pub fn assert_sound(Loaded { scene, cameras, .. }: &Loaded) {

@@ -6,7 +6,7 @@ use super::sound::assert_sound;
 use lightsplat::film::{ExrFile, Pixels};
 use lightsplat::method::Method;
 use lightsplat::progress::Control;
-use lightsplat::scene::formats::{LoadOptions, Loaded, load};
+use lightsplat::readers::{LoadOptions, Loaded, load};
 use lightsplat::session::{FrameError, Goal, OpenError, Remark, Session};
 use lightsplat::view::{Framing, View};
 use lightsplat::walk::{KeepLimits, Walk};

@@ -2,7 +2,7 @@
 //! warnings.
 
 use super::shared_scenes;
-use lightsplat::scene::formats::{Level, LoadOptions, Loaded, load};
+use lightsplat::readers::{Level, LoadOptions, Loaded, load};
 
 struct Expected {
     file: &'static str,

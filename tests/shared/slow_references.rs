@@ -7,7 +7,7 @@ use lightsplat::film::{Image, read_exr};
 use lightsplat::method::path::Settings;
 use lightsplat::method::render;
 use lightsplat::progress::Control;
-use lightsplat::scene::formats::{LoadOptions, load};
+use lightsplat::readers::{LoadOptions, load};
 use lightsplat::view::View;
 use lightsplat::world::World;
 

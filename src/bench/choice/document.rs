@@ -1,9 +1,9 @@
 //! The choices for people: a table of all, and the pictures of a scene.
 
 use super::{Budget, Choices, SceneChoices};
-use crate::bench::document::{Document, Grid};
-use crate::bench::study::scatter::{Series, scatter};
-use crate::bench::study::{figure, seconds};
+use crate::document::{Document, Grid};
+use crate::study::scatter::{Series, scatter};
+use crate::study::{figure, seconds};
 
 /// Explains the figures.
 const LEGEND: &str = "Budgets are the processor seconds of the cache by five levels of its settings. Errors of as many \

@@ -10,12 +10,12 @@ mod document;
 
 use super::study::{Candidate, Errors, Noise, Results, Run, Study, StudyError, Subject};
 use super::{Benchmark, Kind};
-use crate::method::{LightStore, Method};
-use crate::paths::Look;
-use crate::plan::{Chooser, DRAFT, FINAL, Ladder, PREVIEW, options};
-use crate::stats::{Stage, Stopwatch};
+use base::stats::{Stage, Stopwatch};
+use render::method::{LightStore, Method};
+use render::plan::{Chooser, DRAFT, FINAL, Ladder, PREVIEW, options};
 use serde::Serialize;
 use std::path::PathBuf;
+use transport::paths::Look;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "choice",

@@ -1,6 +1,6 @@
 //! CSV (RFC 4180): one line a case, the same columns for all tables.
 
-use crate::bench::Report;
+use crate::Report;
 
 const HEAD: &str =
     "benchmark,scene,table,case,ratio,ratio low,ratio high,rate,rate low,rate high,unit,figures";

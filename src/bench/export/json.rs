@@ -1,6 +1,6 @@
 //! JSON: the report unchanged, with every sample.
 
-use crate::bench::Report;
+use crate::Report;
 
 /// Returns one object.
 pub fn json(report: &Report) -> String {

@@ -49,7 +49,7 @@ fn document(report: &Report) -> Document {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::{Row, Spread, Table};
+    use crate::{Row, Spread, Table};
 
     fn report() -> Report {
         let row = |label: &str, ratio: f64| Row {

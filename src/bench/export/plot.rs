@@ -1,7 +1,7 @@
 //! Ratios as bars, in SVG.
 
-use crate::bench::Table;
-use crate::bench::document::svg_text;
+use crate::Table;
+use crate::document::svg_text;
 
 const BAR: f64 = 18.0;
 const STEP: f64 = 24.0;

@@ -1,7 +1,7 @@
 //! Aligned columns for a terminal.
 
 use super::headline;
-use crate::bench::Report;
+use crate::Report;
 
 /// Returns the whole report.
 pub fn terminal(report: &Report) -> String {

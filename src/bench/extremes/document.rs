@@ -1,8 +1,8 @@
 //! Errors at extremes for people: a summary, then a table and a plot a curve.
 
 use super::{Extremes, Series};
-use crate::bench::document::{Document, Grid};
-use crate::bench::study::{figure, scatter};
+use crate::document::{Document, Grid};
+use crate::study::{figure, scatter};
 
 /// Greatest error over that of the ordinary scene that is not remarked on.
 const MAX_GROWTH: f64 = 1.1;

@@ -1,6 +1,6 @@
 //! Every method and record mode, with settings for pictures of some hundred pixels.
 
-use crate::method::Method;
+use render::method::Method;
 
 /// A method under its name.
 pub struct Entrant {

@@ -17,12 +17,12 @@ mod methods;
 
 use super::study::{Errors, Reference, Results, Study, StudyError, Subject};
 use super::{Benchmark, Kind};
-use crate::film::Image;
-use crate::paths::Look;
-use crate::session::Goal;
+use base::film::Image;
 use curves::Curve;
 use methods::Entrant;
+use render::session::Goal;
 use serde::Serialize;
+use transport::paths::Look;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "extremes",

@@ -1,8 +1,8 @@
 //! Growth for people: a summary, then a table and a plot a quantity.
 
 use super::{Growth, Point, Series};
-use crate::bench::document::{Document, Grid};
-use crate::bench::study::{figure, scatter, seconds};
+use crate::document::{Document, Grid};
+use crate::study::{figure, scatter, seconds};
 
 const LEGEND: &str = "The default's pictures, and how their time grows. Growth is from the first row to the last and, in \
     brackets, the exponent: 1 where time is in proportion to the quantity. Errors are relative root mean squares before \

@@ -11,14 +11,14 @@ mod scenes;
 
 use super::study::{Candidate, Errors, Results, Run, Study, StudyError, Subject};
 use super::{Benchmark, Kind};
-use crate::method::Method;
-use crate::paths::Look;
-use crate::stats::{Stage, Stopwatch};
-use crate::view::View;
+use base::stats::{Stage, Stopwatch};
+use render::method::Method;
 use serde::Serialize;
 use std::fs;
 use std::io::BufWriter;
 use std::path::PathBuf;
+use transport::paths::Look;
+use world::view::View;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "growth",

@@ -1,6 +1,6 @@
 //! Scenes of many lamps and of many triangles.
 
-use crate::sampling::owen_sobol_2d;
+use base::sampling::owen_sobol_2d;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 

@@ -1,9 +1,9 @@
 //! The race for people: a table of times, then a section a scene.
 
 use super::{Point, Race, SceneRace, TARGETS, Times};
-use crate::bench::document::{Document, Grid};
-use crate::bench::study::scatter::{Series, scatter};
-use crate::bench::study::{bounded, figure, optional, seconds};
+use crate::document::{Document, Grid};
+use crate::study::scatter::{Series, scatter};
+use crate::study::{bounded, figure, optional, seconds};
 
 /// Caption of the table.
 const LEGEND: &str = "Processor seconds over all threads to a PSNR or FLIP: the default / `path --denoise`, and in \

@@ -10,12 +10,12 @@ mod target;
 
 use super::study::{Bounded, Candidate, Errors, Noise, Results, Run, Study, StudyError, qualities};
 use super::{Benchmark, Kind};
-use crate::method::Method;
-use crate::paths::Look;
-use crate::stats::Stage;
+use base::stats::Stage;
+use render::method::Method;
 use serde::Serialize;
 use std::path::PathBuf;
 use target::{TARGETS, Target};
+use transport::paths::Look;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "race",

@@ -1,6 +1,6 @@
 //! Qualities that times are measured to.
 
-use crate::bench::study::{Bounded, Errors, rmse_of_psnr, time_to};
+use crate::study::{Bounded, Errors, rmse_of_psnr, time_to};
 use serde::Serialize;
 use std::fmt;
 

@@ -2,11 +2,11 @@
 
 use super::MRAYS;
 use super::trace::{Trace, Traces};
-use crate::bench::measure::Case;
-use crate::bench::setting::Setting;
-use crate::bench::{Clock, Settings, Table};
-use crate::shadow::{Engine, OccluderCacheSettings};
+use crate::measure::Case;
+use crate::setting::Setting;
+use crate::{Clock, Settings, Table};
 use std::hint::black_box;
+use world::shadow::{Engine, OccluderCacheSettings};
 
 const SIZES: [(usize, usize); 6] = [(1024, 1), (4096, 1), (4096, 2), (4096, 4), (4096, 8), (16384, 4)];
 

@@ -2,12 +2,12 @@
 
 use super::MRAYS;
 use super::trace::{SegmentPacket, Traces, count};
-use crate::bench::measure::Case;
-use crate::bench::setting::Setting;
-use crate::bench::{Clock, Settings, Table};
-use crate::embree::{PreparedRays, Ray, Width};
-use crate::shadow::Engine;
+use crate::measure::Case;
+use crate::setting::Setting;
+use crate::{Clock, Settings, Table};
+use embree::{PreparedRays, Ray, Width};
 use std::hint::black_box;
+use world::shadow::Engine;
 
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     let world = setting.world;

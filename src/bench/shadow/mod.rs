@@ -14,9 +14,9 @@ mod widths;
 
 use super::setting::Setting;
 use super::{Benchmark, Context, Kind, Table};
-use crate::radiance_cache::CacheSettings;
 use orders::Orders;
 use trace::Traces;
+use transport::radiance_cache::CacheSettings;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "shadow",

@@ -6,20 +6,20 @@
 //! Records are those of the first wave of the finest level, as if there were no coarser ones: its records are
 //! as close together as any.
 
-use crate::bench::setting::Setting;
-use crate::lightcut::{
+use crate::setting::Setting;
+use base::math::{Rgb, luminance};
+use transport::lightcut::{
     CutSettings, Lightcut, MIN_SHARED, PacketLightcut, PacketVisibility, RayVisibility, Receiver,
     ReceiverPacket, Visibility,
 };
-use crate::math::{Rgb, luminance};
-use crate::radiance_cache::CacheSettings;
-use crate::radiance_cache::placement::candidates;
-use crate::radiance_cache::source::{Candidate, LightcutSource};
-use crate::radiance_cache::splat::Splat;
-use crate::radiance_cache::store::RecordStore;
-use crate::radiance_cache::targets::Targets;
-use crate::shade::{Gatherers, ShadeSettings, ShadingContext, ShadingTask, patches};
-use crate::vpl::{DirectIndirect, Origin};
+use transport::radiance_cache::CacheSettings;
+use transport::radiance_cache::placement::candidates;
+use transport::radiance_cache::source::{Candidate, LightcutSource};
+use transport::radiance_cache::splat::Splat;
+use transport::radiance_cache::store::RecordStore;
+use transport::radiance_cache::targets::Targets;
+use transport::shade::{Gatherers, ShadeSettings, ShadingContext, ShadingTask, patches};
+use transport::vpl::{DirectIndirect, Origin};
 
 /// Points that are lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

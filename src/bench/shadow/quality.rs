@@ -2,14 +2,14 @@
 
 use super::MRAYS;
 use super::trace::{Traces, count};
-use crate::bench::measure::Case;
-use crate::bench::setting::Setting;
-use crate::bench::{Clock, Settings, Table};
-use crate::embree::{Accel, BuildQuality};
-use crate::math::lanes_in;
-use crate::stats::Stopwatch;
-use crate::world::triangle_meshes;
+use crate::measure::Case;
+use crate::setting::Setting;
+use crate::{Clock, Settings, Table};
+use base::math::lanes_in;
+use base::stats::Stopwatch;
+use embree::{Accel, BuildQuality};
 use std::hint::black_box;
+use world::triangle_meshes;
 
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     let meshes = triangle_meshes(&setting.world.scene, &setting.world.materials);

@@ -2,12 +2,12 @@
 
 use super::trace::{Trace, Traces, count};
 use super::{MRAYS, cached};
-use crate::bench::measure::Case;
-use crate::bench::setting::Setting;
-use crate::bench::{Clock, Settings, Table};
-use crate::embree::{PreparedRays, Width};
-use crate::shadow::{Engine, OccluderCacheSettings};
+use crate::measure::Case;
+use crate::setting::Setting;
+use crate::{Clock, Settings, Table};
+use embree::{PreparedRays, Width};
 use std::hint::black_box;
+use world::shadow::{Engine, OccluderCacheSettings};
 
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {
     let world = setting.world;

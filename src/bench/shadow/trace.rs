@@ -1,14 +1,14 @@
 //! Segments as they are asked for, kept to be traced again.
 
 use super::orders::{Order, Orders};
-use crate::bench::setting::{Dice, Setting};
-use crate::embree::{Ray, Rays16};
-use crate::light_tree::Node;
-use crate::lightcut::{PacketVisibility, RayVisibility, Receiver, ReceiverPacket, Visibility, to_vpl};
-use crate::math::{LANES, Rgb, Vec3x16, first_lanes, lanes_in};
-use crate::vpl::Vpl;
+use crate::setting::{Dice, Setting};
+use base::math::{LANES, Rgb, Vec3x16, first_lanes, lanes_in};
+use embree::{Ray, Rays16};
 use glam::Vec3;
 use std::cell::RefCell;
+use transport::light_tree::Node;
+use transport::lightcut::{PacketVisibility, RayVisibility, Receiver, ReceiverPacket, Visibility, to_vpl};
+use transport::vpl::Vpl;
 
 /// Up to sixteen segments.
 #[derive(Clone)]

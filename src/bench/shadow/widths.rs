@@ -2,10 +2,10 @@
 
 use super::MRAYS;
 use super::trace::{Traces, count};
-use crate::bench::measure::Case;
-use crate::bench::setting::Setting;
-use crate::bench::{Clock, Settings, Table};
-use crate::embree::{PreparedRays, Width};
+use crate::measure::Case;
+use crate::setting::Setting;
+use crate::{Clock, Settings, Table};
+use embree::{PreparedRays, Width};
 use std::hint::black_box;
 
 pub fn table(setting: &Setting, traces: &Traces, settings: &Settings) -> Table {

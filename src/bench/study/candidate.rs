@@ -1,8 +1,8 @@
 //! Methods with settings, to be rendered and judged.
 
-use crate::method::{Method, path, reconstruction};
-use crate::paths::Look;
-use crate::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
+use render::method::{Method, path, reconstruction};
+use render::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
+use transport::paths::Look;
 
 /// Samples a pixel of denoised paths that make their curve.
 pub const DENOISED_SPP: [u32; 5] = [1, 4, 16, 64, 256];

@@ -1,8 +1,8 @@
 //! Errors of a picture against another picture, or against the truth that a reference estimates.
 
 use super::{Reference, StudyError};
-use crate::film::Image;
-use crate::film::metrics::{Variances, compare};
+use base::film::Image;
+use base::film::metrics::{Variances, compare};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -84,10 +84,10 @@ fn mean(image: &Image) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::study::reference::Reference;
-    use crate::film::metrics::psnr;
-    use crate::math::Rgb;
-    use crate::sampling::hash;
+    use crate::study::reference::Reference;
+    use base::film::metrics::psnr;
+    use base::math::Rgb;
+    use base::sampling::hash;
 
     #[test]
     fn noise_of_the_reference_and_lamps_that_its_paths_missed_do_not_count() {

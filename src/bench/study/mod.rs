@@ -30,11 +30,11 @@ pub(super) use store::program;
 pub use subject::file_of;
 
 use super::document::Document;
-use crate::denoise::{DenoiseError, Denoiser};
-use crate::film::ImageError;
-use crate::progress::Control;
-use crate::session::OpenError;
+use base::film::ImageError;
+use base::progress::Control;
 use candidate::DENOISED_SPP;
+use render::denoise::{DenoiseError, Denoiser};
+use render::session::OpenError;
 use std::path::{Path, PathBuf};
 use store::Store;
 

@@ -1,10 +1,10 @@
 //! Pictures embedded in pages.
 
-use crate::bench::document::escaped;
-use crate::film::{Image, heatmap, tone};
+use crate::document::escaped;
 use ::image::codecs::jpeg::JpegEncoder;
 use ::image::codecs::png::PngEncoder;
 use ::image::{ExtendedColorType, ImageEncoder};
+use base::film::{Image, heatmap, tone};
 
 /// Returns a picture with a caption; if there is a second picture, it shows while the pointer is over the
 /// first.

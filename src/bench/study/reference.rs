@@ -7,15 +7,15 @@
 
 use super::store::Kept;
 use super::{Study, StudyError, Subject};
-use crate::film::metrics::{flip_map, psnr, rel_mse_of_variance};
-use crate::film::{Image, tone};
-use crate::math::Rgb;
-use crate::method::path;
-use crate::method::render;
-use crate::paths::Look;
-use crate::stats::Stopwatch;
+use base::film::metrics::{flip_map, psnr, rel_mse_of_variance};
+use base::film::{Image, tone};
+use base::math::Rgb;
+use base::stats::Stopwatch;
+use render::method::path;
+use render::method::render;
 use serde::Serialize;
 use serde_json::json;
+use transport::paths::Look;
 
 /// Maximum number of samples a pixel that each half takes in a round.
 const ROUND: u32 = 64;
@@ -207,7 +207,7 @@ fn mean([a, b]: &[Image; 2]) -> Image {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::hash;
+    use base::sampling::hash;
 
     /// Halves of a given standard deviation around 1 have the expected noise of the mean.
     #[test]

@@ -3,15 +3,15 @@
 use super::reference::{Reference, reference};
 use super::store::{Kept, program};
 use super::{Candidate, Study, StudyError, Subject};
-use crate::embree::BuildQuality;
-use crate::film::Image;
-use crate::method::LightStore;
-use crate::paths::Look;
-use crate::session::{Finish, Goal};
-use crate::stats::{Stage, StageTime, Stats, Stopwatch};
-use crate::view::View;
-use crate::walk::{KeepLimits, Walk};
+use base::film::Image;
+use base::stats::{Stage, StageTime, Stats, Stopwatch};
+use embree::BuildQuality;
+use render::method::LightStore;
+use render::session::{Finish, Goal};
+use render::walk::{KeepLimits, Walk};
 use serde_json::{Value, json};
+use transport::paths::Look;
+use world::view::View;
 
 /// A rendered picture with its statistics.
 #[derive(Clone)]

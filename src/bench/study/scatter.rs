@@ -1,6 +1,6 @@
 //! Scatter plots over two logarithmic axes, in SVG.
 
-use crate::bench::document::{escaped, svg_text};
+use crate::document::{escaped, svg_text};
 
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 420.0;

@@ -1,12 +1,12 @@
 //! Pictures stored on disk under a key of all that they depend on.
 //!
 //! A picture is an OpenEXR file with its key and its statistics as attributes. It appears whole or not at all
-//! and is flushed to the disk before it takes its name (see [`crate::film::atomic`]), so that a crash loses
+//! and is flushed to the disk before it takes its name (see [`base::film::atomic`]), so that a crash loses
 //! only the picture being written. Files that cannot be read, or whose key is not the one asked for, count as
 //! missing.
 
 use super::StudyError;
-use crate::film::{ExrFile, Film, Image, Layer, write_exr};
+use base::film::{ExrFile, Film, Image, Layer, write_exr};
 use serde_json::Value;
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
@@ -129,7 +129,7 @@ impl Write for Fnv {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Rgb;
+    use base::math::Rgb;
     use serde_json::json;
 
     #[test]

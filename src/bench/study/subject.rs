@@ -2,12 +2,12 @@
 
 use super::store::hash_debug;
 use super::{Study, StudyError};
-use crate::embree::BuildQuality;
-use crate::scene::formats::{Level, LoadOptions, load};
-use crate::session::{OpenError, Session};
-use crate::stats::Stats;
-use crate::view::View;
+use base::stats::Stats;
+use embree::BuildQuality;
+use readers::{Level, LoadOptions, load};
+use render::session::{OpenError, Session};
 use std::path::{Path, PathBuf};
+use world::view::View;
 
 /// A scene, ready to be rendered.
 pub struct Subject {

@@ -4,11 +4,11 @@ use super::entries::{Family, OPPONENTS};
 use super::paper::{CLAIMS, SAVED_BY_ANISOTROPY};
 use super::row::HEADS;
 use super::{SceneTable, Table1};
-use crate::bench::document::{Document, Grid};
-use crate::bench::study::page::{figure, heat, shown, worst, zoom};
-use crate::bench::study::scatter::{Series, scatter};
-use crate::bench::study::{self, bounded, optional};
-use crate::film::metrics::flip_map;
+use crate::document::{Document, Grid};
+use crate::study::page::{figure, heat, shown, worst, zoom};
+use crate::study::scatter::{Series, scatter};
+use crate::study::{self, bounded, optional};
+use base::film::metrics::flip_map;
 
 /// Number of parts of the picture that are shown pixel by pixel.
 const ZOOMS: usize = 3;

@@ -1,9 +1,9 @@
 //! Rows of the table. Settings are the methods' own defaults but for the exceptions stated here.
 
-use crate::bench::study::{Candidate, Study, Subject};
-use crate::lightcut::CutSettings;
-use crate::method::{Method, cache, lightcuts, photon_cache, reconstruction};
-use crate::radiance_cache::{DirectBy, Footprints, FoundBy};
+use crate::study::{Candidate, Study, Subject};
+use render::method::{Method, cache, lightcuts, photon_cache, reconstruction};
+use transport::lightcut::CutSettings;
+use transport::radiance_cache::{DirectBy, Footprints, FoundBy};
 
 /// A method's name over several settings, which make a curve of error against time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -32,12 +32,12 @@ use super::study::{
     Bounded, Errors, Noise, Reference, Results, Run, Study, StudyError, eye_samples, time_to,
 };
 use super::{Benchmark, Kind};
-use crate::film::Image;
-use crate::paths::Look;
+use base::film::Image;
 use entries::{Entry, Family, OPPONENTS, entries};
 use row::{Row, Versus};
 use serde::Serialize;
 use std::path::PathBuf;
+use transport::paths::Look;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "table1",

@@ -1,8 +1,8 @@
 //! Figures of a method on a scene.
 
 use super::entries::{Entry, Family, OPPONENTS};
-use crate::bench::study::{Bounded, Errors, Run, bounded, figure, optional, seconds};
-use crate::stats::Stage;
+use crate::study::{Bounded, Errors, Run, bounded, figure, optional, seconds};
+use base::stats::Stage;
 use serde::Serialize;
 use serde_json::Value;
 

@@ -2,9 +2,9 @@
 //! each.
 
 use super::{Candidate, Judge, Sort, StudyError, Sweep};
-use crate::embree::BuildQuality;
-use crate::method::Method;
-use crate::setting::JudgedBy;
+use base::setting::JudgedBy;
+use embree::BuildQuality;
+use render::method::Method;
 
 /// A choice between builds.
 pub struct Builds {

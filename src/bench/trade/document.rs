@@ -3,10 +3,10 @@
 use super::front::Effect;
 use super::verdict::{ERROR_TOLERANCE, TIME_TOLERANCE};
 use super::{ERRORS, Point, SceneTrade, Sort, Sweep, Trade};
-use crate::bench::document::{Document, Grid, escaped};
-use crate::bench::study::scatter::{Series, scatter};
-use crate::bench::study::{figure, optional, seconds};
-use crate::setting::JudgedBy;
+use crate::document::{Document, Grid, escaped};
+use crate::study::scatter::{Series, scatter};
+use crate::study::{figure, optional, seconds};
+use base::setting::JudgedBy;
 
 const SECONDS: &str = "processor seconds";
 

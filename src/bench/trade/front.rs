@@ -1,6 +1,6 @@
 //! The Pareto front, and the effect of each knob in a designed sample.
 
-use crate::verify::NORMAL_975;
+use render::verify::NORMAL_975;
 use serde::Serialize;
 
 /// Marks the points that no other point beats in both figures.
@@ -56,7 +56,7 @@ fn student_975(freedom: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::hash;
+    use base::sampling::hash;
 
     #[test]
     fn quantiles_are_those_of_the_tables() {

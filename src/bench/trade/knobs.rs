@@ -2,9 +2,9 @@
 //!
 //! Coarse levels should be faster, fine ones better, where a setting has such an order.
 
-use crate::method::{Method, reconstruction};
-use crate::paths::Look;
-use crate::setting::{JudgedBy, Levels, Spec, Value};
+use base::setting::{JudgedBy, Levels, Spec, Value};
+use render::method::{Method, reconstruction};
+use transport::paths::Look;
 
 /// A setting, or one number of several that it has.
 pub struct Knob {
@@ -102,8 +102,8 @@ fn levels_of(spec: &'static Spec, levels: &Levels, value: &mut dyn Value, part: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::study::eye_samples;
-    use crate::bench::trade::has_default_samples;
+    use crate::study::eye_samples;
+    use crate::trade::has_default_samples;
 
     #[test]
     fn every_knob_has_distinct_levels_that_change_the_settings_and_holds_the_default() {

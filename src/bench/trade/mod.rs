@@ -28,18 +28,18 @@ mod verdict;
 use super::study::{Candidate, Errors, Noise, Reference, Results, Run, Study, StudyError, Subject};
 use super::study::{eye_samples, qualities};
 use super::{Benchmark, Kind};
-use crate::lightcut::CutSettings;
-use crate::method::{Method, cache, lightcuts, photon_cache, reconstruction};
-use crate::paths::Look;
-use crate::radiance_cache::FoundBy;
-use crate::setting::JudgedBy;
-use crate::stats::Stage;
+use base::setting::JudgedBy;
+use base::stats::Stage;
 use builds::{BUILDS, Builds};
 use front::{Effect, front};
 use knobs::{Knob, knobs};
+use render::method::{Method, cache, lightcuts, photon_cache, reconstruction};
 use serde::Serialize;
 use serde_json::Value;
 use std::path::PathBuf;
+use transport::lightcut::CutSettings;
+use transport::paths::Look;
+use transport::radiance_cache::FoundBy;
 use verdict::Course;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {

@@ -4,9 +4,9 @@ use super::front::effect;
 use super::knobs::Knob;
 use super::verdict::{ERROR_TOLERANCE, TIME_TOLERANCE, course, verdict};
 use super::{Candidate, Judge, KnobEffect, Point, Sort, StudyError, Sweep};
-use crate::method::Method;
-use crate::sampling::Sampler;
-use crate::setting::JudgedBy;
+use base::sampling::Sampler;
+use base::setting::JudgedBy;
+use render::method::Method;
 
 /// Seed of the designed sample.
 const DESIGN: u32 = 1;

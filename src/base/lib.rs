@@ -1,0 +1,17 @@
+//! Foundation of all crates: what knows nothing of scenes.
+//!
+//! - [`math`]: colours, frames, lanes and real functions; [`sampling`]: random numbers;
+//! - [`parallel`], [`progress`], [`stats`]: threads, cancellation, counters and times;
+//! - [`setting`]: settings, each declared once; [`kd_tree`]: search for near points;
+//! - [`film`]: images, their layers, files and error measures.
+
+#![forbid(unsafe_code)]
+
+pub mod film;
+pub mod kd_tree;
+pub mod math;
+pub mod parallel;
+pub mod progress;
+pub mod sampling;
+pub mod setting;
+pub mod stats;

@@ -1,0 +1,169 @@
+//! Settings, each declared once: [`settings!`] makes a struct whose fields carry name, text, range, default
+//! and the levels of a benchmark, [`choices!`] an enum that can be one's type.
+//!
+//! All else is derived by [`Settings::each`]: command-line options and their help, reports in statistics and
+//! files, benchmarks, plans, and the table in the README.
+
+mod shared;
+mod spec;
+mod value;
+
+pub use shared::{COMPENSATION, INSPECT, PATCHES, SHARE};
+pub use spec::{DOWN, JudgedBy, Levels, Spec, UP};
+pub use value::{Choice, Value};
+
+/// Visitor of settings.
+pub type Each<'a> = &'a mut (dyn FnMut(&'static Spec, &mut dyn Value) + 'a);
+
+/// A struct of settings, or a setting of its own.
+pub trait Settings {
+    /// Visits all settings, groups in place. Settings implied by others are adjusted afterwards.
+    fn each(&mut self, each: Each);
+
+    /// Sets the setting named `key` from text; returns false if there is none.
+    ///
+    /// # Errors
+    /// A description of the values expected. Nothing is set then.
+    fn set(&mut self, key: &str, text: &str) -> Result<bool, String> {
+        let mut result = Ok(false);
+        self.each(&mut |spec, value| {
+            if spec.key == key {
+                result = spec.set(value, text).map(|()| true);
+            }
+        });
+        result
+    }
+}
+
+/// A struct of settings with its `Default` and [`Settings`]:
+///
+/// ```text
+/// settings! {
+///     /// Settings of something.
+///     pub struct SomeSettings in "Heading in --help" {
+///         /// A setting; its first paragraph is its text in --help.
+///         probe_rays: u32 = 128 => [.range(1.0, 4096.0).scaled(&UP)];
+///         /// A group of settings.
+///         cut: CutSettings = CutSettings::default() => [group];
+///         /// The same, less some of them.
+///         light: LightPassSettings = LightPassSettings::default() => [group without ["vpls"]];
+///         /// A setting shared with other structs.
+///         share: bool = true => [is SHARE];
+///         /// A field that is no setting.
+///         only: Option<Origin> = None;
+///     }
+/// }
+/// ```
+///
+/// `[by f]` lets `f(&mut self, each)` visit a field, `[at path.to.it ...]` visits a part of one.
+#[macro_export]
+macro_rules! settings {
+    (
+        $(#[doc = $about:literal])+
+        pub struct $Name:ident $(in $heading:literal)? {
+            $($(#[doc = $doc:literal])+ $field:ident: $Type:ty = $default:expr $(=> [$($how:tt)*])?;)*
+        }
+    ) => {
+        $(#[doc = $about])+
+        #[derive(Clone, Copy, Debug)]
+        pub struct $Name {
+            $($(#[doc = $doc])+ pub $field: $Type,)*
+        }
+
+        impl Default for $Name {
+            fn default() -> $Name {
+                $Name { $($field: $default,)* }
+            }
+        }
+
+        impl $crate::setting::Settings for $Name {
+            fn each(&mut self, each: $crate::setting::Each) {
+                #[allow(dead_code)]
+                const HEADING: &str = concat!("" $(, $heading)?);
+                $($crate::setting::visit!(self each HEADING $field [$($doc)+] $([$($how)*])?);)*
+            }
+        }
+    };
+}
+
+/// Visit of a field by [`settings!`].
+#[macro_export]
+macro_rules! visit {
+    ($s:ident $each:ident $heading:ident $field:ident $doc:tt) => {};
+    ($s:ident $each:ident $heading:ident $field:ident $doc:tt [group]) => {
+        $crate::setting::Settings::each(&mut $s.$field, $each)
+    };
+    ($s:ident $each:ident $heading:ident $field:ident $doc:tt [group without $left_out:tt]) => {
+        $crate::setting::Settings::each(&mut $s.$field, &mut |spec, value| {
+            if !$left_out.contains(&spec.key) {
+                $each(spec, value)
+            }
+        })
+    };
+    ($s:ident $each:ident $heading:ident $field:ident $doc:tt [is $SPEC:path]) => {
+        $each(&$SPEC, &mut $s.$field)
+    };
+    ($s:ident $each:ident $heading:ident $field:ident $doc:tt [by $visit:path]) => {
+        $visit($s, $each)
+    };
+    ($s:ident $each:ident $heading:ident $field:ident $doc:tt [at $part:ident $($build:tt)*]) => {{
+        static SPEC: $crate::setting::Spec = $crate::setting::visit!(@spec $heading $field $doc) $($build)*;
+        $each(&SPEC, &mut $s.$field.$part)
+    }};
+    ($s:ident $each:ident $heading:ident $field:ident $doc:tt [$($build:tt)*]) => {{
+        static SPEC: $crate::setting::Spec = $crate::setting::visit!(@spec $heading $field $doc) $($build)*;
+        $each(&SPEC, &mut $s.$field)
+    }};
+    (@spec $heading:ident $field:ident [$($doc:literal)+]) => {
+        $crate::setting::Spec::new(stringify!($field), concat!($($doc, "\n"),+), $heading)
+    };
+}
+
+/// An enum that is the type of a setting: every variant with its text and its name on the command line, and its default
+/// behind the enum's name if it has one whatever the setting.
+#[macro_export]
+macro_rules! choices {
+    (
+        $(#[doc = $about:literal])+
+        pub enum $Name:ident $(= $Default:ident)? {
+            $($(#[doc = $doc:literal])+ $Variant:ident = $name:literal,)+
+        }
+    ) => {
+        $(#[doc = $about])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $Name {
+            $($(#[doc = $doc])+ $Variant,)+
+        }
+
+        $(impl Default for $Name {
+            fn default() -> $Name {
+                $Name::$Default
+            }
+        })?
+
+        impl $crate::setting::Value for $Name {
+            fn text(&self) -> String {
+                match self { $($Name::$Variant => $name,)+ }.to_owned()
+            }
+
+            fn parse(&mut self, text: &str) -> Result<(), String> {
+                *self = match text {
+                    $($name => $Name::$Variant,)+
+                    _ => return Err(concat!("expected one of" $(, " ", $name)+).to_owned()),
+                };
+                Ok(())
+            }
+
+            fn choices(&self) -> &'static [$crate::setting::Choice] {
+                const CHOICES: &[$crate::setting::Choice] =
+                    &[$($crate::setting::Choice { name: $name, doc: concat!($($doc, "\n"),+) }),+];
+                CHOICES
+            }
+        }
+    };
+}
+
+pub use {choices, settings, visit};
+
+#[cfg(test)]
+mod tests;

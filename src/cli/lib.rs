@@ -1,0 +1,91 @@
+//! The command line: arguments (`args`) become a validated job (`job`) that a command carries out.
+//!
+//! stdout is data (statistics, reports), stderr is messages (progress, warnings, errors). Exit codes are in
+//! `exit`.
+
+#![forbid(unsafe_code)]
+
+mod args;
+mod batch;
+mod batch_file;
+mod batch_outputs;
+mod bench;
+mod bench_args;
+mod chart;
+mod compare;
+mod course;
+mod denoise;
+mod denoise_args;
+mod exit;
+mod files;
+mod info;
+mod interrupt;
+mod job;
+mod job_key;
+mod merge;
+mod method_args;
+mod opened;
+mod outputs;
+mod picture;
+mod plan_args;
+mod progress;
+mod render;
+mod sheet;
+mod study;
+mod talk;
+mod threads;
+mod values;
+mod verify;
+mod walk;
+mod walk_job;
+mod walk_report;
+
+use args::{Cli, Command};
+use exit::Failure;
+use std::ffi::OsString;
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+/// Parses `arguments` (the program's name first), runs the command and says how it ended.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = match Cli::of(arguments) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version go to stdout with code 0, the rest to stderr with code 2.
+            let printed = error.print();
+            return ExitCode::from(match printed {
+                _ if error.use_stderr() => exit::USAGE,
+                Err(error) if error.kind() != io::ErrorKind::BrokenPipe => exit::OUTPUT,
+                _ => exit::SUCCESS,
+            });
+        }
+    };
+    let outcome = catch_unwind(AssertUnwindSafe(|| match cli.command {
+        Command::Render(args) => render::run(*args),
+        Command::Walk(args) => walk::run(*args),
+        Command::Batch(args) => batch::run(args),
+        Command::Info(args) => info::run(args),
+        Command::Denoise(args) => denoise::run(args),
+        Command::Merge(args) => merge::run(args),
+        Command::Sheet(args) => sheet::run(args),
+        Command::Compare(args) => compare::run(args),
+        Command::Bench(args) => bench::run(args),
+    }));
+    let code = match outcome {
+        Ok(Ok(())) => exit::SUCCESS,
+        Ok(Err(failure)) => {
+            talk::error(&failure);
+            failure.code()
+        }
+        // The panic hook has printed message and place.
+        Err(_) => {
+            talk::error(&Failure::render(anyhow::anyhow!(
+                "an internal error stopped the run; please report it with the lines above"
+            )));
+            exit::RENDER
+        }
+    };
+    talk::end(code);
+    ExitCode::from(code)
+}

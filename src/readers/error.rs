@@ -1,0 +1,294 @@
+//! Errors in scenes, and warnings about parts that are not modelled: both name the file and the line.
+
+use std::collections::BTreeSet;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A file, and the line, if available.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The file.
+    pub path: PathBuf,
+    /// Line, counted from 1.
+    pub line: Option<u32>,
+}
+
+impl Place {
+    /// Returns the place of the file as a whole.
+    pub fn file(path: &Path) -> Place {
+        Place { path: path.to_owned(), line: None }
+    }
+
+    /// Returns the place of line `line` (from 1) of the file.
+    pub fn line(path: &Path, line: u32) -> Place {
+        Place { path: path.to_owned(), line: Some(line) }
+    }
+
+    /// Returns the error of a wrong value here.
+    pub fn wrong(&self, what: impl Into<String>, remedy: impl Into<String>) -> SceneError {
+        SceneError::Value { place: self.clone(), what: what.into(), remedy: remedy.into() }
+    }
+
+    /// Returns the error of a name used here that is not defined.
+    pub fn undefined(&self, kind: &'static str, name: &str) -> SceneError {
+        SceneError::Reference { place: self.clone(), kind, name: name.to_owned() }
+    }
+
+    /// Returns the error of a camera asked for that is not in the scene.
+    pub(crate) fn no_camera(&self, name: &str, remedy: impl Into<String>) -> SceneError {
+        SceneError::Camera { place: self.clone(), name: name.to_owned(), remedy: remedy.into() }
+    }
+
+    /// Returns the error of text that is not well-formed here.
+    pub(crate) fn malformed(&self, message: impl Into<String>) -> SceneError {
+        SceneError::Syntax { place: self.clone(), message: message.into() }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self.line {
+            Some(line) => write!(f, "{}:{line}", self.path.display()),
+            None => write!(f, "{}", self.path.display()),
+        }
+    }
+}
+
+/// Severity of a warning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// The expected picture is the one described, to within filtering or tessellation.
+    Note,
+    /// The picture will differ from the one described; an error under `strict`.
+    Warning,
+}
+
+/// A feature requested by a scene file that is not modelled, and its replacement.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// Place of the request.
+    pub place: Place,
+    /// Severity.
+    pub level: Level,
+    /// The feature requested.
+    pub what: String,
+    /// The replacement.
+    pub fallback: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}: {}; {}", self.place, self.what, self.fallback)
+    }
+}
+
+/// Reasons why a scene could not be read. Every message ends in a remedy.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// A file that cannot be opened or read.
+    #[error("{}cannot read {}: {error}; check the name and its permissions", asker(.from, .path), .path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Place that refers to it.
+        from: Place,
+        /// Error of the operating system; no `source`, since the message holds it.
+        error: std::io::Error,
+    },
+    /// A file whose extension is that of no supported format.
+    #[error("{}: unknown kind of scene; name a .toml (native), .xml (Mitsuba), .glb or .gltf file", .0.display())]
+    UnknownFormat(PathBuf),
+    /// Text that is not well-formed XML or TOML.
+    #[error("{place}: {message}; correct the file's syntax")]
+    Syntax {
+        /// Place of the error.
+        place: Place,
+        /// Message of the parser.
+        message: String,
+    },
+    /// A value that is missing, of the wrong type or out of range.
+    #[error("{place}: {what}; {remedy}")]
+    Value {
+        /// Place of the value.
+        place: Place,
+        /// Description of the error.
+        what: String,
+        /// Remedy.
+        remedy: String,
+    },
+    /// A reference to a name that is not defined in the scene.
+    #[error("{place}: there is no {kind} called \"{name}\"; define it or correct the name")]
+    Reference {
+        /// Place of the reference.
+        place: Place,
+        /// Kind of object referred to.
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A camera that was asked for, and is not in the scene.
+    #[error("{place}: there is no camera \"{name}\"; {remedy}")]
+    Camera {
+        /// The scene.
+        place: Place,
+        /// Number or name of the camera.
+        name: String,
+        /// Remedy, with the cameras that there are.
+        remedy: String,
+    },
+    /// A mesh file with wrong contents.
+    #[error("{place}: {what}; repair or re-export the mesh")]
+    Mesh {
+        /// Place of the error.
+        place: Place,
+        /// Description of the error.
+        what: String,
+    },
+    /// A picture that cannot be decoded.
+    #[error("{place}: cannot decode {}: {what}; convert it to PNG, JPEG, BMP, TGA, Radiance HDR or OpenEXR", .path.display())]
+    Picture {
+        /// Place that refers to it.
+        place: Place,
+        /// The picture.
+        path: PathBuf,
+        /// Message of the decoder.
+        what: String,
+    },
+    /// Errors of several parts of a scene, the first of them in the order of the description.
+    #[error("{}{}", lines(.first), more(.left_out))]
+    Several {
+        /// The first [`MAX_ERRORS`].
+        first: Vec<SceneError>,
+        /// Number of those after them.
+        left_out: usize,
+    },
+    /// A warning, under `strict`.
+    #[error("{0} (an error because of strict reading); remove it, or read without strict")]
+    Strict(Warning),
+}
+
+/// Maximum number of errors that are told at once.
+const MAX_ERRORS: usize = 10;
+
+/// The place that asks for a file, where that is another file.
+fn asker(from: &Place, path: &Path) -> String {
+    if *from == Place::file(path) { String::new() } else { format!("{from}: ") }
+}
+
+fn lines(errors: &[SceneError]) -> String {
+    errors.iter().map(SceneError::to_string).collect::<Vec<_>>().join("\n")
+}
+
+fn more(left_out: &usize) -> String {
+    if *left_out > 0 { format!("\nand {left_out} errors more") } else { String::new() }
+}
+
+impl SceneError {
+    /// Returns the error that stands for all of `errors`, each once.
+    pub fn all(errors: Vec<SceneError>) -> SceneError {
+        let mut said = BTreeSet::new();
+        let mut first: Vec<SceneError> =
+            errors.into_iter().filter(|error| said.insert(error.to_string())).collect();
+        let left_out = first.len().saturating_sub(MAX_ERRORS);
+        first.truncate(MAX_ERRORS);
+        if first.len() == 1 { first.remove(0) } else { SceneError::Several { first, left_out } }
+    }
+
+    /// Returns the error of a wrong mesh file.
+    pub fn mesh(place: Place, what: impl Into<String>) -> SceneError {
+        SceneError::Mesh { place, what: what.into() }
+    }
+}
+
+/// Collects warnings, or turns them into errors under `strict`, and the errors of independent parts of a description.
+#[derive(Debug, Default)]
+pub(crate) struct Log {
+    strict: bool,
+    warnings: Vec<Warning>,
+    errors: Vec<SceneError>,
+}
+
+impl Log {
+    /// Returns an empty log; in a `strict` one, warnings are errors.
+    pub fn new(strict: bool) -> Log {
+        Log { strict, ..Log::default() }
+    }
+
+    /// Returns the value of a part of the description, or keeps its error while others are read.
+    pub fn part<T>(&mut self, outcome: Result<T, SceneError>) -> Option<T> {
+        outcome.map_err(|error| self.errors.push(error)).ok()
+    }
+
+    /// Returns the value of the last part, or the errors of all parts if there are any.
+    pub fn conclude<T>(&mut self, last: Result<T, SceneError>) -> Result<T, SceneError> {
+        let mut errors = std::mem::take(&mut self.errors);
+        match last.map_err(|error| errors.push(error)) {
+            Ok(value) if errors.is_empty() => Ok(value),
+            _ => Err(SceneError::all(errors)),
+        }
+    }
+
+    /// Adds a warning about a change of the picture.
+    pub fn warn(
+        &mut self,
+        place: &Place,
+        what: impl Into<String>,
+        fallback: impl Into<String>,
+    ) -> Result<(), SceneError> {
+        let warning = Warning {
+            place: place.clone(),
+            level: Level::Warning,
+            what: what.into(),
+            fallback: fallback.into(),
+        };
+        if self.strict {
+            return Err(SceneError::Strict(warning));
+        }
+        self.push(warning);
+        Ok(())
+    }
+
+    /// Adds a note that does not concern the expected picture.
+    pub fn note(&mut self, place: &Place, what: impl Into<String>, fallback: impl Into<String>) {
+        self.push(Warning {
+            place: place.clone(),
+            level: Level::Note,
+            what: what.into(),
+            fallback: fallback.into(),
+        });
+    }
+
+    /// The same message for the same place is added once.
+    fn push(&mut self, warning: Warning) {
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
+    }
+
+    /// Returns the warnings, in the order in which they came.
+    pub fn into_warnings(self) -> Vec<Warning> {
+        self.warnings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_parts_are_told_together_each_once_and_no_more_than_ten() {
+        let mut log = Log::new(false);
+        let place = |line| Place::line(Path::new("s.xml"), line);
+        assert_eq!(log.part(Ok(7)), Some(7));
+        assert!(log.conclude(Ok(())).is_ok());
+        log.part::<()>(Err(place(1).wrong("a", "b")));
+        assert_eq!(log.conclude(Ok(())).unwrap_err().to_string(), "s.xml:1: a; b");
+        assert!(log.conclude(Ok(())).is_ok());
+        for line in (1..=12).flat_map(|line| [line, line]) {
+            log.part::<()>(Err(place(line).wrong("a", "b")));
+        }
+        let text = log.conclude(Ok(())).unwrap_err().to_string();
+        assert_eq!(text.lines().count(), 11, "{text}");
+        assert!(text.contains("s.xml:10: a; b\nand 2 errors more"), "{text}");
+    }
+}

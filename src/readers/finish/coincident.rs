@@ -1,0 +1,42 @@
+//! Emitting triangles that lie on others, corner by corner: a lamp described twice.
+//!
+//! Rays meet one of them, so that as a surface a lamp shines once; as a source of samples it would count twice.
+
+use crate::Place;
+use crate::draft::{Draft, DraftMesh};
+use crate::error::{Log, SceneError};
+use base::math::Rgb;
+use glam::DVec3;
+use std::collections::HashSet;
+
+/// Drops emitting triangles with the corners, and the front, of an emitting one before.
+pub fn drop_coincident_emitters(draft: &mut Draft, place: &Place, log: &mut Log) -> Result<(), SceneError> {
+    let mut seen = HashSet::new();
+    let shines = |mesh: &&mut DraftMesh| mesh.emission.is_some_and(|emission| emission.radiance != Rgb::ZERO);
+    for mesh in draft.meshes.iter_mut().filter(shines) {
+        let positions = &mesh.positions;
+        let before = mesh.triangles.len();
+        mesh.triangles.retain(|t| {
+            let corners = t.map(|i| positions.get(i as usize).copied().unwrap_or_default());
+            seen.insert(turned_to_least(corners))
+        });
+        let dropped = before - mesh.triangles.len();
+        if dropped > 0 {
+            let what =
+                format!("{dropped} triangles of the emitter \"{}\" lie on others that emit", mesh.name);
+            log.warn(
+                place,
+                what,
+                "they give no light of their own; remove the copy, or raise the radiance of the first",
+            )?;
+        }
+    }
+    Ok(())
+}
+
+/// Bits of the corners, turned so that the least comes first; the front is the same.
+fn turned_to_least(corners: [DVec3; 3]) -> [[u64; 3]; 3] {
+    // Adding 0 makes one zero of both.
+    let [a, b, c] = corners.map(|p| (p + DVec3::ZERO).to_array().map(f64::to_bits));
+    [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c])
+}

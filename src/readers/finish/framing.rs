@@ -1,0 +1,94 @@
+//! Cameras for scenes that describe none: everything is in view.
+
+use crate::draft::Draft;
+use base::math::unit;
+use glam::{DVec2, DVec3};
+
+/// Share of the film's height and width that is left free around the scene.
+const MARGIN: f64 = 0.05;
+
+/// Returns a direction from a scene to its viewer: above its front, to the right. The front is +z where y is up, and
+/// -y where z is.
+pub fn outlook(up: DVec3) -> DVec3 {
+    let up = unit(up).unwrap_or(DVec3::Y);
+    let front = if up.z.abs() > up.y.abs() { DVec3::NEG_Y } else { DVec3::Z };
+    let side = unit(up.cross(front)).unwrap_or(DVec3::X);
+    let (elevation, azimuth) = (20f64.to_radians(), 30f64.to_radians());
+    let level = side * azimuth.sin() + side.cross(up) * azimuth.cos();
+    level * elevation.cos() + up * elevation.sin()
+}
+
+/// Moves a camera that is to see everything to the nearest point from which it sees all vertices, for its own
+/// direction and field of view; to `centre`, about which they are, if there are none.
+pub fn frame(draft: &mut Draft, centre: DVec3) {
+    if !draft.shot.fits {
+        return;
+    }
+    let [width, height] = draft.shot.resolution.map(f64::from);
+    let camera = &mut draft.shot.camera;
+    let tan = (1.0 - MARGIN) * camera.tan_half_x * DVec2::new(1.0, height / width);
+    // A point p is within the film's right edge if p·right - x <= tan (p·forward + d), for the camera's offset x and
+    // distance d behind the centre; likewise for the other edges.
+    let (mut high, mut low) = (DVec2::NEG_INFINITY, DVec2::NEG_INFINITY);
+    for p in draft.meshes.iter().flat_map(|mesh| &mesh.positions).map(|p| p - centre) {
+        let (across, depth) = (DVec2::new(p.dot(camera.right), p.dot(camera.up)), p.dot(camera.forward));
+        high = high.max(across - tan * depth);
+        low = low.max(-across - tan * depth);
+    }
+    if !(high.is_finite() && low.is_finite()) {
+        camera.origin = centre;
+        return;
+    }
+    let offset = 0.5 * (high - low);
+    let distance = (0.5 * (high + low) / tan).max_element();
+    camera.origin = centre + camera.right * offset.x + camera.up * offset.y - camera.forward * distance;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{LoadOptions, Loaded, load};
+    use glam::Vec3;
+
+    fn of(text: &str) -> Loaded {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.toml");
+        std::fs::write(&path, text).unwrap();
+        load(&path, &LoadOptions::default()).unwrap()
+    }
+
+    #[test]
+    fn everything_is_in_view_and_fills_it() {
+        let mesh = "[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = 0.5\n\
+            [[mesh]]\nshape = \"cube\"\nmaterial = \"m\"\n\
+            transform = [{ scale = [1, 2, 30] }, { translate = [1000, 5, 6] }]\n";
+        for head in ["", "resolution = [100, 300]\n", "camera = { up = [0, 0, 1], fov = 20 }\n"] {
+            let Loaded { scene, cameras, .. } = of(&format!("{head}{mesh}"));
+            let camera = cameras.still;
+            let aspect = cameras.resolution[1] as f32 / cameras.resolution[0] as f32;
+            let mut extent = DVec2::ZERO;
+            for p in scene.meshes.iter().flat_map(|mesh| &mesh.positions) {
+                let to = *p - camera.origin;
+                let depth = to.dot(camera.forward) * camera.tan_half_x;
+                assert!(depth > 0.0);
+                let film = Vec3::new(to.dot(camera.right), to.dot(camera.up) / aspect, 0.0) / depth;
+                extent = extent.max(film.abs().truncate().as_dvec2());
+            }
+            assert!(extent.max_element() < 0.951 && extent.max_element() > 0.949, "{head}: {extent}");
+            assert!(camera.up.z < 0.5 || head.contains("up"));
+        }
+    }
+
+    #[test]
+    fn an_empty_scene_has_a_camera_too() {
+        assert!(of("").cameras.still.origin.is_finite());
+    }
+
+    #[test]
+    fn the_viewer_stands_in_front_and_above() {
+        assert!(outlook(DVec3::Y).cmpgt(DVec3::ZERO).all());
+        let z_up = outlook(DVec3::Z);
+        assert!(z_up.z > 0.0 && z_up.y < 0.0 && z_up.x > 0.0);
+        assert!(outlook(DVec3::ZERO).is_finite());
+    }
+}

@@ -1,0 +1,263 @@
+//! From world coordinates in f64 to coordinates about the scene's centre in f32.
+//!
+//! A scene a millimetre across, a million units from the origin, loses no bit that f32 can hold: the
+//! subtraction happens in f64, before any rounding. The centre is the middle of the box around everything, or the
+//! camera where something lies very far beyond what is around it: triangles far away do not cost the precision of the
+//! others.
+//!
+//! Scenes that are very small or very large are given another unit of length, a power of two, so that no product of
+//! lengths leaves the range of f32.
+
+use crate::draft::{Draft, DraftCamera, DraftMesh};
+use base::math::Rgb;
+use glam::{DVec3, Vec3};
+use scene::{Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Relief, Scene};
+
+/// Number of corners, about, by which that distance is found.
+const CORNERS: usize = 1 << 16;
+
+/// Sizes of scenes that keep their unit, as exponents of two.
+const ORDINARY: std::ops::Range<i32> = -10..24;
+
+/// Coordinates that a scene is rendered in.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Coordinates {
+    /// World position of the local origin.
+    pub centre: DVec3,
+    /// The local unit of length is two to this power in the world's.
+    pub exponent: i32,
+    /// Local distance from the camera within which it has a tenth of all corners, where everything reaches more than
+    /// [`MAX_RATIO`] times as far; else 0.
+    pub vicinity: f32,
+}
+
+impl Coordinates {
+    /// Coordinates for a draft.
+    pub fn of(draft: &Draft) -> Coordinates {
+        let lights = || draft.lights.iter().map(|light| light.1);
+        let camera = draft.shot.camera.origin;
+        let Some((low, high)) = bounds(corners(draft)) else {
+            let others = bounds(lights().chain([camera])).unwrap_or_default();
+            return Coordinates { centre: 0.5 * others.0 + 0.5 * others.1, ..Coordinates::default() };
+        };
+        let (middle, diagonal) = (0.5 * low + 0.5 * high, (high - low).length());
+        // A camera that is to see everything has no place yet.
+        let vicinity = if draft.shot.fits { diagonal } else { vicinity(draft, camera) };
+        let (centre, vicinity) = match vicinity > 0.0 && diagonal > MAX_RATIO * vicinity {
+            true => (camera, vicinity),
+            false => (middle, 0.0),
+        };
+        let size = match draft.shot.fits {
+            _ if vicinity > 0.0 => vicinity,
+            true => diagonal,
+            false => diagonal.max(camera.distance(centre)),
+        };
+        let exponent = size.log2().floor();
+        let has_size = exponent.is_finite() && !ORDINARY.contains(&(exponent as i32));
+        let exponent = if has_size { exponent as i32 } else { 0 };
+        let coordinates = Coordinates { centre, exponent, vicinity: 0.0 };
+        Coordinates { vicinity: (vicinity * coordinates.scale()) as f32, ..coordinates }
+    }
+
+    /// Local length of a world's unit.
+    pub fn scale(&self) -> f64 {
+        f64::from(-self.exponent).exp2()
+    }
+
+    /// The local position of a point.
+    pub fn local(&self, world: DVec3) -> Vec3 {
+        ((world - self.centre) * self.scale()).as_vec3()
+    }
+
+    /// The local intensity of a light: intensities fall with the square of lengths.
+    pub fn local_intensity(&self, intensity: Rgb) -> Rgb {
+        (intensity.as_dvec3() * (self.scale() * self.scale())).as_vec3()
+    }
+
+    /// A camera in local coordinates.
+    pub fn local_camera(&self, c: &DraftCamera) -> Camera {
+        let scale = self.scale();
+        let length = |length: f32| (f64::from(length) * scale) as f32;
+        let (mut tan_half_x, mut projection) = (c.tan_half_x, c.projection);
+        match &mut projection {
+            Projection::Pinhole => {}
+            Projection::Lens { radius, distance } => {
+                (*radius, *distance) = (length(*radius), length(*distance));
+            }
+            Projection::Parallel => tan_half_x *= scale,
+        }
+        Camera {
+            origin: self.local(c.origin),
+            forward: c.forward.as_vec3(),
+            right: c.right.as_vec3(),
+            up: c.up.as_vec3(),
+            tan_half_x: tan_half_x as f32,
+            near: (c.near * scale) as f32,
+            far: (c.far * scale) as f32,
+            projection,
+            filter: c.filter,
+        }
+    }
+}
+
+/// Corners of all triangles.
+fn corners(draft: &Draft) -> impl Iterator<Item = DVec3> {
+    draft.meshes.iter().flat_map(|mesh| {
+        let used = mesh.triangles.iter().flatten();
+        used.filter_map(|&i| mesh.positions.get(i as usize).copied())
+    })
+}
+
+fn bounds(points: impl Iterator<Item = DVec3>) -> Option<(DVec3, DVec3)> {
+    let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = points.filter(|p| p.is_finite()).fold(empty, |(l, h), p| (l.min(p), h.max(p)));
+    low.cmple(high).all().then_some((low, high))
+}
+
+/// Distance from `camera` within which it has a tenth of the corners.
+fn vicinity(draft: &Draft, camera: DVec3) -> f64 {
+    let count: usize = draft.meshes.iter().map(|mesh| 3 * mesh.triangles.len()).sum();
+    let mut distances: Vec<f64> =
+        corners(draft).step_by(count.div_ceil(CORNERS).max(1)).map(|p| p.distance(camera)).collect();
+    let tenth = distances.len() / 10;
+    *distances.select_nth_unstable_by(tenth, f64::total_cmp).1
+}
+
+/// Returns the scene in other coordinates, and its cameras.
+pub(crate) fn recentre(draft: Draft, coordinates: &Coordinates) -> (Scene, Cameras) {
+    let scale = coordinates.scale();
+    let local = |p: DVec3| coordinates.local(p);
+    let mesh = |m: DraftMesh| Mesh {
+        name: m.name,
+        positions: m.positions.into_iter().map(local).collect(),
+        normals: m.normals,
+        uvs: m.uvs,
+        triangles: m.triangles,
+        material: m.material,
+        emission: m.emission,
+    };
+    let cameras = Cameras {
+        still: coordinates.local_camera(&draft.shot.camera),
+        path: draft.shot.path.iter().map(|camera| coordinates.local_camera(camera)).collect(),
+        resolution: draft.shot.resolution,
+        crop: draft.shot.crop,
+    };
+    let mut materials = draft.materials;
+    materials.iter_mut().for_each(|material| scale_heights(material, scale));
+    let scene = Scene {
+        name: draft.name,
+        sources: draft.sources,
+        max_depth: draft.max_depth,
+        hides_emitters: draft.hides_emitters,
+        meshes: draft.meshes.into_iter().map(mesh).collect(),
+        materials,
+        textures: draft.textures,
+        lights: draft
+            .lights
+            .into_iter()
+            .map(|(light, position)| place_light(light, position, coordinates))
+            .collect(),
+        environment: draft.environment,
+        discs: draft.discs,
+        centre: coordinates.centre,
+        exponent: coordinates.exponent,
+        vicinity: coordinates.vicinity,
+    };
+    (scene, cameras)
+}
+
+/// Heights of reliefs in the local unit.
+fn scale_heights(material: &mut Material, by: f64) {
+    if let Some(Relief::Heights { scale, .. }) = &mut material.relief {
+        *scale = (f64::from(*scale) * by).clamp(f32::MIN.into(), f32::MAX.into()) as f32;
+    }
+    if let Some(blend) = &mut material.blend {
+        scale_heights(&mut blend.other, by);
+    }
+}
+
+/// The light at a position in the world, in local coordinates.
+fn place_light(light: DeltaLight, world: DVec3, coordinates: &Coordinates) -> DeltaLight {
+    let position = coordinates.local(world);
+    match light {
+        DeltaLight::Point { intensity, .. } => {
+            DeltaLight::Point { position, intensity: coordinates.local_intensity(intensity) }
+        }
+        DeltaLight::Spot { direction, intensity, inner_angle, outer_angle, .. } => {
+            let intensity = coordinates.local_intensity(intensity);
+            DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle }
+        }
+        directional @ DeltaLight::Directional { .. } => directional,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{LoadOptions, Loaded, load};
+    use scene::DeltaLight;
+
+    /// Returns the same small room with everything moved by `offset` and scaled by `scale`.
+    fn room(scale: f64, offset: f64) -> Loaded {
+        let at = |x: f64, y: f64, z: f64| {
+            format!("[{:e}, {:e}, {:e}]", x * scale + offset, y * scale + offset, z * scale + offset)
+        };
+        let text = format!(
+            "resolution = [8, 8]\ncamera = {{ origin = {}, target = {}, fov = 60 }}\n\
+            material = [{{ name = \"m\", kind = \"diffuse\", reflectance = 0.5 }}]\n\
+            mesh = [{{ shape = \"sphere\", material = \"m\", transform = [{{ scale = {scale:e} }}, {{ translate = {} }}] }},\
+            {{ shape = \"cube\", material = \"m\", transform = [{{ scale = {:e} }}, {{ translate = {} }}] }}]\n\
+            light = [{{ kind = \"point\", position = {}, intensity = [1, 1, 1] }}]\n",
+            at(0.125, 0.5, 3.0),
+            at(0.125, 0.5, 2.0),
+            at(0.25, 0.5, -1.0),
+            scale * 4.0,
+            at(0.0, 0.0, 0.0),
+            at(0.75, 2.5, 0.375),
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.toml");
+        std::fs::write(&path, text).unwrap();
+        load(&path, &LoadOptions::default()).unwrap()
+    }
+
+    #[test]
+    fn an_offset_of_a_million_loses_nothing() {
+        let (here, there) = (room(1.0, 0.0), room(1.0, 1e6));
+        for (a, b) in here.scene.meshes.iter().zip(&there.scene.meshes) {
+            let worst =
+                a.positions.iter().zip(&b.positions).map(|(a, b)| (a - b).length()).fold(0.0, f32::max);
+            // f64 at 1e6 is good to 1e-10, f32 near 4 to 2.4e-7.
+            assert!(worst <= 5e-7, "{worst}");
+        }
+        assert!((here.cameras.still.origin - there.cameras.still.origin).length() < 5e-7);
+        let position = |loaded: &Loaded| match loaded.scene.lights[0] {
+            DeltaLight::Point { position, .. } => position,
+            _ => panic!(),
+        };
+        assert!((position(&here) - position(&there)).length() < 5e-7);
+        assert!((there.scene.centre - here.scene.centre - 1e6).length() < 1e-9);
+    }
+
+    #[test]
+    fn a_millimetre_at_a_thousand_kilometres_keeps_its_shape() {
+        let (unit, tiny) = (room(1.0, 0.0), room(1e-3, 1e6));
+        for (a, b) in unit.scene.meshes.iter().zip(&tiny.scene.meshes) {
+            let worst =
+                a.positions.iter().zip(&b.positions).map(|(a, b)| (a - b * 1e3).length()).fold(0.0, f32::max);
+            // Rounding of f64 at 1e6, magnified by 1e3.
+            assert!(worst < 1e-6, "{worst}");
+        }
+    }
+
+    #[test]
+    fn scenes_from_micrometres_to_megametres_are_alike() {
+        let unit = room(1.0, 0.0);
+        for scale in [1e-6, 1e6] {
+            let scaled = room(scale, 0.0);
+            for (a, b) in unit.scene.meshes.iter().zip(&scaled.scene.meshes) {
+                assert_eq!(a.triangles, b.triangles);
+                assert!(a.normals.iter().zip(&b.normals).all(|(a, b)| (a - b).length() < 1e-5));
+            }
+        }
+    }
+}

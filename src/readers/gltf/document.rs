@@ -1,0 +1,188 @@
+//! The container: JSON, binary chunk and buffers of a `.gltf` or `.glb` file.
+
+use crate::error::{Place, SceneError};
+use crate::file::{fnv1a, folder_of, read_file};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use gltf_json::{Index, Root, buffer, root::Get};
+use std::path::{Path, PathBuf};
+
+/// Extensions that are read, wholly or as far as the report says.
+const KNOWN: [&str; 12] = [
+    "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
+
+/// A file with its buffers.
+pub(super) struct Document {
+    pub root: Root,
+    /// The file, for messages.
+    pub place: Place,
+    /// Folder that file names are relative to.
+    pub folder: PathBuf,
+    /// Files read, with the hash of their bytes.
+    pub sources: Vec<(PathBuf, u64)>,
+    buffers: Vec<Vec<u8>>,
+}
+
+impl Document {
+    /// Reads the file, to which `from` refers, and its buffers.
+    pub fn open(path: &Path, from: &Place) -> Result<Document, SceneError> {
+        let bytes = read_file(path, from)?;
+        let place = Place::file(path);
+        let (json, binary) = match bytes.starts_with(b"glTF") {
+            true => chunks(&bytes).map_err(|what| SceneError::mesh(place.clone(), what))?,
+            false => (&bytes[..], None),
+        };
+        let root: Root = serde_json::from_slice(json).map_err(|error| {
+            let is_text = binary.is_none() && !bytes.starts_with(b"glTF");
+            let place = if is_text { Place::line(path, error.line() as u32) } else { place.clone() };
+            place.malformed(error.to_string())
+        })?;
+        check_extensions(&root, &place)?;
+        let mut document = Document {
+            root,
+            folder: folder_of(path).to_owned(),
+            sources: vec![(path.to_owned(), fnv1a(&bytes))],
+            buffers: Vec::new(),
+            place,
+        };
+        for i in 0..document.root.buffers.len() {
+            let buffer = document.buffer(i, binary)?;
+            document.buffers.push(buffer);
+        }
+        Ok(document)
+    }
+
+    /// The object of an index.
+    pub fn get<T>(&self, index: Index<T>, what: &str) -> Result<&T, SceneError>
+    where
+        Root: Get<T>,
+    {
+        let missing = || self.wrong(format!("{what} {} does not exist", index.value()));
+        self.root.get(index).ok_or_else(missing)
+    }
+
+    /// The bytes of a view of a buffer.
+    pub fn view(&self, index: Index<buffer::View>) -> Result<&[u8], SceneError> {
+        let view = self.get(index, "buffer view")?;
+        let buffer = self.buffers.get(view.buffer.value()).map_or(&[][..], Vec::as_slice);
+        let start = view.byte_offset.unwrap_or_default().0 as usize;
+        let end = start.checked_add(view.byte_length.0 as usize);
+        let bytes = end.and_then(|end| buffer.get(start..end));
+        bytes.ok_or_else(|| self.wrong(format!("buffer view {} reaches beyond its buffer", index.value())))
+    }
+
+    /// The bytes behind a URI: its own, or those of a file beside this one, whose name is returned then.
+    pub fn resolve(&self, uri: &str) -> Result<Resolved, SceneError> {
+        let Some(data) = uri.strip_prefix("data:") else {
+            return Ok(Resolved::File(self.folder.join(percent_decoded(uri))));
+        };
+        let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
+        let bytes = encoded.and_then(|encoded| STANDARD.decode(encoded).ok());
+        Ok(Resolved::Bytes(bytes.ok_or_else(|| self.wrong("a data URI is not in base64".into()))?))
+    }
+
+    /// The error of damaged contents.
+    pub fn wrong(&self, what: String) -> SceneError {
+        SceneError::mesh(self.place.clone(), what)
+    }
+
+    fn buffer(&mut self, i: usize, binary: Option<&[u8]>) -> Result<Vec<u8>, SceneError> {
+        let buffer = &self.root.buffers[i];
+        let length = buffer.byte_length.0;
+        let mut bytes = match &buffer.uri {
+            Some(uri) => match self.resolve(uri)? {
+                Resolved::Bytes(bytes) => bytes,
+                Resolved::File(path) => {
+                    let bytes = read_file(&path, &self.place)?;
+                    self.sources.push((path, fnv1a(&bytes)));
+                    bytes
+                }
+            },
+            None => binary.filter(|_| i == 0).unwrap_or_default().to_vec(),
+        };
+        if (bytes.len() as u64) < length {
+            let what = format!("buffer {i} has {} bytes of {length}", bytes.len());
+            return Err(self.wrong(what));
+        }
+        bytes.truncate(length as usize);
+        Ok(bytes)
+    }
+}
+
+/// Bytes behind a URI.
+pub(super) enum Resolved {
+    Bytes(Vec<u8>),
+    File(PathBuf),
+}
+
+/// Returns the JSON of a GLB file and its binary chunk.
+fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
+    let word = |at: usize| {
+        let four = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
+        four.map(u32::from_le_bytes).ok_or("the file ends within a header")
+    };
+    let version = word(4)?;
+    if version != 2 {
+        return Err(format!("it is glTF of version {version}, not 2"));
+    }
+    let chunk = |at: usize, kind: &[u8]| {
+        let (length, end) = (word(at)? as usize, at + 8);
+        if bytes.get(at + 4..end) != Some(kind) {
+            return Err("a chunk is of another kind than it should be");
+        }
+        bytes.get(end..end + length).ok_or("the file ends within a chunk")
+    };
+    let json = chunk(12, b"JSON")?;
+    let next = 20 + json.len().next_multiple_of(4);
+    let binary = if next + 8 <= bytes.len() { Some(chunk(next, b"BIN\0")?) } else { None };
+    Ok((json, binary))
+}
+
+fn check_extensions(root: &Root, place: &Place) -> Result<(), SceneError> {
+    let unknown = root.extensions_required.iter().find(|name| !KNOWN.contains(&name.as_str()));
+    let Some(name) = unknown else { return Ok(()) };
+    let remedy = match name.as_str() {
+        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
+            "export the model without mesh compression"
+        }
+        "KHR_texture_basisu" | "EXT_texture_webp" | "EXT_texture_avif" => "export textures as PNG or JPEG",
+        _ => "export the model without it",
+    };
+    Err(place.wrong(format!("the file requires the extension {name}, which is not supported"), remedy))
+}
+
+/// Names of extensions in use that are not read at all.
+pub(super) fn unread_extensions(root: &Root) -> impl Iterator<Item = &String> {
+    root.extensions_used.iter().filter(|name| !KNOWN.contains(&name.as_str()))
+}
+
+fn percent_decoded(uri: &str) -> String {
+    let (bytes, mut decoded) = (uri.as_bytes(), Vec::new());
+    let mut at = 0;
+    while at < bytes.len() {
+        let hex = bytes.get(at + 1..at + 3).and_then(|hex| std::str::from_utf8(hex).ok());
+        match hex.and_then(|hex| u8::from_str_radix(hex, 16).ok()) {
+            Some(byte) if bytes[at] == b'%' => {
+                decoded.push(byte);
+                at += 3;
+            }
+            _ => {
+                decoded.push(bytes[at]);
+                at += 1;
+            }
+        }
+    }
+    String::from_utf8_lossy(&decoded).into_owned()
+}

@@ -1,0 +1,58 @@
+//! Punctual lights (`KHR_lights_punctual`).
+//!
+//! Units: the extension counts in candela (point, spot) and lux (directional), radiance of surfaces in candela a square
+//! metre. They are taken as W/sr, W/m² and W/(sr m²), so that their proportions hold; only Blender writes lights, and
+//! not surfaces, in units 683 times as small as its watts, by which its lights are divided.
+
+use super::document::Document;
+use super::report::Report;
+use crate::error::SceneError;
+use base::math::{Rgb, unit};
+use glam::{DMat4, DVec3, Vec3};
+use gltf_json::extensions::scene::khr_lights_punctual::{Light, Type};
+use gltf_json::validation::Checked;
+use scene::DeltaLight;
+
+/// Lumens that Blender's exporter counts for a watt of its lights.
+const BLENDER_LUMENS_PER_WATT: f32 = 683.0;
+
+/// Units of the file's lights for one of the renderer's.
+pub(super) fn lumens_per_watt(document: &Document) -> f32 {
+    let generator = document.root.asset.generator.as_deref().unwrap_or_default();
+    if generator.contains("Blender") { BLENDER_LUMENS_PER_WATT } else { 1.0 }
+}
+
+/// Returns the light of a node and its position in the world.
+pub(super) fn read(
+    light: &Light,
+    name: &str,
+    to_world: &DMat4,
+    lumens_per_watt: f32,
+    document: &Document,
+    report: &mut Report,
+) -> Result<(DeltaLight, DVec3), SceneError> {
+    let power = Rgb::from(light.color) * (light.intensity / lumens_per_watt);
+    let axis = unit(to_world.transform_vector3(DVec3::NEG_Z));
+    let Some(direction) = axis.map(|axis| axis.as_vec3()) else {
+        return Err(document.wrong(format!("{name} has no direction")));
+    };
+    if light.range.is_some_and(f32::is_finite) {
+        report.note("the range of lights is not modelled", "they shine as far as light does", name);
+    }
+    let position = Vec3::ZERO;
+    let light = match (&light.type_, &light.spot) {
+        (Checked::Valid(Type::Point), _) => DeltaLight::Point { position, intensity: power },
+        (Checked::Valid(Type::Directional), _) => DeltaLight::Directional { direction, irradiance: power },
+        (Checked::Valid(Type::Spot), Some(spot)) => {
+            let (inner, outer) = (spot.inner_cone_angle, spot.outer_cone_angle);
+            if !(0.0 <= inner && inner <= outer && outer > 0.0 && outer <= std::f32::consts::PI) {
+                return Err(document.wrong(format!("{name}: the angles {inner} and {outer} make no cone")));
+            }
+            let what = "the edges of spot lights are linear in the angle, not smooth in its cosine";
+            report.note(what, "their penumbras differ a little", name);
+            DeltaLight::Spot { position, direction, intensity: power, inner_angle: inner, outer_angle: outer }
+        }
+        _ => return Err(document.wrong(format!("{name} is of no known type"))),
+    };
+    Ok((light, to_world.transform_point3(DVec3::ZERO)))
+}

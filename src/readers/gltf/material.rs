@@ -1,0 +1,347 @@
+//! Metallic-roughness materials and their extensions, as principled materials.
+//!
+//! Deviations: a sheet that transmits (no thickness) is smooth, and transmits wholly or not at all. Light that a volume
+//! absorbs depends on its stated thickness, not on a ray's way through it. A clear coat has the principled material's
+//! shape, which at full strength reflects a quarter of an extension's coat; so has sheen.
+
+use super::Importer;
+use super::texture::Slot;
+use crate::error::SceneError;
+use crate::picture::Channel;
+use crate::plan::Look;
+use base::math::Rgb;
+use gltf_json::Index;
+use gltf_json::extensions::material::{Material as Extensions, Volume};
+use gltf_json::material::{AlphaMode, Material as Source};
+use gltf_json::texture::Info;
+use gltf_json::validation::Checked;
+use scene::{Emission, Lobe, Material, Principled, Reflectance, Relief, Share};
+use serde_json::Value;
+
+/// Extensions of materials that are read from their JSON.
+const RAW: [&str; 3] = ["KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_anisotropy"];
+/// Roughness below which glass is smooth.
+const MAX_SMOOTH: f32 = 0.03;
+
+/// Roughness α below which a surface is as smooth as one of this.
+const MIN_ALPHA: f32 = 1e-3;
+/// Principled materials have a ratio of α across over along of 1 less this times their anisotropy.
+const ANISOTROPY_TO_SQUARE: f32 = 0.9;
+
+const RED: Channel = Channel::One(0);
+const GREEN: Channel = Channel::One(1);
+const BLUE: Channel = Channel::One(2);
+const ALPHA: Channel = Channel::One(3);
+
+/// Surfaces of a material.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface {
+    pub look: Look,
+    /// Set of texture coordinates of its textures.
+    pub uv_set: u32,
+}
+
+impl Importer<'_> {
+    /// Surfaces of a material of the file, or of primitives without one.
+    pub(super) fn surface(&mut self, index: Option<Index<Source>>) -> Result<Surface, SceneError> {
+        let number = index.map(|index| index.value());
+        if let Some(surface) = self.surfaces.get(&number) {
+            return Ok(*surface);
+        }
+        let document = self.document;
+        let default = Source::default();
+        let source = match index {
+            Some(index) => document.get(index, "material")?,
+            None => &default,
+        };
+        let name = match (&source.name, number) {
+            (Some(name), _) => name.clone(),
+            (None, Some(number)) => format!("material {number}"),
+            (None, None) => "default".to_owned(),
+        };
+        let uv_set = self.uv_set(source, &name);
+        let emission = self.emission(source, &name)?;
+        let material = self.material(source, &name)?;
+        let material = self.contents.add_material(material, document.place.clone());
+        let surface = Surface { look: Look { material, emission }, uv_set };
+        self.surfaces.insert(number, surface);
+        Ok(surface)
+    }
+
+    /// The one set of texture coordinates that is kept: that of the material's first texture.
+    fn uv_set(&mut self, source: &Source, name: &str) -> u32 {
+        let base = &source.pbr_metallic_roughness;
+        let slots = [&base.base_color_texture, &base.metallic_roughness_texture, &source.emissive_texture];
+        let normal = source.normal_texture.iter().map(|info| Slot::of_normal(info).set);
+        let sets: Vec<u32> =
+            slots.into_iter().flatten().map(|info| Slot::of(info).set).chain(normal).collect();
+        if sets.windows(2).any(|pair| pair[0] != pair[1]) {
+            let what = "a material with several sets of texture coordinates is not modelled";
+            self.report.lacks(what, "the first is used", name);
+        }
+        sets.first().copied().unwrap_or(0)
+    }
+
+    fn emission(&mut self, source: &Source, name: &str) -> Result<Option<Emission>, SceneError> {
+        let extensions = source.extensions.as_ref();
+        let strength = extensions.and_then(|e| e.emissive_strength.as_ref());
+        let strength = strength.map_or(1.0, |e| e.emissive_strength.0);
+        let is_unlit = extensions.is_some_and(|e| e.unlit.is_some());
+        let (factor, texture) = match is_unlit {
+            true => {
+                self.report.lacks("unlit materials are not modelled", "they shine in their colour", name);
+                let base = &source.pbr_metallic_roughness;
+                let [r, g, b, _] = base.base_color_factor.0;
+                (Rgb::new(r, g, b), &base.base_color_texture)
+            }
+            false => (Rgb::from(source.emissive_factor.0) * strength, &source.emissive_texture),
+        };
+        if factor == Rgb::ZERO {
+            return Ok(None);
+        }
+        let texture = match texture {
+            Some(info) => self.texture(&Slot::of(info), Channel::Colour, name)?,
+            None => None,
+        };
+        Ok(Some(Emission { radiance: factor, texture, two_sided: source.double_sided }))
+    }
+
+    fn material(&mut self, source: &Source, name: &str) -> Result<Material, SceneError> {
+        let default = Extensions::default();
+        let extensions = source.extensions.as_ref().unwrap_or(&default);
+        self.report_unread(source, extensions, name);
+        let opacity = self.opacity(source, name)?;
+        let relief = self.relief(source, name)?;
+        let material =
+            Material { name: name.to_owned(), two_sided: true, opacity, relief, ..Material::default() };
+        if extensions.unlit.is_some() {
+            return Ok(material);
+        }
+        let pbr = &source.pbr_metallic_roughness;
+        let base_color = self.base_colour(source, extensions.volume.as_ref(), name)?;
+        let roughness =
+            self.share(pbr.roughness_factor.0, pbr.metallic_roughness_texture.as_ref(), GREEN, name)?;
+        let metallic =
+            self.share(pbr.metallic_factor.0, pbr.metallic_roughness_texture.as_ref(), BLUE, name)?;
+        let transmission = extensions.transmission.as_ref();
+        let spec_trans = match transmission {
+            Some(t) => self.share(t.transmission_factor.0, t.transmission_texture.as_ref(), RED, name)?,
+            None => Share::Constant(0.0),
+        };
+        let eta = relative_index(extensions);
+        let is_sheet = extensions.volume.as_ref().is_none_or(|volume| volume.thickness_factor.0 <= 0.0);
+        let is_smooth = matches!(roughness, Share::Constant(roughness) if roughness <= MAX_SMOOTH);
+        let is_clear = matches!(spec_trans, Share::Constant(share) if share >= 1.0);
+        let transmits = transmission.is_some_and(|t| t.transmission_factor.0 >= 0.5);
+        if is_sheet && transmission.is_some_and(|t| t.transmission_factor.0 > 0.0) && !(is_smooth && is_clear)
+        {
+            let what = "sheets that transmit in part, or are rough, are not modelled";
+            self.report.lacks(what, "they are smooth, and clear from a transmission of .5", name);
+        }
+        if transmits && (is_sheet || is_smooth && is_clear) {
+            let white = Reflectance::Constant(Rgb::ONE);
+            let glass =
+                Lobe::Dielectric { eta, thin: is_sheet, reflectance: white, transmittance: base_color };
+            return Ok(Material { lobes: vec![glass], ..material });
+        }
+        let spec_trans = if is_sheet { Share::Constant(0.0) } else { spec_trans };
+        let mut principled =
+            Principled { base_color, metallic, roughness, eta, spec_trans, ..Principled::default() };
+        self.layers(&extensions.others, &mut principled, name)?;
+        Ok(Material { principled: Some(Box::new(principled)), ..material })
+    }
+
+    /// Clear coat, sheen and anisotropy.
+    fn layers(
+        &mut self,
+        extensions: &serde_json::Map<String, Value>,
+        principled: &mut Principled,
+        name: &str,
+    ) -> Result<(), SceneError> {
+        let [coat, sheen, anisotropy] = RAW.map(|key| extensions.get(key));
+        if let Some(coat) = coat {
+            let factor = number(coat, "clearcoatFactor").unwrap_or(0.0);
+            let texture = slot(coat, "clearcoatTexture");
+            principled.clearcoat = self.share(factor, texture.as_ref(), RED, name)?;
+            let alpha = number(coat, "clearcoatRoughnessFactor").unwrap_or(0.0).powi(2);
+            principled.clearcoat_gloss = ((0.1 - alpha) / 0.099).clamp(0.0, 1.0);
+            for key in ["clearcoatRoughnessTexture", "clearcoatNormalTexture"] {
+                if coat.get(key).is_some() {
+                    self.report.lacks(&format!("{key} is not modelled"), "it is left out", name);
+                }
+            }
+            self.report.lacks(
+                "a clear coat reflects a quarter of what it should",
+                "as principled ones do",
+                name,
+            );
+        }
+        if let Some(sheen) = sheen {
+            let colour = sheen.get("sheenColorFactor").and_then(Value::as_array);
+            let channels = colour.into_iter().flatten().filter_map(Value::as_f64);
+            let strength = channels.fold(0.0, f64::max).clamp(0.0, 1.0) as f32;
+            principled.sheen = Share::Constant(strength);
+            self.report.lacks(
+                "sheen of a colour, roughness or texture of its own",
+                "it is white and soft",
+                name,
+            );
+        }
+        if let Some(anisotropy) = anisotropy {
+            self.stretch(anisotropy, principled, name);
+        }
+        Ok(())
+    }
+
+    /// Anisotropy: α along the extension's direction is that between α and 1 at the square of its strength.
+    fn stretch(&mut self, anisotropy: &Value, principled: &mut Principled, name: &str) {
+        let strength = number(anisotropy, "anisotropyStrength").unwrap_or(0.0).clamp(0.0, 1.0);
+        if !(strength > 0.0) {
+            return;
+        }
+        if anisotropy.get("anisotropyTexture").is_some() {
+            let fallback = "its strength and rotation are the same everywhere";
+            self.report.lacks("anisotropyTexture is not modelled", fallback, name);
+        }
+        let Share::Constant(roughness) = principled.roughness else {
+            let what = "anisotropic roughness that is textured is not modelled";
+            self.report.lacks(what, "it is isotropic", name);
+            return;
+        };
+        let across = (roughness * roughness).max(MIN_ALPHA);
+        let along = across + (1.0 - across) * strength * strength;
+        let wanted = (1.0 - across / along) / ANISOTROPY_TO_SQUARE;
+        if wanted > 1.0 {
+            let what = "anisotropic roughness that differs by more than ten times";
+            self.report.lacks(what, "it differs by ten times about its mean", name);
+        }
+        principled.anisotropic = wanted.min(1.0);
+        principled.roughness = Share::Constant((along * across).sqrt().sqrt());
+        let rotation = number(anisotropy, "anisotropyRotation").unwrap_or(0.0);
+        principled.anisotropic_rotation = if rotation.is_finite() { rotation } else { 0.0 };
+    }
+
+    /// A factor from 0 to 1, times a channel of a texture.
+    fn share(
+        &mut self,
+        factor: f32,
+        texture: Option<&Info>,
+        channel: Channel,
+        name: &str,
+    ) -> Result<Share, SceneError> {
+        let factor = if factor.is_finite() { factor.clamp(0.0, 1.0) } else { 0.0 };
+        let texture = match texture {
+            Some(info) if factor > 0.0 => self.texture(&Slot::of(info), channel, name)?,
+            _ => None,
+        };
+        Ok(match texture {
+            Some(texture) => Share::Textured { texture, scale: factor },
+            None => Share::Constant(factor),
+        })
+    }
+
+    fn base_colour(
+        &mut self,
+        source: &Source,
+        volume: Option<&Volume>,
+        name: &str,
+    ) -> Result<Reflectance, SceneError> {
+        let base = &source.pbr_metallic_roughness;
+        let [r, g, b, _] = base.base_color_factor.0;
+        let mut scale = Rgb::new(r, g, b);
+        if let Some(volume) = volume.filter(|volume| volume.attenuation_distance.0.is_finite()) {
+            let exponent = volume.thickness_factor.0 / volume.attenuation_distance.0;
+            let passed = Rgb::from(volume.attenuation_color.0).max(Rgb::ZERO).powf(exponent.max(0.0));
+            scale *= passed.min(Rgb::ONE);
+            let what = "light that volumes absorb depends on their stated thickness";
+            self.report.lacks(what, "it is the same for all ways through them", name);
+        }
+        let texture = match &base.base_color_texture {
+            Some(info) => self.texture(&Slot::of(info), Channel::Colour, name)?,
+            None => None,
+        };
+        Ok(match texture {
+            Some(texture) => Reflectance::Textured { texture, scale },
+            None => Reflectance::Constant(scale),
+        })
+    }
+
+    fn relief(&mut self, source: &Source, name: &str) -> Result<Option<Relief>, SceneError> {
+        let Some(normal) = &source.normal_texture else { return Ok(None) };
+        let strength = if normal.scale.is_finite() { normal.scale } else { 1.0 };
+        let texture = self.texture(&Slot::of_normal(normal), Channel::Data, name)?;
+        Ok(texture.map(|texture| Relief::Normals { texture, strength, y_along_v: true }))
+    }
+
+    /// The share of the surface that its alpha mode leaves; none for all of it.
+    fn opacity(&mut self, source: &Source, name: &str) -> Result<Option<Share>, SceneError> {
+        let base = &source.pbr_metallic_roughness;
+        let factor = base.base_color_factor.0[3];
+        let texture = base.base_color_texture.as_ref();
+        let opacity = match (&source.alpha_mode, texture) {
+            (Checked::Valid(AlphaMode::Mask), _) => {
+                let cutoff = source.alpha_cutoff.as_ref().map_or(0.5, |cutoff| cutoff.0);
+                // A texel stays where its alpha times the factor reaches the cutoff.
+                match texture {
+                    Some(info) if factor >= cutoff => {
+                        self.share(1.0, Some(info), Channel::AlphaFrom(cutoff / factor), name)?
+                    }
+                    _ => Share::Constant(f32::from(u8::from(factor >= cutoff))),
+                }
+            }
+            (Checked::Valid(AlphaMode::Blend), texture) => self.share(factor, texture, ALPHA, name)?,
+            (Checked::Valid(AlphaMode::Opaque) | Checked::Invalid, _) => return Ok(None),
+        };
+        Ok(Some(opacity).filter(|opacity| *opacity != Share::Constant(1.0)))
+    }
+
+    /// Names all that a material asks for and does not get.
+    fn report_unread(&mut self, source: &Source, extensions: &Extensions, name: &str) {
+        for key in extensions.others.keys() {
+            match key.as_str() {
+                key if !RAW.contains(&key) => {
+                    self.report.lacks(
+                        &format!("the extension {key} is not modelled"),
+                        "it is left out",
+                        name,
+                    );
+                }
+                _ => {}
+            }
+        }
+        if let Some(specular) = &extensions.specular {
+            let colour = Rgb::from(specular.specular_color_factor.0);
+            if colour.max_element() != colour.min_element() {
+                self.report.lacks("coloured reflection of dielectrics", "it is white", name);
+            }
+            if specular.specular_texture.is_some() || specular.specular_color_texture.is_some() {
+                self.report.lacks("textures of dielectrics' reflection", "their factors stand alone", name);
+            }
+        }
+        if source.occlusion_texture.is_some() {
+            self.report.note("baked occlusion is not used", "light in crevices is computed", name);
+        }
+    }
+}
+
+/// Index of refraction of the dielectric, dimmed as `KHR_materials_specular` asks.
+fn relative_index(extensions: &Extensions) -> f32 {
+    let ior = extensions.ior.as_ref().map_or(1.5, |ior| ior.ior.0);
+    let normal_reflectance = ((ior - 1.0) / (ior + 1.0)).powi(2);
+    let specular = extensions.specular.as_ref().map_or(1.0, |specular| {
+        specular.specular_factor.0 * Rgb::from(specular.specular_color_factor.0).max_element()
+    });
+    let reflectance = normal_reflectance * specular;
+    let root = if reflectance.is_finite() { reflectance.clamp(1e-6, 0.9).sqrt() } else { 0.2 };
+    (1.0 + root) / (1.0 - root)
+}
+
+/// A number of an extension that is read from its JSON.
+fn number(extension: &Value, key: &str) -> Option<f32> {
+    extension.get(key).and_then(Value::as_f64).map(|v| v as f32)
+}
+
+/// A use of a texture, likewise.
+fn slot(extension: &Value, key: &str) -> Option<Info> {
+    serde_json::from_value(extension.get(key)?.clone()).ok()
+}

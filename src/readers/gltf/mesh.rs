@@ -1,0 +1,78 @@
+//! Primitives to triangle meshes.
+
+use super::document::Document;
+use super::report::Report;
+use crate::error::SceneError;
+use crate::mesh::RawMesh;
+use glam::{DVec3, Vec2, Vec3};
+use gltf_json::mesh::{Mode, Primitive, Semantic};
+use gltf_json::validation::Checked;
+
+/// Reads a primitive with the texture coordinates of set `uv_set`; none if it has no triangles. `what` names it.
+pub(super) fn read(
+    document: &Document,
+    primitive: &Primitive,
+    uv_set: u32,
+    what: &str,
+    report: &mut Report,
+) -> Result<Option<RawMesh>, SceneError> {
+    let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
+    let mode = match &primitive.mode {
+        Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => *mode,
+        Checked::Valid(_) => {
+            report.lacks("points and lines are not modelled", "they are left out", what);
+            return Ok(None);
+        }
+        Checked::Invalid => return Err(document.wrong(format!("{what}: its mode is unknown"))),
+    };
+    if attribute(Semantic::Colors(0)).is_some() {
+        report.lacks("colours of vertices are not modelled", "their factor is left out", what);
+    }
+    if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
+        report.lacks("morph targets are not modelled", "the base shape stands", what);
+    }
+    let Some(positions) = attribute(Semantic::Positions) else {
+        return Err(document.wrong(format!("{what} has no positions")));
+    };
+    let positions = document.vectors::<3>(positions, what)?;
+    let normals = match attribute(Semantic::Normals) {
+        Some(normals) => document.vectors::<3>(normals, what)?,
+        None => Vec::new(),
+    };
+    let uvs = match attribute(Semantic::TexCoords(uv_set)) {
+        Some(uvs) => document.vectors::<2>(uvs, what)?,
+        None => Vec::new(),
+    };
+    for (name, length) in [("normals", normals.len()), ("texture coordinates", uvs.len())] {
+        if length != 0 && length != positions.len() {
+            return Err(
+                document.wrong(format!("{what} has {} vertices and {length} {name}", positions.len()))
+            );
+        }
+    }
+    let corners = match primitive.indices {
+        Some(indices) => document.integers(indices, what)?,
+        None => (0..positions.len() as u32).collect(),
+    };
+    Ok(Some(RawMesh {
+        positions: positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect(),
+        normals: normals.into_iter().map(Vec3::from).collect(),
+        uvs: uvs.into_iter().map(Vec2::from).collect(),
+        triangles: triangles(&corners, mode),
+        groups: Vec::new(),
+    }))
+}
+
+fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
+    let windows = corners.windows(3).map(|w| [w[0], w[1], w[2]]);
+    match mode {
+        Mode::TriangleStrip => {
+            windows.enumerate().map(|(i, [a, b, c])| if i % 2 == 0 { [a, b, c] } else { [b, a, c] }).collect()
+        }
+        Mode::TriangleFan => {
+            let Some((&first, rest)) = corners.split_first() else { return Vec::new() };
+            rest.windows(2).map(|w| [first, w[0], w[1]]).collect()
+        }
+        _ => corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect(),
+    }
+}

@@ -1,0 +1,117 @@
+//! Textures: pictures, samplers and transforms of texture coordinates.
+
+use super::Importer;
+use super::document::Resolved;
+use crate::error::SceneError;
+use crate::picture::Channel;
+use crate::plan::{Image, PictureSource, TexturePlan};
+use glam::{Mat3, Vec2, Vec3};
+use gltf_json::extensions::texture::TextureTransform;
+use gltf_json::material::NormalTexture;
+use gltf_json::texture::{Info, MagFilter, Sampler, Texture, WrappingMode};
+use gltf_json::validation::Checked;
+use gltf_json::{Index, image};
+use scene::{Filter, TextureId, Wrap};
+
+/// A material's use of a texture.
+#[derive(Clone, Debug)]
+pub(super) struct Slot {
+    texture: Index<Texture>,
+    /// Set of texture coordinates.
+    pub set: u32,
+    transform: Option<TextureTransform>,
+}
+
+impl Slot {
+    pub fn of(info: &Info) -> Slot {
+        let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
+        Slot::new(info.index, info.tex_coord, transform)
+    }
+
+    pub fn of_normal(info: &NormalTexture) -> Slot {
+        let raw = info.extensions.as_ref().and_then(|e| e.others.get("KHR_texture_transform"));
+        let transform = raw.and_then(|raw| serde_json::from_value(raw.clone()).ok());
+        Slot::new(info.index, info.tex_coord, transform)
+    }
+
+    fn new(texture: Index<Texture>, set: u32, transform: Option<TextureTransform>) -> Slot {
+        let set = transform.as_ref().and_then(|transform| transform.tex_coord).unwrap_or(set);
+        Slot { texture, set, transform }
+    }
+
+    /// Transform of texture coordinates that count v upwards, as all do here but glTF's own.
+    fn to_uv(&self) -> Mat3 {
+        let Some(transform) = &self.transform else { return Mat3::IDENTITY };
+        let (sin, cos) = transform.rotation.0.sin_cos();
+        let turn = Mat3::from_cols(Vec3::new(cos, -sin, 0.0), Vec3::new(sin, cos, 0.0), Vec3::Z);
+        let scale = Mat3::from_scale(Vec2::from(transform.scale.0));
+        let flip = Mat3::from_cols(Vec3::X, Vec3::NEG_Y, Vec3::new(0.0, 1.0, 1.0));
+        flip * Mat3::from_translation(Vec2::from(transform.offset.0)) * turn * scale * flip
+    }
+}
+
+impl Importer<'_> {
+    /// The texture of a slot of the material `name`; none if its picture is of a kind that cannot be read.
+    pub(super) fn texture(
+        &mut self,
+        slot: &Slot,
+        channel: Channel,
+        name: &str,
+    ) -> Result<Option<TextureId>, SceneError> {
+        let texture = self.document.get(slot.texture, "texture")?;
+        if texture.source.value() == u32::MAX as usize {
+            let what = "textures of other kinds than PNG and JPEG are not supported";
+            self.report.lacks(what, "they are left out", name);
+            return Ok(None);
+        }
+        let picture = self.document.get(texture.source, "image")?;
+        let default = Sampler::default();
+        let sampler = match texture.sampler {
+            Some(index) => self.document.get(index, "sampler")?,
+            None => &default,
+        };
+        let [wrap, wrap_v] = [&sampler.wrap_s, &sampler.wrap_t].map(|mode| match mode {
+            Checked::Valid(WrappingMode::ClampToEdge) => Wrap::Clamp,
+            Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::Mirror,
+            Checked::Valid(WrappingMode::Repeat) | Checked::Invalid => Wrap::Repeat,
+        });
+        if wrap != wrap_v {
+            self.report.lacks("textures that extend differently along u and v", "v is as u", name);
+        }
+        let filter = match sampler.mag_filter {
+            Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
+            _ => Filter::Bilinear,
+        };
+        let image_name = picture.name.clone().unwrap_or_else(|| format!("image {}", texture.source.value()));
+        let source = self.picture(picture, texture.source)?;
+        let image = Image::Part { name: image_name, source, channel };
+        let to_uv = slot.to_uv();
+        if !to_uv.is_finite() {
+            return Err(self.document.wrong(format!("a texture transform of {name} is not finite")));
+        }
+        let place = self.document.place.clone();
+        Ok(Some(self.contents.add_texture(TexturePlan { place, image, filter, wrap, to_uv })))
+    }
+
+    fn picture(
+        &mut self,
+        picture: &image::Image,
+        index: Index<image::Image>,
+    ) -> Result<PictureSource, SceneError> {
+        if let Some(source) = self.pictures.get(&index.value()) {
+            return Ok(source.clone());
+        }
+        let source = match (&picture.uri, picture.buffer_view) {
+            (Some(uri), _) => match self.document.resolve(uri)? {
+                Resolved::Bytes(bytes) => PictureSource::Bytes(bytes.into()),
+                Resolved::File(path) => PictureSource::File(path),
+            },
+            (None, Some(view)) => PictureSource::Bytes(self.document.view(view)?.into()),
+            (None, None) => {
+                return Err(self.document.wrong(format!("image {} has no picture", index.value())));
+            }
+        };
+        self.pictures.insert(index.value(), source.clone());
+        Ok(source)
+    }
+}

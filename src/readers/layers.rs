@@ -1,0 +1,69 @@
+//! Materials made of other materials: coats over them, and blends.
+
+use super::error::{Log, Place, SceneError};
+use base::math::Rgb;
+use scene::{Blend, Coat, Lobe, Material, Reflectance, Share};
+
+/// A surface of a coat.
+pub(super) struct Surface {
+    /// Index of refraction inside over that outside.
+    pub eta: f32,
+    pub lobe: Lobe,
+    /// Share of the light that is left on its way through the coat and back.
+    pub through: Rgb,
+}
+
+/// The material under a dielectric coat: a diffuse one is that of plastic, and lobes lose at the coat as much as at
+/// normal incidence. Materials that cannot be coated are left bare, with a warning.
+pub(super) fn coated(
+    mut nested: Material,
+    surface: Surface,
+    place: &Place,
+    log: &mut Log,
+) -> Result<Material, SceneError> {
+    let Surface { eta, lobe, through } = surface;
+    let transmits = |lobe: &Lobe| matches!(lobe, Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. });
+    let is_layered = nested.coat.is_some() || nested.principled.is_some() || nested.blend.is_some();
+    if is_layered || nested.lobes.iter().any(transmits) {
+        let what = "a coating of plastic, glass, principled materials or blends is not modelled";
+        log.warn(place, what, "it is left out")?;
+        return Ok(nested);
+    }
+    let normal = 4.0 * eta / ((eta + 1.0) * (eta + 1.0));
+    for lobe in &mut nested.lobes {
+        if let Lobe::Rough { scale, .. } | Lobe::Anisotropic { scale, .. } | Lobe::Mirror { scale, .. } = lobe
+        {
+            *scale = scale.times(through * (normal * normal));
+        }
+    }
+    nested.diffuse = nested.diffuse.times(through);
+    nested.coat = Some(Coat { eta, nonlinear: true });
+    nested.lobes.insert(0, lobe);
+    Ok(nested)
+}
+
+/// A mixture of two materials, of the second to the share `weight`; masks and reliefs of the second, and a blend as the
+/// first, are left out, with a warning.
+pub(super) fn blended(
+    weight: Share,
+    [first, other]: [Material; 2],
+    place: &Place,
+    log: &mut Log,
+) -> Result<Material, SceneError> {
+    let is_based =
+        |material: &Material| material.principled.is_some() || material.diffuse != Reflectance::BLACK;
+    let coat = |material: &Material| (material.coat, material.principled.is_some());
+    if is_based(&first) && is_based(&other) && coat(&first) != coat(&other) {
+        let fallback = "that of the first is on both";
+        log.warn(place, "a blend of bases under different coats is not modelled", fallback)?;
+    }
+    for (is_left_out, what) in [
+        (first.blend.is_some(), "a blend as the first material of a blend"),
+        (other.opacity.is_some() || other.relief.is_some(), "a mask or relief of the second material"),
+    ] {
+        if is_left_out {
+            log.warn(place, format!("{what} is not modelled"), "it is left out")?;
+        }
+    }
+    Ok(Material { blend: Some(Box::new(Blend { weight, other })), ..first })
+}

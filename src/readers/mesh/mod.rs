@@ -1,0 +1,132 @@
+//! Geometry from files and analytic shapes: each reader yields a [`RawMesh`] in the object's own coordinates,
+//! and [`place`] transforms it to world coordinates as Mitsuba does.
+//!
+//! Front sides: Mitsuba decides by the shading normal (emission, one-sided materials), this renderer by the
+//! winding. So where the vertex normals oppose the winding (mirrored transforms, careless exporters), the
+//! winding is reversed.
+
+pub mod mtl;
+pub mod obj;
+pub mod ply;
+mod polygon;
+pub mod serialized;
+pub mod shapes;
+mod smooth;
+
+pub(crate) use smooth::vertex_normals as smooth_normals;
+
+use crate::draft::DraftMesh;
+use base::math::unit;
+use glam::{DMat4, DVec3, Vec2, Vec3};
+
+/// A mesh in its own coordinates, as read from its file.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RawMesh {
+    pub positions: Vec<DVec3>,
+    /// Normals by vertex, or empty.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates by vertex, or empty; v as in the file.
+    pub uvs: Vec<Vec2>,
+    pub triangles: Vec<[u32; 3]>,
+    /// Material groups: name and first triangle, ascending.
+    pub groups: Vec<(String, usize)>,
+}
+
+/// Choice of a mesh's shading normals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Normals {
+    /// Geometric normals of the faces.
+    Flat,
+    /// Normals of the file, else those of the faces.
+    AsGiven,
+    /// Normals of the file, else smooth ones are computed.
+    Smooth,
+}
+
+/// Options for placing a raw mesh in the world.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placement {
+    pub to_world: DMat4,
+    pub normals: Normals,
+    /// True if the front is the other side.
+    pub flip_normals: bool,
+    /// True if texture coordinates count v from the top: v becomes 1 - v.
+    pub v_down: bool,
+    /// True if every triangle gets its barycentric coordinates as uv where the file has none (Mitsuba's
+    /// convention).
+    pub needs_uv: bool,
+}
+
+/// Returns the mesh in world coordinates; name, material and emission are left for the caller to fill in.
+pub fn place(raw: RawMesh, how: &Placement) -> DraftMesh {
+    let mut mesh = DraftMesh {
+        positions: raw.positions.iter().map(|&p| how.to_world.transform_point3(p)).collect(),
+        triangles: raw.triangles,
+        ..DraftMesh::default()
+    };
+    mesh.uvs = raw.uvs;
+    if how.v_down {
+        mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
+    }
+    if how.normals != Normals::Flat {
+        if raw.normals.is_empty() && how.normals == Normals::Smooth {
+            mesh.normals = smooth::vertex_normals(&mesh.positions, &mesh.triangles);
+        } else {
+            let linear = glam::DMat3::from_mat4(how.to_world);
+            // Cofactors, not the inverse: same direction up to the determinant's sign, and no division by 0.
+            let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+            let cofactor = cofactor(&linear) * sign;
+            let normals =
+                raw.normals.iter().map(|n| unit(cofactor * n.as_dvec3()).unwrap_or_default().as_vec3());
+            mesh.normals = normals.collect();
+        }
+    }
+    if mesh.uvs.is_empty() && how.needs_uv {
+        give_barycentric_uvs(&mut mesh);
+    }
+    if how.flip_normals {
+        if mesh.normals.is_empty() {
+            mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        mesh.normals.iter_mut().for_each(|n| *n = -*n);
+    }
+    follow_normals(&mut mesh);
+    mesh
+}
+
+fn cofactor(m: &glam::DMat3) -> glam::DMat3 {
+    glam::DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis))
+}
+
+/// Duplicates shared vertices and gives each triangle (0,0), (1,0), (0,1) in Mitsuba's v-down convention.
+fn give_barycentric_uvs(mesh: &mut DraftMesh) {
+    let corners = || mesh.triangles.iter().flatten().map(|&i| i as usize);
+    if corners().any(|i| i >= mesh.positions.len()) || mesh.triangles.len() > (u32::MAX / 3) as usize {
+        return; // left for the sanitiser
+    }
+    let positions = corners().map(|i| mesh.positions[i]).collect();
+    if !mesh.normals.is_empty() {
+        mesh.normals = corners().map(|i| mesh.normals[i]).collect();
+    }
+    mesh.positions = positions;
+    let uvs = [Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(0.0, 0.0)];
+    mesh.uvs = (0..mesh.triangles.len()).flat_map(|_| uvs).collect();
+    mesh.triangles = (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+}
+
+/// Reverses every triangle whose vertex normals point, in sum, away from its geometric normal.
+fn follow_normals(mesh: &mut DraftMesh) {
+    if mesh.normals.is_empty() {
+        return;
+    }
+    let (positions, normals) = (&mesh.positions, &mesh.normals);
+    for t in &mut mesh.triangles {
+        let [a, b, c] = t.map(|i| positions.get(i as usize).copied().unwrap_or(DVec3::NAN));
+        let sum: DVec3 =
+            t.map(|i| normals.get(i as usize).map_or(DVec3::ZERO, |n| n.as_dvec3())).iter().sum();
+        if (b - a).cross(c - a).dot(sum) < 0.0 {
+            t.swap(1, 2);
+            mesh.turned += 1;
+        }
+    }
+}

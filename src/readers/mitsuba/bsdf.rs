@@ -1,0 +1,251 @@
+//! Bsdfs to materials.
+//!
+//! Deviations: anisotropic glass and layered coatings have no counterpart; each is replaced by the
+//! nearest material, with a warning.
+
+use super::Converter;
+use super::bsdf_kinds::{diffuse, glass};
+use super::tree::Object;
+use super::value::numbers;
+use crate::error::SceneError;
+use crate::layers;
+use crate::layers::Surface;
+use base::math::{Rgb, luminance};
+use scene::{Fresnel, Lobe, Material, MaterialId, Reflectance, Relief, Share};
+use std::rc::Rc;
+
+/// Share of the light lost by the weights of a mixture, above which it is absorbed: less is rounding.
+const MIN_LOST: f64 = 1e-4;
+
+impl Converter<'_> {
+    /// The material of a shape: its bsdf's, or Mitsuba's default, which is black on emitters.
+    pub(super) fn material_of_shape(
+        &mut self,
+        bsdf: Option<&Rc<Object>>,
+        emits: bool,
+    ) -> Result<MaterialId, SceneError> {
+        let Some(bsdf) = bsdf else {
+            let slot = usize::from(emits);
+            if let Some(id) = self.default_materials[slot] {
+                return Ok(id);
+            }
+            let albedo = Rgb::splat(if emits { 0.0 } else { 0.5 });
+            let material = diffuse("default".into(), Reflectance::Constant(albedo));
+            let id = self.contents.add_material(material, self.document.root.place.clone());
+            self.default_materials[slot] = Some(id);
+            return Ok(id);
+        };
+        // The document keeps every object, so the address is its identity.
+        let key = Rc::as_ptr(bsdf);
+        if let Some((_, id)) = self.material_of.iter().find(|(object, _)| *object == key) {
+            return Ok(*id);
+        }
+        let mut material = self.material(bsdf, 0)?;
+        if let Some(id) = &bsdf.id {
+            material.name = id.clone();
+        }
+        let id = self.contents.add_material(material, bsdf.place.clone());
+        self.material_of.push((key, id));
+        Ok(id)
+    }
+
+    fn material(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        if depth > 8 {
+            return Err(bsdf.place.wrong("bsdfs refer to each other", "break the circle"));
+        }
+        let name = bsdf.id.clone().unwrap_or_else(|| match bsdf.place.line {
+            Some(line) => format!("{}:{line}", bsdf.plugin),
+            None => bsdf.plugin.clone(),
+        });
+        let material = match bsdf.plugin.as_str() {
+            "diffuse" => {
+                // 0.6 knows both names.
+                let old = bsdf.has("diffuse_reflectance");
+                let parameter = if old { "diffuse_reflectance" } else { "reflectance" };
+                diffuse(name, self.reflectance(bsdf, parameter, 0.5)?)
+            }
+            "roughdiffuse" => {
+                bsdf.ignore(&["alpha", "use_fast_approx"]);
+                self.log.warn(&bsdf.place, "a rough diffuse surface is not modelled", "it is Lambertian")?;
+                diffuse(name, self.reflectance(bsdf, "reflectance", 0.5)?)
+            }
+            "difftrans" => {
+                self.log.warn(
+                    &bsdf.place,
+                    "diffuse transmission is not modelled",
+                    "the surface reflects it",
+                )?;
+                diffuse(name, self.reflectance(bsdf, "transmittance", 0.5)?)
+            }
+            "plastic" | "roughplastic" => self.plastic(bsdf, name)?,
+            "conductor" | "roughconductor" => self.conductor(bsdf, name)?,
+            "dielectric" | "thindielectric" | "roughdielectric" => self.dielectric(bsdf, name)?,
+            "principled" => self.principled(bsdf, name)?,
+            "phong" | "ward" => self.classic_glossy(bsdf, name)?,
+            "null" => glass(name, (1.0, false), [Reflectance::Constant(Rgb::ONE); 2]),
+            "twosided" => self.two_sided(bsdf, depth)?,
+            "mask" => self.masked(bsdf, depth)?,
+            "bumpmap" | "bump" | "normalmap" => self.relieved(bsdf, depth)?,
+            "blendbsdf" => self.blended(bsdf, depth)?,
+            "coating" | "roughcoating" => self.coated(bsdf, depth)?,
+            "mixturebsdf" => self.mixed(bsdf, depth)?,
+            other => {
+                let what = format!("the bsdf \"{other}\" is not modelled");
+                self.log.warn(&bsdf.place, what, "a diffuse grey of 0.5 stands in")?;
+                return Ok(diffuse(name, Reflectance::Constant(Rgb::splat(0.5))));
+            }
+        };
+        bsdf.report_unused(self.log)?;
+        Ok(material)
+    }
+
+    /// The nested bsdf seen from both sides.
+    fn two_sided(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        let nested = self.nested(bsdf, depth)?;
+        if let [Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. }, ..] = nested.lobes[..] {
+            self.log.warn(&bsdf.place, "twosided stands around a transmitting bsdf", "it is left out")?;
+        }
+        Ok(Material { two_sided: true, ..nested })
+    }
+
+    /// The nested bsdf with gaps.
+    fn masked(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        let opacity = self.share(bsdf, "opacity", 0.5)?;
+        let nested = self.nested(bsdf, depth)?;
+        let opacity = match (opacity, nested.opacity) {
+            (opacity, None) => opacity,
+            (Share::Constant(a), Some(Share::Constant(b))) => Share::Constant(a * b),
+            (Share::Constant(a), Some(Share::Textured { texture, scale })) => {
+                Share::Textured { texture, scale: a * scale }
+            }
+            (opacity, Some(_)) => {
+                self.log.warn(
+                    &bsdf.place,
+                    "a mask of a mask is not modelled",
+                    "the inner one is left out",
+                )?;
+                opacity
+            }
+        };
+        Ok(Material { opacity: Some(opacity), ..nested })
+    }
+
+    /// The nested bsdf under a dielectric coat: a diffuse one is that of plastic, and lobes lose at the coat as much as
+    /// at normal incidence.
+    fn coated(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        let eta = self.relative_ior(bsdf, "bk7")?;
+        let scale = self.reflectance(bsdf, "specular_reflectance", 1.0)?;
+        let absorption = self.colour(bsdf, "sigma_a")?.unwrap_or(Rgb::ZERO);
+        let absorbed = -2.0 * bsdf.positive("thickness", 1.0)? as f32 * absorption;
+        let through = Rgb::from_array(absorbed.to_array().map(f32::exp));
+        let fresnel = Fresnel::Dielectric(eta);
+        let coat = match bsdf.plugin.as_str() {
+            "coating" => Lobe::Mirror { fresnel, scale },
+            _ => self.rough(bsdf, fresnel, scale)?,
+        };
+        let nested = self.nested(bsdf, depth)?;
+        let coats_before = nested.lobes.len();
+        let surface = Surface { eta, lobe: coat, through };
+        let nested = layers::coated(nested, surface, &bsdf.place, self.log)?;
+        if nested.lobes.len() == coats_before {
+            return Ok(nested);
+        }
+        let what =
+            format!("the {} reflects light between it and what it covers as plastic does", bsdf.plugin);
+        self.log.note(&bsdf.place, what, "the plugin itself does not");
+        Ok(nested)
+    }
+
+    /// Two nested bsdfs, mixed.
+    fn blended(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        let weight = self.share(bsdf, "weight", 0.5)?;
+        let nested = self.tagged(bsdf, "bsdf")?;
+        let [first, second] = &nested[..] else {
+            let what = format!("the bsdf \"{}\" holds {} others", bsdf.plugin, nested.len());
+            return Err(bsdf.place.wrong(what, "nest two"));
+        };
+        let (first, other) = (self.material(first, depth + 1)?, self.material(second, depth + 1)?);
+        layers::blended(weight, [first, other], &bsdf.place, self.log)
+    }
+
+    /// The nested bsdf with a relief.
+    fn relieved(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        let nested = self.nested(bsdf, depth)?;
+        let normals = bsdf.plugin == "normalmap";
+        let named = if normals { self.document.named(bsdf, "normalmap")? } else { None };
+        let texture = match named {
+            Some(texture) => Some(texture),
+            None => self.tagged(bsdf, "texture")?.into_iter().next(),
+        };
+        let scale = bsdf.float("scale")?.unwrap_or(1.0) as f32;
+        let relief = match texture.map(|texture| self.texture(&texture, 0)).transpose()? {
+            Some(Reflectance::Textured { texture, .. }) if normals => {
+                Some(Relief::Normals { texture, strength: 1.0, y_along_v: false })
+            }
+            Some(Reflectance::Textured { texture, scale: factor }) => {
+                Some(Relief::Heights { texture, scale: scale * luminance(factor) })
+            }
+            _ => None,
+        };
+        if relief.is_some() && nested.relief.is_some() {
+            self.log.warn(
+                &bsdf.place,
+                "a relief of a relief is not modelled",
+                "the inner one is left out",
+            )?;
+        }
+        Ok(Material { relief: relief.or(nested.relief), ..nested })
+    }
+
+    /// Nested bsdfs, each with a share of the light; the rest is absorbed.
+    fn mixed(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        let text = bsdf.string("weights")?.unwrap_or_default();
+        let nested = self.tagged(bsdf, "bsdf")?;
+        let weights = numbers(&text).filter(|weights| {
+            let are_shares = weights.iter().all(|weight| (0.0..f64::INFINITY).contains(weight));
+            are_shares && weights.len() == nested.len() && weights.iter().sum::<f64>() > 0.0
+        });
+        let Some(weights) = weights else {
+            let what = format!("the weights \"{text}\" are not those of {} bsdfs", nested.len());
+            return Err(bsdf
+                .place
+                .wrong(what, "write a number of 0 or more for each bsdf, with commas between"));
+        };
+        let mut parts: Vec<(f64, Material)> = Vec::with_capacity(nested.len() + 1);
+        for (weight, nested) in weights.iter().zip(&nested) {
+            parts.push((*weight, self.material(nested, depth + 1)?));
+        }
+        let lost = 1.0 - weights.iter().sum::<f64>();
+        if lost > MIN_LOST {
+            parts.push((lost, diffuse(bsdf.plugin.clone(), Reflectance::BLACK)));
+        }
+        // From the last to the first, each with those behind it as one.
+        let mut whole: Option<(f64, Material)> = None;
+        for (weight, part) in parts.into_iter().filter(|(weight, _)| *weight > 0.0).rev() {
+            whole = Some(match whole {
+                None => (weight, part),
+                Some((rest, others)) => {
+                    let sum = weight + rest;
+                    let share = Share::Constant((rest / sum) as f32);
+                    (sum, layers::blended(share, [part, others], &bsdf.place, self.log)?)
+                }
+            });
+        }
+        let Some((_, mixed)) = whole else {
+            return Err(bsdf.place.wrong("all weights are 0", "give one that is more"));
+        };
+        Ok(mixed)
+    }
+
+    fn nested(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
+        let nested = self.tagged(bsdf, "bsdf")?;
+        let Some(first) = nested.first() else {
+            let what = format!("the bsdf \"{}\" holds no other", bsdf.plugin);
+            return Err(bsdf.place.wrong(what, "nest a <bsdf> or a <ref> to one"));
+        };
+        if let (Some(second), "twosided") = (nested.get(1), bsdf.plugin.as_str()) {
+            self.log.warn(&second.place, "different sides are not modelled", "the first bsdf is on both")?;
+        }
+        self.material(first, depth + 1)
+    }
+}

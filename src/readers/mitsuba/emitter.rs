@@ -1,0 +1,117 @@
+//! Emitters: of shapes, of the whole scene, and delta lights.
+
+use super::Converter;
+use super::tree::Object;
+use crate::check;
+use crate::error::SceneError;
+use crate::plan::EnvironmentPlan;
+use base::math::{Rgb, unit};
+use glam::{DMat4, DVec3, Vec3};
+use scene::{DeltaLight, Emission, Reflectance};
+
+impl Converter<'_> {
+    /// Converts a shape's emitter to its emission.
+    pub(super) fn area_emitter(&mut self, emitter: &Object) -> Result<Option<Emission>, SceneError> {
+        if emitter.plugin != "area" {
+            let what = format!("a shape cannot emit as \"{}\"", emitter.plugin);
+            self.log.warn(&emitter.place, what, "the shape does not emit")?;
+            return Ok(None);
+        }
+        emitter.ignore(&["sampling_weight"]);
+        let textured = self.document.named(emitter, "radiance")?;
+        let emission = match textured {
+            Some(texture) => match self.texture(&texture, 0)? {
+                Reflectance::Constant(radiance) => Emission { radiance, texture: None, two_sided: false },
+                Reflectance::Textured { texture, scale } => {
+                    Emission { radiance: scale, texture: Some(texture), two_sided: false }
+                }
+            },
+            None => {
+                let radiance = self.emissive_colour(emitter, "radiance")?.unwrap_or(Rgb::ONE);
+                Emission { radiance, texture: None, two_sided: false }
+            }
+        };
+        emitter.report_unused(self.log)?;
+        Ok(Some(emission))
+    }
+
+    pub(super) fn scene_emitter(&mut self, emitter: &Object) -> Result<(), SceneError> {
+        emitter.ignore(&["sampling_weight", "mis_compensation"]);
+        let to_world = emitter.transform("to_world")?;
+        match emitter.plugin.as_str() {
+            "point" => {
+                let intensity = self.emissive_colour(emitter, "intensity")?.unwrap_or(Rgb::ONE);
+                let at = to_world.unwrap_or(DMat4::IDENTITY).transform_point3(DVec3::ZERO);
+                let position = emitter.vector("position")?.unwrap_or(at);
+                self.contents.lights.push((DeltaLight::Point { position: Vec3::ZERO, intensity }, position));
+            }
+            "spot" => self.spot(emitter, to_world.unwrap_or(DMat4::IDENTITY))?,
+            "directional" => {
+                let irradiance = self.emissive_colour(emitter, "irradiance")?.unwrap_or(Rgb::ONE);
+                let along = to_world.unwrap_or(DMat4::IDENTITY).transform_vector3(DVec3::Z);
+                let direction = emitter.vector("direction")?.unwrap_or(along);
+                let direction = check::unit(direction, &emitter.place)?;
+                self.contents.lights.push((DeltaLight::Directional { direction, irradiance }, DVec3::ZERO));
+            }
+            "constant" => {
+                let radiance = self.emissive_colour(emitter, "radiance")?.unwrap_or(Rgb::ONE);
+                self.environment(emitter, EnvironmentPlan::Constant(radiance))?;
+            }
+            "envmap" => {
+                let path = self.file(emitter, "filename")?;
+                let scale = emitter.float("scale")?.unwrap_or(1.0) as f32;
+                let to_world = self.rotation(emitter, to_world.unwrap_or(DMat4::IDENTITY))?;
+                let place = emitter.place.clone();
+                self.environment(emitter, EnvironmentPlan::Map { place, path, scale, to_world })?;
+            }
+            "sky" | "sun" | "sunsky" => self.sky(emitter, to_world.unwrap_or(DMat4::IDENTITY))?,
+            other => {
+                let what = format!("the emitter \"{other}\" is not modelled");
+                self.log.warn(&emitter.place, what, "it gives no light")?;
+                return Ok(());
+            }
+        }
+        emitter.report_unused(self.log)
+    }
+
+    fn spot(&mut self, emitter: &Object, to_world: DMat4) -> Result<(), SceneError> {
+        let intensity = self.emissive_colour(emitter, "intensity")?.unwrap_or(Rgb::ONE);
+        let outer = emitter.positive("cutoff_angle", 20.0)?;
+        let inner = emitter.float("beam_width")?.unwrap_or(0.75 * outer);
+        let names = ["beam_width", "cutoff_angle"];
+        let [inner_angle, outer_angle] = check::cone(names, [inner, outer], &emitter.place)?;
+        let direction = check::unit(to_world.transform_vector3(DVec3::Z), &emitter.place)?;
+        let position = to_world.transform_point3(DVec3::ZERO);
+        let light = DeltaLight::Spot { position: Vec3::ZERO, direction, intensity, inner_angle, outer_angle };
+        self.contents.lights.push((light, position));
+        Ok(())
+    }
+
+    /// Returns the transform without its scale; an error where it shears or is singular.
+    pub(super) fn rotation(&mut self, emitter: &Object, m: DMat4) -> Result<DMat4, SceneError> {
+        let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|a| a.truncate());
+        let [Some(a), Some(b), Some(c)] = [x, y, z].map(unit) else {
+            return Err(emitter.place.wrong("to_world is singular", "use a rotation"));
+        };
+        if a.dot(b).abs().max(b.dot(c).abs()).max(c.dot(a).abs()) > 1e-4 {
+            return Err(emitter.place.wrong("to_world shears", "use a rotation"));
+        }
+        if [x, y, z].iter().any(|a| (a.length() - 1.0).abs() > 1e-4) {
+            self.log.warn(
+                &emitter.place,
+                "the to_world of an environment scales",
+                "the scale is left out",
+            )?;
+        }
+        Ok(DMat4::from_cols(a.extend(0.0), b.extend(0.0), c.extend(0.0), DVec3::ZERO.extend(1.0)))
+    }
+
+    pub(super) fn environment(&mut self, emitter: &Object, plan: EnvironmentPlan) -> Result<(), SceneError> {
+        if self.contents.environment.is_some() {
+            let what = "the scene has more than one environment";
+            return Err(emitter.place.wrong(what, "leave one"));
+        }
+        self.contents.environment = Some(plan);
+        Ok(())
+    }
+}

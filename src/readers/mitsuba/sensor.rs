@@ -1,0 +1,271 @@
+//! Sensors and their film.
+
+use super::Converter;
+use super::tree::Object;
+use crate::draft::{DraftCamera, Shot};
+use crate::error::{Place, SceneError};
+use base::math::{right_of, unit};
+use glam::{DMat4, DVec3};
+use scene::{MAX_SIDE, PixelFilter, Projection};
+use std::rc::Rc;
+
+/// A sensor's film.
+struct Film {
+    /// Width and height in pixels.
+    resolution: [u32; 2],
+    /// Offset and size of the part to render, if it is not the whole.
+    crop: Option<[[u32; 2]; 2]>,
+    filter: PixelFilter,
+}
+
+impl Converter<'_> {
+    /// The sensor `wanted` (a number from 1, or an id), else the first, with its film; the longest path; and whether
+    /// emitters in view are hidden.
+    pub(super) fn shot(&mut self, wanted: Option<&str>) -> Result<(Shot, Option<u32>, bool), SceneError> {
+        let root = &self.document.root;
+        let integrators = self.tagged(root, "integrator")?;
+        let (max_depth, hides_emitters) = match integrators.first() {
+            Some(integrator) => (self.max_depth(integrator)?, integrator.boolean("hide_emitters", false)?),
+            None => (None, false),
+        };
+        let sensors = self.tagged(root, "sensor")?;
+        let sensor = chosen(&sensors, wanted, &root.place)?;
+        if let (None, [_, second, ..]) = (wanted, &sensors[..]) {
+            let what = format!("there are {} sensors: {}", sensors.len(), names(&sensors));
+            self.log.note(&second.place, what, "the first is used; choose another with --camera");
+        }
+        match sensor.plugin.as_str() {
+            "perspective" | "thinlens" | "orthographic" => {}
+            other => {
+                let what = format!("the sensor \"{other}\" is not modelled");
+                return Err(sensor.place.wrong(what, "use type=\"perspective\""));
+            }
+        }
+        let Film { resolution, crop, filter } = self.film(sensor)?;
+        let to_world = sensor.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
+        let aspect = f64::from(resolution[0]) / f64::from(resolution[1]);
+        let near = sensor.positive("near_clip", 1e-2)?;
+        let far = sensor.positive("far_clip", 1e4)?;
+        if near >= far {
+            let what = format!("near_clip {near} is not below far_clip {far}");
+            return Err(sensor.place.wrong(what, "swap them"));
+        }
+        for offset in ["principal_point_offset_x", "principal_point_offset_y"] {
+            if sensor.float(offset)?.is_some_and(|v| v != 0.0) {
+                self.log.warn(&sensor.place, "a shifted principal point is not modelled", "it is centred")?;
+            }
+        }
+        let focus_distance = sensor.positive("focus_distance", far)?;
+        let (projection, tan_half_x) = match sensor.plugin.as_str() {
+            // The film reaches from -1 to 1, which to_world scales.
+            "orthographic" => (Projection::Parallel, to_world.transform_vector3(DVec3::X).length()),
+            "thinlens" => {
+                let radius = sensor.positive("aperture_radius", 0.0)?;
+                let lens = Projection::Lens { radius: radius as f32, distance: focus_distance as f32 };
+                (lens, (0.5 * horizontal_fov(sensor, aspect)?).tan())
+            }
+            _ => (Projection::Pinhole, (0.5 * horizontal_fov(sensor, aspect)?).tan()),
+        };
+        sensor.ignore(&["shutter_open", "shutter_close"]);
+        self.tagged(sensor, "sampler")?;
+        let camera = self.camera(&sensor.place, &to_world, projection)?;
+        let camera = DraftCamera { tan_half_x, near, far, filter, ..camera };
+        sensor.report_unused(self.log)?;
+        Ok((Shot { camera, fits: false, path: Vec::new(), resolution, crop }, max_depth, hides_emitters))
+    }
+
+    /// Place of a camera; Mitsuba's looks along +z with +x to the left.
+    fn camera(
+        &mut self,
+        place: &Place,
+        to_world: &DMat4,
+        projection: Projection,
+    ) -> Result<DraftCamera, SceneError> {
+        let axes = [DVec3::NEG_X, DVec3::Y, DVec3::Z].map(|a| to_world.transform_vector3(a));
+        let singular = || place.wrong("the sensor's to_world is singular", "use a rotation");
+        let [right, up, forward] = axes.map(unit);
+        let (right, up, forward) =
+            (right.ok_or_else(singular)?, up.ok_or_else(singular)?, forward.ok_or_else(singular)?);
+        let scales = match projection {
+            Projection::Parallel => (axes[0].length() / axes[1].length() - 1.0).abs() > 1e-3,
+            _ => axes.iter().any(|a| (a.length_squared() - 1.0).abs() > 1e-3),
+        };
+        if scales {
+            let fallback = "only that of a parallel projection's width is taken";
+            self.log.warn(place, "the sensor's to_world scales", fallback)?;
+        }
+        let (mut right, mut up) = (right, up);
+        if right.dot(up).abs().max(up.dot(forward).abs()).max(forward.dot(right).abs()) > 1e-3 {
+            self.log.warn(place, "the sensor's to_world shears", "it looks the same way, not sheared")?;
+            let across = right_of(forward, up).ok_or_else(singular)?;
+            up = across.cross(forward);
+            right = match right.dot(across) {
+                0.0 => return Err(singular()),
+                side => across * side.signum(),
+            };
+        }
+        let origin = to_world.transform_point3(DVec3::ZERO);
+        let (tan_half_x, near, far, filter) = (1.0, 0.0, f64::INFINITY, PixelFilter::Box);
+        Ok(DraftCamera { origin, forward, right, up, tan_half_x, near, far, projection, filter })
+    }
+
+    fn film(&mut self, sensor: &Object) -> Result<Film, SceneError> {
+        let films = self.tagged(sensor, "film")?;
+        let Some(film) = films.first() else {
+            return Ok(Film { resolution: [768, 576], crop: None, filter: PixelFilter::GAUSSIAN });
+        };
+        let size = |name: &str, default: i64| {
+            let value = film.integer(name)?.unwrap_or(default);
+            let fits = u32::try_from(value).ok().filter(|v| (1..=MAX_SIDE).contains(v));
+            let what = format!("the film's {name} is {value}");
+            fits.ok_or_else(|| film.place.wrong(what, format!("give 1 to {MAX_SIDE}")))
+        };
+        let resolution = [size("width", 768)?, size("height", 576)?];
+        let names = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
+        let whole = [0, 0, resolution[0], resolution[1]];
+        let mut crop = whole;
+        for ((name, default), value) in names.into_iter().zip(whole).zip(&mut crop) {
+            let number = film.integer(name)?.unwrap_or(default.into());
+            let what =
+                || film.place.wrong(format!("the film's {name} is {number}"), "give pixels of the film");
+            *value = u32::try_from(number).map_err(|_| what())?;
+        }
+        let [x, y, width, height] = crop;
+        let fits = |offset: u32, size: u32, film: u32| {
+            size > 0 && offset.checked_add(size).is_some_and(|end| end <= film)
+        };
+        if !(fits(x, width, resolution[0]) && fits(y, height, resolution[1])) {
+            let what = "the film's crop is empty or not on the film";
+            return Err(film.place.wrong(what, "keep crop_offset + crop size within the film's size"));
+        }
+        let crop = (crop != whole).then_some([[x, y], [width, height]]);
+        let filters = self.tagged(film, "rfilter")?;
+        let filter = filters.first().map_or(Ok(PixelFilter::GAUSSIAN), |filter| self.filter(filter))?;
+        Ok(Film { resolution, crop, filter })
+    }
+
+    fn filter(&mut self, object: &Object) -> Result<PixelFilter, SceneError> {
+        let filter = match object.plugin.as_str() {
+            "box" => match object.positive("radius", 0.5)? {
+                0.5 => PixelFilter::Box,
+                radius => {
+                    let what = format!("a box filter of radius {radius} is not modelled");
+                    self.log.note(&object.place, what, "it is .5");
+                    PixelFilter::Box
+                }
+            },
+            "tent" => PixelFilter::Tent { radius: object.positive("radius", 1.0)? as f32 },
+            "gaussian" => PixelFilter::Gaussian { deviation: object.positive("stddev", 0.5)? as f32 },
+            "mitchell" => {
+                // Version 3 calls A and B what version 0.6 and the paper call B and C.
+                for name in ["A", "B", "C"] {
+                    self.usual(object, name, 1.0 / 3.0)?;
+                }
+                PixelFilter::Mitchell
+            }
+            "catmullrom" => PixelFilter::CatmullRom,
+            "lanczos" => {
+                self.usual(object, "lobes", 3.0)?;
+                PixelFilter::Lanczos
+            }
+            other => {
+                let what = format!("the film's reconstruction filter \"{other}\" is not modelled");
+                self.log.note(&object.place, what, "a Gaussian of deviation .5 stands in");
+                object.properties.iter().for_each(|property| property.used.set(true));
+                PixelFilter::GAUSSIAN
+            }
+        };
+        object.report_unused(self.log)?;
+        Ok(filter)
+    }
+
+    /// Notes a filter's parameter that is not the usual one, which stands in.
+    fn usual(&mut self, object: &Object, name: &str, usual: f64) -> Result<(), SceneError> {
+        let given = object.float(name)?.unwrap_or(usual);
+        if (given - usual).abs() > 1e-3 {
+            let what = format!("a {} filter with {name} = {given} is not modelled", object.plugin);
+            self.log.note(&object.place, what, format!("it is {usual:.3}"));
+        }
+        Ok(())
+    }
+}
+
+fn chosen<'a>(
+    sensors: &'a [Rc<Object>],
+    wanted: Option<&str>,
+    place: &Place,
+) -> Result<&'a Rc<Object>, SceneError> {
+    if sensors.is_empty() {
+        let remedy = "add <sensor type=\"perspective\"> with a to_world transform";
+        return Err(place.wrong("the scene has no sensor", remedy));
+    }
+    let wanted = wanted.unwrap_or("1");
+    let number = wanted.parse().ok().and_then(|number: usize| sensors.get(number.checked_sub(1)?));
+    let named = || sensors.iter().find(|sensor| sensor.id.as_deref() == Some(wanted));
+    let missing = || place.no_camera(wanted, format!("--camera chooses among {}", names(sensors)));
+    number.or_else(named).ok_or_else(missing)
+}
+
+/// Numbers and ids of sensors.
+fn names(sensors: &[Rc<Object>]) -> String {
+    let name = |(i, sensor): (usize, &Rc<Object>)| match &sensor.id {
+        Some(id) => format!("{} ({id})", i + 1),
+        None => (i + 1).to_string(),
+    };
+    sensors.iter().enumerate().map(name).collect::<Vec<_>>().join(", ")
+}
+
+/// Horizontal field of view, radians.
+fn horizontal_fov(sensor: &Object, aspect: f64) -> Result<f64, SceneError> {
+    let wrong = |what: String, remedy: &str| sensor.place.wrong(what, remedy);
+    let (fov, axis) = match (sensor.float("fov")?, sensor.property("focal_length")) {
+        (Some(_), Some(_)) => {
+            return Err(wrong("both fov and focal_length are given".into(), "leave one out"));
+        }
+        (Some(fov), None) => {
+            let axis = sensor.string("fov_axis")?.unwrap_or("x".into()).to_lowercase();
+            (fov.to_radians(), axis)
+        }
+        (None, _) => {
+            let text = sensor.string("focal_length")?.unwrap_or("50mm".into());
+            let millimetres = text.trim_end_matches("mm").trim().parse::<f64>().ok().filter(|v| *v > 0.0);
+            let millimetres = millimetres
+                .ok_or_else(|| wrong(format!("cannot read focal_length \"{text}\""), "write e.g. 50mm"))?;
+            // The diagonal of 35 mm film.
+            (2.0 * (36f64.hypot(24.0) / (2.0 * millimetres)).atan(), "diagonal".into())
+        }
+    };
+    let tan = (0.5 * fov).tan();
+    let axis = match axis.as_str() {
+        "smaller" => {
+            if aspect > 1.0 {
+                "y"
+            } else {
+                "x"
+            }
+        }
+        "larger" => {
+            if aspect > 1.0 {
+                "x"
+            } else {
+                "y"
+            }
+        }
+        other => other,
+    };
+    let tan_x = match axis {
+        "x" => tan,
+        "y" => tan * aspect,
+        "diagonal" => tan / (1.0 + 1.0 / (aspect * aspect)).sqrt(),
+        other => {
+            return Err(wrong(
+                format!("unknown fov_axis \"{other}\""),
+                "use x, y, smaller, larger or diagonal",
+            ));
+        }
+    };
+    if !(tan_x > 0.0 && (tan_x as f32).is_finite() && fov > 0.0 && fov < std::f64::consts::PI) {
+        return Err(wrong("the field of view is not between 0 and 180 degrees".into(), "correct fov"));
+    }
+    Ok(2.0 * tan_x.atan())
+}

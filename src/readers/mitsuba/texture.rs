@@ -1,0 +1,252 @@
+//! Colours and textures. A bitmap's v counts downwards in Mitsuba and upwards here, so `to_uv` is conjugated
+//! with that flip.
+
+use super::tree::Object;
+use super::value::Value;
+use super::{Converter, cie, value};
+use crate::error::{Place, SceneError};
+use crate::file::read_text;
+use crate::picture::Picture;
+use crate::plan::{Image, TexturePlan};
+use base::math::Rgb;
+use glam::{DMat3, DMat4, DVec2, DVec3};
+use scene::{Filter, Reflectance, Texels, Wrap};
+
+/// RGB value in Mitsuba's `rgb` variants of an emissive spectrum of 1 at every wavelength.
+const EQUAL_ENERGY: DVec3 = DVec3::new(1.204795, 0.94829, 0.908915);
+
+impl Converter<'_> {
+    /// A constant colour, or `None` where the parameter is absent or a texture.
+    pub(super) fn colour(&mut self, object: &Object, name: &str) -> Result<Option<Rgb>, SceneError> {
+        self.spectrum(object, name, false)
+    }
+
+    /// The same for light given off.
+    pub(super) fn emissive_colour(&mut self, object: &Object, name: &str) -> Result<Option<Rgb>, SceneError> {
+        let colour = self.spectrum(object, name, true)?;
+        let object = if colour.is_none() { self.document.named(object, name)? } else { None };
+        match object.map(|object| Ok((self.texture(&object, 0)?, object))).transpose()? {
+            Some((Reflectance::Constant(colour), _)) => Ok(Some(colour)),
+            Some((Reflectance::Textured { .. }, object)) => Err(object
+                .place
+                .wrong(format!("a picture stands for \"{name}\""), "give an <rgb> or a <spectrum>")),
+            None => Ok(colour),
+        }
+    }
+
+    fn spectrum(&mut self, object: &Object, name: &str, emissive: bool) -> Result<Option<Rgb>, SceneError> {
+        let Some(property) = object.property(name) else { return Ok(None) };
+        let white = if emissive { EQUAL_ENERGY } else { DVec3::ONE };
+        let colour = match &property.value {
+            Value::Rgb(colour) => *colour,
+            Value::Float(v) => DVec3::splat(*v),
+            Value::Integer(v) => DVec3::splat(*v as f64),
+            Value::Spectrum(v) => white * *v,
+            Value::Samples(samples) => self.sampled(samples, emissive, &property.place),
+            Value::SamplesFile(name) => {
+                let path = self.beside(name, &property.place);
+                let (text, hash) = read_text(&path, &property.place)?;
+                if !self.sources.iter().any(|source| source.0 == path) {
+                    self.sources.push((path.clone(), hash));
+                }
+                let samples = value::samples_of_file(&text).map_err(|line| {
+                    let remedy = "write a wavelength in nm and a value a line, wavelengths ascending";
+                    Place::line(&path, line).wrong("this is no sampled spectrum", remedy)
+                })?;
+                self.sampled(&samples, emissive, &property.place)
+            }
+            _ => {
+                let what = format!("\"{name}\" of {} \"{}\" is no colour", object.tag, object.plugin);
+                return Err(property.place.wrong(what, "give an <rgb> or a <texture>"));
+            }
+        };
+        Ok(Some(value::rgb(colour)))
+    }
+
+    /// Colour of a sampled spectrum; as in Mitsuba, without what Rec. 709 cannot hold.
+    fn sampled(&mut self, samples: &[(f64, f64)], emissive: bool, place: &Place) -> DVec3 {
+        let rgb = cie::rgb_of_samples(samples, !emissive);
+        let limit = if emissive { f64::INFINITY } else { 1.0 };
+        let clamped = rgb.clamp(DVec3::ZERO, DVec3::splat(limit));
+        if (rgb - clamped).abs().max_element() > 1e-2 * rgb.max_element() {
+            let what = format!("the spectrum's colour {rgb:.3} lies outside Rec. 709");
+            self.log.note(place, what, "it is clamped");
+        }
+        clamped
+    }
+
+    /// A reflectance: constant or textured.
+    pub(super) fn reflectance(
+        &mut self,
+        object: &Object,
+        name: &str,
+        default: f32,
+    ) -> Result<Reflectance, SceneError> {
+        self.reflectance_within(object, name, default, 0)
+    }
+
+    /// The same of a texture that so many others hold.
+    fn reflectance_within(
+        &mut self,
+        object: &Object,
+        name: &str,
+        default: f32,
+        depth: u32,
+    ) -> Result<Reflectance, SceneError> {
+        if let Some(colour) = self.colour(object, name)? {
+            return Ok(Reflectance::Constant(colour));
+        }
+        match self.document.named(object, name)? {
+            Some(texture) => self.texture(&texture, depth),
+            None => Ok(Reflectance::Constant(Rgb::splat(default))),
+        }
+    }
+
+    /// The texture object as a reflectance.
+    pub(super) fn texture(&mut self, object: &Object, depth: u32) -> Result<Reflectance, SceneError> {
+        if object.tag != "texture" {
+            let what = format!("a <{}> stands where a texture is expected", object.tag);
+            return Err(object.place.wrong(what, "give a <texture>"));
+        }
+        if depth > 8 {
+            return Err(object.place.wrong("textures refer to each other", "break the circle"));
+        }
+        let reflectance = match object.plugin.as_str() {
+            "bitmap" => self.bitmap(object)?,
+            "checkerboard" => self.checkerboard(object, depth)?,
+            "uniform" | "srgb" | "rgb" | "spectrum" | "d65" => {
+                let value = match self.colour(object, "color")? {
+                    Some(colour) => Some(colour),
+                    None => self.colour(object, "value")?,
+                };
+                Reflectance::Constant(value.unwrap_or(Rgb::ONE))
+            }
+            "blackbody" => {
+                let samples = cie::blackbody(object.positive("temperature", 5000.0)?);
+                let scale = object.float("scale")?.unwrap_or(1.0);
+                Reflectance::Constant(value::rgb(self.sampled(&samples, true, &object.place) * scale))
+            }
+            "scale" => self.scaled(object, depth)?,
+            other => {
+                let what = format!("the texture \"{other}\" is not modelled");
+                self.log.warn(&object.place, what, "reflectance 0.5 stands in")?;
+                return Ok(Reflectance::Constant(Rgb::splat(0.5)));
+            }
+        };
+        object.report_unused(self.log)?;
+        Ok(reflectance)
+    }
+
+    /// Mitsuba 0.6: another texture times a constant.
+    fn scaled(&mut self, object: &Object, depth: u32) -> Result<Reflectance, SceneError> {
+        let factor = match object.float("scale") {
+            Ok(Some(v)) => Rgb::splat(v as f32),
+            _ => self.colour(object, "scale")?.unwrap_or(Rgb::ONE),
+        };
+        let nested = self.tagged(object, "texture")?;
+        let Some(nested) = nested.first() else {
+            return Err(object.place.wrong("nothing to scale", "nest a <texture>"));
+        };
+        Ok(match self.texture(nested, depth + 1)? {
+            Reflectance::Constant(colour) => Reflectance::Constant(colour * factor),
+            Reflectance::Textured { texture, scale } => {
+                Reflectance::Textured { texture, scale: scale * factor }
+            }
+        })
+    }
+
+    fn bitmap(&mut self, object: &Object) -> Result<Reflectance, SceneError> {
+        let path = self.file(object, "filename")?;
+        let filter = match object.string("filter_type")?.as_deref() {
+            None | Some("bilinear" | "trilinear" | "ewa") => Filter::Bilinear,
+            Some("nearest") => Filter::Nearest,
+            Some(other) => {
+                let what = format!("the texture filter \"{other}\" is not modelled");
+                self.log.note(&object.place, what, "texels are joined bilinearly");
+                Filter::Bilinear
+            }
+        };
+        let wrap = match object.string("wrap_mode")?.as_deref() {
+            None | Some("repeat") => Wrap::Repeat,
+            Some("mirror") => Wrap::Mirror,
+            Some("clamp") => Wrap::Clamp,
+            Some(other) => {
+                let what = format!("the texture wrap mode \"{other}\" is not modelled");
+                self.log.warn(&object.place, what, "the image is repeated")?;
+                Wrap::Repeat
+            }
+        };
+        let mut raw = object.boolean("raw", false)?;
+        if let Some(gamma) = object.float("gamma")? {
+            // Mitsuba 0.6: 1 means linear, -1 the encoding stated in the file.
+            raw |= gamma == 1.0;
+            if gamma != 1.0 && gamma > 0.0 {
+                self.log.warn(
+                    &object.place,
+                    format!("a gamma of {gamma} is not modelled"),
+                    "sRGB is taken",
+                )?;
+            }
+        }
+        object.ignore(&["accel", "format", "max_anisotropy", "cache"]);
+        if let Some(channel) = object.string("channel")? {
+            self.log.warn(
+                &object.place,
+                format!("the channel \"{channel}\" is asked for"),
+                "all are used",
+            )?;
+        }
+        let to_uv = self.to_uv(object)?;
+        let place = object.place.clone();
+        let texture = self.contents.add_texture(TexturePlan {
+            place,
+            image: Image::File { path, raw },
+            filter,
+            wrap,
+            to_uv,
+        });
+        Ok(Reflectance::Textured { texture, scale: Rgb::ONE })
+    }
+
+    /// Two by two texels without interpolation: the squares are half a unit wide.
+    fn checkerboard(&mut self, object: &Object, depth: u32) -> Result<Reflectance, SceneError> {
+        let mut texel =
+            |name: &str, default: f32| match self.reflectance_within(object, name, default, depth + 1)? {
+                Reflectance::Constant(colour) => Ok(colour),
+                Reflectance::Textured { .. } => {
+                    Err(object.place.wrong("a checkerboard of textures", "give its colours as <rgb>"))
+                }
+            };
+        let (even, odd) = (texel("color0", 0.4)?, texel("color1", 0.2)?);
+        let texels = Texels::new(2, &[even, odd, odd, even]);
+        let picture = Picture { width: 2, height: 2, texels };
+        let texture = self.contents.add_texture(TexturePlan {
+            place: object.place.clone(),
+            image: Image::Ready("checkerboard".into(), picture),
+            filter: Filter::Nearest,
+            wrap: Wrap::Repeat,
+            to_uv: self.to_uv(object)?,
+        });
+        Ok(Reflectance::Textured { texture, scale: Rgb::ONE })
+    }
+
+    fn to_uv(&self, object: &Object) -> Result<glam::Mat3, SceneError> {
+        let mut to_uv = DMat3::IDENTITY;
+        if let Some(m) = object.transform("to_uv")? {
+            to_uv = planar(&m);
+        }
+        let get = |name: &str, default: f64| Ok(object.float(name)?.unwrap_or(default));
+        let offset = DVec2::new(get("uoffset", 0.0)?, get("voffset", 0.0)?);
+        let scale = DVec2::new(get("uscale", 1.0)?, get("vscale", 1.0)?);
+        // These four exist in Mitsuba 0.6 only, which scales first.
+        let to_uv = to_uv * DMat3::from_translation(offset) * DMat3::from_scale(scale);
+        let flip = DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::new(0.0, 1.0, 1.0));
+        Ok((flip * to_uv * flip).as_mat3())
+    }
+}
+
+/// The part of a transform that acts in the xy plane.
+fn planar(m: &DMat4) -> DMat3 {
+    let column = |c: glam::DVec4, w: f64| DVec3::new(c.x, c.y, w);
+    DMat3::from_cols(column(m.x_axis, 0.0), column(m.y_axis, 0.0), column(m.w_axis, 1.0))
+}

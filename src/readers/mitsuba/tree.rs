@@ -1,0 +1,382 @@
+//! Mitsuba XML to a tree of objects with typed properties: `<default>`, `<include>`, `<alias>` and
+//! `$parameters` are resolved here, and the camelCase names of Mitsuba 0.6 become those of 3.x.
+
+use super::value::{self, Value};
+use crate::error::{Log, Place, SceneError};
+use crate::file::{folder_of, read_text};
+use std::cell::Cell;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+/// Maximum nesting of elements, and of included files; deeper is an error, and no real scene is.
+const MAX_DEPTH: usize = 48;
+/// Maximum number of files of a scene; files that include the next one twice would be two to the power of their number.
+const MAX_FILES: usize = 4096;
+/// Maximum number of bytes that all `$parameters` of a scene become; values made of values would have no end.
+const MAX_SUBSTITUTED: usize = 1 << 24;
+
+/// A plugin instance: `<bsdf type="diffuse" id="a">` and its contents.
+#[derive(Debug)]
+pub(super) struct Object {
+    /// `bsdf`, `shape`, `emitter`, ...
+    pub tag: String,
+    /// The `type` attribute; `scene` for the root.
+    pub plugin: String,
+    pub id: Option<String>,
+    pub place: Place,
+    pub properties: Vec<Property>,
+    pub children: Vec<Child>,
+}
+
+impl Object {
+    fn new(tag: &str, plugin: &str, id: Option<&str>, place: Place) -> Object {
+        let (tag, plugin, id) = (tag.to_owned(), plugin.to_owned(), id.map(str::to_owned));
+        Object { tag, plugin, id, place, properties: Vec::new(), children: Vec::new() }
+    }
+}
+
+/// A named value.
+#[derive(Debug)]
+pub(super) struct Property {
+    pub name: String,
+    pub value: Value,
+    pub place: Place,
+    /// True if a converter has asked for it; unused properties are reported.
+    pub used: Cell<bool>,
+}
+
+/// An object inside another, directly or by reference.
+#[derive(Debug)]
+pub(super) struct Child {
+    pub target: Target,
+    /// Name of the parameter that it is the value of.
+    pub name: Option<String>,
+    pub place: Place,
+    /// Used flag, as [`Property::used`].
+    pub used: Cell<bool>,
+}
+
+/// Target of a child: an object or a reference.
+#[derive(Debug)]
+pub(super) enum Target {
+    Own(Rc<Object>),
+    Reference(String),
+}
+
+/// A whole description.
+#[derive(Debug)]
+pub(super) struct Document {
+    pub root: Object,
+    ids: BTreeMap<String, Rc<Object>>,
+    /// The files read, main file first, with the hash of their bytes.
+    pub sources: Vec<(PathBuf, u64)>,
+    /// True if the main file is Mitsuba 0.x's.
+    pub is_old: bool,
+}
+
+impl Document {
+    /// Reads a file and those that it includes; errors within objects are left in `log`.
+    pub fn read(path: &Path, given: &[(String, String)], log: &mut Log) -> Result<Document, SceneError> {
+        let mut builder = Builder::new(given, log);
+        let mut root = Object::new("scene", "scene", None, Place::file(path));
+        builder.file(path, &Place::file(path), &mut root, None, 0)?;
+        for (name, _) in builder.parameters.iter().filter(|(_, parameter)| !parameter.used.get()) {
+            let what = format!("nothing in the scene depends on the parameter ${name}");
+            let remedy = "correct the name given with -D, or leave it out";
+            builder.log.part::<()>(Err(Place::file(path).wrong(what, remedy)));
+        }
+        Ok(Document { root, ids: builder.ids, sources: builder.sources, is_old: builder.is_old })
+    }
+
+    /// Returns the object that a child refers to.
+    pub fn object(&self, child: &Child) -> Result<Rc<Object>, SceneError> {
+        match &child.target {
+            Target::Own(object) => Ok(object.clone()),
+            Target::Reference(id) => {
+                let missing = || child.place.undefined("object", id);
+                self.ids.get(id).cloned().ok_or_else(missing)
+            }
+        }
+    }
+
+    /// Returns all children of `object` with tag `tag` and marks them as used.
+    pub fn tagged(&self, object: &Object, tag: &str) -> Result<Vec<Rc<Object>>, SceneError> {
+        let mut found = Vec::new();
+        for child in &object.children {
+            let target = self.object(child)?;
+            if target.tag == tag {
+                child.used.set(true);
+                found.push(target);
+            }
+        }
+        Ok(found)
+    }
+
+    /// Returns the child of `object` that is the value of the parameter `name`.
+    pub fn named(&self, object: &Object, name: &str) -> Result<Option<Rc<Object>>, SceneError> {
+        let child = object.children.iter().find(|c| c.name.as_deref() == Some(name));
+        child.inspect(|c| c.used.set(true)).map(|c| self.object(c)).transpose()
+    }
+}
+
+/// The value of a `$name` parameter.
+struct Parameter {
+    value: String,
+    /// True if the description has a default for it, or uses it.
+    used: Cell<bool>,
+}
+
+struct Builder<'a> {
+    log: &'a mut Log,
+    ids: BTreeMap<String, Rc<Object>>,
+    /// Values of `$name` parameters.
+    parameters: BTreeMap<String, Parameter>,
+    /// Bytes that they have become so far.
+    substituted: Cell<usize>,
+    sources: Vec<(PathBuf, u64)>,
+    is_old: bool,
+}
+
+impl Builder<'_> {
+    fn new<'a>(given: &[(String, String)], log: &'a mut Log) -> Builder<'a> {
+        let parameter = |(name, value): &(String, String)| {
+            (name.clone(), Parameter { value: value.clone(), used: Cell::new(false) })
+        };
+        let parameters = given.iter().map(parameter).collect();
+        let substituted = Cell::new(0);
+        Builder { log, ids: BTreeMap::new(), parameters, substituted, sources: Vec::new(), is_old: false }
+    }
+
+    /// Reads the file into `parent`: the contents of a scene, or its only object under `name`.
+    fn file(
+        &mut self,
+        path: &Path,
+        from: &Place,
+        parent: &mut Object,
+        name: Option<String>,
+        depth: usize,
+    ) -> Result<(), SceneError> {
+        if self.sources.len() == MAX_FILES {
+            let remedy = "include each file once";
+            return Err(from.wrong(format!("the scene includes more than {MAX_FILES} files"), remedy));
+        }
+        let (text, hash) = read_text(path, from)?;
+        self.sources.push((path.to_owned(), hash));
+        let parsed = roxmltree::Document::parse(&text);
+        let document = parsed.map_err(|e| Place::line(path, e.pos().row).malformed(e.to_string()))?;
+        let root = document.root_element();
+        if root.tag_name().name() == "scene" {
+            let place = self.place(path, &root);
+            let Some(version) = root.attribute("version") else {
+                let remedy = "give it one, e.g. <scene version=\"3.0.0\">";
+                return Err(place.wrong("the scene has no version", remedy));
+            };
+            self.is_old |= self.sources.len() == 1 && version.starts_with("0.");
+            self.contents(path, &root, parent, depth);
+        } else {
+            self.element(path, &root, parent, name, depth + 1)?;
+        }
+        Ok(())
+    }
+
+    fn place(&self, path: &Path, node: &roxmltree::Node) -> Place {
+        Place::line(path, node.document().text_pos_at(node.range().start).row)
+    }
+
+    /// Reads the elements inside `node` into `parent`; one with an error is left out.
+    fn contents(&mut self, path: &Path, node: &roxmltree::Node, parent: &mut Object, depth: usize) {
+        for child in node.children().filter(|child| child.is_element()) {
+            let read = self.element(path, &child, parent, None, depth + 1);
+            self.log.part(read);
+        }
+    }
+
+    fn element(
+        &mut self,
+        path: &Path,
+        node: &roxmltree::Node,
+        parent: &mut Object,
+        given_name: Option<String>,
+        depth: usize,
+    ) -> Result<(), SceneError> {
+        let place = self.place(path, node);
+        if depth > MAX_DEPTH {
+            return Err(place.wrong("elements or includes nested too deeply", "flatten the file"));
+        }
+        let attributes = self.attributes(node, &place)?;
+        let get = |name: &str| attributes.get(name).map(String::as_str);
+        let need = |name: &str| {
+            let what = format!("<{}> lacks the attribute \"{name}\"", node.tag_name().name());
+            get(name).ok_or_else(|| place.wrong(what, format!("add {name}=\"...\"")))
+        };
+        let child = |target: Target| Child {
+            target,
+            name: given_name.as_deref().or(get("name")).map(snake_case),
+            place: place.clone(),
+            used: Cell::new(false),
+        };
+        match node.tag_name().name() {
+            "default" => {
+                let (name, value) = (need("name")?.to_owned(), need("value")?.to_owned());
+                let default = Parameter { value, used: Cell::new(true) };
+                self.parameters.entry(name).or_insert(default).used.set(true);
+            }
+            "include" => {
+                let name = get("name").map(str::to_owned);
+                self.file(&folder_of(path).join(need("filename")?), &place, parent, name, depth + 1)?;
+            }
+            "alias" => {
+                let id = need("id")?;
+                let object = self.ids.get(id).cloned().ok_or_else(|| place.undefined("object", id))?;
+                self.ids.insert(need("as")?.to_owned(), object);
+            }
+            "ref" => parent.children.push(child(Target::Reference(need("id")?.to_owned()))),
+            "path" => {
+                // A folder to search; file names here are relative to the file that holds them.
+                need("value")?;
+            }
+            tag if is_object(tag) || (tag == "spectrum" && get("type").is_some()) => {
+                let kind = if tag == "spectrum" { "texture" } else { tag };
+                let mut object = Object::new(kind, need("type")?, get("id"), place.clone());
+                self.contents(path, node, &mut object, depth);
+                let object = Rc::new(object);
+                if let Some(id) = &object.id
+                    && let Some(other) = self.ids.insert(id.clone(), object.clone())
+                {
+                    let what = format!("the id \"{id}\" is already taken at {}", other.place);
+                    return Err(place.wrong(what, "rename one of them"));
+                }
+                parent.children.push(child(Target::Own(object)));
+            }
+            tag => {
+                let value = if tag == "transform" {
+                    let mut operations = Vec::new();
+                    for child in node.children().filter(|n| n.is_element()) {
+                        let place = self.place(path, &child);
+                        let attributes = self.attributes(&child, &place)?;
+                        operations.push((child.tag_name().name().to_owned(), attributes, place));
+                    }
+                    value::transform(&operations)?
+                } else {
+                    value::parse(tag, &attributes, &place)?
+                };
+                let name = snake_case(need("name")?);
+                parent.properties.push(Property {
+                    name,
+                    value,
+                    place: place.clone(),
+                    used: Cell::new(false),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the attributes with their `$parameters` replaced.
+    fn attributes(
+        &self,
+        node: &roxmltree::Node,
+        place: &Place,
+    ) -> Result<BTreeMap<String, String>, SceneError> {
+        let replaced =
+            |a: roxmltree::Attribute| Ok((a.name().to_owned(), self.substitute(a.value(), place)?));
+        node.attributes().map(replaced).collect()
+    }
+
+    fn substitute(&self, text: &str, place: &Place) -> Result<String, SceneError> {
+        let mut out = String::new();
+        let mut rest = text;
+        while let Some(at) = rest.find('$') {
+            let (before, from) = rest.split_at(at);
+            if let Some(before) = before.strip_suffix('\\') {
+                out.push_str(before);
+                out.push('$');
+                rest = &from[1..];
+                continue;
+            }
+            out.push_str(before);
+            // The longest defined name at the start of the text.
+            let known = self.parameters.iter().filter(|(name, _)| from[1..].starts_with(name.as_str()));
+            let Some((name, value)) = known.max_by_key(|(name, _)| name.len()) else {
+                let name = from[1..].split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("");
+                let what = format!("the parameter ${name} has no value");
+                return Err(place.wrong(what, format!("give it one with -D {name}=..., or a <default>")));
+            };
+            value.used.set(true);
+            self.substituted.set(self.substituted.get() + value.value.len());
+            if self.substituted.get() > MAX_SUBSTITUTED {
+                let what = format!("the parameters become more than {} MiB of text", MAX_SUBSTITUTED >> 20);
+                return Err(place.wrong(what, "do not make values of values"));
+            }
+            out.push_str(&value.value);
+            rest = &from[1 + name.len()..];
+        }
+        out.push_str(rest);
+        Ok(out)
+    }
+}
+
+fn is_object(tag: &str) -> bool {
+    const TAGS: [&str; 14] = [
+        "scene",
+        "bsdf",
+        "emitter",
+        "film",
+        "integrator",
+        "medium",
+        "phase",
+        "rfilter",
+        "sensor",
+        "sampler",
+        "shape",
+        "texture",
+        "volume",
+        "subsurface",
+    ];
+    TAGS.contains(&tag)
+}
+
+/// Converts `intIOR` to `int_ior`, `toWorld` to `to_world`; names of 3.x stay as they are.
+pub(super) fn snake_case(name: &str) -> String {
+    let mut out = String::with_capacity(name.len() + 2);
+    let mut previous_lower = false;
+    for c in name.chars() {
+        if previous_lower && c.is_ascii_uppercase() {
+            out.push('_');
+        }
+        previous_lower = c.is_ascii_lowercase();
+        // A capital at the start or in a 3.x name ("Cr") cannot occur in a parameter's name.
+        out.push(c.to_ascii_lowercase());
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn camel_case_becomes_snake_case() {
+        let pairs = [
+            ("intIOR", "int_ior"),
+            ("toWorld", "to_world"),
+            ("diffuseReflectance", "diffuse_reflectance"),
+            ("max_depth", "max_depth"),
+            ("alphaU", "alpha_u"),
+        ];
+        for (camel, snake) in pairs {
+            assert_eq!(snake_case(camel), snake);
+        }
+    }
+
+    #[test]
+    fn parameters_are_replaced_longest_first_and_escapes_kept() {
+        let mut log = Log::new(false);
+        let builder = Builder::new(&[("a".into(), "1".into()), ("ab".into(), "2".into())], &mut log);
+        let place = Place::line(Path::new("x.xml"), 7);
+        assert_eq!(builder.substitute(r"$a $ab-$a\$z", &place).unwrap(), "1 2-1$z");
+        let message = builder.substitute("1 $nope", &place).unwrap_err().to_string();
+        assert!(message.contains("x.xml:7") && message.contains("$nope"), "{message}");
+    }
+}

@@ -1,0 +1,374 @@
+//! Materials of the native format.
+
+use super::Builder;
+use super::text::{ColourText, FilterText, MapText, MaterialText, Number, NumberText, TextureText, WrapText};
+use crate::check;
+use crate::error::{Place, SceneError};
+use crate::layers;
+use crate::layers::Surface;
+use crate::plan::{Image, TexturePlan};
+use base::math::Rgb;
+use glam::{Mat3, Vec2};
+use scene::{
+    Coat, Distribution, Filter, Fresnel, Lobe, Material, Parameter, Principled, Reflectance, Relief,
+    Roughness, Share, TextureId, Wrap,
+};
+use toml::Spanned;
+
+/// Maximum number of materials in which a material stands, one in the other.
+const MAX_DEPTH: u32 = 8;
+
+impl Builder<'_> {
+    pub(super) fn material(&mut self, text: &Spanned<MaterialText>) -> Result<(), SceneError> {
+        let place = self.file.place(text.span());
+        let material = self.described(text, 0)?;
+        let text = text.get_ref();
+        let id = self.contents.add_material(material, place.clone());
+        if self.material_ids.insert(text.name.clone(), id).is_some() {
+            let what = format!("there are two materials called \"{}\"", text.name);
+            return Err(place.wrong(what, "rename one"));
+        }
+        Ok(())
+    }
+
+    /// The material of a description that so many others lead to.
+    fn described(&mut self, text: &Spanned<MaterialText>, depth: u32) -> Result<Material, SceneError> {
+        let place = self.file.place(text.span());
+        let text = text.get_ref();
+        check_keys(text, &place)?;
+        let nested = match text.kind.as_str() {
+            "blend" => Some(self.blended(text, depth, &place)?),
+            "coated" => Some(self.coated(text, depth, &place)?),
+            _ => None,
+        };
+        let material = match nested {
+            Some(nested) => Material { two_sided: text.two_sided.unwrap_or(nested.two_sided), ..nested },
+            None => {
+                let (diffuse, coat, lobe) = self.layers(text, &place)?;
+                let principled =
+                    (text.kind == "principled").then(|| self.principled(text, &place)).transpose()?;
+                let principled = principled.map(Box::new);
+                let (two_sided, lobes) = (text.two_sided.unwrap_or(true), Vec::from_iter(lobe));
+                Material { two_sided, diffuse, coat, lobes, principled, ..Material::default() }
+            }
+        };
+        let opacity = text.opacity.clone().map(|opacity| self.share(opacity, &place)).or(material.opacity);
+        let relief = self.relief(text, &place)?.or(material.relief);
+        Ok(Material { name: text.name.clone(), opacity, relief, ..material })
+    }
+
+    /// The material called `name`, which one at `place` is made of.
+    fn named(&mut self, name: &Option<String>, depth: u32, place: &Place) -> Result<Material, SceneError> {
+        if depth > MAX_DEPTH {
+            return Err(place.wrong("materials are made of each other", "break the circle"));
+        }
+        let Some(name) = name else {
+            let what = "a material lacks those that it is made of";
+            return Err(place.wrong(what, "name them: first and second of a blend, base of a coated one"));
+        };
+        let texts = self.material_texts;
+        let found = texts.iter().find(|text| text.get_ref().name == *name);
+        self.described(found.ok_or_else(|| place.undefined("material", name))?, depth + 1)
+    }
+
+    fn blended(&mut self, text: &MaterialText, depth: u32, place: &Place) -> Result<Material, SceneError> {
+        let materials = [self.named(&text.first, depth, place)?, self.named(&text.second, depth, place)?];
+        let weight = match text.weight.clone() {
+            Some(weight) => self.share(weight, place),
+            None => Share::Constant(0.5),
+        };
+        layers::blended(weight, materials, place, self.log)
+    }
+
+    fn coated(&mut self, text: &MaterialText, depth: u32, place: &Place) -> Result<Material, SceneError> {
+        let nested = self.named(&text.base, depth, place)?;
+        let eta = text.ior.map_or(1.5, f64::from) as f32;
+        let scale = self.colour(&text.specular.clone().unwrap_or(ColourText::Grey(Number(1.0))), place)?;
+        let fresnel = Fresnel::Dielectric(eta);
+        let lobe = match text.alpha {
+            None => Lobe::Mirror { fresnel, scale },
+            Some(_) => self.rough(text, fresnel, scale, place)?,
+        };
+        layers::coated(nested, Surface { eta, lobe, through: Rgb::ONE }, place, self.log)
+    }
+
+    fn layers(
+        &mut self,
+        text: &MaterialText,
+        place: &Place,
+    ) -> Result<(Reflectance, Option<Coat>, Option<Lobe>), SceneError> {
+        let need = |colour: &Option<ColourText>, key: &str| {
+            let what = || format!("the material \"{}\" lacks {key}", text.name);
+            colour.clone().ok_or_else(|| place.wrong(what(), format!("add {key} = ...")))
+        };
+        let one = || ColourText::Grey(Number(1.0));
+        let ior = text.ior.map_or(1.5, f64::from) as f32;
+        Ok(match text.kind.as_str() {
+            "diffuse" => (self.colour(&need(&text.reflectance, "reflectance")?, place)?, None, None),
+            "glossy" => {
+                let diffuse = self.colour(&need(&text.diffuse, "diffuse")?, place)?;
+                let scale = self.colour(&need(&text.specular, "specular")?, place)?;
+                (diffuse, None, Some(self.rough(text, Fresnel::One, scale, place)?))
+            }
+            "plastic" | "roughplastic" => {
+                let diffuse = self.colour(&need(&text.diffuse, "diffuse")?, place)?;
+                let scale = self.colour(&text.specular.clone().unwrap_or(one()), place)?;
+                let fresnel = Fresnel::Dielectric(ior);
+                let lobe = match text.kind.as_str() {
+                    "plastic" => Lobe::Mirror { fresnel, scale },
+                    _ => self.rough(text, fresnel, scale, place)?,
+                };
+                let coat = Coat { eta: ior, nonlinear: text.nonlinear.unwrap_or(false) };
+                (diffuse, Some(coat), Some(lobe))
+            }
+            "conductor" => {
+                let scale = self.colour(&text.specular.clone().unwrap_or(one()), place)?;
+                let fresnel = self.conductor(text, place)?;
+                let lobe = match text.alpha {
+                    None | Some(NumberText::Number(Number(0.0))) if text.alpha_v.is_some() => {
+                        let what = format!("the roughness of \"{}\" is given along v alone", text.name);
+                        return Err(place.wrong(what, "give alpha, that along u, above 0"));
+                    }
+                    None | Some(NumberText::Number(Number(0.0))) => Lobe::Mirror { fresnel, scale },
+                    Some(_) => self.rough(text, fresnel, scale, place)?,
+                };
+                (Reflectance::BLACK, None, Some(lobe))
+            }
+            "mirror" => {
+                let scale = self.colour(&text.reflectance.clone().unwrap_or(one()), place)?;
+                (Reflectance::BLACK, None, Some(Lobe::Mirror { fresnel: Fresnel::One, scale }))
+            }
+            "glass" => {
+                let reflectance = self.colour(&text.reflectance.clone().unwrap_or(one()), place)?;
+                let transmittance = self.colour(&text.transmittance.clone().unwrap_or(one()), place)?;
+                let (eta, thin) = (ior, text.thin.unwrap_or(false));
+                let glass = match text.alpha {
+                    None => Lobe::Dielectric { eta, thin, reflectance, transmittance },
+                    Some(_) if thin => {
+                        let what = format!("the glass \"{}\" is thin and rough", text.name);
+                        return Err(place.wrong(what, "leave out thin or alpha"));
+                    }
+                    Some(_) => {
+                        let (distribution, alpha) = self.facets(text, place)?;
+                        Lobe::RoughDielectric { distribution, alpha, eta, reflectance, transmittance }
+                    }
+                };
+                (Reflectance::BLACK, None, Some(glass))
+            }
+            _ => (Reflectance::BLACK, None, None),
+        })
+    }
+
+    fn conductor(&self, text: &MaterialText, place: &Place) -> Result<Fresnel, SceneError> {
+        match (&text.preset, &text.eta, &text.k) {
+            (Some(preset), None, None) => {
+                let (eta, k) = check::conductor(preset, place)?;
+                Ok(Fresnel::Conductor { eta, k })
+            }
+            (None, Some(eta), Some(k)) => {
+                Ok(Fresnel::Conductor { eta: eta.rgb("eta", place)?, k: k.rgb("k", place)? })
+            }
+            _ => {
+                let what = format!("the conductor \"{}\" is not determined", text.name);
+                Err(place.wrong(what, "give either preset, or eta and k"))
+            }
+        }
+    }
+
+    fn rough(
+        &mut self,
+        text: &MaterialText,
+        fresnel: Fresnel,
+        scale: Reflectance,
+        place: &Place,
+    ) -> Result<Lobe, SceneError> {
+        let (distribution, alpha) = self.facets(text, place)?;
+        let Some(Number(across)) = text.alpha_v else {
+            return Ok(Lobe::Rough { distribution, alpha, fresnel, scale });
+        };
+        match alpha {
+            Roughness::Constant(along) if across > 0.0 && across <= 4.0 => {
+                Ok(Lobe::Anisotropic { distribution, alpha: [along, across as f32], fresnel, scale })
+            }
+            Roughness::Constant(_) => {
+                let what = format!("the roughness of \"{}\" along v is {across}", text.name);
+                Err(place.wrong(what, "give a number above 0, usually up to 1"))
+            }
+            Roughness::Textured { .. } => {
+                let what = format!("the roughness of \"{}\" is textured and anisotropic", text.name);
+                Err(place.wrong(what, "leave out alpha_v, or give alpha as a number"))
+            }
+        }
+    }
+
+    /// Distribution and roughness of microfacets.
+    fn facets(
+        &mut self,
+        text: &MaterialText,
+        place: &Place,
+    ) -> Result<(Distribution, Roughness), SceneError> {
+        let alpha = match text.alpha.clone().unwrap_or(NumberText::Number(Number(0.1))) {
+            NumberText::Number(Number(alpha)) => {
+                if !(alpha > 0.0 && alpha <= 4.0) {
+                    let what = format!("the roughness of \"{}\" is {alpha}", text.name);
+                    return Err(place.wrong(what, "give a number above 0, usually up to 1"));
+                }
+                Roughness::Constant(alpha as f32)
+            }
+            NumberText::Picture(file) => self.number(TextureText { file, ..TextureText::default() }, place),
+            NumberText::Texture(texture) => self.number(texture, place),
+        };
+        let distribution = match text.distribution.as_deref() {
+            None | Some("ggx") => Distribution::Ggx,
+            Some("beckmann") => Distribution::Beckmann,
+            Some(other) => {
+                let what = format!("unknown distribution \"{other}\"");
+                return Err(place.wrong(what, "use ggx or beckmann"));
+            }
+        };
+        Ok((distribution, alpha))
+    }
+
+    fn principled(&mut self, text: &MaterialText, place: &Place) -> Result<Principled, SceneError> {
+        let base_color = match &text.base_color {
+            Some(colour) => self.colour(colour, place)?,
+            None => Principled::default().base_color,
+        };
+        let mut share = |number: &Option<NumberText>, default| match number {
+            Some(number) => self.share(number.clone(), place),
+            None => Share::Constant(default),
+        };
+        Ok(Principled {
+            base_color,
+            metallic: share(&text.metallic, 0.0),
+            roughness: share(&text.roughness, 0.5),
+            anisotropic: text.anisotropic.map_or(0.0, f64::from) as f32,
+            anisotropic_rotation: 0.0,
+            eta: text.ior.map_or(1.5, f64::from) as f32,
+            spec_tint: share(&text.spec_tint, 0.0),
+            spec_trans: share(&text.spec_trans, 0.0),
+            sheen: share(&text.sheen, 0.0),
+            sheen_tint: share(&text.sheen_tint, 0.0),
+            clearcoat: share(&text.clearcoat, 0.0),
+            clearcoat_gloss: text.clearcoat_gloss.map_or(0.0, f64::from) as f32,
+        })
+    }
+
+    fn relief(&mut self, text: &MaterialText, place: &Place) -> Result<Option<Relief>, SceneError> {
+        if let (Some(_), Some(_)) = (&text.normal_map, &text.bump_map) {
+            let what = format!("the material \"{}\" has two reliefs", text.name);
+            return Err(place.wrong(what, "leave out normal_map or bump_map"));
+        }
+        let raw = |map: &MapText| match map.clone() {
+            MapText::Picture(file) => TextureText { file, raw: true, ..TextureText::default() },
+            MapText::Texture(texture) => TextureText { raw: true, ..texture },
+        };
+        let normals = text.normal_map.as_ref().map(raw).map(|map| Relief::Normals {
+            texture: self.texture_id(&map, place),
+            strength: map.scale() as f32,
+            y_along_v: true,
+        });
+        let heights = text
+            .bump_map
+            .as_ref()
+            .map(raw)
+            .map(|map| Relief::Heights { texture: self.texture_id(&map, place), scale: map.scale() as f32 });
+        Ok(normals.or(heights))
+    }
+
+    fn share(&mut self, text: NumberText, place: &Place) -> Share {
+        match text {
+            NumberText::Number(Number(number)) => Share::Constant(number as f32),
+            NumberText::Picture(file) => self.number(TextureText { file, ..TextureText::default() }, place),
+            NumberText::Texture(texture) => self.number(texture, place),
+        }
+    }
+
+    fn number(&mut self, text: TextureText, place: &Place) -> Parameter<f32> {
+        let scale = text.scale() as f32;
+        let texture = self.texture_id(&TextureText { raw: true, ..text }, place);
+        Parameter::Textured { texture, scale }
+    }
+
+    pub(super) fn texture(&mut self, text: &TextureText, place: &Place) -> Reflectance {
+        let scale = Rgb::splat(text.scale() as f32);
+        Reflectance::Textured { texture: self.texture_id(text, place), scale }
+    }
+
+    pub(super) fn texture_id(&mut self, text: &TextureText, place: &Place) -> TextureId {
+        let wrap = match text.wrap {
+            None | Some(WrapText::Repeat) => Wrap::Repeat,
+            Some(WrapText::Mirror) => Wrap::Mirror,
+            Some(WrapText::Clamp) => Wrap::Clamp,
+        };
+        let filter = match text.filter {
+            None | Some(FilterText::Bilinear) => Filter::Bilinear,
+            Some(FilterText::Nearest) => Filter::Nearest,
+        };
+        let tiles = text.tiles.map_or([1.0, 1.0], <[f64; 2]>::from).map(|t| t as f32);
+        let to_uv = Mat3::from_scale(Vec2::from(tiles));
+        let image = Image::File { path: self.folder.join(&text.file), raw: text.raw };
+        self.contents.add_texture(TexturePlan { place: place.clone(), image, filter, wrap, to_uv })
+    }
+}
+
+/// Every key that is given must mean something for the kind.
+fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
+    let known: &[&str] = match text.kind.as_str() {
+        "diffuse" | "mirror" => &["reflectance"],
+        "glossy" => &["diffuse", "specular", "alpha", "distribution"],
+        "plastic" => &["diffuse", "specular", "ior", "nonlinear"],
+        "roughplastic" => &["diffuse", "specular", "ior", "nonlinear", "alpha", "distribution"],
+        "conductor" => &["preset", "eta", "k", "specular", "alpha", "alpha_v", "distribution"],
+        "glass" => &["ior", "reflectance", "transmittance", "thin", "alpha", "distribution"],
+        "principled" => &[
+            "base_color",
+            "metallic",
+            "roughness",
+            "anisotropic",
+            "ior",
+            "spec_tint",
+            "spec_trans",
+            "sheen",
+            "sheen_tint",
+            "clearcoat",
+            "clearcoat_gloss",
+        ],
+        "blend" => &["first", "second", "weight"],
+        "coated" => &["base", "ior", "specular", "alpha", "distribution"],
+        other => {
+            let remedy = "use diffuse, glossy, plastic, roughplastic, conductor, mirror, glass, principled, blend or coated";
+            return Err(place.wrong(format!("unknown kind of material \"{other}\""), remedy));
+        }
+    };
+    let given = [
+        ("reflectance", text.reflectance.is_some()),
+        ("diffuse", text.diffuse.is_some()),
+        ("specular", text.specular.is_some()),
+        ("transmittance", text.transmittance.is_some()),
+        ("alpha", text.alpha.is_some()),
+        ("alpha_v", text.alpha_v.is_some()),
+        ("distribution", text.distribution.is_some()),
+        ("ior", text.ior.is_some()),
+        ("nonlinear", text.nonlinear.is_some()),
+        ("preset", text.preset.is_some()),
+        ("eta", text.eta.is_some()),
+        ("k", text.k.is_some()),
+        ("thin", text.thin.is_some()),
+        ("base_color", text.base_color.is_some()),
+        ("metallic", text.metallic.is_some()),
+        ("roughness", text.roughness.is_some()),
+        ("anisotropic", text.anisotropic.is_some()),
+        ("spec_tint", text.spec_tint.is_some()),
+        ("spec_trans", text.spec_trans.is_some()),
+        ("sheen", text.sheen.is_some()),
+        ("sheen_tint", text.sheen_tint.is_some()),
+        ("clearcoat", text.clearcoat.is_some()),
+        ("clearcoat_gloss", text.clearcoat_gloss.is_some()),
+        ("first", text.first.is_some()),
+        ("second", text.second.is_some()),
+        ("weight", text.weight.is_some()),
+        ("base", text.base.is_some()),
+    ];
+    check::keys(&format!("{} material", text.kind), known, &given, place)
+}

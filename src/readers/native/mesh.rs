@@ -1,0 +1,205 @@
+//! Meshes of the native format: generated parts, files and shapes.
+
+use super::Builder;
+use super::text::{ColourText, MeshText, NamesText, Number, ScaleText, StepText};
+use crate::error::{Place, SceneError};
+use crate::file::stem_of;
+use crate::gltf::{self, FRAMES_PER_SECOND, ImportOptions};
+use crate::mesh::{Normals, Placement, RawMesh, shapes};
+use crate::plan::{Geometry, MaterialPlan, MeshPlan, Selection};
+use base::math::unit;
+use glam::{DMat4, DVec3};
+use lightsplat_scenes::Part;
+use scene::{Emission, MaterialId, Reflectance};
+use std::path::{Path, PathBuf};
+use toml::Spanned;
+
+impl Builder<'_> {
+    pub(super) fn mesh(&mut self, text: &Spanned<MeshText>) -> Result<(), SceneError> {
+        let place = self.file.place(text.span());
+        let text = text.get_ref();
+        if let Some(path) = self.model(text) {
+            return self.import(&path, text, &place);
+        }
+        if text.lumens_per_watt.is_some() || text.fps.is_some() {
+            let what = "lumens_per_watt and fps mean nothing for a mesh that is no glTF model";
+            return Err(place.wrong(what, "leave them out"));
+        }
+        let (name, geometry) = self.geometry(text, &place)?;
+        if !matches!(geometry, Geometry::Obj(..)) && (text.group.is_some() || text.except.is_some()) {
+            return Err(place.wrong("the mesh has no groups", "leave group and except out"));
+        }
+        let material = match (self.named_material(text)?, &geometry) {
+            (Some(material), _) => MaterialPlan::One(material),
+            (None, Geometry::Obj(path, _)) => self.mtl_materials(path, &place)?,
+            (None, _) => {
+                return Err(place.wrong("the mesh has no material", "add material = \"...\""));
+            }
+        };
+        let emission =
+            text.emission.as_ref().map(|colour| self.emission(colour, text, &place)).transpose()?;
+        let placement = Placement {
+            to_world: self.transform(&text.transform)?,
+            normals: Normals::AsGiven,
+            flip_normals: text.flip_normals,
+            // A sphere's v is counted from its north pole.
+            v_down: text.shape.as_deref() == Some("sphere"),
+            needs_uv: false,
+        };
+        self.contents.add_mesh(MeshPlan { place, name, geometry, placement, material, emission })?;
+        Ok(())
+    }
+
+    /// The file of a glTF model, if the mesh is one.
+    fn model(&self, text: &MeshText) -> Option<PathBuf> {
+        let path = self.folder.join(text.file.as_ref()?);
+        let extension = path.extension()?.to_string_lossy().to_lowercase();
+        matches!(extension.as_str(), "glb" | "gltf").then_some(path)
+    }
+
+    fn import(&mut self, path: &Path, text: &MeshText, place: &Place) -> Result<(), SceneError> {
+        let positive = |value: Option<Number>, key: &str| match value.map(f64::from) {
+            Some(value) if value <= 0.0 => {
+                Err(place.wrong(format!("{key} is {value}"), "give a number above 0"))
+            }
+            value => Ok(value),
+        };
+        let emission = text.emission.as_ref().map(|colour| self.emission(colour, text, place)).transpose()?;
+        let options = ImportOptions {
+            to_world: self.transform(&text.transform)?,
+            selection: selection(text),
+            flip_normals: text.flip_normals,
+            material: self.named_material(text)?,
+            emission,
+            lumens_per_watt: positive(text.lumens_per_watt, "lumens_per_watt")?.map(|lumens| lumens as f32),
+            fps: positive(text.fps, "fps")?.unwrap_or(FRAMES_PER_SECOND),
+            camera: None,
+        };
+        let imported = gltf::import(path, place, &options, &mut self.contents, self.log)?;
+        for source in imported.sources {
+            if !self.sources.iter().any(|known| known.0 == source.0) {
+                self.sources.push(source);
+            }
+        }
+        self.model_shot = self.model_shot.take().or(imported.shot);
+        Ok(())
+    }
+
+    fn named_material(&self, text: &MeshText) -> Result<Option<MaterialId>, SceneError> {
+        let Some(name) = &text.material else { return Ok(None) };
+        let unknown = || self.file.place(name.span()).undefined("material", name.get_ref());
+        self.material_ids.get(name.get_ref()).copied().map(Some).ok_or_else(unknown)
+    }
+
+    fn emission(
+        &mut self,
+        colour: &ColourText,
+        text: &MeshText,
+        place: &Place,
+    ) -> Result<Emission, SceneError> {
+        let (radiance, texture) = match self.colour(colour, place)? {
+            Reflectance::Constant(_) => (colour.rgb("the emission", place)?, None),
+            Reflectance::Textured { texture, scale } => (scale, Some(texture)),
+        };
+        Ok(Emission { radiance, texture, two_sided: text.emission_two_sided })
+    }
+
+    fn geometry(&mut self, text: &MeshText, place: &Place) -> Result<(String, Geometry), SceneError> {
+        match (&text.part, &text.file, &text.shape) {
+            (Some(part), None, None) => {
+                let unknown = || place.undefined("generated part", part);
+                let at = self.parts.iter().position(|p| p.name == *part).ok_or_else(unknown)?;
+                self.part_used[at] = true;
+                Ok((part.clone(), Geometry::Ready(raw_part(&self.parts[at]))))
+            }
+            (None, Some(file), None) => {
+                let path = self.folder.join(file);
+                let name = stem_of(&path);
+                let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+                let geometry = match extension.as_deref() {
+                    Some("obj") => Geometry::Obj(path, selection(text)),
+                    Some("ply") => Geometry::Ply(path),
+                    Some("serialized") => Geometry::Serialized(path, text.index.unwrap_or(0)),
+                    _ => {
+                        let what = format!("unknown kind of mesh file \"{file}\"");
+                        return Err(place.wrong(what, "use .glb, .gltf, .obj, .ply or .serialized"));
+                    }
+                };
+                Ok((name, geometry))
+            }
+            (None, None, Some(shape)) => {
+                let raw = match shape.as_str() {
+                    "rectangle" => shapes::rectangle(),
+                    "cube" => shapes::cube(),
+                    "disk" => shapes::disk(),
+                    "sphere" => shapes::sphere(DVec3::ZERO, 1.0),
+                    "cylinder" => shapes::cylinder(DVec3::ZERO, DVec3::Z, 1.0),
+                    other => {
+                        let remedy = "use rectangle, cube, sphere, disk or cylinder";
+                        return Err(place.wrong(format!("unknown shape \"{other}\""), remedy));
+                    }
+                };
+                Ok((shape.clone(), Geometry::Ready(raw)))
+            }
+            _ => Err(place.wrong("the mesh has no single source", "give one of part, file or shape")),
+        }
+    }
+
+    fn transform(&self, steps: &[Spanned<StepText>]) -> Result<DMat4, SceneError> {
+        let mut to_world = DMat4::IDENTITY;
+        for step in steps {
+            let place = self.file.place(step.span());
+            to_world = matrix(step.get_ref(), &place)? * to_world;
+            if !to_world.is_finite() {
+                return Err(place.wrong("the transform is not finite", "write smaller numbers"));
+            }
+        }
+        Ok(to_world)
+    }
+
+    /// Reads the materials of the OBJ's own MTL files, which are assigned by name.
+    fn mtl_materials(&mut self, path: &Path, place: &Place) -> Result<MaterialPlan, SceneError> {
+        let names = self.read_mtl(path, place)?;
+        let other = self.default_material(place);
+        Ok(MaterialPlan::ByName(names, other))
+    }
+}
+
+/// Groups that a mesh asks for.
+fn selection(text: &MeshText) -> Selection {
+    let names = |names: &Option<NamesText>| match names {
+        None => Vec::new(),
+        Some(NamesText::One(name)) => vec![name.clone()],
+        Some(NamesText::Several(names)) => names.clone(),
+    };
+    Selection { only: names(&text.group), except: names(&text.except) }
+}
+
+fn matrix(step: &StepText, place: &Place) -> Result<DMat4, SceneError> {
+    Ok(match (&step.scale, &step.rotate, step.translate, step.matrix) {
+        (Some(ScaleText::Uniform(s)), None, None, None) => DMat4::from_scale(DVec3::splat(s.0)),
+        (Some(ScaleText::Axes(s)), None, None, None) => DMat4::from_scale(DVec3::from(*s)),
+        (None, Some(rotate), None, None) => {
+            let axis = unit(DVec3::from(rotate.axis));
+            let zero = || place.wrong("the rotation's axis is zero", "give a direction");
+            DMat4::from_axis_angle(axis.ok_or_else(zero)?, rotate.angle.0.to_radians())
+        }
+        (None, None, Some(by), None) => DMat4::from_translation(DVec3::from(by)),
+        (None, None, None, Some(rows)) => DMat4::from_cols_array(&rows.0.map(f64::from)).transpose(),
+        _ => {
+            let remedy =
+                "write { scale = 2.0 }, { rotate = { ... } }, { translate = [...] } or { matrix = [...] }";
+            return Err(place.wrong("a transform step does not say one thing", remedy));
+        }
+    })
+}
+
+fn raw_part(part: &Part) -> RawMesh {
+    RawMesh {
+        positions: part.positions.iter().map(|p| p.as_dvec3()).collect(),
+        normals: part.normals.clone(),
+        uvs: part.uvs.clone(),
+        triangles: part.triangles.clone(),
+        groups: Vec::new(),
+    }
+}

@@ -1,0 +1,291 @@
+//! Pictures from files to linear colour: PNG, JPEG, BMP, TGA through `image`, Radiance HDR and OpenEXR.
+//!
+//! 8- and 16-bit pictures are sRGB unless read raw; floating-point ones are linear. Alpha is dropped, as in
+//! Mitsuba.
+
+use super::budget::lacking;
+use super::error::{Place, SceneError};
+use base::math::Rgb;
+use image::{DynamicImage, ImageDecoder};
+use scene::Texels;
+use std::io::Cursor;
+use std::path::Path;
+
+/// Maximum number of pixels: 16k by 16k.
+const MAX_PIXELS: usize = 1 << 28;
+/// Maximum number of pixels of a small file, and of pixels a byte of larger ones, which only a file of one colour has.
+const MAX_SMALL: usize = 1 << 24;
+const MAX_PIXELS_PER_BYTE: usize = 1 << 13;
+/// Maximum number of bytes of a decoded pixel: four channels of 32 bits.
+const MAX_PIXEL_BYTES: u64 = 16;
+
+/// Memory of a pixel while its picture is decoded and put into squares, about: in 8 bits a channel, and in more, beside
+/// the channels of OpenEXR.
+const SHORT_PIXEL_BYTES: u64 = 12;
+const LONG_PIXEL_BYTES: u64 = 36;
+
+/// Remedy for a picture that there is no memory for.
+pub(super) const SMALLER: &str = "make it smaller, or give more memory";
+
+/// A decoded picture, top row first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    pub width: usize,
+    pub height: usize,
+    pub texels: Texels,
+}
+
+/// Part of a picture that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Channel {
+    /// Linear colour.
+    Colour,
+    /// Integer values of all channels as they are, not decoded from sRGB.
+    Data,
+    /// One such channel alone in 8 bits, as a grey: 0 to 3 for red, green, blue and alpha, 1 where there is none.
+    One(usize),
+    /// 1 where alpha is at least so much, else 0.
+    AlphaFrom(f32),
+}
+
+/// Reason why there is no picture.
+enum Refusal {
+    /// Bytes that are no picture.
+    Undecodable(String),
+    /// A picture that there is no memory for.
+    TooLarge(String),
+}
+
+impl<E: std::fmt::Display> From<E> for Refusal {
+    fn from(error: E) -> Refusal {
+        Refusal::Undecodable(error.to_string())
+    }
+}
+
+/// Decodes a part of `bytes`; `path` tells the format of files without a signature.
+pub fn decode(bytes: &[u8], channel: Channel, path: &Path, place: &Place) -> Result<Picture, SceneError> {
+    let picture = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
+        decode_exr(bytes)
+    } else {
+        decode_common(bytes, channel, path)
+    };
+    let picture = picture.and_then(|p| match p.texels.is_empty() {
+        true => Err("it has no pixels".into()),
+        false => Ok(p),
+    });
+    picture.map_err(|refusal| match refusal {
+        Refusal::Undecodable(what) => {
+            SceneError::Picture { place: place.clone(), path: path.to_owned(), what }
+        }
+        Refusal::TooLarge(what) => place.wrong(format!("{}: {what}", path.display()), SMALLER),
+    })
+}
+
+fn decode_exr(bytes: &[u8]) -> Result<Picture, Refusal> {
+    use exr::prelude::*;
+    // The size is checked before any allocation that depends on it.
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)?;
+    for header in &meta.headers {
+        let (width, height) = (header.layer_size.width(), header.layer_size.height());
+        let of_channels = 4 * header.channels.list.len() as u64;
+        check_size(width, height, of_channels + LONG_PIXEL_BYTES, bytes)?;
+    }
+    // Mitsuba names luminance images Y; `rgb_channels` would refuse those.
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes))?;
+    let layer = image.layer_data;
+    let (width, height) = (layer.size.width(), layer.size.height());
+    let find = |names: &[&str]| {
+        let list = &layer.channel_data.list;
+        list.iter().find(|c| {
+            let name = c.name.to_string();
+            names.contains(&name.rsplit('.').next().unwrap_or(&name))
+        })
+    };
+    let grey = find(&["Y", "L"]);
+    let channels = [find(&["R", "r"]).or(grey), find(&["G", "g"]).or(grey), find(&["B", "b"]).or(grey)];
+    let [Some(r), Some(g), Some(b)] = channels else {
+        return Err("no R, G, B or Y channels".into());
+    };
+    let values = [r, g, b].map(|c| c.sample_data.values_as_f32().collect::<Vec<f32>>());
+    let [r, g, b] = values;
+    let texels = r.iter().zip(&g).zip(&b).map(|((&r, &g), &b)| Rgb::new(r, g, b)).collect::<Vec<_>>();
+    if texels.len() != width * height {
+        return Err("subsampled channels".into());
+    }
+    Ok(Picture { width, height, texels: Texels::new(width, &texels) })
+}
+
+/// Rejects sizes that no picture has, or none of so few bytes, or for which there is no memory, before anything is
+/// allocated for them.
+fn check_size(width: usize, height: usize, pixel_bytes: u64, bytes: &[u8]) -> Result<(), Refusal> {
+    let most = bytes.len().saturating_mul(MAX_PIXELS_PER_BYTE).clamp(MAX_SMALL, MAX_PIXELS);
+    let Some(pixels) = width.checked_mul(height).filter(|pixels| *pixels <= most) else {
+        let length = bytes.len();
+        return Err(
+            format!("{width} x {height} pixels are more than a file of {length} bytes may have").into()
+        );
+    };
+    match lacking(pixels as u64 * pixel_bytes) {
+        Some(lack) => Err(Refusal::TooLarge(format!("its {width} x {height} pixels take {lack}"))),
+        None => Ok(()),
+    }
+}
+
+fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture, Refusal> {
+    // The other signature of Radiance HDR, which Mitsuba writes and the decoder does not know.
+    let signed = bytes.strip_prefix(b"#?RGBE").map(|rest| [b"#?RADIANCE", rest].concat());
+    let bytes = signed.as_deref().unwrap_or(bytes);
+    let mut reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
+    if reader.format().is_none() {
+        // TGA has no signature.
+        let format = image::ImageFormat::from_path(path)?;
+        reader.set_format(format);
+    }
+    let mut limits = image::Limits::no_limits();
+    limits.max_alloc = Some(MAX_PIXELS as u64 * MAX_PIXEL_BYTES);
+    reader.limits(limits.clone());
+    let mut decoder = reader.into_decoder()?;
+    decoder.set_limits(limits)?;
+    let (width, height) = decoder.dimensions();
+    let is_short = decoder.color_type().bytes_per_pixel() == decoder.color_type().channel_count();
+    let pixel_bytes = if is_short { SHORT_PIXEL_BYTES } else { LONG_PIXEL_BYTES };
+    check_size(width as usize, height as usize, pixel_bytes, bytes)?;
+    let image = DynamicImage::from_decoder(decoder)?;
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let grey = |code: &dyn Fn(&[u8; 4]) -> u8| {
+        let codes: Vec<[u8; 4]> = image.to_rgba8().pixels().map(|p| [code(&p.0); 4]).collect();
+        let texels = Texels::coded(width, &codes, std::array::from_fn(|code| code as f32 / 255.0));
+        Ok(Picture { width, height, texels })
+    };
+    let raw = match channel {
+        Channel::Colour => false,
+        Channel::Data => true,
+        Channel::One(channel) => return grey(&|rgba| rgba[channel]),
+        Channel::AlphaFrom(cutoff) => {
+            return grey(&|rgba| if f32::from(rgba[3]) >= 255.0 * cutoff { 255 } else { 0 });
+        }
+    };
+    use DynamicImage as D;
+    let plain = |texels: Vec<Rgb>| Texels::new(width, &texels);
+    let texels = match image {
+        D::ImageRgb32F(_) | D::ImageRgba32F(_) => {
+            plain(image.into_rgb32f().pixels().map(|p| Rgb::from(p.0)).collect())
+        }
+        D::ImageRgb16(_) | D::ImageRgba16(_) | D::ImageLuma16(_) | D::ImageLumaA16(_) => {
+            let decode = |v: u16| linear(f32::from(v) / 65535.0, raw);
+            plain(image.into_rgb16().pixels().map(|p| Rgb::from(p.0.map(decode))).collect())
+        }
+        _ => {
+            let codes: Vec<[u8; 4]> =
+                image.into_rgb8().pixels().map(|p| [p.0[0], p.0[1], p.0[2], 0]).collect();
+            Texels::coded(width, &codes, std::array::from_fn(|code| linear(code as f32 / 255.0, raw)))
+        }
+    };
+    Ok(Picture { width, height, texels })
+}
+
+fn linear(encoded: f32, raw: bool) -> f32 {
+    if raw { encoded } else { srgb_to_linear(encoded) }
+}
+
+/// Inverse of the sRGB transfer function (IEC 61966-2-1).
+pub(crate) fn srgb_to_linear(encoded: f32) -> f32 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::PathBuf;
+
+    fn decode_file(bytes: &[u8], raw: bool, name: &str) -> Result<Picture, SceneError> {
+        let channel = if raw { Channel::Data } else { Channel::Colour };
+        decode(bytes, channel, Path::new(name), &Place::file(Path::new("s.toml")))
+    }
+
+    fn corpus(name: &str) -> Vec<u8> {
+        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/scenes/valid");
+        std::fs::read(folder.join(name)).unwrap()
+    }
+
+    #[test]
+    fn integer_pictures_are_srgb_unless_raw() {
+        let png = corpus("tile.png");
+        let decoded = decode_file(&png, false, "t.png").unwrap();
+        assert_eq!((decoded.width, decoded.height), (2, 2));
+        // 200 and 60 of 255, by the standard's formula in f64.
+        assert!(
+            (decoded.texels.get(0, 0) - Rgb::new(0.577580, 0.0451862, 0.0212190)).length() < 1e-6,
+            "{}",
+            decoded.texels.get(0, 0)
+        );
+        let raw = decode_file(&png, true, "t.png").unwrap();
+        assert_eq!(raw.texels.get(0, 0), Rgb::new(200.0, 60.0, 40.0) / 255.0);
+    }
+
+    #[test]
+    fn floating_point_pictures_are_linear_with_the_top_row_first() {
+        let sky = decode_file(&corpus("sky.exr"), false, "sky.exr").unwrap();
+        assert_eq!((sky.width, sky.height), (4, 3));
+        assert_eq!(sky.texels.get(1, 0), Rgb::new(0.5, 1.0, 2.0));
+        assert_eq!(sky.texels.get(0, 2), Rgb::new(2.0, 1.0, 4.0));
+    }
+
+    #[test]
+    fn a_picture_that_claims_to_be_huge_is_an_error_and_no_allocation() {
+        let mut exr = corpus("sky.exr");
+        let at = exr.windows(10).position(|w| w == b"dataWindow").unwrap() + 10 + 1 + 5 + 1 + 4;
+        exr[at + 8..at + 12].copy_from_slice(&2_000_000_000i32.to_le_bytes());
+        exr[at + 12..at + 16].copy_from_slice(&2_000_000_000i32.to_le_bytes());
+        assert!(decode_file(&exr, false, "sky.exr").is_err());
+    }
+
+    /// A Radiance picture of one colour, run-length encoded.
+    fn radiance(width: u16, height: usize) -> Vec<u8> {
+        let mut row = [&[2, 2][..], &width.to_be_bytes()].concat();
+        for channel in [128, 64, 32, 129] {
+            let mut left = width;
+            while left > 0 {
+                let run = left.min(127);
+                row.extend([128 + run as u8, channel]);
+                left -= run;
+            }
+        }
+        let head = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n");
+        [head.into_bytes(), row.repeat(height)].concat()
+    }
+
+    #[test]
+    fn skies_of_any_real_size_are_decoded() {
+        // 513 MiB as 32-bit floats; the decoder's own limit is 512.
+        let (width, height) = (11_000, 4080);
+        let sky = decode_file(&radiance(width, height), false, "sky.hdr").unwrap();
+        assert_eq!((sky.width, sky.height), (width.into(), height));
+        assert!((sky.texels.get(0, height - 1) - Rgb::new(1.0, 0.5, 0.25)).length() < 1e-2);
+        // Of either signature.
+        let small = radiance(8, 2);
+        let other = [b"#?RGBE", &small[b"#?RADIANCE".len()..]].concat();
+        let decoded = |bytes: &[u8]| decode_file(bytes, false, "sky.hdr").unwrap();
+        assert_eq!(decoded(&other), decoded(&small));
+        // A claim that no file of this size can keep.
+        let claims = String::from_utf8_lossy(&radiance(8, 1)).replace("-Y 1 +X 8", "-Y 16384 +X 16384");
+        let message = decode_file(claims.as_bytes(), false, "sky.hdr").unwrap_err().to_string();
+        assert!(message.contains("16384 x 16384"), "{message}");
+    }
+
+    #[test]
+    fn what_is_no_picture_is_an_error_that_names_it() {
+        for (bytes, name) in
+            [(&b""[..], "a.png"), (b"hello", "b.tga"), (b"hello", "c.txt"), (b"\x76\x2f\x31\x01", "d.exr")]
+        {
+            let message = decode_file(bytes, false, name).unwrap_err().to_string();
+            assert!(message.contains(name) && message.contains("s.toml"), "{message}");
+        }
+    }
+}

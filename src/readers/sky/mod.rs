@@ -1,0 +1,116 @@
+//! Sun and sky, as both readers describe them: the sky becomes an environment map, the sun a distant disc.
+//!
+//! Deviations: the map is bilinear between directions .35° apart, so the sky fades over that angle below the horizon,
+//! where it is black.
+
+mod hosek_wilkie;
+mod sun_position;
+
+use super::error::{Log, Place, SceneError};
+use base::math::Rgb;
+use glam::{DMat3, DVec3};
+use hosek_wilkie::{ClearSky, SUN_ANGLE, TURBIDITIES, sun_radiance};
+use rayon::prelude::*;
+use scene::{DistantDisc, EnvironmentMap};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+pub(crate) use sun_position::{Moment, sun_position};
+
+/// Size of the map; an odd number of rows, so that one lies on the horizon.
+const WIDTH: usize = 1024;
+const HEIGHT: usize = 513;
+
+/// A clear sky with its sun.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SkyPlan {
+    /// Unit world vector to the zenith.
+    pub up: DVec3,
+    /// Unit world vector to the sun.
+    pub towards_sun: DVec3,
+    pub turbidity: f64,
+    /// Albedo of the ground.
+    pub albedo: Rgb,
+    /// Factor on the sky.
+    pub sky_scale: f64,
+    /// Factor on the sun.
+    pub sun_scale: f64,
+    /// Diameter of the sun, degrees; its irradiance does not depend on it.
+    pub sun_angle: f64,
+}
+
+impl SkyPlan {
+    /// A sky with the defaults of Mitsuba.
+    pub fn new(up: DVec3, towards_sun: DVec3) -> SkyPlan {
+        let (turbidity, albedo) = (3.0, Rgb::splat(0.3));
+        SkyPlan { up, towards_sun, turbidity, albedo, sky_scale: 1.0, sun_scale: 1.0, sun_angle: SUN_ANGLE }
+    }
+
+    /// Checks the ranges of the values, and warns of a sun that has set.
+    pub fn check(&self, place: &Place, log: &mut Log) -> Result<(), SceneError> {
+        let [low, high] = TURBIDITIES;
+        if !(low..=high).contains(&self.turbidity) {
+            return Err(place.wrong(format!("the turbidity is {}", self.turbidity), "give 1 to 10"));
+        }
+        if self.albedo.to_array().iter().any(|albedo| !(0.0..=1.0).contains(albedo)) {
+            return Err(place.wrong(format!("the ground's albedo is {}", self.albedo), "give 0 to 1"));
+        }
+        if !(self.sun_angle > 0.0 && self.sun_angle < 90.0) {
+            return Err(place.wrong(format!("the sun is {} degrees wide", self.sun_angle), "give 0 to 90"));
+        }
+        if [self.sky_scale, self.sun_scale].iter().any(|scale| !(*scale >= 0.0 && scale.is_finite())) {
+            return Err(place.wrong("the scale of sun or sky is negative or no number", "give 0 or more"));
+        }
+        if self.elevation() < 0.0 {
+            let fallback = "there is no light from it; choose another hour or direction";
+            log.warn(place, "the sun is below the horizon", fallback)?;
+        }
+        Ok(())
+    }
+
+    fn elevation(&self) -> f64 {
+        FRAC_PI_2 - angle_between(self.up, self.towards_sun)
+    }
+
+    /// The sky as a map; `None` if it is black.
+    pub fn map(&self) -> Option<EnvironmentMap> {
+        if self.sky_scale == 0.0 || self.elevation() < 0.0 {
+            return None;
+        }
+        let sky = ClearSky::new(self.turbidity, self.albedo.as_dvec3(), self.elevation());
+        let right = self.up.any_orthonormal_vector();
+        let to_world = DMat3::from_cols(right, self.up, right.cross(self.up));
+        let texel = |i: usize| {
+            let (x, y) = (i % WIDTH, i / WIDTH);
+            if 2 * y >= HEIGHT {
+                return Rgb::ZERO;
+            }
+            let (sin_theta, cos_theta) = (PI * y as f64 / (HEIGHT - 1) as f64).sin_cos();
+            let (sin_phi, cos_phi) = (TAU * (x as f64 + 0.5) / WIDTH as f64).sin_cos();
+            let direction = to_world * DVec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta);
+            let gamma = angle_between(direction, self.towards_sun);
+            (sky.radiance(cos_theta, gamma) * self.sky_scale).as_vec3()
+        };
+        let radiance = (0..WIDTH * HEIGHT).into_par_iter().map(texel).collect();
+        let to_local = to_world.transpose().as_mat3();
+        Some(EnvironmentMap { width: WIDTH, height: HEIGHT, radiance, to_local })
+    }
+
+    /// The sun; `None` if it gives no light.
+    pub fn sun(&self) -> Option<DistantDisc> {
+        if self.sun_scale == 0.0 || self.elevation() < 0.0 {
+            return None;
+        }
+        let versine = |angle: f64| 1.0 - (0.5 * angle.to_radians()).cos();
+        let scale = self.sun_scale * versine(SUN_ANGLE) / versine(self.sun_angle);
+        Some(DistantDisc {
+            direction: self.towards_sun.as_vec3(),
+            half_angle: (0.5 * self.sun_angle).to_radians() as f32,
+            radiance: (sun_radiance(self.turbidity, self.elevation()) * scale).as_vec3(),
+        })
+    }
+}
+
+/// Angle between unit vectors, exact for small ones too.
+fn angle_between(a: DVec3, b: DVec3) -> f64 {
+    2.0 * (a - b).length().atan2((a + b).length())
+}

@@ -1,0 +1,95 @@
+//! Single pixels, each with as many paths as are wanted for it.
+
+use crate::method::{DrawnPixels, PILOT_SPP};
+use base::math::luminance;
+use base::parallel::ShortRuns;
+use base::progress::Control;
+use glam::DVec3;
+use rayon::prelude::*;
+use transport::eye::FullPaths;
+use transport::paths::{Batch, Counts, Look, Start, start};
+use world::World;
+use world::view::View;
+
+/// Maximum number of paths of one pixel that are traced together with those of the others.
+const TOGETHER: u32 = 64;
+
+/// Seeds of the two sets of samples of a pilot.
+const PILOT_SEEDS: [u32; 2] = [0x5bd1_e995, 0x2c1b_3c6d];
+
+/// A pixel whose radiance is wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted {
+    /// Column and row in the film.
+    pub pixel: [u32; 2],
+    /// Paths through it; for [`Look::EyeSamples`] a multiple of their number, so that each has the same share.
+    pub samples: u32,
+}
+
+/// Computes the mean radiance of each pixel over its paths, and the number of radiances that were not finite
+/// and count as 0. Another `seed` gives independent means.
+pub fn pixel_means(
+    world: &World,
+    view: &View,
+    look: Look,
+    wanted: &[Wanted],
+    (seed, max_depth): (u32, u32),
+    counts: &mut Counts,
+) -> (Vec<DVec3>, u64) {
+    let mut sums = vec![DVec3::ZERO; wanted.len()];
+    let mut nonfinite = 0;
+    let mut batch = Batch::default();
+    let most = wanted.iter().map(|w| w.samples).max().unwrap_or(0);
+    for first in (0..most).step_by(TOGETHER as usize) {
+        let samples = |w: &Wanted| first.min(w.samples)..(first + TOGETHER).min(w.samples);
+        let paths =
+            wanted.iter().flat_map(|w| samples(w).map(|sample| Start { pixel: w.pixel, sample, seed }));
+        start(&mut batch, paths, (world, view), (look, most));
+        let mut values = batch.trace(world, max_depth, &mut FullPaths::default(), counts);
+        for (w, sum) in wanted.iter().zip(&mut sums) {
+            for value in values.by_ref().take(samples(w).len()) {
+                if value.is_finite() {
+                    *sum += value.as_dvec3();
+                } else {
+                    nonfinite += 1;
+                }
+            }
+        }
+    }
+    for (w, sum) in wanted.iter().zip(&mut sums) {
+        *sum /= f64::from(w.samples.max(1));
+    }
+    (sums, nonfinite)
+}
+
+/// The light of groups of film pixels by two sets of paths; `None` if cancelled.
+pub(super) fn draw_pixels(
+    world: &World,
+    view: &View,
+    max_depth: Option<u32>,
+    groups: &[Vec<[u32; 2]>],
+    control: &Control,
+) -> Option<DrawnPixels> {
+    let max_depth = world.scene.path_limit(max_depth);
+    let found: Vec<([Vec<f64>; 2], Counts)> = groups
+        .par_iter()
+        .one_by_one()
+        .map(|pixels| {
+            let mut counts = Counts::default();
+            let wanted: Vec<Wanted> =
+                pixels.iter().map(|&pixel| Wanted { pixel, samples: PILOT_SPP }).collect();
+            let luminances = PILOT_SEEDS.map(|seed| {
+                if control.is_cancelled() {
+                    return Vec::new();
+                }
+                let of = (seed, max_depth);
+                let (means, _) = pixel_means(world, view, Look::Pixels, &wanted, of, &mut counts);
+                means.into_iter().map(|mean| f64::from(luminance(mean.as_vec3()))).collect()
+            });
+            (luminances, counts)
+        })
+        .collect();
+    let rays = found.iter().map(|(_, counts)| counts.rays + counts.shadow_rays).sum();
+    let luminances = [0, 1].map(|set| found.iter().flat_map(|(sets, _)| &sets[set]).copied().collect());
+    (!control.is_cancelled()).then(|| DrawnPixels::new(luminances, rays, 0))
+}

@@ -1,0 +1,128 @@
+//! A session: one scene held ready, and frames rendered of it.
+//!
+//! ```no_run
+//! # use lightsplat::{film::write_exr, progress::Control, session::{Goal, Session}, view::{Framing, View}};
+//! # use std::path::Path;
+//! let session = Session::open(Path::new("scenes/cornell.toml"), &Default::default())?;
+//! let view = View::new(&session.cameras, &Framing::default())?;
+//! let frame = session.frame(&view, &Goal::default(), &Control::new())?;
+//! write_exr(Path::new("cornell.exr"), &frame.film)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The session holds what all frames share; a [`Goal`] says how a frame is rendered, or what its settings are to be
+//! planned for, and how its error is measured; a [`Frame`] holds the picture and all that is reported about it.
+
+mod finish;
+mod frame;
+mod goal;
+mod planned;
+mod render;
+mod report;
+
+pub use finish::Finish;
+pub use frame::{BLACK, Frame, Remark};
+pub use goal::{Goal, Wanted};
+pub use render::FrameError;
+pub(crate) use render::{Former, Kept};
+
+pub use transport::eye::{Feature, Features, UnknownFeature};
+
+use crate::method::LightStore;
+use base::stats::{Stage, Stats};
+use embree::{BuildQuality, EmbreeError};
+use readers::{LoadOptions, Loaded, SceneError, load};
+use scene::Cameras;
+use std::path::{Path, PathBuf};
+use world::World;
+
+/// A scene prepared for rendering, with the cameras of its file.
+pub struct Session {
+    /// The scene, its acceleration structure, materials and emitters.
+    pub world: World,
+    /// The cameras of the scene's file.
+    pub cameras: Cameras,
+    /// Hash over the bytes of all source files.
+    pub hash: u64,
+    /// Times of loading and building.
+    pub stats: Stats,
+    /// Virtual lights of the last frame.
+    lights: LightStore,
+    /// The scene's file.
+    path: PathBuf,
+}
+
+/// Reason why a session cannot be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The scene cannot be read.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The acceleration structure cannot be built.
+    #[error("cannot build {}", path.display())]
+    Build {
+        /// The scene's file.
+        path: PathBuf,
+        /// Embree's reason.
+        source: EmbreeError,
+    },
+}
+
+impl Session {
+    /// Reads the scene at `path` and makes it ready on the threads of the current pool.
+    pub fn open(path: &Path, options: &LoadOptions) -> Result<Session, OpenError> {
+        let mut stats = Stats::new();
+        let loaded = stats.time(Stage::Load, || load(path, options))?;
+        Session::of(loaded, path, stats)
+    }
+
+    /// Prepares a loaded scene on the threads of the current pool; `stats` holds the time of loading it.
+    pub fn of(loaded: Loaded, path: &Path, mut stats: Stats) -> Result<Session, OpenError> {
+        let Loaded { scene, cameras, hash, .. } = loaded;
+        let path = path.to_owned();
+        match stats.time(Stage::Build, || World::new(scene, rayon::current_num_threads())) {
+            Ok(world) => Ok(Session { world, cameras, hash, stats, lights: LightStore::default(), path }),
+            Err(source) => Err(OpenError::Build { path, source }),
+        }
+    }
+
+    /// Builds the acceleration structure anew with another quality.
+    pub fn rebuild(&mut self, quality: BuildQuality) -> Result<(), OpenError> {
+        let rebuilt = self.world.rebuild(quality);
+        rebuilt.map_err(|source| OpenError::Build { path: self.path.clone(), source })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::{Method, reconstruction};
+    use base::progress::Control;
+    use base::stats::Counter;
+    use world::view::{Framing, View};
+
+    #[test]
+    fn frames_of_a_session_share_lights_and_each_is_as_if_alone() {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/cornell.toml");
+        let open = || Session::open(&scene, &LoadOptions::default()).unwrap();
+        let mut settings = reconstruction::Settings { spp: 1, ..Default::default() };
+        settings.light.indirect = 2000;
+        let goal = |settings| Goal { method: Method::Reconstruction(settings), ..Goal::default() };
+        let framing = |crop| Framing { resolution: Some([32, 32]), crop, ..Framing::default() };
+        let session = open();
+        let frame = |session: &Session, settings, crop| {
+            let view = View::new(&session.cameras, &framing(crop)).unwrap();
+            session.frame(&view, &goal(settings), &Control::new()).unwrap()
+        };
+        let lights = |frame: &Frame| frame.stats.get("VPLs/total");
+        let first = frame(&session, settings, None);
+        assert!(matches!(lights(&first), Some(Counter::Count(n)) if n > 2000));
+        let crop = Some([[5, 7], [20, 10]]);
+        let second = frame(&session, settings, crop);
+        assert_eq!(lights(&second), None);
+        assert_eq!(second.film.color, frame(&open(), settings, crop).film.color);
+        // Other lights are made where others are wanted.
+        settings.light.indirect = 3000;
+        assert!(lights(&frame(&session, settings, None)).is_some());
+    }
+}

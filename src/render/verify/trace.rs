@@ -1,0 +1,156 @@
+//! Path-traced values of the pixels picked.
+
+use super::Settings;
+use super::measure::{MEANS, Measured};
+use super::picks::Pick;
+use crate::method::path::{Counts, Wanted, pixel_means};
+use base::film::metrics::REL_MSE_FLOOR;
+use base::film::{Image, sharpen};
+use base::parallel::ShortRuns;
+use base::progress::Control;
+use base::sampling::hash;
+use glam::DVec3;
+use rayon::prelude::*;
+use transport::paths::Look;
+use world::World;
+use world::view::View;
+
+/// Number of paths for each of a pixel's means in the pilot.
+const PILOT: u32 = 4;
+
+/// Standard error to reach, relative to the pixel's radiance.
+const TARGET: f64 = 0.01;
+
+/// Number of pixels of one task.
+const TASK: usize = 16;
+
+/// Seed that separates these paths from those of the picture, which may have the same seed.
+const SEED: u32 = 0x7e57_ab1e;
+
+/// Traced pixels and their cost.
+pub struct Traced {
+    /// Pixels in the order of the picks.
+    pub pixels: Vec<Measured>,
+    /// Number of pixels given fewer paths than they needed.
+    pub at_cap: usize,
+    /// Number of paths.
+    pub paths: u64,
+    /// Number of radiances that were not finite.
+    pub nonfinite: u64,
+}
+
+/// Traces paths through the pixels picked; `None` if cancelled.
+pub fn trace(
+    world: &World,
+    view: &View,
+    image: &Image,
+    picks: &[Pick],
+    settings: &Settings,
+    control: &Control,
+) -> Option<Traced> {
+    let spp = match settings.look {
+        Look::Pixels => 1,
+        Look::EyeSamples { spp, .. } => spp.max(1),
+    };
+    let most = (settings.most_samples / MEANS as u32).max(PILOT).next_multiple_of(spp);
+    let least = PILOT.next_multiple_of(spp);
+    let sum: DVec3 = image.pixels.iter().map(|p| p.as_dvec3()).sum();
+    let mean = sum.element_sum() / (3 * image.pixels.len().max(1)) as f64;
+    // Dark pixels need not reach a standard error relative to themselves.
+    let floor = REL_MSE_FLOOR * mean * mean;
+    let tracing = Tracing { world, view, image, settings, control };
+    let task = |picks: &[Pick]| {
+        let mut traced = Traced { pixels: Vec::new(), at_cap: 0, paths: 0, nonfinite: 0 };
+        let mut samples = vec![least; picks.len()];
+        let pilot = tracing.measure(picks, &samples, 0, &mut traced)?;
+        for (samples, pixel) in samples.iter_mut().zip(&pilot) {
+            let needed = f64::from(least) * pixel.relative_variance(floor) / (TARGET * TARGET);
+            traced.at_cap += usize::from(needed > f64::from(most));
+            *samples = (needed.min(f64::from(most)) as u32).max(least).next_multiple_of(spp);
+        }
+        traced.pixels = tracing.measure(picks, &samples, 1, &mut traced)?;
+        Some(traced)
+    };
+    let parts: Vec<Option<Traced>> = picks.par_chunks(TASK).one_by_one().map(task).collect();
+    let mut all = Traced { pixels: Vec::with_capacity(picks.len()), at_cap: 0, paths: 0, nonfinite: 0 };
+    for part in parts {
+        let part = part?;
+        all.pixels.extend(part.pixels);
+        all.at_cap += part.at_cap;
+        all.paths += part.paths;
+        all.nonfinite += part.nonfinite;
+    }
+    Some(all)
+}
+
+/// Inputs shared by all pixels.
+struct Tracing<'a> {
+    world: &'a World,
+    view: &'a View,
+    image: &'a Image,
+    settings: &'a Settings,
+    control: &'a Control,
+}
+
+impl Tracing<'_> {
+    /// The pixels that a picked one is made of, with their weights: itself, and those around it if the picture is
+    /// sharpened.
+    fn parts(&self, pick: &Pick) -> Vec<([u32; 2], f32)> {
+        let View { camera, window } = self.view;
+        let (column, row) = (pick.index as u32 % window.width, pick.index as u32 / window.width);
+        let a = camera.filter.sharpening();
+        if a == 0.0 {
+            return vec![(window.film_pixel([column, row]), 1.0)];
+        }
+        let along = |i: u32, n: u32| {
+            [-1, 0, 1].map(|d| i.wrapping_add_signed(d)).into_iter().zip(sharpen::weights(a, i, n))
+        };
+        let rows = along(row, window.height);
+        let parts = rows.flat_map(|(y, by_row)| {
+            along(column, window.width).map(move |(x, by_column)| ([x, y], by_row * by_column))
+        });
+        parts
+            .filter(|(_, weight)| *weight != 0.0)
+            .map(|(pixel, weight)| (window.film_pixel(pixel), weight))
+            .collect()
+    }
+
+    /// Traces all means of some pixels, each of so many samples. Another `round` gives independent ones.
+    fn measure(
+        &self,
+        picks: &[Pick],
+        samples: &[u32],
+        round: u32,
+        traced: &mut Traced,
+    ) -> Option<Vec<Measured>> {
+        let Tracing { world, view, settings, .. } = *self;
+        let max_depth = world.scene.path_limit(settings.max_depth);
+        let held = |pick: &Pick| Measured {
+            held: self.image.pixels[pick.index].as_dvec3(),
+            means: [DVec3::ZERO; MEANS],
+            weight: pick.weight,
+        };
+        let mut pixels: Vec<Measured> = picks.iter().map(held).collect();
+        let parts = picks.iter().zip(samples).enumerate().flat_map(|(i, (pick, &samples))| {
+            self.parts(pick).into_iter().map(move |(pixel, weight)| (i, weight, Wanted { pixel, samples }))
+        });
+        let parts: Vec<(usize, f32, Wanted)> = parts.collect();
+        let wanted: Vec<Wanted> = parts.iter().map(|(.., wanted)| *wanted).collect();
+        let mut counts = Counts::default();
+        for k in 0..MEANS {
+            if self.control.is_cancelled() {
+                return None;
+            }
+            let seed = hash(hash(settings.seed, SEED), round * MEANS as u32 + k as u32);
+            let (means, nonfinite) =
+                pixel_means(world, view, settings.look, &wanted, (seed, max_depth), &mut counts);
+            for (&(pixel, weight, _), mean) in parts.iter().zip(means) {
+                pixels[pixel].means[k] += f64::from(weight) * mean;
+            }
+            traced.nonfinite += nonfinite;
+        }
+        traced.paths += MEANS as u64 * wanted.iter().map(|w| u64::from(w.samples)).sum::<u64>();
+        self.control.advance(picks.len() as u64);
+        Some(pixels)
+    }
+}

@@ -1,0 +1,121 @@
+//! Intensities of indirect virtual lights, by region of the scene.
+//!
+//! How much of their light is above a limit depends on them: a few bright virtual lights lose more than many faint ones
+//! of the same flux. They differ by albedo, and where photons come densely.
+
+use crate::vpl::{Origin, Profiles, VplKind, VplSet};
+use base::math::luminance;
+use glam::Vec3;
+use world::light::Regions;
+
+/// Number of virtual lights that regions are made of, at most, and of those in a region.
+const SAMPLES: usize = 1 << 15;
+const IN_REGION: usize = 32;
+
+/// Intensity over the geometric mean of a region from which on a virtual light does not count: that of a stray photon,
+/// around which all others would be thought as bright.
+const UNUSUAL: f64 = 3.0;
+
+/// Mean intensities of indirect virtual lights.
+#[derive(Clone, Debug)]
+pub struct Intensities {
+    regions: Regions,
+    /// By region: mean luminance of the intensities per cosine, by flux, without unusual ones.
+    means: Vec<f32>,
+}
+
+impl Intensities {
+    /// Those of indirect lights among `sets`, lobed ones as diffuse ones of their flux; `None` if there are none.
+    pub fn new(sets: &[VplSet], profiles: &Profiles) -> Option<Intensities> {
+        let indirect = || sets.iter().filter(|set| set.origin == Origin::Indirect);
+        let stride = indirect().map(VplSet::len).sum::<usize>().div_ceil(SAMPLES).max(1);
+        let (mut places, mut intensities) = (Vec::new(), Vec::new());
+        for set in indirect() {
+            for (vpl, intensity) in set.vpls.iter().zip(&set.intensities).step_by(stride) {
+                let as_diffuse = match set.kind {
+                    VplKind::Lobed => profiles.lobes[vpl.lobe()].diffuse_equivalent(),
+                    _ => 1.0,
+                };
+                let intensity = f64::from(luminance(*intensity)) * f64::from(as_diffuse);
+                if intensity > 0.0 {
+                    places.push(vpl.position);
+                    intensities.push(intensity);
+                }
+            }
+        }
+        let (regions, members) = Regions::new(&places, IN_REGION);
+        let mean = |members: &Vec<u32>| {
+            let of_members = || members.iter().map(|i| intensities[*i as usize]);
+            let middle = (of_members().map(f64::ln).sum::<f64>() / members.len() as f64).exp();
+            let usual = || of_members().filter(|intensity| *intensity <= UNUSUAL * middle);
+            let squares: f64 = usual().map(|intensity| intensity * intensity).sum();
+            (squares / usual().sum::<f64>()) as f32
+        };
+        (!places.is_empty()).then(|| Intensities { means: members.iter().map(mean).collect(), regions })
+    }
+
+    /// Mean luminance of the intensities per cosine around a point, W/sr.
+    #[inline]
+    pub fn around(&self, x: Vec3) -> f32 {
+        self.means[self.regions.of(x)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vpl::Vpl;
+    use base::math::Rgb;
+    use base::sampling::owen_sobol_2d;
+
+    /// Few bright lights left of the origin, and many faint ones right of it.
+    fn set(scale: f32) -> VplSet {
+        let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
+        for i in 0..100_000 {
+            let u = owen_sobol_2d(i, 7);
+            let (side, intensity) = if i % 100 == 0 { (-1.0, 8.0) } else { (1.0, 0.02) };
+            let place = Vec3::new(side * (1.0 + u.x), u.y, 0.0);
+            set.push(Vpl::oriented(place, Vec3::Z), Rgb::splat(intensity * scale));
+        }
+        set
+    }
+
+    #[test]
+    fn intensities_are_those_of_the_lights_around() {
+        for scale in [1e-25f32, 1.0, 1e25] {
+            let found = Intensities::new(&[set(scale)], &Profiles::default()).expect("there are lights");
+            for (x, expected) in [(-1.5, 8.0), (1.5, 0.02)] {
+                let around = found.around(Vec3::new(x, 0.5, 0.3)) / scale;
+                assert!((around / expected - 1.0).abs() < 1e-4, "{around} for {expected} at scale {scale}");
+            }
+        }
+    }
+
+    /// Lights of 1 and 3 W/sr have (1² + 3²) / (1 + 3).
+    #[test]
+    fn bright_lights_count_by_their_flux() {
+        let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
+        for intensity in [1.0, 3.0] {
+            set.push(Vpl::oriented(Vec3::ZERO, Vec3::Z), Rgb::splat(intensity));
+        }
+        let found = Intensities::new(&[set], &Profiles::default()).expect("there are lights");
+        assert!((found.around(Vec3::ZERO) - 2.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn stray_lights_do_not_count() {
+        let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
+        for i in 0..20 {
+            set.push(Vpl::oriented(Vec3::ZERO, Vec3::Z), Rgb::splat(if i == 7 { 500.0 } else { 1.0 }));
+        }
+        let found = Intensities::new(&[set], &Profiles::default()).expect("there are lights");
+        assert!((found.around(Vec3::ZERO) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn direct_lights_are_not_limited() {
+        let mut direct = VplSet::new(VplKind::Oriented, Origin::Direct);
+        direct.push(Vpl::oriented(Vec3::ZERO, Vec3::Z), Rgb::ONE);
+        assert!(Intensities::new(&[direct], &Profiles::default()).is_none());
+    }
+}

@@ -1,0 +1,147 @@
+//! Light that rough metals reflect back along short rays: by their lobes, as their virtual lights radiate it.
+//!
+//! The virtual light of a lobe gives ρ = π p s / cosθ times what a diffuse one of its flux would, p the peak of the
+//! lobe's intensity over its flux and s the share of it that leaves towards the point. So it lacks max(0, ρ - b/G) of
+//! what the diffuse one would give without a limit, where the diffuse one lacks max(0, 1 - b/G).
+
+use super::Compensation;
+use super::short_rays::{BRIGHTER, Limit, NearSurface};
+use crate::lightcut::{PacketCluster, PacketCut};
+use crate::vpl::VplKind;
+use base::math::Rgb;
+use glam::Vec3;
+use std::f32::consts::PI;
+use world::material::Bsdf;
+
+/// Light that a lobe may give, over a diffuse surface of its flux, as far as short rays look.
+const MOST: f32 = 4.0;
+
+impl Compensation<'_> {
+    /// Light that a virtual light of the scene may give, over a diffuse one of its flux, as far as short rays look.
+    pub(super) fn most_of_lobes(&self) -> f32 {
+        if self.transfer.trees.profiles.lobes.is_empty() { 1.0 } else { MOST }
+    }
+}
+
+/// How much a surface met by a short ray gives of what virtual lights lack.
+#[derive(Clone, Copy, Debug)]
+pub struct Lack {
+    /// Unit vector back along the ray.
+    pub out: Vec3,
+    /// Geometry term that virtual lights have kept, over the ray's.
+    pub kept: f32,
+    /// Limit of the virtual lights.
+    pub limit: Limit,
+    /// True if the surface radiates by lobes.
+    pub by_lobes: bool,
+}
+
+impl Lack {
+    /// Returns a bound of what is lacking, up to a constant factor: that of a diffuse surface, max(0, 1 - b/G), or that
+    /// of a lobe at its greatest.
+    pub fn weight(&self) -> f32 {
+        let most = if self.by_lobes { MOST } else { 1.0 };
+        (1.0 - self.kept / most).max(0.0)
+    }
+}
+
+/// Factors of the irradiance from each cluster of a `cut` at a surface met, by which its weight gives what virtual
+/// lights lack; `None` if all are 1.
+pub fn factors(c: &Compensation, near: &NearSurface, cut: &PacketCut) -> Option<Vec<Rgb>> {
+    if !near.lack.by_lobes {
+        return None;
+    }
+    let (trees, bsdf) = (c.transfer.trees, c.world.bsdf(&near.surface));
+    let usual = near.usual(&bsdf);
+    let factor = |cluster: &PacketCluster| {
+        let node = &trees.nodes[cluster.node as usize];
+        let place = trees.vpls[node.representative()].position;
+        let towards = if node.kind() == VplKind::Directional { place } else { place - near.surface.position };
+        let lacking = near.lacking(&bsdf, towards.normalize_or_zero());
+        Rgb::select(usual.cmpgt(Rgb::ZERO), lacking / usual, Rgb::ZERO)
+    };
+    Some(cut.clusters.iter().map(factor).collect())
+}
+
+impl NearSurface {
+    /// Reflectance that the weight stands for.
+    fn usual(&self, bsdf: &Bsdf) -> Rgb {
+        bsdf.diffuse_albedo(self.surface.frame.to_local(self.lack.out)) * self.lack.weight()
+    }
+
+    /// Returns what virtual lights lack for light from the unit vector `wi`, as a reflectance: a diffuse surface of it
+    /// would give as much.
+    fn lacking(&self, bsdf: &Bsdf, wi: Vec3) -> Rgb {
+        let lack = &self.lack;
+        let (cos, local) = (self.normal.dot(lack.out), self.surface.frame.to_local(wi));
+        let mut diffuse = bsdf.diffuse_albedo(local);
+        let mut lacking = Rgb::ZERO;
+        for lobe in bsdf.reflected_lobes(local) {
+            let peak = PI * lobe.peak;
+            let given = peak * lobe.shape.share(self.normal, wi, lack.out) / cos;
+            let limited = if let Limit::Geometry(_) = lack.limit { peak.min(BRIGHTER) } else { 1.0 };
+            lacking += lobe.albedo * (given - limited * lack.kept).max(0.0);
+            diffuse -= lobe.albedo;
+        }
+        lacking + diffuse * (1.0 - lack.kept).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use embree::Ray;
+    use scene::Camera;
+    use world::testkit::*;
+    use world::{Surface, World};
+
+    fn plate() -> (World, Surface) {
+        let mut scene = scene(Camera::default(), [1, 1]);
+        let metal = add_material(&mut scene, rough_metal(0.5, 0.8));
+        scene.meshes.push(quad(Vec3::ZERO, Vec3::X, Vec3::Y, metal));
+        let world = world(scene).world;
+        let origin = Vec3::new(0.3, 0.3, 1.0);
+        let ray = Ray { origin, t_near: 0.0, direction: -Vec3::Z, t_far: f32::INFINITY };
+        let surface = world.intersect(&ray).expect("the plate");
+        (world, surface)
+    }
+
+    fn seen(surface: Surface, out: Vec3, limit: Limit, kept: f32) -> NearSurface {
+        let lack = Lack { out, kept, limit, by_lobes: true };
+        let normal = Vec3::Z;
+        NearSurface { surface, distance: 1.0, cos: 1.0, normal, weight: Rgb::ONE, emitted: Rgb::ZERO, lack }
+    }
+
+    #[test]
+    fn a_lobe_gives_what_its_surface_reflects_but_for_what_virtual_lights_have_kept() {
+        let (world, surface) = plate();
+        let bsdf = world.bsdf(&surface);
+        let limit = Limit::Irradiance(1.0);
+        for (out, wi) in [
+            (Vec3::Z, Vec3::Z),
+            (Vec3::new(0.6, 0.0, 0.8), Vec3::new(-0.6, 0.0, 0.8)),
+            (Vec3::new(0.8, 0.0, 0.6), Vec3::new(0.0, 0.6, 0.8)),
+        ] {
+            let [local_out, local_in] = [out, wi].map(|v| surface.frame.to_local(v));
+            let reflected = bsdf.eval(local_out, local_in).x * PI;
+            let given = |limit, kept| seen(surface, out, limit, kept).lacking(&bsdf, wi).x;
+            let whole = given(limit, 0.0);
+            // Facets' Fresnel reflectance is not that of the whole lobe.
+            assert!((whole / reflected - 1.0).abs() < 0.03, "{out} {wi}: {whole} for {reflected}");
+            for kept in [0.3, 1.5, 3.0] {
+                let lacking = (whole - kept * bsdf.diffuse_albedo(local_in).x).max(0.0);
+                assert!((given(limit, kept) - lacking).abs() < 1e-4, "{out} {wi} {kept}");
+                // Geometry terms are limited where lobes may give more.
+                assert!(given(Limit::Geometry(1.0), kept) <= given(limit, kept));
+            }
+            assert_eq!(seen(surface, out, limit, MOST).usual(&bsdf), Rgb::ZERO);
+        }
+    }
+
+    #[test]
+    fn diffuse_surfaces_lack_their_share() {
+        let (_, surface) = plate();
+        let lack = |kept| Lack { by_lobes: false, ..seen(surface, Vec3::Z, Limit::Geometry(1.0), kept).lack };
+        assert_eq!([0.0, 0.25, 1.0, 2.0].map(|kept| lack(kept).weight()), [1.0, 0.75, 0.0, 0.0]);
+    }
+}

@@ -1,0 +1,115 @@
+//! Bias compensation: energy lost by clamping virtual lights close to a point, recovered by short rays.
+//!
+//! Paper: Kollig and Keller, *Illumination in the Presence of Weak Singularities*, 2004; Herzog et al. 2009,
+//! section 6.3 and Eq. 13. Virtual lights count with min(G, b) of their geometry term G = cosθ_x cosθ_y / r²;
+//! the rest, max(0, G - b), is integrated over directions instead: E = π/N Σ max(0, 1 - b/G) L over N
+//! directions distributed by the cosine. G exceeds b only where r < b^(-1/2), so rays end there and are
+//! cheap.
+//!
+//! [`short_rays`] traces them, [`points`] adds the compensation of shading points; that of cache records is in
+//! the radiance cache, which also needs its gradients.
+//!
+//! Virtual lights on area lights count with cosθ_x cosθ_y / max(r², A), A the area that they represent (to
+//! within a factor of 2, see [`crate::vpl::size_of_area`]); rays that hit the light at r find max(0, 1 -
+//! r²/A) of its radiance.
+//!
+//! Deviations: light of the second kind is not in the paper, which limits no direct light. b comes from the mean
+//! intensity of the indirect virtual lights around the point, or where all light that one gives is limited, around
+//! the surface met ([`intensities`]), so one that is much brighter than those may give more than the limit. Every
+//! point is compensated, also where no light of its cut happens to be clamped: the two parts complement each other on
+//! average only. All points of a picture use the same directions, in frames of their own, so that their errors are
+//! similar and no noise is visible between them; other seeds use others. Surfaces that rays meet reflect as virtual
+//! lights do: rough metals by their lobes ([`lobes`]), all else as if it were diffuse. Where the path length is
+//! limited, paths over surfaces that rays hit may have an edge more.
+//!
+//! Units: b in 1/m².
+
+pub mod intensities;
+pub mod lobes;
+pub mod points;
+pub mod short_rays;
+
+use crate::lightcut::Transfer;
+use glam::Vec3;
+use intensities::Intensities;
+use world::World;
+
+/// Compensation at all points of a scene.
+#[derive(Clone, Copy)]
+pub struct Compensation<'a> {
+    /// The scene.
+    pub world: &'a World,
+    /// Transfer from its virtual lights.
+    pub transfer: Transfer<'a>,
+    /// `None` if no light is indirect.
+    intensities: Option<&'a Intensities>,
+    /// Squared distance from surfaces that shine, by mesh, below which their virtual lights give less; 0 for others.
+    near_sq: &'a [f32],
+    max_near_sq: f32,
+    /// Seed of the directions of short rays.
+    seed: u32,
+}
+
+impl<'a> Compensation<'a> {
+    /// For all points lit through `transfer`, by lights of the given `intensities`. `near_sq` is the squared distance
+    /// from each mesh that shines below which its virtual lights give less than they should, and 0 for others.
+    /// Directions of short rays follow from `seed`.
+    pub fn new(
+        world: &'a World,
+        transfer: Transfer<'a>,
+        intensities: Option<&'a Intensities>,
+        near_sq: &'a [f32],
+        seed: u32,
+    ) -> Compensation<'a> {
+        let max_near_sq = near_sq.iter().copied().fold(0.0, f32::max);
+        Compensation { world, transfer, intensities, near_sq, max_near_sq, seed }
+    }
+
+    /// The bound of the geometry term that keeps the irradiance at a point from a light of the mean intensity around it
+    /// below `limit`.
+    pub fn bound(&self, x: Vec3, limit: f32) -> f32 {
+        let intensity = self.intensities.map_or(0.0, |intensities| intensities.around(x));
+        if intensity > 0.0 { limit / intensity } else { f32::INFINITY }
+    }
+}
+
+/// Calls `chosen` with items chosen evenly along the sum of their weights, in `strata` equal parts of the
+/// `total`, and the sum of the parts that each represents.
+pub fn choose_evenly(
+    weights: impl IntoIterator<Item = f32>,
+    total: f32,
+    strata: usize,
+    mut chosen: impl FnMut(usize, f32),
+) {
+    let stratum = total / strata as f32;
+    let (mut reached, mut next) = (0.0, 0.5 * stratum);
+    for (item, weight) in weights.into_iter().enumerate() {
+        reached += weight;
+        let mut share = 0.0;
+        while next < reached {
+            share += stratum;
+            next += stratum;
+        }
+        if share > 0.0 {
+            chosen(item, share);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::choose_evenly;
+
+    #[test]
+    fn each_stratum_is_given_to_one_item() {
+        let chosen = |weights: &[f32], strata| {
+            let mut all = Vec::new();
+            let total = weights.iter().sum();
+            choose_evenly(weights.iter().copied(), total, strata, |item, share| all.push((item, share)));
+            all
+        };
+        assert_eq!(chosen(&[1.0, 1.0, 1.0, 1.0], 2), [(1, 2.0), (3, 2.0)]);
+        assert_eq!(chosen(&[0.0, 8.0, 0.5], 4), [(1, 8.5)], "one item may stand for several strata");
+        assert_eq!(chosen(&[0.0, 0.0], 4), [], "nothing to choose");
+    }
+}

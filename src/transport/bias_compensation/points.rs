@@ -1,0 +1,311 @@
+//! Light that shading points lack of virtual lights close to them.
+//!
+//! Points of a patch that may lack something trace short rays each. Irradiance is gathered at up to sixteen
+//! of the surfaces that the anchors' rays meet, and interpolated to all other surfaces met from the patch.
+//!
+//! Deviations: light that lobes reflect is not compensated, only that of bases. Cuts limit the luminance that
+//! a virtual light gives, not its geometry term: the same for lights of the mean intensity around the surface met.
+
+use super::short_rays::{self, ClampedPoint, Limit, NearSurface};
+use super::{Compensation, choose_evenly, lobes};
+use crate::lightcut::{
+    CutCounts, CutSettings, PacketCut, PacketLightcut, PacketSum, Receiver, ReceiverPacket, SampledCut,
+    Samples, frozen_luminance,
+};
+use crate::vpl::Origin;
+use base::math::{Frame, LANES, Rgb, luminance};
+use base::stats::add_fields;
+use std::f32::consts::PI;
+use world::SurfacePoint;
+
+/// Rays from each point.
+const RAYS: u32 = 16;
+
+/// Irradiance lacking, relative to the whole, below which it does not matter.
+const NEGLIGIBLE: f32 = 0.01;
+
+/// Error of the lightcuts at surfaces met, relative to the light of the points.
+///
+/// Against .3, a knot in a room gains .1 dB of the denoised picture, and 1 % of the time of cuts goes.
+const EPSILON: f32 = 0.1;
+
+/// Maximum number of clusters in them.
+const MAX_CUT: usize = 600;
+
+/// Maximum number of steps towards the total of which no cluster gives more than ε.
+const MAX_STEPS: u32 = 8;
+
+/// Share of the luminance to which a VPL is clamped in them: more than elsewhere, since light lost here is lost.
+const CLAMP: f32 = 0.05;
+
+/// Samples of a cut at a surface met, where points have no cuts.
+const SAMPLES: Samples = Samples { whole: 16.0, least: 16.0 };
+
+/// Cosine between the normals of surfaces that face opposite ways.
+const OPPOSITE: f32 = -0.5;
+
+/// Weight of surfaces that face away, relative to those of the same orientation.
+const ASIDE: f32 = 1e-3;
+
+/// Workspace for the compensation of shading points; one a thread, so that its buffers are allocated once.
+#[derive(Default)]
+pub struct Compensator {
+    /// Surfaces met, with the lanes of the rays.
+    met: Vec<(usize, NearSurface)>,
+    packet: PacketLightcut,
+    sampled: SampledCut,
+    receivers: ReceiverPacket<'static>,
+    counts: CompensationCounts,
+}
+
+/// Work done to find light again.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CompensationCounts {
+    /// Short rays.
+    pub rays: u64,
+    /// Cuts at surfaces met.
+    pub cuts: CutCounts,
+    /// Luminance of reflected light that was added to the radiance of points, summed.
+    pub found: f64,
+}
+add_fields!(CompensationCounts { rays, cuts, found });
+
+/// Irradiance at some of the surfaces close to a patch.
+pub struct NearLight {
+    /// Origin of the light that the patch gathers; `None` for both.
+    origin: Option<Origin>,
+    places: Vec<(SurfacePoint, Rgb)>,
+}
+
+impl Compensator {
+    /// Adds the light that the anchors of a patch lack to their `sum` of the light of one origin or of both.
+    /// Returns the light near the patch, unless there is so little that its other points need no
+    /// compensation. With a `seed` the surfaces met are lit by samples, as their points then are.
+    pub fn anchors(
+        &mut self,
+        c: &Compensation,
+        origin: Option<Origin>,
+        receivers: &ReceiverPacket,
+        sum: &mut PacketSum,
+        seed: Option<u32>,
+    ) -> Option<NearLight> {
+        self.trace(c, origin, receivers, &sum.limits);
+        let irradiance = mean_irradiance(receivers, &sum.radiance);
+        let mut lacking = [0.0; LANES];
+        for (lane, near) in &self.met {
+            let radiance = irradiance * luminance(near.weight) + luminance(near.emitted);
+            lacking[*lane] += radiance * (PI / RAYS as f32);
+        }
+        if !lacking.iter().any(|&lacking| lacking > NEGLIGIBLE * irradiance) {
+            return None;
+        }
+        let light = NearLight { origin, places: self.gather(c, irradiance, seed) };
+        self.add_met(c, &light, receivers, sum);
+        Some(light)
+    }
+
+    /// Adds the light that further points of the patch lack to their `sum`.
+    pub fn others(
+        &mut self,
+        c: &Compensation,
+        light: &NearLight,
+        receivers: &ReceiverPacket,
+        sum: &mut PacketSum,
+    ) {
+        self.trace(c, light.origin, receivers, &sum.limits);
+        self.add_met(c, light, receivers, sum);
+    }
+
+    /// Work done since this was last asked.
+    pub fn take_counts(&mut self) -> CompensationCounts {
+        let mut cuts = std::mem::take(&mut self.packet.counts);
+        cuts += std::mem::take(&mut self.sampled.counts);
+        CompensationCounts { cuts, ..std::mem::take(&mut self.counts) }
+    }
+
+    fn trace(
+        &mut self,
+        c: &Compensation,
+        origin: Option<Origin>,
+        receivers: &ReceiverPacket,
+        limits: &[f32; LANES],
+    ) {
+        let gathers = |of: Origin| origin.is_none_or(|origin| origin == of);
+        let (direct, indirect) = (gathers(Origin::Direct), gathers(Origin::Indirect));
+        let clamped: Vec<ClampedPoint> = (0..receivers.len())
+            .map(|lane| {
+                let r = receivers.get(lane);
+                let base = luminance(r.base_brdf());
+                let (position, normal) = r.place();
+                let limit = if indirect && base > 0.0 { limits[lane] / base } else { f32::INFINITY };
+                let point = SurfacePoint { position, normal, geometric_normal: r.geometric_normal() };
+                ClampedPoint { point, limit: Limit::Irradiance(limit), direct: direct && base > 0.0 }
+            })
+            .collect();
+        self.met.clear();
+        let met = &mut self.met;
+        self.counts.rays += short_rays::trace(c, &clamped, RAYS, |lane, near| met.push((lane, near)));
+    }
+
+    /// Irradiance at some of the surfaces met, chosen in proportion to their weights, by a cut or by samples of this
+    /// `seed`. It is added to points that have the irradiance `baseline`, so its error need only be small relative to
+    /// that.
+    fn gather(&mut self, c: &Compensation, baseline: f32, seed: Option<u32>) -> Vec<(SurfacePoint, Rgb)> {
+        // One surface after the other.
+        let mut order: Vec<u32> = (0..self.met.len() as u32).collect();
+        order.sort_by_key(|&i| (self.met[i as usize].1.surface.mesh, self.met[i as usize].0));
+        let total: f32 = self.met.iter().map(|(_, near)| luminance(near.weight)).sum();
+        if !(total > 0.0) {
+            return Vec::new();
+        }
+        let met = |i: u32| &self.met[i as usize].1;
+        let mut places = Vec::with_capacity(LANES);
+        let mut of_places = Vec::with_capacity(LANES);
+        choose_evenly(order.iter().map(|&i| luminance(met(i).weight)), total, LANES, |i, _| {
+            let near = met(order[i]);
+            let (position, geometric_normal) = (near.surface.position, near.surface.normal);
+            places.push((SurfacePoint { position, normal: near.normal, geometric_normal }, Rgb::ZERO));
+            of_places.push(*near);
+        });
+        let receiver = |(p, _): &(SurfacePoint, Rgb)| {
+            Receiver::irradiance(p.position, p.geometric_normal, &Frame::from_normal(p.normal))
+                .with_baseline(baseline)
+        };
+        self.receivers.set(places.iter().map(receiver));
+        let settings =
+            CutSettings { epsilon: EPSILON, max_cut: MAX_CUT, clamp: Some(CLAMP), ..CutSettings::default() };
+        // Clusters tell what lobes reflect.
+        let seed = seed.filter(|_| of_places.iter().all(|near| !near.lack.by_lobes));
+        let samples = seed.and_then(|seed| {
+            self.sampled.gather(&c.transfer, c.world, &self.receivers, (&settings, &SAMPLES), seed)
+        });
+        if let Some(sum) = samples {
+            for ((_, irradiance), found) in places.iter_mut().zip(sum.radiance) {
+                *irradiance = if found.is_finite() { found } else { Rgb::ZERO };
+            }
+            return places;
+        }
+        let cut = self.packet.gather(&c.transfer, c.world, &self.receivers, &settings);
+        for (lane, ((_, irradiance), near)) in places.iter_mut().zip(&of_places).enumerate() {
+            let found = limited(c, &cut, near, lane, baseline);
+            *irradiance = if found.is_finite() { found } else { Rgb::ZERO };
+        }
+        places
+    }
+
+    fn add_met(
+        &mut self,
+        c: &Compensation,
+        light: &NearLight,
+        receivers: &ReceiverPacket,
+        sum: &mut PacketSum,
+    ) {
+        let least = 1e-6 * c.world.diagonal;
+        for (lane, near) in &self.met {
+            let r = receivers.get(*lane);
+            let passed = r.coat_transmittance(near.surface.position - r.position());
+            let reflected = near.weight * light.interpolated(near, least * least);
+            let factor = r.base_brdf() * (passed * PI / RAYS as f32);
+            let found = factor * (reflected + near.emitted);
+            if found.is_finite() {
+                sum.radiance[*lane] += found;
+                self.counts.found += f64::from(luminance(factor * reflected));
+            }
+        }
+    }
+}
+
+impl NearLight {
+    /// Returns the mean irradiance of the places, weighted towards those close by of the same orientation. Places that
+    /// face the other way, which may be on the other side of a wall, count as dark.
+    fn interpolated(&self, near: &NearSurface, least_sq: f32) -> Rgb {
+        let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
+        for (place, irradiance) in &self.places {
+            let cos = place.normal.dot(near.normal);
+            let facing = cos.max(0.0);
+            let dist_sq = place.position.distance_squared(near.surface.position);
+            let weight = (ASIDE + facing * facing) / (dist_sq + least_sq);
+            sum += if cos > OPPOSITE { *irradiance * weight } else { Rgb::ZERO };
+            weights += weight;
+        }
+        if weights > 0.0 { sum / weights } else { Rgb::ZERO }
+    }
+}
+
+/// Irradiance of a lane by a `cut`, of which no indirect cluster may give more than ε of the light that it
+/// is added to: so coarse a cut leaves clusters whose representative happens to be next to the point.
+fn limited(c: &Compensation, cut: &PacketCut, near: &NearSurface, lane: usize, baseline: f32) -> Rgb {
+    let factors = lobes::factors(c, near, cut);
+    let sum = |limit: f32| {
+        let given = cut.clusters.iter().enumerate().map(|(i, cluster)| {
+            let node = &c.transfer.trees.nodes[cluster.node as usize];
+            let given = node.intensity * cluster.responses.get(lane);
+            let most = match node.origin() {
+                Origin::Direct => f32::INFINITY,
+                Origin::Indirect if node.is_leaf() => cut.sum.limits[lane].min(limit),
+                Origin::Indirect => limit,
+            };
+            let y = luminance(given);
+            let given = if y > most { given * (most / y) } else { given };
+            factors.as_ref().map_or(given, |factors| given * factors[i])
+        });
+        given.sum::<Rgb>()
+    };
+    let mut irradiance = sum(f32::INFINITY);
+    frozen_luminance(luminance(irradiance) + baseline, MAX_STEPS, |total| {
+        irradiance = sum(EPSILON * total);
+        luminance(irradiance) + baseline
+    });
+    irradiance
+}
+
+/// Mean luminance of the irradiance that would reflect this radiance from the base alone.
+fn mean_irradiance(receivers: &ReceiverPacket, radiance: &[Rgb; LANES]) -> f32 {
+    let irradiance = |lane: usize| {
+        let base = luminance(receivers.get(lane).base_brdf());
+        (base > 0.0).then(|| luminance(radiance[lane]) / base)
+    };
+    let (sum, count) =
+        (0..receivers.len()).filter_map(irradiance).fold((0.0, 0), |(sum, n), e| (sum + e, n + 1));
+    sum / count.max(1) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bias_compensation::lobes::Lack;
+    use embree::Ray;
+    use glam::Vec3;
+    use scene::Camera;
+    use world::testkit::*;
+
+    #[test]
+    fn light_on_one_side_of_a_sheet_says_nothing_of_the_other() {
+        let mut scene = scene(Camera::default(), [1, 1]);
+        let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+        scene.meshes.push(quad(Vec3::ZERO, Vec3::X, Vec3::Y, grey));
+        let origin = Vec3::new(0.3, 0.3, 1.0);
+        let ray = Ray { origin, t_near: 0.0, direction: -Vec3::Z, t_far: f32::INFINITY };
+        let surface = world(scene).intersect(&ray).expect("the sheet");
+        let place = |normal| SurfacePoint { position: surface.position, normal, geometric_normal: Vec3::Z };
+        let lack = Lack { out: Vec3::Z, kept: 0.0, limit: Limit::Irradiance(1.0), by_lobes: false };
+        let seen = |normal| NearSurface {
+            surface,
+            lack,
+            distance: 1.0,
+            cos: 1.0,
+            normal,
+            weight: Rgb::ONE,
+            emitted: Rgb::ZERO,
+        };
+        let light = NearLight { origin: None, places: vec![(place(Vec3::Z), Rgb::ONE)] };
+        assert_eq!(light.interpolated(&seen(-Vec3::Z), 1e-12), Rgb::ZERO);
+        let slanted = Vec3::new(0.6, 0.0, 0.8);
+        for normal in [Vec3::Z, slanted, Vec3::X] {
+            let error = light.interpolated(&seen(normal), 1e-12) - Rgb::ONE;
+            assert!(error.abs().max_element() < 1e-6, "{normal}");
+        }
+        let both = NearLight { places: vec![(place(Vec3::Z), Rgb::ONE), (place(-Vec3::Z), Rgb::X)], ..light };
+        assert!((both.interpolated(&seen(-Vec3::Z), 1e-12) - Rgb::X).abs().max_element() < 2e-3);
+    }
+}

@@ -1,0 +1,273 @@
+//! Short rays from up to sixteen points at once, and the surfaces that they meet.
+//!
+//! Deviations: rays end at sheets of thin glass, which shadow rays to virtual lights pass: light that was clamped of
+//! lights close behind a pane is not found again.
+
+use super::Compensation;
+use super::lobes::Lack;
+use base::math::{Frame, LANES, Rgb, lanes_in, luminance};
+use base::sampling::{cosine_hemisphere, owen_sobol_2d};
+use embree::{Hit, Hits16, Ray, Rays16};
+use glam::Vec3;
+use std::f32::consts::FRAC_1_PI;
+use world::shadow;
+use world::{Surface, SurfacePoint};
+
+/// Part of the seed of the directions, which no other samples of the picture's seed share.
+const SALT: u32 = 0x5eed;
+
+/// Intensity of virtual lights near a point, over the mean around it, up to which rays reach far enough where
+/// irradiances are limited.
+const MOST_AROUND: f32 = 4.0;
+
+/// Luminance that a virtual light may give over the limit where geometry terms are limited: one much brighter than
+/// those around would leave a spot.
+pub const BRIGHTER: f32 = 2.0;
+
+/// Most of an indirect virtual light; none is limited where it is not positive and finite.
+#[derive(Clone, Copy, Debug)]
+pub enum Limit {
+    /// The geometry term.
+    Geometry(f32),
+    /// The luminance of the irradiance.
+    Irradiance(f32),
+}
+
+/// A point whose virtual lights are limited.
+#[derive(Clone, Copy, Debug)]
+pub struct ClampedPoint {
+    /// Position and normals.
+    pub point: SurfacePoint,
+    /// Limit of each indirect virtual light.
+    pub limit: Limit,
+    /// True if light from area lights is to be compensated too.
+    pub direct: bool,
+}
+
+/// A surface that a ray met, and the weight of its light.
+#[derive(Clone, Copy)]
+pub struct NearSurface {
+    /// The surface.
+    pub surface: Surface,
+    /// Distance along the ray.
+    pub distance: f32,
+    /// Cosine of the ray to the normal it started at.
+    pub cos: f32,
+    /// Unit shading normal on the side of the ray.
+    pub normal: Vec3,
+    /// Radiance back along the ray for an irradiance of 1, times max(0, 1 - b/G), or more where lobes radiate.
+    pub weight: Rgb,
+    /// How it gives that light.
+    pub lack: Lack,
+    /// Radiance emitted back along the ray, times max(0, 1 - r²/A).
+    pub emitted: Rgb,
+}
+
+/// Calls `met` with the number of a point and a surface with light that virtual lights lack, for each of
+/// `count` rays from each point; ray by ray, and within that in order of the points, of which only sixteen
+/// count. Returns the number of rays traced.
+pub fn trace(
+    c: &Compensation,
+    points: &[ClampedPoint],
+    count: u32,
+    mut met: impl FnMut(usize, NearSurface),
+) -> u64 {
+    let points = &points[..points.len().min(LANES)];
+    let reach_sq = |p: &ClampedPoint| {
+        let bound = match p.limit {
+            Limit::Geometry(bound) => bound,
+            Limit::Irradiance(limit) => c.bound(p.point.position, limit) / MOST_AROUND,
+        };
+        let clamped = if bound > 0.0 && bound.is_finite() { c.most_of_lobes() / bound } else { 0.0 };
+        clamped.max(if p.direct { c.max_near_sq } else { 0.0 })
+    };
+    let valid = (0..points.len()).filter(|&l| reach_sq(&points[l]) > 0.0).fold(0u16, |mask, l| mask | 1 << l);
+    if valid == 0 {
+        return 0;
+    }
+    let frames: Vec<Frame> = points.iter().map(|p| Frame::from_normal(p.point.normal)).collect();
+    let mut rays = Rays16::default();
+    let mut hits = Hits16::default();
+    let seed = c.seed ^ SALT;
+    for index in 0..count {
+        let local = cosine_hemisphere(owen_sobol_2d(index, seed));
+        for lane in lanes_in(valid) {
+            let SurfacePoint { position, geometric_normal, .. } = points[lane].point;
+            let start = shadow::ray_from(position, geometric_normal, frames[lane].to_world(local));
+            rays.set(lane, &Ray { t_far: reach_sq(&points[lane]).sqrt(), ..start });
+        }
+        // Alike as far as the points' frames are.
+        for lane in lanes_in(c.world.accel.closest_hit16(&rays, valid, true, &mut hits)) {
+            if let Some(near) =
+                weighed(c, &hits.get(lane), frames[lane].to_world(local), local.z, &points[lane])
+            {
+                met(lane, near);
+            }
+        }
+    }
+    u64::from(valid.count_ones() * count)
+}
+
+/// The surface hit, unless it gives nothing that is lacking.
+fn weighed(
+    c: &Compensation,
+    hit: &Hit,
+    direction: Vec3,
+    cos: f32,
+    point: &ClampedPoint,
+) -> Option<NearSurface> {
+    let distance = hit.t;
+    let bound = match point.limit {
+        Limit::Geometry(bound) => bound,
+        // Of the virtual lights that the surface met has.
+        Limit::Irradiance(limit) => c.bound(point.point.position + direction * distance, limit),
+    };
+    let bound = if bound > 0.0 { bound } else { f32::INFINITY };
+    let dist_sq = distance * distance;
+    let lit_sq = if point.direct { c.near_sq[hit.geometry as usize] } else { 0.0 };
+    // G is no more than this.
+    if c.most_of_lobes() * cos <= bound * dist_sq && lit_sq <= dist_sq {
+        return None;
+    }
+    let world = c.world;
+    let surface = world.surface(hit);
+    // Virtual lights radiate by the cosine to the geometric normal.
+    let geometry = cos * surface.normal.dot(direction).abs() / dist_sq;
+    let lack = Lack { out: -direction, kept: bound / geometry, limit: point.limit, by_lobes: false };
+    let mut near = NearSurface {
+        surface,
+        lack,
+        distance,
+        cos,
+        normal: surface.frame.normal,
+        weight: Rgb::ZERO,
+        emitted: Rgb::ZERO,
+    };
+    if surface.frame.normal.dot(direction) > 0.0 {
+        near.normal = -near.normal;
+    }
+    if c.most_of_lobes() * geometry > bound {
+        let (bsdf, out) = (world.bsdf(&surface), surface.frame.to_local(-direction));
+        near.lack.by_lobes = bsdf.reflected_lobes(out).next().is_some();
+        near.weight = bsdf.diffuse_albedo(out) * (near.lack.weight() * FRAC_1_PI);
+    }
+    if lit_sq > dist_sq {
+        near.emitted = world.emitted(&surface, -direction) * (1.0 - dist_sq / lit_sq);
+    }
+    let most = near.weight + near.emitted;
+    (luminance(most) > 0.0 && most.is_finite()).then_some(near)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bias_compensation::intensities::Intensities;
+    use crate::light_tree::{Family, LightTrees};
+    use crate::lightcut::Transfer;
+    use crate::vpl::{Origin, Profiles, Vpl, VplKind, VplSet};
+    use base::progress::Control;
+    use std::f32::consts::PI;
+    use world::World;
+    use world::testkit::{add_material, camera, diffuse, emitting, quad, scene, world};
+
+    const ALBEDO: f32 = 0.6;
+    const RADIANCE: f32 = 3.0;
+    /// Height of the ceiling over the point.
+    const HEIGHT: f32 = 0.5;
+    const NONE: Limit = Limit::Geometry(f32::INFINITY);
+
+    /// A wide ceiling that shines down, and nothing else.
+    fn ceiling() -> World {
+        let mut scene = scene(camera(Vec3::ZERO, Vec3::Z, 1.0), [1, 1]);
+        let grey = add_material(&mut scene, diffuse(Rgb::splat(ALBEDO)));
+        let corner = Vec3::new(-50.0, -50.0, HEIGHT);
+        let down = quad(corner, Vec3::Y * 100.0, Vec3::X * 100.0, grey);
+        scene.meshes.push(emitting(down, Rgb::splat(RADIANCE)));
+        world(scene).world
+    }
+
+    /// Estimates of the reflected and of the emitted light that a point below the ceiling lacks, by many rays.
+    fn lacking(limit: Limit, intensities: Option<&Intensities>, near_sq: f32) -> [f32; 2] {
+        estimates(limit, intensities, near_sq, (4096, 0))
+    }
+
+    /// The same by π/N Σ of so many rays of a seed.
+    fn estimates(
+        limit: Limit,
+        intensities: Option<&Intensities>,
+        near_sq: f32,
+        (count, seed): (u32, u32),
+    ) -> [f32; 2] {
+        let world = ceiling();
+        let trees = LightTrees::build(&[], Vec::new(), world.diagonal, Family::default(), &Control::new());
+        let near = [near_sq];
+        let c = Compensation::new(&world, Transfer::new(&trees, world.diagonal), intensities, &near, seed);
+        let point = SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, geometric_normal: Vec3::Z };
+        let mut sums = [0.0; 2];
+        let clamped = ClampedPoint { point, limit, direct: near_sq > 0.0 };
+        trace(&c, &[clamped], count, |_, near| {
+            sums[0] += luminance(near.weight);
+            sums[1] += luminance(near.emitted);
+        });
+        sums.map(|sum| sum * PI / count as f32)
+    }
+
+    /// Under a ceiling at height h, G = cos⁴θ/h² and cos²θ is uniform, so that the mean of max(0, 1 - b/G) is
+    /// (1 - √b h)².
+    #[test]
+    fn the_part_of_the_geometry_term_above_the_bound_comes_back() {
+        for root in [0.1f32, 0.4, 0.8] {
+            let bound = (root / HEIGHT).powi(2);
+            let expected = ALBEDO * (1.0 - root).powi(2);
+            let [reflected, emitted] = lacking(Limit::Geometry(bound), None, 0.0);
+            assert!((reflected - expected).abs() < 0.01 * ALBEDO, "{root}: {reflected} for {expected}");
+            assert_eq!(emitted, 0.0);
+        }
+        // Nothing lies as near as b^(-1/2).
+        assert_eq!(lacking(Limit::Geometry(1.01 / (HEIGHT * HEIGHT)), None, 0.0), [0.0; 2]);
+    }
+
+    #[test]
+    fn errors_of_few_directions_average_out_over_seeds() {
+        const SEEDS: u32 = 256;
+        let root = 0.4f32;
+        let by = |seed| estimates(Limit::Geometry((root / HEIGHT).powi(2)), None, 0.0, (4, seed))[0];
+        let expected = ALBEDO * (1.0 - root).powi(2);
+        let errors: Vec<f32> = (0..SEEDS).map(|seed| by(seed) / expected - 1.0).collect();
+        let mean = errors.iter().sum::<f32>() / SEEDS as f32;
+        let rms = (errors.iter().map(|error| error * error).sum::<f32>() / SEEDS as f32).sqrt();
+        assert!(rms > 0.02 && mean.abs() < 4.0 * rms / (SEEDS as f32).sqrt(), "{mean} of {rms}");
+    }
+
+    /// Virtual lights at the point are brighter, or darker, than those of the ceiling.
+    #[test]
+    fn limits_of_irradiance_are_for_the_virtual_lights_of_the_surface_met() {
+        const LIMIT: f32 = 1.0;
+        for around in [0.5, 1.0, 4.0] {
+            let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
+            let root = 0.4f32;
+            let of_ceiling = LIMIT / (root / HEIGHT).powi(2);
+            for i in 0..1 << 14 {
+                let [x, y] = [i % 128, i / 128].map(|i| (i as f32 - 63.5) * 0.02);
+                set.push(Vpl::oriented(Vec3::new(x, y, HEIGHT), Vec3::NEG_Z), Rgb::splat(of_ceiling));
+                set.push(Vpl::oriented(Vec3::new(x, y, 0.0), Vec3::Z), Rgb::splat(of_ceiling * around));
+            }
+            let intensities = Intensities::new(&[set], &Profiles::default()).expect("there are lights");
+            let expected = ALBEDO * (1.0 - root).powi(2);
+            let [reflected, _] = lacking(Limit::Irradiance(LIMIT), Some(&intensities), 0.0);
+            assert!((reflected - expected).abs() < 0.02 * ALBEDO, "{around}: {reflected} for {expected}");
+        }
+    }
+
+    /// With r² = h²/cos²θ the mean of max(0, 1 - r²/A) is 1 - a + a ln a, a = h²/A.
+    #[test]
+    fn light_from_emitters_nearer_than_their_patches_comes_back() {
+        for a in [0.05f32, 0.3, 0.9] {
+            let expected = PI * RADIANCE * (1.0 - a + a * a.ln());
+            let [reflected, emitted] = lacking(NONE, None, HEIGHT * HEIGHT / a);
+            assert!((emitted - expected).abs() < 0.01 * PI * RADIANCE, "{a}: {emitted} for {expected}");
+            assert_eq!(reflected, 0.0);
+        }
+        assert_eq!(lacking(NONE, None, 0.99 * HEIGHT * HEIGHT), [0.0; 2]);
+    }
+}

@@ -1,0 +1,227 @@
+//! Features: properties of the visible surfaces by pixel, for denoisers and compositing.
+//!
+//! | feature | layer | value of a pixel |
+//! |---|---|---|
+//! | albedo | `albedo.R`, `.G`, `.B` | mean share of light that is reflected, through mirrors and glass; lamps below |
+//! | normal | `normal.X`, `.Y`, `.Z` | mean unit shading normal towards the viewer, in world space; 0 if none |
+//! | geometric-normal | `geometricNormal.X`, ... | the same of the triangles |
+//! | position | `position.X`, ... | mean position in the coordinates of the scene's file |
+//! | depth | `depth.Z` | distance along the camera's axis, of the nearest sample; 10^10 where nothing is |
+//! | material | `materialId` | 1 + number of the nearest sample's material; 0 where nothing is |
+//! | object | `objectId` | the same of its mesh |
+//! | alpha | `A` | share of samples that meet a surface |
+//!
+//! A sample's features are those of the surface that most of its light comes from: where mirrors or smooth glass are
+//! met, the surfaces seen in or behind them, to which distances are added up. Where most comes from the environment,
+//! they are those of the first mirror or glass. Its albedo is the sum over all surfaces seen, by their shares of the
+//! light: the Fresnel blend that Open Image Denoise asks for. Rough lobes count as reflecting, however sharp they
+//! are.
+//!
+//! Lamps have, where that is more, what they emit over the most that their mesh does in any channel: a sign's picture,
+//! and the hue of a plain lamp. Otherwise a denoiser would blur the one, and take the edges of the other for noise.
+//!
+//! Positions are averaged over the samples that meet a surface, albedo and normals over all.
+
+use super::seen::{FeatureSettings, Looking, Pixel};
+use base::film::{Image, Layer};
+use base::math::Rgb;
+use base::parallel::ShortRuns;
+use base::progress::Control;
+use glam::Vec3;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::str::FromStr;
+use world::World;
+use world::view::View;
+
+/// Pixels along the edge of the square that one task looks through.
+const TILE: u32 = 16;
+
+/// Maximum number of squares that are looked through before the pixels found are put together.
+const TILES: usize = 1024;
+
+/// Depth where there is no surface: Blender's.
+const NO_DEPTH: f32 = 1e10;
+
+/// A quantity of the surfaces in a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feature {
+    /// Share of light that is reflected, or emitted of the most.
+    Albedo,
+    /// Shading normal.
+    Normal,
+    /// Normal of the triangle.
+    GeometricNormal,
+    /// Position in the coordinates of the scene's file.
+    Position,
+    /// Distance along the camera's axis.
+    Depth,
+    /// Number of the material.
+    Material,
+    /// Number of the mesh.
+    Object,
+    /// Share of samples that meet a surface.
+    Alpha,
+}
+
+impl Feature {
+    /// All features.
+    pub const ALL: [Feature; 8] = [
+        Feature::Albedo,
+        Feature::Normal,
+        Feature::GeometricNormal,
+        Feature::Position,
+        Feature::Depth,
+        Feature::Material,
+        Feature::Object,
+        Feature::Alpha,
+    ];
+
+    /// The name by which users ask for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Feature::Albedo => "albedo",
+            Feature::Normal => "normal",
+            Feature::GeometricNormal => "geometric-normal",
+            Feature::Position => "position",
+            Feature::Depth => "depth",
+            Feature::Material => "material",
+            Feature::Object => "object",
+            Feature::Alpha => "alpha",
+        }
+    }
+}
+
+/// Any of the features.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Features(u8);
+
+impl Features {
+    /// True if there is none.
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// These and another.
+    pub fn with(self, feature: Feature) -> Features {
+        Features(self.0 | 1 << feature as u8)
+    }
+
+    /// True if a feature is one of them.
+    pub fn contains(self, feature: Feature) -> bool {
+        self.0 & 1 << feature as u8 != 0
+    }
+}
+
+impl FromIterator<Feature> for Features {
+    fn from_iter<I: IntoIterator<Item = Feature>>(features: I) -> Features {
+        features.into_iter().fold(Features::default(), Features::with)
+    }
+}
+
+/// Reason why a name is not that of a feature.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no feature `{name}`; there are {}", Feature::ALL.map(Feature::name).join(", "))]
+pub struct UnknownFeature {
+    name: String,
+}
+
+impl FromStr for Feature {
+    type Err = UnknownFeature;
+
+    fn from_str(name: &str) -> Result<Feature, UnknownFeature> {
+        let named = Feature::ALL.into_iter().find(|feature| feature.name() == name);
+        named.ok_or_else(|| UnknownFeature { name: name.to_owned() })
+    }
+}
+
+/// The surfaces seen through the pixels of a window.
+pub struct SeenPixels {
+    pixels: Image<Pixel>,
+}
+
+/// A surface that fills a pixel and its surroundings.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct EvenSurface {
+    /// Mean position relative to the scene's centre.
+    pub position: Vec3,
+    /// Unit shading normal towards the viewer.
+    pub normal: Vec3,
+    /// Number of the mesh.
+    pub mesh: u32,
+}
+
+impl SeenPixels {
+    /// Looks through the pixels of the view's window; where cancelled, nothing is there.
+    pub fn new(world: &World, view: &View, settings: &FeatureSettings, control: &Control) -> SeenPixels {
+        let window = &view.window;
+        let mut pixels: Vec<Pixel> = vec![Pixel::default(); window.pixel_count() as usize];
+        let numbers: Vec<usize> = (0..window.tile_count(TILE)).collect();
+        // Some at a time, so that not all pixels are in memory twice.
+        for numbers in numbers.chunks(TILES) {
+            let look = |index: &usize| {
+                if control.is_cancelled() {
+                    return Vec::new();
+                }
+                let mut tile = window.tile(*index, TILE).map(|at| window.film_pixel(at));
+                let Some(first) = tile.next() else { return Vec::new() };
+                Looking { world, view, settings }.pixels(first, tile.last().unwrap_or(first))
+            };
+            let found: Vec<Vec<Pixel>> = numbers.par_iter().one_by_one().map(look).collect();
+            for (tile, found) in numbers.iter().zip(found) {
+                for (pixel, [x, y]) in found.into_iter().zip(window.tile(*tile, TILE)) {
+                    pixels[(y * window.width + x) as usize] = pixel;
+                }
+            }
+        }
+        SeenPixels { pixels: Image { width: window.width, height: window.height, pixels } }
+    }
+
+    /// The surface that fills a pixel and those around it evenly, and reflects no clear images; `None` if there is
+    /// none.
+    pub fn even_surface(&self, pixel: usize) -> Option<EvenSurface> {
+        let pixel = &self.pixels.pixels[pixel];
+        let fills = pixel.is_even && !pixel.reflects && pixel.surfaces == pixel.samples;
+        let nearest = pixel.nearest.filter(|_| fills)?;
+        let position = (pixel.position / f64::from(pixel.surfaces)).as_vec3();
+        let normal = pixel.normal.try_normalize()?;
+        Some(EvenSurface { position, normal, mesh: nearest.mesh })
+    }
+
+    /// Distance of a pixel's nearest surface along the camera's axis; 10^10 where nothing is.
+    pub fn depth(&self, pixel: usize) -> f32 {
+        self.pixels.pixels[pixel].nearest.map_or(NO_DEPTH, |nearest| nearest.depth)
+    }
+
+    /// Mean albedo of a pixel.
+    pub fn albedo(&self, pixel: usize) -> Rgb {
+        let pixel = &self.pixels.pixels[pixel];
+        pixel.albedo / pixel.samples.max(1) as f32
+    }
+
+    /// The layers of the features wanted.
+    pub fn layers(&self, world: &World, wanted: Features) -> Vec<Layer> {
+        let pixels = &self.pixels;
+        let (centre, unit) = (world.scene.centre, world.scene.unit());
+        let position = |p: &Pixel| match p.surfaces {
+            0 => Vec3::ZERO,
+            n => (centre + p.position / f64::from(n) * unit).as_vec3(),
+        };
+        let depth = |p: &Pixel| p.nearest.map_or(NO_DEPTH, |n| (f64::from(n.depth) * unit) as f32);
+        let layer = |feature: Feature| match feature {
+            Feature::Albedo => Layer::color("albedo", pixels.map(|p| p.albedo / p.samples as f32)),
+            Feature::Normal => Layer::vector("normal", pixels.map(|p| p.normal / p.samples as f32)),
+            Feature::GeometricNormal => {
+                Layer::vector("geometricNormal", pixels.map(|p| p.geometric_normal / p.samples as f32))
+            }
+            Feature::Position => Layer::vector("position", pixels.map(position)),
+            Feature::Depth => Layer::scalar("depth.Z", pixels.map(depth)),
+            Feature::Material => {
+                Layer::id("materialId", pixels.map(|p| p.nearest.map_or(0, |n| n.material + 1)))
+            }
+            Feature::Object => Layer::id("objectId", pixels.map(|p| p.nearest.map_or(0, |n| n.mesh + 1))),
+            Feature::Alpha => Layer::scalar("A", pixels.map(|p| p.surfaces as f32 / p.samples as f32)),
+        };
+        Feature::ALL.into_iter().filter(|feature| wanted.contains(*feature)).map(layer).collect()
+    }
+}

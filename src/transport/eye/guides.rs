@@ -1,0 +1,211 @@
+//! Guides for a denoiser that eye samples and paths find on their way: mean albedo and normal by pixel.
+//!
+//! They are as [`super::features`] says, of all eye samples of a pixel. Only samples that meet a mirror or glass first
+//! are looked at by themselves.
+//!
+//! Errors: values are kept to 16 bits, so 1e-5 of an albedo and 3e-5 of a normal.
+
+use super::seen::{FeatureSettings, Looking, Pixel};
+use crate::paths::{Look, Reach};
+use base::film::{Image, Layer, Window};
+use base::math::Rgb;
+use glam::Vec3;
+use world::World;
+use world::view::View;
+
+/// Greatest number that is kept.
+const MOST: f32 = u16::MAX as f32;
+
+/// Albedo and shading normal towards the viewer, added up over samples.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Guide {
+    albedo: Rgb,
+    normal: Vec3,
+}
+
+impl Guide {
+    /// Adds those of other samples.
+    pub fn add(&mut self, other: Guide) {
+        self.albedo += other.albedo;
+        self.normal += other.normal;
+    }
+
+    /// The mean over a number of samples.
+    pub fn kept(&self, samples: u32) -> KeptGuide {
+        let n = samples.max(1) as f32;
+        let code = |value: f32| (value.clamp(0.0, 1.0) * MOST).round() as u16;
+        let (albedo, normal) = (self.albedo / n, 0.5 * self.normal / n + 0.5);
+        KeptGuide { albedo: albedo.to_array().map(code), normal: normal.to_array().map(code) }
+    }
+}
+
+/// Mean of a pixel in 12 bytes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct KeptGuide {
+    /// From 0 to 1.
+    albedo: [u16; 3],
+    /// From -1 to 1.
+    normal: [u16; 3],
+}
+
+/// The guides of a window.
+#[derive(Clone, Debug)]
+pub struct KeptGuides(pub Vec<KeptGuide>);
+
+impl KeptGuides {
+    /// Layers of albedo and normals, by the names of these features.
+    pub fn layers(&self, window: &Window) -> Vec<Layer> {
+        let image = |value: &dyn Fn(&KeptGuide) -> Vec3| Image {
+            width: window.width,
+            height: window.height,
+            pixels: self.0.iter().map(value).collect(),
+        };
+        let share = |codes: [u16; 3]| Vec3::from(codes.map(|code| f32::from(code) / MOST));
+        let albedo = image(&|guide| share(guide.albedo));
+        // The middle of the codes is no code: 0 stays 0.
+        let normal = image(&|guide| match guide.normal.map(|code| code.abs_diff(u16::MAX / 2) <= 1) {
+            [true, true, true] => Vec3::ZERO,
+            _ => 2.0 * share(guide.normal) - 1.0,
+        });
+        vec![Layer::color("albedo", albedo), Layer::vector("normal", normal)]
+    }
+}
+
+/// The first surfaces of paths that are traced together.
+#[derive(Default)]
+pub struct FirstSurfaces {
+    /// Number of paths of a pixel, which follow each other.
+    paths: u32,
+    pixels: Vec<Guide>,
+    /// Paths that meet a mirror or glass first.
+    chained: Vec<u32>,
+    behind: Vec<Pixel>,
+}
+
+impl FirstSurfaces {
+    /// Forgets what was seen before; `count` pixels of so many paths come next.
+    pub fn begin(&mut self, count: usize, paths: u32) {
+        self.paths = paths.max(1);
+        self.pixels.clear();
+        self.pixels.resize(count, Guide::default());
+        self.chained.clear();
+    }
+
+    /// Adds the albedo of the surface that a path meets, `None` of mirrors and glass, and the shading normal on that
+    /// side.
+    #[inline]
+    pub fn see(&mut self, path: u32, albedo: Option<Rgb>, normal: Vec3) {
+        match albedo {
+            Some(albedo) => self.pixels[(path / self.paths) as usize].add(Guide { albedo, normal }),
+            None => self.chained.push(path),
+        }
+    }
+
+    /// Looks at what is in and behind mirrors and glass; samples of each of the film pixels are counted from `first`.
+    pub fn finish(
+        &mut self,
+        (world, view): (&World, &View),
+        (film_pixels, first): (&[[u32; 2]], u32),
+        settings: (u32, u32),
+    ) {
+        if self.chained.is_empty() {
+            return;
+        }
+        let (spp, seed) = settings;
+        let settings = FeatureSettings { look: Look::Pixels, spp, seed };
+        self.behind.clear();
+        self.behind.resize(film_pixels.len(), Pixel::default());
+        let paths = self.paths;
+        let samples = self.chained.iter().map(|path| ((path / paths) as usize, first + path % paths));
+        Looking { world, view, settings: &settings }.add(film_pixels, &mut self.behind, samples);
+        for (guide, pixel) in self.pixels.iter_mut().zip(&self.behind) {
+            guide.add(Guide { albedo: pixel.albedo, normal: pixel.normal });
+        }
+    }
+
+    /// The surfaces seen in a pixel.
+    pub fn of(&self, pixel: usize) -> Guide {
+        self.pixels.get(pixel).copied().unwrap_or_default()
+    }
+}
+
+/// Paths of full length from the eye.
+#[derive(Default)]
+pub struct FullPaths {
+    /// The surfaces that they meet first, where guides are wanted.
+    pub first_surfaces: Option<FirstSurfaces>,
+}
+
+impl Reach<'_> for FullPaths {
+    const ENDS: bool = false;
+
+    fn sees(&self) -> bool {
+        self.first_surfaces.is_some()
+    }
+
+    #[inline]
+    fn see(&mut self, path: u32, albedo: Option<Rgb>, normal: Vec3) {
+        if let Some(first) = &mut self.first_surfaces {
+            first.see(path, albedo, normal);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eye::{DrawnLight, EyePass, EyeSettings};
+    use base::progress::Control;
+    use world::testkit::*;
+
+    #[test]
+    fn guides_are_the_features_of_all_eye_samples() {
+        const SPP: u32 = 16;
+        let world = room_with_ball(Some(mirror()));
+        let view = world.view;
+        for max_depth in [5, 1] {
+            let settings = EyeSettings { spp: SPP, seed: 3, max_depth };
+            let drawn = DrawnLight { guides: true, ..DrawnLight::default() };
+            let pass = EyePass::with_direct_light(&world, &view, settings, (&drawn, None), &Control::new());
+            let Some(guides) = pass.guides else {
+                assert_eq!(max_depth, 1, "paths end at emitters");
+                continue;
+            };
+            let layers = guides.layers(&view.window);
+            let pixels: Vec<[u32; 2]> = view.window.film_pixels().collect();
+            let features = FeatureSettings { look: Look::Pixels, spp: SPP, seed: 3 };
+            let mut sums = vec![Pixel::default(); pixels.len()];
+            let samples = (0..pixels.len()).flat_map(|pixel| (0..SPP).map(move |sample| (pixel, sample)));
+            Looking { world: &world, view: &view, settings: &features }.add(&pixels, &mut sums, samples);
+            let mut through_mirrors = 0;
+            for (i, sum) in sums.iter().enumerate() {
+                let found = |layer: &Layer| layer.triples().map_or(Vec3::NAN, |image| image.pixels[i]);
+                let n = SPP as f32;
+                let errors = [found(&layers[0]) - sum.albedo / n, found(&layers[1]) - sum.normal / n];
+                assert!(errors.iter().all(|error| error.abs().max_element() < 1e-4), "{i}: {errors:?}");
+                through_mirrors += u32::from(sum.reflects);
+            }
+            assert!(through_mirrors > 50, "{through_mirrors}");
+        }
+    }
+
+    #[test]
+    fn guides_are_kept_to_sixteen_bits() {
+        let window = Window { film: [1, 1], offset: [0, 0], width: 1, height: 1 };
+        for (albedo, normal) in [
+            (Rgb::new(0.0, 0.3, 1.0), Vec3::new(-1.0, 0.0, 0.0)),
+            (Rgb::new(0.7, 0.123, 1e-4), Vec3::new(0.48, -0.6, 0.64)),
+            (Rgb::ZERO, Vec3::ZERO),
+        ] {
+            let guide = Guide { albedo: 3.0 * albedo, normal: 3.0 * normal };
+            let layers = KeptGuides(vec![guide.kept(3)]).layers(&window);
+            let found = |layer: &Layer| layer.triples().map(|image| image.pixels[0]);
+            let near = |found: Option<Vec3>, value: Vec3| {
+                found.is_some_and(|f| (f - value).abs().max_element() < 3e-5)
+            };
+            assert!(near(found(&layers[0]), albedo) && near(found(&layers[1]), normal), "{layers:?}");
+        }
+        let empty = KeptGuides(vec![Guide::default().kept(0)]).layers(&window);
+        assert!(empty.iter().all(|layer| layer.triples().is_some_and(|image| image.pixels[0] == Vec3::ZERO)));
+    }
+}

@@ -1,0 +1,42 @@
+//! Numbers of samples that pixels get beside their first, by what the first have found around them.
+
+use super::ChainCounts;
+use super::adaptive::{Choice, Luminances};
+use super::drawn::{BATCH, Tile, Tracer};
+use super::effort::Effort;
+use base::math::luminance;
+use world::light::Learned;
+
+/// Numbers of samples that pixels are to get.
+pub(super) struct Needs {
+    pub(super) choice: Choice,
+    /// Luminances found by the first samples, in the window and in the pixels next to it.
+    pub(super) luminances: Luminances,
+    /// Rays traced to learn them.
+    pub(super) chains: ChainCounts,
+}
+
+impl<'w> Tracer<'_, 'w> {
+    /// Learns which pixels need more samples than the first; `None` if none is to get more.
+    pub(super) fn needs(&self, effort: &Effort, tiles: &[Tile], learned: Option<&Learned>) -> Option<Needs> {
+        let (choice, seed) = (effort.choice?, self.settings.seed);
+        let (window, near) = (&self.view.window, self.view.window.grown(1));
+        let mut luminances = Luminances { values: vec![0.0; near.pixel_count() as usize], window: near };
+        for tile in tiles {
+            for ((pixel, sum), samples) in tile.pixels.iter().zip(&tile.sums).zip(&tile.samples) {
+                luminances.set(window.film_pixel(*pixel), luminance(*sum / *samples as f32));
+            }
+        }
+        self.drawn.settled.smooth(window, &mut luminances);
+        let beside: Vec<[u32; 2]> =
+            near.film_pixels().filter(|pixel| window.index(*pixel).is_none()).collect();
+        let beside: Vec<Vec<[u32; 2]>> = beside.chunks(BATCH as usize).map(<[_]>::to_vec).collect();
+        let (values, chains) = self.luminances(beside.clone(), seed, learned);
+        beside
+            .iter()
+            .flatten()
+            .zip(values.iter().flatten())
+            .for_each(|(pixel, [mean, _])| luminances.set(*pixel, *mean));
+        Some(Needs { choice, luminances, chains: chains.into_iter().sum() })
+    }
+}

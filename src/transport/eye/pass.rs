@@ -1,0 +1,303 @@
+//! The eye pass: all surfaces that a window sees, found once and kept in an order in which neighbours in space are
+//! neighbours in memory.
+//!
+//! Paper: Herzog et al. 2009, section 4: eye samples are stored through specular chains and sorted by a kd-tree.
+
+use super::guides::{KeptGuide, KeptGuides};
+use super::points::{PointGeometry, PointSurface, VisibilitySample};
+use super::{
+    ChainCounts, DrawnLight, EyeRays, EyeSettings, LightBySpecularLobes, ShadingPoints, VisibilitySamples,
+    VisibleSurfaces,
+};
+use crate::caustics::Caustics;
+use base::film::{Image, Window};
+use base::kd_tree::KdTree;
+use base::math::luminance;
+use base::parallel::ShortRuns;
+use base::progress::Control;
+use base::stats::{Ways, give_back};
+use rayon::prelude::*;
+use std::mem;
+use world::World;
+use world::view::View;
+
+/// Pixels along the edge of the square whose eye rays one task traces.
+pub const TILE: u32 = 16;
+
+/// Bytes of tiles that are freed before they are given back: more than there are in ordinary pictures, where that would
+/// take time and spare nothing.
+const GIVEN_BACK: usize = 64 << 20;
+
+/// Maximum size in bytes of an array that may be in memory twice: that of the points of large pictures would be the
+/// most memory that they take.
+const TWICE: usize = 128 << 20;
+
+/// Maximum luminance known in a pixel that counts, so that sums stay finite.
+const MAX_KNOWN: f32 = 1e30;
+
+/// All that a window sees.
+pub struct EyePass<'w> {
+    /// The surfaces seen, in the order of the index.
+    pub points: ShadingPoints<'w>,
+    /// The hierarchy over `points`.
+    pub index: KdTree,
+    /// Shares of the points' radiances that reach the pixels.
+    pub visibility: VisibilitySamples,
+    /// Light known: that which reaches the eye from emitters, directly or along specular chains; that which comes to
+    /// surfaces seen by mirrors and glass; and direct light if it is drawn.
+    pub known: Image,
+    /// The ways by which it came.
+    pub ways: Ways,
+    /// Guides for a denoiser, if they are wanted.
+    pub guides: Option<KeptGuides>,
+    /// Rays traced.
+    pub chains: ChainCounts,
+    /// Light samples at each surface seen for which direct light is drawn.
+    pub light_samples: u32,
+    /// Relative variance of a pixel by light that is drawn, limited to 1 where it is greater, on average over pixels;
+    /// 0 if it is not known.
+    pub noise: f32,
+    /// Radiances that were not finite and left out.
+    pub nonfinite: u64,
+    /// False if the pass was cancelled.
+    pub complete: bool,
+}
+
+impl<'w> EyePass<'w> {
+    /// Traces the eye rays of every pixel in the view's window, and finds the light that comes by mirrors and glass,
+    /// with direct light if it is to be drawn.
+    pub fn of(
+        world: &'w World,
+        view: &View,
+        settings: EyeSettings,
+        (drawn, caustics): (Option<&DrawnLight>, Option<&Caustics>),
+        control: &Control,
+    ) -> EyePass<'w> {
+        match drawn {
+            Some(drawn) => {
+                let mut pass = EyePass::with_direct_light(world, view, settings, (drawn, caustics), control);
+                let found = pass.known.luminance();
+                pass.ways.add(Ways::PHOTONS, pass.chains.by_photons(found));
+                pass.ways.rest("eye samples", found);
+                pass
+            }
+            None => {
+                let mut pass = EyePass::trace(world, view, settings, control);
+                let light = LightBySpecularLobes::new(world, view, settings, caustics, control);
+                pass.ways.add("emitters in view", pass.known.luminance());
+                light.add_to(&mut pass.known, &mut pass.ways);
+                pass.chains += light.chains;
+                pass.nonfinite += light.nonfinite;
+                pass
+            }
+        }
+    }
+
+    /// Luminance of the light known in the pixel of a shading point, as if the point reflected it: the pixel's error is
+    /// judged against all of it.
+    pub fn known_luminance(&self, point: usize) -> f32 {
+        let as_reflected = |seen: &VisibilitySample| {
+            let known = luminance(self.known.pixels[seen.pixel as usize]);
+            let weight = luminance(seen.weight);
+            match weight > 0.0 {
+                true if known > 0.0 && known < f32::INFINITY => known / weight,
+                true => 0.0,
+                false => MAX_KNOWN,
+            }
+        };
+        self.visibility.of(point).iter().map(as_reflected).fold(f32::INFINITY, f32::min).min(MAX_KNOWN)
+    }
+
+    /// Traces the eye rays of every pixel in the view's window.
+    pub fn trace(world: &'w World, view: &View, settings: EyeSettings, control: &Control) -> EyePass<'w> {
+        let rays = EyeRays::new(world, view, settings);
+        let window = &view.window;
+        let tiles: Vec<VisibleSurfaces> = (0..window.tile_count(TILE))
+            .into_par_iter()
+            .one_by_one()
+            .filter_map(|tile| {
+                if control.is_cancelled() {
+                    return None;
+                }
+                let mut found = VisibleSurfaces::default();
+                for [x, y] in window.tile(tile, TILE) {
+                    for sample in 0..settings.spp.max(1) {
+                        rays.trace(window.film_pixel([x, y]), sample, y * window.width + x, &mut found);
+                    }
+                }
+                control.advance(1);
+                Some(found)
+            })
+            .collect();
+        EyePass::gather(window, tiles, settings.spp.max(1), control)
+    }
+
+    /// Joins the tiles of a window with `spp` rays a pixel. If `control` is cancelled, some are missing, and there are
+    /// no points: nothing lights them.
+    pub(super) fn gather(
+        window: &Window,
+        mut tiles: Vec<VisibleSurfaces<'w>>,
+        spp: u32,
+        control: &Control,
+    ) -> EyePass<'w> {
+        let spp = spp as f32;
+        let all_traced = tiles.len() == window.tile_count(TILE);
+        let mut known = Image::new(window.width, window.height);
+        let mut chains = ChainCounts::default();
+        let mut nonfinite = 0;
+        let mut guides = Vec::new();
+        for tile in &mut tiles {
+            for (pixel, guide) in mem::take(&mut tile.guides) {
+                guides.resize(known.pixels.len(), KeptGuide::default());
+                guides[pixel as usize] = guide;
+            }
+            for (pixel, radiance) in mem::take(&mut tile.known) {
+                known.pixels[pixel as usize] += radiance / spp;
+            }
+            chains += tile.chains;
+            nonfinite += tile.nonfinite;
+        }
+        let arranged = Arranged::new(&mut tiles, control);
+        let complete = all_traced && arranged.is_some();
+        let Arranged { points, index, mut samples } = arranged.unwrap_or_else(Arranged::empty);
+        samples.par_iter_mut().for_each(|sample| sample.weight /= spp);
+        drop(tiles);
+        if size_of_val(&samples[..]) > GIVEN_BACK {
+            give_back();
+        }
+        EyePass {
+            points,
+            index,
+            visibility: VisibilitySamples::one_each(samples),
+            known,
+            ways: Ways::default(),
+            guides: (!guides.is_empty()).then_some(KeptGuides(guides)),
+            chains,
+            light_samples: 1,
+            noise: 0.0,
+            nonfinite,
+            complete,
+        }
+    }
+
+    /// Memory in bytes that it takes to render `window` from so many shading points a pixel kept all at once: the
+    /// film, the points themselves, and as measured twice as much again and more for sorting and lighting them.
+    pub fn expected_bytes(window: &Window, points: u64) -> u64 {
+        let point = size_of::<PointGeometry>() + size_of::<PointSurface>() + size_of::<u32>();
+        let each = 10 * (point + size_of::<VisibilitySample>()) / 3;
+        let points = window.pixel_count().saturating_mul(points).saturating_mul(each as u64);
+        Image::expected_bytes(window).saturating_add(points)
+    }
+
+    /// Number of shading points.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+}
+
+/// Shading points of all tiles and their visibility samples, in the order of the hierarchy over them.
+struct Arranged<'w> {
+    points: ShadingPoints<'w>,
+    index: KdTree,
+    samples: Vec<VisibilitySample>,
+}
+
+impl<'w> Arranged<'w> {
+    /// Takes them out of the tiles; `None` if `control` is cancelled.
+    fn new(tiles: &mut [VisibleSurfaces<'w>], control: &Control) -> Option<Arranged<'w>> {
+        // One array after the other, so that only one at a time is in memory twice.
+        let geometry = joined(tiles, |tile| mem::take(&mut tile.points.geometry), control)?;
+        let (index, order) =
+            KdTree::build_unless_cancelled(geometry.iter().map(|point| point.position), control);
+        let geometry = ordered(geometry, &order, control)?;
+        let surfaces = joined(tiles, |tile| mem::take(&mut tile.points.surfaces), control)?;
+        let surfaces = ordered(surfaces, &order, control)?;
+        let samples = joined(tiles, |tile| mem::take(&mut tile.visibility), control)?;
+        let samples = ordered(samples, &order, control)?;
+        Some(Arranged { points: ShadingPoints { geometry, surfaces }, index, samples })
+    }
+
+    fn empty() -> Arranged<'w> {
+        let points = ShadingPoints { geometry: Vec::new(), surfaces: Vec::new() };
+        Arranged { points, index: KdTree::empty(), samples: Vec::new() }
+    }
+}
+
+/// One part of all tiles in one array, unless `control` is cancelled; the tiles' are freed one by one, and given back
+/// by and by.
+fn joined<'w, T>(
+    tiles: &mut [VisibleSurfaces<'w>],
+    part: impl Fn(&mut VisibleSurfaces<'w>) -> Vec<T>,
+    control: &Control,
+) -> Option<Vec<T>> {
+    let mut parts: Vec<Vec<T>> = tiles.iter_mut().map(part).collect();
+    let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
+    let mut freed = 0;
+    for part in &mut parts {
+        if control.is_cancelled() {
+            return None;
+        }
+        freed += size_of_val(&part[..]);
+        all.append(&mut mem::take(part));
+        if freed > GIVEN_BACK {
+            give_back();
+            freed = 0;
+        }
+    }
+    Some(all)
+}
+
+/// The items in another order, a permutation: each at `i` is that which was at `order[i]`; `None` if `control` is
+/// cancelled.
+fn ordered<T: Copy + Send + Sync>(items: Vec<T>, order: &[u32], control: &Control) -> Option<Vec<T>> {
+    match size_of_val(&items[..]) > TWICE {
+        true => moved(items, order, control),
+        false if control.is_cancelled() => None,
+        false => Some(order.par_iter().map(|i| items[*i as usize]).collect()),
+    }
+}
+
+/// The same, moved along the permutation's cycles, one by one.
+fn moved<T: Copy>(mut items: Vec<T>, order: &[u32], control: &Control) -> Option<Vec<T>> {
+    let mut moved = vec![false; items.len()];
+    for start in 0..items.len() {
+        if moved[start] {
+            continue;
+        }
+        let (first, mut at) = (items[start], start);
+        loop {
+            if control.is_cancelled() {
+                return None;
+            }
+            moved[at] = true;
+            let from = order[at] as usize;
+            if from == start {
+                break;
+            }
+            items[at] = items[from];
+            at = from;
+        }
+        items[at] = first;
+    }
+    Some(items)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn items_are_ordered_along_cycles_of_any_length() {
+        let items: Vec<u32> = (100..108).collect();
+        let order = [0, 2, 3, 1, 5, 4, 7, 6];
+        let expected: Vec<u32> = order.iter().map(|i| items[*i as usize]).collect();
+        let control = Control::new();
+        assert_eq!(moved(items.clone(), &order, &control), Some(expected));
+        assert_eq!(moved(Vec::<u32>::new(), &[], &control), Some(vec![]));
+        let turned: Vec<u32> = (0..1000).map(|i| (i + 7) % 1000).collect();
+        assert_eq!(moved((0..1000).collect(), &turned, &control).as_ref(), Some(&turned));
+        assert_eq!(ordered((0..1000).collect(), &turned, &control).as_ref(), Some(&turned));
+        control.cancel();
+        assert_eq!(moved(items, &order, &control), None);
+    }
+}

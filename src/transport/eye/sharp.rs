@@ -1,0 +1,165 @@
+//! Reflection of emitters by sharp lobes into the eye.
+//!
+//! A sampled direction of the lobe finds large emitters well and small ones hardly ever; points sampled on
+//! the emitters the other way round. Both are combined by multiple importance sampling. Of sixteen points on
+//! emitters one, drawn in proportion to its unoccluded contribution, is tested for visibility, so that the
+//! lobe costs one shadow ray.
+//!
+//! Papers: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, section 9.2 (power
+//! heuristic); Talbot et al., *Importance Resampling for Global Illumination*, 2005.
+
+use super::chain::ChainCounts;
+use base::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
+use base::sampling::{Sampler, power_heuristic};
+use glam::{Vec2, Vec3};
+use world::light::{Receivers16, delta_irradiance};
+use world::material::Bsdf;
+use world::shadow;
+use world::{Surface, World};
+
+/// Points sampled on emitters.
+const CANDIDATES: f32 = LANES as f32;
+
+/// Steps between them in the unit square, modulo 1: powers of the plastic number's inverse, which fill it evenly.
+const STEPS: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
+
+/// Surface at which a lobe sampled a direction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    place: Place,
+    /// The lobe's density of the direction by solid angle.
+    pdf: f32,
+}
+
+/// A point to be lit.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    position: Vec3,
+    /// Of the side that reflects; zero where both sides' light counts.
+    normal: Vec3,
+}
+
+impl Place {
+    /// On `surface`, seen along `wo` in its shading frame, whose lobe it is.
+    fn new(surface: &Surface, lobe: &Bsdf, wo: Vec3) -> Place {
+        let normal = match surface.frame.normal {
+            _ if lobe.scatters_across() => Vec3::ZERO,
+            normal if wo.z < 0.0 => -normal,
+            normal => normal,
+        };
+        Place { position: surface.position, normal }
+    }
+
+    /// In all lanes.
+    fn splat(&self) -> (Vec3x16, Vec3x16) {
+        (Vec3x16::splat(self.position), Vec3x16::splat(self.normal))
+    }
+}
+
+impl Start {
+    /// At `surface`, whose lobe is seen along `wo` in its shading frame.
+    pub fn new(surface: &Surface, lobe: &Bsdf, wo: Vec3, pdf: f32) -> Start {
+        Start { place: Place::new(surface, lobe, wo), pdf }
+    }
+
+    /// Returns the weight of the emission of the surface hit, which points sampled on emitters find as well.
+    pub fn weight_of_area(&self, world: &World, met: &Surface, direction: Vec3) -> f32 {
+        let (x, n) = self.place.splat();
+        let at = Receivers16 { position: &x, normal: &n, learned: None };
+        let cos = met.normal.dot(direction);
+        let distance = met.position.distance(self.place.position);
+        let pdf = world.emitters.pdf_areas(at, &[met.mesh; LANES], &[distance; LANES], &[cos; LANES]);
+        self.weight(pdf[0])
+    }
+
+    /// Weight of the environment's radiance, whose density by solid angle is `pdf` once it is chosen.
+    pub fn weight_of_environment(&self, world: &World, pdf: f32) -> f32 {
+        let (x, n) = self.place.splat();
+        let at = Receivers16 { position: &x, normal: &n, learned: None };
+        self.weight(pdf * world.emitters.environment_choice(at)[0])
+    }
+
+    fn weight(&self, light_pdf: f32) -> f32 {
+        power_heuristic(self.pdf, CANDIDATES * light_pdf)
+    }
+}
+
+/// A lobe that the chain follows, on a surface seen along `wo` in its shading frame.
+pub(super) struct Sharp<'a> {
+    pub world: &'a World,
+    pub surface: &'a Surface,
+    pub lobe: &'a Bsdf<'a>,
+    pub wo: Vec3,
+}
+
+impl Sharp<'_> {
+    /// Radiance that emitters leave along `wo`: all of that of point, spot and directional lights, the
+    /// others' as weighed against the lobe's own samples.
+    pub fn reflected(&self, sampler: &mut Sampler, counts: &mut ChainCounts) -> Rgb {
+        self.point_lights(counts) + self.area_lights(sampler, counts)
+    }
+
+    fn point_lights(&self, counts: &mut ChainCounts) -> Rgb {
+        let mut radiance = Rgb::ZERO;
+        for light in &self.world.emitters.deltas {
+            let (direction, distance, irradiance) = delta_irradiance(light, self.surface.position);
+            let wi = self.surface.frame.to_local(direction);
+            let value = self.lobe.eval(self.wo, wi) * irradiance * wi.z.abs();
+            if value == Rgb::ZERO || !value.is_finite() {
+                continue;
+            }
+            radiance += value * self.arriving(direction, distance, Vec3::ZERO, counts);
+        }
+        radiance
+    }
+
+    fn area_lights(&self, sampler: &mut Sampler, counts: &mut ChainCounts) -> Rgb {
+        let emitters = &self.world.emitters;
+        if emitters.areas.is_empty() && emitters.environment.is_none() {
+            return Rgb::ZERO;
+        }
+        let (first, place, draw) = (sampler.next_1d(), sampler.next_2d(), sampler.next_1d());
+        let (mut choices, mut places) = ([0.0; LANES], Vec2x16::default());
+        for i in 0..LANES {
+            choices[i] = (first + i as f32 / CANDIDATES).fract();
+            places.set(i, (place + i as f32 * STEPS).fract());
+        }
+        let (x, n) = Place::new(self.surface, self.lobe, self.wo).splat();
+        let at = Receivers16 { position: &x, normal: &n, learned: None };
+        let lights = emitters.sample_direct(&self.world.scene, at, &choices, &places, u16::MAX);
+        let (mut values, mut sum) = ([Rgb::ZERO; LANES], 0.0);
+        for i in lanes_in(lights.useful()).filter(|i| lights.delta[*i] == 0) {
+            let wi = self.surface.frame.to_local(lights.direction.get(i));
+            let (value, pdf) = self.lobe.eval_pdf(self.wo, wi);
+            let density = CANDIDATES * lights.pdf[i];
+            let weight = power_heuristic(density, pdf);
+            let value = value * lights.radiance.get(i) * (wi.z.abs() * weight / density);
+            if value.is_finite() {
+                values[i] = value;
+                sum += luminance(value);
+            }
+        }
+        let mut left = draw * sum;
+        for i in (0..LANES).filter(|i| luminance(values[*i]) > 0.0) {
+            let share = luminance(values[i]);
+            left -= share;
+            if left < 0.0 {
+                let (direction, distance) = (lights.direction.get(i), lights.distance[i]);
+                let arriving = self.arriving(direction, distance, lights.normal.get(i), counts);
+                return values[i] * arriving * (sum / share);
+            }
+        }
+        Rgb::ZERO
+    }
+
+    /// Share of the light of an emitter, whose surface has the given normal, if any, that arrives.
+    fn arriving(&self, direction: Vec3, distance: f32, normal: Vec3, counts: &mut ChainCounts) -> Rgb {
+        counts.shadow_rays += 1;
+        let Surface { position, normal: own, .. } = *self.surface;
+        if distance.is_finite() {
+            shadow::between(self.world, position, own, position + direction * distance, normal)
+        } else {
+            shadow::arriving(self.world, &shadow::ray_from(position, own, direction))
+        }
+    }
+}

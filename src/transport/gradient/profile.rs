@@ -1,0 +1,38 @@
+//! Light through profiles: the edge of a spot light's cone, its falloff by angle, and lobes, with the derivatives of
+//! the falloff as the receiver moves.
+
+use super::incidence::Incidence;
+use crate::vpl::{LobeProfile, SpotProfile};
+use base::math::Frame;
+use glam::Vec3;
+
+impl Incidence<f32> {
+    /// Applies the spot profile; `None` outside the cone.
+    #[inline]
+    pub(super) fn through_spot(self, frame: &Frame, spot: &SpotProfile) -> Option<Incidence<f32>> {
+        let away = -Vec3::from(self.direction);
+        let axis = frame.to_local(spot.direction);
+        let share = spot.falloff(frame.to_world(away));
+        if share <= 0.0 {
+            return None;
+        }
+        if share >= 1.0 {
+            return Some(self);
+        }
+        // Between the cones: linear in the angle ψ, whose cosine is axis · away.
+        let cos = axis.dot(away);
+        let sin = (1.0 - cos * cos).max(1e-12).sqrt();
+        let per_cos = 1.0 / (sin * (spot.outer_angle - spot.inner_angle));
+        let slope = |axis_index: usize| -axis.dot(Vec3::from(self.turning(axis_index))) * per_cos;
+        Some(self.attenuated(share, [slope(0), slope(1)]))
+    }
+
+    /// Applies a lobe; `None` where it sends nothing.
+    #[inline]
+    pub(super) fn through_lobe(self, frame: &Frame, lobe: &LobeProfile) -> Option<Incidence<f32>> {
+        let (share, slope) = lobe.share_and_slope(frame.to_world(-Vec3::from(self.direction)));
+        let slope = frame.to_local(slope);
+        let along = |axis: usize| -slope.dot(Vec3::from(self.turning(axis)));
+        (share > 0.0).then(|| self.attenuated(share, [along(0), along(1)]))
+    }
+}

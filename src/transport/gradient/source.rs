@@ -1,0 +1,157 @@
+//! Virtual lights in the frame of their receiver.
+//!
+//! Units: per unit intensity (see [`crate::vpl`]), so the factor is 1/m² and its gradient 1/m³.
+
+use super::incidence::Incidence;
+use crate::vpl::{Profiles, Vpl, VplKind};
+use base::math::{Frame, Real};
+use glam::Vec3;
+
+/// A virtual light in the receiver's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LocalVpl<T> {
+    /// A light whose intensity is proportional to the cosine to its normal.
+    Oriented {
+        /// Offset from the receiver.
+        offset: [T; 3],
+        /// Unit normal.
+        normal: [T; 3],
+    },
+    /// A light of equal intensity in all directions.
+    Omni {
+        /// Offset from the receiver.
+        offset: [T; 3],
+    },
+    /// A light at infinite distance.
+    Directional {
+        /// Unit direction to the light.
+        towards: [T; 3],
+    },
+}
+
+/// Direction, inverse distance and emitter's cosine of a light at a finite distance.
+struct Connection<T> {
+    omega: [T; 3],
+    inverse: T,
+    /// Cosine at the emitter; 1 for omni lights.
+    cos: T,
+    /// Derivative of `cos` by an offset of unit length, tangential part: the normal's, or 0.
+    normal: [T; 2],
+    /// True if the distance is below the minimum.
+    too_near: bool,
+}
+
+impl<T: Real + PartialOrd> LocalVpl<T> {
+    /// Returns the light that arrives, with its first derivatives; `None` if there is none: on the light
+    /// itself, and behind it.
+    ///
+    /// Smaller distances are clamped to `min_dist_sq`, and then the light is constant.
+    #[inline]
+    pub fn incidence(&self, min_dist_sq: T) -> Option<Incidence<T>> {
+        let zero = T::of(0.0);
+        let LocalVpl::Directional { towards } = *self else {
+            let Connection { omega, inverse, cos, normal, too_near } = self.sight(min_dist_sq)?;
+            if too_near {
+                let factor = cos / min_dist_sq;
+                return Some(Incidence { direction: omega, inv_dist: zero, factor, gradient: [zero; 2] });
+            }
+            // Falloff r⁻² and, for oriented lights, one power more from the cosine.
+            let power = if self.is_oriented() { T::of(3.0) } else { T::of(2.0) };
+            let square = inverse * inverse;
+            let slope = |axis: usize| square * inverse * (normal[axis] + power * cos * omega[axis]);
+            return Some(Incidence {
+                direction: omega,
+                inv_dist: inverse,
+                factor: cos * square,
+                gradient: [slope(0), slope(1)],
+            });
+        };
+        Some(Incidence { direction: towards, inv_dist: zero, factor: T::of(1.0), gradient: [zero; 2] })
+    }
+
+    /// Second derivatives uu, uv and vv of the irradiance.
+    #[inline]
+    pub fn irradiance_hessian(&self, min_dist_sq: T) -> [T; 3] {
+        let none = [T::of(0.0); 3];
+        let Some(Connection { omega: [x, y, z], inverse, cos, normal: [n_u, n_v], too_near }) =
+            self.sight(min_dist_sq)
+        else {
+            return none;
+        };
+        if too_near || !(z > T::of(0.0)) {
+            return none;
+        }
+        // Falloff of the irradiance over the constant height: 3 powers of the distance, and one from the
+        // cosine.
+        let (same, crossed) = if self.is_oriented() { (4.0, 24.0) } else { (3.0, 15.0) };
+        let (same, crossed, four) = (T::of(same), T::of(crossed) * cos, T::of(4.0));
+        let square = inverse * inverse;
+        let scale = square * square * z;
+        [
+            scale * (four * (n_u * x + n_u * x) + crossed * x * x - same * cos),
+            scale * (four * (n_u * y + n_v * x) + crossed * x * y),
+            scale * (four * (n_v * y + n_v * y) + crossed * y * y - same * cos),
+        ]
+    }
+
+    fn is_oriented(&self) -> bool {
+        matches!(self, LocalVpl::Oriented { .. })
+    }
+
+    #[inline]
+    fn sight(&self, min_dist_sq: T) -> Option<Connection<T>> {
+        let dot = |a: [T; 3], b: [T; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let zero = T::of(0.0);
+        let (offset, normal) = match *self {
+            LocalVpl::Oriented { offset, normal } => (offset, normal),
+            LocalVpl::Omni { offset } => (offset, [zero; 3]),
+            LocalVpl::Directional { .. } => return None,
+        };
+        let dist_sq = dot(offset, offset);
+        if !(dist_sq > zero) {
+            return None;
+        }
+        let inverse = T::of(1.0) / dist_sq.sqrt();
+        let omega = [offset[0] * inverse, offset[1] * inverse, offset[2] * inverse];
+        let cos = if self.is_oriented() { -dot(normal, omega) } else { T::of(1.0) };
+        let too_near = dist_sq < min_dist_sq;
+        (cos > zero).then_some(Connection { omega, inverse, cos, normal: [normal[0], normal[1]], too_near })
+    }
+}
+
+impl LocalVpl<f32> {
+    /// Transforms a virtual light to the frame `frame` at `position`, without its profile, which
+    /// [`Incidence::of_vpl`] applies.
+    #[inline]
+    pub fn of_vpl(frame: &Frame, position: Vec3, vpl: &Vpl, kind: VplKind) -> LocalVpl<f32> {
+        let local = |v: Vec3| frame.to_local(v).to_array();
+        match kind {
+            VplKind::Oriented => {
+                LocalVpl::Oriented { offset: local(vpl.position - position), normal: local(vpl.normal()) }
+            }
+            VplKind::Omni | VplKind::Lobed => LocalVpl::Omni { offset: local(vpl.position - position) },
+            VplKind::Directional => LocalVpl::Directional { towards: local(vpl.position) },
+        }
+    }
+}
+
+impl Incidence<f32> {
+    /// Computes the light arriving from a virtual light at `position` in `frame`; profiles are looked up
+    /// in `profiles`.
+    #[inline]
+    pub fn of_vpl(
+        frame: &Frame,
+        position: Vec3,
+        vpl: &Vpl,
+        kind: VplKind,
+        profiles: &Profiles,
+        min_dist_sq: f32,
+    ) -> Option<Incidence<f32>> {
+        let incidence = LocalVpl::of_vpl(frame, position, vpl, kind).incidence(min_dist_sq)?;
+        match vpl.spot_profile() {
+            Some(profile) if kind == VplKind::Omni => incidence.through_spot(frame, &profiles.spots[profile]),
+            _ if kind == VplKind::Lobed => incidence.through_lobe(frame, &profiles.lobes[vpl.lobe()]),
+            _ => Some(incidence),
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Sums the light of many directions into coefficients, eight directions at a time.
+//!
+//! Paper: Herzog et al. 2009, equations 5 and 6.
+//! Deviations: the receiver's cosine is part of the reflection, not of the light, so that the series is of
+//! radiance.
+//! Units: radiance per band function: intensity times [`Incidence::factor`].
+
+use super::CHANNELS;
+use super::basis::{MAX_BANDS, MAX_FUNCTIONS, for_each};
+use super::radiance::{BLOCKS, Radiance};
+use crate::gradient::Incidence;
+use base::math::{F32x8, Rgb, WIDTH};
+
+/// Coefficients under construction. The last bits depend on the order in which light is added, so add it in a
+/// fixed order.
+pub struct Accumulator {
+    bands: usize,
+    batch: Incidence8,
+    /// Number of the batch's lanes in use.
+    filled: usize,
+    /// By function: value and derivatives along u and v, three channels each; lanes are summed last.
+    sums: Box<[[F32x8; BLOCKS]; MAX_FUNCTIONS]>,
+}
+
+/// Light from eight directions.
+#[derive(Clone, Copy)]
+struct Incidence8 {
+    direction: [F32x8; 3],
+    inv_dist: F32x8,
+    factor: F32x8,
+    gradient: [F32x8; 2],
+    intensity: [F32x8; CHANNELS],
+}
+
+impl Incidence8 {
+    const EMPTY: Incidence8 = Incidence8 {
+        direction: [F32x8::ZERO; 3],
+        inv_dist: F32x8::ZERO,
+        factor: F32x8::ZERO,
+        gradient: [F32x8::ZERO; 2],
+        intensity: [F32x8::ZERO; CHANNELS],
+    };
+}
+
+impl Accumulator {
+    /// Creates an accumulator for series of 1 to 8 bands (more or fewer are clamped).
+    pub fn new(bands: usize) -> Accumulator {
+        let bands = bands.clamp(1, MAX_BANDS);
+        let sums = Box::new([[F32x8::ZERO; BLOCKS]; MAX_FUNCTIONS]);
+        Accumulator { bands, batch: Incidence8::EMPTY, filled: 0, sums }
+    }
+
+    /// Resets it to a number of bands.
+    pub fn reset(&mut self, bands: usize) {
+        self.bands = bands.clamp(1, MAX_BANDS);
+        self.sums.fill([F32x8::ZERO; BLOCKS]);
+        (self.batch, self.filled) = (Incidence8::EMPTY, 0);
+    }
+
+    /// Adds the light of one direction; light from below the horizon is ignored.
+    #[inline]
+    pub fn add(&mut self, incidence: &Incidence<f32>, intensity: Rgb) {
+        if !(incidence.direction[2] > 0.0) {
+            return;
+        }
+        let (lane, batch) = (self.filled, &mut self.batch);
+        for i in 0..3 {
+            batch.direction[i].0[lane] = incidence.direction[i];
+            batch.intensity[i].0[lane] = intensity[i];
+        }
+        batch.inv_dist.0[lane] = incidence.inv_dist;
+        batch.factor.0[lane] = incidence.factor;
+        batch.gradient[0].0[lane] = incidence.gradient[0];
+        batch.gradient[1].0[lane] = incidence.gradient[1];
+        self.filled += 1;
+        if self.filled == WIDTH {
+            self.flush();
+        }
+    }
+
+    /// Returns the sum of the light added since the last call, and resets it.
+    pub fn finish(&mut self) -> Radiance {
+        if self.filled > 0 {
+            self.flush();
+        }
+        let mut radiance = Radiance::black(self.bands);
+        for (k, sums) in self.sums.iter_mut().enumerate().take(self.bands * self.bands) {
+            for (block, sum) in sums.iter().enumerate() {
+                radiance.set(block, k, sum.sum());
+            }
+            *sums = [F32x8::ZERO; BLOCKS];
+        }
+        radiance
+    }
+
+    fn flush(&mut self) {
+        match self.bands {
+            1 => self.add_batch::<1>(),
+            2 => self.add_batch::<2>(),
+            3 => self.add_batch::<3>(),
+            4 => self.add_batch::<4>(),
+            5 => self.add_batch::<5>(),
+            6 => self.add_batch::<6>(),
+            7 => self.add_batch::<7>(),
+            _ => self.add_batch::<8>(),
+        }
+        (self.batch, self.filled) = (Incidence8::EMPTY, 0);
+    }
+
+    #[inline(never)]
+    fn add_batch<const BANDS: usize>(&mut self) {
+        let Incidence8 { direction, inv_dist, factor, gradient: [slope_u, slope_v], intensity } = self.batch;
+        let turning = factor * inv_dist;
+        let sums = &mut self.sums;
+        for_each::<F32x8, BANDS>(direction, |k, h, h_u, h_v| {
+            let (u, v) = (slope_u * h + turning * h_u, slope_v * h + turning * h_v);
+            let value = factor * h;
+            let sums = &mut sums[k];
+            for c in 0..CHANNELS {
+                sums[c] += intensity[c] * value;
+                sums[CHANNELS + c] += intensity[c] * u;
+                sums[2 * CHANNELS + c] += intensity[c] * v;
+            }
+        });
+    }
+}

@@ -1,0 +1,116 @@
+//! The points of a packet, lane by lane.
+
+use crate::lightcut::{Receiver, to_vpl16};
+use crate::vpl::{Vpl, VplKind};
+use base::math::{F32x16, Frame, LANES, LUMINANCE, Rgb, Vec3x16, first_lanes, lanes_in};
+use embree::Rays16;
+use world::material::AlikeBsdfs16;
+
+/// Up to sixteen receivers as a structure of arrays.
+///
+/// Lanes without a receiver repeat the first one's and are masked.
+#[derive(Default)]
+pub struct ReceiverPacket<'m> {
+    receivers: Vec<Receiver<'m>>,
+    /// Lanes that hold a receiver.
+    pub(in crate::lightcut) valid: u16,
+    /// Lanes whose material is not just Lambert.
+    pub(in crate::lightcut) general: u16,
+    /// Their materials, if uniform: else their responses and bounds are computed one by one.
+    pub(in crate::lightcut) glossy: Option<AlikeBsdfs16<'m>>,
+    pub(in crate::lightcut) position: Vec3x16,
+    /// Maximum coordinate of any position.
+    pub(in crate::lightcut) reach: f32,
+    pub(in crate::lightcut) geometric_normal: Vec3x16,
+    /// Shading frames.
+    pub(in crate::lightcut) frame: Frames16,
+    /// Frames about the mirror direction of the eye's.
+    pub(in crate::lightcut) mirror: Frames16,
+    /// Luminance reflected besides.
+    pub(in crate::lightcut) baseline: F32x16,
+    /// Lambert BRDF.
+    pub(in crate::lightcut) brdf: Vec3x16,
+    /// BRDF of the base, for light that has passed the coat on its way in.
+    pub(in crate::lightcut) base: Vec3x16,
+    /// Lambert BRDF by its weight in the luminance.
+    pub(in crate::lightcut) brdf_luminance: Vec3x16,
+}
+
+impl<'m> ReceiverPacket<'m> {
+    /// No receivers yet.
+    pub fn new() -> ReceiverPacket<'m> {
+        ReceiverPacket::default()
+    }
+
+    /// Replaces the receivers; all beyond [`LANES`] are left out.
+    pub fn set(&mut self, receivers: impl IntoIterator<Item = Receiver<'m>>) {
+        self.receivers.clear();
+        self.receivers.extend(receivers.into_iter().take(LANES));
+        self.valid = first_lanes(self.receivers.len());
+        (self.general, self.reach) = (0, 0.0);
+        let Some(first) = self.receivers.first().copied() else { return };
+        for lane in 0..LANES {
+            let r = self.receivers.get(lane).copied().unwrap_or(first);
+            self.reach = self.reach.max(r.position().abs().max_element());
+            self.position.set(lane, r.position());
+            self.geometric_normal.set(lane, r.geometric_normal());
+            self.frame.set(lane, r.frame());
+            self.mirror.set(lane, r.mirror());
+            self.baseline[lane] = r.baseline_luminance();
+            let brdf = r.lambert_brdf();
+            self.general |= u16::from(brdf.is_none()) << lane & self.valid;
+            let brdf = brdf.unwrap_or(Rgb::ZERO);
+            self.brdf.set(lane, brdf);
+            self.base.set(lane, r.base_brdf());
+            self.brdf_luminance.set(lane, brdf * LUMINANCE);
+        }
+        let bsdf = |lane: usize| self.receivers.get(lane).and_then(Receiver::bsdf);
+        let any = lanes_in(self.general).next().and_then(bsdf);
+        self.glossy = any.and_then(|any| AlikeBsdfs16::new(|lane| bsdf(lane).unwrap_or(any)));
+    }
+
+    /// Number of receivers.
+    pub fn len(&self) -> usize {
+        self.receivers.len()
+    }
+
+    /// True if there is none.
+    pub fn is_empty(&self) -> bool {
+        self.receivers.is_empty()
+    }
+
+    /// Rays to a virtual light, in all lanes.
+    #[inline]
+    pub fn shadow_rays(&self, vpl: &Vpl, kind: VplKind) -> Rays16 {
+        to_vpl16(&self.position, &self.geometric_normal, vpl, kind)
+    }
+
+    /// Receiver number `lane`.
+    pub fn get(&self, lane: usize) -> &Receiver<'m> {
+        &self.receivers[lane]
+    }
+}
+
+/// An orthonormal frame for each receiver.
+#[derive(Default)]
+pub(in crate::lightcut) struct Frames16 {
+    /// Tangents, bitangents, normals.
+    pub axes: [Vec3x16; 3],
+    /// Their absolute values.
+    pub abs: [Vec3x16; 3],
+}
+
+impl Frames16 {
+    /// The z axes.
+    #[inline(always)]
+    pub fn normal(&self) -> &Vec3x16 {
+        &self.axes[2]
+    }
+
+    fn set(&mut self, lane: usize, frame: &Frame) {
+        for (i, axis) in [frame.tangent, frame.bitangent, frame.normal].into_iter().enumerate() {
+            self.axes[i].set(lane, axis);
+            self.abs[i].set(lane, axis.abs());
+        }
+    }
+}

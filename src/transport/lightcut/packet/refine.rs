@@ -1,0 +1,272 @@
+//! Refinement of a packet's cut.
+
+use super::{PacketCluster, PacketLightcut, ReceiverPacket, Unshadowed, luminances};
+use crate::light_tree::LightTrees;
+use crate::lightcut::clamp::{DOMINANT, DOMINANT_TO_REST, is_weak};
+use crate::lightcut::refinement::heir_and_other;
+use crate::lightcut::{CutSettings, PacketVisibility, Transfer};
+use base::math::{F32x16, LANES, Vec3x16};
+
+/// Minimum luminance of a lane where errors are judged, relative to the brightest lane's.
+const MIN_LUMINANCE: f32 = 1.0 / 256.0;
+
+/// Ratio of the largest error of a whole tree to the least luminance that any lane counts with: errors have an order
+/// before any light is found, and sixteen of their cubes are finite.
+const MAX_ERROR: f32 = 1e12;
+
+/// Divisor of the thresholds from one round to the next, at most.
+const FALL: f32 = 4.0;
+
+/// Thresholds this much above the error that is wanted are close enough.
+const CLOSE: f32 = 1.03;
+
+/// Share of the error that is wanted up to which a cluster is fine enough for a lane, so that its descendants are seen
+/// where it is.
+///
+/// At 1 the lane is as accurate as by a cut of its own and Sibenik loses .2 dB for a sixth of the rays.
+const FINE: f32 = 0.5;
+
+const ZERO: F32x16 = [0.0; LANES];
+
+/// A cluster's part in the refinement.
+#[derive(Clone, Copy)]
+pub(super) struct Judgement {
+    /// Error to expect in each lane, luminance; 0 for a leaf.
+    pub(super) errors: F32x16,
+    /// Luminance with which the cluster counts in the running totals.
+    counted: F32x16,
+    /// Visibility of its representative, or of an ancestor's.
+    sight: Sight,
+}
+
+/// Visibility from each lane.
+#[derive(Clone, Copy, Default)]
+struct Sight {
+    /// Lanes where it is known.
+    known: u16,
+    /// Lanes that see the representative.
+    seen: u16,
+}
+
+/// One cut in the making.
+pub(super) struct Pass<'a, 't, 'm, V> {
+    trees: &'a LightTrees,
+    transfer: &'a Transfer<'t>,
+    visibility: &'a V,
+    receivers: &'a ReceiverPacket<'m>,
+    settings: &'a CutSettings,
+    /// Luminance of the cut in each lane, as far as it counts.
+    totals: F32x16,
+    /// Luminance below which no lane counts as darker.
+    min_total: f32,
+    /// Errors up to which a cluster is fine enough for a lane, whatever the others need.
+    fine: F32x16,
+    /// Splits left before the cap.
+    room: usize,
+    cut: &'a mut PacketLightcut,
+}
+
+impl<'a, 't, 'm, V: PacketVisibility> Pass<'a, 't, 'm, V> {
+    pub fn new(
+        cut: &'a mut PacketLightcut,
+        transfer: &'a Transfer<'t>,
+        visibility: &'a V,
+        receivers: &'a ReceiverPacket<'m>,
+        settings: &'a CutSettings,
+    ) -> Pass<'a, 't, 'm, V> {
+        Pass {
+            trees: transfer.trees,
+            transfer,
+            visibility,
+            receivers,
+            settings,
+            totals: receivers.baseline,
+            min_total: f32::MIN_POSITIVE,
+            fine: ZERO,
+            room: settings.max_cut,
+            cut,
+        }
+    }
+
+    /// Finds the cut; true if it ended at the cap with an error above the threshold.
+    ///
+    /// Thresholds fall round by round to the error that is wanted, as the totals become known to which it is relative.
+    pub fn run(mut self) -> bool {
+        let mut thresholds = self.start();
+        loop {
+            let mut inverse = ZERO;
+            for l in 0..LANES {
+                inverse[l] = 1.0 / thresholds[l];
+            }
+            let mut place = 0;
+            while place < self.cut.clusters.len() {
+                while self.offends(place, &inverse) {
+                    if self.room == 0 {
+                        return true;
+                    }
+                    self.room -= 1;
+                    self.split(place);
+                }
+                place += 1;
+            }
+            // Totals drift.
+            self.retotal();
+            let wanted = self.wanted();
+            let mut done = true;
+            for l in 0..LANES {
+                self.fine[l] = FINE * wanted[l];
+                done &= thresholds[l] <= CLOSE * wanted[l];
+                let fallen = thresholds[l] * (1.0 / FALL);
+                let next = if wanted[l] > fallen { wanted[l] } else { fallen };
+                thresholds[l] = if next < thresholds[l] { next } else { thresholds[l] };
+            }
+            if done {
+                return false;
+            }
+        }
+    }
+
+    /// Starts with the roots; returns thresholds at which hardly any of them offends.
+    fn start(&mut self) -> F32x16 {
+        self.cut.clusters.clear();
+        self.cut.judgements.clear();
+        self.cut.unshadowed.clear();
+        let mut thresholds = ZERO;
+        for root in self.trees.roots_of(self.settings.origin) {
+            let (responses, sight, unshadowed) = self.representative_responses(root, Sight::default());
+            let judgement = self.judge(root, &responses, sight, &[f32::MAX; LANES]);
+            self.count(&judgement);
+            for (threshold, error) in thresholds.iter_mut().zip(&judgement.errors) {
+                *threshold = if *error > *threshold { *error } else { *threshold };
+            }
+            self.cut.clusters.push(PacketCluster { node: root, responses });
+            self.cut.judgements.push(judgement);
+            self.cut.unshadowed.push(unshadowed);
+        }
+        let largest = halved(thresholds, |a, b| if b > a { b } else { a });
+        self.min_total = (largest / MAX_ERROR).max(f32::MIN_POSITIVE);
+        self.room = self.room.saturating_sub(self.cut.clusters.len());
+        let least = self.min_total;
+        thresholds.map(|threshold| if threshold > least { threshold } else { least })
+    }
+
+    fn count(&mut self, judgement: &Judgement) {
+        for (total, counted) in self.totals.iter_mut().zip(&judgement.counted) {
+            *total += counted;
+        }
+    }
+
+    fn retotal(&mut self) {
+        self.totals = self.receivers.baseline;
+        for judgement in &self.cut.judgements {
+            for (total, counted) in self.totals.iter_mut().zip(&judgement.counted) {
+                *total += counted;
+            }
+        }
+    }
+
+    /// Error that is wanted of each cluster, by lane.
+    fn wanted(&self) -> F32x16 {
+        let brightest = halved(self.totals, |a, b| if b > a { b } else { a });
+        let floor = (MIN_LUMINANCE * brightest).max(self.min_total);
+        self.totals.map(|total| self.settings.epsilon * if total > floor { total } else { floor })
+    }
+
+    /// Replaces a cluster by its children.
+    fn split(&mut self, place: usize) {
+        let parent = &self.cut.clusters[place];
+        let Some((heir, other)) = heir_and_other(self.trees, &self.trees.nodes[parent.node as usize]) else {
+            return;
+        };
+        let inherited = parent.responses;
+        let Judgement { errors, counted, sight } = &self.cut.judgements[place];
+        let (sight, mut fine) = (*sight, 0);
+        for l in 0..LANES {
+            let rest = self.totals[l] - counted[l];
+            self.totals[l] = if rest > 0.0 { rest } else { 0.0 };
+            fine |= u16::from(errors[l] <= self.fine[l]) << l;
+        }
+        let rest = self.totals;
+        let known = Sight { known: sight.known & fine, seen: sight.seen };
+        let (responses, other_sight, unshadowed) = self.representative_responses(other, known);
+        let judgement = self.judge(heir, &inherited, sight, &rest);
+        self.count(&judgement);
+        self.cut.clusters[place].node = heir;
+        self.cut.judgements[place] = judgement;
+        let judgement = self.judge(other, &responses, other_sight, &rest);
+        self.count(&judgement);
+        self.cut.clusters.push(PacketCluster { node: other, responses });
+        self.cut.judgements.push(judgement);
+        self.cut.unshadowed.push(unshadowed);
+    }
+
+    /// Errors of a node whose representative responds with `responses`, in a cut whose other clusters sum up to `rest`.
+    fn judge(&mut self, node: u32, responses: &Vec3x16, sight: Sight, rest: &F32x16) -> Judgement {
+        let n = &self.trees.nodes[node as usize];
+        let mut counted = luminances(n.intensity, responses);
+        if self.settings.clamp.is_some() && is_weak(n) {
+            for (c, &rest) in counted.iter_mut().zip(rest) {
+                let limit = rest * DOMINANT_TO_REST;
+                *c = if *c > limit && rest > 0.0 { limit } else { *c };
+            }
+        }
+        let errors = if n.is_leaf() {
+            ZERO
+        } else {
+            self.cut.counts.bounds += self.receivers.len() as u64;
+            let mut errors = self.transfer.errors16(self.receivers, n);
+            // As in a single point's cut: more than a quarter of the total offends, whatever is to be expected.
+            let least = self.settings.epsilon / DOMINANT;
+            for l in 0..LANES {
+                let doubt = least * counted[l];
+                errors[l] = if doubt > errors[l] { doubt } else { errors[l] };
+            }
+            errors
+        };
+        Judgement { errors, counted, sight }
+    }
+
+    /// Contribution of a node's representative at unit intensity, its visibility, as far as that is not `known`, and
+    /// the contribution without shadows.
+    fn representative_responses(&mut self, node: u32, known: Sight) -> (Vec3x16, Sight, Unshadowed) {
+        let node = &self.trees.nodes[node as usize];
+        let vpl = &self.trees.vpls[node.representative()];
+        let (lit, mut responses) = self.transfer.unshadowed16(self.receivers, vpl, node.kind());
+        let unshadowed = Unshadowed { lit, responses };
+        let doubtful = lit & !known.known;
+        let mut seen = known.seen & known.known;
+        if doubtful != 0 {
+            self.cut.counts.rays += u64::from(doubtful.count_ones());
+            self.cut.counts.packets += 1;
+            seen |= self.visibility.visible16(self.receivers, doubtful, vpl, node);
+        }
+        responses.keep(lit & seen);
+        self.visibility.attenuate16(self.receivers, lit & seen, (vpl, node), &mut responses);
+        (responses, Sight { known: known.known | lit, seen }, unshadowed)
+    }
+
+    /// True if the cubic mean of a cluster's errors over the lanes is above that of their thresholds.
+    #[inline]
+    fn offends(&self, place: usize, inverse_thresholds: &F32x16) -> bool {
+        let errors = &self.cut.judgements[place].errors;
+        let mut cubes = [0.0; LANES];
+        for l in 0..LANES {
+            let relative = errors[l] * inverse_thresholds[l];
+            cubes[l] = relative * relative * relative;
+        }
+        halved(cubes, |a, b| a + b) > self.receivers.len() as f32
+    }
+}
+
+/// Folds lanes by halves, as vector code can; one after the other it could not.
+#[inline(always)]
+pub(in crate::lightcut) fn halved<T: Copy>(mut lanes: [T; LANES], f: impl Fn(T, T) -> T) -> T {
+    let mut half = LANES / 2;
+    while half > 0 {
+        for l in 0..half {
+            lanes[l] = f(lanes[l], lanes[l + half]);
+        }
+        half /= 2;
+    }
+    lanes[0]
+}

@@ -1,0 +1,76 @@
+//! Sum of a packet's cut, with weak singularities clamped.
+
+use super::{PacketCluster, PacketSum, ReceiverPacket};
+use crate::light_tree::LightTrees;
+use crate::lightcut::CutCounts;
+use crate::lightcut::clamp::{DOMINANT, Unclamped, is_weak};
+use base::math::{F32x16, LANES, LUMINANCE, Rgb, Vec3x16, lanes_in, luminance};
+
+/// The light that a packet gathers.
+pub(in crate::lightcut) struct PacketLight<'a> {
+    /// Clusters, of which weak singularities are clamped.
+    pub clusters: &'a [PacketCluster],
+    /// Light besides, which is not clamped.
+    pub strong: Vec3x16,
+}
+
+impl PacketLight<'_> {
+    /// The sum, in which no weak singularity has more than the share `clamp`.
+    pub fn sum(
+        &self,
+        trees: &LightTrees,
+        receivers: &ReceiverPacket,
+        clamp: Option<f32>,
+        counts: &mut CutCounts,
+    ) -> PacketSum {
+        let (sums, brightest_leaf) = self.unclamped(trees);
+        let mut all = PacketSum::default();
+        for lane in lanes_in(receivers.valid) {
+            let (sum, baseline) = (sums.get(lane), receivers.baseline[lane]);
+            let total = luminance(sum) + baseline;
+            counts.luminance += f64::from(luminance(sum));
+            (all.radiance[lane], all.limits[lane]) = match clamp {
+                // Below this nothing is clamped: the frozen luminance is less than the unclamped one only if
+                // some leaf is a dominant part of it.
+                Some(clamp) if total > 0.0 && brightest_leaf[lane] > clamp.min(DOMINANT) * total => {
+                    let contributions = self
+                        .clusters
+                        .iter()
+                        .map(|c| (c.node, trees.nodes[c.node as usize].intensity * c.responses.get(lane)));
+                    let strong = self.strong.get(lane);
+                    Unclamped { trees, contributions, strong, sum, baseline }.clamped(clamp, counts)
+                }
+                _ => (sum, clamp.map_or(f32::INFINITY, |clamp| clamp * total)),
+            };
+        }
+        all
+    }
+
+    /// The sum before clamping, and the luminance of the brightest weak singularity.
+    fn unclamped(&self, trees: &LightTrees) -> (Vec3x16, F32x16) {
+        let mut sums = self.strong;
+        let mut brightest_leaf = [0.0; LANES];
+        for cluster in self.clusters {
+            let node = &trees.nodes[cluster.node as usize];
+            sums.add_scaled(node.intensity, &cluster.responses);
+            if is_weak(node) {
+                for (b, y) in brightest_leaf.iter_mut().zip(luminances(node.intensity, &cluster.responses)) {
+                    *b = if y > *b { y } else { *b };
+                }
+            }
+        }
+        (sums, brightest_leaf)
+    }
+}
+
+/// Luminance of each lane's colour times `intensity`.
+#[inline]
+pub(in crate::lightcut) fn luminances(intensity: Rgb, responses: &Vec3x16) -> F32x16 {
+    let (w, r) = (intensity * LUMINANCE, responses);
+    // A loop: calls of closures may remain calls, lane by lane.
+    let mut luminances = [0.0; LANES];
+    for l in 0..LANES {
+        luminances[l] = w.x * r.x[l] + w.y * r.y[l] + w.z * r.z[l];
+    }
+    luminances
+}

@@ -1,0 +1,245 @@
+//! Bounds are never violated, cuts stay within their error, and nothing degenerate breaks them.
+
+use crate::light_tree::{Family, LightTrees, Node};
+use crate::lightcut::fixtures::*;
+use crate::lightcut::*;
+use crate::vpl::{Origin, Vpl, VplKind, VplSet};
+use base::math::{Frame, Rgb, luminance};
+use base::progress::Control;
+use glam::Vec3;
+use world::material::Materials;
+
+#[test]
+fn no_member_contributes_more_than_the_clusters_bound() {
+    let scene = all_materials();
+    let materials = Materials::new(&scene);
+    let mut checked = 0u64;
+    for round in 0..60u32 {
+        let mut numbers = Numbers(round << 20);
+        let scale = [1e-6, 1.0, 1e6][round as usize % 3];
+        let family = if round % 2 == 0 { Family::Divisive } else { Family::Agglomerative };
+        let diagonal = scale * 2.0;
+        let trees = LightTrees::build(
+            &all_kinds(60, scale, &mut numbers),
+            profiles(),
+            diagonal,
+            family,
+            &Control::new(),
+        );
+        let transfer = Transfer::new(&trees, diagonal);
+        for _ in 0..25 {
+            let mut receiver = random_receiver(&materials, &scene, scale, &mut numbers);
+            if numbers.next() < 0.2 {
+                // On top of a VPL, or next to it.
+                let vpl = trees.vpls[(numbers.next() * trees.vpls.len() as f32) as usize];
+                let distance = if numbers.next() < 0.5 { 0.0 } else { 1e-7 * scale };
+                receiver = receiver.moved(vpl.position + numbers.direction() * distance);
+            }
+            for (id, node) in trees.nodes.iter().enumerate() {
+                if node.intensity == Rgb::ZERO {
+                    continue; // the gaps behind roots
+                }
+                let bound = transfer.bound(&receiver, node).most;
+                assert!(bound.is_finite() && bound.cmpge(Rgb::ZERO).all(), "{bound} of {node:?}");
+                let mut found = Vec::new();
+                members(&trees, id as u32, &mut found);
+                for vpl in found {
+                    let actual = transfer.unshadowed(&receiver, &trees.vpls[vpl], node.kind());
+                    assert!(
+                        actual.cmple(bound * 1.00001).all(),
+                        "round {round}: {actual} above {bound}: {receiver:?} {node:?}"
+                    );
+                    checked += 1;
+                }
+            }
+        }
+    }
+    assert!(checked > 1_000_000, "{checked}");
+}
+
+/// Relative errors of cuts against the full sum, over points in the room and materials of every kind.
+fn relative_errors(trees: &LightTrees, settings: &CutSettings, rays: &impl Visibility) -> (Vec<f32>, f64) {
+    let scene = all_materials();
+    let materials = Materials::new(&scene);
+    let transfer = Transfer::new(trees, 3f32.sqrt());
+    let mut cut = Lightcut::new();
+    let mut errors = Vec::new();
+    let mut numbers = Numbers(9);
+    while errors.len() < 300 {
+        let receiver = random_receiver(&materials, &scene, 1.0, &mut numbers);
+        let receiver = receiver.moved(receiver.position() * 0.9 + 0.05);
+        let exact = luminance(gather_all(&transfer, rays, &receiver));
+        if exact > 0.0 {
+            let estimate = luminance(cut.gather(&transfer, rays, &receiver, settings).radiance);
+            errors.push((estimate - exact) / exact);
+        }
+    }
+    (errors, cut.counts.clusters as f64 / cut.counts.cuts as f64)
+}
+
+#[test]
+fn cuts_are_within_their_error_and_shrink_with_epsilon() {
+    let set = room(20_000, &mut Numbers(1));
+    let ball = Ball { centre: Vec3::splat(0.5), radius: 0.25 };
+    for family in [Family::Divisive, Family::Agglomerative] {
+        let trees =
+            LightTrees::build(std::slice::from_ref(&set), Vec::new(), 3f32.sqrt(), family, &Control::new());
+        let at = |epsilon| {
+            let (errors, size) = relative_errors(&trees, &CutSettings { epsilon, ..EXACT }, &ball);
+            (rms(&errors), size)
+        };
+        let (fine, medium, coarse) = (at(0.005), at(0.02), at(0.1));
+        println!("{family:?}: {fine:?} {medium:?} {coarse:?}");
+        assert!(medium.0 <= 0.035, "{family:?}: relative RMS error {}", medium.0);
+        assert!(fine.0 < medium.0 && medium.0 < coarse.0, "{fine:?} {medium:?} {coarse:?}");
+        assert!(fine.1 > medium.1 && medium.1 > coarse.1, "{fine:?} {medium:?} {coarse:?}");
+    }
+}
+
+#[test]
+fn no_cluster_gives_more_than_a_quarter_however_coarse_the_cut() {
+    let mut numbers = Numbers(8);
+    let trees = low_lamps(&mut numbers);
+    let transfer = Transfer::new(&trees, 1.7);
+    let mut lightcut = Lightcut::new();
+    let mut clusters = 0;
+    for receiver in points_near_vpls(&mut numbers, 300) {
+        let settings = CutSettings { epsilon: 0.5, ..EXACT };
+        let cut = lightcut.gather(&transfer, &Unoccluded, &receiver, &settings);
+        let total = luminance(cut.radiance);
+        for cluster in cut.clusters.iter().filter(|c| !trees.nodes[c.node as usize].is_leaf()) {
+            let share = luminance(cluster.contribution) / total;
+            assert!(share <= 1.001 * clamp::DOMINANT, "{share} of {total} at {}", receiver.position());
+            clusters += 1;
+        }
+    }
+    assert!(clusters > 3000, "a cut so coarse is made of clusters: {clusters}");
+}
+
+#[test]
+fn with_no_tolerance_the_cut_is_the_full_sum() {
+    let mut numbers = Numbers(5);
+    let trees = LightTrees::build(
+        &all_kinds(300, 1.0, &mut numbers),
+        profiles(),
+        2.0,
+        Family::Divisive,
+        &Control::new(),
+    );
+    let (errors, _) = relative_errors(&trees, &CutSettings { epsilon: 0.0, ..EXACT }, &Unoccluded);
+    assert!(errors.iter().all(|e| e.abs() < 1e-4), "{errors:?}");
+}
+
+#[test]
+fn the_cap_is_respected_and_counted() {
+    let trees =
+        LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let settings = CutSettings { epsilon: 0.001, max_cut: 77, clamp: None, origin: None };
+    let transfer = Transfer::new(&trees, 1.7);
+    let receiver = Receiver::irradiance(Vec3::splat(0.4), Vec3::Y, &Frame::from_normal(Vec3::Y));
+    let mut cut = Lightcut::new();
+    assert_eq!(cut.gather(&transfer, &Unoccluded, &receiver, &settings).clusters.len(), 77);
+    assert_eq!(cut.counts.capped, 1);
+    let roomy = CutSettings { epsilon: 0.5, max_cut: 1000, clamp: None, origin: None };
+    cut.gather(&transfer, &Unoccluded, &receiver, &roomy);
+    assert_eq!(cut.counts.capped, 1, "a cut that converged is not counted as capped");
+}
+
+fn irradiance(trees: &LightTrees, diagonal: f32, position: Vec3, settings: &CutSettings) -> Rgb {
+    let transfer = Transfer::new(trees, diagonal);
+    let receiver = Receiver::irradiance(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
+    Lightcut::new().gather(&transfer, &Unoccluded, &receiver, settings).radiance
+}
+
+#[test]
+fn nothing_degenerate_breaks_a_cut() {
+    let build = |vpls: &[(Vpl, f32)]| {
+        let kind = VplKind::Oriented;
+        let mut set = VplSet::new(kind, Origin::Indirect);
+        vpls.iter().for_each(|&(vpl, i)| set.push(vpl, Rgb::splat(i)));
+        LightTrees::build(&[set], Vec::new(), 1.0, Family::Divisive, &Control::new())
+    };
+    let down = |p: Vec3| Vpl::oriented(p, -Vec3::Y);
+    let settings = CutSettings { epsilon: 0.0, ..EXACT };
+    assert_eq!(irradiance(&build(&[]), 1.0, Vec3::ZERO, &settings), Rgb::ZERO, "no VPL");
+    let one = irradiance(&build(&[(down(Vec3::Y), 3.0)]), 1.0, Vec3::ZERO, &settings);
+    assert!((one.x - 3.0).abs() < 1e-4, "one VPL a metre above: {one}");
+    assert_eq!(irradiance(&build(&[(down(Vec3::ZERO), 3.0)]), 1.0, Vec3::ZERO, &settings), Rgb::ZERO);
+    let near = irradiance(&build(&[(down(Vec3::Y * 1e-7), 3.0)]), 1.0, Vec3::ZERO, &settings);
+    assert!(near.is_finite() && near.x > 0.0, "1e-7 away: {near}");
+    let behind = irradiance(&build(&[(down(-Vec3::Y), 3.0)]), 1.0, Vec3::ZERO, &settings);
+    assert_eq!(behind, Rgb::ZERO, "behind the receiver, total 0");
+    let coincident = irradiance(&build(&[(down(Vec3::Y), 1e-3); 5000]), 1.0, Vec3::ZERO, &EXACT);
+    assert!((coincident.x - 5.0).abs() < 1e-3, "coincident: {coincident}");
+    let mixed: Vec<(Vpl, f32)> = (0..2000)
+        .map(|i| (down(Vec3::new(i as f32 / 2000.0, 1.0, 0.0)), if i == 1234 { 1e10 } else { 1e-10 }))
+        .collect();
+    let bright = irradiance(&build(&mixed), 1.0, Vec3::ZERO, &EXACT);
+    let x: f32 = 1234.0 / 2000.0;
+    let expected = 1e10 / (1.0 + x * x).powi(2);
+    assert!((bright.x / expected - 1.0).abs() < 1e-4, "1e10 beside 1e-10: {bright} {expected}");
+}
+
+#[test]
+fn the_same_room_at_any_scale_gives_the_same_cut() {
+    // Lengths times s, intensities times s²: the same irradiance.
+    let reference = room(3000, &mut Numbers(3));
+    let at_scale = |s: f32| {
+        let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
+        for (vpl, &intensity) in reference.vpls.iter().zip(&reference.intensities) {
+            set.push(Vpl::oriented(vpl.position * s, vpl.normal()), intensity * s * s);
+        }
+        let trees = LightTrees::build(&[set], Vec::new(), 1.7 * s, Family::Divisive, &Control::new());
+        irradiance(&trees, 1.7 * s, Vec3::new(0.3, 0.2, 0.6) * s, &EXACT)
+    };
+    let unit = at_scale(1.0);
+    for s in [1e-6, 1e-3, 1e3, 1e6] {
+        let scaled = at_scale(s);
+        assert!(((scaled - unit) / unit).abs().max_element() < 0.02, "scale {s}: {scaled} {unit}");
+    }
+    // Powers of two change nothing at all.
+    assert_eq!(at_scale(1024.0), unit);
+}
+
+#[test]
+fn a_weak_singularity_is_clamped_once_and_lights_are_not() {
+    let mut set = room(2000, &mut Numbers(4));
+    let x = Vec3::new(0.5, 0.5, 0.5);
+    let trees_of = |set: &VplSet| {
+        LightTrees::build(std::slice::from_ref(set), Vec::new(), 1.7, Family::Divisive, &Control::new())
+    };
+    let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02), origin: None };
+    let without = luminance(irradiance(&trees_of(&set), 1.7, x, &settings));
+    set.push(Vpl::oriented(x + Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
+    let spike = luminance(irradiance(&trees_of(&set), 1.7, x, &CutSettings { clamp: None, ..settings }));
+    assert!(spike > 100.0 * without, "{spike}");
+    let clamped = luminance(irradiance(&trees_of(&set), 1.7, x, &settings));
+    assert!(clamped > without && clamped < 1.05 * without, "{clamped} {without}");
+    let mut light = VplSet::new(VplKind::Omni, Origin::Direct);
+    light.push(Vpl::omni(x + Vec3::Y * 1e-3), Rgb::splat(0.1));
+    let trees = LightTrees::build(&[set, light], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    assert!(luminance(irradiance(&trees, 1.7, x, &settings)) > 0.9e5, "a lamp keeps its light");
+}
+
+#[test]
+fn few_vpls_share_the_light_and_lose_none_of_it_while_it_is_refined() {
+    // Ten equal VPLs: each is far above 2 % of the whole, so each is clamped to 2 % of the frozen sum.
+    let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
+    for i in 0..10 {
+        set.push(Vpl::oriented(Vec3::new(0.01 * i as f32, 1.0, 0.0), -Vec3::Y), Rgb::ONE);
+    }
+    let trees = LightTrees::build(&[set], Vec::new(), 1.0, Family::Divisive, &Control::new());
+    let free = irradiance(&trees, 1.0, Vec3::ZERO, &EXACT).x;
+    let clamped = irradiance(&trees, 1.0, Vec3::ZERO, &CutSettings { clamp: Some(0.02), ..EXACT }).x;
+    assert!((clamped / free - 0.2).abs() < 0.002, "{clamped} {free}");
+}
+
+#[test]
+fn an_unlit_node_is_no_node() {
+    // The gap behind each root is never reached.
+    let trees =
+        LightTrees::build(&[room(7, &mut Numbers(6))], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let blank = |n: &&Node| n.intensity == Rgb::ZERO;
+    assert_eq!(trees.nodes.iter().filter(blank).count(), 1);
+    assert_eq!(trees.leaves().count(), 7);
+}

@@ -1,0 +1,127 @@
+//! Visibility of virtual lights in a scene: from a single point and from a packet.
+
+use super::{ReceiverPacket, to_vpl};
+use crate::light_tree::Node;
+use crate::vpl::Vpl;
+use base::math::{Rgb, Vec3x16, first_lanes};
+use embree::Rays16;
+use glam::Vec3;
+use world::World;
+use world::shadow::Engine;
+
+/// Visibility of a VPL from a single point.
+pub trait Visibility {
+    /// True if nothing lies between the surface point `x` with geometric normal `normal` and the VPL, which
+    /// represents `node`.
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool;
+
+    /// Share of the light of a visible VPL that passes the sheets on its way.
+    fn transmittance(&self, _x: Vec3, _normal: Vec3, _vpl: &Vpl, _node: &Node) -> Rgb {
+        Rgb::ONE
+    }
+}
+
+/// Visibility of a VPL from the points of a packet.
+pub trait PacketVisibility {
+    /// The lanes of `lanes` that see the VPL, which represents `node`.
+    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16;
+
+    /// Multiplies the `light` in lanes that see the VPL by the share of it that passes the sheets on its way.
+    fn attenuate16(
+        &self,
+        _receivers: &ReceiverPacket,
+        _lanes: u16,
+        (_vpl, _node): (&Vpl, &Node),
+        _light: &mut Vec3x16,
+    ) {
+    }
+}
+
+/// Visibility along rays to VPLs, each to another.
+pub trait RayVisibility {
+    /// The lanes of the first `count` whose rays are free; their `light` is multiplied by the share of it that passes
+    /// the sheets on its way.
+    fn arriving16(&self, rays: &Rays16, count: usize, light: &mut Vec3x16) -> u16;
+}
+
+impl Visibility for Engine<'_> {
+    #[inline]
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
+        !self.occluded(&to_vpl(x, normal, vpl, node.kind()), node.representative() as u32)
+    }
+
+    #[inline]
+    fn transmittance(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> Rgb {
+        match self.world().has_sheets() {
+            true => self.world().transmittance(&to_vpl(x, normal, vpl, node.kind())),
+            false => Rgb::ONE,
+        }
+    }
+}
+
+impl PacketVisibility for Engine<'_> {
+    #[inline]
+    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+        let rays = receivers.shadow_rays(vpl, node.kind());
+        lanes & !self.occluded16(&rays, lanes)
+    }
+
+    #[inline]
+    fn attenuate16(
+        &self,
+        receivers: &ReceiverPacket,
+        lanes: u16,
+        (vpl, node): (&Vpl, &Node),
+        light: &mut Vec3x16,
+    ) {
+        if self.world().has_sheets() {
+            let rays = receivers.shadow_rays(vpl, node.kind());
+            let attenuate = |lane, transmittance| light.set(lane, light.get(lane) * transmittance);
+            self.world().transmittance16(&rays, lanes, attenuate);
+        }
+    }
+}
+
+impl RayVisibility for Engine<'_> {
+    #[inline]
+    fn arriving16(&self, rays: &Rays16, count: usize, light: &mut Vec3x16) -> u16 {
+        let lanes = first_lanes(count);
+        let free = lanes & !self.occluded16(rays, lanes);
+        if self.world().has_sheets() {
+            let attenuate = |lane, transmittance| light.set(lane, light.get(lane) * transmittance);
+            self.world().transmittance16(rays, free, attenuate);
+        }
+        free
+    }
+}
+
+impl Visibility for World {
+    #[inline]
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
+        Visibility::visible(&Engine::new(self), x, normal, vpl, node)
+    }
+
+    #[inline]
+    fn transmittance(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> Rgb {
+        Visibility::transmittance(&Engine::new(self), x, normal, vpl, node)
+    }
+}
+
+impl PacketVisibility for World {
+    #[inline]
+    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+        Engine::new(self).visible16(receivers, lanes, vpl, node)
+    }
+
+    #[inline]
+    fn attenuate16(&self, receivers: &ReceiverPacket, lanes: u16, of: (&Vpl, &Node), light: &mut Vec3x16) {
+        Engine::new(self).attenuate16(receivers, lanes, of, light)
+    }
+}
+
+impl RayVisibility for World {
+    #[inline]
+    fn arriving16(&self, rays: &Rays16, count: usize, light: &mut Vec3x16) -> u16 {
+        Engine::new(self).arriving16(rays, count, light)
+    }
+}

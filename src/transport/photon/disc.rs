@@ -1,0 +1,75 @@
+//! Share of a disc on a surface that is surface.
+//!
+//! Near edges and corners part of the disc is beyond the surface, where no photon can be. Rays from a point
+//! low above its middle measure that part, and test the visibility of photons on it: an occluded one may lie
+//! in the next room, whose floor continues under the wall.
+
+use super::map::Site;
+use crate::vpl::Photon;
+use base::math::{Frame, LANES, lanes_in};
+use base::sampling::{hash, owen_sobol_2d};
+use embree::{Hits16, Ray, Rays16};
+use glam::Vec3;
+use std::f32::consts::TAU;
+use world::World;
+use world::shadow;
+
+/// Height of the ray origin over the disc, in radii.
+const HEIGHT: f32 = 0.3;
+
+/// Maximum distance of a hit on the disc from its plane, in radii.
+const FLATNESS: f32 = 0.2;
+
+/// Minimum cosine between the normals of the disc and of a hit.
+const MIN_COS: f32 = 0.7;
+
+/// Seed of the points on the disc.
+const SEED: u32 = 0xd15c;
+
+/// Number of rays that probe a disc.
+pub const RAYS: u64 = LANES as u64 + 1;
+
+/// A disc on a surface, probed from above its middle.
+pub struct Disc {
+    eye: Vec3,
+    /// Share of it that is surface, weighted by the kernel.
+    pub share: f32,
+}
+
+impl Disc {
+    /// Probes the disc around a site.
+    pub fn probe(world: &World, site: &Site, radius: f32) -> Disc {
+        let Site { position, normal } = *site;
+        let frame = Frame::from_normal(normal);
+        let up = shadow::ray_from(position, normal, normal);
+        let free = world.accel.closest_hit(&Ray { t_far: 2.0 * HEIGHT * radius, ..up });
+        let height = free.map_or(HEIGHT * radius, |hit| 0.5 * hit.t);
+        let eye = position + normal * height;
+        let mut rays = Rays16::default();
+        // Every disc has points of its own: the error of a common set would be correlated along a whole edge.
+        let seed = position.to_array().iter().fold(SEED, |seed, x| hash(x.to_bits(), seed));
+        for lane in 0..LANES {
+            let u = owen_sobol_2d(lane as u32, seed);
+            // The kernel's share within ρ is 2ρ² - ρ⁴.
+            let (sin, cos) = (TAU * u.x).sin_cos();
+            let rho = (1.0 - (1.0 - u.y).sqrt()).max(0.0).sqrt() * radius;
+            let target = position + frame.tangent * (rho * cos) + frame.bitangent * (rho * sin);
+            rays.set(lane, &Ray { origin: eye, t_near: 0.0, direction: target - eye, t_far: 1.5 });
+        }
+        let mut hits = Hits16::default();
+        let met = world.accel.closest_hit16(&rays, u16::MAX, true, &mut hits);
+        let on_disc = lanes_in(met).filter(|&lane| {
+            let ray = rays.get(lane);
+            let off = (eye + ray.direction * hits.t[lane] - position).dot(normal);
+            let normal_there = world.geometric_normal(hits.geometry[lane], hits.primitive[lane]);
+            off.abs() <= FLATNESS * radius && normal_there.dot(normal).abs() >= MIN_COS
+        });
+        Disc { eye, share: on_disc.count() as f32 / LANES as f32 }
+    }
+
+    /// True if a photon is visible from above.
+    pub fn sees(&self, world: &World, photon: &Photon) -> bool {
+        let segment = shadow::segment(photon.position, photon.normal, self.eye, Vec3::ZERO);
+        !world.accel.occluded(&segment)
+    }
+}

@@ -1,0 +1,89 @@
+//! Indirect light that surfaces reflect along the rays that hit them.
+//!
+//! A surface reflects the irradiance of the map, unless it is nearer than the map resolves (see
+//! [`super::near`]). Surfaces behind sheets and gaps count as well; light by mirrors, glass and other lobes too sharp
+//! to pass for diffuse is found with the eye samples, and not counted. Nor is emission, which is direct light.
+//!
+//! Units: radiance.
+
+use super::irradiance::IrradianceMap;
+use base::math::Rgb;
+use base::sampling::Sampler;
+use base::stats::add_fields;
+use glam::Vec3;
+use std::f32::consts::FRAC_1_PI;
+use world::shadow;
+use world::{Surface, World};
+
+/// Maximum number of surfaces a ray is followed through.
+const MAX_EDGES: u32 = 8;
+
+/// Counts of the work of gathering.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GatherCounts {
+    /// Rays from records.
+    pub record_rays: u64,
+    /// Rays from single samples.
+    pub own_rays: u64,
+    /// Rays continued behind sheets and gaps.
+    pub followed: u64,
+    /// Surfaces too near for the map.
+    pub near: u64,
+}
+add_fields!(GatherCounts { record_rays, own_rays, followed, near });
+
+/// The indirect light of a scene.
+#[derive(Clone, Copy)]
+pub struct IndirectLight<'w> {
+    /// The scene.
+    pub world: &'w World,
+    /// Irradiance on its surfaces.
+    pub map: &'w IrradianceMap,
+}
+
+impl IndirectLight<'_> {
+    /// Returns the radiance that a surface reflects against `direction`, from which it was hit at `distance`;
+    /// and the albedo of the reflection still missing, if it is too near for the map, else 0.
+    #[inline]
+    pub(super) fn sent(
+        &self,
+        first: &Surface,
+        mut direction: Vec3,
+        distance: f32,
+        sampler: &mut Sampler,
+        counts: &mut GatherCounts,
+    ) -> (Rgb, Rgb) {
+        let (mut radiance, mut throughput, mut near) = (Rgb::ZERO, Rgb::ONE, Rgb::ZERO);
+        let mut surface = *first;
+        for edge in 0..MAX_EDGES {
+            let bsdf = self.world.bsdf(&surface);
+            let out = surface.frame.to_local(-direction);
+            let albedo = bsdf.diffuse_albedo(out);
+            if albedo != Rgb::ZERO {
+                match self.map.at(surface.position, facing(&surface, direction)) {
+                    Some((_, radius)) if edge == 0 && distance < radius => near = albedo,
+                    Some((irradiance, _)) => radiance += throughput * albedo * irradiance * FRAC_1_PI,
+                    None => {}
+                }
+            }
+            if !bsdf.has_delta() {
+                break;
+            }
+            let sample = bsdf.sample(out, sampler.next_1d(), sampler.next_2d());
+            let Some(s) = sample.filter(|s| s.straight) else { break };
+            throughput *= s.weight;
+            direction = surface.frame.to_world(s.wi);
+            counts.followed += 1;
+            let ray = shadow::ray_from(surface.position, surface.normal, direction);
+            let Some(next) = self.world.intersect(&ray) else { break };
+            surface = next;
+        }
+        (radiance, near)
+    }
+}
+
+/// Returns the geometric normal on the side that a ray along `direction` hits.
+#[inline]
+pub(super) fn facing(surface: &Surface, direction: Vec3) -> Vec3 {
+    if surface.normal.dot(direction) < 0.0 { surface.normal } else { -surface.normal }
+}

@@ -1,0 +1,154 @@
+//! The cache of one frame: records placed and splatted until every cell worth one is covered, then adapted.
+//!
+//! Paper: Herzog et al. 2009, sections 5.2 and 6.
+//!
+//! The records themselves outlive the frame (see [`super::store`]); this part depends on its eye samples.
+
+use super::adapt::{self, Discontinuity};
+use super::placement::candidates;
+use super::record::Record;
+use super::settings::CacheSettings;
+use super::source::RecordSource;
+use super::splat::Splat;
+use super::store::Records;
+use super::targets::Targets;
+use crate::lightcut::CutCounts;
+use crate::vpl::{DirectIndirect, Origin};
+use base::progress::Control;
+use base::stats::{Stage, Stats};
+
+/// Level of the coarsest cells.
+const FIRST_LEVEL: u32 = 5;
+
+/// Records as they light the eye samples of one frame.
+pub struct CacheFrame<'a> {
+    pub(super) targets: Targets<'a>,
+    /// Layers that have records.
+    pub(super) cached: DirectIndirect<bool>,
+    pub(super) splats: DirectIndirect<Splat>,
+    /// Eye samples at which records were computed.
+    pub(super) placed: DirectIndirect<Vec<u32>>,
+    /// Discontinuities between records before each pass of adaptation.
+    pub(super) discontinuities: Vec<Vec<Discontinuity>>,
+    /// Counts of the cuts of records.
+    pub cuts: CutCounts,
+}
+
+impl<'a> CacheFrame<'a> {
+    /// Adds records from `source` until the eye samples are covered, shrinks their footprints and covers the
+    /// samples that are uncovered by that.
+    pub fn fill(
+        targets: Targets<'a>,
+        records: &mut Records,
+        source: &impl RecordSource,
+        control: &Control,
+        stats: &mut Stats,
+    ) -> CacheFrame<'a> {
+        let settings = source.settings();
+        let splats = records.as_ref().map(|store| Splat::new(&targets, store));
+        let mut frame = CacheFrame {
+            targets,
+            cached: settings.cached(),
+            splats,
+            placed: DirectIndirect::default(),
+            discontinuities: Vec::new(),
+            cuts: CutCounts::default(),
+        };
+        control.begin(Stage::Records, frame.targets.points.len() as u64);
+        frame.cover(records, source, control, stats);
+        for _ in 0..settings.passes {
+            if control.is_cancelled() || !frame.adapt(records, settings, stats) {
+                break;
+            }
+            frame.cover(records, source, control, stats);
+        }
+        frame.report(records, stats);
+        frame
+    }
+
+    /// Computes and splats records until every cell worth one is covered.
+    fn cover(
+        &mut self,
+        records: &mut Records,
+        source: &impl RecordSource,
+        control: &Control,
+        stats: &mut Stats,
+    ) {
+        let count = self.targets.points.len();
+        let mut level = FIRST_LEVEL;
+        let reach = source.settings().farthest();
+        while count >> level >= source.settings().least_cell.max(1) as usize {
+            for parity in 0..2 {
+                if control.is_cancelled() {
+                    return;
+                }
+                let candidates = stats.time(Stage::Splat, || {
+                    candidates(&self.targets, &self.splats, self.cached, reach, (level, parity))
+                });
+                let (new, cuts) = stats.time(Stage::Records, || source.records(&candidates));
+                self.cuts += cuts;
+                stats.time(Stage::Splat, || {
+                    let first = records.as_ref().map(|store| store.records.len() as u32);
+                    for new in new {
+                        self.placed[new.origin].push(new.sample);
+                        records[new.origin].push(new);
+                    }
+                    for origin in Origin::ALL {
+                        self.splats[origin].add(&self.targets, &records[origin], first[origin]);
+                    }
+                });
+            }
+            level += 1;
+        }
+    }
+
+    /// Shrinks footprints at visible discontinuities; false if there are none.
+    fn adapt(&mut self, records: &mut Records, settings: &CacheSettings, stats: &mut Stats) -> bool {
+        stats.time(Stage::Splat, || {
+            let threshold = settings.threshold;
+            let found = adapt::discontinuities(&self.targets, records, &self.splats, threshold);
+            let changed = adapt::shrink(&self.targets, records, &found, settings);
+            for origin in Origin::ALL {
+                self.splats[origin].renew(&self.targets, &records[origin], &changed);
+            }
+            self.discontinuities.push(found);
+            changed.contains(&true)
+        })
+    }
+
+    fn report(&self, records: &Records, stats: &mut Stats) {
+        stats.count("Cache/records, direct", records.direct.records.len() as u64);
+        stats.count("Cache/records, indirect", records.indirect.records.len() as u64);
+        if self.targets.glossy.is_some() {
+            let series = records.direct.series_count() + records.indirect.series_count();
+            stats.count("Cache/records with series", series as u64);
+        }
+        let last = self.discontinuities.last();
+        let mut seams: Vec<u32> = last.into_iter().flatten().map(|found| found.sample).collect();
+        seams.dedup();
+        stats.count("Cache/samples at seams", seams.len() as u64);
+        shapes(&records.direct.records, "direct", stats);
+        shapes(&records.indirect.records, "indirect", stats);
+        let indirect = records.indirect.records.iter();
+        let sum = |f: fn(&Record) -> f32| indirect.clone().map(|r| f64::from(f(r))).sum::<f64>();
+        let total = sum(|r| r.luminance + r.diagnostics.clamped - r.diagnostics.compensated);
+        let percent = 100.0 / if total > 0.0 { total } else { 1.0 };
+        stats.add("Records/indirect light lost to clamping [%]", percent * sum(|r| r.diagnostics.clamped));
+        stats.add("Records/found again by short rays [%]", percent * sum(|r| r.diagnostics.compensated));
+    }
+}
+
+/// Reports means over a layer's records: clusters or rays, anisotropy, and radius (of the circle of the same
+/// area) over the distance of the geometry that casts light and shadow.
+fn shapes(records: &[Record], layer: &str, stats: &mut Stats) {
+    let mut mean = |what: &str, of: &dyn Fn(&Record) -> f32| {
+        let values = records.iter().map(|r| f64::from(of(r))).filter(|value| value.is_finite());
+        let (sum, count) = values.fold((0.0, 0u64), |(sum, count), value| (sum + value, count + 1));
+        if count > 0 {
+            stats.add(&format!("Cache/{what}, {layer}"), sum / count as f64);
+        }
+    };
+    mean("cut or rays", &|r| r.diagnostics.cut as f32);
+    mean("anisotropy", &|r| r.footprint.max_radius() / r.footprint.radii[0].min(r.footprint.radii[1]));
+    mean("accuracy", &|r| (r.footprint.radii[0] * r.footprint.radii[1]).sqrt() / r.diagnostics.distance);
+}

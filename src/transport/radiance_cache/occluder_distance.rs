@@ -1,0 +1,71 @@
+//! Distances from records to the occluders of their virtual lights.
+//!
+//! Paper: Herzog et al. 2009, section 5.1: occluders limit the reach of a record, as visible lights do.
+//!
+//! Deviations: the occluder is the one that stopped the shadow ray, not the nearest.
+
+use crate::light_tree::Node;
+use crate::lightcut::{PacketVisibility, ReceiverPacket};
+use crate::vpl::Vpl;
+use base::math::{F32x16, LANES, Vec3x16};
+use embree::Occluders16;
+use glam::Vec3;
+use std::cell::RefCell;
+use world::World;
+use world::shadow::Engine;
+
+/// Visibility in the scene that notes the distances of occluders.
+pub struct OccluderLog<'w> {
+    engine: Engine<'w>,
+    /// Representative, and the distance to its occluder from each lane, or infinity.
+    log: RefCell<Vec<(u32, F32x16)>>,
+}
+
+impl<'w> OccluderLog<'w> {
+    /// Nothing noted yet.
+    pub fn new(world: &'w World) -> OccluderLog<'w> {
+        OccluderLog { engine: Engine::scattered(world), log: RefCell::new(Vec::new()) }
+    }
+
+    /// Distances noted, sorted.
+    pub fn sorted(self) -> OccluderDistances {
+        let mut log = self.log.into_inner();
+        log.sort_unstable_by_key(|entry| entry.0);
+        OccluderDistances(log)
+    }
+}
+
+/// Distances to the occluders of a cut's lights, sorted by representative.
+pub struct OccluderDistances(Vec<(u32, F32x16)>);
+
+impl OccluderDistances {
+    /// Returns the distance from a lane to the occluder of a representative; infinite if there is none.
+    pub fn get(&self, node: &Node, lane: usize) -> f32 {
+        let found = self.0.binary_search_by_key(&(node.representative() as u32), |entry| entry.0);
+        found.map_or(f32::INFINITY, |i| self.0[i].1[lane])
+    }
+}
+
+impl PacketVisibility for OccluderLog<'_> {
+    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+        let (rays, key) = (points.shadow_rays(vpl, node.kind()), node.representative() as u32);
+        let mut found = Occluders16::default();
+        let occluded = self.engine.occluders16(&rays, lanes, &mut found);
+        if occluded != 0 {
+            let mut distances = [f32::INFINITY; LANES];
+            for (lane, distance) in distances.iter_mut().enumerate() {
+                let direction =
+                    Vec3::new(rays.direction_x[lane], rays.direction_y[lane], rays.direction_z[lane]);
+                if occluded >> lane & 1 != 0 {
+                    *distance = found.t[lane] * direction.length();
+                }
+            }
+            self.log.borrow_mut().push((key, distances));
+        }
+        lanes & !occluded
+    }
+
+    fn attenuate16(&self, points: &ReceiverPacket, lanes: u16, of: (&Vpl, &Node), light: &mut Vec3x16) {
+        self.engine.attenuate16(points, lanes, of, light)
+    }
+}

@@ -1,0 +1,148 @@
+//! Light of records at the eye samples of a frame, and the parts that they leave to cuts.
+//!
+//! Paper: Herzog et al. 2009, section 6.
+
+use super::fill::CacheFrame;
+use super::placement::missing;
+use super::store::Records;
+use crate::vpl::{DirectIndirect, Origin};
+use base::math::{Rgb, luminance};
+use rayon::prelude::*;
+
+/// Leaves of the index whose light is found at a time.
+const LEAVES: usize = 16384;
+
+/// Sum of weights up to which records say nothing of a sample: it lies beyond nine tenths of the way to the edge of the
+/// only footprint that reaches it.
+///
+/// Such samples are where a wall goes on behind a picture's frame, which hides them from the light of the record.
+const LITTLE_WEIGHT: f32 = 0.1;
+
+/// Part of a layer's light at an eye sample that records do not give.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Left {
+    /// None of it.
+    Nothing,
+    /// Reflection by the lobe on the base, which is too sharp for records.
+    Lobe,
+    /// All of it.
+    All,
+}
+
+/// Light of records at an eye sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Interpolated {
+    /// Radiance reflected by the base.
+    pub base: DirectIndirect<Rgb>,
+    /// Radiance reflected by the lobe on it, of all layers with records.
+    pub lobe: Rgb,
+    /// Luminance of the radiance, if all of it is known that records are to give.
+    pub baseline_luminance: f32,
+    /// Parts left to cuts.
+    pub left: DirectIndirect<Left>,
+}
+
+impl CacheFrame<'_> {
+    /// Light of the records at every eye sample, in order. It is found by and by: that of all would be the most memory
+    /// that large pictures take.
+    pub fn interpolate(&self, records: &Records) -> impl Iterator<Item = Interpolated> {
+        let index = self.targets.index;
+        let of_leaf = move |leaf| -> Vec<Interpolated> {
+            index.leaf(leaf).map(|sample| self.at_sample(records, leaf, sample)).collect()
+        };
+        (0..index.leaves()).step_by(LEAVES).flat_map(move |first| {
+            let leaves = first..(first + LEAVES).min(index.leaves());
+            leaves.into_par_iter().map(of_leaf).collect::<Vec<_>>().into_iter().flatten()
+        })
+    }
+
+    fn at_sample(&self, records: &Records, leaf: usize, sample: usize) -> Interpolated {
+        let targets = &self.targets;
+        let (point, surface) = (&targets.points.geometry[sample], &targets.points.surfaces[sample]);
+        let mut light = Interpolated {
+            base: DirectIndirect::default(),
+            lobe: Rgb::ZERO,
+            baseline_luminance: 0.0,
+            left: DirectIndirect { direct: Left::All, indirect: Left::All },
+        };
+        if missing(targets, &self.splats, self.cached, sample, LITTLE_WEIGHT).any() {
+            return light;
+        }
+        let (base, lobe) = surface.bsdf.split_base(surface.out.dot(point.normal));
+        let glossy = targets.glossy_point(sample);
+        let left = if lobe.is_some() && targets.bands[sample] == 0 { Left::Lobe } else { Left::Nothing };
+        light.left = self.cached.map(|cached| if cached { left } else { Left::All });
+        if !targets.cacheable[sample] {
+            return light;
+        }
+        let mean = |origin: Origin| self.splats[origin].sums[sample].mean().unwrap_or(Rgb::ZERO);
+        let irradiance = DirectIndirect::from_fn(mean);
+        if let Some(mut glossy) = glossy {
+            let mut mean = |origin: Origin| glossy.mean(&records[origin], &self.splats[origin], leaf);
+            light.lobe = mean(Origin::Direct) + mean(Origin::Indirect);
+        }
+        light.base = irradiance.map(|irradiance| base * irradiance);
+        light.baseline_luminance = luminance(base * (irradiance.direct + irradiance.indirect) + light.lobe);
+        light
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixtures::{ALBEDO, Floor, record};
+    use super::super::source::NewRecord;
+    use super::super::splat::Splat;
+    use super::*;
+    use crate::lightcut::CutCounts;
+    use glam::Vec3;
+    use std::f32::consts::FRAC_1_PI;
+
+    const IRRADIANCE: DirectIndirect<Rgb> =
+        DirectIndirect { direct: Rgb::new(1.0, 2.0, 3.0), indirect: Rgb::new(0.5, 0.25, 0.125) };
+
+    #[test]
+    fn covered_samples_reflect_irradiance_and_uncovered_ones_are_left() {
+        let floor = Floor::grid(16);
+        let mut records = Records::default();
+        for origin in Origin::ALL {
+            // Indirect light covers less.
+            let radius = if origin == Origin::Direct { 0.44 } else { 0.22 };
+            let record = record(Vec3::new(0.5, 0.5, 0.0), [radius; 2], IRRADIANCE[origin]);
+            records[origin].push(NewRecord { origin, sample: 0, record, series: None });
+        }
+        for cached in [(true, true), (true, false), (false, true)] {
+            let cached = DirectIndirect { direct: cached.0, indirect: cached.1 };
+            let targets = floor.targets();
+            let splat = |origin| {
+                let none = Default::default();
+                Splat::new(&targets, if cached[origin] { &records[origin] } else { &none })
+            };
+            let splats = DirectIndirect::from_fn(splat);
+            let frame = CacheFrame {
+                targets,
+                cached,
+                splats,
+                placed: DirectIndirect::default(),
+                discontinuities: Vec::new(),
+                cuts: CutCounts::default(),
+            };
+            let light: Vec<Interpolated> = frame.interpolate(&records).collect();
+            assert_eq!(light.len(), floor.points.len());
+            for (point, light) in floor.points.geometry.iter().zip(light) {
+                let distance = point.position.distance(Vec3::new(0.5, 0.5, 0.0));
+                let covered = distance < if cached.indirect { 0.2 } else { 0.4 };
+                let left = |cached| if covered && cached { Left::Nothing } else { Left::All };
+                assert_eq!(light.left, cached.map(left), "{distance}");
+                let mut whole = Rgb::ZERO;
+                for origin in Origin::ALL {
+                    let given = if covered && cached[origin] { 1.0 } else { 0.0 };
+                    let expected = IRRADIANCE[origin] * ALBEDO * FRAC_1_PI * given;
+                    assert!((light.base[origin] - expected).length() < 1e-5, "{expected}");
+                    whole += expected;
+                }
+                assert!((light.baseline_luminance - luminance(whole)).abs() < 1e-5);
+                assert_eq!(light.lobe, Rgb::ZERO);
+            }
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! The shading points of one frame, as far as records light them.
+
+use super::series::Glossy;
+use crate::eye::{PointGeometry, ShadingPoints};
+use base::kd_tree::KdTree;
+use base::math::{Rgb, luminance};
+use glam::Vec3;
+use rayon::prelude::*;
+use std::f32::consts::PI;
+use std::ops::Range;
+use world::SurfacePoint;
+
+/// Parts of a range of points of which the darkest counts.
+const PARTS: usize = 8;
+
+/// Sine of the angle over a surface above which a point rises from it.
+const RISE: f32 = 0.05;
+
+/// Shading points that records are splatted onto.
+pub struct Targets<'a> {
+    /// The points, in the order of the index.
+    pub points: &'a ShadingPoints<'a>,
+    /// The hierarchy over them.
+    pub index: &'a KdTree,
+    /// Lobes that series light, if there are any.
+    pub glossy: Option<&'a Glossy>,
+    /// Bands of the series that each point needs; 0 where irradiance is enough.
+    pub bands: Vec<u8>,
+    /// True if records can light the point: it has a base, or a lobe broad enough for a series.
+    pub cacheable: Vec<bool>,
+    /// Luminance of the irradiance that gives each point the light which is known besides; empty if none is.
+    known: Vec<f32>,
+    /// Difference of luminance that is seen at each point, where it is known: of irradiance, or on glossy surfaces that
+    /// series light of radiance. Empty if none is known.
+    visible: Vec<Option<f32>>,
+}
+
+impl<'a> Targets<'a> {
+    /// All `points`; lobes are lit by series where `glossy` has enough bands for them.
+    pub fn new(points: &'a ShadingPoints, index: &'a KdTree, glossy: Option<&'a Glossy>) -> Targets<'a> {
+        let bands = |surface| glossy.map_or(0, |glossy: &Glossy| glossy.bands(surface));
+        let bands: Vec<u8> = points.surfaces.iter().map(bands).collect();
+        let cacheable = points
+            .surfaces
+            .iter()
+            .zip(&bands)
+            .map(|(surface, &bands)| bands > 0 || surface.bsdf.split_base(1.0).0 != Rgb::ZERO)
+            .collect();
+        Targets { points, index, glossy, bands, cacheable, known: Vec::new(), visible: Vec::new() }
+    }
+
+    /// The same, where light of these luminances is reflected besides: records' errors are judged against the whole.
+    pub fn with_known(mut self, luminance_of: impl Fn(usize) -> f32 + Sync) -> Targets<'a> {
+        let irradiance = |point: usize| {
+            let irradiance = self.irradiance(point, luminance_of(point));
+            if irradiance < f32::INFINITY { irradiance } else { 0.0 }
+        };
+        self.known = (0..self.points.len()).into_par_iter().map(irradiance).collect();
+        self
+    }
+
+    /// The same, where so great differences of the luminance of radiance are seen; `None` where that is not known.
+    pub fn with_visible(mut self, difference_at: impl Fn(Vec3) -> Option<f32> + Sync) -> Targets<'a> {
+        let visible = |point: usize| {
+            let difference = difference_at(self.points.geometry[point].position)?;
+            let is_glossy = self.glossy_point(point).is_some();
+            let limit = if is_glossy { difference } else { self.irradiance(point, difference) };
+            limit.is_finite().then_some(limit)
+        };
+        self.visible = (0..self.points.len()).into_par_iter().map(visible).collect();
+        self
+    }
+
+    /// Distance from a point of surface to the nearest of the points, up to `reach`, that rises from the surface;
+    /// infinite if there is none. Points of the same bent surface do not rise from it.
+    pub fn clearance(&self, from: &SurfacePoint, reach: f32) -> f32 {
+        let (mut nearest, mut nearest_sq) = (f32::INFINITY, reach * reach);
+        self.index.leaves_near(from.position, reach, |leaf| {
+            for point in &self.points.geometry[self.index.leaf(leaf)] {
+                let offset = point.position - from.position;
+                let distance_sq = offset.length_squared();
+                if !(distance_sq < nearest_sq) {
+                    continue;
+                }
+                // A chord of an arc rises from the plane at its end, but not from that at its middle.
+                let height = offset.dot(from.normal).min(0.5 * offset.dot(from.normal + point.normal));
+                let distance = distance_sq.sqrt();
+                if height > RISE * distance {
+                    (nearest, nearest_sq) = (distance, distance_sq);
+                }
+            }
+        });
+        nearest
+    }
+
+    /// Difference of luminance that is seen at a point, if it is known.
+    #[inline]
+    pub fn visible(&self, point: usize) -> Option<f32> {
+        self.visible.get(point).copied().flatten()
+    }
+
+    /// Luminance of the irradiance of which a point reflects radiance of this luminance.
+    fn irradiance(&self, point: usize, radiance: f32) -> f32 {
+        let surface = &self.points.surfaces[point];
+        let cos = surface.out.dot(self.points.geometry[point].normal);
+        PI * radiance / luminance(surface.bsdf.albedo_at(cos))
+    }
+
+    /// Least of the mean irradiances known in the parts of a range.
+    pub fn least_known(&self, range: Range<usize>) -> f32 {
+        let Some(known) = self.known.get(range).filter(|known| !known.is_empty()) else { return 0.0 };
+        let mean = |part: &[f32]| part.iter().sum::<f32>() / part.len() as f32;
+        known.chunks(known.len().div_ceil(PARTS)).map(mean).fold(f32::INFINITY, f32::min)
+    }
+
+    /// Geometry of a range of points, and the bands that they need.
+    #[inline]
+    pub fn geometry(&self, range: Range<usize>) -> impl Iterator<Item = (&PointGeometry, u8)> {
+        self.points.geometry[range.clone()].iter().zip(self.bands[range].iter().copied())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixtures::Floor;
+    use super::*;
+
+    fn clearance(positions: &[Vec3], normals: impl Fn(Vec3) -> Vec3, from: Vec3, reach: f32) -> f32 {
+        let mut floor = Floor::new(positions);
+        for point in &mut floor.points.geometry {
+            point.normal = normals(point.position);
+        }
+        let normal = normals(from);
+        floor.targets().clearance(&SurfacePoint { position: from, normal, geometric_normal: normal }, reach)
+    }
+
+    #[test]
+    fn a_ledge_is_near_and_neither_the_floor_nor_what_lies_deeper_is() {
+        let grid = (0..1024).map(|i| Vec3::new((i % 32) as f32, (i / 32) as f32, 0.0) / 32.0);
+        let raised =
+            |by: f32| grid.clone().map(|p| p + Vec3::Z * if p.x < 0.25 { by } else { 0.0 }).collect();
+        let from = Vec3::new(0.5, 0.5, 0.0);
+        let of = |points: Vec<Vec3>, reach| clearance(&points, |_| Vec3::Z, from, reach);
+        // The last column of the ledge is at 7/32.
+        let distance = Vec3::new(9.0 / 32.0, 0.0, 0.05).length();
+        assert!((of(raised(0.05), 1.0) - distance).abs() < 1e-6);
+        for (by, reach) in [(0.05, 0.25), (0.0, 1.0), (-0.05, 1.0)] {
+            assert_eq!(of(raised(by), reach), f32::INFINITY, "{by} {reach}");
+        }
+    }
+
+    #[test]
+    fn a_hollow_does_not_rise_from_itself() {
+        let at = |angle: f32| Vec3::new(angle.sin(), 0.0, 1.0 - angle.cos());
+        let points: Vec<Vec3> = (-20..=20).map(|i| at(0.05 * i as f32)).collect();
+        let centre = Vec3::Z;
+        let inwards = |p: Vec3| (centre - p).normalize();
+        assert_eq!(clearance(&points, inwards, at(0.0), 10.0), f32::INFINITY);
+        assert!(clearance(&points, |_| Vec3::Z, at(0.0), 10.0) < 0.2);
+    }
+}

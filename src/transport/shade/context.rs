@@ -1,0 +1,72 @@
+//! The light that points gather, the parts of it that are wanted, and how.
+
+use crate::bias_compensation::Compensation;
+use crate::eye::ShadingPoints;
+use crate::lightcut::{CutSettings, MIN_SHARED, Receiver, Samples, Transfer};
+use crate::vpl::Origin;
+use base::math::Frame;
+use world::World;
+use world::shadow::ShadowSettings;
+
+/// A scene and its virtual lights.
+#[derive(Clone, Copy)]
+pub struct ShadingContext<'a> {
+    /// The scene.
+    pub world: &'a World,
+    /// Transfer from its virtual lights.
+    pub transfer: Transfer<'a>,
+    /// Compensation of clamped light; `None` for none.
+    pub compensation: Option<Compensation<'a>>,
+}
+
+/// Settings of the shading stage.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadeSettings {
+    /// Error and size of cuts.
+    pub cut: CutSettings,
+    /// True if neighbours share cuts.
+    pub share: bool,
+    /// Samples of the cuts of patches without other points than anchors, where fewer do than a cut has clusters; `None`
+    /// for cuts everywhere.
+    pub samples: Option<Samples>,
+    /// Shadow rays that ask an occluder cache.
+    pub shadows: ShadowSettings,
+}
+
+impl ShadeSettings {
+    /// True if so many points share a cut.
+    pub fn shares(&self, points: usize) -> bool {
+        self.share && points >= MIN_SHARED
+    }
+}
+
+/// Light wanted at a shading point.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadingTask {
+    /// Number of the point.
+    pub point: u32,
+    /// True if only the light reflected by the lobe on the base is wanted.
+    pub lobe_only: bool,
+    /// Origin of the light; `None` for both.
+    pub origin: Option<Origin>,
+    /// Luminance of the radiance that the point reflects besides: errors are judged against the whole.
+    pub baseline_luminance: f32,
+}
+
+impl ShadingTask {
+    /// All light of a point.
+    pub fn all(point: u32) -> ShadingTask {
+        ShadingTask { point, lobe_only: false, origin: None, baseline_luminance: 0.0 }
+    }
+
+    /// The receiver of the light.
+    pub fn receiver<'w>(&self, points: &ShadingPoints<'w>) -> Receiver<'w> {
+        let i = self.point as usize;
+        let (geometry, surface) = (&points.geometry[i], &points.surfaces[i]);
+        let frame = Frame::from_normal(geometry.normal);
+        let lobe = if self.lobe_only { surface.bsdf.split_base(1.0).1 } else { None };
+        let bsdf = lobe.unwrap_or(surface.bsdf);
+        Receiver::new(geometry.position, surface.geometric_normal, &frame, bsdf, surface.out)
+            .with_baseline(self.baseline_luminance)
+    }
+}

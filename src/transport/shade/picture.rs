@@ -1,0 +1,82 @@
+//! The picture in the making, and if wanted its parts by the light's origin.
+
+use super::{ShadeSettings, ShadingContext, ShadingCounts, ShadingTask, patches, shade};
+use crate::eye::EyePass;
+use crate::vpl::Origin;
+use base::film::{Image, Layer, Preview};
+use base::math::Rgb;
+use base::progress::Control;
+use base::stats::{Stats, Ways};
+
+/// Sums at each pixel.
+pub struct Picture {
+    /// All light.
+    pub color: Image,
+    /// Direct light, indirect light, and light not known apart.
+    parts: Option<[Image; 3]>,
+    /// Radiances that were not finite and left out.
+    pub nonfinite: u64,
+    /// The ways by which the light came.
+    ways: Ways,
+}
+
+impl Picture {
+    /// The light that the eye pass knows.
+    pub fn new(eye: &EyePass, with_parts: bool) -> Picture {
+        let color = eye.known.clone();
+        let blank = || Image::new(color.width, color.height);
+        let parts = with_parts.then(|| [blank(), blank(), blank()]);
+        Picture { color, parts, nonfinite: eye.nonfinite, ways: eye.ways.clone() }
+    }
+
+    /// Adds radiance that a shading point reflects, of one origin or of both.
+    pub fn add(&mut self, eye: &EyePass, point: usize, origin: Option<Origin>, radiance: Rgb) {
+        for seen in eye.visibility.of(point) {
+            let light = seen.weight * radiance;
+            if !light.is_finite() {
+                self.nonfinite += 1;
+                continue;
+            }
+            self.color.pixels[seen.pixel as usize] += light;
+            if let Some(parts) = &mut self.parts {
+                let part = match origin {
+                    Some(Origin::Direct) => 0,
+                    Some(Origin::Indirect) => 1,
+                    None => 2,
+                };
+                parts[part].pixels[seen.pixel as usize] += light;
+            }
+        }
+    }
+
+    /// Adds the light of `tasks`, shaded in patches: about `count` of them if there is a task for each point.
+    pub fn shade<'w>(
+        &mut self,
+        context: &ShadingContext<'w>,
+        eye: &EyePass<'w>,
+        tasks: &[ShadingTask],
+        count: u32,
+        settings: &ShadeSettings,
+        control: &Control,
+    ) -> ShadingCounts {
+        let patches = patches(&eye.points, tasks, count, context.world.diagonal);
+        let shading = shade(context, &eye.points, &patches, settings, control);
+        for &(task, radiance) in shading.patches.iter().flatten() {
+            self.add(eye, task.point as usize, task.origin, radiance);
+        }
+        shading.counts
+    }
+
+    /// Tells the way by which the light came that was added since this was called last.
+    pub fn came_by(&mut self, way: &'static str) {
+        self.ways.rest(way, self.color.luminance());
+    }
+
+    /// The picture, its parts, and the number of radiances that were left out; reports the ways that its light came.
+    pub fn finish(self, stats: &mut Stats) -> (Image, Vec<Layer>, u64) {
+        self.ways.report(stats);
+        let parts = ["direct", "indirect", "both"].into_iter().zip(self.parts.into_iter().flatten());
+        let parts = parts.map(|(name, image)| Layer::color(name, image).shown(Preview::Exposed));
+        (self.color, parts.collect(), self.nonfinite)
+    }
+}

@@ -1,0 +1,99 @@
+//! VPLs of reflected light: one for every photon, and one for each lobe that reflects much.
+//!
+//! Paper: Keller, *Instant Radiosity*, 1997; Herzog et al. 2009, section 3: the first hit's reflected light
+//! is already indirect, and moderately glossy reflection counts as diffuse where light is deposited.
+//! Deviations: only what reflects little of the light, as plastics do, counts as diffuse. Metals have VPLs that radiate
+//! by their lobes: in a room of a metal of roughness .27, evenly spread light was up to 16 % too bright. A limit on the
+//! edges of a path takes the receiver to be what the eye sees: behind mirrors and glass, light comes by up to as many
+//! edges more as are before it.
+
+use super::photons::{PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
+use super::profile::LobeProfile;
+use super::{LightPassSettings, Origin, Vpl, VplKind, VplSet};
+use base::math::Rgb;
+use base::progress::Control;
+use glam::Vec3;
+use std::f32::consts::FRAC_1_PI;
+use world::shadow;
+use world::{SurfacePoint, World};
+
+/// VPLs of reflected light.
+pub struct IndirectVpls {
+    /// Those that radiate diffusely, and by lobes.
+    pub sets: [VplSet; 2],
+    /// Profiles of the lobes.
+    pub lobes: Vec<LobeProfile>,
+    /// Counts of photon tracing.
+    pub photons: PhotonCounts,
+}
+
+/// Light that a photon leaves behind; intensities are those of a single path.
+struct Left {
+    diffuse: (Vpl, Rgb),
+    /// Lobes and their intensities, where there are any.
+    lobes: Option<Box<[(LobeProfile, Rgb)]>>,
+}
+
+impl Left {
+    fn of(hit: &PhotonHit) -> Left {
+        let photon = &hit.photon;
+        let mut albedo = photon.albedo;
+        let lobes: Box<[(LobeProfile, Rgb)]> = hit
+            .bsdf
+            .reflected_lobes(hit.wi)
+            .map(|lobe| {
+                albedo -= lobe.albedo;
+                let profile = LobeProfile {
+                    normal: hit.shading_normal,
+                    towards_light: photon.towards_light,
+                    shape: lobe.shape,
+                    peak: lobe.peak,
+                };
+                (profile, photon.flux * lobe.albedo * lobe.peak)
+            })
+            .collect();
+        let intensity = photon.flux * albedo.max(Rgb::ZERO) * FRAC_1_PI;
+        let diffuse = (Vpl::oriented(photon.position, photon.normal), intensity);
+        Left { diffuse, lobes: (!lobes.is_empty()).then_some(lobes) }
+    }
+
+    /// Position of the lobes' VPLs.
+    fn place(&self) -> Vec3 {
+        let (vpl, _) = &self.diffuse;
+        shadow::ray_from(vpl.position, vpl.normal(), vpl.normal()).origin
+    }
+}
+
+/// Returns about `settings.indirect` indirect VPLs (whole chunks of paths, so a few more, and up to as many that
+/// radiate by lobes) for the indirect light of points `seen`, or fewer where few paths hit a surface, or where they are
+/// aimed at what lights these.
+pub fn indirect_vpls(
+    world: &World,
+    settings: &LightPassSettings,
+    seen: &[SurfacePoint],
+    max_depth: u32,
+    control: &Control,
+) -> IndirectVpls {
+    // One edge is the eye's, one joins VPL and receiver.
+    let max_edges = max_depth.saturating_sub(2);
+    let wanted = PhotonSettings { photons: settings.indirect, seen, max_edges, seed: settings.seed };
+    let (found, photons) = trace_photons(world, &wanted, control, Left::of);
+    let mut diffuse = VplSet::new(VplKind::Oriented, Origin::Indirect);
+    let mut lobed = VplSet::new(VplKind::Lobed, Origin::Indirect);
+    let mut lobes = Vec::new();
+    let share = 1.0 / photons.paths.max(1) as f32;
+    diffuse.reserve(found.len());
+    for left in found {
+        if control.is_cancelled() {
+            break;
+        }
+        let place = left.place();
+        let (vpl, intensity) = left.diffuse;
+        diffuse.push(vpl, intensity * share);
+        for (profile, intensity) in left.lobes.into_iter().flatten() {
+            lobed.push(Vpl::lobed(place, lobes.len() as u32), intensity * share);
+            lobes.push(profile);
+        }
+    }
+    IndirectVpls { sets: [diffuse, lobed], lobes, photons }
+}

@@ -1,0 +1,203 @@
+//! Stage 1: lights and photon paths become virtual point lights (VPLs).
+//!
+//! A VPL is stored in two parts: a 16-byte [`Vpl`] with all data of a shadow ray and a geometry term (random
+//! fetches of VPLs cost as much as tracing, so this record is as small as possible), and its intensity in a
+//! separate array, which only the tree builder and the leaves of a cut read.
+//!
+//! Units: intensity is radiant intensity (W/sr) of omni VPLs, radiant intensity per cosine of oriented ones,
+//! irradiance on a facing surface (W/m²) of directional ones, a bound of the
+//! radiant intensity (W/sr) of lobed ones.
+
+mod contributions;
+mod direct;
+mod direct_indirect;
+mod emission;
+mod entries;
+mod far;
+mod indirect;
+mod octahedral;
+mod openings;
+#[cfg(test)]
+mod openings_tests;
+mod pass;
+mod photons;
+mod profile;
+mod settings;
+mod short_paths;
+mod target;
+#[cfg(test)]
+mod tests;
+
+use base::math::{Rgb, luminance};
+use glam::Vec3;
+
+pub use direct_indirect::DirectIndirect;
+pub use emission::{Emission, EmissionNumbers, PhotonEmitter};
+pub use pass::{LightPass, light_pass};
+pub use photons::{MAX_CORRECTION, Photon, PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
+pub use profile::{LobeProfile, Profiles, SpotProfile};
+pub use settings::LightPassSettings;
+
+/// Directional distribution of a VPL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VplKind {
+    /// Equal in all directions, or within the cone of a spot light.
+    Omni,
+    /// Proportional to the cosine to its normal: a patch of a diffuse surface.
+    Oriented,
+    /// From infinitely far, without falloff: a directional light, or a patch of the environment.
+    Directional,
+    /// In a lobe: a patch of a rough surface that reflects much as metals do.
+    Lobed,
+}
+
+/// Origin of a VPL's light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// Emitted at its position.
+    Direct,
+    /// Reflected at its position.
+    Indirect,
+}
+
+/// The hot part of a VPL: 16 bytes, four to a cache line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(16))]
+pub struct Vpl {
+    /// Position, or for [`VplKind::Directional`] the unit direction towards the light.
+    pub position: Vec3,
+    /// Oriented: size in the upper four bits, normal in the others. Omni: index of the spot profile + 1, or 0. Lobed:
+    /// index of the lobe.
+    word: u32,
+}
+
+impl Vpl {
+    /// Creates a VPL of equal intensity in all directions.
+    pub fn omni(position: Vec3) -> Vpl {
+        Vpl { position, word: 0 }
+    }
+
+    /// An omni VPL restricted by the spot profile with index `profile`.
+    pub fn spot(position: Vec3, profile: u32) -> Vpl {
+        Vpl { position, word: profile + 1 }
+    }
+
+    /// Creates a VPL of intensity proportional to the cosine to the unit vector `normal` (stored to within
+    /// 3e-4 rad).
+    pub fn oriented(position: Vec3, normal: Vec3) -> Vpl {
+        Vpl { position, word: octahedral::encode(normal) }
+    }
+
+    /// Creates the same for a patch of the given size (see [`size_of_area`]).
+    pub fn patch(position: Vec3, normal: Vec3, size: u32) -> Vpl {
+        let mut vpl = Vpl::oriented(position, normal);
+        vpl.word |= size.min(MAX_SIZE) << SIZE_SHIFT;
+        vpl
+    }
+
+    /// A VPL infinitely far in the unit direction `towards`.
+    pub fn directional(towards: Vec3) -> Vpl {
+        Vpl { position: towards, word: 0 }
+    }
+
+    /// Creates a VPL with the lobe of index `lobe`, a little in front of its surface, so that shadow rays need not know
+    /// that.
+    pub fn lobed(position: Vec3, lobe: u32) -> Vpl {
+        Vpl { position, word: lobe }
+    }
+
+    /// Normal of an oriented VPL, unit length.
+    #[inline]
+    pub fn normal(&self) -> Vec3 {
+        octahedral::decode(self.word)
+    }
+
+    /// Size code of the patch of an oriented VPL; 0 if it is a point.
+    #[inline]
+    pub fn size(&self) -> u32 {
+        self.word >> SIZE_SHIFT
+    }
+
+    /// Index of the lobe of a lobed VPL.
+    #[inline]
+    pub fn lobe(&self) -> usize {
+        self.word as usize
+    }
+
+    /// Index of the spot profile that restricts an omni VPL.
+    #[inline]
+    pub fn spot_profile(&self) -> Option<usize> {
+        (self.word as usize).checked_sub(1)
+    }
+}
+
+/// Minimum distance as a fraction of the scene's diagonal: nearer ones are clamped to it, which keeps a VPL
+/// on the receiver finite.
+pub const MIN_DISTANCE: f32 = 1e-5;
+
+/// The square of that distance.
+pub fn min_dist_sq(diagonal: f32) -> f32 {
+    let distance = (diagonal * MIN_DISTANCE).max(1e-18);
+    distance * distance
+}
+
+const SIZE_SHIFT: u32 = 28;
+const MAX_SIZE: u32 = 15;
+
+/// Size code of a patch of the given area, in powers of four times the minimum squared distance.
+pub fn size_of_area(area: f32, diagonal: f32) -> u32 {
+    let steps = 0.5 * (area / min_dist_sq(diagonal)).log2();
+    // Not a number and too small areas become 0.
+    steps.round().clamp(0.0, MAX_SIZE as f32) as u32
+}
+
+/// Squared distance from which on a patch of that size may be treated as a point.
+#[inline]
+pub fn near_sq_of_size(size: u32, min_dist_sq: f32) -> f32 {
+    min_dist_sq * f32::from_bits((127 + 2 * size) << 23)
+}
+
+/// VPLs of one kind and origin, over which one light tree is built.
+#[derive(Clone, Debug)]
+pub struct VplSet {
+    /// Kind of all of them.
+    pub kind: VplKind,
+    /// Origin of all of them.
+    pub origin: Origin,
+    /// Hot records.
+    pub vpls: Vec<Vpl>,
+    /// Intensity of each.
+    pub intensities: Vec<Rgb>,
+}
+
+impl VplSet {
+    /// Creates an empty set.
+    pub fn new(kind: VplKind, origin: Origin) -> VplSet {
+        VplSet { kind, origin, vpls: Vec::new(), intensities: Vec::new() }
+    }
+
+    /// Makes room for so many more.
+    pub fn reserve(&mut self, more: usize) {
+        self.vpls.reserve(more);
+        self.intensities.reserve(more);
+    }
+
+    /// Adds a VPL, unless it is black or not finite: it would add no light, or spoil every sum.
+    pub fn push(&mut self, vpl: Vpl, intensity: Rgb) {
+        let usable = vpl.position.is_finite() && intensity.is_finite() && intensity.min_element() >= 0.0;
+        if usable && luminance(intensity) > 0.0 {
+            self.vpls.push(vpl);
+            self.intensities.push(intensity);
+        }
+    }
+
+    /// Number of VPLs.
+    pub fn len(&self) -> usize {
+        self.vpls.len()
+    }
+
+    /// True if there are none.
+    pub fn is_empty(&self) -> bool {
+        self.vpls.is_empty()
+    }
+}

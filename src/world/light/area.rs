@@ -1,0 +1,158 @@
+//! Light from surfaces: the emitting triangles of one mesh, sampled uniformly by area.
+
+use super::distribution::DiscreteDistribution;
+use base::math::{Rgb, luminance};
+use base::sampling::uniform_triangle;
+use glam::{Vec2, Vec3};
+use scene::{Emission, Mesh, Scene, TextureId};
+
+/// A mesh that emits.
+#[derive(Clone, Debug)]
+pub struct AreaLight {
+    /// Index of the mesh.
+    pub mesh: u32,
+    /// Its emission.
+    pub emission: Emission,
+    /// Total area of its triangles.
+    pub area: f32,
+    /// Flux of all sides, W, as luminance (textured emission by its mean).
+    pub power: f32,
+    /// Greatest radiance of a channel that a point emits.
+    greatest: f32,
+    triangles: DiscreteDistribution,
+    /// First corner, two edges and unit normal of each triangle.
+    shapes: Vec<[Vec3; 4]>,
+}
+
+/// A point on an area light.
+#[derive(Clone, Copy, Debug)]
+pub struct AreaPoint {
+    /// Triangle of the light's mesh.
+    pub triangle: u32,
+    /// Position relative to the scene's centre.
+    pub position: Vec3,
+    /// Unit geometric normal of the front.
+    pub normal: Vec3,
+    /// Barycentric weights of corners 1 and 2.
+    pub barycentric: Vec2,
+}
+
+/// Unit normal and area of a triangle; a zero normal if it has no area.
+pub fn normal_and_area(corners: [Vec3; 3]) -> (Vec3, f32) {
+    let [a, b, c] = corners;
+    let cross = (b - a).cross(c - a);
+    let length = cross.length();
+    if length > 1e-15 && length < 1e15 {
+        return (cross.normalize_or_zero(), 0.5 * length);
+    }
+    // Its square is beyond f32.
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    let cross = (b - a).cross(c - a);
+    (cross.normalize_or_zero().as_vec3(), (0.5 * cross.length()) as f32)
+}
+
+impl AreaLight {
+    /// Creates the light of mesh `index`, or `None` if it emits nothing.
+    pub fn new(scene: &Scene, index: u32) -> Option<AreaLight> {
+        let mesh = &scene.meshes[index as usize];
+        let emission = mesh.emission?;
+        let shapes: Vec<(Vec3, f32)> =
+            (0..mesh.triangles.len()).map(|t| normal_and_area(mesh.corners(t))).collect();
+        let triangles = DiscreteDistribution::new(shapes.iter().map(|s| s.1));
+        let area = triangles.total() as f32;
+        let (mean_texture, greatest) = emission.texture.map_or((Rgb::ONE, Rgb::ONE), |t| {
+            let texels = &scene.textures[t.0 as usize].texels;
+            let mean = texels.iter().sum::<Rgb>() / texels.len().max(1) as f32;
+            (mean, texels.iter().fold(Rgb::ZERO, Rgb::max))
+        });
+        let sides = if emission.two_sided { 2.0 } else { 1.0 };
+        let power = luminance(emission.radiance * mean_texture) * area * std::f32::consts::PI * sides;
+        if !(power > 0.0 && power.is_finite()) {
+            return None;
+        }
+        Some(AreaLight {
+            mesh: index,
+            emission,
+            area,
+            power,
+            greatest: (emission.radiance * greatest).max_element(),
+            triangles,
+            shapes: (0..mesh.triangles.len())
+                .map(|t| {
+                    let [a, b, c] = mesh.corners(t);
+                    [a, b - a, c - a, shapes[t].0]
+                })
+                .collect(),
+        })
+    }
+
+    /// Samples a point uniformly by area; density 1/area.
+    #[inline]
+    pub fn sample(&self, u: Vec2) -> AreaPoint {
+        let (triangle, [corner, e1, e2, normal], u) = self.choose_triangle(u);
+        let barycentric = uniform_triangle(u);
+        AreaPoint {
+            triangle,
+            position: corner + e1 * barycentric.x + e2 * barycentric.y,
+            normal,
+            barycentric,
+        }
+    }
+
+    /// Chooses a triangle in proportion to its area; returns it, its first corner, edges from there and unit
+    /// normal, and the numbers left to choose a point on it.
+    #[inline]
+    pub(super) fn choose_triangle(&self, u: Vec2) -> (u32, [Vec3; 4], Vec2) {
+        let (triangle, rest) = self.triangles.sample(u.x);
+        (triangle as u32, self.shapes[triangle], Vec2::new(rest, u.y))
+    }
+
+    /// Radiance that a point of the light emits over the greatest that any does, from 0 to 1.
+    pub fn relative(&self, emitted: Rgb) -> Rgb {
+        (emitted / self.greatest).min(Rgb::ONE)
+    }
+
+    /// First corner, two edges and unit normal of each triangle.
+    pub(super) fn shapes(&self) -> &[[Vec3; 4]] {
+        &self.shapes
+    }
+
+    /// Returns the factor of the texture on the emission at a point of a triangle.
+    #[inline]
+    pub(super) fn texture(&self, scene: &Scene, triangle: u32, barycentric: Vec2) -> Rgb {
+        let mesh = &scene.meshes[self.mesh as usize];
+        texture_factor(scene, mesh, self.emission.texture, triangle, barycentric)
+    }
+
+    /// Radiance leaving a point of the light towards the unit vector `out`.
+    #[inline]
+    pub fn radiance(&self, scene: &Scene, point: &AreaPoint, out: Vec3) -> Rgb {
+        emitted(scene, self.mesh, point.triangle, point.barycentric, point.normal, out)
+    }
+}
+
+/// Returns the radiance that a point of a mesh emits towards `out`; zero where it does not emit.
+#[inline]
+pub fn emitted(scene: &Scene, mesh: u32, triangle: u32, barycentric: Vec2, normal: Vec3, out: Vec3) -> Rgb {
+    let mesh = &scene.meshes[mesh as usize];
+    let Some(emission) = mesh.emission else { return Rgb::ZERO };
+    if !emission.two_sided && normal.dot(out) <= 0.0 {
+        return Rgb::ZERO;
+    }
+    emission.radiance * texture_factor(scene, mesh, emission.texture, triangle, barycentric)
+}
+
+/// Returns the factor of the texture on a mesh's emission.
+#[inline]
+fn texture_factor(
+    scene: &Scene,
+    mesh: &Mesh,
+    texture: Option<TextureId>,
+    triangle: u32,
+    barycentric: Vec2,
+) -> Rgb {
+    texture.map_or(Rgb::ONE, |t| {
+        let uv = mesh.uv(&mesh.triangles[triangle as usize], barycentric);
+        scene.textures[t.0 as usize].lookup(uv)
+    })
+}

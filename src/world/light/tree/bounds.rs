@@ -1,0 +1,97 @@
+//! Extent, directions and power of emitters, and of sets of them.
+
+use super::cone::{EmissionCone, angle_between};
+use crate::light::{AreaLight, delta_power};
+use base::math::luminance;
+use glam::Vec3;
+use scene::DeltaLight;
+use std::f32::consts::{FRAC_PI_2, PI};
+
+/// Distance of the points that stand for directional lights, over the scene's diagonal.
+const FAR: f32 = 1e3;
+
+/// Bounds of a set of emitters.
+#[derive(Clone, Copy, Debug)]
+pub struct EmitterBounds {
+    /// Lowest corner of the box around the positions.
+    pub low: Vec3,
+    /// Highest corner.
+    pub high: Vec3,
+    /// Directions of the light.
+    pub cone: EmissionCone,
+    /// Flux as luminance, W.
+    pub power: f32,
+    /// π times the sum of the members' intensities in their main directions.
+    pub peak: f32,
+}
+
+impl EmitterBounds {
+    /// Bounds of an emitting mesh.
+    pub fn of_area(light: &AreaLight) -> EmitterBounds {
+        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        // The sum of the triangles' normals by their areas.
+        let mut facing = Vec3::ZERO;
+        for [corner, e1, e2, _] in light.shapes() {
+            for position in [*corner, corner + e1, corner + e2] {
+                (low, high) = (low.min(position), high.max(position));
+            }
+            facing += 0.5 * e1.cross(*e2);
+        }
+        let axis = facing.normalize_or_zero();
+        let spread = light.shapes().iter().map(|shape| angle_between(axis, shape[3])).fold(0.0, f32::max);
+        let directed = !light.emission.two_sided && axis != Vec3::ZERO;
+        let cone = EmissionCone { axis, normals: spread, emission: FRAC_PI_2 };
+        // Where a surface shines into all directions alike, each has a fourth of what a flat one has in front.
+        let share = if directed { (facing.length() / light.area).max(0.25) } else { 0.25 };
+        EmitterBounds {
+            low,
+            high,
+            cone: if directed { cone } else { EmissionCone::ALL },
+            power: light.power,
+            peak: share * light.power,
+        }
+    }
+
+    /// Bounds of a point, spot or directional light, in a scene whose bounds have the given diagonal.
+    pub fn of_delta(light: &DeltaLight, diagonal: f32) -> EmitterBounds {
+        let power = delta_power(light, 0.5 * diagonal);
+        let at = |position, cone, intensity| EmitterBounds {
+            low: position,
+            high: position,
+            cone,
+            power,
+            peak: PI * luminance(intensity),
+        };
+        match *light {
+            DeltaLight::Point { position, intensity } => at(position, EmissionCone::ALL, intensity),
+            DeltaLight::Spot { position, direction, intensity, outer_angle, .. } => {
+                let cone = EmissionCone { axis: direction, normals: 0.0, emission: outer_angle };
+                at(position, cone, intensity)
+            }
+            // A point so far away that its distance and direction hardly change within the scene.
+            DeltaLight::Directional { direction, irradiance } => {
+                let distance = FAR * diagonal;
+                let bounds = at(-direction * distance, EmissionCone::ALL, irradiance * (distance * distance));
+                let reach = Vec3::splat(diagonal);
+                EmitterBounds { low: bounds.low - reach, high: bounds.high + reach, ..bounds }
+            }
+        }
+    }
+
+    /// Bounds of both sets.
+    pub fn union(&self, other: &EmitterBounds) -> EmitterBounds {
+        EmitterBounds {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            cone: self.cone.union(&other.cone),
+            power: self.power + other.power,
+            peak: self.peak + other.peak,
+        }
+    }
+
+    /// Cost of choosing the set as one: its power, by the extent of its positions and directions (Conty Estevez &
+    /// Kulla 2018, section 4.4, with the square of the diagonal in place of the surface).
+    pub fn cost(&self) -> f32 {
+        self.power * self.cone.measure() * self.low.distance_squared(self.high)
+    }
+}

@@ -1,0 +1,189 @@
+//! The Lambertian base of a material, under a dielectric coat if it has one.
+//!
+//! Definitions are those of Mitsuba's `plastic` and `roughplastic`: the base is attenuated by the coat's transmittance
+//! on the way in and out, and light is reflected to and fro between base and coat.
+//! Deviations: none from `roughplastic` by intent, which means taking its rules over: tables of 64 cosines, evenly
+//! spaced from grazing to normal incidence, linear between; single scattering only; the internal reflectance is the
+//! plain mean over those 64 cosines.
+
+use super::fresnel;
+use super::lobe::rough_albedo;
+use super::microfacet::Microfacets;
+use super::table::{ANGLES, AngleTable, direction, rule};
+use base::math::{F32x16, LANES, Rgb};
+use glam::Vec3;
+use scene::{Coat, Fresnel};
+use std::f32::consts::{FRAC_1_PI, PI};
+use std::sync::Arc;
+
+/// Base without its colour.
+#[derive(Clone, Debug)]
+pub(super) struct BaseModel {
+    pub interface: CoatInterface,
+    /// Cosine-weighted mean of the coat's transmittance; 1 without a coat.
+    mean_transmittance: f32,
+    /// Share of the base's light that the coat sends back inside.
+    internal_reflectance: f32,
+    /// BRDF over albedo, without the transmittances by angle and the gain of internal reflection.
+    factor: f32,
+    nonlinear: bool,
+}
+
+/// Surface of the coat.
+#[derive(Clone, Debug)]
+pub(super) enum CoatInterface {
+    /// There is no coat.
+    None,
+    /// Smooth, of this index.
+    Smooth(f32),
+    /// That of the principled material's base, which has no index: it takes half of the light at grazing angles.
+    Burley,
+    Rough(Arc<RoughCoat>),
+}
+
+impl PartialEq for CoatInterface {
+    /// True if the same light reaches the base.
+    fn eq(&self, other: &CoatInterface) -> bool {
+        match (self, other) {
+            (CoatInterface::None, CoatInterface::None) | (CoatInterface::Burley, CoatInterface::Burley) => {
+                true
+            }
+            (CoatInterface::Smooth(a), CoatInterface::Smooth(b)) => a == b,
+            (CoatInterface::Rough(a), CoatInterface::Rough(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
+impl CoatInterface {
+    /// Returns the share of the light at `cos` > 0 that passes; 1 where there is no coat.
+    #[inline]
+    pub fn transmittance(&self, cos: f32) -> f32 {
+        match self {
+            CoatInterface::None => 1.0,
+            CoatInterface::Smooth(eta) => 1.0 - fresnel::dielectric(cos, *eta),
+            CoatInterface::Burley => 1.0 - 0.5 * fresnel::schlick_weight(cos),
+            CoatInterface::Rough(coat) => coat.transmittance.lookup(cos),
+        }
+    }
+
+    /// Returns the maximum transmittance at `cos` > 0 or any smaller cosine.
+    #[inline]
+    pub fn max_transmittance(&self, cos: f32) -> f32 {
+        match self {
+            CoatInterface::Rough(coat) => coat.max_transmittance.lookup(cos),
+            _ => self.transmittance(cos),
+        }
+    }
+
+    /// Returns [`CoatInterface::transmittance`] in all lanes, cosines below the horizon as at it.
+    #[inline]
+    pub fn transmittance16(&self, cos: &F32x16) -> F32x16 {
+        let mut passes = [1.0; LANES];
+        if *self != CoatInterface::None {
+            for l in 0..LANES {
+                passes[l] = self.transmittance(cos[l].clamp(0.0, 1.0));
+            }
+        }
+        passes
+    }
+
+    /// Returns [`CoatInterface::max_transmittance`] in all lanes.
+    #[inline]
+    pub fn max_transmittance16(&self, cos: &F32x16) -> F32x16 {
+        match self {
+            CoatInterface::Rough(coat) => cos.map(|cos| coat.max_transmittance.lookup(cos)),
+            _ => self.transmittance16(cos),
+        }
+    }
+}
+
+impl BaseModel {
+    /// Makes the base under `coat`, whose surface is `interface`.
+    pub fn new(coat: Option<Coat>, interface: CoatInterface) -> BaseModel {
+        let (mean_transmittance, internal_reflectance) = match &interface {
+            CoatInterface::None => (1.0, 0.0),
+            CoatInterface::Burley => (1.0 - 1.0 / 42.0, 0.0),
+            // 1 - the mean reflectance outside follows from that inside by reciprocity; the fit inside is
+            // the one that sets the base's brightness, so both come from it.
+            CoatInterface::Smooth(eta) => {
+                let internal = fresnel::diffuse_reflectance(1.0 / eta);
+                (eta * eta * (1.0 - internal), internal)
+            }
+            CoatInterface::Rough(coat) => (coat.mean_transmittance, coat.internal_reflectance),
+        };
+        let coat = coat.unwrap_or(Coat { eta: 1.0, nonlinear: false });
+        let factor = FRAC_1_PI / (coat.eta * coat.eta);
+        BaseModel { interface, mean_transmittance, internal_reflectance, factor, nonlinear: coat.nonlinear }
+    }
+
+    /// True if the BRDF is proportional to the albedo.
+    pub fn is_linear(&self) -> bool {
+        !self.nonlinear || self.internal_reflectance == 0.0
+    }
+
+    /// Returns the BRDF, less the coat's transmittances by angle.
+    #[inline]
+    pub fn brdf(&self, albedo: Rgb) -> Rgb {
+        if self.internal_reflectance == 0.0 {
+            return albedo * self.factor;
+        }
+        let returned = if self.nonlinear { albedo.min(Rgb::ONE) } else { Rgb::ONE };
+        albedo * self.factor / (1.0 - returned * self.internal_reflectance)
+    }
+
+    /// Returns the share of the light from one direction that leaves again, given the coat's transmittance for it.
+    #[inline]
+    pub fn albedo(&self, brdf: Rgb, transmittance: f32) -> Rgb {
+        brdf * (PI * transmittance * self.mean_transmittance)
+    }
+}
+
+/// Rough dielectric interface over the base.
+#[derive(Clone, Debug)]
+pub(super) struct RoughCoat {
+    /// Share of the light from a direction outside that enters.
+    transmittance: AngleTable<f32>,
+    /// Maximum transmittance at this or any smaller cosine.
+    max_transmittance: AngleTable<f32>,
+    mean_transmittance: f32,
+    internal_reflectance: f32,
+}
+
+impl RoughCoat {
+    pub fn new(facets: &Microfacets, eta: f32) -> RoughCoat {
+        // Beyond the critical angle the integrand has a kink, hence more nodes towards the rarer side.
+        let (coarse, fine) = (rule(32), rule(128));
+        let (outside_rule, inside_rule) = if eta > 1.0 { (&coarse, &fine) } else { (&fine, &coarse) };
+        let transmittance = AngleTable::new(|wo| transmittance(facets, eta, wo, outside_rule));
+        let mut max_transmittance = transmittance;
+        for i in 1..ANGLES {
+            max_transmittance.0[i] = max_transmittance.0[i].max(max_transmittance.0[i - 1]);
+        }
+        let inside = Fresnel::Dielectric(1.0 / eta);
+        let reflected = AngleTable::new(|wo| rough_albedo(facets, &inside, wo, inside_rule).x);
+        let internal_reflectance =
+            (0..ANGLES).map(|i| reflected.0[i] * direction(i).z).sum::<f32>() * 2.0 / ANGLES as f32;
+        RoughCoat {
+            mean_transmittance: transmittance.mean(),
+            transmittance,
+            max_transmittance,
+            internal_reflectance: internal_reflectance.clamp(0.0, 0.999),
+        }
+    }
+}
+
+/// Integrates the light from `wo` that single scattering on the facets refracts to the other side.
+fn transmittance(facets: &Microfacets, eta: f32, wo: Vec3, rule: &[(f32, f32)]) -> f32 {
+    let mean = facets.mean_over_visible(wo, rule, |h| {
+        let cos = wo.dot(h).min(1.0);
+        let interface = fresnel::interface(cos, eta);
+        let wi = (cos / interface.eta - interface.cos_t) * h - wo / interface.eta;
+        if cos <= 0.0 || wi.z >= 0.0 {
+            return Rgb::ZERO;
+        }
+        let cos_t = (-wi.z).min(1.0);
+        Rgb::splat((1.0 - interface.reflectance) * 2.0 * cos_t * facets.v1(cos_t))
+    });
+    mean.x
+}

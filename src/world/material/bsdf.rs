@@ -1,0 +1,425 @@
+//! A material at one point, and its value and sampling density.
+//!
+//! Units: `eval` is 1/sr, without the cosine; `pdf` is per solid angle.
+
+use super::lobe::{Directions, DullLobe, LobeModel, MAX_LOBES, ReflectedLobe, mean};
+use super::model::Model;
+use base::math::Rgb;
+use glam::Vec3;
+use scene::MaterialId;
+use std::f32::consts::{FRAC_1_PI, PI};
+
+/// Material at one point of a surface: textures are looked up, the rest is shared with [`super::Materials`].
+#[derive(Clone, Copy, Debug)]
+pub struct Bsdf<'m> {
+    pub(super) model: &'m Model,
+    /// BRDF of the base, less the coat's transmittances by angle.
+    pub(super) base: Rgb,
+    /// Factors on the lobes; zero beyond them.
+    pub(super) scales: [Rgb; MAX_LOBES],
+}
+
+/// Colours of a material.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Colours<T> {
+    /// Albedo or BRDF of the base.
+    pub base: T,
+    /// Factors on the lobes.
+    pub scales: [T; MAX_LOBES],
+}
+
+/// Some of the lobes of a BSDF.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LobeSet(u8);
+
+/// Direction and the quantities that depend on it alone.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outgoing {
+    /// On the side of the normal, so z > 0, unless light may be transmitted.
+    pub wo: Vec3,
+    /// Of the coat.
+    pub transmittance: f32,
+    /// Probability of sampling the base.
+    pub base_probability: f32,
+    /// Probabilities of sampling the lobes.
+    pub probabilities: [f32; MAX_LOBES],
+}
+
+impl LobeSet {
+    /// True if there is none.
+    #[inline]
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    #[inline(always)]
+    fn has(self, slot: usize) -> bool {
+        self.0 >> slot & 1 != 0
+    }
+}
+
+impl<'m> Bsdf<'m> {
+    /// Returns the BSDF for light from `wi` seen from `wo`, which may be on different sides; 0 where no lobe scatters
+    /// from one to the other. Delta lobes are excluded.
+    #[inline]
+    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        self.eval_pdf(wo, wi).0
+    }
+
+    /// Returns the density with which [`Bsdf::sample`] chooses `wi`, delta lobes excluded.
+    #[inline]
+    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        self.eval_pdf(wo, wi).1
+    }
+
+    /// Returns [`Bsdf::eval`] and [`Bsdf::pdf`].
+    #[inline]
+    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        let side = self.side(wo);
+        let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z * side), Vec3::new(wi.x, wi.y, wi.z * side));
+        if !(wo.z > 0.0 && wi.z > 0.0 || self.model.transmits) {
+            return (Rgb::ZERO, 0.0);
+        }
+        if self.is_lambert() {
+            return (self.base, wi.z * FRAC_1_PI);
+        }
+        self.eval_pdf_layered(&self.outgoing(wo), wi)
+    }
+
+    /// True if light is scattered into more than isolated directions.
+    #[inline]
+    pub fn has_smooth(&self) -> bool {
+        self.base != Rgb::ZERO || self.has_smooth_lobe()
+    }
+
+    /// True if part of the light is reflected as by a mirror or refracted as by smooth glass.
+    #[inline]
+    pub fn has_delta(&self) -> bool {
+        self.model.delta_lobes
+    }
+
+    /// True if part of the light goes on as by a mirror or refracted, in another direction than it comes in.
+    pub fn bends_light(&self) -> bool {
+        self.any_lobe(LobeModel::bends)
+    }
+
+    /// True if part of the light is reflected by lobes too sharp to pass for diffuse.
+    pub fn is_glossy(&self) -> bool {
+        self.any_lobe(LobeModel::is_glossy)
+    }
+
+    /// Returns the delta lobes and those too sharp to pass for diffuse alone, if there are any of the latter.
+    #[inline]
+    pub fn glossy_part(&self) -> Option<Self> {
+        let dull = self.lobes(|lobe| !lobe.is_glossy() && !lobe.is_delta());
+        let glossy = !self.lobes(LobeModel::is_glossy).is_empty();
+        glossy.then(|| Bsdf { base: Rgb::ZERO, ..*self }.without(dull))
+    }
+
+    /// True if part of the light goes on to the other side in more than isolated directions.
+    pub fn scatters_across(&self) -> bool {
+        self.model.transmits && self.any_lobe(LobeModel::scatters_across)
+    }
+
+    /// True if part of the light passes straight through the surface.
+    pub fn passes_straight(&self) -> bool {
+        self.any_lobe(LobeModel::passes_straight)
+    }
+
+    /// Returns the BSDF without its sharp lobes, and these alone, if there are any.
+    #[inline]
+    pub fn split_sharp_lobes(&self) -> Option<(Self, Self)> {
+        let sharp = self.sharp_lobes();
+        let without_base = Bsdf { base: Rgb::ZERO, ..*self };
+        (!sharp.is_empty()).then(|| (self.without(sharp), without_base.without(LobeSet(!sharp.0))))
+    }
+
+    /// Returns the sharp lobes that reflect anything: rough lobes of α ≤ 0.1, which eye paths follow by sampling them.
+    #[inline]
+    pub fn sharp_lobes(&self) -> LobeSet {
+        self.lobes(LobeModel::is_sharp)
+    }
+
+    /// Returns the rough lobes that reflect anything.
+    #[inline]
+    pub fn rough_lobes(&self) -> LobeSet {
+        self.lobes(|lobe| !lobe.is_delta())
+    }
+
+    #[inline(always)]
+    fn lobes(&self, is_such: impl Fn(&LobeModel) -> bool) -> LobeSet {
+        let mut such = 0;
+        if self.model.smooth_lobes {
+            for (slot, lobe) in self.model.lobes.iter().enumerate() {
+                such |= u8::from(self.scales[slot] != Rgb::ZERO && is_such(lobe)) << slot;
+            }
+        }
+        LobeSet(such)
+    }
+
+    /// Returns the BSDF without some of its lobes.
+    #[inline]
+    pub fn without(&self, lobes: LobeSet) -> Self {
+        let mut rest = *self;
+        for (slot, scale) in rest.scales.iter_mut().enumerate() {
+            *scale = if lobes.has(slot) { Rgb::ZERO } else { *scale };
+        }
+        rest
+    }
+
+    /// Returns the part of [`Bsdf::eval`] that some of the lobes have in it.
+    #[inline]
+    pub fn eval_lobes(&self, lobes: LobeSet, wo: Vec3, wi: Vec3) -> Rgb {
+        let side = self.side(wo);
+        let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z * side), Vec3::new(wi.x, wi.y, wi.z * side));
+        let Some(directions) = self.directions(wo, wi) else { return Rgb::ZERO };
+        let mut value = Rgb::ZERO;
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            if lobes.has(slot) {
+                value += lobe.eval_pdf(self.scales[slot], 0.0, &directions).0;
+            }
+        }
+        value
+    }
+
+    /// True if the material is Lambertian and nothing else.
+    #[inline]
+    pub(super) fn is_lambert(&self) -> bool {
+        self.model.lambert
+    }
+
+    /// Returns the number of the coat on the base (see [`super::Materials::coat_transmittance`]); 0 for none.
+    #[inline]
+    pub fn coat(&self) -> u32 {
+        self.model.coat
+    }
+
+    /// Splits base and lobes, where both are smooth functions of direction: the BRDF of the base for light that has
+    /// passed the coat on its way in, seen from the cosine `cos_out`; and the rest, if it reflects anything.
+    #[inline]
+    pub fn split_base(&self, cos_out: f32) -> (Rgb, Option<Self>) {
+        let base = self.base * self.coat_transmittance(cos_out.abs());
+        (base, self.has_smooth_lobe().then_some(Bsdf { base: Rgb::ZERO, ..*self }))
+    }
+
+    /// Returns the albedo, if the material is Lambertian and nothing else.
+    #[inline]
+    pub fn lambert_albedo(&self) -> Option<Rgb> {
+        self.is_lambert().then(|| self.base * PI)
+    }
+
+    /// True if the side away from the normal behaves as the front does.
+    #[inline]
+    pub fn two_sided(&self) -> bool {
+        self.model.two_sided
+    }
+
+    /// Returns the material's id in the scene.
+    #[inline]
+    pub fn material(&self) -> MaterialId {
+        self.model.material
+    }
+
+    /// True of [`super::Materials::average`] where the roughness is textured.
+    pub fn is_of_mean_roughness(&self) -> bool {
+        self.model.levels.is_some()
+    }
+
+    /// True if the lobes agree but for their factors.
+    #[inline]
+    pub fn same_lobes(&self, other: &Bsdf) -> bool {
+        self.model.lobe_list == other.model.lobe_list
+    }
+
+    /// Lists slot and model of each lobe that reflects anything in more than isolated directions and that the eye does
+    /// not follow.
+    pub fn dull_lobes(&self) -> impl Iterator<Item = (usize, DullLobe<'m>)> {
+        let lobes = self.model.lobes.iter().zip(self.scales).enumerate();
+        let is_dull = |lobe: &LobeModel| !lobe.is_sharp() && !lobe.is_delta();
+        lobes
+            .filter(move |(_, (lobe, scale))| is_dull(lobe) && scale.max_element() > 0.0)
+            .map(|(slot, (lobe, _))| (slot, DullLobe::new(lobe)))
+    }
+
+    /// Returns the BRDF of the base, to be multiplied by [`Bsdf::coat_transmittance`] of either direction.
+    #[inline]
+    pub fn base_brdf(&self) -> Rgb {
+        self.base
+    }
+
+    /// Returns the factor on the lobe in a slot below [`MAX_LOBES`].
+    #[inline]
+    pub fn lobe_scale(&self, slot: usize) -> Rgb {
+        self.scales[slot]
+    }
+
+    /// Returns the share of the light at `cos` > 0 that passes the coat; 1 where there is none.
+    #[inline]
+    pub fn coat_transmittance(&self, cos: f32) -> f32 {
+        self.model.base.interface.transmittance(cos)
+    }
+
+    /// Returns the share of the flux from `wi` that a virtual light in this place radiates diffusely, to the side
+    /// of `wi`: what the base reflects (through the coat, if there is one, in and out) and what those lobes reflect
+    /// that are rough enough to pass for diffuse. Paths find the rest.
+    ///
+    /// The virtual light's intensity per cosine is flux · `diffuse_albedo` / π.
+    #[inline]
+    pub fn diffuse_albedo(&self, wi: Vec3) -> Rgb {
+        let cos = wi.z * self.side(wi);
+        if !(cos > 0.0) {
+            return Rgb::ZERO;
+        }
+        let mut albedo = self.model.base.albedo(self.base, self.coat_transmittance(cos));
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            if let Some(more) = lobe.diffuse_albedo(self.scales[slot], cos) {
+                albedo += more;
+            }
+        }
+        albedo
+    }
+
+    /// Lists the part of that which lobes reflect that a virtual light should not radiate diffusely.
+    pub fn reflected_lobes(&self, wi: Vec3) -> impl Iterator<Item = ReflectedLobe> {
+        let cos = wi.z * self.side(wi);
+        let lobes = self.model.lobes.iter().zip(self.scales);
+        lobes.filter_map(move |(lobe, scale)| if cos > 0.0 { lobe.reflected(scale, cos) } else { None })
+    }
+
+    /// Share of the light from `wo` that is scattered, delta lobes excluded.
+    pub fn albedo(&self, wo: Vec3) -> Rgb {
+        let cos = wo.z * self.side(wo);
+        if !(cos > 0.0) {
+            return Rgb::ZERO;
+        }
+        let mut albedo = self.model.base.albedo(self.base, self.coat_transmittance(cos));
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            albedo += lobe.albedo(self.scales[slot], cos);
+        }
+        albedo
+    }
+
+    /// Returns [`Bsdf::albedo`] seen from the cosine `cos` on the side of the viewer.
+    pub fn albedo_at(&self, cos: f32) -> Rgb {
+        self.albedo(Vec3::new(0.0, 0.0, cos.clamp(0.01, 1.0)))
+    }
+
+    /// Returns the mean with another BSDF of the same lobes, by weights of each channel.
+    pub fn mean(&self, weight: Rgb, other: &Bsdf, other_weight: Rgb) -> Self {
+        let total = weight + other_weight;
+        let share = Rgb::select(total.cmpgt(Rgb::ZERO), other_weight / total, Rgb::ZERO);
+        let mut mean = Bsdf { base: self.base + (other.base - self.base) * share, ..*self };
+        for (scale, theirs) in mean.scales.iter_mut().zip(other.scales) {
+            *scale = *scale + (theirs - *scale) * share;
+        }
+        mean
+    }
+
+    /// True if `is_such` of a lobe that scatters anything.
+    #[inline(always)]
+    fn any_lobe(&self, is_such: impl Fn(&LobeModel) -> bool) -> bool {
+        let mut found = false;
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            found |= self.scales[slot] != Rgb::ZERO && is_such(lobe);
+        }
+        found
+    }
+
+    #[inline]
+    fn has_smooth_lobe(&self) -> bool {
+        self.model.smooth_lobes && self.any_lobe(|lobe| !lobe.is_delta())
+    }
+
+    /// Returns the factor that turns the z of directions to the side of the normal: -1 if a two-sided surface
+    /// is seen from behind.
+    #[inline]
+    pub(super) fn side(&self, wo: Vec3) -> f32 {
+        if wo.z < 0.0 && self.model.two_sided && !self.model.transmits { -1.0 } else { 1.0 }
+    }
+
+    /// Computes the part of [`Bsdf::eval_pdf_layered`] and of sampling that depends on `wo` alone.
+    #[inline(always)]
+    pub(super) fn outgoing(&self, wo: Vec3) -> Outgoing {
+        let transmittance = self.coat_transmittance(wo.z);
+        // Light that passes gaps in a surface may come to its back.
+        let base = if wo.z > 0.0 { mean(self.model.base.albedo(self.base, transmittance)) } else { 0.0 };
+        // Most materials have one lobe at most.
+        let (base_probability, probabilities) = match &self.model.lobes[..] {
+            [] => (if base > 0.0 { 1.0 } else { 0.0 }, [0.0; MAX_LOBES]),
+            [lobe] => {
+                let probability = match base > 0.0 {
+                    true => base / (base + lobe.sampling_weight(self.scales[0], wo, transmittance)),
+                    false => 0.0,
+                };
+                let mut probabilities = [0.0; MAX_LOBES];
+                probabilities[0] = 1.0 - probability;
+                (probability, probabilities)
+            }
+            _ => self.probabilities(base, wo, transmittance),
+        };
+        Outgoing { wo, transmittance, base_probability, probabilities }
+    }
+
+    /// Computes the probabilities of sampling the base, whose albedo is `base`, and each lobe.
+    #[inline(never)]
+    fn probabilities(&self, base: f32, wo: Vec3, transmittance: f32) -> (f32, [f32; MAX_LOBES]) {
+        let mut weights = [0.0; MAX_LOBES];
+        let mut total = base;
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            weights[slot] = lobe.sampling_weight(self.scales[slot], wo, transmittance);
+            total += weights[slot];
+        }
+        let base_probability = if base > 0.0 { base / total } else { 0.0 };
+        let mut probabilities = [0.0; MAX_LOBES];
+        let mut left = 1.0 - base_probability;
+        let last = self.model.lobes.len() - 1;
+        for slot in 0..last {
+            probabilities[slot] = weights[slot] / total; // NaN (nothing is scattered at all) chooses nothing
+            left -= probabilities[slot];
+        }
+        // The last lobe takes the rest, so that rounding loses nothing.
+        probabilities[last] = left.max(0.0);
+        (base_probability, probabilities)
+    }
+
+    #[inline(always)]
+    pub(super) fn eval_pdf_layered(&self, outgoing: &Outgoing, wi: Vec3) -> (Rgb, f32) {
+        if !self.model.smooth_lobes {
+            return self.eval_pdf_base(outgoing, wi);
+        }
+        match self.directions(outgoing.wo, wi) {
+            Some(directions) => self.eval_pdf_between(outgoing, &directions),
+            None => (Rgb::ZERO, 0.0),
+        }
+    }
+
+    #[inline(always)]
+    fn directions(&self, wo: Vec3, wi: Vec3) -> Option<Directions> {
+        // Of opposite directions refraction makes no use of the facet between them.
+        let opposite = || self.model.transmits.then_some(Directions { wo, wi, half: Vec3::Z });
+        Directions::new(wo, wi).or_else(opposite)
+    }
+
+    /// Returns value and density of the base alone.
+    #[inline(always)]
+    fn eval_pdf_base(&self, outgoing: &Outgoing, wi: Vec3) -> (Rgb, f32) {
+        if outgoing.base_probability == 0.0 || wi.z < 0.0 {
+            return (Rgb::ZERO, 0.0);
+        }
+        let transmittance = outgoing.transmittance * self.coat_transmittance(wi.z);
+        (self.base * transmittance, outgoing.base_probability * wi.z * FRAC_1_PI)
+    }
+
+    /// Returns value and density of base and lobes.
+    #[inline]
+    pub(super) fn eval_pdf_between(&self, outgoing: &Outgoing, directions: &Directions) -> (Rgb, f32) {
+        let (mut value, mut pdf) = self.eval_pdf_base(outgoing, directions.wi);
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            let (scale, probability) = (self.scales[slot], outgoing.probabilities[slot]);
+            let (lobe_value, lobe_pdf) = lobe.eval_pdf(scale, probability, directions);
+            value += lobe_value;
+            pdf += lobe_pdf;
+        }
+        (value, pdf)
+    }
+}

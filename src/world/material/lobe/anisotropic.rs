@@ -1,0 +1,181 @@
+//! Reflection by microfacets that are not as rough along the texture's u as along v: brushed metals.
+//!
+//! Facets are those of an isotropic distribution of roughness 1 after a stretch of the surface, of (α_u, α_v, 1) for
+//! directions, so that density, masking and sampling follow from that one ([`Microfacets`]). Local x is along u.
+//!
+//! Paper: E. Heitz, *Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs*, 2014, section 5.3.
+//! Deviations: eye paths follow the lobe however rough it is, as virtual lights and series know no direction on the
+//! surface; its bounds are those of the larger roughness for the density and of the smaller for masking; the albedo by
+//! which lobes are chosen is the mean over azimuths.
+
+use super::{Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};
+use crate::material::DirectionBound;
+use crate::material::fresnel::Curve;
+use crate::material::microfacet::Microfacets;
+use crate::material::table::{AngleTable, rule};
+use base::math::{LANES, Rgb, Vec3x16};
+use glam::{Vec2, Vec3};
+use scene::{Distribution, Fresnel};
+use std::f32::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+/// Azimuths over a quarter of the circle of which the albedo is the mean.
+const AZIMUTHS: usize = 4;
+
+/// Factor by which masking may exceed that of the smaller roughness: Walter's fit of Beckmann's overshoots 1 by 7e-5
+/// shortly before it is cut off.
+const OVERSHOOT: f32 = 1.0001;
+
+/// Anisotropic lobe without its factor. Two are equal if roughness and Fresnel reflectance agree.
+#[derive(Clone, Debug)]
+pub(in crate::material) struct AnisotropicLobe {
+    /// The distribution of roughness 1.
+    unit: Microfacets,
+    /// Those of the smaller and the larger roughness.
+    ends: [Microfacets; 2],
+    /// Roughness along x and y.
+    alpha: Vec2,
+    fresnel: Fresnel,
+    albedo: Arc<AngleTable<Rgb>>,
+}
+
+impl PartialEq for AnisotropicLobe {
+    fn eq(&self, other: &AnisotropicLobe) -> bool {
+        self.unit == other.unit && self.alpha == other.alpha && self.fresnel == other.fresnel
+    }
+}
+
+impl AnisotropicLobe {
+    /// Lobe of a roughness along x and y.
+    pub fn new(distribution: Distribution, alpha: [f32; 2], fresnel: Fresnel) -> AnisotropicLobe {
+        let ends = [alpha[0].min(alpha[1]), alpha[0].max(alpha[1])];
+        let ends = ends.map(|alpha| Microfacets::new(distribution, alpha));
+        let alpha = alpha.map(|alpha| Microfacets::new(distribution, alpha).alpha);
+        let black = Arc::new(AngleTable([Rgb::ZERO; crate::material::table::ANGLES]));
+        let unit = Microfacets::new(distribution, 1.0);
+        let mut lobe = AnisotropicLobe { unit, ends, alpha: Vec2::from(alpha), fresnel, albedo: black };
+        let nodes = rule(24);
+        lobe.albedo = Arc::new(AngleTable::new(|wo| lobe.integrated(wo, &nodes)));
+        lobe
+    }
+
+    /// Light from the inclination of `wo`, in the xz plane, that is reflected: the mean over azimuths.
+    fn integrated(&self, wo: Vec3, rule: &[(f32, f32)]) -> Rgb {
+        let mut sum = Rgb::ZERO;
+        for i in 0..AZIMUTHS {
+            let azimuth = (i as f32 + 0.5) * FRAC_PI_2 / AZIMUTHS as f32;
+            let wo = Vec3::new(wo.x * azimuth.cos(), wo.x * azimuth.sin(), wo.z);
+            for (&(u, weight_u), &(v, weight_v)) in rule.iter().flat_map(|u| rule.iter().map(move |v| (u, v)))
+            {
+                let Some(d) = self.sample(wo, Vec2::new(u, v)) else { continue };
+                let reflectance = self.fresnel.reflectance(wo.dot(d.half).min(1.0));
+                sum += reflectance * (2.0 * d.wi.z * self.v1(d.wi) * weight_u * weight_v);
+            }
+        }
+        sum / AZIMUTHS as f32
+    }
+
+    /// Direction after the stretch, not of unit length.
+    #[inline]
+    fn stretched(&self, v: Vec3) -> Vec3 {
+        Vec3::new(v.x * self.alpha.x, v.y * self.alpha.y, v.z)
+    }
+
+    /// Area of facets with unit normal `h` per area and solid angle.
+    #[inline]
+    fn density(&self, h: Vec3) -> f32 {
+        let slopes = Vec2::new(h.x, h.y) / self.alpha;
+        self.unit.density_from(slopes.length_squared(), h.z * h.z) / (self.alpha.x * self.alpha.y)
+    }
+
+    /// G1 / (2 cos θ) for the unit direction `v` above the surface.
+    #[inline]
+    fn v1(&self, v: Vec3) -> f32 {
+        let stretched = self.stretched(v);
+        let length = stretched.length();
+        self.unit.v1((stretched.z / length).min(1.0)) / length
+    }
+
+    /// The same of the density of visible normals (see [`Microfacets::v1_exact`]).
+    #[inline]
+    fn v1_exact(&self, v: Vec3) -> f32 {
+        let stretched = self.stretched(v);
+        let length = stretched.length();
+        self.unit.v1_exact((stretched.z / length).min(1.0)) / length
+    }
+
+    /// See [`super::LobeModel::eval_pdf`].
+    #[inline]
+    pub fn eval_pdf(&self, scale: Rgb, probability: f32, d: &Directions) -> (Rgb, f32) {
+        if !(d.wo.z > 0.0 && d.wi.z > 0.0) {
+            return (Rgb::ZERO, 0.0);
+        }
+        let density = self.density(d.half);
+        let masked = density * self.v1(d.wo) * self.v1(d.wi);
+        let value = scale * self.fresnel.reflectance(d.wo.dot(d.half).min(1.0)) * masked;
+        (value, probability * 0.5 * density * self.v1_exact(d.wo))
+    }
+
+    /// See [`super::LobeModel::sample`].
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
+        let slope = self.unit.sample_visible(self.stretched(wo).normalize(), u);
+        let half = self.stretched(slope).try_normalize()?;
+        let wi = (2.0 * wo.dot(half)) * half - wo;
+        (wo.z > 0.0 && wi.z > 0.0).then_some(Directions { wo, wi, half })
+    }
+
+    /// Share of the light at the cosine `cos` that is reflected, the mean over azimuths.
+    #[inline]
+    pub fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
+        scale * self.albedo.lookup(cos)
+    }
+
+    /// See [`super::LobeModel::sampling_weight`].
+    #[inline]
+    pub fn sampling_weight(&self, scale: Rgb, cos: f32) -> f32 {
+        if cos > 0.0 { mean(self.albedo(scale, cos)) } else { 0.0 }
+    }
+
+    /// Maximum of the value times the cosine, less the factor.
+    #[inline]
+    fn most(&self, masking: f32, sin_sq: f32, cos_max: f32, cos_d: f32) -> Rgb {
+        let [narrow, wide] = &self.ends;
+        let density = wide.max_density(sin_sq) * (wide.alpha / narrow.alpha);
+        let masked = density * OVERSHOOT * OVERSHOOT * masking * 0.5 * narrow.max_g1(cos_max);
+        self.fresnel.max_reflectance(cos_d, self.fresnel.reflectance(1.0)) * (masked * DirectionBound::WIDER)
+    }
+
+    /// See [`super::LobeModel::bound`].
+    #[inline]
+    pub fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
+        scale * self.most(self.ends[0].v1(bound.cos_o), bound.sin_sq, bound.cos_max, bound.cos_d)
+    }
+
+    /// See [`super::LobeModel::set_lane`].
+    #[inline]
+    pub fn set_lane(&self, lanes: &mut LobeLanes, lane: usize, scale: Rgb, wo: Vec3) {
+        lanes.scale.set(lane, scale);
+        lanes.masking[lane] = self.ends[0].v1(wo.z.min(1.0));
+    }
+
+    /// See [`super::LobeModel::add_value16`].
+    pub fn add_value16(&self, lanes: &LobeLanes, d: &Directions16, sum: &mut Vec3x16) {
+        for l in 0..LANES {
+            if let Some(d) = Directions::new(d.wo.get(l), d.wi.get(l)) {
+                sum.set(l, sum.get(l) + self.eval_pdf(lanes.scale.get(l), 0.0, &d).0);
+            }
+        }
+    }
+
+    /// See [`super::LobeModel::add_bound16`].
+    pub fn add_bound16(&self, lanes: &LobeLanes, bounds: &FacetBounds16, sum: &mut Vec3x16) {
+        for l in 0..LANES {
+            let cos = bounds.cos_max[l];
+            if cos > 0.0 {
+                let most = self.most(lanes.masking[l], bounds.sin_sq[l], cos, bounds.cos_d[l]);
+                sum.set(l, sum.get(l) + lanes.scale.get(l) * most);
+            }
+        }
+    }
+}

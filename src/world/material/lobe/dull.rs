@@ -1,0 +1,29 @@
+//! Lobes that scatter light broadly, as tables of their values see them.
+
+use super::{Directions, LobeModel};
+use base::math::Rgb;
+use glam::Vec3;
+
+/// A lobe, without its factor, that is neither a delta lobe nor followed by eye paths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DullLobe<'m>(&'m LobeModel);
+
+impl<'m> DullLobe<'m> {
+    pub(in crate::material) fn new(lobe: &'m LobeModel) -> DullLobe<'m> {
+        DullLobe(lobe)
+    }
+
+    /// Returns the roughness α; infinity of lobes that have none, which are broader than any of microfacets.
+    pub fn alpha(&self) -> f32 {
+        match self.0 {
+            LobeModel::Rough(rough) => rough.alpha(),
+            _ => f32::INFINITY,
+        }
+    }
+
+    /// Returns the value in 1/sr for directions with z > 0.
+    #[inline]
+    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        Directions::new(wo, wi).map_or(Rgb::ZERO, |d| self.0.eval_pdf(Rgb::ONE, 1.0, &d).0)
+    }
+}

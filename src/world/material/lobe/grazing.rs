@@ -1,0 +1,148 @@
+//! Light scattered at grazing angles, broadly: the retroreflection of rough diffuse surfaces and the sheen of fibres,
+//! as the principled material has them.
+//!
+//! Paper: B. Burley, *Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering*, 2015, equation 4;
+//! *Physically Based Shading at Disney*, 2012, section 5.2.
+
+use super::{Directions, Directions16, FacetBound, FacetBounds16, LobeLanes};
+use crate::material::DirectionBound;
+use crate::material::fresnel::schlick_weight;
+use crate::material::table::{AngleTable, rule};
+use base::math::{LANES, Rgb, Vec3x16};
+use base::sampling::cosine_hemisphere;
+use glam::{Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, PI};
+use std::sync::Arc;
+
+/// Function of the two directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::material) enum GrazingKind {
+    /// Retroreflection, by the square root of α.
+    Retro {
+        roughness: f32,
+    },
+    Sheen,
+}
+
+/// Lobe without its factor.
+#[derive(Clone, Debug)]
+pub(in crate::material) struct Grazing {
+    kind: GrazingKind,
+    /// Share of the light from each angle that is reflected.
+    albedo: Arc<AngleTable<f32>>,
+}
+
+impl PartialEq for Grazing {
+    fn eq(&self, other: &Grazing) -> bool {
+        self.kind == other.kind
+    }
+}
+
+impl GrazingKind {
+    /// Value in 1/sr, from the weights of Schlick's approximation for both directions and the squared cosine between
+    /// either and the half-way normal. It grows with both weights; and with the cosine, but for sheen, where it falls.
+    #[inline]
+    fn value(self, [out, into]: [f32; 2], cos_d: f32) -> f32 {
+        match self {
+            GrazingKind::Retro { roughness } => {
+                let r = 2.0 * roughness * cos_d * cos_d;
+                FRAC_1_PI * r * (out + into + out * into * (r - 1.0))
+            }
+            GrazingKind::Sheen => schlick_weight(cos_d),
+        }
+    }
+
+    /// Largest value where the cosine with the half-way normal is no less than `cos_d`.
+    #[inline]
+    fn max_value(self, weights: [f32; 2], cos_d: f32) -> f32 {
+        match self {
+            GrazingKind::Retro { .. } => self.value(weights, 1.0),
+            GrazingKind::Sheen => self.value(weights, cos_d),
+        }
+    }
+}
+
+impl Grazing {
+    /// Lobe of a kind, its albedo tabulated.
+    pub fn new(kind: GrazingKind) -> Grazing {
+        let nodes = rule(24);
+        let albedo = AngleTable::new(|wo| {
+            let mut sum = 0.0;
+            for &(u, weight_u) in &nodes {
+                // Even steps of the cosine's square are even in irradiance.
+                let (cos, sin) = (u.sqrt(), (1.0 - u).sqrt());
+                for &(v, weight_v) in &nodes {
+                    let (sin_phi, cos_phi) = (PI * v).sin_cos();
+                    let wi = Vec3::new(sin * cos_phi, sin * sin_phi, cos);
+                    let value =
+                        Directions::new(wo, wi).map_or(0.0, |d| kind.value(weights(&d), d.wo.dot(d.half)));
+                    sum += weight_u * weight_v * PI * value;
+                }
+            }
+            sum
+        });
+        Grazing { kind, albedo: Arc::new(albedo) }
+    }
+
+    /// See [`super::LobeModel::eval_pdf`].
+    #[inline]
+    pub fn eval_pdf(&self, scale: Rgb, probability: f32, d: &Directions) -> (Rgb, f32) {
+        if !(d.wo.z > 0.0 && d.wi.z > 0.0) {
+            return (Rgb::ZERO, 0.0);
+        }
+        (scale * self.kind.value(weights(d), d.wo.dot(d.half).min(1.0)), probability * d.wi.z * FRAC_1_PI)
+    }
+
+    /// See [`super::LobeModel::sample`].
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
+        Directions::new(wo, cosine_hemisphere(u)).filter(|_| wo.z > 0.0)
+    }
+
+    /// Albedo for light at the cosine `cos` > 0.
+    #[inline]
+    pub fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
+        if cos > 0.0 { scale * self.albedo.lookup(cos) } else { Rgb::ZERO }
+    }
+
+    /// See [`super::LobeModel::bound`].
+    #[inline]
+    pub fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
+        let weights = [schlick_weight(bound.cos_o), schlick_weight(bound.cos_min)];
+        scale * (self.kind.max_value(weights, bound.cos_d) * bound.cos_max * DirectionBound::WIDER)
+    }
+
+    /// See [`super::LobeModel::set_lane`].
+    #[inline]
+    pub fn set_lane(&self, lanes: &mut LobeLanes, lane: usize, scale: Rgb, wo: Vec3) {
+        lanes.scale.set(lane, scale);
+        lanes.masking[lane] = schlick_weight(wo.z);
+    }
+
+    /// See [`super::LobeModel::add_value16`].
+    pub fn add_value16(&self, lanes: &LobeLanes, d: &Directions16, sum: &mut Vec3x16) {
+        for l in 0..LANES {
+            if d.wi.z[l] > 0.0 && d.sin_sq[l] + d.cos_sq[l] > 0.0 {
+                let value = self.kind.value([lanes.masking[l], schlick_weight(d.wi.z[l])], d.cos_d[l]);
+                sum.set(l, sum.get(l) + lanes.scale.get(l) * value);
+            }
+        }
+    }
+
+    /// See [`super::LobeModel::add_bound16`].
+    pub fn add_bound16(&self, lanes: &LobeLanes, bounds: &FacetBounds16, sum: &mut Vec3x16) {
+        for l in 0..LANES {
+            if bounds.cos_max[l] > 0.0 {
+                let weights = [lanes.masking[l], schlick_weight(bounds.cos_min[l])];
+                let most = self.kind.max_value(weights, bounds.cos_d[l]) * bounds.cos_max[l];
+                sum.set(l, sum.get(l) + lanes.scale.get(l) * (most * DirectionBound::WIDER));
+            }
+        }
+    }
+}
+
+/// Weights of Schlick's approximation for both directions.
+#[inline]
+fn weights(d: &Directions) -> [f32; 2] {
+    [schlick_weight(d.wo.z), schlick_weight(d.wi.z)]
+}

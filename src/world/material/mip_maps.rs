@@ -1,0 +1,132 @@
+//! Mip maps: means of textures over what rays stand for.
+//!
+//! Paper: L. Williams, *Pyramidal Parametrics*, 1983.
+//!
+//! Only colours are averaged, and only those in which the light reflected is linear (see [`super::Materials`]):
+//! roughness, opacity, reliefs, and colours that are multiplied with another texture are looked up at the point, so
+//! that the mean over a picture's samples stays what it is.
+//! Deviations: lookups are in one level, the coarsest of texels no larger than half of what each stands for: texels
+//! joined linearly reach twice as far as they are wide, and those as large as what a lookup stands for blur fine
+//! patterns (wallpaper by .7 dB at sixteen samples a pixel). Samples of a pixel hide the step to the next level, and
+//! average along what is covered where that is longer than wide; eight lookups along it would leave .3 dB less error in
+//! a church of tiles, for half more time of its eye pass.
+
+use scene::{Texture, TextureId};
+
+/// Coarser versions of textures.
+#[derive(Clone, Debug, Default)]
+pub(super) struct MipMaps {
+    /// By texture; none where it is not averaged.
+    pyramids: Vec<Pyramid>,
+}
+
+/// Coarser versions of a texture.
+#[derive(Clone, Debug, Default)]
+struct Pyramid {
+    /// Each half as wide and high as that before it, the first as the texture.
+    levels: Vec<Texture>,
+    /// Half the number of texels along the side of a unit square of texture coordinates.
+    half_texels: f32,
+}
+
+impl MipMaps {
+    /// Makes those of the textures `wanted`.
+    pub fn new(textures: &[Texture], wanted: impl Iterator<Item = TextureId>) -> MipMaps {
+        let mut pyramids: Vec<Pyramid> = Vec::new();
+        for TextureId(id) in wanted {
+            let Some(texture) = textures.get(id as usize).filter(|t| t.texels.len() > 1) else { continue };
+            pyramids.resize(textures.len(), Pyramid::default());
+            let pyramid = &mut pyramids[id as usize];
+            if pyramid.levels.is_empty() {
+                let texels = texture.width as f32 * texture.height as f32 * texture.to_uv.determinant().abs();
+                *pyramid = Pyramid { levels: coarser(texture), half_texels: 0.5 * texels.sqrt() };
+            }
+        }
+        MipMaps { pyramids }
+    }
+
+    /// True if there are none.
+    pub fn is_empty(&self) -> bool {
+        self.pyramids.is_empty()
+    }
+
+    /// Version of a texture for lookups that stand for a square of side `covered` by texture coordinates.
+    #[inline]
+    pub fn level<'a>(&'a self, finest: &'a Texture, id: TextureId, covered: f32) -> &'a Texture {
+        let Some(Pyramid { levels, half_texels }) = self.pyramids.get(id.0 as usize) else { return finest };
+        // The binary exponent is the whole part of the logarithm.
+        let level = ((covered * half_texels).max(1.0).to_bits() >> 23) as usize - 127;
+        match level.min(levels.len()) {
+            0 => finest,
+            level => &levels[level - 1],
+        }
+    }
+}
+
+/// Levels of a texture from half its size on down to one texel.
+fn coarser(texture: &Texture) -> Vec<Texture> {
+    let mut levels: Vec<Texture> = Vec::new();
+    loop {
+        let finer = levels.last().unwrap_or(texture);
+        if finer.texels.len() <= 1 {
+            return levels;
+        }
+        let texels = finer.texels.halved();
+        let (width, height) = ((finer.width / 2).max(1), (finer.height / 2).max(1));
+        let Texture { filter, wrap, to_uv, .. } = *finer;
+        levels.push(Texture { name: String::new(), width, height, texels, filter, wrap, to_uv });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::math::Rgb;
+    use glam::{Mat3, Vec2};
+    use scene::{Filter, Texels, Wrap};
+
+    /// 64 x 32 texels, black and white in turn, and red in the lower half.
+    fn checker() -> Texture {
+        let texel = |i: usize| match (i % 64 + i / 64) % 2 {
+            0 => Rgb::ZERO,
+            _ if i / 64 < 16 => Rgb::ONE,
+            _ => Rgb::X,
+        };
+        let texels: Vec<Rgb> = (0..64 * 32).map(texel).collect();
+        let (filter, wrap, to_uv) = (Filter::Bilinear, Wrap::Repeat, Mat3::from_scale(Vec2::new(2.0, 1.0)));
+        let texels = Texels::new(64, &texels);
+        Texture { name: "checker".into(), width: 64, height: 32, texels, filter, wrap, to_uv }
+    }
+
+    #[test]
+    fn levels_have_texels_half_as_large_as_what_is_covered() {
+        let texture = checker();
+        let maps = MipMaps::new(std::slice::from_ref(&texture), [TextureId(0)].into_iter());
+        let levels: Vec<usize> = maps.pyramids[0].levels.iter().map(|level| level.texels.len()).collect();
+        assert_eq!(levels, [512, 128, 32, 8, 2, 1]);
+        // A texel is a square of this side, in the mean: 128 by 32 of them a unit.
+        let texel = 1.0 / 64.0;
+        let count = |covered: f32| maps.level(&texture, TextureId(0), covered * texel).texels.len();
+        let found = [0.0, 0.9, 3.9, 4.1, 7.9, 8.1, 1e3, 1e30, f32::INFINITY].map(count);
+        assert_eq!(found, [2048, 2048, 2048, 512, 512, 128, 1, 1, 1]);
+        assert_eq!(count(f32::NAN), 2048);
+        // One that is not averaged.
+        assert_eq!(maps.level(&texture, TextureId(7), 1e3).texels.len(), 2048);
+    }
+
+    #[test]
+    fn levels_are_the_means_of_what_their_texels_cover() {
+        let texture = checker();
+        let maps = MipMaps::new(std::slice::from_ref(&texture), [TextureId(0)].into_iter());
+        for covered in [8.0, 16.0, 32.0] {
+            for i in 0..20 {
+                let at = |y: f32| {
+                    let uv = Vec2::new(0.0317 * i as f32, y);
+                    maps.level(&texture, TextureId(0), covered / 64.0).lookup(uv)
+                };
+                let near = |found: Rgb, expected: Rgb| (found - expected).abs().max_element() < 1e-5;
+                assert!(near(at(0.75), Rgb::splat(0.5)) && near(at(0.25), Rgb::X * 0.5), "{covered} {i}");
+            }
+        }
+    }
+}

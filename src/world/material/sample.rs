@@ -1,0 +1,130 @@
+//! Sampling of directions in proportion to their contribution: base or lobe by their expected shares of the
+//! light, cosine-weighted for the base, by its own rule for a lobe.
+
+use super::bsdf::{Bsdf, Outgoing};
+use super::lobe::MAX_LOBES;
+use base::math::Rgb;
+use base::sampling::cosine_hemisphere;
+use glam::{Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, PI};
+
+/// Sampled direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BsdfSample {
+    /// Unit direction, away from the surface.
+    pub wi: Vec3,
+    /// BSDF · cos / pdf, for radiance. Flux (photons) is not compressed by refraction: multiply by `eta`².
+    pub weight: Rgb,
+    /// Density per solid angle; for a delta lobe, the probability of having chosen it.
+    pub pdf: f32,
+    /// True if the lobe scatters into this direction only.
+    pub delta: bool,
+    /// Index of refraction on the side of `wi` over that on the side of `wo`; 1 unless refracted.
+    pub eta: f32,
+    /// True if light goes on as if there was no surface, but for its colour.
+    pub straight: bool,
+}
+
+impl BsdfSample {
+    /// Makes the sample of a delta lobe that has been chosen with probability 1.
+    #[inline]
+    pub(super) fn delta(wi: Vec3, weight: Rgb, eta: f32) -> BsdfSample {
+        BsdfSample { wi, weight, pdf: 1.0, delta: true, eta, straight: false }
+    }
+}
+
+/// All directions in which light continues without being spread, for following specular chains
+/// deterministically: each weight is the lobe's reflectance or transmittance, each pdf is 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DeltaLobes {
+    /// As by a mirror.
+    pub reflection: Option<BsdfSample>,
+    /// Through glass.
+    pub refraction: Option<BsdfSample>,
+}
+
+impl Bsdf<'_> {
+    /// Chooses `wi` with [`Bsdf::pdf`] (or a delta lobe): `u_lobe` picks base or lobe, `u` the direction.
+    ///
+    /// `None` where nothing is scattered, or the facet chosen sends the light into the surface: the path ends.
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        let side = self.side(wo);
+        let wo = Vec3::new(wo.x, wo.y, wo.z * side);
+        if !(wo.z > 0.0) && !self.model.passes_light {
+            return None;
+        }
+        let mut sample = if self.is_lambert() {
+            let wi = cosine_hemisphere(u);
+            let weight = self.base * PI;
+            BsdfSample { wi, weight, pdf: wi.z * FRAC_1_PI, delta: false, eta: 1.0, straight: false }
+        } else {
+            self.sample_layered(wo, u_lobe, u)?
+        };
+        sample.wi.z *= side;
+        Some(sample)
+    }
+
+    fn sample_layered(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        let outgoing = self.outgoing(wo);
+        let smooth = |wi: Vec3, eta: f32, (value, pdf): (Rgb, f32)| {
+            let weight = value * (wi.z.abs() / pdf);
+            let sample = BsdfSample { wi, weight, pdf, delta: false, eta, straight: false };
+            (pdf > 0.0).then_some(sample)
+        };
+        if u_lobe < outgoing.base_probability {
+            let wi = cosine_hemisphere(u);
+            return smooth(wi, 1.0, self.eval_pdf_layered(&outgoing, wi));
+        }
+        let slot = self.pick(&outgoing, u_lobe)?;
+        let (lobe, pdf) = (&self.model.lobes[slot], outgoing.probabilities[slot]);
+        if !lobe.is_delta() {
+            let directions = lobe.sample(wo, u)?;
+            let eta = lobe.refraction(wo);
+            return smooth(directions.wi, eta, self.eval_pdf_between(&outgoing, &directions));
+        }
+        let sample = lobe.delta(self.scales[slot], wo)?;
+        (pdf > 0.0).then_some(BsdfSample { weight: sample.weight / pdf, pdf, ..sample })
+    }
+
+    /// Returns the slot of the lobe that `u_lobe`, beyond the base's probability, picks.
+    #[inline]
+    fn pick(&self, outgoing: &Outgoing, u_lobe: f32) -> Option<usize> {
+        let last = self.model.lobes.len().checked_sub(1)?;
+        let mut below = outgoing.base_probability;
+        for slot in 0..last.min(MAX_LOBES - 1) {
+            below += outgoing.probabilities[slot];
+            if u_lobe < below {
+                return Some(slot);
+            }
+        }
+        Some(last)
+    }
+
+    /// Share of the light at the cosine `cos` to the shading normal, of either sign, that passes straight through the
+    /// surface.
+    #[inline]
+    pub fn straight_transmittance(&self, cos: f32) -> Rgb {
+        let wo = Vec3::new(0.0, 0.0, cos);
+        let passing = self.model.lobes.iter().zip(self.scales).filter(|(lobe, _)| lobe.passes_straight());
+        passing.filter_map(|(lobe, scale)| lobe.delta(scale, wo)).map(|sample| sample.weight).sum()
+    }
+
+    /// Returns every delta lobe as seen from `wo`.
+    pub fn delta_lobes(&self, wo: Vec3) -> DeltaLobes {
+        let side = self.side(wo);
+        let wo = Vec3::new(wo.x, wo.y, wo.z * side);
+        let mut all = DeltaLobes::default();
+        for (slot, lobe) in self.model.lobes.iter().enumerate() {
+            let Some(mut sample) = lobe.delta(self.scales[slot], wo) else { continue };
+            let way =
+                if (sample.wi.z > 0.0) == (wo.z > 0.0) { &mut all.reflection } else { &mut all.refraction };
+            sample.wi.z *= side;
+            match way {
+                Some(known) => known.weight += sample.weight,
+                None => *way = Some(sample),
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,60 @@
+//! Functions of the angle to the normal, tabulated.
+
+use base::math::gauss_legendre;
+use glam::Vec3;
+use rayon::prelude::*;
+use std::array;
+use std::ops::{Add, Mul, Sub};
+
+/// Number of entries of a table, evenly spaced in cos θ from 0 to 1.
+pub(super) const ANGLES: usize = 64;
+
+/// Function of cos θ, linear between its entries.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AngleTable<T>(pub [T; ANGLES]);
+
+impl<T: Copy + Send + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>> AngleTable<T> {
+    /// Tabulates `f` of the direction at each angle, in the xz plane.
+    pub fn new(f: impl Fn(Vec3) -> T + Sync) -> AngleTable<T> {
+        let values: Vec<T> = (0..ANGLES).into_par_iter().map(|i| f(direction(i))).collect();
+        AngleTable(array::from_fn(|i| values[i]))
+    }
+
+    /// Returns the value at `cos` in 0..=1.
+    #[inline]
+    pub fn lookup(&self, cos: f32) -> T {
+        let x = cos.clamp(0.0, 1.0) * (ANGLES - 1) as f32;
+        let i = (x as usize).min(ANGLES - 2);
+        let (a, b) = (self.0[i], self.0[i + 1]);
+        a + (b - a) * (x - i as f32)
+    }
+
+    /// Returns the entry at or next below `cos`.
+    #[inline]
+    pub fn floor(&self, cos: f32) -> T {
+        self.0[((cos * (ANGLES - 1) as f32) as usize).min(ANGLES - 1)]
+    }
+
+    /// Returns the cosine-weighted mean over the hemisphere, exact for the interpolant.
+    pub fn mean(&self) -> T {
+        let step = 1.0 / (ANGLES - 1) as f32;
+        let cell = |i: usize| {
+            // 2 ∫ (a + (b - a) s) μ dμ over the cell, μ = (i + s) step
+            let i_f = i as f32;
+            let (a, b) = (self.0[i], self.0[i + 1]);
+            a * (step * step * (i_f + 1.0 / 3.0)) + b * (step * step * (i_f + 2.0 / 3.0))
+        };
+        (1..ANGLES - 1).fold(cell(0), |sum, i| sum + cell(i))
+    }
+}
+
+/// Returns the unit vector at entry `i`'s angle, in the xz plane and just off the horizon.
+pub(super) fn direction(i: usize) -> Vec3 {
+    let cos = (i as f32 / (ANGLES - 1) as f32).max(1e-6);
+    Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos)
+}
+
+/// Returns nodes and weights of quadrature on [0, 1].
+pub(super) fn rule(nodes: usize) -> Vec<(f32, f32)> {
+    gauss_legendre(nodes).iter().map(|&(x, weight)| (x as f32, weight as f32)).collect()
+}

@@ -1,0 +1,20 @@
+//! Shadow rays: segments whose ends are offset from their surfaces, packets of them, and the engine that
+//! tests them for occlusion.
+//!
+//! [`segment()`] and [`ray_from`] make rays; [`Engine`] traces and counts them, and may test an occluder
+//! cache first. The cache changes the time of an answer and the occluder named, never the answer itself.
+
+mod cache;
+mod counts;
+mod engine;
+mod segment;
+mod settings;
+#[cfg(test)]
+mod tests;
+
+pub use cache::OccluderCacheSettings;
+pub use counts::ShadowCounts;
+pub use engine::Engine;
+pub use segment::{FAR_END, ULPS};
+pub use segment::{arriving, between, ray_from, segment};
+pub use settings::ShadowSettings;

@@ -1,0 +1,278 @@
+//! The view of a scene: from where it is seen, and which part of the film is rendered.
+//!
+//! Every method takes a view beside the world; nothing in a [`crate::World`] depends on it, so that one
+//! world, its lights and its cache records serve any number of views.
+
+use base::film::{CameraMatrices, Window};
+use base::math::Cone;
+use base::sampling::{Sampler, hash};
+use embree::Ray;
+use glam::{DVec3, Vec2, Vec3};
+use scene::{Camera, Cameras, Projection};
+
+/// Maximum number of pixels rendered at once: 16384 by 65536. More would exhaust the memory of most machines.
+const MAX_PIXELS: u64 = 1 << 30;
+
+/// Seed of places on the lens over that of the samples.
+const LENS_SEED: u32 = 0x1e45_0f0c;
+
+/// A camera and the part of its film to render.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// The camera.
+    pub camera: Camera,
+    /// The film and the rectangle of it that is rendered.
+    pub window: Window,
+}
+
+/// Frame, film size and crop that are wanted in place of the scene file's own.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Framing {
+    /// Frame of the camera path, counted from 1, in place of the still camera.
+    pub frame: Option<usize>,
+    /// Width and height of the film in pixels.
+    pub resolution: Option<[u32; 2]>,
+    /// The only part of the film to render, as offset and size in pixels.
+    pub crop: Option<[[u32; 2]; 2]>,
+}
+
+/// Reason why a framing gives no view.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum FramingError {
+    /// The camera path is not that long.
+    #[error("frame {frame}: {}", match frames {
+        0 => "the scene has no camera path, only a still camera; give a TOML scene keys in [camera.path], or a glTF \
+              model an animated camera".to_owned(),
+        _ => format!("the scene's camera path has {frames} frames, counted from 1"),
+    })]
+    Frame {
+        /// The frame wanted.
+        frame: usize,
+        /// Length of the camera path.
+        frames: usize,
+    },
+    /// The crop is empty or not on the film.
+    #[error("--crop must lie within the film of {}x{} pixels", film[0], film[1])]
+    Crop {
+        /// Width and height of the film.
+        film: [u32; 2],
+    },
+    /// The film has too many pixels to be rendered at once.
+    #[error("{pixels} pixels are more than {MAX_PIXELS}: render the film in parts with --crop")]
+    Pixels {
+        /// Pixels in the window.
+        pixels: u64,
+    },
+}
+
+impl View {
+    /// The view that `framing` wants through the cameras of a scene file.
+    pub fn new(cameras: &Cameras, framing: &Framing) -> Result<View, FramingError> {
+        let film = framing.resolution.unwrap_or(cameras.resolution);
+        let mut window = Window::whole(film);
+        // The file's crop is one of the file's film.
+        let crop = framing.crop.or(cameras.crop.filter(|_| framing.resolution.is_none()));
+        if let Some([offset, [width, height]]) = crop {
+            window = Window { film, offset, width, height };
+        }
+        if !window.is_valid() {
+            return Err(FramingError::Crop { film });
+        }
+        let pixels = window.pixel_count();
+        if pixels > MAX_PIXELS {
+            return Err(FramingError::Pixels { pixels });
+        }
+        let camera = match framing.frame {
+            None => cameras.still,
+            Some(frame) => {
+                let frames = cameras.path.len();
+                let camera = frame.checked_sub(1).and_then(|index| cameras.path.get(index));
+                *camera.ok_or(FramingError::Frame { frame, frames })?
+            }
+        };
+        Ok(View { camera, window })
+    }
+
+    /// The whole film of `resolution` pixels, seen by `camera`.
+    pub fn whole(camera: Camera, resolution: [u32; 2]) -> View {
+        View { camera, window: Window::whole(resolution) }
+    }
+
+    /// The ray through the film's pixel `[x, y]` at the place around it that its filter gives `jitter`, from the
+    /// camera's near to its far plane, through the middle of a lens.
+    #[inline]
+    pub fn primary_ray(&self, pixel: [u32; 2], jitter: Vec2) -> Ray {
+        self.ray(pixel, jitter, Vec2::splat(0.5))
+    }
+
+    /// The same for sample `sample` of the pixel's, which a lens, if there is one, sends through a place of its own.
+    #[inline]
+    pub fn sample_ray(&self, pixel: [u32; 2], jitter: Vec2, (seed, sample): (u32, u32)) -> Ray {
+        let lens = match self.camera.projection {
+            Projection::Lens { .. } => {
+                let seed = hash(hash(hash(pixel[0], pixel[1]), seed), LENS_SEED);
+                Sampler::new(seed, sample).next_2d()
+            }
+            Projection::Pinhole | Projection::Parallel => Vec2::splat(0.5),
+        };
+        self.ray(pixel, jitter, lens)
+    }
+
+    #[inline]
+    fn ray(&self, [x, y]: [u32; 2], jitter: Vec2, lens: Vec2) -> Ray {
+        let camera = &self.camera;
+        let place = camera.filter.place(jitter);
+        let (origin, direction) =
+            camera.ray([x as f32 + place.x, y as f32 + place.y], self.window.film, lens);
+        let cos = direction.dot(camera.forward);
+        Ray { origin, t_near: camera.near / cos, direction, t_far: camera.far / cos }
+    }
+
+    /// Matrices to the camera and the film from the coordinates of the scene's file, which has the scene's `centre`
+    /// there and its `unit` of length.
+    pub fn matrices(&self, centre: DVec3, unit: f64) -> CameraMatrices {
+        let camera = &self.camera;
+        let origin = centre + camera.origin.as_dvec3() * unit;
+        let axes = [camera.right, camera.up, camera.forward].map(Vec3::as_dvec3);
+        // Rows: images of the world's axes and of its origin.
+        let basis = [DVec3::X, DVec3::Y, DVec3::Z, -origin].map(|v| axes.map(|axis| v.dot(axis)));
+        let [width, height] = self.window.film.map(f64::from);
+        let is_length = camera.projection == Projection::Parallel;
+        let scale = 0.5 / (f64::from(camera.tan_half_x) * if is_length { unit } else { 1.0 });
+        let (mut world_to_camera, mut world_to_ndc) = ([0.0; 16], [0.0; 16]);
+        for (row, [x, y, z]) in basis.into_iter().enumerate() {
+            let w = if row == 3 { 1.0 } else { 0.0 };
+            let [depth, by] = if camera.projection == Projection::Parallel { [z, w] } else { [w, z] };
+            let ndc = [0.5 * by + scale * x, 0.5 * by - scale * width / height * y, depth, by];
+            for (column, (to_camera, to_ndc)) in [x, y, z, w].into_iter().zip(ndc).enumerate() {
+                world_to_camera[4 * row + column] = to_camera as f32;
+                world_to_ndc[4 * row + column] = to_ndc as f32;
+            }
+        }
+        CameraMatrices { world_to_camera, world_to_ndc }
+    }
+
+    /// Distance between the places that neighbouring pixels at the film's centre see on a surface at `position` that
+    /// faces the camera.
+    pub fn spacing(&self, position: Vec3) -> f32 {
+        let spacing = 2.0 * self.camera.tan_half_x / self.window.film[0] as f32;
+        match self.camera.projection {
+            Projection::Parallel => spacing,
+            Projection::Pinhole | Projection::Lens { .. } => spacing * position.distance(self.camera.origin),
+        }
+    }
+
+    /// Cones of eye rays where `samples` of them share a pixel.
+    pub fn cone(&self, samples: u32) -> Cone {
+        let across = 2.0 * self.camera.tan_half_x / self.window.film[0] as f32;
+        let width = across / (samples.max(1) as f32).sqrt();
+        match self.camera.projection {
+            Projection::Pinhole | Projection::Lens { .. } => Cone { width: 0.0, spread: width },
+            Projection::Parallel => Cone { width, spread: 0.0 },
+        }
+    }
+
+    /// Angle between neighbouring pixels at the film's centre, in radians; in a parallel projection that at the
+    /// distance of the scene's centre, or of the film's half width if that is more.
+    pub fn pixel_angle(&self) -> f32 {
+        let spacing = 2.0 * self.camera.tan_half_x / self.window.film[0] as f32;
+        match self.camera.projection {
+            Projection::Pinhole | Projection::Lens { .. } => spacing,
+            Projection::Parallel => {
+                let to_centre = -self.camera.origin.dot(self.camera.forward);
+                spacing / to_centre.max(self.camera.tan_half_x)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cameras() -> Cameras {
+        let path = (0..3).map(|i| Camera { origin: Vec3::X * i as f32, ..Camera::default() }).collect();
+        Cameras { still: Camera::default(), path, resolution: [8, 4], crop: None }
+    }
+
+    #[test]
+    fn a_framing_takes_the_place_of_what_the_file_says() {
+        let plain = View::new(&cameras(), &Framing::default()).unwrap();
+        assert_eq!(plain, View::whole(Camera::default(), [8, 4]));
+        let cropped = Cameras { crop: Some([[1, 2], [3, 1]]), ..cameras() };
+        let view = View::new(&cropped, &Framing::default()).unwrap();
+        assert_eq!(view.window, Window { film: [8, 4], offset: [1, 2], width: 3, height: 1 });
+        let framing = Framing { frame: Some(3), resolution: Some([16, 16]), crop: Some([[3, 4], [5, 6]]) };
+        let view = View::new(&cropped, &framing).unwrap();
+        assert_eq!(view.camera.origin, Vec3::X * 2.0);
+        assert_eq!(view.window, Window { film: [16, 16], offset: [3, 4], width: 5, height: 6 });
+    }
+
+    #[test]
+    fn what_gives_no_view_is_named() {
+        let error = |framing: Framing| View::new(&cameras(), &framing).unwrap_err();
+        for frame in [0, 4] {
+            let error = error(Framing { frame: Some(frame), ..Framing::default() }).to_string();
+            assert_eq!(error, format!("frame {frame}: the scene's camera path has 3 frames, counted from 1"));
+        }
+        let crop = error(Framing { crop: Some([[7, 0], [2, 1]]), ..Framing::default() });
+        assert_eq!(crop, FramingError::Crop { film: [8, 4] });
+        let large = error(Framing { resolution: Some([1 << 16, 1 << 16]), ..Framing::default() });
+        assert_eq!(large, FramingError::Pixels { pixels: 1 << 32 });
+    }
+
+    #[test]
+    fn points_on_a_ray_are_projected_to_its_pixel() {
+        let (forward, right) = (Vec3::new(0.6, 0.0, -0.8), Vec3::new(0.8, 0.0, 0.6));
+        let (origin, up) = (Vec3::new(3.0, -2.0, 1.0), Vec3::Y);
+        let camera = Camera { origin, forward, right, up, tan_half_x: 0.7, ..Camera::default() };
+        let view = View::whole(camera, [40, 30]);
+        let centre = DVec3::new(100.0, -50.0, 25.0);
+        let matrices = view.matrices(centre, 1.0);
+        // Row vectors: each row of the matrix is scaled by one coordinate.
+        let product = |p: DVec3, m: &[f32; 16]| -> [f64; 4] {
+            let p = [p.x, p.y, p.z, 1.0];
+            std::array::from_fn(|column| (0..4).map(|row| p[row] * f64::from(m[4 * row + column])).sum())
+        };
+        for (pixel, distance) in [([0, 0], 2.0), ([31, 7], 5.0), ([20, 29], 0.5)] {
+            let direction = view.primary_ray(pixel, Vec2::splat(0.5)).direction;
+            let point = centre + (origin + direction * distance).as_dvec3();
+            let [x, y, z, w] = product(point, &matrices.world_to_camera);
+            let depth = f64::from(distance * direction.dot(forward));
+            assert!((z - depth).abs() < 1e-4 && w == 1.0, "{z} {depth}");
+            assert!(((x * x + y * y + z * z).sqrt() - f64::from(distance)).abs() < 1e-4);
+            let [x, y, z, w] = product(point, &matrices.world_to_ndc);
+            assert!((x / w * 40.0 - f64::from(pixel[0]) - 0.5).abs() < 5e-3, "{x} {w}");
+            assert!((y / w * 30.0 - f64::from(pixel[1]) - 0.5).abs() < 5e-3, "{y} {w}");
+            assert!((z / w * depth - 1.0).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn parallel_rays_are_projected_to_their_pixel() {
+        let camera = Camera { tan_half_x: 3.0, projection: Projection::Parallel, ..Camera::default() };
+        let view = View::whole(camera, [40, 30]);
+        let matrix = view.matrices(DVec3::ZERO, 1.0).world_to_ndc;
+        for pixel in [[0, 0], [31, 7], [20, 29]] {
+            let ray = view.primary_ray(pixel, Vec2::splat(0.5));
+            let point = (ray.origin + ray.direction * 2.5).as_dvec3();
+            let p = [point.x, point.y, point.z, 1.0];
+            let image: [f64; 4] = std::array::from_fn(|column| {
+                (0..4).map(|row| p[row] * f64::from(matrix[4 * row + column])).sum()
+            });
+            assert!((image[0] / image[3] * 40.0 - f64::from(pixel[0]) - 0.5).abs() < 1e-4, "{image:?}");
+            assert!((image[1] / image[3] * 30.0 - f64::from(pixel[1]) - 0.5).abs() < 1e-4, "{image:?}");
+        }
+    }
+
+    #[test]
+    fn the_ray_through_the_films_centre_goes_forward() {
+        let view = View::whole(Camera { near: 0.5, far: 3.0, ..Camera::default() }, [8, 4]);
+        let ray = view.primary_ray([4, 2], Vec2::ZERO);
+        assert_eq!((ray.direction, ray.t_near, ray.t_far), (-Vec3::Z, 0.5, 3.0));
+        // Half the film's width lies at the tangent of half the field of view, which is 1.
+        let edge = view.primary_ray([0, 2], Vec2::ZERO).direction;
+        assert!((edge.x / edge.z - 1.0).abs() < 1e-6 && edge.y.abs() < 1e-6, "{edge}");
+        assert_eq!(view.pixel_angle(), 0.25);
+    }
+}
