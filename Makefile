@@ -4,7 +4,7 @@ CARGO ?= cargo
 TARGET_DIR := $(or $(CARGO_TARGET_DIR),target)
 HOST = $(shell rustc -vV | sed -n 's/^host: //p')
 
-.PHONY: help setup build demo test quick memory lint doc
+.PHONY: help setup build demo test quick studies memory lint doc
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
@@ -22,15 +22,21 @@ demo: build ## render a first scene to out/
 	$(TARGET_DIR)/release/lightsplat render scenes/cornell.toml -o out/cornell.exr
 	@echo "rendered out/cornell.exr and out/cornell.png"
 
-test: setup ## every test
+test: setup ## every test but studies
 	$(CARGO) test --workspace --locked
 
 quick: setup ## the tests that take seconds, not minutes
 	$(CARGO) test --workspace --locked -- --skip slow_
 
-memory: setup ## AddressSanitizer over the tests that trace rays, in a folder of its own
-	RUSTC_BOOTSTRAP=1 RUSTFLAGS=-Zsanitizer=address ASAN_OPTIONS=detect_leaks=0:detect_odr_violation=0 CARGO_TARGET_DIR=$(TARGET_DIR)/memory \
-	    $(CARGO) test -p embree -p world --locked --lib --target $(HOST)
+studies: setup ## the tests that take many minutes, which `test` leaves out
+	$(CARGO) test --workspace --locked -- --ignored
+
+memory: export RUSTC_BOOTSTRAP = 1
+memory: export RUSTFLAGS = -Zsanitizer=address
+memory: export ASAN_OPTIONS = detect_leaks=0:detect_odr_violation=0
+memory: setup ## AddressSanitizer over the tests of rays and shadow rays, in a folder of its own
+	CARGO_TARGET_DIR=$(TARGET_DIR)/memory $(CARGO) test -p embree --locked --lib --target $(HOST)
+	CARGO_TARGET_DIR=$(TARGET_DIR)/memory $(CARGO) test -p world --locked --lib --target $(HOST) -- shadow::
 
 lint: setup ## format and clippy, warnings denied
 	$(CARGO) fmt --all --check

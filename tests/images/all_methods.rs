@@ -1,0 +1,120 @@
+//! Every method against scenes whose radiance is known in closed form.
+//!
+//! All scenes are scaled so that the mean of their image is 1. Most errors of energy show here: a factor of π or of a
+//! cosine, light counted twice, emitters that are left out.
+
+use crate::kit::*;
+use crate::oracle::{assert_means_within, mean};
+use glam::{DVec3, Vec3};
+use lightsplat::math::Rgb;
+use lightsplat::scene::{DeltaLight, DistantDisc, Environment, Scene};
+use std::f32::consts::PI;
+
+/// Albedo of all diffuse surfaces.
+const ALBEDO: f32 = 0.5;
+
+/// Difference from 1 that noise and the bias of methods explain.
+const TOLERANCE: f64 = 0.03;
+
+/// Scenes of mean 1, each with the reason.
+const SCENES: [(&str, fn() -> WorldAndView); 10] = [
+    ("nothing before a sky of radiance 1", || {
+        let mut scene = scene(camera(Vec3::ZERO, Vec3::X, 0.5), [8, 8]);
+        scene.environment = Some(Environment::Constant(Rgb::ONE));
+        world(scene)
+    }),
+    ("a closed room that emits what it absorbs: L / (1 - albedo)", || furnace(|_| {})),
+    ("a ball of glass in that room, which is not seen", || {
+        furnace(|scene| {
+            let material = add_material(scene, glass(1.5));
+            scene.meshes.push(sphere(Vec3::new(0.1, 0.0, -0.2), 0.3, 24, material));
+        })
+    }),
+    ("a mirror in that room, which is not seen either", || {
+        furnace(|scene| {
+            let material = add_material(scene, mirror());
+            scene.meshes.push(sphere(Vec3::new(0.1, 0.0, -0.2), 0.3, 24, material));
+        })
+    }),
+    ("a floor under a sky of radiance 1 / albedo", || {
+        floor(|scene| scene.environment = Some(Environment::Constant(Rgb::splat(1.0 / ALBEDO))))
+    }),
+    ("a floor under a point light: I cos / d²", || {
+        let (position, cos, dist_sq) = (Vec3::new(0.0, 2.0, 1.5), 2.0 / 2.5, 6.25);
+        floor(|scene| {
+            let intensity = Rgb::splat(IRRADIANCE * dist_sq / cos);
+            scene.lights.push(DeltaLight::Point { position, intensity });
+        })
+    }),
+    ("a floor under a spot light, within its inner cone", || {
+        let (position, cos, dist_sq) = (Vec3::new(0.0, 2.0, 1.5), 2.0 / 2.5, 6.25);
+        floor(|scene| {
+            scene.lights.push(DeltaLight::Spot {
+                position,
+                direction: -position.normalize(),
+                intensity: Rgb::splat(IRRADIANCE * dist_sq / cos),
+                inner_angle: 0.2,
+                outer_angle: 0.4,
+            });
+        })
+    }),
+    ("a floor under light from one direction: E cos", || {
+        let direction = -Vec3::new(0.0, 2.0, 1.5).normalize();
+        floor(|scene| {
+            let irradiance = Rgb::splat(IRRADIANCE / 0.8);
+            scene.lights.push(DeltaLight::Directional { direction, irradiance });
+        })
+    }),
+    ("a floor under a distant disc: L Ω cos", || {
+        let (half_angle, direction) = (0.01f32, Vec3::new(0.0, 2.0, 1.5).normalize());
+        floor(|scene| {
+            let radiance = Rgb::splat(IRRADIANCE / (0.8 * PI * half_angle * half_angle));
+            scene.discs.push(DistantDisc { direction, half_angle, radiance });
+        })
+    }),
+    // Howell, A Catalog of Radiation Heat Transfer Configuration Factors, C-11, applied to four corners.
+    ("a floor under a parallel square of half-width h at height d", || {
+        let (h, d) = (0.5f32, 2.0f32);
+        let a = h / d;
+        let corner_factor = a / (1.0 + a * a).sqrt() * (a / (1.0 + a * a).sqrt()).atan() / PI;
+        floor(|scene| {
+            let black = add_material(scene, diffuse(Rgb::ZERO));
+            let lamp = quad(Vec3::new(-h, d, -h), Vec3::X * 2.0 * h, Vec3::Z * 2.0 * h, black);
+            scene.meshes.push(emitting(lamp, Rgb::splat(IRRADIANCE / (PI * 4.0 * corner_factor))));
+        })
+    }),
+];
+
+/// Irradiance of a floor whose radiance is 1.
+const IRRADIANCE: f32 = PI / ALBEDO;
+
+/// A closed room whose walls emit 1 - albedo, so that the radiance is 1 everywhere.
+fn furnace(add: impl FnOnce(&mut Scene)) -> WorldAndView {
+    let mut scene = scene(camera(Vec3::new(0.3, 0.2, 0.8), Vec3::ZERO, 0.7), [16, 16]);
+    let wall = add_material(&mut scene, diffuse(Rgb::splat(ALBEDO)));
+    for mesh in room(Vec3::splat(-1.0), Vec3::ONE, wall) {
+        scene.meshes.push(emitting(mesh, Rgb::splat(1.0 - ALBEDO)));
+    }
+    add(&mut scene);
+    world(scene)
+}
+
+/// A point of a floor, seen from above.
+fn floor(light: impl FnOnce(&mut Scene)) -> WorldAndView {
+    let mut scene = scene(camera(Vec3::new(0.0, 1.0, 0.0), Vec3::ZERO, 1e-3), [8, 8]);
+    let floor = add_material(&mut scene, diffuse(Rgb::splat(ALBEDO)));
+    scene.meshes.push(quad(Vec3::new(-5.0, 0.0, -5.0), Vec3::Z * 10.0, Vec3::X * 10.0, floor));
+    light(&mut scene);
+    world(scene)
+}
+
+#[test]
+fn every_method_finds_the_light_of_every_scene() {
+    for (what, scene) in SCENES {
+        let world = scene();
+        for (name, method) in small_methods() {
+            let image = image(&world, &*method);
+            assert_means_within(TOLERANCE, mean(&image), DVec3::ONE, &format!("{what}, by {name}"));
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Principled materials: all methods against path tracing.
+
+use crate::glass::{NOISE, by_default, by_paths, mean_by};
+use crate::kit::*;
+use crate::oracle::assert_means_within;
+use lightsplat::math::Rgb;
+use lightsplat::method::{lightcuts, photon_cache};
+use lightsplat::scene::{Material, Principled, Reflectance};
+
+/// A room with a ball of varnished paint, of metal, and of frosted glass, on walls that are principled, too.
+fn rooms() -> Vec<(WorldAndView, &'static str)> {
+    let colour = |r, g, b| Reflectance::Constant(Rgb::new(r, g, b));
+    let material = |parameters| Material { principled: Some(Box::new(parameters)), ..diffuse(Rgb::ZERO) };
+    let paint = Principled {
+        base_color: colour(0.7, 0.2, 0.1),
+        roughness: 0.6.into(),
+        clearcoat: 1.0.into(),
+        sheen: 0.3.into(),
+        ..Principled::default()
+    };
+    let metal = Principled {
+        base_color: colour(0.9, 0.6, 0.3),
+        metallic: 1.0.into(),
+        roughness: 0.45.into(),
+        ..Principled::default()
+    };
+    let glass = Principled { spec_trans: 1.0.into(), roughness: 0.4.into(), ..metal.clone() };
+    let glass = Principled { metallic: 0.0.into(), ..glass };
+    let room = |parameters| {
+        let mut scene = staged(room_with_ball(Some(material(parameters))));
+        let wall =
+            Principled { base_color: colour(0.7, 0.6, 0.5), roughness: 0.8.into(), ..Principled::default() };
+        scene.materials[0] = Material { two_sided: true, ..material(wall) };
+        world(scene)
+    };
+    vec![(room(paint), "varnished paint"), (room(metal), "metal"), (room(glass), "frosted glass")]
+}
+
+mod slow_methods {
+    use super::*;
+
+    #[test]
+    fn all_methods_agree() {
+        for (world, what) in rooms() {
+            let exact = by_paths(&world);
+            assert_means_within(NOISE, by_default(&world), exact, what);
+            let cuts = lightcuts::Settings { spp: 64, ..Default::default() };
+            assert_means_within(0.03, mean_by(&world, &cuts), exact, &format!("{what}, lightcuts"));
+            let photons = photon_cache::Settings { spp: 64, ..Default::default() };
+            assert_means_within(0.03, mean_by(&world, &photons), exact, &format!("{what}, photon-cache"));
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! A case: a file, read in place of one of a scene's, and the scene rendered.
+
+use super::mutate::Random;
+use super::seeds::corpus;
+use crate::sound::assert_sound;
+use lightsplat::film::{ExrFile, Pixels};
+use lightsplat::method::Method;
+use lightsplat::progress::Control;
+use lightsplat::readers::{LoadOptions, Loaded, load};
+use lightsplat::session::{FrameError, Goal, OpenError, Remark, Session};
+use lightsplat::view::{Framing, View};
+use lightsplat::walk::{KeepLimits, Walk};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Number of triangles beyond which a scene is not rendered.
+const MAX_TRIANGLES: usize = 300_000;
+
+/// Scenes that hold a file of each kind, by the file's name.
+fn scenes() -> Vec<(String, String)> {
+    let head = "resolution = [8, 8]\ncamera = { origin = [0, 1, 5], target = [0, 0, 0] }\n\
+        environment = { radiance = 1 }\nmaterial = [{ name = \"m\", kind = \"diffuse\", reflectance = 0.5 }]\n";
+    let mut scenes = Vec::new();
+    for mesh in ["obj", "ply", "serialized"] {
+        let own = if mesh == "obj" { "mesh = [{ file = \"case.obj\" }, " } else { "mesh = [" };
+        let text = format!("{head}{own}{{ file = \"case.{mesh}\", material = \"m\" }}]\n");
+        scenes.push((format!("of-{mesh}.toml"), text));
+    }
+    scenes.push(("of-mtl.toml".to_owned(), format!("{head}mesh = [{{ file = \"of-mtl.obj\" }}]\n")));
+    let materials =
+        ["slab", "tiles", "mirror", "glass"].map(|name| format!("usemtl {name}\nf 1/1 2/2 3/3\n"));
+    let library =
+        format!("mtllib case.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n{}", materials.concat());
+    scenes.push(("of-mtl.obj".to_owned(), library));
+    for picture in ["png", "jpg", "bmp", "tga", "hdr", "exr"] {
+        let text = format!(
+            "resolution = [8, 8]\ncamera = {{ origin = [0, 1, 5], target = [0, 0, 0] }}\n\
+            environment = {{ file = \"case.{picture}\" }}\nmaterial = [{{ name = \"m\", kind = \"roughplastic\", \
+            diffuse = \"case.{picture}\", alpha = \"case.{picture}\", opacity = \"case.{picture}\", \
+            normal_map = \"case.{picture}\" }}]\nmesh = [{{ shape = \"cube\", material = \"m\" }}]\n"
+        );
+        scenes.push((format!("of-{picture}.toml"), text));
+    }
+    let spectrum = "<scene version=\"3.0.0\"><sensor type=\"perspective\"/><emitter type=\"constant\"/>\
+        <shape type=\"cube\"><bsdf type=\"diffuse\"><spectrum name=\"reflectance\" filename=\"case.spd\"/></bsdf>\
+        </shape></scene>";
+    scenes.push(("of-spd.xml".to_owned(), spectrum.to_owned()));
+    scenes
+}
+
+/// Folder with the corpus and scenes for cases.
+pub struct Workplace {
+    folder: PathBuf,
+    /// A scene that saved walks go through.
+    session: Session,
+}
+
+impl Workplace {
+    /// Fills the folder, which is empty then but for them.
+    pub fn new(folder: PathBuf) -> Workplace {
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        for file in fs::read_dir(corpus("valid")).unwrap() {
+            let path = file.unwrap().path();
+            fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
+        }
+        scenes().into_iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());
+        let path = folder.join("void.toml");
+        let loaded = load(&path, &LoadOptions::default()).unwrap();
+        Workplace { folder, session: Session::of(loaded, &path, Default::default()).unwrap() }
+    }
+
+    /// File of the case at hand.
+    pub fn case(&self, extension: &str) -> PathBuf {
+        self.folder.join("case").with_extension(extension)
+    }
+
+    /// Reads the case; returns its scene, if it is a part of one that loads.
+    pub fn read(&self, extension: &str) -> Option<Loaded> {
+        let case = self.case(extension);
+        let scene = match extension {
+            "toml" | "xml" | "gltf" | "glb" => case,
+            "records" => {
+                let records = fs::read(case).unwrap();
+                let walk = Walk::restored(&self.session, Goal::default(), KeepLimits::default(), &records);
+                let _ = walk.map(|walk| walk.save());
+                return None;
+            }
+            "job" => {
+                self.batch(&case);
+                return None;
+            }
+            "spd" => self.folder.join("of-spd.xml"),
+            other => self.folder.join(format!("of-{other}.toml")),
+        };
+        if extension == "exr"
+            && let Ok(file) = ExrFile::read(&self.case(extension))
+        {
+            let _ = (file.color(), file.metadata(), file.window(), file.camera());
+            file.layers().iter().for_each(|layer| _ = file.layer(layer));
+        }
+        match load(&scene, &LoadOptions::default()) {
+            Ok(loaded) => {
+                assert_sound(&loaded);
+                Some(loaded)
+            }
+            Err(error) => {
+                assert!(error.to_string().contains("; "), "an error without a remedy: {error}");
+                None
+            }
+        }
+    }
+
+    /// Reads a job file by the command, which ends with an error.
+    fn batch(&self, job: &Path) {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_lightsplat"));
+        command.current_dir(&self.folder).args(["batch", "--threads", "1", "--progress", "none"]).arg(job);
+        let code =
+            command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status().unwrap().code();
+        assert!(matches!(code, Some(0 | 2..=5)), "the command ends with {code:?}");
+    }
+
+    /// Renders a scene on a few pixels, by a method picked.
+    pub fn render(&self, loaded: Loaded, random: &mut Random) {
+        if loaded.scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum::<usize>() > MAX_TRIANGLES {
+            return;
+        }
+        let frames = loaded.cameras.path.len();
+        let session = match Session::of(loaded, &self.folder, Default::default()) {
+            Ok(session) => session,
+            Err(OpenError::Build { .. }) => return,
+            Err(OpenError::Scene(error)) => panic!("{error}"),
+        };
+        let mut method = *random.pick(&Method::all().collect::<Vec<_>>());
+        for (key, value) in [
+            ("spp", "1"),
+            ("vpls", "200"),
+            ("direct_vpls", "64"),
+            ("photons", "500"),
+            ("gather_rays", "64"),
+            ("probe_rays", "64"),
+            ("least_cell", "8"),
+            ("max_depth", "64"),
+        ] {
+            // Methods have some of them.
+            let _ = method.set(key, value);
+        }
+        let frame = (frames > 0 && random.below(2) == 0).then(|| 1 + random.below(frames));
+        let framing = Framing { frame, resolution: Some([8, 8]), crop: None };
+        let view = View::new(&session.cameras, &framing).unwrap();
+        let goal = Goal { method, denoise: Some(false), ..Goal::default() };
+        let frame = match session.frame(&view, &goal, &Control::new()) {
+            Ok(frame) => frame,
+            Err(FrameError::Memory { .. } | FrameError::Unplannable(_)) => return,
+            Err(error) => panic!("{error}"),
+        };
+        let name = method.name();
+        assert!(frame.film.color.pixels.iter().all(|pixel| pixel.is_finite()), "{name}");
+        for layer in &frame.film.layers {
+            let is_finite = match &layer.pixels {
+                Pixels::Color(image) | Pixels::Vector(image) => image.pixels.iter().all(|p| p.is_finite()),
+                Pixels::Scalar(image) => image.pixels.iter().all(|p| p.is_finite()),
+                Pixels::Id(_) => true,
+            };
+            assert!(is_finite, "{name}: layer {}", layer.name);
+        }
+        for remark in &frame.remarks {
+            let (Remark::Note(text) | Remark::Warning(text)) = remark;
+            assert!(!text.contains("this is a defect"), "{name}: {text}");
+        }
+    }
+}
