@@ -1,8 +1,8 @@
 //! lightsplat: global illumination by lightcuts, reconstructed or cached, and a path-traced reference, over
 //! Embree 4.
 //!
-//! [`session`] is the interface: a scene held ready, and frames rendered of it; [`walk`] renders those of a camera path.
-//! The crates behind it, in the order of the data:
+//! [`session`] is the interface: a scene held ready, and frames rendered of it; [`walk`] renders those of a camera
+//! path. The crates behind it, in the order of the data:
 //!
 //! - [`base`]: mathematics, threads, counters, settings, images and their files;
 //! - [`scene`]: the scene model; [`readers`] read scene files;

@@ -6,7 +6,8 @@
 //! - [`caustics`] traces photons over mirrors and through glass to the surfaces behind;
 //! - [`paths`] traces paths from the eye in packets;
 //! - [`eye`] finds the points that scatter light into each pixel, through mirrors and glass;
-//! - [`lightcut`] gathers the light of a tree at a point to a given error, or reconstructs it from its neighbours' cuts;
+//! - [`lightcut`] gathers the light of a tree at a point to a given error, or reconstructs it from its neighbours'
+//!   cuts;
 //! - [`bias_compensation`] finds, with short rays, the light that clamping takes away nearby;
 //! - [`shade`] lights points with these;
 //! - [`gradient`] differentiates that light along a surface, [`hsh`] expands it over the hemisphere;

@@ -1,8 +1,8 @@
 //! Signals at random moments of runs of every kind: they end with 75, or 0 where they came too late, and leave whole
 //! files.
 //!
-//! `LIGHTSPLAT_INTERRUPTS=100 cargo test --release --test command random_interrupts -- --nocapture` tries so many, and says
-//! after how much processor time, and by the clock, the runs ended.
+//! `LIGHTSPLAT_INTERRUPTS=100 cargo test --release --test command random_interrupts -- --nocapture` tries so many, and
+//! says after how much processor time, and by the clock, the runs ended.
 
 use super::Sandbox;
 use lightsplat::film::ExrFile;

@@ -4,8 +4,8 @@ use crate::kit::*;
 use crate::oracle::{assert_rms_below, brightest};
 use lightsplat::method::{Output, cache, lightcuts, photon_cache, reconstruction};
 
-/// A coarse cut gave a point the light of a whole cluster whose representative lay next to it: bright specks, and an RMS
-/// error of 1176 %. Today a cluster that gives more than a quarter of the light is split, and the error is 12 %.
+/// A coarse cut gave a point the light of a whole cluster whose representative lay next to it: bright specks, and an
+/// RMS error of 1176 %. Today a cluster that gives more than a quarter of the light is split, and the error is 12 %.
 #[test]
 fn coarse_cuts_leave_no_bright_specks() {
     let world = own("knot", 48);

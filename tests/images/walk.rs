@@ -40,7 +40,8 @@ fn goal() -> Goal {
     Goal { method: Method::Cache(settings()), ..Goal::default() }
 }
 
-/// [`goal`] with half the least radius. Walks double it, and in so small an image it decides how many records there are.
+/// [`goal`] with half the least radius. Walks double it, and in so small an image it decides how many records there
+/// are.
 fn goal_of_walk() -> Goal {
     let mut settings = settings();
     settings.cache.reach[1][0] *= 0.5;

@@ -1,7 +1,7 @@
 //! Public scenes load completely: counts as in Mitsuba 3.9.1, and no unexplained warnings.
 //!
-//! The scenes are no part of this repository. They are looked for in `$LIGHTSPLAT_SHARED` and beside the checkout. Without
-//! them the tests are skipped with a message.
+//! The scenes are no part of this repository. They are looked for in `$LIGHTSPLAT_SHARED` and beside the checkout.
+//! Without them the tests are skipped with a message.
 
 use lightsplat::readers::{Level, LoadOptions, Loaded, load};
 use std::path::PathBuf;

@@ -5,10 +5,10 @@
 //! A [`Walk`] renders one frame after the other. Scene, virtual lights and light trees are the session's; the records
 //! of indirect light stay in the walk (see [`KeptRecords`]), so that a frame computes only those that its predecessors
 //! lack. Of drawn direct light, that of even surfaces is carried from picture to picture and refreshed by few samples
-//! (see [`transport::reprojection`]). Elsewhere the random numbers of a pixel are the same in every frame, so that noise
-//! which the denoiser leaves stays where it is: on static surfaces of the apartment, reprojected from frame to frame,
-//! new numbers in each change the denoised picture 1.8 times as much. A frame has the
-//! same bits for any number of threads; it depends on the frames that the walk rendered before it.
+//! (see [`transport::reprojection`]). Elsewhere the random numbers of a pixel are the same in every frame, so that
+//! noise which the denoiser leaves stays where it is: on static surfaces of the apartment, reprojected from frame to
+//! frame, new numbers in each change the denoised picture 1.8 times as much. A frame has the same bits for any number
+//! of threads; it depends on the frames that the walk rendered before it.
 //!
 //! Walks are cut into chunks, which begin without records, and a chunk's records are saved beside its frames, so that a
 //! walk that was stopped goes on with the same. `docs/walk.md` has figures of time, error, flicker and memory.

@@ -110,8 +110,8 @@ pub(super) trait Curve {
 
     /// Returns the maximum reflectance at any cosine >= `cos_min`, given the reflectance `normal` at normal incidence.
     ///
-    /// A dielectric's reflectance grows towards grazing. A conductor's may first fall from its value at normal incidence,
-    /// then rises to 1. Schlick's goes from one end to the other. So the larger of the ends bounds them.
+    /// A dielectric's reflectance grows towards grazing. A conductor's may first fall from its value at normal
+    /// incidence, then rises to 1. Schlick's goes from one end to the other. So the larger of the ends bounds them.
     fn max_reflectance(&self, cos_min: f32, normal: Rgb) -> Rgb;
 }
 
