@@ -5,8 +5,8 @@ use super::setting::{Dice, Setting};
 use super::{Benchmark, Clock, Context, Kind, Table};
 use base::math::luminance;
 use std::hint::black_box;
-use transport::light_tree::Node;
 use transport::lightcut::{Receiver, ReceiverPacket};
+use transport::lights::LightNode;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "bounds",
@@ -29,8 +29,8 @@ fn run(context: &Context) -> Vec<Table> {
     let transfer = setting.transfer();
     let mut dice = Dice(4);
     // Inner nodes, and their representative lights.
-    let inner: Vec<&Node> = setting.trees.nodes.iter().filter(|n| !n.is_leaf()).collect();
-    let nodes: Vec<&Node> =
+    let inner: Vec<&LightNode> = setting.trees.nodes.iter().filter(|n| !n.is_leaf()).collect();
+    let nodes: Vec<&LightNode> =
         (0..CLUSTERS).filter_map(|_| inner.get(dice.below(inner.len())).copied()).collect();
     let units = (groups.iter().map(Vec::len).sum::<usize>() * nodes.len()) as f64;
     let collectors: Vec<ReceiverPacket> =

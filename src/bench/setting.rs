@@ -7,9 +7,8 @@ use base::sampling::hash;
 use render::session::Session;
 use std::ops::Range;
 use transport::eye::{EyePass, EyeSettings};
-use transport::light_tree::{Family, LightTrees, Node};
 use transport::lightcut::{CoherenceLimit, Receiver, Transfer, group_coherent};
-use transport::vpl::{LightPass, LightPassSettings, light_pass};
+use transport::lights::{Family, LightNode, LightPass, LightPassSettings, LightTrees, light_pass};
 use world::World;
 use world::view::View;
 
@@ -87,7 +86,7 @@ impl<'w> Setting<'w> {
     }
 
     /// Returns all single lights, neighbours in their tree next to each other.
-    pub fn leaves(&self) -> Vec<&Node> {
+    pub fn leaves(&self) -> Vec<&LightNode> {
         self.trees.leaves().collect()
     }
 }

@@ -5,9 +5,8 @@ use super::setting::Setting;
 use super::{Benchmark, Clock, Context, Kind, Table};
 use base::progress::Control;
 use std::hint::black_box;
-use transport::light_tree::{Family, LightTrees};
 use transport::lightcut::{CutSettings, Lightcut, Transfer};
-use transport::vpl::{LightPass, LightPassSettings, light_pass};
+use transport::lights::{Family, LightPass, LightPassSettings, LightTrees, light_pass};
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "trees",

@@ -2,7 +2,8 @@
 //!
 //! In the order of the data:
 //!
-//! - [`vpl`] turns lights and photon paths into virtual point lights, [`light_tree`] clusters them;
+//! - [`emission`] samples the beginnings of photon paths at emitters, and traces them;
+//! - [`lights`] turns emitters and photons into virtual point lights, and clusters them in trees;
 //! - [`caustics`] traces photons over mirrors and through glass to the surfaces behind;
 //! - [`paths`] traces paths from the eye in packets;
 //! - [`eye`] finds the points that scatter light into each pixel, through mirrors and glass;
@@ -19,15 +20,15 @@
 
 pub mod bias_compensation;
 pub mod caustics;
+pub mod emission;
 pub mod eye;
 pub mod gradient;
 pub mod hsh;
-pub mod light_tree;
 pub mod lightcut;
+pub mod lights;
 pub mod paths;
 pub mod perception;
 pub mod photon;
 pub mod radiance_cache;
 pub mod reprojection;
 pub mod shade;
-pub mod vpl;

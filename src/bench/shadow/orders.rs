@@ -12,6 +12,7 @@ use transport::lightcut::{
     CutSettings, Lightcut, MIN_SHARED, PacketLightcut, PacketVisibility, RayVisibility, Receiver,
     ReceiverPacket, Visibility,
 };
+use transport::lights::{DirectIndirect, Origin};
 use transport::radiance_cache::CacheSettings;
 use transport::radiance_cache::placement::candidates;
 use transport::radiance_cache::source::{Candidate, LightcutSource};
@@ -19,7 +20,6 @@ use transport::radiance_cache::splat::Splat;
 use transport::radiance_cache::store::RecordStore;
 use transport::radiance_cache::targets::Targets;
 use transport::shade::{Gatherers, ShadeSettings, ShadingContext, ShadingTask, patches};
-use transport::vpl::{DirectIndirect, Origin};
 
 /// Points that are lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,9 +6,8 @@ use base::math::{LANES, Rgb, Vec3x16, first_lanes, lanes_in};
 use embree::{Ray, Rays16};
 use glam::Vec3;
 use std::cell::RefCell;
-use transport::light_tree::Node;
 use transport::lightcut::{PacketVisibility, RayVisibility, Receiver, ReceiverPacket, Visibility, to_vpl};
-use transport::vpl::Vpl;
+use transport::lights::{LightNode, Vpl};
 
 /// Up to sixteen segments.
 #[derive(Clone)]
@@ -106,7 +105,7 @@ impl Packer {
 }
 
 /// The ray to a light, if its light would be reflected.
-fn lit(setting: &Setting, reflector: &Receiver, leaf: &Node) -> Option<Ray> {
+fn lit(setting: &Setting, reflector: &Receiver, leaf: &LightNode) -> Option<Ray> {
     let vpl = &setting.trees.vpls[leaf.representative()];
     let response = setting.transfer().unshadowed(reflector, vpl, leaf.kind());
     let (x, normal) = (reflector.position(), reflector.geometric_normal());
@@ -213,7 +212,7 @@ struct Recorder<'a> {
 }
 
 impl Visibility for Recorder<'_> {
-    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &LightNode) -> bool {
         let ray = to_vpl(x, normal, vpl, node.kind());
         self.packer.borrow_mut().push(&ray, node.representative() as u32);
         !self.setting.world.accel.occluded(&ray)
@@ -221,7 +220,7 @@ impl Visibility for Recorder<'_> {
 }
 
 impl PacketVisibility for Recorder<'_> {
-    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &LightNode) -> u16 {
         let rays = points.shadow_rays(vpl, node.kind());
         let seen = lanes & !self.setting.world.accel.occluded16(&rays, lanes, true);
         let key = node.representative() as u32;

@@ -30,10 +30,9 @@ pub use renderer::{Before, Renderer, render};
 pub use sampling::{Sampled, Sampling};
 
 // Parts of the methods' settings.
-pub use transport::light_tree::Family;
 pub use transport::lightcut::CutSettings;
+pub use transport::lights::{Family, LightPassSettings};
 pub use transport::paths::Look;
 pub use transport::radiance_cache::kept::{KeepLimits, KeptRecords};
 pub use transport::radiance_cache::{CacheSettings, DirectBy, Footprints, FoundBy};
-pub use transport::vpl::LightPassSettings;
 pub use world::shadow::{OccluderCacheSettings, ShadowSettings};

@@ -1,13 +1,12 @@
 //! A picture that lacks but its lighting: the beginning of all methods that light the samples of an eye pass.
 
-use super::lights::{LightStore, Lights, LightsWanted};
+use super::lights::{LightStore, lights_wanted};
 use super::{Sampling, counts};
 use base::progress::Control;
 use base::stats::{Stage, Stats};
 use std::sync::Arc;
 use transport::eye::{DrawnLight, EyePass, PointGeometry, PointSurface, ShadingPoints, TILE};
-use transport::light_tree::Family;
-use transport::vpl::LightPassSettings;
+use transport::lights::{Family, LightPassSettings, Lights};
 use world::view::View;
 use world::{SurfacePoint, World};
 
@@ -39,7 +38,6 @@ impl<'w> Prepared<'w> {
     ) -> Prepared<'w> {
         let mut stats = Stats::new();
         let rays = sampling.eye(&world.scene);
-        let wanted = LightsWanted::new(world, sampling, wanted);
         let caustics = lights.photons.of_picture((world, view), rays, control, &mut stats);
         control.begin(Stage::EyePass, view.window.tile_count(TILE) as u64);
         let eye = stats.time(Stage::EyePass, || {
@@ -51,7 +49,7 @@ impl<'w> Prepared<'w> {
         }
         // Afterwards, since most memory is taken where the eye pass is put in order.
         let seen = if aimed { seen(world, &eye) } else { Vec::new() };
-        let lights = lights.get(world, (wanted, seen), control, &mut stats);
+        let lights = lights.get(world, lights_wanted(world, sampling, wanted, seen), control, &mut stats);
         Prepared { eye, lights, stats }
     }
 }

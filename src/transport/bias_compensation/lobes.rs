@@ -5,45 +5,13 @@
 //! what the diffuse one would give without a limit, where the diffuse one lacks max(0, 1 - b/G).
 
 use super::Compensation;
-use super::short_rays::{BRIGHTER, Limit, NearSurface};
+use super::near_surface::{BRIGHTER, Limit, NearSurface};
 use crate::lightcut::{PacketCluster, PacketCut};
-use crate::vpl::VplKind;
+use crate::lights::VplKind;
 use base::math::Rgb;
 use glam::Vec3;
 use std::f32::consts::PI;
 use world::material::Bsdf;
-
-/// Light that a lobe may give, over a diffuse surface of its flux, as far as short rays look.
-const MOST: f32 = 4.0;
-
-impl Compensation<'_> {
-    /// Light that a virtual light of the scene may give, over a diffuse one of its flux, as far as short rays look.
-    pub(super) fn most_of_lobes(&self) -> f32 {
-        if self.transfer.trees.profiles.lobes.is_empty() { 1.0 } else { MOST }
-    }
-}
-
-/// How much a surface met by a short ray gives of what virtual lights lack.
-#[derive(Clone, Copy, Debug)]
-pub struct Lack {
-    /// Unit vector back along the ray.
-    pub out: Vec3,
-    /// Geometry term that virtual lights have kept, over the ray's.
-    pub kept: f32,
-    /// Limit of the virtual lights.
-    pub limit: Limit,
-    /// True if the surface radiates by lobes.
-    pub by_lobes: bool,
-}
-
-impl Lack {
-    /// Returns a bound of what is lacking, up to a constant factor: that of a diffuse surface, max(0, 1 - b/G), or that
-    /// of a lobe at its greatest.
-    pub fn weight(&self) -> f32 {
-        let most = if self.by_lobes { MOST } else { 1.0 };
-        (1.0 - self.kept / most).max(0.0)
-    }
-}
 
 /// Factors of the irradiance from each cluster of a `cut` at a surface met, by which its weight gives what virtual
 /// lights lack; `None` if all are 1.
@@ -90,6 +58,7 @@ impl NearSurface {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bias_compensation::near_surface::{Lack, MOST};
     use embree::Ray;
     use scene::Camera;
     use world::testkit::*;

@@ -10,12 +10,12 @@
 //! the radiance cache, which also needs its gradients.
 //!
 //! Virtual lights on area lights count with cosθ_x cosθ_y / max(r², A), A the area that they represent (to
-//! within a factor of 2, see [`crate::vpl::size_of_area`]); rays that hit the light at r find max(0, 1 -
+//! within a factor of 2, see [`crate::lights::size_of_area`]); rays that hit the light at r find max(0, 1 -
 //! r²/A) of its radiance.
 //!
 //! Deviations: light of the second kind is not in the paper, which limits no direct light. b comes from the mean
 //! intensity of the indirect virtual lights around the point, or where all light that one gives is limited, around
-//! the surface met ([`intensities`]), so one that is much brighter than those may give more than the limit. Every
+//! the surface met ([`crate::lights::Intensities`]), so one that is much brighter than those may give more than the limit. Every
 //! point is compensated, also where no light of its cut happens to be clamped: the two parts complement each other on
 //! average only. All points of a picture use the same directions, in frames of their own, so that their errors are
 //! similar and no noise is visible between them; other seeds use others. Surfaces that rays meet reflect as virtual
@@ -24,14 +24,14 @@
 //!
 //! Units: b in 1/m².
 
-pub mod intensities;
 pub mod lobes;
+pub mod near_surface;
 pub mod points;
 pub mod short_rays;
 
 use crate::lightcut::Transfer;
+use crate::lights::Lights;
 use glam::Vec3;
-use intensities::Intensities;
 use world::World;
 
 /// Compensation at all points of a scene.
@@ -39,36 +39,25 @@ use world::World;
 pub struct Compensation<'a> {
     /// The scene.
     pub world: &'a World,
-    /// Transfer from its virtual lights.
+    /// Transfer from its virtual lights, with their patches.
     pub transfer: Transfer<'a>,
-    /// `None` if no light is indirect.
-    intensities: Option<&'a Intensities>,
-    /// Squared distance from surfaces that shine, by mesh, below which their virtual lights give less; 0 for others.
-    near_sq: &'a [f32],
+    lights: &'a Lights,
+    /// Maximum of the lights' `near_sq` over all meshes.
     max_near_sq: f32,
-    /// Seed of the directions of short rays.
-    seed: u32,
 }
 
 impl<'a> Compensation<'a> {
-    /// For all points lit through `transfer`, by lights of the given `intensities`. `near_sq` is the squared distance
-    /// from each mesh that shines below which its virtual lights give less than they should, and 0 for others.
-    /// Directions of short rays follow from `seed`.
-    pub fn new(
-        world: &'a World,
-        transfer: Transfer<'a>,
-        intensities: Option<&'a Intensities>,
-        near_sq: &'a [f32],
-        seed: u32,
-    ) -> Compensation<'a> {
-        let max_near_sq = near_sq.iter().copied().fold(0.0, f32::max);
-        Compensation { world, transfer, intensities, near_sq, max_near_sq, seed }
+    /// Compensation at all points lit by the virtual lights of a scene. The lights' seed determines the directions of
+    /// short rays.
+    pub fn new(world: &'a World, lights: &'a Lights) -> Compensation<'a> {
+        let max_near_sq = lights.near_sq.iter().copied().fold(0.0, f32::max);
+        Compensation { world, transfer: Transfer::of(lights, true), lights, max_near_sq }
     }
 
     /// The bound of the geometry term that keeps the irradiance at a point from a light of the mean intensity around it
     /// below `limit`.
     pub fn bound(&self, x: Vec3, limit: f32) -> f32 {
-        let intensity = self.intensities.map_or(0.0, |intensities| intensities.around(x));
+        let intensity = self.lights.intensities.as_ref().map_or(0.0, |intensities| intensities.around(x));
         if intensity > 0.0 { limit / intensity } else { f32::INFINITY }
     }
 }

@@ -6,13 +6,14 @@
 //! Deviations: light that lobes reflect is not compensated, only that of bases. Cuts limit the luminance that
 //! a virtual light gives, not its geometry term: the same for lights of the mean intensity around the surface met.
 
-use super::short_rays::{self, ClampedPoint, Limit, NearSurface};
+use super::near_surface::{Limit, NearSurface};
+use super::short_rays::{self, ClampedPoint};
 use super::{Compensation, choose_evenly, lobes};
 use crate::lightcut::{
     CutCounts, CutSettings, PacketCut, PacketLightcut, PacketSum, Receiver, ReceiverPacket, SampledCut,
     Samples, frozen_luminance,
 };
-use crate::vpl::Origin;
+use crate::lights::Origin;
 use base::math::{Frame, LANES, Rgb, luminance};
 use base::stats::add_fields;
 use std::f32::consts::PI;
@@ -273,7 +274,7 @@ fn mean_irradiance(receivers: &ReceiverPacket, radiance: &[Rgb; LANES]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bias_compensation::lobes::Lack;
+    use crate::bias_compensation::near_surface::Lack;
     use embree::Ray;
     use glam::Vec3;
     use scene::Camera;

@@ -4,14 +4,14 @@
 //! lights close behind a pane is not found again.
 
 use super::Compensation;
-use super::lobes::Lack;
+use super::near_surface::{Lack, Limit, MOST, NearSurface};
 use base::math::{Frame, LANES, Rgb, lanes_in, luminance};
 use base::sampling::{cosine_hemisphere, owen_sobol_2d};
 use embree::{Hit, Hits16, Ray, Rays16};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
+use world::SurfacePoint;
 use world::shadow;
-use world::{Surface, SurfacePoint};
 
 /// Part of the seed of the directions, which no other samples of the picture's seed share.
 const SALT: u32 = 0x5eed;
@@ -19,19 +19,6 @@ const SALT: u32 = 0x5eed;
 /// Intensity of virtual lights near a point, over the mean around it, up to which rays reach far enough where
 /// irradiances are limited.
 const MOST_AROUND: f32 = 4.0;
-
-/// Luminance that a virtual light may give over the limit where geometry terms are limited: one much brighter than
-/// those around would leave a spot.
-pub const BRIGHTER: f32 = 2.0;
-
-/// Most of an indirect virtual light; none is limited where it is not positive and finite.
-#[derive(Clone, Copy, Debug)]
-pub enum Limit {
-    /// The geometry term.
-    Geometry(f32),
-    /// The luminance of the irradiance.
-    Irradiance(f32),
-}
 
 /// A point whose virtual lights are limited.
 #[derive(Clone, Copy, Debug)]
@@ -44,23 +31,11 @@ pub struct ClampedPoint {
     pub direct: bool,
 }
 
-/// A surface that a ray met, and the weight of its light.
-#[derive(Clone, Copy)]
-pub struct NearSurface {
-    /// The surface.
-    pub surface: Surface,
-    /// Distance along the ray.
-    pub distance: f32,
-    /// Cosine of the ray to the normal it started at.
-    pub cos: f32,
-    /// Unit shading normal on the side of the ray.
-    pub normal: Vec3,
-    /// Radiance back along the ray for an irradiance of 1, times max(0, 1 - b/G), or more where lobes radiate.
-    pub weight: Rgb,
-    /// How it gives that light.
-    pub lack: Lack,
-    /// Radiance emitted back along the ray, times max(0, 1 - r²/A).
-    pub emitted: Rgb,
+impl Compensation<'_> {
+    /// Light that a virtual light of the scene may give, over a diffuse one of its flux, as far as short rays look.
+    fn most_of_lobes(&self) -> f32 {
+        if self.transfer.trees.profiles.lobes.is_empty() { 1.0 } else { MOST }
+    }
 }
 
 /// Calls `met` with the number of a point and a surface with light that virtual lights lack, for each of
@@ -88,7 +63,7 @@ pub fn trace(
     let frames: Vec<Frame> = points.iter().map(|p| Frame::from_normal(p.point.normal)).collect();
     let mut rays = Rays16::default();
     let mut hits = Hits16::default();
-    let seed = c.seed ^ SALT;
+    let seed = c.lights.seed ^ SALT;
     for index in 0..count {
         let local = cosine_hemisphere(owen_sobol_2d(index, seed));
         for lane in lanes_in(valid) {
@@ -124,7 +99,7 @@ fn weighed(
     };
     let bound = if bound > 0.0 { bound } else { f32::INFINITY };
     let dist_sq = distance * distance;
-    let lit_sq = if point.direct { c.near_sq[hit.geometry as usize] } else { 0.0 };
+    let lit_sq = if point.direct { c.lights.near_sq[hit.geometry as usize] } else { 0.0 };
     // G is no more than this.
     if c.most_of_lobes() * cos <= bound * dist_sq && lit_sq <= dist_sq {
         return None;
@@ -161,10 +136,7 @@ fn weighed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bias_compensation::intensities::Intensities;
-    use crate::light_tree::{Family, LightTrees};
-    use crate::lightcut::Transfer;
-    use crate::vpl::{Origin, Profiles, Vpl, VplKind, VplSet};
+    use crate::lights::{Family, Intensities, LightTrees, Lights, Origin, Profiles, Vpl, VplKind, VplSet};
     use base::progress::Control;
     use std::f32::consts::PI;
     use world::World;
@@ -200,8 +172,9 @@ mod tests {
     ) -> [f32; 2] {
         let world = ceiling();
         let trees = LightTrees::build(&[], Vec::new(), world.diagonal, Family::default(), &Control::new());
-        let near = [near_sq];
-        let c = Compensation::new(&world, Transfer::new(&trees, world.diagonal), intensities, &near, seed);
+        let intensities = intensities.cloned();
+        let lights = Lights { trees, near_sq: vec![near_sq], intensities, diagonal: world.diagonal, seed };
+        let c = Compensation::new(&world, &lights);
         let point = SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, geometric_normal: Vec3::Z };
         let mut sums = [0.0; 2];
         let clamped = ClampedPoint { point, limit, direct: near_sq > 0.0 };

@@ -4,7 +4,7 @@
 //! in proportion to the photons that the first paths in the cell and around it have left, or could have, and a little
 //! everywhere.
 
-use crate::vpl::{Emission, EmissionNumbers, PhotonEmitter};
+use crate::emission::{EmissionNumbers, EmissionSample, PhotonEmitter};
 use base::sampling::Sampler;
 use glam::Vec2;
 use world::light::DiscreteDistribution;
@@ -38,7 +38,7 @@ pub struct Yield {
 /// The beginning of a path, with the flux of paths that begin as [`Aims`] has them.
 pub struct Aimed {
     /// The beginning.
-    pub emission: Emission,
+    pub emission: EmissionSample,
     /// Its cell.
     pub cell: usize,
     /// Paths that begin in the cell over those that would in proportion to flux.

@@ -21,7 +21,7 @@ mod photons;
 #[cfg(test)]
 mod tests;
 
-use crate::vpl::PhotonEmitter;
+use crate::emission::PhotonEmitter;
 use base::kd_tree::KdTree;
 use base::math::{Rgb, luminance};
 use base::progress::Control;

@@ -1,7 +1,7 @@
 //! Photons that come to surfaces by mirrors and glass alone.
 
 use super::aims::{Aimed, Aims, Yield};
-use crate::vpl::{Emission, MAX_CORRECTION, PhotonEmitter};
+use crate::emission::{EmissionSample, MAX_CORRECTION, PhotonEmitter};
 use base::math::{Rgb, luminance};
 use base::parallel::ShortRuns;
 use base::progress::Control;
@@ -188,7 +188,7 @@ fn chunks(
 /// number of rays.
 fn follow(
     world: &World,
-    Emission { mut ray, mut flux, radiance }: Emission,
+    EmissionSample { mut ray, mut flux, radiance }: EmissionSample,
     sampler: &mut Sampler,
     max_edges: u32,
     photons: &mut Vec<CausticPhoton>,

@@ -2,7 +2,7 @@
 //! the falloff as the receiver moves.
 
 use super::incidence::Incidence;
-use crate::vpl::{LobeProfile, SpotProfile};
+use crate::lights::{LobeProfile, SpotProfile};
 use base::math::Frame;
 use glam::Vec3;
 

@@ -1,9 +1,9 @@
 //! Virtual lights in the frame of their receiver.
 //!
-//! Units: per unit intensity (see [`crate::vpl`]), so the factor is 1/m² and its gradient 1/m³.
+//! Units: per unit intensity (see [`crate::lights`]), so the factor is 1/m² and its gradient 1/m³.
 
 use super::incidence::Incidence;
-use crate::vpl::{Profiles, Vpl, VplKind};
+use crate::lights::{Profiles, Vpl, VplKind};
 use base::math::{Frame, Real};
 use glam::Vec3;
 

@@ -1,8 +1,7 @@
 //! Derivatives against finite differences and against the paper's formula.
 
 use super::*;
-use crate::light_tree::{Family, LightTrees};
-use crate::vpl::{LobeProfile, Profiles, SpotProfile, Vpl, VplKind};
+use crate::lights::{Family, LightTrees, LobeProfile, Profiles, SpotProfile, Vpl, VplKind};
 use base::math::{Frame, Real};
 use base::progress::Control;
 use glam::{DVec3, Vec3};

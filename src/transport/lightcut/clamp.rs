@@ -6,8 +6,7 @@
 //! of all others while the cut is refined.
 
 use super::CutCounts;
-use crate::light_tree::{LightTrees, Node};
-use crate::vpl::Origin;
+use crate::lights::{LightNode, LightTrees, Origin};
 use base::math::{Rgb, luminance};
 
 /// Maximum share of the total luminance that a single indirect leaf may have and still count in the total
@@ -22,7 +21,7 @@ pub(super) const MAX_STEPS: u32 = 12;
 
 /// Indirect leaves, the only nodes that are clamped.
 #[inline]
-pub fn is_weak(node: &Node) -> bool {
+pub fn is_weak(node: &LightNode) -> bool {
     node.is_leaf() && node.origin() == Origin::Indirect
 }
 

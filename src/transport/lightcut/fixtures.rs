@@ -1,8 +1,9 @@
 //! Random points, materials and virtual lights for tests of cuts.
 
 use super::{CutSettings, PacketVisibility, RayVisibility, Receiver, ReceiverPacket, Visibility};
-use crate::light_tree::{Family, LightTrees, Node};
-use crate::vpl::{LobeProfile, Origin, Profiles, SpotProfile, Vpl, VplKind, VplSet};
+use crate::lights::{
+    Family, LightNode, LightTrees, LobeProfile, Origin, Profiles, SpotProfile, Vpl, VplKind, VplSet,
+};
 use base::math::{Frame, Rgb, Vec3x16, lanes_in};
 use base::progress::Control;
 use base::sampling::{hash, uniform_sphere};
@@ -141,7 +142,7 @@ pub struct Ball {
 }
 
 impl Visibility for Ball {
-    fn visible(&self, x: Vec3, _: Vec3, vpl: &Vpl, node: &Node) -> bool {
+    fn visible(&self, x: Vec3, _: Vec3, vpl: &Vpl, node: &LightNode) -> bool {
         let (direction, t_max) = match node.kind() {
             VplKind::Directional => (vpl.position, f32::INFINITY),
             _ => ((vpl.position - x).normalize_or_zero(), (vpl.position - x).length()),
@@ -152,7 +153,7 @@ impl Visibility for Ball {
 }
 
 impl PacketVisibility for Ball {
-    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &LightNode) -> u16 {
         let sees = |&lane: &usize| self.visible(receivers.get(lane).position(), Vec3::ZERO, vpl, node);
         lanes_in(lanes).filter(sees).fold(0, |mask, lane| mask | 1 << lane)
     }
@@ -216,14 +217,14 @@ pub struct Unoccluded;
 
 impl Visibility for Unoccluded {
     #[inline]
-    fn visible(&self, _: Vec3, _: Vec3, _: &Vpl, _: &Node) -> bool {
+    fn visible(&self, _: Vec3, _: Vec3, _: &Vpl, _: &LightNode) -> bool {
         true
     }
 }
 
 impl PacketVisibility for Unoccluded {
     #[inline]
-    fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &Node) -> u16 {
+    fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &LightNode) -> u16 {
         lanes
     }
 }

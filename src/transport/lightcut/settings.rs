@@ -1,6 +1,6 @@
 //! Settings of cuts, and counts of the work they took.
 
-use crate::vpl::Origin;
+use crate::lights::Origin;
 use base::setting::{DOWN, JudgedBy, UP, settings};
 use base::stats::add_fields;
 

@@ -1,6 +1,6 @@
 //! Shadow rays towards virtual lights: the one place that distinguishes kinds of lights.
 
-use crate::vpl::{Vpl, VplKind};
+use crate::lights::{Vpl, VplKind};
 use base::math::{LANES, Vec3x16};
 use embree::{Ray, Rays16};
 use glam::Vec3;

@@ -1,8 +1,7 @@
 //! Cuts in whole scenes against closed forms and the full sum.
 
 use super::{CutSettings, Lightcut, PacketLightcut, Receiver, ReceiverPacket, Transfer, gather_all};
-use crate::light_tree::{Family, LightTrees};
-use crate::vpl::{LightPassSettings, light_pass};
+use crate::lights::{Family, LightPassSettings, LightTrees, light_pass};
 use base::math::{Frame, Rgb, luminance};
 use base::progress::Control;
 use glam::{Vec2, Vec3};

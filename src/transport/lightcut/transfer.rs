@@ -4,8 +4,7 @@
 //! Units: all per unit intensity, before visibility.
 
 use super::Receiver;
-use crate::light_tree::LightTrees;
-use crate::vpl::{Vpl, VplKind, min_dist_sq, near_sq_of_size};
+use crate::lights::{LightTrees, Lights, Vpl, VplKind, min_dist_sq, near_sq_of_size};
 use base::math::Rgb;
 
 /// Transfer from all VPLs of a scene.
@@ -25,6 +24,11 @@ impl<'a> Transfer<'a> {
     /// From the VPLs of `trees` in a scene of the given diagonal.
     pub fn new(trees: &'a LightTrees, diagonal: f32) -> Transfer<'a> {
         Transfer { trees, min_dist_sq: min_dist_sq(diagonal), patches: false }
+    }
+
+    /// Transfer from the VPLs of a scene. With `patches`, VPLs on area lights divide by no less than their area.
+    pub fn of(lights: &Lights, patches: bool) -> Transfer<'_> {
+        Transfer { patches, ..Transfer::new(&lights.trees, lights.diagonal) }
     }
 
     /// Minimum squared distance that the geometry term of a VPL divides by.

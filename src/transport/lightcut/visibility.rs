@@ -1,8 +1,7 @@
 //! Visibility of virtual lights in a scene: from a single point and from a packet.
 
 use super::{ReceiverPacket, to_vpl};
-use crate::light_tree::Node;
-use crate::vpl::Vpl;
+use crate::lights::{LightNode, Vpl};
 use base::math::{Rgb, Vec3x16, first_lanes};
 use embree::Rays16;
 use glam::Vec3;
@@ -13,10 +12,10 @@ use world::shadow::Engine;
 pub trait Visibility {
     /// True if nothing lies between the surface point `x` with geometric normal `normal` and the VPL, which
     /// represents `node`.
-    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool;
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &LightNode) -> bool;
 
     /// Share of the light of a visible VPL that passes the sheets on its way.
-    fn transmittance(&self, _x: Vec3, _normal: Vec3, _vpl: &Vpl, _node: &Node) -> Rgb {
+    fn transmittance(&self, _x: Vec3, _normal: Vec3, _vpl: &Vpl, _node: &LightNode) -> Rgb {
         Rgb::ONE
     }
 }
@@ -24,14 +23,14 @@ pub trait Visibility {
 /// Visibility of a VPL from the points of a packet.
 pub trait PacketVisibility {
     /// The lanes of `lanes` that see the VPL, which represents `node`.
-    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16;
+    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &LightNode) -> u16;
 
     /// Multiplies the `light` in lanes that see the VPL by the share of it that passes the sheets on its way.
     fn attenuate16(
         &self,
         _receivers: &ReceiverPacket,
         _lanes: u16,
-        (_vpl, _node): (&Vpl, &Node),
+        (_vpl, _node): (&Vpl, &LightNode),
         _light: &mut Vec3x16,
     ) {
     }
@@ -46,12 +45,12 @@ pub trait RayVisibility {
 
 impl Visibility for Engine<'_> {
     #[inline]
-    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &LightNode) -> bool {
         !self.occluded(&to_vpl(x, normal, vpl, node.kind()), node.representative() as u32)
     }
 
     #[inline]
-    fn transmittance(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> Rgb {
+    fn transmittance(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &LightNode) -> Rgb {
         match self.world().has_sheets() {
             true => self.world().transmittance(&to_vpl(x, normal, vpl, node.kind())),
             false => Rgb::ONE,
@@ -61,7 +60,7 @@ impl Visibility for Engine<'_> {
 
 impl PacketVisibility for Engine<'_> {
     #[inline]
-    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &LightNode) -> u16 {
         let rays = receivers.shadow_rays(vpl, node.kind());
         lanes & !self.occluded16(&rays, lanes)
     }
@@ -71,7 +70,7 @@ impl PacketVisibility for Engine<'_> {
         &self,
         receivers: &ReceiverPacket,
         lanes: u16,
-        (vpl, node): (&Vpl, &Node),
+        (vpl, node): (&Vpl, &LightNode),
         light: &mut Vec3x16,
     ) {
         if self.world().has_sheets() {
@@ -97,24 +96,30 @@ impl RayVisibility for Engine<'_> {
 
 impl Visibility for World {
     #[inline]
-    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> bool {
+    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &LightNode) -> bool {
         Visibility::visible(&Engine::new(self), x, normal, vpl, node)
     }
 
     #[inline]
-    fn transmittance(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &Node) -> Rgb {
+    fn transmittance(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &LightNode) -> Rgb {
         Visibility::transmittance(&Engine::new(self), x, normal, vpl, node)
     }
 }
 
 impl PacketVisibility for World {
     #[inline]
-    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &LightNode) -> u16 {
         Engine::new(self).visible16(receivers, lanes, vpl, node)
     }
 
     #[inline]
-    fn attenuate16(&self, receivers: &ReceiverPacket, lanes: u16, of: (&Vpl, &Node), light: &mut Vec3x16) {
+    fn attenuate16(
+        &self,
+        receivers: &ReceiverPacket,
+        lanes: u16,
+        of: (&Vpl, &LightNode),
+        light: &mut Vec3x16,
+    ) {
         Engine::new(self).attenuate16(receivers, lanes, of, light)
     }
 }

@@ -17,7 +17,7 @@
 
 use super::disc::{self, Disc};
 use super::map::{PhotonMap, Site};
-use crate::vpl::Photon;
+use crate::emission::Photon;
 use base::math::{LANES, Rgb, Vec3x16, lanes_in, mask_of};
 use base::progress::Control;
 use glam::Vec3;

@@ -5,7 +5,7 @@
 //! in the next room, whose floor continues under the wall.
 
 use super::map::Site;
-use crate::vpl::Photon;
+use crate::emission::Photon;
 use base::math::{Frame, LANES, lanes_in};
 use base::sampling::{hash, owen_sobol_2d};
 use embree::{Hits16, Ray, Rays16};

@@ -5,7 +5,7 @@
 //!
 //! Units: flux in watts.
 
-use crate::vpl::{Photon, PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
+use crate::emission::{Photon, PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
 use base::kd_tree::KdTree;
 use base::math::Rgb;
 use base::progress::Control;

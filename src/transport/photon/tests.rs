@@ -5,7 +5,7 @@ use super::hemisphere::{GatherPoint, gather};
 use super::indirect_light::{GatherCounts, IndirectLight};
 use super::strata::{Met, Strata};
 use super::{IrradianceMap, PhotonMap};
-use crate::vpl::PhotonSettings;
+use crate::emission::PhotonSettings;
 use base::math::{Frame, LANES, Rgb};
 use base::progress::Control;
 use base::sampling::{cosine_hemisphere, owen_sobol_2d};

@@ -12,7 +12,7 @@ use super::settings::CacheSettings;
 use super::splat::Splat;
 use super::store::Records;
 use super::targets::Targets;
-use crate::vpl::{DirectIndirect, Origin};
+use crate::lights::{DirectIndirect, Origin};
 use base::math::{Rgb, luminance};
 use rayon::prelude::*;
 
@@ -150,7 +150,7 @@ mod tests {
     use super::super::fixtures::{Floor, record};
     use super::super::source::NewRecord;
     use super::*;
-    use crate::vpl::Origin::{Direct, Indirect};
+    use crate::lights::Origin::{Direct, Indirect};
     use glam::Vec3;
 
     fn contribution(record: u32, weight: f32, light: f32) -> Contribution {

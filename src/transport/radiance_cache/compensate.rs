@@ -9,10 +9,11 @@
 
 use super::gather::GatheredLayer;
 use super::source::{Candidate, LightcutSource};
-use crate::bias_compensation::short_rays::{self, BRIGHTER, ClampedPoint, Limit, NearSurface};
+use crate::bias_compensation::near_surface::{BRIGHTER, Limit, NearSurface};
+use crate::bias_compensation::short_rays::{self, ClampedPoint};
 use crate::bias_compensation::{Compensation, choose_evenly, lobes};
 use crate::lightcut::{CutSettings, PacketLightcut, Receiver, ReceiverPacket, group_compact};
-use crate::vpl::DirectIndirect;
+use crate::lights::DirectIndirect;
 use base::math::{F32x16, Frame, LANES, LUMINANCE, Rgb, Vec3x16, luminance};
 use std::f32::consts::{FRAC_1_PI, PI};
 

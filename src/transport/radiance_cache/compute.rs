@@ -19,7 +19,7 @@ use crate::hsh::Radiance;
 use crate::lightcut::{
     CutCounts, CutSettings, PacketCluster, PacketCut, PacketLightcut, ReceiverPacket, Transfer, group_compact,
 };
-use crate::vpl::{DirectIndirect, Origin};
+use crate::lights::{DirectIndirect, Origin};
 use base::math::{LUMINANCE, Rgb, lanes_in, luminance};
 use base::parallel::{ShortRuns, Workspaces};
 use glam::{Mat3, Vec3};

@@ -13,7 +13,7 @@ use super::splat::Splat;
 use super::store::Records;
 use super::targets::Targets;
 use crate::lightcut::CutCounts;
-use crate::vpl::{DirectIndirect, Origin};
+use crate::lights::{DirectIndirect, Origin};
 use base::progress::Control;
 use base::stats::{Stage, Stats};
 

@@ -12,7 +12,7 @@
 use super::occlusion_hessian::Derivatives;
 use super::settings::{CacheSettings, Footprints};
 use super::source::Candidate;
-use crate::vpl::Origin;
+use crate::lights::Origin;
 use base::math::Frame;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};

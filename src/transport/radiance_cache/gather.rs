@@ -11,7 +11,7 @@
 //! light's unoccluded contribution; the occluder is the one that stopped the shadow ray, not the nearest.
 
 use super::lit_cluster::{ArrivingLight, LitCluster, RecordPoints};
-use crate::vpl::{LobeProfile, VplKind};
+use crate::lights::{LobeProfile, VplKind};
 use base::math::{F32x16, LANES, Rgb, Vec3x16, luminance};
 use glam::{Mat3, Vec3};
 
@@ -225,10 +225,9 @@ fn relative_derivatives(lobe: &LobeProfile, away: Vec3) -> (Vec3, f32) {
 mod tests {
     use super::super::fixtures::{MATERIALS, candidate, light, lit_by};
     use super::*;
-    use crate::light_tree::LightTrees;
     use crate::lightcut::Transfer;
     use crate::lightcut::fixtures::profiles;
-    use crate::vpl::{Origin, Profiles, Vpl, VplSet};
+    use crate::lights::{LightTrees, Origin, Profiles, Vpl, VplSet};
     use glam::Vec3;
 
     const INTENSITY: Rgb = Rgb::new(3.0, 1.0, 2.0);

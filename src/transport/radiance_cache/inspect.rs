@@ -22,7 +22,7 @@ use super::fill::CacheFrame;
 use super::record::{Diagnostics, Record};
 use super::store::Records;
 use crate::eye::EyePass;
-use crate::vpl::{DirectIndirect, Origin};
+use crate::lights::{DirectIndirect, Origin};
 use base::film::{Image, Layer, Preview};
 use base::math::{LUMINANCE, Rgb, luminance};
 use rayon::prelude::*;

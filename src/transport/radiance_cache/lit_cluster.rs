@@ -2,9 +2,8 @@
 
 use super::compensate::Clamps;
 use super::source::Candidate;
-use crate::light_tree::Node;
 use crate::lightcut::{Transfer, is_weak};
-use crate::vpl::{LobeProfile, Vpl, VplKind};
+use crate::lights::{LightNode, LobeProfile, Vpl, VplKind};
 use base::math::{F32x16, Frame, LANES, Vec3x16, lanes_in};
 use glam::Vec3;
 use world::material::Materials;
@@ -15,7 +14,7 @@ pub struct LitCluster<'t> {
     /// Transfer from the virtual lights.
     pub transfer: &'t Transfer<'t>,
     /// The cluster.
-    pub node: &'t Node,
+    pub node: &'t LightNode,
     /// Its representative.
     pub vpl: &'t Vpl,
 }

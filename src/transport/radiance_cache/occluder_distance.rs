@@ -4,9 +4,8 @@
 //!
 //! Deviations: the occluder is the one that stopped the shadow ray, not the nearest.
 
-use crate::light_tree::Node;
 use crate::lightcut::{PacketVisibility, ReceiverPacket};
-use crate::vpl::Vpl;
+use crate::lights::{LightNode, Vpl};
 use base::math::{F32x16, LANES, Vec3x16};
 use embree::Occluders16;
 use glam::Vec3;
@@ -40,14 +39,14 @@ pub struct OccluderDistances(Vec<(u32, F32x16)>);
 
 impl OccluderDistances {
     /// Returns the distance from a lane to the occluder of a representative; infinite if there is none.
-    pub fn get(&self, node: &Node, lane: usize) -> f32 {
+    pub fn get(&self, node: &LightNode, lane: usize) -> f32 {
         let found = self.0.binary_search_by_key(&(node.representative() as u32), |entry| entry.0);
         found.map_or(f32::INFINITY, |i| self.0[i].1[lane])
     }
 }
 
 impl PacketVisibility for OccluderLog<'_> {
-    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &Node) -> u16 {
+    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &LightNode) -> u16 {
         let (rays, key) = (points.shadow_rays(vpl, node.kind()), node.representative() as u32);
         let mut found = Occluders16::default();
         let occluded = self.engine.occluders16(&rays, lanes, &mut found);
@@ -65,7 +64,7 @@ impl PacketVisibility for OccluderLog<'_> {
         lanes & !occluded
     }
 
-    fn attenuate16(&self, points: &ReceiverPacket, lanes: u16, of: (&Vpl, &Node), light: &mut Vec3x16) {
+    fn attenuate16(&self, points: &ReceiverPacket, lanes: u16, of: (&Vpl, &LightNode), light: &mut Vec3x16) {
         self.engine.attenuate16(points, lanes, of, light)
     }
 }

@@ -8,7 +8,7 @@ use super::edges::CellLight;
 use super::lit_cluster::ArrivingLight;
 use super::probe::{Probes, azimuths16};
 use crate::gradient::LocalVpl;
-use crate::vpl::{DirectIndirect, Origin};
+use crate::lights::{DirectIndirect, Origin};
 use base::math::{LANES, Rgb, luminance};
 use glam::{Mat3, Vec2, Vec3};
 use std::f32::consts::TAU;
@@ -138,7 +138,7 @@ mod tests {
     use super::super::lit_cluster::{LitCluster, RecordPoints};
     use super::*;
     use crate::lightcut::Transfer;
-    use crate::vpl::{Vpl, VplKind};
+    use crate::lights::{Vpl, VplKind};
     use base::math::Vec3x16;
     use scene::Scene;
 

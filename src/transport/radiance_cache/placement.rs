@@ -10,7 +10,7 @@
 use super::source::Candidate;
 use super::splat::Splat;
 use super::targets::Targets;
-use crate::vpl::DirectIndirect;
+use crate::lights::DirectIndirect;
 use base::math::luminance;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -99,7 +99,7 @@ mod tests {
     use super::super::source::NewRecord;
     use super::super::store::{RecordStore, Records};
     use super::*;
-    use crate::vpl::Origin;
+    use crate::lights::Origin;
     use base::math::Rgb;
 
     const REACH: f32 = 10.0;

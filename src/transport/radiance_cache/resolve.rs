@@ -5,7 +5,7 @@
 use super::fill::CacheFrame;
 use super::placement::missing;
 use super::store::Records;
-use crate::vpl::{DirectIndirect, Origin};
+use crate::lights::{DirectIndirect, Origin};
 use base::math::{Rgb, luminance};
 use rayon::prelude::*;
 

@@ -17,7 +17,7 @@ use super::targets::Targets;
 use crate::eye::{DrawnLight, ExtraSamples, PointGeometry, PointSurface, Settled, ShadingPoints};
 use crate::gradient::Incidence;
 use crate::hsh::{Accumulator, Caching, Kernel, MaterialSeries, Radiance};
-use crate::vpl::{DirectIndirect, Origin};
+use crate::lights::{DirectIndirect, Origin};
 use base::math::{Frame, Rgb};
 use glam::Vec3;
 use scene::MaterialId;

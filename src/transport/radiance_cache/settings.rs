@@ -3,8 +3,8 @@
 use crate::eye::merged_points;
 use crate::hsh::SeriesSettings;
 use crate::lightcut::CutSettings;
+use crate::lights::DirectIndirect;
 use crate::paths::Look;
-use crate::vpl::DirectIndirect;
 use base::setting::{DOWN, JudgedBy, PATCHES, SHARE, UP, choices, settings};
 use world::shadow::ShadowSettings;
 

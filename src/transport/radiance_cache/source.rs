@@ -4,8 +4,8 @@ use super::record::Record;
 use super::settings::CacheSettings;
 use crate::hsh::Radiance;
 use crate::lightcut::{CutCounts, Receiver};
+use crate::lights::{DirectIndirect, Origin};
 use crate::shade::ShadingContext;
-use crate::vpl::{DirectIndirect, Origin};
 use base::math::Frame;
 use world::SurfacePoint;
 

@@ -119,7 +119,7 @@ mod tests {
     use super::super::fixtures::{Floor, record};
     use super::super::source::NewRecord;
     use super::*;
-    use crate::vpl::Origin;
+    use crate::lights::Origin;
     use base::sampling::hash;
     use glam::Vec3;
 

@@ -3,7 +3,7 @@
 use super::record::Record;
 use super::source::NewRecord;
 use crate::hsh::Radiance;
-use crate::vpl::DirectIndirect;
+use crate::lights::DirectIndirect;
 use std::iter::repeat_with;
 use std::mem;
 
@@ -52,7 +52,7 @@ impl RecordStore {
 mod tests {
     use super::super::fixtures::record;
     use super::*;
-    use crate::vpl::Origin;
+    use crate::lights::Origin;
     use base::math::Rgb;
     use glam::Vec3;
 

@@ -3,7 +3,7 @@
 use crate::bias_compensation::Compensation;
 use crate::eye::ShadingPoints;
 use crate::lightcut::{CutSettings, MIN_SHARED, Receiver, Samples, Transfer};
-use crate::vpl::Origin;
+use crate::lights::{Lights, Origin};
 use base::math::Frame;
 use world::World;
 use world::shadow::ShadowSettings;
@@ -17,6 +17,14 @@ pub struct ShadingContext<'a> {
     pub transfer: Transfer<'a>,
     /// Compensation of clamped light; `None` for none.
     pub compensation: Option<Compensation<'a>>,
+}
+
+impl<'a> ShadingContext<'a> {
+    /// Context for shading by `lights`. With `compensated`, short rays find the light that is clamped close to them.
+    pub fn new(world: &'a World, lights: &'a Lights, compensated: bool) -> ShadingContext<'a> {
+        let compensation = compensated.then(|| Compensation::new(world, lights));
+        ShadingContext { world, transfer: Transfer::of(lights, compensated), compensation }
+    }
 }
 
 /// Settings of the shading stage.

@@ -13,7 +13,7 @@ use crate::lightcut::{
     CutCounts, CutSettings, Lightcut, PacketLightcut, PacketSum, PacketVisibility, RayVisibility,
     ReceiverPacket, ReconstructionCut, SampledCut, Samples, Visibility,
 };
-use crate::vpl::Origin;
+use crate::lights::Origin;
 use base::math::{LANES, Rgb};
 use base::sampling::{hash, unit};
 use std::mem::take;

@@ -2,7 +2,7 @@
 
 use super::{ShadeSettings, ShadingContext, ShadingCounts, ShadingTask, patches, shade};
 use crate::eye::EyePass;
-use crate::vpl::Origin;
+use crate::lights::Origin;
 use base::film::{Image, Layer, Preview};
 use base::math::Rgb;
 use base::progress::Control;

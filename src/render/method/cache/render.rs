@@ -11,8 +11,8 @@ use base::progress::Control;
 use base::setting::{COMPENSATION, Each, INSPECT, Settings as _};
 use base::stats::Stage;
 use transport::eye::{DrawnLight, EyePass, EyePilot, EyeSettings, Settled};
-use transport::light_tree::Family;
 use transport::lightcut::{CutSettings, Samples};
+use transport::lights::{Family, LightPassSettings};
 use transport::paths::Look;
 use transport::radiance_cache::fill::CacheFrame;
 use transport::radiance_cache::series::{Glossy, drawn_light};
@@ -21,8 +21,7 @@ use transport::radiance_cache::store::Records;
 use transport::radiance_cache::targets::Targets;
 use transport::radiance_cache::work::rays_beside_samples;
 use transport::radiance_cache::{CLAMP, CacheSettings, DirectBy, MAX_CUT};
-use transport::shade::{Picture, ShadeSettings};
-use transport::vpl::LightPassSettings;
+use transport::shade::{Picture, ShadeSettings, ShadingContext};
 use world::World;
 use world::view::View;
 
@@ -103,7 +102,7 @@ impl Settings {
         let drawn = drawn.map(|drawn| DrawnLight { guides: is_still, ..drawn });
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
-        let context = lights.context(world, self.compensation);
+        let context = ShadingContext::new(world, &lights, self.compensation);
         let source = LightcutSource { context, settings: &cache };
 
         let mut own = Records::default();

@@ -1,9 +1,9 @@
 //! Light of records added to the picture, and shading tasks for the rest.
 
 use transport::eye::EyePass;
+use transport::lights::Origin;
 use transport::radiance_cache::resolve::{Interpolated, Left};
 use transport::shade::{Picture, ShadingTask};
-use transport::vpl::Origin;
 
 /// Adds the light of records to the picture. Returns tasks for the rest, which is shaded by cuts; if `drawn`, the eye
 /// pass has found the direct light.

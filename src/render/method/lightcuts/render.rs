@@ -2,7 +2,7 @@
 
 use super::blocks::{TILE, Tile, Tiles};
 use crate::method::ladder::CUTS;
-use crate::method::lights::{LightStore, LightsWanted};
+use crate::method::lights::{LightStore, lights_wanted};
 use crate::method::sampling::method_settings;
 use crate::method::{Move, Output, Renderer, Sampled, counts};
 use base::film::{Image, Layer, Window};
@@ -12,10 +12,9 @@ use base::setting::{COMPENSATION, SHARE};
 use base::stats::{Stage, Stats, Ways};
 use rayon::prelude::*;
 use transport::eye::{EyeRays, LightBySpecularLobes, VisibleSurfaces};
-use transport::light_tree::Family;
 use transport::lightcut::CutSettings;
-use transport::shade::{ShadeSettings, Shader, ShadingCounts};
-use transport::vpl::LightPassSettings;
+use transport::lights::{Family, LightPassSettings};
+use transport::shade::{ShadeSettings, Shader, ShadingContext, ShadingCounts};
 use world::World;
 use world::shadow::ShadowSettings;
 use world::view::View;
@@ -53,11 +52,11 @@ impl Renderer for Settings {
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
         let mut stats = Stats::new();
-        let wanted = LightsWanted::new(world, self.sampling(), (self.light, self.family));
+        let wanted = lights_wanted(world, self.sampling(), (self.light, self.family), Vec::new());
         let eye = self.sampling().eye(&world.scene);
         let caustics = lights.photons.of_picture((world, view), eye, control, &mut stats);
-        let lights = lights.get(world, (wanted, Vec::new()), control, &mut stats);
-        let context = lights.context(world, self.compensation);
+        let lights = lights.get(world, wanted, control, &mut stats);
+        let context = ShadingContext::new(world, &lights, self.compensation);
         let shading =
             ShadeSettings { cut: self.cut, share: self.share, samples: None, shadows: self.shadows };
         let tiles =

@@ -11,9 +11,10 @@ use base::progress::Control;
 use base::setting::{Each, INSPECT, Settings as _};
 use base::stats::{Stage, Stats};
 use rayon::prelude::*;
+use transport::emission::PhotonSettings;
 use transport::eye::{EyePass, Settled};
-use transport::light_tree::Family;
 use transport::lightcut::CutSettings;
+use transport::lights::{Family, LightPassSettings, Origin};
 use transport::paths::Look;
 use transport::photon::density::estimates;
 use transport::photon::indirect_light::{GatherCounts, IndirectLight};
@@ -28,8 +29,7 @@ use transport::radiance_cache::store::Records;
 use transport::radiance_cache::targets::Targets;
 use transport::radiance_cache::work::rays_beside_samples;
 use transport::radiance_cache::{CacheSettings, DirectBy, MAX_CUT};
-use transport::shade::{Picture, ShadeSettings, ShadingTask};
-use transport::vpl::{LightPassSettings, Origin, PhotonSettings};
+use transport::shade::{Picture, ShadeSettings, ShadingContext, ShadingTask};
 use world::World;
 use world::view::View;
 
@@ -97,7 +97,7 @@ impl Renderer for Settings {
         let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default(), Some(other_rays));
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), (wanted, false), control);
-        let context = lights.context(world, true);
+        let context = ShadingContext::new(world, &lights, true);
         let direct = LightcutSource { context, settings: &self.cache };
 
         let map = irradiance(world, self, control, &mut stats);

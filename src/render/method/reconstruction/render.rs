@@ -4,7 +4,7 @@ use super::Settings;
 use crate::method::{Output, Prepared, counts};
 use base::progress::Control;
 use base::stats::{Stage, StageTime, Stopwatch};
-use transport::shade::{Picture, ShadingTask, patches, shade};
+use transport::shade::{Picture, ShadingContext, ShadingTask, patches, shade};
 use world::World;
 
 /// Minimum number of patches for an estimate of the time of all.
@@ -18,7 +18,7 @@ pub fn lighting_time(settings: &Settings, world: &World, prepared: &Prepared, ev
     let mut time = watch.elapsed();
     let every = every.min(patches.len() / MIN_TRIED).max(1);
     let some: Vec<Vec<ShadingTask>> = patches.iter().skip(every / 2).step_by(every).cloned().collect();
-    let context = prepared.lights.context(world, settings.compensation);
+    let context = ShadingContext::new(world, &prepared.lights, settings.compensation);
     let watch = Stopwatch::start();
     shade(&context, points, &some, &settings.shading(), &Control::new());
     let count = |patches: &[Vec<ShadingTask>]| patches.iter().map(Vec::len).sum::<usize>() as f64;
@@ -33,7 +33,7 @@ pub fn light(settings: &Settings, world: &World, prepared: Prepared, control: &C
     let tasks = tasks(&prepared);
     let Prepared { eye, lights, mut stats } = prepared;
     control.begin(Stage::Render, tasks.len() as u64);
-    let context = lights.context(world, settings.compensation);
+    let context = ShadingContext::new(world, &lights, settings.compensation);
     let mut picture = Picture::new(&eye, false);
     let counts = stats.time(Stage::Render, || {
         picture.shade(&context, &eye, &tasks, settings.patches, &settings.shading(), control)

@@ -4,10 +4,9 @@
 use super::ReceiverPacket;
 use super::receivers::Frames16;
 use super::transfer::positive;
-use crate::light_tree::Node;
 use crate::lightcut::Transfer;
 use crate::lightcut::expected::{Outlook, expected_share, lobe_at};
-use crate::vpl::VplKind;
+use crate::lights::{LightNode, VplKind};
 use base::math::{F32x16, Frame, LANES, LUMINANCE, Vec3x16, lanes_in, luminance};
 use glam::Vec3;
 use world::material::{DirectionBound, DirectionBounds16, LobeShape};
@@ -18,7 +17,7 @@ const ROUNDING: f32 = 8.0 * f32::EPSILON;
 impl Transfer<'_> {
     /// Error to expect of each receiver's luminance from a cluster of intensity `node.intensity`; 0 in lanes without a
     /// receiver.
-    pub fn errors16(&self, receivers: &ReceiverPacket, node: &Node) -> F32x16 {
+    pub fn errors16(&self, receivers: &ReceiverPacket, node: &LightNode) -> F32x16 {
         let (mut errors, shares) = self.bounds16(receivers, node);
         for l in 0..LANES {
             errors[l] *= shares[l];
@@ -28,7 +27,7 @@ impl Transfer<'_> {
 
     /// Upper bound of each receiver's luminance, 0 in lanes without a receiver, and the error to expect relative to it.
     #[inline]
-    pub(super) fn bounds16(&self, receivers: &ReceiverPacket, node: &Node) -> (F32x16, F32x16) {
+    pub(super) fn bounds16(&self, receivers: &ReceiverPacket, node: &LightNode) -> (F32x16, F32x16) {
         let cluster = ClusterBox::new(receivers, node);
         let Geometry { geometry, cos_x, shares } = self.geometry16(&cluster, receivers, node);
         let mut bounds = [0.0; LANES];
@@ -73,7 +72,7 @@ impl Transfer<'_> {
     }
 
     /// Bounds of everything but the material.
-    fn geometry16(&self, cluster: &ClusterBox, receivers: &ReceiverPacket, node: &Node) -> Geometry {
+    fn geometry16(&self, cluster: &ClusterBox, receivers: &ReceiverPacket, node: &LightNode) -> Geometry {
         let &ClusterBox { local, half, rounding, .. } = cluster;
         let oriented = local && node.cos_beta > -1.0;
         let lobed = node.kind() == VplKind::Lobed;
@@ -142,7 +141,7 @@ struct ClusterBox {
 }
 
 impl ClusterBox {
-    fn new(receivers: &ReceiverPacket, node: &Node) -> ClusterBox {
+    fn new(receivers: &ReceiverPacket, node: &LightNode) -> ClusterBox {
         let local = node.kind() != VplKind::Directional;
         let centre = 0.5 * (node.min + node.max);
         let rounding = ROUNDING * (centre.abs().max_element() + if local { receivers.reach } else { 0.0 });

@@ -16,6 +16,8 @@
 //! so that one point in the dark does not drive the cut of fifteen in the light to its cap.
 
 mod bound;
+mod cut;
+mod gather;
 mod receivers;
 mod refine;
 mod sampled;
@@ -24,91 +26,8 @@ mod sum;
 mod tests;
 mod transfer;
 
-use super::{CutCounts, CutSettings, PacketVisibility, Transfer};
-use base::math::{F32x16, LANES, Rgb, Vec3x16};
-use refine::{Judgement, Pass};
-
+pub use cut::{PacketCluster, PacketCut, PacketLightcut, PacketSum, Unshadowed};
 pub use receivers::ReceiverPacket;
 pub(super) use refine::halved;
 pub use sampled::{SampledCut, Samples};
 pub(super) use sum::{PacketLight, luminances};
-
-/// A cluster of a packet's cut.
-#[derive(Clone, Copy)]
-pub struct PacketCluster {
-    /// Number of the node.
-    pub node: u32,
-    /// Contribution of a representative of unit intensity to each lane, with visibility.
-    pub responses: Vec3x16,
-}
-
-/// The light of a cluster of a packet's cut before visibility.
-#[derive(Clone, Copy)]
-pub struct Unshadowed {
-    /// Contribution of a representative of unit intensity to each lane.
-    pub responses: Vec3x16,
-    /// Lanes that it lights.
-    pub lit: u16,
-}
-
-/// The light that a packet gathers from a cut.
-#[derive(Clone, Copy, Debug)]
-pub struct PacketSum {
-    /// Radiance that each receiver reflects, or its irradiance; 0 in lanes without a receiver.
-    pub radiance: [Rgb; LANES],
-    /// Luminance above which indirect leaves were clamped; infinite without clamping.
-    pub limits: F32x16,
-}
-
-impl Default for PacketSum {
-    fn default() -> PacketSum {
-        PacketSum { radiance: [Rgb::ZERO; LANES], limits: [f32::INFINITY; LANES] }
-    }
-}
-
-/// A packet's cut, and the light gathered from it.
-pub struct PacketCut<'c> {
-    /// The light.
-    pub sum: PacketSum,
-    /// The clusters.
-    pub clusters: &'c [PacketCluster],
-    /// Their light before visibility.
-    pub unshadowed: &'c [Unshadowed],
-}
-
-/// Workspace for cuts of packets; one a thread, so that its buffers are allocated once.
-#[derive(Default)]
-pub struct PacketLightcut {
-    clusters: Vec<PacketCluster>,
-    /// Their light before visibility.
-    unshadowed: Vec<Unshadowed>,
-    /// The clusters' errors and shares of the total.
-    judgements: Vec<Judgement>,
-    /// Work done so far.
-    pub counts: CutCounts,
-}
-
-impl PacketLightcut {
-    /// An empty workspace.
-    pub fn new() -> PacketLightcut {
-        PacketLightcut::default()
-    }
-
-    /// Gathers the light of all VPLs, on average over the lanes to within the settings' error.
-    pub fn gather<V: PacketVisibility>(
-        &mut self,
-        transfer: &Transfer,
-        visibility: &V,
-        receivers: &ReceiverPacket,
-        settings: &CutSettings,
-    ) -> PacketCut<'_> {
-        let capped = Pass::new(self, transfer, visibility, receivers, settings).run();
-        let count = receivers.len() as u64;
-        self.counts.cuts += count;
-        self.counts.clusters += count * self.clusters.len() as u64;
-        self.counts.capped += count * u64::from(capped);
-        let light = PacketLight { clusters: &self.clusters, strong: Vec3x16::ZERO };
-        let sum = light.sum(transfer.trees, receivers, settings.clamp, &mut self.counts);
-        PacketCut { sum, clusters: &self.clusters, unshadowed: &self.unshadowed }
-    }
-}

@@ -1,7 +1,7 @@
 //! The points of a packet, lane by lane.
 
 use crate::lightcut::{Receiver, to_vpl16};
-use crate::vpl::{Vpl, VplKind};
+use crate::lights::{Vpl, VplKind};
 use base::math::{F32x16, Frame, LANES, LUMINANCE, Rgb, Vec3x16, first_lanes, lanes_in};
 use embree::Rays16;
 use world::material::AlikeBsdfs16;

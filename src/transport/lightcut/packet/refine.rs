@@ -1,10 +1,11 @@
 //! Refinement of a packet's cut.
 
+use super::cut::{Judgement, Sight};
 use super::{PacketCluster, PacketLightcut, ReceiverPacket, Unshadowed, luminances};
-use crate::light_tree::LightTrees;
 use crate::lightcut::clamp::{DOMINANT, DOMINANT_TO_REST, is_weak};
 use crate::lightcut::refinement::heir_and_other;
 use crate::lightcut::{CutSettings, PacketVisibility, Transfer};
+use crate::lights::LightTrees;
 use base::math::{F32x16, LANES, Vec3x16};
 
 /// Minimum luminance of a lane where errors are judged, relative to the brightest lane's.
@@ -28,28 +29,8 @@ const FINE: f32 = 0.5;
 
 const ZERO: F32x16 = [0.0; LANES];
 
-/// A cluster's part in the refinement.
-#[derive(Clone, Copy)]
-pub(super) struct Judgement {
-    /// Error to expect in each lane, luminance; 0 for a leaf.
-    pub(super) errors: F32x16,
-    /// Luminance with which the cluster counts in the running totals.
-    counted: F32x16,
-    /// Visibility of its representative, or of an ancestor's.
-    sight: Sight,
-}
-
-/// Visibility from each lane.
-#[derive(Clone, Copy, Default)]
-struct Sight {
-    /// Lanes where it is known.
-    known: u16,
-    /// Lanes that see the representative.
-    seen: u16,
-}
-
 /// One cut in the making.
-pub(super) struct Pass<'a, 't, 'm, V> {
+pub(super) struct PacketRefinement<'a, 't, 'm, V> {
     trees: &'a LightTrees,
     transfer: &'a Transfer<'t>,
     visibility: &'a V,
@@ -66,15 +47,15 @@ pub(super) struct Pass<'a, 't, 'm, V> {
     cut: &'a mut PacketLightcut,
 }
 
-impl<'a, 't, 'm, V: PacketVisibility> Pass<'a, 't, 'm, V> {
+impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
     pub fn new(
         cut: &'a mut PacketLightcut,
         transfer: &'a Transfer<'t>,
         visibility: &'a V,
         receivers: &'a ReceiverPacket<'m>,
         settings: &'a CutSettings,
-    ) -> Pass<'a, 't, 'm, V> {
-        Pass {
+    ) -> PacketRefinement<'a, 't, 'm, V> {
+        PacketRefinement {
             trees: transfer.trees,
             transfer,
             visibility,

@@ -1,9 +1,9 @@
 //! Sum of a packet's cut, with weak singularities clamped.
 
 use super::{PacketCluster, PacketSum, ReceiverPacket};
-use crate::light_tree::LightTrees;
 use crate::lightcut::CutCounts;
 use crate::lightcut::clamp::{DOMINANT, Unclamped, is_weak};
+use crate::lights::LightTrees;
 use base::math::{F32x16, LANES, LUMINANCE, Rgb, Vec3x16, lanes_in, luminance};
 
 /// The light that a packet gathers.

@@ -1,14 +1,13 @@
 //! A packet's lanes must agree with the single-point functions, which have tests of their own.
 
 use super::*;
-use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::fixtures::{
     Ball, EXACT, Numbers, Unoccluded, all_kinds, all_materials, low_lamps, members, points_near_vpls,
     profiles, random_receiver, rms, room,
 };
-use crate::lightcut::{CutSettings, Lightcut, Receiver, Transfer, gather_all};
-use crate::vpl::{Vpl, VplKind};
-use base::math::{Rgb, luminance};
+use crate::lightcut::{CutCounts, CutSettings, Lightcut, Receiver, Transfer, gather_all};
+use crate::lights::{Family, LightTrees, Vpl, VplKind};
+use base::math::{LANES, Rgb, Vec3x16, luminance};
 use base::progress::Control;
 use glam::{Vec2, Vec3};
 use scene::{MaterialId, Scene};

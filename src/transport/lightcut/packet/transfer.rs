@@ -3,7 +3,7 @@
 
 use super::ReceiverPacket;
 use crate::lightcut::Transfer;
-use crate::vpl::{Vpl, VplKind};
+use crate::lights::{Vpl, VplKind};
 use base::math::{F32x16, LANES, Vec3x16, lanes_in};
 use glam::Vec3;
 use world::material::AlikeBsdfs16;

@@ -6,10 +6,9 @@
 //! of the patch, each with its own normal and base.
 
 use super::basis::{BasisValues, LinearBasis, dot};
-use crate::light_tree::Node;
 use crate::lightcut::packet::PacketCluster;
 use crate::lightcut::{ReceiverPacket, Transfer};
-use crate::vpl::{Vpl, VplKind};
+use crate::lights::{LightNode, Vpl, VplKind};
 use base::math::{F32x16, LANES, LUMINANCE, Rgb, Vec3x16, lanes_in, luminance};
 use glam::Vec3;
 
@@ -94,7 +93,7 @@ impl Interpolant {
     pub fn error(
         &self,
         anchors: &ReceiverPacket,
-        node: &Node,
+        node: &LightNode,
         values: &AnchorValues,
         inverse_totals: &F32x16,
     ) -> f32 {
@@ -113,7 +112,7 @@ impl Interpolant {
     }
 
     /// Adds the fit to a cluster.
-    pub fn add(&mut self, node: &Node, fit: &LinearFit) {
+    pub fn add(&mut self, node: &LightNode, fit: &LinearFit) {
         for f in 0..3 {
             for (c, vector) in self.vectors[f].iter_mut().enumerate() {
                 *vector += node.intensity[c] * fit.vector[f];
@@ -167,7 +166,7 @@ impl LinearFit {
 }
 
 /// True if a representative is nearer to some anchor than the anchors to their centre: its light is not linear there.
-fn is_near(anchors: &ReceiverPacket, basis: &LinearBasis, node: &Node, vpl: &Vpl) -> bool {
+fn is_near(anchors: &ReceiverPacket, basis: &LinearBasis, node: &LightNode, vpl: &Vpl) -> bool {
     let dist_sq = |l: usize| anchors.get(l).position().distance_squared(vpl.position);
     node.kind() != VplKind::Directional
         && (0..anchors.len()).map(dist_sq).fold(f32::INFINITY, f32::min) < basis.radius_sq

@@ -1,9 +1,9 @@
 //! Points among the anchors must gather nearly the light of cuts of their own.
 
 use super::*;
-use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::fixtures::{Ball, EXACT, Numbers, rms, room};
 use crate::lightcut::{PacketLightcut, Receiver, Visibility};
+use crate::lights::{Family, LightTrees};
 use base::math::{Frame, LANES, luminance};
 use base::progress::Control;
 use glam::Vec3;

@@ -4,10 +4,9 @@
 //! Units: all per unit intensity, before visibility.
 
 use super::{OffsetBox, max_cos_to_cone, max_cos_to_cone_signed};
-use crate::light_tree::Node;
 use crate::lightcut::expected::{Outlook, expected_share, lobe_at};
 use crate::lightcut::{Receiver, Transfer};
-use crate::vpl::VplKind;
+use crate::lights::{LightNode, VplKind};
 use base::math::{Frame, Rgb};
 use glam::Vec3;
 use world::material::LobeShape;
@@ -24,7 +23,7 @@ pub struct Bound {
 impl Transfer<'_> {
     /// Bound of a cluster of unit intensity, and the error to expect.
     #[inline]
-    pub fn bound(&self, receiver: &Receiver, node: &Node) -> Bound {
+    pub fn bound(&self, receiver: &Receiver, node: &LightNode) -> Bound {
         let directional = node.kind() == VplKind::Directional;
         let x = if directional { Vec3::ZERO } else { receiver.position() };
         let offsets = OffsetBox::new(node.min - x, node.max - x);

@@ -2,17 +2,17 @@
 //! above the threshold.
 
 use super::{CutCluster, Lightcut};
-use crate::light_tree::LightTrees;
 use crate::lightcut::clamp::{DOMINANT, DOMINANT_TO_REST, is_weak};
 use crate::lightcut::refinement::heir_and_other;
 use crate::lightcut::{CutSettings, Receiver, Transfer, Visibility};
+use crate::lights::LightTrees;
 use base::math::{Rgb, luminance};
 
 /// Clusters split before the threshold is looked at again.
 const BATCH: usize = 16;
 
 /// One cut in the making.
-pub(super) struct Pass<'a, 't, 'm, V> {
+pub(super) struct PointRefinement<'a, 't, 'm, V> {
     pub trees: &'a LightTrees,
     pub transfer: &'a Transfer<'t>,
     pub visibility: &'a V,
@@ -23,7 +23,7 @@ pub(super) struct Pass<'a, 't, 'm, V> {
     pub cut: &'a mut Lightcut,
 }
 
-impl<V: Visibility> Pass<'_, '_, '_, V> {
+impl<V: Visibility> PointRefinement<'_, '_, '_, V> {
     /// Finds the cut.
     pub fn run(mut self) {
         self.start();

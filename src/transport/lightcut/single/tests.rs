@@ -1,9 +1,8 @@
 //! Bounds are never violated, cuts stay within their error, and nothing degenerate breaks them.
 
-use crate::light_tree::{Family, LightTrees, Node};
 use crate::lightcut::fixtures::*;
 use crate::lightcut::*;
-use crate::vpl::{Origin, Vpl, VplKind, VplSet};
+use crate::lights::{Family, LightNode, LightTrees, Origin, Vpl, VplKind, VplSet};
 use base::math::{Frame, Rgb, luminance};
 use base::progress::Control;
 use glam::Vec3;
@@ -239,7 +238,7 @@ fn an_unlit_node_is_no_node() {
     // The gap behind each root is never reached.
     let trees =
         LightTrees::build(&[room(7, &mut Numbers(6))], Vec::new(), 1.7, Family::Divisive, &Control::new());
-    let blank = |n: &&Node| n.intensity == Rgb::ZERO;
+    let blank = |n: &&LightNode| n.intensity == Rgb::ZERO;
     assert_eq!(trees.nodes.iter().filter(blank).count(), 1);
     assert_eq!(trees.leaves().count(), 7);
 }

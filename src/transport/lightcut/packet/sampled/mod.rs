@@ -17,12 +17,11 @@
 #[cfg(test)]
 mod tests;
 
-use super::refine::Pass;
+use super::refine::PacketRefinement;
 use super::{PacketLightcut, PacketSum, ReceiverPacket, luminances};
-use crate::light_tree::Node;
 use crate::lightcut::clamp::{DOMINANT, MAX_STEPS, frozen_luminance, is_weak};
 use crate::lightcut::{CutCounts, CutSettings, PacketVisibility, RayVisibility, Transfer, to_vpl};
-use crate::vpl::Vpl;
+use crate::lights::{LightNode, Vpl};
 use base::math::{F32x16, LANES, Rgb, Vec3x16, lanes_in, luminance};
 use base::sampling::{hash, unit};
 use embree::{Ray, Rays16};
@@ -66,7 +65,7 @@ pub struct SampledCut {
 struct AllSeen;
 
 impl PacketVisibility for AllSeen {
-    fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &Node) -> u16 {
+    fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &LightNode) -> u16 {
         lanes
     }
 }
@@ -133,7 +132,7 @@ impl SampledCut {
             return None;
         }
         let coarse = CutSettings { epsilon: EPSILON, ..*settings };
-        let capped = Pass::new(&mut self.cut, transfer, &AllSeen, receivers, &coarse).run();
+        let capped = PacketRefinement::new(&mut self.cut, transfer, &AllSeen, receivers, &coarse).run();
         self.counts.bounds += std::mem::take(&mut self.cut.counts).bounds;
         let totals = self.weigh(transfer);
         let numbers = samples.of(receivers, &totals)?;
@@ -272,7 +271,7 @@ impl Pending {
 }
 
 /// A descendant of a node, drawn by luminance, and its probability.
-fn descend(nodes: &[Node], node: u32, mut u: f32) -> (&Node, f32) {
+fn descend(nodes: &[LightNode], node: u32, mut u: f32) -> (&LightNode, f32) {
     let (mut at, mut density) = (&nodes[node as usize], 1.0);
     for _ in 0..LEVELS {
         let Some(left) = at.children() else { break };

@@ -1,9 +1,9 @@
 //! Samples of cuts against all virtual lights.
 
 use super::*;
-use crate::light_tree::{Family, LightTrees};
 use crate::lightcut::fixtures::{Ball, Numbers, all_kinds, all_materials, profiles, random_receiver, room};
 use crate::lightcut::{Receiver, gather_all};
+use crate::lights::{Family, LightTrees};
 use base::math::Frame;
 use base::progress::Control;
 use glam::Vec3;

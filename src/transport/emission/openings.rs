@@ -8,7 +8,7 @@
 //! the aim: virtual lights in proportion to what they give to the picture.
 //! Deviations: photons are drawn where they count, not rejected afterwards.
 
-use super::emission::Emission;
+use super::EmissionSample;
 use super::entries::{Entry, entries};
 use super::far::FarLights;
 use super::target::Target;
@@ -124,7 +124,13 @@ impl<'w> Openings<'w> {
     }
 
     /// Begins a path, with the flux of paths that all begin infinitely far.
-    pub fn sample(&self, target: &Target, u_pair: f32, u_place: Vec2, u_direction: Vec2) -> Option<Emission> {
+    pub fn sample(
+        &self,
+        target: &Target,
+        u_pair: f32,
+        u_place: Vec2,
+        u_direction: Vec2,
+    ) -> Option<EmissionSample> {
         let goes_anywhere = u_pair < self.share;
         let (source, aim) = if goes_anywhere {
             (self.lights.source(u_pair / self.share), 0)
@@ -144,7 +150,7 @@ impl<'w> Openings<'w> {
             + (1.0 - self.share) * self.aimed(source, place, light.towards);
         let origin = target.before(place, light.towards);
         let ray = Ray { origin, t_near: 0.0, direction: -light.towards, t_far: f32::INFINITY };
-        Emission::new(ray, light.irradiance / density, Some(light.radiance))
+        EmissionSample::new(ray, light.irradiance / density, Some(light.radiance))
     }
 }
 

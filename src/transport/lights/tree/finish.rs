@@ -6,9 +6,9 @@
 //! normal, computed from the members themselves; merging the children's cones would be looser at every level.
 
 use super::cost::{Primitive, PrimitiveBounds};
-use super::node::Node;
+use super::node::LightNode;
 use super::topology::Topology;
-use crate::vpl::{Profiles, VplKind, VplSet};
+use crate::lights::{Profiles, VplKind, VplSet};
 use base::math::{Rgb, luminance};
 use base::progress::Control;
 use glam::{DVec3, Vec3};
@@ -45,7 +45,7 @@ struct Finisher<'a> {
 pub fn finish(
     topology: &Topology,
     (set, profiles): (&VplSet, &Profiles),
-    nodes: &mut [Node],
+    nodes: &mut [LightNode],
     [first_node, first_vpl]: [usize; 2],
     control: &Control,
 ) -> Option<()> {
@@ -71,9 +71,9 @@ struct Subtree<'a> {
 
 /// Nodes of a subtree.
 struct SubtreeNodes<'a> {
-    root: &'a mut Node,
+    root: &'a mut LightNode,
     /// Descendants of the root.
-    below: &'a mut [Node],
+    below: &'a mut [LightNode],
     /// Index of the first of them among all nodes.
     below_index: u32,
 }
@@ -113,7 +113,7 @@ impl Finisher<'_> {
         let takes_left = unit_hash(below_index) * luminance < a.luminance;
         let representative = if takes_left { a.representative } else { b.representative };
         let intensity = a.intensity + b.intensity;
-        *node = Node::new(rounded_up(intensity), representative, self.set.kind, self.set.origin);
+        *node = LightNode::new(rounded_up(intensity), representative, self.set.kind, self.set.origin);
         node.set_children(below_index);
         self.set_box(node, &bounds);
         if self.has_cones() {
@@ -124,10 +124,10 @@ impl Finisher<'_> {
         Summary { bounds, intensity, luminance, representative }
     }
 
-    fn leaf(&self, primitive: &Primitive, place: u32, node: &mut Node) -> Summary {
+    fn leaf(&self, primitive: &Primitive, place: u32, node: &mut LightNode) -> Summary {
         let intensity = self.set.intensities[primitive.index() as usize];
         let representative = self.first_vpl + place;
-        *node = Node::new(intensity, representative, self.set.kind, self.set.origin);
+        *node = LightNode::new(intensity, representative, self.set.kind, self.set.origin);
         let bounds = PrimitiveBounds::of(primitive);
         self.set_box(node, &bounds);
         if self.has_cones() {
@@ -142,7 +142,7 @@ impl Finisher<'_> {
     }
 
     /// Sets the cone about `axis` that contains every normal, or axis of a lobe.
-    fn set_cone(&self, node: &mut Node, axis: Vec3, members: &[Primitive]) {
+    fn set_cone(&self, node: &mut LightNode, axis: Vec3, members: &[Primitive]) {
         let cos_beta = members.iter().fold(1.0f32, |least, r| {
             let cos = r.normal().dot(axis);
             if cos < least { cos } else { least }
@@ -153,7 +153,7 @@ impl Finisher<'_> {
         node.set_cone(axis, (cos_beta - COSINE_SLACK).max(-1.0), width_sq);
     }
 
-    fn set_box(&self, node: &mut Node, bounds: &PrimitiveBounds) {
+    fn set_box(&self, node: &mut LightNode, bounds: &PrimitiveBounds) {
         let first = if self.set.kind == VplKind::Directional { 3 } else { 0 };
         node.min = Vec3::from_array(std::array::from_fn(|i| bounds.min[first + i]));
         node.max = Vec3::from_array(std::array::from_fn(|i| bounds.max[first + i]));

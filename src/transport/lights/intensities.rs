@@ -3,7 +3,7 @@
 //! How much of their light is above a limit depends on them: a few bright virtual lights lose more than many faint ones
 //! of the same flux. They differ by albedo, and where photons come densely.
 
-use crate::vpl::{Origin, Profiles, VplKind, VplSet};
+use super::{Origin, Profiles, VplKind, VplSet};
 use base::math::luminance;
 use glam::Vec3;
 use world::light::Regions;
@@ -64,7 +64,7 @@ impl Intensities {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vpl::Vpl;
+    use crate::lights::Vpl;
     use base::math::Rgb;
     use base::sampling::owen_sobol_2d;
 

@@ -8,7 +8,7 @@
 //! threads.
 //! Units: flux in watts, to be divided by the number of paths.
 
-use super::emission::{Emission, PhotonEmitter};
+use super::{EmissionSample, PhotonEmitter};
 use base::math::{Rgb, luminance};
 use base::parallel::ShortRuns;
 use base::progress::Control;
@@ -220,7 +220,7 @@ fn trace_path(
     max_edges: u32,
     met: &mut impl FnMut(&PhotonHit),
 ) -> u64 {
-    let Some(Emission { mut ray, mut flux, .. }) = source.sample(sampler) else { return 0 };
+    let Some(EmissionSample { mut ray, mut flux, .. }) = source.sample(sampler) else { return 0 };
     for edge in 1..=max_edges {
         let rays = u64::from(edge);
         let Some(surface) = world.intersect(&ray) else { return rays };

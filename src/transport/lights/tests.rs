@@ -2,9 +2,10 @@
 
 use super::*;
 use crate::lightcut::fixtures::{Numbers, profiles};
-use base::math::{LANES, Vec3x16};
+use base::math::{LANES, Rgb, Vec3x16};
 use base::progress::Control;
 use base::sampling::{owen_sobol_2d, uniform_sphere};
+use glam::Vec3;
 use scene::{Camera, DeltaLight, Emission};
 use std::f32::consts::PI;
 use world::material::LobeShape;

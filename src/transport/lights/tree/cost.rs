@@ -5,7 +5,7 @@
 //! spans a cone of sin β = e/2); the finished nodes carry exact cones. The paper's c is kept, the scene's diagonal: a
 //! tenth of it gives up to a quarter smaller cuts, but their error grows as much (six scenes, against full sums).
 
-use crate::vpl::{Profiles, Vpl, VplKind};
+use crate::lights::{Profiles, Vpl, VplKind};
 use glam::Vec3;
 
 /// Coordinates of a primitive: position, normal, luminance of the intensity, and the bits of the VPL's index.

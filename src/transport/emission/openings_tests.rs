@@ -1,7 +1,7 @@
 //! Aimed photons against those that go anywhere.
 
-use super::photons::{PhotonCounts, PhotonSettings, trace_photons};
-use super::{LightPassSettings, PhotonEmitter, light_pass};
+use super::{PhotonCounts, PhotonEmitter, PhotonSettings, trace_photons};
+use crate::lights::{LightPassSettings, Origin, light_pass};
 use base::math::{Rgb, luminance};
 use base::progress::Control;
 use base::sampling::Sampler;
@@ -144,6 +144,6 @@ fn fewer_photons_are_traced_where_they_are_aimed() {
     let settings = LightPassSettings { indirect: 100_000, ..LightPassSettings::default() };
     let aimed = light_pass(&world, &settings, &floor(), 8, &Control::new());
     let count =
-        aimed.sets.iter().filter(|set| set.origin == super::Origin::Indirect).map(|s| s.len()).sum::<usize>();
+        aimed.sets.iter().filter(|set| set.origin == Origin::Indirect).map(|s| s.len()).sum::<usize>();
     assert!((25_000..80_000).contains(&count), "{count}");
 }

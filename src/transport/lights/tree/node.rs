@@ -1,7 +1,7 @@
 //! A cluster in the layout of a lightcut: one cache line, siblings next to each other, so that a split
 //! touches two adjacent lines.
 
-use crate::vpl::{Origin, VplKind};
+use crate::lights::{Origin, VplKind};
 use base::math::Rgb;
 use glam::Vec3;
 
@@ -16,7 +16,7 @@ pub const MAX_VPLS: usize = 1 << INDEX_BITS;
 /// A cluster of VPLs, or a single one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
-pub struct Node {
+pub struct LightNode {
     /// Corner of the box around the positions (directional: around the unit directions to the light).
     pub min: Vec3,
     /// Cosine of the half angle β of the cone around the normals; -1 for omni VPLs. Of lobed ones it is
@@ -36,9 +36,9 @@ pub struct Node {
     tag: u32,
 }
 
-impl Node {
+impl LightNode {
     /// Creates a node without bounds.
-    pub(super) fn new(intensity: Rgb, representative: u32, kind: VplKind, origin: Origin) -> Node {
+    pub(super) fn new(intensity: Rgb, representative: u32, kind: VplKind, origin: Origin) -> LightNode {
         let kind = match kind {
             VplKind::Oriented => 0,
             VplKind::Omni => 1,
@@ -46,7 +46,7 @@ impl Node {
             VplKind::Lobed => 3,
         };
         let indirect = if origin == Origin::Indirect { INDIRECT } else { 0 };
-        Node {
+        LightNode {
             min: Vec3::ZERO,
             cos_beta: -1.0,
             max: Vec3::ZERO,
@@ -58,7 +58,7 @@ impl Node {
         }
     }
 
-    /// Sets the half angle of the cone; of lobed VPLs also the greatest of [`crate::vpl::LobeProfile::width_sq`].
+    /// Sets the half angle of the cone; of lobed VPLs also the greatest of [`crate::lights::LobeProfile::width_sq`].
     pub(super) fn set_cone(&mut self, axis: Vec3, cos_beta: f32, width_sq: Option<f32>) {
         (self.axis, self.cos_beta) = (axis, cos_beta);
         self.sine_or_width = width_sq.unwrap_or_else(|| sine(cos_beta));
@@ -127,14 +127,14 @@ mod tests {
 
     #[test]
     fn a_node_is_one_cache_line() {
-        assert_eq!((size_of::<Node>(), align_of::<Node>()), (64, 64));
+        assert_eq!((size_of::<LightNode>(), align_of::<LightNode>()), (64, 64));
     }
 
     #[test]
     fn the_tag_keeps_kind_origin_and_representative_apart() {
         for kind in [VplKind::Omni, VplKind::Oriented, VplKind::Directional, VplKind::Lobed] {
             for origin in [Origin::Direct, Origin::Indirect] {
-                let node = Node::new(Rgb::ONE, MAX_VPLS as u32 - 1, kind, origin);
+                let node = LightNode::new(Rgb::ONE, MAX_VPLS as u32 - 1, kind, origin);
                 assert_eq!((node.kind(), node.origin()), (kind, origin));
                 assert_eq!(node.representative(), MAX_VPLS - 1);
                 assert!(node.is_leaf() && node.children().is_none());

@@ -111,8 +111,7 @@ fn look(world: &World, met: &Met, sampler: &mut Sampler, found: &mut Found) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vpl::PhotonEmitter;
-    use crate::vpl::photons::{PhotonSettings, trace_photons};
+    use crate::emission::{PhotonEmitter, PhotonSettings, trace_photons};
     use base::math::Rgb;
     use base::progress::Control;
     use glam::Vec3;

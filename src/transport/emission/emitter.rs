@@ -1,48 +1,19 @@
-//! Photons leaving the emitters.
+//! Emitters of photons: the beginnings of paths are sampled in proportion to the flux of emitters.
 //!
 //! Units: flux in watts by channel, for a single path; to be divided by the number of paths.
 
 use super::contributions;
 use super::openings::Openings;
 use super::target::{LitSphere, Target};
-use base::math::{Frame, Rgb, luminance};
+use super::{EmissionNumbers, EmissionSample};
+use base::math::{Frame, luminance};
 use base::sampling::{Sampler, uniform_sphere};
-use embree::Ray;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use scene::DeltaLight;
 use std::f32::consts::{PI, TAU};
 use world::light::{DiscreteDistribution, spot_falloff};
 use world::shadow;
 use world::{SurfacePoint, World};
-
-/// The beginning of a path.
-#[derive(Clone, Copy, Debug)]
-pub struct Emission {
-    /// The first edge.
-    pub ray: Ray,
-    /// Flux along it.
-    pub flux: Rgb,
-    /// Luminance of the radiance along it; infinite of lights of points and directions.
-    pub radiance: f32,
-}
-
-/// Random numbers that the beginning of a path takes, in [0, 1).
-#[derive(Clone, Copy, Debug)]
-pub struct EmissionNumbers {
-    /// For the place on the emitter, or the line of one that is infinitely far.
-    pub place: Vec2,
-    /// For the direction.
-    pub direction: Vec2,
-    /// For the side of a part of the directions.
-    pub side: f32,
-}
-
-impl EmissionNumbers {
-    /// Draws them.
-    pub fn new(sampler: &mut Sampler) -> EmissionNumbers {
-        EmissionNumbers { place: sampler.next_2d(), direction: sampler.next_2d(), side: sampler.next_1d() }
-    }
-}
 
 /// The flux of a scene's emitters, sampled in proportion to power, or to what it brings to the eye.
 pub struct PhotonEmitter<'w> {
@@ -154,17 +125,17 @@ impl<'w> PhotonEmitter<'w> {
     }
 
     /// Samples the beginning of a path; `None` where an emitter is dark.
-    pub fn sample(&self, sampler: &mut Sampler) -> Option<Emission> {
+    pub fn sample(&self, sampler: &mut Sampler) -> Option<EmissionSample> {
         let (index, _) = self.by_paths().sample(sampler.next_1d());
         self.sample_of(index, &EmissionNumbers::new(sampler))
     }
 
     /// Begins a path at emitter `index`, with the flux of paths that choose emitters in proportion to power.
-    pub fn sample_of(&self, index: usize, numbers: &EmissionNumbers) -> Option<Emission> {
+    pub fn sample_of(&self, index: usize, numbers: &EmissionNumbers) -> Option<EmissionSample> {
         let EmissionNumbers { place: u_place, direction: u_direction, side: u_side } = *numbers;
         if let Some(Aims { openings, share, .. }) = self.aims.as_ref().filter(|_| self.is_far(index)) {
             let emission = openings.sample(&self.target, u_side, u_place, u_direction)?;
-            return Some(Emission { flux: emission.flux / *share, ..emission });
+            return Some(EmissionSample { flux: emission.flux / *share, ..emission });
         }
         let inv_probability = 1.0 / self.by_paths().probability(index);
         let emitters = &self.world.emitters;
@@ -174,21 +145,21 @@ impl<'w> PhotonEmitter<'w> {
             let radiance = light.radiance(&self.world.scene, &point, point.normal);
             let flux = radiance * (projected * light.area * inv_probability);
             let ray = shadow::ray_from(point.position, point.normal, direction);
-            return Emission::new(ray, flux, Some(luminance(radiance)));
+            return EmissionSample::new(ray, flux, Some(luminance(radiance)));
         }
         if let Some(light) = emitters.deltas.get(index - emitters.areas.len()) {
             return match *light {
                 DeltaLight::Point { position, intensity } => {
                     if let Some(towards) = self.target.towards(position) {
                         let ray = self.target.ray_in(&towards, u_direction);
-                        return Emission::new(
+                        return EmissionSample::new(
                             ray,
                             intensity * (towards.solid_angle() * inv_probability),
                             None,
                         );
                     }
                     let ray = shadow::ray_from(position, Vec3::ZERO, uniform_sphere(u_direction));
-                    Emission::new(ray, intensity * (4.0 * PI * inv_probability), None)
+                    EmissionSample::new(ray, intensity * (4.0 * PI * inv_probability), None)
                 }
                 DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
                     let one_minus_cos = 1.0 - outer_angle.cos();
@@ -197,7 +168,11 @@ impl<'w> PhotonEmitter<'w> {
                         let ray = self.target.ray_in(&towards, u_direction);
                         let falloff = spot_falloff(ray.direction.dot(direction), inner_angle, outer_angle);
                         let angle = towards.solid_angle();
-                        return Emission::new(ray, intensity * (falloff * angle * inv_probability), None);
+                        return EmissionSample::new(
+                            ray,
+                            intensity * (falloff * angle * inv_probability),
+                            None,
+                        );
                     }
                     let cos = 1.0 - u_direction.x * one_minus_cos;
                     let sin = (1.0 - cos * cos).max(0.0).sqrt();
@@ -206,23 +181,20 @@ impl<'w> PhotonEmitter<'w> {
                     let ray =
                         shadow::ray_from(position, Vec3::ZERO, Frame::from_normal(direction).to_world(local));
                     let falloff = spot_falloff(cos, inner_angle, outer_angle);
-                    Emission::new(ray, intensity * (falloff * TAU * one_minus_cos * inv_probability), None)
+                    EmissionSample::new(
+                        ray,
+                        intensity * (falloff * TAU * one_minus_cos * inv_probability),
+                        None,
+                    )
                 }
                 DeltaLight::Directional { direction, irradiance } => {
                     let (ray, area) = self.target.ray(direction, u_place);
-                    Emission::new(ray, irradiance * (area * inv_probability), None)
+                    EmissionSample::new(ray, irradiance * (area * inv_probability), None)
                 }
             };
         }
         let s = emitters.environment.as_ref()?.sample(u_direction)?;
         let (ray, area) = self.target.ray(-s.direction, u_place);
-        Emission::new(ray, s.radiance * (area * inv_probability / s.pdf), Some(luminance(s.radiance)))
-    }
-}
-
-impl Emission {
-    pub(super) fn new(ray: Ray, flux: Rgb, radiance: Option<f32>) -> Option<Emission> {
-        let useful = flux.is_finite() && flux.max_element() > 0.0;
-        useful.then(|| Emission { ray, flux, radiance: radiance.unwrap_or(f32::INFINITY) })
+        EmissionSample::new(ray, s.radiance * (area * inv_probability / s.pdf), Some(luminance(s.radiance)))
     }
 }

@@ -7,9 +7,8 @@
 //! edges of a path takes the receiver to be what the eye sees: behind mirrors and glass, light comes by up to as many
 //! edges more as are before it.
 
-use super::photons::{PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
-use super::profile::LobeProfile;
-use super::{LightPassSettings, Origin, Vpl, VplKind, VplSet};
+use super::{LightPassSettings, LobeProfile, Origin, Vpl, VplKind, VplSet};
+use crate::emission::{PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
 use base::math::Rgb;
 use base::progress::Control;
 use glam::Vec3;

@@ -14,14 +14,14 @@ mod node;
 mod tests;
 mod topology;
 
-use crate::vpl::{Origin, Profiles, Vpl, VplSet};
+use crate::lights::{Origin, Profiles, Vpl, VplSet};
 use base::math::luminance;
 use base::progress::Control;
 use base::setting::{Each, Settings, Spec, choices};
 use cost::Primitive;
 use rayon::prelude::*;
 
-pub use node::{MAX_VPLS, Node};
+pub use node::{LightNode, MAX_VPLS};
 
 choices! {
     /// Way to build a tree.
@@ -60,7 +60,7 @@ const LAID_OUT: usize = 1 << 18;
 #[derive(Clone, Debug, Default)]
 pub struct LightTrees {
     /// Nodes of all trees.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<LightNode>,
     /// Indices of the roots in `nodes`.
     pub roots: Vec<u32>,
     /// The VPLs in the order of the leaves, tree after tree: neighbours in a tree are neighbours in memory.
@@ -107,7 +107,7 @@ impl LightTrees {
             Family::Agglomerative => agglomerative::build(primitives, diagonal * diagonal, control)?,
         };
         let (first_node, first_vpl) = (self.nodes.len(), self.vpls.len());
-        let blank = Node::new(base::math::Rgb::ZERO, 0, set.kind, set.origin);
+        let blank = LightNode::new(base::math::Rgb::ZERO, 0, set.kind, set.origin);
         let end = first_node + 2 * n;
         self.nodes.reserve(2 * n);
         while self.nodes.len() < end && !control.is_cancelled() {
@@ -127,7 +127,7 @@ impl LightTrees {
     }
 
     /// Returns the leaves, in order of their VPLs within each tree.
-    pub fn leaves(&self) -> impl Iterator<Item = &Node> {
+    pub fn leaves(&self) -> impl Iterator<Item = &LightNode> {
         let mut stack: Vec<u32> = self.roots.iter().rev().copied().collect();
         std::iter::from_fn(move || {
             loop {

@@ -2,8 +2,8 @@
 
 use super::direct::{DirectVpls, direct_vpls};
 use super::indirect::{IndirectVpls, indirect_vpls};
-use super::photons::PhotonCounts;
 use super::{LightPassSettings, Profiles, VplSet};
+use crate::emission::PhotonCounts;
 use base::progress::Control;
 use world::{SurfacePoint, World};
 

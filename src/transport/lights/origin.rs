@@ -1,8 +1,16 @@
-//! Pairs of values: one for direct light, one for indirect light.
+//! Origin of light, and pairs of values: one for direct light, one for indirect light.
 
-use super::Origin;
 use serde::{Deserialize, Serialize};
 use std::ops::{Index, IndexMut};
+
+/// Origin of a VPL's light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// Emitted at its position.
+    Direct,
+    /// Reflected at its position.
+    Indirect,
+}
 
 impl Origin {
     /// All origins.

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::lightcut::fixtures::profiles;
-use crate::vpl::{Origin, VplKind};
+use crate::lights::{Origin, VplKind};
 use base::math::Rgb;
 use base::progress::Control;
 use glam::{DVec3, Vec3};
@@ -87,7 +87,7 @@ fn assert_valid(trees: &LightTrees, sets: &[VplSet]) {
 }
 
 /// Normal, or axis of the lobe, of the VPL of a leaf.
-fn axis(trees: &LightTrees, leaf: &Node) -> Vec3 {
+fn axis(trees: &LightTrees, leaf: &LightNode) -> Vec3 {
     let vpl = &trees.vpls[leaf.representative()];
     match leaf.kind() {
         VplKind::Lobed => trees.profiles.lobes[vpl.lobe()].axis(),

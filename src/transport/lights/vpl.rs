@@ -1,42 +1,16 @@
-//! Stage 1: lights and photon paths become virtual point lights (VPLs).
+//! Virtual point lights (VPLs), and sets of them of one kind and origin.
 //!
-//! A VPL is stored in two parts: a 16-byte [`Vpl`] with all data of a shadow ray and a geometry term (random
-//! fetches of VPLs cost as much as tracing, so this record is as small as possible), and its intensity in a
-//! separate array, which only the tree builder and the leaves of a cut read.
+//! A VPL is stored in two parts: a 16-byte [`Vpl`] with all data of a shadow ray and a geometry term, and an
+//! intensity in a separate array. Random fetches of VPLs cost as much as tracing, so the first part is as small as
+//! possible. Only the tree builder and the leaves of a cut read intensities.
 //!
-//! Units: intensity is radiant intensity (W/sr) of omni VPLs, radiant intensity per cosine of oriented ones,
-//! irradiance on a facing surface (W/m²) of directional ones, a bound of the
-//! radiant intensity (W/sr) of lobed ones.
+//! Units: intensity is radiant intensity (W/sr) for omni VPLs, radiant intensity per cosine for oriented VPLs,
+//! irradiance on a facing surface (W/m²) for directional VPLs, a bound of the radiant intensity (W/sr) for lobed VPLs.
 
-mod contributions;
-mod direct;
-mod direct_indirect;
-mod emission;
-mod entries;
-mod far;
-mod indirect;
-mod octahedral;
-mod openings;
-#[cfg(test)]
-mod openings_tests;
-mod pass;
-mod photons;
-mod profile;
-mod settings;
-mod short_paths;
-mod target;
-#[cfg(test)]
-mod tests;
-
+use super::Origin;
+use super::octahedral;
 use base::math::{Rgb, luminance};
 use glam::Vec3;
-
-pub use direct_indirect::DirectIndirect;
-pub use emission::{Emission, EmissionNumbers, PhotonEmitter};
-pub use pass::{LightPass, light_pass};
-pub use photons::{MAX_CORRECTION, Photon, PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
-pub use profile::{LobeProfile, Profiles, SpotProfile};
-pub use settings::LightPassSettings;
 
 /// Directional distribution of a VPL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,15 +23,6 @@ pub enum VplKind {
     Directional,
     /// In a lobe: a patch of a rough surface that reflects much as metals do.
     Lobed,
-}
-
-/// Origin of a VPL's light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Origin {
-    /// Emitted at its position.
-    Direct,
-    /// Reflected at its position.
-    Indirect,
 }
 
 /// The hot part of a VPL: 16 bytes, four to a cache line.

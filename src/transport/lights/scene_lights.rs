@@ -1,0 +1,64 @@
+//! The virtual lights of a scene with what shading needs besides: trees, intensities, and distances below which a VPL
+//! cannot represent its patch.
+
+use super::{Family, Intensities, LightPassSettings, LightTrees, light_pass, min_dist_sq, near_sq_of_size};
+use base::progress::Control;
+use base::stats::{Stage, Stats};
+use world::{SurfacePoint, World};
+
+/// Parameters of virtual lights, besides the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightsWanted {
+    /// Numbers of VPLs and the seed.
+    pub pass: LightPassSettings,
+    /// Builder of the trees.
+    pub family: Family,
+    /// Maximum number of edges of a path.
+    pub max_depth: u32,
+    /// Points whose indirect light is wanted; if empty, all points of the scene.
+    pub seen: Vec<SurfacePoint>,
+}
+
+/// Virtual lights of a scene.
+pub struct Lights {
+    /// Trees over all VPLs.
+    pub trees: LightTrees,
+    /// Squared distance from each mesh below which a VPL on it cannot represent the patch around it; 0 for meshes that
+    /// do not emit.
+    pub near_sq: Vec<f32>,
+    /// Intensities of indirect VPLs by region; `None` if there are no indirect VPLs.
+    pub intensities: Option<Intensities>,
+    /// Diagonal of the scene.
+    pub diagonal: f32,
+    /// Seed of the VPLs.
+    pub seed: u32,
+}
+
+impl Lights {
+    /// Makes the virtual lights of a scene, with fewer VPLs or no trees if `control` is cancelled. Counts and times the
+    /// work in `stats`.
+    pub fn new(world: &World, wanted: &LightsWanted, control: &Control, stats: &mut Stats) -> Lights {
+        control.begin(Stage::LightPass, u64::from(wanted.pass.indirect));
+        let pass = || light_pass(world, &wanted.pass, &wanted.seen, wanted.max_depth, control);
+        let made = stats.time(Stage::LightPass, pass);
+        stats.count("VPLs/total", made.len() as u64);
+        stats.count("VPLs/photon paths", made.photons.paths);
+        if made.photons.gain > 0.0 {
+            stats.add("VPLs/gain of aims", made.photons.gain.into());
+        }
+        stats.count("Rays/closest hit", made.photons.rays);
+
+        control.begin(Stage::Tree, 0);
+        let diagonal = world.diagonal;
+        let build = || {
+            let intensities = Intensities::new(&made.sets, &made.profiles);
+            let trees = LightTrees::build(&made.sets, made.profiles, diagonal, wanted.family, control);
+            (trees, intensities)
+        };
+        let (trees, intensities) = stats.time(Stage::Tree, build);
+        let min_dist_sq = min_dist_sq(diagonal);
+        let near_sq = |&size: &u32| if size > 0 { near_sq_of_size(size, min_dist_sq) } else { 0.0 };
+        let near_sq = made.sizes.iter().map(near_sq).collect();
+        Lights { trees, near_sq, intensities, diagonal, seed: wanted.pass.seed }
+    }
+}
