@@ -14,11 +14,11 @@
 //! r²/A) of its radiance.
 //!
 //! Deviations: light of the second kind is not in the paper, which limits no direct light. b comes from the mean
-//! intensity of the indirect virtual lights around the point, or where all light that one gives is limited, around
-//! the surface met ([`crate::lights::Intensities`]), so one that is much brighter than those may give more than the limit. Every
-//! point is compensated, also where no light of its cut happens to be clamped: the two parts complement each other on
-//! average only. All points of a picture use the same directions, in frames of their own, so that their errors are
-//! similar and no noise is visible between them; other seeds use others. Surfaces that rays meet reflect as virtual
+//! intensity of the indirect virtual lights around the point, or where all light that one gives is limited, around the
+//! surface met ([`crate::lights::Intensities`]), so one that is much brighter than those may give more than the limit.
+//! Every point is compensated, also where no light of its cut happens to be clamped: the two parts complement each
+//! other on average only. All points of a picture use the same directions, in frames of their own, so that their errors
+//! are similar and no noise is visible between them; other seeds use others. Surfaces that rays meet reflect as virtual
 //! lights do: rough metals by their lobes ([`lobes`]), all else as if it were diffuse. Where the path length is
 //! limited, paths over surfaces that rays hit may have an edge more.
 //!

@@ -91,7 +91,7 @@ impl<'a, 'w> Aims<'a, 'w> {
         let mut numbers = EmissionNumbers::new(sampler);
         let cells = self.side * self.side;
         let index = cell / cells;
-        let aim = if self.emitter.aims_by_place(index) { &mut numbers.place } else { &mut numbers.direction };
+        let aim = if self.emitter.is_far(index) { &mut numbers.place } else { &mut numbers.direction };
         let corner = Vec2::new((cell % self.side) as f32, (cell % cells / self.side) as f32);
         *aim = ((*aim + corner) / self.side as f32).min(Vec2::splat(1.0 - 0.5 * f32::EPSILON));
         let boost = self.boosts[cell];

@@ -1,12 +1,12 @@
-//! Parts that emitters have of the indirect light that the eye sees, and the numbers of photons by them.
+//! Contributions of the emitters to the visible indirect light, and shares of the paths in proportion to them.
 //!
-//! By their power alone, a hall beside a dim room has nearly all photons, and so has a sky over a plain of which a
-//! window shows a little: the lamp in the room has a few virtual lights, each so bright that it is clamped.
+//! In proportion to power, nearly all photons go to a bright hall beside a dim room, or to a plain of which a window
+//! shows a little. The lamp in the room then has a few virtual lights, each so bright that it is clamped.
 //!
-//! Deviations: emitters share paths by what these bring to the eye, where Keller's *Instant Radiosity* and the paper
-//! have them in proportion to power. The parts are found by short paths from some of the points seen.
+//! Paper: Keller, *Instant Radiosity*, 1997. Deviations: emitters share paths in proportion to their contributions to
+//! the image, not to power. Short pilot paths from visible points estimate the contributions.
 
-use super::short_paths::{Met, follow, is_free};
+use super::short_paths::{PilotVertex, follow, is_free};
 use base::math::{LANES, Vec2x16, Vec3x16, lanes_in, luminance};
 use base::parallel::ShortRuns;
 use base::sampling::{Sampler, hash};
@@ -15,95 +15,104 @@ use world::light::{DiscreteDistribution, Receivers16};
 use world::shadow;
 use world::{SurfacePoint, World};
 
-/// Number of the points seen for each that a path begins at.
-const POINTS_A_PATH: usize = 4;
+/// Number of visible points per pilot path.
+const POINTS_PER_PATH: usize = 4;
 
-/// Number of points below which they say too little.
-const FEW: usize = 256;
+/// Minimum number of pilot paths.
+const MIN_PATHS: usize = 256;
 
-/// Share of the paths that emitters have by power as before, since few paths say nothing of what rarely lights.
-const BY_POWER: f32 = 0.25;
+/// Share of the paths that stay in proportion to power, since pilot paths miss emitters that rarely contribute.
+const POWER_SHARE: f32 = 0.25;
 
-/// Factor on the variance of the light from which on sharing by power is worth a change.
-const LEAST_GAIN: f64 = 1.5;
+/// Minimum ratio of the variance with shares by power to that with shares by contribution.
+const MIN_GAIN: f64 = 1.5;
 
-/// Luminances that emitters give to points seen, found by one path from each.
-type Found = Vec<(u32, f64)>;
+/// Light of an emitter at the beginning of a pilot path.
+struct Contribution {
+    emitter: u32,
+    luminance: f64,
+}
 
-/// Paths by emitter, if those `by_power` are a bad choice for the indirect light of the points `seen`.
+/// Returns shares of the paths by emitter for the indirect light of the points `seen`; `None` if `by_power` is nearly
+/// as good.
 pub(super) fn shares(
     world: &World,
     by_power: &DiscreteDistribution,
     seen: &[SurfacePoint],
     seed: u32,
 ) -> Option<DiscreteDistribution> {
-    let starts: Vec<SurfacePoint> = seen.iter().step_by(POINTS_A_PATH).copied().collect();
-    if by_power.len() < 2 || starts.len() < FEW {
+    let starts: Vec<SurfacePoint> = seen.iter().step_by(POINTS_PER_PATH).copied().collect();
+    if by_power.len() < 2 || starts.len() < MIN_PATHS {
         return None;
     }
     let seed = hash(seed, 0x5ea2);
     let from = |(number, start): (usize, &SurfacePoint)| {
         let mut found = Vec::new();
-        follow(world, start, &mut Sampler::new(seed, number as u32), |met, sampler| {
-            look(world, met, sampler, &mut found);
+        follow(world, start, &mut Sampler::new(seed, number as u32), |vertex, sampler| {
+            add_light(world, vertex, sampler, &mut found);
         });
         found
     };
-    let found: Vec<Found> = starts.par_iter().in_short_runs().enumerate().map(from).collect();
-    let all = parts(&found, by_power.len(), |_| true)?;
-    // Measured by other paths than those by which the shares are chosen, and no path by itself.
-    let chosen = mixed(by_power, &parts(&found, by_power.len(), |path| path % 2 == 0)?);
-    let [a, b] = [1, 3].map(|rest| parts(&found, by_power.len(), |path| path % 4 == rest));
+    let paths: Vec<Vec<Contribution>> = starts.par_iter().in_short_runs().enumerate().map(from).collect();
+    let all = by_emitter(&paths, by_power.len(), |_| true)?;
+    // Paths with even numbers choose shares, and two other sets of paths measure the variance: no path measures itself.
+    let chosen = mixed(by_power, &by_emitter(&paths, by_power.len(), |path| path % 2 == 0)?);
+    let [a, b] = [1, 3].map(|rest| by_emitter(&paths, by_power.len(), |path| path % 4 == rest));
     let (a, b) = (a?, b?);
-    let variance = |paths: &DiscreteDistribution| -> f64 {
-        (0..paths.len()).map(|i| a[i] * b[i] / f64::from(paths.probability(i)).max(f64::MIN_POSITIVE)).sum()
+    let variance = |shares: &DiscreteDistribution| -> f64 {
+        (0..shares.len()).map(|i| a[i] * b[i] / f64::from(shares.probability(i)).max(f64::MIN_POSITIVE)).sum()
     };
-    let better = variance(by_power) >= LEAST_GAIN * variance(&chosen);
+    let better = variance(by_power) >= MIN_GAIN * variance(&chosen);
     better.then(|| mixed(by_power, &all))
 }
 
-/// Parts of all light by emitter, of some of the paths; errors are as visible in places with less light. `None` if they
-/// found none.
-fn parts(found: &[Found], emitters: usize, is_wanted: impl Fn(usize) -> bool) -> Option<Vec<f64>> {
-    let light = |found: &Found| found.iter().map(|(_, y)| y).sum::<f64>();
-    let mean = found.iter().map(light).sum::<f64>() / found.len() as f64;
-    let mut parts = vec![0.0; emitters];
-    for (_, found) in found.iter().enumerate().filter(|(path, _)| is_wanted(*path)) {
-        let scale = 1.0 / (light(found) + mean);
-        found.iter().for_each(|(emitter, y)| parts[*emitter as usize] += y * scale);
+/// Returns each emitter's share of the light found by some of the paths; `None` if they found no light. Light counts
+/// relative to that of its path plus the mean, since errors are as visible in darker places.
+fn by_emitter(
+    paths: &[Vec<Contribution>],
+    emitters: usize,
+    is_wanted: impl Fn(usize) -> bool,
+) -> Option<Vec<f64>> {
+    let light = |path: &Vec<Contribution>| path.iter().map(|c| c.luminance).sum::<f64>();
+    let mean = paths.iter().map(light).sum::<f64>() / paths.len() as f64;
+    let mut shares = vec![0.0; emitters];
+    for (_, path) in paths.iter().enumerate().filter(|(number, _)| is_wanted(*number)) {
+        let scale = 1.0 / (light(path) + mean);
+        path.iter().for_each(|c| shares[c.emitter as usize] += c.luminance * scale);
     }
-    let all: f64 = parts.iter().sum();
-    parts.iter_mut().for_each(|part| *part /= all);
-    (all > 0.0 && all.is_finite()).then_some(parts)
+    let all: f64 = shares.iter().sum();
+    shares.iter_mut().for_each(|share| *share /= all);
+    (all > 0.0 && all.is_finite()).then_some(shares)
 }
 
-/// Paths in proportion to parts of the light, some by power.
-fn mixed(by_power: &DiscreteDistribution, parts: &[f64]) -> DiscreteDistribution {
-    let share =
-        |(i, part): (usize, &f64)| (1.0 - BY_POWER) * *part as f32 + BY_POWER * by_power.probability(i);
-    DiscreteDistribution::new(parts.iter().enumerate().map(share))
+/// Returns shares of the paths in proportion to contributions, but for those that stay in proportion to power.
+fn mixed(by_power: &DiscreteDistribution, contributions: &[f64]) -> DiscreteDistribution {
+    let share = |(i, contribution): (usize, &f64)| {
+        (1.0 - POWER_SHARE) * *contribution as f32 + POWER_SHARE * by_power.probability(i)
+    };
+    DiscreteDistribution::new(contributions.iter().enumerate().map(share))
 }
 
-/// Adds what sixteen samples of the emitters give at a surface.
-fn look(world: &World, met: &Met, sampler: &mut Sampler, found: &mut Found) {
+/// Adds the contributions of sixteen light samples at a vertex.
+fn add_light(world: &World, vertex: &PilotVertex, sampler: &mut Sampler, found: &mut Vec<Contribution>) {
     let (mut choices, mut places) = ([0.0; LANES], Vec2x16::default());
     for (lane, choice) in choices.iter_mut().enumerate() {
         *choice = sampler.next_1d();
         places.set(lane, sampler.next_2d());
     }
-    let (x, normal) = (met.surface.position, met.surface.normal);
-    let side = met.surface.frame.normal * met.wo.z.signum();
+    let (x, normal) = (vertex.surface.position, vertex.surface.normal);
+    let side = vertex.surface.frame.normal * vertex.wo.z.signum();
     let at = Receivers16 { position: &Vec3x16::splat(x), normal: &Vec3x16::splat(side), learned: None };
     let (chosen, samples) = world.emitters.sample_of(&world.scene, at, &choices, &places, |_| true);
     for lane in lanes_in(samples.useful()) {
         let (direction, distance) = (samples.direction.get(lane), samples.distance[lane]);
-        let y = luminance(met.reflected(direction, samples.radiance.get(lane))) / samples.pdf[lane];
+        let y = luminance(vertex.reflected(direction, samples.radiance.get(lane))) / samples.pdf[lane];
         let ray = match distance < f32::INFINITY {
             true => shadow::segment(x, normal, x + direction * distance, samples.normal.get(lane)),
             false => shadow::ray_from(x, normal, direction),
         };
         if y > 0.0 && y.is_finite() && is_free(world, ray) {
-            found.push((chosen[lane], f64::from(y)));
+            found.push(Contribution { emitter: chosen[lane], luminance: f64::from(y) });
         }
     }
 }
@@ -152,13 +161,13 @@ mod tests {
         add_room(&mut scene, Vec3::ZERO, 1.0);
         add_room(&mut scene, Vec3::X * 2.0, 300.0);
         let world = world(scene).world;
-        let (mut by_power, mut by_worth, mut count) = ([0.0; 2], [0.0; 2], [0; 2]);
+        let (mut by_power, mut by_contribution, mut count) = ([0.0; 2], [0.0; 2], [0; 2]);
         for seed in 0..40 {
             let ([few, many], [a, b]) = {
                 let [a, b] = [inside(&world, &[], seed), inside(&world, &floor(), seed)];
                 ([a.0, b.0], [a.1, b.1])
             };
-            for (sums, value) in [(&mut by_power, a), (&mut by_worth, b)] {
+            for (sums, value) in [(&mut by_power, a), (&mut by_contribution, b)] {
                 sums[0] += value / 40.0;
                 sums[1] += value * value / 40.0;
             }
@@ -166,9 +175,12 @@ mod tests {
         }
         assert!(count[1] > 100 * count[0] && count[0] > 0, "{count:?}");
         let deviation = ((by_power[1] - by_power[0] * by_power[0]) / 40.0).sqrt();
-        assert!((by_worth[0] - by_power[0]).abs() < 4.0 * deviation, "{by_worth:?} {by_power:?} {deviation}");
+        assert!(
+            (by_contribution[0] - by_power[0]).abs() < 4.0 * deviation,
+            "{by_contribution:?} {by_power:?} {deviation}"
+        );
         let spread = |[mean, squares]: [f32; 2]| (squares - mean * mean).max(0.0).sqrt() / mean;
-        assert!(spread(by_worth) < 0.2 * spread(by_power), "{by_worth:?} {by_power:?}");
+        assert!(spread(by_contribution) < 0.2 * spread(by_power), "{by_contribution:?} {by_power:?}");
     }
 
     #[test]
@@ -194,9 +206,9 @@ mod tests {
             scene.meshes.push(emitting(lamp, Rgb::splat(radiance)));
         }
         let world = world(scene).world;
-        let mut emitter = PhotonEmitter::new(&world).expect("there are lamps");
-        assert_eq!(emitter.share_by_worth(&floor(), 1), None);
-        let shares: Vec<f32> = emitter.shares().collect();
-        assert!((shares[0] / shares[1] - 3.0).abs() < 1e-3, "{shares:?}");
+        let emitter = PhotonEmitter::new(&world).expect("there are lamps");
+        assert!(shares(&world, &emitter.by_power, &floor(), 1).is_none());
+        let by_power: Vec<f32> = emitter.shares().collect();
+        assert!((by_power[0] / by_power[1] - 3.0).abs() < 1e-3, "{by_power:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! Lights that are infinitely far: tiles of the environment, and directional lights.
+//! Emitters that are infinitely far: tiles of the environment, and directional lights.
 
 use base::math::{Rgb, luminance};
 use glam::{Vec2, Vec3};
@@ -7,29 +7,29 @@ use std::f32::consts::PI;
 use world::World;
 use world::light::{DiscreteDistribution, EnvironmentLight};
 
-/// The sources: tiles, then directional lights.
+/// Sources of light from infinitely far: tiles, then directional lights.
 pub(super) struct FarLights<'w> {
     sky: Option<&'w EnvironmentLight>,
     tiles: usize,
-    /// Unit directions of the light, and irradiances across them.
+    /// Unit direction of each directional light, and irradiance on a surface across it.
     directional: Vec<(Vec3, Rgb)>,
-    /// Sources by the irradiance of surfaces that face them.
+    /// Sources by the irradiance on a surface that faces them.
     by_flux: DiscreteDistribution,
 }
 
-/// A direction of light from a source.
+/// Sample of the light of a source.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FarSample {
     /// Unit vector to the source.
     pub towards: Vec3,
-    /// Irradiance of a surface that faces it, an estimate of the source's.
+    /// Estimate of the source's irradiance on a surface that faces the light.
     pub irradiance: Rgb,
-    /// Luminance of its radiance; infinite of directional lights.
+    /// Luminance of the radiance; infinite for directional lights.
     pub radiance: f32,
 }
 
 impl<'w> FarLights<'w> {
-    /// Those of a scene; `None` if it has none.
+    /// Collects the sources of a scene; `None` if it has none.
     pub fn new(world: &'w World) -> Option<FarLights<'w>> {
         let sky = world.emitters.environment.as_ref();
         let directional: Vec<(Vec3, Rgb)> = world
@@ -56,17 +56,17 @@ impl<'w> FarLights<'w> {
         self.by_flux.len()
     }
 
-    /// Draws a source by flux.
+    /// Samples a source in proportion to flux.
     pub fn source(&self, u: f32) -> usize {
         self.by_flux.sample(u).0
     }
 
-    /// Probability with which [`FarLights::source`] draws a source.
+    /// Probability with which [`FarLights::source`] returns a source.
     pub fn probability(&self, source: usize) -> f32 {
         self.by_flux.probability(source)
     }
 
-    /// Draws a direction of a source; `None` where it is dark.
+    /// Samples a direction of a source; `None` if the source is dark there.
     pub fn sample(&self, source: usize, u: Vec2) -> Option<FarSample> {
         if let Some(sky) = self.sky.filter(|_| source < self.tiles) {
             let s = sky.sample_of_tile(source, u)?;

@@ -1,21 +1,29 @@
 //! Photons: paths that begin at the emitters of a scene.
 //!
-//! - [`PhotonEmitter`] samples the beginnings of paths ([`EmissionSample`]), [`target`] directs them at the scene;
-//! - [`contributions`] and [`openings`] re-weight them for the points that the eye sees;
-//! - [`trace_photons`] follows the paths and stores photons at diffuse surfaces.
+//! - [`PhotonEmitter`] begins paths at an emitter; [`target`] and [`lit_sphere`] direct them at the scene;
+//! - [`plan`] holds the shares of paths by emitter and their aims. [`planning`] makes a plan from pilot paths:
+//!   [`contributions`] re-weight emitters, [`openings`] aims paths from infinitely far;
+//! - [`tracing`] follows the paths of a plan; [`trace_photons`] traces as many as are wanted.
 
 mod contributions;
 mod emitter;
 mod entries;
 mod far;
+mod lit_sphere;
 mod openings;
 #[cfg(test)]
 mod openings_tests;
+mod photon;
 mod photons;
+mod plan;
+mod planning;
 mod sample;
 mod short_paths;
 mod target;
+mod tracing;
 
 pub use emitter::PhotonEmitter;
-pub use photons::{MAX_CORRECTION, Photon, PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
+pub use photon::{Photon, PhotonCounts, PhotonHit, PhotonSettings};
+pub use photons::trace_photons;
 pub use sample::{EmissionNumbers, EmissionSample};
+pub use tracing::MAX_CORRECTION;

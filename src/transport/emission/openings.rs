@@ -1,69 +1,72 @@
-//! Aims for photons from infinitely far: where their light comes to what the eye may see the reflection of.
+//! Aims for photons from infinitely far: places where their light reaches surfaces that light the image indirectly.
 //!
-//! Seen from within a room, nearly all photons of the sky are lost on what is outside. Short paths from surfaces that
-//! the eye sees find the places that light comes to ([`super::entries`]); spheres around these are the aims, by source.
-//! Some photons still go anywhere, so that flux is the same on the average, however little was found.
+//! Nearly all photons of a sky miss a room that it lights through windows. Pilot paths from visible surfaces find the
+//! places that light reaches ([`super::entries`]). Spheres around these places are the aims of photons, by source. Some
+//! photons still go anywhere, so that flux is unbiased however few places were found.
 //!
 //! Paper: Georgiev & Slusallek, *Simple and Robust Iterative Importance Sampling of Virtual Point Lights*, 2010, for
-//! the aim: virtual lights in proportion to what they give to the picture.
-//! Deviations: photons are drawn where they count, not rejected afterwards.
+//! the objective: virtual lights in proportion to their contributions to the image.
+//! Deviations: photons are sampled in proportion to their contributions, not rejected afterwards.
 
-use super::EmissionSample;
-use super::entries::{Entry, entries};
+use super::entries::{LightEntry, entries};
 use super::far::FarLights;
 use super::target::Target;
+use super::{EmissionNumbers, EmissionSample};
 use base::math::Frame;
 use base::sampling::{hash, uniform_disk};
 use embree::Ray;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use std::f32::consts::PI;
 use world::light::{DiscreteDistribution, Regions};
 use world::{SurfacePoint, World};
 
-/// Shares of the photons that go anywhere, of which the best is taken.
+/// Candidates for the share of the photons that go anywhere; the best is taken.
 const SHARES: [f32; 3] = [0.25, 0.5, 0.75];
 
-/// Number of the points seen for each that says how good the aims are.
-const TRIED: usize = 4;
+/// Stride between the visible points that evaluate the aims.
+const EVALUATED_STRIDE: usize = 4;
 
-/// Number of places of light below which they say too little.
-const FEW: usize = 256;
+/// Minimum number of entries of light for aims.
+const MIN_ENTRIES: usize = 256;
 
-/// Number of aims, about.
+/// Approximate number of aims.
 const AIMS: usize = 64;
 
-/// Radius of an aim over that of the places it is made of, and its least share of the radius of all.
-const WIDER: f32 = 1.3;
-const LEAST: f32 = 1e-3;
+/// Radius of an aim, relative to the sphere around its entries.
+const WIDENING: f32 = 1.3;
 
-/// Weight of the products of the frequencies of source and aim over those of the pairs found, which are few.
-const SMOOTHED: f32 = 1.0;
+/// Minimum radius of an aim, relative to the sphere around all entries.
+const MIN_RADIUS: f32 = 1e-3;
 
-/// Gain from which on aims are worth it.
-const LEAST_GAIN: f32 = 2.0;
+/// Weight of the product of the frequencies of source and aim, relative to the frequency of the pair.
+const SMOOTHING: f32 = 1.0;
 
-/// Aims, and how often photons of each source are drawn to each.
+/// Minimum gain of aims.
+const MIN_GAIN: f32 = 2.0;
+
+/// Aims, and probabilities of the pairs of source and aim.
 pub(super) struct Openings<'w> {
     lights: FarLights<'w>,
     /// Centres and squared radii.
     aims: Vec<(Vec3, f32)>,
-    /// Pairs of source and aim.
+    /// Pairs of source and aim, source by source.
     pairs: DiscreteDistribution,
     /// Share of the photons that go anywhere.
     pub share: f32,
-    /// Mean flux of the photons that bring light to what the eye sees if all go anywhere, over that of those aimed.
+    /// Mean flux of contributing photons without aims, relative to their mean flux with aims.
     pub gain: f32,
 }
 
 impl<'w> Openings<'w> {
-    /// Finds those of light to points `seen` by the eye; `None` if there are none, or aims are not worth it.
+    /// Finds the aims for light to the points `seen` by the eye; `None` if there are too few entries or the gain is
+    /// small.
     pub fn new(world: &'w World, target: &Target, seen: &[SurfacePoint], seed: u32) -> Option<Openings<'w>> {
         if seen.is_empty() {
             return None;
         }
         let lights = FarLights::new(world)?;
         let entries = entries(world, &lights, seen, seed);
-        if entries.len() < FEW {
+        if entries.len() < MIN_ENTRIES {
             return None;
         }
         let places: Vec<Vec3> = entries.iter().map(|entry| entry.place).collect();
@@ -74,23 +77,24 @@ impl<'w> Openings<'w> {
             .iter()
             .map(|members| {
                 let (centre, radius_sq) = around(&places, members);
-                (centre, (WIDER * WIDER * radius_sq).max(LEAST * LEAST * extent_sq))
+                (centre, (WIDENING * WIDENING * radius_sq).max(MIN_RADIUS * MIN_RADIUS * extent_sq))
             })
             .collect();
         let pairs = pairs(lights.len(), &members, &entries);
         let mut openings = Openings { lights, aims, pairs, share: 1.0, gain: 1.0 };
-        let others: Vec<SurfacePoint> = seen.iter().skip(TRIED / 2).step_by(TRIED).copied().collect();
-        let tried = self::entries(world, &openings.lights, &others, hash(seed, 0x7121));
-        openings.weigh(target, &tried);
-        (openings.gain >= LEAST_GAIN && openings.gain.is_finite()).then_some(openings)
+        let others: Vec<SurfacePoint> =
+            seen.iter().skip(EVALUATED_STRIDE / 2).step_by(EVALUATED_STRIDE).copied().collect();
+        let evaluated = self::entries(world, &openings.lights, &others, hash(seed, 0x7121));
+        openings.choose_share(target, &evaluated);
+        (openings.gain >= MIN_GAIN && openings.gain.is_finite()).then_some(openings)
     }
 
-    /// Chooses the share that goes anywhere by which photons that bring the light of the places `entries`, none of
-    /// which the aims were made of, have the least flux in the mean, and measures the gain.
-    fn weigh(&mut self, target: &Target, entries: &[Entry]) {
+    /// Chooses the share of photons that go anywhere: the one with the least mean flux of photons to `entries`.
+    /// Measures the gain. None of `entries` is among those that the aims were made of.
+    fn choose_share(&mut self, target: &Target, entries: &[LightEntry]) {
         let gain = |anywhere: f32| {
             let (mut flux, mut all) = (0.0f64, 0.0f64);
-            for Entry { place, source, towards, weight } in entries {
+            for LightEntry { place, source, towards, weight } in entries {
                 let without = self.anywhere(target, *source, *place, *towards);
                 let with = anywhere * without + (1.0 - anywhere) * self.aimed(*source, *place, *towards);
                 flux += f64::from(*weight) * f64::from(without / with);
@@ -99,20 +103,20 @@ impl<'w> Openings<'w> {
             (all / flux) as f32
         };
         let gains = SHARES.map(gain);
-        for (share, found) in SHARES.into_iter().zip(gains) {
-            if found > self.gain {
-                (self.share, self.gain) = (share, found);
+        for (share, gain) in SHARES.into_iter().zip(gains) {
+            if gain > self.gain {
+                (self.share, self.gain) = (share, gain);
             }
         }
     }
 
-    /// Density with which photons that go anywhere are drawn from a source on the line through a place towards it, by
-    /// area across it.
+    /// Density, by area across the line, with which a photon that goes anywhere comes from `source` along the line
+    /// through `place`.
     fn anywhere(&self, target: &Target, source: usize, place: Vec3, towards: Vec3) -> f32 {
         self.lights.probability(source) * target.density(place, towards)
     }
 
-    /// The same for photons that are aimed.
+    /// Density, by area across the line, with which an aimed photon comes from `source` along the line through `place`.
     fn aimed(&self, source: usize, place: Vec3, towards: Vec3) -> f32 {
         let mut density = 0.0;
         for (aim, (centre, radius_sq)) in self.aims.iter().enumerate() {
@@ -123,14 +127,9 @@ impl<'w> Openings<'w> {
         density
     }
 
-    /// Begins a path, with the flux of paths that all begin infinitely far.
-    pub fn sample(
-        &self,
-        target: &Target,
-        u_pair: f32,
-        u_place: Vec2,
-        u_direction: Vec2,
-    ) -> Option<EmissionSample> {
+    /// Samples the beginning of a path, with the flux of paths that all begin infinitely far.
+    pub fn sample(&self, target: &Target, numbers: &EmissionNumbers) -> Option<EmissionSample> {
+        let EmissionNumbers { place: u_place, direction: u_direction, side: u_pair } = *numbers;
         let goes_anywhere = u_pair < self.share;
         let (source, aim) = if goes_anywhere {
             (self.lights.source(u_pair / self.share), 0)
@@ -154,14 +153,14 @@ impl<'w> Openings<'w> {
     }
 }
 
-/// Weights of pairs of source and aim.
-fn pairs(sources: usize, members: &[Vec<u32>], entries: &[Entry]) -> DiscreteDistribution {
+/// Returns the distribution of pairs of source and aim, source by source.
+fn pairs(sources: usize, members: &[Vec<u32>], entries: &[LightEntry]) -> DiscreteDistribution {
     let aims = members.len();
     let (mut of_pairs, mut of_sources, mut of_aims) =
         (vec![0.0; sources * aims], vec![0.0; sources], vec![0.0; aims]);
     let mut total = 0.0f64;
     for (aim, members) in members.iter().enumerate() {
-        for Entry { source, weight, .. } in members.iter().map(|i| &entries[*i as usize]) {
+        for LightEntry { source, weight, .. } in members.iter().map(|i| &entries[*i as usize]) {
             let weight = f64::from(*weight);
             of_pairs[source * aims + aim] += weight;
             of_sources[*source] += weight;
@@ -172,12 +171,12 @@ fn pairs(sources: usize, members: &[Vec<u32>], entries: &[Entry]) -> DiscreteDis
     let weight = |pair: usize| {
         let (source, aim) = (pair / aims, pair % aims);
         let smoothed = of_sources[source] * of_aims[aim] / total;
-        ((of_pairs[pair] + f64::from(SMOOTHED) * smoothed) / total) as f32
+        ((of_pairs[pair] + f64::from(SMOOTHING) * smoothed) / total) as f32
     };
     DiscreteDistribution::new((0..sources * aims).map(weight))
 }
 
-/// Middle of some of the places and the squared distance of the farthest from it.
+/// Returns the middle of some of the places, and the squared distance of the farthest of them from it.
 fn around(places: &[Vec3], members: &[u32]) -> (Vec3, f32) {
     let of_members = || members.iter().map(|i| places[*i as usize]);
     let low = of_members().fold(Vec3::INFINITY, Vec3::min);

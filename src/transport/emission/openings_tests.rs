@@ -1,5 +1,7 @@
 //! Aimed photons against those that go anywhere.
 
+use super::openings::Openings;
+use super::plan::EmitterPlan;
 use super::{PhotonCounts, PhotonEmitter, PhotonSettings, trace_photons};
 use crate::lights::{LightPassSettings, Origin, light_pass};
 use base::math::{Rgb, luminance};
@@ -93,9 +95,9 @@ fn aimed_paths_have_the_flux_of_sky_and_suns() {
     const PATHS: u32 = 8_000_000;
     const CHUNKS: u32 = 64;
     let world = room_with_window();
-    let mut source = PhotonEmitter::new(&world).expect("there is a sky");
-    source.aims = source.aims(&floor(), 0);
-    assert!(source.aims.is_some());
+    let emitter = PhotonEmitter::new(&world).expect("there is a sky");
+    let aims = Openings::new(&world, &emitter.target, &floor(), 0).expect("there is a window");
+    let plan = EmitterPlan::aimed(&emitter, aims, 0);
     // Of half angle .005 and radiance 2e4.
     let disc = PI * 0.005 * 0.005 * 2e4;
     let irradiance = 4.0 * PI * 0.5 + disc + 0.5;
@@ -105,7 +107,7 @@ fn aimed_paths_have_the_flux_of_sky_and_suns() {
             .into_par_iter()
             .map(|chunk| {
                 (chunk * (PATHS / CHUNKS)..(chunk + 1) * (PATHS / CHUNKS))
-                    .filter_map(|path| source.sample(&mut Sampler::new(5, path)))
+                    .filter_map(|path| plan.sample(&emitter, &mut Sampler::new(5, path)))
                     .filter(|emission| passes(&emission.ray))
                     .map(|emission| f64::from(luminance(emission.flux)))
                     .fold([0.0; 2], |[sum, squares], flux| [sum + flux, squares + flux * flux])

@@ -1,4 +1,4 @@
-//! Short paths from surfaces that the eye sees, which find by what light these are lit.
+//! Short pilot paths from surfaces that the eye sees, to the surfaces that light them.
 
 use base::math::{Frame, Rgb};
 use base::sampling::{Sampler, cosine_hemisphere};
@@ -8,37 +8,37 @@ use world::material::Bsdf;
 use world::shadow;
 use world::{Surface, SurfacePoint, World};
 
-/// Number of surfaces that a path finds.
+/// Maximum number of diffuse or glossy surfaces of a path.
 const SURFACES: u32 = 2;
 
-/// Maximum number of edges, mirrors and glass included.
+/// Maximum number of edges of a path, mirrors and glass included.
 const MAX_EDGES: u32 = 8;
 
-/// A surface that a path has found.
-pub(super) struct Met<'a> {
+/// Vertex of a path at a diffuse or glossy surface.
+pub(super) struct PilotVertex<'a> {
     pub surface: &'a Surface,
     pub bsdf: &'a Bsdf<'a>,
     /// Unit vector back along the path in the shading frame.
     pub wo: Vec3,
-    /// Light at the path's beginning for a radiance of 1 from here, up to a factor.
+    /// Radiance at the beginning of the path for a radiance of 1 from this vertex, up to a constant factor.
     pub throughput: Rgb,
 }
 
-impl Met<'_> {
-    /// Light at the path's beginning for a radiance, or irradiance across its direction, from the unit vector
-    /// `towards`, up to a factor.
+impl PilotVertex<'_> {
+    /// Returns the radiance at the beginning of the path for light from the unit vector `towards`, up to a constant
+    /// factor. The light is given as `radiance`, or as irradiance on a facing surface.
     pub fn reflected(&self, towards: Vec3, radiance: Rgb) -> Rgb {
         let wi = self.surface.frame.to_local(towards);
         self.throughput * self.bsdf.eval(self.wo, wi) * radiance * wi.z.abs()
     }
 }
 
-/// Follows a path from a point that reflects diffusely.
+/// Follows a path from a point that reflects diffusely, and passes every diffuse or glossy vertex to `met`.
 pub(super) fn follow(
     world: &World,
     start: &SurfacePoint,
     sampler: &mut Sampler,
-    mut met: impl FnMut(&Met, &mut Sampler),
+    mut met: impl FnMut(&PilotVertex, &mut Sampler),
 ) {
     let direction = Frame::from_normal(start.normal).to_world(cosine_hemisphere(sampler.next_2d()));
     let mut ray = shadow::ray_from(start.position, start.geometric_normal, direction);
@@ -49,7 +49,7 @@ pub(super) fn follow(
         let wo = surface.frame.to_local(-ray.direction);
         if bsdf.has_smooth() {
             surfaces += 1;
-            met(&Met { surface: &surface, bsdf: &bsdf, wo, throughput }, sampler);
+            met(&PilotVertex { surface: &surface, bsdf: &bsdf, wo, throughput }, sampler);
             if surfaces == SURFACES {
                 return;
             }
@@ -60,7 +60,7 @@ pub(super) fn follow(
     }
 }
 
-/// True if light may come straight along a ray, also through glass as if it did not bend light.
+/// True if nothing blocks a ray. Mirrors and glass count as if they transmitted light straight.
 pub(super) fn is_free(world: &World, mut ray: Ray) -> bool {
     if !world.specular.has_delta_lobes() {
         return !world.accel.occluded(&ray);
