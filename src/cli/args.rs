@@ -10,7 +10,7 @@ use base::film::Exposure;
 use clap::{Arg, ArgGroup, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use readers::LoadOptions;
 use render::session::Feature;
-use render::walk::{FileNames, FrameList, KeepLimits, Q_SCALE};
+use render::walk::{FileNames, FrameList, Q_SCALE, RetentionLimits};
 use std::ffi::OsString;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -174,7 +174,7 @@ pub struct WalkArgs {
     #[arg(long, value_name = "N", value_parser = counted)]
     pub chunk: Option<NonZeroUsize>,
     /// Most frames for which a record that lights nothing in view is kept
-    #[arg(long, value_name = "FRAMES", default_value_t = KeepLimits::default().idle_frames)]
+    #[arg(long, value_name = "FRAMES", default_value_t = RetentionLimits::default().idle_frames)]
     pub idle_frames: u32,
     /// Most memory for records between frames, like 512M or 2G [default: 1G]; the longest unused go first
     #[arg(long, value_name = "BYTES", allow_hyphen_values = true)]

@@ -3,7 +3,7 @@
 use super::args::{VerifyAgainst, VerifyArgs};
 use render::method::Method;
 use render::verify::Settings;
-use transport::paths::Look;
+use transport::paths::Estimand;
 
 /// Returns the settings of the verification, if asked for; `always` (where settings are planned by the error)
 /// even if not.
@@ -14,10 +14,12 @@ pub fn settings(args: &VerifyArgs, method: &Method, always: bool) -> Option<Sett
     }
     Some(Settings {
         pixels: args.verify.map_or(defaults.pixels, |n| n as usize),
-        look: match args.verify_against {
-            None => method.look(),
-            Some(VerifyAgainst::Pixels) => Look::Pixels,
-            Some(VerifyAgainst::EyeSamples) => Look::EyeSamples { spp: method.spp(), seed: method.seed() },
+        estimand: match args.verify_against {
+            None => method.estimand(),
+            Some(VerifyAgainst::Pixels) => Estimand::Pixels,
+            Some(VerifyAgainst::EyeSamples) => {
+                Estimand::EyeSamples { spp: method.spp(), seed: method.seed() }
+            }
         },
         seed: method.seed(),
         max_depth: method.sampling().max_depth,

@@ -11,7 +11,7 @@ use base::film::Exposure;
 use readers::LoadOptions;
 use render::session::{Goal, Session, Wanted};
 use render::walk::chunk::{self, Chunk, Run};
-use render::walk::{FileNames, FrameList, KeepLimits, saved};
+use render::walk::{FileNames, FrameList, RetentionLimits, saved};
 use serde_json::json;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -37,7 +37,7 @@ pub struct WalkJob {
     /// Method and features.
     pub goal: Goal,
     /// Bounds of the records that are kept.
-    pub limits: KeepLimits,
+    pub limits: RetentionLimits,
     /// Number of threads.
     pub threads: usize,
     /// Statistics on stdout.
@@ -64,7 +64,7 @@ impl WalkJob {
             verify: None,
         };
         args.picture.denoise.check(goal.denoises())?;
-        let defaults = KeepLimits::default();
+        let defaults = RetentionLimits::default();
         let bytes = args.memory_limit.map_or(defaults.bytes, |bytes| bytes.0);
         let job = WalkJob {
             scene: args.scene,
@@ -75,7 +75,7 @@ impl WalkJob {
             reproducible: args.picture.reproducible,
             exposure: (!args.no_png).then_some(args.exposure),
             goal,
-            limits: KeepLimits {
+            limits: RetentionLimits {
                 idle_frames: args.idle_frames,
                 bytes,
                 reprojects: !args.no_reprojection,

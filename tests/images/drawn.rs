@@ -6,7 +6,7 @@ use crate::presets::{direct_only, with_vpls};
 use glam::{Vec2, Vec3};
 use lightsplat::film::{Image, Window};
 use lightsplat::math::{Rgb, luminance};
-use lightsplat::method::{FoundBy, Look, Method, Renderer, cache, path};
+use lightsplat::method::{Estimand, FoundBy, Method, Renderer, cache, path};
 use lightsplat::scene::{Coat, DeltaLight, Distribution, Environment, Fresnel, Lobe, Material, Reflectance};
 use lightsplat::session::Session;
 use lightsplat::view::View;
@@ -103,10 +103,10 @@ fn a_single_sample_looks_through_the_centre_of_the_pixel() {
     let mut scene = dark_room();
     LIGHTS[1].1(&mut scene);
     let world = world(scene);
-    let look = Look::EyeSamples { spp: 1, seed: 0 };
-    let settings = path::Settings { spp: 1, max_depth: Some(2), look, ..Default::default() };
+    let estimand = Estimand::EyeSamples { spp: 1, seed: 0 };
+    let settings = path::Settings { spp: 1, max_depth: Some(2), estimand, ..Default::default() };
     let single = cache::Settings { spp: 1, ..direct_only() };
-    assert_eq!(single.look(), look);
+    assert_eq!(single.estimand(), estimand);
     // One point light leaves nothing to chance.
     assert_eq!(image(&world, &single), image(&world, &settings));
 }

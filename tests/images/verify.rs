@@ -6,8 +6,8 @@ use glam::{DVec3, Vec3};
 use lightsplat::film::metrics::{rel_mse, rel_mse_of_variance, relative_error_map};
 use lightsplat::film::{Image, Window};
 use lightsplat::math::Rgb;
-use lightsplat::method::path::{Counts, Wanted, pixel_means};
-use lightsplat::method::{Family, Look, Method, cache, lightcuts, path, reconstruction};
+use lightsplat::method::path::{RayCounts, Wanted, pixel_means};
+use lightsplat::method::{Estimand, Family, Method, cache, lightcuts, path, reconstruction};
 use lightsplat::progress::Control;
 use lightsplat::scene::PixelFilter;
 use lightsplat::verify::{Estimate, Settings, Verified, verify};
@@ -104,10 +104,12 @@ fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
     let world = world(scene);
     let one = lightcuts::Settings { spp: 1, ..Default::default() };
     let by_one = image(&world, &one);
-    let at = |look: Look| check(&world, &by_one, &Settings { pixels: 700, look, ..Settings::default() });
-    let light = at(Look::EyeSamples { spp: 1, seed: 0 });
+    let at = |estimand: Estimand| {
+        check(&world, &by_one, &Settings { pixels: 700, estimand, ..Settings::default() })
+    };
+    let light = at(Estimand::EyeSamples { spp: 1, seed: 0 });
     assert_eq!((light.relative_rms.high, light.relative_bias.value), (0.0, 0.0), "{light:?}");
-    let all = at(Look::Pixels);
+    let all = at(Estimand::Pixels);
     let exact = image(&world, &path::Settings { spp: 4096, ..path::Settings::default() });
     let rms = rel_mse(&by_one, &exact, 0.0).sqrt();
     assert!(rms > 0.1 && all.relative_rms.covers(rms), "{rms} {all:?}");
@@ -116,9 +118,11 @@ fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
     // another seed.
     let four = lightcuts::Settings { spp: 4, seed: 3, ..Default::default() };
     let by_four = image(&world, &four);
-    let at = |look: Look| check(&world, &by_four, &Settings { pixels: 700, look, ..Settings::default() });
-    assert!(at(Look::EyeSamples { spp: 4, seed: 3 }).relative_rms.high < 1e-6);
-    assert!(at(Look::EyeSamples { spp: 4, seed: 4 }).relative_rms.low > 0.02);
+    let at = |estimand: Estimand| {
+        check(&world, &by_four, &Settings { pixels: 700, estimand, ..Settings::default() })
+    };
+    assert!(at(Estimand::EyeSamples { spp: 4, seed: 3 }).relative_rms.high < 1e-6);
+    assert!(at(Estimand::EyeSamples { spp: 4, seed: 4 }).relative_rms.low > 0.02);
 }
 
 #[test]
@@ -159,8 +163,8 @@ fn crops_threads_and_seeds() {
     assert_eq!(verify(&world, &view, &image, &settings, &control), None);
 }
 
-/// Renders independent references through the positions of `look`.
-fn references(world: &WorldAndView, look: Look, spp: u32) -> Vec<Image> {
+/// Renders independent references through the positions of `estimand`.
+fn references(world: &WorldAndView, estimand: Estimand, spp: u32) -> Vec<Image> {
     const MEANS: u32 = 16;
     let [width, height] = world.view.window.film;
     let depth = world.scene.max_depth.unwrap_or(u32::MAX);
@@ -168,7 +172,7 @@ fn references(world: &WorldAndView, look: Look, spp: u32) -> Vec<Image> {
         let wanted: Vec<Wanted> =
             (0..width).map(|x| Wanted { pixel: [x, y], samples: spp / MEANS }).collect();
         let seed = (0x00c0_ffee + seed, depth);
-        let (row, _) = pixel_means(world, &world.view, look, &wanted, seed, &mut Counts::default());
+        let (row, _) = pixel_means(world, &world.view, estimand, &wanted, seed, &mut RayCounts::default());
         row.into_iter().map(|mean| mean.as_vec3()).collect()
     };
     let reference = |seed: u32| {
@@ -227,7 +231,7 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
     for name in ["cornell", "knot", "nave", "kitchen", "apartment"] {
         let world = own(name, 64);
         let cached = reconstruction::Settings::default();
-        let eye = Look::EyeSamples { spp: cached.spp, seed: cached.seed };
+        let eye = Estimand::EyeSamples { spp: cached.spp, seed: cached.seed };
         let mut few = cached;
         (few.light.indirect, few.cut.epsilon) = (20_000, 0.04);
         let cuts = lightcuts::Settings { family: Family::default(), ..Default::default() };
@@ -235,33 +239,33 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
         let by_default = cache::Settings::default();
         let pairs = match name {
             "cornell" | "kitchen" => vec![
-                ("cache", image(&world, &by_default), Look::Pixels),
+                ("cache", image(&world, &by_default), Estimand::Pixels),
                 ("reconstruction", image(&world, &cached), eye),
                 ("reconstruction, few VPLs", image(&world, &few), eye),
             ],
             "knot" => vec![
                 ("reconstruction", image(&world, &cached), eye),
-                ("cache", image(&world, &by_default), Look::Pixels),
-                ("path, 64 spp", image(&world, &few_paths), Look::Pixels),
+                ("cache", image(&world, &by_default), Estimand::Pixels),
+                ("path, 64 spp", image(&world, &few_paths), Estimand::Pixels),
             ],
             "nave" => vec![
                 ("reconstruction", image(&world, &cached), eye),
-                ("reconstruction, pixels", image(&world, &cached), Look::Pixels),
+                ("reconstruction, pixels", image(&world, &cached), Estimand::Pixels),
             ],
             _ => vec![
                 ("lightcuts", image(&world, &cuts), eye),
-                ("path, 64 spp", image(&world, &few_paths), Look::Pixels),
+                ("path, 64 spp", image(&world, &few_paths), Estimand::Pixels),
             ],
         };
-        let mut traced: Vec<(Look, Vec<Image>)> = Vec::new();
-        for (method, image, look) in pairs {
-            if !traced.iter().any(|(l, _)| *l == look) {
-                traced.push((look, references(&world, look, 16384)));
+        let mut traced: Vec<(Estimand, Vec<Image>)> = Vec::new();
+        for (method, image, estimand) in pairs {
+            if !traced.iter().any(|(l, _)| *l == estimand) {
+                traced.push((estimand, references(&world, estimand, 16384)));
             }
-            let (_, references) = traced.iter().find(|(l, _)| *l == look).unwrap();
+            let (_, references) = traced.iter().find(|(l, _)| *l == estimand).unwrap();
             let truth = known(&image, references);
             for seed in 0..4 {
-                let settings = Settings { pixels: 500, look, seed, ..Settings::default() };
+                let settings = Settings { pixels: 500, estimand, seed, ..Settings::default() };
                 let found = check(&world, &image, &settings);
                 let square = |e: Estimate| e.map(|e| e * e);
                 let estimates =
@@ -303,7 +307,7 @@ mod slow_default {
         let denoised = frame(&session, &view, Method::Cache(settings), true);
         let world = WorldAndView { world: session.world, view };
         // With 4096 paths their own noise is part of the error: they cover 70 of 80, with these 75.
-        let references = references(&world, Look::Pixels, 32768);
+        let references = references(&world, Estimand::Pixels, 32768);
         let mut pictures = vec![noisy];
         if !lacks_denoiser(&denoised) {
             pictures.push(denoised.film.color);

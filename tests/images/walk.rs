@@ -9,7 +9,7 @@ use lightsplat::method::{Method, cache, path};
 use lightsplat::progress::Control;
 use lightsplat::session::{Frame, Goal};
 use lightsplat::view::View;
-use lightsplat::walk::{KeepLimits, Walk};
+use lightsplat::walk::{RetentionLimits, Walk};
 
 const FRAMES: usize = 8;
 
@@ -59,7 +59,7 @@ fn errors_of_the_last_frame(seed: u32) -> [f32; 2] {
         }
         _ => goal,
     };
-    let mut walk = Walk::new(&walked, seeded(goal_of_walk()), KeepLimits::default());
+    let mut walk = Walk::new(&walked, seeded(goal_of_walk()), RetentionLimits::default());
     let (mut new, mut all) = (0, 0);
     let mut last = None;
     for (i, view) in views.iter().enumerate() {
@@ -106,7 +106,7 @@ fn frames_of_a_walk_do_not_depend_on_threads() {
             let mut walk = Walk::new(
                 &session,
                 goal(),
-                KeepLimits { idle_frames: 1, bytes: 100_000, ..KeepLimits::default() },
+                RetentionLimits { idle_frames: 1, bytes: 100_000, ..RetentionLimits::default() },
             );
             let frames = views[..3].iter().map(|view| walk.frame(view, &Control::new()).unwrap().film.color);
             frames.collect::<Vec<_>>()
@@ -120,7 +120,7 @@ fn a_view_seen_twice_has_no_new_records_and_the_same_light() {
     let (scene, views) = room();
     let (session, _) = session(scene);
     // The first frame has no thresholds but Weber's.
-    let limits = KeepLimits { q_scale: None, ..KeepLimits::default() };
+    let limits = RetentionLimits { q_scale: None, ..RetentionLimits::default() };
     let mut walk = Walk::new(&session, goal(), limits);
     let mut frame = || walk.frame(&views[2], &Control::new()).unwrap();
     let first = frame();
@@ -131,7 +131,8 @@ fn a_view_seen_twice_has_no_new_records_and_the_same_light() {
     assert!((mean - 1.0).abs() < 1e-3 && difference < 0.01, "{mean} {difference}");
     // A memory limit holds between frames.
     let kept = count(&second, "Walk/bytes kept");
-    let mut small = Walk::new(&session, goal(), KeepLimits { bytes: kept / 3, ..KeepLimits::default() });
+    let mut small =
+        Walk::new(&session, goal(), RetentionLimits { bytes: kept / 3, ..RetentionLimits::default() });
     for view in &views[..3] {
         let frame = small.frame(view, &Control::new()).unwrap();
         assert!(count(&frame, "Walk/bytes kept") <= kept / 3);
@@ -153,7 +154,7 @@ fn drawn_light_is_carried_from_frame_to_frame() {
     let (session, _) = session(scene.clone());
     let mut last = Vec::new();
     for reprojects in [false, true] {
-        let limits = KeepLimits { reprojects, ..KeepLimits::default() };
+        let limits = RetentionLimits { reprojects, ..RetentionLimits::default() };
         let mut walk = Walk::new(&session, sampled(), limits);
         last.extend(views.iter().map(|view| walk.frame(view, &Control::new()).unwrap()).last());
     }
@@ -180,7 +181,7 @@ fn a_walk_restored_goes_on_with_the_same_bits_on_any_number_of_threads() {
     let by_threads = |threads: usize, save: bool, q_scale: Option<f32>| {
         on_threads(threads, || {
             let (session, _) = session(scene.clone());
-            let limits = KeepLimits { q_scale, ..KeepLimits::default() };
+            let limits = RetentionLimits { q_scale, ..RetentionLimits::default() };
             let mut walk = Walk::new(&session, sampled(), limits);
             for view in &views[..2] {
                 walk.frame(view, &Control::new()).unwrap();
@@ -208,7 +209,7 @@ fn contrasts_of_the_frame_before_spare_records() {
     let (scene, views) = room();
     let (session, _) = session(scene);
     let made = |q_scale| {
-        let limits = KeepLimits { q_scale, ..KeepLimits::default() };
+        let limits = RetentionLimits { q_scale, ..RetentionLimits::default() };
         let mut walk = Walk::new(&session, goal_of_walk(), limits);
         let frames = views.iter().map(|view| walk.frame(view, &Control::new()).unwrap());
         let frames: Vec<[u64; 2]> = frames

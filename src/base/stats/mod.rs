@@ -7,20 +7,20 @@
 //!
 //! Units: stage times are wall-clock and CPU seconds, the latter over all threads of the process.
 
+mod contributions;
 mod counter;
 mod memory;
 mod report;
 mod stage;
 mod sum;
-mod ways;
 
 use std::collections::BTreeMap;
 
+pub use contributions::Contributions;
 pub use counter::{Counter, Distribution};
 pub use memory::{available_bytes, give_back, peak_resident_bytes};
 pub use stage::{Stage, StageTime, Stopwatch};
 pub use sum::add_fields;
-pub use ways::Ways;
 
 /// Counters by name and times by stage.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -15,7 +15,7 @@ use render::method::{LightStore, Method};
 use render::plan::{Chooser, DRAFT, FINAL, Ladder, PREVIEW, options};
 use serde::Serialize;
 use std::path::PathBuf;
-use transport::paths::Look;
+use transport::paths::Estimand;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "choice",
@@ -121,7 +121,7 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
 
 /// `None` for a scene without light.
 fn scene(study: &Study, subject: &Subject) -> Result<Option<SceneChoices>, StudyError> {
-    let reference = study.reference(subject, Look::Pixels)?;
+    let reference = study.reference(subject, Estimand::Pixels)?;
     let figures = |run: &Run| Ok::<_, StudyError>(Figures::of(&Errors::against(&run.color, &reference)?));
     let base = Method::default();
     let watch = Stopwatch::start();

@@ -22,7 +22,7 @@ use curves::Curve;
 use methods::Entrant;
 use render::session::Goal;
 use serde::Serialize;
-use transport::paths::Look;
+use transport::paths::Estimand;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "extremes",
@@ -102,7 +102,7 @@ fn series(study: &Study, curve: &Curve, entrants: &[Entrant]) -> Result<Series, 
             .map_err(|source| StudyError::Scene { path: file.clone(), source })?;
         study.subject(&file)
     };
-    let shared = middle.map(|middle| study.reference(&subject(middle)?, Look::Pixels)).transpose()?;
+    let shared = middle.map(|middle| study.reference(&subject(middle)?, Estimand::Pixels)).transpose()?;
     let mut points = Vec::with_capacity(values.len());
     for &value in values {
         let subject = subject(value)?;
@@ -110,7 +110,7 @@ fn series(study: &Study, curve: &Curve, entrants: &[Entrant]) -> Result<Series, 
         let reference = match &shared {
             Some(shared) => shared,
             None => {
-                own = study.reference(&subject, Look::Pixels)?;
+                own = study.reference(&subject, Estimand::Pixels)?;
                 &own
             }
         };

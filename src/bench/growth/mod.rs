@@ -17,7 +17,7 @@ use serde::Serialize;
 use std::fs;
 use std::io::BufWriter;
 use std::path::PathBuf;
-use transport::paths::Look;
+use transport::paths::Estimand;
 use world::view::View;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
@@ -115,7 +115,7 @@ fn lamps(study: &Study) -> Result<Series, StudyError> {
         fs::write(&file, scenes::hall(count))
             .map_err(|source| StudyError::Scene { path: file.clone(), source })?;
         let subject = study.subject(&file)?;
-        let reference = study.reference(&subject, Look::Pixels)?;
+        let reference = study.reference(&subject, Estimand::Pixels)?;
         let run = study.run(&subject, &candidate)?;
         let error = Errors::against(&run.color, &reference)?.rel_rmse();
         points.push(Point { error: Some(error), ..Point::new(count.into(), &run) });

@@ -15,7 +15,7 @@ use render::method::Method;
 use serde::Serialize;
 use std::path::PathBuf;
 use target::{TARGETS, Target};
-use transport::paths::Look;
+use transport::paths::Estimand;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "race",
@@ -75,7 +75,7 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     let mut race = Race { facts: study.facts(), scenes: Vec::new() };
     for path in scenes {
         let subject = study.subject(path)?;
-        let reference = study.reference(&subject, Look::Pixels)?;
+        let reference = study.reference(&subject, Estimand::Pixels)?;
         let mut points = Vec::new();
         for (candidate, options) in candidates(study) {
             let run = study.run(&subject, &candidate)?;

@@ -14,8 +14,9 @@ use transport::lightcut::{
 };
 use transport::lights::{DirectIndirect, Origin};
 use transport::radiance_cache::CacheSettings;
-use transport::radiance_cache::placement::candidates;
-use transport::radiance_cache::source::{Candidate, LightcutSource};
+use transport::radiance_cache::candidate::Candidate;
+use transport::radiance_cache::placement::{CandidateStep, candidates};
+use transport::radiance_cache::source::LightcutSource;
 use transport::radiance_cache::splat::Splat;
 use transport::radiance_cache::store::RecordStore;
 use transport::radiance_cache::targets::Targets;
@@ -78,7 +79,7 @@ impl<'s> Orders<'s> {
         let targets = Targets::new(&samples.points, &samples.index, None);
         let splats = DirectIndirect::from_fn(|_| Splat::new(&targets, &RecordStore::default()));
         let cached = DirectIndirect { direct: false, indirect: true };
-        let all = candidates(&targets, &splats, cached, cache.farthest(), (level, 0));
+        let all = candidates(&targets, &splats, cached, cache.farthest(), CandidateStep { level, parity: 0 });
         let candidates = setting.spread(all.len()).into_iter().map(|s| all[s].to_vec()).collect();
         Orders { setting, cache, stretches, tasks, candidates }
     }

@@ -2,7 +2,7 @@
 
 use render::method::{Method, path, reconstruction};
 use render::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
-use transport::paths::Look;
+use transport::paths::Estimand;
 
 /// Samples a pixel of denoised paths that make their curve.
 pub const DENOISED_SPP: [u32; 5] = [1, 4, 16, 64, 256];
@@ -51,7 +51,7 @@ pub fn qualities() -> impl Iterator<Item = (Candidate, String)> {
 }
 
 /// Returns the positions of the samples of methods that keep eye samples: those of reconstruction cuts.
-pub fn eye_samples() -> Look {
+pub fn eye_samples() -> Estimand {
     let reconstruction::Settings { spp, seed, .. } = reconstruction::Settings::default();
-    Look::EyeSamples { spp, seed }
+    Estimand::EyeSamples { spp, seed }
 }

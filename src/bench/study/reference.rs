@@ -15,7 +15,7 @@ use render::method::path;
 use render::method::render;
 use serde::Serialize;
 use serde_json::json;
-use transport::paths::Look;
+use transport::paths::Estimand;
 
 /// Maximum number of samples a pixel that each half takes in a round.
 const ROUND: u32 = 64;
@@ -66,10 +66,14 @@ pub struct Noise {
 }
 
 /// Renders the missing rounds of the subject's reference.
-pub(super) fn reference(study: &Study, subject: &Subject, look: Look) -> Result<Reference, StudyError> {
-    let (of, cycle) = match look {
-        Look::Pixels => ("", 1),
-        Look::EyeSamples { spp, .. } => (" of eye samples", spp.max(1)),
+pub(super) fn reference(
+    study: &Study,
+    subject: &Subject,
+    estimand: Estimand,
+) -> Result<Reference, StudyError> {
+    let (of, cycle) = match estimand {
+        Estimand::Pixels => ("", 1),
+        Estimand::EyeSamples { spp, .. } => (" of eye samples", spp.max(1)),
     };
     let name = format!("{}, reference{of}", subject.name);
     let key = json!({
@@ -77,7 +81,7 @@ pub(super) fn reference(study: &Study, subject: &Subject, look: Look) -> Result<
         "film": study.plan.resolution,
         "version": env!("CARGO_PKG_VERSION"),
         "method": "path",
-        "look": format!("{look:?}"),
+        "look": format!("{estimand:?}"),
     });
     let mut progress = match study.store.load(&name, &key, &["a", "b"]) {
         Some(kept) => Progress::resume(kept),
@@ -89,7 +93,7 @@ pub(super) fn reference(study: &Study, subject: &Subject, look: Look) -> Result<
     {
         let spp = (study.plan.reference.spp.div_ceil(2) - progress.each).min(ROUND);
         // A cycle of samples takes each position of a sample equally often.
-        progress.round(study, subject, look, spp.next_multiple_of(cycle))?;
+        progress.round(study, subject, estimand, spp.next_multiple_of(cycle))?;
         study.store.save(&name, &key, &progress.kept())?;
         (study.say)(&format!("{name}: {} samples a pixel, {:.0} s", progress.each * 2, progress.seconds));
     }
@@ -119,14 +123,20 @@ impl Progress {
         Some(Progress { halves: halves.try_into().ok()?, each, rounds, seconds, cpu_seconds })
     }
 
-    fn round(&mut self, study: &Study, subject: &Subject, look: Look, spp: u32) -> Result<(), StudyError> {
+    fn round(
+        &mut self,
+        study: &Study,
+        subject: &Subject,
+        estimand: Estimand,
+        spp: u32,
+    ) -> Result<(), StudyError> {
         let watch = Stopwatch::start();
         let mut more = Vec::with_capacity(2);
         for half in 0..2 {
             // Seed 0 is the default of all methods, none of which should share random numbers with its
             // reference.
             let settings =
-                path::Settings { spp, seed: 1 + 2 * self.rounds + half, look, ..Default::default() };
+                path::Settings { spp, seed: 1 + 2 * self.rounds + half, estimand, ..Default::default() };
             let output = render(&subject.session.world, &subject.view, &settings, study.control);
             if !output.complete {
                 return Err(StudyError::Interrupted);

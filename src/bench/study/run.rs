@@ -8,9 +8,9 @@ use base::stats::{Stage, StageTime, Stats, Stopwatch};
 use embree::BuildQuality;
 use render::method::LightStore;
 use render::session::{Finish, Goal};
-use render::walk::{KeepLimits, Walk};
+use render::walk::{RetentionLimits, Walk};
 use serde_json::{Value, json};
-use transport::paths::Look;
+use transport::paths::Estimand;
 use world::view::View;
 
 /// A rendered picture with its statistics.
@@ -30,8 +30,8 @@ struct Place {
 
 impl Study<'_> {
     /// Returns the subject's reference, rendered as far as the settings ask.
-    pub fn reference(&self, subject: &Subject, look: Look) -> Result<Reference, StudyError> {
-        reference(self, subject, look)
+    pub fn reference(&self, subject: &Subject, estimand: Estimand) -> Result<Reference, StudyError> {
+        reference(self, subject, estimand)
     }
 
     /// Renders a picture, or loads it if this program has already rendered it.
@@ -107,7 +107,7 @@ impl Study<'_> {
     fn walk(&self, subject: &Subject, candidate: &Candidate, views: &[View]) -> Result<Run, StudyError> {
         let denoise = Some(candidate.denoise && self.denoises());
         let goal = Goal { method: candidate.method, denoise, ..Goal::default() };
-        let mut walk = Walk::new(&subject.session, goal, KeepLimits::default());
+        let mut walk = Walk::new(&subject.session, goal, RetentionLimits::default());
         let mut times = [0.0; Stage::ALL.len()].map(|_: f64| StageTime::default());
         let mut records = 0.0;
         let mut last = None;

@@ -37,7 +37,7 @@ use entries::{Entry, Family, OPPONENTS, entries};
 use row::{Row, Versus};
 use serde::Serialize;
 use std::path::PathBuf;
-use transport::paths::Look;
+use transport::paths::Estimand;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "table1",
@@ -82,7 +82,7 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     let mut table = Table1 { facts: study.facts(), scenes: Vec::new() };
     for path in scenes {
         let subject = study.subject(path)?;
-        let reference = study.reference(&subject, Look::Pixels)?;
+        let reference = study.reference(&subject, Estimand::Pixels)?;
         let light = study.reference(&subject, eye_samples())?;
         let entries = entries(study, &subject);
         let runs: Vec<Run> =
@@ -112,7 +112,7 @@ fn rows(
     let mut rows = Vec::with_capacity(runs.len());
     let lightcuts = entries.iter().position(|entry| entry.main && entry.family == Family::Lightcuts);
     for (i, (entry, run)) in entries.iter().zip(runs).enumerate() {
-        let whole = entry.candidate.method.look() == Look::Pixels;
+        let whole = entry.candidate.method.estimand() == Estimand::Pixels;
         let errors = Errors::against(&run.color, reference)?;
         let light = if whole { errors } else { Errors::against(&run.color, light)? };
         let mut row = Row::new(entry, run, [errors, light]);

@@ -4,7 +4,7 @@
 
 use base::setting::{JudgedBy, Levels, Spec, Value};
 use render::method::{Method, reconstruction};
-use transport::paths::Look;
+use transport::paths::Estimand;
 
 /// A setting, or one number of several that it has.
 pub struct Knob {
@@ -59,7 +59,7 @@ pub fn knobs() -> Vec<Knob> {
             drop(base.set(key, text));
         }
         // Methods that keep eye samples are judged on those of reconstruction cuts.
-        if base.look() != Look::Pixels {
+        if base.estimand() != Estimand::Pixels {
             base.set_number("spp", 0, reconstruction::Settings::default().spp.into());
         }
         for (part, label) in levels.parts.iter().enumerate() {
@@ -120,7 +120,7 @@ mod tests {
             for level in knob.levels.iter().filter(|_| knob.judged_by != JudgedBy::Flip) {
                 let mut method = knob.base;
                 knob.turn(level, &mut method);
-                let has_limit = has_default_samples(&method) || method.look() == eye_samples();
+                let has_limit = has_default_samples(&method) || method.estimand() == eye_samples();
                 assert!(has_limit, "{} {}", knob.name, level.text);
             }
             for i in 1..found.len() {

@@ -38,7 +38,7 @@ use serde::Serialize;
 use serde_json::Value;
 use std::path::PathBuf;
 use transport::lightcut::CutSettings;
-use transport::paths::Look;
+use transport::paths::Estimand;
 use transport::radiance_cache::FoundBy;
 use verdict::Course;
 
@@ -164,7 +164,7 @@ fn scene(study: &Study, subject: Subject) -> Result<SceneTrade, StudyError> {
     let [limit, limit_of_eye_samples] = limits();
     let mut judge = Judge {
         study,
-        reference: study.reference(&subject, Look::Pixels)?,
+        reference: study.reference(&subject, Estimand::Pixels)?,
         light: study.reference(&subject, eye_samples())?,
         limits: [study.run(&subject, &limit)?, study.run(&subject, &limit_of_eye_samples)?],
         subject,
@@ -258,10 +258,10 @@ impl Judge<'_> {
     /// samples.
     fn standards(&self, method: &Method) -> (Option<&Reference>, Option<&Run>) {
         let [limit, limit_of_eye_samples] = &self.limits;
-        match method.look() {
-            Look::Pixels => (Some(&self.reference), has_default_samples(method).then_some(limit)),
-            look if look == eye_samples() => (Some(&self.light), Some(limit_of_eye_samples)),
-            Look::EyeSamples { .. } => (None, None),
+        match method.estimand() {
+            Estimand::Pixels => (Some(&self.reference), has_default_samples(method).then_some(limit)),
+            estimand if estimand == eye_samples() => (Some(&self.light), Some(limit_of_eye_samples)),
+            Estimand::EyeSamples { .. } => (None, None),
         }
     }
 
@@ -282,7 +282,7 @@ impl Judge<'_> {
             sort,
             settings: candidate.method.settings(),
             denoised: run.denoised(),
-            whole_pixels: candidate.method.look() == Look::Pixels,
+            whole_pixels: candidate.method.estimand() == Estimand::Pixels,
             seconds: run.seconds(&Stage::ALL),
             turned: turned.to_owned(),
             limit: limit.map(|errors| errors.rel_rmse()),
@@ -296,7 +296,7 @@ impl Judge<'_> {
 
 /// True if a method draws the samples of the default.
 fn has_default_samples(method: &Method) -> bool {
-    let samples = |method: &Method| (method.name(), method.look(), method.spp(), method.seed());
+    let samples = |method: &Method| (method.name(), method.estimand(), method.spp(), method.seed());
     samples(method) == samples(&Method::default())
 }
 

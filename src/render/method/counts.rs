@@ -2,11 +2,11 @@
 
 use base::stats::Stats;
 use transport::bias_compensation::points::CompensationCounts;
-use transport::eye::{ChainCounts, DROPPED_BRANCHES};
+use transport::eye::{DROPPED_BRANCHES, EyeCounts};
 use transport::lightcut::CutCounts;
 
 /// Of eye rays and the specular chains behind them.
-pub fn eye(stats: &mut Stats, counts: &ChainCounts) {
+pub fn eye(stats: &mut Stats, counts: &EyeCounts) {
     stats.count("Rays/closest hit", counts.rays);
     stats.count("Eye/shadow rays", counts.shadow_rays);
     stats.count(DROPPED_BRANCHES, counts.overflow);

@@ -32,7 +32,7 @@ pub use sampling::{Sampled, Sampling};
 // Parts of the methods' settings.
 pub use transport::lightcut::CutSettings;
 pub use transport::lights::{Family, LightPassSettings};
-pub use transport::paths::Look;
-pub use transport::radiance_cache::kept::{KeepLimits, KeptRecords};
+pub use transport::paths::Estimand;
+pub use transport::radiance_cache::retained::{RetainedRecords, RetentionLimits};
 pub use transport::radiance_cache::{CacheSettings, DirectBy, Footprints, FoundBy};
 pub use world::shadow::{OccluderCacheSettings, ShadowSettings};

@@ -80,7 +80,7 @@ impl PhotonStore {
         let of = self.of(world, settings, control);
         let few = of.light(&of.few, view, settings);
         let Some(light) = &few.caustics else { return few };
-        let (worth, chains) = EyePass::photons_worth(world, view, settings, light, control);
+        let (worth, chains) = EyePass::photon_count_factor(world, view, settings, light, control);
         let many = (worth.log2().round() as i32).clamp(FEW, MANY);
         let mut found = few;
         if many > FEW {

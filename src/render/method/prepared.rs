@@ -5,7 +5,7 @@ use super::{Sampling, counts};
 use base::progress::Control;
 use base::stats::{Stage, Stats};
 use std::sync::Arc;
-use transport::eye::{DrawnLight, EyePass, PointGeometry, PointSurface, ShadingPoints, TILE};
+use transport::eye::{DirectSampling, EyePass, PointGeometry, PointSurface, ShadingPoints, TILE};
 use transport::lights::{Family, LightPassSettings, Lights};
 use world::view::View;
 use world::{SurfacePoint, World};
@@ -32,7 +32,7 @@ impl<'w> Prepared<'w> {
         world: &'w World,
         lights: &LightStore,
         view: &View,
-        (sampling, drawn): (Sampling, Option<DrawnLight>),
+        (sampling, drawn): (Sampling, Option<DirectSampling>),
         (wanted, aimed): ((LightPassSettings, Family), bool),
         control: &Control,
     ) -> Prepared<'w> {
@@ -41,7 +41,7 @@ impl<'w> Prepared<'w> {
         let caustics = lights.photons.of_picture((world, view), rays, control, &mut stats);
         control.begin(Stage::EyePass, view.window.tile_count(TILE) as u64);
         let eye = stats.time(Stage::EyePass, || {
-            EyePass::of(world, view, rays, (drawn.as_ref(), caustics.as_ref()), control)
+            EyePass::of(world, view, rays, drawn.as_ref(), caustics.as_ref(), control)
         });
         counts::eye(&mut stats, &eye.chains);
         if drawn.is_some() {

@@ -9,16 +9,16 @@ use base::progress::Control;
 use base::setting::Settings;
 use base::stats::StageTime;
 use transport::eye::Settled;
-use transport::paths::Look;
+use transport::paths::Estimand;
 use transport::perception::Thresholds;
-use transport::radiance_cache::kept::KeptRecords;
+use transport::radiance_cache::retained::RetainedRecords;
 use world::World;
 use world::view::View;
 
 /// Work of the frames before, in a walk-through.
 pub struct Before<'a> {
     /// Records.
-    pub records: &'a mut KeptRecords,
+    pub records: &'a mut RetainedRecords,
     /// Pixels whose light is known.
     pub settled: Settled,
     /// Differences that are seen, if they are to be known.
@@ -86,9 +86,9 @@ pub trait Renderer: Settings + Sampled {
     }
 
     /// Value that a pixel is to have.
-    fn look(&self) -> Look {
+    fn estimand(&self) -> Estimand {
         let sampling = self.sampling();
-        Look::EyeSamples { spp: sampling.spp, seed: sampling.seed }
+        Estimand::EyeSamples { spp: sampling.spp, seed: sampling.seed }
     }
 
     /// True if pictures have noise that a denoiser is meant to take off: faster than by more samples.

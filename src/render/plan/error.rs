@@ -18,7 +18,7 @@ use base::film::Image;
 use base::progress::Control;
 use base::sampling::hash;
 use base::stats::{StageTime, Stopwatch};
-use transport::paths::Look;
+use transport::paths::Estimand;
 use world::World;
 use world::view::View;
 
@@ -148,7 +148,7 @@ fn on_scale(
 ) -> Option<Found> {
     let mut ladder = ladder.clone();
     // Errors of the light at the picture's own samples do not go away by taking more of them.
-    if matches!(asked.measure.look, Look::EyeSamples { .. }) {
+    if matches!(asked.measure.estimand, Estimand::EyeSamples { .. }) {
         ladder.hold("spp");
     }
     let top = STEPS * ladder.top();

@@ -123,7 +123,7 @@ impl<'a> Finish<'a> {
     }
 
     fn look_at(&self, view: &View, method: &Method, spp: u32) -> SeenPixels {
-        let settings = FeatureSettings { look: method.look(), spp, seed: method.seed() };
+        let settings = FeatureSettings { estimand: method.estimand(), spp, seed: method.seed() };
         SeenPixels::new(self.world, view, &settings, self.control)
     }
 

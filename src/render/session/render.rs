@@ -5,8 +5,8 @@ use super::frame::{self, Frame, Remark};
 use super::goal::{Goal, Wanted};
 use super::planned::{Made, Planning};
 use super::{Session, report};
-use crate::method::KeptRecords;
 use crate::method::Method;
+use crate::method::RetainedRecords;
 use crate::method::path::Begun;
 use crate::verify::{self, Verified, verify};
 use base::film::Image;
@@ -15,7 +15,7 @@ use base::stats::{Counter, Stage, Stats, Stopwatch, available_bytes};
 use serde_json::json;
 use transport::eye::DROPPED_BRANCHES;
 use transport::perception::Thresholds;
-use transport::reprojection::LastPicture;
+use transport::reprojection::PreviousImage;
 use world::view::View;
 
 /// Reason why there is no frame.
@@ -57,9 +57,9 @@ pub(crate) enum Former<'a> {
 /// Work of the frames before a frame, and of that for the next.
 pub struct Kept<'a> {
     /// Records.
-    pub records: &'a mut KeptRecords,
+    pub records: &'a mut RetainedRecords,
     /// The picture before, if drawn light is to be carried over from it.
-    pub last: Option<&'a mut LastPicture>,
+    pub last: Option<&'a mut PreviousImage>,
     /// Differences that are seen in the picture before, and the quantisation scale, if they are to be used.
     pub thresholds: Option<(&'a mut Thresholds, f32)>,
 }

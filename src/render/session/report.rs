@@ -7,7 +7,7 @@ use crate::verify::{Estimate, Settings, Verified};
 use base::film::Metadata;
 use base::stats::Stats;
 use serde_json::{Value, json};
-use transport::paths::Look;
+use transport::paths::Estimand;
 
 /// Remarks about a plan for a time, of whose `planned` seconds `before` have passed.
 pub(super) fn of_time(asked: f64, [before, planned]: [f64; 2], in_reach: bool, options: &str) -> Vec<Remark> {
@@ -169,7 +169,7 @@ pub(super) fn store_error(found: &Verified, settings: &Settings, stats: &mut Sta
     stats.count("Verify/pixels at the cap", found.pixels_at_cap as u64);
     stats.count("Verify/paths", found.paths);
     stats.count("Verify/95 % hidden by noise (1: yes)", u64::from(!found.error_95_resolved));
-    metadata.set("verified_against", against(settings.look));
+    metadata.set("verified_against", against(settings.estimand));
     metadata.set("verified_error_95_resolved", if found.error_95_resolved { "true" } else { "false" });
     metadata.set("verified_noise", found.noise);
     metadata.set("verified_pixels", found.pixels as f64);
@@ -179,15 +179,15 @@ pub(super) fn store_error(found: &Verified, settings: &Settings, stats: &mut Sta
 /// The measured error for programs.
 pub(super) fn error_facts(found: &Verified, settings: &Settings) -> Value {
     let mut facts = json!(found);
-    facts["against"] = against(settings.look).into();
+    facts["against"] = against(settings.estimand).into();
     facts["most_samples"] = settings.most_samples.into();
     facts
 }
 
-fn against(look: Look) -> &'static str {
-    match look {
-        Look::Pixels => "pixels",
-        Look::EyeSamples { .. } => "eye-samples",
+fn against(estimand: Estimand) -> &'static str {
+    match estimand {
+        Estimand::Pixels => "pixels",
+        Estimand::EyeSamples { .. } => "eye-samples",
     }
 }
 

@@ -3,7 +3,7 @@
 //! | setting | default | meaning |
 //! |---|---|---|
 //! | `pixels` | - | about how many pixels are traced; all, if the picture has no more |
-//! | `look` | that of the method | a pixel's meaning: mean over its square, or over the picture's own eye samples |
+//! | `estimand` | that of the method | a pixel's meaning: mean over its square, or over the picture's own eye samples |
 //! | `seed` | 0 | another seed, other pixels and paths |
 //! | `max_depth` | the scene's | longest path in edges |
 //! | `most_samples` | 4096 | most paths a pixel |
@@ -28,7 +28,7 @@ use base::film::Image;
 use base::progress::Control;
 use base::stats::Stage;
 use serde::Serialize;
-use transport::paths::Look;
+use transport::paths::Estimand;
 use world::World;
 use world::view::View;
 
@@ -42,7 +42,7 @@ pub struct Settings {
     /// Approximate number of pixels.
     pub pixels: usize,
     /// Meaning of a pixel's value.
-    pub look: Look,
+    pub estimand: Estimand,
     /// Seed of the choice of pixels and of their paths.
     pub seed: u32,
     /// Maximum path length in edges; `None` for the scene's own limit.
@@ -54,10 +54,10 @@ pub struct Settings {
 impl Settings {
     /// The same settings for a picture of `method`, whose own eye samples may differ from those planned with.
     pub fn of(self, method: &Method) -> Settings {
-        match self.look {
-            Look::Pixels => self,
-            Look::EyeSamples { .. } => {
-                Settings { look: Look::EyeSamples { spp: method.spp(), seed: method.seed() }, ..self }
+        match self.estimand {
+            Estimand::Pixels => self,
+            Estimand::EyeSamples { .. } => {
+                Settings { estimand: Estimand::EyeSamples { spp: method.spp(), seed: method.seed() }, ..self }
             }
         }
     }
@@ -65,7 +65,7 @@ impl Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { pixels: 1000, look: Look::Pixels, seed: 0, max_depth: None, most_samples: 4096 }
+        Settings { pixels: 1000, estimand: Estimand::Pixels, seed: 0, max_depth: None, most_samples: 4096 }
     }
 }
 

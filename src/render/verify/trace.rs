@@ -3,7 +3,7 @@
 use super::Settings;
 use super::measure::{MEANS, Measured};
 use super::picks::Pick;
-use crate::method::path::{Counts, Wanted, pixel_means};
+use crate::method::path::{RayCounts, Wanted, pixel_means};
 use base::film::metrics::REL_MSE_FLOOR;
 use base::film::{Image, sharpen};
 use base::parallel::ShortRuns;
@@ -11,7 +11,7 @@ use base::progress::Control;
 use base::sampling::hash;
 use glam::DVec3;
 use rayon::prelude::*;
-use transport::paths::Look;
+use transport::paths::Estimand;
 use world::World;
 use world::view::View;
 
@@ -48,9 +48,9 @@ pub fn trace(
     settings: &Settings,
     control: &Control,
 ) -> Option<Traced> {
-    let spp = match settings.look {
-        Look::Pixels => 1,
-        Look::EyeSamples { spp, .. } => spp.max(1),
+    let spp = match settings.estimand {
+        Estimand::Pixels => 1,
+        Estimand::EyeSamples { spp, .. } => spp.max(1),
     };
     let most = (settings.most_samples / MEANS as u32).max(PILOT).next_multiple_of(spp);
     let least = PILOT.next_multiple_of(spp);
@@ -136,14 +136,14 @@ impl Tracing<'_> {
         });
         let parts: Vec<(usize, f32, Wanted)> = parts.collect();
         let wanted: Vec<Wanted> = parts.iter().map(|(.., wanted)| *wanted).collect();
-        let mut counts = Counts::default();
+        let mut counts = RayCounts::default();
         for k in 0..MEANS {
             if self.control.is_cancelled() {
                 return None;
             }
             let seed = hash(hash(settings.seed, SEED), round * MEANS as u32 + k as u32);
             let (means, nonfinite) =
-                pixel_means(world, view, settings.look, &wanted, (seed, max_depth), &mut counts);
+                pixel_means(world, view, settings.estimand, &wanted, (seed, max_depth), &mut counts);
             for (&(pixel, weight, _), mean) in parts.iter().zip(means) {
                 pixels[pixel].means[k] += f64::from(weight) * mean;
             }

@@ -3,12 +3,12 @@
 //! Paper: Herzog et al. 2009, section 6.4.
 //!
 //! A [`Walk`] renders one frame after the other. Scene, virtual lights and light trees are the session's; the records
-//! of indirect light stay in the walk (see [`KeptRecords`]), so that a frame computes only those that its predecessors
-//! lack. Of drawn direct light, that of even surfaces is carried from picture to picture and refreshed by few samples
-//! (see [`transport::reprojection`]). Elsewhere the random numbers of a pixel are the same in every frame, so that
-//! noise which the denoiser leaves stays where it is: on static surfaces of the apartment, reprojected from frame to
-//! frame, new numbers in each change the denoised picture 1.8 times as much. A frame has the same bits for any number
-//! of threads; it depends on the frames that the walk rendered before it.
+//! of indirect light stay in the walk (see [`RetainedRecords`]), so that a frame computes only those that its
+//! predecessors lack. Of drawn direct light, that of even surfaces is carried from picture to picture and refreshed by
+//! few samples (see [`transport::reprojection`]). Elsewhere the random numbers of a pixel are the same in every frame,
+//! so that noise which the denoiser leaves stays where it is: on static surfaces of the apartment, reprojected from
+//! frame to frame, new numbers in each change the denoised picture 1.8 times as much. A frame has the same bits for
+//! any number of threads; it depends on the frames that the walk rendered before it.
 //!
 //! Walks are cut into chunks, which begin without records, and a chunk's records are saved beside its frames, so that a
 //! walk that was stopped goes on with the same. `docs/walk.md` has figures of time, error, flicker and memory.
@@ -24,14 +24,14 @@ pub mod frames;
 pub mod names;
 pub mod saved;
 
-use crate::method::KeptRecords;
+use crate::method::RetainedRecords;
 use crate::session::{Former, Frame, FrameError, Goal, Kept, Session};
 use base::progress::Control;
 use transport::perception::Thresholds;
-use transport::reprojection::LastPicture;
+use transport::reprojection::PreviousImage;
 use world::view::View;
 
-pub use crate::method::KeepLimits;
+pub use crate::method::RetentionLimits;
 pub use frames::FrameList;
 pub use names::FileNames;
 pub use transport::perception::Q_SCALE;
@@ -40,9 +40,9 @@ pub use transport::perception::Q_SCALE;
 pub struct Walk<'a> {
     session: &'a Session,
     goal: Goal,
-    limits: KeepLimits,
-    records: KeptRecords,
-    last: LastPicture,
+    limits: RetentionLimits,
+    records: RetainedRecords,
+    last: PreviousImage,
     thresholds: Thresholds,
 }
 
@@ -51,20 +51,25 @@ const LENGTH: usize = size_of::<u64>();
 
 impl<'a> Walk<'a> {
     /// A walk that begins without records. Its frames are rendered for `goal`; where that plans settings, alone.
-    pub fn new(session: &'a Session, goal: Goal, limits: KeepLimits) -> Walk<'a> {
-        let (records, last) = (KeptRecords::new(limits), LastPicture::default());
+    pub fn new(session: &'a Session, goal: Goal, limits: RetentionLimits) -> Walk<'a> {
+        let (records, last) = (RetainedRecords::new(limits), PreviousImage::default());
         Walk { session, goal, limits, records, last, thresholds: Thresholds::default() }
     }
 
     /// A walk that goes on from bytes that [`Walk::save`] returned; `None` if it did not.
-    pub fn restored(session: &'a Session, goal: Goal, limits: KeepLimits, saved: &[u8]) -> Option<Walk<'a>> {
+    pub fn restored(
+        session: &'a Session,
+        goal: Goal,
+        limits: RetentionLimits,
+        saved: &[u8],
+    ) -> Option<Walk<'a>> {
         let (length, rest) = saved.split_at_checked(LENGTH)?;
         let length = u64::from_le_bytes(length.try_into().ok()?);
         let (last, records) = rest.split_at_checked(length.try_into().ok()?)?;
-        let ((last, thresholds), excess): ((LastPicture, Thresholds), _) =
+        let ((last, thresholds), excess): ((PreviousImage, Thresholds), _) =
             postcard::take_from_bytes(last).ok()?;
         let is_sound = excess.is_empty() && last.is_sound() && thresholds.is_sound();
-        let records = KeptRecords::restored(limits, records)?;
+        let records = RetainedRecords::restored(limits, records)?;
         is_sound.then_some(Walk { session, goal, limits, records, last, thresholds })
     }
 

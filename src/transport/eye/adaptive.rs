@@ -1,18 +1,16 @@
-//! Choice of the pixels that get more samples than the others: those whose surroundings have the greatest contrast.
+//! Choice of the pixels that get more samples than others: pixels in high-contrast surroundings.
 //!
-//! A denoiser removes the noise of smooth light, hardly that of coverage: of the squared error of a denoised picture,
-//! about 5/6 lies in a tenth of the pixels, at edges against bright things. The standard deviation of what a pixel's
-//! samples see is about that of the means around it, and samples are best shared out in proportion to it (Neyman
-//! allocation).
+//! A denoiser removes the noise of smooth light, but hardly the noise of coverage. Most of the squared error of a
+//! denoised image lies in few pixels, at edges against bright objects. The standard deviation of a pixel's samples is
+//! close to that of the means around it, and the optimal number of samples is proportional to it (Neyman allocation).
 //!
-//! Deviations: a pixel's own samples have no say in their number, which depends on those of its eight neighbours and
-//! on a pilot with a seed of its own; so the pixel's mean has no bias, whatever the neighbours' noise. An edge within a
-//! single pixel is missed. The pilot is spread over the whole film, so that a crop's pixels are chosen as the whole
-//! picture's are. Numbers of samples are the first two powers of two times the others', for which samples are best
-//! stratified.
+//! Deviations: a pixel's own samples do not affect their number. It depends on the eight neighbours and on a pilot
+//! with a seed of its own, so that the pixel's mean is unbiased. An edge within a single pixel is missed. The pilot
+//! covers the whole film, so that the pixels of a crop are chosen as in the full image. Sample counts are two or four
+//! times the others', for which samples are best stratified.
 //!
-//! Units: contrasts are relative to the mean of the surroundings, luminances are those of light known, in which
-//! direct light has its edges.
+//! Units: contrasts are relative to the mean of the surroundings. Luminances are those of known light, which includes
+//! the edges of direct light.
 
 use base::film::{Exposure, Image, Window};
 use base::math::Rgb;
@@ -20,44 +18,44 @@ use base::math::Rgb;
 /// Pixels along the edge of a square of the pilot.
 const SQUARE: u32 = 4;
 
-/// Maximum number of the pilot's squares, and the number of the film's pixels for each of them: a twentieth of a film
-/// of 320 by 240 pixels is traced twice, less of a larger one.
+/// Maximum number of the pilot's squares.
 const MAX_SQUARES: u32 = 256;
-const PIXELS_A_SQUARE: u64 = 128;
 
-/// Luminance, in the picture as it is displayed, that counts as dark: it is added to the mean that contrasts are
-/// relative to. Half of it or double makes a difference of less than .1 dB.
+/// Number of film pixels per square of the pilot.
+const PIXELS_PER_SQUARE: u64 = 128;
+
+/// Luminance in the displayed image that counts as dark. It is added to the mean that contrasts are relative to.
 const DARK: f32 = 0.08;
 
-/// Least contrast that is worth a sample: about that which direct light's own noise has at sixteen samples.
+/// Minimum contrast for more samples: about that of direct light's own noise at sixteen samples.
 const MIN_CONTRAST: f32 = 0.05;
 
 /// Luminances of the pixels of a window.
 pub struct Luminances {
-    /// The window.
+    /// Window.
     pub window: Window,
-    /// By pixel, in rows.
+    /// Luminance per pixel, in rows.
     pub values: Vec<f32>,
 }
 
 /// Rule by which pixels are chosen.
 #[derive(Clone, Copy, Debug)]
-pub struct Choice {
+pub struct AdaptiveRule {
     /// Luminance that counts as dark.
     pub dark: f32,
-    /// Least contrast around a pixel that gets more samples.
+    /// Minimum contrast around a pixel that gets more samples.
     threshold: f32,
 }
 
 impl Luminances {
-    /// Sets the luminance of a pixel of the film that is in the window.
+    /// Sets the luminance of a film pixel, if it is in the window.
     pub fn set(&mut self, pixel: [u32; 2], luminance: f32) {
         if let Some(i) = self.window.index(pixel) {
             self.values[i] = luminance;
         }
     }
 
-    /// Contrast of the pixels around a pixel of the film: their standard deviation over their mean and `dark`.
+    /// Returns the contrast around a film pixel: the standard deviation over the sum of mean and `dark`.
     fn contrast_around(&self, [x, y]: [u32; 2], dark: f32) -> f32 {
         let near = |x: u32| [x.wrapping_sub(1), x, x.wrapping_add(1)];
         let around = near(y).into_iter().flat_map(|y| near(x).map(|x| [x, y])).filter(|at| *at != [x, y]);
@@ -70,17 +68,16 @@ impl Luminances {
     }
 }
 
-/// Squares of a film that the pilot samples, the same for every crop.
+/// Returns the squares of a film that the pilot samples. They do not depend on the crop.
 pub fn pilot(film: [u32; 2]) -> Vec<Window> {
     let pixels = u64::from(film[0]) * u64::from(film[1]);
-    let squares = (pixels / PIXELS_A_SQUARE).clamp(1, MAX_SQUARES.into()) as u32;
+    let squares = (pixels / PIXELS_PER_SQUARE).clamp(1, MAX_SQUARES.into()) as u32;
     Window::spread(film, SQUARE, squares, 0).collect()
 }
 
-impl Choice {
-    /// The choice of which the pilot says that it takes `share` more samples than if all pixels had the same number,
-    /// or fewer.
-    pub fn new(pilot: &[Luminances], share: f32) -> Choice {
+impl AdaptiveRule {
+    /// Returns the rule that, on the pilot, takes at most `share` more samples than the same number for all pixels.
+    pub fn new(pilot: &[Luminances], share: f32) -> AdaptiveRule {
         let grey = |square: &Luminances| square.values.iter().map(|v| Rgb::splat(*v)).collect::<Vec<_>>();
         let pixels: Vec<Rgb> = pilot.iter().flat_map(grey).collect();
         let dark = DARK / Exposure::Auto.factor(&Image { width: pixels.len() as u32, height: 1, pixels });
@@ -101,16 +98,16 @@ impl Choice {
         while taken(threshold) > f64::from(share) {
             threshold *= 1.01;
         }
-        Choice { dark, threshold }
+        AdaptiveRule { dark, threshold }
     }
 
-    /// Number of samples that a pixel of the film is to get beside its first, as a multiple of theirs: 0, 1 or 3.
+    /// Returns the number of samples of a film pixel beyond its first, as a multiple of these: 0, 1 or 3.
     pub fn more(&self, near: &Luminances, pixel: [u32; 2]) -> u32 {
         more(near.contrast_around(pixel, self.dark) / self.threshold)
     }
 }
 
-/// Multiples of the first samples that are [`Choice::more`].
+/// Nonzero multiples that [`AdaptiveRule::more`] returns.
 pub const MULTIPLES: [u32; 2] = [1, 3];
 
 fn more(contrast: f32) -> u32 {
@@ -131,12 +128,12 @@ mod tests {
         Luminances { values: window.film_pixels().map(luminance).collect(), window }
     }
 
-    /// Samples beside the first ones that pixels of a film of 256 by 192 get, as multiples, in rows.
+    /// Returns the extra samples of the pixels of a film of 256 by 192, as multiples of the first, in rows.
     fn multiples(luminance: impl Fn([u32; 2]) -> f32, share: f32) -> Vec<u32> {
         let film = [256, 192];
         let squares: Vec<Luminances> =
             pilot(film).into_iter().map(|square| seen(square, &luminance)).collect();
-        let choice = Choice::new(&squares, share);
+        let choice = AdaptiveRule::new(&squares, share);
         let whole = seen(Window::whole(film), &luminance);
         whole.window.film_pixels().map(|pixel| choice.more(&whole, pixel)).collect()
     }
@@ -155,7 +152,7 @@ mod tests {
     fn a_plain_picture_needs_no_more_samples() {
         assert_eq!(multiples(|_| 0.0, 0.2), vec![0; 256 * 192]);
         assert_eq!(multiples(noise, 0.2), vec![0; 256 * 192]);
-        // Darkness is as good as plain: a thousandth of the picture's exposure.
+        // Darkness counts as uniform: a thousandth of the image's exposure.
         let dark_stripes = |[x, _]: [u32; 2]| match x {
             0..200 => 1e-3 * (x % 2) as f32,
             _ => 1.0,
@@ -199,7 +196,7 @@ mod tests {
         let lone = |at: [u32; 2]| if at == [80, 80] { 50.0 } else { 1.0 };
         let film = [256, 192];
         let squares: Vec<Luminances> = pilot(film).into_iter().map(|square| seen(square, |_| 1.0)).collect();
-        let (choice, whole) = (Choice::new(&squares, 0.2), seen(Window::whole(film), lone));
+        let (choice, whole) = (AdaptiveRule::new(&squares, 0.2), seen(Window::whole(film), lone));
         let found: Vec<[u32; 2]> =
             whole.window.film_pixels().filter(|pixel| choice.more(&whole, *pixel) > 0).collect();
         let near = |x: u32| x.abs_diff(80) <= 1;
@@ -212,7 +209,7 @@ mod tests {
             let squares = pilot(film);
             assert!(squares.iter().all(Window::is_valid) && squares.len() <= MAX_SQUARES as usize);
             let squares: Vec<Luminances> = squares.into_iter().map(|square| seen(square, |_| 1.0)).collect();
-            let choice = Choice::new(&squares, 0.2);
+            let choice = AdaptiveRule::new(&squares, 0.2);
             assert!(choice.threshold == MIN_CONTRAST && choice.dark > 0.0, "{choice:?}");
             let corner = Window { film, offset: [0, 0], width: film[0].min(5), height: film[1].min(5) };
             let corner = seen(corner, |[x, _]| x as f32);

@@ -1,41 +1,42 @@
-//! Light that reaches the surfaces seen through glass, over mirrors and over lobes too sharp to pass for diffuse, as a
-//! layer of its own, for pictures whose other light is that of virtual lights: these shine along straight segments, and
-//! diffusely.
+//! Caustic layer: light that reaches visible surfaces by specular or glossy bounces.
 //!
-//! Deviations: it is found by paths, and leaves noise where all else in the picture is smooth.
+//! Virtual lights cannot carry this light, since they shine diffusely along straight segments. Methods based on
+//! virtual lights add the layer to their image.
+//!
+//! Deviations: the layer is path-traced, and noisy in images that are otherwise smooth.
 
-use super::caustic_looks::CausticLooks;
-use super::pass::TILE;
-use super::{ChainCounts, EyeSettings};
+use super::caustic_lookups::CausticLookups;
+use super::rays::TILE;
+use super::{EyeCounts, EyeSettings};
 use crate::caustics::Caustics;
-use crate::paths::{Batch, ChainEnd, Counts, Look, Reach, ScatteredEdges, Start, start};
+use crate::paths::{Batch, ChainEnd, Estimand, PathPolicy, PathStart, RayCounts, ScatteredEdges, start};
 use base::film::Image;
 use base::math::{Rgb, luminance};
 use base::parallel::{ShortRuns, Workspaces};
 use base::progress::Control;
-use base::stats::Ways;
+use base::stats::Contributions;
 use rayon::prelude::*;
 use world::World;
 use world::view::View;
 
-/// Paths from each eye sample.
+/// Number of paths per eye sample.
 const PATHS: u32 = 4;
 
-/// Greatest share of scattered edges that are drawn towards mirrors and glass.
+/// Maximum share of scattered edges that are aimed at mirrors and glass.
 pub(super) const MAX_GUIDED: f32 = 0.5;
 
-/// Of the light that surfaces seen reflect, that which comes to them by specular lobes.
+/// Policy of paths that find the light which reaches visible surfaces by specular lobes.
 pub(super) struct BySpecularLobes<'a> {
-    /// True if that counts which comes by lobes too sharp to pass for diffuse, too.
+    /// True if light by glossy lobes, too sharp to count as diffuse, is included.
     pub glossy: bool,
-    /// Photons that find part of it.
+    /// Photons that find part of the light.
     pub caustics: Option<&'a Caustics>,
-    /// Paths that look for the photons.
-    pub looks: CausticLooks,
+    /// Choice of the paths that look up photons.
+    pub lookups: CausticLookups,
 }
 
-impl<'w> Reach<'w> for BySpecularLobes<'_> {
-    const ENDS: bool = true;
+impl<'w> PathPolicy<'w> for BySpecularLobes<'_> {
+    const STOPS_AT_DIFFUSE: bool = true;
     const ONLY_BY_SPECULAR_LOBES: bool = true;
 
     fn edges(&self) -> ScatteredEdges {
@@ -47,7 +48,7 @@ impl<'w> Reach<'w> for BySpecularLobes<'_> {
     }
 
     fn reflected(&mut self, end: &ChainEnd<'w>) -> Rgb {
-        self.caustics.map_or(Rgb::ZERO, |caustics| self.looks.reflected(caustics, end))
+        self.caustics.map_or(Rgb::ZERO, |caustics| self.lookups.reflected(caustics, end))
     }
 
     fn share_of_paths(&self, radiance: Rgb, distance: f32) -> f32 {
@@ -55,18 +56,18 @@ impl<'w> Reach<'w> for BySpecularLobes<'_> {
     }
 }
 
-/// Light in the pixels of a window that comes to the surfaces seen by mirrors and glass.
+/// Light in the pixels of a window that reaches the visible surfaces by mirrors and glass.
 pub struct LightBySpecularLobes {
-    /// The light; `None` if nothing in the scene bends light.
+    /// Image of the light; `None` if nothing in the scene bends light.
     pub image: Option<Image>,
     /// Rays traced.
-    pub chains: ChainCounts,
-    /// Radiances that were not finite and left out.
+    pub chains: EyeCounts,
+    /// Number of radiances left out because they were not finite.
     pub nonfinite: u64,
 }
 
 impl LightBySpecularLobes {
-    /// Finds it by paths from the eye samples of `settings`; not in all tiles if cancelled.
+    /// Finds the light by paths from the eye samples of `settings`; some tiles are missing if cancelled.
     pub fn new(
         world: &World,
         view: &View,
@@ -74,44 +75,44 @@ impl LightBySpecularLobes {
         caustics: Option<&Caustics>,
         control: &Control,
     ) -> LightBySpecularLobes {
-        let mut light = LightBySpecularLobes { image: None, chains: ChainCounts::default(), nonfinite: 0 };
+        let mut light = LightBySpecularLobes { image: None, chains: EyeCounts::default(), nonfinite: 0 };
         if !world.specular.bends_light() {
             return light;
         }
         let window = &view.window;
         let EyeSettings { spp, seed, max_depth } = settings;
-        let (look, samples) = (Look::EyeSamples { spp, seed }, spp.max(1).saturating_mul(PATHS));
+        let (estimand, samples) = (Estimand::EyeSamples { spp, seed }, spp.max(1).saturating_mul(PATHS));
         let trace = |batch: &mut Batch, index| {
             let mut found: Vec<(usize, Rgb)> = Vec::new();
-            let (mut counts, mut nonfinite) = (Counts::default(), 0);
+            let (mut counts, mut nonfinite) = (RayCounts::default(), 0);
             let (mut light, mut by_photons) = (0.0, 0.0);
             for [x, y] in window.tile(index, TILE) {
                 if control.is_cancelled() {
                     break;
                 }
                 let pixel = window.film_pixel([x, y]);
-                let paths = (0..samples).map(|sample| Start { pixel, sample, seed });
-                start(batch, paths, (world, view), (look, spp));
+                let paths = (0..samples).map(|sample| PathStart { pixel, sample, seed });
+                start(batch, paths, world, view, estimand, spp);
                 let (mut sum, mut finite) = (Rgb::ZERO, 0);
-                let looks = CausticLooks::new(samples);
-                let mut reach = BySpecularLobes { glossy: true, caustics, looks };
-                for radiance in batch.trace(world, max_depth, &mut reach, &mut counts) {
+                let lookups = CausticLookups::new(samples);
+                let mut policy = BySpecularLobes { glossy: true, caustics, lookups };
+                for radiance in batch.trace(world, max_depth, &mut policy, &mut counts) {
                     if radiance.is_finite() {
                         sum += radiance;
                         finite += 1;
                     }
                 }
                 light += f64::from(luminance(sum));
-                by_photons += reach.looks.found;
+                by_photons += policy.lookups.found;
                 nonfinite += u64::from(samples - finite);
                 found.push(((y * window.width + x) as usize, sum / samples as f32));
             }
-            let chains = ChainCounts {
+            let chains = EyeCounts {
                 rays: counts.rays,
                 shadow_rays: counts.shadow_rays,
                 light,
                 by_photons,
-                ..ChainCounts::default()
+                ..EyeCounts::default()
             };
             (found, chains, nonfinite)
         };
@@ -128,12 +129,12 @@ impl LightBySpecularLobes {
         light
     }
 
-    /// Adds the light to a picture of the window, and to the ways that its light came.
-    pub fn add_to(&self, picture: &mut Image, ways: &mut Ways) {
+    /// Adds the light to an image of the window, and to its contributions by technique.
+    pub fn add_to(&self, picture: &mut Image, contributions: &mut Contributions) {
         let found = self.image.as_ref().map_or(0.0, Image::luminance);
         let by_photons = self.chains.by_photons(found);
-        ways.add(Ways::PHOTONS, by_photons);
-        ways.add("paths through glass or by mirrors", found - by_photons);
+        contributions.add(Contributions::PHOTONS, by_photons);
+        contributions.add("paths through glass or by mirrors", found - by_photons);
         for (pixel, light) in picture.pixels.iter_mut().zip(self.image.iter().flat_map(|image| &image.pixels))
         {
             *pixel += *light;

@@ -1,56 +1,51 @@
-//! Effort that direct light is worth, by what some pixels tell of it before the others are sampled: which of them need
-//! more samples than the first, and how many light samples each surface gets.
+//! Sample counts for direct light, estimated from a pilot: extra samples per pixel, and light samples per surface.
 //!
-//! Squares of pixels all over the film are sampled twice, by the same paths but for the light samples at their ends.
-//! The difference is the light samples' part of the noise; that between the two halves of a pixel's samples, each of
-//! which is stratified by itself, is all of it. For a part ρ, `n` light samples leave the noise 1 - ρ + ρ / n at the
-//! cost c + n of one, and the least product of both has n = √(c ρ / (1 - ρ)).
-//!
-//! Measured (16 samples a pixel, denoised): two light samples for one are worth .3 to .5 dB in a room lit through its
-//! windows and in a church, at 5 % of their time; rooms whose noise is that of lamps' reflections have one.
+//! Squares of pixels all over the film are sampled twice, with the same paths but different light samples at their
+//! ends. The difference is the noise due to light samples. The difference between the two halves of a pixel's samples,
+//! each stratified by itself, is all of the noise. If light samples cause the share ρ of the variance, `n` light
+//! samples leave the variance 1 - ρ + ρ / n at the cost c + n. The product of both is least at n = √(c ρ / (1 - ρ)).
 
-use super::adaptive::{Choice, Luminances, pilot};
-use super::drawn::{Found, Tracer};
-use super::{ChainCounts, EyeSettings};
+use super::adaptive::{AdaptiveRule, Luminances, pilot};
+use super::tracer::{PixelSamples, Tracer};
+use super::{EyeCounts, EyeSettings};
 use crate::paths::LightSamples;
 use base::math::{Rgb, luminance};
 use base::parallel::{ShortRuns, Workspaces};
 use rayon::prelude::*;
 use world::light::Learned;
 
-/// Maximum number of first samples that may be followed by more: their numbers are 32 bits wide.
+/// Maximum number of first samples that may be followed by more, so that sample numbers fit into 32 bits.
 const MAX_ADAPTIVE: u32 = u32::MAX / 4;
 
-/// Seed of the pilot's samples over that of the others.
+/// Seed of the pilot's samples, combined with the image's seed.
 const PILOT_SEED: u32 = 0x3c6e_f372;
 
-/// Number of the first light samples by which the pilot's paths are lit another time: beyond those of other paths.
-const ANOTHER_TIME: u32 = 1 << 20;
+/// Offset into the light-sample sequence for the pilot's second pass, so that it is independent of the first.
+const SECOND_PASS_OFFSET: u32 = 1 << 20;
 
-/// Cost of an eye sample but for its light sample, over that of a light sample: 2.5 to 4 in rooms with windows, glass
-/// and polished floors.
-const COST: f32 = 3.0;
+/// Cost of an eye sample without its light sample, over the cost of a light sample.
+const SAMPLE_COST: f32 = 3.0;
 
 /// Maximum number of light samples.
 const MAX_LIGHT_SAMPLES: f32 = 4.0;
 
-/// Knowledge of the film.
+/// Result of the pilot.
 pub(super) struct Effort {
-    /// Rule by which pixels get more samples; `None` if none is to get more.
-    pub choice: Option<Choice>,
-    /// Light samples at each chain's end.
+    /// Rule that chooses the pixels with more samples; `None` if no pixel gets more.
+    pub choice: Option<AdaptiveRule>,
+    /// Light samples per chain end.
     pub light_samples: u32,
-    /// Relative variance of a pixel, limited to 1 where it is greater, on average.
+    /// Mean over pixels of the relative variance, at most 1 per pixel.
     pub noise: f32,
-    /// Rays traced to learn them.
-    pub chains: ChainCounts,
+    /// Rays that the pilot traced.
+    pub chains: EyeCounts,
 }
 
-/// Means of all samples of pixels, and of the first half of them.
+/// Means of all samples of pixels, and of the first half of them, by group.
 type Means = Vec<Vec<[f32; 2]>>;
 
 impl<'w> Tracer<'_, 'w> {
-    /// Learns it; `None` if there is but one sample a pixel, or so many that none needs more.
+    /// Runs the pilot; returns `None` with a single sample per pixel, or with so many that no pixel needs more.
     pub(super) fn effort(&mut self, learned: Option<&Learned>) -> Option<Effort> {
         let EyeSettings { spp, seed, .. } = self.settings;
         if !(2..=MAX_ADAPTIVE).contains(&spp) {
@@ -60,38 +55,39 @@ impl<'w> Tracer<'_, 'w> {
         let pixels: Vec<Vec<[u32; 2]>> =
             squares.iter().map(|square| square.film_pixels().collect()).collect();
         let (values, traced) = self.luminances(pixels.clone(), seed ^ PILOT_SEED, learned);
-        self.light_samples.first = ANOTHER_TIME;
+        self.light_samples.first = SECOND_PASS_OFFSET;
         let (again, traced_again) = self.luminances(pixels, seed ^ PILOT_SEED, learned);
         self.light_samples = LightSamples::ONE;
-        let chains: ChainCounts = traced.into_iter().chain(traced_again).sum();
+        let chains: EyeCounts = traced.into_iter().chain(traced_again).sum();
         let means = |group: &Vec<[f32; 2]>| group.iter().map(|[mean, _]| *mean).collect();
         let filled = |(window, group)| Luminances { window, values: means(group) };
         let sampled: usize = 2 * values.iter().map(Vec::len).sum::<usize>() * spp as usize;
         let film = self.view.window.film_pixel_count() as f64;
         let a_sample = (chains.rays + chains.shadow_rays) as f64 / sampled.max(1) as f64;
-        let share = self.drawn.extra_samples.share(a_sample * f64::from(spp) * film);
-        let choice = Choice::new(&squares.into_iter().zip(&values).map(filled).collect::<Vec<_>>(), share);
-        let noise = Noise::of(&values, &again, spp, choice.dark);
+        let share = self.direct.extra_samples.share(a_sample * f64::from(spp) * film);
+        let choice =
+            AdaptiveRule::new(&squares.into_iter().zip(&values).map(filled).collect::<Vec<_>>(), share);
+        let noise = PixelNoise::of(&values, &again, spp, choice.dark);
         let choice = (share > 0.0).then_some(choice);
         Some(Effort { choice, light_samples: noise.light_samples(), noise: noise.all, chains })
     }
 
-    /// Luminances that the first samples of groups of film pixels find, of all of them and of the first half, and the
-    /// groups' rays; 0 where cancelled.
+    /// Returns the luminances that the first samples of groups of film pixels find, by all of them and by the first
+    /// half, and the rays of each group. Luminances are 0 once cancelled.
     pub(super) fn luminances(
         &self,
         groups: Vec<Vec<[u32; 2]>>,
         seed: u32,
         learned: Option<&Learned>,
-    ) -> (Means, Vec<ChainCounts>) {
+    ) -> (Means, Vec<EyeCounts>) {
         let spp = self.settings.spp;
         let works = Workspaces::new(|| self.workspace(learned));
         let look = |pixels: Vec<[u32; 2]>| {
             let mut sums = vec![[Rgb::ZERO; 2]; pixels.len()];
             if self.control.is_cancelled() {
-                return (vec![[0.0; 2]; pixels.len()], ChainCounts::default());
+                return (vec![[0.0; 2]; pixels.len()], EyeCounts::default());
             }
-            let each = |found: Found<'_, 'w>, _: &mut Vec<_>| {
+            let each = |found: PixelSamples<'_, 'w>, _: &mut Vec<_>| {
                 let [sum, half] = &mut sums[found.index];
                 *sum += found.sum;
                 *half += found.half;
@@ -105,16 +101,17 @@ impl<'w> Tracer<'_, 'w> {
     }
 }
 
-/// Relative variance of a pixel, limited to 1 where it is greater, on average over pixels.
-struct Noise {
+/// Relative variance of a pixel, at most 1, averaged over pixels.
+struct PixelNoise {
     all: f32,
-    /// Of light samples.
+    /// Part due to light samples.
     by_light: f32,
 }
 
-impl Noise {
-    /// Of pixels with `spp` samples that were sampled twice; `dark` counts as dark.
-    fn of(values: &Means, again: &Means, spp: u32, dark: f32) -> Noise {
+impl PixelNoise {
+    /// Estimates the noise of pixels with `spp` samples that were sampled twice. `dark` is the luminance that counts
+    /// as dark.
+    fn of(values: &Means, again: &Means, spp: u32, dark: f32) -> PixelNoise {
         // A share f of the samples differs from the mean of all by √((1 - f) / f) times the error of that mean.
         let first = (spp / 2) as f32 / spp as f32;
         let to_error = (first / (1.0 - first)).sqrt();
@@ -125,13 +122,13 @@ impl Noise {
             by_light += square(0.5f32.sqrt() * (a - b), 0.5 * (a + b));
             count += 1.0;
         }
-        Noise { all: all / count.max(1.0), by_light: by_light / count.max(1.0) }
+        PixelNoise { all: all / count.max(1.0), by_light: by_light / count.max(1.0) }
     }
 
-    /// The best number of light samples.
+    /// Returns the number of light samples with the least product of variance and cost.
     fn light_samples(&self) -> u32 {
         let part = (self.by_light / self.all.max(f32::MIN_POSITIVE)).min(1.0);
-        (COST * part / (1.0 - part)).sqrt().clamp(1.0, MAX_LIGHT_SAMPLES).round() as u32
+        (SAMPLE_COST * part / (1.0 - part)).sqrt().clamp(1.0, MAX_LIGHT_SAMPLES).round() as u32
     }
 }
 
@@ -141,7 +138,7 @@ mod tests {
     use base::sampling::owen_sobol_2d;
 
     fn number(values: &Means, again: &Means, spp: u32) -> u32 {
-        Noise::of(values, again, spp, 0.08).light_samples()
+        PixelNoise::of(values, again, spp, 0.08).light_samples()
     }
 
     /// The best number for a thousand pixels of mean 1 whose light samples have that part of their noise.

@@ -1,28 +1,28 @@
-//! Features: properties of the visible surfaces by pixel, for denoisers and compositing.
+//! Features: properties of the visible surfaces per pixel, for denoisers and compositing.
 //!
 //! | feature | layer | value of a pixel |
 //! |---|---|---|
-//! | albedo | `albedo.R`, `.G`, `.B` | mean share of light that is reflected, through mirrors and glass; lamps below |
-//! | normal | `normal.X`, `.Y`, `.Z` | mean unit shading normal towards the viewer, in world space; 0 if none |
-//! | geometric-normal | `geometricNormal.X`, ... | the same of the triangles |
+//! | albedo | `albedo.R`, `.G`, `.B` | mean reflected share of light, through mirrors and glass; emitters: see below |
+//! | normal | `normal.X`, `.Y`, `.Z` | mean shading normal towards the viewer, in world space; 0 without a surface |
+//! | geometric-normal | `geometricNormal.X`, ... | mean unit normal of the triangles, likewise |
 //! | position | `position.X`, ... | mean position in the coordinates of the scene's file |
-//! | depth | `depth.Z` | distance along the camera's axis, of the nearest sample; 10^10 where nothing is |
-//! | material | `materialId` | 1 + number of the nearest sample's material; 0 where nothing is |
-//! | object | `objectId` | the same of its mesh |
-//! | alpha | `A` | share of samples that meet a surface |
+//! | depth | `depth.Z` | distance along the camera's axis, of the nearest sample; 10^10 without a surface |
+//! | material | `materialId` | 1 + index of the nearest sample's material; 0 without a surface |
+//! | object | `objectId` | 1 + index of the nearest sample's mesh; 0 without a surface |
+//! | alpha | `A` | share of samples that hit a surface |
 //!
-//! A sample's features are those of the surface that most of its light comes from: where mirrors or smooth glass are
-//! met, the surfaces seen in or behind them, to which distances are added up. Where most comes from the environment,
-//! they are those of the first mirror or glass. Its albedo is the sum over all surfaces seen, by their shares of the
-//! light: the Fresnel blend that Open Image Denoise asks for. Rough lobes count as reflecting, however sharp they
-//! are.
+//! A sample's features are those of the surface that contributes most of its light. At mirrors and smooth glass these
+//! are the surfaces seen in or behind them, at the summed distance. If the environment contributes most, they are
+//! those of the first mirror or glass. The albedo is the sum over all surfaces seen, weighted by their shares of the
+//! light: the Fresnel blend that Open Image Denoise asks for. Rough lobes count as reflecting, however sharp they are.
 //!
-//! Lamps have, where that is more, what they emit over the most that their mesh does in any channel: a sign's picture,
-//! and the hue of a plain lamp. Otherwise a denoiser would blur the one, and take the edges of the other for noise.
+//! The albedo of an emitter is the emitted radiance over the maximum of its mesh in any channel, if that exceeds the
+//! reflectance. This preserves the image on a sign and the hue of a plain lamp. Otherwise a denoiser would blur the
+//! former and take the edges of the latter for noise.
 //!
-//! Positions are averaged over the samples that meet a surface, albedo and normals over all.
+//! Positions are averaged over the samples that hit a surface, albedo and normals over all samples.
 
-use super::seen::{FeatureSettings, Looking, Pixel};
+use super::seen::{FeatureSampler, FeatureSettings, PixelFeatures};
 use base::film::{Image, Layer};
 use base::math::Rgb;
 use base::parallel::ShortRuns;
@@ -34,19 +34,19 @@ use std::str::FromStr;
 use world::World;
 use world::view::View;
 
-/// Pixels along the edge of the square that one task looks through.
+/// Pixels along the edge of the square that one task examines.
 const TILE: u32 = 16;
 
-/// Maximum number of squares that are looked through before the pixels found are put together.
+/// Maximum number of squares that are examined before their pixels are joined.
 const TILES: usize = 1024;
 
-/// Depth where there is no surface: Blender's.
+/// Depth without a surface: Blender's value.
 const NO_DEPTH: f32 = 1e10;
 
-/// A quantity of the surfaces in a picture.
+/// Quantity of the visible surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
-    /// Share of light that is reflected, or emitted of the most.
+    /// Share of light that is reflected, or relative emission.
     Albedo,
     /// Shading normal.
     Normal,
@@ -56,11 +56,11 @@ pub enum Feature {
     Position,
     /// Distance along the camera's axis.
     Depth,
-    /// Number of the material.
+    /// Index of the material.
     Material,
-    /// Number of the mesh.
+    /// Index of the mesh.
     Object,
-    /// Share of samples that meet a surface.
+    /// Share of samples that hit a surface.
     Alpha,
 }
 
@@ -77,7 +77,7 @@ impl Feature {
         Feature::Alpha,
     ];
 
-    /// The name by which users ask for it.
+    /// Returns the name that users type.
     pub fn name(self) -> &'static str {
         match self {
             Feature::Albedo => "albedo",
@@ -92,22 +92,22 @@ impl Feature {
     }
 }
 
-/// Any of the features.
+/// Set of features.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Features(u8);
 
 impl Features {
-    /// True if there is none.
+    /// Returns true if the set is empty.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// These and another.
+    /// Returns the set with another feature.
     pub fn with(self, feature: Feature) -> Features {
         Features(self.0 | 1 << feature as u8)
     }
 
-    /// True if a feature is one of them.
+    /// Returns true if a feature is in the set.
     pub fn contains(self, feature: Feature) -> bool {
         self.0 & 1 << feature as u8 != 0
     }
@@ -119,7 +119,7 @@ impl FromIterator<Feature> for Features {
     }
 }
 
-/// Reason why a name is not that of a feature.
+/// Error: a name is not that of a feature.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no feature `{name}`; there are {}", Feature::ALL.map(Feature::name).join(", "))]
 pub struct UnknownFeature {
@@ -135,29 +135,29 @@ impl FromStr for Feature {
     }
 }
 
-/// The surfaces seen through the pixels of a window.
+/// Surfaces seen through the pixels of a window.
 pub struct SeenPixels {
-    pixels: Image<Pixel>,
+    pixels: Image<PixelFeatures>,
 }
 
-/// A surface that fills a pixel and its surroundings.
+/// Surface that fills a pixel and its surroundings.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct EvenSurface {
     /// Mean position relative to the scene's centre.
     pub position: Vec3,
     /// Unit shading normal towards the viewer.
     pub normal: Vec3,
-    /// Number of the mesh.
+    /// Index of the mesh.
     pub mesh: u32,
 }
 
 impl SeenPixels {
-    /// Looks through the pixels of the view's window; where cancelled, nothing is there.
+    /// Samples the pixels of the view's window; pixels are empty once cancelled.
     pub fn new(world: &World, view: &View, settings: &FeatureSettings, control: &Control) -> SeenPixels {
         let window = &view.window;
-        let mut pixels: Vec<Pixel> = vec![Pixel::default(); window.pixel_count() as usize];
+        let mut pixels: Vec<PixelFeatures> = vec![PixelFeatures::default(); window.pixel_count() as usize];
         let numbers: Vec<usize> = (0..window.tile_count(TILE)).collect();
-        // Some at a time, so that not all pixels are in memory twice.
+        // Blocks of tiles bound the memory that pixels take twice.
         for numbers in numbers.chunks(TILES) {
             let look = |index: &usize| {
                 if control.is_cancelled() {
@@ -165,9 +165,9 @@ impl SeenPixels {
                 }
                 let mut tile = window.tile(*index, TILE).map(|at| window.film_pixel(at));
                 let Some(first) = tile.next() else { return Vec::new() };
-                Looking { world, view, settings }.pixels(first, tile.last().unwrap_or(first))
+                FeatureSampler { world, view, settings }.pixels(first, tile.last().unwrap_or(first))
             };
-            let found: Vec<Vec<Pixel>> = numbers.par_iter().one_by_one().map(look).collect();
+            let found: Vec<Vec<PixelFeatures>> = numbers.par_iter().one_by_one().map(look).collect();
             for (tile, found) in numbers.iter().zip(found) {
                 for (pixel, [x, y]) in found.into_iter().zip(window.tile(*tile, TILE)) {
                     pixels[(y * window.width + x) as usize] = pixel;
@@ -177,8 +177,8 @@ impl SeenPixels {
         SeenPixels { pixels: Image { width: window.width, height: window.height, pixels } }
     }
 
-    /// The surface that fills a pixel and those around it evenly, and reflects no clear images; `None` if there is
-    /// none.
+    /// Returns the surface that fills a pixel and its surroundings evenly and shows no clear reflections; `None` if
+    /// there is none.
     pub fn even_surface(&self, pixel: usize) -> Option<EvenSurface> {
         let pixel = &self.pixels.pixels[pixel];
         let fills = pixel.is_even && !pixel.reflects && pixel.surfaces == pixel.samples;
@@ -188,26 +188,26 @@ impl SeenPixels {
         Some(EvenSurface { position, normal, mesh: nearest.mesh })
     }
 
-    /// Distance of a pixel's nearest surface along the camera's axis; 10^10 where nothing is.
+    /// Returns the distance of a pixel's nearest surface along the camera's axis; 10^10 without a surface.
     pub fn depth(&self, pixel: usize) -> f32 {
         self.pixels.pixels[pixel].nearest.map_or(NO_DEPTH, |nearest| nearest.depth)
     }
 
-    /// Mean albedo of a pixel.
+    /// Returns the mean albedo of a pixel.
     pub fn albedo(&self, pixel: usize) -> Rgb {
         let pixel = &self.pixels.pixels[pixel];
         pixel.albedo / pixel.samples.max(1) as f32
     }
 
-    /// The layers of the features wanted.
+    /// Returns the layers of the requested features.
     pub fn layers(&self, world: &World, wanted: Features) -> Vec<Layer> {
         let pixels = &self.pixels;
         let (centre, unit) = (world.scene.centre, world.scene.unit());
-        let position = |p: &Pixel| match p.surfaces {
+        let position = |p: &PixelFeatures| match p.surfaces {
             0 => Vec3::ZERO,
             n => (centre + p.position / f64::from(n) * unit).as_vec3(),
         };
-        let depth = |p: &Pixel| p.nearest.map_or(NO_DEPTH, |n| (f64::from(n.depth) * unit) as f32);
+        let depth = |p: &PixelFeatures| p.nearest.map_or(NO_DEPTH, |n| (f64::from(n.depth) * unit) as f32);
         let layer = |feature: Feature| match feature {
             Feature::Albedo => Layer::color("albedo", pixels.map(|p| p.albedo / p.samples as f32)),
             Feature::Normal => Layer::vector("normal", pixels.map(|p| p.normal / p.samples as f32)),

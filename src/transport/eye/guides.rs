@@ -1,22 +1,22 @@
-//! Guides for a denoiser that eye samples and paths find on their way: mean albedo and normal by pixel.
+//! Denoiser guides found by eye samples and paths: mean albedo and normal per pixel.
 //!
-//! They are as [`super::features`] says, of all eye samples of a pixel. Only samples that meet a mirror or glass first
-//! are looked at by themselves.
+//! Guides follow the definitions of [`super::features`], over all eye samples of a pixel. Only samples that hit a
+//! mirror or glass first are traced separately.
 //!
-//! Errors: values are kept to 16 bits, so 1e-5 of an albedo and 3e-5 of a normal.
+//! Errors: values have 16 bits, hence 1e-5 of an albedo and 3e-5 of a normal.
 
-use super::seen::{FeatureSettings, Looking, Pixel};
-use crate::paths::{Look, Reach};
+use super::seen::{FeatureSampler, FeatureSettings, PixelFeatures};
+use crate::paths::PathPolicy;
 use base::film::{Image, Layer, Window};
 use base::math::Rgb;
 use glam::Vec3;
 use world::World;
 use world::view::View;
 
-/// Greatest number that is kept.
-const MOST: f32 = u16::MAX as f32;
+/// Maximum code of a packed value.
+const MAX_CODE: f32 = u16::MAX as f32;
 
-/// Albedo and shading normal towards the viewer, added up over samples.
+/// Sums over samples of albedo and of the shading normal towards the viewer.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Guide {
     albedo: Rgb,
@@ -24,45 +24,45 @@ pub struct Guide {
 }
 
 impl Guide {
-    /// Adds those of other samples.
+    /// Adds the sums of other samples.
     pub fn add(&mut self, other: Guide) {
         self.albedo += other.albedo;
         self.normal += other.normal;
     }
 
-    /// The mean over a number of samples.
-    pub fn kept(&self, samples: u32) -> KeptGuide {
+    /// Returns the packed mean over a number of samples.
+    pub fn kept(&self, samples: u32) -> PackedGuide {
         let n = samples.max(1) as f32;
-        let code = |value: f32| (value.clamp(0.0, 1.0) * MOST).round() as u16;
+        let code = |value: f32| (value.clamp(0.0, 1.0) * MAX_CODE).round() as u16;
         let (albedo, normal) = (self.albedo / n, 0.5 * self.normal / n + 0.5);
-        KeptGuide { albedo: albedo.to_array().map(code), normal: normal.to_array().map(code) }
+        PackedGuide { albedo: albedo.to_array().map(code), normal: normal.to_array().map(code) }
     }
 }
 
-/// Mean of a pixel in 12 bytes.
+/// Mean guide of a pixel in 12 bytes.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct KeptGuide {
-    /// From 0 to 1.
+pub struct PackedGuide {
+    /// Albedo; codes map to [0, 1].
     albedo: [u16; 3],
-    /// From -1 to 1.
+    /// Normal; codes map to [-1, 1].
     normal: [u16; 3],
 }
 
-/// The guides of a window.
+/// Guides of a window.
 #[derive(Clone, Debug)]
-pub struct KeptGuides(pub Vec<KeptGuide>);
+pub struct PackedGuides(pub Vec<PackedGuide>);
 
-impl KeptGuides {
-    /// Layers of albedo and normals, by the names of these features.
+impl PackedGuides {
+    /// Returns layers of albedo and normals, named after these features.
     pub fn layers(&self, window: &Window) -> Vec<Layer> {
-        let image = |value: &dyn Fn(&KeptGuide) -> Vec3| Image {
+        let image = |value: &dyn Fn(&PackedGuide) -> Vec3| Image {
             width: window.width,
             height: window.height,
             pixels: self.0.iter().map(value).collect(),
         };
-        let share = |codes: [u16; 3]| Vec3::from(codes.map(|code| f32::from(code) / MOST));
+        let share = |codes: [u16; 3]| Vec3::from(codes.map(|code| f32::from(code) / MAX_CODE));
         let albedo = image(&|guide| share(guide.albedo));
-        // The middle of the codes is no code: 0 stays 0.
+        // The middle of the range is no code; 0 is to stay 0.
         let normal = image(&|guide| match guide.normal.map(|code| code.abs_diff(u16::MAX / 2) <= 1) {
             [true, true, true] => Vec3::ZERO,
             _ => 2.0 * share(guide.normal) - 1.0,
@@ -71,19 +71,19 @@ impl KeptGuides {
     }
 }
 
-/// The first surfaces of paths that are traced together.
+/// First surfaces of paths that are traced together.
 #[derive(Default)]
 pub struct FirstSurfaces {
-    /// Number of paths of a pixel, which follow each other.
+    /// Number of consecutive paths per pixel.
     paths: u32,
     pixels: Vec<Guide>,
-    /// Paths that meet a mirror or glass first.
+    /// Paths that hit a mirror or glass first.
     chained: Vec<u32>,
-    behind: Vec<Pixel>,
+    behind: Vec<PixelFeatures>,
 }
 
 impl FirstSurfaces {
-    /// Forgets what was seen before; `count` pixels of so many paths come next.
+    /// Clears the surfaces seen. The next paths belong to `count` pixels, with `paths` paths each.
     pub fn begin(&mut self, count: usize, paths: u32) {
         self.paths = paths.max(1);
         self.pixels.clear();
@@ -91,7 +91,7 @@ impl FirstSurfaces {
         self.chained.clear();
     }
 
-    /// Adds the albedo of the surface that a path meets, `None` of mirrors and glass, and the shading normal on that
+    /// Adds the albedo of the surface that a path hits, `None` for mirrors and glass, and the shading normal on that
     /// side.
     #[inline]
     pub fn see(&mut self, path: u32, albedo: Option<Rgb>, normal: Vec3) {
@@ -101,43 +101,43 @@ impl FirstSurfaces {
         }
     }
 
-    /// Looks at what is in and behind mirrors and glass; samples of each of the film pixels are counted from `first`.
+    /// Traces the samples that hit mirrors or glass first. The samples of each film pixel are numbered from `first`.
     pub fn finish(
         &mut self,
-        (world, view): (&World, &View),
-        (film_pixels, first): (&[[u32; 2]], u32),
-        settings: (u32, u32),
+        world: &World,
+        view: &View,
+        settings: FeatureSettings,
+        film_pixels: &[[u32; 2]],
+        first: u32,
     ) {
         if self.chained.is_empty() {
             return;
         }
-        let (spp, seed) = settings;
-        let settings = FeatureSettings { look: Look::Pixels, spp, seed };
         self.behind.clear();
-        self.behind.resize(film_pixels.len(), Pixel::default());
+        self.behind.resize(film_pixels.len(), PixelFeatures::default());
         let paths = self.paths;
         let samples = self.chained.iter().map(|path| ((path / paths) as usize, first + path % paths));
-        Looking { world, view, settings: &settings }.add(film_pixels, &mut self.behind, samples);
+        FeatureSampler { world, view, settings: &settings }.add(film_pixels, &mut self.behind, samples);
         for (guide, pixel) in self.pixels.iter_mut().zip(&self.behind) {
             guide.add(Guide { albedo: pixel.albedo, normal: pixel.normal });
         }
     }
 
-    /// The surfaces seen in a pixel.
+    /// Returns the sums of the surfaces seen in a pixel.
     pub fn of(&self, pixel: usize) -> Guide {
         self.pixels.get(pixel).copied().unwrap_or_default()
     }
 }
 
-/// Paths of full length from the eye.
+/// Policy of full paths from the eye.
 #[derive(Default)]
 pub struct FullPaths {
-    /// The surfaces that they meet first, where guides are wanted.
+    /// First surfaces, if guides are requested.
     pub first_surfaces: Option<FirstSurfaces>,
 }
 
-impl Reach<'_> for FullPaths {
-    const ENDS: bool = false;
+impl PathPolicy<'_> for FullPaths {
+    const STOPS_AT_DIFFUSE: bool = false;
 
     fn sees(&self) -> bool {
         self.first_surfaces.is_some()
@@ -154,7 +154,8 @@ impl Reach<'_> for FullPaths {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::eye::{DrawnLight, EyePass, EyeSettings};
+    use crate::eye::{DirectSampling, EyePass, EyeSettings, LightSources};
+    use crate::paths::Estimand;
     use base::progress::Control;
     use world::testkit::*;
 
@@ -165,18 +166,25 @@ mod tests {
         let view = world.view;
         for max_depth in [5, 1] {
             let settings = EyeSettings { spp: SPP, seed: 3, max_depth };
-            let drawn = DrawnLight { guides: true, ..DrawnLight::default() };
-            let pass = EyePass::with_direct_light(&world, &view, settings, (&drawn, None), &Control::new());
+            let direct = DirectSampling { guides: true, ..DirectSampling::default() };
+            let pass = EyePass::with_direct_light(
+                &world,
+                &view,
+                settings,
+                LightSources { direct: &direct, caustics: None },
+                &Control::new(),
+            );
             let Some(guides) = pass.guides else {
                 assert_eq!(max_depth, 1, "paths end at emitters");
                 continue;
             };
             let layers = guides.layers(&view.window);
             let pixels: Vec<[u32; 2]> = view.window.film_pixels().collect();
-            let features = FeatureSettings { look: Look::Pixels, spp: SPP, seed: 3 };
-            let mut sums = vec![Pixel::default(); pixels.len()];
+            let features = FeatureSettings { estimand: Estimand::Pixels, spp: SPP, seed: 3 };
+            let mut sums = vec![PixelFeatures::default(); pixels.len()];
             let samples = (0..pixels.len()).flat_map(|pixel| (0..SPP).map(move |sample| (pixel, sample)));
-            Looking { world: &world, view: &view, settings: &features }.add(&pixels, &mut sums, samples);
+            FeatureSampler { world: &world, view: &view, settings: &features }
+                .add(&pixels, &mut sums, samples);
             let mut through_mirrors = 0;
             for (i, sum) in sums.iter().enumerate() {
                 let found = |layer: &Layer| layer.triples().map_or(Vec3::NAN, |image| image.pixels[i]);
@@ -198,14 +206,14 @@ mod tests {
             (Rgb::ZERO, Vec3::ZERO),
         ] {
             let guide = Guide { albedo: 3.0 * albedo, normal: 3.0 * normal };
-            let layers = KeptGuides(vec![guide.kept(3)]).layers(&window);
+            let layers = PackedGuides(vec![guide.kept(3)]).layers(&window);
             let found = |layer: &Layer| layer.triples().map(|image| image.pixels[0]);
             let near = |found: Option<Vec3>, value: Vec3| {
                 found.is_some_and(|f| (f - value).abs().max_element() < 3e-5)
             };
             assert!(near(found(&layers[0]), albedo) && near(found(&layers[1]), normal), "{layers:?}");
         }
-        let empty = KeptGuides(vec![Guide::default().kept(0)]).layers(&window);
+        let empty = PackedGuides(vec![Guide::default().kept(0)]).layers(&window);
         assert!(empty.iter().all(|layer| layer.triples().is_some_and(|image| image.pixels[0] == Vec3::ZERO)));
     }
 }

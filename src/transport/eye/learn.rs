@@ -1,8 +1,8 @@
-//! Learning what of the emitters is seen from where: rays from points that the eye sees, spread over the whole film, so
-//! that a crop learns what the whole picture does.
+//! Learning which emitters are visible from where, by rays from points that the eye sees. The points are spread over
+//! the whole film, so that a crop learns the same as the full image.
 
-use super::ChainCounts;
-use super::drawn::{Found, Tracer};
+use super::EyeCounts;
+use super::tracer::{PixelSamples, Tracer};
 use base::math::{LANES, Vec2x16, Vec3x16, lanes_in};
 use base::parallel::{ShortRuns, Workspaces};
 use base::sampling::{Sampler, hash, owen_sobol_2d};
@@ -12,27 +12,31 @@ use rayon::prelude::*;
 use world::light::{EnvironmentLight, LampLooks, Learned, LearnedSky, Looks, Receivers16};
 use world::shadow;
 
-/// Maximum number of eye paths, and the number of the film's pixels for each of them.
+/// Maximum number of eye paths.
 const MAX_PATHS: u32 = 16384;
-const PIXELS_A_PATH: u64 = 8;
 
-/// Number of packets of rays from each point.
+/// Number of film pixels per eye path.
+const PIXELS_PER_PATH: u64 = 8;
+
+/// Number of ray packets per point.
 const PACKETS: usize = 2;
 
-/// Number of paths traced by one task.
+/// Number of paths per task.
 const CHUNK: usize = 256;
 
-/// Seeds of the rays, to the environment and to lamps, over that of the paths.
+/// Seed of the rays to the environment, combined with the paths' seed.
 const RAY_SEED: u32 = 0x9d7b_2c41;
+
+/// Seed of the rays to lamps, combined with the paths' seed.
 const LAMP_SEED: u32 = 0x51ed_270b;
 
-/// Factor from one ray to the tile of the next, coprime to their number.
+/// Step from one ray's tile to the next, coprime to the number of tiles.
 const STRIDE: usize = 97;
 
-/// Pixels of a film through which paths go, `fewer` times fewer than for a whole picture.
+/// Returns the film pixels through which paths go: `fewer` times fewer than for a full image.
 fn places(film: [u32; 2], fewer: u64) -> Vec<[u32; 2]> {
     let pixels = u64::from(film[0]) * u64::from(film[1]);
-    let count = ((pixels / PIXELS_A_PATH).min(MAX_PATHS.into()) / fewer).max(64) as u32;
+    let count = ((pixels / PIXELS_PER_PATH).min(MAX_PATHS.into()) / fewer).max(64) as u32;
     let place = |i| {
         let at = owen_sobol_2d(i, RAY_SEED);
         [0, 1].map(|axis| ((at[axis] * film[axis] as f32) as u32).min(film[axis] - 1))
@@ -41,9 +45,9 @@ fn places(film: [u32; 2], fewer: u64) -> Vec<[u32; 2]> {
 }
 
 impl Tracer<'_, '_> {
-    /// Learns by one path through each of the pilot's pixels, by fewer if cancelled; counts the rays. `None` if there
-    /// is nothing to be learned. Paths are `fewer` times fewer than for a whole picture.
-    pub(super) fn learn(&self, seed: u32, fewer: u64) -> Option<(Learned, ChainCounts)> {
+    /// Learns from one path through each of the pilot's pixels, and from fewer if cancelled. Returns the rays too, or
+    /// `None` if there is nothing to learn. The number of paths is `fewer` times smaller than for a full image.
+    pub(super) fn learn(&self, seed: u32, fewer: u64) -> Option<(Learned, EyeCounts)> {
         let emitters = &self.world.emitters;
         let (environment, lamps) = (emitters.environment.as_ref(), emitters.may_hide());
         if environment.is_none() && !lamps {
@@ -53,10 +57,10 @@ impl Tracer<'_, '_> {
         let look = |(chunk, pixels): (usize, &[[u32; 2]])| {
             let (mut sky, mut seen) = (Looks::default(), LampLooks::default());
             if self.control.is_cancelled() {
-                return (sky, seen, ChainCounts::default());
+                return (sky, seen, EyeCounts::default());
             }
             let mut points = 0;
-            let each = |found: Found<'_, '_>, _: &mut Vec<_>| {
+            let each = |found: PixelSamples<'_, '_>, _: &mut Vec<_>| {
                 for end in found.ends() {
                     let number = (chunk * CHUNK + points) as u32;
                     points += 1;
@@ -64,11 +68,11 @@ impl Tracer<'_, '_> {
                     let normals = [end.geometry.normal, end.surface.geometric_normal];
                     if let Some(environment) = environment {
                         sky.points.push(x);
-                        self.look_at_sky(environment, x, normals, (number, seed), &mut sky.rays);
+                        self.trace_sky(environment, x, normals, number, seed, &mut sky.rays);
                     }
                     if lamps {
                         seen.points.push(x);
-                        self.look_at_lamps(x, normals, (number, seed), &mut seen.rays);
+                        self.trace_lamps(x, normals, number, seed, &mut seen.rays);
                     }
                 }
             };
@@ -77,10 +81,9 @@ impl Tracer<'_, '_> {
             (sky, seen, chains)
         };
         let places = places(self.view.window.film, fewer);
-        let found: Vec<(Looks, LampLooks, ChainCounts)> =
+        let found: Vec<(Looks, LampLooks, EyeCounts)> =
             places.par_chunks(CHUNK).one_by_one().enumerate().map(look).collect();
-        let (mut all, mut seen, mut chains) =
-            (Looks::default(), LampLooks::default(), ChainCounts::default());
+        let (mut all, mut seen, mut chains) = (Looks::default(), LampLooks::default(), EyeCounts::default());
         for (mut looks, mut lamp_looks, traced) in found {
             chains += traced;
             all.points.append(&mut looks.points);
@@ -95,13 +98,13 @@ impl Tracer<'_, '_> {
         Some((learned, chains))
     }
 
-    /// Traces rays from a point with the given shading and geometric normal to lamps, as they would be chosen without
-    /// knowledge.
-    fn look_at_lamps(
+    /// Traces rays from a point with the given shading and geometric normals to lamps, chosen as without learning.
+    fn trace_lamps(
         &self,
         x: Vec3,
         [normal, geometric_normal]: [Vec3; 2],
-        (number, seed): (u32, u32),
+        number: u32,
+        seed: u32,
         rays: &mut Vec<Option<(u32, bool)>>,
     ) {
         let mut sampler = Sampler::new(hash(seed, LAMP_SEED), number);
@@ -133,14 +136,15 @@ impl Tracer<'_, '_> {
         }
     }
 
-    /// Traces rays from a point with the given shading and geometric normal to some of the tiles, point by point to
-    /// others.
-    fn look_at_sky(
+    /// Traces rays from a point with the given shading and geometric normals to some tiles of the environment.
+    /// Successive points use different tiles.
+    fn trace_sky(
         &self,
         environment: &EnvironmentLight,
         x: Vec3,
         [normal, geometric_normal]: [Vec3; 2],
-        (number, seed): (u32, u32),
+        number: u32,
+        seed: u32,
         rays: &mut Vec<(u16, f32)>,
     ) {
         let mut sampler = Sampler::new(hash(seed, RAY_SEED), number);

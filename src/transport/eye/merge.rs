@@ -1,9 +1,11 @@
-//! Merging of the ends of a pixel's chains into shading points: one point stands for all samples of the pixel that see
-//! much the same of one surface by the same way.
+//! Merging of a pixel's first hits into shading points. One point stands for all samples of the pixel that see nearly
+//! the same part of one surface along the same class of path.
 //!
-//! A point has the position and normals of its first sample and the weights of all, and reflects by their mean
-//! factors, so that textures are antialiased. Deviations: ends of chains through mirrors, glass and sharp lobes, which
-//! may be many to a pixel, are thinned in proportion to the light they may carry, with weights that keep the mean.
+//! A point has the position and normals of its first sample and the weights of all. It reflects by the mean of their
+//! factors, so that textures are antialiased.
+//!
+//! Deviations: chains through mirrors, glass and sharp lobes may lead to many points per pixel. These are thinned in
+//! proportion to the light they may carry, with weights that preserve the mean.
 
 use super::points::{PointGeometry, PointSurface, shading_point};
 use crate::paths::ChainEnd;
@@ -12,15 +14,17 @@ use base::math::{Rgb, luminance};
 /// Minimum cosine between normals, and between directions towards the eye, of samples that are merged: 11 degrees.
 const MIN_COS: f32 = 0.98;
 
-/// Maximum distance between samples that are merged, and from each other's plane, in spacings.
+/// Maximum distance between samples that are merged, in spacings.
 const MAX_DISTANCE: f32 = 16.0;
+
+/// Maximum distance of a sample from the plane of another that it is merged with, in spacings.
 const MAX_HEIGHT: f32 = 0.5;
 
-/// Mean number of points a pixel that ends of chains beyond mirrors, glass and sharp lobes get if all its light comes
-/// through them.
+/// Mean number of points per pixel beyond mirrors, glass and sharp lobes, if all light of the pixel comes through
+/// them.
 const CHAINED_POINTS: f32 = 2.0;
 
-/// A shading point in the making.
+/// Shading point under construction.
 #[derive(Clone, Copy, Debug)]
 pub struct MergedPoint<'w> {
     /// Geometry of its first sample.
@@ -29,25 +33,32 @@ pub struct MergedPoint<'w> {
     pub surface: PointSurface<'w>,
     /// Sum of the samples' throughputs.
     pub weight: Rgb,
-    way: u32,
+    path_class: u32,
     depth: u32,
 }
 
 impl<'w> MergedPoint<'w> {
-    /// The point of one chain's end; `spacing` is the distance to that of the next pixel. `None` if it cannot be lit.
+    /// Returns the point of one first hit, or `None` if it cannot be lit. `spacing` is the distance to the point of
+    /// the next pixel.
     #[inline]
     pub fn new(end: &ChainEnd<'w>, spacing: f32) -> Option<MergedPoint<'w>> {
         let (geometry, surface) = shading_point(&end.surface, end.bsdf, end.out, spacing)?;
-        let point = MergedPoint { geometry, surface, weight: end.throughput, way: end.way, depth: end.depth };
+        let point = MergedPoint {
+            geometry,
+            surface,
+            weight: end.throughput,
+            path_class: end.path_class,
+            depth: end.depth,
+        };
         end.throughput.is_finite().then_some(point)
     }
 
-    /// True if `other` may be merged into it.
+    /// Returns true if `other` may be merged into this point.
     fn takes(&self, other: &MergedPoint) -> bool {
         let (a, b) = (&self.geometry, &other.geometry);
         let (mine, others) = (&self.surface.bsdf, &other.surface.bsdf);
         let between = b.position - a.position;
-        self.way == other.way
+        self.path_class == other.path_class
             && mine.material() == others.material()
             && mine.same_lobes(others)
             && a.normal.dot(b.normal) > MIN_COS
@@ -61,14 +72,14 @@ impl<'w> MergedPoint<'w> {
         self.weight += other.weight;
     }
 
-    /// Luminance of the share of the light that the point reflects into the pixel.
+    /// Returns the luminance of the share of light that the point reflects into the pixel.
     fn carried(&self) -> f32 {
         let cos = self.surface.out.dot(self.geometry.normal);
         luminance(self.weight * self.surface.bsdf.albedo_at(cos))
     }
 }
 
-/// Merges the points of one pixel, in order, and thins those beyond mirrors, glass and sharp lobes; `draw` in [0, 1)
+/// Merges the points of one pixel, in order, and thins those beyond mirrors, glass and sharp lobes. `draw` in [0, 1)
 /// chooses among them.
 pub fn merge<'a, 'w: 'a>(
     samples: impl Iterator<Item = &'a MergedPoint<'w>>,
@@ -130,7 +141,7 @@ mod tests {
         let surface = world.intersect(&Ray::new(Vec3::new(x, y, 1.0), -Vec3::Z)).expect("a square");
         let bsdf = world.bsdf(&surface);
         let (out, throughput) = (Vec3::Z, Rgb::ONE);
-        ChainEnd { path: 0, surface, bsdf, out, throughput, distance: 1.0, way: 0, depth: 1 }
+        ChainEnd { path: 0, surface, bsdf, out, throughput, distance: 1.0, path_class: 0, depth: 1 }
     }
 
     fn point<'w>(end: &ChainEnd<'w>) -> MergedPoint<'w> {
@@ -204,7 +215,7 @@ mod tests {
             ("another depth", 2, moved(-Vec3::Z)),
             ("far away", 2, moved(Vec3::Y * 40.0)),
             ("the other side", 2, behind),
-            ("seen by another way", 2, ChainEnd { way: 7, ..here }),
+            ("seen by another way", 2, ChainEnd { path_class: 7, ..here }),
         ] {
             let other = ChainEnd { throughput: Rgb::new(0.5, 0.25, 0.0), ..other };
             let found = merged(&[here, other, here], 0.5);
@@ -232,11 +243,11 @@ mod tests {
     fn thinning_keeps_the_mean_and_the_expected_number_of_points() {
         let world = squares();
         let here = end(&world, [2.5, 0.5]);
-        // From the eye itself, and by chains that carry from nothing to more than all the others.
+        // Ends straight from the eye, and ends of chains that carry from nothing to more than all others.
         let mut ends = vec![ChainEnd { throughput: Rgb::splat(0.5), ..here }];
         let shares = [4.0, 1.0, 0.5, 0.25, 0.1, 0.03, 0.0, 1e-6];
-        for (way, share) in (1..).zip(shares) {
-            ends.push(ChainEnd { throughput: Rgb::new(1.0, 0.8, 1.2) * share, way, depth: 3, ..here });
+        for (path_class, share) in (1..).zip(shares) {
+            ends.push(ChainEnd { throughput: Rgb::new(1.0, 0.8, 1.2) * share, path_class, depth: 3, ..here });
         }
         let total =
             merged(&ends[..1], 0.0)[0].carried() + ends[1..].iter().map(|e| point(e).carried()).sum::<f32>();
@@ -252,7 +263,7 @@ mod tests {
             assert!((expected.floor()..=expected.ceil()).contains(&(found.len() as f32)), "{}", found.len());
             number += found.len();
             for point in found {
-                weights[point.way as usize] += point.weight / draws as f32;
+                weights[point.path_class as usize] += point.weight / draws as f32;
             }
         }
         assert!((number as f32 / draws as f32 - expected).abs() < 1e-3, "{number} {expected}");
@@ -260,7 +271,7 @@ mod tests {
             // A share below that of one draw is found by none or by one of them.
             let rounding = CHAINED_POINTS.recip() * total / draws as f32 * 4.0;
             let error = (weight - end.throughput).abs().max_element();
-            assert!(error < rounding + 1e-4, "{} {weight} {}", end.way, end.throughput);
+            assert!(error < rounding + 1e-4, "{} {weight} {}", end.path_class, end.throughput);
         }
     }
 
@@ -268,8 +279,8 @@ mod tests {
     fn points_that_carry_nothing_have_no_weights_that_are_not_numbers() {
         let world = squares();
         let here = end(&world, [2.5, 0.5]);
-        let dark = |way| ChainEnd { throughput: Rgb::ZERO, way, depth: 2, ..here };
-        for ends in [vec![dark(1), dark(2)], vec![dark(1), ChainEnd { way: 3, depth: 2, ..here }]] {
+        let dark = |path_class| ChainEnd { throughput: Rgb::ZERO, path_class, depth: 2, ..here };
+        for ends in [vec![dark(1), dark(2)], vec![dark(1), ChainEnd { path_class: 3, depth: 2, ..here }]] {
             assert!(merged(&ends, 0.3).iter().all(|point| point.weight.is_finite()));
         }
     }

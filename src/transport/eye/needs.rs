@@ -1,24 +1,29 @@
-//! Numbers of samples that pixels get beside their first, by what the first have found around them.
+//! Numbers of samples that pixels get beyond their first, from the luminances that the first have found around them.
 
-use super::ChainCounts;
-use super::adaptive::{Choice, Luminances};
-use super::drawn::{BATCH, Tile, Tracer};
+use super::EyeCounts;
+use super::adaptive::{AdaptiveRule, Luminances};
 use super::effort::Effort;
+use super::tracer::{BATCH, SampledTile, Tracer};
 use base::math::luminance;
 use world::light::Learned;
 
-/// Numbers of samples that pixels are to get.
+/// Result of the first samples that decides where more are taken.
 pub(super) struct Needs {
-    pub(super) choice: Choice,
+    pub(super) choice: AdaptiveRule,
     /// Luminances found by the first samples, in the window and in the pixels next to it.
     pub(super) luminances: Luminances,
-    /// Rays traced to learn them.
-    pub(super) chains: ChainCounts,
+    /// Rays traced for the pixels next to the window.
+    pub(super) chains: EyeCounts,
 }
 
 impl<'w> Tracer<'_, 'w> {
-    /// Learns which pixels need more samples than the first; `None` if none is to get more.
-    pub(super) fn needs(&self, effort: &Effort, tiles: &[Tile], learned: Option<&Learned>) -> Option<Needs> {
+    /// Determines which pixels need more samples than the first; returns `None` if no pixel gets more.
+    pub(super) fn needs(
+        &self,
+        effort: &Effort,
+        tiles: &[SampledTile],
+        learned: Option<&Learned>,
+    ) -> Option<Needs> {
         let (choice, seed) = (effort.choice?, self.settings.seed);
         let (window, near) = (&self.view.window, self.view.window.grown(1));
         let mut luminances = Luminances { values: vec![0.0; near.pixel_count() as usize], window: near };
@@ -27,7 +32,7 @@ impl<'w> Tracer<'_, 'w> {
                 luminances.set(window.film_pixel(*pixel), luminance(*sum / *samples as f32));
             }
         }
-        self.drawn.settled.smooth(window, &mut luminances);
+        self.direct.settled.smooth(window, &mut luminances);
         let beside: Vec<[u32; 2]> =
             near.film_pixels().filter(|pixel| window.index(*pixel).is_none()).collect();
         let beside: Vec<Vec<[u32; 2]>> = beside.chunks(BATCH as usize).map(<[_]>::to_vec).collect();

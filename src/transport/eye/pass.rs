@@ -1,100 +1,64 @@
-//! The eye pass: all surfaces that a window sees, found once and kept in an order in which neighbours in space are
-//! neighbours in memory.
+//! Eye pass: all surfaces that a window sees, found once and stored so that neighbours in space are neighbours in
+//! memory.
 //!
-//! Paper: Herzog et al. 2009, section 4: eye samples are stored through specular chains and sorted by a kd-tree.
+//! Paper: Herzog et al. 2009, section 4. Eye samples are stored through specular chains and sorted by a kd-tree.
 
-use super::guides::{KeptGuide, KeptGuides};
+use super::guides::{PackedGuide, PackedGuides};
 use super::points::{PointGeometry, PointSurface, VisibilitySample};
-use super::{
-    ChainCounts, DrawnLight, EyeRays, EyeSettings, LightBySpecularLobes, ShadingPoints, VisibilitySamples,
-    VisibleSurfaces,
-};
-use crate::caustics::Caustics;
+use super::rays::TILE;
+use super::{EyeCounts, EyeRays, EyeSettings, ShadingPoints, VisibilitySamples, VisibleSurfaces};
 use base::film::{Image, Window};
 use base::kd_tree::KdTree;
 use base::math::luminance;
 use base::parallel::ShortRuns;
 use base::progress::Control;
-use base::stats::{Ways, give_back};
+use base::stats::{Contributions, give_back};
 use rayon::prelude::*;
 use std::mem;
 use world::World;
 use world::view::View;
 
-/// Pixels along the edge of the square whose eye rays one task traces.
-pub const TILE: u32 = 16;
+/// Number of freed bytes at which memory is returned to the system. Ordinary images stay below; returning it there
+/// would cost time and save nothing.
+const RELEASE_BYTES: usize = 64 << 20;
 
-/// Bytes of tiles that are freed before they are given back: more than there are in ordinary pictures, where that would
-/// take time and spare nothing.
-const GIVEN_BACK: usize = 64 << 20;
+/// Maximum size in bytes of an array that may be in memory twice. Copies of larger arrays would set the peak memory of
+/// large images.
+const MAX_COPIED_BYTES: usize = 128 << 20;
 
-/// Maximum size in bytes of an array that may be in memory twice: that of the points of large pictures would be the
-/// most memory that they take.
-const TWICE: usize = 128 << 20;
-
-/// Maximum luminance known in a pixel that counts, so that sums stay finite.
+/// Maximum known luminance of a pixel that counts, so that sums stay finite.
 const MAX_KNOWN: f32 = 1e30;
 
-/// All that a window sees.
+/// Result of the eye pass for a crop window.
 pub struct EyePass<'w> {
-    /// The surfaces seen, in the order of the index.
+    /// Visible surfaces, in the order of the index.
     pub points: ShadingPoints<'w>,
-    /// The hierarchy over `points`.
+    /// Hierarchy over `points`.
     pub index: KdTree,
     /// Shares of the points' radiances that reach the pixels.
     pub visibility: VisibilitySamples,
-    /// Light known: that which reaches the eye from emitters, directly or along specular chains; that which comes to
-    /// surfaces seen by mirrors and glass; and direct light if it is drawn.
+    /// Known light: emitters seen directly or along specular chains, light that reaches visible surfaces by mirrors
+    /// and glass, and direct light if it is sampled.
     pub known: Image,
-    /// The ways by which it came.
-    pub ways: Ways,
-    /// Guides for a denoiser, if they are wanted.
-    pub guides: Option<KeptGuides>,
+    /// Contributions to the known light by technique.
+    pub contributions: Contributions,
+    /// Guides for a denoiser, if requested.
+    pub guides: Option<PackedGuides>,
     /// Rays traced.
-    pub chains: ChainCounts,
-    /// Light samples at each surface seen for which direct light is drawn.
+    pub chains: EyeCounts,
+    /// Light samples per visible surface, if direct light is sampled.
     pub light_samples: u32,
-    /// Relative variance of a pixel by light that is drawn, limited to 1 where it is greater, on average over pixels;
-    /// 0 if it is not known.
+    /// Mean over pixels of the relative variance of sampled light, at most 1 per pixel; 0 if unknown.
     pub noise: f32,
-    /// Radiances that were not finite and left out.
+    /// Number of radiances left out because they were not finite.
     pub nonfinite: u64,
     /// False if the pass was cancelled.
     pub complete: bool,
 }
 
 impl<'w> EyePass<'w> {
-    /// Traces the eye rays of every pixel in the view's window, and finds the light that comes by mirrors and glass,
-    /// with direct light if it is to be drawn.
-    pub fn of(
-        world: &'w World,
-        view: &View,
-        settings: EyeSettings,
-        (drawn, caustics): (Option<&DrawnLight>, Option<&Caustics>),
-        control: &Control,
-    ) -> EyePass<'w> {
-        match drawn {
-            Some(drawn) => {
-                let mut pass = EyePass::with_direct_light(world, view, settings, (drawn, caustics), control);
-                let found = pass.known.luminance();
-                pass.ways.add(Ways::PHOTONS, pass.chains.by_photons(found));
-                pass.ways.rest("eye samples", found);
-                pass
-            }
-            None => {
-                let mut pass = EyePass::trace(world, view, settings, control);
-                let light = LightBySpecularLobes::new(world, view, settings, caustics, control);
-                pass.ways.add("emitters in view", pass.known.luminance());
-                light.add_to(&mut pass.known, &mut pass.ways);
-                pass.chains += light.chains;
-                pass.nonfinite += light.nonfinite;
-                pass
-            }
-        }
-    }
-
-    /// Luminance of the light known in the pixel of a shading point, as if the point reflected it: the pixel's error is
-    /// judged against all of it.
+    /// Returns the radiance that a shading point would have to reflect to give its pixel's known light. The error
+    /// budget is relative to it.
     pub fn known_luminance(&self, point: usize) -> f32 {
         let as_reflected = |seen: &VisibilitySample| {
             let known = luminance(self.known.pixels[seen.pixel as usize]);
@@ -132,8 +96,8 @@ impl<'w> EyePass<'w> {
         EyePass::gather(window, tiles, settings.spp.max(1), control)
     }
 
-    /// Joins the tiles of a window with `spp` rays a pixel. If `control` is cancelled, some are missing, and there are
-    /// no points: nothing lights them.
+    /// Joins the tiles of a window with `spp` rays per pixel. If `control` is cancelled, some tiles are missing and
+    /// the pass has no points, since nothing lights them.
     pub(super) fn gather(
         window: &Window,
         mut tiles: Vec<VisibleSurfaces<'w>>,
@@ -143,12 +107,12 @@ impl<'w> EyePass<'w> {
         let spp = spp as f32;
         let all_traced = tiles.len() == window.tile_count(TILE);
         let mut known = Image::new(window.width, window.height);
-        let mut chains = ChainCounts::default();
+        let mut chains = EyeCounts::default();
         let mut nonfinite = 0;
         let mut guides = Vec::new();
         for tile in &mut tiles {
             for (pixel, guide) in mem::take(&mut tile.guides) {
-                guides.resize(known.pixels.len(), KeptGuide::default());
+                guides.resize(known.pixels.len(), PackedGuide::default());
                 guides[pixel as usize] = guide;
             }
             for (pixel, radiance) in mem::take(&mut tile.known) {
@@ -162,7 +126,7 @@ impl<'w> EyePass<'w> {
         let Arranged { points, index, mut samples } = arranged.unwrap_or_else(Arranged::empty);
         samples.par_iter_mut().for_each(|sample| sample.weight /= spp);
         drop(tiles);
-        if size_of_val(&samples[..]) > GIVEN_BACK {
+        if size_of_val(&samples[..]) > RELEASE_BYTES {
             give_back();
         }
         EyePass {
@@ -170,8 +134,8 @@ impl<'w> EyePass<'w> {
             index,
             visibility: VisibilitySamples::one_each(samples),
             known,
-            ways: Ways::default(),
-            guides: (!guides.is_empty()).then_some(KeptGuides(guides)),
+            contributions: Contributions::default(),
+            guides: (!guides.is_empty()).then_some(PackedGuides(guides)),
             chains,
             light_samples: 1,
             noise: 0.0,
@@ -180,8 +144,8 @@ impl<'w> EyePass<'w> {
         }
     }
 
-    /// Memory in bytes that it takes to render `window` from so many shading points a pixel kept all at once: the
-    /// film, the points themselves, and as measured twice as much again and more for sorting and lighting them.
+    /// Returns the memory in bytes for rendering `window` with `points` shading points per pixel, all in memory at
+    /// once: the film, the points, and twice as much and more for sorting and lighting them.
     pub fn expected_bytes(window: &Window, points: u64) -> u64 {
         let point = size_of::<PointGeometry>() + size_of::<PointSurface>() + size_of::<u32>();
         let each = 10 * (point + size_of::<VisibilitySample>()) / 3;
@@ -189,7 +153,7 @@ impl<'w> EyePass<'w> {
         Image::expected_bytes(window).saturating_add(points)
     }
 
-    /// Number of shading points.
+    /// Returns the number of shading points.
     pub fn len(&self) -> usize {
         self.points.len()
     }
@@ -203,9 +167,9 @@ struct Arranged<'w> {
 }
 
 impl<'w> Arranged<'w> {
-    /// Takes them out of the tiles; `None` if `control` is cancelled.
+    /// Moves points and samples out of the tiles; returns `None` if `control` is cancelled.
     fn new(tiles: &mut [VisibleSurfaces<'w>], control: &Control) -> Option<Arranged<'w>> {
-        // One array after the other, so that only one at a time is in memory twice.
+        // Arrays are processed in turn, so that only one at a time is in memory twice.
         let geometry = joined(tiles, |tile| mem::take(&mut tile.points.geometry), control)?;
         let (index, order) =
             KdTree::build_unless_cancelled(geometry.iter().map(|point| point.position), control);
@@ -223,8 +187,8 @@ impl<'w> Arranged<'w> {
     }
 }
 
-/// One part of all tiles in one array, unless `control` is cancelled; the tiles' are freed one by one, and given back
-/// by and by.
+/// Joins one part of all tiles into one array; returns `None` if `control` is cancelled. The tiles' parts are freed
+/// one by one, and memory is returned at intervals.
 fn joined<'w, T>(
     tiles: &mut [VisibleSurfaces<'w>],
     part: impl Fn(&mut VisibleSurfaces<'w>) -> Vec<T>,
@@ -239,7 +203,7 @@ fn joined<'w, T>(
         }
         freed += size_of_val(&part[..]);
         all.append(&mut mem::take(part));
-        if freed > GIVEN_BACK {
+        if freed > RELEASE_BYTES {
             give_back();
             freed = 0;
         }
@@ -247,17 +211,16 @@ fn joined<'w, T>(
     Some(all)
 }
 
-/// The items in another order, a permutation: each at `i` is that which was at `order[i]`; `None` if `control` is
-/// cancelled.
+/// Permutes the items: the item at `i` of the result was at `order[i]`. Returns `None` if `control` is cancelled.
 fn ordered<T: Copy + Send + Sync>(items: Vec<T>, order: &[u32], control: &Control) -> Option<Vec<T>> {
-    match size_of_val(&items[..]) > TWICE {
+    match size_of_val(&items[..]) > MAX_COPIED_BYTES {
         true => moved(items, order, control),
         false if control.is_cancelled() => None,
         false => Some(order.par_iter().map(|i| items[*i as usize]).collect()),
     }
 }
 
-/// The same, moved along the permutation's cycles, one by one.
+/// Permutes the items in place, along the cycles of the permutation.
 fn moved<T: Copy>(mut items: Vec<T>, order: &[u32], control: &Control) -> Option<Vec<T>> {
     let mut moved = vec![false; items.len()];
     for start in 0..items.len() {

@@ -1,9 +1,9 @@
-//! Shading points and visibility samples: points to be shaded, and their contributions to pixels.
+//! Shading points, and the visibility samples that carry their radiance to pixels.
 //!
-//! A shading point is shaded once; any number of visibility samples add its radiance to pixels. A shading
-//! point does not depend on camera or pixels, so that points can be merged and records reused over views.
+//! A shading point is shaded once; any number of visibility samples add its radiance to pixels. A shading point does
+//! not depend on camera or pixels, so that points can be merged and records can be reused for other views.
 //!
-//! Units: positions relative to the scene's centre; weights are per pixel (they include 1/spp).
+//! Units: positions relative to the scene's centre; weights per pixel (they include 1/spp).
 
 use base::math::Rgb;
 use glam::Vec3;
@@ -11,24 +11,24 @@ use std::ops::Range;
 use world::Surface;
 use world::material::Bsdf;
 
-/// Geometry of a shading point, all that splatting reads of it: half a cache line.
+/// Geometry of a shading point: all data that splatting reads, in half a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct PointGeometry {
     /// Position.
     pub position: Vec3,
-    /// Root of the area that the pixel covers on the surface: the distance to the next point, about.
+    /// Root of the area that the pixel covers on the surface: the approximate distance to the next point.
     pub spacing: f32,
     /// Unit shading normal on the side of the eye.
     pub normal: Vec3,
-    /// Coat that light has to pass to reach the base (see [`Bsdf::coat`]); 0 for none.
+    /// Coat that light has to pass to reach the base (see [`Bsdf::coat`]); 0 without a coat.
     pub coat: u32,
 }
 
-/// Surface of a shading point: the data that shading reads beside the geometry.
+/// Surface of a shading point: the data that shading reads besides the geometry.
 #[derive(Clone, Copy, Debug)]
 pub struct PointSurface<'w> {
-    /// BSDF of the surface, without the lobes that the chain follows itself.
+    /// BSDF of the surface, without the lobes that the chain itself follows.
     pub bsdf: Bsdf<'w>,
     /// Unit geometric normal.
     pub geometric_normal: Vec3,
@@ -36,8 +36,8 @@ pub struct PointSurface<'w> {
     pub out: Vec3,
 }
 
-/// The shading point at a surface seen along `out`, where the next ray is `spacing` away on a surface that faces the
-/// eye; `None` if it cannot be lit.
+/// Returns the shading point at a surface seen along `out`, or `None` if it cannot be lit. `spacing` is the distance
+/// to the next ray on a surface that faces the eye.
 #[inline]
 pub fn shading_point<'w>(
     surface: &Surface,
@@ -50,57 +50,57 @@ pub fn shading_point<'w>(
         return None;
     }
     let normal = if front { surface.frame.normal } else { -surface.frame.normal };
-    // Foreshortening is limited, so that grazing samples do not claim whole floors.
+    // Foreshortening is limited, so that grazing samples do not stand for whole floors.
     let spacing = spacing / normal.dot(out).max(0.05).sqrt();
     let geometry = PointGeometry { position: surface.position, spacing, normal, coat: bsdf.coat() };
     let finite = surface.position.is_finite() && spacing.is_finite();
     finite.then_some((geometry, PointSurface { bsdf, geometric_normal: surface.normal, out }))
 }
 
-/// Points whose reflected radiance is wanted, as a structure of arrays.
+/// Points whose reflected radiance is needed, as a structure of arrays.
 #[derive(Clone, Debug, Default)]
 pub struct ShadingPoints<'w> {
-    /// Geometry by point.
+    /// Geometry per point.
     pub geometry: Vec<PointGeometry>,
-    /// Surface by point.
+    /// Surface per point.
     pub surfaces: Vec<PointSurface<'w>>,
 }
 
 impl ShadingPoints<'_> {
-    /// Number of points.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.geometry.len()
     }
 }
 
-/// A share of a shading point's radiance that reaches a pixel.
+/// Share of a shading point's radiance that reaches a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibilitySample {
-    /// Pixel of the window, in rows.
+    /// Index of the pixel in the window, in rows.
     pub pixel: u32,
-    /// Weight of the radiance leaving the point along its `out` in the pixel's colour.
+    /// Weight, in the pixel's colour, of the radiance leaving the point along its `out`.
     pub weight: Rgb,
 }
 
-/// The visibility samples of a frame, grouped by shading point, so that the point is implied: 16 bytes a sample and 4
-/// a point.
+/// Visibility samples of a frame, grouped by shading point, so that the point is implied: 16 bytes per sample and 4
+/// per point.
 ///
-/// They are in the order of points, not of pixels, because radiances are added to pixels as points are lit; the
-/// order of those sums decides the last bits of a picture.
+/// The samples are in the order of points, not of pixels, because radiances are added to pixels as points are lit. The
+/// order of those sums determines the last bits of an image.
 #[derive(Clone, Debug)]
 pub struct VisibilitySamples {
-    /// Index of each point's first sample, and at last the number of samples.
+    /// Index of each point's first sample, followed by the number of samples.
     first: Vec<u32>,
     samples: Vec<VisibilitySample>,
 }
 
 impl VisibilitySamples {
-    /// One sample of each point, in the order of the points.
+    /// Returns one sample per point, in the order of the points.
     pub fn one_each(samples: Vec<VisibilitySample>) -> VisibilitySamples {
         VisibilitySamples { first: (0..=samples.len() as u32).collect(), samples }
     }
 
-    /// The samples of a shading point.
+    /// Returns the samples of a shading point.
     #[inline]
     pub fn of(&self, point: usize) -> &[VisibilitySample] {
         &self.samples[self.range(point)]

@@ -1,25 +1,29 @@
-//! Eye rays one by one: their random numbers, their places in pixels, and the surfaces that they make visible.
+//! Single eye rays: their random numbers, positions in pixels, and the surfaces that they make visible.
 
-use super::chain::{ChainCounts, Follow, Met, trace};
-use super::guides::KeptGuide;
+use super::chain::{ChainTracer, EdgeEnd, Follow};
+use super::counts::EyeCounts;
+use super::guides::PackedGuide;
 use super::points::{ShadingPoints, VisibilitySample, shading_point};
 use crate::paths::eye_sampler;
 use base::math::{Cone, Rgb};
 use world::World;
 use world::view::View;
 
+/// Pixels along the edge of the square whose eye rays one task traces.
+pub const TILE: u32 = 16;
+
 /// Settings of eye rays.
 #[derive(Clone, Copy, Debug)]
 pub struct EyeSettings {
-    /// Eye rays a pixel.
+    /// Number of eye rays per pixel.
     pub spp: u32,
-    /// Another seed, other rays.
+    /// Random seed.
     pub seed: u32,
-    /// Longest path in edges, the one to the light included.
+    /// Maximum path length in edges, including the edge to the light.
     pub max_depth: u32,
 }
 
-/// The eye rays of a frame.
+/// Eye rays of a frame.
 #[derive(Clone, Copy)]
 pub struct EyeRays<'a, 'w> {
     world: &'w World,
@@ -30,26 +34,26 @@ pub struct EyeRays<'a, 'w> {
     cone: Cone,
 }
 
-/// Surfaces that eye rays have made visible, in the order of the rays, each with one visibility sample. Weights and
-/// light are those of a ray, not of a pixel.
+/// Surfaces made visible by eye rays, in the order of the rays, each with one visibility sample. Weights and light are
+/// per ray, not per pixel.
 #[derive(Default)]
 pub struct VisibleSurfaces<'w> {
-    /// The surfaces.
+    /// Surfaces.
     pub points: ShadingPoints<'w>,
-    /// Visibility sample of each of them.
+    /// Visibility sample of each surface.
     pub visibility: Vec<VisibilitySample>,
-    /// By pixel: light, other than 0, that is known (see [`super::EyePass::known`]).
+    /// Nonzero known light by pixel (see [`super::EyePass::known`]).
     pub known: Vec<(u32, Rgb)>,
-    /// By pixel: what a denoiser is to know of it, if that is wanted.
-    pub guides: Vec<(u32, KeptGuide)>,
+    /// Denoiser guides by pixel, if requested.
+    pub guides: Vec<(u32, PackedGuide)>,
     /// Rays traced.
-    pub chains: ChainCounts,
-    /// Radiances that were not finite and left out.
+    pub chains: EyeCounts,
+    /// Number of radiances left out because they were not finite.
     pub nonfinite: u64,
 }
 
 impl VisibleSurfaces<'_> {
-    /// Forgets surfaces and light, and keeps the memory.
+    /// Clears surfaces and light, and keeps the memory.
     pub fn clear(&mut self) {
         self.points.geometry.clear();
         self.points.surfaces.clear();
@@ -59,23 +63,23 @@ impl VisibleSurfaces<'_> {
 }
 
 impl<'a, 'w> EyeRays<'a, 'w> {
-    /// Rays of the camera of `view` into `world`.
+    /// Returns the rays of the camera of `view` into `world`.
     pub fn new(world: &'w World, view: &'a View, settings: EyeSettings) -> EyeRays<'a, 'w> {
         let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
-        // Angle between neighbouring samples, at the film's centre.
+        // Angle between neighbouring samples at the film's centre.
         let angle = view.pixel_angle() / (settings.spp as f32).sqrt();
         EyeRays { world, view, settings, angle, cone: view.cone(settings.spp) }
     }
 
-    /// Follows eye ray `sample` of the film's pixel `film_pixel` and appends what it makes visible to `found`, where
-    /// the pixel has the number `pixel`.
+    /// Traces eye ray `sample` of the film pixel `film_pixel`. Appends what it makes visible to `found`, with the
+    /// pixel index `pixel`.
     pub fn trace(&self, film_pixel: [u32; 2], sample: u32, pixel: u32, found: &mut VisibleSurfaces<'w>) {
         let EyeSettings { spp, seed, max_depth } = self.settings;
         let (mut sampler, jitter) = eye_sampler(film_pixel, seed, sample, spp);
         let ray = self.world.behind_hidden(self.view.sample_ray(film_pixel, jitter, (seed, sample)));
-        let VisibleSurfaces { points, visibility, chains, .. } = found;
-        let visit = |met: Met<'w>| {
-            if let Met::Surface(vertex) = met
+        let VisibleSurfaces { points, visibility, chains: counts, .. } = found;
+        let visit = |met: EdgeEnd<'w>| {
+            if let EdgeEnd::Surface(vertex) = met
                 && vertex.bsdf.has_smooth()
                 && vertex.depth < max_depth
                 && let Some((geometry, surface)) =
@@ -86,15 +90,9 @@ impl<'a, 'w> EyeRays<'a, 'w> {
                 visibility.push(VisibilitySample { pixel, weight: vertex.throughput });
             }
         };
-        let emitted = trace(
-            self.world,
-            ray,
-            self.cone,
-            (max_depth, Follow::DeltaAndSharp),
-            &mut sampler,
-            chains,
-            visit,
-        );
+        let tracer =
+            ChainTracer { world: self.world, cone: self.cone, max_depth, follow: Follow::DeltaAndSharp };
+        let emitted = tracer.trace(ray, &mut sampler, counts, visit);
         if !emitted.is_finite() {
             found.nonfinite += 1;
         } else if emitted != Rgb::ZERO {

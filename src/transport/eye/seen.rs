@@ -1,9 +1,10 @@
 //! Surfaces seen through pixels, for their features.
 //!
-//! A pixel whose first four samples, and those of the eight pixels around it, are much the same has no more of them.
+//! A pixel gets no more than four samples if these and those of its eight neighbours are nearly equal.
 
-use super::chain::{ChainCounts, Follow, Met, Vertex, trace};
-use crate::paths::Look;
+use super::chain::{ChainTracer, ChainVertex, EdgeEnd, Follow};
+use super::counts::EyeCounts;
+use crate::paths::Estimand;
 use base::math::{Cone, LANES, Rgb, first_lanes};
 use base::sampling::Sampler;
 use embree::{Hits16, Ray, Rays16};
@@ -11,35 +12,34 @@ use glam::{DVec3, Vec3};
 use world::view::View;
 use world::{Surface, World};
 
-/// Maximum number of samples a pixel. Features have little noise, but a denoiser repeats what they have along edges: 32
-/// instead of 16 are worth .2 dB to denoised paths of 64 samples.
+/// Maximum number of samples per pixel. Features have little noise, but denoised images inherit it along edges.
 const MAX_SAMPLES: u32 = 32;
 
-/// Samples of pixels in which they are much the same.
-const FEW: u32 = 4;
+/// Number of samples of pixels in which the samples are nearly equal.
+const FIRST_SAMPLES: u32 = 4;
 
-/// Maximum difference of albedo and of a normal's coordinates between samples that are much the same.
-const ALIKE: f32 = 0.02;
+/// Maximum difference of albedo, and of a normal's coordinates, between samples that count as equal.
+const MAX_SAMPLE_DIFFERENCE: f32 = 0.02;
 
-/// The same between pixels on both sides of an edge.
-const EDGE: f32 = 0.1;
+/// Minimum difference of albedo, or of a normal's coordinates, between pixels on both sides of an edge.
+const MIN_EDGE_DIFFERENCE: f32 = 0.1;
 
-/// Longest chain of mirrors and glass in edges.
+/// Maximum length of a chain through mirrors and glass, in edges.
 const MAX_EDGES: u32 = 64;
 
-/// The eye samples whose features are wanted: those of a picture.
+/// Eye samples whose features are requested: those of an image.
 #[derive(Clone, Copy, Debug)]
 pub struct FeatureSettings {
     /// Estimand of a pixel.
-    pub look: Look,
-    /// Eye samples a pixel; the first few are enough.
+    pub estimand: Estimand,
+    /// Eye samples per pixel, of which the first few are enough.
     pub spp: u32,
-    /// The seed that chose them.
+    /// Random seed of the samples.
     pub seed: u32,
 }
 
 impl FeatureSettings {
-    /// Number of samples of a pixel that are looked at, at most.
+    /// Returns the maximum number of samples per pixel.
     fn samples(&self) -> u32 {
         self.spp.clamp(1, MAX_SAMPLES)
     }
@@ -47,43 +47,43 @@ impl FeatureSettings {
 
 /// Sums over a pixel's samples.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pixel {
+pub(super) struct PixelFeatures {
     /// Sum of albedos.
     pub albedo: Rgb,
     /// Sum of shading normals.
     pub normal: Vec3,
-    /// Sum of triangles' normals.
+    /// Sum of triangle normals.
     pub geometric_normal: Vec3,
     /// Sum of positions relative to the scene's centre.
     pub position: DVec3,
-    /// Samples that meet a surface.
+    /// Number of samples that hit a surface.
     pub surfaces: u32,
-    /// The nearest sample.
+    /// Features of the nearest sample.
     pub nearest: Option<Nearest>,
     /// Number of samples.
     pub samples: u32,
-    /// True if a sample meets mirrors, glass, or lobes nearly as sharp: what is seen in them moves over the surface.
+    /// True if a sample hits mirrors, glass, or lobes nearly as sharp, whose reflections move over the surface.
     pub reflects: bool,
-    /// True if the samples, and those of the neighbours, are much the same.
+    /// True if the samples, and those of the neighbours, are nearly equal.
     pub is_even: bool,
-    /// True if the samples are not much the same.
+    /// True if the samples differ by more than `MAX_SAMPLE_DIFFERENCE`.
     varies: bool,
 }
 
-/// Features of the nearest sample, where they are not averaged.
+/// Features that are not averaged, of the nearest sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
     /// Distance along the camera's axis.
     pub depth: f32,
-    /// Number of its material.
+    /// Index of its material.
     pub material: u32,
-    /// Number of its mesh.
+    /// Index of its mesh.
     pub mesh: u32,
 }
 
-/// The looking through pixels.
-pub(super) struct Looking<'a> {
-    /// The scene.
+/// Sampler of the features of pixels.
+pub(super) struct FeatureSampler<'a> {
+    /// Scene.
     pub world: &'a World,
     /// Camera and film.
     pub view: &'a View,
@@ -91,19 +91,19 @@ pub(super) struct Looking<'a> {
     pub settings: &'a FeatureSettings,
 }
 
-impl Looking<'_> {
-    /// Features of the film pixels from `first` to `last`: by a few samples, and by all where those or their
-    /// neighbours' differ.
-    pub fn pixels(&self, first: [u32; 2], last: [u32; 2]) -> Vec<Pixel> {
-        // The neighbours are looked at even outside a window, so that it has the whole film's features.
+impl FeatureSampler<'_> {
+    /// Returns the features of the film pixels from `first` to `last`. All samples are taken if the first few differ,
+    /// in the pixel or between neighbours.
+    pub fn pixels(&self, first: [u32; 2], last: [u32; 2]) -> Vec<PixelFeatures> {
+        // Neighbours outside the window are sampled too, so that a crop has the features of the full image.
         let film = self.view.window.film;
         let (left, top) = (first[0].saturating_sub(1), first[1].saturating_sub(1));
         let (right, bottom) = ((last[0] + 1).min(film[0] - 1), (last[1] + 1).min(film[1] - 1));
         let all: Vec<[u32; 2]> = (top..=bottom).flat_map(|y| (left..=right).map(move |x| [x, y])).collect();
         let at = |[x, y]: [u32; 2]| ((y - top) * (right - left + 1) + x - left) as usize;
-        let mut pixels = vec![Pixel::default(); all.len()];
+        let mut pixels = vec![PixelFeatures::default(); all.len()];
         let samples = self.settings.samples();
-        let few = samples.min(FEW);
+        let few = samples.min(FIRST_SAMPLES);
         let begun = (0..pixels.len()).flat_map(|pixel| (0..few).map(move |sample| (pixel, sample)));
         self.add(&all, &mut pixels, begun);
         let inside = || (first[1]..=last[1]).flat_map(|y| (first[0]..=last[0]).map(move |x| [x, y]));
@@ -126,11 +126,11 @@ impl Looking<'_> {
         inside().map(|pixel| pixels[at(pixel)]).collect()
     }
 
-    /// Adds samples, each by the index of its pixel and its number there.
+    /// Adds samples, each given by the index of its pixel and its number there.
     pub fn add(
         &self,
         film_pixels: &[[u32; 2]],
-        pixels: &mut [Pixel],
+        pixels: &mut [PixelFeatures],
         mut samples: impl Iterator<Item = (usize, u32)>,
     ) {
         let cone = self.view.cone(self.settings.spp);
@@ -145,9 +145,9 @@ impl Looking<'_> {
             }
             let (mut rays, mut samplers) = (Rays16::default(), [Sampler::new(0, 0); LANES]);
             for (lane, &(pixel, sample)) in packet.iter().enumerate() {
-                let FeatureSettings { look, seed, .. } = *self.settings;
-                let (sampler, jitter) = look.eye_sampler(film_pixels[pixel], seed, sample);
-                let of = look.numbers(seed, sample);
+                let FeatureSettings { estimand, seed, .. } = *self.settings;
+                let (sampler, jitter) = estimand.eye_sampler(film_pixels[pixel], seed, sample);
+                let of = estimand.numbers(seed, sample);
                 let ray = self.view.sample_ray(film_pixels[pixel], jitter, of);
                 rays.set(lane, &self.world.behind_hidden(ray));
                 samplers[lane] = sampler;
@@ -161,8 +161,8 @@ impl Looking<'_> {
             for (lane, (pixel, _)) in packet.iter().enumerate().take(count) {
                 let ray = rays.get(lane);
                 let surface = surfaces.as_ref().filter(|_| found >> lane & 1 != 0).map(|s| s.get(lane));
-                let seen = surface.map_or_else(Seen::default, |surface| {
-                    Seen::new(self.world, (&ray, cone), surface, &mut samplers[lane])
+                let seen = surface.map_or_else(SeenSurfaces::default, |surface| {
+                    SeenSurfaces::new(self.world, &ray, cone, surface, &mut samplers[lane])
                 });
                 pixels[*pixel].add(self.world, &seen, ray.direction.dot(self.view.camera.forward));
             }
@@ -170,12 +170,12 @@ impl Looking<'_> {
     }
 }
 
-impl Pixel {
-    /// Adds a sample whose first edge has the cosine `cos` to the camera's axis.
-    fn add(&mut self, world: &World, seen: &Seen, cos: f32) {
+impl PixelFeatures {
+    /// Adds a sample whose first edge has the cosine `cos` with the camera's axis.
+    fn add(&mut self, world: &World, seen: &SeenSurfaces, cos: f32) {
         let vertex = seen.main.or(seen.first);
         let towards =
-            |vertex: &Vertex, normal: Vec3| if normal.dot(vertex.out) < 0.0 { -normal } else { normal };
+            |vertex: &ChainVertex, normal: Vec3| if normal.dot(vertex.out) < 0.0 { -normal } else { normal };
         let normal = vertex.map_or(Vec3::ZERO, |vertex| towards(&vertex, vertex.surface.frame.normal));
         self.varies |= self.samples > 0 && self.differs(seen.albedo, normal, vertex.map(|v| v.surface.mesh));
         self.samples += 1;
@@ -194,67 +194,69 @@ impl Pixel {
         }
     }
 
-    /// True if an edge lies between two pixels of which neither varies.
-    fn is_beside_edge(&self, other: &Pixel) -> bool {
+    /// Returns true if an edge lies between two pixels whose own samples are nearly equal.
+    fn is_beside_edge(&self, other: &PixelFeatures) -> bool {
         let (n, m) = (self.samples as f32, other.samples as f32);
-        let differ = |a: Vec3, b: Vec3| (a / n - b / m).abs().max_element() > EDGE;
-        let mesh = |pixel: &Pixel| pixel.nearest.map(|nearest| nearest.mesh);
+        let differ = |a: Vec3, b: Vec3| (a / n - b / m).abs().max_element() > MIN_EDGE_DIFFERENCE;
+        let mesh = |pixel: &PixelFeatures| pixel.nearest.map(|nearest| nearest.mesh);
         mesh(self) != mesh(other) || differ(self.albedo, other.albedo) || differ(self.normal, other.normal)
     }
 
-    /// True if another sample has not much the same albedo and normal as the mean so far, or another mesh than the
-    /// nearest.
+    /// Returns true if another sample differs from the mean so far in albedo or normal, or lies on another mesh than
+    /// the nearest sample.
     fn differs(&self, albedo: Rgb, normal: Vec3, mesh: Option<u32>) -> bool {
         let n = self.samples as f32;
         mesh != self.nearest.map(|nearest| nearest.mesh)
-            || (albedo * n - self.albedo).abs().max_element() > ALIKE * n
-            || (normal * n - self.normal).abs().max_element() > ALIKE * n
+            || (albedo * n - self.albedo).abs().max_element() > MAX_SAMPLE_DIFFERENCE * n
+            || (normal * n - self.normal).abs().max_element() > MAX_SAMPLE_DIFFERENCE * n
     }
 }
 
 /// Surfaces that an eye sample sees.
 #[derive(Default)]
-struct Seen<'w> {
+struct SeenSurfaces<'w> {
     albedo: Rgb,
-    first: Option<Vertex<'w>>,
-    /// Surface whose light counts most; `None` for the environment.
-    main: Option<Vertex<'w>>,
-    /// Its share.
+    first: Option<ChainVertex<'w>>,
+    /// Surface that contributes most of the light; `None` for the environment.
+    main: Option<ChainVertex<'w>>,
+    /// Share of the light from `main`.
     share: f32,
-    /// True if mirrors, glass or sharp lobes are met.
+    /// True if the sample hits mirrors, glass or sharp lobes.
     reflects: bool,
 }
 
-impl<'w> Seen<'w> {
-    /// Surfaces seen along an eye ray, of which `surface` is the first.
+impl<'w> SeenSurfaces<'w> {
+    /// Returns the surfaces seen along an eye ray whose first hit is `surface`.
     fn new(
         world: &'w World,
-        (ray, cone): (&Ray, Cone),
+        ray: &Ray,
+        cone: Cone,
         mut surface: Surface,
         sampler: &mut Sampler,
-    ) -> Seen<'w> {
+    ) -> SeenSurfaces<'w> {
         surface.footprint = ray.direction * cone.width_at(surface.t);
-        let mut seen = Seen::default();
+        let mut seen = SeenSurfaces::default();
         let bsdf = world.bsdf(&surface);
         if bsdf.has_delta() {
             let visit = |met| seen.meet(world, met);
-            trace(world, *ray, cone, (MAX_EDGES, Follow::Delta), sampler, &mut ChainCounts::default(), visit);
+            let chains = ChainTracer { world, cone, max_depth: MAX_EDGES, follow: Follow::Delta };
+            chains.trace(*ray, sampler, &mut EyeCounts::default(), visit);
         } else {
             let (out, throughput, distance) = (-ray.direction, Rgb::ONE, surface.t);
-            let vertex = Vertex { surface, bsdf, out, throughput, depth: 1, distance };
-            seen.meet(world, Met::Surface(vertex));
+            let vertex = ChainVertex { surface, bsdf, out, throughput, depth: 1, distance };
+            seen.meet(world, EdgeEnd::Surface(vertex));
         }
         seen
     }
 
-    fn meet(&mut self, world: &'w World, met: Met<'w>) {
+    fn meet(&mut self, world: &'w World, met: EdgeEnd<'w>) {
         match met {
-            Met::Nothing { throughput } => {
+            EdgeEnd::Nothing { throughput } => {
                 if throughput.max_element() > self.share {
                     (self.share, self.main) = (throughput.max_element(), None);
                 }
             }
-            Met::Surface(vertex) => {
+            EdgeEnd::Surface(vertex) => {
                 self.first = self.first.or(Some(vertex));
                 let whole = world.bsdf(&vertex.surface);
                 self.reflects |= whole.has_delta() || !whole.sharp_lobes().is_empty();
@@ -292,15 +294,15 @@ mod tests {
     #[test]
     fn pixels_at_edges_have_all_samples_and_others_few() {
         let world = triangle();
-        let settings = FeatureSettings { look: Look::Pixels, spp: SPP, seed: 3 };
-        let looking = Looking { world: &world, view: &world.view, settings: &settings };
+        let settings = FeatureSettings { estimand: Estimand::Pixels, spp: SPP, seed: 3 };
+        let looking = FeatureSampler { world: &world, view: &world.view, settings: &settings };
         let pixels = looking.pixels([0, 0], [39, 39]);
         let (mut crossed, mut flat) = (0, 0);
         for (i, pixel) in pixels.iter().enumerate() {
             let at = [i as u32 % 40, i as u32 / 40];
             let mut sum = Rgb::ZERO;
             for sample in 0..SPP {
-                let (_, jitter) = Look::Pixels.eye_sampler(at, 3, sample);
+                let (_, jitter) = Estimand::Pixels.eye_sampler(at, 3, sample);
                 let surface = world.intersect(&world.view.primary_ray(at, jitter)).expect("a surface");
                 sum += world.bsdf(&surface).base_brdf() * std::f32::consts::PI;
             }
@@ -308,7 +310,7 @@ mod tests {
             let found = pixel.albedo / pixel.samples as f32;
             assert!((found - expected).abs().max_element() < 1e-5, "{at:?}: {found} {expected}");
             crossed += usize::from(pixel.samples == SPP);
-            flat += usize::from(pixel.samples == FEW);
+            flat += usize::from(pixel.samples == FIRST_SAMPLES);
         }
         assert!(crossed > 100 && flat > 1000 && crossed + flat == 1600, "{crossed} {flat}");
         // A part of the film has the same.

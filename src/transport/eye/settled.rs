@@ -1,40 +1,40 @@
-//! Pixels whose light is known of the pictures before, in a walk-through: they need few samples of their own.
+//! Settled pixels of a walk-through: their light is known from earlier images, so that they need fewer samples.
 
 use super::adaptive::Luminances;
 use base::film::Window;
 use std::ops::Range;
 
-/// Part of the samples of other pixels that settled ones have.
-const PART: u32 = 4;
+/// Divisor of the sample count in settled pixels.
+const SAMPLE_DIVISOR: u32 = 4;
 
-/// Number of frames after which samples come again.
-const TURNS: u32 = 256;
+/// Number of frames after which sample numbers repeat.
+const PERIOD: u32 = 256;
 
-/// The settled pixels of a window.
+/// Settled pixels of a window.
 #[derive(Clone, Debug, Default)]
 pub struct Settled {
-    /// True of those, by pixel in rows; empty if there are none.
+    /// True for settled pixels, in rows; empty if there are none.
     pub pixels: Vec<bool>,
-    /// Number of the frame: each has other samples, which complement those of the frames before.
+    /// Number of the frame. Each frame takes other samples, which complement those of earlier frames.
     pub turn: u32,
 }
 
 impl Settled {
-    /// True if a pixel of the window is settled.
+    /// Returns true if a pixel of the window is settled.
     #[inline]
     pub fn contains(&self, pixel: usize) -> bool {
         self.pixels.get(pixel) == Some(&true)
     }
 
-    /// Samples that settled pixels have where others begin with `spp`.
+    /// Returns the sample numbers of settled pixels; other pixels begin with `spp` samples.
     pub fn samples(&self, spp: u32) -> Range<u32> {
-        let few = spp.div_ceil(PART);
-        let start = few.saturating_mul(self.turn % TURNS).min(u32::MAX - few);
+        let few = spp.div_ceil(SAMPLE_DIVISOR);
+        let start = few.saturating_mul(self.turn % PERIOD).min(u32::MAX - few);
         start..start + few
     }
 
-    /// Takes the noise of few samples off the luminances of settled pixels, around which light varies little: each
-    /// becomes the mean of those around.
+    /// Removes the noise of low sample counts from the luminances of settled pixels. Each becomes the mean of the
+    /// settled pixels around it, where light varies little.
     pub fn smooth(&self, window: &Window, luminances: &mut Luminances) {
         let noisy = luminances.values.clone();
         for pixel in window.film_pixels() {

@@ -1,14 +1,13 @@
-//! Reflection of emitters by sharp lobes into the eye.
+//! Light of emitters that sharp lobes reflect into the eye.
 //!
-//! A sampled direction of the lobe finds large emitters well and small ones hardly ever; points sampled on
-//! the emitters the other way round. Both are combined by multiple importance sampling. Of sixteen points on
-//! emitters one, drawn in proportion to its unoccluded contribution, is tested for visibility, so that the
-//! lobe costs one shadow ray.
+//! A sampled direction of the lobe finds large emitters well and small ones hardly ever; points sampled on emitters do
+//! the opposite. Multiple importance sampling combines both. One of sixteen points on emitters, chosen in proportion
+//! to its unoccluded contribution, is tested for visibility. Thus the lobe costs one shadow ray.
 //!
-//! Papers: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, section 9.2 (power
-//! heuristic); Talbot et al., *Importance Resampling for Global Illumination*, 2005.
+//! Papers: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, section 9.2 (power heuristic);
+//! Talbot et al., *Importance Resampling for Global Illumination*, 2005.
 
-use super::chain::ChainCounts;
+use super::counts::EyeCounts;
 use base::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
 use base::sampling::{Sampler, power_heuristic};
 use glam::{Vec2, Vec3};
@@ -17,64 +16,66 @@ use world::material::Bsdf;
 use world::shadow;
 use world::{Surface, World};
 
-/// Points sampled on emitters.
+/// Number of points sampled on emitters.
 const CANDIDATES: f32 = LANES as f32;
 
-/// Steps between them in the unit square, modulo 1: powers of the plastic number's inverse, which fill it evenly.
+/// Steps between these points in the unit square, modulo 1: powers of the inverse plastic number, which fill it
+/// evenly.
 const STEPS: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
 
-/// Surface at which a lobe sampled a direction.
+/// Direction that a lobe sampled at a surface.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Start {
-    place: Place,
-    /// The lobe's density of the direction by solid angle.
+pub(super) struct LobeSample {
+    at: LightReceiver,
+    /// Density of the direction in the lobe, by solid angle.
     pdf: f32,
 }
 
-/// A point to be lit.
+/// Point that receives light.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct LightReceiver {
     position: Vec3,
-    /// Of the side that reflects; zero where both sides' light counts.
+    /// Normal of the reflecting side; zero if light from both sides counts.
     normal: Vec3,
 }
 
-impl Place {
-    /// On `surface`, seen along `wo` in its shading frame, whose lobe it is.
-    fn new(surface: &Surface, lobe: &Bsdf, wo: Vec3) -> Place {
+impl LightReceiver {
+    /// Returns the point on `surface`, seen along `wo` in its shading frame through `lobe`.
+    fn new(surface: &Surface, lobe: &Bsdf, wo: Vec3) -> LightReceiver {
         let normal = match surface.frame.normal {
             _ if lobe.scatters_across() => Vec3::ZERO,
             normal if wo.z < 0.0 => -normal,
             normal => normal,
         };
-        Place { position: surface.position, normal }
+        LightReceiver { position: surface.position, normal }
     }
 
-    /// In all lanes.
+    /// Returns position and normal in all lanes.
     fn splat(&self) -> (Vec3x16, Vec3x16) {
         (Vec3x16::splat(self.position), Vec3x16::splat(self.normal))
     }
 }
 
-impl Start {
-    /// At `surface`, whose lobe is seen along `wo` in its shading frame.
-    pub fn new(surface: &Surface, lobe: &Bsdf, wo: Vec3, pdf: f32) -> Start {
-        Start { place: Place::new(surface, lobe, wo), pdf }
+impl LobeSample {
+    /// Returns the sample at `surface`, whose lobe is seen along `wo` in its shading frame.
+    pub fn new(surface: &Surface, lobe: &Bsdf, wo: Vec3, pdf: f32) -> LobeSample {
+        LobeSample { at: LightReceiver::new(surface, lobe, wo), pdf }
     }
 
-    /// Returns the weight of the emission of the surface hit, which points sampled on emitters find as well.
+    /// Returns the MIS weight of the emission of the surface hit, which points sampled on emitters find as well.
     pub fn weight_of_area(&self, world: &World, met: &Surface, direction: Vec3) -> f32 {
-        let (x, n) = self.place.splat();
+        let (x, n) = self.at.splat();
         let at = Receivers16 { position: &x, normal: &n, learned: None };
         let cos = met.normal.dot(direction);
-        let distance = met.position.distance(self.place.position);
+        let distance = met.position.distance(self.at.position);
         let pdf = world.emitters.pdf_areas(at, &[met.mesh; LANES], &[distance; LANES], &[cos; LANES]);
         self.weight(pdf[0])
     }
 
-    /// Weight of the environment's radiance, whose density by solid angle is `pdf` once it is chosen.
+    /// Returns the MIS weight of the environment's radiance. `pdf` is its density by solid angle once the environment
+    /// is chosen.
     pub fn weight_of_environment(&self, world: &World, pdf: f32) -> f32 {
-        let (x, n) = self.place.splat();
+        let (x, n) = self.at.splat();
         let at = Receivers16 { position: &x, normal: &n, learned: None };
         self.weight(pdf * world.emitters.environment_choice(at)[0])
     }
@@ -84,7 +85,7 @@ impl Start {
     }
 }
 
-/// A lobe that the chain follows, on a surface seen along `wo` in its shading frame.
+/// Lobe that the chain follows, on a surface seen along `wo` in its shading frame.
 pub(super) struct Sharp<'a> {
     pub world: &'a World,
     pub surface: &'a Surface,
@@ -93,13 +94,13 @@ pub(super) struct Sharp<'a> {
 }
 
 impl Sharp<'_> {
-    /// Radiance that emitters leave along `wo`: all of that of point, spot and directional lights, the
-    /// others' as weighed against the lobe's own samples.
-    pub fn reflected(&self, sampler: &mut Sampler, counts: &mut ChainCounts) -> Rgb {
+    /// Returns the radiance that emitters leave along `wo`: all of it for point, spot and directional lights, and the
+    /// MIS-weighted part for others.
+    pub fn reflected(&self, sampler: &mut Sampler, counts: &mut EyeCounts) -> Rgb {
         self.point_lights(counts) + self.area_lights(sampler, counts)
     }
 
-    fn point_lights(&self, counts: &mut ChainCounts) -> Rgb {
+    fn point_lights(&self, counts: &mut EyeCounts) -> Rgb {
         let mut radiance = Rgb::ZERO;
         for light in &self.world.emitters.deltas {
             let (direction, distance, irradiance) = delta_irradiance(light, self.surface.position);
@@ -113,7 +114,7 @@ impl Sharp<'_> {
         radiance
     }
 
-    fn area_lights(&self, sampler: &mut Sampler, counts: &mut ChainCounts) -> Rgb {
+    fn area_lights(&self, sampler: &mut Sampler, counts: &mut EyeCounts) -> Rgb {
         let emitters = &self.world.emitters;
         if emitters.areas.is_empty() && emitters.environment.is_none() {
             return Rgb::ZERO;
@@ -124,7 +125,7 @@ impl Sharp<'_> {
             choices[i] = (first + i as f32 / CANDIDATES).fract();
             places.set(i, (place + i as f32 * STEPS).fract());
         }
-        let (x, n) = Place::new(self.surface, self.lobe, self.wo).splat();
+        let (x, n) = LightReceiver::new(self.surface, self.lobe, self.wo).splat();
         let at = Receivers16 { position: &x, normal: &n, learned: None };
         let lights = emitters.sample_direct(&self.world.scene, at, &choices, &places, u16::MAX);
         let (mut values, mut sum) = ([Rgb::ZERO; LANES], 0.0);
@@ -152,8 +153,8 @@ impl Sharp<'_> {
         Rgb::ZERO
     }
 
-    /// Share of the light of an emitter, whose surface has the given normal, if any, that arrives.
-    fn arriving(&self, direction: Vec3, distance: f32, normal: Vec3, counts: &mut ChainCounts) -> Rgb {
+    /// Returns the share of an emitter's light that arrives. `normal` is that of its surface, zero without one.
+    fn arriving(&self, direction: Vec3, distance: f32, normal: Vec3, counts: &mut EyeCounts) -> Rgb {
         counts.shadow_rays += 1;
         let Surface { position, normal: own, .. } = *self.surface;
         if distance.is_finite() {

@@ -1,9 +1,12 @@
 //! Chains through mirrors and glass, visibility samples and features, against closed forms.
 
 use super::ExtraSamples;
-use super::chain::{ChainCounts, Follow, Met, Vertex, trace};
-use super::{DrawnLight, EyePass, EyeSettings, Feature, FeatureSettings, Features, SeenPixels};
-use crate::paths::Look;
+use super::chain::{ChainTracer, ChainVertex, EdgeEnd, Follow};
+use super::counts::EyeCounts;
+use super::{
+    DirectSampling, EyePass, EyeSettings, Feature, FeatureSettings, Features, LightSources, SeenPixels,
+};
+use crate::paths::Estimand;
 use base::film::{Layer, Pixels, Window};
 use base::math::{Cone, Rgb};
 use base::progress::Control;
@@ -37,23 +40,17 @@ fn back_wall(z: f32, material: MaterialId) -> Mesh {
 }
 
 /// Returns the surfaces hit by a ray nearly along -z, and the counts.
-fn chain(world: &WorldAndView, max_depth: u32, seed: u32) -> (Vec<Vertex<'_>>, ChainCounts) {
+fn chain(world: &WorldAndView, max_depth: u32, seed: u32) -> (Vec<ChainVertex<'_>>, EyeCounts) {
     let [width, height] = world.view.window.film;
     let ray = world.view.primary_ray([width / 2, height / 2], Vec2::splat(1e-3));
-    let (mut vertices, mut counts) = (Vec::new(), ChainCounts::default());
-    trace(
-        world,
-        ray,
-        Cone::default(),
-        (max_depth, Follow::DeltaAndSharp),
-        &mut Sampler::new(seed, 0),
-        &mut counts,
-        |met| {
-            if let Met::Surface(vertex) = met {
-                vertices.push(vertex);
-            }
-        },
-    );
+    let (mut vertices, mut counts) = (Vec::new(), EyeCounts::default());
+    let (world, cone) = (&world.world, Cone::default());
+    let tracer = ChainTracer { world, cone, max_depth, follow: Follow::DeltaAndSharp };
+    tracer.trace(ray, &mut Sampler::new(seed, 0), &mut counts, |end| {
+        if let EdgeEnd::Surface(vertex) = end {
+            vertices.push(vertex);
+        }
+    });
     (vertices, counts)
 }
 
@@ -62,7 +59,7 @@ fn mirrors_pass_all_light_on_until_the_chain_is_too_long() {
     let mut scene = seen_from_origin([64, 64]);
     let mirror = add_material(&mut scene, mirror());
     let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
-    // From the mirror in front to the one behind, which faces it, and so on; the grey wall is out of sight.
+    // Light goes to and fro between the mirror in front and the one behind; the grey wall is out of sight.
     scene.meshes.push(wall(-1.0, mirror));
     scene.meshes.push(back_wall(2.0, mirror));
     scene.meshes.push(wall(-9.0, grey));
@@ -152,7 +149,7 @@ fn visibility_samples_carry_the_whole_light_of_each_pixel() {
         }
     }
     assert_eq!(samples, pass.len());
-    // Only Russian roulette leaves noise, and only where there is glass.
+    // Only Russian roulette at glass leaves noise.
     let exact = sums.iter().filter(|sum| (**sum - Rgb::ONE).abs().max_element() < 1e-4).count();
     assert!(exact > 200 && exact < 400, "{exact}");
     let mean = sums.iter().sum::<Rgb>() / 400.0;
@@ -177,8 +174,14 @@ fn drawn<'w>(world: &'w WorldAndView, view: &View, spp: u32) -> EyePass<'w> {
 fn drawn_with<'w>(world: &'w World, view: &View, spp: u32, extra_samples: f32) -> EyePass<'w> {
     let settings = EyeSettings { spp, seed: 1, max_depth: 32 };
     let extra_samples = ExtraSamples { most: extra_samples, other_rays: None };
-    let drawn = DrawnLight { extra_samples, ..DrawnLight::default() };
-    EyePass::with_direct_light(world, view, settings, (&drawn, None), &Control::new())
+    let direct = DirectSampling { extra_samples, ..DirectSampling::default() };
+    EyePass::with_direct_light(
+        world,
+        view,
+        settings,
+        LightSources { direct: &direct, caustics: None },
+        &Control::new(),
+    )
 }
 
 #[test]
@@ -198,7 +201,7 @@ fn check_weights(pass: EyePass, spp: u32, extra: bool) {
             sums[sample.pixel as usize] += sample.weight;
         }
     }
-    // Noise is left where there is glass, which reflects or refracts by chance, and where chains are thinned.
+    // Glass, which reflects or refracts at random, leaves noise, and so does the thinning of chains.
     let exact = sums.iter().filter(|sum| (**sum - Rgb::ONE).abs().max_element() < 1e-4).count();
     assert!(exact > 200 && exact < 400, "{exact}");
     let mean = sums.iter().sum::<Rgb>() / 400.0;
@@ -296,12 +299,12 @@ fn the_back_of_a_one_sided_surface_is_black() {
 }
 
 fn all_features(world: &WorldAndView, spp: u32) -> Vec<Layer> {
-    let settings = FeatureSettings { look: Look::EyeSamples { spp, seed: 0 }, spp, seed: 0 };
+    let settings = FeatureSettings { estimand: Estimand::EyeSamples { spp, seed: 0 }, spp, seed: 0 };
     let wanted = Feature::ALL.into_iter().collect();
     SeenPixels::new(world, &world.view, &settings, &Control::new()).layers(world, wanted)
 }
 
-/// Values of a layer, the first of three where there are no more.
+/// Returns the values of a layer, or the first of three if there are no more.
 fn values(layers: &[Layer], name: &str) -> Vec<Vec3> {
     let layer = layers.iter().find(|layer| layer.name == name).unwrap_or_else(|| panic!("no layer {name}"));
     match &layer.pixels {
@@ -433,7 +436,7 @@ fn glass_shows_what_most_light_comes_from_and_itself_before_the_sky() {
 fn only_what_is_wanted_is_made() {
     let (scene, _) = lit_room(camera(Vec3::new(0.0, 0.0, 0.9), Vec3::ZERO, 0.8), 4);
     let world = world(scene);
-    let settings = FeatureSettings { look: Look::Pixels, spp: 2, seed: 0 };
+    let settings = FeatureSettings { estimand: Estimand::Pixels, spp: 2, seed: 0 };
     let seen = SeenPixels::new(&world, &world.view, &settings, &Control::new());
     let layers = |wanted: Features| seen.layers(&world, wanted);
     let wanted = ["depth".parse(), "albedo".parse()].into_iter().map(Result::unwrap).collect();

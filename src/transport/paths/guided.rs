@@ -1,6 +1,6 @@
-//! Directions drawn towards mirrors and glass from diffuse surfaces, mixed with those that these scatter light to.
+//! Directions aimed at mirrors and glass from diffuse surfaces, mixed with BSDF samples.
 //!
-//! Paper: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, section 9.2.4: a sample drawn from
+//! Paper: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, section 9.2.4. A sample from
 //! either of two distributions has the density of their mixture.
 
 use base::math::Frame;
@@ -8,15 +8,27 @@ use glam::{Vec2, Vec3};
 use world::material::{BsdfSamples16, Bsdfs16};
 use world::{Faces, World};
 
-/// Lanes whose directions are drawn so, and the share of those towards mirrors and glass.
+/// Lanes with guided directions, and the share of directions aimed at mirrors and glass.
 pub(super) struct Guided {
     pub lanes: u16,
     pub share: f32,
 }
 
+/// Vertex in one lane of a packet.
+pub(super) struct LaneVertex<'a, 'w> {
+    pub lane: usize,
+    pub position: Vec3,
+    /// Shading normal on the side of arrival.
+    pub normal: Vec3,
+    pub frame: Frame,
+    /// BSDFs of the packet.
+    pub bsdfs: &'a Bsdfs16<'w>,
+}
+
 impl Guided {
-    /// Density of a direction at the point `x` of a surface of normal `n`, whose own density of it is `pdf`.
-    pub fn density(&self, world: &World, (x, n): (Vec3, Vec3), direction: Vec3, pdf: f32) -> f32 {
+    /// Returns the mixture density of a direction at the point `x` of a surface with normal `n`, given its BSDF
+    /// density `pdf`.
+    pub fn density(&self, world: &World, x: Vec3, n: Vec3, direction: Vec3, pdf: f32) -> f32 {
         self.mixed(&world.specular.faces(x, n), direction, pdf)
     }
 
@@ -27,17 +39,17 @@ impl Guided {
         }
     }
 
-    /// Draws the direction of a lane, which `samples` has from its surface, anew from the mixture.
+    /// Resamples the direction of a lane from the mixture. `samples` holds the direction that its BSDF sampled.
     pub fn turn(
         &self,
         world: &World,
-        (x, n): (Vec3, Vec3),
-        frame: &Frame,
-        (bsdfs, lane): (&Bsdfs16, usize),
-        (u_choice, u): (f32, Vec2),
+        vertex: &LaneVertex,
+        u_choice: f32,
+        u: Vec2,
         samples: &mut BsdfSamples16,
     ) {
-        let faces = world.specular.faces(x, n);
+        let LaneVertex { lane, position, normal, ref frame, bsdfs } = *vertex;
+        let faces = world.specular.faces(position, normal);
         let towards = match u_choice < self.share {
             true => faces.towards(u_choice / self.share, u),
             false => None,

@@ -1,17 +1,21 @@
-//! Paths from the eye, traced many together, an edge at a time, in packets of sixteen.
+//! Paths from the eye, traced in batches, one edge at a time, in packets of sixteen.
 //!
-//! A [`Batch`] takes paths by the places of their first edges in pixels ([`start()`], [`Look`]) and follows them, with
-//! next-event estimation at every vertex.
+//! [`start()`] adds paths to a [`Batch`] by the positions of their first edges in pixels ([`Estimand`]). The batch
+//! traces them with next-event estimation at every vertex.
 
 mod batch;
+mod counts;
+mod estimand;
 mod guided;
-mod look;
 mod packet;
+mod policy;
 mod start;
 #[cfg(test)]
 mod tests;
 mod vertex;
 
-pub use batch::{Batch, ChainEnd, Counts, LightSamples, Reach, ScatteredEdges};
-pub use look::{Look, eye_sampler};
-pub use start::{Start, start};
+pub use batch::Batch;
+pub use counts::RayCounts;
+pub use estimand::{Estimand, eye_sampler};
+pub use policy::{ChainEnd, LightSamples, PathPolicy, ScatteredEdges};
+pub use start::{PathStart, start};

@@ -1,60 +1,59 @@
 //! State of paths in flight: sixteen paths, and sixteen segments to lights, as structures of arrays.
 
-use super::batch::Counts;
+use super::counts::RayCounts;
 use base::math::{Cone, F32x16, LANES, Rgb, U32x16, Vec3x16, first_lanes, lanes_in, mask_of};
 use base::sampling::Samplers16;
 use embree::{Ray, Rays16};
 use world::World;
 
-/// Part of the light that a path of a reach that ends ([`super::Reach::ENDS`]) finds.
+/// Light that a path finds, in policies with [`super::PathPolicy::STOPS_AT_DIFFUSE`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
-pub(super) enum Stage {
-    /// That of surfaces seen by chains.
+pub(super) enum PathStage {
+    /// Light of surfaces seen by chains.
     Chain,
-    /// That which comes to the end of a chain from emitters, or by the next surface's delta lobes and those too sharp
-    /// to pass for diffuse.
+    /// Light that reaches the chain end from emitters, or by delta and glossy lobes of the next surface.
     Scattered,
-    /// All light, beyond such a delta lobe and no others.
+    /// All light, behind such a delta lobe and no others.
     Bent,
-    /// All light, beyond other lobes.
+    /// All light, behind other lobes.
     Full,
 }
 
-/// Sixteen paths on their way.
+/// Sixteen paths in flight.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Packet {
-    /// The edges to be traced.
+    /// Edges to be traced.
     pub rays: Rays16,
-    /// Shares of the radiance reflected where the edges end that reach the eye.
+    /// Share of the radiance reflected at the edge's end that reaches the eye.
     pub throughput: Vec3x16,
-    /// Shares of the radiance emitted there.
+    /// Share of the radiance emitted at the edge's end that reaches the eye.
     pub emission_throughput: Vec3x16,
-    /// Undoes the scaling of radiance inside dense media, for Russian roulette.
+    /// Factor that undoes the scaling of radiance inside dense media, for Russian roulette.
     pub eta_sq: F32x16,
-    /// Shading normals where the edges start, on the sides the paths arrived from; zero where they scatter to both.
+    /// Shading normals at the edges' starts, on the side of arrival; zero if the surface scatters to both sides.
     pub normal: Vec3x16,
-    /// Densities of the edges' directions; infinite where light sampling could not have chosen them.
+    /// Densities of the edges' directions; infinite if light sampling could not have chosen them.
     pub pdf: F32x16,
-    /// Numbers of light samples where the edges start.
+    /// Numbers of light samples at the edges' starts.
     pub light_samples: F32x16,
     /// Random number generators.
     pub samplers: Samplers16,
-    /// Index of the result that each path adds to.
+    /// Index of the result that each path contributes to.
     pub slot: U32x16,
-    /// Lengths of the chains up to where the edges start; of paths that have left them, those of the whole chains.
+    /// Lengths of the chains up to the edges' starts; of the whole chains for paths that have left them.
     pub distance: F32x16,
-    /// Hashes of the surfaces and lobes on the way.
-    pub way: U32x16,
-    /// Values of [`Stage`].
+    /// Hashes of the surfaces and lobes along the chains.
+    pub path_class: U32x16,
+    /// Values of [`PathStage`].
     pub stage: U32x16,
-    /// Numbers of sheets that light has passed straight; the edges before and behind count as one.
+    /// Numbers of sheets that light has passed straight. The edges before and behind a sheet count as one.
     pub sheets: U32x16,
     /// Cones around the edges.
     pub cones: [Cone; LANES],
 }
 
-/// Light that arrives where segments are free, gathered until a packet is full.
+/// Light that arrives if its segment is unoccluded, collected until a packet is full.
 #[derive(Default)]
 pub(super) struct Shadows {
     rays: Rays16,
@@ -65,7 +64,7 @@ pub(super) struct Shadows {
 }
 
 impl Packet {
-    /// Paths along eye rays, with results from `slot` on.
+    /// Returns paths along eye rays, with results from index `slot` on.
     pub fn new(rays: Rays16, samplers: Samplers16, cone: Cone, slot: u32) -> Packet {
         let ones = Vec3x16 { x: [1.0; LANES], y: [1.0; LANES], z: [1.0; LANES] };
         Packet {
@@ -79,14 +78,14 @@ impl Packet {
             samplers,
             slot: std::array::from_fn(|i| slot + i as u32),
             distance: [0.0; LANES],
-            way: [0; LANES],
-            stage: [Stage::Chain as u32; LANES],
+            path_class: [0; LANES],
+            stage: [PathStage::Chain as u32; LANES],
             sheets: [0; LANES],
             cones: [cone; LANES],
         }
     }
 
-    /// Puts a path of another packet into a lane.
+    /// Copies a path of another packet into a lane.
     #[inline]
     pub fn copy_lane(&mut self, to: usize, packet: &Packet, from: usize) {
         self.rays.set(to, &packet.rays.get(from));
@@ -100,32 +99,32 @@ impl Packet {
         self.samplers.index[to] = packet.samplers.index[from];
         self.slot[to] = packet.slot[from];
         self.distance[to] = packet.distance[from];
-        self.way[to] = packet.way[from];
+        self.path_class[to] = packet.path_class[from];
         self.stage[to] = packet.stage[from];
         self.sheets[to] = packet.sheets[from];
         self.cones[to] = packet.cones[from];
     }
 
-    /// Lanes that have fewer than `max_depth` of `edges` if sheets are not counted.
+    /// Returns the lanes that have fewer than `max_depth` of `edges` edges, not counting sheets.
     #[inline]
     pub fn may_go_on(&self, edges: u32, max_depth: u32) -> u16 {
         mask_of(&self.sheets.map(|sheets| u32::from(edges - sheets < max_depth)))
     }
 
-    /// Lanes at a stage.
+    /// Returns the lanes at a stage.
     #[inline]
-    pub fn at(&self, stage: Stage) -> u16 {
+    pub fn at(&self, stage: PathStage) -> u16 {
         mask_of(&self.stage.map(|other| u32::from(other == stage as u32)))
     }
 
-    /// Lanes that light emitted by the next surface would count in.
+    /// Returns the lanes in which light emitted by the next surface counts.
     #[inline]
     pub fn sees_emitters(&self) -> u16 {
         let sees = |i: &usize| self.emission_throughput.get(*i) != Rgb::ZERO;
         lanes_in(u16::MAX).filter(sees).fold(0, |mask, i| mask | 1 << i)
     }
 
-    /// Lanes whose next surface reflects light to the eye.
+    /// Returns the lanes whose next surface reflects light to the eye.
     #[inline]
     pub fn followed(&self) -> u16 {
         lanes_in(u16::MAX).filter(|i| self.throughput.get(*i) != Rgb::ZERO).fold(0, |mask, i| mask | 1 << i)
@@ -133,8 +132,8 @@ impl Packet {
 }
 
 impl Shadows {
-    /// Adds a segment that brings `radiance` to result `slot` if it is free. Returns whether the packet is full
-    /// and must be traced before the next.
+    /// Adds a segment that carries `radiance` to result `slot` if it is unoccluded. Returns true if the packet is full
+    /// and must be traced before the next call.
     #[inline]
     pub fn push(&mut self, segment: &Ray, radiance: Rgb, slot: u32) -> bool {
         self.rays.set(self.count, segment);
@@ -144,9 +143,9 @@ impl Shadows {
         self.count == LANES
     }
 
-    /// Traces the segments and adds the light of those that are free to `results`.
+    /// Traces the segments and adds the light of unoccluded ones to `results`.
     #[inline]
-    pub fn trace(&mut self, world: &World, coherent: bool, results: &mut [Rgb], counts: &mut Counts) {
+    pub fn trace(&mut self, world: &World, coherent: bool, results: &mut [Rgb], counts: &mut RayCounts) {
         counts.shadow_rays += self.count as u64;
         let occluded = world.accel.occluded16(&self.rays, first_lanes(self.count), coherent);
         let free = first_lanes(self.count) & !occluded;

@@ -1,6 +1,6 @@
-//! Ends of chains: the ways that they came, and the textures there.
+//! Ends of chains: their path classes, and the textures there.
 
-use super::{Batch, ChainEnd, Counts, LightSamples, Look, Reach, Start, start};
+use super::{Batch, ChainEnd, Estimand, LightSamples, PathPolicy, PathStart, RayCounts, start};
 use base::math::{Rgb, luminance};
 use base::sampling::hash;
 use glam::{Vec2, Vec3};
@@ -8,15 +8,15 @@ use scene::Camera;
 use std::collections::BTreeSet;
 use world::testkit::*;
 
-/// Ends by the mesh that they lie on: depth and way.
+/// Ends of chains: the mesh that they lie on, depth and path class.
 #[derive(Default)]
-struct Ways(Vec<(u32, u32, u32)>);
+struct ChainEnds(Vec<(u32, u32, u32)>);
 
-impl<'w> Reach<'w> for Ways {
-    const ENDS: bool = true;
+impl<'w> PathPolicy<'w> for ChainEnds {
+    const STOPS_AT_DIFFUSE: bool = true;
 
     fn end(&mut self, end: &ChainEnd<'w>) {
-        self.0.push((end.surface.mesh, end.depth, end.way));
+        self.0.push((end.surface.mesh, end.depth, end.path_class));
     }
 }
 
@@ -32,13 +32,13 @@ fn ways_tell_mirrors_apart_and_nothing_else() {
     scene.meshes.push(quad(Vec3::new(-50.0, -50.0, 2.0), Vec3::Y * 100.0, Vec3::X * 100.0, grey));
     scene.meshes.push(quad(Vec3::new(-50.0, -50.0, -2.0), Vec3::X * 100.0, Vec3::Y * 100.0, grey));
     let world = world(scene);
-    let pixels = (0..64).map(|i| Start { pixel: [i % 8, i / 8], sample: 0, seed: 0 });
-    let (mut batch, mut ways) = (Batch::default(), Ways::default());
-    start(&mut batch, pixels, (&world, &world.view), (Look::EyeSamples { spp: 1, seed: 0 }, 1));
-    batch.trace(&world, 8, &mut ways, &mut Counts::default());
-    assert_eq!(ways.0.len(), 64);
+    let pixels = (0..64).map(|i| PathStart { pixel: [i % 8, i / 8], sample: 0, seed: 0 });
+    let (mut batch, mut ends) = (Batch::default(), ChainEnds::default());
+    start(&mut batch, pixels, &world, &world.view, Estimand::EyeSamples { spp: 1, seed: 0 }, 1);
+    batch.trace(&world, 8, &mut ends, &mut RayCounts::default());
+    assert_eq!(ends.0.len(), 64);
     let of = |mesh| -> BTreeSet<(u32, u32)> {
-        ways.0.iter().filter(|end| end.0 == mesh).map(|end| (end.1, end.2)).collect()
+        ends.0.iter().filter(|end| end.0 == mesh).map(|end| (end.1, end.2)).collect()
     };
     assert_eq!(of(3), BTreeSet::from([(1, 0)]), "straight from the eye");
     let mirrored: Vec<(u32, u32)> = of(2).into_iter().collect();
@@ -50,8 +50,8 @@ fn ways_tell_mirrors_apart_and_nothing_else() {
 #[derive(Default)]
 struct Albedos(Vec<(u32, f32)>);
 
-impl<'w> Reach<'w> for Albedos {
-    const ENDS: bool = true;
+impl<'w> PathPolicy<'w> for Albedos {
+    const STOPS_AT_DIFFUSE: bool = true;
 
     fn end(&mut self, end: &ChainEnd<'w>) {
         self.0.push((end.depth, end.bsdf.base_brdf().x * std::f32::consts::PI));
@@ -71,10 +71,10 @@ fn textures_are_averaged_over_what_a_sample_stands_for_seen_in_mirrors_too() {
     scene.meshes.push(fine(quad(Vec3::new(-20.0, -1.0, -20.0), Vec3::X * 40.0, Vec3::Y * 40.0, noise)));
     let world = world(scene);
     let albedos = |samples: u32| {
-        let pixels = (0..64).map(|i| Start { pixel: [i % 8, i / 8], sample: i, seed: 0 });
+        let pixels = (0..64).map(|i| PathStart { pixel: [i % 8, i / 8], sample: i, seed: 0 });
         let (mut batch, mut albedos) = (Batch::default(), Albedos::default());
-        start(&mut batch, pixels, (&world, &world.view), (Look::Pixels, samples));
-        batch.trace(&world, 8, &mut albedos, &mut Counts::default());
+        start(&mut batch, pixels, &world, &world.view, Estimand::Pixels, samples);
+        batch.trace(&world, 8, &mut albedos, &mut RayCounts::default());
         assert!([1, 2].iter().all(|depth| albedos.0.iter().any(|end| end.0 == *depth)));
         albedos.0
     };
@@ -85,8 +85,8 @@ fn textures_are_averaged_over_what_a_sample_stands_for_seen_in_mirrors_too() {
 /// Ends with light samples.
 struct Lit(LightSamples);
 
-impl Reach<'_> for Lit {
-    const ENDS: bool = true;
+impl PathPolicy<'_> for Lit {
+    const STOPS_AT_DIFFUSE: bool = true;
 
     fn light_samples(&self) -> LightSamples {
         self.0
@@ -98,10 +98,11 @@ fn light_has_the_same_mean_by_any_number_of_light_samples_and_less_noise_by_more
     // The ball's lobe scatters to where light samples fall, too.
     let world = room_with_ball(Some(rough_metal(0.3, 0.7)));
     let pixels = |count: u32, first: u32, seed: u32| -> Vec<f64> {
-        let starts = (0..1 << 16).map(|i| Start { pixel: [i / 64 % 32, i / 64 / 32], sample: i % 64, seed });
+        let starts =
+            (0..1 << 16).map(|i| PathStart { pixel: [i / 64 % 32, i / 64 / 32], sample: i % 64, seed });
         let (mut batch, mut lit) = (Batch::default(), Lit(LightSamples { count, first }));
-        start(&mut batch, starts, (&world, &world.view), (Look::Pixels, 64));
-        let found: Vec<Rgb> = batch.trace(&world, 8, &mut lit, &mut Counts::default()).collect();
+        start(&mut batch, starts, &world, &world.view, Estimand::Pixels, 64);
+        let found: Vec<Rgb> = batch.trace(&world, 8, &mut lit, &mut RayCounts::default()).collect();
         found.chunks(64).map(|pixel| f64::from(luminance(pixel.iter().sum())) / 64.0).collect()
     };
     let mean = |pixels: &[f64]| pixels.iter().sum::<f64>() / pixels.len() as f64;

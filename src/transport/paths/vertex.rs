@@ -2,20 +2,17 @@
 //!
 //! Paper: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapters 9 and 10.
 //!
-//! Where a path ends at the first surface that scatters by lobes which a chain does not follow ([`Reach`]), it has
-//! one more edge from there, which finds emitters: the counterpart of the light samples in multiple importance
-//! sampling. Where it meets a mirror, glass, or a lobe too sharp to pass for diffuse, the path goes on by these alone:
-//! virtual lights have the other lobes.
+//! A path may stop at the first surface that scatters by lobes which a chain does not follow ([`PathPolicy`]). It then
+//! has one more edge, which finds emitters: the counterpart of the light samples in multiple importance sampling. If
+//! that edge hits a mirror, glass or a glossy lobe, the path continues by this lobe alone, since virtual lights carry
+//! the other lobes.
 //!
-//! Deviations: a path survives Russian roulette with the square root of its throughput. The throughput
-//! itself, from the second bounce on, ends paths between dark walls so often that the few that then hit the
-//! sun are fireflies. Against the throughput from the third bounce on, the root from the second takes 2 to
-//! 7 % less time in a Cornell box, a glossy knot and a church, at the same variance a sample (the knot: a
-//! tenth less).
+//! Deviations: a path survives Russian roulette with the square root of its throughput, from the second vertex on. The
+//! throughput itself would end paths between dark walls so often that the few that then hit the sun are fireflies.
 
-use super::batch::{ChainEnd, LightSamples, Reach, ScatteredEdges};
-use super::guided::Guided;
-use super::packet::{Packet, Stage};
+use super::guided::{Guided, LaneVertex};
+use super::packet::{Packet, PathStage};
+use super::policy::{ChainEnd, LightSamples, PathPolicy, ScatteredEdges};
 use base::math::{Cone, F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, mask_of};
 use base::sampling::{hash, power_heuristic};
 use embree::{Ray, Rays16};
@@ -25,37 +22,52 @@ use world::material::{BsdfSamples16, Bsdfs16, LobeSet};
 use world::shadow;
 use world::{Surfaces16, World, beyond};
 
-/// From this vertex on, counted from the eye, Russian roulette may end a path.
+/// Vertex number, counted from the eye, from which on Russian roulette may end a path.
 const ROULETTE_DEPTH: u32 = 2;
 
-/// Maximum number of sheets that a path passes as if they were not there, so that it ends.
+/// Maximum number of sheets that a path passes straight, so that it ends.
 const MAX_SHEETS: u32 = 64;
 
-/// Minimum density of directions by solid angle of lobes in which images can be seen (GGX of α .2): what others show is
-/// averaged by their directions.
+/// Minimum density by solid angle of directions whose lobe shows images (GGX with α 0.2). Broader lobes average the
+/// texture that they see.
 const MIN_DENSITY_OF_IMAGES: f32 = 2.0;
 
-/// Pairs of random numbers that come before the first vertex: the place in the pixel.
+/// Pairs of random numbers before the first vertex: the position in the pixel.
 const PAIRS_BEFORE: u32 = 1;
 
-/// Pairs of random numbers a vertex takes: for the light, for the direction, for the choices of emitter and lobe,
-/// for Russian roulette.
-const PAIRS_A_VERTEX: u32 = 4;
+/// Pairs of random numbers per vertex: for the light, for the direction, for the choices of emitter and lobe, and for
+/// Russian roulette.
+const PAIRS_PER_VERTEX: u32 = 4;
 
-/// The first pair of random numbers of vertex `depth`.
+/// Light samples at the vertices of a packet.
+struct LightStep<'a, 'w> {
+    bsdfs: &'a Bsdfs16<'w>,
+    at: Receivers16<'a>,
+    /// Random numbers that choose emitters.
+    u_choice: &'a F32x16,
+    /// Random numbers that choose points on them.
+    u_light: &'a Vec2x16,
+    /// Lanes to sample.
+    wanted: u16,
+    /// Lanes in which light samples are the only estimator.
+    alone: u16,
+    guided: &'a Guided,
+}
+
+/// Returns the index of the first pair of random numbers of vertex `depth`.
 fn first_pair(depth: u32) -> u32 {
-    PAIRS_BEFORE + 1 + (depth - 1).wrapping_mul(PAIRS_A_VERTEX)
+    PAIRS_BEFORE + 1 + (depth - 1).wrapping_mul(PAIRS_PER_VERTEX)
 }
 
 impl Packet {
-    /// Adds to `results` the emission of the surfaces that the edges have hit, in the lanes of `found`.
+    /// Adds to `results` the emission of the surfaces hit in the lanes of `found`.
     #[inline]
-    pub fn add_emitted<'w, R: Reach<'w>>(
+    pub fn add_emitted<'w, R: PathPolicy<'w>>(
         &self,
         world: &World,
         surfaces: &Surfaces16,
         found: u16,
-        reach: &R,
+        policy: &R,
         results: &mut [Rgb],
     ) {
         let lit = lanes_in(found).filter(|i| world.emitters.is_light(surfaces.mesh[*i]));
@@ -69,27 +81,27 @@ impl Packet {
             cos[i] = surfaces.normal.get(i).dot(directions.get(i));
         }
         let start =
-            Receivers16 { position: &self.rays.origins(), normal: &self.normal, learned: reach.learned() };
+            Receivers16 { position: &self.rays.origins(), normal: &self.normal, learned: policy.learned() };
         let light_pdf = world.emitters.pdf_areas(start, &surfaces.mesh, &surfaces.t, &cos);
         for i in lanes_in(lit) {
             let emitted = world.emitted(&surfaces.get(i), -directions.get(i));
-            let weight = self.share_of_paths(i, emitted, reach) * self.weight_against(i, light_pdf[i]);
+            let weight = self.share_of_paths(i, emitted, policy) * self.weight_against(i, light_pdf[i]);
             results[self.slot[i] as usize] += self.emission_throughput.get(i) * emitted * weight;
         }
     }
 
-    /// Samples light and the next directions at the surfaces that the edges, number `depth` of their paths, have
-    /// met in the lanes of `found`. Calls `arrives` with the segments that light would come along, none of light that
-    /// is known to arrive, its radiance at the eye and the result it is for. Turns the paths into their continuations
-    /// and returns those that go on.
+    /// Samples light and the next directions at the surfaces hit in the lanes of `found` by the edges with number
+    /// `depth`. Calls `arrives` with each light sample: its segment, its radiance at the eye, and its result. Light
+    /// that is known to arrive has no segment. Turns the paths into their continuations and returns the lanes that
+    /// continue.
     #[inline]
-    pub fn scatter<'w, R: Reach<'w>>(
+    pub fn scatter<'w, R: PathPolicy<'w>>(
         &mut self,
         world: &'w World,
         surfaces: &Surfaces16,
         depth: u32,
         found: u16,
-        reach: &mut R,
+        policy: &mut R,
         mut arrives: impl FnMut(Option<&Ray>, Rgb, u32),
     ) -> u16 {
         let pair = first_pair(depth);
@@ -102,65 +114,70 @@ impl Packet {
             self.normal.set(i, if local.z < 0.0 { -frame.normal } else { frame.normal });
         }
         let mut bsdfs = world.bsdfs(surfaces, wo);
-        if depth == 1 && reach.sees() {
+        if depth == 1 && policy.sees() {
             for lane in lanes_in(found) {
                 let (bsdf, out) = (bsdfs.lane(lane), -self.rays.get(lane).direction);
                 let albedo = (!bsdf.has_delta()).then(|| world.guide_albedo(&surfaces.get(lane), bsdf, out));
-                reach.see(self.slot[lane], albedo, self.normal.get(lane));
+                policy.see(self.slot[lane], albedo, self.normal.get(lane));
             }
         }
         if world.specular.scatter_across() {
-            // Light comes to them from both sides.
+            // Light reaches these lobes from both sides.
             let across = |lane: &usize| bsdfs.lane(*lane).scatters_across();
             lanes_in(found).filter(across).for_each(|lane| self.normal.set(lane, Vec3::ZERO));
         }
         let choices = self.samplers.point(pair + 2);
-        let mut at_end = if R::ENDS { found & self.at(Stage::Chain) } else { 0 };
-        let scattered = if R::ENDS { found & self.at(Stage::Scattered) } else { 0 };
-        let by_glossy = R::ENDS && reach.goes_on_by_glossy_lobes();
+        let mut at_end = if R::STOPS_AT_DIFFUSE { found & self.at(PathStage::Chain) } else { 0 };
+        let scattered = if R::STOPS_AT_DIFFUSE { found & self.at(PathStage::Scattered) } else { 0 };
+        let by_glossy = R::STOPS_AT_DIFFUSE && policy.goes_on_by_glossy_lobes();
         let glossy = if by_glossy { bsdfs.keep_glossy(scattered) } else { 0 };
-        // Diffuse surfaces that paths end at, and from which emitters look small, have light samples alone.
-        let alone = if R::ENDS {
+        // Chain ends on diffuse surfaces from which emitters look small use light samples alone.
+        let alone = if R::STOPS_AT_DIFFUSE {
             let at = Receivers16 { position: &surfaces.position, normal: &self.normal, learned: None };
             at_end & bsdfs.lambertian() & world.emitters.look_small(at)
         } else {
             0
         };
-        let edges = if R::ENDS { reach.edges() } else { ScatteredEdges::default() };
+        let edges = if R::STOPS_AT_DIFFUSE { policy.edges() } else { ScatteredEdges::default() };
         let share = edges.guided;
         let guided = Guided { lanes: if share > 0.0 { at_end & bsdfs.lambertian() } else { 0 }, share };
         let unlit = (scattered & !glossy) | if R::ONLY_BY_SPECULAR_LOBES { at_end } else { 0 };
-        // Before the light samples: a path's light is summed up in the same order whatever paths are traced with it.
-        let chained = if R::ENDS {
-            self.end_chains(&bsdfs, surfaces, depth, at_end, (reach, &mut arrives))
+        // This comes before the light samples, so that a path's light is summed in one order, whatever paths are
+        // traced with it.
+        let chained = if R::STOPS_AT_DIFFUSE {
+            self.end_chains(&bsdfs, surfaces, depth, at_end, policy, &mut arrives)
         } else {
             [LobeSet::default(); LANES]
         };
         let mut lit = bsdfs.smooth() & found & !unlit;
         self.light_samples = [1.0; LANES];
-        let drawn = if R::ENDS { reach.light_samples() } else { LightSamples::ONE };
-        let many = if drawn == LightSamples::ONE { 0 } else { lit & at_end & self.worth(drawn) };
-        lanes_in(many).for_each(|lane| self.light_samples[lane] = drawn.count as f32);
-        for sample in 0..drawn.count {
+        let requested = if R::STOPS_AT_DIFFUSE { policy.light_samples() } else { LightSamples::ONE };
+        let many =
+            if requested == LightSamples::ONE { 0 } else { lit & at_end & self.bright_enough(requested) };
+        lanes_in(many).for_each(|lane| self.light_samples[lane] = requested.count as f32);
+        for sample in 0..requested.count {
             if lit != 0 {
-                let (mut samplers, step) = (self.samplers, drawn.first.wrapping_add(sample));
+                let (mut samplers, step) = (self.samplers, requested.first.wrapping_add(sample));
                 for lane in lanes_in(many) {
-                    samplers.index[lane] = samplers.index[lane].wrapping_mul(drawn.count).wrapping_add(step);
+                    samplers.index[lane] =
+                        samplers.index[lane].wrapping_mul(requested.count).wrapping_add(step);
                 }
                 let choice = if many == 0 { choices.x } else { samplers.number(pair + 2) };
-                let numbers = (&choice, &samplers.point(pair));
-                let learned = reach.learned();
+                let learned = policy.learned();
                 let at = Receivers16 { position: &surfaces.position, normal: &self.normal, learned };
-                self.light(world, surfaces, (&bsdfs, at), numbers, (lit, alone, &guided), &mut arrives);
+                let (bsdfs, guided, wanted) = (&bsdfs, &guided, lit);
+                let (u_choice, u_light) = (&choice, &samplers.point(pair));
+                let step = LightStep { bsdfs, at, u_choice, u_light, wanted, alone, guided };
+                self.light(world, surfaces, step, &mut arrives);
             }
             lit &= many;
         }
         let places = self.samplers.point(pair + 1);
         let mut samples = bsdfs.sample(&choices.y, &places, found);
         for lane in lanes_in(guided.lanes) {
-            let at = (surfaces.position.get(lane), self.normal.get(lane));
-            let numbers = (choices.y[lane], places.get(lane));
-            guided.turn(world, at, &surfaces.frame(lane), (&bsdfs, lane), numbers, &mut samples);
+            let (position, normal) = (surfaces.position.get(lane), self.normal.get(lane));
+            let vertex = LaneVertex { lane, position, normal, frame: surfaces.frame(lane), bsdfs: &bsdfs };
+            guided.turn(world, &vertex, choices.y[lane], places.get(lane), &mut samples);
         }
         let roulette = if depth >= ROULETTE_DEPTH { self.samplers.number(pair + 3) } else { [0.0; LANES] };
         let (mut survives, mut survivals) = ([0; LANES], [1.0; LANES]);
@@ -176,13 +193,14 @@ impl Packet {
         }
         self.emission_throughput = self.throughput;
         let mut found = found;
-        if R::ENDS {
+        if R::STOPS_AT_DIFFUSE {
             let by_specular_lobes = world.specular.bends_light();
             found &= samples.going_on() & mask_of(&survives) & (!scattered | samples.delta() | glossy);
             found &= if by_specular_lobes { u16::MAX } else { !alone };
             at_end &= found;
-            self.follow(&bsdfs, &samples, surfaces, (at_end, pair + 3), &chained);
-            let blind = if world.emitters.are_hittable() { alone } else { at_end & !self.at(Stage::Chain) };
+            self.follow(&bsdfs, &samples, surfaces, at_end, pair + 3, &chained);
+            let blind =
+                if world.emitters.are_hittable() { alone } else { at_end & !self.at(PathStage::Chain) };
             if by_specular_lobes {
                 self.emission_throughput.keep(!blind);
             } else {
@@ -191,12 +209,13 @@ impl Packet {
             let leaving = found & scattered & !samples.straight();
             let bent = samples.delta();
             for lane in lanes_in(leaving) {
-                self.stage[lane] = if bent >> lane & 1 != 0 { Stage::Bent } else { Stage::Full } as u32;
+                self.stage[lane] =
+                    if bent >> lane & 1 != 0 { PathStage::Bent } else { PathStage::Full } as u32;
             }
-            let spread = found & self.at(Stage::Bent) & !bent;
-            lanes_in(spread).for_each(|lane| self.stage[lane] = Stage::Full as u32);
+            let spread = found & self.at(PathStage::Bent) & !bent;
+            lanes_in(spread).for_each(|lane| self.stage[lane] = PathStage::Full as u32);
             if R::ONLY_BY_SPECULAR_LOBES {
-                self.emission_throughput.keep(self.at(Stage::Full) | self.at(Stage::Bent));
+                self.emission_throughput.keep(self.at(PathStage::Full) | self.at(PathStage::Bent));
             }
         }
         if world.filters_textures() {
@@ -221,12 +240,13 @@ impl Packet {
         found
     }
 
-    /// Follows the paths of `lanes`, which were scattered at vertex `depth`, with a probability; returns the others.
+    /// Continues the paths of `lanes`, scattered at vertex `depth`, with the given probability. Returns the lanes that
+    /// stop.
     pub fn thin(&mut self, lanes: u16, probability: f32, depth: u32) -> u16 {
         if lanes == 0 || probability >= 1.0 {
             return 0;
         }
-        // The number that chose an emitter: it has no part in the direction.
+        // The number that chose an emitter does not affect the direction.
         let numbers = self.samplers.number(first_pair(depth) + 2);
         let mut left = 0;
         for lane in lanes_in(lanes) {
@@ -238,14 +258,14 @@ impl Packet {
         left
     }
 
-    /// Lanes whose next surfaces are worth `drawn` light samples.
-    fn worth(&self, drawn: LightSamples) -> u16 {
-        let least = if drawn.count > 1 { LightSamples::WORTH } else { 0.0 };
+    /// Returns the lanes whose surface gets all of these light samples.
+    fn bright_enough(&self, samples: LightSamples) -> u16 {
+        let least = if samples.count > 1 { LightSamples::MIN_THROUGHPUT } else { 0.0 };
         mask_of(&std::array::from_fn(|lane| u32::from(self.throughput.get(lane).max_element() >= least)))
     }
 
-    /// Lengthens a lane's edge, as it was `before`, beyond the sheet that it has met. It stays the same edge, also in
-    /// multiple importance sampling, as shadow rays pass sheets too.
+    /// Extends a lane's edge, which was that of `before`, beyond the sheet that it has hit. It remains one edge, also
+    /// in multiple importance sampling, as shadow rays pass sheets too.
     fn pass_sheet(&mut self, lane: usize, before: &Packet, surfaces: &Surfaces16, weight: Rgb) {
         let (position, normal) = (surfaces.position.get(lane), surfaces.normal.get(lane));
         self.rays.set(lane, &beyond(&before.rays.get(lane), position, normal, surfaces.t[lane]));
@@ -257,19 +277,20 @@ impl Packet {
         self.sheets[lane] += u32::from(self.sheets[lane] < MAX_SHEETS);
     }
 
-    /// Calls `reach` with the surfaces that scatter by lobes which chains do not follow; returns those that they do.
-    fn end_chains<'w, R: Reach<'w>>(
+    /// Passes the surfaces that end chains to `policy`. Returns the lobes that chains follow.
+    fn end_chains<'w, R: PathPolicy<'w>>(
         &self,
         bsdfs: &Bsdfs16<'w>,
         surfaces: &Surfaces16,
         depth: u32,
         found: u16,
-        (reach, arrives): (&mut R, &mut impl FnMut(Option<&Ray>, Rgb, u32)),
+        policy: &mut R,
+        arrives: &mut impl FnMut(Option<&Ray>, Rgb, u32),
     ) -> [LobeSet; LANES] {
         let mut chained = [LobeSet::default(); LANES];
         for lane in lanes_in(bsdfs.smooth() & found) {
             let whole = bsdfs.lane(lane);
-            chained[lane] = reach.followed(whole);
+            chained[lane] = policy.followed(whole);
             let bsdf = whole.without(chained[lane]);
             if !bsdf.has_smooth() {
                 continue;
@@ -281,27 +302,28 @@ impl Packet {
                 out: -self.rays.get(lane).direction,
                 throughput: self.throughput.get(lane),
                 distance: self.distance[lane] + surfaces.t[lane],
-                way: self.way[lane],
+                path_class: self.path_class[lane],
                 depth: depth - self.sheets[lane],
             };
-            let reflected = reach.reflected(&end);
+            let reflected = policy.reflected(&end);
             if reflected != Rgb::ZERO {
                 arrives(None, end.throughput * reflected, end.path);
             }
-            reach.end(&end);
+            policy.end(&end);
         }
         chained
     }
 
-    /// Reduces the throughput of the sampled directions at ends to that of the lobes which chains follow: all of it in
-    /// the directions of delta lobes, and the share of the lobes of `chained` elsewhere, by chance all or nothing. The
-    /// paths of the others leave their chains, with the throughput of the other lobes.
+    /// Splits the throughput at chain ends between the lobes that chains follow and the others. Directions of delta
+    /// lobes stay in the chain. In other directions the path stays with a probability equal to the share of the lobes
+    /// in `chained`. Otherwise it leaves the chain, with the throughput of the other lobes.
     fn follow(
         &mut self,
         bsdfs: &Bsdfs16,
         samples: &BsdfSamples16,
         surfaces: &Surfaces16,
-        (at_end, pair): (u16, u32),
+        at_end: u16,
+        pair: u32,
         chained: &[LobeSet; LANES],
     ) {
         let delta = samples.delta() & at_end;
@@ -329,26 +351,25 @@ impl Packet {
             };
             self.throughput.set(lane, self.throughput.get(lane) * share / probability);
         }
-        for lane in lanes_in((delta | sharp) & !samples.straight() & self.at(Stage::Chain)) {
+        for lane in lanes_in((delta | sharp) & !samples.straight() & self.at(PathStage::Chain)) {
             self.distance[lane] += surfaces.t[lane];
             let same_side = (bsdfs.wo(lane).z > 0.0) == (samples.wi.z[lane] > 0.0);
             let side = u32::from(same_side) + 2 * u32::from((delta >> lane) & 1 != 0);
-            self.way[lane] = hash(self.way[lane] ^ side.wrapping_mul(0x9e37_79b9), 1 + surfaces.mesh[lane]);
+            self.path_class[lane] =
+                hash(self.path_class[lane] ^ side.wrapping_mul(0x9e37_79b9), 1 + surfaces.mesh[lane]);
         }
     }
 
-    /// Samples light in the lanes of `wanted`: which emitter, and where on it. Lanes of `alone` have no other way to
-    /// find it.
+    /// Samples light: an emitter, and a point on it. Calls `arrives` with each sample.
     #[inline]
     fn light(
         &self,
         world: &World,
         surfaces: &Surfaces16,
-        (bsdfs, at): (&Bsdfs16, Receivers16),
-        (u_choice, u_light): (&F32x16, &Vec2x16),
-        (wanted, alone, guided): (u16, u16, &Guided),
+        step: LightStep,
         mut arrives: impl FnMut(Option<&Ray>, Rgb, u32),
     ) {
+        let LightStep { bsdfs, at, u_choice, u_light, wanted, alone, guided } = step;
         let lights = world.emitters.sample_direct(&world.scene, at, u_choice, u_light, wanted);
         let mut wi = Vec3x16::default();
         for i in 0..LANES {
@@ -357,8 +378,8 @@ impl Packet {
         let wanted = wanted & lights.useful();
         let (value, mut pdf) = bsdfs.eval_pdf(&wi, wanted);
         for i in lanes_in(wanted & guided.lanes & !alone) {
-            let at = (surfaces.position.get(i), self.normal.get(i));
-            pdf[i] = guided.density(world, at, lights.direction.get(i), pdf[i]);
+            let (x, n) = (surfaces.position.get(i), self.normal.get(i));
+            pdf[i] = guided.density(world, x, n, lights.direction.get(i), pdf[i]);
         }
         let (mut radiance, mut segments, mut scattered) = (Vec3x16::default(), Rays16::default(), [0; LANES]);
         for i in 0..LANES {
@@ -383,22 +404,22 @@ impl Packet {
         }
     }
 
-    /// Ends a lane's chain at the surface that its edge has met.
+    /// Ends a lane's chain at the surface that its edge has hit.
     fn leave_chain(&mut self, lane: usize, surfaces: &Surfaces16) {
-        self.stage[lane] = Stage::Scattered as u32;
+        self.stage[lane] = PathStage::Scattered as u32;
         self.distance[lane] += surfaces.t[lane];
     }
 
-    /// Share of an emitter's radiance that a lane's path is to find.
+    /// Returns the share of an emitter's radiance that a lane's path is to find.
     #[inline]
-    pub fn share_of_paths<'w, R: Reach<'w>>(&self, lane: usize, radiance: Rgb, reach: &R) -> f32 {
-        match self.stage[lane] == Stage::Bent as u32 {
-            true => reach.share_of_paths(radiance, self.distance[lane]),
+    pub fn share_of_paths<'w, R: PathPolicy<'w>>(&self, lane: usize, radiance: Rgb, policy: &R) -> f32 {
+        match self.stage[lane] == PathStage::Bent as u32 {
+            true => policy.share_of_paths(radiance, self.distance[lane]),
             false => 1.0,
         }
     }
 
-    /// Weight of a lane's having met a light by chance, against light sampling of the given density.
+    /// Returns the MIS weight of a lane that hit a light by its edge, against light sampling of the given density.
     #[inline]
     pub fn weight_against(&self, lane: usize, light_pdf: f32) -> f32 {
         let pdf = self.pdf[lane];

@@ -1,20 +1,20 @@
-//! Differences that can be seen in a block of 8x8 pixels, by its cosine transform.
+//! Just visible differences in a block of 8x8 pixels, from its cosine transform.
 //!
 //! Paper: Herzog et al. 2009, section 6.4 (thresholds from 8x8 blocks, quantisation matrix of MPEG); luminance and
 //! contrast masking by Watson, *DCT quantization matrices visually optimized for individual images*, 1993.
 //!
-//! Deviations: the paper does not say which pattern a pixel's threshold stands for. Here it is a step across the
-//! block's middle, the shape of a seam between records, in the direction in which it is seen better.
+//! Deviations: the paper does not say which pattern the threshold of a pixel refers to. Here it is a step across the
+//! middle of the block, the shape of a seam between records, in the direction in which it is more visible.
 //!
-//! Units: grey levels of 0 to 255, encoded for display.
+//! Units: grey levels from 0 to 255, encoded for display.
 
 use std::f32::consts::PI;
 use std::sync::LazyLock;
 
-/// Pixels along a block's edge.
+/// Pixels along the edge of a block.
 pub const SIDE: usize = 8;
 
-/// Quantisation steps by frequency: the matrix of MPEG's intra-coded blocks.
+/// Quantisation steps by frequency: MPEG's matrix for intra-coded blocks.
 const STEPS: [[f32; SIDE]; SIDE] = [
     [8.0, 16.0, 19.0, 22.0, 26.0, 27.0, 29.0, 34.0],
     [16.0, 16.0, 22.0, 24.0, 27.0, 29.0, 34.0, 37.0],
@@ -26,20 +26,22 @@ const STEPS: [[f32; SIDE]; SIDE] = [
     [27.0, 29.0, 35.0, 38.0, 46.0, 56.0, 69.0, 83.0],
 ];
 
-/// Scale for which the matrix holds.
+/// Quantisation scale to which the matrix refers.
 const SCALE: f32 = 16.0;
 
-/// Mean for which the matrix holds, and the exponent by which thresholds grow with the mean.
+/// Mean grey level to which the matrix refers.
 const MEAN: f32 = 128.0;
+
+/// Exponent of the mean grey level in thresholds.
 const MEAN_EXPONENT: f32 = 0.649;
 
-/// Least mean that counts.
+/// Lower bound of the mean grey level.
 const MIN_MEAN: f32 = 4.0;
 
-/// Exponent by which thresholds grow with the contrast at their own frequency.
+/// Exponent of the contrast at a frequency in the threshold of that frequency.
 const CONTRAST_EXPONENT: f32 = 0.7;
 
-/// Values of the orthonormal cosines by frequency, at the pixels of a row.
+/// Orthonormal cosines by frequency, at the pixels of a row.
 static COSINES: LazyLock<[[f32; SIDE]; SIDE]> = LazyLock::new(|| {
     std::array::from_fn(|frequency| {
         let norm = if frequency == 0 { 1.0 } else { 2f32.sqrt() } / (SIDE as f32).sqrt();
@@ -54,7 +56,7 @@ static STEP: LazyLock<[f32; SIDE]> = LazyLock::new(|| {
     COSINES.each_ref().map(|row| of_row(row) * (SIDE as f32).sqrt())
 });
 
-/// Height of the smallest step across a block that is seen, with a quantisation scale.
+/// Returns the height of the smallest visible step across a block, in grey levels, for a quantisation scale.
 pub fn visible_step(block: &[[f32; SIDE]; SIDE], q_scale: f32) -> f32 {
     let mean = block.as_flattened().iter().sum::<f32>() / (SIDE * SIDE) as f32;
     let adaptation = (mean.max(MIN_MEAN) / MEAN).powf(MEAN_EXPONENT) * q_scale / SCALE;

@@ -1,19 +1,18 @@
-//! Visibility thresholds: the least differences of luminance that are seen in the frame before, carried to where its
-//! surfaces are seen in the next frame of a walk-through.
+//! Visibility thresholds: just visible differences of luminance in the previous frame of a walk-through, reprojected
+//! into the next.
 //!
-//! Paper: Herzog et al. 2009, section 6.4 and figure 7: thresholds by the cosine transform of 8x8 blocks of the frame
-//! before, reprojected; where nothing corresponds, those of Weber.
+//! Paper: Herzog et al. 2009, section 6.4 and figure 7. Thresholds follow from the cosine transform of 8x8 blocks of
+//! the previous frame. Positions without a correspondence use Weber's law.
 //!
-//! Deviations: the frame before is tone-mapped by its own automatic exposure. The scale is such that 4 is Weber's 2 %
-//! on plain surfaces, about, as the luminance of a displayed grey of 128 changes by 1.9 % where the paper's matrix sees
-//! a step.
+//! Deviations: the previous frame is tone-mapped with its own automatic exposure. A scale of 4 is about Weber's 2 % on
+//! plain surfaces: the luminance of a displayed grey of 128 changes by 1.9 % at the step that the paper's matrix sees.
 //!
 //! Units: positions relative to the scene's centre; depths along the camera's axis.
 
 mod dct;
 
 use crate::eye::SeenPixels;
-use crate::reprojection::Projection;
+use crate::reprojection::ViewProjection;
 use base::film::{Exposure, Image, display, srgb_slope};
 use base::math::{Rgb, luminance};
 use dct::{SIDE, visible_step};
@@ -22,40 +21,41 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use world::view::View;
 
-/// Maximum difference of the depths of a point and of the pixels around its place, as a share of them.
+/// Maximum difference between the depth of a point and the depths of the pixels around its position, as a share of
+/// them.
 const MAX_DIFFERENCE: f32 = 0.01;
 
-/// Quantisation scale: the paper's.
+/// Quantisation scale of the paper.
 pub const Q_SCALE: f32 = 4.0;
 
-/// Greatest grey level.
+/// Maximum grey level.
 const WHITE: f32 = 255.0;
 
-/// Visible differences in the frame before, if there is one.
+/// Visible differences in the previous frame, if there is one.
 #[derive(Default, Serialize, Deserialize)]
 pub struct Thresholds {
-    map: Option<Map>,
+    map: Option<ThresholdMap>,
 }
 
-/// Visible differences in a picture.
+/// Visible differences in an image.
 #[derive(Serialize, Deserialize)]
-struct Map {
-    projection: Projection,
-    /// By pixel in rows.
+struct ThresholdMap {
+    projection: ViewProjection,
+    /// Per pixel, in rows.
     pixels: Vec<Visible>,
 }
 
 /// Visible difference in a pixel.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Visible {
-    /// Depth of the nearest surface.
+    /// Depth of the nearest surface, along the camera's axis.
     depth: f32,
     /// Visible difference of the luminance of radiance.
     difference: f32,
 }
 
 impl Thresholds {
-    /// True if they can be some: unless they were read from damaged bytes.
+    /// Returns true if the thresholds are valid. Only damaged bytes give others.
     pub fn is_sound(&self) -> bool {
         let is_visible = |visible: &Visible| visible.depth >= 0.0 && visible.difference >= 0.0;
         self.map.as_ref().is_none_or(|map| {
@@ -63,20 +63,21 @@ impl Thresholds {
         })
     }
 
-    /// Takes those of the picture `seen` by `view` with a quantisation scale; none if there is no whole picture without
-    /// noise.
+    /// Replaces the thresholds by those of an image of the surfaces `seen` by `view`, with a quantisation scale. They
+    /// are unknown if there is no complete image without noise.
     pub fn replace(&mut self, q_scale: f32, view: &View, seen: &SeenPixels, color: Option<&Image>) {
         self.map = color.map(|color| {
             let difference = visible_differences(color, q_scale);
             let visible = |(pixel, difference)| Visible { depth: seen.depth(pixel), difference };
             let pixels = difference.into_iter().enumerate().map(visible).collect();
-            Map { projection: Projection::of(view), pixels }
+            ThresholdMap { projection: ViewProjection::of(view), pixels }
         });
     }
 
-    /// Visible difference of the luminance of the radiance from `position`; `None` where that was not seen.
+    /// Returns the visible difference of the luminance of radiance from `position`; `None` if the previous frame did
+    /// not see it.
     pub fn at(&self, position: Vec3) -> Option<f32> {
-        let Map { projection, pixels } = self.map.as_ref()?;
+        let ThresholdMap { projection, pixels } = self.map.as_ref()?;
         let (place, depth) = projection.place(position)?;
         let at = (place + 0.5).floor();
         let pixel = |dx: f32, dy: f32| {
@@ -92,7 +93,7 @@ impl Thresholds {
     }
 }
 
-/// Visible difference of luminance by pixel of a picture.
+/// Returns the visible difference of luminance per pixel of an image.
 fn visible_differences(color: &Image, q_scale: f32) -> Vec<f32> {
     let [width, height] = [color.width, color.height].map(|side| side as usize);
     let factor = Exposure::Auto.factor(color);

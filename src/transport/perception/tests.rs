@@ -1,8 +1,8 @@
-//! Thresholds against pictures whose contrasts are known.
+//! Thresholds against images with known contrasts.
 
 use super::*;
 use crate::eye::FeatureSettings;
-use crate::paths::Look;
+use crate::paths::Estimand;
 use base::progress::Control;
 use scene::Camera;
 use world::testkit::*;
@@ -32,10 +32,10 @@ fn half_striped() -> Image {
     Image { width: SIZE, height: SIZE, pixels: (0..SIZE * SIZE).map(color).collect() }
 }
 
-/// Thresholds of the half striped picture of the floor.
+/// Returns the thresholds of the half striped image of the floor.
 fn thresholds(world: &WorldAndView) -> Thresholds {
     let view = View::whole(seen_from(0.0), [SIZE, SIZE]);
-    let settings = FeatureSettings { look: Look::Pixels, spp: 16, seed: 5 };
+    let settings = FeatureSettings { estimand: Estimand::Pixels, spp: 16, seed: 5 };
     let seen = SeenPixels::new(world, &view, &settings, &Control::new());
     let mut thresholds = Thresholds::default();
     thresholds.replace(4.0, &view, &seen, Some(&half_striped()));

@@ -12,11 +12,12 @@ use crate::gradient::Incidence;
 use crate::hsh::Radiance;
 use crate::lightcut::CutCounts;
 use crate::lights::{DirectIndirect, Origin};
+use crate::radiance_cache::candidate::Candidate;
 use crate::radiance_cache::footprint::{Footprint, FootprintLimits};
 use crate::radiance_cache::occlusion_hessian::OcclusionHessian;
-use crate::radiance_cache::record::{Diagnostics, Record};
+use crate::radiance_cache::record::{Diagnostics, NewRecord, Record};
 use crate::radiance_cache::series::SeriesGatherer;
-use crate::radiance_cache::source::{Candidate, LightcutSource, NewRecord, RecordSource};
+use crate::radiance_cache::source::{LightcutSource, RecordSource};
 use crate::radiance_cache::{CacheSettings, Footprints};
 use base::math::{LUMINANCE, luminance};
 use base::sampling::hash;
@@ -113,9 +114,9 @@ impl FinalGatherSource<'_> {
         let GatheredIrradiance { vector, gradient, distance, .. } = g;
         let footprint = if settings.footprints == Footprints::Occlusion {
             let derivatives = self.hessian(candidate, &work.met).derivatives(Origin::Indirect);
-            Footprint::of_hessian(&derivatives, luminance, &limits(distance))
+            Footprint::from_hessian(&derivatives, luminance, &limits(distance))
         } else {
-            Footprint::of_gradient(point.normal, gradient * LUMINANCE, luminance, &limits(distance))
+            Footprint::from_gradient(point.normal, gradient * LUMINANCE, luminance, &limits(distance))
         };
         let diagnostics = Diagnostics { cut: self.strata.len() as u32, distance, ..Diagnostics::default() };
         let SurfacePoint { position, normal, .. } = point;

@@ -1,13 +1,14 @@
-//! Adaptation: footprints that disagree visibly are shrunk.
+//! Adaptation: shrinks footprints whose records disagree visibly.
 //!
-//! Paper: Herzog et al. 2009, section 5.2: at each eye sample one contribution after the other is left out;
-//! where that changes the luminance visibly, the record's footprint is shrunk until it excludes the sample.
-//! On glossy surfaces lit by series, luminance is that of the radiance reflected to the eye, elsewhere that
-//! of the irradiance. The change is judged against the sum of both layers, so that each masks the other.
+//! Paper: Herzog et al. 2009, section 5.2. At each eye sample one contribution at a time is left out. If that changes
+//! the luminance visibly, the record's footprint is shrunk until it excludes the sample. On glossy surfaces lit by
+//! series, luminance is that of the reflected radiance, elsewhere that of the irradiance. The change is judged
+//! relative to the sum of both layers, so that each masks the other.
 //!
-//! Deviations: the record nearest to the sample is kept. Leaving it out changes most, yet it is the most
+//! Deviations: the record nearest to the sample is never excluded. Leaving it out changes most, yet it is the most
 //! accurate.
 
+use super::glossy_point::GlossyPoint;
 use super::settings::CacheSettings;
 use super::splat::Splat;
 use super::store::Records;
@@ -16,18 +17,18 @@ use crate::lights::{DirectIndirect, Origin};
 use base::math::{Rgb, luminance};
 use rayon::prelude::*;
 
-/// A record whose light is seen to end or begin at a sample.
+/// Record whose light visibly ends or begins at a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Discontinuity {
     /// Layer of the record.
     pub origin: Origin,
-    /// The record.
+    /// Index of the record.
     pub record: u32,
-    /// The eye sample.
+    /// Index of the eye sample.
     pub sample: u32,
 }
 
-/// A record's part in the light of a sample.
+/// Part of one record in the light of a sample.
 #[derive(Clone, Copy, Debug)]
 struct Contribution {
     record: u32,
@@ -35,8 +36,8 @@ struct Contribution {
     light: Rgb,
 }
 
-/// Finds all discontinuities by more than the difference that is seen at a sample, or, where that is not known, by more
-/// than the relative luminance `threshold`; leaf by leaf.
+/// Finds all discontinuities, leaf by leaf. A difference counts if it exceeds the visible difference at the sample. If
+/// that is unknown, it counts if it exceeds the share `threshold` of the luminance.
 pub fn discontinuities(
     targets: &Targets,
     records: &Records,
@@ -59,8 +60,8 @@ pub fn discontinuities(
                     contributions,
                 );
                 let visible = |origin, record| Discontinuity { origin, record, sample: sample as u32 };
-                let limits = (targets.visible(sample), threshold);
-                judge(contributions, limits, |origin, record| found.push(visible(origin, record)));
+                let limit = targets.visible(sample);
+                judge(contributions, limit, threshold, |origin, record| found.push(visible(origin, record)));
             }
             found
         })
@@ -77,7 +78,7 @@ fn contribute(
     contributions: &mut DirectIndirect<Vec<Contribution>>,
 ) {
     let point = &targets.points.geometry[sample];
-    let mut glossy = targets.glossy_point(sample);
+    let mut glossy = GlossyPoint::new(targets, sample);
     for origin in Origin::ALL {
         let store = &records[origin];
         for &id in lists[origin] {
@@ -93,11 +94,12 @@ fn contribute(
     }
 }
 
-/// Calls `visible` with every record, but for the heaviest of its layer, without which the light would change by
-/// more than `limit`, or by more than `threshold` of the luminance of both layers.
+/// Calls `visible` with every record without which the light would change by more than `limit`. Without a limit, the
+/// bound is the share `threshold` of the luminance of both layers. The heaviest record of each layer is exempt.
 fn judge(
     contributions: &DirectIndirect<Vec<Contribution>>,
-    (limit, threshold): (Option<f32>, f32),
+    limit: Option<f32>,
+    threshold: f32,
     mut visible: impl FnMut(Origin, u32),
 ) {
     let sums = contributions.as_ref().map(|contributions| {
@@ -121,8 +123,8 @@ fn judge(
     }
 }
 
-/// Shrinks the footprints of the records at `discontinuities` and tells the leaves in which that changes something;
-/// the sums there must be formed anew.
+/// Shrinks the footprints of the records at `discontinuities`. Returns true for each leaf that this affects; the sums
+/// there must be recomputed.
 pub fn shrink(
     targets: &Targets,
     records: &mut Records,
@@ -131,14 +133,14 @@ pub fn shrink(
 ) -> Vec<bool> {
     let index = targets.index;
     let mut changed = vec![false; index.leaves()];
-    for found in discontinuities {
-        let record = &mut records[found.origin].records[found.record as usize];
-        let point = &targets.points.geometry[found.sample as usize];
-        if record.delta(point, targets.bands[found.sample as usize]) >= 1.0 {
+    for discontinuity in discontinuities {
+        let record = &mut records[discontinuity.origin].records[discontinuity.record as usize];
+        let point = &targets.points.geometry[discontinuity.sample as usize];
+        if record.delta(point, targets.bands[discontinuity.sample as usize]) >= 1.0 {
             continue; // an earlier one has excluded this sample
         }
         let radius = record.footprint.max_radius();
-        if record.exclude(point, settings.reach[found.origin as usize][0] * point.spacing) {
+        if record.exclude(point, settings.reach[discontinuity.origin as usize][0] * point.spacing) {
             index.leaves_near(record.position, radius, |leaf| changed[leaf] = true);
         }
     }
@@ -148,7 +150,7 @@ pub fn shrink(
 #[cfg(test)]
 mod tests {
     use super::super::fixtures::{Floor, record};
-    use super::super::source::NewRecord;
+    use super::super::record::NewRecord;
     use super::*;
     use crate::lights::Origin::{Direct, Indirect};
     use glam::Vec3;
@@ -160,7 +162,7 @@ mod tests {
     fn judged(direct: &[Contribution], indirect: &[Contribution], threshold: f32) -> Vec<(Origin, u32)> {
         let contributions = DirectIndirect { direct: direct.to_vec(), indirect: indirect.to_vec() };
         let mut found = Vec::new();
-        judge(&contributions, (None, threshold), |origin, record| found.push((origin, record)));
+        judge(&contributions, None, threshold, |origin, record| found.push((origin, record)));
         found
     }
 

@@ -1,101 +1,56 @@
-//! Compensation at records of the light clamped from virtual lights close to them (see
-//! [`crate::bias_compensation`]).
+//! Compensation at records for the light clamped from nearby virtual lights (see [`crate::bias_compensation`]).
 //!
-//! Deviations: light is gathered at up to `LOOKUPS` of the points hit by a record's rays, chosen in
-//! proportion to their possible contribution, and is itself clamped without compensation. Series (light
-//! reflected by lobes) are clamped too and not compensated.
+//! Deviations: light is gathered at no more than `LOOKUPS` of the points that a record's short rays hit. They are
+//! chosen in proportion to their possible contribution, and their own light is clamped without compensation. Series
+//! are clamped and not compensated.
 //!
-//! Units: b in 1/m².
+//! Units: geometry terms in 1/m².
 
+use super::candidate::Candidate;
 use super::gather::GatheredLayer;
-use super::source::{Candidate, LightcutSource};
-use crate::bias_compensation::near_surface::{BRIGHTER, Limit, NearSurface};
+use super::source::LightcutSource;
+use crate::bias_compensation::near_surface::{Limit, NearSurface};
 use crate::bias_compensation::short_rays::{self, ClampedPoint};
 use crate::bias_compensation::{Compensation, choose_evenly, lobes};
 use crate::lightcut::{CutSettings, PacketLightcut, Receiver, ReceiverPacket, group_compact};
 use crate::lights::DirectIndirect;
-use base::math::{F32x16, Frame, LANES, LUMINANCE, Rgb, Vec3x16, luminance};
+use base::math::{Frame, LANES, Rgb, luminance};
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// Rays from each record.
+/// Number of short rays per record.
 const RAYS: u32 = 32;
 
-/// Maximum number of lightcuts at points hit by rays of one record.
+/// Maximum number of lightcuts per record, at points hit by its short rays.
 const LOOKUPS: usize = 2;
 
-/// A record's light may change by less than about this without lightcuts to find it.
+/// Relative change of a record's light below which no lightcuts are computed.
 const NEGLIGIBLE: f32 = 5e-3;
 
-/// Error bound of those lightcuts; their share in a record's light is small.
+/// Error bound of these lightcuts, relative to their luminance.
 const EPSILON: f32 = 0.3;
 
-/// Divisor of a record's maximum number of clusters that gives the maximum in those lightcuts.
+/// Divisor from the maximum cluster count of a record's cut to that of these lightcuts.
 const CUT_FRACTION: usize = 16;
 
-/// Limits of the contributions of indirect virtual lights to the points of a packet.
-#[derive(Clone, Copy, Debug)]
-pub struct Clamps {
-    limits: F32x16,
-    /// Limits of luminances besides.
-    luminances: F32x16,
-    /// True if the first limit geometry terms, false for luminances.
-    geometry: bool,
-}
-
-impl Clamps {
-    /// Limits such that none gives more than the luminances `limits` to the points of `task`.
-    pub fn new(compensation: &Option<Compensation>, limits: &F32x16, task: &[Candidate]) -> Clamps {
-        let Some(c) = compensation else {
-            return Clamps { limits: *limits, luminances: [f32::INFINITY; LANES], geometry: false };
-        };
-        let mut bounds = [f32::INFINITY; LANES];
-        for ((bound, limit), candidate) in bounds.iter_mut().zip(limits).zip(task) {
-            *bound = c.bound(candidate.point.position, *limit);
-        }
-        Clamps { limits: bounds, luminances: limits.map(|limit| limit * BRIGHTER), geometry: true }
-    }
-
-    /// Shares that are kept of the contributions of a light, by the irradiance `responses` to one of unit intensity.
-    #[inline]
-    pub fn kept(&self, intensity: Rgb, responses: &Vec3x16) -> F32x16 {
-        let weights = if self.geometry { Rgb::X } else { intensity * LUMINANCE };
-        let mut kept = [1.0; LANES];
-        for l in 0..LANES {
-            let (value, limit) = (weights.dot(responses.get(l)), self.limits[l]);
-            kept[l] = if value > limit { limit / value } else { 1.0 };
-            let given = (intensity * LUMINANCE).dot(responses.get(l)) * kept[l];
-            if given > self.luminances[l] {
-                kept[l] *= self.luminances[l] / given;
-            }
-        }
-        kept
-    }
-
-    /// Returns the maximum geometry term at a point, infinite if another quantity is limited.
-    pub fn bound(&self, lane: usize) -> f32 {
-        if self.geometry { self.limits[lane] } else { f32::INFINITY }
-    }
-}
-
-/// A point chosen to look up its light.
+/// Point chosen for a lookup of its light.
 #[derive(Clone, Copy)]
 struct Lookup {
-    /// Record of the task.
+    /// Index of the record in the task.
     record: usize,
     near: NearSurface,
-    /// Irradiance at the record for an irradiance of 1 at the point.
+    /// Irradiance at the record per unit irradiance at the point.
     factor: Rgb,
 }
 
-/// Workspaces of a thread's cuts.
+/// Buffers of a thread for the lookups' cuts.
 pub struct Cutter<'a> {
-    /// The cut.
+    /// Cut.
     pub cut: &'a mut PacketLightcut,
-    /// The points that the cut lights.
+    /// Points that the cut lights.
     pub points: &'a mut ReceiverPacket<'static>,
 }
 
-/// Adds the compensation of clamped virtual lights to the direct and indirect light of a task's records.
+/// Adds the compensation for clamped virtual lights to the direct and indirect light of a task's records.
 pub fn add(
     c: &Compensation,
     source: &LightcutSource,
@@ -144,10 +99,10 @@ pub fn add(
     }
 }
 
-/// Chooses the points at which to gather light, and the factors of their contributions.
+/// Chooses the points at which to gather light, and computes the factors of their contributions.
 fn choose(near: &[NearSurface], record: usize, lookups: &mut Vec<Lookup>) {
     let total: f32 = near.iter().map(|n| luminance(n.weight)).sum();
-    // As if the points met were lit as the record is.
+    // The threshold assumes that the points hit are lit like the record.
     if total < NEGLIGIBLE * RAYS as f32 * FRAC_1_PI {
         return;
     }
@@ -159,7 +114,7 @@ fn choose(near: &[NearSurface], record: usize, lookups: &mut Vec<Lookup>) {
 }
 
 impl Cutter<'_> {
-    /// Irradiance at points met, on the side of the records.
+    /// Gathers the irradiance at points hit by short rays, on the side of the records.
     fn irradiance(&mut self, c: &Compensation, source: &LightcutSource, group: &[Lookup]) -> [Rgb; LANES] {
         let settings = CutSettings {
             epsilon: EPSILON,
@@ -182,31 +137,5 @@ impl Cutter<'_> {
             irradiance[lane] = given.sum();
         }
         irradiance
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn clamps_keep_what_is_within_the_limit() {
-        for (intensity, term) in [(0.5, 8.0), (2.0, 0.25), (4.0, 16.0)] {
-            let kept = |limit: f32, geometry: bool| {
-                let responses = Vec3x16::splat(Rgb::splat(term));
-                Clamps { limits: [limit; LANES], luminances: [f32::INFINITY; LANES], geometry }
-                    .kept(Rgb::splat(intensity), &responses)[3]
-            };
-            let luminance = kept(2.0, false) * intensity * term;
-            assert!((luminance - (intensity * term).min(2.0)).abs() < 1e-5);
-            assert_eq!(kept(4.0, true) * term, term.min(4.0));
-            assert_eq!(kept(f32::INFINITY, false), 1.0);
-            let both = Clamps { limits: [4.0; LANES], luminances: [2.0; LANES], geometry: true };
-            let given =
-                intensity * term * both.kept(Rgb::splat(intensity), &Vec3x16::splat(Rgb::splat(term)))[3];
-            assert!((given - (intensity * f32::min(term, 4.0)).min(2.0)).abs() < 1e-5);
-        }
-        let clamps = Clamps::new(&None, &[2.0; LANES], &[]);
-        assert_eq!((clamps.bound(0), Clamps { geometry: true, ..clamps }.bound(0)), (f32::INFINITY, 2.0));
     }
 }

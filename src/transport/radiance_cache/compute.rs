@@ -1,26 +1,30 @@
-//! Records by lightcuts.
+//! Records computed by lightcuts.
 //!
-//! Sixteen records share a cut, the nearest that there are: bounds, gradients and second derivatives are found for
-//! all of them at once, and shadow rays to one light in one packet. A record that lacks one layer only cuts only
-//! that layer's trees, judged against the light of the other layer, so that each layer masks the other's errors
-//! (Herzog et al. 2009, section 6).
+//! Up to sixteen neighbouring records share a cut. Bounds, gradients and second derivatives are computed for all of
+//! them at once, and the shadow rays to one light form one packet. A record that lacks only one layer cuts only the
+//! trees of that layer. Errors are then judged relative to the light of both layers, so that each layer masks the
+//! errors of the other.
+//!
+//! Paper: Herzog et al. 2009, section 6.
 
-use super::compensate::{self, Clamps, Cutter};
+use super::candidate::Candidate;
+use super::clamps::Clamps;
+use super::compensate::{self, Cutter};
 use super::footprint::{Footprint, FootprintLimits};
 use super::gather::{GatheredLayer, GatheredLayer16};
-use super::lit_cluster::{LitCluster, RecordPoints};
-use super::occluder_distance::{OccluderDistances, OccluderLog};
+use super::lit_cluster::{Arriving16, RecordPoints};
+use super::lit_cut::LitCut;
+use super::occluder_distance::OccluderLog;
 use super::occlusion_hessian::OcclusionHessian;
+use super::record::NewRecord;
 use super::record::{Diagnostics, Record};
 use super::series::SeriesGatherer;
 use super::settings::{CacheSettings, Footprints};
-use super::source::{Candidate, LightcutSource, NewRecord, RecordSource};
+use super::source::{LightcutSource, RecordSource};
 use crate::hsh::Radiance;
-use crate::lightcut::{
-    CutCounts, CutSettings, PacketCluster, PacketCut, PacketLightcut, ReceiverPacket, Transfer, group_compact,
-};
+use crate::lightcut::{CutCounts, CutSettings, PacketLightcut, ReceiverPacket, group_compact};
 use crate::lights::{DirectIndirect, Origin};
-use base::math::{LUMINANCE, Rgb, lanes_in, luminance};
+use base::math::{LUMINANCE, luminance};
 use base::parallel::{ShortRuns, Workspaces};
 use glam::{Mat3, Vec3};
 use rayon::prelude::*;
@@ -32,7 +36,7 @@ impl RecordSource for LightcutSource<'_> {
     }
 
     fn records(&self, candidates: &[Candidate]) -> (Vec<NewRecord>, CutCounts) {
-        let works = Workspaces::new(|| Workspace::new(self));
+        let works = Workspaces::new(|| RecordWorkspace::new(self));
         let compute = |group: &Vec<Candidate>| works.with(|work| work.compute(self, group));
         let done: Vec<(Vec<NewRecord>, CutCounts)> =
             self.groups(candidates).par_iter().one_by_one().map(compute).collect();
@@ -46,17 +50,17 @@ impl RecordSource for LightcutSource<'_> {
     }
 }
 
-/// Light that the point of a record gathers.
+/// Light gathered at the point of a record.
 struct GatheredLight {
     layers: DirectIndirect<GatheredLayer>,
-    /// Light as series, where the surface needs it so.
+    /// Light as series, if the surface needs one.
     series: DirectIndirect<Option<Radiance>>,
-    /// Change of the light over the surface, if footprints are to include occluders' edges.
+    /// Second derivatives of the light over the surface, if footprints account for the edges of occluders.
     hessian: Option<OcclusionHessian>,
 }
 
 impl LightcutSource<'_> {
-    /// Candidates that share a cut: neighbours that lack the same layers.
+    /// Groups candidates that share a cut: neighbours that lack the same layers.
     pub fn groups(&self, candidates: &[Candidate]) -> Vec<Vec<Candidate>> {
         let place = |candidate: &Candidate| (candidate.point.position, candidate.point.normal);
         let lacks = |direct, indirect| DirectIndirect { direct, indirect };
@@ -68,12 +72,13 @@ impl LightcutSource<'_> {
         if self.settings.share { groups } else { groups.concat().chunks(1).map(<[_]>::to_vec).collect() }
     }
 
-    /// True if footprints depend on the distances of occluders; the distances of probe rays replace those.
+    /// Returns true if footprints depend on the distances of occluders. With probe rays the distances of visible
+    /// surfaces take their place.
     fn needs_occluders(&self) -> bool {
         self.settings.footprints != Footprints::Occlusion
     }
 
-    /// The record of one layer, or `None` where its light is not finite.
+    /// Returns the record of one layer, or `None` if its light is not finite.
     fn record(&self, candidate: &Candidate, origin: Origin, light: &GatheredLight) -> Option<Record> {
         let g = &light.layers[origin];
         let luminance = luminance(g.irradiance);
@@ -93,9 +98,9 @@ impl LightcutSource<'_> {
             Some(hessian) => {
                 let derivatives = hessian.derivatives(origin);
                 gradient += derivatives.edge_gradient;
-                Footprint::of_hessian(&derivatives, luminance, &limits)
+                Footprint::from_hessian(&derivatives, luminance, &limits)
             }
-            None => Footprint::of_gradient(normal, gradient * LUMINANCE, luminance, &limits),
+            None => Footprint::from_gradient(normal, gradient * LUMINANCE, luminance, &limits),
         };
         let (clamped, compensated) = (g.clamped, g.compensated);
         Some(Record {
@@ -112,25 +117,28 @@ impl LightcutSource<'_> {
     }
 }
 
-/// A thread's buffers.
-struct Workspace<'w> {
+/// Buffers of a thread.
+struct RecordWorkspace<'w> {
     shadows: Engine<'w>,
     cut: PacketLightcut,
     points: ReceiverPacket<'static>,
     series: SeriesGatherer,
+    /// Light of each cluster of the cut.
+    arriving: Vec<Arriving16>,
 }
 
-impl<'w> Workspace<'w> {
-    fn new(s: &LightcutSource<'w>) -> Workspace<'w> {
-        Workspace {
+impl<'w> RecordWorkspace<'w> {
+    fn new(s: &LightcutSource<'w>) -> RecordWorkspace<'w> {
+        RecordWorkspace {
             shadows: Engine::scattered(s.context.world),
             cut: PacketLightcut::new(),
             points: ReceiverPacket::new(),
             series: SeriesGatherer::default(),
+            arriving: Vec::new(),
         }
     }
 
-    /// The records of candidates that share a cut.
+    /// Computes the records of candidates that share a cut.
     fn compute(&mut self, s: &LightcutSource, group: &[Candidate]) -> (Vec<NewRecord>, CutCounts) {
         self.cut.counts = CutCounts::default();
         let mut light = self.gather(s, group);
@@ -152,77 +160,38 @@ impl<'w> Workspace<'w> {
         (records, self.cut.counts)
     }
 
-    /// Light at the points of `group` by one cut.
+    /// Gathers the light at the points of `group` by one cut.
     fn gather(&mut self, s: &LightcutSource, group: &[Candidate]) -> Vec<GatheredLight> {
-        let world = s.context.world;
+        let (world, transfer) = (s.context.world, &s.context.transfer);
         self.points.set(group.iter().map(Candidate::receiver));
         let settings = CutSettings { origin: group[0].missing.only(), ..s.settings.cut };
         let log = s.needs_occluders().then(|| OccluderLog::new(world));
         let cut = match &log {
-            Some(log) => self.cut.gather(&s.context.transfer, log, &self.points, &settings),
-            None => self.cut.gather(&s.context.transfer, &self.shadows, &self.points, &settings),
+            Some(log) => self.cut.gather(transfer, log, &self.points, &settings),
+            None => self.cut.gather(transfer, &self.shadows, &self.points, &settings),
         };
         let clamps = Clamps::new(&s.context.compensation, &cut.sum.limits, group);
         let points = RecordPoints::new(group, &world.materials);
+        let lit = LitCut::new(transfer, cut.clusters, &points, &clamps, &mut self.arriving);
+        let mut layers = lit.layers(&points);
+        if let Some(log) = log {
+            lit.add_hidden(&log.sorted(), &self.points, &clamps, &mut layers);
+        }
         let mut hessians = Vec::new();
         if !s.needs_occluders() {
             let places: Vec<_> = group.iter().map(|candidate| (candidate.point, candidate.sample)).collect();
             hessians = OcclusionHessian::at_points(world, &places, s.settings.probe_rays);
-        }
-        let mut layers = DirectIndirect::<GatheredLayer16>::default();
-        let transfer = &s.context.transfer;
-        for PacketCluster { node, responses } in cut.clusters {
-            let cluster = LitCluster::new(transfer, *node);
-            let (origin, kept) = (cluster.node.origin(), cluster.kept(&clamps, responses));
-            let light = layers[origin].add(&points, &cluster, responses, &kept);
-            OcclusionHessian::add_arriving(&mut hessians, origin, &light);
-        }
-        if let Some(log) = log {
-            hidden(&log.sorted(), transfer, &self.points, &cut, &clamps, &mut layers);
+            lit.add_to_hessians(&layers, &mut hessians);
         }
         let mut hessians = hessians.into_iter();
         let mut light = Vec::with_capacity(group.len());
         for (lane, candidate) in group.iter().enumerate() {
-            let mut hessian = hessians.next();
-            let layers = DirectIndirect::from_fn(|origin| {
-                if let Some(hessian) = &mut hessian {
-                    hessian.add_held(origin, layers[origin].held(lane));
-                }
-                layers[origin].layer(&points, lane, cut.clusters.len() as u32, clamps.bound(lane))
-            });
-            self.series.begin(candidate);
-            if self.series.is_wanted() {
-                for PacketCluster { node, responses } in
-                    cut.clusters.iter().filter(|c| c.responses.get(lane) != Rgb::ZERO)
-                {
-                    let cluster = LitCluster::new(transfer, *node);
-                    self.series.add(&cluster, cluster.kept(&clamps, responses)[lane]);
-                }
-            }
-            light.push(GatheredLight { layers, series: self.series.finish(), hessian });
+            let clusters = cut.clusters.len() as u32;
+            let layer = |layer: &GatheredLayer16| layer.layer(&points, lane, clusters, clamps.bound(lane));
+            let layers = layers.as_ref().map(layer);
+            let series = lit.series(&mut self.series, candidate, lane);
+            light.push(GatheredLight { layers, series, hessian: hessians.next() });
         }
         light
-    }
-}
-
-/// Adds the clusters of a cut that are hidden from points to what is known of the distances there.
-fn hidden(
-    occluders: &OccluderDistances,
-    transfer: &Transfer,
-    points: &ReceiverPacket,
-    cut: &PacketCut,
-    clamps: &Clamps,
-    layers: &mut DirectIndirect<GatheredLayer16>,
-) {
-    for PacketCluster { node, responses } in cut.clusters {
-        let cluster = LitCluster::new(transfer, *node);
-        let (lit, unshadowed) = transfer.unshadowed16(points, cluster.vpl, cluster.node.kind());
-        let kept = cluster.kept(clamps, &unshadowed);
-        let y = luminance(cluster.node.intensity);
-        // A pane may take one colour of light that arrives.
-        for lane in lanes_in(lit).filter(|&lane| responses.get(lane) == Rgb::ZERO) {
-            let distance = occluders.get(cluster.node, lane);
-            layers[cluster.node.origin()].hidden(lane, y * unshadowed.x[lane] * kept[lane], distance);
-        }
     }
 }

@@ -1,68 +1,68 @@
 //! Derivatives of irradiance due to occluders that hide and reveal their background.
 //!
-//! As the receiver moves by δ, the edge of an occluder at distance z_c moves before its background at z_d by
-//! the angle (1/z_c - 1/z_d) δ, and a sliver of background appears or goes. Its radiance times its cosine is
-//! the term missing from gradients of constant visibility; the light of the occluder itself is part of those.
-//! Continuous surfaces, smooth or creased, have no such edges.
+//! As the receiver moves by δ, the edge of an occluder at distance z_c moves before its background at z_d by the angle
+//! (1/z_c - 1/z_d) δ. A sliver of background appears or disappears. Its radiance times its cosine is the term missing
+//! from gradients at constant visibility; the light of the occluder itself is part of those. Continuous surfaces,
+//! smooth or creased, have no such edges.
 //!
-//! Paper: Ward and Heckbert 1992 and Krivanek et al. 2005 for the integrals along cells' boundaries;
-//! Schwarzhaupt, Jensen and Jarosz, *Practical Hessian-Based Error Control for Irradiance Caching*, 2012, for
-//! the use of both derivatives.
+//! Paper: Ward and Heckbert 1992 and Krivanek et al. 2005 for the integrals along the boundaries of cells;
+//! Schwarzhaupt, Jensen and Jarosz, *Practical Hessian-Based Error Control for Irradiance Caching*, 2012, for the use
+//! of both derivatives.
 //!
-//! Deviations: radiance comes from the cut's clusters, spread over the cells of the surface they lie on, not
-//! from shading the hits of the rays. Second derivatives are an upper estimate: the background's radiance is
-//! taken to change by all of itself within one cell.
+//! Deviations: radiance comes from the clusters of the cut, spread over the cells of the surface they lie on, not from
+//! shading the hits of the rays. Second derivatives are an upper estimate: the background's radiance is assumed to
+//! change by its full value within one cell.
 
 use super::probe::{Probes, SECTORS};
 use base::math::{Rgb, luminance};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// Distance of a light from the plane of a cell's surface, relative to its distance from the receiver, at which
-/// the light is no longer taken to lie on that surface.
-const ON_SURFACE: f32 = 0.05;
+/// Distance of a light from the plane of a cell's surface at which its weight there falls to a quarter, relative to
+/// its distance from the receiver.
+const PLANE_TOLERANCE: f32 = 0.05;
 
-/// Share that even a cell of quite another surface keeps: something must take the light.
-const ELSEWHERE: f32 = 1e-4;
+/// Minimum weight of a cell, so that some cell gets the light.
+const MIN_CELL_WEIGHT: f32 = 1e-4;
 
-/// Difference of inverse distances, relative to them, up to which two cells are taken to see one plane.
+/// Maximum relative difference of inverse distances at which two cells count as seeing one plane.
 const SAME_PLANE: f32 = 1e-3;
 
-/// Light seen in each cell.
+/// Light arriving through each cell.
 #[derive(Clone, Debug)]
 pub struct CellLight {
-    /// Irradiance from the cell.
+    /// Irradiance per cell.
     irradiance: Vec<Rgb>,
 }
 
-/// Derivatives of the irradiance by the motion of occluders' edges.
+/// Derivatives of the irradiance due to the motion of occluders' edges.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EdgeDerivatives {
     /// Gradient per channel, tangential, in the probes' frame.
     pub gradient: [Vec2; 3],
-    /// Second derivatives uu, uv, vv of the luminance: an upper estimate.
+    /// Second derivatives uu, uv, vv of the luminance, as an upper estimate.
     pub hessian: [f32; 3],
 }
 
-/// Between two cells.
+/// Edge between two cells.
 struct Edge {
     cells: [usize; 2],
-    /// From the first cell to the second.
+    /// Direction from the first cell to the second.
     across: Vec2,
-    /// Integral of the cosine along it.
+    /// Integral of the cosine along the edge.
     length: f32,
     /// Angle between the cells' centres.
     width: f32,
 }
 
 impl CellLight {
-    /// No light in any cell of `probes`.
+    /// Returns cells of `probes` without light.
     pub fn new(probes: &Probes) -> CellLight {
         CellLight { irradiance: vec![Rgb::ZERO; probes.cells()] }
     }
 
-    /// Adds `irradiance` from a light in a direction of the probes' frame, whose azimuth in turns is `turns`; `inverse`
-    /// is one over its distance, 0 if it is infinitely far.
+    /// Adds `irradiance` from a light in a direction of the probes' frame with azimuth `turns` (in turns). `inverse`
+    /// is the inverse of its distance, 0 if it is infinitely far.
     #[inline]
     pub fn add(&mut self, probes: &Probes, direction: Vec3, turns: f32, inverse: f32, irradiance: Rgb) {
         let (ring, sector) = probes.coordinates(direction, turns);
@@ -83,15 +83,16 @@ impl CellLight {
         let mut off = [0.0; 4];
         for (off, cell) in off.iter_mut().zip(cells) {
             let height = probes.height[cell];
-            // n·q/h - 1 is the distance from the plane in units of h; in units of the light's distance it lacks h/|q|.
-            let relative = (probes.plane[cell].dot(direction) - inverse) * height * (1.0 / ON_SURFACE);
-            // Infinitely far light is where there is no surface.
+            // n·q/h - 1 is the distance from the plane in units of h. The factor h/|q| converts it to the light's
+            // distance.
+            let relative = (probes.plane[cell].dot(direction) - inverse) * height * (1.0 / PLANE_TOLERANCE);
+            // Infinitely distant light belongs to cells without a surface.
             *off = if (inverse == 0.0) == (height == 0.0) { relative } else { f32::INFINITY };
         }
         let mut weights = [0.0; 4];
         for i in 0..4 {
             let fall = 1.0 / (1.0 + off[i] * off[i]);
-            weights[i] = near[i] * (fall * fall + ELSEWHERE);
+            weights[i] = near[i] * (fall * fall + MIN_CELL_WEIGHT);
         }
         let scale = 1.0 / (weights[0] + weights[1] + weights[2] + weights[3]);
         for (cell, weight) in cells.into_iter().zip(weights) {
@@ -99,13 +100,13 @@ impl CellLight {
         }
     }
 
-    /// Sums the contributions of the edges between cells.
+    /// Sums the contributions of all edges between cells.
     pub fn edges(&self, probes: &Probes) -> EdgeDerivatives {
         let mut sum = EdgeDerivatives::default();
         let rings = probes.rings as f32;
         let root = |share: usize| (share as f32 / rings).sqrt();
         let sector = TAU / SECTORS as f32;
-        // Chord over arc: the mean of a direction over a sector.
+        // Ratio of chord to arc: mean of a direction over a sector.
         let chord = (0.5 * sector).sin() / (0.5 * sector);
         let azimuths = |offset: f32| -> [Vec2; SECTORS] {
             std::array::from_fn(|k| Vec2::from_angle(probes.azimuth(k as f32 + offset)))
@@ -118,12 +119,12 @@ impl CellLight {
             let to_outer = ((ring as f32 + 1.5) / rings).min(1.0).sqrt().asin() - sin_mid.asin();
             for k in 0..SECTORS {
                 let cell = ring * SECTORS + k;
-                // To the next sector: ∫cosθ dθ along the meridian.
+                // Edge to the next sector: ∫cosθ dθ along the meridian.
                 let next = ring * SECTORS + (k + 1) % SECTORS;
                 let across = ends[k].perp();
                 let (length, width) = (sin_out - sin_in, sector * sin_mid);
                 self.add_edge(probes, &Edge { cells: [cell, next], across, length, width }, &mut sum);
-                // To the next ring: cosθ along the parallel, and cosθ for the tilt of the motion.
+                // Edge to the next ring: one cosθ along the parallel, one for the tilt of the motion.
                 if ring + 1 < probes.rings {
                     let outer = cell + SECTORS;
                     let (across, width) = (middles[k], to_outer);
@@ -157,20 +158,20 @@ impl CellLight {
     }
 }
 
-/// 1/z of cell `a`'s surface less that of cell `b`'s at the boundary between them; 0 if the surfaces meet there.
+/// Returns 1/z of cell `a`'s surface minus that of cell `b`'s at their boundary; 0 if the surfaces meet there.
 #[inline]
 fn parallax(probes: &Probes, a: usize, b: usize) -> f32 {
     let (at_a, at_b) = (probes.direction[a], probes.direction[b]);
     let between = probes.plane[a] - probes.plane[b];
-    // Each cell's surface against the other's plane, at both rays: if they cross on the way, the surfaces meet.
+    // The surfaces meet if each crosses the other's plane between the two rays.
     let (first, last) = (between.dot(at_a), between.dot(at_b));
     let direct = probes.inverse[a] - probes.inverse[b];
-    // Two cells of one plane differ by rounding.
+    // Two cells of one plane differ only by rounding.
     let same = SAME_PLANE * probes.inverse[a].max(probes.inverse[b]);
     if first * last <= 0.0 || first * direct < 0.0 || first.abs().min(last.abs()) <= same {
         return 0.0;
     }
-    // Backgrounds are mostly flat; the plane of an occluder that curves away tells nothing about its edge.
+    // Backgrounds are mostly flat. The plane of an occluder that curves away says nothing about its edge.
     let boundary = (at_a + at_b).normalize_or_zero();
     if direct > 0.0 {
         (probes.inverse[a] - probes.plane[b].dot(boundary)).clamp(0.0, probes.inverse[a])

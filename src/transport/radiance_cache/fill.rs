@@ -1,11 +1,12 @@
-//! The cache of one frame: records placed and splatted until every cell worth one is covered, then adapted.
+//! Cache of one frame: records are placed and splatted until every cell of sufficient size is covered, and then
+//! adapted.
 //!
 //! Paper: Herzog et al. 2009, sections 5.2 and 6.
 //!
-//! The records themselves outlive the frame (see [`super::store`]); this part depends on its eye samples.
+//! The records outlive the frame (see [`super::store`]). This part depends on the eye samples of the frame.
 
 use super::adapt::{self, Discontinuity};
-use super::placement::candidates;
+use super::placement::{CandidateStep, candidates};
 use super::record::Record;
 use super::settings::CacheSettings;
 use super::source::RecordSource;
@@ -17,7 +18,7 @@ use crate::lights::{DirectIndirect, Origin};
 use base::progress::Control;
 use base::stats::{Stage, Stats};
 
-/// Level of the coarsest cells.
+/// Index level of the coarsest cells that get candidates.
 const FIRST_LEVEL: u32 = 5;
 
 /// Records as they light the eye samples of one frame.
@@ -30,13 +31,13 @@ pub struct CacheFrame<'a> {
     pub(super) placed: DirectIndirect<Vec<u32>>,
     /// Discontinuities between records before each pass of adaptation.
     pub(super) discontinuities: Vec<Vec<Discontinuity>>,
-    /// Counts of the cuts of records.
+    /// Work counts of the records' cuts.
     pub cuts: CutCounts,
 }
 
 impl<'a> CacheFrame<'a> {
-    /// Adds records from `source` until the eye samples are covered, shrinks their footprints and covers the
-    /// samples that are uncovered by that.
+    /// Adds records from `source` until the eye samples are covered. Then shrinks their footprints and covers the
+    /// samples that this uncovers.
     pub fn fill(
         targets: Targets<'a>,
         records: &mut Records,
@@ -66,7 +67,7 @@ impl<'a> CacheFrame<'a> {
         frame
     }
 
-    /// Computes and splats records until every cell worth one is covered.
+    /// Computes and splats records until every cell of at least `least_cell` samples is covered.
     fn cover(
         &mut self,
         records: &mut Records,
@@ -83,7 +84,13 @@ impl<'a> CacheFrame<'a> {
                     return;
                 }
                 let candidates = stats.time(Stage::Splat, || {
-                    candidates(&self.targets, &self.splats, self.cached, reach, (level, parity))
+                    candidates(
+                        &self.targets,
+                        &self.splats,
+                        self.cached,
+                        reach,
+                        CandidateStep { level, parity },
+                    )
                 });
                 let (new, cuts) = stats.time(Stage::Records, || source.records(&candidates));
                 self.cuts += cuts;
@@ -102,7 +109,7 @@ impl<'a> CacheFrame<'a> {
         }
     }
 
-    /// Shrinks footprints at visible discontinuities; false if there are none.
+    /// Shrinks footprints at visible discontinuities; returns false if there are none.
     fn adapt(&mut self, records: &mut Records, settings: &CacheSettings, stats: &mut Stats) -> bool {
         stats.time(Stage::Splat, || {
             let threshold = settings.threshold;
@@ -124,7 +131,8 @@ impl<'a> CacheFrame<'a> {
             stats.count("Cache/records with series", series as u64);
         }
         let last = self.discontinuities.last();
-        let mut seams: Vec<u32> = last.into_iter().flatten().map(|found| found.sample).collect();
+        let mut seams: Vec<u32> =
+            last.into_iter().flatten().map(|discontinuity| discontinuity.sample).collect();
         seams.dedup();
         stats.count("Cache/samples at seams", seams.len() as u64);
         shapes(&records.direct.records, "direct", stats);
@@ -138,8 +146,8 @@ impl<'a> CacheFrame<'a> {
     }
 }
 
-/// Reports means over a layer's records: clusters or rays, anisotropy, and radius (of the circle of the same
-/// area) over the distance of the geometry that casts light and shadow.
+/// Reports means over the records of a layer: clusters or rays, anisotropy, and accuracy. Accuracy is the radius of
+/// the circle of equal area over the distance of the geometry that sends or blocks light.
 fn shapes(records: &[Record], layer: &str, stats: &mut Stats) {
     let mut mean = |what: &str, of: &dyn Fn(&Record) -> f32| {
         let values = records.iter().map(|r| f64::from(of(r))).filter(|value| value.is_finite());

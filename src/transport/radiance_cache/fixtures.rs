@@ -1,8 +1,8 @@
 //! Records, eye samples and lights for tests.
 
+use super::candidate::Candidate;
 use super::footprint::Footprint;
 use super::record::{Diagnostics, Record};
-use super::source::Candidate;
 use super::targets::Targets;
 use crate::eye::{PointGeometry, PointSurface, ShadingPoints};
 use crate::lights::{DirectIndirect, Family, LightTrees, Origin, Profiles, Vpl, VplKind, VplSet};
@@ -19,13 +19,13 @@ use world::testkit::diffuse;
 /// Reflectance of the only material.
 pub const ALBEDO: Rgb = Rgb::new(0.5, 0.4, 0.8);
 
-/// A scene of nothing but a diffuse material.
+/// Scene with one diffuse material and no geometry.
 pub static SCENE: LazyLock<Scene> =
     LazyLock::new(|| Scene { materials: vec![diffuse(ALBEDO)], ..Scene::default() });
 
 pub static MATERIALS: LazyLock<Materials> = LazyLock::new(|| Materials::new(&SCENE));
 
-/// A shading point on a floor with the normal z.
+/// Returns a shading point on a floor with the normal z.
 pub fn point(position: Vec3) -> PointGeometry {
     PointGeometry { position, spacing: 0.1, normal: Vec3::Z, coat: 0 }
 }
@@ -48,7 +48,7 @@ impl Floor {
         Floor { points: ShadingPoints { geometry, surfaces: vec![surface; positions.len()] }, index }
     }
 
-    /// `n` by `n` points over the unit square.
+    /// Returns `n` by `n` points over the unit square.
     pub fn grid(n: u32) -> Floor {
         let at = |i: u32| Vec3::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5, 0.0) / n as f32;
         Floor::new(&(0..n * n).map(at).collect::<Vec<_>>())
@@ -59,7 +59,7 @@ impl Floor {
     }
 }
 
-/// A record with a footprint of these radii along x and y, of light from straight above.
+/// Returns a record of light from straight above, with these footprint radii along x and y.
 pub fn record(position: Vec3, radii: [f32; 2], irradiance: Rgb) -> Record {
     Record {
         position,
@@ -79,7 +79,7 @@ pub fn record(position: Vec3, radii: [f32; 2], irradiance: Rgb) -> Record {
     }
 }
 
-/// A candidate at a point, with both layers missing.
+/// Returns a candidate at a point, with both layers missing.
 pub fn candidate(position: Vec3, normal: Vec3) -> Candidate {
     Candidate {
         sample: 0,
@@ -93,7 +93,7 @@ pub fn candidate(position: Vec3, normal: Vec3) -> Candidate {
     }
 }
 
-/// Trees of a single virtual light, of indirect light.
+/// Returns the trees of a single virtual light of indirect light.
 pub fn light(kind: VplKind, vpl: Vpl, intensity: Rgb) -> LightTrees {
     let mut set = VplSet::new(kind, Origin::Indirect);
     set.push(vpl, intensity);

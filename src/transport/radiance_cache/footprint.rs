@@ -1,63 +1,75 @@
-//! The footprint of a record: how large it is, and which way it is long.
+//! Footprint of a record: its size, aspect and orientation.
 //!
-//! Paper: Herzog et al. 2009, section 5.1, Eqs. 11 and 12 (circles, and ellipses by gradients); Schwarzhaupt et
-//! al. 2012 (ellipses by second derivatives that know of occlusion); Krivanek et al., *Making Radiance and Irradiance
+//! Paper: Herzog et al. 2009, section 5.1, Eqs. 11 and 12 (circles, and ellipses from gradients); Schwarzhaupt et
+//! al. 2012 (ellipses from second derivatives that include occlusion); Krivanek et al., *Making Radiance and Irradiance
 //! Caching Practical*, 2006 (footprints end before geometry that the rays of a record may miss).
+//!
 //! Units: metres.
 //!
-//! Deviations: footprints by second derivatives are at most twice as long as wide, those by gradients about
-//! eleven times (1/0.3²). Geometry near a record is that which the frame's shading points lie on, not what the rays of
-//! records around hit.
+//! Deviations: footprints from second derivatives are at most twice as long as wide, footprints from gradients about
+//! eleven times (1/0.3²). Geometry near a record is found at the frame's shading points, not by the rays of
+//! neighbouring records.
 
-use super::occlusion_hessian::Derivatives;
+use super::candidate::Candidate;
 use super::settings::{CacheSettings, Footprints};
-use super::source::Candidate;
 use crate::lights::Origin;
 use base::math::Frame;
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// Factor by which a footprint is shorter along the normal than along its shorter axis.
 const NORMAL_SCALE: f32 = 5.0;
 
-/// Smallest ratio of the radius along the gradient to that of the circle of the same area.
+/// Minimum ratio of the radius along the gradient to that of the circle of equal area.
 const MIN_SQUEEZE: f32 = 0.3;
 
-/// Largest radius over the distance of the nearest point that rises from the surface: what is low and near throws
-/// shadows that a record's rays miss, and its light does not reach into them.
+/// Maximum ratio of the radius to the distance of the nearest point that rises from the surface. Low, near geometry
+/// casts shadows that the rays of a record miss.
 const CLEARANCE: f32 = 0.7;
 
-/// Maximum ratio of the axes of footprints by second derivatives.
+/// Maximum ratio of the axes of footprints from second derivatives.
 const MAX_ASPECT: f32 = 2.0;
 
-/// The ellipse within which a record is used.
+/// Ellipse within which a record is used.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Footprint {
     /// Unit tangent axes.
     pub axes: [Vec3; 2],
     /// Radius along each axis.
     pub radii: [f32; 2],
-    /// The same without the minimum that the spacing of eye samples set.
+    /// Radius along each axis without the minimum set by the spacing of eye samples.
     pub unraised: [f32; 2],
-    /// Inverse of the root of 1 - cos of the angle at which the normals differ too much.
+    /// Inverse of √(1 - cos) of the maximum angle between normals.
     pub inverse_normal_tolerance: f32,
 }
 
-/// Bounds of a footprint by the settings of its layer and its surroundings.
+/// Derivatives of the irradiance over the surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Derivatives {
+    /// Gradient per channel (columns) due to moving edges, in world space.
+    pub edge_gradient: Mat3,
+    /// Unit tangent axes: along the largest second derivative, and across it.
+    pub axes: [Vec3; 2],
+    /// Absolute second derivatives of the luminance along them.
+    pub curvature: [f32; 2],
+}
+
+/// Bounds of a footprint, from the settings of its layer and its surroundings.
 #[derive(Clone, Copy, Debug)]
 pub struct FootprintLimits<'a> {
     /// Settings of the cache.
     pub settings: &'a CacheSettings,
-    /// The paper's a.
+    /// Radius relative to `distance`: the paper's a.
     pub accuracy: f32,
-    /// Distance of the geometry that casts light and shadow.
+    /// Distance of the geometry that sends or blocks light.
     pub distance: f32,
     /// Minimum and maximum radius.
     pub radii: [f32; 2],
 }
 
 impl<'a> FootprintLimits<'a> {
-    /// Bounds for a record of light of `origin` at `candidate`, which geometry at a `distance` lights and shadows.
+    /// Returns the bounds for a record of light of `origin` at `candidate`. Geometry at `distance` sends or blocks the
+    /// light.
     pub fn new(settings: &'a CacheSettings, origin: Origin, candidate: &Candidate, distance: f32) -> Self {
         let [min, max] = settings.reach[origin as usize].map(|r| r * candidate.spacing);
         let radii = [min, max.min(CLEARANCE * candidate.clearance).max(min)];
@@ -66,10 +78,10 @@ impl<'a> FootprintLimits<'a> {
 }
 
 impl Footprint {
-    /// An ellipse along whose axes second derivatives change the luminance by half the square of the accuracy,
-    /// relatively; its radii are no longer than the accuracy times the distance, and the longer one at most
-    /// `MAX_ASPECT` times the shorter.
-    pub fn of_hessian(light: &Derivatives, luminance: f32, limits: &FootprintLimits) -> Footprint {
+    /// Returns the ellipse from second derivatives. At its edge they change the luminance by half the square of the
+    /// accuracy, relative to it. Radii do not exceed the accuracy times the distance, nor the longer one `MAX_ASPECT`
+    /// times the shorter.
+    pub fn from_hessian(light: &Derivatives, luminance: f32, limits: &FootprintLimits) -> Footprint {
         let FootprintLimits { settings, accuracy, distance, radii: [min, max] } = *limits;
         let furthest = accuracy * distance;
         let radius = |curvature: f32| {
@@ -88,9 +100,14 @@ impl Footprint {
         }
     }
 
-    /// An ellipse of the area of a circle whose radius is the accuracy times the distance, short along the gradient
-    /// of the luminance; a circle unless footprints are to be anisotropic.
-    pub fn of_gradient(normal: Vec3, gradient: Vec3, luminance: f32, limits: &FootprintLimits) -> Footprint {
+    /// Returns the ellipse from gradients, short along the gradient of the luminance. Its area is that of a circle
+    /// whose radius is the accuracy times the distance. It is a circle unless footprints are anisotropic.
+    pub fn from_gradient(
+        normal: Vec3,
+        gradient: Vec3,
+        luminance: f32,
+        limits: &FootprintLimits,
+    ) -> Footprint {
         let FootprintLimits { settings, accuracy, distance, radii: [min, max] } = *limits;
         let unraised = accuracy * distance;
         let radius = within(unraised, [min, max]);
@@ -110,19 +127,19 @@ impl Footprint {
         }
     }
 
-    /// Shrinks radii that were raised to a minimum, where the spacing of eye samples allows a smaller one, `min`, now.
+    /// Shrinks radii that were raised to a minimum if a smaller minimum `min` applies now.
     pub fn lower(&mut self, min: f32) {
         for (radius, unraised) in self.radii.iter_mut().zip(self.unraised) {
             *radius = radius.min(unraised.max(min));
         }
     }
 
-    /// The larger radius.
+    /// Returns the larger radius.
     pub fn max_radius(&self) -> f32 {
         self.radii[0].max(self.radii[1])
     }
 
-    /// Offset in units of the footprint's radii.
+    /// Returns an offset in units of the footprint's radii.
     pub fn scaled(&self, offset: Vec3, normal: Vec3) -> Vec3 {
         let [r0, r1] = self.radii;
         Vec3::new(
@@ -133,7 +150,7 @@ impl Footprint {
     }
 }
 
-/// The radius kept between a minimum and a maximum; the minimum if it is not a number, as where derivatives overflow.
+/// Returns the radius clamped between a minimum and a maximum; the minimum if it is NaN, as when derivatives overflow.
 fn within(radius: f32, [min, max]: [f32; 2]) -> f32 {
     radius.max(min).min(max)
 }
@@ -142,7 +159,6 @@ fn within(radius: f32, [min, max]: [f32; 2]) -> f32 {
 mod tests {
     use super::super::fixtures::candidate;
     use super::*;
-    use glam::Mat3;
 
     fn limits(settings: &CacheSettings, radii: [f32; 2]) -> FootprintLimits<'_> {
         FootprintLimits { settings, accuracy: 0.2, distance: 4.0, radii }
@@ -179,10 +195,10 @@ mod tests {
         // The radius is 0.2 · 4; by so much does light of luminance 2 change across it, relatively.
         for change in [0.0, 0.1, 0.5, 0.7] {
             let gradient = Vec3::new(0.6, 0.8, 0.0) * (change * 2.0 / 0.8);
-            let circle = Footprint::of_gradient(Vec3::Z, gradient, 2.0, &limits(&isotropic, [0.1, 9.0]));
+            let circle = Footprint::from_gradient(Vec3::Z, gradient, 2.0, &limits(&isotropic, [0.1, 9.0]));
             assert_near(circle.radii[0], 0.8);
             assert_near(circle.radii[1], 0.8);
-            let ellipse = Footprint::of_gradient(Vec3::Z, gradient, 2.0, &limits(&anisotropic, [0.1, 9.0]));
+            let ellipse = Footprint::from_gradient(Vec3::Z, gradient, 2.0, &limits(&anisotropic, [0.1, 9.0]));
             let squeeze = 1.0 / (1.0 + (change / 0.5).powi(2));
             assert_near(ellipse.radii[0], 0.8 * squeeze.max(0.3));
             assert_near(ellipse.radii[0] * ellipse.radii[1], 0.64);
@@ -192,10 +208,10 @@ mod tests {
             assert_near(across.length(), 1.0);
             assert_near(ellipse.inverse_normal_tolerance, 2.5);
         }
-        let steep = Footprint::of_gradient(Vec3::Z, Vec3::X * 1e9, 2.0, &limits(&anisotropic, [0.1, 9.0]));
+        let steep = Footprint::from_gradient(Vec3::Z, Vec3::X * 1e9, 2.0, &limits(&anisotropic, [0.1, 9.0]));
         assert_near(steep.radii[1] / steep.radii[0], 1.0 / 0.09);
         for (radii, radius) in [([1.0, 9.0], 1.0), ([0.1, 0.5], 0.5)] {
-            let clamped = Footprint::of_gradient(Vec3::Z, Vec3::ZERO, 2.0, &limits(&isotropic, radii));
+            let clamped = Footprint::from_gradient(Vec3::Z, Vec3::ZERO, 2.0, &limits(&isotropic, radii));
             assert_near(clamped.radii[0], radius);
         }
     }
@@ -205,7 +221,7 @@ mod tests {
         let settings = CacheSettings::default();
         let of = |curvature, distance, radii| {
             let light = Derivatives { edge_gradient: Mat3::ZERO, axes: [Vec3::Y, Vec3::X], curvature };
-            Footprint::of_hessian(&light, 2.0, &FootprintLimits { distance, ..limits(&settings, radii) })
+            Footprint::from_hessian(&light, 2.0, &FootprintLimits { distance, ..limits(&settings, radii) })
         };
         let free = of([3.0, 1.5], 1e6, [1e-3, 1e3]);
         assert_eq!(free.axes, [Vec3::Y, Vec3::X]);
@@ -228,11 +244,11 @@ mod tests {
         for curvature in [[f32::NAN; 2], [f32::INFINITY; 2], [f32::INFINITY, f32::NAN]] {
             let light = Derivatives { edge_gradient: Mat3::ZERO, axes: [Vec3::X, Vec3::Y], curvature };
             for luminance in [0.0, 1.0, f32::MAX] {
-                let found = Footprint::of_hessian(&light, luminance, &limits(&settings, [0.1, 9.0]));
+                let found = Footprint::from_hessian(&light, luminance, &limits(&settings, [0.1, 9.0]));
                 assert!(found.radii[0] == 0.1 && (0.1..=0.2).contains(&found.radii[1]), "{:?}", found.radii);
             }
             let gradient = Vec3::splat(curvature[1]);
-            let found = Footprint::of_gradient(Vec3::Z, gradient, 1.0, &limits(&settings, [0.1, 9.0]));
+            let found = Footprint::from_gradient(Vec3::Z, gradient, 1.0, &limits(&settings, [0.1, 9.0]));
             assert!(found.radii.iter().all(|radius| radius.is_finite() && *radius > 0.0));
         }
     }
@@ -242,7 +258,7 @@ mod tests {
         let settings = CacheSettings::default();
         let light =
             Derivatives { edge_gradient: Mat3::ZERO, axes: [Vec3::X, Vec3::Y], curvature: [300.0, 3.0] };
-        let of = |min| Footprint::of_hessian(&light, 2.0, &limits(&settings, [min, 1e3]));
+        let of = |min| Footprint::from_hessian(&light, 2.0, &limits(&settings, [min, 1e3]));
         let exact = of(1e-6);
         let mut kept = of(0.5);
         assert!(exact.radii[1] < 0.1 && kept.radii == [0.5, 0.5]);

@@ -1,48 +1,48 @@
-//! From a converged cut to the contents of a record.
+//! Sums over the clusters of a converged cut that make up a record.
 //!
-//! Paper: Herzog et al. 2009, Eqs. 7 to 10 and section 5.1; Krivanek et al. 2005 for the gradient of one
-//! light. With q from the record to a virtual light of normal n_y and a = -n_y·q, an unoccluded light of unit
-//! intensity gives the irradiance vector a q/|q|⁴ and the tangential gradient (n·q)(n_y + 4 a q/|q|²)/|q|⁴;
-//! an omni light q/|q|³ and 3 (n·q) q/|q|⁵; a directional light its direction and no gradient.
+//! Paper: Herzog et al. 2009, Eqs. 7 to 10 and section 5.1; Krivanek et al. 2005 for the gradient of one light. With q
+//! from the record to a virtual light of normal n_y and a = -n_y·q, an unoccluded light of unit intensity gives the
+//! irradiance vector a q/|q|⁴ and the tangential gradient (n·q)(n_y + 4 a q/|q|²)/|q|⁴. An omni light gives q/|q|³ and
+//! 3 (n·q) q/|q|⁵, a directional light its direction and no gradient.
 //!
-//! Deviations: a clamped light has no gradient, nor have lights nearer than the minimum distance. The falloff
-//! of a spot light's cone is taken as constant. The distance that sets the footprint is the paper's, the
-//! minimum to a visible light or an occluder, tempered by the harmonic mean of the same, weighted by each
-//! light's unoccluded contribution; the occluder is the one that stopped the shadow ray, not the nearest.
+//! Deviations: clamped lights and lights nearer than the minimum distance have no gradient. The falloff of a spot
+//! light's cone is treated as constant. The footprint follows from the harmonic mean distance of visible lights and
+//! occluders, weighted by the unoccluded contribution of each light. A multiple of the paper's minimum distance bounds
+//! that mean. The occluder is the one that stopped the shadow ray, not the nearest.
 
-use super::lit_cluster::{ArrivingLight, LitCluster, RecordPoints};
+use super::lit_cluster::{Arriving16, LitCluster, RecordPoints};
 use crate::lights::{LobeProfile, VplKind};
 use base::math::{F32x16, LANES, Rgb, Vec3x16, luminance};
 use glam::{Mat3, Vec3};
 
-/// Least cosine of an emitter that its relative change is divided by: where the light is seen edge-on, both vanish.
+/// Lower bound of the cosine that relative derivatives are divided by. Both vanish if the light is seen edge-on.
 const MIN_COS: f32 = 1e-3;
 
-/// Maximum ratio of the distance that sets the footprint to the minimum one.
-const MAX_OVER_LEAST: f32 = 2.0;
+/// Maximum ratio of the distance that sets the footprint to the minimum distance.
+const MAX_OVER_MINIMUM: f32 = 2.0;
 
-/// Sums over the lights of one layer as seen from one point.
+/// Sums over the lights of one layer at one point.
 #[derive(Clone, Copy, Debug)]
 pub struct GatheredLayer {
     /// Irradiance.
     pub irradiance: Rgb,
     /// Irradiance vector per channel.
     pub vector: Mat3,
-    /// Gradient per channel, not yet projected on the tangent plane.
+    /// Gradient per channel, not yet projected onto the tangent plane.
     pub gradient: Mat3,
-    /// Sum of the luminances of all lights, hidden or not.
+    /// Sum of the luminances of all lights, visible or hidden.
     pub weight: f32,
-    /// Sum of the same over the distance to the light or to its occluder.
+    /// Sum of luminance over distance, to the light or to its occluder.
     pub nearness: f32,
-    /// Minimum of those distances.
-    pub least: f32,
+    /// Minimum of these distances.
+    pub min_distance: f32,
     /// Maximum geometry term of a clamped light; infinite if another quantity is clamped.
     pub bound: f32,
     /// Clusters in the cut, of all layers.
     pub cut: u32,
-    /// Luminance of the irradiance that clamping took away.
+    /// Luminance of the irradiance removed by clamping.
     pub clamped: f32,
-    /// Luminance of the irradiance that short rays gave back.
+    /// Luminance of the irradiance recovered by short rays.
     pub compensated: f32,
 }
 
@@ -54,7 +54,7 @@ impl Default for GatheredLayer {
             gradient: Mat3::ZERO,
             weight: 0.0,
             nearness: 0.0,
-            least: f32::INFINITY,
+            min_distance: f32::INFINITY,
             bound: f32::INFINITY,
             cut: 0,
             clamped: 0.0,
@@ -63,7 +63,7 @@ impl Default for GatheredLayer {
     }
 }
 
-/// Sums over the lights of one layer as seen from the points of records: the fields of [`GatheredLayer`], and second
+/// Sums over the lights of one layer at the points of sixteen records: the fields of [`GatheredLayer`], and second
 /// derivatives.
 pub struct GatheredLayer16 {
     /// Columns of the irradiance vectors.
@@ -72,10 +72,10 @@ pub struct GatheredLayer16 {
     gradient: [Vec3x16; 3],
     weight: F32x16,
     nearness: F32x16,
-    least: F32x16,
+    min_distance: F32x16,
     clamped: F32x16,
-    /// Second derivatives uu, uv, vv of the luminance in each point's frame, while visibility is held.
-    held: [F32x16; 3],
+    /// Second derivatives uu, uv, vv of the luminance in the frame of each point, at constant visibility.
+    second: [F32x16; 3],
 }
 
 impl Default for GatheredLayer16 {
@@ -86,40 +86,32 @@ impl Default for GatheredLayer16 {
             gradient: [Vec3x16::ZERO; 3],
             weight: zero,
             nearness: zero,
-            least: [f32::INFINITY; LANES],
+            min_distance: [f32::INFINITY; LANES],
             clamped: zero,
-            held: [zero; 3],
+            second: [zero; 3],
         }
     }
 }
 
 impl GatheredLayer16 {
-    /// Adds a cluster of the cut whose representative, of unit intensity, gives the irradiance `responses`, of which
-    /// clamping leaves the share `kept`. Returns its light at the points.
-    pub fn add(
-        &mut self,
-        points: &RecordPoints,
-        cluster: &LitCluster,
-        responses: &Vec3x16,
-        kept: &F32x16,
-    ) -> ArrivingLight {
-        let light = points.arriving(cluster, responses, kept);
+    /// Adds the light of a cluster of the cut.
+    pub fn add(&mut self, points: &RecordPoints, cluster: &LitCluster, light: &Arriving16) {
         let oriented = cluster.node.kind() == VplKind::Oriented;
         let lobe = cluster.lobe();
         let normal = if oriented { cluster.vpl.normal() } else { Vec3::ZERO };
-        // Powers of the distance in the falloff over the constant height.
+        // Powers of the distance in the ratio of falloff to height above the tangent plane.
         let power = if oriented { 4.0 } else { 3.0 };
         let max_inverse_sq = 1.0 / cluster.near_sq();
         let axes = &points.axes;
         for l in 0..LANES {
-            let (passed, inverse) = (light.passed.get(l), light.inverse[l]);
+            let (passed, inverse, retained) = (light.passed.get(l), light.inverse[l], light.retained[l]);
             let y = luminance(passed);
             let lit = y > 0.0;
             let local = light.direction.get(l);
             let direction = axes[0].get(l) * local.x + axes[1].get(l) * local.y + axes[2].get(l) * local.z;
-            // Irradiance = intensity · height · (the rest); the vector lacks the height.
+            // Irradiance = intensity · height · (the remaining factors). The vector lacks the height.
             let vector = direction * if lit { 1.0 / local.z } else { 0.0 };
-            let moves = lit && kept[l] >= 1.0 && inverse * inverse < max_inverse_sq;
+            let moves = lit && retained >= 1.0 && inverse * inverse < max_inverse_sq;
             let rate = if moves { inverse } else { 0.0 };
             let cos = if oriented { -normal.dot(direction) } else { 1.0 };
             let (turning, bending) = match lobe {
@@ -139,34 +131,34 @@ impl GatheredLayer16 {
             self.weight[l] += y;
             self.nearness[l] += y * inverse;
             let distance = if lit && inverse > 0.0 { 1.0 / inverse } else { f32::INFINITY };
-            self.least[l] = if distance < self.least[l] { distance } else { self.least[l] };
-            self.clamped[l] += y * if kept[l] > 0.0 { 1.0 / kept[l] - 1.0 } else { 0.0 };
+            self.min_distance[l] =
+                if distance < self.min_distance[l] { distance } else { self.min_distance[l] };
+            self.clamped[l] += y * if retained > 0.0 { 1.0 / retained - 1.0 } else { 0.0 };
             // Second derivatives of the irradiance over the irradiance, times the squared distance.
             let (u, v) = (local.x, local.y);
             let (n_u, n_v) = (turning.dot(axes[0].get(l)), turning.dot(axes[1].get(l)));
             let crossed = power * (power + 2.0);
-            let second = y * rate * inverse;
-            self.held[0][l] += second * (8.0 * n_u * u + crossed * u * u - power - bending);
-            self.held[1][l] += second * (4.0 * (n_u * v + n_v * u) + crossed * u * v);
-            self.held[2][l] += second * (8.0 * n_v * v + crossed * v * v - power - bending);
+            let scale = y * rate * inverse;
+            self.second[0][l] += scale * (8.0 * n_u * u + crossed * u * u - power - bending);
+            self.second[1][l] += scale * (4.0 * (n_u * v + n_v * u) + crossed * u * v);
+            self.second[2][l] += scale * (8.0 * n_v * v + crossed * v * v - power - bending);
         }
-        light
     }
 
-    /// Adds to a point a light that is hidden by something at `distance`.
+    /// Adds a light that an occluder at `distance` hides from a point.
     #[inline]
     pub fn hidden(&mut self, lane: usize, luminance: f32, distance: f32) {
         self.weight[lane] += luminance;
         self.nearness[lane] += luminance / distance;
-        self.least[lane] = self.least[lane].min(distance);
+        self.min_distance[lane] = self.min_distance[lane].min(distance);
     }
 
-    /// Second derivatives uu, uv, vv of the luminance at a point, in its frame, while visibility is held.
-    pub fn held(&self, lane: usize) -> [f32; 3] {
-        self.held.map(|held| held[lane])
+    /// Returns second derivatives uu, uv, vv of the luminance at a point, in its frame, at constant visibility.
+    pub fn second_derivatives(&self, lane: usize) -> [f32; 3] {
+        self.second.map(|derivative| derivative[lane])
     }
 
-    /// Sums at a point, whose cut of `cut` clusters had geometry terms up to `bound`.
+    /// Returns the sums at one point, whose cut has `cut` clusters and geometry terms up to `bound`.
     pub fn layer(&self, points: &RecordPoints, lane: usize, cut: u32, bound: f32) -> GatheredLayer {
         let columns = |of: &[Vec3x16; 3]| Mat3::from_cols(of[0].get(lane), of[1].get(lane), of[2].get(lane));
         let vector = columns(&self.vector);
@@ -176,7 +168,7 @@ impl GatheredLayer16 {
             gradient: columns(&self.gradient),
             weight: self.weight[lane],
             nearness: self.nearness[lane],
-            least: self.least[lane],
+            min_distance: self.min_distance[lane],
             bound,
             cut,
             clamped: self.clamped[lane],
@@ -188,8 +180,8 @@ impl GatheredLayer16 {
 impl GatheredLayer {
     /// Adds irradiance, already filtered, that short rays found at `distance`.
     ///
-    /// Deviations: it is given the direction of the normal, lest a grazing ray weigh heavily where the normal
-    /// differs, and no gradient.
+    /// Deviations: the irradiance gets the direction of the normal, so that a grazing ray does not weigh heavily on
+    /// other normals. It has no gradient.
     pub fn compensate(&mut self, normal: Vec3, irradiance: Rgb, distance: f32) {
         let y = luminance(irradiance);
         self.irradiance += irradiance;
@@ -199,22 +191,22 @@ impl GatheredLayer {
         self.compensated += y;
     }
 
-    /// Returns the distance that sets the reach of the record: the harmonic mean over all lights, visible or
-    /// not, but at most a multiple of the minimum.
+    /// Returns the distance that sets the size of the footprint: the harmonic mean over all lights, visible or hidden,
+    /// bounded by a multiple of the minimum.
     pub fn distance(&self) -> f32 {
         let mean = if self.nearness > 0.0 { self.weight / self.nearness } else { f32::INFINITY };
-        mean.min(MAX_OVER_LEAST * self.least)
+        mean.min(MAX_OVER_MINIMUM * self.min_distance)
     }
 }
 
-/// One column a channel: `v` times the channel.
+/// Returns `v` times each channel, one column per channel.
 #[inline]
 fn outer(v: Vec3, c: Rgb) -> Mat3 {
     Mat3::from_cols(v * c.x, v * c.y, v * c.z)
 }
 
-/// First derivative of the light that a lobe sends in the unit direction `away`, by that, relative to the light, and
-/// the magnitude of the second ones.
+/// Returns the first derivative, with respect to direction, of the light that a lobe sends in the unit direction
+/// `away`, and the magnitude of the second derivatives. Both are relative to the light.
 fn relative_derivatives(lobe: &LobeProfile, away: Vec3) -> (Vec3, f32) {
     let (share, slope, curvature) = lobe.share_and_derivatives(away);
     let share = share.max(MIN_COS);
@@ -239,15 +231,17 @@ mod tests {
         INTENSITY * transfer.unshadowed(&receiver, &transfer.trees.vpls[0], node.kind())
     }
 
-    /// Light gathered from the only light, of which `kept` is left.
-    fn gathered(transfer: &Transfer, position: Vec3, normal: Vec3, kept: f32) -> GatheredLayer {
+    /// Light gathered from the only light, of which clamping retains a share.
+    fn gathered(transfer: &Transfer, position: Vec3, normal: Vec3, retained: f32) -> GatheredLayer {
         let cluster = LitCluster::new(transfer, transfer.trees.roots[0]);
         let response = irradiance(transfer, position, normal).x / INTENSITY.x;
         // The last of three, the others of which look elsewhere.
         let group = [candidate(position, -normal), candidate(-position, normal), candidate(position, normal)];
         let points = RecordPoints::new(&group, &MATERIALS);
         let mut layer = GatheredLayer16::default();
-        let light = layer.add(&points, &cluster, &Vec3x16::splat(Rgb::splat(response)), &[kept; LANES]);
+        let responses = Vec3x16::splat(Rgb::splat(response));
+        let light = points.arriving(&cluster, &responses, [retained; LANES]);
+        layer.add(&points, &cluster, &light);
         let layer = layer.layer(&points, 2, 1, f32::INFINITY);
         assert!((light.passed.get(2) - layer.irradiance).length() <= 1e-6 * INTENSITY.length());
         layer
@@ -320,7 +314,7 @@ mod tests {
         assert!((at_point(&sums).distance() - 4.0 / (3.0 / 2.0 + 1.0 / 4.0)).abs() < 1e-6);
         sums.hidden(0, 1e-9, 0.5);
         let mut layer = at_point(&sums);
-        assert_eq!(layer.distance(), MAX_OVER_LEAST * 0.5);
+        assert_eq!(layer.distance(), MAX_OVER_MINIMUM * 0.5);
         assert_eq!((layer.irradiance, layer.weight), (Rgb::ZERO, 4.0));
         layer.compensate(Vec3::Z, Rgb::ONE, 0.25);
         assert_eq!((layer.vector.transpose() * Vec3::Z, layer.gradient), (Rgb::ONE, Mat3::ZERO));

@@ -3,20 +3,20 @@
 //! | layer | red, green, blue |
 //! |---|---|
 //! | `direct`, `indirect` | radiance of that origin, through the pixel |
-//! | `both` | radiance of samples whose cut held both origins; parts + emitters in view = the picture |
+//! | `both` | radiance of samples whose cut has both origins; the parts and visible emitters add up to the image |
 //! | `records` | number of records placed in the pixel: direct, indirect, 0 |
 //! | `footprint` | long over short radius of the indirect record of the largest weight; both radii |
-//! | `gradient` | gradient of that record's luminance over its luminance, 1/m: x, y, z |
+//! | `gradient` | relative gradient of that record's luminance, 1/m: x, y, z |
 //! | `weights` | sum of weights: direct, indirect, 0 |
 //! | `cut` | clusters in the cut of the record of the largest weight: direct, indirect, 0 |
-//! | `clamped` | share of that indirect record's light lost by clamping, share recovered, 0 |
-//! | `visible` | difference of irradiance that is seen, of radiance where series light; irradiance of records; 0 |
+//! | `clamped` | share of that indirect record's light lost to clamping, share recovered, 0 |
+//! | `visible` | visible difference of irradiance (of radiance, if lit by series); irradiance of records; 0 |
 //! | `seams.1`, `seams.2`, ... | eye samples at visible seams before each pass: direct, indirect, 0 |
 //!
-//! `visible` is there where the frame before of a walk-through tells it, the paper's figure 7; both are luminances.
+//! The layer `visible` exists in walk-throughs, if the previous frame gives visible differences: the paper's figure 7.
+//! Both of its values are luminances.
 //!
-//! Where a pixel has several eye samples, the last in the order of the index represents all but in sums and
-//! counts.
+//! Sums and counts cover all eye samples of a pixel. Otherwise the last one in the order of the index represents it.
 
 use super::fill::CacheFrame;
 use super::record::{Diagnostics, Record};
@@ -28,20 +28,8 @@ use base::math::{LUMINANCE, Rgb, luminance};
 use rayon::prelude::*;
 
 impl CacheFrame<'_> {
-    /// All layers but those of the picture's parts; `eye` is the pass that found the targets.
+    /// Returns all layers except those of the image's parts. `eye` is the pass that found the targets.
     pub fn inspect(&self, records: &Records, eye: &EyePass) -> Vec<Layer> {
-        let mut placed = blank(eye);
-        for origin in Origin::ALL {
-            for &sample in &self.placed[origin] {
-                pixels(eye, sample as usize).for_each(|pixel| placed.pixels[pixel][origin as usize] += 1.0);
-            }
-        }
-        let mut weights = blank(eye);
-        for i in 0..eye.len() {
-            let [direct, indirect] = self.splats.as_ref().map(|splat| splat.sums[i].weight).into_array();
-            let sums = Rgb::new(direct, indirect, 0.0);
-            pixels(eye, i).for_each(|pixel| weights.pixels[pixel] += sums);
-        }
         let heaviest: Vec<DirectIndirect<Option<&Record>>> = (0..eye.index.leaves())
             .into_par_iter()
             .flat_map_iter(|leaf| {
@@ -67,34 +55,62 @@ impl CacheFrame<'_> {
         let first = |offset| Preview::Magma { weights: Rgb::X, offset };
         let of_indirect = |value: fn(&Record) -> Rgb| image(&|heaviest| heaviest.indirect.map(value));
         let mut layers = vec![
-            Layer::color("records", placed).shown(Preview::Marks),
+            Layer::color("records", self.placed_image(eye)).shown(Preview::Marks),
             Layer::color("footprint", of_indirect(footprint)).shown(first(1.0)),
             Layer::vector("gradient", of_indirect(gradient)).shown(Preview::Hues),
-            Layer::color("weights", weights).shown(sum),
+            Layer::color("weights", self.weights_image(eye)).shown(sum),
             Layer::color("cut", image(&cut)).shown(sum),
             Layer::color("clamped", of_indirect(clamped)).shown(first(0.0)),
         ];
-        let mut visible = blank(eye);
-        for i in 0..eye.len() {
-            let mean = self.splats.as_ref().map(|splat| splat.sums[i].mean().map_or(0.0, luminance));
-            let seen = self.targets.visible(i).map(|seen| Rgb::new(seen, mean.direct + mean.indirect, 0.0));
-            pixels(eye, i).for_each(|pixel| visible.pixels[pixel] = seen.unwrap_or(visible.pixels[pixel]));
-        }
+        let visible = self.visible_image(eye);
         if visible.pixels.iter().any(|seen| *seen != Rgb::ZERO) {
             layers.push(Layer::color("visible", visible).shown(first(0.0)));
         }
         for (pass, discontinuities) in (1..).zip(&self.discontinuities) {
             let mut image = blank(eye);
-            for found in discontinuities {
-                let seam = |pixel: usize| image.pixels[pixel][found.origin as usize] += 1.0;
-                pixels(eye, found.sample as usize).for_each(seam);
+            for discontinuity in discontinuities {
+                let seam = |pixel: usize| image.pixels[pixel][discontinuity.origin as usize] += 1.0;
+                pixels(eye, discontinuity.sample as usize).for_each(seam);
             }
             layers.push(Layer::color(format!("seams.{pass}"), image).shown(Preview::Marks));
         }
         layers
     }
 
-    /// The record of a layer that weighs most at a sample of a leaf.
+    /// Returns the number of records placed in each pixel.
+    fn placed_image(&self, eye: &EyePass) -> Image {
+        let mut placed = blank(eye);
+        for origin in Origin::ALL {
+            for &sample in &self.placed[origin] {
+                pixels(eye, sample as usize).for_each(|pixel| placed.pixels[pixel][origin as usize] += 1.0);
+            }
+        }
+        placed
+    }
+
+    /// Returns the sums of weights in each pixel.
+    fn weights_image(&self, eye: &EyePass) -> Image {
+        let mut weights = blank(eye);
+        for i in 0..eye.len() {
+            let [direct, indirect] = self.splats.as_ref().map(|splat| splat.sums[i].weight).into_array();
+            let sums = Rgb::new(direct, indirect, 0.0);
+            pixels(eye, i).for_each(|pixel| weights.pixels[pixel] += sums);
+        }
+        weights
+    }
+
+    /// Returns the visible differences, and the irradiance of records beside them.
+    fn visible_image(&self, eye: &EyePass) -> Image {
+        let mut visible = blank(eye);
+        for i in 0..eye.len() {
+            let mean = self.splats.as_ref().map(|splat| splat.sums[i].mean().map_or(0.0, luminance));
+            let seen = self.targets.visible(i).map(|seen| Rgb::new(seen, mean.direct + mean.indirect, 0.0));
+            pixels(eye, i).for_each(|pixel| visible.pixels[pixel] = seen.unwrap_or(visible.pixels[pixel]));
+        }
+        visible
+    }
+
+    /// Returns the record of a layer with the largest weight at a sample of a leaf.
     fn heaviest<'r>(
         &self,
         records: &'r Records,
@@ -115,7 +131,7 @@ fn blank(eye: &EyePass) -> Image {
     Image::new(eye.known.width, eye.known.height)
 }
 
-/// Pixels that see a shading point.
+/// Returns the pixels that see a shading point.
 fn pixels(eye: &EyePass, point: usize) -> impl Iterator<Item = usize> {
     eye.visibility.of(point).iter().map(|seen| seen.pixel as usize)
 }

@@ -1,46 +1,47 @@
 //! Clusters of a cut, and their light at the points of up to sixteen records.
 
-use super::compensate::Clamps;
-use super::source::Candidate;
+use super::candidate::Candidate;
+use super::clamps::Clamps;
 use crate::lightcut::{Transfer, is_weak};
 use crate::lights::{LightNode, LobeProfile, Vpl, VplKind};
 use base::math::{F32x16, Frame, LANES, Vec3x16, lanes_in};
 use glam::Vec3;
 use world::material::Materials;
 
-/// Cluster of a cut, as its representative lights points.
+/// Cluster of a cut, lit through its representative.
 #[derive(Clone, Copy)]
 pub struct LitCluster<'t> {
     /// Transfer from the virtual lights.
     pub transfer: &'t Transfer<'t>,
-    /// The cluster.
+    /// Node of the cluster.
     pub node: &'t LightNode,
-    /// Its representative.
+    /// Representative of the cluster.
     pub vpl: &'t Vpl,
 }
 
 impl<'t> LitCluster<'t> {
-    /// The cluster of a node.
+    /// Returns the cluster of a node.
     #[inline]
     pub fn new(transfer: &'t Transfer<'t>, node: u32) -> LitCluster<'t> {
         let node = &transfer.trees.nodes[node as usize];
         LitCluster { transfer, node, vpl: &transfer.trees.vpls[node.representative()] }
     }
 
-    /// Shares that are kept of its contributions, by the irradiance `responses` to its representative.
+    /// Returns the share of the contribution to each point that clamping retains. `responses` is the irradiance of the
+    /// representative at unit intensity.
     #[inline]
-    pub fn kept(&self, clamps: &Clamps, responses: &Vec3x16) -> F32x16 {
-        if is_weak(self.node) { clamps.kept(self.node.intensity, responses) } else { [1.0; LANES] }
+    pub fn retained(&self, clamps: &Clamps, responses: &Vec3x16) -> F32x16 {
+        if is_weak(self.node) { clamps.retained(self.node.intensity, responses) } else { [1.0; LANES] }
     }
 
-    /// Lobe by which its representative radiates, if it does.
+    /// Returns the lobe of the representative, if it radiates by one.
     #[inline]
     pub fn lobe(&self) -> Option<&'t LobeProfile> {
         let is_lobed = self.node.kind() == VplKind::Lobed;
         is_lobed.then(|| &self.transfer.trees.profiles.lobes[self.vpl.lobe()])
     }
 
-    /// Returns the minimum squared distance that the geometry term of the representative divides by.
+    /// Returns the minimum squared distance by which the geometry term of the representative is divided.
     #[inline]
     pub fn near_sq(&self) -> f32 {
         self.transfer.near_sq(self.vpl, self.node.kind())
@@ -52,24 +53,26 @@ pub struct RecordPoints<'a> {
     candidates: &'a [Candidate],
     materials: &'a Materials,
     position: Vec3x16,
-    /// Tangents, bitangents and normals of their frames.
+    /// Tangents, bitangents and normals of the points' frames.
     pub(super) axes: [Vec3x16; 3],
-    /// Lanes whose light has to pass a coat.
+    /// Lanes whose light passes a coat.
     coated: u16,
 }
 
-/// Light of one cluster at the points.
-pub struct ArrivingLight {
-    /// Irradiance after clamping and coat.
+/// Light of one cluster at up to sixteen points.
+pub struct Arriving16 {
+    /// Irradiance after clamping and the coat.
     pub passed: Vec3x16,
     /// Unit direction to the representative, in each point's frame.
     pub direction: Vec3x16,
-    /// One over the distance; 0 for a directional light.
+    /// Inverse of the distance, in 1/m; 0 for a directional light.
     pub inverse: F32x16,
+    /// Share of the light that clamping retains.
+    pub retained: F32x16,
 }
 
 impl<'a> RecordPoints<'a> {
-    /// Points of `candidates`, of which only sixteen count.
+    /// Returns the points of the first sixteen `candidates`.
     pub fn new(candidates: &'a [Candidate], materials: &'a Materials) -> RecordPoints<'a> {
         let candidates = &candidates[..candidates.len().min(LANES)];
         let mut points = RecordPoints {
@@ -90,13 +93,14 @@ impl<'a> RecordPoints<'a> {
         points
     }
 
-    /// Light of a cluster whose representative, of unit intensity, gives the irradiance `responses`, of which
-    /// clamping leaves the share `kept`.
-    pub(super) fn arriving(&self, cluster: &LitCluster, responses: &Vec3x16, kept: &F32x16) -> ArrivingLight {
+    /// Returns the light of a cluster at the points. `responses` is the irradiance of the representative at unit
+    /// intensity; clamping retains the share `retained` of it.
+    #[inline]
+    pub fn arriving(&self, cluster: &LitCluster, responses: &Vec3x16, retained: F32x16) -> Arriving16 {
         let distant = cluster.node.kind() == VplKind::Directional;
         let intensity = cluster.node.intensity;
-        let mut light =
-            ArrivingLight { passed: Vec3x16::ZERO, direction: Vec3x16::ZERO, inverse: [0.0; LANES] };
+        let (passed, direction) = (Vec3x16::ZERO, Vec3x16::ZERO);
+        let mut light = Arriving16 { passed, direction, inverse: [0.0; LANES], retained };
         for l in 0..LANES {
             let q = if distant { cluster.vpl.position } else { cluster.vpl.position - self.position.get(l) };
             let dist_sq = q.length_squared();
@@ -106,7 +110,7 @@ impl<'a> RecordPoints<'a> {
             let local = Vec3::new(q.dot(t.get(l)), q.dot(b.get(l)), q.dot(n.get(l)));
             light.direction.set(l, local);
             light.inverse[l] = if distant { 0.0 } else { inverse };
-            let share = if local.z > 0.0 { kept[l] } else { 0.0 };
+            let share = if local.z > 0.0 { retained[l] } else { 0.0 };
             light.passed.set(l, intensity * responses.get(l) * share);
         }
         for l in lanes_in(self.coated) {

@@ -1,28 +1,33 @@
-//! Stages 4 to 6: cache records, splatted onto the eye samples around them, and adapted until no seam is visible.
+//! Radiance cache: records of irradiance or radiance, splatted onto the eye samples around them, and adapted until no
+//! seam between records is visible.
 //!
-//! Paper: Herzog et al. 2009, sections 5 (records and footprints), 6 (splatting), 8 of the method (adaptation).
+//! Paper: Herzog et al. 2009, sections 5 (records and footprints), 5.2 (adaptation) and 6 (splatting).
 //!
 //! Contents of a record:
-//! - [`record`]: irradiance at a point; [`footprint`]: the ellipse within which it is used; [`store`]: the records of
-//!   a layer, which outlive the frame; [`kept`]: those of a walk-through, from frame to frame;
-//! - [`series`]: radiance as a series beside irradiance, for glossy surfaces, and its reflection by lobes.
+//! - [`record`]: irradiance at a point; [`footprint`]: the ellipse within which it is used;
+//! - [`glossy`], [`glossy_point`]: the materials whose lobes need series of radiance, and the reflection by these
+//!   lobes;
+//! - [`store`]: the records of a layer; [`retained`]: the records of a walk-through, from frame to frame.
 //!
 //! Computation:
-//! - [`source`]: the points where records are needed, and the sources that compute them; [`compute`]: by lightcuts,
-//!   neighbours sharing them;
-//! - [`gather`]: from a converged cut to irradiance, its gradient and the distance of the geometry that casts light and
-//!   shadow, [`occluder_distance`] included; [`compensate`]: light lost by clamping near virtual lights, recovered by
-//!   short rays;
-//! - [`probe`], [`edges`], [`occlusion_hessian`]: surfaces around a record, and the change of its light with the motion
-//!   of occluders' edges.
+//! - [`candidate`]: points where records are needed; [`source`]: what computes records there;
+//! - [`compute`]: records by lightcuts that neighbours share; [`lit_cluster`], [`lit_cut`]: the light of a cut at the
+//!   points of records; [`gather`], [`series`]: the sums over it; [`clamps`]: limits of virtual lights;
+//! - [`compensate`]: light lost to these limits, recovered by short rays;
+//! - [`occluder_distance`]: distances of occluders, which bound footprints;
+//! - [`probe`], [`edges`], [`occlusion_hessian`]: surfaces around a record, and the change of its light due to the
+//!   motion of occluders' edges.
 //!
 //! Use in a frame:
-//! - [`targets`]: the eye samples as far as records light them; [`splat`]: weighted sums there;
-//! - [`placement`]: points where records are needed next; [`adapt`]: footprints that disagree visibly are shrunk;
-//!   [`fill`]: both, until all is covered;
-//! - [`resolve`]: light of records at the eye samples, and the parts left to cuts; [`inspect`]: images of records.
+//! - [`targets`]: the eye samples that records light; [`splat`]: weighted sums there;
+//! - [`placement`]: points where records are needed next; [`adapt`]: shrinking of footprints that disagree visibly;
+//!   [`fill`]: both, until all samples are covered;
+//! - [`resolve`]: light of records at the eye samples, and the parts left to cuts; [`inspect`]: images of records;
+//! - [`work`]: expected work of a frame.
 
 pub mod adapt;
+pub mod candidate;
+pub mod clamps;
 pub mod compensate;
 pub mod compute;
 pub mod edges;
@@ -31,15 +36,18 @@ pub mod fill;
 mod fixtures;
 pub mod footprint;
 pub mod gather;
+pub mod glossy;
+pub mod glossy_point;
 pub mod inspect;
-pub mod kept;
 pub mod lit_cluster;
+pub mod lit_cut;
 pub mod occluder_distance;
 pub mod occlusion_hessian;
 pub mod placement;
 pub mod probe;
 pub mod record;
 pub mod resolve;
+pub mod retained;
 pub mod series;
 pub mod settings;
 pub mod source;

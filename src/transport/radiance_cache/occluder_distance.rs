@@ -1,6 +1,6 @@
 //! Distances from records to the occluders of their virtual lights.
 //!
-//! Paper: Herzog et al. 2009, section 5.1: occluders limit the reach of a record, as visible lights do.
+//! Paper: Herzog et al. 2009, section 5.1. Occluders limit the footprint of a record, as visible lights do.
 //!
 //! Deviations: the occluder is the one that stopped the shadow ray, not the nearest.
 
@@ -13,20 +13,20 @@ use std::cell::RefCell;
 use world::World;
 use world::shadow::Engine;
 
-/// Visibility in the scene that notes the distances of occluders.
+/// Visibility in the scene that logs the distances of occluders.
 pub struct OccluderLog<'w> {
     engine: Engine<'w>,
-    /// Representative, and the distance to its occluder from each lane, or infinity.
+    /// Representatives, each with the distance to its occluder per lane, or infinity.
     log: RefCell<Vec<(u32, F32x16)>>,
 }
 
 impl<'w> OccluderLog<'w> {
-    /// Nothing noted yet.
+    /// Creates an empty log.
     pub fn new(world: &'w World) -> OccluderLog<'w> {
         OccluderLog { engine: Engine::scattered(world), log: RefCell::new(Vec::new()) }
     }
 
-    /// Distances noted, sorted.
+    /// Returns the distances, sorted by representative.
     pub fn sorted(self) -> OccluderDistances {
         let mut log = self.log.into_inner();
         log.sort_unstable_by_key(|entry| entry.0);

@@ -1,11 +1,13 @@
-//! Derivatives of a record's irradiance over the surface, with the motion of occluders' edges.
+//! Derivatives of a record's irradiance over the surface, including the motion of occluders' edges.
 //!
-//! Paper: Schwarzhaupt, Jensen and Jarosz 2012: footprints from second derivatives that know of occlusion.
-//! Deviations: the smooth part is exact for the virtual lights with visibility held; the edges' part is an upper
-//! estimate (see [`super::edges`]), so their absolute values are added.
+//! Paper: Schwarzhaupt, Jensen and Jarosz 2012, footprints from second derivatives that include occlusion.
+//!
+//! Deviations: the smooth part is exact for the virtual lights at constant visibility. The edges' part is an upper
+//! estimate (see [`super::edges`]). Hence their absolute values are added.
 
 use super::edges::CellLight;
-use super::lit_cluster::ArrivingLight;
+use super::footprint::Derivatives;
+use super::lit_cluster::Arriving16;
 use super::probe::{Probes, azimuths16};
 use crate::gradient::LocalVpl;
 use crate::lights::{DirectIndirect, Origin};
@@ -14,10 +16,10 @@ use glam::{Mat3, Vec2, Vec3};
 use std::f32::consts::TAU;
 use world::{SurfacePoint, World};
 
-/// Smallest cosine at which a patch is taken to be seen: its share of the hemisphere does not vanish with it.
+/// Lower bound of the cosine at which a patch of surface is seen, whose share of the hemisphere does not vanish.
 const MIN_PATCH_COS: f32 = 0.2;
 
-/// Surfaces seen from a point, and the light of both layers that they send.
+/// Surfaces seen from a point, and the light of both layers that they send to it.
 #[derive(Clone, Debug)]
 pub struct OcclusionHessian {
     probes: Probes,
@@ -28,27 +30,16 @@ pub struct OcclusionHessian {
 #[derive(Clone, Debug)]
 struct LayerLight {
     cells: CellLight,
-    /// Second derivatives uu, uv, vv of the luminance while visibility is held.
-    held: [f32; 3],
-}
-
-/// Derivatives of the irradiance over the surface.
-#[derive(Clone, Copy, Debug)]
-pub struct Derivatives {
-    /// Gradient per channel (columns) by moving edges, in world space.
-    pub edge_gradient: Mat3,
-    /// Unit tangent axes: of the largest second derivative, and across.
-    pub axes: [Vec3; 2],
-    /// Absolute second derivatives of the luminance along them.
-    pub curvature: [f32; 2],
+    /// Second derivatives uu, uv, vv of the luminance at constant visibility.
+    smooth: [f32; 3],
 }
 
 impl OcclusionHessian {
-    /// Traces `rays` to the surfaces around each of some points; no light yet. The number of a point turns its rays.
+    /// Traces `rays` probe rays around each of some points, without light yet. The number of a point rotates its rays.
     pub fn at_points(world: &World, points: &[(SurfacePoint, u32)], rays: u32) -> Vec<OcclusionHessian> {
         let of_probes = |probes: Probes| {
             let layers =
-                DirectIndirect::from_fn(|_| LayerLight { cells: CellLight::new(&probes), held: [0.0; 3] });
+                DirectIndirect::from_fn(|_| LayerLight { cells: CellLight::new(&probes), smooth: [0.0; 3] });
             OcclusionHessian { probes, layers }
         };
         Probes::trace(world, points, rays).into_iter().map(of_probes).collect()
@@ -59,8 +50,8 @@ impl OcclusionHessian {
         self.probes.harmonic_mean()
     }
 
-    /// Adds a cluster of the cut as it lights several points to the hessian of each.
-    pub fn add_arriving(hessians: &mut [OcclusionHessian], origin: Origin, light: &ArrivingLight) {
+    /// Adds the light of a cluster at several points to the hessian of each.
+    pub fn add_arriving(hessians: &mut [OcclusionHessian], origin: Origin, light: &Arriving16) {
         let turns = azimuths16(&light.direction);
         for (lane, hessian) in hessians.iter_mut().enumerate().take(LANES) {
             let passed = light.passed.get(lane);
@@ -72,15 +63,15 @@ impl OcclusionHessian {
         }
     }
 
-    /// Adds second derivatives uu, uv, vv of the luminance of a layer while visibility is held.
-    pub fn add_held(&mut self, origin: Origin, held: [f32; 3]) {
-        for (sum, held) in self.layers[origin].held.iter_mut().zip(held) {
-            *sum += held;
+    /// Adds second derivatives uu, uv, vv of the luminance of a layer at constant visibility.
+    pub fn add_smooth(&mut self, origin: Origin, derivatives: [f32; 3]) {
+        for (sum, derivative) in self.layers[origin].smooth.iter_mut().zip(derivatives) {
+            *sum += derivative;
         }
     }
 
-    /// Adds to a layer the irradiance that a patch of surface gives, seen at `offset` in the frame of the normal;
-    /// `patch_normal` is of unit length and in that frame too.
+    /// Adds to a layer the irradiance that a patch of surface gives. `offset` is its position in the frame of the
+    /// normal, `patch_normal` its unit normal in that frame.
     #[inline]
     pub fn add_patch(&mut self, origin: Origin, offset: Vec3, patch_normal: Vec3, irradiance: Rgb) {
         let distance_sq = offset.length_squared();
@@ -94,14 +85,14 @@ impl OcclusionHessian {
         }
         let intensity = luminance(irradiance) * distance_sq / cosines;
         let source = LocalVpl::Oriented { offset: offset.to_array(), normal: patch_normal.to_array() };
-        self.add_held(origin, source.irradiance_hessian(0.0).map(|h| intensity * h));
+        self.add_smooth(origin, source.irradiance_hessian(0.0).map(|h| intensity * h));
     }
 
-    /// Derivatives of the light of one layer.
+    /// Returns the derivatives of the light of one layer.
     pub fn derivatives(&self, origin: Origin) -> Derivatives {
         let light = &self.layers[origin];
         let edges = light.cells.edges(&self.probes);
-        let (axis, [first, second]) = eigen(light.held);
+        let (axis, [first, second]) = eigen(light.smooth);
         let absolute = tensor(axis, [first.abs(), second.abs()]);
         let sum = std::array::from_fn(|i| absolute[i] + edges.hessian[i]);
         let (axis, curvature) = eigen(sum);
@@ -115,17 +106,17 @@ impl OcclusionHessian {
     }
 }
 
-/// Unit axis of the larger eigenvalue of a symmetric matrix uu, uv, vv, and both eigenvalues, the larger one
+/// Returns the unit axis of the larger eigenvalue of a symmetric matrix uu, uv, vv, and both eigenvalues, the larger
 /// first.
 fn eigen([uu, uv, vv]: [f32; 3]) -> (Vec2, [f32; 2]) {
     let (mean, half) = (0.5 * (uu + vv), 0.5 * (uu - vv));
     let radius = half.hypot(uv);
-    // The axis of the larger one, twice whose angle has the tangent uv/half.
+    // The doubled angle of the larger eigenvalue's axis has the tangent uv/half.
     let axis = Vec2::from_angle(0.5 * uv.atan2(half));
     (axis, [mean + radius, mean - radius])
 }
 
-/// The symmetric matrix with these eigenvalues along `axis` and across it.
+/// Returns the symmetric matrix with these eigenvalues along `axis` and across it.
 fn tensor(axis: Vec2, [along, across]: [f32; 2]) -> [f32; 3] {
     let (x, y) = (axis.x, axis.y);
     [along * x * x + across * y * y, (along - across) * x * y, along * y * y + across * x * x]
@@ -169,16 +160,17 @@ mod tests {
             };
             let here = irradiance(Vec3::ZERO);
             let response = here.x / node.intensity.x;
-            let of_light = |kept: f32| {
+            let of_light = |retained: f32| {
                 let mut hessian = OcclusionHessian::at_points(&world, &[(point, 0)], 64);
                 let cluster = LitCluster::new(&transfer, trees.roots[0]);
                 let group = [candidate(point.position, Vec3::Z)];
                 let points = RecordPoints::new(&group, &MATERIALS);
                 let mut layer = GatheredLayer16::default();
                 let responses = Vec3x16::splat(Rgb::splat(response));
-                let light = layer.add(&points, &cluster, &responses, &[kept; LANES]);
+                let light = points.arriving(&cluster, &responses, [retained; LANES]);
+                layer.add(&points, &cluster, &light);
                 OcclusionHessian::add_arriving(&mut hessian, Origin::Indirect, &light);
-                hessian[0].add_held(Origin::Indirect, layer.held(0));
+                hessian[0].add_smooth(Origin::Indirect, layer.second_derivatives(0));
                 hessian[0].derivatives(Origin::Indirect)
             };
             let found = of_light(1.0);

@@ -1,13 +1,13 @@
 //! Candidates for records: uncovered eye samples, spread evenly over the visible surfaces.
 //!
-//! Paper: Herzog et al. 2009, section 6 (records are computed where no record contributes); the coarse
-//! beginning is the overture of Ward's irradiance caching. Each step takes at most one sample of each cell of
-//! one level of the eye samples' index, the one nearest to the middle of the uncovered samples there.
+//! Paper: Herzog et al. 2009, section 6 (records are computed where no record contributes). Starting with coarse cells
+//! is the overture of Ward's irradiance caching. Each step takes at most one sample per cell of one level of the
+//! index: the sample nearest to the middle of the uncovered samples in the cell.
 //!
-//! Light that is known already masks a record's errors (section 6 again, where it is the other layer's). Drawn direct
-//! light does so as far as the darkest part of the neighbourhood that the record may light has it.
+//! Known light masks the errors of a record, as the other layer does in section 6. Sampled direct light counts only as
+//! far as the darkest part of the record's neighbourhood has it.
 
-use super::source::Candidate;
+use super::candidate::Candidate;
 use super::splat::Splat;
 use super::targets::Targets;
 use crate::lights::DirectIndirect;
@@ -17,32 +17,42 @@ use rayon::prelude::*;
 use world::SurfacePoint;
 
 /// Levels up from a cell to the one whose darkest part the errors of its record are judged against.
-const WIDER: u32 = 2;
+const BASELINE_LEVELS_UP: u32 = 2;
 
-/// Layers among those `cached` whose records have no more than a sum of weights `least` at a sample, though records
-/// could light it.
+/// Cells of the index that get candidates in one step: every second cell of a level, so that siblings take turns.
+#[derive(Clone, Copy, Debug)]
+pub struct CandidateStep {
+    /// Level of the cells.
+    pub level: u32,
+    /// Number of each cell modulo 2, 0 or 1.
+    pub parity: usize,
+}
+
+/// Returns the layers among `cached` whose records have no more than the sum of weights `max_weight` at a sample that
+/// records can light.
 #[inline]
 pub fn missing(
     targets: &Targets,
     splats: &DirectIndirect<Splat>,
     cached: DirectIndirect<bool>,
     sample: usize,
-    least: f32,
+    max_weight: f32,
 ) -> DirectIndirect<bool> {
     DirectIndirect::from_fn(|origin| {
-        cached[origin] && targets.cacheable[sample] && splats[origin].sums[sample].weight <= least
+        cached[origin] && targets.cacheable[sample] && splats[origin].sums[sample].weight <= max_weight
     })
 }
 
-/// Returns the candidates of every other cell of `level` (`parity` 0 or 1): siblings take turns, so that the
-/// need of one may be covered already by the other's record. No footprint is to be larger than `reach` spacings.
+/// Returns the candidates of the cells of a turn. A sibling in the later turn may already be covered by the record of
+/// the earlier one. No footprint is larger than `reach` spacings.
 pub fn candidates(
     targets: &Targets,
     splats: &DirectIndirect<Splat>,
     cached: DirectIndirect<bool>,
     reach: f32,
-    (level, parity): (u32, usize),
+    step: CandidateStep,
 ) -> Vec<Candidate> {
+    let CandidateStep { level, parity } = step;
     let cells = (1usize << level) / 2;
     (0..cells.max(1))
         .into_par_iter()
@@ -64,8 +74,9 @@ pub fn candidates(
             let mut candidate =
                 candidate(targets, splats, sample, missing(targets, splats, cached, sample, 0.0));
             // The footprint may reach beyond the cell.
-            let up = level.min(WIDER);
-            candidate.baseline_luminance += targets.least_known(targets.index.range(level - up, cell >> up));
+            let up = level.min(BASELINE_LEVELS_UP);
+            candidate.baseline_luminance +=
+                targets.darkest_baseline(targets.index.range(level - up, cell >> up));
             candidate.clearance = targets.clearance(&candidate.point, reach * candidate.spacing);
             Some(candidate)
         })
@@ -80,7 +91,7 @@ fn candidate(
 ) -> Candidate {
     let point = &targets.points.geometry[sample];
     let geometric_normal = targets.points.surfaces[sample].geometric_normal;
-    let known = splats.as_ref().map(|splat| splat.sums[sample].mean().map_or(0.0, luminance));
+    let cached = splats.as_ref().map(|splat| splat.sums[sample].mean().map_or(0.0, luminance));
     Candidate {
         sample: sample as u32,
         point: SurfacePoint { position: point.position, normal: point.normal, geometric_normal },
@@ -89,14 +100,14 @@ fn candidate(
         coat: point.coat,
         bands: targets.bands[sample],
         missing,
-        baseline_luminance: known.direct + known.indirect,
+        baseline_luminance: cached.direct + cached.indirect,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::fixtures::{Floor, record};
-    use super::super::source::NewRecord;
+    use super::super::record::NewRecord;
     use super::super::store::{RecordStore, Records};
     use super::*;
     use crate::lights::Origin;
@@ -127,7 +138,7 @@ mod tests {
         for level in 0..6 {
             let mut cells = Vec::new();
             for parity in 0..2 {
-                let found = candidates(&targets, &splats, BOTH, REACH, (level, parity));
+                let found = candidates(&targets, &splats, BOTH, REACH, CandidateStep { level, parity });
                 assert_eq!(found.len(), (1 << level) / 2 + usize::from(level == 0));
                 for (pair, candidate) in found.iter().enumerate() {
                     let cell = if level == 0 { 0 } else { 2 * pair + parity };
@@ -155,7 +166,11 @@ mod tests {
         let splats = splats(&targets, &half);
         let one = |origin| DirectIndirect::from_fn(|other| other == origin);
         let all = |cached| -> Vec<Candidate> {
-            (0..2).flat_map(|parity| candidates(&targets, &splats, cached, REACH, (10, parity))).collect()
+            (0..2)
+                .flat_map(|parity| {
+                    candidates(&targets, &splats, cached, REACH, CandidateStep { level: 10, parity })
+                })
+                .collect()
         };
         // At level 10 a cell is a sample.
         assert_eq!(all(BOTH).len(), 1024);
@@ -169,7 +184,8 @@ mod tests {
         assert!(direct.len() == 512 && direct.iter().all(|c| c.point.position.x > 0.5));
         assert_eq!(all(one(Origin::Indirect)).len(), 1024);
         // The middle of the uncovered samples, not of the cell.
-        let coarse = candidates(&targets, &splats, one(Origin::Direct), REACH, (0, 0));
+        let coarse =
+            candidates(&targets, &splats, one(Origin::Direct), REACH, CandidateStep { level: 0, parity: 0 });
         assert!(coarse.len() == 1 && (coarse[0].point.position - Vec3::new(0.75, 0.5, 0.0)).length() < 0.04);
     }
 
@@ -178,12 +194,12 @@ mod tests {
         let floor = Floor::grid(32);
         let lit = |i: usize| floor.points.geometry[i].position.x < 0.5;
         let reflected = 3.0;
-        let targets = floor.targets().with_known(|i| if lit(i) { reflected } else { 0.0 });
+        let targets = floor.targets().with_baseline(|i| if lit(i) { reflected } else { 0.0 });
         let splats = splats(&targets, &Records::default());
         let albedo = luminance(floor.points.surfaces[0].bsdf.base_brdf() * std::f32::consts::PI);
         let (mut bright, mut dark) = (0, 0);
         for parity in 0..2 {
-            for found in candidates(&targets, &splats, BOTH, REACH, (6, parity)) {
+            for found in candidates(&targets, &splats, BOTH, REACH, CandidateStep { level: 6, parity }) {
                 let cell = floor.index.range(6, 0).len();
                 let wider = floor.index.range(4, found.sample as usize / (4 * cell));
                 if wider.clone().all(lit) {
@@ -197,7 +213,7 @@ mod tests {
             }
         }
         assert_eq!((bright, dark), (32, 0), "the middle of the floor divides cells of that level");
-        let coarse = candidates(&targets, &splats, BOTH, REACH, (0, 0));
+        let coarse = candidates(&targets, &splats, BOTH, REACH, CandidateStep { level: 0, parity: 0 });
         assert_eq!(coarse[0].baseline_luminance, 0.0);
     }
 
@@ -208,7 +224,7 @@ mod tests {
         targets.cacheable.fill(false);
         targets.cacheable[11] = true;
         let splats = splats(&targets, &Records::default());
-        let found = candidates(&targets, &splats, BOTH, REACH, (0, 0));
+        let found = candidates(&targets, &splats, BOTH, REACH, CandidateStep { level: 0, parity: 0 });
         assert!(found.len() == 1 && found[0].sample == 11);
     }
 }

@@ -1,10 +1,10 @@
 //! Probe rays: the nearest surface in each cell of a point's hemisphere.
 //!
-//! Paper: Ward and Heckbert, *Irradiance Gradients*, 1992, for the division of the hemisphere: rings of equal
-//! share of a uniform sky's irradiance, cut into sectors.
+//! Paper: Ward and Heckbert, *Irradiance Gradients*, 1992, for the division of the hemisphere into rings of equal
+//! irradiance from a uniform sky, cut into sectors.
 //!
-//! Deviations: one ray through the middle of each cell; the sectors of each point are turned by an angle of its
-//! own, so that features that fall between rays differ from point to point.
+//! Deviations: one ray passes through the middle of each cell. The sectors of each point are rotated by a random
+//! angle, so that features missed between rays differ from point to point.
 //!
 //! Units: directions in the point's frame; inverse distances in 1/m.
 
@@ -16,33 +16,33 @@ use std::f32::consts::TAU;
 use world::shadow;
 use world::{SurfacePoint, World};
 
-/// Sectors of each ring: one packet of rays.
+/// Sectors per ring: one packet of rays.
 pub const SECTORS: usize = 16;
 /// Maximum number of rings from the normal to the horizon.
 const MAX_RINGS: u32 = 256;
 
-/// Surface seen in each cell; cell `ring · SECTORS + sector`.
+/// Surfaces seen by the cells; cell `ring · SECTORS + sector`.
 #[derive(Clone, Debug)]
 pub struct Probes {
-    /// z is the normal.
+    /// Frame whose z axis is the normal.
     pub frame: Frame,
-    /// Rings from the normal to the horizon.
+    /// Number of rings from the normal to the horizon.
     pub rings: usize,
     /// Azimuth, in sectors, at which sector 0 begins.
     turn: f32,
-    /// Unit directions of the rays, in the frame.
+    /// Unit directions of the rays in the frame.
     pub direction: Vec<Vec3>,
-    /// One over the distance to the surface; 0 where there is none.
+    /// Inverse distance to the surface; 0 without a surface.
     pub inverse: Vec<f32>,
-    /// The surface's plane as n/h, for a unit normal n in the frame and its distance h: the inverse distance in a
-    /// direction is the product with it. Zero where there is no surface.
+    /// Plane of the surface as n/h, for a unit normal n in the frame and the distance h of the plane. The product with
+    /// a direction is the inverse distance along it. Zero without a surface.
     pub plane: Vec<Vec3>,
-    /// The distance h of that plane.
+    /// Distance h of that plane.
     pub height: Vec<f32>,
 }
 
 impl Probes {
-    /// Nothing seen in `rings` rings, whose sectors `seed` turns, around a normal.
+    /// Returns probes that see nothing, in `rings` rings around a normal. `seed` rotates the sectors.
     fn new(normal: Vec3, rings: usize, seed: u32) -> Probes {
         let cells = rings * SECTORS;
         let mut probes = Probes {
@@ -65,7 +65,7 @@ impl Probes {
         probes
     }
 
-    /// Traces `rays` in whole rings from each of some points on the side of its normal; the number of a point turns its
+    /// Traces `rays` rays, in whole rings, from each point to the side of its normal. The seed of a point rotates its
     /// sectors.
     pub fn trace(world: &World, points: &[(SurfacePoint, u32)], rays: u32) -> Vec<Probes> {
         let rings = rays.div_ceil(SECTORS as u32).clamp(1, MAX_RINGS) as usize;
@@ -92,45 +92,45 @@ impl Probes {
         probes
     }
 
-    /// Sets the surface seen in a cell, by the distance along its ray and a unit normal in the frame.
+    /// Sets the surface seen by a cell to one at `distance` along the ray, with a unit normal in the frame.
     pub(super) fn set(&mut self, cell: usize, distance: f32, normal: Vec3) {
         let cos = normal.dot(self.direction[cell]);
         let distance = distance.max(f32::MIN_POSITIVE);
         self.inverse[cell] = 1.0 / distance;
-        // A surface seen edge-on is taken to face the ray.
+        // A surface seen edge-on is treated as facing the ray.
         let (normal, cos) = if cos.abs() > 1e-3 { (normal, cos) } else { (self.direction[cell], 1.0) };
         self.plane[cell] = normal / (distance * cos);
         self.height[cell] = distance * cos.abs();
     }
 
-    /// Azimuth of a sector coordinate.
+    /// Returns the azimuth of a sector coordinate, in radians.
     #[inline]
     pub fn azimuth(&self, sector: f32) -> f32 {
         (sector + self.turn) * (TAU / SECTORS as f32)
     }
 
-    /// Ring and sector coordinates of a unit direction in the frame, given its azimuth in turns; cell (j, k) is
-    /// [j, j + 1) × [k, k + 1). Sectors are not wrapped.
+    /// Returns ring and sector coordinates of a unit direction in the frame, given its azimuth in turns. Cell (j, k)
+    /// is [j, j + 1) × [k, k + 1). Sectors are not wrapped.
     #[inline]
     pub fn coordinates(&self, direction: Vec3, turns: f32) -> (f32, f32) {
         let sin_sq = (1.0 - direction.z * direction.z).max(0.0);
         (sin_sq * self.rings as f32, turns * SECTORS as f32 - self.turn)
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     pub fn cells(&self) -> usize {
         self.inverse.len()
     }
 
-    /// Harmonic mean of the distances, each cell by its share of a uniform sky's irradiance; infinite if nothing
-    /// is seen.
+    /// Returns the harmonic mean of the distances, weighted by each cell's irradiance from a uniform sky; infinite if
+    /// nothing is seen.
     pub fn harmonic_mean(&self) -> f32 {
         let sum: f32 = self.inverse.iter().sum();
         if sum > 0.0 { self.cells() as f32 / sum } else { f32::INFINITY }
     }
 }
 
-/// Azimuths of directions in turns, in [-½, ½], to within 2e-6.
+/// Returns azimuths of directions in turns, in [-½, ½], with an error up to 2e-6.
 ///
 /// Paper: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 1964, 4.4.49.
 pub fn azimuths16(direction: &Vec3x16) -> F32x16 {
@@ -194,7 +194,7 @@ mod tests {
         for cell in 0..probes.cells() {
             let expected = probes.direction[cell].z / 1.5;
             assert!((probes.inverse[cell] - expected).abs() < 1e-4 * expected);
-            // Its plane gives the distance in every other direction too.
+            // The plane gives the distance in every other direction too.
             let other = probes.direction[(cell + 29) % probes.cells()];
             assert!((probes.plane[cell].dot(other) - other.z / 1.5).abs() < 1e-4);
         }

@@ -1,25 +1,27 @@
-//! A cache record: irradiance at a point, its derivatives, and the footprint within which it is extrapolated.
+//! Cache record: irradiance at a point, its derivatives, and the footprint within which it is extrapolated.
 //!
 //! Paper: Herzog et al. 2009, section 5, Eqs. 5, 6, 11 and 12.
 //! Units: irradiance in W/m², gradients in W/m³.
 //!
-//! Deviations: the irradiance is kept as a vector, whose product with a normal is exact for every normal
-//! until the horizon clips a light, and which replaces the rotational gradient. The weight 1/δ - 1 (δ = 1 at
-//! the footprint's edge) is that of Eq. 11 less its value there, so that it does not jump.
+//! Deviations: irradiance is stored as a vector instead of a scalar with a rotational gradient. The product of the
+//! vector with a normal is exact until the horizon clips a light. The weight is 1/δ - 1, with δ = 1 at the footprint's
+//! edge: Eq. 11 less its value there, so that it is continuous.
 
 use super::footprint::Footprint;
 use crate::eye::PointGeometry;
+use crate::hsh::Radiance;
+use crate::lights::Origin;
 use base::math::{Rgb, luminance};
 use glam::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Sine of the angle by which a point may lie behind the plane of a record that lights it.
+/// Maximum sine of the angle by which a point may lie behind the plane of a record that lights it.
 const BEHIND: f32 = 0.1;
 
-/// Maximum factor between the extrapolated luminance and the record's own.
+/// Maximum ratio of the extrapolated luminance to the record's own, in either direction.
 const EXTRAPOLATION: f32 = 3.0;
 
-/// Smallest δ that weights are computed for, which limits the weight at the record itself.
+/// Lower bound of δ in weights, which limits the weight at the record itself.
 const MIN_DELTA: f32 = 1e-3;
 
 /// Irradiance of one layer around a point.
@@ -29,39 +31,51 @@ pub struct Record {
     pub position: Vec3,
     /// Unit shading normal.
     pub normal: Vec3,
-    /// Coat that its light has passed; 0 for none. It lights only surfaces of the same.
+    /// Coat that the light has passed; 0 without a coat. The record lights only surfaces with the same coat.
     pub coat: u32,
-    /// Bands of its series; 0 without. It lights only surfaces that need no more.
+    /// Bands of its series; 0 without a series. The record lights only surfaces that need no more bands.
     pub bands: u8,
-    /// Region in which it is used.
+    /// Region in which the record is used.
     pub footprint: Footprint,
-    /// Per channel (column): the vector whose product with a unit normal is the irradiance on a surface of that
+    /// Irradiance vector per channel (column). Its product with a unit normal is the irradiance on a surface of that
     /// normal.
     pub vector: Mat3,
-    /// Per channel (column): translational gradient of the irradiance, in the tangent plane.
+    /// Translational gradient of the irradiance per channel (column), in the tangent plane.
     pub gradient: Mat3,
     /// Luminance of the irradiance at `normal`.
     pub luminance: f32,
-    /// Figures about its making.
+    /// Figures about its computation.
     pub diagnostics: Diagnostics,
 }
 
-/// Figures about a record that only statistics and inspection read.
+/// Figures about a record that only statistics and inspection use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Diagnostics {
-    /// Clusters in its cut, or rays of its gathering.
+    /// Number of clusters in its cut, or of rays in its final gathering.
     pub cut: u32,
-    /// Distance of the geometry that casts light and shadow.
+    /// Distance of the geometry that sends or blocks light.
     pub distance: f32,
-    /// Luminance of the irradiance that clamping took away.
+    /// Luminance of the irradiance removed by clamping.
     pub clamped: f32,
-    /// Luminance of the irradiance that short rays gave back.
+    /// Luminance of the irradiance recovered by short rays.
     pub compensated: f32,
 }
 
+/// A record with its series, if the surface needs one.
+pub struct NewRecord {
+    /// Layer of the record.
+    pub origin: Origin,
+    /// Eye sample of the candidate.
+    pub sample: u32,
+    /// Record.
+    pub record: Record,
+    /// Radiance as a series with the bands of the candidate.
+    pub series: Option<Radiance>,
+}
+
 impl Record {
-    /// Distance δ of a point in units of the footprint: 1 at its edge; infinite where the record does not apply at
-    /// all. `bands` are those that the surface there needs.
+    /// Returns the distance δ of a point in units of the footprint: 1 at its edge, infinite if the record does not
+    /// apply. `bands` is the number of bands that the surface there needs.
     #[inline]
     pub fn delta(&self, p: &PointGeometry, bands: u8) -> f32 {
         let offset = p.position - self.position;
@@ -74,13 +88,14 @@ impl Record {
         if behind && delta > MIN_DELTA { f32::INFINITY } else { delta }
     }
 
-    /// Part of δ by the angle between the normals.
+    /// Returns the part of δ due to the angle between the normals.
     #[inline]
     fn tilt(&self, p: &PointGeometry) -> f32 {
         (1.0 - self.normal.dot(p.normal)).max(0.0).sqrt() * self.footprint.inverse_normal_tolerance
     }
 
-    /// Weight and extrapolated irradiance at a point, or `None` outside the footprint or where it is not believed.
+    /// Returns weight and extrapolated irradiance at a point, or `None` outside the footprint or if the extrapolation
+    /// is rejected.
     #[inline]
     pub fn at(&self, p: &PointGeometry, bands: u8) -> Option<(f32, Rgb)> {
         let delta = self.delta(p, bands);
@@ -95,13 +110,13 @@ impl Record {
         believed.then_some((weight, irradiance.max(Rgb::ZERO)))
     }
 
-    /// Shrinks the footprint so that it ends at `p`, along the axis that leaves it the larger area, though not
-    /// below `min_radius`. True if it became smaller.
+    /// Shrinks the footprint so that it ends at `p`, though not below `min_radius`. The axis is chosen that leaves the
+    /// larger area. Returns true if the footprint became smaller.
     pub fn exclude(&mut self, p: &PointGeometry, min_radius: f32) -> bool {
         let edge = (1.0 - self.tilt(p)).max(0.0);
         let s = self.footprint.scaled(p.position - self.position, self.normal);
         let [r0, r1] = self.footprint.radii;
-        // The radius along one axis at which the point is on the edge, the other radius unchanged.
+        // Radius along one axis that puts the point on the edge while the other radius is unchanged.
         let shrunk = |radius: f32, along: f32, across: f32| {
             let rest = edge * edge - across * across;
             if rest > 0.0 { radius * along.abs() / rest.sqrt() } else { 0.0 }
@@ -214,7 +229,7 @@ mod tests {
                 let mut shrunk = record(Vec3::ZERO, [2.0, 1.0], Rgb::ONE);
                 assert!(shrunk.delta(&at, 0) < 1.0 && shrunk.exclude(&at, 0.0));
                 assert_near(shrunk.delta(&at, 0), 1.0, 1e-4);
-                // The same by bisection along each axis.
+                // Bisection along each axis gives the expected area.
                 let area = [0, 1].map(|axis| {
                     let (mut low, mut high) = (0.0, 1.0f32);
                     for _ in 0..40 {

@@ -1,31 +1,31 @@
-//! Light of records at the eye samples of a frame, and the parts that they leave to cuts.
+//! Light of records at the eye samples of a frame, and the parts left to cuts.
 //!
 //! Paper: Herzog et al. 2009, section 6.
 
 use super::fill::CacheFrame;
+use super::glossy_point::GlossyPoint;
 use super::placement::missing;
 use super::store::Records;
 use crate::lights::{DirectIndirect, Origin};
 use base::math::{Rgb, luminance};
 use rayon::prelude::*;
 
-/// Leaves of the index whose light is found at a time.
+/// Number of index leaves interpolated at a time.
 const LEAVES: usize = 16384;
 
-/// Sum of weights up to which records say nothing of a sample: it lies beyond nine tenths of the way to the edge of the
-/// only footprint that reaches it.
-///
-/// Such samples are where a wall goes on behind a picture's frame, which hides them from the light of the record.
-const LITTLE_WEIGHT: f32 = 0.1;
+/// Sum of weights up to which records do not light a sample: a single footprint reaches it, and it lies beyond 0.9 of
+/// the way to the edge. Such samples occur where a wall continues beyond the image frame, which hides it from the
+/// record's light.
+const MIN_WEIGHT: f32 = 0.1;
 
-/// Part of a layer's light at an eye sample that records do not give.
+/// Part of a layer's light at an eye sample that is left to cuts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Left {
-    /// None of it.
+pub enum Remainder {
+    /// No light.
     Nothing,
     /// Reflection by the lobe on the base, which is too sharp for records.
     Lobe,
-    /// All of it.
+    /// All light.
     All,
 }
 
@@ -34,17 +34,17 @@ pub enum Left {
 pub struct Interpolated {
     /// Radiance reflected by the base.
     pub base: DirectIndirect<Rgb>,
-    /// Radiance reflected by the lobe on it, of all layers with records.
+    /// Radiance reflected by the lobe, over all layers with records.
     pub lobe: Rgb,
-    /// Luminance of the radiance, if all of it is known that records are to give.
+    /// Luminance of the radiance, if records give all of their layers; 0 otherwise.
     pub baseline_luminance: f32,
     /// Parts left to cuts.
-    pub left: DirectIndirect<Left>,
+    pub remainder: DirectIndirect<Remainder>,
 }
 
 impl CacheFrame<'_> {
-    /// Light of the records at every eye sample, in order. It is found by and by: that of all would be the most memory
-    /// that large pictures take.
+    /// Returns the light of the records at every eye sample, in order. It is computed in blocks, since the light of
+    /// all samples would dominate the memory of large images.
     pub fn interpolate(&self, records: &Records) -> impl Iterator<Item = Interpolated> {
         let index = self.targets.index;
         let of_leaf = move |leaf| -> Vec<Interpolated> {
@@ -63,15 +63,16 @@ impl CacheFrame<'_> {
             base: DirectIndirect::default(),
             lobe: Rgb::ZERO,
             baseline_luminance: 0.0,
-            left: DirectIndirect { direct: Left::All, indirect: Left::All },
+            remainder: DirectIndirect { direct: Remainder::All, indirect: Remainder::All },
         };
-        if missing(targets, &self.splats, self.cached, sample, LITTLE_WEIGHT).any() {
+        if missing(targets, &self.splats, self.cached, sample, MIN_WEIGHT).any() {
             return light;
         }
         let (base, lobe) = surface.bsdf.split_base(surface.out.dot(point.normal));
-        let glossy = targets.glossy_point(sample);
-        let left = if lobe.is_some() && targets.bands[sample] == 0 { Left::Lobe } else { Left::Nothing };
-        light.left = self.cached.map(|cached| if cached { left } else { Left::All });
+        let glossy = GlossyPoint::new(targets, sample);
+        let remainder =
+            if lobe.is_some() && targets.bands[sample] == 0 { Remainder::Lobe } else { Remainder::Nothing };
+        light.remainder = self.cached.map(|cached| if cached { remainder } else { Remainder::All });
         if !targets.cacheable[sample] {
             return light;
         }
@@ -90,7 +91,7 @@ impl CacheFrame<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::fixtures::{ALBEDO, Floor, record};
-    use super::super::source::NewRecord;
+    use super::super::record::NewRecord;
     use super::super::splat::Splat;
     use super::*;
     use crate::lightcut::CutCounts;
@@ -131,8 +132,8 @@ mod tests {
             for (point, light) in floor.points.geometry.iter().zip(light) {
                 let distance = point.position.distance(Vec3::new(0.5, 0.5, 0.0));
                 let covered = distance < if cached.indirect { 0.2 } else { 0.4 };
-                let left = |cached| if covered && cached { Left::Nothing } else { Left::All };
-                assert_eq!(light.left, cached.map(left), "{distance}");
+                let left = |cached| if covered && cached { Remainder::Nothing } else { Remainder::All };
+                assert_eq!(light.remainder, cached.map(left), "{distance}");
                 let mut whole = Rgb::ZERO;
                 for origin in Origin::ALL {
                     let given = if covered && cached[origin] { 1.0 } else { 0.0 };

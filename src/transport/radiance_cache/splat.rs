@@ -1,9 +1,9 @@
-//! One layer's records splatted onto the eye samples of one frame.
+//! Splats of one layer's records onto the eye samples of one frame.
 //!
 //! Paper: Herzog et al. 2009, section 6.
 //!
-//! Every leaf of the eye samples' index keeps the list of records that may reach it. Splatting works leaf by leaf,
-//! so that threads share nothing and sums are formed in the order of the records, however many threads there are.
+//! Every leaf of the eye samples' index has a list of the records that may reach it. Splatting proceeds leaf by leaf,
+//! so that threads share no data. Sums are formed in the order of the records, for any number of threads.
 
 use super::record::Record;
 use super::store::RecordStore;
@@ -22,7 +22,7 @@ pub struct Sum {
 }
 
 impl Sum {
-    /// The interpolated irradiance, if any record reaches the sample.
+    /// Returns the interpolated irradiance, if any record reaches the sample.
     #[inline]
     pub fn mean(&self) -> Option<Rgb> {
         (self.weight > 0.0).then(|| self.irradiance / self.weight)
@@ -31,14 +31,14 @@ impl Sum {
 
 /// Weighted sums of a layer's records at eye samples.
 pub struct Splat {
-    /// For each leaf, the records whose footprints may reach it.
+    /// Per leaf: records whose footprints may reach it.
     pub lists: Vec<Vec<u32>>,
-    /// For each eye sample.
+    /// Per eye sample: weighted sum.
     pub sums: Vec<Sum>,
 }
 
 impl Splat {
-    /// All records of `store`.
+    /// Splats all records of `store`.
     pub fn new(targets: &Targets, store: &RecordStore) -> Splat {
         let lists = vec![Vec::new(); targets.index.leaves()];
         let mut splat = Splat { lists, sums: vec![Sum::default(); targets.points.len()] };
@@ -46,7 +46,7 @@ impl Splat {
         splat
     }
 
-    /// Adds the records of `store` from `first` on.
+    /// Adds the records of `store` from index `first` on.
     pub fn add(&mut self, targets: &Targets, store: &RecordStore, first: u32) {
         let index = targets.index;
         let mut touched = vec![false; self.lists.len()];
@@ -74,7 +74,7 @@ impl Splat {
         });
     }
 
-    /// Forms the sums of the leaves that are `marked` anew.
+    /// Recomputes the sums of the leaves that are `marked`.
     pub fn renew(&mut self, targets: &Targets, store: &RecordStore, marked: &[bool]) {
         let lists = &self.lists;
         by_leaf(&mut self.sums, targets.index, marked).into_par_iter().for_each(|(leaf, sums)| {
@@ -84,7 +84,7 @@ impl Splat {
     }
 }
 
-/// The sums of the samples of each leaf that is marked.
+/// Returns the sums of the samples of each marked leaf.
 fn by_leaf<'a>(sums: &'a mut [Sum], index: &KdTree, marked: &[bool]) -> Vec<(usize, &'a mut [Sum])> {
     let mut rest = sums;
     let mut start = 0;
@@ -117,7 +117,7 @@ fn add(targets: &Targets, leaf: usize, records: &[Record], ids: &[u32], sums: &m
 #[cfg(test)]
 mod tests {
     use super::super::fixtures::{Floor, record};
-    use super::super::source::NewRecord;
+    use super::super::record::NewRecord;
     use super::*;
     use crate::lights::Origin;
     use base::sampling::hash;

@@ -1,7 +1,7 @@
-//! The records of one layer, which outlive the frame that they were computed for.
+//! Records of one layer, which outlive the frame that they were computed for.
 
+use super::record::NewRecord;
 use super::record::Record;
-use super::source::NewRecord;
 use crate::hsh::Radiance;
 use crate::lights::DirectIndirect;
 use std::iter::repeat_with;
@@ -13,10 +13,9 @@ pub type Records = DirectIndirect<RecordStore>;
 /// Records of one origin.
 #[derive(Default)]
 pub struct RecordStore {
-    /// All of them, in the order of their making.
+    /// Records in the order of their creation.
     pub records: Vec<Record>,
-    /// Their light as series, which only records on glossy surfaces have; shorter than `records` if the last have
-    /// none.
+    /// Series of the records on glossy surfaces; shorter than `records` if the last records have none.
     series: Vec<Option<Radiance>>,
 }
 
@@ -30,19 +29,19 @@ impl RecordStore {
         self.records.push(new.record);
     }
 
-    /// Takes all records out, with their series.
+    /// Removes and returns all records with their series.
     pub fn drain(&mut self) -> impl Iterator<Item = (Record, Option<Radiance>)> {
         let series = mem::take(&mut self.series).into_iter().chain(repeat_with(|| None));
         mem::take(&mut self.records).into_iter().zip(series)
     }
 
-    /// Light of a record as a series.
+    /// Returns the series of a record, if it has one.
     #[inline]
     pub fn series(&self, id: u32) -> Option<&Radiance> {
         self.series.get(id as usize)?.as_ref()
     }
 
-    /// Number of records with series.
+    /// Returns the number of records with series.
     pub fn series_count(&self) -> usize {
         self.series.iter().flatten().count()
     }

@@ -1,6 +1,6 @@
-//! The shading points of one frame, as far as records light them.
+//! Shading points of one frame as targets of records.
 
-use super::series::Glossy;
+use super::glossy::Glossy;
 use crate::eye::{PointGeometry, ShadingPoints};
 use base::kd_tree::KdTree;
 use base::math::{Rgb, luminance};
@@ -9,34 +9,35 @@ use rayon::prelude::*;
 use std::f32::consts::PI;
 use std::ops::Range;
 use world::SurfacePoint;
+use world::material::Bsdf;
 
-/// Parts of a range of points of which the darkest counts.
+/// Number of parts into which a range of points is divided to find its darkest one.
 const PARTS: usize = 8;
 
-/// Sine of the angle over a surface above which a point rises from it.
+/// Minimum sine of the angle above a surface at which a point rises from it.
 const RISE: f32 = 0.05;
 
 /// Shading points that records are splatted onto.
 pub struct Targets<'a> {
-    /// The points, in the order of the index.
+    /// Points, in the order of the index.
     pub points: &'a ShadingPoints<'a>,
-    /// The hierarchy over them.
+    /// Hierarchy over the points.
     pub index: &'a KdTree,
     /// Lobes that series light, if there are any.
     pub glossy: Option<&'a Glossy>,
-    /// Bands of the series that each point needs; 0 where irradiance is enough.
+    /// Bands of the series that each point needs; 0 if irradiance is enough.
     pub bands: Vec<u8>,
     /// True if records can light the point: it has a base, or a lobe broad enough for a series.
     pub cacheable: Vec<bool>,
-    /// Luminance of the irradiance that gives each point the light which is known besides; empty if none is.
-    known: Vec<f32>,
-    /// Difference of luminance that is seen at each point, where it is known: of irradiance, or on glossy surfaces that
-    /// series light of radiance. Empty if none is known.
+    /// Known light per point, expressed as the luminance of irradiance; empty if none is known.
+    baseline: Vec<f32>,
+    /// Just visible difference of luminance per point, if known: of radiance on glossy surfaces lit by series, of
+    /// irradiance elsewhere. Empty if unknown for all points.
     visible: Vec<Option<f32>>,
 }
 
 impl<'a> Targets<'a> {
-    /// All `points`; lobes are lit by series where `glossy` has enough bands for them.
+    /// Returns targets for all `points`. Series light a lobe if `glossy` has enough bands for it.
     pub fn new(points: &'a ShadingPoints, index: &'a KdTree, glossy: Option<&'a Glossy>) -> Targets<'a> {
         let bands = |surface| glossy.map_or(0, |glossy: &Glossy| glossy.bands(surface));
         let bands: Vec<u8> = points.surfaces.iter().map(bands).collect();
@@ -46,24 +47,25 @@ impl<'a> Targets<'a> {
             .zip(&bands)
             .map(|(surface, &bands)| bands > 0 || surface.bsdf.split_base(1.0).0 != Rgb::ZERO)
             .collect();
-        Targets { points, index, glossy, bands, cacheable, known: Vec::new(), visible: Vec::new() }
+        Targets { points, index, glossy, bands, cacheable, baseline: Vec::new(), visible: Vec::new() }
     }
 
-    /// The same, where light of these luminances is reflected besides: records' errors are judged against the whole.
-    pub fn with_known(mut self, luminance_of: impl Fn(usize) -> f32 + Sync) -> Targets<'a> {
+    /// Sets the luminance that each point reflects from other sources. Errors of records are judged relative to all
+    /// light.
+    pub fn with_baseline(mut self, luminance_of: impl Fn(usize) -> f32 + Sync) -> Targets<'a> {
         let irradiance = |point: usize| {
             let irradiance = self.irradiance(point, luminance_of(point));
             if irradiance < f32::INFINITY { irradiance } else { 0.0 }
         };
-        self.known = (0..self.points.len()).into_par_iter().map(irradiance).collect();
+        self.baseline = (0..self.points.len()).into_par_iter().map(irradiance).collect();
         self
     }
 
-    /// The same, where so great differences of the luminance of radiance are seen; `None` where that is not known.
+    /// Sets the just visible difference of luminance at each position; `None` if it is unknown there.
     pub fn with_visible(mut self, difference_at: impl Fn(Vec3) -> Option<f32> + Sync) -> Targets<'a> {
         let visible = |point: usize| {
             let difference = difference_at(self.points.geometry[point].position)?;
-            let is_glossy = self.glossy_point(point).is_some();
+            let is_glossy = self.split_for_series(point).is_some();
             let limit = if is_glossy { difference } else { self.irradiance(point, difference) };
             limit.is_finite().then_some(limit)
         };
@@ -71,8 +73,8 @@ impl<'a> Targets<'a> {
         self
     }
 
-    /// Distance from a point of surface to the nearest of the points, up to `reach`, that rises from the surface;
-    /// infinite if there is none. Points of the same bent surface do not rise from it.
+    /// Returns the distance, up to `reach`, from a point of surface to the nearest target that rises from the surface;
+    /// infinite if there is none. Points of the same curved surface do not rise from it.
     pub fn clearance(&self, from: &SurfacePoint, reach: f32) -> f32 {
         let (mut nearest, mut nearest_sq) = (f32::INFINITY, reach * reach);
         self.index.leaves_near(from.position, reach, |leaf| {
@@ -82,7 +84,7 @@ impl<'a> Targets<'a> {
                 if !(distance_sq < nearest_sq) {
                     continue;
                 }
-                // A chord of an arc rises from the plane at its end, but not from that at its middle.
+                // A chord of an arc rises from the tangent plane at its end, but not from the one at its middle.
                 let height = offset.dot(from.normal).min(0.5 * offset.dot(from.normal + point.normal));
                 let distance = distance_sq.sqrt();
                 if height > RISE * distance {
@@ -93,27 +95,37 @@ impl<'a> Targets<'a> {
         nearest
     }
 
-    /// Difference of luminance that is seen at a point, if it is known.
+    /// Returns the just visible difference of luminance at a point, if known.
     #[inline]
     pub fn visible(&self, point: usize) -> Option<f32> {
         self.visible.get(point).copied().flatten()
     }
 
-    /// Luminance of the irradiance of which a point reflects radiance of this luminance.
+    /// Splits the BSDF of a point into its base and its lobe, if series light the lobe; `None` otherwise.
+    pub fn split_for_series(&self, point: usize) -> Option<(Rgb, Bsdf<'_>)> {
+        self.glossy.filter(|_| self.bands[point] > 0)?;
+        let surface = &self.points.surfaces[point];
+        let (base, lobe) = surface.bsdf.split_base(surface.out.dot(self.points.geometry[point].normal));
+        Some((base, lobe?))
+    }
+
+    /// Returns the luminance of the irradiance of which a point reflects the luminance `radiance`.
     fn irradiance(&self, point: usize, radiance: f32) -> f32 {
         let surface = &self.points.surfaces[point];
         let cos = surface.out.dot(self.points.geometry[point].normal);
         PI * radiance / luminance(surface.bsdf.albedo_at(cos))
     }
 
-    /// Least of the mean irradiances known in the parts of a range.
-    pub fn least_known(&self, range: Range<usize>) -> f32 {
-        let Some(known) = self.known.get(range).filter(|known| !known.is_empty()) else { return 0.0 };
+    /// Divides a range of points into parts and returns the least of the parts' mean known irradiances.
+    pub fn darkest_baseline(&self, range: Range<usize>) -> f32 {
+        let Some(baseline) = self.baseline.get(range).filter(|baseline| !baseline.is_empty()) else {
+            return 0.0;
+        };
         let mean = |part: &[f32]| part.iter().sum::<f32>() / part.len() as f32;
-        known.chunks(known.len().div_ceil(PARTS)).map(mean).fold(f32::INFINITY, f32::min)
+        baseline.chunks(baseline.len().div_ceil(PARTS)).map(mean).fold(f32::INFINITY, f32::min)
     }
 
-    /// Geometry of a range of points, and the bands that they need.
+    /// Iterates over the geometry of a range of points and the bands that they need.
     #[inline]
     pub fn geometry(&self, range: Range<usize>) -> impl Iterator<Item = (&PointGeometry, u8)> {
         self.points.geometry[range.clone()].iter().zip(self.bands[range].iter().copied())

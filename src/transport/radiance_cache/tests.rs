@@ -1,8 +1,9 @@
 //! Gradients that include occluders' edges against irradiance summed over all virtual lights, around a ball
 //! and a table.
 
+use super::candidate::Candidate;
 use super::record::Record;
-use super::source::{Candidate, LightcutSource, RecordSource};
+use super::source::{LightcutSource, RecordSource};
 use super::{CacheSettings, Footprints};
 use crate::eye::{EyePass, EyeSettings};
 use crate::lightcut::{CutSettings, Receiver, Transfer, gather_all};
@@ -32,25 +33,9 @@ fn furnished_room() -> WorldAndView {
     world(scene)
 }
 
-/// Irradiance of the room's indirect light at points of its floor, extrapolated by `STEP` in four directions:
-/// mean relative error, and the scalar product of estimated and true gradients, relative to the square of the
-/// true ones.
-fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) -> (f32, f32) {
-    let settings = EyeSettings { spp: 1, seed: 0, max_depth: 8 };
-    let samples = EyePass::trace(world, &world.view, settings, &Control::new());
-    let light = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
-    let mut pass = light_pass(world, &light, &[], 8, &Control::new());
-    pass.sets.retain(|set| set.origin == Origin::Indirect);
-    let trees =
-        LightTrees::build(&pass.sets, pass.profiles, world.diagonal, Family::Divisive, &Control::new());
-    let transfer = Transfer::new(&trees, world.diagonal);
-    let cut = CutSettings { epsilon: 0.002, max_cut: 20_000, clamp: None, ..CutSettings::default() };
-    let cache = CacheSettings { cut, footprints, probe_rays, ..CacheSettings::default() };
-    let source =
-        LightcutSource { context: ShadingContext { world, transfer, compensation: None }, settings: &cache };
-
-    // Open floor: neither under the ball or the table nor within a step of a wall, where light varies by its
-    // own distance.
+/// Returns candidates on the open floor: neither under the ball or the table nor within a step of a wall, where light
+/// varies by its own distance.
+fn open_floor(samples: &EyePass) -> Vec<Candidate> {
     let open = |p: Vec3| {
         let from_ball = (p - Vec3::new(0.4, -1.0, 0.3)).length();
         let table = (p - Vec3::new(-0.4, -1.0, -0.3)).abs();
@@ -74,7 +59,26 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
             baseline_luminance: 0.0,
         }
     };
-    let candidates: Vec<Candidate> = floor.step_by(4).map(candidate).collect();
+    floor.step_by(4).map(candidate).collect()
+}
+
+/// Extrapolates the room's indirect irradiance at points of the floor by `STEP` in four directions. Returns the mean
+/// relative error, and the scalar product of estimated and true gradients over the square of the true ones.
+fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) -> (f32, f32) {
+    let settings = EyeSettings { spp: 1, seed: 0, max_depth: 8 };
+    let samples = EyePass::trace(world, &world.view, settings, &Control::new());
+    let light = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
+    let mut pass = light_pass(world, &light, &[], 8, &Control::new());
+    pass.sets.retain(|set| set.origin == Origin::Indirect);
+    let trees =
+        LightTrees::build(&pass.sets, pass.profiles, world.diagonal, Family::Divisive, &Control::new());
+    let transfer = Transfer::new(&trees, world.diagonal);
+    let cut = CutSettings { epsilon: 0.002, max_cut: 20_000, clamp: None, ..CutSettings::default() };
+    let cache = CacheSettings { cut, footprints, probe_rays, ..CacheSettings::default() };
+    let source =
+        LightcutSource { context: ShadingContext { world, transfer, compensation: None }, settings: &cache };
+
+    let candidates = open_floor(&samples);
     assert!(candidates.len() > 60, "{}", candidates.len());
     let (found, _) = source.records(&candidates);
 

@@ -1,22 +1,22 @@
-//! Light of the picture before, carried to where its surfaces are seen in the next frame of a walk-through.
+//! Reprojection of direct light: the light of the previous image is reused for surfaces that it shows.
 //!
-//! A pixel of the new frame is settled if an even surface fills it and its surroundings (see
-//! [`SeenPixels::even_surface`]), the same surface was seen there in the picture before, and its light varied little
-//! around. It gets a quarter of the samples, and with them is mixed the denoised light of the picture before, found
-//! between its four nearest pixels; the denoiser takes off the noise that is left. Edges, textures finer than pixels,
-//! shadows' outlines, mirrors, glass and whatever comes into view are rendered as in a frame alone.
+//! A pixel of the new frame is settled under three conditions: an even surface fills it and its surroundings (see
+//! [`SeenPixels::even_surface`]), the previous image shows the same surface there, and its light varied little around.
+//! A settled pixel gets a quarter of the samples. The denoised light of the previous image, interpolated between its
+//! four nearest pixels, is mixed in. The denoiser removes the remaining noise. Edges, textures finer than pixels,
+//! outlines of shadows, mirrors, glass and newly visible surfaces are rendered as in a still image.
 //!
-//! Measured at a frame of the apartment (PSNR; all by 16 samples: 37.7 dB): 36.0 dB if settled pixels have few samples
-//! and nothing is mixed in, 36.5 if it is after denoising, 37.5 if before. Undenoised light mixed in gives 32 dB: its
-//! noise is spread by the reprojection, and the denoiser takes it for texture.
+//! The light must be mixed in before denoising, and must itself be denoised: reprojection spreads noise, which the
+//! denoiser then takes for texture.
 //!
-//! Paper: the idea is that of reverse reprojection caching, Nehab et al. 2007; Herzog et al. 2009 keep records alone.
+//! Paper: Nehab et al., *Accelerating Real-Time Shading with Reverse Reprojection Caching*, 2007. Herzog et al. 2009
+//! reuse records alone.
 //!
 //! Units: positions relative to the scene's centre.
 
 mod projection;
 
-pub use projection::Projection;
+pub use projection::ViewProjection;
 
 use crate::eye::{EvenSurface, SeenPixels, Settled};
 use base::film::{Image, Window};
@@ -26,39 +26,41 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use world::view::View;
 
-/// Weight of the new frame where the picture before is mixed in. Noise falls with it, and light that moves over glossy
-/// surfaces lags behind: errors are least at a third to a fifth.
-const FRESH: f32 = 0.25;
+/// Weight of the new frame when the previous image is mixed in. Lower weights leave less noise, but light that moves
+/// over glossy surfaces lags behind.
+const NEW_WEIGHT: f32 = 0.25;
 
-/// Albedo added to that which light is divided by, so that black surfaces have some.
-const LEAST_ALBEDO: f32 = 0.02;
+/// Offset of the albedo that light is divided by, so that it is nonzero on black surfaces.
+const ALBEDO_OFFSET: f32 = 0.02;
 
-/// Maximum distance of two points of a surface from each other's plane, and along it, in distances between pixels.
+/// Maximum distance of two points of a surface from each other's plane, in pixel spacings.
 const MAX_HEIGHT: f32 = 0.5;
+
+/// Maximum distance of two points of a surface along it, in pixel spacings.
 const MAX_DISTANCE: f32 = 10.0;
 
-/// Minimum cosine of the normals of two points of a surface.
+/// Minimum cosine between the normals of two points of a surface.
 const MIN_COS: f32 = 0.98;
 
-/// Maximum difference of the light of neighbouring pixels over the greater.
+/// Maximum difference between neighbouring pixels' light, over the larger one.
 const MAX_CONTRAST: f32 = 0.1;
 
-/// Minimum weight of the neighbours among the four nearest pixels that see the same surface.
+/// Minimum interpolation weight of the pixels that see the same surface, among the four nearest.
 const MIN_WEIGHT: f32 = 0.25;
 
-/// The picture before, if there is one.
+/// Previous image, if there is one.
 #[derive(Default, Serialize, Deserialize)]
-pub struct LastPicture {
-    /// Frames so far.
+pub struct PreviousImage {
+    /// Number of frames so far.
     turn: u32,
-    picture: Option<Picture>,
+    image: Option<ReusableImage>,
 }
 
-/// A picture, as far as the next may use it.
+/// Data of an image that the next frame may use.
 #[derive(Serialize, Deserialize)]
-struct Picture {
-    projection: Projection,
-    /// By pixel in rows.
+struct ReusableImage {
+    projection: ViewProjection,
+    /// Per pixel, in rows.
     pixels: Vec<Option<Lit>>,
 }
 
@@ -70,31 +72,30 @@ struct Lit {
     light: Rgb,
 }
 
-/// Light of the picture before at the surfaces of a new frame.
+/// Light of the previous image at the surfaces of a new frame.
 pub struct Reprojected {
     turn: u32,
-    /// By pixel in rows: light over albedo; `None` where it is not known.
+    /// Light over albedo per pixel, in rows; `None` if unknown.
     light: Vec<Option<Rgb>>,
 }
 
-impl LastPicture {
-    /// True if it can be one: unless it was read from damaged bytes.
+impl PreviousImage {
+    /// Returns true if the image is valid. Only damaged bytes give others.
     pub fn is_sound(&self) -> bool {
         let is_lit = |lit: &Lit| lit.light.is_finite() && lit.light.min_element() >= 0.0;
-        self.picture.as_ref().is_none_or(|picture| {
-            picture.projection.is_sound_for(picture.pixels.len())
-                && picture.pixels.iter().flatten().all(is_lit)
+        self.image.as_ref().is_none_or(|image| {
+            image.projection.is_sound_for(image.pixels.len()) && image.pixels.iter().flatten().all(is_lit)
         })
     }
 
-    /// Its light at the surfaces `seen` by `view`.
+    /// Returns its light at the surfaces `seen` by `view`.
     pub fn reproject(&self, view: &View, seen: &SeenPixels) -> Reprojected {
         let pixels = 0..view.window.pixel_count() as usize;
-        let light: Vec<Option<Rgb>> = match &self.picture {
-            Some(picture) => pixels
+        let light: Vec<Option<Rgb>> = match &self.image {
+            Some(image) => pixels
                 .clone()
                 .into_par_iter()
-                .map(|pixel| picture.light(&seen.even_surface(pixel)?, view))
+                .map(|pixel| image.light(&seen.even_surface(pixel)?, view))
                 .collect(),
             None => vec![None; pixels.len()],
         };
@@ -103,22 +104,22 @@ impl LastPicture {
         Reprojected { turn: self.turn, light }
     }
 
-    /// Takes the place of the picture before by the one `seen` by `view`; by none if it is not whole.
+    /// Stores the image `color` of the surfaces `seen` by `view`; clears the stored image if there is none.
     pub fn replace(&mut self, view: &View, seen: &SeenPixels, color: Option<&Image>) {
         self.turn = self.turn.wrapping_add(1);
-        self.picture = color.map(|color| {
+        self.image = color.map(|color| {
             let lit = |(pixel, color): (usize, &Rgb)| {
                 let surface = seen.even_surface(pixel)?;
                 Some(Lit { surface, light: *color / albedo(seen, pixel) })
             };
             let pixels = color.pixels.par_iter().enumerate().map(lit).collect();
-            Picture { projection: Projection::of(view), pixels }
+            ReusableImage { projection: ViewProjection::of(view), pixels }
         });
     }
 }
 
-impl Picture {
-    /// Light over albedo of a surface that `view` sees; `None` if the picture does not show it.
+impl ReusableImage {
+    /// Returns light over albedo of a surface that `view` sees; `None` if the image does not show it.
     fn light(&self, surface: &EvenSurface, view: &View) -> Option<Rgb> {
         let p = surface.position;
         let (place, _) = self.projection.place(p)?;
@@ -144,22 +145,22 @@ impl Picture {
 }
 
 impl Reprojected {
-    /// The pixels whose light is known.
+    /// Returns the pixels whose light is known.
     pub fn settled(&self) -> Settled {
         Settled { pixels: self.light.iter().map(Option::is_some).collect(), turn: self.turn }
     }
 
-    /// Mixes the light known into the new picture.
+    /// Mixes the known light into the new image.
     pub fn mix_into(&self, color: &mut Image, seen: &SeenPixels) {
         color.pixels.par_iter_mut().zip(&self.light).enumerate().for_each(|(pixel, (color, light))| {
             if let Some(light) = light {
-                *color = FRESH * *color + (1.0 - FRESH) * *light * albedo(seen, pixel);
+                *color = NEW_WEIGHT * *color + (1.0 - NEW_WEIGHT) * *light * albedo(seen, pixel);
             }
         });
     }
 }
 
-/// True if the light around a pixel varies little, as far as it is known.
+/// Returns true if the known light around a pixel varies little.
 fn is_smooth_around(light: &[Option<Rgb>], window: &Window, pixel: usize) -> bool {
     let (x, y) = (pixel as u32 % window.width, pixel as u32 / window.width);
     let near = |at: u32, end: u32| at.saturating_sub(1)..=(at + 1).min(end - 1);
@@ -170,9 +171,9 @@ fn is_smooth_around(light: &[Option<Rgb>], window: &Window, pixel: usize) -> boo
     most - least <= MAX_CONTRAST * most
 }
 
-/// Albedo of a pixel that light is divided by.
+/// Returns the albedo of a pixel that light is divided by.
 fn albedo(seen: &SeenPixels, pixel: usize) -> Rgb {
-    seen.albedo(pixel) + LEAST_ALBEDO
+    seen.albedo(pixel) + ALBEDO_OFFSET
 }
 
 #[cfg(test)]

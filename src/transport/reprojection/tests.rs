@@ -1,8 +1,8 @@
-//! Light of one picture at the surfaces of another, against a function of the place.
+//! Light of one image at the surfaces of another, against a function of the position.
 
 use super::*;
 use crate::eye::FeatureSettings;
-use crate::paths::Look;
+use crate::paths::Estimand;
 use base::progress::Control;
 use glam::Vec3;
 use scene::{Camera, Material, MaterialId};
@@ -28,7 +28,7 @@ fn view(camera: Camera) -> View {
 }
 
 fn look(world: &WorldAndView, view: &View) -> SeenPixels {
-    let settings = FeatureSettings { look: Look::Pixels, spp: 16, seed: 5 };
+    let settings = FeatureSettings { estimand: Estimand::Pixels, spp: 16, seed: 5 };
     SeenPixels::new(world, view, &settings, &Control::new())
 }
 
@@ -37,7 +37,7 @@ fn light(position: Vec3) -> Rgb {
     Rgb::new(2.0 + 0.3 * (2.0 * position.x).sin(), 1.5 + 0.1 * position.z, 1.0)
 }
 
-/// The picture of surfaces that have `light`; black elsewhere.
+/// Returns the image of surfaces with `light`; black elsewhere.
 fn picture(seen: &SeenPixels) -> Image {
     let color = |pixel| {
         let surface = seen.even_surface(pixel);
@@ -46,10 +46,10 @@ fn picture(seen: &SeenPixels) -> Image {
     Image { width: SIZE, height: SIZE, pixels: (0..(SIZE * SIZE) as usize).map(color).collect() }
 }
 
-/// The picture before, and its light where a second camera sees it.
-fn carried(world: &WorldAndView, from: Camera, to: Camera) -> (LastPicture, SeenPixels, Reprojected) {
+/// Returns the previous image, and its light at the surfaces that a second camera sees.
+fn carried(world: &WorldAndView, from: Camera, to: Camera) -> (PreviousImage, SeenPixels, Reprojected) {
     let (from, to) = (view(from), view(to));
-    let mut last = LastPicture::default();
+    let mut last = PreviousImage::default();
     let seen = look(world, &from);
     last.replace(&from, &seen, Some(&picture(&seen)));
     let seen = look(world, &to);
@@ -77,13 +77,13 @@ fn light_is_carried_to_where_its_surface_is_seen() {
             errors += error;
         }
         assert!(errors < 0.003 * settled(&reprojected) as f32, "{errors}");
-        // Mixed into a picture of other light, it has its weight.
+        // Light mixed into a different image has its weight.
         let mut color = picture(&seen);
         color.pixels.iter_mut().for_each(|color| *color *= 2.0);
         let twice = color.clone();
         reprojected.mix_into(&mut color, &seen);
         for ((pixel, mixed), twice) in color.pixels.iter().enumerate().zip(&twice.pixels) {
-            let share = if reprojected.settled().contains(pixel) { (1.0 + FRESH) / 2.0 } else { 1.0 };
+            let share = if reprojected.settled().contains(pixel) { (1.0 + NEW_WEIGHT) / 2.0 } else { 1.0 };
             assert!((*mixed - *twice * share).abs().max_element() < 0.06, "{pixel}");
         }
     }
@@ -103,7 +103,7 @@ fn what_was_hidden_or_out_of_the_picture_is_not_settled() {
         let to_surface = surface.position - from.camera.origin;
         let depth = to_surface.dot(from.camera.forward);
         let places = [from.camera.right, from.camera.up].map(|axis| to_surface.dot(axis) / depth / 0.5);
-        // The place where the way from the first camera passes the plate's height.
+        // The point at the plate's height on the line from the first camera.
         let above = from.camera.origin + to_surface * (1.2 / 2.0);
         let behind = surface.position.y < 0.1 && above.x.abs() < 0.38 && (-1.28..-0.52).contains(&above.z);
         if places.iter().any(|place| place.abs() > 1.0 + 2.0 / SIZE as f32) {
@@ -125,7 +125,7 @@ fn edges_of_light_and_surfaces_that_reflect_images_are_not_settled() {
     let mut color = picture(&seen);
     let lit = |pixel: usize| pixel as u32 % SIZE < 20;
     (0..color.pixels.len()).filter(|pixel| !lit(*pixel)).for_each(|pixel| color.pixels[pixel] *= 0.7);
-    let mut last = LastPicture::default();
+    let mut last = PreviousImage::default();
     last.replace(&view, &seen, Some(&color));
     let reprojected = last.reproject(&view, &seen);
     for (pixel, light) in reprojected.light.iter().enumerate() {
@@ -144,13 +144,13 @@ fn a_picture_restored_is_that_saved_and_damaged_ones_are_refused() {
     let world = floor(diffuse(Rgb::splat(0.5)));
     let (last, seen, reprojected) = carried(&world, seen_from(0.0), seen_from(0.1));
     let saved = postcard::to_stdvec(&last).unwrap();
-    let restored: LastPicture = postcard::from_bytes(&saved).unwrap();
+    let restored: PreviousImage = postcard::from_bytes(&saved).unwrap();
     assert!(restored.is_sound());
     let again = restored.reproject(&view(seen_from(0.1)), &seen);
     assert_eq!((again.turn, again.light), (reprojected.turn, reprojected.light));
-    let damaged = |damage: &dyn Fn(&mut Picture)| {
-        let mut last: LastPicture = postcard::from_bytes(&saved).unwrap();
-        damage(last.picture.as_mut().unwrap());
+    let damaged = |damage: &dyn Fn(&mut ReusableImage)| {
+        let mut last: PreviousImage = postcard::from_bytes(&saved).unwrap();
+        damage(last.image.as_mut().unwrap());
         !last.is_sound()
     };
     assert!(damaged(&|picture| picture.pixels.push(None)));

@@ -6,7 +6,7 @@ use crate::lights::Origin;
 use base::film::{Image, Layer, Preview};
 use base::math::Rgb;
 use base::progress::Control;
-use base::stats::{Stats, Ways};
+use base::stats::{Contributions, Stats};
 
 /// Sums at each pixel.
 pub struct Picture {
@@ -17,7 +17,7 @@ pub struct Picture {
     /// Radiances that were not finite and left out.
     pub nonfinite: u64,
     /// The ways by which the light came.
-    ways: Ways,
+    contributions: Contributions,
 }
 
 impl Picture {
@@ -26,7 +26,7 @@ impl Picture {
         let color = eye.known.clone();
         let blank = || Image::new(color.width, color.height);
         let parts = with_parts.then(|| [blank(), blank(), blank()]);
-        Picture { color, parts, nonfinite: eye.nonfinite, ways: eye.ways.clone() }
+        Picture { color, parts, nonfinite: eye.nonfinite, contributions: eye.contributions.clone() }
     }
 
     /// Adds radiance that a shading point reflects, of one origin or of both.
@@ -68,13 +68,13 @@ impl Picture {
     }
 
     /// Tells the way by which the light came that was added since this was called last.
-    pub fn came_by(&mut self, way: &'static str) {
-        self.ways.rest(way, self.color.luminance());
+    pub fn came_by(&mut self, technique: &'static str) {
+        self.contributions.rest(technique, self.color.luminance());
     }
 
     /// The picture, its parts, and the number of radiances that were left out; reports the ways that its light came.
     pub fn finish(self, stats: &mut Stats) -> (Image, Vec<Layer>, u64) {
-        self.ways.report(stats);
+        self.contributions.report(stats);
         let parts = ["direct", "indirect", "both"].into_iter().zip(self.parts.into_iter().flatten());
         let parts = parts.map(|(name, image)| Layer::color(name, image).shown(Preview::Exposed));
         (self.color, parts.collect(), self.nonfinite)

@@ -17,7 +17,7 @@ use lightsplat::progress::Control;
 use lightsplat::readers::{LoadOptions, load};
 use lightsplat::session::{Goal, Session};
 use lightsplat::view::{Framing, View};
-use lightsplat::walk::{KeepLimits, Walk};
+use lightsplat::walk::{RetentionLimits, Walk};
 use model::Model;
 use serde_json::json;
 use std::fs;
@@ -212,7 +212,7 @@ fn records() -> Vec<u8> {
     let goal = Goal { method, denoise: Some(false), ..Goal::default() };
     let framing = Framing { frame: Some(1), resolution: Some([24, 16]), crop: None };
     let view = View::new(&session.cameras, &framing).unwrap();
-    let mut walk = Walk::new(&session, goal, KeepLimits::default());
+    let mut walk = Walk::new(&session, goal, RetentionLimits::default());
     walk.frame(&view, &Control::new()).unwrap();
     walk.save()
 }

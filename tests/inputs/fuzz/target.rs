@@ -9,7 +9,7 @@ use lightsplat::progress::Control;
 use lightsplat::readers::{LoadOptions, Loaded, load};
 use lightsplat::session::{FrameError, Goal, OpenError, Remark, Session};
 use lightsplat::view::{Framing, View};
-use lightsplat::walk::{KeepLimits, Walk};
+use lightsplat::walk::{RetentionLimits, Walk};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -83,7 +83,8 @@ impl Workplace {
             "toml" | "xml" | "gltf" | "glb" => case,
             "records" => {
                 let records = fs::read(case).unwrap();
-                let walk = Walk::restored(&self.session, Goal::default(), KeepLimits::default(), &records);
+                let walk =
+                    Walk::restored(&self.session, Goal::default(), RetentionLimits::default(), &records);
                 let _ = walk.map(|walk| walk.save());
                 return None;
             }

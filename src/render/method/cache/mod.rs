@@ -12,6 +12,7 @@
 //!
 //! Use it as the default. Noise of drawn light is unbiased; virtual lights and records are not.
 
+pub mod direct_sampling;
 mod render;
 pub mod resolve;
 

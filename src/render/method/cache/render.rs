@@ -1,5 +1,6 @@
 //! The picture: eye pass, light pass, trees, the cache, and the rest by cuts.
 
+use super::direct_sampling::direct_sampling;
 use super::resolve::resolve;
 use crate::method::ladder::{CUTS, DRAWN};
 use crate::method::lights::LightStore;
@@ -10,12 +11,12 @@ use base::film::Window;
 use base::progress::Control;
 use base::setting::{COMPENSATION, Each, INSPECT, Settings as _};
 use base::stats::Stage;
-use transport::eye::{DrawnLight, EyePass, EyePilot, EyeSettings, Settled};
+use transport::eye::{DirectSampling, EyePass, EyePilot, EyeSettings, LightSources, Settled};
 use transport::lightcut::{CutSettings, Samples};
 use transport::lights::{Family, LightPassSettings};
-use transport::paths::Look;
+use transport::paths::Estimand;
 use transport::radiance_cache::fill::CacheFrame;
-use transport::radiance_cache::series::{Glossy, drawn_light};
+use transport::radiance_cache::glossy::Glossy;
 use transport::radiance_cache::source::LightcutSource;
 use transport::radiance_cache::store::Records;
 use transport::radiance_cache::targets::Targets;
@@ -91,15 +92,15 @@ impl Settings {
             None => (None, Settled::default(), None),
         };
         let cache = match kept {
-            Some(_) => self.cache.of_walk(),
+            Some(_) => self.cache.for_walk(),
             None => self.cache,
         };
         let is_still = kept.is_none();
         let wanted = ((self.light, self.family), is_still);
         let glossy = Glossy::new(world, &cache);
         let besides = is_still.then(|| self.rays_beside_samples(view));
-        let drawn = drawn_light(glossy.as_ref(), &cache, settled, besides);
-        let drawn = drawn.map(|drawn| DrawnLight { guides: is_still, ..drawn });
+        let drawn = direct_sampling(glossy.as_ref(), &cache, settled, besides);
+        let drawn = drawn.map(|drawn| DirectSampling { guides: is_still, ..drawn });
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
         let context = ShadingContext::new(world, &lights, self.compensation);
@@ -112,8 +113,8 @@ impl Settings {
         };
         let glossy = glossy.as_ref().and_then(|glossy| glossy.for_points(&samples.points, &cache));
         let mut targets = Targets::new(&samples.points, &samples.index, glossy);
-        if cache.draws_direct_light() {
-            targets = targets.with_known(|point| samples.known_luminance(point));
+        if cache.samples_direct_light() {
+            targets = targets.with_baseline(|point| samples.known_luminance(point));
         }
         if let Some(thresholds) = thresholds {
             targets = targets.with_visible(|position| thresholds.at(position));
@@ -123,7 +124,7 @@ impl Settings {
 
         let mut picture = Picture::new(&samples, self.inspect);
         let tasks = stats.time(Stage::Splat, || {
-            resolve(frame.interpolate(records), &samples, cache.draws_direct_light(), &mut picture)
+            resolve(frame.interpolate(records), &samples, cache.samples_direct_light(), &mut picture)
         });
         picture.came_by("records");
         control.begin(Stage::Render, tasks.len() as u64);
@@ -178,7 +179,7 @@ impl Renderer for Settings {
     }
 
     fn finds_guides(&self) -> bool {
-        self.cache.draws_direct_light() && self.spp > 1
+        self.cache.samples_direct_light() && self.spp > 1
     }
 
     fn keeps_records(&self) -> bool {
@@ -204,11 +205,12 @@ impl Renderer for Settings {
         control: &Control,
     ) -> Option<DrawnPixels> {
         let glossy = Glossy::new(world, &self.cache);
-        let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default(), None)?;
+        let drawn = direct_sampling(glossy.as_ref(), &self.cache, Settled::default(), None)?;
         let settings = EyeSettings { spp: PILOT_SPP, seed: 0, ..self.sampling().eye(&world.scene) };
         let FoundCaustics { caustics, rays, shadow_rays, .. } =
             lights.photons.few((world, view), settings, control);
-        let found = EyePass::pilot(world, view, settings, (&drawn, caustics.as_ref()), groups, control);
+        let sources = LightSources { direct: &drawn, caustics: caustics.as_ref() };
+        let found = EyePass::pilot(world, view, settings, sources, groups, control);
         let EyePilot { luminances, photons, sampled, learned } = found;
         let luminances = luminances.map(|by_group| by_group.into_iter().flatten().map(f64::from).collect());
         let [sampled, learned] = [sampled, learned].map(|chains| chains.rays + chains.shadow_rays);
@@ -218,18 +220,18 @@ impl Renderer for Settings {
 
     fn expected_bytes(&self, window: &Window) -> u64 {
         let lights = self.light.expected_bytes();
-        EyePass::expected_bytes(window, self.cache.points_a_pixel(self.spp)).saturating_add(lights)
+        EyePass::expected_bytes(window, self.cache.points_per_pixel(self.spp)).saturating_add(lights)
     }
 
-    fn look(&self) -> Look {
-        self.cache.look(self.spp, self.seed)
+    fn estimand(&self) -> Estimand {
+        self.cache.estimand(self.spp, self.seed)
     }
 
     fn leaves_noise(&self) -> bool {
-        self.cache.draws_direct_light()
+        self.cache.samples_direct_light()
     }
 
     fn ladder(&self) -> &'static [Move] {
-        if self.cache.draws_direct_light() { &DRAWN } else { &CUTS }
+        if self.cache.samples_direct_light() { &DRAWN } else { &CUTS }
     }
 }

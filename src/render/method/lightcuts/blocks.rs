@@ -7,7 +7,7 @@ use base::math::Rgb;
 use base::progress::Control;
 use std::mem::take;
 use std::ops::Range;
-use transport::eye::{ChainCounts, EyeRays, VisibleSurfaces};
+use transport::eye::{EyeCounts, EyeRays, VisibleSurfaces};
 use transport::shade::{Shader, ShadingCounts};
 
 /// Pixels along the edge of a tile, within which occluders are remembered.
@@ -32,7 +32,7 @@ pub struct Tile {
     /// Index in the window, radiance, and mean number of clusters in the cuts of a sample.
     pub pixels: Vec<(usize, Rgb, f32)>,
     pub counts: ShadingCounts,
-    pub chains: ChainCounts,
+    pub chains: EyeCounts,
     /// Samples that were not finite and left out.
     pub nonfinite: u64,
 }

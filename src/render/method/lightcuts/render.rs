@@ -9,7 +9,7 @@ use base::film::{Image, Layer, Window};
 use base::parallel::{ShortRuns, Workspaces};
 use base::progress::Control;
 use base::setting::{COMPENSATION, SHARE};
-use base::stats::{Stage, Stats, Ways};
+use base::stats::{Contributions, Stage, Stats};
 use rayon::prelude::*;
 use transport::eye::{EyeRays, LightBySpecularLobes, VisibleSurfaces};
 use transport::lightcut::CutSettings;
@@ -91,10 +91,10 @@ impl Renderer for Settings {
             chains += tile.chains;
             nonfinite += tile.nonfinite;
         }
-        let mut ways = Ways::default();
-        ways.add("cuts and emitters in view", color.luminance());
-        light.add_to(&mut color, &mut ways);
-        ways.report(&mut stats);
+        let mut contributions = Contributions::default();
+        contributions.add("cuts and emitters in view", color.luminance());
+        light.add_to(&mut color, &mut contributions);
+        contributions.report(&mut stats);
         stats.count("Rays/shadow packets", work.cuts.packets);
         work.shadows.report(&mut stats);
         counts::cuts(&mut stats, "Lightcut", &work.cuts);

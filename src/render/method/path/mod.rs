@@ -18,4 +18,4 @@ mod render;
 pub use begun::Begun;
 pub use pixels::{Wanted, pixel_means};
 pub use render::Settings;
-pub use transport::paths::Counts;
+pub use transport::paths::RayCounts;

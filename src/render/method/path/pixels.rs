@@ -7,7 +7,7 @@ use base::progress::Control;
 use glam::DVec3;
 use rayon::prelude::*;
 use transport::eye::FullPaths;
-use transport::paths::{Batch, Counts, Look, Start, start};
+use transport::paths::{Batch, Estimand, PathStart, RayCounts, start};
 use world::World;
 use world::view::View;
 
@@ -22,7 +22,7 @@ const PILOT_SEEDS: [u32; 2] = [0x5bd1_e995, 0x2c1b_3c6d];
 pub struct Wanted {
     /// Column and row in the film.
     pub pixel: [u32; 2],
-    /// Paths through it; for [`Look::EyeSamples`] a multiple of their number, so that each has the same share.
+    /// Paths through it; for [`Estimand::EyeSamples`] a multiple of their number, so that each has the same share.
     pub samples: u32,
 }
 
@@ -31,10 +31,10 @@ pub struct Wanted {
 pub fn pixel_means(
     world: &World,
     view: &View,
-    look: Look,
+    estimand: Estimand,
     wanted: &[Wanted],
     (seed, max_depth): (u32, u32),
-    counts: &mut Counts,
+    counts: &mut RayCounts,
 ) -> (Vec<DVec3>, u64) {
     let mut sums = vec![DVec3::ZERO; wanted.len()];
     let mut nonfinite = 0;
@@ -43,8 +43,8 @@ pub fn pixel_means(
     for first in (0..most).step_by(TOGETHER as usize) {
         let samples = |w: &Wanted| first.min(w.samples)..(first + TOGETHER).min(w.samples);
         let paths =
-            wanted.iter().flat_map(|w| samples(w).map(|sample| Start { pixel: w.pixel, sample, seed }));
-        start(&mut batch, paths, (world, view), (look, most));
+            wanted.iter().flat_map(|w| samples(w).map(|sample| PathStart { pixel: w.pixel, sample, seed }));
+        start(&mut batch, paths, world, view, estimand, most);
         let mut values = batch.trace(world, max_depth, &mut FullPaths::default(), counts);
         for (w, sum) in wanted.iter().zip(&mut sums) {
             for value in values.by_ref().take(samples(w).len()) {
@@ -71,11 +71,11 @@ pub(super) fn draw_pixels(
     control: &Control,
 ) -> Option<DrawnPixels> {
     let max_depth = world.scene.path_limit(max_depth);
-    let found: Vec<([Vec<f64>; 2], Counts)> = groups
+    let found: Vec<([Vec<f64>; 2], RayCounts)> = groups
         .par_iter()
         .one_by_one()
         .map(|pixels| {
-            let mut counts = Counts::default();
+            let mut counts = RayCounts::default();
             let wanted: Vec<Wanted> =
                 pixels.iter().map(|&pixel| Wanted { pixel, samples: PILOT_SPP }).collect();
             let luminances = PILOT_SEEDS.map(|seed| {
@@ -83,7 +83,7 @@ pub(super) fn draw_pixels(
                     return Vec::new();
                 }
                 let of = (seed, max_depth);
-                let (means, _) = pixel_means(world, view, Look::Pixels, &wanted, of, &mut counts);
+                let (means, _) = pixel_means(world, view, Estimand::Pixels, &wanted, of, &mut counts);
                 means.into_iter().map(|mean| f64::from(luminance(mean.as_vec3()))).collect()
             });
             (luminances, counts)

@@ -11,8 +11,8 @@ use base::parallel::{ShortRuns, Workspaces};
 use base::progress::Control;
 use base::stats::{Stage, Stats};
 use rayon::prelude::*;
-use transport::eye::{FirstSurfaces, FullPaths, Guide, KeptGuide, KeptGuides};
-use transport::paths::{Batch, Counts, Look, Start, start};
+use transport::eye::{FeatureSettings, FirstSurfaces, FullPaths, Guide, PackedGuide, PackedGuides};
+use transport::paths::{Batch, Estimand, PathStart, RayCounts, start};
 use world::World;
 use world::view::View;
 
@@ -30,7 +30,7 @@ method_settings! {
     /// Settings of the method.
     spp = 64, "" {
         /// Value that a pixel is to have.
-        look: Look = Look::Pixels;
+        estimand: Estimand = Estimand::Pixels;
         /// True if a denoiser's guides are to be found on the way.
         guides: bool = false;
     }
@@ -60,12 +60,12 @@ impl Renderer for Settings {
         self.picture(world, Some(begun), view, control)
     }
 
-    fn look(&self) -> Look {
-        self.look
+    fn estimand(&self) -> Estimand {
+        self.estimand
     }
 
     fn find_guides(&mut self) {
-        self.guides = self.look == Look::Pixels;
+        self.guides = self.estimand == Estimand::Pixels;
     }
 
     fn finds_guides(&self) -> bool {
@@ -118,7 +118,7 @@ impl Settings {
         let mut color = Image::new(view.window.width, view.window.height);
         let mut squares = Image::new(view.window.width, view.window.height);
         let mut samples = squares.map(|_| 0);
-        let mut guides = vec![KeptGuide::default(); if finds_guides { color.pixels.len() } else { 0 }];
+        let mut guides = vec![PackedGuide::default(); if finds_guides { color.pixels.len() } else { 0 }];
         let (mut rays, mut shadow_rays, mut paths) = (0, 0, 0);
         let mut nonfinite = begun.map_or(0, |begun| begun.nonfinite);
         for (i, tile) in tiles.iter().enumerate() {
@@ -144,7 +144,7 @@ impl Settings {
         // With a single sample there is no spread to measure.
         let variance = (self.spp > 1).then(|| variance(&squares, &samples));
         let begun = Begun::layers(squares, samples);
-        let guides = if finds_guides { KeptGuides(guides).layers(&view.window) } else { Vec::new() };
+        let guides = if finds_guides { PackedGuides(guides).layers(&view.window) } else { Vec::new() };
         Output { variance, begun, guides, complete, nonfinite, ..Output::new(color, stats) }
     }
 }
@@ -174,7 +174,7 @@ struct Tile {
     samples: u32,
     /// Paths traced in this run.
     paths: u64,
-    counts: Counts,
+    counts: RayCounts,
     nonfinite: u64,
 }
 
@@ -222,16 +222,17 @@ impl Tile {
         for first in (begin..end).step_by(BATCH as usize) {
             let samples = first..(first + BATCH).min(end);
             let starts = film_pixels.iter().flat_map(|&pixel| {
-                samples.clone().map(move |sample| Start { pixel, sample, seed: settings.seed })
+                samples.clone().map(move |sample| PathStart { pixel, sample, seed: settings.seed })
             });
-            start(batch, starts, (world, view), (settings.look, settings.spp));
+            start(batch, starts, world, view, settings.estimand, settings.spp);
             if let Some(first) = &mut paths.first_surfaces {
                 first.begin(film_pixels.len(), samples.len() as u32);
             }
             let mut values = batch.trace(world, max_depth, &mut paths, &mut self.counts);
             if let Some(first) = &mut paths.first_surfaces {
-                let of = (settings.spp, settings.seed);
-                first.finish((world, view), (&film_pixels, samples.start), of);
+                let (spp, seed) = (settings.spp, settings.seed);
+                let features = FeatureSettings { estimand: Estimand::Pixels, spp, seed };
+                first.finish(world, view, features, &film_pixels, samples.start);
                 self.guides.iter_mut().enumerate().for_each(|(i, guide)| guide.add(first.of(i)));
             }
             for pixel in &mut self.pixels {
@@ -254,7 +255,7 @@ impl Tile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use transport::eye::{Feature, FeatureSettings, Features, SeenPixels};
+    use transport::eye::{Feature, Features, SeenPixels};
     use world::testkit::*;
 
     #[test]
@@ -268,7 +269,7 @@ mod tests {
         let (expected, found) = (render(&plain), render(&guided));
         assert_eq!(found.color, expected.color);
         assert!(expected.guides.is_empty());
-        let settings = FeatureSettings { look: plain.look(), spp: plain.spp, seed: plain.seed };
+        let settings = FeatureSettings { estimand: plain.estimand(), spp: plain.spp, seed: plain.seed };
         let wanted = Features::default().with(Feature::Albedo).with(Feature::Normal);
         let features = SeenPixels::new(&world, view, &settings, control).layers(&world, wanted);
         for (feature, guide) in features.iter().zip(&found.guides) {

@@ -1,5 +1,6 @@
 //! The picture: eye pass, photons, trees of direct light, the cache, and the rest by single samples.
 
+use crate::method::cache::direct_sampling::direct_sampling;
 use crate::method::cache::resolve::resolve;
 use crate::method::lights::LightStore;
 use crate::method::sampling::method_settings;
@@ -15,7 +16,7 @@ use transport::emission::PhotonSettings;
 use transport::eye::{EyePass, Settled};
 use transport::lightcut::CutSettings;
 use transport::lights::{Family, LightPassSettings, Origin};
-use transport::paths::Look;
+use transport::paths::Estimand;
 use transport::photon::density::estimates;
 use transport::photon::indirect_light::{GatherCounts, IndirectLight};
 use transport::photon::own::{SampleGather, reflected};
@@ -23,7 +24,7 @@ use transport::photon::records::FinalGatherSource;
 use transport::photon::strata::Strata;
 use transport::photon::{IrradianceMap, PhotonMap};
 use transport::radiance_cache::fill::CacheFrame;
-use transport::radiance_cache::series::{Glossy, drawn_light};
+use transport::radiance_cache::glossy::Glossy;
 use transport::radiance_cache::source::LightcutSource;
 use transport::radiance_cache::store::Records;
 use transport::radiance_cache::targets::Targets;
@@ -94,7 +95,7 @@ impl Renderer for Settings {
         let glossy = Glossy::new(world, &self.cache);
         let pixels = view.window.film_pixel_count() as f64;
         let other_rays = rays_beside_samples(pixels, self.spp.into(), self.photons.into());
-        let drawn = drawn_light(glossy.as_ref(), &self.cache, Settled::default(), Some(other_rays));
+        let drawn = direct_sampling(glossy.as_ref(), &self.cache, Settled::default(), Some(other_rays));
         let Prepared { eye: samples, lights, mut stats } =
             Prepared::new(world, lights, view, (self.sampling(), drawn), (wanted, false), control);
         let context = ShadingContext::new(world, &lights, true);
@@ -115,9 +116,12 @@ impl Renderer for Settings {
 
         let mut picture = Picture::new(&samples, self.inspect);
         let tasks = stats.time(Stage::Splat, || match &frame {
-            Some(frame) => {
-                resolve(frame.interpolate(&records), &samples, self.cache.draws_direct_light(), &mut picture)
-            }
+            Some(frame) => resolve(
+                frame.interpolate(&records),
+                &samples,
+                self.cache.samples_direct_light(),
+                &mut picture,
+            ),
             None => (0..samples.len() as u32).map(ShadingTask::all).collect(),
         });
         picture.came_by("records");
@@ -165,15 +169,15 @@ impl Renderer for Settings {
     fn expected_bytes(&self, window: &Window) -> u64 {
         let lights = LightPassSettings { indirect: 0, ..self.light }.expected_bytes()
             + u64::from(self.photons) * PHOTON_BYTES;
-        EyePass::expected_bytes(window, self.cache.points_a_pixel(self.spp)).saturating_add(lights)
+        EyePass::expected_bytes(window, self.cache.points_per_pixel(self.spp)).saturating_add(lights)
     }
 
-    fn look(&self) -> Look {
-        self.cache.look(self.spp, self.seed)
+    fn estimand(&self) -> Estimand {
+        self.cache.estimand(self.spp, self.seed)
     }
 
     fn leaves_noise(&self) -> bool {
-        self.cache.draws_direct_light()
+        self.cache.samples_direct_light()
     }
 }
 

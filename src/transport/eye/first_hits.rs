@@ -1,38 +1,38 @@
-//! Ends of paths, where direct light is drawn and indirect light is wanted.
+//! First non-specular hits of paths. Direct light is sampled there, indirect light is requested.
 
-use super::DrawnLight;
-use super::caustic_looks::CausticLooks;
+use super::DirectSampling;
+use super::caustic_lookups::CausticLookups;
 use super::guides::FirstSurfaces;
 use super::merge::MergedPoint;
 use crate::caustics::Caustics;
-use crate::paths::{ChainEnd, LightSamples, Reach, ScatteredEdges};
+use crate::paths::{ChainEnd, LightSamples, PathPolicy, ScatteredEdges};
 use base::math::Rgb;
 use glam::Vec3;
 use world::light::Learned;
 use world::material::{Bsdf, LobeSet};
 
-/// The ends of paths, in the order of the paths' edges.
-pub(super) struct Ends<'a, 'w> {
-    pub drawn: &'a DrawnLight,
+/// First hits of paths, in the order of the paths' edges.
+pub(super) struct FirstHits<'a, 'w> {
+    pub direct: &'a DirectSampling,
     pub learned: Option<&'a Learned>,
     pub caustics: Option<&'a Caustics>,
-    pub looks: CausticLooks,
-    /// Distance between neighbouring points over that from the eye, on surfaces that face it.
+    pub lookups: CausticLookups,
+    /// Distance between neighbouring points over the distance from the eye, on surfaces that face it.
     pub spacing_by_distance: f32,
     pub edges: ScatteredEdges,
     pub light_samples: LightSamples,
     pub found: Vec<MergedPoint<'w>>,
-    /// Their paths, and their numbers.
+    /// Path of each hit, and index in `found`.
     pub order: Vec<(u32, u32)>,
-    /// Where guides are wanted.
+    /// First surfaces, if guides are requested.
     pub first_surfaces: Option<FirstSurfaces>,
 }
 
-impl<'w> Reach<'w> for Ends<'_, 'w> {
-    const ENDS: bool = true;
+impl<'w> PathPolicy<'w> for FirstHits<'_, 'w> {
+    const STOPS_AT_DIFFUSE: bool = true;
 
     fn followed(&self, bsdf: &Bsdf) -> LobeSet {
-        match self.drawn.followed.get(bsdf.material().0 as usize) {
+        match self.direct.followed.get(bsdf.material().0 as usize) {
             Some(true) => bsdf.rough_lobes(),
             _ => bsdf.sharp_lobes(),
         }
@@ -51,7 +51,7 @@ impl<'w> Reach<'w> for Ends<'_, 'w> {
     }
 
     fn reflected(&mut self, end: &ChainEnd<'w>) -> Rgb {
-        self.caustics.map_or(Rgb::ZERO, |caustics| self.looks.reflected(caustics, end))
+        self.caustics.map_or(Rgb::ZERO, |caustics| self.lookups.reflected(caustics, end))
     }
 
     fn share_of_paths(&self, radiance: Rgb, distance: f32) -> f32 {

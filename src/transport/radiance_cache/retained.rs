@@ -1,22 +1,22 @@
-//! Records kept from frame to frame of a walk-through.
+//! Records retained from frame to frame of a walk-through.
 //!
-//! Paper: Herzog et al. 2009, section 6.4: records of the frames before are splatted first, and new ones are computed
-//! only where none reaches.
+//! Paper: Herzog et al. 2009, section 6.4. Records of earlier frames are splatted first; new ones are computed only
+//! where none reaches.
 //!
 //! The minimum radius of a footprint, in spacings of eye samples, is that of the frame it was made for. As the camera
-//! comes closer, the spacing falls, and radii that were raised to the minimum follow it down, to those that accuracy
-//! asks for. As the camera goes away, radii stay, since there are records enough; those whose footprints fall between
-//! eye samples rest until the camera comes back. The maximum radius bounds extrapolation, which does not depend on the
-//! view, and is not applied anew.
+//! approaches, the spacing falls. Radii that were raised to the minimum follow it down to the radii that accuracy
+//! allows. As the camera recedes, radii stay, since there are enough records. Records whose footprints fall between
+//! eye samples rest until the camera returns. The maximum radius bounds extrapolation, which does not depend on the
+//! view, and is not applied again.
 //!
-//! Deviations: the paper says neither when records go nor how their radii follow the camera. Here they go after a
-//! number of frames in which none of their light was near a point seen, and the longest unused first where memory is
-//! short.
+//! Deviations: the paper does not say when records are dropped or how their radii follow the camera. Here a record is
+//! dropped after a number of frames in which its footprint covered no visible point. If memory is short, the records
+//! unused for longest are dropped first.
 
 use super::fill::CacheFrame;
+use super::record::NewRecord;
 use super::record::Record;
 use super::settings::CacheSettings;
-use super::source::NewRecord;
 use super::store::Records;
 use crate::hsh::Radiance;
 use crate::lights::{DirectIndirect, Origin};
@@ -26,98 +26,98 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::mem;
 
-/// Minimum cosine between normal and direction to the eye that foreshortens; as that of eye samples.
+/// Minimum cosine, between the normal and the direction to the eye, that foreshortens; the same as for eye samples.
 const MIN_COS: f32 = 0.05;
 
 /// Longer radius, in minimum radii, below which a record rests.
-const RESTS_BELOW: f32 = 0.5;
+const RESTING_RADIUS: f32 = 0.5;
 
-/// Bounds of what a walk keeps.
+/// Limits of the records that a walk retains.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KeepLimits {
-    /// Maximum number of frames for which a record is kept unused.
+pub struct RetentionLimits {
+    /// Maximum number of frames for which an unused record is retained.
     pub idle_frames: u32,
-    /// Maximum number of bytes of all records between frames.
+    /// Maximum size of all records between frames, in bytes.
     pub bytes: u64,
-    /// True if drawn light is carried over from the picture before (see [`crate::reprojection`]).
+    /// True if sampled light is carried over from the previous image (see [`crate::reprojection`]).
     pub reprojects: bool,
-    /// Quantisation scale of the differences that are seen (see [`crate::perception`]); `None` for Weber's everywhere.
+    /// Quantisation scale of just visible differences (see [`crate::perception`]); `None` for Weber's law everywhere.
     pub q_scale: Option<f32>,
 }
 
-/// By default a gibibyte, a second or two of film, and differences that are seen.
-impl Default for KeepLimits {
-    fn default() -> KeepLimits {
-        KeepLimits { idle_frames: 48, bytes: 1 << 30, reprojects: true, q_scale: Some(Q_SCALE) }
+/// Defaults: one gibibyte, one to two seconds of film, and just visible differences.
+impl Default for RetentionLimits {
+    fn default() -> RetentionLimits {
+        RetentionLimits { idle_frames: 48, bytes: 1 << 30, reprojects: true, q_scale: Some(Q_SCALE) }
     }
 }
 
 /// Records of a walk-through.
 #[derive(Default)]
-pub struct KeptRecords {
-    limits: KeepLimits,
-    /// Frames begun.
+pub struct RetainedRecords {
+    limits: RetentionLimits,
+    /// Number of frames begun.
     frame: u32,
-    /// All records between frames, those that rest during one.
-    kept: DirectIndirect<Vec<Kept>>,
-    /// Uses of the records that light the frame, as far as they are older than it.
+    /// All records between frames; during a frame, the resting ones.
+    retained: DirectIndirect<Vec<RetainedRecord>>,
+    /// Usage of the records that light the frame and are older than it.
     older: DirectIndirect<Vec<Use>>,
     /// Records that light the frame.
     records: Records,
 }
 
-/// A record between frames.
+/// Record between frames.
 #[derive(Serialize, Deserialize)]
-struct Kept {
+struct RetainedRecord {
     record: Record,
     series: Option<Radiance>,
     usage: Use,
 }
 
-/// History of a record.
+/// Usage of a record.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Use {
-    /// Frame that it was last near a point seen.
+    /// Last frame in which its footprint may have covered a visible point.
     last: u32,
     /// Spacing of eye samples at the record over its apparent distance.
     spacing_by_distance: f32,
 }
 
-impl KeptRecords {
-    /// None yet.
-    pub fn new(limits: KeepLimits) -> KeptRecords {
-        KeptRecords { limits, ..KeptRecords::default() }
+impl RetainedRecords {
+    /// Returns an empty store.
+    pub fn new(limits: RetentionLimits) -> RetainedRecords {
+        RetainedRecords { limits, ..RetainedRecords::default() }
     }
 
-    /// Records as they were when [`KeptRecords::save`] returned these bytes; `None` if it did not.
-    pub fn restored(limits: KeepLimits, saved: &[u8]) -> Option<KeptRecords> {
-        let ((frame, kept), rest): ((u32, DirectIndirect<Vec<Kept>>), _) =
+    /// Restores the records from the bytes of [`RetainedRecords::save`]; returns `None` if the bytes are damaged.
+    pub fn restored(limits: RetentionLimits, saved: &[u8]) -> Option<RetainedRecords> {
+        let ((frame, retained), rest): ((u32, DirectIndirect<Vec<RetainedRecord>>), _) =
             postcard::take_from_bytes(saved).ok()?;
-        let mut all = kept.direct.iter().chain(&kept.indirect);
-        let is_sound = rest.is_empty() && frame < u32::MAX && all.all(|kept| kept.is_sound(frame));
-        is_sound.then(|| KeptRecords { limits, frame, kept, ..KeptRecords::default() })
+        let mut all = retained.direct.iter().chain(&retained.indirect);
+        let is_sound = rest.is_empty() && frame < u32::MAX && all.all(|retained| retained.is_sound(frame));
+        is_sound.then(|| RetainedRecords { limits, frame, retained, ..RetainedRecords::default() })
     }
 
-    /// The records between frames as bytes, for this version of the program.
+    /// Returns the records between frames as bytes, which only this version of the program can restore.
     pub fn save(&self) -> Vec<u8> {
-        // Records are plain numbers, which cannot fail to be written; without bytes there would be none to restore.
-        postcard::to_stdvec(&(self.frame, &self.kept)).unwrap_or_default()
+        // Records are plain numbers, whose serialisation cannot fail.
+        postcard::to_stdvec(&(self.frame, &self.retained)).unwrap_or_default()
     }
 
-    /// Begins a frame seen from `eye`; returns the records that may light it.
+    /// Begins a frame seen from `eye`. Returns the records that may light it.
     pub fn begin(&mut self, eye: Vec3, settings: &CacheSettings) -> &mut Records {
         self.frame += 1;
         for origin in Origin::ALL {
             let least_in_spacings = settings.reach[origin as usize][0];
-            for mut kept in mem::take(&mut self.kept[origin]) {
-                let spacing = kept.usage.spacing_by_distance * apparent_distance(&kept.record, eye);
-                let footprint = &mut kept.record.footprint;
+            for mut retained in mem::take(&mut self.retained[origin]) {
+                let spacing = retained.usage.spacing_by_distance * apparent_distance(&retained.record, eye);
+                let footprint = &mut retained.record.footprint;
                 footprint.lower(least_in_spacings * spacing);
-                if footprint.max_radius() < RESTS_BELOW * least_in_spacings * spacing {
-                    self.kept[origin].push(kept);
+                if footprint.max_radius() < RESTING_RADIUS * least_in_spacings * spacing {
+                    self.retained[origin].push(retained);
                     continue;
                 }
-                let Kept { record, series, usage } = kept;
+                let RetainedRecord { record, series, usage } = retained;
                 self.older[origin].push(usage);
                 self.records[origin].push(NewRecord { origin, sample: 0, record, series });
             }
@@ -125,7 +125,7 @@ impl KeptRecords {
         &mut self.records
     }
 
-    /// Ends the frame, which `frame` has lit: records grow older, and those beyond the limits go.
+    /// Ends the frame that `frame` has lit: records age, and those beyond the limits are dropped.
     pub fn end(&mut self, frame: &CacheFrame, eye: Vec3, stats: &mut Stats) {
         let mut added = 0;
         for origin in Origin::ALL {
@@ -147,7 +147,7 @@ impl KeptRecords {
                         Use { last: self.frame, spacing_by_distance }
                     }
                 };
-                self.kept[origin].push(Kept { record, series, usage });
+                self.retained[origin].push(RetainedRecord { record, series, usage });
             }
             added += frame.placed[origin].len();
         }
@@ -159,62 +159,63 @@ impl KeptRecords {
         stats.count("Walk/records evicted for memory", over as u64);
     }
 
-    /// Drops records that were unused for too long, and the longest unused ones beyond the bytes allowed; returns the
-    /// numbers of both.
+    /// Drops records that were idle for too long, and then those unused for longest until the size limit holds.
+    /// Returns the numbers of both.
     fn evict(&mut self) -> [usize; 2] {
         let before = self.count();
-        let KeepLimits { idle_frames, bytes, .. } = self.limits;
-        let is_idle = |kept: &Kept| self.frame - kept.usage.last > idle_frames;
+        let RetentionLimits { idle_frames, bytes, .. } = self.limits;
+        let is_idle = |retained: &RetainedRecord| self.frame - retained.usage.last > idle_frames;
         for origin in Origin::ALL {
-            self.kept[origin].retain(|kept| !is_idle(kept));
+            self.retained[origin].retain(|retained| !is_idle(retained));
         }
         let left = self.count();
         let mut excess = self.bytes().saturating_sub(bytes);
         if excess > 0 {
-            // The oldest use goes first, direct light before indirect, in the order of making.
+            // Order: by last use, direct light before indirect, then by creation.
             let mut order: Vec<(u32, Origin, usize)> = Vec::with_capacity(left);
             for origin in Origin::ALL {
-                order.extend(self.kept[origin].iter().enumerate().map(|(i, k)| (k.usage.last, origin, i)));
+                order
+                    .extend(self.retained[origin].iter().enumerate().map(|(i, k)| (k.usage.last, origin, i)));
             }
             order.sort_by_key(|&(last, origin, i)| (last, origin as usize, i));
-            let mut goes = self.kept.as_ref().map(|kept| vec![false; kept.len()]);
+            let mut goes = self.retained.as_ref().map(|retained| vec![false; retained.len()]);
             for (_, origin, i) in order {
                 if excess == 0 {
                     break;
                 }
                 goes[origin][i] = true;
-                excess = excess.saturating_sub(self.kept[origin][i].bytes());
+                excess = excess.saturating_sub(self.retained[origin][i].bytes());
             }
             for origin in Origin::ALL {
                 let mut goes = goes[origin].iter();
-                self.kept[origin].retain(|_| !goes.next().is_some_and(|goes| *goes));
+                self.retained[origin].retain(|_| !goes.next().is_some_and(|goes| *goes));
             }
         }
         [before - left, left - self.count()]
     }
 
     fn count(&self) -> usize {
-        self.kept.direct.len() + self.kept.indirect.len()
+        self.retained.direct.len() + self.retained.indirect.len()
     }
 
     fn bytes(&self) -> u64 {
-        self.kept.direct.iter().chain(&self.kept.indirect).map(Kept::bytes).sum()
+        self.retained.direct.iter().chain(&self.retained.indirect).map(RetainedRecord::bytes).sum()
     }
 }
 
-impl Kept {
-    /// True if it can be a record after that frame, as it is unless it was read from damaged bytes.
+impl RetainedRecord {
+    /// Returns true if the record is possible after that frame. Only damaged bytes give others.
     fn is_sound(&self, frame: u32) -> bool {
         self.usage.last <= frame && self.series.as_ref().is_none_or(Radiance::is_sound)
     }
 
     fn bytes(&self) -> u64 {
-        (size_of::<Kept>() + self.series.as_ref().map_or(0, Radiance::bytes)) as u64
+        (size_of::<RetainedRecord>() + self.series.as_ref().map_or(0, Radiance::bytes)) as u64
     }
 }
 
-/// Distance to which the spacing of eye samples at a record is proportional: that to the eye, foreshortened. Chains
-/// through mirrors are longer, so that spacings are never taken for larger than they are as the camera moves.
+/// Returns the distance to which the spacing of eye samples at a record is proportional: the distance to the eye,
+/// foreshortened. Chains through mirrors are longer, so that spacings are never overestimated as the camera moves.
 fn apparent_distance(record: &Record, eye: Vec3) -> f32 {
     let to_eye = eye - record.position;
     let distance = to_eye.length();
@@ -224,8 +225,9 @@ fn apparent_distance(record: &Record, eye: Vec3) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::candidate::Candidate;
     use super::super::fixtures::{Floor, record};
-    use super::super::source::{Candidate, RecordSource};
+    use super::super::source::RecordSource;
     use super::*;
     use crate::lightcut::CutCounts;
     use base::math::Rgb;
@@ -256,7 +258,7 @@ mod tests {
     }
 
     /// Lights a floor seen from `eye`; returns the number of new records.
-    fn light(kept: &mut KeptRecords, floor: &Floor, eye: Vec3) -> usize {
+    fn light(kept: &mut RetainedRecords, floor: &Floor, eye: Vec3) -> usize {
         let source = source();
         let records = kept.begin(eye, &source.0);
         let before = records.indirect.records.len();
@@ -290,7 +292,7 @@ mod tests {
     #[test]
     fn a_frame_like_the_last_needs_no_new_records() {
         let floor = Floor::grid(32);
-        let mut kept = KeptRecords::new(KeepLimits::default());
+        let mut kept = RetainedRecords::new(RetentionLimits::default());
         assert!(light(&mut kept, &floor, ABOVE) > 10);
         assert_eq!(light(&mut kept, &floor, ABOVE), 0);
     }
@@ -298,31 +300,33 @@ mod tests {
     #[test]
     fn records_restored_are_those_saved_and_damaged_bytes_are_refused() {
         let floor = Floor::grid(32);
-        let mut kept = KeptRecords::new(KeepLimits::default());
+        let mut kept = RetainedRecords::new(RetentionLimits::default());
         light(&mut kept, &floor, ABOVE);
-        kept.kept.indirect[3].series = Some(Radiance::black(3));
+        kept.retained.indirect[3].series = Some(Radiance::black(3));
         let saved = kept.save();
-        let mut restored = KeptRecords::restored(KeepLimits::default(), &saved).unwrap();
+        let mut restored = RetainedRecords::restored(RetentionLimits::default(), &saved).unwrap();
         assert_eq!(restored.save(), saved);
         assert_eq!(light(&mut restored, &floor, ABOVE), 0);
         for length in [0, 1, saved.len() / 2, saved.len() - 1] {
-            assert!(KeptRecords::restored(KeepLimits::default(), &saved[..length]).is_none());
+            assert!(RetainedRecords::restored(RetentionLimits::default(), &saved[..length]).is_none());
         }
-        assert!(KeptRecords::restored(KeepLimits::default(), &[&saved[..], &[0]].concat()).is_none());
+        assert!(
+            RetainedRecords::restored(RetentionLimits::default(), &[&saved[..], &[0]].concat()).is_none()
+        );
         // Damage that the file's hash does not show: uses after the last frame.
-        kept.kept.indirect[0].usage.last = kept.frame + 1;
-        assert!(KeptRecords::restored(KeepLimits::default(), &kept.save()).is_none());
+        kept.retained.indirect[0].usage.last = kept.frame + 1;
+        assert!(RetainedRecords::restored(RetentionLimits::default(), &kept.save()).is_none());
         kept.frame = u32::MAX;
-        assert!(KeptRecords::restored(KeepLimits::default(), &kept.save()).is_none());
+        assert!(RetainedRecords::restored(RetentionLimits::default(), &kept.save()).is_none());
     }
 
     #[test]
     fn footprints_follow_the_camera_nearer_and_rest_as_it_goes_far() {
         let floor = Floor::grid(32);
-        let mut kept = KeptRecords::new(KeepLimits::default());
+        let mut kept = RetainedRecords::new(RetentionLimits::default());
         light(&mut kept, &floor, ABOVE);
         let all = kept.count();
-        let radius = |kept: &KeptRecords| kept.kept.indirect[0].record.footprint.max_radius();
+        let radius = |kept: &RetainedRecords| kept.retained.indirect[0].record.footprint.max_radius();
         let first = radius(&kept);
         // Twice as near: spacings and the radii raised to a minimum are halved, and new records fill the holes.
         let nearer = light(&mut kept, &seen_from(&floor, 0.5), Vec3::new(0.5, 0.5, 2.0));
@@ -341,7 +345,7 @@ mod tests {
     #[test]
     fn records_unused_for_too_many_frames_go() {
         let [floor, elsewhere] = floors();
-        let mut kept = KeptRecords::new(KeepLimits { idle_frames: 2, ..KeepLimits::default() });
+        let mut kept = RetainedRecords::new(RetentionLimits { idle_frames: 2, ..RetentionLimits::default() });
         let many = light(&mut kept, &floor, ABOVE);
         let mut counts = Vec::new();
         for _ in 0..4 {
@@ -354,13 +358,13 @@ mod tests {
     #[test]
     fn memory_stays_below_the_limit_and_the_longest_unused_go_first() {
         let floors = floors();
-        let mut kept = KeptRecords::new(KeepLimits::default());
+        let mut kept = RetainedRecords::new(RetentionLimits::default());
         let many = light(&mut kept, &floors[0], ABOVE);
         kept.limits.bytes = kept.bytes() + kept.bytes() / 4;
         light(&mut kept, &floors[1], ABOVE + Vec3::X * 50.0);
         assert!(kept.bytes() <= kept.limits.bytes && kept.count() > many);
-        let left = |kept: &KeptRecords, x: f32| {
-            kept.kept.indirect.iter().filter(|k| (k.record.position.x - x).abs() < 25.0).count()
+        let left = |kept: &RetainedRecords, x: f32| {
+            kept.retained.indirect.iter().filter(|k| (k.record.position.x - x).abs() < 25.0).count()
         };
         assert!(left(&kept, 50.0) == many && left(&kept, 0.0) > 0);
         kept.limits.bytes = 0;

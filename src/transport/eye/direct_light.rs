@@ -1,0 +1,200 @@
+//! Eye pass with direct light.
+//!
+//! Paths stop at the first surfaces that scatter light broadly. Emitters are sampled there. The hits are merged into
+//! shading points, whose indirect light remains to be found.
+//!
+//! All pixels first get the same number of samples. Pixels in high-contrast surroundings then get more ([`adaptive`]).
+//! A pilot learns beforehand which emitters each region of the scene sees ([`learn`]).
+//!
+//! [`adaptive`]: super::adaptive
+//! [`learn`]: super::learn
+
+use super::adaptive::MULTIPLES;
+use super::guides::Guide;
+use super::merge::{MergedPoint, merge};
+use super::needs::Needs;
+use super::points::VisibilitySample;
+use super::tracer::{BATCH, SampledTile, Tracer, TracerWorkspace};
+use super::{EyeCounts, EyePass, EyeSettings, LightSources, TILE, VisibleSurfaces};
+use crate::paths::RayCounts;
+use base::math::Rgb;
+use base::parallel::{ShortRuns, Workspaces};
+use base::progress::Control;
+use base::sampling::{hash, unit};
+use rayon::prelude::*;
+use world::World;
+use world::view::View;
+
+/// Expected maximum number of shading points per pixel and batch after merging.
+const POINTS_PER_BATCH: u64 = 3;
+
+impl<'w> EyePass<'w> {
+    /// Samples direct light with at least `settings.spp` paths per pixel and finds the shading points that need
+    /// indirect light. [`EyePass::known`] holds all the light found.
+    pub fn with_direct_light(
+        world: &'w World,
+        view: &View,
+        settings: EyeSettings,
+        sources: LightSources,
+        control: &Control,
+    ) -> EyePass<'w> {
+        let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
+        let mut counts = RayCounts::default();
+        let mut tracer = Tracer::new(world, view, settings, sources, control, &mut counts);
+        let found = tracer.learn(settings.seed, 1);
+        let learned = found.as_ref().map(|(learned, _)| learned);
+        let effort = tracer.effort(learned);
+        tracer.light_samples.count = effort.as_ref().map_or(1, |effort| effort.light_samples);
+        let works = Workspaces::new(|| tracer.workspace_with_guides(learned));
+        let first = |index| {
+            if control.is_cancelled() {
+                return None;
+            }
+            let found = works.with(|work| tracer.first_samples(index, work));
+            control.advance(1);
+            Some(found)
+        };
+        let tiles = (0..view.window.tile_count(TILE)).into_par_iter().one_by_one();
+        let tiles: Vec<SampledTile> = tiles.map(first).flatten().collect();
+        let needs = effort.as_ref().and_then(|effort| tracer.needs(effort, &tiles, learned));
+        let more = |tile| works.with(|work| tracer.more_samples(tile, needs.as_ref(), work));
+        let tiles = tiles.into_par_iter().one_by_one().map(more).collect();
+        let mut pass = EyePass::gather(&view.window, tiles, 1, control);
+        pass.chains.rays += counts.rays;
+        pass.chains.shadow_rays += counts.shadow_rays;
+        if let Some((_, chains)) = &found {
+            pass.chains += *chains;
+        }
+        if let Some(needs) = needs {
+            pass.chains += needs.chains;
+        }
+        if let Some(effort) = effort {
+            pass.chains += effort.chains;
+            pass.light_samples = effort.light_samples;
+            pass.noise = effort.noise;
+        }
+        pass
+    }
+}
+
+/// Returns the expected maximum number of shading points per pixel with `spp` samples.
+pub fn merged_points(spp: u32) -> u64 {
+    u64::from(spp).min(POINTS_PER_BATCH * u64::from(spp.div_ceil(BATCH)))
+}
+
+impl<'w> Tracer<'_, 'w> {
+    /// Takes the first samples of all pixels of a tile.
+    fn first_samples(&self, index: usize, work: &mut TracerWorkspace<'_, 'w>) -> SampledTile<'w> {
+        let window = &self.view.window;
+        let pixels: Vec<[u32; 2]> = window.tile(index, TILE).collect();
+        let EyeSettings { spp, seed, .. } = self.settings;
+        let settled = &self.direct.settled;
+        let of_window = |pixel: &[u32; 2]| pixel[1] as usize * window.width as usize + pixel[0] as usize;
+        let are_settled: Vec<bool> = pixels.iter().map(|pixel| settled.contains(of_window(pixel))).collect();
+        let mut tile = SampledTile {
+            sums: vec![Rgb::ZERO; pixels.len()],
+            samples: vec![spp; pixels.len()],
+            guides: vec![Guide::default(); if self.finds_guides() { pixels.len() } else { 0 }],
+            points: Vec::with_capacity(2 * pixels.len()),
+            ranges: vec![0..0; pixels.len()],
+            chains: EyeCounts::default(),
+            nonfinite: 0,
+            pixels,
+        };
+        for (is_settled, samples) in [(false, 0..spp), (true, settled.samples(spp))] {
+            let chosen: Vec<usize> =
+                (0..are_settled.len()).filter(|i| are_settled[*i] == is_settled).collect();
+            let film_pixels: Vec<[u32; 2]> =
+                chosen.iter().map(|i| window.film_pixel(tile.pixels[*i])).collect();
+            let number = samples.len() as u32;
+            tile.chains += self.sample(&film_pixels, samples, seed, work, |found, merged| {
+                let i = chosen[found.index];
+                tile.sums[i] += found.sum;
+                tile.samples[i] = number;
+                if let Some(guide) = tile.guides.get_mut(i) {
+                    guide.add(found.guide);
+                }
+                tile.nonfinite += found.nonfinite;
+                let draw = self.draw(film_pixels[found.index], found.first);
+                merge(found.ends(), draw, merged);
+                let start = tile.points.len();
+                tile.points.extend_from_slice(merged);
+                let range = &mut tile.ranges[i];
+                let start = if range.start < range.end { range.start } else { start };
+                *range = start..tile.points.len();
+            });
+        }
+        // Tiles wait until all first samples are taken.
+        tile.points.shrink_to_fit();
+        tile
+    }
+
+    /// Takes more samples of the pixels of a tile that need them, and merges all samples.
+    fn more_samples(
+        &self,
+        mut tile: SampledTile<'w>,
+        needs: Option<&Needs>,
+        work: &mut TracerWorkspace<'_, 'w>,
+    ) -> VisibleSurfaces<'w> {
+        let EyeSettings { spp, seed, .. } = self.settings;
+        let window = &self.view.window;
+        let mut found =
+            VisibleSurfaces { chains: tile.chains, nonfinite: tile.nonfinite, ..Default::default() };
+        let film_pixels: Vec<[u32; 2]> = tile.pixels.iter().map(|pixel| window.film_pixel(*pixel)).collect();
+        let cancelled = self.control.is_cancelled();
+        let needs = needs.filter(|_| !cancelled);
+        let more = |(pixel, samples): (&[u32; 2], &u32)| match needs {
+            Some(needs) if *samples == spp => needs.choice.more(&needs.luminances, *pixel),
+            _ => 0,
+        };
+        let multiples: Vec<u32> = film_pixels.iter().zip(&tile.samples).map(more).collect();
+        let put = |found: &mut VisibleSurfaces<'w>, i: usize, points: &[MergedPoint<'w>], samples: u32| {
+            let pixel = tile.pixels[i][1] * window.width + tile.pixels[i][0];
+            for point in points {
+                found.points.geometry.push(point.geometry);
+                found.points.surfaces.push(point.surface);
+                found.visibility.push(VisibilitySample { pixel, weight: point.weight / samples as f32 });
+            }
+        };
+        let first_points = |i: usize| &tile.points[tile.ranges[i].clone()];
+        for multiple in [0].into_iter().chain(MULTIPLES) {
+            let chosen: Vec<usize> = (0..multiples.len()).filter(|i| multiples[*i] == multiple).collect();
+            if multiple == 0 {
+                // Points that will not be lit are left out.
+                let lit = if cancelled { &[] } else { &chosen[..] };
+                lit.iter().for_each(|i| put(&mut found, *i, first_points(*i), tile.samples[*i]));
+            } else {
+                let total = spp * (1 + multiple);
+                let chosen_pixels: Vec<[u32; 2]> = chosen.iter().map(|i| film_pixels[*i]).collect();
+                let chains = self.sample(&chosen_pixels, spp..total, seed, work, |more, merged| {
+                    let i = chosen[more.index];
+                    tile.sums[i] += more.sum;
+                    if let Some(guide) = tile.guides.get_mut(i) {
+                        guide.add(more.guide);
+                    }
+                    found.nonfinite += more.nonfinite;
+                    let before = if more.first == spp { first_points(i) } else { &[] };
+                    let points = before.iter().chain(more.ends());
+                    merge(points, self.draw(film_pixels[i], more.first), merged);
+                    put(&mut found, i, merged, total);
+                    tile.samples[i] = total;
+                });
+                found.chains += chains;
+                found.chains.extra_samples += u64::from(total - spp) * chosen.len() as u64;
+            }
+            for i in chosen.into_iter().filter(|i| tile.sums[*i] != Rgb::ZERO) {
+                let pixel = tile.pixels[i][1] * window.width + tile.pixels[i][0];
+                found.known.push((pixel, tile.sums[i] / tile.samples[i] as f32));
+            }
+        }
+        let of_window = |[x, y]: [u32; 2]| y * window.width + x;
+        let kept = tile.guides.iter().zip(&tile.samples).map(|(guide, samples)| guide.kept(*samples));
+        found.guides = tile.pixels.iter().map(|pixel| of_window(*pixel)).zip(kept).collect();
+        found
+    }
+
+    /// Returns the random number that thins the points of a film pixel whose samples start with `first`.
+    fn draw(&self, [x, y]: [u32; 2], first: u32) -> f32 {
+        unit(hash(hash(x, y), self.settings.seed ^ 0x7e11 ^ first))
+    }
+}

@@ -1,0 +1,204 @@
+//! Paths through the pixels of a view that end at the first surfaces which scatter light broadly.
+
+use super::caustic_lookups::CausticLookups;
+use super::direct_sampling::{DirectSampling, LightSources};
+use super::first_hits::FirstHits;
+use super::guides::{FirstSurfaces, Guide};
+use super::merge::MergedPoint;
+use super::{EyeCounts, EyeSettings, FeatureSettings, guide};
+use crate::caustics::Caustics;
+use crate::paths::{Batch, Estimand, LightSamples, PathStart, RayCounts, ScatteredEdges, start};
+use base::math::{Rgb, luminance};
+use base::progress::Control;
+use std::ops::Range;
+use world::World;
+use world::light::Learned;
+use world::view::View;
+
+/// Approximate number of paths traced together: enough to fill packets, few enough for the second-level cache.
+pub(super) const BATCH: u32 = 1024;
+
+/// Share of a pixel's edge that counts as the distance to the next point: that of four eye samples per pixel, for
+/// which the footprint sizes of records are tuned.
+const SPACING: f32 = 0.5;
+
+/// Buffers of a thread.
+pub(super) struct TracerWorkspace<'a, 'w> {
+    batch: Batch,
+    ends: FirstHits<'a, 'w>,
+    merged: Vec<MergedPoint<'w>>,
+}
+
+/// Tracer of paths through the pixels of a view.
+pub(super) struct Tracer<'a, 'w> {
+    pub(super) world: &'w World,
+    pub(super) view: &'a View,
+    pub(super) settings: EyeSettings,
+    pub(super) direct: &'a DirectSampling,
+    pub(super) caustics: Option<&'a Caustics>,
+    pub(super) edges: ScatteredEdges,
+    pub(super) light_samples: LightSamples,
+    pub(super) control: &'a Control,
+}
+
+/// Samples of one pixel that were traced together.
+pub(super) struct PixelSamples<'b, 'w> {
+    /// Index of the pixel in the call.
+    pub(super) index: usize,
+    pub(super) first: u32,
+    /// Sum of the samples' radiances.
+    pub(super) sum: Rgb,
+    /// Sum over the first half of the samples requested.
+    pub(super) half: Rgb,
+    /// Number of radiances left out because they were not finite.
+    pub(super) nonfinite: u64,
+    pub(super) guide: Guide,
+    ends: &'b [MergedPoint<'w>],
+    /// Path and index in `ends` of the pixel's first hits, in order of path.
+    order: &'b [(u32, u32)],
+}
+
+impl<'b, 'w> PixelSamples<'b, 'w> {
+    pub(super) fn ends(&self) -> impl Iterator<Item = &'b MergedPoint<'w>> {
+        let ends = self.ends;
+        self.order.iter().map(|(_, number)| &ends[*number as usize])
+    }
+}
+
+/// Light and shading points of the first samples of a tile's pixels.
+pub(super) struct SampledTile<'w> {
+    /// Pixels of the window.
+    pub(super) pixels: Vec<[u32; 2]>,
+    /// Sum of the samples' radiances per pixel.
+    pub(super) sums: Vec<Rgb>,
+    /// Number of samples per pixel.
+    pub(super) samples: Vec<u32>,
+    /// Denoiser guide per pixel, if guides are requested.
+    pub(super) guides: Vec<Guide>,
+    pub(super) points: Vec<MergedPoint<'w>>,
+    /// Range of `points` per pixel.
+    pub(super) ranges: Vec<Range<usize>>,
+    pub(super) chains: EyeCounts,
+    pub(super) nonfinite: u64,
+}
+
+impl<'a, 'w> Tracer<'a, 'w> {
+    /// Creates a tracer whose scattered edges are guided as a pilot finds best; adds the pilot's rays to `counts`.
+    pub(super) fn new(
+        world: &'w World,
+        view: &'a View,
+        settings: EyeSettings,
+        sources: LightSources<'a>,
+        control: &'a Control,
+        counts: &mut RayCounts,
+    ) -> Tracer<'a, 'w> {
+        let LightSources { direct, caustics } = sources;
+        let (edges, light_samples) = (ScatteredEdges::default(), LightSamples::ONE);
+        let mut tracer = Tracer { world, view, settings, direct, caustics, edges, light_samples, control };
+        let all = || tracer.workspace(None).ends;
+        tracer.edges = guide::edges(world, view, settings, all, caustics, counts);
+        tracer
+    }
+
+    pub(super) fn workspace<'b>(&'b self, learned: Option<&'b Learned>) -> TracerWorkspace<'b, 'w> {
+        let spacing_by_distance = SPACING * self.view.pixel_angle();
+        let Tracer { direct, caustics, edges, light_samples, .. } = *self;
+        let ends = FirstHits {
+            direct,
+            learned,
+            caustics,
+            lookups: CausticLookups::default(),
+            spacing_by_distance,
+            edges,
+            light_samples,
+            found: Vec::new(),
+            order: Vec::new(),
+            first_surfaces: None,
+        };
+        TracerWorkspace { batch: Batch::default(), ends, merged: Vec::new() }
+    }
+
+    /// Returns buffers for samples that compute guides, if guides are requested.
+    pub(super) fn workspace_with_guides<'b>(
+        &'b self,
+        learned: Option<&'b Learned>,
+    ) -> TracerWorkspace<'b, 'w> {
+        let mut workspace = self.workspace(learned);
+        workspace.ends.first_surfaces = self.finds_guides().then(FirstSurfaces::default);
+        workspace
+    }
+
+    /// Returns true if the samples compute guides. Paths limited to one edge know nothing of surfaces.
+    pub(super) fn finds_guides(&self) -> bool {
+        self.direct.guides && self.settings.spp > 1 && self.settings.max_depth > 1
+    }
+
+    /// Traces samples of film pixels and calls `each` for every pixel in order. If the samples of a pixel exceed a
+    /// batch, `each` is called for every part.
+    pub(super) fn sample(
+        &self,
+        pixels: &[[u32; 2]],
+        samples: Range<u32>,
+        seed: u32,
+        work: &mut TracerWorkspace<'_, 'w>,
+        mut each: impl FnMut(PixelSamples<'_, 'w>, &mut Vec<MergedPoint<'w>>),
+    ) -> EyeCounts {
+        let TracerWorkspace { batch, ends, merged } = work;
+        let estimand =
+            if self.settings.spp > 1 { Estimand::Pixels } else { Estimand::EyeSamples { spp: 1, seed } };
+        let mut chains = EyeCounts::default();
+        let middle = samples.start + samples.len() as u32 / 2;
+        let together = (BATCH / samples.len().max(1) as u32).max(1) as usize;
+        for (chunk, pixels) in pixels.chunks(together).enumerate() {
+            for first in samples.clone().step_by(BATCH as usize) {
+                let part = first..first.saturating_add(BATCH).min(samples.end);
+                let n = part.len();
+                let paths = pixels.iter().flat_map(|pixel| {
+                    part.clone().map(move |sample| PathStart { pixel: *pixel, sample, seed })
+                });
+                start(batch, paths, self.world, self.view, estimand, self.settings.spp);
+                ends.lookups = CausticLookups::new(n as u32);
+                ends.found.clear();
+                ends.order.clear();
+                if let Some(first_surfaces) = &mut ends.first_surfaces {
+                    first_surfaces.begin(pixels.len(), n as u32);
+                }
+                let mut counts = RayCounts::default();
+                let mut radiance = batch.trace(self.world, self.settings.max_depth, ends, &mut counts);
+                chains.rays += counts.rays;
+                chains.shadow_rays += counts.shadow_rays;
+                chains.by_photons += ends.lookups.found;
+                chains.square_by_photons += ends.lookups.square;
+                ends.order.sort_unstable();
+                if let Some(first_surfaces) = &mut ends.first_surfaces {
+                    let settings =
+                        FeatureSettings { estimand: Estimand::Pixels, spp: self.settings.spp, seed };
+                    first_surfaces.finish(self.world, self.view, settings, pixels, part.start);
+                }
+                let (found, mut rest) = (&ends.found[..], &ends.order[..]);
+                for i in 0..pixels.len() {
+                    let (mut sum, mut half, mut nonfinite) = (Rgb::ZERO, Rgb::ZERO, 0);
+                    for (number, value) in part.clone().zip(radiance.by_ref().take(n)) {
+                        if value.is_finite() {
+                            sum += value;
+                            half += if number < middle { value } else { Rgb::ZERO };
+                        } else {
+                            nonfinite += 1;
+                        }
+                    }
+                    chains.light += f64::from(luminance(sum));
+                    let own;
+                    (own, rest) =
+                        rest.split_at(rest.partition_point(|(path, _)| *path < ((i + 1) * n) as u32));
+                    let index = chunk * together + i;
+                    let guide = ends.first_surfaces.as_ref().map_or_else(Guide::default, |first| first.of(i));
+                    each(
+                        PixelSamples { index, first, sum, half, nonfinite, guide, ends: found, order: own },
+                        merged,
+                    );
+                }
+            }
+        }
+        chains
+    }
+}
