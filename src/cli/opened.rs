@@ -1,61 +1,50 @@
-//! Loads the scene of a command, and prints the warnings of loading.
+//! Opens the scene of a command, and prints the warnings of reading it.
 
 use super::exit::Failure;
-use super::outputs::Inputs;
 use super::{interrupt, talk};
-use base::stats::{Stage, Stats};
-use readers::{Level, LoadOptions, Loaded, SceneError, Warning, load};
-use render::session::{OpenError, Session};
+use readers::{Level, LoadOptions, Loaded, SanitizeReport, SceneError, Warning, load};
+use render::session::{OpenError, Opened, Session};
 use std::path::Path;
 
-/// Reads the scene at `path`.
+/// Opens a session on the scene at `path`, and prints the warnings.
+pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
+    let opened = interrupt::while_opening(|| Session::open(path, options)).map_err(|error| match error {
+        OpenError::Scene(error) => unreadable(error),
+        OpenError::Build { .. } => Failure::render(error),
+    })?;
+    report(path, &opened.warnings, &opened.repairs);
+    Ok(opened)
+}
+
+/// Reads the scene at `path` without preparing it for rendering, and prints the warnings.
 pub fn read(path: &Path, options: &LoadOptions) -> Result<Loaded, Failure> {
-    let loaded = load(path, options).map_err(|error| match error {
-        // The scene is right; the command line asks for what it has not.
+    let loaded = load(path, options).map_err(unreadable)?;
+    report(path, &loaded.warnings, &loaded.repairs);
+    Ok(loaded)
+}
+
+fn unreadable(error: SceneError) -> Failure {
+    match error {
+        // The scene is right; the command line asks for a camera that it lacks.
         SceneError::Camera { .. } => Failure::usage(error),
         _ => Failure::input(error),
-    })?;
-    for (warning, times) in grouped(&loaded.warnings) {
+    }
+}
+
+fn report(path: &Path, warnings: &[Warning], repairs: &SanitizeReport) {
+    for (warning, times) in grouped(warnings) {
         let more = if times > 1 { format!(" (and {} times more)", times - 1) } else { String::new() };
         match warning.level {
             Level::Note => talk::note(&format!("{warning}{more}")),
             Level::Warning => talk::warning(&format!("{warning}{more}")),
         }
     }
-    if !loaded.repairs.is_clean() {
-        talk::note(&format!("{}: {}", path.display(), loaded.repairs));
+    if !repairs.is_clean() {
+        talk::note(&format!("{}: {repairs}", path.display()));
     }
-    Ok(loaded)
 }
 
-/// A session, and facts of reading its scene.
-pub struct Opened {
-    /// The session.
-    pub session: Session,
-    /// Number of warnings.
-    pub warnings: usize,
-    /// Files of the scene.
-    pub inputs: Inputs,
-}
-
-/// Opens a session on the scene at `path`.
-pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
-    interrupt::while_opening(|| open_now(path, options))
-}
-
-fn open_now(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
-    let mut stats = Stats::new();
-    let loaded = stats.time(Stage::Load, || read(path, options))?;
-    let warnings = loaded.warnings.len();
-    let inputs = Inputs::new(&loaded.scene.sources);
-    let session = Session::of(loaded, path, stats).map_err(|error| match error {
-        OpenError::Scene(_) => Failure::input(error),
-        OpenError::Build { .. } => Failure::render(error),
-    })?;
-    Ok(Opened { session, warnings, inputs })
-}
-
-/// Warnings that say the same of different places, once each with their number, in order of appearance.
+/// Returns each distinct warning once, with the number of its places, in order of appearance.
 fn grouped(warnings: &[Warning]) -> Vec<(&Warning, usize)> {
     let mut groups: Vec<(&Warning, usize)> = Vec::new();
     for warning in warnings {

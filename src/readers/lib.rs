@@ -85,8 +85,6 @@ pub struct Loaded {
     pub repairs: SanitizeReport,
     /// Hash over the bytes of all source files, in order (64-bit FNV-1a).
     pub hash: u64,
-    /// The generator of its geometry, if any.
-    pub generator: Option<String>,
 }
 
 /// Reads the scene at `path`: `.toml` is native, `.xml` Mitsuba's, `.glb` and `.gltf` glTF.
@@ -105,7 +103,6 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
         }
         _ => return Err(SceneError::UnknownFormat(path.to_owned())),
     };
-    let generator = plan.generator.clone();
     let (mut draft, hash) = plan.realise(&mut log)?;
     let hash = options.hash(hash);
     let (repairs, coordinates) = sanitize::sanitize(&mut draft, &mut log)?;
@@ -115,5 +112,5 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
         let fallback = "the picture will be black; add an emitter, a light or an environment";
         log.warn(&Place::file(path), "the scene has no light that is modelled", fallback)?;
     }
-    Ok(Loaded { scene, cameras, warnings: log.into_warnings(), repairs, hash, generator })
+    Ok(Loaded { scene, cameras, warnings: log.into_warnings(), repairs, hash })
 }

@@ -31,7 +31,6 @@ pub struct Plan {
     pub name: String,
     /// The description's own files, main file first, with the hash of their bytes.
     pub sources: Vec<(PathBuf, u64)>,
-    pub generator: Option<String>,
     pub shot: Shot,
     pub max_depth: Option<u32>,
     pub hides_emitters: bool,

@@ -98,7 +98,6 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
     Ok(Plan {
         name: stem_of(path),
         sources: imported.sources,
-        generator: None,
         shot,
         max_depth: None,
         hides_emitters: false,

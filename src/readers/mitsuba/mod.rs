@@ -58,7 +58,7 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
     // Scene files are usually called scene.xml; then the folder's name is used.
     let name = if stem == "scene" { folder_name.unwrap_or(stem) } else { stem };
     let sources = document.sources.iter().cloned().chain(read).collect();
-    Ok(Plan { name, sources, generator: None, shot, max_depth, hides_emitters, contents })
+    Ok(Plan { name, sources, shot, max_depth, hides_emitters, contents })
 }
 
 struct Converter<'a> {

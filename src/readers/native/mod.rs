@@ -62,7 +62,6 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<Plan, SceneError> {
     Ok(Plan {
         name: scene.name.clone().unwrap_or_else(|| stem_of(path)),
         sources,
-        generator: scene.generator.as_ref().map(|g| g.get_ref().clone()),
         shot,
         max_depth,
         hides_emitters: scene.hide_emitters.unwrap_or(false),
