@@ -2,7 +2,7 @@
 
 use super::exit::Failure;
 use super::{interrupt, talk};
-use readers::{Level, LoadOptions, Loaded, SanitizeReport, SceneError, Warning, load};
+use readers::{LoadOptions, Loaded, SanitizeReport, SceneError, Severity, Warning, load};
 use render::session::{OpenError, Opened, Session};
 use std::path::Path;
 
@@ -34,9 +34,9 @@ fn unreadable(error: SceneError) -> Failure {
 fn report(path: &Path, warnings: &[Warning], repairs: &SanitizeReport) {
     for (warning, times) in grouped(warnings) {
         let more = if times > 1 { format!(" (and {} times more)", times - 1) } else { String::new() };
-        match warning.level {
-            Level::Note => talk::note(&format!("{warning}{more}")),
-            Level::Warning => talk::warning(&format!("{warning}{more}")),
+        match warning.severity {
+            Severity::Note => talk::note(&format!("{warning}{more}")),
+            Severity::Warning => talk::warning(&format!("{warning}{more}")),
         }
     }
     if !repairs.is_clean() {
@@ -49,7 +49,8 @@ fn grouped(warnings: &[Warning]) -> Vec<(&Warning, usize)> {
     let mut groups: Vec<(&Warning, usize)> = Vec::new();
     for warning in warnings {
         let same = |known: &Warning| {
-            (&known.what, &known.fallback, known.level) == (&warning.what, &warning.fallback, warning.level)
+            (&known.what, &known.fallback, known.severity)
+                == (&warning.what, &warning.fallback, warning.severity)
         };
         match groups.iter_mut().find(|(known, _)| same(known)) {
             Some((_, times)) => *times += 1,
@@ -62,13 +63,13 @@ fn grouped(warnings: &[Warning]) -> Vec<(&Warning, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use readers::Place;
+    use readers::Location;
 
     #[test]
     fn the_same_thing_at_many_places_is_said_once() {
         let at = |line, what: &str| Warning {
-            place: Place::line(Path::new("a.xml"), line),
-            level: Level::Warning,
+            place: Location::line(Path::new("a.xml"), line),
+            severity: Severity::Warning,
             what: what.to_owned(),
             fallback: "ignored".to_owned(),
         };

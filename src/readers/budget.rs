@@ -1,7 +1,7 @@
 //! Memory for a scene's files, pictures and triangles, reckoned before it is spent: a description of few lines may name
 //! large files, and place a mesh many times, of which every instance is a copy.
 
-use super::error::{Place, SceneError};
+use super::error::{Location, SceneError};
 use base::stats::available_bytes;
 use scene::requirements::BVH_BYTES_PER_TRIANGLE;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -23,18 +23,18 @@ pub fn lacking(bytes: u64) -> Option<String> {
 
 /// Triangles for which there is memory, shared by all who place some.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct TriangleBudget(Arc<Counts>);
+pub(crate) struct TriangleBudget(Arc<TriangleCounts>);
 
 #[derive(Debug, Default)]
-struct Counts {
+struct TriangleCounts {
     placed: AtomicU64,
     limit: OnceLock<u64>,
 }
 
 impl TriangleBudget {
     /// Counts triangles that a mesh described at `place` is about to take memory for; an error if that is not there.
-    pub fn take(&self, triangles: usize, place: &Place) -> Result<(), SceneError> {
-        let Counts { placed, limit } = &*self.0;
+    pub fn take(&self, triangles: usize, place: &Location) -> Result<(), SceneError> {
+        let TriangleCounts { placed, limit } = &*self.0;
         let limit = *limit.get_or_init(|| available_bytes().map_or(u64::MAX, |bytes| bytes / TRIANGLE_BYTES));
         let before = placed.fetch_add(triangles as u64, Ordering::Relaxed);
         if before.saturating_add(triangles as u64) <= limit {
@@ -43,6 +43,6 @@ impl TriangleBudget {
         let what = format!(
             "its meshes, instances counted each, come to more than the {limit} triangles that there is memory for"
         );
-        Err(Place::file(&place.path).wrong(what, "leave some of them out"))
+        Err(Location::file(&place.path).wrong(what, "leave some of them out"))
     }
 }

@@ -3,12 +3,9 @@
 //! Every reader ends in a [`Draft`]; [`super::sanitize`] and [`super::recentre`] make the
 //! [`Scene`](super::Scene) of it.
 
-use crate::Place;
+use crate::Location;
 use glam::{DVec3, Vec2, Vec3};
-use scene::{
-    DeltaLight, DistantDisc, Emission, Environment, Material, MaterialId, PixelFilter, Projection, Texture,
-};
-use std::path::PathBuf;
+use scene::{DeltaLight, Emission, MaterialId, PixelFilter, Projection, Scene};
 
 /// Film of scenes that name no size, in pixels.
 pub(crate) const DEFAULT_RESOLUTION: [u32; 2] = [960, 540];
@@ -72,21 +69,22 @@ pub(crate) struct DraftMesh {
     pub turned: usize,
 }
 
-/// A scene in world coordinates.
+/// A scene whose positions are still in world coordinates.
 #[derive(Clone, Debug)]
 pub struct Draft {
-    pub name: String,
-    pub sources: Vec<PathBuf>,
+    /// Parts that have no position; meshes and lights are empty until recentred.
+    pub scene: Scene,
     pub shot: Shot,
-    pub max_depth: Option<u32>,
-    pub hides_emitters: bool,
     pub meshes: Vec<DraftMesh>,
-    pub materials: Vec<Material>,
-    /// Place in the files where each material is described.
-    pub material_places: Vec<Place>,
-    pub textures: Vec<Texture>,
     /// Lights with their world positions, which replace the positions inside.
     pub lights: Vec<(DeltaLight, DVec3)>,
-    pub environment: Option<Environment>,
-    pub discs: Vec<DistantDisc>,
+    /// Place in the files where each material is described.
+    pub material_places: Vec<Location>,
+}
+
+impl Draft {
+    /// Returns the place of the description's main file.
+    pub fn main_file(&self) -> Location {
+        Location { path: self.scene.sources.first().cloned().unwrap_or_default(), line: None }
+    }
 }

@@ -6,22 +6,22 @@ use std::path::{Path, PathBuf};
 
 /// A file, and the line, if available.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct Location {
     /// The file.
     pub path: PathBuf,
     /// Line, counted from 1.
     pub line: Option<u32>,
 }
 
-impl Place {
+impl Location {
     /// Returns the place of the file as a whole.
-    pub fn file(path: &Path) -> Place {
-        Place { path: path.to_owned(), line: None }
+    pub fn file(path: &Path) -> Location {
+        Location { path: path.to_owned(), line: None }
     }
 
     /// Returns the place of line `line` (from 1) of the file.
-    pub fn line(path: &Path, line: u32) -> Place {
-        Place { path: path.to_owned(), line: Some(line) }
+    pub fn line(path: &Path, line: u32) -> Location {
+        Location { path: path.to_owned(), line: Some(line) }
     }
 
     /// Returns the error of a wrong value here.
@@ -45,7 +45,7 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self.line {
             Some(line) => write!(f, "{}:{line}", self.path.display()),
@@ -56,7 +56,7 @@ impl fmt::Display for Place {
 
 /// Severity of a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
+pub enum Severity {
     /// The expected picture is the one described, to within filtering or tessellation.
     Note,
     /// The picture will differ from the one described; an error under `strict`.
@@ -67,9 +67,9 @@ pub enum Level {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
     /// Place of the request.
-    pub place: Place,
+    pub place: Location,
     /// Severity.
-    pub level: Level,
+    pub severity: Severity,
     /// The feature requested.
     pub what: String,
     /// The replacement.
@@ -91,7 +91,7 @@ pub enum SceneError {
         /// The file.
         path: PathBuf,
         /// Place that refers to it.
-        from: Place,
+        from: Location,
         /// Error of the operating system; no `source`, since the message holds it.
         error: std::io::Error,
     },
@@ -102,7 +102,7 @@ pub enum SceneError {
     #[error("{place}: {message}; correct the file's syntax")]
     Syntax {
         /// Place of the error.
-        place: Place,
+        place: Location,
         /// Message of the parser.
         message: String,
     },
@@ -110,7 +110,7 @@ pub enum SceneError {
     #[error("{place}: {what}; {remedy}")]
     Value {
         /// Place of the value.
-        place: Place,
+        place: Location,
         /// Description of the error.
         what: String,
         /// Remedy.
@@ -120,7 +120,7 @@ pub enum SceneError {
     #[error("{place}: there is no {kind} called \"{name}\"; define it or correct the name")]
     Reference {
         /// Place of the reference.
-        place: Place,
+        place: Location,
         /// Kind of object referred to.
         kind: &'static str,
         /// The name.
@@ -130,7 +130,7 @@ pub enum SceneError {
     #[error("{place}: there is no camera \"{name}\"; {remedy}")]
     Camera {
         /// The scene.
-        place: Place,
+        place: Location,
         /// Number or name of the camera.
         name: String,
         /// Remedy, with the cameras that there are.
@@ -140,15 +140,15 @@ pub enum SceneError {
     #[error("{place}: {what}; repair or re-export the mesh")]
     Mesh {
         /// Place of the error.
-        place: Place,
+        place: Location,
         /// Description of the error.
         what: String,
     },
     /// A picture that cannot be decoded.
     #[error("{place}: cannot decode {}: {what}; convert it to PNG, JPEG, BMP, TGA, Radiance HDR or OpenEXR", .path.display())]
-    Picture {
+    Image {
         /// Place that refers to it.
-        place: Place,
+        place: Location,
         /// The picture.
         path: PathBuf,
         /// Message of the decoder.
@@ -171,8 +171,8 @@ pub enum SceneError {
 const MAX_ERRORS: usize = 10;
 
 /// The place that asks for a file, where that is another file.
-fn asker(from: &Place, path: &Path) -> String {
-    if *from == Place::file(path) { String::new() } else { format!("{from}: ") }
+fn asker(from: &Location, path: &Path) -> String {
+    if *from == Location::file(path) { String::new() } else { format!("{from}: ") }
 }
 
 fn lines(errors: &[SceneError]) -> String {
@@ -195,7 +195,7 @@ impl SceneError {
     }
 
     /// Returns the error of a wrong mesh file.
-    pub fn mesh(place: Place, what: impl Into<String>) -> SceneError {
+    pub fn mesh(place: Location, what: impl Into<String>) -> SceneError {
         SceneError::Mesh { place, what: what.into() }
     }
 }
@@ -231,13 +231,13 @@ impl Log {
     /// Adds a warning about a change of the picture.
     pub fn warn(
         &mut self,
-        place: &Place,
+        place: &Location,
         what: impl Into<String>,
         fallback: impl Into<String>,
     ) -> Result<(), SceneError> {
         let warning = Warning {
             place: place.clone(),
-            level: Level::Warning,
+            severity: Severity::Warning,
             what: what.into(),
             fallback: fallback.into(),
         };
@@ -249,10 +249,10 @@ impl Log {
     }
 
     /// Adds a note that does not concern the expected picture.
-    pub fn note(&mut self, place: &Place, what: impl Into<String>, fallback: impl Into<String>) {
+    pub fn note(&mut self, place: &Location, what: impl Into<String>, fallback: impl Into<String>) {
         self.push(Warning {
             place: place.clone(),
-            level: Level::Note,
+            severity: Severity::Note,
             what: what.into(),
             fallback: fallback.into(),
         });
@@ -278,7 +278,7 @@ mod tests {
     #[test]
     fn errors_of_parts_are_told_together_each_once_and_no_more_than_ten() {
         let mut log = Log::new(false);
-        let place = |line| Place::line(Path::new("s.xml"), line);
+        let place = |line| Location::line(Path::new("s.xml"), line);
         assert_eq!(log.part(Ok(7)), Some(7));
         assert!(log.conclude(Ok(())).is_ok());
         log.part::<()>(Err(place(1).wrong("a", "b")));

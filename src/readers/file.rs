@@ -1,7 +1,7 @@
 //! Files that scene descriptions are, or refer to.
 
 use super::budget::lacking;
-use super::error::{Place, SceneError};
+use super::error::{Location, SceneError};
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -10,12 +10,12 @@ use std::path::Path;
 const READING: u64 = 3;
 
 /// Reads a file that `from` refers to.
-pub(crate) fn read_file(path: &Path, from: &Place) -> Result<Vec<u8>, SceneError> {
+pub(crate) fn read_file(path: &Path, from: &Location) -> Result<Vec<u8>, SceneError> {
     let fail = |error| SceneError::Read { path: path.to_owned(), from: from.clone(), error };
     let length = regular_length(path).map_err(fail)?;
     if let Some(lack) = lacking(length.saturating_mul(READING)) {
         let what = format!("reading it takes {lack}");
-        return Err(Place::file(path).wrong(what, "divide or simplify it, or give more memory"));
+        return Err(Location::file(path).wrong(what, "divide or simplify it, or give more memory"));
     }
     fs::read(path).map_err(fail)
 }
@@ -36,12 +36,12 @@ fn regular_length(path: &Path) -> io::Result<u64> {
 }
 
 /// Reads a description's own file, to which `from` refers; returns its text and the hash of its bytes.
-pub(crate) fn read_text(path: &Path, from: &Place) -> Result<(String, u64), SceneError> {
+pub(crate) fn read_text(path: &Path, from: &Location) -> Result<(String, u64), SceneError> {
     let bytes = read_file(path, from)?;
     let hash = fnv1a(&bytes);
     let text = String::from_utf8(bytes).map_err(|e| {
         let line = e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
-        Place::line(path, line as u32 + 1).malformed("the text is not UTF-8")
+        Location::line(path, line as u32 + 1).malformed("the text is not UTF-8")
     })?;
     Ok((text, hash))
 }

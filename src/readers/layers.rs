@@ -1,11 +1,11 @@
 //! Materials made of other materials: coats over them, and blends.
 
-use super::error::{Log, Place, SceneError};
+use super::error::{Location, Log, SceneError};
 use base::math::Rgb;
 use scene::{Blend, Coat, Lobe, Material, Reflectance, Share};
 
 /// A surface of a coat.
-pub(super) struct Surface {
+pub(super) struct CoatSurface {
     /// Index of refraction inside over that outside.
     pub eta: f32,
     pub lobe: Lobe,
@@ -17,11 +17,11 @@ pub(super) struct Surface {
 /// normal incidence. Materials that cannot be coated are left bare, with a warning.
 pub(super) fn coated(
     mut nested: Material,
-    surface: Surface,
-    place: &Place,
+    surface: CoatSurface,
+    place: &Location,
     log: &mut Log,
 ) -> Result<Material, SceneError> {
-    let Surface { eta, lobe, through } = surface;
+    let CoatSurface { eta, lobe, through } = surface;
     let transmits = |lobe: &Lobe| matches!(lobe, Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. });
     let is_layered = nested.coat.is_some() || nested.principled.is_some() || nested.blend.is_some();
     if is_layered || nested.lobes.iter().any(transmits) {
@@ -47,7 +47,7 @@ pub(super) fn coated(
 pub(super) fn blended(
     weight: Share,
     [first, other]: [Material; 2],
-    place: &Place,
+    place: &Location,
     log: &mut Log,
 ) -> Result<Material, SceneError> {
     let is_based =

@@ -19,10 +19,13 @@ mod layers;
 mod mesh;
 mod mitsuba;
 mod native;
+mod options;
 mod picture;
 mod plan;
+mod realise;
 #[cfg(test)]
 mod requirements_tests;
+mod selection;
 mod sky;
 
 use error::Log;
@@ -30,47 +33,11 @@ use finish::{divide, recentre, sanitize};
 use scene::{Cameras, Scene};
 use std::path::Path;
 
-pub use error::{Level, Place, SceneError, Warning};
+pub use error::{Location, SceneError, Severity, Warning};
 pub use file::{fnv1a, read_regular};
 pub use finish::sanitize::SanitizeReport;
 pub(crate) use mesh::smooth_normals;
-
-/// Options for reading a scene.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct LoadOptions {
-    /// True if warnings of [`Level::Warning`] are errors.
-    pub strict: bool,
-    /// Camera of the scene by its number, counted from 1, or its name, in place of the first.
-    pub camera: Option<String>,
-    /// Names and values of a Mitsuba scene's `$parameters`, in place of its defaults.
-    pub parameters: Vec<(String, String)>,
-}
-
-impl LoadOptions {
-    /// Rejects the choice of a camera but the first, for formats with one, and parameters.
-    fn no_choice(&self, path: &Path) -> Result<(), SceneError> {
-        self.no_parameters(path)?;
-        let Some(camera) = self.camera.as_deref().filter(|camera| *camera != "1") else { return Ok(()) };
-        let remedy = "a TOML scene has one: leave --camera out, which chooses among those of a Mitsuba scene (.xml) or a \
-                      glTF model";
-        Err(Place::file(path).no_camera(camera, remedy))
-    }
-
-    /// Rejects parameters, for formats without.
-    fn no_parameters(&self, path: &Path) -> Result<(), SceneError> {
-        let Some((name, _)) = self.parameters.first() else { return Ok(()) };
-        let remedy = "leave --define out; it gives values to parameters that a Mitsuba scene (.xml) declares";
-        Err(Place::file(path).wrong(format!("there is no parameter \"{name}\""), remedy))
-    }
-
-    /// Hash of a scene whose files have the hash `files`, with these options.
-    fn hash(&self, files: u64) -> u64 {
-        if self.camera.is_none() && self.parameters.is_empty() {
-            return files;
-        }
-        fnv1a(format!("{files} {:?} {:?}", self.camera, self.parameters).as_bytes())
-    }
-}
+pub use options::LoadOptions;
 
 /// A scene, its cameras, and reports of reading it.
 #[derive(Clone, Debug)]
@@ -110,7 +77,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let (scene, cameras) = recentre::recentre(draft, &coordinates);
     if scene.is_dark() {
         let fallback = "the picture will be black; add an emitter, a light or an environment";
-        log.warn(&Place::file(path), "the scene has no light that is modelled", fallback)?;
+        log.warn(&Location::file(path), "the scene has no light that is modelled", fallback)?;
     }
     Ok(Loaded { scene, cameras, warnings: log.into_warnings(), repairs, hash })
 }

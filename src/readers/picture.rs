@@ -4,7 +4,7 @@
 //! Mitsuba.
 
 use super::budget::lacking;
-use super::error::{Place, SceneError};
+use super::error::{Location, SceneError};
 use base::math::Rgb;
 use image::{DynamicImage, ImageDecoder};
 use scene::Texels;
@@ -29,7 +29,7 @@ pub(super) const SMALLER: &str = "make it smaller, or give more memory";
 
 /// A decoded picture, top row first.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
+pub struct DecodedImage {
     pub width: usize,
     pub height: usize,
     pub texels: Texels,
@@ -63,7 +63,12 @@ impl<E: std::fmt::Display> From<E> for Refusal {
 }
 
 /// Decodes a part of `bytes`; `path` tells the format of files without a signature.
-pub fn decode(bytes: &[u8], channel: Channel, path: &Path, place: &Place) -> Result<Picture, SceneError> {
+pub fn decode(
+    bytes: &[u8],
+    channel: Channel,
+    path: &Path,
+    place: &Location,
+) -> Result<DecodedImage, SceneError> {
     let picture = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
         decode_exr(bytes)
     } else {
@@ -74,14 +79,12 @@ pub fn decode(bytes: &[u8], channel: Channel, path: &Path, place: &Place) -> Res
         false => Ok(p),
     });
     picture.map_err(|refusal| match refusal {
-        Refusal::Undecodable(what) => {
-            SceneError::Picture { place: place.clone(), path: path.to_owned(), what }
-        }
+        Refusal::Undecodable(what) => SceneError::Image { place: place.clone(), path: path.to_owned(), what },
         Refusal::TooLarge(what) => place.wrong(format!("{}: {what}", path.display()), SMALLER),
     })
 }
 
-fn decode_exr(bytes: &[u8]) -> Result<Picture, Refusal> {
+fn decode_exr(bytes: &[u8]) -> Result<DecodedImage, Refusal> {
     use exr::prelude::*;
     // The size is checked before any allocation that depends on it.
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)?;
@@ -118,7 +121,7 @@ fn decode_exr(bytes: &[u8]) -> Result<Picture, Refusal> {
     if texels.len() != width * height {
         return Err("subsampled channels".into());
     }
-    Ok(Picture { width, height, texels: Texels::new(width, &texels) })
+    Ok(DecodedImage { width, height, texels: Texels::new(width, &texels) })
 }
 
 /// Rejects sizes that no picture has, or none of so few bytes, or for which there is no memory, before anything is
@@ -137,7 +140,7 @@ fn check_size(width: usize, height: usize, pixel_bytes: u64, bytes: &[u8]) -> Re
     }
 }
 
-fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture, Refusal> {
+fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<DecodedImage, Refusal> {
     // The other signature of Radiance HDR, which Mitsuba writes and the decoder does not know.
     let signed = bytes.strip_prefix(b"#?RGBE").map(|rest| [b"#?RADIANCE", rest].concat());
     let bytes = signed.as_deref().unwrap_or(bytes);
@@ -161,7 +164,7 @@ fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture,
     let grey = |code: &dyn Fn(&[u8; 4]) -> u8| {
         let codes: Vec<[u8; 4]> = image.to_rgba8().pixels().map(|p| [code(&p.0); 4]).collect();
         let texels = Texels::coded(width, &codes, std::array::from_fn(|code| code as f32 / 255.0));
-        Ok(Picture { width, height, texels })
+        Ok(DecodedImage { width, height, texels })
     };
     let raw = match channel {
         Channel::Colour => false,
@@ -187,7 +190,7 @@ fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture,
             Texels::coded(width, &codes, std::array::from_fn(|code| linear(code as f32 / 255.0, raw)))
         }
     };
-    Ok(Picture { width, height, texels })
+    Ok(DecodedImage { width, height, texels })
 }
 
 fn linear(encoded: f32, raw: bool) -> f32 {
@@ -204,9 +207,9 @@ mod tests {
     use super::*;
     use std::path::PathBuf;
 
-    fn decode_file(bytes: &[u8], raw: bool, name: &str) -> Result<Picture, SceneError> {
+    fn decode_file(bytes: &[u8], raw: bool, name: &str) -> Result<DecodedImage, SceneError> {
         let channel = if raw { Channel::Data } else { Channel::Colour };
-        decode(bytes, channel, Path::new(name), &Place::file(Path::new("s.toml")))
+        decode(bytes, channel, Path::new(name), &Location::file(Path::new("s.toml")))
     }
 
     fn corpus(name: &str) -> Vec<u8> {

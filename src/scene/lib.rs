@@ -10,6 +10,7 @@ mod camera;
 mod light;
 mod material;
 mod mesh;
+mod parameter;
 mod pixel_filter;
 mod principled;
 mod relief;
@@ -22,10 +23,9 @@ use std::path::PathBuf;
 
 pub use camera::{Camera, Cameras, MAX_FRAMES, MAX_SIDE, Projection};
 pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap};
-pub use material::{
-    Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Parameter, Reflectance, Roughness, Share,
-};
+pub use material::{Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId};
 pub use mesh::{Emission, Mesh};
+pub use parameter::{Parameter, Reflectance, Roughness, Share};
 pub use pixel_filter::PixelFilter;
 pub use principled::{Principled, eta_of_specular};
 pub use relief::Relief;

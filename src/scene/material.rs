@@ -5,81 +5,14 @@
 //! with a rough lobe, `conductor` a mirror lobe alone. [`Principled`] is a combination of its own. Any of them may
 //! have gaps ([`Material::opacity`]).
 
+use super::parameter::{Reflectance, Roughness, Share};
 use super::principled::Principled;
 use super::relief::Relief;
-use super::texture::TextureId;
 use base::math::Rgb;
-use std::ops::Mul;
 
 /// Index into [`super::Scene::materials`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct MaterialId(pub u32);
-
-/// Colour or number that may vary over the surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Parameter<T> {
-    /// The same everywhere.
-    Constant(T),
-    /// The texture's value times `scale`; a number takes the luminance of each texel.
-    Textured {
-        /// Index of the texture.
-        texture: TextureId,
-        /// Factor on every texel.
-        scale: T,
-    },
-}
-
-/// Share of the light that is scattered, per channel.
-pub type Reflectance = Parameter<Rgb>;
-
-/// Microfacet roughness α.
-pub type Roughness = Parameter<f32>;
-
-/// Number from 0 to 1.
-pub type Share = Parameter<f32>;
-
-impl<T: Copy + Mul<Output = T>> Parameter<T> {
-    /// Returns the parameter where each texture has the value `texel` of it.
-    #[inline]
-    pub fn value(&self, texel: impl FnOnce(TextureId) -> T) -> T {
-        match *self {
-            Parameter::Constant(value) => value,
-            Parameter::Textured { texture, scale } => texel(texture) * scale,
-        }
-    }
-
-    /// True if it varies over the surface.
-    pub fn is_textured(&self) -> bool {
-        matches!(self, Parameter::Textured { .. })
-    }
-}
-
-impl<T> From<T> for Parameter<T> {
-    fn from(value: T) -> Parameter<T> {
-        Parameter::Constant(value)
-    }
-}
-
-impl Reflectance {
-    /// Returns the parameter times a factor.
-    pub fn times(self, factor: Rgb) -> Reflectance {
-        match self {
-            Reflectance::Constant(value) => Reflectance::Constant(value * factor),
-            Reflectance::Textured { texture, scale } => {
-                Reflectance::Textured { texture, scale: scale * factor }
-            }
-        }
-    }
-
-    /// No reflection anywhere.
-    pub const BLACK: Reflectance = Reflectance::Constant(Rgb::ZERO);
-}
-
-impl Default for Reflectance {
-    fn default() -> Reflectance {
-        Reflectance::BLACK
-    }
-}
 
 /// Material: base and lobes, seen from one side or two. The default is black.
 #[derive(Clone, Debug, Default, PartialEq)]

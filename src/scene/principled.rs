@@ -4,7 +4,7 @@
 //! Subsurface Scattering*, 2015.
 //! Deviations: transmission is as rough in all directions; there is no flatness (a stand-in for subsurface scattering).
 
-use super::material::{Parameter, Reflectance, Share};
+use super::parameter::{Parameter, Reflectance, Share};
 
 /// Diffuse base, specular reflection of a dielectric or a metal, transmission, sheen and clear coat.
 #[derive(Clone, Debug, PartialEq)]

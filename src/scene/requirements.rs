@@ -3,7 +3,8 @@
 //!
 //! Computed once from the scene. A stage that a scene does not require is not built.
 
-use super::material::{Lobe, Material, Reflectance};
+use super::material::{Lobe, Material};
+use super::parameter::Reflectance;
 use super::{DeltaLight, Environment, Scene};
 use base::math::luminance;
 use glam::DVec3;

@@ -2,7 +2,7 @@
 
 use super::exr_read::text;
 use super::exr_write::{name_of, set, write};
-use super::{ExrFile, Image, ImageError, Value};
+use super::{ExrFile, Fact, Image, ImageError};
 use crate::math::luminance;
 use ::exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Text, WritableImage};
 use std::path::Path;
@@ -49,7 +49,7 @@ impl ExrFile {
     }
 
     /// Sets a fact of [`ExrFile::metadata`].
-    pub fn set(&mut self, key: &str, value: impl Into<Value>) {
+    pub fn set(&mut self, key: &str, value: impl Into<Fact>) {
         if let Some(part) = self.parts.layer_data.first_mut() {
             set(&mut part.attributes, key, &value.into());
         }

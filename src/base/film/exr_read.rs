@@ -1,7 +1,7 @@
 //! Reads the colours of any flat OpenEXR file: half, float or integer channels, layered names, several parts.
 
 use super::exr_write::PREFIX;
-use super::{CameraMatrices, Image, ImageError, Metadata, Value};
+use super::{CameraMatrices, Fact, Image, ImageError, Metadata};
 use crate::film::Window;
 use crate::math::Rgb;
 use ::exr::meta::header::Header;
@@ -26,7 +26,7 @@ pub struct ExrFile {
 
 /// Place of three channels, which may be the same, in a file.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct ChannelPlace {
     /// Number of the part.
     pub part: usize,
     /// Numbers of the channels in it.
@@ -67,7 +67,7 @@ impl ExrFile {
     }
 
     /// Place of [`ExrFile::color`].
-    pub(super) fn color_place(&self) -> Result<Place, ImageError> {
+    pub(super) fn color_place(&self) -> Result<ChannelPlace, ImageError> {
         let layer = || {
             let layers = self.layers();
             let combined = |layer: &&String| layer.rsplit('.').next() == Some("Combined");
@@ -140,14 +140,14 @@ impl ExrFile {
     /// Returns the metadata that this program wrote, sorted by key; empty for files of other programs.
     pub fn metadata(&self) -> Metadata {
         let attributes = self.parts.layer_data.first().map(|part| &part.attributes.other);
-        let mut facts: Vec<(String, Value)> = attributes
+        let mut facts: Vec<(String, Fact)> = attributes
             .into_iter()
             .flatten()
             .filter_map(|(name, value)| {
                 let key = text(name).strip_prefix(PREFIX)?.to_owned();
                 match value {
-                    AttributeValue::Text(words) => Some((key, Value::Text(text(words)))),
-                    AttributeValue::F64(number) => Some((key, Value::Number(*number))),
+                    AttributeValue::Text(words) => Some((key, Fact::Text(text(words)))),
+                    AttributeValue::F64(number) => Some((key, Fact::Number(*number))),
                     _ => None,
                 }
             })
@@ -173,7 +173,7 @@ impl ExrFile {
 
     /// The channels of `layer` by the first of these names that it has all of, or the one channel that is named as
     /// it is.
-    fn find(&self, layer: &str, names: &[[&str; 3]]) -> Option<Place> {
+    fn find(&self, layer: &str, names: &[[&str; 3]]) -> Option<ChannelPlace> {
         let prefix = if layer.is_empty() { String::new() } else { format!("{layer}.") };
         self.parts.layer_data.iter().enumerate().find_map(|(index, part)| {
             let own = part_name(part);
@@ -189,11 +189,11 @@ impl ExrFile {
                     _ => None,
                 });
             let channels = three.or_else(|| channel(layer).map(|scalar| [scalar; 3]))?;
-            Some(Place { part: index, channels })
+            Some(ChannelPlace { part: index, channels })
         })
     }
 
-    fn join(&self, place: Place) -> Result<Image, ImageError> {
+    fn join(&self, place: ChannelPlace) -> Result<Image, ImageError> {
         let decode = |reason: String| ImageError::Decode { path: self.path.clone(), reason };
         let part = &self.parts.layer_data[place.part];
         let channels = place.channels.map(|index| &part.channel_data.list[index]);

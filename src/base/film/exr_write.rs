@@ -7,7 +7,7 @@
 //! Units: radiance W/(sr m²), linear, Rec. 709 primaries (stated in the file).
 
 use super::exr_order::sort_attributes;
-use super::{Film, ImageError, Metadata, Pixels, Value, atomic};
+use super::{Fact, Film, ImageError, Metadata, Pixels, atomic};
 use ::exr::prelude::*;
 use std::io::{self, Cursor, Write as _};
 use std::path::Path;
@@ -109,11 +109,11 @@ fn add(attributes: &mut LayerAttributes, metadata: &Metadata) {
 }
 
 /// Sets the attribute of a fact.
-pub(super) fn set(attributes: &mut LayerAttributes, key: &str, value: &Value) {
+pub(super) fn set(attributes: &mut LayerAttributes, key: &str, value: &Fact) {
     let value = match value {
         // OpenEXR strings are UTF-8; the crate's checked constructors know Latin-1 only.
-        Value::Text(text) => AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes())),
-        Value::Number(number) => AttributeValue::F64(*number),
+        Fact::Text(text) => AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes())),
+        Fact::Number(number) => AttributeValue::F64(*number),
     };
     attributes.other.insert(name_of(key), value);
 }

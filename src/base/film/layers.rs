@@ -61,38 +61,38 @@ impl Film {
 
 /// Ordered facts about a picture; keys are written as `lightsplat.KEY`.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Metadata(Vec<(String, Value)>);
+pub struct Metadata(Vec<(String, Fact)>);
 
 /// One fact.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub enum Fact {
     /// Words.
     Text(String),
     /// A quantity.
     Number(f64),
 }
 
-impl From<&str> for Value {
-    fn from(text: &str) -> Value {
-        Value::Text(text.to_owned())
+impl From<&str> for Fact {
+    fn from(text: &str) -> Fact {
+        Fact::Text(text.to_owned())
     }
 }
 
-impl From<String> for Value {
-    fn from(text: String) -> Value {
-        Value::Text(text)
+impl From<String> for Fact {
+    fn from(text: String) -> Fact {
+        Fact::Text(text)
     }
 }
 
-impl From<f64> for Value {
-    fn from(number: f64) -> Value {
-        Value::Number(number)
+impl From<f64> for Fact {
+    fn from(number: f64) -> Fact {
+        Fact::Number(number)
     }
 }
 
 impl Metadata {
     /// Sets the value of `key`.
-    pub fn set(&mut self, key: &str, value: impl Into<Value>) {
+    pub fn set(&mut self, key: &str, value: impl Into<Fact>) {
         let value = value.into();
         match self.0.iter_mut().find(|(present, _)| present == key) {
             Some((_, held)) => *held = value,
@@ -106,14 +106,14 @@ impl Metadata {
     }
 
     /// Returns the value of `key`.
-    pub fn get(&self, key: &str) -> Option<&Value> {
+    pub fn get(&self, key: &str) -> Option<&Fact> {
         self.0.iter().find(|(present, _)| present == key).map(|(_, value)| value)
     }
 
     /// Returns the value of `key`, if it is text.
     pub fn text(&self, key: &str) -> Option<&str> {
         match self.get(key) {
-            Some(Value::Text(text)) => Some(text),
+            Some(Fact::Text(text)) => Some(text),
             _ => None,
         }
     }
@@ -121,13 +121,13 @@ impl Metadata {
     /// Returns the value of `key`, if it is a number.
     pub fn number(&self, key: &str) -> Option<f64> {
         match self.get(key) {
-            Some(Value::Number(number)) => Some(*number),
+            Some(Fact::Number(number)) => Some(*number),
             _ => None,
         }
     }
 
     /// All facts in order.
-    pub fn iter(&self) -> impl Iterator<Item = (&str, &Value)> {
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &Fact)> {
         self.0.iter().map(|(key, value)| (key.as_str(), value))
     }
 }

@@ -28,7 +28,7 @@ pub use exr_merge::Weight;
 pub use exr_read::{ExrFile, read_exr};
 pub use exr_write::write_exr;
 pub use layer::{Layer, Pixels, Preview, SAMPLES};
-pub use layers::{CameraMatrices, Film, Metadata, Value};
+pub use layers::{CameraMatrices, Fact, Film, Metadata};
 pub use png::{write_png, write_srgb8};
 pub use tone::{Exposure, display, srgb_slope};
 pub use window::Window;

@@ -8,7 +8,7 @@ pub enum Counter {
     /// A real sum.
     Sum(f64),
     /// Integer observations, summarised.
-    Distribution(Distribution),
+    Distribution(Observations),
 }
 
 impl Counter {
@@ -26,7 +26,7 @@ impl Counter {
 
 /// Number, sum and range of integer observations: exact, so the same for any order of merging.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Distribution {
+pub struct Observations {
     /// Number of observations.
     pub count: u64,
     /// Their sum.
@@ -37,27 +37,27 @@ pub struct Distribution {
     pub max: u64,
 }
 
-impl Default for Distribution {
-    fn default() -> Distribution {
-        Distribution { count: 0, sum: 0, min: u64::MAX, max: 0 }
+impl Default for Observations {
+    fn default() -> Observations {
+        Observations { count: 0, sum: 0, min: u64::MAX, max: 0 }
     }
 }
 
-impl Distribution {
+impl Observations {
     /// Creates a distribution of one observation.
-    pub fn of(value: u64) -> Distribution {
-        Distribution { count: 1, sum: value, min: value, max: value }
+    pub fn of(value: u64) -> Observations {
+        Observations { count: 1, sum: value, min: value, max: value }
     }
 
     /// Adds one observation.
     #[inline]
     pub fn observe(&mut self, value: u64) {
-        self.merge(&Distribution::of(value));
+        self.merge(&Observations::of(value));
     }
 
     /// Adds all observations of `other`.
     #[inline]
-    pub fn merge(&mut self, other: &Distribution) {
+    pub fn merge(&mut self, other: &Observations) {
         self.count += other.count;
         self.sum = self.sum.saturating_add(other.sum);
         self.min = self.min.min(other.min);
@@ -76,10 +76,10 @@ mod tests {
 
     #[test]
     fn an_empty_distribution_is_neutral() {
-        let mut d = Distribution::default();
+        let mut d = Observations::default();
         assert_eq!(d.mean(), 0.0);
-        d.merge(&Distribution::of(7));
-        d.merge(&Distribution::default());
-        assert_eq!(d, Distribution::of(7));
+        d.merge(&Observations::of(7));
+        d.merge(&Observations::default());
+        assert_eq!(d, Observations::of(7));
     }
 }

@@ -17,7 +17,7 @@ mod sum;
 use std::collections::BTreeMap;
 
 pub use contributions::Contributions;
-pub use counter::{Counter, Distribution};
+pub use counter::{Counter, Observations};
 pub use memory::{available_bytes, give_back, peak_resident_bytes};
 pub use stage::{Stage, StageTime, Stopwatch};
 pub use sum::add_fields;
@@ -47,11 +47,11 @@ impl Stats {
 
     /// Adds one observation to the distribution `name`, which reports count, mean, minimum and maximum.
     pub fn observe(&mut self, name: &str, value: u64) {
-        self.combine(name, Counter::Distribution(Distribution::of(value)));
+        self.combine(name, Counter::Distribution(Observations::of(value)));
     }
 
     /// Adds all observations of `distribution` to the distribution `name`.
-    pub fn distribution(&mut self, name: &str, distribution: Distribution) {
+    pub fn distribution(&mut self, name: &str, distribution: Observations) {
         self.combine(name, Counter::Distribution(distribution));
     }
 

@@ -3,7 +3,7 @@
 use super::store::hash_debug;
 use super::{Study, StudyError};
 use embree::BuildQuality;
-use readers::{Level, LoadOptions};
+use readers::{LoadOptions, Severity};
 use render::session::{OpenError, Opened, Session};
 use std::path::{Path, PathBuf};
 use world::view::View;
@@ -41,7 +41,7 @@ impl Subject {
     /// Loads a scene and prepares it.
     pub(super) fn load(path: &Path, study: &Study) -> Result<Subject, StudyError> {
         let Opened { mut session, warnings, .. } = Session::open(path, &LoadOptions::default())?;
-        let warnings = warnings.iter().filter(|w| w.level == Level::Warning).count();
+        let warnings = warnings.iter().filter(|w| w.severity == Severity::Warning).count();
         if warnings > 0 {
             (study.say)(&format!(
                 "{}: {warnings} things are not modelled; `info` lists them",

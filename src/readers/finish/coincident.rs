@@ -2,7 +2,7 @@
 //!
 //! Rays meet one of them, so that as a surface a lamp shines once; as a source of samples it would count twice.
 
-use crate::Place;
+use crate::Location;
 use crate::draft::{Draft, DraftMesh};
 use crate::error::{Log, SceneError};
 use base::math::Rgb;
@@ -10,7 +10,11 @@ use glam::DVec3;
 use std::collections::HashSet;
 
 /// Drops emitting triangles with the corners, and the front, of an emitting one before.
-pub fn drop_coincident_emitters(draft: &mut Draft, place: &Place, log: &mut Log) -> Result<(), SceneError> {
+pub fn drop_coincident_emitters(
+    draft: &mut Draft,
+    place: &Location,
+    log: &mut Log,
+) -> Result<(), SceneError> {
     let mut seen = HashSet::new();
     let shines = |mesh: &&mut DraftMesh| mesh.emission.is_some_and(|emission| emission.radiance != Rgb::ZERO);
     for mesh in draft.meshes.iter_mut().filter(shines) {

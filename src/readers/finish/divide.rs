@@ -5,7 +5,7 @@
 //! longer than a multiple of their distance from the camera. Whether they are follows from their ends alone, so that
 //! triangles which share an edge are cut alike and no gap opens between them.
 
-use super::recentre::Coordinates;
+use super::recentre::LocalCoordinates;
 use crate::draft::{Draft, DraftMesh};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -17,8 +17,8 @@ const MAX_LENGTH: f64 = 64.0;
 /// Maximum number of triangles that are added. A floor as large as f64 allows takes some ten thousand.
 const MAX_ADDED: usize = 1 << 17;
 
-/// Cuts the triangles of a draft where [`Coordinates::vicinity`] says that everything reaches much farther.
-pub fn divide(draft: &mut Draft, coordinates: &Coordinates) {
+/// Cuts the triangles of a draft where [`LocalCoordinates::vicinity`] says that everything reaches much farther.
+pub fn divide(draft: &mut Draft, coordinates: &LocalCoordinates) {
     if !(coordinates.vicinity > 0.0) {
         return;
     }

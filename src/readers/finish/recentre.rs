@@ -21,7 +21,7 @@ const ORDINARY: std::ops::Range<i32> = -10..24;
 
 /// Coordinates that a scene is rendered in.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Coordinates {
+pub struct LocalCoordinates {
     /// World position of the local origin.
     pub centre: DVec3,
     /// The local unit of length is two to this power in the world's.
@@ -31,14 +31,17 @@ pub struct Coordinates {
     pub vicinity: f32,
 }
 
-impl Coordinates {
+impl LocalCoordinates {
     /// Coordinates for a draft.
-    pub fn of(draft: &Draft) -> Coordinates {
+    pub fn of(draft: &Draft) -> LocalCoordinates {
         let lights = || draft.lights.iter().map(|light| light.1);
         let camera = draft.shot.camera.origin;
         let Some((low, high)) = bounds(corners(draft)) else {
             let others = bounds(lights().chain([camera])).unwrap_or_default();
-            return Coordinates { centre: 0.5 * others.0 + 0.5 * others.1, ..Coordinates::default() };
+            return LocalCoordinates {
+                centre: 0.5 * others.0 + 0.5 * others.1,
+                ..LocalCoordinates::default()
+            };
         };
         let (middle, diagonal) = (0.5 * low + 0.5 * high, (high - low).length());
         // A camera that is to see everything has no place yet.
@@ -55,8 +58,8 @@ impl Coordinates {
         let exponent = size.log2().floor();
         let has_size = exponent.is_finite() && !ORDINARY.contains(&(exponent as i32));
         let exponent = if has_size { exponent as i32 } else { 0 };
-        let coordinates = Coordinates { centre, exponent, vicinity: 0.0 };
-        Coordinates { vicinity: (vicinity * coordinates.scale()) as f32, ..coordinates }
+        let coordinates = LocalCoordinates { centre, exponent, vicinity: 0.0 };
+        LocalCoordinates { vicinity: (vicinity * coordinates.scale()) as f32, ..coordinates }
     }
 
     /// Local length of a world's unit.
@@ -124,7 +127,7 @@ fn vicinity(draft: &Draft, camera: DVec3) -> f64 {
 }
 
 /// Returns the scene in other coordinates, and its cameras.
-pub(crate) fn recentre(draft: Draft, coordinates: &Coordinates) -> (Scene, Cameras) {
+pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, Cameras) {
     let scale = coordinates.scale();
     let local = |p: DVec3| coordinates.local(p);
     let mesh = |m: DraftMesh| Mesh {
@@ -142,27 +145,16 @@ pub(crate) fn recentre(draft: Draft, coordinates: &Coordinates) -> (Scene, Camer
         resolution: draft.shot.resolution,
         crop: draft.shot.crop,
     };
-    let mut materials = draft.materials;
-    materials.iter_mut().for_each(|material| scale_heights(material, scale));
-    let scene = Scene {
-        name: draft.name,
-        sources: draft.sources,
-        max_depth: draft.max_depth,
-        hides_emitters: draft.hides_emitters,
+    let place = |(light, position)| place_light(light, position, coordinates);
+    let mut scene = Scene {
         meshes: draft.meshes.into_iter().map(mesh).collect(),
-        materials,
-        textures: draft.textures,
-        lights: draft
-            .lights
-            .into_iter()
-            .map(|(light, position)| place_light(light, position, coordinates))
-            .collect(),
-        environment: draft.environment,
-        discs: draft.discs,
+        lights: draft.lights.into_iter().map(place).collect(),
         centre: coordinates.centre,
         exponent: coordinates.exponent,
         vicinity: coordinates.vicinity,
+        ..draft.scene
     };
+    scene.materials.iter_mut().for_each(|material| scale_heights(material, scale));
     (scene, cameras)
 }
 
@@ -177,7 +169,7 @@ fn scale_heights(material: &mut Material, by: f64) {
 }
 
 /// The light at a position in the world, in local coordinates.
-fn place_light(light: DeltaLight, world: DVec3, coordinates: &Coordinates) -> DeltaLight {
+fn place_light(light: DeltaLight, world: DVec3, coordinates: &LocalCoordinates) -> DeltaLight {
     let position = coordinates.local(world);
     match light {
         DeltaLight::Point { intensity, .. } => {

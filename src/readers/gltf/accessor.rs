@@ -1,6 +1,6 @@
 //! Accessors to numbers. Everything that a file says of them is checked before memory is read or asked for.
 
-use super::document::Document;
+use super::document::GltfFile;
 use crate::error::SceneError;
 use gltf_json::accessor::{Accessor, ComponentType, Type};
 use gltf_json::validation::{Checked, USize64};
@@ -23,7 +23,7 @@ impl Elements<'_> {
     }
 }
 
-impl Document {
+impl GltfFile {
     /// Vectors of `N` numbers of the accessor, integers as shares of their range where it is `normalized`; `what`
     /// names it.
     pub fn vectors<const N: usize>(

@@ -1,6 +1,6 @@
 //! Animated transforms of nodes.
 
-use super::document::Document;
+use super::document::GltfFile;
 use super::nodes::{Local, quaternion};
 use crate::error::SceneError;
 use glam::{DQuat, DVec3};
@@ -94,7 +94,7 @@ enum At {
 
 /// Reads the tracks of an animation that move the given nodes.
 pub(super) fn tracks(
-    document: &Document,
+    document: &GltfFile,
     animation: &Animation,
     is_wanted: impl Fn(usize) -> bool,
 ) -> Result<Vec<Track>, SceneError> {
@@ -104,7 +104,7 @@ pub(super) fn tracks(
     Ok(tracks?.into_iter().flatten().collect())
 }
 
-fn track(document: &Document, animation: &Animation, channel: &Channel) -> Result<Option<Track>, SceneError> {
+fn track(document: &GltfFile, animation: &Animation, channel: &Channel) -> Result<Option<Track>, SceneError> {
     let what = format!("the animation of node {}", channel.target.node.value());
     let wrong = |problem: &str| document.wrong(format!("{what} {problem}"));
     let property = match channel.target.path {

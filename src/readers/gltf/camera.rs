@@ -1,9 +1,9 @@
 //! Cameras, and their animation as a camera path.
 
 use super::animation::{self, Track};
-use super::document::Document;
+use super::document::GltfFile;
 use super::nodes::{Local, Placed};
-use super::report::Report;
+use super::report::Findings;
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::error::SceneError;
 use base::math::{right_of, unit};
@@ -17,7 +17,7 @@ pub(crate) const FRAMES_PER_SECOND: f64 = 24.0;
 
 /// A camera of a file, in a world of which the file is a part.
 pub(super) struct Viewer<'a> {
-    pub document: &'a Document,
+    pub document: &'a GltfFile,
     pub tree: &'a [Placed],
     pub to_world: DMat4,
     pub fps: f64,
@@ -25,7 +25,7 @@ pub(super) struct Viewer<'a> {
 
 impl Viewer<'_> {
     /// The shot of the file's first camera, or of that which `wanted` names or numbers from 1; none without cameras.
-    pub fn shot(&self, wanted: Option<&str>, report: &mut Report) -> Result<Option<Shot>, SceneError> {
+    pub fn shot(&self, wanted: Option<&str>, report: &mut Findings) -> Result<Option<Shot>, SceneError> {
         let nodes = &self.document.root.nodes;
         let mut cameras = Vec::new();
         for (at, placed) in self.tree.iter().enumerate() {
@@ -80,7 +80,7 @@ impl Viewer<'_> {
         at: usize,
         lens: &Lens,
         resolution: [u32; 2],
-        report: &mut Report,
+        report: &mut Findings,
     ) -> Result<Vec<DraftCamera>, SceneError> {
         let chain: Vec<usize> = std::iter::successors(Some(at), |&at| self.tree[at].parent).collect();
         let is_on_the_way = |node: usize| chain.iter().any(|&at| self.tree[at].node == node);

@@ -1,6 +1,6 @@
 //! The container: JSON, binary chunk and buffers of a `.gltf` or `.glb` file.
 
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -24,10 +24,10 @@ const KNOWN: [&str; 12] = [
 ];
 
 /// A file with its buffers.
-pub(super) struct Document {
+pub(super) struct GltfFile {
     pub root: Root,
     /// The file, for messages.
-    pub place: Place,
+    pub place: Location,
     /// Folder that file names are relative to.
     pub folder: PathBuf,
     /// Files read, with the hash of their bytes.
@@ -35,22 +35,22 @@ pub(super) struct Document {
     buffers: Vec<Vec<u8>>,
 }
 
-impl Document {
+impl GltfFile {
     /// Reads the file, to which `from` refers, and its buffers.
-    pub fn open(path: &Path, from: &Place) -> Result<Document, SceneError> {
+    pub fn open(path: &Path, from: &Location) -> Result<GltfFile, SceneError> {
         let bytes = read_file(path, from)?;
-        let place = Place::file(path);
+        let place = Location::file(path);
         let (json, binary) = match bytes.starts_with(b"glTF") {
             true => chunks(&bytes).map_err(|what| SceneError::mesh(place.clone(), what))?,
             false => (&bytes[..], None),
         };
         let root: Root = serde_json::from_slice(json).map_err(|error| {
             let is_text = binary.is_none() && !bytes.starts_with(b"glTF");
-            let place = if is_text { Place::line(path, error.line() as u32) } else { place.clone() };
+            let place = if is_text { Location::line(path, error.line() as u32) } else { place.clone() };
             place.malformed(error.to_string())
         })?;
         check_extensions(&root, &place)?;
-        let mut document = Document {
+        let mut document = GltfFile {
             root,
             folder: folder_of(path).to_owned(),
             sources: vec![(path.to_owned(), fnv1a(&bytes))],
@@ -150,7 +150,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     Ok((json, binary))
 }
 
-fn check_extensions(root: &Root, place: &Place) -> Result<(), SceneError> {
+fn check_extensions(root: &Root, place: &Location) -> Result<(), SceneError> {
     let unknown = root.extensions_required.iter().find(|name| !KNOWN.contains(&name.as_str()));
     let Some(name) = unknown else { return Ok(()) };
     let remedy = match name.as_str() {

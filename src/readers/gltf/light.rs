@@ -4,8 +4,8 @@
 //! metre. They are taken as W/sr, W/m² and W/(sr m²), so that their proportions hold; only Blender writes lights, and
 //! not surfaces, in units 683 times as small as its watts, by which its lights are divided.
 
-use super::document::Document;
-use super::report::Report;
+use super::document::GltfFile;
+use super::report::Findings;
 use crate::error::SceneError;
 use base::math::{Rgb, unit};
 use glam::{DMat4, DVec3, Vec3};
@@ -17,7 +17,7 @@ use scene::DeltaLight;
 const BLENDER_LUMENS_PER_WATT: f32 = 683.0;
 
 /// Units of the file's lights for one of the renderer's.
-pub(super) fn lumens_per_watt(document: &Document) -> f32 {
+pub(super) fn lumens_per_watt(document: &GltfFile) -> f32 {
     let generator = document.root.asset.generator.as_deref().unwrap_or_default();
     if generator.contains("Blender") { BLENDER_LUMENS_PER_WATT } else { 1.0 }
 }
@@ -28,8 +28,8 @@ pub(super) fn read(
     name: &str,
     to_world: &DMat4,
     lumens_per_watt: f32,
-    document: &Document,
-    report: &mut Report,
+    document: &GltfFile,
+    report: &mut Findings,
 ) -> Result<(DeltaLight, DVec3), SceneError> {
     let power = Rgb::from(light.color) * (light.intensity / lumens_per_watt);
     let axis = unit(to_world.transform_vector3(DVec3::NEG_Z));

@@ -4,11 +4,11 @@
 //! absorbs depends on its stated thickness, not on a ray's way through it. A clear coat has the principled material's
 //! shape, which at full strength reflects a quarter of an extension's coat; so has sheen.
 
-use super::Importer;
-use super::texture::Slot;
+use super::importer::{Importer, MaterialUse};
+use super::texture::TextureUse;
 use crate::error::SceneError;
 use crate::picture::Channel;
-use crate::plan::Look;
+use crate::plan::Appearance;
 use base::math::Rgb;
 use gltf_json::Index;
 use gltf_json::extensions::material::{Material as Extensions, Volume};
@@ -33,17 +33,9 @@ const GREEN: Channel = Channel::One(1);
 const BLUE: Channel = Channel::One(2);
 const ALPHA: Channel = Channel::One(3);
 
-/// Surfaces of a material.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Surface {
-    pub look: Look,
-    /// Set of texture coordinates of its textures.
-    pub uv_set: u32,
-}
-
 impl Importer<'_> {
     /// Surfaces of a material of the file, or of primitives without one.
-    pub(super) fn surface(&mut self, index: Option<Index<Source>>) -> Result<Surface, SceneError> {
+    pub(super) fn surface(&mut self, index: Option<Index<Source>>) -> Result<MaterialUse, SceneError> {
         let number = index.map(|index| index.value());
         if let Some(surface) = self.surfaces.get(&number) {
             return Ok(*surface);
@@ -63,7 +55,7 @@ impl Importer<'_> {
         let emission = self.emission(source, &name)?;
         let material = self.material(source, &name)?;
         let material = self.contents.add_material(material, document.place.clone());
-        let surface = Surface { look: Look { material, emission }, uv_set };
+        let surface = MaterialUse { look: Appearance { material, emission }, uv_set };
         self.surfaces.insert(number, surface);
         Ok(surface)
     }
@@ -72,9 +64,9 @@ impl Importer<'_> {
     fn uv_set(&mut self, source: &Source, name: &str) -> u32 {
         let base = &source.pbr_metallic_roughness;
         let slots = [&base.base_color_texture, &base.metallic_roughness_texture, &source.emissive_texture];
-        let normal = source.normal_texture.iter().map(|info| Slot::of_normal(info).set);
+        let normal = source.normal_texture.iter().map(|info| TextureUse::of_normal(info).set);
         let sets: Vec<u32> =
-            slots.into_iter().flatten().map(|info| Slot::of(info).set).chain(normal).collect();
+            slots.into_iter().flatten().map(|info| TextureUse::of(info).set).chain(normal).collect();
         if sets.windows(2).any(|pair| pair[0] != pair[1]) {
             let what = "a material with several sets of texture coordinates is not modelled";
             self.report.lacks(what, "the first is used", name);
@@ -100,7 +92,7 @@ impl Importer<'_> {
             return Ok(None);
         }
         let texture = match texture {
-            Some(info) => self.texture(&Slot::of(info), Channel::Colour, name)?,
+            Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name)?,
             None => None,
         };
         Ok(Some(Emission { radiance: factor, texture, two_sided: source.double_sided }))
@@ -231,7 +223,7 @@ impl Importer<'_> {
     ) -> Result<Share, SceneError> {
         let factor = if factor.is_finite() { factor.clamp(0.0, 1.0) } else { 0.0 };
         let texture = match texture {
-            Some(info) if factor > 0.0 => self.texture(&Slot::of(info), channel, name)?,
+            Some(info) if factor > 0.0 => self.texture(&TextureUse::of(info), channel, name)?,
             _ => None,
         };
         Ok(match texture {
@@ -257,7 +249,7 @@ impl Importer<'_> {
             self.report.lacks(what, "it is the same for all ways through them", name);
         }
         let texture = match &base.base_color_texture {
-            Some(info) => self.texture(&Slot::of(info), Channel::Colour, name)?,
+            Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name)?,
             None => None,
         };
         Ok(match texture {
@@ -269,7 +261,7 @@ impl Importer<'_> {
     fn relief(&mut self, source: &Source, name: &str) -> Result<Option<Relief>, SceneError> {
         let Some(normal) = &source.normal_texture else { return Ok(None) };
         let strength = if normal.scale.is_finite() { normal.scale } else { 1.0 };
-        let texture = self.texture(&Slot::of_normal(normal), Channel::Data, name)?;
+        let texture = self.texture(&TextureUse::of_normal(normal), Channel::Data, name)?;
         Ok(texture.map(|texture| Relief::Normals { texture, strength, y_along_v: true }))
     }
 

@@ -1,7 +1,7 @@
 //! Primitives to triangle meshes.
 
-use super::document::Document;
-use super::report::Report;
+use super::document::GltfFile;
+use super::report::Findings;
 use crate::error::SceneError;
 use crate::mesh::RawMesh;
 use glam::{DVec3, Vec2, Vec3};
@@ -10,11 +10,11 @@ use gltf_json::validation::Checked;
 
 /// Reads a primitive with the texture coordinates of set `uv_set`; none if it has no triangles. `what` names it.
 pub(super) fn read(
-    document: &Document,
+    document: &GltfFile,
     primitive: &Primitive,
     uv_set: u32,
     what: &str,
-    report: &mut Report,
+    report: &mut Findings,
 ) -> Result<Option<RawMesh>, SceneError> {
     let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
     let mode = match &primitive.mode {

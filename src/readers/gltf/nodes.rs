@@ -1,8 +1,8 @@
 //! The tree of nodes of a scene, and their transforms.
 
-use super::document::Document;
+use super::document::GltfFile;
 use crate::error::SceneError;
-use crate::plan::Selection;
+use crate::selection::PartSelection;
 use glam::{DMat4, DQuat, DVec3};
 use gltf_json::{Index, Node};
 
@@ -61,7 +61,7 @@ pub(super) struct Placed {
 }
 
 /// Nodes of the file's default scene, parents before their children.
-pub(super) fn tree(document: &Document, selection: &Selection) -> Result<Vec<Placed>, SceneError> {
+pub(super) fn tree(document: &GltfFile, selection: &PartSelection) -> Result<Vec<Placed>, SceneError> {
     let nodes = &document.root.nodes;
     let mut seen = vec![false; nodes.len()];
     let mut tree: Vec<Placed> = Vec::new();
@@ -91,7 +91,7 @@ pub(super) fn tree(document: &Document, selection: &Selection) -> Result<Vec<Pla
 }
 
 /// Roots of the file's scene; of all nodes, if it has no scene.
-fn roots(document: &Document) -> Result<Vec<Index<Node>>, SceneError> {
+fn roots(document: &GltfFile) -> Result<Vec<Index<Node>>, SceneError> {
     let root = &document.root;
     let scene = match root.scene {
         Some(index) => Some(document.get(index, "scene")?),

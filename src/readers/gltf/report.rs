@@ -1,6 +1,6 @@
 //! Parts of a model that are not consumed, each named once with the objects that ask for it.
 
-use crate::error::{Log, Place, SceneError};
+use crate::error::{Location, Log, SceneError};
 
 /// Number of objects that are named.
 const NAMED: usize = 3;
@@ -15,11 +15,11 @@ struct Finding {
 
 /// Collects findings.
 #[derive(Default)]
-pub(super) struct Report {
+pub(super) struct Findings {
     findings: Vec<Finding>,
 }
 
-impl Report {
+impl Findings {
     /// Adds that the object `name` asks for `what`, which changes the picture.
     pub fn lacks(&mut self, what: &str, fallback: &'static str, name: &str) {
         self.add(what, fallback, true, name);
@@ -42,7 +42,7 @@ impl Report {
     }
 
     /// Writes all findings to the log.
-    pub fn write(self, place: &Place, log: &mut Log) -> Result<(), SceneError> {
+    pub fn write(self, place: &Location, log: &mut Log) -> Result<(), SceneError> {
         for Finding { what, fallback, changes_picture, names } in self.findings {
             let mut listed = names.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
             if names.len() > NAMED {

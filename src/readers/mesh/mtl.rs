@@ -4,7 +4,7 @@
 //! errors name no line.
 
 use super::obj;
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use base::math::Rgb;
 use glam::DVec3;
 use std::path::Path;
@@ -13,7 +13,7 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ClassicMaterial {
     pub name: String,
-    pub place: Place,
+    pub place: Location,
     /// Kd.
     pub diffuse: Rgb,
     /// Ks.
@@ -42,7 +42,7 @@ pub(crate) struct ClassicMaterial {
 pub fn read(bytes: &[u8], path: &Path) -> Result<Vec<ClassicMaterial>, SceneError> {
     let mut materials: Vec<ClassicMaterial> = Vec::new();
     for (number, line) in obj::lines(bytes).enumerate() {
-        let place = Place::line(path, number as u32 + 1);
+        let place = Location::line(path, number as u32 + 1);
         let line = line.trim_ascii();
         let word_end = line.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(line.len());
         let (word, rest) = line.split_at(word_end);

@@ -16,8 +16,8 @@
 //! this file.
 
 use super::{RawMesh, polygon};
-use crate::error::{Place, SceneError};
-use crate::plan::Selection;
+use crate::error::{Location, SceneError};
+use crate::selection::PartSelection;
 use glam::{DVec3, Vec2, Vec3};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
@@ -27,17 +27,17 @@ const MISSING: u32 = u32::MAX;
 const MAX_CHAIN: usize = 16;
 
 /// Reads the selected part of the OBJ text `bytes`; `path` is for messages.
-pub fn read(bytes: &[u8], path: &Path, selection: &Selection) -> Result<RawMesh, SceneError> {
+pub fn read(bytes: &[u8], path: &Path, selection: &PartSelection) -> Result<RawMesh, SceneError> {
     let mut reader = Reader { selected: selection.only.is_empty(), ..Reader::default() };
     // Guesses from the usual 30 bytes a line; only the speed depends on them.
     reader.positions.reserve(bytes.len() / 100);
     reader.mesh.triangles.reserve(bytes.len() / 60);
     for (number, line) in lines(bytes).enumerate() {
-        let fail = |what: String| SceneError::mesh(Place::line(path, number as u32 + 1), what);
+        let fail = |what: String| SceneError::mesh(Location::line(path, number as u32 + 1), what);
         reader.line(line, selection).map_err(fail)?;
     }
     if reader.mesh.triangles.is_empty() && !selection.only.is_empty() {
-        return Err(Place::file(path).undefined("object or group", &selection.only.join("\", \"")));
+        return Err(Location::file(path).undefined("object or group", &selection.only.join("\", \"")));
     }
     Ok(reader.finish())
 }
@@ -71,7 +71,7 @@ struct Reader {
     first: Vec<u32>,
     /// Vertices of positions that have more than `MAX_CHAIN`, by position, uv and normal.
     crowded: HashMap<[u32; 3], u32>,
-    vertices: Vec<Vertex>,
+    vertices: Vec<ObjVertex>,
     mesh: RawMesh,
     corners: Vec<u32>,
     /// Name of the object, and names of the groups, that faces belong to.
@@ -81,7 +81,7 @@ struct Reader {
     selected: bool,
 }
 
-struct Vertex {
+struct ObjVertex {
     position: u32,
     uv: u32,
     normal: u32,
@@ -89,7 +89,7 @@ struct Vertex {
 }
 
 impl Reader {
-    fn line(&mut self, line: &[u8], selection: &Selection) -> Result<(), String> {
+    fn line(&mut self, line: &[u8], selection: &PartSelection) -> Result<(), String> {
         let line = line.trim_ascii();
         let word_end = line.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(line.len());
         let (word, rest) = line.split_at(word_end);
@@ -121,7 +121,7 @@ impl Reader {
         Ok(())
     }
 
-    fn select(&mut self, selection: &Selection) {
+    fn select(&mut self, selection: &PartSelection) {
         let is_in = |names: &[String]| names.iter().any(|n| *n == self.object || self.groups.contains(n));
         self.selected = (selection.only.is_empty() || is_in(&selection.only)) && !is_in(&selection.except);
     }
@@ -165,12 +165,12 @@ impl Reader {
             if length == MAX_CHAIN {
                 let known = *self.crowded.entry([position, uv, normal]).or_insert(new);
                 if known == new {
-                    self.vertices.push(Vertex { position, uv, normal, next: MISSING });
+                    self.vertices.push(ObjVertex { position, uv, normal, next: MISSING });
                 }
                 return known;
             }
         }
-        self.vertices.push(Vertex { position, uv, normal, next: self.first[position as usize] });
+        self.vertices.push(ObjVertex { position, uv, normal, next: self.first[position as usize] });
         self.first[position as usize] = new;
         new
     }
@@ -183,7 +183,7 @@ impl Reader {
         }
         if !normals.is_empty() {
             // A corner without a normal gets zero, which the sanitiser turns into the geometric one.
-            let normal = |v: &Vertex| normals.get(v.normal as usize).copied().unwrap_or_default();
+            let normal = |v: &ObjVertex| normals.get(v.normal as usize).copied().unwrap_or_default();
             mesh.normals = vertices.iter().map(normal).collect();
         }
         mesh
@@ -266,7 +266,7 @@ mod tests {
     use super::*;
 
     fn read_text(text: &str) -> Result<RawMesh, String> {
-        read(text.as_bytes(), Path::new("t.obj"), &Selection::default()).map_err(|e| e.to_string())
+        read(text.as_bytes(), Path::new("t.obj"), &PartSelection::default()).map_err(|e| e.to_string())
     }
 
     #[test]
@@ -285,7 +285,7 @@ mod tests {
             o table\nf 4 1 2\n";
         let names = |names: &[&str]| names.iter().map(|name| name.to_string()).collect();
         let count = |only: &[&str], except: &[&str]| {
-            let selection = Selection { only: names(only), except: names(except) };
+            let selection = PartSelection { only: names(only), except: names(except) };
             read(text.as_bytes(), Path::new("t.obj"), &selection).map(|mesh| mesh.triangles.len())
         };
         assert_eq!(count(&[], &[]).unwrap(), 4);

@@ -6,22 +6,22 @@
 //! in memory; and its messages take three lines.
 
 use super::{RawMesh, polygon};
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use glam::{DVec3, Vec2, Vec3};
 use std::path::Path;
 
 /// Reads the PLY file `bytes`; `path` is for messages.
 pub fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
     let (header, body) =
-        header(bytes).map_err(|(line, what)| SceneError::mesh(Place::line(path, line), what))?;
-    let mut values: Box<dyn Values> = match header.format {
+        header(bytes).map_err(|(line, what)| SceneError::mesh(Location::line(path, line), what))?;
+    let mut values: Box<dyn PlyValues> = match header.format {
         Format::Ascii => Box::new(Ascii { rest: body, line: header.lines }),
         Format::LittleEndian => Box::new(Binary { rest: body, big_endian: false }),
         Format::BigEndian => Box::new(Binary { rest: body, big_endian: true }),
     };
     contents(&header, values.as_mut()).map_err(|what| match values.line() {
-        Some(line) => SceneError::mesh(Place::line(path, line), what),
-        None => SceneError::mesh(Place::file(path), what),
+        Some(line) => SceneError::mesh(Location::line(path, line), what),
+        None => SceneError::mesh(Location::file(path), what),
     })
 }
 
@@ -47,11 +47,11 @@ struct Header {
 struct Element {
     name: String,
     count: u64,
-    properties: Vec<Property>,
+    properties: Vec<PlyProperty>,
 }
 
 #[derive(Debug)]
-struct Property {
+struct PlyProperty {
     name: String,
     /// Type of the count, for lists.
     list: Option<Scalar>,
@@ -103,7 +103,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), (u32, String)> {
                     Some(count) => count,
                     None => None,
                 };
-                element.properties.push(Property { name: name.into(), list, scalar });
+                element.properties.push(PlyProperty { name: name.into(), list, scalar });
             }
             ["end_header"] => break,
             _ => return fail("unknown line in the header"),
@@ -131,7 +131,7 @@ fn scalar(name: &str) -> Option<Scalar> {
 }
 
 /// The values after the header, one after the other.
-trait Values {
+trait PlyValues {
     fn next(&mut self, scalar: Scalar) -> Result<f64, String>;
     fn line(&self) -> Option<u32> {
         None
@@ -146,7 +146,7 @@ struct Ascii<'a> {
     line: u32,
 }
 
-impl Values for Ascii<'_> {
+impl PlyValues for Ascii<'_> {
     fn next(&mut self, _: Scalar) -> Result<f64, String> {
         let start = self.rest.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(self.rest.len());
         self.line += self.rest[..start].iter().filter(|&&b| b == b'\n').count() as u32;
@@ -186,7 +186,7 @@ impl Binary<'_> {
     }
 }
 
-impl Values for Binary<'_> {
+impl PlyValues for Binary<'_> {
     fn next(&mut self, scalar: Scalar) -> Result<f64, String> {
         scalar(self)
     }
@@ -197,12 +197,12 @@ impl Values for Binary<'_> {
 }
 
 /// Elements for which memory is taken at once: as many as the header claims, if the bytes that are left can hold them.
-fn expected(element: &Element, values: &dyn Values) -> usize {
+fn expected(element: &Element, values: &dyn PlyValues) -> usize {
     let most = values.left() / element.properties.len().max(1);
     usize::try_from(element.count).map_or(most, |count| count.min(most))
 }
 
-fn contents(header: &Header, values: &mut dyn Values) -> Result<RawMesh, String> {
+fn contents(header: &Header, values: &mut dyn PlyValues) -> Result<RawMesh, String> {
     let mut mesh = RawMesh::default();
     for element in &header.elements {
         match element.name.as_str() {
@@ -228,8 +228,8 @@ fn contents(header: &Header, values: &mut dyn Values) -> Result<RawMesh, String>
 
 /// Reads one property of one element, passing on each of its values.
 fn property_values(
-    property: &Property,
-    values: &mut dyn Values,
+    property: &PlyProperty,
+    values: &mut dyn PlyValues,
     mut each: impl FnMut(f64),
 ) -> Result<(), String> {
     let count = match property.list {
@@ -248,7 +248,7 @@ fn property_values(
     Ok(())
 }
 
-fn vertices(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> Result<(), String> {
+fn vertices(element: &Element, values: &mut dyn PlyValues, mesh: &mut RawMesh) -> Result<(), String> {
     let find = |names: &[&str]| element.properties.iter().position(|p| names.contains(&p.name.as_str()));
     let triple = |names: [&str; 3]| names.map(|n| find(&[n])).into_iter().collect::<Option<Vec<_>>>();
     let position = triple(["x", "y", "z"]).ok_or("the vertices have no x, y, z")?;
@@ -271,9 +271,9 @@ fn vertices(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> R
     Ok(())
 }
 
-fn faces(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> Result<(), String> {
+fn faces(element: &Element, values: &mut dyn PlyValues, mesh: &mut RawMesh) -> Result<(), String> {
     let is_corners =
-        |p: &Property| p.list.is_some() && ["vertex_index", "vertex_indices"].contains(&p.name.as_str());
+        |p: &PlyProperty| p.list.is_some() && ["vertex_index", "vertex_indices"].contains(&p.name.as_str());
     if !element.properties.iter().any(is_corners) {
         return Err("the faces have no list of vertex indices".into());
     }

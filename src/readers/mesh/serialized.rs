@@ -1,7 +1,7 @@
 //! Mitsuba's `.serialized` meshes, file versions 3 and 4: deflated blocks and a table of their offsets.
 
 use super::RawMesh;
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use flate2::read::ZlibDecoder;
 use glam::{DVec3, Vec2};
 use std::io::Read;
@@ -17,7 +17,7 @@ const MAX_NAME: usize = 1 << 16;
 
 /// Reads mesh number `index` of the file `bytes`; `path` is for messages.
 pub fn read(bytes: &[u8], index: usize, path: &Path) -> Result<RawMesh, SceneError> {
-    let fail = |what: String| SceneError::mesh(Place::file(path), format!("mesh {index}: {what}"));
+    let fail = |what: String| SceneError::mesh(Location::file(path), format!("mesh {index}: {what}"));
     read_block(bytes, index).map_err(fail)
 }
 

@@ -3,13 +3,13 @@
 //! Deviations: anisotropic glass and layered coatings have no counterpart; each is replaced by the
 //! nearest material, with a warning.
 
-use super::Converter;
 use super::bsdf_kinds::{diffuse, glass};
+use super::converter::Converter;
 use super::tree::Object;
 use super::value::numbers;
 use crate::error::SceneError;
 use crate::layers;
-use crate::layers::Surface;
+use crate::layers::CoatSurface;
 use base::math::{Rgb, luminance};
 use scene::{Fresnel, Lobe, Material, MaterialId, Reflectance, Relief, Share};
 use std::rc::Rc;
@@ -82,7 +82,12 @@ impl Converter<'_> {
             "dielectric" | "thindielectric" | "roughdielectric" => self.dielectric(bsdf, name)?,
             "principled" => self.principled(bsdf, name)?,
             "phong" | "ward" => self.classic_glossy(bsdf, name)?,
-            "null" => glass(name, (1.0, false), [Reflectance::Constant(Rgb::ONE); 2]),
+            "null" => {
+                let white = Reflectance::Constant(Rgb::ONE);
+                let clear =
+                    Lobe::Dielectric { eta: 1.0, thin: false, reflectance: white, transmittance: white };
+                glass(name, clear)
+            }
             "twosided" => self.two_sided(bsdf, depth)?,
             "mask" => self.masked(bsdf, depth)?,
             "bumpmap" | "bump" | "normalmap" => self.relieved(bsdf, depth)?,
@@ -145,7 +150,7 @@ impl Converter<'_> {
         };
         let nested = self.nested(bsdf, depth)?;
         let coats_before = nested.lobes.len();
-        let surface = Surface { eta, lobe: coat, through };
+        let surface = CoatSurface { eta, lobe: coat, through };
         let nested = layers::coated(nested, surface, &bsdf.place, self.log)?;
         if nested.lobes.len() == coats_before {
             return Ok(nested);

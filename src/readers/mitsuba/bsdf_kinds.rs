@@ -1,6 +1,6 @@
 //! Kinds of BSDF that hold no other.
 
-use super::Converter;
+use super::converter::Converter;
 use super::tree::Object;
 use crate::check;
 use crate::constants;
@@ -77,9 +77,10 @@ impl Converter<'_> {
                 _ => u,
             };
             let lobe = Lobe::RoughDielectric { distribution, alpha, eta, reflectance, transmittance };
-            return Ok(Material { name, two_sided: true, lobes: vec![lobe], ..Material::default() });
+            return Ok(glass(name, lobe));
         }
-        Ok(glass(name, (eta, bsdf.plugin == "thindielectric"), [reflectance, transmittance]))
+        let thin = bsdf.plugin == "thindielectric";
+        Ok(glass(name, Lobe::Dielectric { eta, thin, reflectance, transmittance }))
     }
 
     /// Phong and Ward: a Lambert base and a microfacet lobe of the same reflectance. For Phong's it is GGX with the α,
@@ -223,7 +224,7 @@ impl Converter<'_> {
 
     pub(super) fn ior(&mut self, bsdf: &Object, name: &str, default: &str) -> Result<f64, SceneError> {
         let material = match bsdf.property(name).map(|p| &p.value) {
-            Some(super::value::Value::String(material)) => material.clone(),
+            Some(super::value::PropertyValue::String(material)) => material.clone(),
             Some(_) => return bsdf.positive(name, 1.0),
             None => default.to_owned(),
         };
@@ -239,12 +240,7 @@ pub(super) fn diffuse(name: String, diffuse: Reflectance) -> Material {
     Material { name, diffuse, ..Material::default() }
 }
 
-/// Glass of an index of refraction, perhaps a thin sheet of it, with factors on reflection and transmission.
-pub(super) fn glass(
-    name: String,
-    (eta, thin): (f32, bool),
-    [reflectance, transmittance]: [Reflectance; 2],
-) -> Material {
-    let lobe = Lobe::Dielectric { eta, thin, reflectance, transmittance };
+/// Returns the material of a single lobe of glass.
+pub(super) fn glass(name: String, lobe: Lobe) -> Material {
     Material { name, two_sided: true, lobes: vec![lobe], ..Material::default() }
 }

@@ -1,6 +1,6 @@
 //! Emitters: of shapes, of the whole scene, and delta lights.
 
-use super::Converter;
+use super::converter::Converter;
 use super::tree::Object;
 use crate::check;
 use crate::error::SceneError;

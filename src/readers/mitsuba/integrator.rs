@@ -1,6 +1,6 @@
 //! The maximum path length, beside `hide_emitters` the only property of the integrator that affects the expected image.
 
-use super::Converter;
+use super::converter::Converter;
 use super::tree::Object;
 use crate::error::SceneError;
 

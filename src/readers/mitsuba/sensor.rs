@@ -1,16 +1,16 @@
 //! Sensors and their film.
 
-use super::Converter;
+use super::converter::Converter;
 use super::tree::Object;
 use crate::draft::{DraftCamera, Shot};
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use base::math::{right_of, unit};
 use glam::{DMat4, DVec3};
 use scene::{MAX_SIDE, PixelFilter, Projection};
 use std::rc::Rc;
 
 /// A sensor's film.
-struct Film {
+struct SensorFilm {
     /// Width and height in pixels.
     resolution: [u32; 2],
     /// Offset and size of the part to render, if it is not the whole.
@@ -41,7 +41,7 @@ impl Converter<'_> {
                 return Err(sensor.place.wrong(what, "use type=\"perspective\""));
             }
         }
-        let Film { resolution, crop, filter } = self.film(sensor)?;
+        let SensorFilm { resolution, crop, filter } = self.film(sensor)?;
         let to_world = sensor.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
         let aspect = f64::from(resolution[0]) / f64::from(resolution[1]);
         let near = sensor.positive("near_clip", 1e-2)?;
@@ -77,7 +77,7 @@ impl Converter<'_> {
     /// Place of a camera; Mitsuba's looks along +z with +x to the left.
     fn camera(
         &mut self,
-        place: &Place,
+        place: &Location,
         to_world: &DMat4,
         projection: Projection,
     ) -> Result<DraftCamera, SceneError> {
@@ -109,10 +109,10 @@ impl Converter<'_> {
         Ok(DraftCamera { origin, forward, right, up, tan_half_x, near, far, projection, filter })
     }
 
-    fn film(&mut self, sensor: &Object) -> Result<Film, SceneError> {
+    fn film(&mut self, sensor: &Object) -> Result<SensorFilm, SceneError> {
         let films = self.tagged(sensor, "film")?;
         let Some(film) = films.first() else {
-            return Ok(Film { resolution: [768, 576], crop: None, filter: PixelFilter::GAUSSIAN });
+            return Ok(SensorFilm { resolution: [768, 576], crop: None, filter: PixelFilter::GAUSSIAN });
         };
         let size = |name: &str, default: i64| {
             let value = film.integer(name)?.unwrap_or(default);
@@ -141,7 +141,7 @@ impl Converter<'_> {
         let crop = (crop != whole).then_some([[x, y], [width, height]]);
         let filters = self.tagged(film, "rfilter")?;
         let filter = filters.first().map_or(Ok(PixelFilter::GAUSSIAN), |filter| self.filter(filter))?;
-        Ok(Film { resolution, crop, filter })
+        Ok(SensorFilm { resolution, crop, filter })
     }
 
     fn filter(&mut self, object: &Object) -> Result<PixelFilter, SceneError> {
@@ -193,7 +193,7 @@ impl Converter<'_> {
 fn chosen<'a>(
     sensors: &'a [Rc<Object>],
     wanted: Option<&str>,
-    place: &Place,
+    place: &Location,
 ) -> Result<&'a Rc<Object>, SceneError> {
     if sensors.is_empty() {
         let remedy = "add <sensor type=\"perspective\"> with a to_world transform";

@@ -5,7 +5,7 @@
 //!
 //! Deviations: the sky and the sun of 0.6 are those of Mitsuba 3, which differ in the sun's colour from 0.6's.
 
-use super::Converter;
+use super::converter::Converter;
 use super::tree::Object;
 use crate::error::SceneError;
 use crate::plan::EnvironmentPlan;

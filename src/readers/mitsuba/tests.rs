@@ -1,7 +1,7 @@
 mod errors;
 mod films;
 
-use crate::{Level, LoadOptions, Loaded, load};
+use crate::{LoadOptions, Loaded, Severity, load};
 use base::math::Rgb;
 use glam::{DVec3, Vec3};
 use scene::{
@@ -281,7 +281,7 @@ fn instances_are_placed_copies_of_their_group() {
     assert!((middle(2) - DVec3::new(1.0, 0.0, 9.0)).length() < 1e-5, "{}", middle(2));
     assert_eq!(loaded.scene.materials.len(), 1);
     let [note] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
-    assert!(note.level == Level::Note && note.what.contains("4 meshes"), "{note}");
+    assert!(note.severity == Severity::Note && note.what.contains("4 meshes"), "{note}");
     let nested = "<shape type=\"shapegroup\" id=\"h\"><ref id=\"h\"/></shape>\
         <shape type=\"instance\"><ref id=\"h\"/></shape><shape type=\"merge\" id=\"m\"><ref id=\"m\"/></shape>";
     let message = load_body(nested).unwrap_err();

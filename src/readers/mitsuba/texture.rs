@@ -1,13 +1,14 @@
 //! Colours and textures. A bitmap's v counts downwards in Mitsuba and upwards here, so `to_uv` is conjugated
 //! with that flip.
 
+use super::converter::Converter;
 use super::tree::Object;
-use super::value::Value;
-use super::{Converter, cie, value};
-use crate::error::{Place, SceneError};
+use super::value::PropertyValue;
+use super::{cie, value};
+use crate::error::{Location, SceneError};
 use crate::file::read_text;
-use crate::picture::Picture;
-use crate::plan::{Image, TexturePlan};
+use crate::picture::DecodedImage;
+use crate::plan::{TexturePlan, TextureSource};
 use base::math::Rgb;
 use glam::{DMat3, DMat4, DVec2, DVec3};
 use scene::{Filter, Reflectance, Texels, Wrap};
@@ -38,12 +39,12 @@ impl Converter<'_> {
         let Some(property) = object.property(name) else { return Ok(None) };
         let white = if emissive { EQUAL_ENERGY } else { DVec3::ONE };
         let colour = match &property.value {
-            Value::Rgb(colour) => *colour,
-            Value::Float(v) => DVec3::splat(*v),
-            Value::Integer(v) => DVec3::splat(*v as f64),
-            Value::Spectrum(v) => white * *v,
-            Value::Samples(samples) => self.sampled(samples, emissive, &property.place),
-            Value::SamplesFile(name) => {
+            PropertyValue::Rgb(colour) => *colour,
+            PropertyValue::Float(v) => DVec3::splat(*v),
+            PropertyValue::Integer(v) => DVec3::splat(*v as f64),
+            PropertyValue::Spectrum(v) => white * *v,
+            PropertyValue::Samples(samples) => self.sampled(samples, emissive, &property.place),
+            PropertyValue::SamplesFile(name) => {
                 let path = self.beside(name, &property.place);
                 let (text, hash) = read_text(&path, &property.place)?;
                 if !self.sources.iter().any(|source| source.0 == path) {
@@ -51,7 +52,7 @@ impl Converter<'_> {
                 }
                 let samples = value::samples_of_file(&text).map_err(|line| {
                     let remedy = "write a wavelength in nm and a value a line, wavelengths ascending";
-                    Place::line(&path, line).wrong("this is no sampled spectrum", remedy)
+                    Location::line(&path, line).wrong("this is no sampled spectrum", remedy)
                 })?;
                 self.sampled(&samples, emissive, &property.place)
             }
@@ -64,7 +65,7 @@ impl Converter<'_> {
     }
 
     /// Colour of a sampled spectrum; as in Mitsuba, without what Rec. 709 cannot hold.
-    fn sampled(&mut self, samples: &[(f64, f64)], emissive: bool, place: &Place) -> DVec3 {
+    fn sampled(&mut self, samples: &[(f64, f64)], emissive: bool, place: &Location) -> DVec3 {
         let rgb = cie::rgb_of_samples(samples, !emissive);
         let limit = if emissive { f64::INFINITY } else { 1.0 };
         let clamped = rgb.clamp(DVec3::ZERO, DVec3::splat(limit));
@@ -200,7 +201,7 @@ impl Converter<'_> {
         let place = object.place.clone();
         let texture = self.contents.add_texture(TexturePlan {
             place,
-            image: Image::File { path, raw },
+            image: TextureSource::File { path, raw },
             filter,
             wrap,
             to_uv,
@@ -219,10 +220,10 @@ impl Converter<'_> {
             };
         let (even, odd) = (texel("color0", 0.4)?, texel("color1", 0.2)?);
         let texels = Texels::new(2, &[even, odd, odd, even]);
-        let picture = Picture { width: 2, height: 2, texels };
+        let picture = DecodedImage { width: 2, height: 2, texels };
         let texture = self.contents.add_texture(TexturePlan {
             place: object.place.clone(),
-            image: Image::Ready("checkerboard".into(), picture),
+            image: TextureSource::Ready("checkerboard".into(), picture),
             filter: Filter::Nearest,
             wrap: Wrap::Repeat,
             to_uv: self.to_uv(object)?,

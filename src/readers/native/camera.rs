@@ -1,10 +1,10 @@
 //! Camera and walk-through of the native format.
 
-use super::Builder;
+use super::builder::SceneBuilder;
 use super::path::{Key, KeyedPath};
 use super::text::{CameraText, KeyText, Number, PathText, SceneText};
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use crate::finish::framing;
 use base::math::{right_of, unit};
 use glam::DVec3;
@@ -14,7 +14,7 @@ use toml::Spanned;
 /// Field of view of cameras that have none, in degrees.
 const DEFAULT_FOV: f64 = 45.0;
 
-impl Builder<'_> {
+impl SceneBuilder<'_> {
     pub(super) fn shot(&self, scene: &SceneText) -> Result<Shot, SceneError> {
         if let (None, Some(shot)) = (&scene.camera, &self.model_shot) {
             let resolution = self.resolution(scene, shot.resolution)?;
@@ -24,7 +24,7 @@ impl Builder<'_> {
         let unspecified = CameraText::default();
         let (place, text) = match &scene.camera {
             Some(text) => (self.file.place(text.span()), text.get_ref()),
-            None => (Place::file(self.file.path), &unspecified),
+            None => (Location::file(self.file.path), &unspecified),
         };
         self.check_fov_axis(text)?;
         self.check_filter(text)?;
@@ -160,14 +160,14 @@ fn filter(name: &str) -> Option<PixelFilter> {
 }
 
 /// A key; the camera's own up vector and field of view stand where it has none.
-fn key(camera: &CameraText, text: &KeyText, place: &Place) -> Result<Key, SceneError> {
+fn key(camera: &CameraText, text: &KeyText, place: &Location) -> Result<Key, SceneError> {
     let up = text.up.or(camera.up).map_or(DVec3::Y, DVec3::from);
     let fov = fov(camera, text.fov, place)?;
     Ok(Key { origin: text.origin.into(), target: text.target.into(), up, fov })
 }
 
 /// The field of view of a key, degrees: its own or the camera's.
-fn fov(camera: &CameraText, own: Option<Number>, place: &Place) -> Result<f64, SceneError> {
+fn fov(camera: &CameraText, own: Option<Number>, place: &Location) -> Result<f64, SceneError> {
     let fov = own.or(camera.fov).map_or(DEFAULT_FOV, f64::from);
     match fov > 0.0 && fov < 180.0 {
         true => Ok(fov),
@@ -179,7 +179,7 @@ fn camera(
     text: &CameraText,
     key: &Key,
     resolution: [u32; 2],
-    place: &Place,
+    place: &Location,
 ) -> Result<DraftCamera, SceneError> {
     let Key { origin, target, up, fov } = *key;
     let forward = unit(target - origin);

@@ -1,9 +1,9 @@
 //! Colours of the native format, alike wherever one is expected: a number for a grey, linear `[r, g, b]`, `"#rrggbb"`
 //! in sRGB, any of these times a factor, or a picture where a surface carries it.
 
-use super::Builder;
+use super::builder::SceneBuilder;
 use super::text::{ColourText, Number, TextureText};
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use crate::picture::srgb_to_linear;
 use base::math::Rgb;
 use glam::DVec3;
@@ -11,7 +11,7 @@ use scene::Reflectance;
 
 impl ColourText {
     /// Returns the colour; `what` names it in errors, among them that of a picture.
-    pub fn rgb(&self, what: &str, place: &Place) -> Result<Rgb, SceneError> {
+    pub fn rgb(&self, what: &str, place: &Location) -> Result<Rgb, SceneError> {
         let colour = self.constant(place)?;
         let picture =
             || place.wrong(format!("{what} is a picture"), "give a number, [r, g, b] or \"#rrggbb\"");
@@ -21,7 +21,7 @@ impl ColourText {
     }
 
     /// Returns the colour, or nothing for a picture.
-    pub fn constant(&self, place: &Place) -> Result<Option<Rgb>, SceneError> {
+    pub fn constant(&self, place: &Location) -> Result<Option<Rgb>, SceneError> {
         Ok(match self {
             ColourText::Grey(grey) => Some(Rgb::splat(grey.0 as f32)),
             ColourText::Rgb(rgb) => Some(DVec3::from(*rgb).as_vec3()),
@@ -52,9 +52,9 @@ impl ColourText {
     }
 }
 
-impl Builder<'_> {
+impl SceneBuilder<'_> {
     /// Returns the colour of a surface, which may be a picture.
-    pub(super) fn colour(&mut self, text: &ColourText, place: &Place) -> Result<Reflectance, SceneError> {
+    pub(super) fn colour(&mut self, text: &ColourText, place: &Location) -> Result<Reflectance, SceneError> {
         match (text.constant(place)?, text.picture()) {
             (None, Some(picture)) => Ok(self.texture(&picture, place)),
             (colour, _) => Ok(Reflectance::Constant(colour.unwrap_or_default())),

@@ -1,11 +1,11 @@
 //! Errors of a description as the TOML library tells them, with the key that they are about and a remedy.
 
-use super::File;
-use crate::error::{Place, SceneError};
+use super::source::SourceText;
+use crate::error::{Location, SceneError};
 
 /// The error in the words of scene files.
-pub(super) fn of(file: File, error: &toml::de::Error) -> SceneError {
-    let place = error.span().map_or(Place::file(file.path), |span| file.place(span));
+pub(super) fn of(file: SourceText, error: &toml::de::Error) -> SceneError {
+    let place = error.span().map_or(Location::file(file.path), |span| file.place(span));
     let message = error.message();
     if file.text.parse::<toml::Table>().is_err() {
         return place.malformed(message);

@@ -14,15 +14,15 @@ const PAGE: &str = include_str!("../../../docs/scene-format.md");
 
 /// A key of a table, as the page describes it.
 #[derive(Clone, Debug)]
-struct Row {
+struct KeyRow {
     key: &'static str,
     kind: &'static str,
     default: &'static str,
 }
 
 /// Tables of keys with their headings, those of kinds under `parent: kind`.
-fn tables() -> Vec<(String, Vec<Row>)> {
-    let mut tables: Vec<(String, Vec<Row>)> = Vec::new();
+fn tables() -> Vec<(String, Vec<KeyRow>)> {
+    let mut tables: Vec<(String, Vec<KeyRow>)> = Vec::new();
     let (mut parent, mut heading) = ("", String::new());
     for line in PAGE.lines() {
         if let Some(title) = line.strip_prefix("## ") {
@@ -35,27 +35,27 @@ fn tables() -> Vec<(String, Vec<Row>)> {
         } else if let (Some(row), Some((_, rows))) = (line.strip_prefix("| `"), tables.last_mut()) {
             let cells: Vec<&str> = row.split('|').map(str::trim).collect();
             let [key, kind, _, default, ..] = cells[..] else { panic!("{line}") };
-            rows.push(Row { key: key.trim_end_matches('`'), kind, default });
+            rows.push(KeyRow { key: key.trim_end_matches('`'), kind, default });
         }
     }
     tables
 }
 
-fn table(heading: &str) -> Vec<Row> {
+fn table(heading: &str) -> Vec<KeyRow> {
     let found = tables().into_iter().find(|(name, _)| name == heading);
     found.unwrap_or_else(|| panic!("the page lacks {heading}")).1
 }
 
 /// Kinds and their tables under a heading.
-fn kinds(heading: &str) -> Vec<(String, Vec<Row>)> {
+fn kinds(heading: &str) -> Vec<(String, Vec<KeyRow>)> {
     let prefix = format!("{heading}: `kind = \"");
-    let kind = |(name, rows): (String, Vec<Row>)| {
+    let kind = |(name, rows): (String, Vec<KeyRow>)| {
         Some((name.strip_prefix(&prefix)?.trim_end_matches("\"`").to_owned(), rows))
     };
     tables().into_iter().filter_map(kind).collect()
 }
 
-fn keys(rows: &[Row]) -> BTreeSet<String> {
+fn keys(rows: &[KeyRow]) -> BTreeSet<String> {
     rows.iter().map(|row| row.key.to_owned()).collect()
 }
 
@@ -89,7 +89,7 @@ fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
 }
 
 /// A value for a key that a scene cannot do without.
-fn sample(row: &Row) -> &'static str {
+fn sample(row: &KeyRow) -> &'static str {
     match row.kind {
         _ if row.key == "target" => "[0, 0, 0]",
         "text" => "\"a.png\"",
@@ -116,8 +116,8 @@ fn outcome(text: &str) -> Result<String, String> {
 }
 
 /// The scene of a template, `@` replaced by the required keys of the table and `more`.
-fn with(template: &str, rows: &[Row], more: &str) -> String {
-    let is_given = |row: &&Row| row.default == "required" && !template.contains(&format!("{} =", row.key));
+fn with(template: &str, rows: &[KeyRow], more: &str) -> String {
+    let is_given = |row: &&KeyRow| row.default == "required" && !template.contains(&format!("{} =", row.key));
     let required = rows.iter().filter(is_given).map(|row| format!("{} = {}", row.key, sample(row)));
     let given: Vec<String> = required.chain((!more.is_empty()).then(|| more.to_owned())).collect();
     template.replace('@', &given.join(", "))
@@ -149,8 +149,8 @@ fn templates() -> Vec<(&'static str, String)> {
 }
 
 /// Templates of every kind under a heading.
-fn kind_templates(heading: &str, list: &str) -> Vec<(String, String, Vec<Row>)> {
-    let template = |(kind, rows): (String, Vec<Row>)| {
+fn kind_templates(heading: &str, list: &str) -> Vec<(String, String, Vec<KeyRow>)> {
+    let template = |(kind, rows): (String, Vec<KeyRow>)| {
         let name = if list == "material" { "name = \"m\", " } else { "" };
         let preset = if kind == "conductor" { "preset = \"Au\", " } else { "" };
         // The sample of a text is the name of a material, too.
@@ -164,14 +164,14 @@ fn kind_templates(heading: &str, list: &str) -> Vec<(String, String, Vec<Row>)> 
     kinds(heading).into_iter().map(template).collect()
 }
 
-fn all_templates() -> Vec<(String, String, Vec<Row>)> {
+fn all_templates() -> Vec<(String, String, Vec<KeyRow>)> {
     let plain = templates().into_iter().map(|(heading, text)| (heading.to_owned(), text, table(heading)));
     let materials = kind_templates("`[[material]]`", "material");
     plain.chain(materials).chain(kind_templates("`[[light]]`", "light")).collect()
 }
 
-fn check_types<T: DeserializeOwned>(heading: &str, rows: &[Row]) {
-    let error = |row: &Row, value: &str| {
+fn check_types<T: DeserializeOwned>(heading: &str, rows: &[KeyRow]) {
+    let error = |row: &KeyRow, value: &str| {
         let parsed = toml::from_str::<T>(&format!("{} = {value}", row.key));
         parsed.err().map(|e| e.message().to_owned()).filter(|message| !message.contains("missing field"))
     };
@@ -213,7 +213,7 @@ fn the_page_lists_every_key_and_its_type() {
 /// Asserts that kinds of a list take just the keys that the page gives them.
 fn check_kinds<T: DeserializeOwned>(heading: &str, list: &str) {
     let common = keys(&table(heading));
-    let all: Vec<(String, Vec<Row>)> = kinds(heading);
+    let all: Vec<(String, Vec<KeyRow>)> = kinds(heading);
     let described: BTreeSet<String> = all.iter().flat_map(|(_, rows)| keys(rows)).collect();
     assert_eq!(&described | &common, known::<T>(), "{heading}");
     let unknown = outcome(
@@ -271,7 +271,7 @@ fn colours_are_the_same_everywhere_and_pictures_only_where_the_page_says() {
                 }
                 _ => template.clone(),
             };
-            let others: Vec<Row> = rows.iter().filter(|other| other.key != row.key).cloned().collect();
+            let others: Vec<KeyRow> = rows.iter().filter(|other| other.key != row.key).cloned().collect();
             let of = |value: &str| outcome(&with(&template, &others, &format!("{} = {value}", row.key)));
             let grey = of("0.25").unwrap_or_else(|e| panic!("{name}: {e}"));
             for same in ["[0.25, 0.25, 0.25]", "{ colour = \"#ffffff\", scale = 0.25 }"] {

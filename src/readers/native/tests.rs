@@ -1,4 +1,4 @@
-use crate::{Level, LoadOptions, Loaded, load};
+use crate::{LoadOptions, Loaded, Severity, load};
 use glam::{DVec3, Vec3};
 use scene::{DeltaLight, Environment, Fresnel, Lobe, Reflectance, Roughness, Share, TextureId};
 use std::fs;
@@ -225,7 +225,7 @@ fn a_mesh_file_in_which_nothing_is_found_is_warned_of_and_an_error_under_strict(
         fs::write(&path, format!("{HEAD}{GREY}{mesh}{SKY}")).unwrap();
         let loaded = load(&path, &LoadOptions::default()).unwrap();
         let [warning] = &loaded.warnings[..] else { panic!("{name}: {:?}", loaded.warnings) };
-        assert!(warning.level == Level::Warning && warning.what.contains(name), "{warning}");
+        assert!(warning.severity == Severity::Warning && warning.what.contains(name), "{warning}");
         let strict = load(&path, &LoadOptions { strict: true, ..LoadOptions::default() });
         assert!(strict.unwrap_err().to_string().contains("s.toml:10:"));
     }
@@ -286,7 +286,7 @@ fn a_generator_yields_named_parts_and_unused_ones_are_reported() {
     let loaded = load_text(&text).unwrap();
     assert_eq!(loaded.scene.meshes[0].name, "knot");
     assert_eq!(loaded.warnings.len(), 1);
-    assert_eq!(loaded.warnings[0].level, Level::Warning);
+    assert_eq!(loaded.warnings[0].severity, Severity::Warning);
     assert!(loaded.warnings[0].what.contains("floor"), "{}", loaded.warnings[0]);
 }
 

@@ -12,7 +12,7 @@ pub(super) struct SceneText {
     pub generator: Option<Spanned<String>>,
     pub max_depth: Option<Spanned<u32>>,
     pub hide_emitters: Option<bool>,
-    pub resolution: Option<Spanned<Row<u32, 2>>>,
+    pub resolution: Option<Spanned<FixedArray<u32, 2>>>,
     pub camera: Option<Spanned<CameraText>>,
     #[serde(default)]
     pub material: Vec<Spanned<MaterialText>>,
@@ -44,18 +44,18 @@ impl TryFrom<f64> for Number {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(try_from = "Vec<T>")]
 #[serde(bound(deserialize = "T: Deserialize<'de>"))]
-pub(super) struct Row<T, const N: usize>(pub [T; N]);
+pub(super) struct FixedArray<T, const N: usize>(pub [T; N]);
 
-impl<T, const N: usize> TryFrom<Vec<T>> for Row<T, N> {
+impl<T, const N: usize> TryFrom<Vec<T>> for FixedArray<T, N> {
     type Error = String;
 
-    fn try_from(values: Vec<T>) -> Result<Row<T, N>, String> {
-        values.try_into().map(Row).map_err(|_| format!("expected an array of length {N}"))
+    fn try_from(values: Vec<T>) -> Result<FixedArray<T, N>, String> {
+        values.try_into().map(FixedArray).map_err(|_| format!("expected an array of length {N}"))
     }
 }
 
 /// A row of numbers.
-pub(super) type Numbers<const N: usize> = Row<Number, N>;
+pub(super) type NumberArray<const N: usize> = FixedArray<Number, N>;
 
 impl From<Number> for f64 {
     fn from(number: Number) -> f64 {
@@ -63,14 +63,14 @@ impl From<Number> for f64 {
     }
 }
 
-impl From<Numbers<2>> for [f64; 2] {
-    fn from(numbers: Numbers<2>) -> [f64; 2] {
+impl From<NumberArray<2>> for [f64; 2] {
+    fn from(numbers: NumberArray<2>) -> [f64; 2] {
         numbers.0.map(f64::from)
     }
 }
 
-impl From<Numbers<3>> for DVec3 {
-    fn from(numbers: Numbers<3>) -> DVec3 {
+impl From<NumberArray<3>> for DVec3 {
+    fn from(numbers: NumberArray<3>) -> DVec3 {
         DVec3::from(numbers.0.map(f64::from))
     }
 }
@@ -78,9 +78,9 @@ impl From<Numbers<3>> for DVec3 {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraText {
-    pub origin: Option<Numbers<3>>,
-    pub target: Option<Numbers<3>>,
-    pub up: Option<Numbers<3>>,
+    pub origin: Option<NumberArray<3>>,
+    pub target: Option<NumberArray<3>>,
+    pub up: Option<NumberArray<3>>,
     pub fov: Option<Number>,
     pub fov_axis: Option<Spanned<String>>,
     pub near: Option<f64>,
@@ -103,9 +103,9 @@ pub(super) struct PathText {
 #[serde(deny_unknown_fields)]
 pub(super) struct KeyText {
     pub frame: Option<usize>,
-    pub origin: Numbers<3>,
-    pub target: Numbers<3>,
-    pub up: Option<Numbers<3>>,
+    pub origin: NumberArray<3>,
+    pub target: NumberArray<3>,
+    pub up: Option<NumberArray<3>>,
     pub fov: Option<Number>,
 }
 
@@ -156,7 +156,7 @@ pub(super) struct MaterialText {
 )]
 pub(super) enum ColourText {
     Grey(Number),
-    Rgb(Numbers<3>),
+    Rgb(NumberArray<3>),
     /// Hexadecimal after `#`, else the name of a picture.
     Named(String),
     /// A colour times a factor.
@@ -176,7 +176,7 @@ pub(super) enum ColourText {
 )]
 pub(super) enum NumberText {
     Number(Number),
-    Picture(String),
+    File(String),
     Texture(TextureText),
 }
 
@@ -184,7 +184,7 @@ pub(super) enum NumberText {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(untagged, expecting = "expected a picture's name or { file = \"...\" }")]
 pub(super) enum MapText {
-    Picture(String),
+    File(String),
     Texture(TextureText),
 }
 
@@ -199,7 +199,7 @@ pub(super) struct TextureText {
     /// Factor on every texel.
     pub scale: Option<Number>,
     /// Repetitions along u and v.
-    pub tiles: Option<Numbers<2>>,
+    pub tiles: Option<NumberArray<2>>,
 }
 
 impl TextureText {
@@ -263,21 +263,21 @@ pub(super) enum NamesText {
 pub(super) struct StepText {
     pub scale: Option<ScaleText>,
     pub rotate: Option<RotateText>,
-    pub translate: Option<Numbers<3>>,
-    pub matrix: Option<Numbers<16>>,
+    pub translate: Option<NumberArray<3>>,
+    pub matrix: Option<NumberArray<16>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(untagged, expecting = "expected a number or [x, y, z]")]
 pub(super) enum ScaleText {
     Uniform(Number),
-    Axes(Numbers<3>),
+    Axes(NumberArray<3>),
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RotateText {
-    pub axis: Numbers<3>,
+    pub axis: NumberArray<3>,
     pub angle: Number,
 }
 
@@ -285,12 +285,12 @@ pub(super) struct RotateText {
 #[serde(deny_unknown_fields)]
 pub(super) struct LightText {
     pub kind: String,
-    pub position: Option<Numbers<3>>,
-    pub target: Option<Numbers<3>>,
+    pub position: Option<NumberArray<3>>,
+    pub target: Option<NumberArray<3>>,
     pub intensity: Option<ColourText>,
     pub inner_angle: Option<Number>,
     pub outer_angle: Option<Number>,
-    pub direction: Option<Numbers<3>>,
+    pub direction: Option<NumberArray<3>>,
     pub irradiance: Option<ColourText>,
     pub angle: Option<Number>,
 }
@@ -307,11 +307,11 @@ pub(super) struct EnvironmentText {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SkyText {
-    pub up: Option<Numbers<3>>,
-    pub sun_direction: Option<Numbers<3>>,
+    pub up: Option<NumberArray<3>>,
+    pub sun_direction: Option<NumberArray<3>>,
     pub date: Option<toml::value::Datetime>,
     /// Latitude to the north and longitude to the east, degrees.
-    pub place: Option<Numbers<2>>,
+    pub place: Option<NumberArray<2>>,
     pub turbidity: Option<Number>,
     pub albedo: Option<ColourText>,
     pub scale: Option<Number>,

@@ -6,7 +6,7 @@
 mod hosek_wilkie;
 mod sun_position;
 
-use super::error::{Log, Place, SceneError};
+use super::error::{Location, Log, SceneError};
 use base::math::Rgb;
 use glam::{DMat3, DVec3};
 use hosek_wilkie::{ClearSky, SUN_ANGLE, TURBIDITIES, sun_radiance};
@@ -46,7 +46,7 @@ impl SkyPlan {
     }
 
     /// Checks the ranges of the values, and warns of a sun that has set.
-    pub fn check(&self, place: &Place, log: &mut Log) -> Result<(), SceneError> {
+    pub fn check(&self, place: &Location, log: &mut Log) -> Result<(), SceneError> {
         let [low, high] = TURBIDITIES;
         if !(low..=high).contains(&self.turbidity) {
             return Err(place.wrong(format!("the turbidity is {}", self.turbidity), "give 1 to 10"));

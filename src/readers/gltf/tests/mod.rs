@@ -2,7 +2,7 @@ mod model;
 mod samples;
 mod slow_damage;
 
-use super::super::{Level, LoadOptions, Loaded, SceneError, load};
+use super::super::{LoadOptions, Loaded, SceneError, Severity, load};
 use base::math::luminance;
 use glam::{Vec2, Vec3};
 use model::Model;
@@ -49,7 +49,7 @@ fn every_sample_loads_and_names_what_it_does_not_get() {
         let warnings: Vec<&str> = loaded
             .warnings
             .iter()
-            .filter(|w| w.level == Level::Warning && !w.what.contains("no light"))
+            .filter(|w| w.severity == Severity::Warning && !w.what.contains("no light"))
             .map(|w| w.what.as_str())
             .collect();
         assert_eq!(warnings.len(), lacks.len(), "{name}: {warnings:?}");

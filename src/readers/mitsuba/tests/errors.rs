@@ -23,7 +23,7 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
         let loaded = load_body(&body).unwrap();
         let [warning] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
         assert!(warning.to_string().contains(what) && warning.place.line == Some(5), "{warning}");
-        assert_eq!(warning.level, Level::Warning);
+        assert_eq!(warning.severity, Severity::Warning);
         let message = load_with(&body, &[], true).unwrap_err();
         assert!(message.contains("s.xml:5") && message.contains("strict"), "{message}");
     }

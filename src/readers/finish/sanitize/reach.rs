@@ -1,0 +1,18 @@
+//! Coordinates that the renderer can hold.
+
+use crate::finish::recentre::LocalCoordinates;
+use glam::DVec3;
+
+/// Maximum coordinate, in the unit of the files and in the local unit.
+///
+/// Embree silently drops triangles beyond 1.8e18.
+pub(super) const HUGE: f64 = 1e18;
+
+/// Remedy for coordinates beyond [`HUGE`].
+pub(super) const IN_REACH: &str =
+    "keep within 1e18 of the origin, and within 1e18 times the scene's size of it";
+
+/// True if a position is within reach of `f32`.
+pub(super) fn is_within_reach(world: DVec3, coordinates: &LocalCoordinates) -> bool {
+    world.abs().max_element() <= HUGE && coordinates.local(world).abs().max_element() <= HUGE as f32
+}
