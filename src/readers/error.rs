@@ -1,10 +1,12 @@
-//! Errors in scenes, and warnings about parts that are not modelled: both name the file and the line.
+//! Errors of reading scenes, and warnings about features that are not modelled.
+//!
+//! Both name the file and, if possible, the line.
 
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// A file, and the line, if available.
+/// A file, and a line of it if known.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Location {
     /// The file.
@@ -14,12 +16,12 @@ pub struct Location {
 }
 
 impl Location {
-    /// Returns the place of the file as a whole.
+    /// Returns the location of a file as a whole.
     pub fn file(path: &Path) -> Location {
         Location { path: path.to_owned(), line: None }
     }
 
-    /// Returns the place of line `line` (from 1) of the file.
+    /// Returns the location of a line, counted from 1.
     pub fn line(path: &Path, line: u32) -> Location {
         Location { path: path.to_owned(), line: Some(line) }
     }
@@ -29,12 +31,12 @@ impl Location {
         SceneError::Value { place: self.clone(), what: what.into(), remedy: remedy.into() }
     }
 
-    /// Returns the error of a name used here that is not defined.
+    /// Returns the error of a name that is used here and not defined.
     pub fn undefined(&self, kind: &'static str, name: &str) -> SceneError {
         SceneError::Reference { place: self.clone(), kind, name: name.to_owned() }
     }
 
-    /// Returns the error of a camera asked for that is not in the scene.
+    /// Returns the error of a requested camera that the scene lacks.
     pub(crate) fn no_camera(&self, name: &str, remedy: impl Into<String>) -> SceneError {
         SceneError::Camera { place: self.clone(), name: name.to_owned(), remedy: remedy.into() }
     }
@@ -57,16 +59,16 @@ impl fmt::Display for Location {
 /// Severity of a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The expected picture is the one described, to within filtering or tessellation.
+    /// The expected image is the one described, apart from filtering or tessellation.
     Note,
-    /// The picture will differ from the one described; an error under `strict`.
+    /// The image differs from the one described. This is an error under `strict`.
     Warning,
 }
 
 /// A feature requested by a scene file that is not modelled, and its replacement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// Place of the request.
+    /// Location of the request.
     pub place: Location,
     /// Severity.
     pub severity: Severity,
@@ -90,18 +92,18 @@ pub enum SceneError {
     Read {
         /// The file.
         path: PathBuf,
-        /// Place that refers to it.
+        /// Location of the reference to the file.
         from: Location,
-        /// Error of the operating system; no `source`, since the message holds it.
+        /// Error of the operating system; no `source`, because the message contains it.
         error: std::io::Error,
     },
-    /// A file whose extension is that of no supported format.
+    /// A file whose extension belongs to no supported format.
     #[error("{}: unknown kind of scene; name a .toml (native), .xml (Mitsuba), .glb or .gltf file", .0.display())]
     UnknownFormat(PathBuf),
     /// Text that is not well-formed XML or TOML.
     #[error("{place}: {message}; correct the file's syntax")]
     Syntax {
-        /// Place of the error.
+        /// Location of the error.
         place: Location,
         /// Message of the parser.
         message: String,
@@ -109,7 +111,7 @@ pub enum SceneError {
     /// A value that is missing, of the wrong type or out of range.
     #[error("{place}: {what}; {remedy}")]
     Value {
-        /// Place of the value.
+        /// Location of the value.
         place: Location,
         /// Description of the error.
         what: String,
@@ -119,47 +121,47 @@ pub enum SceneError {
     /// A reference to a name that is not defined in the scene.
     #[error("{place}: there is no {kind} called \"{name}\"; define it or correct the name")]
     Reference {
-        /// Place of the reference.
+        /// Location of the reference.
         place: Location,
         /// Kind of object referred to.
         kind: &'static str,
         /// The name.
         name: String,
     },
-    /// A camera that was asked for, and is not in the scene.
+    /// A requested camera that the scene lacks.
     #[error("{place}: there is no camera \"{name}\"; {remedy}")]
     Camera {
         /// The scene.
         place: Location,
         /// Number or name of the camera.
         name: String,
-        /// Remedy, with the cameras that there are.
+        /// Remedy, with a list of the scene's cameras.
         remedy: String,
     },
     /// A mesh file with wrong contents.
     #[error("{place}: {what}; repair or re-export the mesh")]
     Mesh {
-        /// Place of the error.
+        /// Location of the error.
         place: Location,
         /// Description of the error.
         what: String,
     },
-    /// A picture that cannot be decoded.
+    /// An image that cannot be decoded.
     #[error("{place}: cannot decode {}: {what}; convert it to PNG, JPEG, BMP, TGA, Radiance HDR or OpenEXR", .path.display())]
     Image {
-        /// Place that refers to it.
+        /// Location of the reference to the file.
         place: Location,
-        /// The picture.
+        /// The image file.
         path: PathBuf,
         /// Message of the decoder.
         what: String,
     },
-    /// Errors of several parts of a scene, the first of them in the order of the description.
+    /// Errors of several parts of a scene, in the order of the description.
     #[error("{}{}", lines(.first), more(.left_out))]
     Several {
-        /// The first [`MAX_ERRORS`].
+        /// The first errors, at most [`MAX_ERRORS`].
         first: Vec<SceneError>,
-        /// Number of those after them.
+        /// Number of errors after these.
         left_out: usize,
     },
     /// A warning, under `strict`.
@@ -167,10 +169,10 @@ pub enum SceneError {
     Strict(Warning),
 }
 
-/// Maximum number of errors that are told at once.
+/// Maximum number of errors in one message.
 const MAX_ERRORS: usize = 10;
 
-/// The place that asks for a file, where that is another file.
+/// Returns the location that refers to a file, if it is in another file.
 fn asker(from: &Location, path: &Path) -> String {
     if *from == Location::file(path) { String::new() } else { format!("{from}: ") }
 }
@@ -184,7 +186,7 @@ fn more(left_out: &usize) -> String {
 }
 
 impl SceneError {
-    /// Returns the error that stands for all of `errors`, each once.
+    /// Returns one error for all of `errors`, without repetitions.
     pub fn all(errors: Vec<SceneError>) -> SceneError {
         let mut said = BTreeSet::new();
         let mut first: Vec<SceneError> =
@@ -200,7 +202,9 @@ impl SceneError {
     }
 }
 
-/// Collects warnings, or turns them into errors under `strict`, and the errors of independent parts of a description.
+/// Log of warnings, and of the errors of independent parts of a description.
+///
+/// Under `strict`, warnings are errors.
 #[derive(Debug, Default)]
 pub(crate) struct Log {
     strict: bool,
@@ -214,7 +218,7 @@ impl Log {
         Log { strict, ..Log::default() }
     }
 
-    /// Returns the value of a part of the description, or keeps its error while others are read.
+    /// Returns the value of a part of the description, or stores its error and returns `None`.
     pub fn part<T>(&mut self, outcome: Result<T, SceneError>) -> Option<T> {
         outcome.map_err(|error| self.errors.push(error)).ok()
     }
@@ -228,7 +232,10 @@ impl Log {
         }
     }
 
-    /// Adds a warning about a change of the picture.
+    /// Adds a warning about a change of the image.
+    ///
+    /// # Errors
+    /// Under `strict`.
     pub fn warn(
         &mut self,
         place: &Location,
@@ -248,7 +255,7 @@ impl Log {
         Ok(())
     }
 
-    /// Adds a note that does not concern the expected picture.
+    /// Adds a note about a feature that does not change the expected image.
     pub fn note(&mut self, place: &Location, what: impl Into<String>, fallback: impl Into<String>) {
         self.push(Warning {
             place: place.clone(),
@@ -258,14 +265,14 @@ impl Log {
         });
     }
 
-    /// The same message for the same place is added once.
+    /// Adds a warning, unless the log already contains it.
     fn push(&mut self, warning: Warning) {
         if !self.warnings.contains(&warning) {
             self.warnings.push(warning);
         }
     }
 
-    /// Returns the warnings, in the order in which they came.
+    /// Returns the warnings in the order in which they were added.
     pub fn into_warnings(self) -> Vec<Warning> {
         self.warnings
     }

@@ -1,9 +1,10 @@
-//! Scene readers: native TOML, Mitsuba XML and glTF, one model.
+//! Readers of scene files: native TOML, Mitsuba XML and glTF.
 //!
-//! A reader turns its text into a `Plan`, which opens meshes and pictures in parallel; the result is
-//! sanitised and recentred. Features that the model lacks are replaced, with a [`Warning`] for each
-//! replacement; under [`LoadOptions::strict`] they are errors. Whatever the bytes, reading ends
-//! in a scene or a [`SceneError`].
+//! Stages: each reader parses its text into a `ScenePlan`. `realise` opens the meshes and images of the plan in
+//! parallel and returns a `Draft`. `finish` repairs and recentres the draft and returns the [`Scene`].
+//!
+//! Features that the model lacks are replaced, with a [`Warning`] each; under [`LoadOptions::strict`] they are errors.
+//! Reading any bytes ends in a scene or a [`SceneError`].
 
 #![forbid(unsafe_code)]
 
@@ -50,11 +51,15 @@ pub struct Loaded {
     pub warnings: Vec<Warning>,
     /// Report of repairs.
     pub repairs: SanitizeReport,
-    /// Hash over the bytes of all source files, in order (64-bit FNV-1a).
+    /// Hash over the bytes of all source files in order, and over the options (64-bit FNV-1a).
     pub hash: u64,
 }
 
 /// Reads the scene at `path`: `.toml` is native, `.xml` Mitsuba's, `.glb` and `.gltf` glTF.
+///
+/// # Errors
+/// If a file cannot be read or decoded, or the scene is invalid. Under [`LoadOptions::strict`] also if a feature is not
+/// modelled.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let mut log = Log::new(options.strict);

@@ -9,14 +9,14 @@ use std::path::Path;
 pub struct LoadOptions {
     /// True if warnings of [`Severity::Warning`] are errors.
     pub strict: bool,
-    /// Camera of the scene by its number, counted from 1, or its name, in place of the first.
+    /// Number, counted from 1, or name of the camera to use. `None` stands for the first.
     pub camera: Option<String>,
-    /// Names and values of a Mitsuba scene's `$parameters`, in place of its defaults.
+    /// Names and values of a Mitsuba scene's `$parameters`. They replace the defaults of the scene.
     pub parameters: Vec<(String, String)>,
 }
 
 impl LoadOptions {
-    /// Rejects the choice of a camera but the first, for formats with one, and parameters.
+    /// Rejects parameters, and any camera but the first, for formats with one camera.
     pub(crate) fn no_choice(&self, path: &Path) -> Result<(), SceneError> {
         self.no_parameters(path)?;
         let Some(camera) = self.camera.as_deref().filter(|camera| *camera != "1") else { return Ok(()) };
@@ -25,14 +25,14 @@ impl LoadOptions {
         Err(Location::file(path).no_camera(camera, remedy))
     }
 
-    /// Rejects parameters, for formats without.
+    /// Rejects parameters, for formats without parameters.
     pub(crate) fn no_parameters(&self, path: &Path) -> Result<(), SceneError> {
         let Some((name, _)) = self.parameters.first() else { return Ok(()) };
         let remedy = "leave --define out; it gives values to parameters that a Mitsuba scene (.xml) declares";
         Err(Location::file(path).wrong(format!("there is no parameter \"{name}\""), remedy))
     }
 
-    /// Hash of a scene whose files have the hash `files`, with these options.
+    /// Returns the hash of a scene with these options; `files` is the hash of its files.
     pub(crate) fn hash(&self, files: u64) -> u64 {
         if self.camera.is_none() && self.parameters.is_empty() {
             return files;

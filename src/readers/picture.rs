@@ -1,7 +1,6 @@
-//! Pictures from files to linear colour: PNG, JPEG, BMP, TGA through `image`, Radiance HDR and OpenEXR.
+//! Decoding of image files to linear colour: PNG, JPEG, BMP and TGA with the crate `image`, Radiance HDR, and OpenEXR.
 //!
-//! 8- and 16-bit pictures are sRGB unless read raw; floating-point ones are linear. Alpha is dropped, as in
-//! Mitsuba.
+//! Images of 8 or 16 bits are sRGB unless read raw. Floating-point images are linear. Alpha is dropped, as in Mitsuba.
 
 use super::budget::lacking;
 use super::error::{Location, SceneError};
@@ -11,23 +10,24 @@ use scene::Texels;
 use std::io::Cursor;
 use std::path::Path;
 
-/// Maximum number of pixels: 16k by 16k.
+/// Maximum number of pixels: 16384 by 16384.
 const MAX_PIXELS: usize = 1 << 28;
-/// Maximum number of pixels of a small file, and of pixels a byte of larger ones, which only a file of one colour has.
+/// Number of pixels up to which a file may be of any length. Larger images may have this many pixels per byte, which
+/// only a file of one colour reaches.
 const MAX_SMALL: usize = 1 << 24;
 const MAX_PIXELS_PER_BYTE: usize = 1 << 13;
-/// Maximum number of bytes of a decoded pixel: four channels of 32 bits.
+/// Maximum bytes per decoded pixel: four channels of 32 bits.
 const MAX_PIXEL_BYTES: u64 = 16;
 
-/// Memory of a pixel while its picture is decoded and put into squares, about: in 8 bits a channel, and in more, beside
-/// the channels of OpenEXR.
+/// Estimated bytes per pixel while an image is decoded and stored, for images of 8 bits per channel, and for deeper
+/// ones.
 const SHORT_PIXEL_BYTES: u64 = 12;
 const LONG_PIXEL_BYTES: u64 = 36;
 
-/// Remedy for a picture that there is no memory for.
+/// Remedy for an image that does not fit into memory.
 pub(super) const SMALLER: &str = "make it smaller, or give more memory";
 
-/// A decoded picture, top row first.
+/// A decoded image, top row first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DecodedImage {
     pub width: usize,
@@ -35,24 +35,25 @@ pub struct DecodedImage {
     pub texels: Texels,
 }
 
-/// Part of a picture that is asked for.
+/// Channels of an image to decode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Channel {
     /// Linear colour.
     Colour,
-    /// Integer values of all channels as they are, not decoded from sRGB.
+    /// All channels, without decoding from sRGB.
     Data,
-    /// One such channel alone in 8 bits, as a grey: 0 to 3 for red, green, blue and alpha, 1 where there is none.
+    /// One channel, without decoding from sRGB, as a grey of 8 bits. 0 to 3 stand for red, green, blue and alpha; a
+    /// missing channel is 1.
     One(usize),
-    /// 1 where alpha is at least so much, else 0.
+    /// 1 if alpha is at least the value, else 0.
     AlphaFrom(f32),
 }
 
-/// Reason why there is no picture.
+/// Reason for rejecting an image.
 enum Refusal {
-    /// Bytes that are no picture.
+    /// The bytes are no image.
     Undecodable(String),
-    /// A picture that there is no memory for.
+    /// The image does not fit into memory.
     TooLarge(String),
 }
 
@@ -62,7 +63,7 @@ impl<E: std::fmt::Display> From<E> for Refusal {
     }
 }
 
-/// Decodes a part of `bytes`; `path` tells the format of files without a signature.
+/// Decodes channels of an image; `path` tells the format of files without a signature.
 pub fn decode(
     bytes: &[u8],
     channel: Channel,
@@ -93,7 +94,7 @@ fn decode_exr(bytes: &[u8]) -> Result<DecodedImage, Refusal> {
         let of_channels = 4 * header.channels.list.len() as u64;
         check_size(width, height, of_channels + LONG_PIXEL_BYTES, bytes)?;
     }
-    // Mitsuba names luminance images Y; `rgb_channels` would refuse those.
+    // Mitsuba names luminance images Y, and `rgb_channels` rejects them.
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -124,8 +125,9 @@ fn decode_exr(bytes: &[u8]) -> Result<DecodedImage, Refusal> {
     Ok(DecodedImage { width, height, texels: Texels::new(width, &texels) })
 }
 
-/// Rejects sizes that no picture has, or none of so few bytes, or for which there is no memory, before anything is
-/// allocated for them.
+/// Rejects sizes that no image has, that the file is too short for, or that do not fit into memory.
+///
+/// This happens before anything of that size is allocated.
 fn check_size(width: usize, height: usize, pixel_bytes: u64, bytes: &[u8]) -> Result<(), Refusal> {
     let most = bytes.len().saturating_mul(MAX_PIXELS_PER_BYTE).clamp(MAX_SMALL, MAX_PIXELS);
     let Some(pixels) = width.checked_mul(height).filter(|pixels| *pixels <= most) else {
@@ -141,7 +143,7 @@ fn check_size(width: usize, height: usize, pixel_bytes: u64, bytes: &[u8]) -> Re
 }
 
 fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<DecodedImage, Refusal> {
-    // The other signature of Radiance HDR, which Mitsuba writes and the decoder does not know.
+    // Mitsuba writes the other signature of Radiance HDR, which the decoder rejects.
     let signed = bytes.strip_prefix(b"#?RGBE").map(|rest| [b"#?RADIANCE", rest].concat());
     let bytes = signed.as_deref().unwrap_or(bytes);
     let mut reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;

@@ -1,7 +1,6 @@
-//! A parsed scene description, before any mesh or picture is opened; [`ScenePlan::realise`] opens them all.
+//! A parsed scene description, before any mesh or image file is opened.
 //!
-//! Both readers end in a [`ScenePlan`]. Files are read in parallel, each once; results are in the order of the
-//! description, and so are errors.
+//! All readers return a [`ScenePlan`]; [`ScenePlan::realise`] opens the files.
 
 use crate::budget::TriangleBudget;
 use crate::draft::Shot;
@@ -17,11 +16,11 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The whole content of a scene description.
+/// Content of a scene description.
 #[derive(Clone, Debug)]
 pub struct ScenePlan {
     pub name: String,
-    /// The description's own files, main file first, with the hash of their bytes.
+    /// The description's own files, main file first, and the hash of the bytes of each.
     pub sources: Vec<(PathBuf, u64)>,
     pub shot: Shot,
     pub max_depth: Option<u32>,
@@ -29,12 +28,12 @@ pub struct ScenePlan {
     pub contents: Contents,
 }
 
-/// All but the cameras of a description, in the making.
+/// Content of a description without the cameras.
 #[derive(Clone, Debug, Default)]
 pub struct Contents {
     pub meshes: Vec<MeshPlan>,
     pub materials: Vec<Material>,
-    /// Place in the files where each material is described.
+    /// Location of each material's description.
     pub material_places: Vec<Location>,
     pub textures: Vec<TexturePlan>,
     pub lights: Vec<(DeltaLight, DVec3)>,
@@ -44,12 +43,15 @@ pub struct Contents {
 }
 
 impl Contents {
-    /// Adds a mesh; an error if there is no memory for it.
+    /// Adds a mesh.
+    ///
+    /// # Errors
+    /// If the mesh does not fit into memory.
     pub fn add_mesh(&mut self, plan: MeshPlan) -> Result<(), SceneError> {
         let triangles = match &plan.geometry {
             MeshSource::Ready(raw) => raw.triangles.len(),
             MeshSource::Shared(raw) => raw.triangles.len(),
-            // Counted when they are read.
+            // These are counted when the file is read.
             MeshSource::Obj(..) | MeshSource::Ply(_) | MeshSource::Serialized(..) => 0,
         };
         self.budget.take(triangles, &plan.place)?;
@@ -57,14 +59,14 @@ impl Contents {
         Ok(())
     }
 
-    /// Adds a material that is described at `place`.
+    /// Adds a material described at `place`.
     pub fn add_material(&mut self, material: Material, place: Location) -> MaterialId {
         self.materials.push(material);
         self.material_places.push(place);
         MaterialId(self.materials.len() as u32 - 1)
     }
 
-    /// Adds a texture; the same one asked for twice is read and stored once.
+    /// Adds a texture. Equal textures are read and stored once.
     pub fn add_texture(&mut self, plan: TexturePlan) -> TextureId {
         let same = |t: &TexturePlan| {
             t.image == plan.image && t.filter == plan.filter && t.wrap == plan.wrap && t.to_uv == plan.to_uv
@@ -77,7 +79,7 @@ impl Contents {
     }
 }
 
-/// A mesh to be read or tessellated.
+/// Plan of a mesh to read or tessellate.
 #[derive(Clone, Debug)]
 pub(crate) struct MeshPlan {
     pub place: Location,
@@ -91,32 +93,32 @@ pub(crate) struct MeshPlan {
 /// Source of a mesh.
 #[derive(Clone, Debug)]
 pub enum MeshSource {
-    /// File, and the objects and groups of it that are asked for.
+    /// File, and the objects and groups to read.
     Obj(PathBuf, PartSelection),
     Ply(PathBuf),
-    /// File and index of the mesh in it.
+    /// File, and index of the mesh in it.
     Serialized(PathBuf, usize),
     Ready(RawMesh),
-    /// One that other plans place as well.
+    /// Mesh that other plans place, too.
     Shared(Arc<RawMesh>),
 }
 
-/// Light and look of surfaces.
+/// Material and emission of a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Appearance {
     pub material: MaterialId,
     pub emission: Option<Emission>,
 }
 
-/// Choice of a mesh's materials.
+/// Materials of a mesh.
 #[derive(Clone, Debug)]
 pub(crate) enum MaterialPlan {
     One(MaterialId),
-    /// Materials by the file's own names, and the one for unknown names.
+    /// Materials by name of the file's groups, and the material of unknown names.
     ByName(BTreeMap<String, Appearance>, MaterialId),
 }
 
-/// A texture to be read.
+/// Plan of a texture to read.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TexturePlan {
     pub place: Location,
@@ -134,7 +136,7 @@ pub enum TextureSource {
         raw: bool,
     },
     Ready(String, DecodedImage),
-    /// A channel of a picture, or its colour.
+    /// Channels of an encoded image.
     Part {
         name: String,
         source: ImageSource,
@@ -142,14 +144,14 @@ pub enum TextureSource {
     },
 }
 
-/// Encoded picture.
+/// Source of an encoded image.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ImageSource {
     File(PathBuf),
     Bytes(Arc<[u8]>),
 }
 
-/// An environment to be read.
+/// Plan of an environment to read.
 #[derive(Clone, Debug)]
 pub(crate) enum EnvironmentPlan {
     Constant(Rgb),

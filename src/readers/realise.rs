@@ -1,4 +1,4 @@
-//! Opens the files of a plan, in parallel.
+//! Opening of all files of a plan, in parallel.
 //!
 //! Each file is read once. Results are in the order of the description, and so are errors.
 
@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 /// Bytes per texel that are copied while an environment is built.
 const COPY_BYTES: u64 = 12;
 
-/// A task on a file's bytes.
+/// Use of a file's bytes.
 enum Task<'a> {
     Mesh(usize, &'a MeshPlan),
     Texture(usize, &'a TexturePlan, Channel),
@@ -44,13 +44,13 @@ struct Results {
     hashes: Vec<u64>,
     /// Meshes of each mesh plan.
     meshes: Vec<Vec<DraftMesh>>,
-    /// Picture of each texture plan.
+    /// Image of each texture plan.
     pictures: Vec<Option<DecodedImage>>,
     environment: Option<DecodedImage>,
 }
 
 impl ScenePlan {
-    /// Opens every file; returns the scene and the hash over the bytes of all its files.
+    /// Opens every file; returns the draft, and the hash over the bytes of all files.
     pub fn realise(self, log: &mut Log) -> Result<(Draft, u64), SceneError> {
         let Results { sources, hashes, mut meshes, mut pictures, environment } = self.read_files()?;
         let contents = self.contents;
@@ -121,7 +121,7 @@ impl Results {
 }
 
 impl EnvironmentPlan {
-    /// Returns the environment; `picture` is the decoded file of a map.
+    /// Returns the environment; `picture` is the decoded image of a map.
     fn realise(self, picture: Option<DecodedImage>) -> Result<Option<Environment>, SceneError> {
         Ok(match (self, picture) {
             (EnvironmentPlan::Constant(radiance), _) => Some(Environment::Constant(radiance)),
@@ -140,7 +140,7 @@ impl EnvironmentPlan {
 }
 
 impl Contents {
-    /// Returns the tasks of each file, files by first mention.
+    /// Returns the tasks of each file; files are in the order of their first mention.
     fn tasks(&self) -> Vec<(&Path, Vec<Task<'_>>)> {
         let mut files: Vec<(&Path, Vec<Task>)> = Vec::new();
         let mut by_path: BTreeMap<&Path, usize> = BTreeMap::new();
@@ -194,7 +194,7 @@ impl Contents {
         Ok(())
     }
 
-    /// Decodes the pictures that descriptions hold themselves.
+    /// Decodes the images that are part of a description.
     fn decode_embedded(&self, pictures: &mut [Option<DecodedImage>]) -> Result<(), SceneError> {
         let decode = |(plan, picture): (&TexturePlan, &mut Option<DecodedImage>)| {
             if let TextureSource::Part { source: ImageSource::Bytes(bytes), channel, name } = &plan.image {
@@ -280,8 +280,9 @@ fn texture(plan: TexturePlan, decoded: Option<DecodedImage>) -> Option<Texture> 
     Some(Texture { name, width, height, texels, filter: plan.filter, wrap: plan.wrap, to_uv: plan.to_uv })
 }
 
-/// Makes the map with `scale` applied; `None` if it has no light then, negative or infinite. As in Mitsuba, fewer than
-/// 3 rows are padded by repeating the last.
+/// Returns the map times `scale`; `None` if its values become negative or infinite.
+///
+/// As in Mitsuba, the last row is repeated until there are 3 rows.
 fn environment_map(picture: DecodedImage, scale: f32, to_world: &DMat4) -> Option<EnvironmentMap> {
     let DecodedImage { width, height, texels } = picture;
     if !(scale >= 0.0 && texels.all(|texel| !texel.is_finite() || (texel * scale).is_finite())) {
@@ -292,7 +293,7 @@ fn environment_map(picture: DecodedImage, scale: f32, to_world: &DMat4) -> Optio
     for _ in height..3 {
         radiance.extend_from_slice(&last);
     }
-    // A rotation (or reflection), so that the transpose is the inverse; readers have checked that.
+    // Readers have checked that the matrix is a rotation or reflection, so the transpose is the inverse.
     let to_local = DMat3::from_mat4(*to_world).transpose().as_mat3();
     Some(EnvironmentMap { width, height: height.max(3), radiance, to_local })
 }

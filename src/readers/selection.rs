@@ -1,9 +1,10 @@
-//! Choice of a part of a mesh file.
+//! Selection of a part of a mesh file.
 
-/// Part of a file that is asked for: nodes, objects or groups by name, with all below them, but none of `except`.
+/// Selection of nodes, objects or groups by name, with everything below them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PartSelection {
-    /// Names, or none for everything.
+    /// Names to read; empty for everything.
     pub only: Vec<String>,
+    /// Names to leave out.
     pub except: Vec<String>,
 }

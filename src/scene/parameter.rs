@@ -7,9 +7,9 @@ use std::ops::Mul;
 /// Colour or number that may vary over the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Parameter<T> {
-    /// The same everywhere.
+    /// A constant value.
     Constant(T),
-    /// The texture's value times `scale`; a number takes the luminance of each texel.
+    /// The texture's value times `scale`. A number uses the luminance of each texel.
     Textured {
         /// Index of the texture.
         texture: TextureId,
@@ -18,7 +18,7 @@ pub enum Parameter<T> {
     },
 }
 
-/// Share of the light that is scattered, per channel.
+/// Fraction of the light that is scattered, per channel.
 pub type Reflectance = Parameter<Rgb>;
 
 /// Microfacet roughness α.
@@ -28,7 +28,7 @@ pub type Roughness = Parameter<f32>;
 pub type Share = Parameter<f32>;
 
 impl<T: Copy + Mul<Output = T>> Parameter<T> {
-    /// Returns the parameter where each texture has the value `texel` of it.
+    /// Returns the value of the parameter; `texel` returns the value of a texture.
     #[inline]
     pub fn value(&self, texel: impl FnOnce(TextureId) -> T) -> T {
         match *self {
@@ -37,7 +37,7 @@ impl<T: Copy + Mul<Output = T>> Parameter<T> {
         }
     }
 
-    /// True if it varies over the surface.
+    /// True if the parameter is textured.
     pub fn is_textured(&self) -> bool {
         matches!(self, Parameter::Textured { .. })
     }
@@ -60,7 +60,7 @@ impl Reflectance {
         }
     }
 
-    /// No reflection anywhere.
+    /// Reflectance 0.
     pub const BLACK: Reflectance = Reflectance::Constant(Rgb::ZERO);
 }
 

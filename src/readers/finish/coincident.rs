@@ -1,6 +1,7 @@
-//! Emitting triangles that lie on others, corner by corner: a lamp described twice.
+//! Removal of emitting triangles that coincide with others.
 //!
-//! Rays meet one of them, so that as a surface a lamp shines once; as a source of samples it would count twice.
+//! A ray hits one of two coincident triangles, so as a surface the emitter shines once. As a source of samples it would
+//! count twice.
 
 use crate::Location;
 use crate::draft::{Draft, DraftMesh};
@@ -9,7 +10,7 @@ use base::math::Rgb;
 use glam::DVec3;
 use std::collections::HashSet;
 
-/// Drops emitting triangles with the corners, and the front, of an emitting one before.
+/// Drops emitting triangles with the corners and the front side of an earlier emitting triangle, with a warning.
 pub fn drop_coincident_emitters(
     draft: &mut Draft,
     place: &Location,
@@ -38,9 +39,9 @@ pub fn drop_coincident_emitters(
     Ok(())
 }
 
-/// Bits of the corners, turned so that the least comes first; the front is the same.
+/// Returns the bits of the corners, rotated so that the smallest corner comes first. The front side is unchanged.
 fn turned_to_least(corners: [DVec3; 3]) -> [[u64; 3]; 3] {
-    // Adding 0 makes one zero of both.
+    // Adding 0 turns -0 into 0.
     let [a, b, c] = corners.map(|p| (p + DVec3::ZERO).to_array().map(f64::to_bits));
     [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c])
 }

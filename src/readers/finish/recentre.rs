@@ -1,38 +1,37 @@
-//! From world coordinates in f64 to coordinates about the scene's centre in f32.
+//! Conversion of world coordinates in f64 to local coordinates in f32, relative to the scene's centre.
 //!
-//! A scene a millimetre across, a million units from the origin, loses no bit that f32 can hold: the
-//! subtraction happens in f64, before any rounding. The centre is the middle of the box around everything, or the
-//! camera where something lies very far beyond what is around it: triangles far away do not cost the precision of the
-//! others.
+//! The centre is subtracted in f64, before any rounding. So a scene of a millimetre, a million units from the origin,
+//! keeps the full precision of f32. The centre is the middle of the bounding box. If something lies very far beyond the
+//! camera's surroundings, the centre is the camera: far triangles do not cost the precision of near ones.
 //!
-//! Scenes that are very small or very large are given another unit of length, a power of two, so that no product of
-//! lengths leaves the range of f32.
+//! Very small and very large scenes get another unit of length, a power of two. So no product of lengths leaves the
+//! range of f32.
 
 use crate::draft::{Draft, DraftCamera, DraftMesh};
 use base::math::Rgb;
 use glam::{DVec3, Vec3};
 use scene::{Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Relief, Scene};
 
-/// Number of corners, about, by which that distance is found.
+/// Approximate number of corners that are sampled to compute the vicinity.
 const CORNERS: usize = 1 << 16;
 
-/// Sizes of scenes that keep their unit, as exponents of two.
+/// Sizes of scenes that keep their unit, as binary logarithms.
 const ORDINARY: std::ops::Range<i32> = -10..24;
 
-/// Coordinates that a scene is rendered in.
+/// Local coordinates of a scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LocalCoordinates {
     /// World position of the local origin.
     pub centre: DVec3,
-    /// The local unit of length is two to this power in the world's.
+    /// Binary logarithm of the local unit of length in world units.
     pub exponent: i32,
-    /// Local distance from the camera within which it has a tenth of all corners, where everything reaches more than
-    /// [`MAX_RATIO`] times as far; else 0.
+    /// Local distance from the camera that contains a tenth of all corners, if the scene is more than [`MAX_RATIO`]
+    /// times larger; else 0.
     pub vicinity: f32,
 }
 
 impl LocalCoordinates {
-    /// Coordinates for a draft.
+    /// Returns the coordinates for a draft.
     pub fn of(draft: &Draft) -> LocalCoordinates {
         let lights = || draft.lights.iter().map(|light| light.1);
         let camera = draft.shot.camera.origin;
@@ -44,7 +43,7 @@ impl LocalCoordinates {
             };
         };
         let (middle, diagonal) = (0.5 * low + 0.5 * high, (high - low).length());
-        // A camera that is to see everything has no place yet.
+        // A camera with `fits` has no position yet.
         let vicinity = if draft.shot.fits { diagonal } else { vicinity(draft, camera) };
         let (centre, vicinity) = match vicinity > 0.0 && diagonal > MAX_RATIO * vicinity {
             true => (camera, vicinity),
@@ -62,22 +61,22 @@ impl LocalCoordinates {
         LocalCoordinates { vicinity: (vicinity * coordinates.scale()) as f32, ..coordinates }
     }
 
-    /// Local length of a world's unit.
+    /// Returns the local length of a world unit.
     pub fn scale(&self) -> f64 {
         f64::from(-self.exponent).exp2()
     }
 
-    /// The local position of a point.
+    /// Returns the local position of a point.
     pub fn local(&self, world: DVec3) -> Vec3 {
         ((world - self.centre) * self.scale()).as_vec3()
     }
 
-    /// The local intensity of a light: intensities fall with the square of lengths.
+    /// Returns the local intensity of a light. Intensities scale with the square of lengths.
     pub fn local_intensity(&self, intensity: Rgb) -> Rgb {
         (intensity.as_dvec3() * (self.scale() * self.scale())).as_vec3()
     }
 
-    /// A camera in local coordinates.
+    /// Returns a camera in local coordinates.
     pub fn local_camera(&self, c: &DraftCamera) -> Camera {
         let scale = self.scale();
         let length = |length: f32| (f64::from(length) * scale) as f32;
@@ -103,7 +102,7 @@ impl LocalCoordinates {
     }
 }
 
-/// Corners of all triangles.
+/// Returns the corners of all triangles.
 fn corners(draft: &Draft) -> impl Iterator<Item = DVec3> {
     draft.meshes.iter().flat_map(|mesh| {
         let used = mesh.triangles.iter().flatten();
@@ -117,7 +116,7 @@ fn bounds(points: impl Iterator<Item = DVec3>) -> Option<(DVec3, DVec3)> {
     low.cmple(high).all().then_some((low, high))
 }
 
-/// Distance from `camera` within which it has a tenth of the corners.
+/// Returns the distance from `camera` that contains a tenth of the corners.
 fn vicinity(draft: &Draft, camera: DVec3) -> f64 {
     let count: usize = draft.meshes.iter().map(|mesh| 3 * mesh.triangles.len()).sum();
     let mut distances: Vec<f64> =
@@ -126,7 +125,7 @@ fn vicinity(draft: &Draft, camera: DVec3) -> f64 {
     *distances.select_nth_unstable_by(tenth, f64::total_cmp).1
 }
 
-/// Returns the scene in other coordinates, and its cameras.
+/// Returns the scene in local coordinates, and its cameras.
 pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, Cameras) {
     let scale = coordinates.scale();
     let local = |p: DVec3| coordinates.local(p);
@@ -158,7 +157,7 @@ pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, 
     (scene, cameras)
 }
 
-/// Heights of reliefs in the local unit.
+/// Converts heights of reliefs to the local unit.
 fn scale_heights(material: &mut Material, by: f64) {
     if let Some(Relief::Heights { scale, .. }) = &mut material.relief {
         *scale = (f64::from(*scale) * by).clamp(f32::MIN.into(), f32::MAX.into()) as f32;
@@ -168,7 +167,7 @@ fn scale_heights(material: &mut Material, by: f64) {
     }
 }
 
-/// The light at a position in the world, in local coordinates.
+/// Returns a light at a world position, in local coordinates.
 fn place_light(light: DeltaLight, world: DVec3, coordinates: &LocalCoordinates) -> DeltaLight {
     let position = coordinates.local(world);
     match light {
@@ -188,7 +187,7 @@ mod tests {
     use crate::{LoadOptions, Loaded, load};
     use scene::DeltaLight;
 
-    /// Returns the same small room with everything moved by `offset` and scaled by `scale`.
+    /// Returns a small room, moved by `offset` and scaled by `scale`.
     fn room(scale: f64, offset: f64) -> Loaded {
         let at = |x: f64, y: f64, z: f64| {
             format!("[{:e}, {:e}, {:e}]", x * scale + offset, y * scale + offset, z * scale + offset)
@@ -218,7 +217,7 @@ mod tests {
         for (a, b) in here.scene.meshes.iter().zip(&there.scene.meshes) {
             let worst =
                 a.positions.iter().zip(&b.positions).map(|(a, b)| (a - b).length()).fold(0.0, f32::max);
-            // f64 at 1e6 is good to 1e-10, f32 near 4 to 2.4e-7.
+            // f64 is precise to 1e-10 at 1e6, f32 to 2.4e-7 near 4.
             assert!(worst <= 5e-7, "{worst}");
         }
         assert!((here.cameras.still.origin - there.cameras.still.origin).length() < 5e-7);

@@ -7,7 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use gltf_json::{Index, Root, buffer, root::Get};
 use std::path::{Path, PathBuf};
 
-/// Extensions that are read, wholly or as far as the report says.
+/// Extensions that are read, at least in part.
 const KNOWN: [&str; 12] = [
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
@@ -26,11 +26,11 @@ const KNOWN: [&str; 12] = [
 /// A file with its buffers.
 pub(super) struct GltfFile {
     pub root: Root,
-    /// The file, for messages.
+    /// Location of the file, for messages.
     pub place: Location,
-    /// Folder that file names are relative to.
+    /// Folder to which file names are relative.
     pub folder: PathBuf,
-    /// Files read, with the hash of their bytes.
+    /// Files read, with the hash of the bytes of each.
     pub sources: Vec<(PathBuf, u64)>,
     buffers: Vec<Vec<u8>>,
 }
@@ -64,7 +64,7 @@ impl GltfFile {
         Ok(document)
     }
 
-    /// The object of an index.
+    /// Returns the object of an index.
     pub fn get<T>(&self, index: Index<T>, what: &str) -> Result<&T, SceneError>
     where
         Root: Get<T>,
@@ -73,7 +73,7 @@ impl GltfFile {
         self.root.get(index).ok_or_else(missing)
     }
 
-    /// The bytes of a view of a buffer.
+    /// Returns the bytes of a view of a buffer.
     pub fn view(&self, index: Index<buffer::View>) -> Result<&[u8], SceneError> {
         let view = self.get(index, "buffer view")?;
         let buffer = self.buffers.get(view.buffer.value()).map_or(&[][..], Vec::as_slice);
@@ -83,7 +83,7 @@ impl GltfFile {
         bytes.ok_or_else(|| self.wrong(format!("buffer view {} reaches beyond its buffer", index.value())))
     }
 
-    /// The bytes behind a URI: its own, or those of a file beside this one, whose name is returned then.
+    /// Returns the bytes in a data URI, or the path of the file that a URI names.
     pub fn resolve(&self, uri: &str) -> Result<Resolved, SceneError> {
         let Some(data) = uri.strip_prefix("data:") else {
             return Ok(Resolved::File(self.folder.join(percent_decoded(uri))));
@@ -93,7 +93,7 @@ impl GltfFile {
         Ok(Resolved::Bytes(bytes.ok_or_else(|| self.wrong("a data URI is not in base64".into()))?))
     }
 
-    /// The error of damaged contents.
+    /// Returns the error of damaged content.
     pub fn wrong(&self, what: String) -> SceneError {
         SceneError::mesh(self.place.clone(), what)
     }
@@ -121,7 +121,7 @@ impl GltfFile {
     }
 }
 
-/// Bytes behind a URI.
+/// Content of a URI.
 pub(super) enum Resolved {
     Bytes(Vec<u8>),
     File(PathBuf),
@@ -163,7 +163,7 @@ fn check_extensions(root: &Root, place: &Location) -> Result<(), SceneError> {
     Err(place.wrong(format!("the file requires the extension {name}, which is not supported"), remedy))
 }
 
-/// Names of extensions in use that are not read at all.
+/// Returns the names of used extensions that are not read at all.
 pub(super) fn unread_extensions(root: &Root) -> impl Iterator<Item = &String> {
     root.extensions_used.iter().filter(|name| !KNOWN.contains(&name.as_str()))
 }

@@ -1,4 +1,4 @@
-//! Nodes of a model to meshes and lights of a plan.
+//! Conversion of a model's nodes to meshes and lights of a plan.
 
 use super::camera::FRAMES_PER_SECOND;
 use super::document::GltfFile;
@@ -17,20 +17,21 @@ use scene::{Emission, MaterialId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Ways in which a model becomes a part of a scene.
+/// Options for importing a model.
 #[derive(Clone, Debug)]
 pub(crate) struct ImportOptions {
     pub to_world: DMat4,
     pub selection: PartSelection,
     pub flip_normals: bool,
-    /// Material and emission in place of the model's.
+    /// Material that replaces the materials of the model.
     pub material: Option<MaterialId>,
+    /// Emission that replaces the emission of the model.
     pub emission: Option<Emission>,
-    /// Units of its lights for one of the renderer's, if not those of its exporter.
+    /// Units of the model's lights per unit of the renderer; `None` for the units of the exporter.
     pub lumens_per_watt: Option<f32>,
-    /// Frames a second of its camera's animation.
+    /// Frames per second of the camera's animation.
     pub fps: f64,
-    /// Name, or number from 1, of its camera.
+    /// Name of the camera, or number from 1.
     pub camera: Option<String>,
 }
 
@@ -49,24 +50,24 @@ impl Default for ImportOptions {
     }
 }
 
-/// MaterialUses of a material.
+/// Material of a primitive.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MaterialUse {
     pub look: Appearance,
-    /// Set of texture coordinates of its textures.
+    /// Index of the set of texture coordinates.
     pub uv_set: u32,
 }
 
-/// A model on its way into a scene.
+/// Import of a model into a plan.
 pub(super) struct Importer<'a> {
     pub document: &'a GltfFile,
     pub options: &'a ImportOptions,
     pub contents: &'a mut Contents,
     pub report: Findings,
-    /// Surfaces by number of the material.
+    /// Materials read so far, by index.
     pub surfaces: BTreeMap<Option<usize>, MaterialUse>,
     pub pictures: BTreeMap<usize, ImageSource>,
-    /// Primitives that are read, by number of the mesh.
+    /// Primitives read so far, by index of the mesh.
     pub meshes: BTreeMap<usize, Vec<(Arc<RawMesh>, Appearance)>>,
 }
 
@@ -125,7 +126,7 @@ impl Importer<'_> {
         })
     }
 
-    /// The primitives of a mesh, each read once.
+    /// Returns the primitives of a mesh; each mesh is read once.
     fn primitives(&mut self, index: Index<Mesh>) -> Result<Vec<(Arc<RawMesh>, Appearance)>, SceneError> {
         if let Some(primitives) = self.meshes.get(&index.value()) {
             return Ok(primitives.clone());

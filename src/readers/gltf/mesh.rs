@@ -1,4 +1,4 @@
-//! Primitives to triangle meshes.
+//! Conversion of primitives to triangle meshes.
 
 use super::document::GltfFile;
 use super::report::Findings;
@@ -8,7 +8,9 @@ use glam::{DVec3, Vec2, Vec3};
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
 
-/// Reads a primitive with the texture coordinates of set `uv_set`; none if it has no triangles. `what` names it.
+/// Reads a primitive with the texture coordinates of set `uv_set`; `what` names it in messages.
+///
+/// Returns `None` for points and lines.
 pub(super) fn read(
     document: &GltfFile,
     primitive: &Primitive,

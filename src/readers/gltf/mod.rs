@@ -1,15 +1,13 @@
 //! glTF 2.0, as text or binary: meshes by instance, metallic-roughness materials, punctual lights, and cameras with
 //! their animation.
 //!
-//! The data model is that of the crate `gltf-json`, the lower half of `gltf`. The upper half panics where an accessor
-//! has another type than it should, or a primitive an accessor that does not exist, and follows cycles of nodes; so
-//! objects are looked up, and accessors read, by the checks here.
+//! The data model is that of the crate `gltf-json`, the lower half of `gltf`. The upper half panics on wrong accessor
+//! types and missing accessors, and follows cycles of nodes. So the checks here look up objects and read accessors.
 //!
-//! Deviations: surfaces have two sides even where the file asks for culling, which is an economy of rasterisers.
-//! Instances of a mesh are copies. Whatever else a model asks for and does not get is named, with the objects that ask
-//! for it.
+//! Deviations: surfaces have two sides even if the file asks for culling. Instances of a mesh are copies. A warning
+//! names every unsupported feature and the objects that ask for it.
 //!
-//! Units: as `light` says.
+//! Units: see `light`.
 
 mod accessor;
 mod animation;
@@ -41,10 +39,10 @@ use std::path::{Path, PathBuf};
 pub(crate) use camera::FRAMES_PER_SECOND;
 pub(crate) use importer::ImportOptions;
 
-/// Everything of a model besides what went into the contents of a scene.
+/// Content of a model that is not part of the plan's contents.
 pub(crate) struct Imported {
     pub shot: Option<Shot>,
-    /// Files read, with the hash of their bytes.
+    /// Files read, with the hash of the bytes of each.
     pub sources: Vec<(PathBuf, u64)>,
 }
 

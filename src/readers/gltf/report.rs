@@ -1,11 +1,11 @@
-//! Parts of a model that are not consumed, each named once with the objects that ask for it.
+//! Report of unsupported features, each listed once with the objects that ask for it.
 
 use crate::error::{Location, Log, SceneError};
 
-/// Number of objects that are named.
+/// Maximum number of objects that a message names.
 const NAMED: usize = 3;
 
-/// A finding in the making.
+/// An unsupported feature.
 struct Finding {
     what: String,
     fallback: &'static str,
@@ -13,19 +13,19 @@ struct Finding {
     names: Vec<String>,
 }
 
-/// Collects findings.
+/// Findings about a model.
 #[derive(Default)]
 pub(super) struct Findings {
     findings: Vec<Finding>,
 }
 
 impl Findings {
-    /// Adds that the object `name` asks for `what`, which changes the picture.
+    /// Adds a feature of the object `name` whose lack changes the image.
     pub fn lacks(&mut self, what: &str, fallback: &'static str, name: &str) {
         self.add(what, fallback, true, name);
     }
 
-    /// Adds a finding that leaves the picture as expected.
+    /// Adds a feature whose lack does not change the expected image.
     pub fn note(&mut self, what: &str, fallback: &'static str, name: &str) {
         self.add(what, fallback, false, name);
     }

@@ -1,4 +1,4 @@
-//! Textures: pictures, samplers and transforms of texture coordinates.
+//! Textures: images, samplers and transforms of texture coordinates.
 
 use super::document::Resolved;
 use super::importer::Importer;
@@ -13,11 +13,11 @@ use gltf_json::validation::Checked;
 use gltf_json::{Index, image};
 use scene::{Filter, TextureId, Wrap};
 
-/// A material's use of a texture.
+/// Reference of a material to a texture.
 #[derive(Clone, Debug)]
 pub(super) struct TextureUse {
     texture: Index<Texture>,
-    /// Set of texture coordinates.
+    /// Index of the set of texture coordinates.
     pub set: u32,
     transform: Option<TextureTransform>,
 }
@@ -39,7 +39,8 @@ impl TextureUse {
         TextureUse { texture, set, transform }
     }
 
-    /// Transform of texture coordinates that count v upwards, as all do here but glTF's own.
+    /// Returns the transform of texture coordinates in the convention of the renderer, v upwards. glTF counts v
+    /// downwards.
     fn to_uv(&self) -> Mat3 {
         let Some(transform) = &self.transform else { return Mat3::IDENTITY };
         let (sin, cos) = transform.rotation.0.sin_cos();
@@ -51,7 +52,7 @@ impl TextureUse {
 }
 
 impl Importer<'_> {
-    /// The texture of a slot of the material `name`; none if its picture is of a kind that cannot be read.
+    /// Returns the texture of the material `name`; `None` if its image format is not supported.
     pub(super) fn texture(
         &mut self,
         slot: &TextureUse,

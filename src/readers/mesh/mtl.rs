@@ -1,7 +1,6 @@
-//! Wavefront MTL: the classic materials an OBJ refers to, as the file states them.
+//! Parser of Wavefront MTL, the classic materials of an OBJ file. The module `native::mtl` converts them.
 //!
-//! Reason not to use `tobj`: a colour of one or two numbers makes its MTL reader panic (4.0.5), and its
-//! errors name no line.
+//! Reason against `tobj` 4.0.5: a colour of one or two numbers makes its MTL reader panic, and its errors name no line.
 
 use super::obj;
 use crate::error::{Location, SceneError};
@@ -30,9 +29,9 @@ pub(crate) struct ClassicMaterial {
     pub model: u32,
     /// map_Kd, without its options.
     pub diffuse_map: Option<String>,
-    /// map_Ke, likewise.
+    /// map_Ke, without its options.
     pub emissive_map: Option<String>,
-    /// map_d, likewise.
+    /// map_d, without its options.
     pub opacity_map: Option<String>,
     /// Keywords of other maps.
     pub other_maps: Vec<String>,
@@ -92,7 +91,7 @@ fn statement(material: &mut ClassicMaterial, word: &[u8], rest: &[u8], text: Str
     Ok(())
 }
 
-/// The file of a map: options come first, the name last; without options it may hold spaces.
+/// Returns the file name of a map. Options come before the name; without options the name may contain spaces.
 fn file_name(text: String) -> String {
     let last = text.split_whitespace().last().unwrap_or_default().to_owned();
     if text.starts_with('-') { last } else { text }
@@ -107,7 +106,7 @@ fn finite<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
     }
 }
 
-/// Parses three numbers, or one for a grey.
+/// Parses three numbers, or one number as a grey.
 fn colour(rest: &[u8]) -> Result<Rgb, String> {
     let three = finite::<3>(rest).map(|c| DVec3::from(c).as_vec3());
     three.or_else(|e| match rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty()).count() {

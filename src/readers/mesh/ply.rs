@@ -1,9 +1,12 @@
-//! PLY meshes, ASCII and binary of either byte order: vertices with optional normals and texture coordinates, faces of
-//! any size, cut by `polygon`. Other elements and properties are ignored.
+//! Reader of PLY meshes, ASCII and binary of either byte order.
 //!
-//! Reasons not to use `ply-rs-bw` (4.0.1, tried): a byte that is not UTF-8, as in comments by old exporters, ends the
-//! reading; so does a blank line, or an element over several lines, among ASCII values; every face is a list of its own
-//! in memory; and its messages take three lines.
+//! Vertices have optional normals and texture coordinates. Faces have any number of corners; `polygon` triangulates
+//! them. Other elements and properties are ignored.
+//!
+//! Reasons against `ply-rs-bw` 4.0.1:
+//! - Reading ends at bytes that are not UTF-8, at blank lines, and at ASCII elements over several lines.
+//! - Each face is a list of its own in memory.
+//! - Messages have three lines.
 
 use super::{RawMesh, polygon};
 use crate::error::{Location, SceneError};
@@ -32,7 +35,7 @@ enum Format {
     BigEndian,
 }
 
-/// Reads a binary number of some type.
+/// Reader of a binary number of some type.
 type Scalar = fn(&mut Binary) -> Result<f64, String>;
 
 #[derive(Debug)]
@@ -115,7 +118,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), (u32, String)> {
     }
 }
 
-/// The reader of a type by its name.
+/// Returns the reader of a type by its name.
 fn scalar(name: &str) -> Option<Scalar> {
     Some(match name {
         "char" | "int8" => |binary| Ok(f64::from(i8::from_le_bytes(binary.take()?))),
@@ -130,14 +133,14 @@ fn scalar(name: &str) -> Option<Scalar> {
     })
 }
 
-/// The values after the header, one after the other.
+/// Sequence of the values after the header.
 trait PlyValues {
     fn next(&mut self, scalar: Scalar) -> Result<f64, String>;
     fn line(&self) -> Option<u32> {
         None
     }
 
-    /// Bytes that are left.
+    /// Returns the number of bytes not read yet.
     fn left(&self) -> usize;
 }
 
@@ -196,7 +199,7 @@ impl PlyValues for Binary<'_> {
     }
 }
 
-/// Elements for which memory is taken at once: as many as the header claims, if the bytes that are left can hold them.
+/// Returns the number of elements to allocate: the header's count, limited by what the remaining bytes can hold.
 fn expected(element: &Element, values: &dyn PlyValues) -> usize {
     let most = values.left() / element.properties.len().max(1);
     usize::try_from(element.count).map_or(most, |count| count.min(most))
@@ -226,7 +229,7 @@ fn contents(header: &Header, values: &mut dyn PlyValues) -> Result<RawMesh, Stri
     Ok(mesh)
 }
 
-/// Reads one property of one element, passing on each of its values.
+/// Reads one property of one element, and passes on each of its values.
 fn property_values(
     property: &PlyProperty,
     values: &mut dyn PlyValues,
@@ -292,7 +295,7 @@ fn faces(element: &Element, values: &mut dyn PlyValues, mesh: &mut RawMesh) -> R
             if corners.len() < 3 {
                 return Err(format!("a face needs three corners, this one has {}", corners.len()));
             }
-            // Corners out of range, which are told once all is read, lie anywhere.
+            // Corners out of range are reported after reading; their position here does not matter.
             let positions = &mesh.positions;
             let position = |&corner: &u32| positions.get(corner as usize).copied().unwrap_or_default();
             polygon::cut(&corners, position, &mut mesh.triangles);

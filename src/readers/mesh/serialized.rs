@@ -1,4 +1,4 @@
-//! Mitsuba's `.serialized` meshes, file versions 3 and 4: deflated blocks and a table of their offsets.
+//! Reader of Mitsuba's `.serialized` meshes, file versions 3 and 4: deflated blocks and a table of their offsets.
 
 use super::RawMesh;
 use crate::error::{Location, SceneError};
@@ -84,8 +84,9 @@ fn array<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at.checked_add(N)?)?.try_into().ok()
 }
 
-/// A deflated block. A count alone never causes an allocation: deflate cannot expand by more than about 1032,
-/// so that a count beyond that is wrong.
+/// A deflated block.
+///
+/// Deflate expands by at most 1032. A count beyond that is rejected before anything is allocated.
 struct Stream<'a> {
     inner: ZlibDecoder<&'a [u8]>,
     limit: usize,

@@ -1,4 +1,4 @@
-//! Typed access to an object's properties; a property that is asked for counts as supported.
+//! Typed access to the properties of an object. Any property that is asked for counts as supported.
 
 use super::tree::{Object, ObjectProperty};
 use super::value::PropertyValue;
@@ -8,7 +8,7 @@ use glam::{DMat4, DVec3};
 impl Object {
     /// Returns the property and marks it as used.
     pub fn property(&self, name: &str) -> Option<&ObjectProperty> {
-        // If a file gives a parameter twice, the last one counts.
+        // The last value counts if a file gives a parameter twice.
         let found = self.properties.iter().rev().find(|p| p.name == name);
         found.inspect(|p| p.used.set(true))
     }
@@ -74,12 +74,12 @@ impl Object {
         }
     }
 
-    /// Marks parameters as supported, though nothing here depends on them.
+    /// Marks parameters as supported that have no effect here.
     pub fn ignore(&self, names: &[&str]) {
         names.iter().for_each(|name| _ = self.property(name));
     }
 
-    /// Warns of every property and child that was never asked for.
+    /// Warns of every property and child that no converter has asked for.
     pub fn report_unused(&self, log: &mut Log) -> Result<(), SceneError> {
         let of = || format!("of {} \"{}\" is not modelled", self.tag, self.plugin);
         for property in self.properties.iter().filter(|p| !p.used.replace(true)) {

@@ -1,4 +1,4 @@
-//! Kinds of BSDF that hold no other.
+//! Conversion of BSDFs that nest no other.
 
 use super::converter::Converter;
 use super::tree::Object;
@@ -28,7 +28,7 @@ impl Converter<'_> {
     pub(super) fn conductor(&mut self, bsdf: &Object, name: String) -> Result<Material, SceneError> {
         let scale = self.reflectance(bsdf, "specular_reflectance", 1.0)?;
         let preset = bsdf.string("material")?;
-        // 0.6: the index of what is outside, to which those of the metal are relative.
+        // In Mitsuba 0.6 the metal's index is relative to the exterior index.
         let outside = match bsdf.has("ext_eta") {
             true => self.ior(bsdf, "ext_eta", "vacuum")?,
             false => 1.0,
@@ -39,7 +39,7 @@ impl Converter<'_> {
                 let given = self.colour(bsdf, name)?.unwrap_or(*constant);
                 *constant = given.max(Rgb::ZERO);
                 if given != *constant {
-                    // Colours of measured spectra outside Rec. 709.
+                    // Colours of measured spectra may lie outside Rec. 709.
                     let what = format!("the conductor's {name} is {given}");
                     self.log.warn(&bsdf.place, what, "it is clamped to 0")?;
                 }
@@ -83,9 +83,11 @@ impl Converter<'_> {
         Ok(glass(name, Lobe::Dielectric { eta, thin, reflectance, transmittance }))
     }
 
-    /// Phong and Ward: a Lambert base and a microfacet lobe of the same reflectance. For Phong's it is GGX with the α,
-    /// within 4 %, that is nearest in the mean square over inclinations up to 57°, for exponents from 5 to 1000; Ward's
-    /// is Beckmann's but for its factors of the cosines.
+    /// Returns a Phong or Ward material: a Lambert base and a microfacet lobe of the same reflectance.
+    ///
+    /// For Phong, GGX with α² = 1 / (exponent + 2) replaces the lobe. This α is within 4 % of the least-squares fit
+    /// over inclinations up to 57°, for exponents from 5 to 1000. For Ward, Beckmann of the same α replaces the lobe;
+    /// they differ in factors of the cosines.
     pub(super) fn classic_glossy(&mut self, bsdf: &Object, name: String) -> Result<Material, SceneError> {
         let diffuse = self.reflectance(bsdf, "diffuse_reflectance", 0.5)?;
         let scale = self.reflectance(bsdf, "specular_reflectance", 0.2)?;
@@ -157,7 +159,7 @@ impl Converter<'_> {
         })
     }
 
-    /// Distribution of microfacets, and their roughness along u and v, which is one where it is textured.
+    /// Returns the distribution of microfacets, and their roughness along u and v. Both are equal if textured.
     pub(super) fn facets(&mut self, bsdf: &Object) -> Result<(Distribution, [Roughness; 2]), SceneError> {
         let distribution = match bsdf.string("distribution")?.map(|d| d.to_lowercase()).as_deref() {
             None | Some("beckmann") => Distribution::Beckmann,
@@ -196,7 +198,7 @@ impl Converter<'_> {
         }
     }
 
-    /// A share of light or surface: a number, a colour of that luminance, or a texture.
+    /// Returns a share of light or surface: a number, the luminance of a colour, or a texture.
     pub(super) fn share(&mut self, bsdf: &Object, name: &str, default: f32) -> Result<Share, SceneError> {
         if let Some(colour) = self.colour(bsdf, name)? {
             return Ok(Share::Constant(luminance(colour)));
@@ -216,7 +218,7 @@ impl Converter<'_> {
         })
     }
 
-    /// Interior over exterior.
+    /// Returns the interior over the exterior index of refraction.
     pub(super) fn relative_ior(&mut self, bsdf: &Object, interior: &str) -> Result<f32, SceneError> {
         let (inside, outside) = (self.ior(bsdf, "int_ior", interior)?, self.ior(bsdf, "ext_ior", "air")?);
         Ok((inside / outside) as f32)

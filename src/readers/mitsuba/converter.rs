@@ -9,24 +9,24 @@ use scene::MaterialId;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-/// A plan under construction; the modules beside this one add what an object describes.
+/// A plan under construction. The other modules add what an object describes.
 pub(super) struct Converter<'a> {
     pub document: &'a SceneXml,
-    /// Folder that file names are relative to.
+    /// Folder to which file names are relative.
     pub folder: PathBuf,
     pub log: &'a mut Log,
     pub contents: Contents,
-    /// Source of each material: the bsdf object and its wrapping.
+    /// Material of each BSDF object.
     pub material_of: Vec<(*const Object, MaterialId)>,
     pub default_materials: [Option<MaterialId>; 2],
-    /// Files read on the way (spectra), with their hashes.
+    /// Spectrum files read, with their hashes.
     pub sources: Vec<(PathBuf, u64)>,
-    /// Number of meshes placed as instances, and place of the first instance.
+    /// Number of meshes that instances place, and location of the first instance.
     pub instances: (usize, Option<Location>),
 }
 
 impl Converter<'_> {
-    /// Adds all objects of the scene; errors are left in the log.
+    /// Adds all objects of the scene. Errors go to the log.
     pub fn scene(&mut self) {
         let document = self.document;
         for child in &document.root.children {
@@ -40,23 +40,23 @@ impl Converter<'_> {
         match object.tag.as_str() {
             "shape" => self.shape(&object, DMat4::IDENTITY),
             "emitter" => self.scene_emitter(&object),
-            // Sensors and integrators are read by `shot`, the others where they are referred to.
+            // `shot` reads sensors and integrators. The others are read where an object refers to them.
             "sensor" | "integrator" | "bsdf" | "texture" | "scene" => Ok(()),
             tag => self.log.warn(&object.place, format!("<{tag}> is not modelled"), "it is ignored"),
         }
     }
 
-    /// Finds a file named by `object`: beside the main file, or beside the file that names it.
+    /// Returns the path of a file named by `object`.
     pub fn file(&self, object: &Object, name: &str) -> Result<PathBuf, SceneError> {
         let missing = || {
             let what = format!("{} \"{}\" names no file", object.tag, object.plugin);
             object.place.wrong(what, format!("add <string name=\"{name}\" value=\"...\"/>"))
         };
-        // Descriptions written on Windows name files with backslashes.
+        // Descriptions written on Windows separate folders by backslashes.
         Ok(self.beside(&object.string(name)?.ok_or_else(missing)?, &object.place))
     }
 
-    /// Path of the file called `name` at `place`.
+    /// Returns the path of the file `name`: beside the main file, or beside the file at `place` if only that exists.
     pub fn beside(&self, name: &str, place: &Location) -> PathBuf {
         let file = name.replace('\\', "/");
         let beside_main = self.folder.join(&file);

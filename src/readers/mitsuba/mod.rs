@@ -1,14 +1,12 @@
-//! Mitsuba XML: the parts of the 3.x format that the renderer models, and the 0.6 spellings of the same.
+//! Reader of Mitsuba XML: the parts of format 3.x that the renderer models, and their spelling in 0.6.
 //!
-//! `tree` reads the XML, the other modules turn sensors, shapes, bsdfs, textures and emitters into a
-//! [`ScenePlan`]. Defaults and conventions are those of Mitsuba 3.9.1 in its `rgb` variants.
+//! `tree` parses the XML. The other modules convert sensors, shapes, BSDFs, textures and emitters to a [`ScenePlan`].
+//! Defaults and conventions are those of Mitsuba 3.9.1 in its `rgb` variants.
 //!
-//! Instances are copies of their group's meshes, placed: a scene of one level of geometry is what occluder caches,
-//! emitters and records of objects are made for, and interiors repeat a chair ten times, not a tree ten thousand
-//! times. A copy takes about 100 bytes of memory a triangle; a note says that there are copies.
+//! Instances are placed copies of their group's meshes, since occluder caches, emitters and records need one level of
+//! geometry. A copy takes about 100 bytes per triangle. A note reports the number of copies.
 //!
-//! Deviations: features without a counterpart in the scene model are replaced, and every replacement is
-//! reported.
+//! Deviations: features without a counterpart in the scene model are replaced, with a warning each.
 
 mod access;
 mod bsdf;
@@ -54,7 +52,7 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
     let (shot, max_depth, hides_emitters) = log.conclude(shot)?;
     let stem = stem_of(path);
     let folder_name = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
-    // Scene files are usually called scene.xml; then the folder's name is used.
+    // Scene files are often called scene.xml. The folder then gives the name.
     let name = if stem == "scene" { folder_name.unwrap_or(stem) } else { stem };
     let sources = document.sources.iter().cloned().chain(read).collect();
     Ok(ScenePlan { name, sources, shot, max_depth, hides_emitters, contents })

@@ -1,4 +1,4 @@
-//! Shapes: meshes from files and analytic shapes.
+//! Conversion of shapes: meshes from files, and analytic shapes.
 
 use super::converter::Converter;
 use super::tree::Object;
@@ -11,10 +11,10 @@ use glam::{DMat4, DVec3};
 use scene::{Material, MaterialId};
 
 impl Converter<'_> {
-    /// Adds a shape that `outer` places: a mesh, or those of a group.
+    /// Adds a shape with the outer transform `outer`: a mesh, or the meshes of a group.
     pub(super) fn shape(&mut self, shape: &Object, outer: DMat4) -> Result<(), SceneError> {
         match shape.plugin.as_str() {
-            // A group shows itself by its instances.
+            // A group is visible through its instances only.
             "shapegroup" => Ok(()),
             "instance" => self.instance(shape, outer),
             "merge" => self.members(shape, outer),
@@ -67,7 +67,7 @@ impl Converter<'_> {
     fn geometry(&mut self, shape: &Object) -> Result<Option<(MeshSource, bool)>, SceneError> {
         let mut v_down = true;
         let geometry = match shape.plugin.as_str() {
-            // The file's v, flipped by default for OBJ, counts downwards; ours counts upwards.
+            // OBJ files of Mitsuba flip v by default, so it counts downwards. The renderer counts upwards.
             "obj" => {
                 v_down = !shape.boolean("flip_tex_coords", true)?;
                 MeshSource::Obj(self.file(shape, "filename")?, PartSelection::default())

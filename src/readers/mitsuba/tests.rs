@@ -14,10 +14,10 @@ const SENSOR: &str = "<sensor type=\"perspective\"><float name=\"fov\" value=\"9
     <film type=\"hdrfilm\"><integer name=\"width\" value=\"8\"/><integer name=\"height\" value=\"4\"/>\
     <rfilter type=\"box\"/></film></sensor>\n";
 
-/// Light, so that reading does not warn of its lack.
+/// Light that avoids the warning of a dark scene.
 const SKY: &str = "<emitter type=\"constant\"/>";
 
-/// Loads a scene whose fourth line is the first of `body`, with the given files beside it.
+/// Loads a scene with the given files beside it. Line 4 of the scene is the first of `body`.
 fn load_with(body: &str, files: &[(&str, &str)], strict: bool) -> Result<Loaded, String> {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {

@@ -1,5 +1,7 @@
-//! Mitsuba XML to a tree of objects with typed properties: `<default>`, `<include>`, `<alias>` and
-//! `$parameters` are resolved here, and the camelCase names of Mitsuba 0.6 become those of 3.x.
+//! Parser of Mitsuba XML to a tree of objects with typed properties.
+//!
+//! The parser resolves `<default>`, `<include>`, `<alias>` and `$parameters`. It converts the camelCase names of
+//! Mitsuba 0.6 to those of 3.x.
 
 use super::value::{self, PropertyValue};
 use crate::error::{Location, Log, SceneError};
@@ -9,19 +11,19 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Maximum nesting of elements, and of included files; deeper is an error, and no real scene is.
+/// Maximum nesting of elements and of included files.
 const MAX_DEPTH: usize = 48;
-/// Maximum number of files of a scene; files that include the next one twice would be two to the power of their number.
+/// Maximum number of files of a scene. A chain of n files that each include the next one twice would have 2ⁿ.
 const MAX_FILES: usize = 4096;
-/// Maximum number of bytes that all `$parameters` of a scene become; values made of values would have no end.
+/// Maximum number of bytes that `$parameters` expand to. Values made of values would grow without limit.
 const MAX_SUBSTITUTED: usize = 1 << 24;
 
-/// A plugin instance: `<bsdf type="diffuse" id="a">` and its contents.
+/// An instance of a plugin, such as `<bsdf type="diffuse" id="a">`, and its content.
 #[derive(Debug)]
 pub(super) struct Object {
-    /// `bsdf`, `shape`, `emitter`, ...
+    /// Tag: `bsdf`, `shape`, `emitter`, ...
     pub tag: String,
-    /// The `type` attribute; `scene` for the root.
+    /// Attribute `type`; `scene` for the root.
     pub plugin: String,
     pub id: Option<String>,
     pub place: Location,
@@ -50,10 +52,10 @@ pub(super) struct ObjectProperty {
 #[derive(Debug)]
 pub(super) struct ChildObject {
     pub target: ChildTarget,
-    /// Name of the parameter that it is the value of.
+    /// Name of the parameter whose value the object is.
     pub name: Option<String>,
     pub place: Location,
-    /// Used flag, as [`ObjectProperty::used`].
+    /// True if a converter has asked for it.
     pub used: Cell<bool>,
 }
 
@@ -64,19 +66,19 @@ pub(super) enum ChildTarget {
     Reference(String),
 }
 
-/// A whole description.
+/// A parsed description.
 #[derive(Debug)]
 pub(super) struct SceneXml {
     pub root: Object,
     ids: BTreeMap<String, Rc<Object>>,
-    /// The files read, main file first, with the hash of their bytes.
+    /// Files read, main file first, with the hash of the bytes of each.
     pub sources: Vec<(PathBuf, u64)>,
-    /// True if the main file is Mitsuba 0.x's.
+    /// True if the main file is of Mitsuba 0.x.
     pub is_old: bool,
 }
 
 impl SceneXml {
-    /// Reads a file and those that it includes; errors within objects are left in `log`.
+    /// Reads a file and the files that it includes. Errors within objects go to `log`.
     pub fn read(path: &Path, given: &[(String, String)], log: &mut Log) -> Result<SceneXml, SceneError> {
         let mut builder = XmlReader::new(given, log);
         let mut root = Object::new("scene", "scene", None, Location::file(path));
@@ -123,7 +125,7 @@ impl SceneXml {
 /// The value of a `$name` parameter.
 struct GivenParameter {
     value: String,
-    /// True if the description has a default for it, or uses it.
+    /// True if the description uses it or has a default for it.
     used: Cell<bool>,
 }
 
@@ -132,7 +134,7 @@ struct XmlReader<'a> {
     ids: BTreeMap<String, Rc<Object>>,
     /// Values of `$name` parameters.
     parameters: BTreeMap<String, GivenParameter>,
-    /// Bytes that they have become so far.
+    /// Number of bytes that parameters have expanded to so far.
     substituted: Cell<usize>,
     sources: Vec<(PathBuf, u64)>,
     is_old: bool,
@@ -148,7 +150,7 @@ impl XmlReader<'_> {
         XmlReader { log, ids: BTreeMap::new(), parameters, substituted, sources: Vec::new(), is_old: false }
     }
 
-    /// Reads the file into `parent`: the contents of a scene, or its only object under `name`.
+    /// Reads a file into `parent`: the content of a scene, or a single object under `name`.
     fn file(
         &mut self,
         path: &Path,
@@ -184,7 +186,7 @@ impl XmlReader<'_> {
         Location::line(path, node.document().text_pos_at(node.range().start).row)
     }
 
-    /// Reads the elements inside `node` into `parent`; one with an error is left out.
+    /// Reads the elements inside `node` into `parent`. Elements with an error are left out.
     fn contents(&mut self, path: &Path, node: &roxmltree::Node, parent: &mut Object, depth: usize) {
         for child in node.children().filter(|child| child.is_element()) {
             let read = self.element(path, &child, parent, None, depth + 1);
@@ -233,7 +235,7 @@ impl XmlReader<'_> {
             }
             "ref" => parent.children.push(child(ChildTarget::Reference(need("id")?.to_owned()))),
             "path" => {
-                // A folder to search; file names here are relative to the file that holds them.
+                // The path is a folder to search. It has no effect, since file names are relative to their own file.
                 need("value")?;
             }
             tag if is_object(tag) || (tag == "spectrum" && get("type").is_some()) => {
@@ -259,7 +261,7 @@ impl XmlReader<'_> {
         Ok(())
     }
 
-    /// Returns an object, known by its id from now on.
+    /// Registers the id of an object, and returns the object.
     fn declared(&mut self, object: Object) -> Result<Rc<Object>, SceneError> {
         let object = Rc::new(object);
         if let Some(id) = &object.id
@@ -304,7 +306,7 @@ impl XmlReader<'_> {
                 continue;
             }
             out.push_str(before);
-            // The longest defined name at the start of the text.
+            // The longest defined name that matches counts.
             let known = self.parameters.iter().filter(|(name, _)| from[1..].starts_with(name.as_str()));
             let Some((name, value)) = known.max_by_key(|(name, _)| name.len()) else {
                 let name = from[1..].split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("");
@@ -345,7 +347,7 @@ fn is_object(tag: &str) -> bool {
     TAGS.contains(&tag)
 }
 
-/// Converts `intIOR` to `int_ior`, `toWorld` to `to_world`; names of 3.x stay as they are.
+/// Converts `intIOR` to `int_ior` and `toWorld` to `to_world`. Names of 3.x stay unchanged.
 pub(super) fn snake_case(name: &str) -> String {
     let mut out = String::with_capacity(name.len() + 2);
     let mut previous_lower = false;
@@ -354,7 +356,7 @@ pub(super) fn snake_case(name: &str) -> String {
             out.push('_');
         }
         previous_lower = c.is_ascii_lowercase();
-        // A capital at the start or in a 3.x name ("Cr") cannot occur in a parameter's name.
+        // Parameter names have no capital at the start.
         out.push(c.to_ascii_lowercase());
     }
     out

@@ -18,9 +18,9 @@ pub(super) enum PropertyValue {
     Rgb(DVec3),
     /// A spectrum constant over wavelength.
     Spectrum(f64),
-    /// A sampled spectrum: wavelengths, ascending, and values.
+    /// A sampled spectrum: wavelengths in nm, ascending, and values.
     Samples(Vec<(f64, f64)>),
-    /// Name of a file with such samples.
+    /// Name of a file with a sampled spectrum.
     SamplesFile(String),
     Transform(DMat4),
 }
@@ -123,7 +123,7 @@ pub(super) fn samples_of_file(text: &str) -> Result<Vec<(f64, f64)>, u32> {
     ascending(samples).ok_or(1)
 }
 
-/// Samples in ascending order of wavelength, at least one.
+/// Returns samples if there are any, in ascending order of wavelength.
 fn ascending(samples: Vec<(f64, f64)>) -> Option<Vec<(f64, f64)>> {
     let ascends = samples.windows(2).all(|pair| pair[0].0 < pair[1].0);
     (ascends && !samples.is_empty()).then_some(samples)
@@ -134,7 +134,7 @@ fn number(text: &str) -> Option<f64> {
     text.trim().parse::<f64>().ok().filter(|v| v.is_finite())
 }
 
-/// Parses finite numbers with commas or spaces between.
+/// Parses finite numbers, separated by commas or spaces.
 pub fn numbers(text: &str) -> Option<Vec<f64>> {
     text.split(|c: char| c == ',' || c.is_whitespace()).filter(|s| !s.is_empty()).map(number).collect()
 }
@@ -153,7 +153,7 @@ fn colour(text: &str) -> Option<DVec3> {
     }
 }
 
-/// Parses `x`, `y`, `z`, each `default` where left out, or all in `value`.
+/// Parses `x`, `y` and `z`, each `default` if absent, or all three in `value`.
 fn vector(attributes: &Attributes, default: f64, place: &Location) -> Result<DVec3, SceneError> {
     let unreadable = |text: &str| {
         place.wrong(format!("cannot read the vector \"{text}\""), "write one or three finite numbers")
@@ -172,7 +172,7 @@ fn vector(attributes: &Attributes, default: f64, place: &Location) -> Result<DVe
     Ok(DVec3::new(component("x")?, component("y")?, component("z")?))
 }
 
-/// Composes the operations of a `<transform>`, first one applied first.
+/// Composes the operations of a `<transform>`; the first one is applied first.
 pub(super) fn transform(operations: &[(String, Attributes, Location)]) -> Result<PropertyValue, SceneError> {
     let mut matrix = DMat4::IDENTITY;
     for (tag, attributes, place) in operations {
@@ -203,7 +203,7 @@ fn operation(tag: &str, attributes: &Attributes, place: &Location) -> Result<DMa
                 angle.ok_or_else(|| bad("cannot read the rotation's angle".into(), "write degrees"))?;
             match unit(vector(attributes, 0.0, place)?) {
                 Some(axis) => DMat4::from_axis_angle(axis, angle.to_radians()),
-                // Exporters write rotations by nothing about nothing.
+                // Some exporters write rotations by 0 about no axis.
                 None if angle == 0.0 => DMat4::IDENTITY,
                 None => return Err(bad("the rotation's axis is zero".into(), "give x, y or z")),
             }
@@ -251,7 +251,7 @@ fn matrix(text: &str, place: &Location) -> Result<DMat4, SceneError> {
     }
 }
 
-/// Frame at `origin` with z towards `target` and x = up × z, or `None` where that has no direction.
+/// Returns a frame at `origin` with z towards `target` and x = up × z; `None` without a direction.
 fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DMat4> {
     let forward = unit(target - origin)?;
     let up = if up == DVec3::ZERO { forward.any_orthonormal_vector() } else { up };

@@ -12,20 +12,20 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toml::Spanned;
 
-/// A plan under construction; the modules beside this one add cameras, materials, meshes and lights.
+/// A plan under construction. The other modules add cameras, materials, meshes and lights.
 pub(super) struct SceneBuilder<'a> {
     pub file: SourceText<'a>,
-    /// Folder that file names are relative to.
+    /// Folder to which file names are relative.
     pub folder: PathBuf,
     pub log: &'a mut Log,
     pub parts: Vec<Part>,
     pub part_used: Vec<bool>,
-    /// Files read on the way (MTL), with their hashes.
+    /// Files of imported models and materials, with their hashes.
     pub sources: Vec<(PathBuf, u64)>,
     pub material_ids: BTreeMap<String, MaterialId>,
-    /// All materials as described.
+    /// Descriptions of all materials.
     pub material_texts: &'a [Spanned<MaterialText>],
-    /// Cameras of the first glTF model with one.
+    /// Cameras of the first glTF model that has some.
     pub model_shot: Option<Shot>,
     pub contents: Contents,
 }

@@ -1,4 +1,4 @@
-//! Camera and walk-through of the native format.
+//! Camera and camera path of the native format.
 
 use super::builder::SceneBuilder;
 use super::path::{Key, KeyedPath};
@@ -11,7 +11,7 @@ use glam::DVec3;
 use scene::{MAX_FRAMES, MAX_SIDE, PixelFilter, Projection};
 use toml::Spanned;
 
-/// Field of view of cameras that have none, in degrees.
+/// Default field of view, in degrees.
 const DEFAULT_FOV: f64 = 45.0;
 
 impl SceneBuilder<'_> {
@@ -64,7 +64,7 @@ impl SceneBuilder<'_> {
         Ok(resolution)
     }
 
-    /// One camera a frame.
+    /// Returns one camera per frame.
     fn path(
         &self,
         text: &CameraText,
@@ -100,7 +100,7 @@ impl SceneBuilder<'_> {
         (1..=frames).map(|frame| camera(text, &path.at(frame), resolution, &place)).collect()
     }
 
-    /// Frames of the keys in ascending order, or none if no key has one.
+    /// Returns the frames of the keys in ascending order; empty if no key has a frame.
     fn key_frames(&self, keys: &[Spanned<KeyText>]) -> Result<Vec<usize>, SceneError> {
         let mut frames = Vec::new();
         if keys.iter().all(|key| key.get_ref().frame.is_none()) {
@@ -159,14 +159,14 @@ fn filter(name: &str) -> Option<PixelFilter> {
     }
 }
 
-/// A key; the camera's own up vector and field of view stand where it has none.
+/// Returns a key. The camera's up vector and field of view are its defaults.
 fn key(camera: &CameraText, text: &KeyText, place: &Location) -> Result<Key, SceneError> {
     let up = text.up.or(camera.up).map_or(DVec3::Y, DVec3::from);
     let fov = fov(camera, text.fov, place)?;
     Ok(Key { origin: text.origin.into(), target: text.target.into(), up, fov })
 }
 
-/// The field of view of a key, degrees: its own or the camera's.
+/// Returns the field of view of a key in degrees: its own or the camera's.
 fn fov(camera: &CameraText, own: Option<Number>, place: &Location) -> Result<f64, SceneError> {
     let fov = own.or(camera.fov).map_or(DEFAULT_FOV, f64::from);
     match fov > 0.0 && fov < 180.0 {

@@ -1,5 +1,7 @@
-//! Colours of the native format, alike wherever one is expected: a number for a grey, linear `[r, g, b]`, `"#rrggbb"`
-//! in sRGB, any of these times a factor, or a picture where a surface carries it.
+//! Colours of the native format.
+//!
+//! A colour is a number for a grey, linear `[r, g, b]`, `"#rrggbb"` in sRGB, or one of these times a factor. Surfaces
+//! also accept an image.
 
 use super::builder::SceneBuilder;
 use super::text::{ColourText, Number, TextureText};
@@ -10,7 +12,10 @@ use glam::DVec3;
 use scene::Reflectance;
 
 impl ColourText {
-    /// Returns the colour; `what` names it in errors, among them that of a picture.
+    /// Returns the colour; `what` names it in errors.
+    ///
+    /// # Errors
+    /// If the colour is an image or not finite.
     pub fn rgb(&self, what: &str, place: &Location) -> Result<Rgb, SceneError> {
         let colour = self.constant(place)?;
         let picture =
@@ -20,7 +25,7 @@ impl ColourText {
         colour.is_finite().then_some(colour).ok_or_else(wrong)
     }
 
-    /// Returns the colour, or nothing for a picture.
+    /// Returns the colour; `None` for an image.
     pub fn constant(&self, place: &Location) -> Result<Option<Rgb>, SceneError> {
         Ok(match self {
             ColourText::Grey(grey) => Some(Rgb::splat(grey.0 as f32)),
@@ -38,7 +43,7 @@ impl ColourText {
         })
     }
 
-    /// The picture, if it is one, with the factor on its texels.
+    /// Returns the image with the factor on its texels; `None` for a constant colour.
     fn picture(&self) -> Option<TextureText> {
         match self {
             ColourText::Named(file) => Some(TextureText { file: file.clone(), ..TextureText::default() }),
@@ -53,7 +58,7 @@ impl ColourText {
 }
 
 impl SceneBuilder<'_> {
-    /// Returns the colour of a surface, which may be a picture.
+    /// Returns the colour of a surface: constant or an image.
     pub(super) fn colour(&mut self, text: &ColourText, place: &Location) -> Result<Reflectance, SceneError> {
         match (text.constant(place)?, text.picture()) {
             (None, Some(picture)) => Ok(self.texture(&picture, place)),
@@ -62,7 +67,7 @@ impl SceneBuilder<'_> {
     }
 }
 
-/// Linear colour of six hexadecimal digits in sRGB.
+/// Converts six hexadecimal digits in sRGB to linear colour.
 fn hexadecimal(digits: &str) -> Option<Rgb> {
     if digits.len() != 6 || !digits.bytes().all(|b| b.is_ascii_hexdigit()) {
         return None;

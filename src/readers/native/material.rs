@@ -15,7 +15,7 @@ use scene::{
 };
 use toml::Spanned;
 
-/// Maximum number of materials in which a material stands, one in the other.
+/// Maximum nesting of materials.
 const MAX_DEPTH: u32 = 8;
 
 impl SceneBuilder<'_> {
@@ -31,7 +31,7 @@ impl SceneBuilder<'_> {
         Ok(())
     }
 
-    /// The material of a description that so many others lead to.
+    /// Returns the material of a description that is nested `depth` times.
     fn described(&mut self, text: &Spanned<MaterialText>, depth: u32) -> Result<Material, SceneError> {
         let place = self.file.place(text.span());
         let text = text.get_ref();
@@ -57,7 +57,7 @@ impl SceneBuilder<'_> {
         Ok(Material { name: text.name.clone(), opacity, relief, ..material })
     }
 
-    /// The material called `name`, which one at `place` is made of.
+    /// Returns the material `name`, a part of the material at `place`.
     fn named(&mut self, name: &Option<String>, depth: u32, place: &Location) -> Result<Material, SceneError> {
         if depth > MAX_DEPTH {
             return Err(place.wrong("materials are made of each other", "break the circle"));
@@ -211,7 +211,7 @@ impl SceneBuilder<'_> {
         }
     }
 
-    /// Distribution and roughness of microfacets.
+    /// Returns the distribution and the roughness of microfacets.
     fn facets(
         &mut self,
         text: &MaterialText,

@@ -43,7 +43,7 @@ impl SceneBuilder<'_> {
             to_world: self.transform(&text.transform)?,
             normals: Normals::AsGiven,
             flip_normals: text.flip_normals,
-            // A sphere's v is counted from its north pole.
+            // The v of a sphere counts from its north pole.
             v_down: text.shape.as_deref() == Some("sphere"),
             needs_uv: false,
         };
@@ -51,7 +51,7 @@ impl SceneBuilder<'_> {
         Ok(())
     }
 
-    /// The file of a glTF model, if the mesh is one.
+    /// Returns the file of a glTF model; `None` for other meshes.
     fn model(&self, text: &MeshText) -> Option<PathBuf> {
         let path = self.folder.join(text.file.as_ref()?);
         let extension = path.extension()?.to_string_lossy().to_lowercase();
@@ -158,7 +158,7 @@ impl SceneBuilder<'_> {
         Ok(to_world)
     }
 
-    /// Reads the materials of the OBJ's own MTL files, which are assigned by name.
+    /// Reads the materials of the OBJ's MTL files. They are assigned by name.
     fn mtl_materials(&mut self, path: &Path, place: &Location) -> Result<MaterialPlan, SceneError> {
         let names = self.read_mtl(path, place)?;
         let other = self.default_material(place);
@@ -166,7 +166,7 @@ impl SceneBuilder<'_> {
     }
 }
 
-/// Groups that a mesh asks for.
+/// Returns the groups or nodes that a mesh selects.
 fn selection(text: &MeshText) -> PartSelection {
     let names = |names: &Option<NamesText>| match names {
         None => Vec::new(),

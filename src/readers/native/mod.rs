@@ -1,6 +1,6 @@
 //! The native format: a TOML description over glTF, OBJ, PLY and generated geometry.
 //!
-//! Its keys, their types, units and defaults stand in `docs/scene-format.md`, which the tests hold against the code.
+//! The page `docs/scene-format.md` documents keys, types, units and defaults. Tests compare it with the code.
 
 mod builder;
 mod camera;
@@ -33,7 +33,7 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<ScenePlan, SceneError> 
     for material in &scene.material {
         let read = builder.material(material);
         if builder.log.part(read).is_none() {
-            // Meshes may have it, without an error of theirs.
+            // Meshes that use the material then report no error of their own.
             builder.material_ids.entry(material.get_ref().name.clone()).or_insert(MaterialId(0));
         }
     }

@@ -1,10 +1,11 @@
-//! Materials from an OBJ's MTL files.
+//! Conversion of the classic materials in an OBJ's MTL files.
 //!
-//! Classic materials become a dielectric of roughness α = sqrt(2 / (Ns + 2)) over a Lambert base. Ks is its
-//! reflectance at normal incidence, at most that of dielectrics, .08: greater values, such as exporters write for all
-//! materials, say how bright highlights are, not how much is reflected. Over a black Kd they say it: that is a metal.
-//! Illumination models 3 and 5 are mirrors, 4, 6, 7 and 9 glass. d and map_d are the share of the surface that is
-//! there, Ke is emission. All are two-sided.
+//! A classic material becomes a dielectric of roughness α = sqrt(2 / (Ns + 2)) over a Lambert base. Ks is the
+//! reflectance at normal incidence, limited to 0.08, the maximum of dielectrics. Exporters write greater values for all
+//! materials. If Kd is black, the material is a metal of reflectance Ks.
+//!
+//! Illumination models 3 and 5 are mirrors; 4, 6, 7 and 9 are glass. d and map_d are the opacity, Ke is the emission.
+//! All materials are two-sided.
 
 use super::builder::SceneBuilder;
 use super::text::TextureText;
@@ -18,7 +19,7 @@ use scene::{Coat, Distribution, Emission, Fresnel, Lobe, Material, MaterialId, R
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Largest reflectance of dielectrics at normal incidence.
+/// Maximum reflectance of dielectrics at normal incidence.
 const MAX_DIELECTRIC: f32 = 0.08;
 
 impl SceneBuilder<'_> {
@@ -56,7 +57,7 @@ impl SceneBuilder<'_> {
         Ok(looks)
     }
 
-    /// Returns the material for faces that the file leaves without one.
+    /// Returns the material of faces without one.
     pub(super) fn default_material(&mut self, place: &Location) -> MaterialId {
         let grey = Reflectance::Constant(Rgb::splat(0.5));
         let material =
@@ -148,7 +149,7 @@ impl SceneBuilder<'_> {
         self.texture(&text, &Location::file(file))
     }
 
-    /// The picture that an MTL file names.
+    /// Returns the image that an MTL file names.
     fn mtl_file(&self, name: &str, file: &Path) -> TextureText {
         let beside = folder_of(file).join(name.replace('\\', "/"));
         let relative = beside.strip_prefix(&self.folder).unwrap_or(&beside).to_string_lossy().into_owned();

@@ -1,4 +1,4 @@
-//! The page `docs/scene-format.md`, held against the code: keys, types, kinds and defaults.
+//! Tests of the page `docs/scene-format.md` against the code: keys, types, kinds and defaults.
 
 use super::text::{
     CameraText, EnvironmentText, KeyText, LightText, MaterialText, MeshText, PathText, SceneText, SkyText,
@@ -20,7 +20,7 @@ struct KeyRow {
     default: &'static str,
 }
 
-/// Tables of keys with their headings, those of kinds under `parent: kind`.
+/// Returns the tables of keys with their headings; tables of kinds are named `parent: kind`.
 fn tables() -> Vec<(String, Vec<KeyRow>)> {
     let mut tables: Vec<(String, Vec<KeyRow>)> = Vec::new();
     let (mut parent, mut heading) = ("", String::new());
@@ -46,7 +46,7 @@ fn table(heading: &str) -> Vec<KeyRow> {
     found.unwrap_or_else(|| panic!("the page lacks {heading}")).1
 }
 
-/// Kinds and their tables under a heading.
+/// Returns the kinds under a heading, and their tables.
 fn kinds(heading: &str) -> Vec<(String, Vec<KeyRow>)> {
     let prefix = format!("{heading}: `kind = \"");
     let kind = |(name, rows): (String, Vec<KeyRow>)| {
@@ -59,14 +59,14 @@ fn keys(rows: &[KeyRow]) -> BTreeSet<String> {
     rows.iter().map(|row| row.key.to_owned()).collect()
 }
 
-/// The keys of a table in the code, as its parser lists them.
+/// Returns the keys of a table in the code, as its parser lists them.
 fn known<T: DeserializeOwned>() -> BTreeSet<String> {
     let message = toml::from_str::<T>("zzz = 0").map(|_| ()).unwrap_err().message().to_owned();
     let (_, expected) = message.split_once("expected").unwrap();
     expected.split('`').skip(1).step_by(2).map(str::to_owned).collect()
 }
 
-/// Values that a type of the page takes, and ones that it does not.
+/// Returns values that a type of the page accepts, and values that it rejects.
 fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
     let colours = vec!["0.5", "2", "[0.1, 0.2, 3]", "\"#ff8800\"", "{ colour = \"#ff8800\", scale = 9.0 }"];
     let pictures = vec!["\"a.png\"", "{ file = \"a.png\", tiles = [2, 2] }"];
@@ -88,7 +88,7 @@ fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
     }
 }
 
-/// A value for a key that a scene cannot do without.
+/// Returns a value for a required key.
 fn sample(row: &KeyRow) -> &'static str {
     match row.kind {
         _ if row.key == "target" => "[0, 0, 0]",
@@ -98,7 +98,7 @@ fn sample(row: &KeyRow) -> &'static str {
     }
 }
 
-/// Loads a scene, with a picture, a mesh and the material `m`; returns all that comes of it as text.
+/// Loads a scene with an image, a mesh and the material `m`; returns all its content as text.
 fn outcome(text: &str) -> Result<String, String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/scenes/valid");
     let own = tempfile::tempdir().unwrap();
@@ -111,11 +111,11 @@ fn outcome(text: &str) -> Result<String, String> {
     let sources = loaded.scene.sources.len();
     let scene = scene::Scene { sources: Vec::new(), ..loaded.scene };
     let text = format!("{scene:?} {:?} {sources}", loaded.cameras);
-    // Nobody would read a whole sky.
+    // The texels of a sky are left out.
     Ok(if text.len() > 1 << 20 { format!("{:016x}", fnv1a(text.as_bytes())) } else { text })
 }
 
-/// The scene of a template, `@` replaced by the required keys of the table and `more`.
+/// Returns the scene of a template: `@` is replaced by the required keys of the table and `more`.
 fn with(template: &str, rows: &[KeyRow], more: &str) -> String {
     let is_given = |row: &&KeyRow| row.default == "required" && !template.contains(&format!("{} =", row.key));
     let required = rows.iter().filter(is_given).map(|row| format!("{} = {}", row.key, sample(row)));
@@ -125,7 +125,7 @@ fn with(template: &str, rows: &[KeyRow], more: &str) -> String {
 
 const MATERIAL: &str = "material = [{ name = \"m\", kind = \"diffuse\", reflectance = 0.5 }]\nmesh = [{ shape = \"cube\", material = \"m\" }]\n";
 
-/// Templates of the tables that are not of a kind.
+/// Returns the templates of tables without kinds.
 fn templates() -> Vec<(&'static str, String)> {
     let of = |heading, text: &str| (heading, text.to_owned());
     vec![
@@ -148,12 +148,12 @@ fn templates() -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Templates of every kind under a heading.
+/// Returns the templates of every kind under a heading.
 fn kind_templates(heading: &str, list: &str) -> Vec<(String, String, Vec<KeyRow>)> {
     let template = |(kind, rows): (String, Vec<KeyRow>)| {
         let name = if list == "material" { "name = \"m\", " } else { "" };
         let preset = if kind == "conductor" { "preset = \"Au\", " } else { "" };
-        // The sample of a text is the name of a material, too.
+        // The sample value of a text is also the name of a material.
         let other = match list {
             "material" => "{ name = \"a.png\", kind = \"mirror\" }, ",
             _ => "",
@@ -210,7 +210,7 @@ fn the_page_lists_every_key_and_its_type() {
     }
 }
 
-/// Asserts that kinds of a list take just the keys that the page gives them.
+/// Asserts that each kind of a list accepts exactly the keys that the page gives it.
 fn check_kinds<T: DeserializeOwned>(heading: &str, list: &str) {
     let common = keys(&table(heading));
     let all: Vec<(String, Vec<KeyRow>)> = kinds(heading);

@@ -1,4 +1,6 @@
-//! Sun and sky of the native format: where y is up, north is -z and east x; where z is, north is y.
+//! Sun and sky of the native format.
+//!
+//! If y is up, north is -z and east is x. If z is up, north is y.
 
 use super::builder::SceneBuilder;
 use super::text::SkyText;

@@ -1,5 +1,6 @@
-//! The native format as text: the keys of each table. Any other key is an error, so that a misspelt one
-//! cannot pass unnoticed.
+//! Keys of each table of the native format.
+//!
+//! Any other key is an error, so that misspelt keys are reported.
 
 use glam::DVec3;
 use serde::Deserialize;
@@ -24,7 +25,7 @@ pub(super) struct SceneText {
     pub sky: Option<Spanned<SkyText>>,
 }
 
-/// A number that `f32` holds.
+/// A number in the range of f32.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(try_from = "f64")]
 pub(super) struct Number(pub f64);
@@ -40,7 +41,7 @@ impl TryFrom<f64> for Number {
     }
 }
 
-/// Just so many values: the parser's own arrays would leave out those that follow.
+/// An array of exactly `N` values. The parser's own arrays ignore surplus values.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(try_from = "Vec<T>")]
 #[serde(bound(deserialize = "T: Deserialize<'de>"))]
@@ -54,7 +55,7 @@ impl<T, const N: usize> TryFrom<Vec<T>> for FixedArray<T, N> {
     }
 }
 
-/// A row of numbers.
+/// An array of numbers.
 pub(super) type NumberArray<const N: usize> = FixedArray<Number, N>;
 
 impl From<Number> for f64 {
@@ -109,7 +110,7 @@ pub(super) struct KeyText {
     pub fov: Option<Number>,
 }
 
-/// All keys of all kinds of material; `material` checks which kind allows which.
+/// Keys of all kinds of material; `material` checks which kind allows which.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MaterialText {
@@ -148,7 +149,7 @@ pub(super) struct MaterialText {
     pub base: Option<String>,
 }
 
-/// A colour: the same in every place that takes one.
+/// A colour, in any of its forms.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
@@ -157,7 +158,7 @@ pub(super) struct MaterialText {
 pub(super) enum ColourText {
     Grey(Number),
     Rgb(NumberArray<3>),
-    /// Hexadecimal after `#`, else the name of a picture.
+    /// Hexadecimal digits after `#`, or the name of an image.
     Named(String),
     /// A colour times a factor.
     Scaled {
@@ -167,7 +168,7 @@ pub(super) enum ColourText {
     Texture(TextureText),
 }
 
-/// A number, or the name of a picture with or without how to read it.
+/// A number, or an image with or without options.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
@@ -180,7 +181,7 @@ pub(super) enum NumberText {
     Texture(TextureText),
 }
 
-/// The name of a picture, with or without how to read it.
+/// An image with or without options.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(untagged, expecting = "expected a picture's name or { file = \"...\" }")]
 pub(super) enum MapText {
@@ -203,7 +204,7 @@ pub(super) struct TextureText {
 }
 
 impl TextureText {
-    /// Factor on every texel.
+    /// Returns the factor on every texel.
     pub fn scale(&self) -> f64 {
         self.scale.map_or(1.0, f64::from)
     }
@@ -232,13 +233,13 @@ pub(super) struct MeshText {
     pub shape: Option<String>,
     /// Index of the mesh in a `.serialized` file.
     pub index: Option<usize>,
-    /// Groups of an OBJ file, or nodes of a glTF model, that are asked for.
+    /// Groups of an OBJ file, or nodes of a glTF model, to read.
     pub group: Option<NamesText>,
-    /// Those that are left out.
+    /// Groups or nodes to leave out.
     pub except: Option<NamesText>,
-    /// Units of a glTF model's lights for one here.
+    /// Units of a glTF model's lights per unit of the renderer.
     pub lumens_per_watt: Option<Number>,
-    /// Frames a second of a glTF model's animation.
+    /// Frames per second of a glTF model's animation.
     pub fps: Option<Number>,
     pub material: Option<Spanned<String>>,
     #[serde(default)]
@@ -310,14 +311,14 @@ pub(super) struct SkyText {
     pub up: Option<NumberArray<3>>,
     pub sun_direction: Option<NumberArray<3>>,
     pub date: Option<toml::value::Datetime>,
-    /// Latitude to the north and longitude to the east, degrees.
+    /// Latitude (north) and longitude (east), in degrees.
     pub place: Option<NumberArray<2>>,
     pub turbidity: Option<Number>,
     pub albedo: Option<ColourText>,
     pub scale: Option<Number>,
     pub sun_scale: Option<Number>,
-    /// Diameter of the sun, degrees.
+    /// Diameter of the sun, in degrees.
     pub sun_angle: Option<Number>,
-    /// Degrees from north of the scene to that of the place, counter-clockwise.
+    /// Angle from north of the scene to north of the place, counter-clockwise, in degrees.
     pub rotate_y: Option<Number>,
 }

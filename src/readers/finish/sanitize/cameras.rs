@@ -9,7 +9,9 @@ use scene::{PixelFilter, Projection};
 /// Maximum width of a pixel filter, in pixels.
 const MAX_FILTER: f32 = 1e3;
 
-/// Rejects cameras whose rays `f32` cannot hold.
+/// Rejects cameras with rays that f32 cannot represent.
+///
+/// `place` is the location of the main file.
 pub(super) fn check_camera(
     camera: &DraftCamera,
     coordinates: &LocalCoordinates,

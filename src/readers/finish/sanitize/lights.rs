@@ -1,4 +1,4 @@
-//! Lights without light are dropped; negative ones, and places beyond f32, are errors.
+//! Checks of lights. Black lights are dropped; negative lights and positions beyond f32 are errors.
 
 use super::reach::{IN_REACH, is_within_reach};
 use super::report::SanitizeReport;
@@ -8,7 +8,7 @@ use crate::finish::recentre::LocalCoordinates;
 use base::math::Rgb;
 use scene::{DeltaLight, Environment};
 
-/// Checks all lights, and drops the black ones.
+/// Checks all lights, and drops black ones.
 pub(super) fn check_lights(
     draft: &mut Draft,
     coordinates: &LocalCoordinates,

@@ -1,17 +1,17 @@
-//! Materials: numbers out of range are errors; reflectances and texels that would create energy are clamped.
+//! Checks of materials. Numbers out of range are errors; reflectances and texels that would create energy are clamped.
 
 use super::report::SanitizeReport;
 use crate::error::{Location, Log, SceneError};
 use base::math::Rgb;
 use scene::{Fresnel, Lobe, Material, Principled, Reflectance, Relief, Roughness, Share, Texels, Texture};
 
-/// Tolerance by which a reflectance may exceed 1 through rounding.
+/// Excess of a reflectance over 1 that counts as rounding.
 const ALBEDO_SLACK: f32 = 1e-3;
-/// Minimum roughness, that of Mitsuba.
+/// Minimum roughness α, as in Mitsuba.
 pub(super) const MIN_ALPHA: f32 = 1e-4;
-/// Maximum roughness, at which a surface is all but black.
+/// Maximum roughness α. Such a surface is almost black.
 const MAX_ALPHA: f32 = 4.0;
-/// Maximum η and k of a conductor; those of metals are below 100, and the fourth powers of these are finite.
+/// Maximum η and k of a conductor. Metals are below 100. The fourth powers are finite in f32.
 const MAX_CONDUCTOR: f32 = 1e6;
 
 /// Checks a material and the materials mixed with it; clamps reflectances and texels.
@@ -189,7 +189,7 @@ impl MaterialChecks<'_> {
     }
 }
 
-/// Scales a bare Lambert base and lobes of constant reflectance that exceed 1 together, as Mitsuba does.
+/// Scales a bare Lambert base and lobes of constant reflectance whose sum exceeds 1, as Mitsuba does.
 fn scale_sum(
     material: &mut Material,
     place: &Location,

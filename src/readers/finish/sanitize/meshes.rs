@@ -6,7 +6,7 @@ use crate::draft::DraftMesh;
 use crate::finish::recentre::LocalCoordinates;
 use glam::{DVec3, Vec3};
 
-/// Drops triangles with impossible corners, and those that have no area.
+/// Drops triangles with invalid corners, and triangles without area.
 pub(super) fn drop_unusable(mesh: &mut DraftMesh, report: &mut SanitizeReport) {
     let positions = &mesh.positions;
     mesh.triangles.retain(|t| {
@@ -32,8 +32,7 @@ fn has_area([a, b, c]: [DVec3; 3]) -> bool {
     (b - a).cross(c - a) != DVec3::ZERO
 }
 
-/// Drops triangles that have no area once their corners are rounded to f32, or lie beyond its reach; returns their
-/// number.
+/// Drops triangles that have no area in f32, or lie beyond its reach; returns their number.
 pub(super) fn drop_rounded(
     mesh: &mut DraftMesh,
     coordinates: &LocalCoordinates,
@@ -53,7 +52,7 @@ pub(super) fn drop_rounded(
     before - mesh.triangles.len()
 }
 
-/// Drops vertices that no triangle uses, and attributes that are not present for every vertex.
+/// Drops vertices that no triangle uses, and attributes that some vertices lack.
 pub(super) fn use_all_vertices(mesh: &mut DraftMesh) {
     let count = mesh.positions.len();
     if mesh.normals.len() != count {
@@ -94,7 +93,7 @@ pub(super) fn repair_normals(mesh: &mut DraftMesh, report: &mut SanitizeReport) 
     for (normal, geometric) in mesh.normals.iter_mut().zip(geometric) {
         if bad(normal) {
             report.bad_normals += 1;
-            // Where faces cancel, any unit vector will do.
+            // If faces cancel, any unit vector is valid.
             *normal = if geometric == Vec3::ZERO { Vec3::Z } else { geometric };
         }
     }

@@ -1,8 +1,10 @@
-//! Removal and repair of invalid scene content before anything else uses it, with one report.
+//! Removal and repair of invalid scene content, with one report.
 //!
-//! Triangles that no ray could meaningfully hit are dropped, invalid normals are replaced by the geometric
-//! ones, lights without power are dropped, reflectances that would create energy are clamped. Negative light is an
-//! error: no picture could be computed from it.
+//! - Triangles that no ray can hit are dropped.
+//! - Invalid normals are replaced by geometric ones.
+//! - Lights without power are dropped.
+//! - Reflectances that would create energy are clamped.
+//! - Negative light is an error, because no image could be computed from it.
 
 mod cameras;
 mod lights;
@@ -25,10 +27,9 @@ use std::iter;
 
 pub use report::SanitizeReport;
 
-/// Share of triangles that may vanish by rounding without a warning: those of fine models now and then do.
+/// Fraction of triangles that may vanish by rounding without a warning. Fine models lose some.
 const MANY_LOST: f64 = 0.01;
-/// Cleans the draft, and places a camera that is to see everything; returns the report and the coordinates to render it
-/// in.
+/// Repairs the draft, and moves a camera with `fits`; returns the report and the local coordinates.
 pub(crate) fn sanitize(
     draft: &mut Draft,
     log: &mut Log,

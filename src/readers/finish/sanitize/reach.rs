@@ -12,7 +12,7 @@ pub(super) const HUGE: f64 = 1e18;
 pub(super) const IN_REACH: &str =
     "keep within 1e18 of the origin, and within 1e18 times the scene's size of it";
 
-/// True if a position is within reach of `f32`.
+/// True if f32 can represent a position.
 pub(super) fn is_within_reach(world: DVec3, coordinates: &LocalCoordinates) -> bool {
     world.abs().max_element() <= HUGE && coordinates.local(world).abs().max_element() <= HUGE as f32
 }

@@ -10,11 +10,11 @@ pub struct SanitizeReport {
     pub out_of_range: usize,
     /// Triangles with NaN or infinite corners.
     pub not_finite: usize,
-    /// Triangles with coordinates beyond 1e18, or beyond 1e18 times the size of what is around the camera.
+    /// Triangles with coordinates beyond 1e18, or beyond 1e18 times the size of the camera's surroundings.
     pub huge: usize,
     /// Triangles with two equal indices, or without area in f32.
     pub degenerate: usize,
-    /// Meshes without a triangle left.
+    /// Meshes without triangles after the removals.
     pub empty_meshes: usize,
     /// Zero or NaN vertex normals, replaced by the geometric ones.
     pub bad_normals: usize,
