@@ -1,36 +1,36 @@
-//! Progress and cancellation of a running method, from another thread.
+//! Progress and cancellation of a running method, seen from another thread.
 //!
-//! A method calls [`Control::begin`] when a stage starts, [`Control::advance`] as it goes, and between units
-//! of work (a tile, a batch of photon paths) asks [`Control::is_cancelled`]; once that is true it returns its
-//! partial result, marked incomplete. Nothing here influences the picture.
+//! A method calls [`Control::begin`] at the start of a stage, and [`Control::advance`] during it. Between units of work
+//! (a tile, a batch of photon paths) it asks [`Control::is_cancelled`]. If that is true, the method returns its partial
+//! result, marked incomplete. Nothing here influences the image.
 
 use crate::stats::Stage;
 use std::mem;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// State shared between the thread that renders and those that watch it.
+/// State shared between the rendering thread and watching threads.
 #[derive(Debug, Default)]
 pub struct Control {
     cancelled: AtomicBool,
-    /// Stage and total; `done` is reset under this lock, so a snapshot never mixes two stages.
+    /// Stage and total. `done` is reset under this lock, so a snapshot never mixes two stages.
     stage: Mutex<Begun>,
     done: AtomicU64,
 }
 
 #[derive(Debug, Default)]
 struct Begun {
-    /// The current stage, and its total.
+    /// Current stage and its total.
     current: Option<(Stage, u64)>,
     /// True while settings are planned.
     is_planning: bool,
-    /// Stages of the frame that [`Control::news`] has returned, or is to return.
+    /// Stages of the frame that [`Control::news`] has returned or will return.
     told: Vec<Stage>,
     news: Vec<Stage>,
 }
 
 impl Begun {
-    /// Each stage of a frame is news once.
+    /// Adds a stage to the news, once per frame.
     fn tell(&mut self, stage: Stage) {
         if !self.told.contains(&stage) {
             self.told.push(stage);
@@ -44,16 +44,16 @@ impl Begun {
 pub struct Progress {
     /// The current stage.
     pub stage: Stage,
-    /// True if it is a part of planning settings.
+    /// True if the stage is part of planning settings.
     pub is_planning: bool,
     /// Units of work done in this stage, at most `total`.
     pub done: u64,
-    /// Units of work in this stage; 0 if not known.
+    /// Total units of work in this stage; 0 if unknown.
     pub total: u64,
 }
 
 impl Progress {
-    /// The stage that people are told: planning, or the current one.
+    /// Returns the stage to display: planning, or the current one.
     pub fn told(&self) -> Stage {
         if self.is_planning { Stage::Plan } else { self.stage }
     }
@@ -65,7 +65,7 @@ impl Control {
         Control::default()
     }
 
-    /// Asks the method to stop soon. Safe to call from a signal-handling thread, any number of times.
+    /// Asks the method to stop soon. May be called from a signal-handling thread, any number of times.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
@@ -76,12 +76,12 @@ impl Control {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// Forgets the stages of the frame before.
+    /// Clears the stages of the previous frame.
     pub fn begin_frame(&self) {
         *self.lock() = Begun::default();
     }
 
-    /// Starts a stage of `total` units (0 if their number is not known). Stages follow one another.
+    /// Starts a stage of `total` units; 0 if unknown. Stages are consecutive.
     pub fn begin(&self, stage: Stage, total: u64) {
         let mut begun = self.lock();
         self.done.store(0, Ordering::Relaxed);
@@ -91,7 +91,7 @@ impl Control {
         }
     }
 
-    /// Does `work`, whose stages are parts of planning settings and not of the picture.
+    /// Runs `work`, whose stages are part of planning settings.
     pub fn plan<R>(&self, work: impl FnOnce() -> R) -> R {
         self.begin(Stage::Plan, 0);
         self.lock().is_planning = true;
@@ -101,7 +101,7 @@ impl Control {
         result
     }
 
-    /// Counts `n` more finished units of the current stage. Callable from any worker.
+    /// Counts `n` more finished units of the current stage. Any worker may call it.
     #[inline]
     pub fn advance(&self, n: u64) {
         self.done.fetch_add(n, Ordering::Relaxed);
@@ -126,7 +126,7 @@ impl Control {
     }
 
     fn lock(&self) -> MutexGuard<'_, Begun> {
-        // The data is plain: a panic elsewhere cannot have left it half-written.
+        // The data is plain, so a panic in another thread cannot have left it inconsistent.
         self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

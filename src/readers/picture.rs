@@ -273,7 +273,7 @@ mod tests {
         let sky = decode_file(&radiance(width, height), false, "sky.hdr").unwrap();
         assert_eq!((sky.width, sky.height), (width.into(), height));
         assert!((sky.texels.get(0, height - 1) - Rgb::new(1.0, 0.5, 0.25)).length() < 1e-2);
-        // Of either signature.
+        // Both signatures are read.
         let small = radiance(8, 2);
         let other = [b"#?RGBE", &small[b"#?RADIANCE".len()..]].concat();
         let decoded = |bytes: &[u8]| decode_file(bytes, false, "sky.hdr").unwrap();

@@ -1,47 +1,50 @@
-//! Content of a picture file: named layers over one window of the film, and metadata.
+//! Content of an image file: named layers over one window of the film, and metadata.
 
 use super::{Image, ImageError, Layer};
 use crate::film::Window;
 
-/// The picture of one frame with everything that is written beside the colour.
+/// The image of one frame, with its layers and metadata.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     /// The part of the film that the layers cover.
     pub window: Window,
-    /// Radiance by pixel.
+    /// Radiance of each pixel, W/(sr m²).
     pub color: Image,
     /// Further images.
     pub layers: Vec<Layer>,
-    /// The camera that took the picture, if there was one.
+    /// Camera of the image, if there is one.
     pub camera: Option<CameraMatrices>,
-    /// Metadata: settings, statistics and scene of the picture.
+    /// Metadata: settings, statistics and scene of the image.
     pub metadata: Metadata,
 }
 
-/// The standard attributes `worldToCamera` and `worldToNDC` of OpenEXR: matrices in rows, for row vectors that they
-/// are multiplied to from the right, as Imath defines it. The world is the scene file's.
+/// Standard attributes `worldToCamera` and `worldToNDC` of OpenEXR. Matrices are stored by rows and multiply row
+/// vectors from the right, as in Imath. World coordinates are those of the scene file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraMatrices {
-    /// To coordinates about the camera: x to the right, y up, z forward.
+    /// Transform to camera coordinates: x to the right, y up, z forward.
     pub world_to_camera: [f32; 16],
-    /// To the film, once divided by the fourth coordinate: x and y from 0 to 1, from the top left to the bottom right
-    /// corner; z is the inverse of the depth.
+    /// Transform to the film, before division by the fourth coordinate. x and y range from 0 to 1, from the top left to
+    /// the bottom right corner; z is the inverse depth.
     pub world_to_ndc: [f32; 16],
 }
 
 impl Film {
-    /// A film of one complete image.
+    /// Creates a film of one complete image.
     pub fn new(color: Image) -> Film {
         let window = Window::whole([color.width, color.height]);
         Film { window, color, layers: Vec::new(), camera: None, metadata: Metadata::default() }
     }
 
-    /// Replaces every channel that is not finite by 0 in all images and returns their number.
+    /// Replaces every non-finite channel of all images by 0; returns their number.
     pub fn remove_nonfinite(&mut self) -> u64 {
         self.color.remove_nonfinite() + self.layers.iter_mut().map(Layer::remove_nonfinite).sum::<u64>()
     }
 
-    /// Fails unless every image has the window's size and the window lies on the film.
+    /// Checks that every image has the window's size and that the window lies on the film.
+    ///
+    /// # Errors
+    /// If not.
     pub fn check_sizes(&self) -> Result<(), ImageError> {
         let window = [self.window.width, self.window.height];
         if !self.window.is_valid() {
@@ -59,16 +62,16 @@ impl Film {
     }
 }
 
-/// Ordered facts about a picture; keys are written as `lightsplat.KEY`.
+/// Facts about an image, in order. Keys are written as `lightsplat.KEY`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Metadata(Vec<(String, Fact)>);
 
-/// One fact.
+/// A fact about an image.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fact {
-    /// Words.
+    /// Text.
     Text(String),
-    /// A quantity.
+    /// Number.
     Number(f64),
 }
 
@@ -126,7 +129,7 @@ impl Metadata {
         }
     }
 
-    /// All facts in order.
+    /// Returns all facts in order.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &Fact)> {
         self.0.iter().map(|(key, value)| (key.as_str(), value))
     }

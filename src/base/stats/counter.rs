@@ -7,13 +7,12 @@ pub enum Counter {
     Count(u64),
     /// A real sum.
     Sum(f64),
-    /// Integer observations, summarised.
+    /// Summary of integer observations.
     Distribution(Observations),
 }
 
 impl Counter {
-    /// Adds `other`. A name stands for one kind of counter; if a caller mixes kinds, the first one stays
-    /// and the mistake shows in a debug build.
+    /// Adds `other`. If the two are of different kinds, the first one stays; a debug build panics.
     pub(super) fn combine(&mut self, other: Counter) {
         match (self, other) {
             (Counter::Count(a), Counter::Count(b)) => *a = a.saturating_add(b),
@@ -24,12 +23,13 @@ impl Counter {
     }
 }
 
-/// Number, sum and range of integer observations: exact, so the same for any order of merging.
+/// Number, sum and range of integer observations. The integers are exact, so any order of merging gives the same
+/// result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Observations {
     /// Number of observations.
     pub count: u64,
-    /// Their sum.
+    /// Sum of the observations.
     pub sum: u64,
     /// Minimum; `u64::MAX` if there is none.
     pub min: u64,
@@ -44,7 +44,7 @@ impl Default for Observations {
 }
 
 impl Observations {
-    /// Creates a distribution of one observation.
+    /// Creates the summary of one observation.
     pub fn of(value: u64) -> Observations {
         Observations { count: 1, sum: value, min: value, max: value }
     }
@@ -64,7 +64,7 @@ impl Observations {
         self.max = self.max.max(other.max);
     }
 
-    /// The mean, 0 if there is no observation.
+    /// Returns the mean; 0 without observations.
     pub fn mean(&self) -> f64 {
         if self.count == 0 { 0.0 } else { self.sum as f64 / self.count as f64 }
     }

@@ -8,7 +8,7 @@ use scene::{
     PixelFilter, Projection, Reflectance, Scene, Texels, Texture, TextureId, Wrap,
 };
 
-/// Sanitises, where warnings do not matter.
+/// Sanitises a draft; warnings do not matter.
 fn sanitize(draft: &mut Draft) -> Result<(SanitizeReport, LocalCoordinates), SceneError> {
     super::sanitize(draft, &mut Log::new(false))
 }
@@ -72,7 +72,7 @@ fn each_kind_of_bad_triangle_is_dropped_and_counted() {
 
 #[test]
 fn triangles_that_vanish_in_f32_are_degenerate() {
-    // Far from its own centre, this triangle is smaller than the spacing of f32.
+    // The triangle is far from its centre, and smaller than the spacing of f32 there.
     let mut mesh = triangle_mesh();
     mesh.positions =
         [DVec3::ZERO, DVec3::X * 1e-9, DVec3::Y * 1e-9].iter().map(|p| *p + DVec3::ONE).collect();
@@ -87,14 +87,14 @@ fn triangles_that_vanish_in_f32_are_degenerate() {
     let mut d = draft(vec![mesh.clone(), other_mesh()], vec![grey()]);
     let error = super::sanitize(&mut d, &mut log).unwrap_err().to_string();
     assert!(error.contains("1 triangles are too small"), "{error}");
-    // Alone it is kept.
+    // A triangle alone is kept.
     let mut d = draft(vec![mesh], vec![grey()]);
     assert!(sanitize(&mut d).unwrap().0.is_clean());
 }
 
 #[test]
 fn all_is_finite_however_small_what_is_left_of_a_scene() {
-    // Triangles without area, of vertices that differ; they alone, and beside others.
+    // Triangles without area have distinct vertices here. They stand alone, and beside others.
     let mut flat = triangle_mesh();
     flat.positions = vec![DVec3::Y, DVec3::new(5e-39, 1.0, 0.0)];
     flat.triangles = vec![[0, 0, 0], [1, 1, 1]];
