@@ -9,7 +9,7 @@ use rayon::iter::{IndexedParallelIterator, MaxLen};
 use std::sync::{Mutex, PoisonError};
 
 /// Maximum number of items in a short run.
-const SHORT: usize = 16;
+const SHORT_RUN: usize = 16;
 
 /// Parallel iterators over pieces of uneven cost.
 pub trait ShortRuns: IndexedParallelIterator {
@@ -20,7 +20,7 @@ pub trait ShortRuns: IndexedParallelIterator {
 
     /// Limits rayon's splits to 16 items, for items of some microseconds.
     fn in_short_runs(self) -> MaxLen<Self> {
-        self.with_max_len(SHORT)
+        self.with_max_len(SHORT_RUN)
     }
 }
 

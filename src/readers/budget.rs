@@ -13,11 +13,11 @@ use std::sync::{Arc, OnceLock};
 const TRIANGLE_BYTES: u64 = 36 + BVH_BYTES_PER_TRIANGLE as u64;
 
 /// Bytes up to which the available memory is not asked for.
-const MUCH: u64 = 48 << 20;
+const MIN_CHECKED_BYTES: u64 = 48 << 20;
 
 /// Returns a description of `bytes` and of the available memory, if fewer bytes are available.
 pub fn lacking(bytes: u64) -> Option<String> {
-    let available = if bytes > MUCH { available_bytes()? } else { return None };
+    let available = if bytes > MIN_CHECKED_BYTES { available_bytes()? } else { return None };
     let [needed, left] = [bytes, available].map(|bytes| bytes >> 20);
     (bytes > available).then(|| format!("about {needed} MiB of memory, and {left} MiB are available"))
 }

@@ -7,13 +7,13 @@ use std::io;
 use std::path::Path;
 
 /// Memory per byte of a mesh file: its bytes, and the growing arrays of its content, old and new.
-const READING: u64 = 3;
+const BYTES_PER_FILE_BYTE: u64 = 3;
 
 /// Reads a file that `from` refers to.
 pub(crate) fn read_file(path: &Path, from: &Location) -> Result<Vec<u8>, SceneError> {
     let fail = |error| SceneError::Read { path: path.to_owned(), from: from.clone(), error };
     let length = regular_length(path).map_err(fail)?;
-    if let Some(lack) = lacking(length.saturating_mul(READING)) {
+    if let Some(lack) = lacking(length.saturating_mul(BYTES_PER_FILE_BYTE)) {
         let what = format!("reading it takes {lack}");
         return Err(Location::file(path).wrong(what, "divide or simplify it, or give more memory"));
     }

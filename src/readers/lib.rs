@@ -11,6 +11,7 @@
 mod budget;
 mod check;
 mod constants;
+mod decode;
 mod draft;
 pub mod error;
 mod file;
@@ -21,7 +22,6 @@ mod mesh;
 mod mitsuba;
 mod native;
 mod options;
-mod picture;
 mod plan;
 mod realise;
 #[cfg(test)]

@@ -3,10 +3,10 @@
 //! All readers return a [`ScenePlan`]; [`ScenePlan::realise`] opens the files.
 
 use crate::budget::TriangleBudget;
+use crate::decode::{Channel, DecodedImage};
 use crate::draft::Shot;
 use crate::error::{Location, SceneError};
 use crate::mesh::{Placement, RawMesh};
-use crate::picture::{Channel, DecodedImage};
 use crate::selection::PartSelection;
 use crate::sky::SkyPlan;
 use base::math::Rgb;

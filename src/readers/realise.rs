@@ -3,11 +3,11 @@
 //! Each file is read once. Results are in the order of the description, and so are errors.
 
 use crate::budget::{TriangleBudget, lacking};
+use crate::decode::{self, Channel, DecodedImage};
 use crate::draft::{Draft, DraftMesh};
 use crate::error::{Location, Log, SceneError};
 use crate::file::{fnv1a, read_file};
 use crate::mesh::{self, RawMesh};
-use crate::picture::{self, Channel, DecodedImage};
 use crate::plan::{
     Appearance, Contents, EnvironmentPlan, ImageSource, MaterialPlan, MeshPlan, MeshSource, ScenePlan,
     TexturePlan, TextureSource,
@@ -45,19 +45,18 @@ struct Results {
     /// Meshes of each mesh plan.
     meshes: Vec<Vec<DraftMesh>>,
     /// Image of each texture plan.
-    pictures: Vec<Option<DecodedImage>>,
+    images: Vec<Option<DecodedImage>>,
     environment: Option<DecodedImage>,
 }
 
 impl ScenePlan {
     /// Opens every file; returns the draft, and the hash over the bytes of all files.
     pub fn realise(self, log: &mut Log) -> Result<(Draft, u64), SceneError> {
-        let Results { sources, hashes, mut meshes, mut pictures, environment } = self.read_files()?;
+        let Results { sources, hashes, mut meshes, mut images, environment } = self.read_files()?;
         let contents = self.contents;
         contents.place_meshes(&mut meshes, log)?;
-        contents.decode_embedded(&mut pictures)?;
-        let textures =
-            contents.textures.into_iter().zip(pictures).filter_map(|(t, p)| texture(t, p)).collect();
+        contents.decode_embedded(&mut images)?;
+        let textures = contents.textures.into_iter().zip(images).filter_map(|(t, p)| texture(t, p)).collect();
         let environment = match contents.environment {
             Some(plan) => plan.realise(environment)?,
             None => None,
@@ -87,12 +86,12 @@ impl ScenePlan {
     fn read_files(&self) -> Result<Results, SceneError> {
         let files = self.contents.tasks();
         let outcomes: Vec<Result<(u64, Vec<Done>), SceneError>> =
-            files.par_iter().map(|(path, tasks)| carry_out(path, tasks, &self.contents.budget)).collect();
+            files.par_iter().map(|(path, tasks)| use_file(path, tasks, &self.contents.budget)).collect();
         let mut results = Results {
             sources: self.sources.iter().map(|s| s.0.clone()).collect(),
             hashes: self.sources.iter().map(|s| s.1).collect(),
             meshes: vec![Vec::new(); self.contents.meshes.len()],
-            pictures: vec![None; self.contents.textures.len()],
+            images: vec![None; self.contents.textures.len()],
             environment: None,
         };
         let mut errors = Vec::new();
@@ -114,19 +113,19 @@ impl Results {
     fn take(&mut self, done: Done) {
         match done {
             Done::Meshes(i, meshes) => self.meshes[i] = meshes,
-            Done::Texture(i, picture) => self.pictures[i] = Some(picture),
-            Done::Environment(picture) => self.environment = Some(picture),
+            Done::Texture(i, image) => self.images[i] = Some(image),
+            Done::Environment(image) => self.environment = Some(image),
         }
     }
 }
 
 impl EnvironmentPlan {
     /// Returns the environment; `picture` is the decoded image of a map.
-    fn realise(self, picture: Option<DecodedImage>) -> Result<Option<Environment>, SceneError> {
-        Ok(match (self, picture) {
+    fn realise(self, image: Option<DecodedImage>) -> Result<Option<Environment>, SceneError> {
+        Ok(match (self, image) {
             (EnvironmentPlan::Constant(radiance), _) => Some(Environment::Constant(radiance)),
-            (EnvironmentPlan::Map { place, scale, to_world, .. }, Some(picture)) => {
-                let map = environment_map(picture, scale, &to_world);
+            (EnvironmentPlan::Map { place, scale, to_world, .. }, Some(image)) => {
+                let map = environment_map(image, scale, &to_world);
                 let map = map.ok_or_else(|| {
                     let remedy = "give a factor of 0 or more that leaves the picture's values finite";
                     place.wrong(format!("the environment's scale is {scale}"), remedy)
@@ -195,18 +194,18 @@ impl Contents {
     }
 
     /// Decodes the images that are part of a description.
-    fn decode_embedded(&self, pictures: &mut [Option<DecodedImage>]) -> Result<(), SceneError> {
-        let decode = |(plan, picture): (&TexturePlan, &mut Option<DecodedImage>)| {
+    fn decode_embedded(&self, images: &mut [Option<DecodedImage>]) -> Result<(), SceneError> {
+        let decode = |(plan, image): (&TexturePlan, &mut Option<DecodedImage>)| {
             if let TextureSource::Part { source: ImageSource::Bytes(bytes), channel, name } = &plan.image {
-                *picture = Some(picture::decode(bytes, *channel, Path::new(name), &plan.place)?);
+                *image = Some(decode::decode(bytes, *channel, Path::new(name), &plan.place)?);
             }
             Ok(())
         };
-        self.textures.par_iter().zip(pictures).try_for_each(decode)
+        self.textures.par_iter().zip(images).try_for_each(decode)
     }
 }
 
-fn carry_out(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<(u64, Vec<Done>), SceneError> {
+fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<(u64, Vec<Done>), SceneError> {
     let from = match tasks.first() {
         Some(Task::Mesh(_, plan)) => &plan.place,
         Some(Task::Texture(_, plan, _)) => &plan.place,
@@ -216,11 +215,11 @@ fn carry_out(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<(u6
     let bytes = read_file(path, from)?;
     let hash = fnv1a(&bytes);
     let done: Vec<Result<Done, SceneError>> =
-        tasks.par_iter().map(|task| one(task, &bytes, path, budget)).collect();
+        tasks.par_iter().map(|task| perform(task, &bytes, path, budget)).collect();
     Ok((hash, done.into_iter().collect::<Result<_, _>>()?))
 }
 
-fn one(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Result<Done, SceneError> {
+fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Result<Done, SceneError> {
     Ok(match task {
         Task::Mesh(i, plan) => {
             let raw = match &plan.geometry {
@@ -234,16 +233,16 @@ fn one(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Resul
             Done::Meshes(*i, finish_mesh(plan, raw))
         }
         Task::Texture(i, plan, channel) => {
-            Done::Texture(*i, picture::decode(bytes, *channel, path, &plan.place)?)
+            Done::Texture(*i, decode::decode(bytes, *channel, path, &plan.place)?)
         }
         Task::Environment(place) => {
-            let picture = picture::decode(bytes, Channel::Colour, path, place)?;
-            let DecodedImage { width, height, .. } = picture;
+            let image = decode::decode(bytes, Channel::Colour, path, place)?;
+            let DecodedImage { width, height, .. } = image;
             if let Some(lack) = lacking((width * height) as u64 * (ENVIRONMENT_TEXEL_BYTES + COPY_BYTES)) {
                 let what = format!("{}: light of its {width} x {height} texels takes {lack}", path.display());
-                return Err(place.wrong(what, picture::SMALLER));
+                return Err(place.wrong(what, decode::SMALLER));
             }
-            Done::Environment(picture)
+            Done::Environment(image)
         }
     })
 }
@@ -253,38 +252,43 @@ fn finish_mesh(plan: &MeshPlan, raw: RawMesh) -> Vec<DraftMesh> {
         MaterialPlan::One(material) => {
             vec![(plan.name.clone(), Appearance { material: *material, emission: None }, raw)]
         }
-        MaterialPlan::ByName(looks, other) => {
+        MaterialPlan::ByName(appearances, other) => {
             let parts = mesh::obj::split_by_material(raw).into_iter();
             let unknown = Appearance { material: *other, emission: None };
-            let look = |name: &str| looks.get(name).copied().unwrap_or(unknown);
-            parts.map(|(name, part)| (format!("{}:{name}", plan.name), look(&name), part)).collect()
+            let appearance = |name: &str| appearances.get(name).copied().unwrap_or(unknown);
+            parts.map(|(name, part)| (format!("{}:{name}", plan.name), appearance(&name), part)).collect()
         }
     };
-    let finish = |(name, look, raw): (String, Appearance, RawMesh)| {
+    let finish = |(name, appearance, raw): (String, Appearance, RawMesh)| {
         let placed = mesh::place(raw, &plan.placement);
-        DraftMesh { name, material: look.material, emission: plan.emission.or(look.emission), ..placed }
+        DraftMesh {
+            name,
+            material: appearance.material,
+            emission: plan.emission.or(appearance.emission),
+            ..placed
+        }
     };
     parts.into_iter().map(finish).collect()
 }
 
 fn texture(plan: TexturePlan, decoded: Option<DecodedImage>) -> Option<Texture> {
-    let (name, picture) = match plan.image {
+    let (name, image) = match plan.image {
         TextureSource::File { path, .. } => {
             let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
             (name.unwrap_or_default(), decoded?)
         }
-        TextureSource::Ready(name, picture) => (name, picture),
+        TextureSource::Ready(name, image) => (name, image),
         TextureSource::Part { name, .. } => (name, decoded?),
     };
-    let DecodedImage { width, height, texels } = picture;
+    let DecodedImage { width, height, texels } = image;
     Some(Texture { name, width, height, texels, filter: plan.filter, wrap: plan.wrap, to_uv: plan.to_uv })
 }
 
 /// Returns the map times `scale`; `None` if its values become negative or infinite.
 ///
 /// As in Mitsuba, the last row is repeated until there are 3 rows.
-fn environment_map(picture: DecodedImage, scale: f32, to_world: &DMat4) -> Option<EnvironmentMap> {
-    let DecodedImage { width, height, texels } = picture;
+fn environment_map(image: DecodedImage, scale: f32, to_world: &DMat4) -> Option<EnvironmentMap> {
+    let DecodedImage { width, height, texels } = image;
     if !(scale >= 0.0 && texels.all(|texel| !texel.is_finite() || (texel * scale).is_finite())) {
         return None;
     }

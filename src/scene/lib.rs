@@ -103,8 +103,8 @@ impl Scene {
     /// Eye paths rarely find the light that mirrors and glass focus from such lights.
     pub fn has_small_lights(&self) -> bool {
         // Half angle in radians up to which a disc is small.
-        const SMALL: f32 = 0.05;
-        !self.lights.is_empty() || self.discs.iter().any(|disc| disc.half_angle < SMALL)
+        const SMALL_HALF_ANGLE: f32 = 0.05;
+        !self.lights.is_empty() || self.discs.iter().any(|disc| disc.half_angle < SMALL_HALF_ANGLE)
     }
 
     /// True if solid glass may focus the light of such lights.

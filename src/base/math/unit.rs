@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// Range of squared lengths for which division by the length loses no precision.
-const ORDINARY: std::ops::Range<f64> = 1e-200..1e200;
+const SAFE_SQUARED_LENGTHS: std::ops::Range<f64> = 1e-200..1e200;
 
 /// Minimum sine of the angle between two directions that must not be parallel.
 const MIN_SINE: f64 = 1e-12;
@@ -12,7 +12,7 @@ const MIN_SINE: f64 = 1e-12;
 ///
 /// Squares of components may underflow or overflow.
 pub fn unit(v: DVec3) -> Option<DVec3> {
-    if ORDINARY.contains(&v.length_squared()) {
+    if SAFE_SQUARED_LENGTHS.contains(&v.length_squared()) {
         return Some(v.normalize());
     }
     // The scale is a power of two, applied in two steps: that of the smallest numbers has no reciprocal.

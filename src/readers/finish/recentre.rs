@@ -13,10 +13,10 @@ use glam::{DVec3, Vec3};
 use scene::{Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Relief, Scene};
 
 /// Approximate number of corners that are sampled to compute the vicinity.
-const CORNERS: usize = 1 << 16;
+const SAMPLED_CORNERS: usize = 1 << 16;
 
 /// Sizes of scenes that keep their unit, as binary logarithms.
-const ORDINARY: std::ops::Range<i32> = -10..24;
+const UNSCALED_SIZES: std::ops::Range<i32> = -10..24;
 
 /// Local coordinates of a scene.
 #[derive(Clone, Copy, Debug, Default)]
@@ -55,7 +55,7 @@ impl LocalCoordinates {
             false => diagonal.max(camera.distance(centre)),
         };
         let exponent = size.log2().floor();
-        let has_size = exponent.is_finite() && !ORDINARY.contains(&(exponent as i32));
+        let has_size = exponent.is_finite() && !UNSCALED_SIZES.contains(&(exponent as i32));
         let exponent = if has_size { exponent as i32 } else { 0 };
         let coordinates = LocalCoordinates { centre, exponent, vicinity: 0.0 };
         LocalCoordinates { vicinity: (vicinity * coordinates.scale()) as f32, ..coordinates }
@@ -120,7 +120,7 @@ fn bounds(points: impl Iterator<Item = DVec3>) -> Option<(DVec3, DVec3)> {
 fn vicinity(draft: &Draft, camera: DVec3) -> f64 {
     let count: usize = draft.meshes.iter().map(|mesh| 3 * mesh.triangles.len()).sum();
     let mut distances: Vec<f64> =
-        corners(draft).step_by(count.div_ceil(CORNERS).max(1)).map(|p| p.distance(camera)).collect();
+        corners(draft).step_by(count.div_ceil(SAMPLED_CORNERS).max(1)).map(|p| p.distance(camera)).collect();
     let tenth = distances.len() / 10;
     *distances.select_nth_unstable_by(tenth, f64::total_cmp).1
 }

@@ -53,7 +53,7 @@ impl Default for ImportOptions {
 /// Material of a primitive.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MaterialUse {
-    pub look: Appearance,
+    pub appearance: Appearance,
     /// Index of the set of texture coordinates.
     pub uv_set: u32,
 }
@@ -66,7 +66,7 @@ pub(super) struct Importer<'a> {
     pub report: Findings,
     /// Materials read so far, by index.
     pub surfaces: BTreeMap<Option<usize>, MaterialUse>,
-    pub pictures: BTreeMap<usize, ImageSource>,
+    pub images: BTreeMap<usize, ImageSource>,
     /// Primitives read so far, by index of the mesh.
     pub meshes: BTreeMap<usize, Vec<(Arc<RawMesh>, Appearance)>>,
 }
@@ -92,8 +92,8 @@ impl Importer<'_> {
             self.contents.lights.push(light);
         }
         if let Some(mesh) = node.mesh {
-            for (raw, look) in self.primitives(mesh)? {
-                self.add(raw, look, &name, to_world)?;
+            for (raw, appearance) in self.primitives(mesh)? {
+                self.add(raw, appearance, &name, to_world)?;
             }
         }
         Ok(())
@@ -102,13 +102,13 @@ impl Importer<'_> {
     fn add(
         &mut self,
         raw: Arc<RawMesh>,
-        look: Appearance,
+        appearance: Appearance,
         name: &str,
         to_world: DMat4,
     ) -> Result<(), SceneError> {
         let (material, emission) = match self.options.material {
             Some(material) => (material, None),
-            None => (look.material, look.emission),
+            None => (appearance.material, appearance.emission),
         };
         self.contents.add_mesh(MeshPlan {
             place: self.document.place.clone(),
@@ -139,7 +139,7 @@ impl Importer<'_> {
             let what = format!("{name} {}, primitive {i}", index.value());
             let surface = self.surface(primitive.material)?;
             let raw = mesh::read(document, primitive, surface.uv_set, &what, &mut self.report)?;
-            primitives.extend(raw.map(|raw| (Arc::new(raw), surface.look)));
+            primitives.extend(raw.map(|raw| (Arc::new(raw), surface.appearance)));
         }
         self.meshes.insert(index.value(), primitives.clone());
         Ok(primitives)

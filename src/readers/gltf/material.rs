@@ -8,8 +8,8 @@
 
 use super::importer::{Importer, MaterialUse};
 use super::texture::TextureUse;
+use crate::decode::Channel;
 use crate::error::SceneError;
-use crate::picture::Channel;
 use crate::plan::Appearance;
 use base::math::Rgb;
 use gltf_json::Index;
@@ -57,7 +57,7 @@ impl Importer<'_> {
         let emission = self.emission(source, &name)?;
         let material = self.material(source, &name)?;
         let material = self.contents.add_material(material, document.place.clone());
-        let surface = MaterialUse { look: Appearance { material, emission }, uv_set };
+        let surface = MaterialUse { appearance: Appearance { material, emission }, uv_set };
         self.surfaces.insert(number, surface);
         Ok(surface)
     }

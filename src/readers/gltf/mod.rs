@@ -86,7 +86,7 @@ pub fn import(
         contents,
         report: Findings::default(),
         surfaces: BTreeMap::new(),
-        pictures: BTreeMap::new(),
+        images: BTreeMap::new(),
         meshes: BTreeMap::new(),
     };
     for placed in tree.iter().filter(|placed| placed.selected) {

@@ -3,7 +3,7 @@
 use crate::error::{Location, Log, SceneError};
 
 /// Maximum number of objects that a message names.
-const NAMED: usize = 3;
+const MAX_NAMED: usize = 3;
 
 /// An unsupported feature.
 struct Finding {
@@ -44,9 +44,9 @@ impl Findings {
     /// Writes all findings to the log.
     pub fn write(self, place: &Location, log: &mut Log) -> Result<(), SceneError> {
         for Finding { what, fallback, changes_picture, names } in self.findings {
-            let mut listed = names.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
-            if names.len() > NAMED {
-                listed = format!("{listed} and {} more", names.len() - NAMED);
+            let mut listed = names.iter().take(MAX_NAMED).cloned().collect::<Vec<_>>().join(", ");
+            if names.len() > MAX_NAMED {
+                listed = format!("{listed} and {} more", names.len() - MAX_NAMED);
             }
             let what = if listed.is_empty() { what } else { format!("{what}: {listed}") };
             match changes_picture {

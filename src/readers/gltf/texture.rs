@@ -2,8 +2,8 @@
 
 use super::document::Resolved;
 use super::importer::Importer;
+use crate::decode::Channel;
 use crate::error::SceneError;
-use crate::picture::Channel;
 use crate::plan::{ImageSource, TexturePlan, TextureSource};
 use glam::{Mat3, Vec2, Vec3};
 use gltf_json::extensions::texture::TextureTransform;
@@ -65,7 +65,7 @@ impl Importer<'_> {
             self.report.lacks(what, "they are left out", name);
             return Ok(None);
         }
-        let picture = self.document.get(texture.source, "image")?;
+        let image = self.document.get(texture.source, "image")?;
         let default = Sampler::default();
         let sampler = match texture.sampler {
             Some(index) => self.document.get(index, "sampler")?,
@@ -83,8 +83,8 @@ impl Importer<'_> {
             Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
             _ => Filter::Bilinear,
         };
-        let image_name = picture.name.clone().unwrap_or_else(|| format!("image {}", texture.source.value()));
-        let source = self.picture(picture, texture.source)?;
+        let image_name = image.name.clone().unwrap_or_else(|| format!("image {}", texture.source.value()));
+        let source = self.image(image, texture.source)?;
         let image = TextureSource::Part { name: image_name, source, channel };
         let to_uv = slot.to_uv();
         if !to_uv.is_finite() {
@@ -94,15 +94,11 @@ impl Importer<'_> {
         Ok(Some(self.contents.add_texture(TexturePlan { place, image, filter, wrap, to_uv })))
     }
 
-    fn picture(
-        &mut self,
-        picture: &image::Image,
-        index: Index<image::Image>,
-    ) -> Result<ImageSource, SceneError> {
-        if let Some(source) = self.pictures.get(&index.value()) {
+    fn image(&mut self, image: &image::Image, index: Index<image::Image>) -> Result<ImageSource, SceneError> {
+        if let Some(source) = self.images.get(&index.value()) {
             return Ok(source.clone());
         }
-        let source = match (&picture.uri, picture.buffer_view) {
+        let source = match (&image.uri, image.buffer_view) {
             (Some(uri), _) => match self.document.resolve(uri)? {
                 Resolved::Bytes(bytes) => ImageSource::Bytes(bytes.into()),
                 Resolved::File(path) => ImageSource::File(path),
@@ -112,7 +108,7 @@ impl Importer<'_> {
                 return Err(self.document.wrong(format!("image {} has no picture", index.value())));
             }
         };
-        self.pictures.insert(index.value(), source.clone());
+        self.images.insert(index.value(), source.clone());
         Ok(source)
     }
 }

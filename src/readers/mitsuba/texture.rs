@@ -6,9 +6,9 @@ use super::converter::Converter;
 use super::tree::Object;
 use super::value::PropertyValue;
 use super::{cie, value};
+use crate::decode::DecodedImage;
 use crate::error::{Location, SceneError};
 use crate::file::read_text;
-use crate::picture::DecodedImage;
 use crate::plan::{TexturePlan, TextureSource};
 use base::math::Rgb;
 use glam::{DMat3, DMat4, DVec2, DVec3};
@@ -221,10 +221,10 @@ impl Converter<'_> {
             };
         let (even, odd) = (texel("color0", 0.4)?, texel("color1", 0.2)?);
         let texels = Texels::new(2, &[even, odd, odd, even]);
-        let picture = DecodedImage { width: 2, height: 2, texels };
+        let image = DecodedImage { width: 2, height: 2, texels };
         let texture = self.contents.add_texture(TexturePlan {
             place: object.place.clone(),
-            image: TextureSource::Ready("checkerboard".into(), picture),
+            image: TextureSource::Ready("checkerboard".into(), image),
             filter: Filter::Nearest,
             wrap: Wrap::Repeat,
             to_uv: self.to_uv(object)?,

@@ -1,8 +1,8 @@
 //! Property values of Mitsuba XML: numbers, colours, vectors and transforms.
 
 use super::cie;
+use crate::decode::srgb_to_linear;
 use crate::error::{Location, SceneError};
-use crate::picture::srgb_to_linear;
 use base::math::{Rgb, right_of, unit};
 use glam::{DMat4, DVec3, DVec4};
 use std::collections::BTreeMap;

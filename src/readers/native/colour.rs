@@ -5,8 +5,8 @@
 
 use super::builder::SceneBuilder;
 use super::text::{ColourText, Number, TextureText};
+use crate::decode::srgb_to_linear;
 use crate::error::{Location, SceneError};
-use crate::picture::srgb_to_linear;
 use base::math::Rgb;
 use glam::DVec3;
 use scene::Reflectance;
@@ -18,9 +18,8 @@ impl ColourText {
     /// If the colour is an image or not finite.
     pub fn rgb(&self, what: &str, place: &Location) -> Result<Rgb, SceneError> {
         let colour = self.constant(place)?;
-        let picture =
-            || place.wrong(format!("{what} is a picture"), "give a number, [r, g, b] or \"#rrggbb\"");
-        let colour = colour.ok_or_else(picture)?;
+        let image = || place.wrong(format!("{what} is a picture"), "give a number, [r, g, b] or \"#rrggbb\"");
+        let colour = colour.ok_or_else(image)?;
         let wrong = || place.wrong(format!("{what} is not finite"), "write finite numbers");
         colour.is_finite().then_some(colour).ok_or_else(wrong)
     }
@@ -44,12 +43,12 @@ impl ColourText {
     }
 
     /// Returns the image with the factor on its texels; `None` for a constant colour.
-    fn picture(&self) -> Option<TextureText> {
+    fn image(&self) -> Option<TextureText> {
         match self {
             ColourText::Named(file) => Some(TextureText { file: file.clone(), ..TextureText::default() }),
             ColourText::Texture(texture) => Some(texture.clone()),
             ColourText::Scaled { colour, scale } => {
-                let inner = colour.picture()?;
+                let inner = colour.image()?;
                 Some(TextureText { scale: Some(Number(inner.scale() * scale.0)), ..inner })
             }
             ColourText::Grey(_) | ColourText::Rgb(_) => None,
@@ -60,8 +59,8 @@ impl ColourText {
 impl SceneBuilder<'_> {
     /// Returns the colour of a surface: constant or an image.
     pub(super) fn colour(&mut self, text: &ColourText, place: &Location) -> Result<Reflectance, SceneError> {
-        match (text.constant(place)?, text.picture()) {
-            (None, Some(picture)) => Ok(self.texture(&picture, place)),
+        match (text.constant(place)?, text.image()) {
+            (None, Some(image)) => Ok(self.texture(&image, place)),
             (colour, _) => Ok(Reflectance::Constant(colour.unwrap_or_default())),
         }
     }

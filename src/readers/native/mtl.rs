@@ -29,7 +29,7 @@ impl SceneBuilder<'_> {
         path: &Path,
         place: &Location,
     ) -> Result<BTreeMap<String, Appearance>, SceneError> {
-        let mut looks = BTreeMap::new();
+        let mut appearances = BTreeMap::new();
         let text = read_file(path, place)?;
         let used = obj::used_materials(&text);
         let from = Location::file(path);
@@ -44,17 +44,17 @@ impl SceneBuilder<'_> {
                 let material = self.convert_mtl(&source, &file)?;
                 let emission = self.mtl_emission(&source, &file);
                 let material = self.contents.add_material(material, source.place);
-                looks.insert(source.name, Appearance { material, emission });
+                appearances.insert(source.name, Appearance { material, emission });
             }
         }
-        if looks.is_empty() {
+        if appearances.is_empty() {
             self.log.warn(
                 place,
                 "neither the mesh nor its file has a material",
                 "a grey of 0.5 stands in",
             )?;
         }
-        Ok(looks)
+        Ok(appearances)
     }
 
     /// Returns the material of faces without one.

@@ -69,7 +69,7 @@ fn known<T: DeserializeOwned>() -> BTreeSet<String> {
 /// Returns values that a type of the page accepts, and values that it rejects.
 fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
     let colours = vec!["0.5", "2", "[0.1, 0.2, 3]", "\"#ff8800\"", "{ colour = \"#ff8800\", scale = 9.0 }"];
-    let pictures = vec!["\"a.png\"", "{ file = \"a.png\", tiles = [2, 2] }"];
+    let images = vec!["\"a.png\"", "{ file = \"a.png\", tiles = [2, 2] }"];
     match kind {
         "text" => (vec![], vec!["1", "[1.0]"]),
         "name or names" => (vec!["\"a\"", "[\"a\", \"b\"]"], vec!["1", "[1]"]),
@@ -79,9 +79,9 @@ fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
         "vector" => (vec!["[1, 2.5, 3]"], vec!["1", "[1, 2]", "\"#ffffff\""]),
         "pair" => (vec!["[1, 2]"], vec!["1", "[1]"]),
         "colour" => (colours, vec!["true", "[1, 2]"]),
-        "colour or picture" => ([colours, pictures].concat(), vec!["true", "[1, 2]"]),
-        "picture" => (pictures, vec!["true", "0.5"]),
-        "number or picture" => ([vec!["0.5"], pictures].concat(), vec!["true", "[1, 2, 3]"]),
+        "colour or picture" => ([colours, images].concat(), vec!["true", "[1, 2]"]),
+        "picture" => (images, vec!["true", "0.5"]),
+        "number or picture" => ([vec!["0.5"], images].concat(), vec!["true", "[1, 2, 3]"]),
         "moment" => (vec!["2024-06-21T12:00:00Z"], vec!["1", "\"noon\""]),
         "table" | "list of tables" | "list of numbers" => (vec![], vec!["true", "1"]),
         other => panic!("the page has no type \"{other}\""),
@@ -278,8 +278,8 @@ fn colours_are_the_same_everywhere_and_pictures_only_where_the_page_says() {
                 assert_eq!(of(same).as_ref(), Ok(&grey), "{name}: {} = {same}", row.key);
             }
             assert!(of("\"#ffff\"").unwrap_err().contains("#rrggbb"));
-            let picture = of("\"a.png\"");
-            assert_eq!(picture.is_ok(), row.kind == "colour or picture", "{name}: {} {picture:?}", row.key);
+            let image = of("\"a.png\"");
+            assert_eq!(image.is_ok(), row.kind == "colour or picture", "{name}: {} {image:?}", row.key);
         }
     }
 }

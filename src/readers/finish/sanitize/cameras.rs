@@ -1,6 +1,6 @@
 //! Checks of cameras.
 
-use super::reach::{HUGE, IN_REACH, is_within_reach};
+use super::reach::{IN_REACH, MAX_COORDINATE, is_within_reach};
 use crate::draft::DraftCamera;
 use crate::error::{Location, SceneError};
 use crate::finish::recentre::LocalCoordinates;
@@ -25,8 +25,11 @@ pub(super) fn check_camera(
         Projection::Lens { radius, distance } => [radius, distance],
         Projection::Pinhole | Projection::Parallel => [1.0; 2],
     };
-    let is_length = |length: f32| length > 0.0 && length <= HUGE as f32;
-    if !is_length(camera.tan_half_x) || !lens.into_iter().all(is_length) || camera.near > HUGE as f32 {
+    let is_length = |length: f32| length > 0.0 && length <= MAX_COORDINATE as f32;
+    if !is_length(camera.tan_half_x)
+        || !lens.into_iter().all(is_length)
+        || camera.near > MAX_COORDINATE as f32
+    {
         let what = "a camera's film, lens, focus or near plane is no size";
         return Err(place.wrong(what, "give numbers above 0, up to 1e18 times the scene's size"));
     }

@@ -1,6 +1,6 @@
 //! Repairs of meshes.
 
-use super::reach::HUGE;
+use super::reach::MAX_COORDINATE;
 use super::report::SanitizeReport;
 use crate::draft::DraftMesh;
 use crate::finish::recentre::LocalCoordinates;
@@ -19,7 +19,7 @@ pub(super) fn drop_unusable(mesh: &mut DraftMesh, report: &mut SanitizeReport) {
             report.not_finite += 1;
             return false;
         }
-        if corners.iter().any(|p| p.abs().max_element() > HUGE) {
+        if corners.iter().any(|p| p.abs().max_element() > MAX_COORDINATE) {
             report.huge += 1;
             return false;
         }
@@ -43,7 +43,7 @@ pub(super) fn drop_rounded(
     let before = mesh.triangles.len();
     mesh.triangles.retain(|t| {
         let corners = t.map(local);
-        let is_huge = corners.iter().any(|p| !(p.abs().max_element() <= HUGE as f32));
+        let is_huge = corners.iter().any(|p| !(p.abs().max_element() <= MAX_COORDINATE as f32));
         let is_degenerate = !is_huge && !has_area(corners.map(|p| p.as_dvec3()));
         report.huge += usize::from(is_huge);
         report.degenerate += usize::from(is_degenerate);

@@ -28,7 +28,7 @@ use std::iter;
 pub use report::SanitizeReport;
 
 /// Fraction of triangles that may vanish by rounding without a warning. Fine models lose some.
-const MANY_LOST: f64 = 0.01;
+const MAX_LOST: f64 = 0.01;
 /// Repairs the draft, and moves a camera with `fits`; returns the report and the local coordinates.
 pub(crate) fn sanitize(
     draft: &mut Draft,
@@ -50,7 +50,7 @@ pub(crate) fn sanitize(
         report.bad_uvs += bad_uvs.map(|uv| *uv = Vec2::ZERO).count();
         report.turned += mesh.turned;
     }
-    if lost as f64 > MANY_LOST * triangles as f64 {
+    if lost as f64 > MAX_LOST * triangles as f64 {
         let what = format!(
             "{lost} triangles are too small for their distance from the camera or the scene's middle"
         );

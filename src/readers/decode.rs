@@ -12,16 +12,16 @@ use std::path::Path;
 
 /// Maximum number of pixels: 16384 by 16384.
 const MAX_PIXELS: usize = 1 << 28;
-/// Number of pixels up to which a file may be of any length. Larger images may have this many pixels per byte, which
-/// only a file of one colour reaches.
+/// Number of pixels up to which a file may be of any length.
 const MAX_SMALL: usize = 1 << 24;
+/// Maximum number of pixels per byte of larger images. Only files of one colour reach it.
 const MAX_PIXELS_PER_BYTE: usize = 1 << 13;
 /// Maximum bytes per decoded pixel: four channels of 32 bits.
 const MAX_PIXEL_BYTES: u64 = 16;
 
-/// Estimated bytes per pixel while an image is decoded and stored, for images of 8 bits per channel, and for deeper
-/// ones.
+/// Estimated bytes per pixel while an image of 8 bits per channel is decoded and stored.
 const SHORT_PIXEL_BYTES: u64 = 12;
+/// Estimated bytes per pixel while a deeper image is decoded and stored.
 const LONG_PIXEL_BYTES: u64 = 36;
 
 /// Remedy for an image that does not fit into memory.
@@ -70,16 +70,16 @@ pub fn decode(
     path: &Path,
     place: &Location,
 ) -> Result<DecodedImage, SceneError> {
-    let picture = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
+    let image = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
         decode_exr(bytes)
     } else {
         decode_common(bytes, channel, path)
     };
-    let picture = picture.and_then(|p| match p.texels.is_empty() {
+    let image = image.and_then(|p| match p.texels.is_empty() {
         true => Err("it has no pixels".into()),
         false => Ok(p),
     });
-    picture.map_err(|refusal| match refusal {
+    image.map_err(|refusal| match refusal {
         Refusal::Undecodable(what) => SceneError::Image { place: place.clone(), path: path.to_owned(), what },
         Refusal::TooLarge(what) => place.wrong(format!("{}: {what}", path.display()), SMALLER),
     })
