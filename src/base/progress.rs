@@ -14,26 +14,26 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 pub struct Control {
     cancelled: AtomicBool,
     /// Stage and total. `done` is reset under this lock, so a snapshot never mixes two stages.
-    stage: Mutex<Begun>,
+    stage: Mutex<ProgressState>,
     done: AtomicU64,
 }
 
 #[derive(Debug, Default)]
-struct Begun {
+struct ProgressState {
     /// Current stage and its total.
     current: Option<(Stage, u64)>,
     /// True while settings are planned.
     is_planning: bool,
     /// Stages of the frame that [`Control::news`] has returned or will return.
-    told: Vec<Stage>,
+    reported: Vec<Stage>,
     news: Vec<Stage>,
 }
 
-impl Begun {
+impl ProgressState {
     /// Adds a stage to the news, once per frame.
-    fn tell(&mut self, stage: Stage) {
-        if !self.told.contains(&stage) {
-            self.told.push(stage);
+    fn report(&mut self, stage: Stage) {
+        if !self.reported.contains(&stage) {
+            self.reported.push(stage);
             self.news.push(stage);
         }
     }
@@ -54,13 +54,13 @@ pub struct Progress {
 
 impl Progress {
     /// Returns the stage to display: planning, or the current one.
-    pub fn told(&self) -> Stage {
+    pub fn displayed_stage(&self) -> Stage {
         if self.is_planning { Stage::Plan } else { self.stage }
     }
 }
 
 impl Control {
-    /// Creates a control: not cancelled, no stage begun.
+    /// Creates a control: not cancelled, no stage state.
     pub fn new() -> Control {
         Control::default()
     }
@@ -78,16 +78,16 @@ impl Control {
 
     /// Clears the stages of the previous frame.
     pub fn begin_frame(&self) {
-        *self.lock() = Begun::default();
+        *self.lock() = ProgressState::default();
     }
 
     /// Starts a stage of `total` units; 0 if unknown. Stages are consecutive.
     pub fn begin(&self, stage: Stage, total: u64) {
-        let mut begun = self.lock();
+        let mut state = self.lock();
         self.done.store(0, Ordering::Relaxed);
-        begun.current = Some((stage, total));
-        if !begun.is_planning {
-            begun.tell(stage);
+        state.current = Some((stage, total));
+        if !state.is_planning {
+            state.report(stage);
         }
     }
 
@@ -96,8 +96,8 @@ impl Control {
         self.begin(Stage::Plan, 0);
         self.lock().is_planning = true;
         let result = work();
-        let mut begun = self.lock();
-        (begun.is_planning, begun.current) = (false, Some((Stage::Plan, 0)));
+        let mut state = self.lock();
+        (state.is_planning, state.current) = (false, Some((Stage::Plan, 0)));
         result
     }
 
@@ -114,18 +114,18 @@ impl Control {
 
     /// Returns the stages of the frame that began since the last call, each once, and the progress.
     pub fn news(&self) -> (Vec<Stage>, Option<Progress>) {
-        let mut begun = self.lock();
-        (mem::take(&mut begun.news), self.progress_of(&begun))
+        let mut state = self.lock();
+        (mem::take(&mut state.news), self.progress_of(&state))
     }
 
-    fn progress_of(&self, begun: &Begun) -> Option<Progress> {
-        let (stage, total) = begun.current?;
+    fn progress_of(&self, state: &ProgressState) -> Option<Progress> {
+        let (stage, total) = state.current?;
         let done = self.done.load(Ordering::Relaxed);
         let done = if total > 0 { done.min(total) } else { done };
-        Some(Progress { stage, is_planning: begun.is_planning, done, total })
+        Some(Progress { stage, is_planning: state.is_planning, done, total })
     }
 
-    fn lock(&self) -> MutexGuard<'_, Begun> {
+    fn lock(&self) -> MutexGuard<'_, ProgressState> {
         // The data is plain, so a panic in another thread cannot have left it inconsistent.
         self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -104,7 +104,7 @@ fn show_bar(control: &Control, stop: Receiver<()>) {
         let Some(progress) = control.progress() else { continue };
         if stage != Some((progress.stage, progress.is_planning)) {
             bar.set_style(if progress.total > 0 { known.clone() } else { unknown.clone() });
-            bar.set_message(progress.told().name());
+            bar.set_message(progress.displayed_stage().name());
             bar.set_length(progress.total);
             bar.reset();
             if stage.is_none() {
@@ -143,7 +143,7 @@ fn write_events(
     talk::event("progress", || {
         let (fraction, eta_seconds) = told(&now);
         let fields = json!({
-            "stage": now.told(),
+            "stage": now.displayed_stage(),
             "done": now.done,
             "total": now.total,
             "fraction": fraction,
@@ -170,7 +170,7 @@ fn write_for_agents(
 ) {
     if let (_, Some(now)) = control.news() {
         talk::line(&format!("openjd_progress: {:.2}", 100.0 * fraction(&now)));
-        let stage = now.told().name();
+        let stage = now.displayed_stage().name();
         talk::line(&format!("openjd_status: picture {} of {frames}: {stage}", place + 1));
     }
 }

@@ -36,8 +36,8 @@ enum Done {
     Environment(DecodedImage),
 }
 
-/// Results of all tasks of a plan.
-struct Results {
+/// ReadFiles of all tasks of a plan.
+struct ReadFiles {
     /// Files read, in the order of the description.
     sources: Vec<PathBuf>,
     /// Hashes of the files' bytes.
@@ -52,7 +52,7 @@ struct Results {
 impl ScenePlan {
     /// Opens every file; returns the draft, and the hash over the bytes of all files.
     pub fn realise(self, log: &mut Log) -> Result<(Draft, u64), SceneError> {
-        let Results { sources, hashes, mut meshes, mut images, environment } = self.read_files()?;
+        let ReadFiles { sources, hashes, mut meshes, mut images, environment } = self.read_files()?;
         let contents = self.contents;
         contents.place_meshes(&mut meshes, log)?;
         contents.decode_embedded(&mut images)?;
@@ -83,11 +83,11 @@ impl ScenePlan {
         Ok((draft, fnv1a(&bytes)))
     }
 
-    fn read_files(&self) -> Result<Results, SceneError> {
+    fn read_files(&self) -> Result<ReadFiles, SceneError> {
         let files = self.contents.tasks();
         let outcomes: Vec<Result<(u64, Vec<Done>), SceneError>> =
             files.par_iter().map(|(path, tasks)| use_file(path, tasks, &self.contents.budget)).collect();
-        let mut results = Results {
+        let mut read = ReadFiles {
             sources: self.sources.iter().map(|s| s.0.clone()).collect(),
             hashes: self.sources.iter().map(|s| s.1).collect(),
             meshes: vec![Vec::new(); self.contents.meshes.len()],
@@ -98,18 +98,18 @@ impl ScenePlan {
         for ((path, _), outcome) in files.iter().zip(outcomes) {
             match outcome {
                 Ok((hash, done)) => {
-                    results.sources.push(path.to_path_buf());
-                    results.hashes.push(hash);
-                    done.into_iter().for_each(|done| results.take(done));
+                    read.sources.push(path.to_path_buf());
+                    read.hashes.push(hash);
+                    done.into_iter().for_each(|done| read.take(done));
                 }
                 Err(error) => errors.push(error),
             }
         }
-        if errors.is_empty() { Ok(results) } else { Err(SceneError::all(errors)) }
+        if errors.is_empty() { Ok(read) } else { Err(SceneError::all(errors)) }
     }
 }
 
-impl Results {
+impl ReadFiles {
     fn take(&mut self, done: Done) {
         match done {
             Done::Meshes(i, meshes) => self.meshes[i] = meshes,
