@@ -36,7 +36,7 @@ enum Done {
     Environment(DecodedImage),
 }
 
-/// ReadFiles of all tasks of a plan.
+/// Content of all files of a plan.
 struct ReadFiles {
     /// Files read, in the order of the description.
     sources: Vec<PathBuf>,

@@ -29,6 +29,7 @@ pub use report::SanitizeReport;
 
 /// Fraction of triangles that may vanish by rounding without a warning. Fine models lose some.
 const MAX_LOST: f64 = 0.01;
+
 /// Repairs the draft, and moves a camera with `fits`; returns the report and the local coordinates.
 pub(crate) fn sanitize(
     draft: &mut Draft,
