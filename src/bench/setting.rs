@@ -7,7 +7,7 @@ use base::sampling::hash;
 use render::session::Session;
 use std::ops::Range;
 use transport::eye::{EyePass, EyeSettings};
-use transport::lightcut::{CoherenceLimit, Receiver, Transfer, group_coherent};
+use transport::lightcut::{CoherenceLimit, OrientedPoint, Receiver, Transfer, group_coherent};
 use transport::lights::{Family, LightNode, LightPass, LightPassSettings, LightTrees, light_pass};
 use world::World;
 use world::view::View;
@@ -73,16 +73,10 @@ impl<'w> Setting<'w> {
     pub fn groups(&self, stretch: &[usize]) -> Vec<Vec<usize>> {
         let place = |&sample: &usize| {
             let point = &self.samples.points.geometry[sample];
-            (point.position, point.normal)
+            OrientedPoint { position: point.position, normal: point.normal }
         };
-        group_coherent(
-            CoherenceLimit::CLOSE,
-            stretch.iter().copied(),
-            LANES,
-            self.world.diagonal,
-            place,
-            |_, _| true,
-        )
+        let limit = CoherenceLimit::close(self.world.diagonal);
+        group_coherent(limit, stretch.iter().copied(), LANES, place, |_, _| true)
     }
 
     /// Returns all single lights, neighbours in their tree next to each other.

@@ -4,25 +4,20 @@ use super::kept::kept;
 use base::progress::Control;
 use base::stats::{Stage, Stats};
 use std::sync::{Arc, Mutex};
-use transport::caustics::{CausticPhotons, Caustics, FirstPaths};
+use transport::caustics::{CausticPhotons, Caustics, PhotonCount, PilotPaths};
 use transport::eye::{EyePass, EyeSettings};
 use world::World;
 use world::view::View;
-
-/// Binary logarithms of the numbers of photons over the usual one: of the few that tell how many a view is worth, and
-/// the largest. Steps of two are coarse enough that most frames of a walk share their photons.
-const FEW: i32 = -4;
-const MANY: i32 = 2;
 
 /// Seed and longest path in edges that photons depend on, besides the scene.
 type PhotonsFor = (u32, u32);
 
 /// Photons by mirrors and glass, few and more.
 struct PhotonsOf {
-    first: FirstPaths,
+    first: PilotPaths,
     few: CausticPhotons,
-    /// Those made last, of those that are more than few, and the binary logarithm of their number over the usual one.
-    more: Mutex<Option<(i32, Arc<CausticPhotons>)>>,
+    /// Photons made last, of those that are more than few, and their number.
+    more: Mutex<Option<(PhotonCount, Arc<CausticPhotons>)>>,
 }
 
 impl PhotonsOf {
@@ -81,11 +76,11 @@ impl PhotonStore {
         let few = of.light(&of.few, view, settings);
         let Some(light) = &few.caustics else { return few };
         let (worth, chains) = EyePass::photon_count_factor(world, view, settings, light, control);
-        let many = (worth.log2().round() as i32).clamp(FEW, MANY);
+        let count = PhotonCount::nearest(worth);
         let mut found = few;
-        if many > FEW {
-            let make = |many: &i32| of.first.photons(world, 2.0f32.powi(*many), control);
-            found = of.light(&kept(&of.more, many, control, make), view, settings);
+        if count > PhotonCount::PILOT {
+            let make = |count: &PhotonCount| of.first.photons(world, *count, control);
+            found = of.light(&kept(&of.more, count, control, make), view, settings);
             found.paths += of.few.paths;
             found.rays += of.few.rays;
         }
@@ -97,8 +92,8 @@ impl PhotonStore {
     fn of(&self, world: &World, settings: EyeSettings, control: &Control) -> Arc<PhotonsOf> {
         let EyeSettings { seed, max_depth, .. } = settings;
         kept(&self.kept, (seed, max_depth), control, |_| {
-            let first = FirstPaths::new(world, seed, max_depth, control);
-            let few = first.photons(world, 2.0f32.powi(FEW), control);
+            let first = PilotPaths::new(world, seed, max_depth, control);
+            let few = first.photons(world, PhotonCount::PILOT, control);
             PhotonsOf { first, few, more: Mutex::default() }
         })
     }

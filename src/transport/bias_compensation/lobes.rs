@@ -1,8 +1,8 @@
-//! Light that rough metals reflect back along short rays: by their lobes, as their virtual lights radiate it.
+//! Light that rough metals reflect back along short rays: by their lobes, as their virtual lights radiate.
 //!
-//! The virtual light of a lobe gives ρ = π p s / cosθ times what a diffuse one of its flux would, p the peak of the
-//! lobe's intensity over its flux and s the share of it that leaves towards the point. So it lacks max(0, ρ - b/G) of
-//! what the diffuse one would give without a limit, where the diffuse one lacks max(0, 1 - b/G).
+//! The virtual light of a lobe gives ρ = π p s / cosθ times the light of a diffuse one of the same flux. p is the peak
+//! of the lobe's intensity over its flux, s the share of the peak that leaves towards the point. So it lacks max(0, ρ -
+//! b/G) of the unlimited light of the diffuse one, which itself lacks max(0, 1 - b/G).
 
 use super::Compensation;
 use super::near_surface::{BRIGHTER, Limit, NearSurface};
@@ -13,32 +13,32 @@ use glam::Vec3;
 use std::f32::consts::PI;
 use world::material::Bsdf;
 
-/// Factors of the irradiance from each cluster of a `cut` at a surface met, by which its weight gives what virtual
-/// lights lack; `None` if all are 1.
+/// Returns factors of the irradiance from each cluster of a `cut` at a surface met. With them, the weight of the
+/// surface gives the light that virtual lights lack. Returns `None` if all factors are 1.
 pub fn factors(c: &Compensation, near: &NearSurface, cut: &PacketCut) -> Option<Vec<Rgb>> {
     if !near.lack.by_lobes {
         return None;
     }
     let (trees, bsdf) = (c.transfer.trees, c.world.bsdf(&near.surface));
-    let usual = near.usual(&bsdf);
+    let diffuse = near.diffuse(&bsdf);
     let factor = |cluster: &PacketCluster| {
         let node = &trees.nodes[cluster.node as usize];
         let place = trees.vpls[node.representative()].position;
         let towards = if node.kind() == VplKind::Directional { place } else { place - near.surface.position };
         let lacking = near.lacking(&bsdf, towards.normalize_or_zero());
-        Rgb::select(usual.cmpgt(Rgb::ZERO), lacking / usual, Rgb::ZERO)
+        Rgb::select(diffuse.cmpgt(Rgb::ZERO), lacking / diffuse, Rgb::ZERO)
     };
     Some(cut.clusters.iter().map(factor).collect())
 }
 
 impl NearSurface {
-    /// Reflectance that the weight stands for.
-    fn usual(&self, bsdf: &Bsdf) -> Rgb {
+    /// Reflectance in the weight of the surface.
+    fn diffuse(&self, bsdf: &Bsdf) -> Rgb {
         bsdf.diffuse_albedo(self.surface.frame.to_local(self.lack.out)) * self.lack.weight()
     }
 
-    /// Returns what virtual lights lack for light from the unit vector `wi`, as a reflectance: a diffuse surface of it
-    /// would give as much.
+    /// Returns the light that virtual lights lack, for light from the unit vector `wi`, as the reflectance of a diffuse
+    /// surface that would give as much.
     fn lacking(&self, bsdf: &Bsdf, wi: Vec3) -> Rgb {
         let lack = &self.lack;
         let (cos, local) = (self.normal.dot(lack.out), self.surface.frame.to_local(wi));
@@ -58,7 +58,7 @@ impl NearSurface {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bias_compensation::near_surface::{Lack, MOST};
+    use crate::bias_compensation::near_surface::{Lack, MAX_LOBE};
     use embree::Ray;
     use scene::Camera;
     use world::testkit::*;
@@ -103,7 +103,7 @@ mod tests {
                 // Geometry terms are limited where lobes may give more.
                 assert!(given(Limit::Geometry(1.0), kept) <= given(limit, kept));
             }
-            assert_eq!(seen(surface, out, limit, MOST).usual(&bsdf), Rgb::ZERO);
+            assert_eq!(seen(surface, out, limit, MAX_LOBE).diffuse(&bsdf), Rgb::ZERO);
         }
     }
 

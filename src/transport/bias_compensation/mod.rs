@@ -1,26 +1,25 @@
-//! Bias compensation: energy lost by clamping virtual lights close to a point, recovered by short rays.
+//! Bias compensation: light lost by clamping virtual lights close to a point, found by short rays.
 //!
-//! Paper: Kollig and Keller, *Illumination in the Presence of Weak Singularities*, 2004; Herzog et al. 2009,
+//! Papers: Kollig and Keller, *Illumination in the Presence of Weak Singularities*, 2004; Herzog et al. 2009,
 //! section 6.3 and Eq. 13. Virtual lights count with min(G, b) of their geometry term G = cosθ_x cosθ_y / r²;
 //! the rest, max(0, G - b), is integrated over directions instead: E = π/N Σ max(0, 1 - b/G) L over N
-//! directions distributed by the cosine. G exceeds b only where r < b^(-1/2), so rays end there and are
+//! directions distributed by the cosine. G exceeds b only if r < b^(-1/2), so rays end there and are
 //! cheap.
 //!
-//! [`short_rays`] traces them, [`points`] adds the compensation of shading points; that of cache records is in
-//! the radiance cache, which also needs its gradients.
+//! [`short_rays`] traces them, and [`points`] adds the compensation of shading points. The radiance cache compensates
+//! its records itself, since it also needs their gradients.
 //!
-//! Virtual lights on area lights count with cosθ_x cosθ_y / max(r², A), A the area that they represent (to
-//! within a factor of 2, see [`crate::lights::size_of_area`]); rays that hit the light at r find max(0, 1 -
+//! Virtual lights on area lights count with cosθ_x cosθ_y / max(r², A). A is the area that they represent, to
+//! within a factor of 2 (see [`crate::lights::size_of_area`]). Rays that hit the light at r find max(0, 1 -
 //! r²/A) of its radiance.
 //!
-//! Deviations: light of the second kind is not in the paper, which limits no direct light. b comes from the mean
-//! intensity of the indirect virtual lights around the point, or where all light that one gives is limited, around the
-//! surface met ([`crate::lights::Intensities`]), so one that is much brighter than those may give more than the limit.
-//! Every point is compensated, also where no light of its cut happens to be clamped: the two parts complement each
-//! other on average only. All points of a picture use the same directions, in frames of their own, so that their errors
-//! are similar and no noise is visible between them; other seeds use others. Surfaces that rays meet reflect as virtual
-//! lights do: rough metals by their lobes ([`lobes`]), all else as if it were diffuse. Where the path length is
-//! limited, paths over surfaces that rays hit may have an edge more.
+//! Deviations: the paper does not limit direct light, hence not its second kind above. b comes from the mean intensity
+//! of the indirect virtual lights ([`crate::lights::Intensities`]) around the point, or around the surface met if
+//! limits are those of irradiance. So a much brighter virtual light may give more than the limit. Every point is
+//! compensated, even if no light of its cut is clamped: the two parts complement each other on average only. All points
+//! of an image share the directions, in frames of their own, so that their errors are similar and no noise is visible
+//! between them. Surfaces that rays meet reflect as virtual lights do: rough metals by their lobes ([`lobes`]), others
+//! diffusely. If the path length is limited, paths over surfaces that rays hit may have a further edge.
 //!
 //! Units: b in 1/m².
 
@@ -47,23 +46,23 @@ pub struct Compensation<'a> {
 }
 
 impl<'a> Compensation<'a> {
-    /// Compensation at all points lit by the virtual lights of a scene. The lights' seed determines the directions of
-    /// short rays.
+    /// Creates the compensation for points lit by the virtual lights of a scene. The lights' seed determines the
+    /// directions of short rays.
     pub fn new(world: &'a World, lights: &'a Lights) -> Compensation<'a> {
         let max_near_sq = lights.near_sq.iter().copied().fold(0.0, f32::max);
         Compensation { world, transfer: Transfer::of(lights, true), lights, max_near_sq }
     }
 
-    /// The bound of the geometry term that keeps the irradiance at a point from a light of the mean intensity around it
-    /// below `limit`.
+    /// Returns the bound of the geometry term at which a light of the mean intensity around a point gives it the
+    /// irradiance `limit`.
     pub fn bound(&self, x: Vec3, limit: f32) -> f32 {
         let intensity = self.lights.intensities.as_ref().map_or(0.0, |intensities| intensities.around(x));
         if intensity > 0.0 { limit / intensity } else { f32::INFINITY }
     }
 }
 
-/// Calls `chosen` with items chosen evenly along the sum of their weights, in `strata` equal parts of the
-/// `total`, and the sum of the parts that each represents.
+/// Chooses items by systematic sampling: evenly along the sum of their weights, in `strata` equal parts of the `total`.
+/// Calls `chosen` with each item and the sum of the parts that it represents.
 pub fn choose_evenly(
     weights: impl IntoIterator<Item = f32>,
     total: f32,

@@ -1,17 +1,17 @@
-//! Light that shading points lack of virtual lights close to them.
+//! Compensation of shading points for clamped virtual lights close to them.
 //!
-//! Points of a patch that may lack something trace short rays each. Irradiance is gathered at up to sixteen
-//! of the surfaces that the anchors' rays meet, and interpolated to all other surfaces met from the patch.
+//! Every point of a patch traces short rays. Irradiance is gathered at up to sixteen of the surfaces that the anchors'
+//! rays meet, and interpolated to the other surfaces met from the patch.
 //!
-//! Deviations: light that lobes reflect is not compensated, only that of bases. Cuts limit the luminance that
-//! a virtual light gives, not its geometry term: the same for lights of the mean intensity around the surface met.
+//! Deviations: only light that bases reflect is compensated, not that of lobes. Cuts limit the luminance of a virtual
+//! light, not its geometry term. Both are equal for lights of the mean intensity around the surface met.
 
 use super::near_surface::{Limit, NearSurface};
 use super::short_rays::{self, ClampedPoint};
 use super::{Compensation, choose_evenly, lobes};
 use crate::lightcut::{
     CutCounts, CutSettings, PacketCut, PacketLightcut, PacketSum, Receiver, ReceiverPacket, SampledCut,
-    Samples, frozen_luminance,
+    SampledSettings, Samples, frozen_luminance,
 };
 use crate::lights::Origin;
 use base::math::{Frame, LANES, Rgb, luminance};
@@ -19,39 +19,37 @@ use base::stats::add_fields;
 use std::f32::consts::PI;
 use world::SurfacePoint;
 
-/// Rays from each point.
+/// Number of rays per point.
 const RAYS: u32 = 16;
 
-/// Irradiance lacking, relative to the whole, below which it does not matter.
+/// Maximum lacking irradiance that is ignored, relative to the whole.
 const NEGLIGIBLE: f32 = 0.01;
 
-/// Error of the lightcuts at surfaces met, relative to the light of the points.
-///
-/// Against .3, a knot in a room gains .1 dB of the denoised picture, and 1 % of the time of cuts goes.
+/// ε of the lightcuts at surfaces met, relative to the light of the points.
 const EPSILON: f32 = 0.1;
 
-/// Maximum number of clusters in them.
+/// Maximum number of clusters in these lightcuts.
 const MAX_CUT: usize = 600;
 
-/// Maximum number of steps towards the total of which no cluster gives more than ε.
+/// Maximum number of steps towards a total of which no cluster gives more than ε.
 const MAX_STEPS: u32 = 8;
 
-/// Share of the luminance to which a VPL is clamped in them: more than elsewhere, since light lost here is lost.
+/// Clamp of these lightcuts: larger than elsewhere, since light clamped here stays lost.
 const CLAMP: f32 = 0.05;
 
-/// Samples of a cut at a surface met, where points have no cuts.
+/// Samples at a surface met, if points are lit by samples.
 const SAMPLES: Samples = Samples { whole: 16.0, least: 16.0 };
 
-/// Cosine between the normals of surfaces that face opposite ways.
+/// Maximum cosine between normals of surfaces that face opposite ways.
 const OPPOSITE: f32 = -0.5;
 
-/// Weight of surfaces that face away, relative to those of the same orientation.
+/// Weight of surfaces of perpendicular orientation, relative to those of equal orientation.
 const ASIDE: f32 = 1e-3;
 
-/// Workspace for the compensation of shading points; one a thread, so that its buffers are allocated once.
+/// Workspace for the compensation of shading points. Each thread has one, so that buffers are allocated once.
 #[derive(Default)]
 pub struct Compensator {
-    /// Surfaces met, with the lanes of the rays.
+    /// Surfaces met, with the lanes of their rays.
     met: Vec<(usize, NearSurface)>,
     packet: PacketLightcut,
     sampled: SampledCut,
@@ -59,14 +57,14 @@ pub struct Compensator {
     counts: CompensationCounts,
 }
 
-/// Work done to find light again.
+/// Work of compensation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CompensationCounts {
-    /// Short rays.
+    /// Number of short rays.
     pub rays: u64,
     /// Cuts at surfaces met.
     pub cuts: CutCounts,
-    /// Luminance of reflected light that was added to the radiance of points, summed.
+    /// Sum of the luminance of reflected light added to points.
     pub found: f64,
 }
 add_fields!(CompensationCounts { rays, cuts, found });
@@ -79,9 +77,9 @@ pub struct NearLight {
 }
 
 impl Compensator {
-    /// Adds the light that the anchors of a patch lack to their `sum` of the light of one origin or of both.
-    /// Returns the light near the patch, unless there is so little that its other points need no
-    /// compensation. With a `seed` the surfaces met are lit by samples, as their points then are.
+    /// Adds the light that the anchors of a patch lack to their `sum` of the light of one origin or of both. Returns
+    /// the light near the patch; `None` if it is so little that other points need no compensation. With a `seed`, the
+    /// surfaces met are lit by samples.
     pub fn anchors(
         &mut self,
         c: &Compensation,
@@ -117,7 +115,7 @@ impl Compensator {
         self.add_met(c, light, receivers, sum);
     }
 
-    /// Work done since this was last asked.
+    /// Returns the work since the last call.
     pub fn take_counts(&mut self) -> CompensationCounts {
         let mut cuts = std::mem::take(&mut self.packet.counts);
         cuts += std::mem::take(&mut self.sampled.counts);
@@ -148,11 +146,10 @@ impl Compensator {
         self.counts.rays += short_rays::trace(c, &clamped, RAYS, |lane, near| met.push((lane, near)));
     }
 
-    /// Irradiance at some of the surfaces met, chosen in proportion to their weights, by a cut or by samples of this
-    /// `seed`. It is added to points that have the irradiance `baseline`, so its error need only be small relative to
-    /// that.
+    /// Gathers irradiance at some of the surfaces met, chosen in proportion to their weights, by a cut or by samples of
+    /// this `seed`. Its error is relative to the points' irradiance `baseline`, to which it is added.
     fn gather(&mut self, c: &Compensation, baseline: f32, seed: Option<u32>) -> Vec<(SurfacePoint, Rgb)> {
-        // One surface after the other.
+        // Surfaces of one mesh are neighbours in this order.
         let mut order: Vec<u32> = (0..self.met.len() as u32).collect();
         order.sort_by_key(|&i| (self.met[i as usize].1.surface.mesh, self.met[i as usize].0));
         let total: f32 = self.met.iter().map(|(_, near)| luminance(near.weight)).sum();
@@ -175,10 +172,11 @@ impl Compensator {
         self.receivers.set(places.iter().map(receiver));
         let settings =
             CutSettings { epsilon: EPSILON, max_cut: MAX_CUT, clamp: Some(CLAMP), ..CutSettings::default() };
-        // Clusters tell what lobes reflect.
+        // Lobes need the clusters of a cut.
         let seed = seed.filter(|_| of_places.iter().all(|near| !near.lack.by_lobes));
         let samples = seed.and_then(|seed| {
-            self.sampled.gather(&c.transfer, c.world, &self.receivers, (&settings, &SAMPLES), seed)
+            let settings = SampledSettings { cut: &settings, samples: &SAMPLES, seed };
+            self.sampled.gather(&c.transfer, c.world, &self.receivers, &settings)
         });
         if let Some(sum) = samples {
             for ((_, irradiance), found) in places.iter_mut().zip(sum.radiance) {
@@ -217,8 +215,8 @@ impl Compensator {
 }
 
 impl NearLight {
-    /// Returns the mean irradiance of the places, weighted towards those close by of the same orientation. Places that
-    /// face the other way, which may be on the other side of a wall, count as dark.
+    /// Returns the mean irradiance of the places, weighted towards near places of similar orientation. Places that face
+    /// the other way, which may be on the other side of a wall, count as dark.
     fn interpolated(&self, near: &NearSurface, least_sq: f32) -> Rgb {
         let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
         for (place, irradiance) in &self.places {
@@ -233,8 +231,8 @@ impl NearLight {
     }
 }
 
-/// Irradiance of a lane by a `cut`, of which no indirect cluster may give more than ε of the light that it
-/// is added to: so coarse a cut leaves clusters whose representative happens to be next to the point.
+/// Returns the irradiance of a lane from a `cut`. No indirect cluster may give more than ε of the light to which it is
+/// added, since a coarse cut leaves clusters whose representative happens to be next to the point.
 fn limited(c: &Compensation, cut: &PacketCut, near: &NearSurface, lane: usize, baseline: f32) -> Rgb {
     let factors = lobes::factors(c, near, cut);
     let sum = |limit: f32| {
@@ -260,7 +258,7 @@ fn limited(c: &Compensation, cut: &PacketCut, near: &NearSurface, lane: usize, b
     irradiance
 }
 
-/// Mean luminance of the irradiance that would reflect this radiance from the base alone.
+/// Returns the mean luminance of the irradiance of which the base alone would reflect this radiance.
 fn mean_irradiance(receivers: &ReceiverPacket, radiance: &[Rgb; LANES]) -> f32 {
     let irradiance = |lane: usize| {
         let base = luminance(receivers.get(lane).base_brdf());

@@ -1,10 +1,10 @@
 //! Short rays from up to sixteen points at once, and the surfaces that they meet.
 //!
-//! Deviations: rays end at sheets of thin glass, which shadow rays to virtual lights pass: light that was clamped of
-//! lights close behind a pane is not found again.
+//! Deviations: rays end at thin sheets of glass, which shadow rays to virtual lights pass. So light clamped of virtual
+//! lights close behind a pane stays lost.
 
 use super::Compensation;
-use super::near_surface::{Lack, Limit, MOST, NearSurface};
+use super::near_surface::{Lack, Limit, MAX_LOBE, NearSurface};
 use base::math::{Frame, LANES, Rgb, lanes_in, luminance};
 use base::sampling::{cosine_hemisphere, owen_sobol_2d};
 use embree::{Hit, Hits16, Ray, Rays16};
@@ -13,34 +13,33 @@ use std::f32::consts::FRAC_1_PI;
 use world::SurfacePoint;
 use world::shadow;
 
-/// Part of the seed of the directions, which no other samples of the picture's seed share.
+/// Salt of the seed for directions.
 const SALT: u32 = 0x5eed;
 
-/// Intensity of virtual lights near a point, over the mean around it, up to which rays reach far enough where
-/// irradiances are limited.
-const MOST_AROUND: f32 = 4.0;
+/// Maximum intensity of virtual lights near a point that rays reach, relative to the mean around the point, if limits
+/// are those of irradiance.
+const MAX_TO_MEAN: f32 = 4.0;
 
-/// A point whose virtual lights are limited.
+/// Point whose virtual lights are limited.
 #[derive(Clone, Copy, Debug)]
 pub struct ClampedPoint {
     /// Position and normals.
     pub point: SurfacePoint,
     /// Limit of each indirect virtual light.
     pub limit: Limit,
-    /// True if light from area lights is to be compensated too.
+    /// True if light from area lights is compensated too.
     pub direct: bool,
 }
 
 impl Compensation<'_> {
-    /// Light that a virtual light of the scene may give, over a diffuse one of its flux, as far as short rays look.
-    fn most_of_lobes(&self) -> f32 {
-        if self.transfer.trees.profiles.lobes.is_empty() { 1.0 } else { MOST }
+    /// Returns the maximum light of a virtual light of the scene, relative to a diffuse one of the same flux.
+    fn max_of_lobes(&self) -> f32 {
+        if self.transfer.trees.profiles.lobes.is_empty() { 1.0 } else { MAX_LOBE }
     }
 }
 
-/// Calls `met` with the number of a point and a surface with light that virtual lights lack, for each of
-/// `count` rays from each point; ray by ray, and within that in order of the points, of which only sixteen
-/// count. Returns the number of rays traced.
+/// Traces `count` rays from each of the first sixteen points. Calls `met` with the number of the point and every
+/// surface with light that virtual lights lack, ray by ray, then in order of the points. Returns the number of rays.
 pub fn trace(
     c: &Compensation,
     points: &[ClampedPoint],
@@ -51,9 +50,9 @@ pub fn trace(
     let reach_sq = |p: &ClampedPoint| {
         let bound = match p.limit {
             Limit::Geometry(bound) => bound,
-            Limit::Irradiance(limit) => c.bound(p.point.position, limit) / MOST_AROUND,
+            Limit::Irradiance(limit) => c.bound(p.point.position, limit) / MAX_TO_MEAN,
         };
-        let clamped = if bound > 0.0 && bound.is_finite() { c.most_of_lobes() / bound } else { 0.0 };
+        let clamped = if bound > 0.0 && bound.is_finite() { c.max_of_lobes() / bound } else { 0.0 };
         clamped.max(if p.direct { c.max_near_sq } else { 0.0 })
     };
     let valid = (0..points.len()).filter(|&l| reach_sq(&points[l]) > 0.0).fold(0u16, |mask, l| mask | 1 << l);
@@ -71,7 +70,7 @@ pub fn trace(
             let start = shadow::ray_from(position, geometric_normal, frames[lane].to_world(local));
             rays.set(lane, &Ray { t_far: reach_sq(&points[lane]).sqrt(), ..start });
         }
-        // Alike as far as the points' frames are.
+        // The rays of a packet are as coherent as the frames of the points.
         for lane in lanes_in(c.world.accel.closest_hit16(&rays, valid, true, &mut hits)) {
             if let Some(near) =
                 weighed(c, &hits.get(lane), frames[lane].to_world(local), local.z, &points[lane])
@@ -83,7 +82,7 @@ pub fn trace(
     u64::from(valid.count_ones() * count)
 }
 
-/// The surface hit, unless it gives nothing that is lacking.
+/// Returns the surface hit, unless no light is lacking there.
 fn weighed(
     c: &Compensation,
     hit: &Hit,
@@ -94,14 +93,14 @@ fn weighed(
     let distance = hit.t;
     let bound = match point.limit {
         Limit::Geometry(bound) => bound,
-        // Of the virtual lights that the surface met has.
+        // Virtual lights around the surface met determine the bound.
         Limit::Irradiance(limit) => c.bound(point.point.position + direction * distance, limit),
     };
     let bound = if bound > 0.0 { bound } else { f32::INFINITY };
     let dist_sq = distance * distance;
     let lit_sq = if point.direct { c.lights.near_sq[hit.geometry as usize] } else { 0.0 };
-    // G is no more than this.
-    if c.most_of_lobes() * cos <= bound * dist_sq && lit_sq <= dist_sq {
+    // An upper bound of G, before the surface is looked up.
+    if c.max_of_lobes() * cos <= bound * dist_sq && lit_sq <= dist_sq {
         return None;
     }
     let world = c.world;
@@ -121,7 +120,7 @@ fn weighed(
     if surface.frame.normal.dot(direction) > 0.0 {
         near.normal = -near.normal;
     }
-    if c.most_of_lobes() * geometry > bound {
+    if c.max_of_lobes() * geometry > bound {
         let (bsdf, out) = (world.bsdf(&surface), surface.frame.to_local(-direction));
         near.lack.by_lobes = bsdf.reflected_lobes(out).next().is_some();
         near.weight = bsdf.diffuse_albedo(out) * (near.lack.weight() * FRAC_1_PI);
@@ -160,15 +159,16 @@ mod tests {
 
     /// Estimates of the reflected and of the emitted light that a point below the ceiling lacks, by many rays.
     fn lacking(limit: Limit, intensities: Option<&Intensities>, near_sq: f32) -> [f32; 2] {
-        estimates(limit, intensities, near_sq, (4096, 0))
+        estimates(limit, intensities, near_sq, 4096, 0)
     }
 
-    /// The same by π/N Σ of so many rays of a seed.
+    /// Estimates by π/N Σ over `count` rays of a seed.
     fn estimates(
         limit: Limit,
         intensities: Option<&Intensities>,
         near_sq: f32,
-        (count, seed): (u32, u32),
+        count: u32,
+        seed: u32,
     ) -> [f32; 2] {
         let world = ceiling();
         let trees = LightTrees::build(&[], Vec::new(), world.diagonal, Family::default(), &Control::new());
@@ -204,7 +204,7 @@ mod tests {
     fn errors_of_few_directions_average_out_over_seeds() {
         const SEEDS: u32 = 256;
         let root = 0.4f32;
-        let by = |seed| estimates(Limit::Geometry((root / HEIGHT).powi(2)), None, 0.0, (4, seed))[0];
+        let by = |seed| estimates(Limit::Geometry((root / HEIGHT).powi(2)), None, 0.0, 4, seed)[0];
         let expected = ALBEDO * (1.0 - root).powi(2);
         let errors: Vec<f32> = (0..SEEDS).map(|seed| by(seed) / expected - 1.0).collect();
         let mean = errors.iter().sum::<f32>() / SEEDS as f32;

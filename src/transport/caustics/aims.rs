@@ -1,52 +1,55 @@
-//! Emitters, and the directions from each, from which paths are worth beginning: learned from a few paths.
+//! Distribution of photon paths over emitters and their directions, learned from pilot paths.
 //!
-//! The unit square of the random numbers that aim the paths of an emitter is divided into cells. Paths begin in cells
-//! in proportion to the photons that the first paths in the cell and around it have left, or could have, and a little
-//! everywhere.
+//! The unit square of the random numbers that direct the paths of an emitter is divided into cells. Paths begin in a
+//! cell in proportion to the photons of pilot paths in and around the cell. Cells without photons keep a small weight.
 
 use crate::emission::{EmissionNumbers, EmissionSample, PhotonEmitter};
 use base::sampling::Sampler;
 use glam::Vec2;
 use world::light::DiscreteDistribution;
 
-/// Cells along the edge of an emitter's square: as many as the number of all cells allows.
+/// Candidates for the number of cells along the edge of an emitter's square; the first that fits is taken.
 const SIDES: [usize; 5] = [16, 8, 4, 2, 1];
+
+/// Maximum number of cells of all emitters.
 const MAX_CELLS: usize = 1 << 14;
 
-/// Weight of a path in a cell, and of one that may meet a mirror or glass, over that of a photon.
-const PATH: f32 = 0.01;
-const AIMED: f32 = 0.05;
+/// Weight of a path in a cell, relative to the weight of a photon.
+const PATH_WEIGHT: f32 = 0.01;
+
+/// Weight of a path that may meet a mirror or glass, relative to the weight of a photon.
+const AIMED_WEIGHT: f32 = 0.05;
 
 /// Cells from which paths begin.
 pub struct Aims<'a, 'w> {
     emitter: &'a PhotonEmitter<'w>,
     side: usize,
     by_weight: DiscreteDistribution,
-    /// By cell: paths that begin there over those that would in proportion to flux.
+    /// Number of paths by cell, relative to the number in proportion to flux.
     boosts: Vec<f32>,
 }
 
-/// Yield of the first paths, by cell.
+/// Yield of the pilot paths of a cell.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Yield {
-    /// Paths that may meet a mirror or glass.
+pub struct CellYield {
+    /// Number of paths that may meet a mirror or glass.
     pub aimed: f32,
-    /// Photons.
+    /// Number of photons.
     pub photons: f32,
 }
 
-/// The beginning of a path, with the flux of paths that begin as [`Aims`] has them.
+/// Beginning of a path in a cell. Its flux accounts for the distribution of cells.
 pub struct Aimed {
-    /// The beginning.
+    /// Beginning of the path.
     pub emission: EmissionSample,
-    /// Its cell.
+    /// Cell of the beginning.
     pub cell: usize,
-    /// Paths that begin in the cell over those that would in proportion to flux.
+    /// Number of paths in the cell, relative to the number in proportion to flux.
     pub boost: f32,
 }
 
 impl<'a, 'w> Aims<'a, 'w> {
-    /// Cells in proportion to flux.
+    /// Creates cells in proportion to flux.
     pub fn even(emitter: &'a PhotonEmitter<'w>) -> Aims<'a, 'w> {
         let count = emitter.shares().len();
         let fits = |side: &usize| count * side * side <= MAX_CELLS;
@@ -63,8 +66,8 @@ impl<'a, 'w> Aims<'a, 'w> {
         self.boosts.len()
     }
 
-    /// Cells as `found` by `paths` paths that began evenly, by cell.
-    pub fn learned(&self, found: &[Yield], paths: f32) -> Aims<'a, 'w> {
+    /// Returns cells as learned from `paths` pilot paths in proportion to flux, which `found` a yield in each cell.
+    pub fn learned(&self, found: &[CellYield], paths: f32) -> Aims<'a, 'w> {
         let side = self.side;
         let cells = side * side;
         let shares: Vec<f32> = self.emitter.shares().collect();
@@ -74,7 +77,7 @@ impl<'a, 'w> Aims<'a, 'w> {
             let near = |at: usize| at.saturating_sub(1)..(at + 2).min(side);
             let around = near(y).flat_map(|y| near(x).map(move |x| first + y * side + x));
             let photons: f32 = around.map(|cell| found[cell].photons).sum();
-            photons / 9.0 + AIMED * found[cell].aimed + PATH * paths * even(cell)
+            photons / 9.0 + AIMED_WEIGHT * found[cell].aimed + PATH_WEIGHT * paths * even(cell)
         };
         let by_weight = DiscreteDistribution::new((0..self.cells()).map(weight));
         let boost = |cell| match even(cell) {
@@ -85,7 +88,7 @@ impl<'a, 'w> Aims<'a, 'w> {
         Aims { emitter: self.emitter, side, by_weight, boosts }
     }
 
-    /// Begins a path; `None` where an emitter is dark.
+    /// Samples the beginning of a path; `None` if the emitter is dark there.
     pub fn sample(&self, sampler: &mut Sampler) -> Option<Aimed> {
         let (cell, _) = self.by_weight.sample(sampler.next_1d());
         let mut numbers = EmissionNumbers::new(sampler);

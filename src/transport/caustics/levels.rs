@@ -1,5 +1,5 @@
-//! Photons by the radii of their discs: all those of a level have the same, in pixels, so that those around a point are
-//! found without a search for the nearest.
+//! Photons by the radii of their discs. All discs of a level have one radius in pixels, so that a range query finds the
+//! photons around a point.
 
 use super::photons::CausticPhoton;
 use base::kd_tree::{KdTree, WideKdTree};
@@ -8,53 +8,53 @@ use base::sampling::hash;
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// Number of levels; the discs of each are twice as wide as those of the one before.
+/// Number of levels. Discs are twice as wide from level to level.
 const LEVELS: usize = 9;
 
-/// Level of the discs of radius 1, in units of [`super::RADIUS`].
-const MIDDLE: i32 = 4;
+/// Level of the discs of the standard radius ([`super::RADIUS`]).
+const STANDARD_LEVEL: i32 = 4;
 
-/// Photons in a disc of the least level, over those in ordinary ones, above which they are thinned.
-const MANY: f32 = 2.0;
+/// Number of photons in a disc of the smallest level above which photons are thinned, relative to ordinary discs.
+const MAX_CROWD: f32 = 2.0;
 
-/// Greatest distance of a photon from the plane of the surface, in radii.
+/// Maximum distance of a photon from the plane of the surface, in radii of the disc.
 const FLATNESS: f32 = 0.3;
 
 /// Photons with discs of one width.
-pub struct Level {
+pub struct DiscLevel {
     photons: Vec<CausticPhoton>,
-    /// Their positions, sixteen at a time; at infinity beyond the last.
+    /// Positions of the photons, in packets of sixteen; at infinity beyond the last photon.
     positions: Vec<Vec3x16>,
     index: KdTree,
     tree: WideKdTree,
-    /// Their radius in units.
+    /// Radius of the discs, relative to the standard radius.
     scale: f32,
 }
 
-/// Divides photons by the radii that they want, in units that `unit` gives.
-pub fn levels(photons: &[CausticPhoton], unit: impl Fn(&CausticPhoton) -> f32) -> Vec<Level> {
+/// Divides photons into levels by their radii. `unit` returns the standard radius at a photon.
+pub fn levels(photons: &[CausticPhoton], unit: impl Fn(&CausticPhoton) -> f32) -> Vec<DiscLevel> {
     let mut by_level: [Vec<CausticPhoton>; LEVELS] = Default::default();
     for (photon, number) in photons.iter().zip(0..) {
         let radius = photon.radius / unit(photon);
         let level = (0..LEVELS - 1).find(|level| radius <= scale(*level)).unwrap_or(LEVELS - 1);
         let crowd = (scale(level) / radius).powi(2);
-        let kept = if level == 0 { (MANY / crowd).min(1.0) } else { 1.0 };
+        let kept = if level == 0 { (MAX_CROWD / crowd).min(1.0) } else { 1.0 };
         if kept < 1.0 && hash(number, 0x7417) as f32 >= kept * 4_294_967_296.0 {
             continue;
         }
         by_level[level].push(CausticPhoton { flux: photon.flux / kept, ..*photon });
     }
     let levels = by_level.into_iter().enumerate().filter(|(_, photons)| !photons.is_empty());
-    levels.map(|(level, photons)| Level::new(&photons, scale(level))).collect()
+    levels.map(|(level, photons)| DiscLevel::new(&photons, scale(level))).collect()
 }
 
-/// Radius of the discs of a level in units.
+/// Radius of the discs of a level, relative to the standard radius.
 fn scale(level: usize) -> f32 {
-    2.0f32.powi(level as i32 - MIDDLE)
+    2.0f32.powi(level as i32 - STANDARD_LEVEL)
 }
 
-impl Level {
-    fn new(photons: &[CausticPhoton], scale: f32) -> Level {
+impl DiscLevel {
+    fn new(photons: &[CausticPhoton], scale: f32) -> DiscLevel {
         let (index, order) = KdTree::build(photons.iter().map(|photon| photon.position));
         let photons: Vec<CausticPhoton> = order.iter().map(|i| photons[*i as usize]).collect();
         let positions: Vec<Vec3> = photons.iter().map(|photon| photon.position).collect();
@@ -65,10 +65,11 @@ impl Level {
             packet
         };
         let positions = positions.chunks(LANES).map(packet).collect();
-        Level { photons, positions, index, tree, scale }
+        DiscLevel { photons, positions, index, tree, scale }
     }
 
-    /// Calls `visit` with the photons in whose discs a point of a surface is, and the value of their kernels there.
+    /// Calls `visit` with every photon whose disc contains a point of a surface, and with the value of its kernel
+    /// there. `unit` is the standard radius at the point.
     #[inline]
     pub fn visit(&self, point: Vec3, normal: Vec3, unit: f32, mut visit: impl FnMut(&CausticPhoton, f32)) {
         let radius = self.scale * unit;

@@ -1,6 +1,6 @@
-//! Photons that come to surfaces by mirrors and glass alone.
+//! Paths of photons that reach surfaces by mirrors and glass alone.
 
-use super::aims::{Aimed, Aims, Yield};
+use super::aims::{Aimed, Aims, CellYield};
 use crate::emission::{EmissionSample, MAX_CORRECTION, PhotonEmitter};
 use base::math::{Rgb, luminance};
 use base::parallel::ShortRuns;
@@ -12,27 +12,30 @@ use std::ops::Range;
 use world::shadow;
 use world::{World, beyond};
 
-/// Number of paths traced by one task.
+/// Number of paths per task.
 const CHUNK: u32 = 1024;
 
-/// Number of tasks that the first paths are divided into: they tell where photons come from.
-const FIRST: u32 = 256;
+/// Number of tasks of pilot paths.
+const PILOT_TASKS: u32 = 256;
 
-/// Number of tasks after which the numbers found are looked at.
+/// Number of tasks between two tests of the limits.
 const WAVE: u32 = 64;
 
-/// Number of photons without which the first paths have found nothing.
+/// Minimum number of photons of pilot paths; with fewer, photons are not traced.
 const MIN_FOUND: usize = 8;
 
-/// Numbers of photons, paths and rays of which the first to be reached ends the tracing, for one time as many photons
-/// as usual.
+/// Standard number of photons.
 const PHOTONS: f32 = 300_000.0;
-const PATHS: f32 = 2_000_000.0;
-const RAYS: f32 = 1_200_000.0;
 
-/// Share of the flux that mirrors and glass send on below which photons are not worth it, and paths are to find all;
-/// but not of light that these cannot find.
-const LITTLE: f32 = 3e-4;
+/// Maximum number of paths for the standard number of photons.
+const MAX_PATHS: f32 = 2_000_000.0;
+
+/// Maximum number of rays for the standard number of photons.
+const MAX_RAYS: f32 = 1_200_000.0;
+
+/// Minimum share of the flux that mirrors and glass send on. Below it paths find all the light, unless the scene has
+/// emitters that no path can meet.
+const MIN_FLUX: f32 = 3e-4;
 
 /// Maximum number of edges of a path: only a closed scene of mirrors reaches it.
 const MAX_EDGES: u32 = 256;
@@ -45,154 +48,163 @@ const MAX_SURVIVAL: f32 = 0.98;
 pub struct CausticPhoton {
     /// Position.
     pub position: Vec3,
-    /// Unit vector back along its path.
+    /// Unit vector back along the path.
     pub towards_light: Vec3,
     /// Flux in watts.
     pub flux: Rgb,
-    /// Luminance of the emitter's radiance along the path's first edge; infinite of emitters that no path can meet.
+    /// Luminance of the emitter's radiance along the path's first edge; infinite for emitters that no path can meet.
     pub radiance: f32,
-    /// Edges of its path; those before and behind a sheet that light passes straight count as one.
+    /// Number of edges of the path. Edges before and behind a sheet that light passes straight count as one.
     pub edges: u32,
-    /// Radius of a disc around it in which there are some; 0 until it is known.
+    /// Radius of the photon's disc; 0 until it is known.
     pub radius: f32,
 }
 
 /// Photons in the order of their paths.
 #[derive(Default)]
-pub struct Traced {
+pub struct CausticTrace {
     /// The photons.
     pub photons: Vec<CausticPhoton>,
-    /// Number of paths that those which left photons are among, if all paths began in proportion to flux.
+    /// Number of paths that would leave as many photons if all paths began in proportion to flux.
     pub even_paths: f32,
     /// Number of paths.
     pub paths: u64,
-    /// Closest-hit queries.
+    /// Number of closest-hit queries.
     pub rays: u64,
 }
 
 /// Photons of one task.
 #[derive(Default)]
-struct Chunk {
+struct CausticChunk {
     photons: Vec<CausticPhoton>,
     /// Sum of the photons' inverse boosts.
     evenly: f32,
     rays: u64,
-    /// Cells of the paths that may have met a mirror or glass, with the numbers of their photons.
+    /// Cells of the paths that may have met a mirror or glass, and the number of photons of each path.
     cells: Vec<(usize, usize)>,
 }
 
-/// The first paths.
-pub struct First {
-    /// Their yield, by cell of [`Aims`]; empty if photons are not worth it.
-    found: Vec<Yield>,
-    /// Closest-hit queries.
+/// Yield of the pilot paths.
+pub struct PilotYield {
+    /// Yield by cell of [`Aims`]; empty if photons are not to be traced.
+    cells: Vec<CellYield>,
+    /// Number of closest-hit queries.
     pub rays: u64,
 }
 
-/// Number of the first paths.
-pub const FIRST_PATHS: u32 = CHUNK * FIRST;
+/// Number of pilot paths.
+pub const PILOT_PATHS: u32 = CHUNK * PILOT_TASKS;
 
-/// Traces the first paths, whose photons are not kept.
-pub fn first(world: &World, emitter: &PhotonEmitter, seed: u32, max_edges: u32, control: &Control) -> First {
-    let even = Aims::even(emitter);
-    let (mut found, mut rays) = (vec![Yield::default(); even.cells()], 0);
-    let (mut flux, mut count) = (0.0, 0);
-    let tasks = (hash(seed, 0xca57), 0..FIRST);
-    for chunk in chunks(world, &even, tasks, max_edges.min(MAX_EDGES), control) {
-        rays += chunk.rays;
-        count += chunk.photons.len();
-        flux += chunk.photons.iter().map(|photon| luminance(photon.flux)).sum::<f32>();
-        for (cell, photons) in chunk.cells {
-            found[cell].aimed += 1.0;
-            found[cell].photons += photons as f32;
-        }
-    }
-    let share = flux / (FIRST_PATHS as f32 * emitter.power());
-    let is_little = !(share >= LITTLE) && !world.scene.has_small_lights();
-    if count < MIN_FOUND || is_little {
-        found.clear();
-    }
-    First { found, rays }
-}
-
-/// Traces photons from `emitter`, `many` times as many as usual, of paths of at most `max_edges` edges; none if they
-/// are not worth it, fewer if `control` is cancelled.
-pub fn trace(
-    world: &World,
-    (emitter, first): (&PhotonEmitter, &First),
-    (seed, many): (u32, f32),
+/// Tracing of caustic photons in a scene.
+pub struct CausticTracer<'a, 'w> {
+    world: &'w World,
+    emitter: &'a PhotonEmitter<'w>,
+    seed: u32,
     max_edges: u32,
-    control: &Control,
-) -> Traced {
-    let mut traced = Traced::default();
-    if first.found.is_empty() {
-        return traced;
-    }
-    let [photons, paths, rays] = [PHOTONS, PATHS, RAYS].map(|usual| (usual * many) as u64);
-    let aims = Aims::even(emitter).learned(&first.found, FIRST_PATHS as f32);
-    let (mut wave, mut evenly) = (0, 0.0);
-    while (traced.photons.len() as u64) < photons
-        && traced.paths < paths
-        && traced.rays < rays
-        && !control.is_cancelled()
-    {
-        let tasks = wave * WAVE..(wave + 1) * WAVE;
-        for chunk in chunks(world, &aims, (hash(seed, 0xca58), tasks), max_edges.min(MAX_EDGES), control) {
-            traced.photons.extend(chunk.photons);
-            traced.rays += chunk.rays;
-            evenly += chunk.evenly;
-        }
-        wave += 1;
-        traced.paths += u64::from(WAVE * CHUNK);
-    }
-    let share = 1.0 / traced.paths.max(1) as f32;
-    for photon in &mut traced.photons {
-        photon.flux *= share;
-    }
-    let count = traced.photons.len() as f32;
-    traced.even_paths = traced.paths as f32 * count / f32::max(evenly, f32::MIN_POSITIVE);
-    traced
+    control: &'a Control,
 }
 
-/// Photons of some tasks, of paths that begin by `aims`.
-fn chunks(
-    world: &World,
-    aims: &Aims,
-    (seed, tasks): (u32, Range<u32>),
-    max_edges: u32,
-    control: &Control,
-) -> Vec<Chunk> {
-    let trace = |task: u32| {
-        let mut chunk = Chunk::default();
-        for path in task * CHUNK..(task + 1) * CHUNK {
-            if control.is_cancelled() {
-                break;
+impl<'a, 'w> CausticTracer<'a, 'w> {
+    /// Traces from `emitter` paths of at most `max_edges` edges, fewer of them if `control` is cancelled.
+    pub fn new(
+        world: &'w World,
+        emitter: &'a PhotonEmitter<'w>,
+        seed: u32,
+        max_edges: u32,
+        control: &'a Control,
+    ) -> CausticTracer<'a, 'w> {
+        CausticTracer { world, emitter, seed, max_edges: max_edges.min(MAX_EDGES), control }
+    }
+
+    /// Traces the pilot paths. Their photons are only counted.
+    pub fn pilot(&self) -> PilotYield {
+        let even = Aims::even(self.emitter);
+        let (mut cells, mut rays) = (vec![CellYield::default(); even.cells()], 0);
+        let (mut flux, mut count) = (0.0, 0);
+        for chunk in self.chunks(&even, hash(self.seed, 0xca57), 0..PILOT_TASKS) {
+            rays += chunk.rays;
+            count += chunk.photons.len();
+            flux += chunk.photons.iter().map(|photon| luminance(photon.flux)).sum::<f32>();
+            for (cell, photons) in chunk.cells {
+                cells[cell].aimed += 1.0;
+                cells[cell].photons += photons as f32;
             }
-            let sampler = &mut Sampler::new(seed, path);
-            let Some(Aimed { emission, cell, boost }) = aims.sample(sampler) else { continue };
-            if !world.specular.may_meet_delta_lobes(&emission.ray) {
-                continue;
-            }
-            let before = chunk.photons.len();
-            chunk.rays += follow(world, emission, sampler, max_edges, &mut chunk.photons);
-            let left = chunk.photons.len() - before;
-            chunk.evenly += left as f32 / boost;
-            chunk.cells.push((cell, left));
         }
-        chunk
-    };
-    tasks.into_par_iter().one_by_one().map(trace).collect()
+        let share = flux / (PILOT_PATHS as f32 * self.emitter.power());
+        let paths_suffice = !(share >= MIN_FLUX) && !self.world.scene.has_small_lights();
+        if count < MIN_FOUND || paths_suffice {
+            cells.clear();
+        }
+        PilotYield { cells, rays }
+    }
+
+    /// Traces photons, `factor` times the standard number; none if the pilot paths advise against it.
+    pub fn photons(&self, pilot: &PilotYield, factor: f32) -> CausticTrace {
+        let mut traced = CausticTrace::default();
+        if pilot.cells.is_empty() {
+            return traced;
+        }
+        let [photons, paths, rays] =
+            [PHOTONS, MAX_PATHS, MAX_RAYS].map(|standard| (standard * factor) as u64);
+        let aims = Aims::even(self.emitter).learned(&pilot.cells, PILOT_PATHS as f32);
+        let (mut wave, mut evenly) = (0, 0.0);
+        while (traced.photons.len() as u64) < photons
+            && traced.paths < paths
+            && traced.rays < rays
+            && !self.control.is_cancelled()
+        {
+            for chunk in self.chunks(&aims, hash(self.seed, 0xca58), wave * WAVE..(wave + 1) * WAVE) {
+                traced.photons.extend(chunk.photons);
+                traced.rays += chunk.rays;
+                evenly += chunk.evenly;
+            }
+            wave += 1;
+            traced.paths += u64::from(WAVE * CHUNK);
+        }
+        let share = 1.0 / traced.paths.max(1) as f32;
+        for photon in &mut traced.photons {
+            photon.flux *= share;
+        }
+        let count = traced.photons.len() as f32;
+        traced.even_paths = traced.paths as f32 * count / f32::max(evenly, f32::MIN_POSITIVE);
+        traced
+    }
+
+    /// Traces the paths of some tasks, which begin as `aims` say.
+    fn chunks(&self, aims: &Aims, seed: u32, tasks: Range<u32>) -> Vec<CausticChunk> {
+        let trace = |task: u32| {
+            let mut chunk = CausticChunk::default();
+            for path in task * CHUNK..(task + 1) * CHUNK {
+                if self.control.is_cancelled() {
+                    break;
+                }
+                let sampler = &mut Sampler::new(seed, path);
+                let Some(Aimed { emission, cell, boost }) = aims.sample(sampler) else { continue };
+                if !self.world.specular.may_meet_delta_lobes(&emission.ray) {
+                    continue;
+                }
+                let before = chunk.photons.len();
+                chunk.rays += follow(self.world, emission, sampler, self.max_edges, &mut chunk.photons);
+                let left = chunk.photons.len() - before;
+                chunk.evenly += left as f32 / boost;
+                chunk.cells.push((cell, left));
+            }
+            chunk
+        };
+        tasks.into_par_iter().one_by_one().map(trace).collect()
+    }
 }
 
-/// Follows a path by delta lobes and keeps a photon at every surface behind one that has other lobes, too. Returns the
-/// number of rays.
+/// Follows a path by delta lobes. Behind the first mirror or glass, keeps a photon at every surface with other lobes.
+/// Returns the number of rays.
 fn follow(
     world: &World,
-    EmissionSample { mut ray, mut flux, radiance }: EmissionSample,
+    first: EmissionSample,
     sampler: &mut Sampler,
     max_edges: u32,
     photons: &mut Vec<CausticPhoton>,
 ) -> u64 {
+    let EmissionSample { mut ray, mut flux, radiance } = first;
     let (mut edges, mut is_bent) = (1, false);
     for rays in 1..=u64::from(MAX_EDGES) {
         let Some(surface) = world.intersect(&ray) else { return rays };

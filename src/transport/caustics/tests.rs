@@ -1,8 +1,8 @@
 //! Photons against what carries no noise: their flux from learned beginnings, and the light of many on a plane.
 
-use super::aims::{Aims, Yield};
+use super::aims::{Aims, CellYield};
 use super::levels::levels;
-use super::photons::{CausticPhoton, first, trace};
+use super::photons::{CausticPhoton, CausticTracer};
 use super::*;
 use base::sampling::{Sampler, owen_sobol_2d};
 use scene::{Camera, DeltaLight};
@@ -20,7 +20,7 @@ fn learned_beginnings_carry_the_flux_of_even_ones() {
     let world = world(scene);
     let emitter = PhotonEmitter::new(&world).expect("there are lamps");
     let even = Aims::even(&emitter);
-    let wild = |cell: usize| Yield { aimed: (cell % 7) as f32, photons: (cell % 3) as f32 };
+    let wild = |cell: usize| CellYield { aimed: (cell % 7) as f32, photons: (cell % 3) as f32 };
     let learned = even.learned(&(0..even.cells()).map(wild).collect::<Vec<_>>(), 100.0);
     // Flux downwards, and all of it.
     let flux = |aims: &Aims| {
@@ -86,15 +86,15 @@ fn photons_come_by_mirrors_and_glass_alone_and_scenes_without_have_none() {
         world(scene)
     };
     let control = Control::new();
-    let none = FirstPaths::new(&lamp_room(diffuse(Rgb::ONE)), 0, u32::MAX, &control);
+    let none = PilotPaths::new(&lamp_room(diffuse(Rgb::ONE)), 0, u32::MAX, &control);
     assert_eq!(none.paths(), 0);
     let world = lamp_room(glass(1.5));
     let emitter = PhotonEmitter::new(&world).expect("there is a lamp");
-    let first = first(&world, &emitter, 0, u32::MAX, &control);
-    let photons =
-        |many: f32, max_edges: u32| trace(&world, (&emitter, &first), (0, many), max_edges, &control);
+    let tracer = |max_edges| CausticTracer::new(&world, &emitter, 0, max_edges, &control);
+    let pilot = tracer(u32::MAX).pilot();
+    let photons = |factor: f32, max_edges: u32| tracer(max_edges).photons(&pilot, factor);
     let traced = photons(1.0, u32::MAX);
-    // Of the light on the ball all goes on, in the end.
+    // All light on the ball leaves it in the end.
     let cos = (1.0f32 - (0.3f32 / 0.8).powi(2)).sqrt();
     let expected = 2.0 * PI * (1.0 - cos);
     let flux: f32 = traced.photons.iter().map(|photon| luminance(photon.flux)).sum();

@@ -1,7 +1,7 @@
 //! Contributions of the emitters to the visible indirect light, and shares of the paths in proportion to them.
 //!
 //! In proportion to power, nearly all photons go to a bright hall beside a dim room, or to a plain of which a window
-//! shows a little. The lamp in the room then has a few virtual lights, each so bright that it is clamped.
+//! shows a little. The emitter in the room then has a few virtual lights, each so bright that it is clamped.
 //!
 //! Paper: Keller, *Instant Radiosity*, 1997. Deviations: emitters share paths in proportion to their contributions to
 //! the image, not to power. Short pilot paths from visible points estimate the contributions.
@@ -28,7 +28,7 @@ const POWER_SHARE: f32 = 0.25;
 const MIN_GAIN: f64 = 1.5;
 
 /// Light of an emitter at the beginning of a pilot path.
-struct Contribution {
+struct EmitterContribution {
     emitter: u32,
     luminance: f64,
 }
@@ -53,7 +53,8 @@ pub(super) fn shares(
         });
         found
     };
-    let paths: Vec<Vec<Contribution>> = starts.par_iter().in_short_runs().enumerate().map(from).collect();
+    let paths: Vec<Vec<EmitterContribution>> =
+        starts.par_iter().in_short_runs().enumerate().map(from).collect();
     let all = by_emitter(&paths, by_power.len(), |_| true)?;
     // Paths with even numbers choose shares, and two other sets of paths measure the variance: no path measures itself.
     let chosen = mixed(by_power, &by_emitter(&paths, by_power.len(), |path| path % 2 == 0)?);
@@ -69,11 +70,11 @@ pub(super) fn shares(
 /// Returns each emitter's share of the light found by some of the paths; `None` if they found no light. Light counts
 /// relative to that of its path plus the mean, since errors are as visible in darker places.
 fn by_emitter(
-    paths: &[Vec<Contribution>],
+    paths: &[Vec<EmitterContribution>],
     emitters: usize,
     is_wanted: impl Fn(usize) -> bool,
 ) -> Option<Vec<f64>> {
-    let light = |path: &Vec<Contribution>| path.iter().map(|c| c.luminance).sum::<f64>();
+    let light = |path: &Vec<EmitterContribution>| path.iter().map(|c| c.luminance).sum::<f64>();
     let mean = paths.iter().map(light).sum::<f64>() / paths.len() as f64;
     let mut shares = vec![0.0; emitters];
     for (_, path) in paths.iter().enumerate().filter(|(number, _)| is_wanted(*number)) {
@@ -85,7 +86,7 @@ fn by_emitter(
     (all > 0.0 && all.is_finite()).then_some(shares)
 }
 
-/// Returns shares of the paths in proportion to contributions, but for those that stay in proportion to power.
+/// Returns shares of the paths: [`POWER_SHARE`] in proportion to power, the rest in proportion to contributions.
 fn mixed(by_power: &DiscreteDistribution, contributions: &[f64]) -> DiscreteDistribution {
     let share = |(i, contribution): (usize, &f64)| {
         (1.0 - POWER_SHARE) * *contribution as f32 + POWER_SHARE * by_power.probability(i)
@@ -94,7 +95,12 @@ fn mixed(by_power: &DiscreteDistribution, contributions: &[f64]) -> DiscreteDist
 }
 
 /// Adds the contributions of sixteen light samples at a vertex.
-fn add_light(world: &World, vertex: &PilotVertex, sampler: &mut Sampler, found: &mut Vec<Contribution>) {
+fn add_light(
+    world: &World,
+    vertex: &PilotVertex,
+    sampler: &mut Sampler,
+    found: &mut Vec<EmitterContribution>,
+) {
     let (mut choices, mut places) = ([0.0; LANES], Vec2x16::default());
     for (lane, choice) in choices.iter_mut().enumerate() {
         *choice = sampler.next_1d();
@@ -112,7 +118,7 @@ fn add_light(world: &World, vertex: &PilotVertex, sampler: &mut Sampler, found: 
             false => shadow::ray_from(x, normal, direction),
         };
         if y > 0.0 && y.is_finite() && is_free(world, ray) {
-            found.push(Contribution { emitter: chosen[lane], luminance: f64::from(y) });
+            found.push(EmitterContribution { emitter: chosen[lane], luminance: f64::from(y) });
         }
     }
 }

@@ -3,7 +3,7 @@
 //! Units: flux in watts by channel, for a single path; to be divided by the number of paths.
 
 use super::lit_sphere::LitSphere;
-use super::target::Target;
+use super::target::EmissionTarget;
 use super::{EmissionNumbers, EmissionSample};
 use base::math::{Frame, luminance};
 use base::sampling::uniform_sphere;
@@ -19,14 +19,14 @@ pub struct PhotonEmitter<'w> {
     pub(super) world: &'w World,
     /// Emitters by flux, as luminance.
     pub(super) by_power: DiscreteDistribution,
-    pub(super) target: Target,
+    pub(super) target: EmissionTarget,
     lit: LitSphere,
 }
 
 impl<'w> PhotonEmitter<'w> {
     /// Prepares sampling; `None` if the scene has no emitter or no surface.
     pub fn new(world: &'w World) -> Option<PhotonEmitter<'w>> {
-        let target = Target::new(world)?;
+        let target = EmissionTarget::new(world)?;
         let emitters = &world.emitters;
         let lit = LitSphere::new(world, &target);
         let areas = emitters.areas_and_spheres().map(|(light, sphere)| lit.power(light, sphere));

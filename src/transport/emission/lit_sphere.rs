@@ -1,7 +1,7 @@
 //! Sphere around all surfaces that do not emit: half of the photons of area lights outside it are sent towards it.
 
 use super::EmissionNumbers;
-use super::target::{MIN_CONE_DISTANCE, Target, TowardsTarget};
+use super::target::{EmissionTarget, MIN_CONE_DISTANCE, TowardsTarget};
 use base::math::Frame;
 use base::sampling::{Sampler, cosine_hemisphere};
 use glam::Vec3;
@@ -17,11 +17,11 @@ const MIN_COS: f32 = 0.05;
 
 /// Sphere around the surfaces that do not emit, or around the camera if these surfaces reach very far. `None` if there
 /// are no such surfaces or no area lights.
-pub(super) struct LitSphere(Option<Target>);
+pub(super) struct LitSphere(Option<EmissionTarget>);
 
 impl LitSphere {
     /// Creates the sphere for a scene with this `target`.
-    pub fn new(world: &World, target: &Target) -> LitSphere {
+    pub fn new(world: &World, target: &EmissionTarget) -> LitSphere {
         if world.emitters.areas.is_empty() {
             return LitSphere(None);
         }
@@ -32,13 +32,13 @@ impl LitSphere {
         }
         let (centre, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
         if target.core < target.radius && !(radius < target.core) {
-            return LitSphere(Some(Target { radius: target.core, ..*target }));
+            return LitSphere(Some(EmissionTarget { radius: target.core, ..*target }));
         }
-        LitSphere(radius.is_finite().then_some(Target { centre, radius, core: radius }))
+        LitSphere(radius.is_finite().then_some(EmissionTarget { centre, radius, core: radius }))
     }
 
     /// Returns the sphere, and the cone from a point outside it towards it.
-    fn towards(&self, point: &AreaPoint) -> Option<(&Target, TowardsTarget)> {
+    fn towards(&self, point: &AreaPoint) -> Option<(&EmissionTarget, TowardsTarget)> {
         let sphere = self.0.as_ref()?;
         sphere.towards(point.position).map(|towards| (sphere, towards))
     }
@@ -47,8 +47,9 @@ impl LitSphere {
     /// the photons of points outside go anywhere. `around` is the centre and the squared radius of a sphere around the
     /// light.
     pub fn power(&self, light: &AreaLight, around: (Vec3, f32)) -> f32 {
-        let is_inside =
-            |lit: &Target| around.0.distance(lit.centre) + around.1.sqrt() < MIN_CONE_DISTANCE * lit.radius;
+        let is_inside = |lit: &EmissionTarget| {
+            around.0.distance(lit.centre) + around.1.sqrt() < MIN_CONE_DISTANCE * lit.radius
+        };
         if self.0.as_ref().is_none_or(is_inside) {
             return light.power;
         }

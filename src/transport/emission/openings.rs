@@ -10,7 +10,7 @@
 
 use super::entries::{LightEntry, entries};
 use super::far::FarLights;
-use super::target::Target;
+use super::target::EmissionTarget;
 use super::{EmissionNumbers, EmissionSample};
 use base::math::Frame;
 use base::sampling::{hash, uniform_disk};
@@ -60,7 +60,12 @@ pub(super) struct Openings<'w> {
 impl<'w> Openings<'w> {
     /// Finds the aims for light to the points `seen` by the eye; `None` if there are too few entries or the gain is
     /// small.
-    pub fn new(world: &'w World, target: &Target, seen: &[SurfacePoint], seed: u32) -> Option<Openings<'w>> {
+    pub fn new(
+        world: &'w World,
+        target: &EmissionTarget,
+        seen: &[SurfacePoint],
+        seed: u32,
+    ) -> Option<Openings<'w>> {
         if seen.is_empty() {
             return None;
         }
@@ -91,7 +96,7 @@ impl<'w> Openings<'w> {
 
     /// Chooses the share of photons that go anywhere: the one with the least mean flux of photons to `entries`.
     /// Measures the gain. None of `entries` is among those that the aims were made of.
-    fn choose_share(&mut self, target: &Target, entries: &[LightEntry]) {
+    fn choose_share(&mut self, target: &EmissionTarget, entries: &[LightEntry]) {
         let gain = |anywhere: f32| {
             let (mut flux, mut all) = (0.0f64, 0.0f64);
             for LightEntry { place, source, towards, weight } in entries {
@@ -112,7 +117,7 @@ impl<'w> Openings<'w> {
 
     /// Density, by area across the line, with which a photon that goes anywhere comes from `source` along the line
     /// through `place`.
-    fn anywhere(&self, target: &Target, source: usize, place: Vec3, towards: Vec3) -> f32 {
+    fn anywhere(&self, target: &EmissionTarget, source: usize, place: Vec3, towards: Vec3) -> f32 {
         self.lights.probability(source) * target.density(place, towards)
     }
 
@@ -128,7 +133,7 @@ impl<'w> Openings<'w> {
     }
 
     /// Samples the beginning of a path, with the flux of paths that all begin infinitely far.
-    pub fn sample(&self, target: &Target, numbers: &EmissionNumbers) -> Option<EmissionSample> {
+    pub fn sample(&self, target: &EmissionTarget, numbers: &EmissionNumbers) -> Option<EmissionSample> {
         let EmissionNumbers { place: u_place, direction: u_direction, side: u_pair } = *numbers;
         let goes_anywhere = u_pair < self.share;
         let (source, aim) = if goes_anywhere {

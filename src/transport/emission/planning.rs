@@ -22,7 +22,7 @@ const GAIN_TO_REDUCE: f32 = 2.0;
 const MIN_UNAIMED_SHARE: f32 = 0.25;
 
 /// Plan, and the work that it took.
-pub(super) struct Planned<'w> {
+pub(super) struct PhotonPlanning<'w> {
     pub plan: EmitterPlan<'w>,
     /// Number of closest-hit queries of the trials.
     pub rays: u64,
@@ -35,11 +35,11 @@ pub(super) fn plan<'w>(
     emitter: &PhotonEmitter<'w>,
     settings: &PhotonSettings,
     max_edges: u32,
-) -> Planned<'w> {
+) -> PhotonPlanning<'w> {
     let PhotonSettings { photons, seen, seed, .. } = *settings;
     let photons = photons as usize;
     let unaimed = EmitterPlan::by_power(emitter, photons);
-    let mut planned = Planned { plan: unaimed, rays: 0, gain: 0.0 };
+    let mut planned = PhotonPlanning { plan: unaimed, rays: 0, gain: 0.0 };
     let mut anywhere = 1.0;
     if let Some(aims) = Openings::new(emitter.world, &emitter.target, seen, seed) {
         let (gain, share) = (aims.gain, aims.share);

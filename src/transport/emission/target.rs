@@ -1,4 +1,5 @@
-//! Target of light from outside the scene: photons of emitters that are far from all surfaces are sent towards it.
+//! EmissionTarget of light from outside the scene: photons of emitters that are far from all surfaces are sent towards
+//! it.
 //!
 //! Units: lengths in the scene's unit.
 
@@ -17,8 +18,8 @@ const CORE: f32 = 8.0;
 /// Minimum distance of an emitter for a cone towards the target, in radii of the target.
 pub(super) const MIN_CONE_DISTANCE: f32 = 2.0;
 
-/// Target of light from outside the scene: a disc for emitters that are infinitely far, a sphere for others.
-pub(super) struct Target {
+/// EmissionTarget of light from outside the scene: a disc for emitters that are infinitely far, a sphere for others.
+pub(super) struct EmissionTarget {
     pub centre: Vec3,
     /// Radius of a disc or sphere that covers all surfaces.
     pub radius: f32,
@@ -28,23 +29,23 @@ pub(super) struct Target {
     pub core: f32,
 }
 
-impl Target {
+impl EmissionTarget {
     /// Creates the target around the surfaces of a scene; `None` if there are none.
-    pub fn new(world: &World) -> Option<Target> {
+    pub fn new(world: &World) -> Option<EmissionTarget> {
         let (low, high) = world.accel.bounds()?;
         let (centre, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
         let core = CORE * world.scene.vicinity;
         if core > 0.0 && core < radius {
             // The centre is the camera, the local origin.
-            return Some(Target { centre: Vec3::ZERO, radius: radius + centre.length(), core });
+            return Some(EmissionTarget { centre: Vec3::ZERO, radius: radius + centre.length(), core });
         }
-        Some(Target { centre, radius, core: radius })
+        Some(EmissionTarget { centre, radius, core: radius })
     }
 
-    /// Density by area, on a plane across the unit vector `towards` a light, with which [`Target::ray`] samples a line
-    /// of light through `place`.
+    /// Density by area, on a plane across the unit vector `towards` a light, with which [`EmissionTarget::ray`] samples
+    /// a line of light through `place`.
     pub fn density(&self, place: Vec3, towards: Vec3) -> f32 {
-        let Target { centre, radius, core } = *self;
+        let EmissionTarget { centre, radius, core } = *self;
         let area = if core == radius {
             PI * radius * radius
         } else {
@@ -63,7 +64,7 @@ impl Target {
     /// Returns a ray along `direction` through a point of the disc that faces it, and the inverse of the point's
     /// density by area.
     pub fn ray(&self, direction: Vec3, u: Vec2) -> (Ray, f32) {
-        let Target { centre, radius, core } = *self;
+        let EmissionTarget { centre, radius, core } = *self;
         let (d, area) = if core == radius {
             (uniform_disk(u) * radius, PI * radius * radius)
         } else if u.x < 0.5 {
@@ -98,7 +99,7 @@ impl TowardsTarget {
     }
 }
 
-impl Target {
+impl EmissionTarget {
     /// Returns the cone from an emitter at `position` to the target; `None` if the emitter is inside or near.
     pub fn towards(&self, position: Vec3) -> Option<TowardsTarget> {
         let to_centre = self.centre - position;

@@ -43,7 +43,7 @@ impl CausticLookups {
         if end.path % self.samples >= self.looking {
             return Rgb::ZERO;
         }
-        let found = caustics.reflected(&end.surface, &end.bsdf, end.out, (end.distance, end.depth));
+        let found = caustics.reflected(&end.surface, &end.bsdf, end.out, end.distance, end.depth);
         let scale = self.samples as f32 / self.looking as f32;
         let radiance = found.radiance * scale;
         let seen = luminance(end.throughput * radiance);

@@ -1,5 +1,4 @@
-//! Light through profiles: the edge of a spot light's cone, its falloff by angle, and lobes, with the derivatives of
-//! the falloff as the receiver moves.
+//! Attenuation by profiles of spot lights and lobes, with its derivatives as the receiver moves.
 
 use super::incidence::Incidence;
 use crate::lights::{LobeProfile, SpotProfile};
@@ -19,7 +18,7 @@ impl Incidence<f32> {
         if share >= 1.0 {
             return Some(self);
         }
-        // Between the cones: linear in the angle ψ, whose cosine is axis · away.
+        // Between the cones the falloff is linear in the angle ψ, whose cosine is axis · away.
         let cos = axis.dot(away);
         let sin = (1.0 - cos * cos).max(1e-12).sqrt();
         let per_cos = 1.0 / (sin * (spot.outer_angle - spot.inner_angle));
@@ -27,7 +26,7 @@ impl Incidence<f32> {
         Some(self.attenuated(share, [slope(0), slope(1)]))
     }
 
-    /// Applies a lobe; `None` where it sends nothing.
+    /// Applies a lobe; `None` if it sends no light in this direction.
     #[inline]
     pub(super) fn through_lobe(self, frame: &Frame, lobe: &LobeProfile) -> Option<Incidence<f32>> {
         let (share, slope) = lobe.share_and_slope(frame.to_world(-Vec3::from(self.direction)));

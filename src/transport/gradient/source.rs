@@ -35,15 +35,15 @@ struct Connection<T> {
     inverse: T,
     /// Cosine at the emitter; 1 for omni lights.
     cos: T,
-    /// Derivative of `cos` by an offset of unit length, tangential part: the normal's, or 0.
+    /// Tangential part of the derivative of `cos` by the offset, at unit distance: that of the normal; 0 for omni
+    /// lights.
     normal: [T; 2],
     /// True if the distance is below the minimum.
     too_near: bool,
 }
 
 impl<T: Real + PartialOrd> LocalVpl<T> {
-    /// Returns the light that arrives, with its first derivatives; `None` if there is none: on the light
-    /// itself, and behind it.
+    /// Returns the arriving light with its first derivatives; `None` at the light itself and behind it.
     ///
     /// Smaller distances are clamped to `min_dist_sq`, and then the light is constant.
     #[inline]
@@ -55,7 +55,7 @@ impl<T: Real + PartialOrd> LocalVpl<T> {
                 let factor = cos / min_dist_sq;
                 return Some(Incidence { direction: omega, inv_dist: zero, factor, gradient: [zero; 2] });
             }
-            // Falloff r⁻² and, for oriented lights, one power more from the cosine.
+            // The falloff is r⁻². The cosine of oriented lights adds one power.
             let power = if self.is_oriented() { T::of(3.0) } else { T::of(2.0) };
             let square = inverse * inverse;
             let slope = |axis: usize| square * inverse * (normal[axis] + power * cos * omega[axis]);
@@ -69,7 +69,7 @@ impl<T: Real + PartialOrd> LocalVpl<T> {
         Some(Incidence { direction: towards, inv_dist: zero, factor: T::of(1.0), gradient: [zero; 2] })
     }
 
-    /// Second derivatives uu, uv and vv of the irradiance.
+    /// Returns the second derivatives uu, uv and vv of the irradiance.
     #[inline]
     pub fn irradiance_hessian(&self, min_dist_sq: T) -> [T; 3] {
         let none = [T::of(0.0); 3];
@@ -81,8 +81,7 @@ impl<T: Real + PartialOrd> LocalVpl<T> {
         if too_near || !(z > T::of(0.0)) {
             return none;
         }
-        // Falloff of the irradiance over the constant height: 3 powers of the distance, and one from the
-        // cosine.
+        // At constant height, the irradiance falls off with 3 powers of the distance. The cosine adds one.
         let (same, crossed) = if self.is_oriented() { (4.0, 24.0) } else { (3.0, 15.0) };
         let (same, crossed, four) = (T::of(same), T::of(crossed) * cos, T::of(4.0));
         let square = inverse * inverse;
@@ -120,8 +119,8 @@ impl<T: Real + PartialOrd> LocalVpl<T> {
 }
 
 impl LocalVpl<f32> {
-    /// Transforms a virtual light to the frame `frame` at `position`, without its profile, which
-    /// [`Incidence::of_vpl`] applies.
+    /// Transforms a virtual light to the frame `frame` at `position`, without its profile, which [`Incidence::of_vpl`]
+    /// applies.
     #[inline]
     pub fn of_vpl(frame: &Frame, position: Vec3, vpl: &Vpl, kind: VplKind) -> LocalVpl<f32> {
         let local = |v: Vec3| frame.to_local(v).to_array();
@@ -136,8 +135,7 @@ impl LocalVpl<f32> {
 }
 
 impl Incidence<f32> {
-    /// Computes the light arriving from a virtual light at `position` in `frame`; profiles are looked up
-    /// in `profiles`.
+    /// Computes the light that arrives from a virtual light at `position` in `frame`, with its profile from `profiles`.
     #[inline]
     pub fn of_vpl(
         frame: &Frame,

@@ -1,24 +1,22 @@
-//! Sums the light of many directions into coefficients, eight directions at a time.
+//! Sum of the light of many directions as coefficients, eight directions at a time.
 //!
 //! Paper: Herzog et al. 2009, equations 5 and 6.
-//! Deviations: the receiver's cosine is part of the reflection, not of the light, so that the series is of
-//! radiance.
-//! Units: radiance per band function: intensity times [`Incidence::factor`].
+//! Deviations: the receiver's cosine is part of the reflection, not of the light, so the series represents radiance.
+//! Units: intensity times [`Incidence::factor`].
 
-use super::CHANNELS;
-use super::basis::{MAX_BANDS, MAX_FUNCTIONS, for_each};
+use super::basis::{CHANNELS, MAX_BANDS, MAX_FUNCTIONS, for_each};
 use super::radiance::{BLOCKS, Radiance};
 use crate::gradient::Incidence;
 use base::math::{F32x8, Rgb, WIDTH};
 
-/// Coefficients under construction. The last bits depend on the order in which light is added, so add it in a
+/// Coefficients under construction. Rounding depends on the order in which light is added, so callers must add it in a
 /// fixed order.
 pub struct Accumulator {
     bands: usize,
     batch: Incidence8,
     /// Number of the batch's lanes in use.
     filled: usize,
-    /// By function: value and derivatives along u and v, three channels each; lanes are summed last.
+    /// Value and derivatives along u and v by function, three channels each. Lanes are summed at the end.
     sums: Box<[[F32x8; BLOCKS]; MAX_FUNCTIONS]>,
 }
 
@@ -43,14 +41,14 @@ impl Incidence8 {
 }
 
 impl Accumulator {
-    /// Creates an accumulator for series of 1 to 8 bands (more or fewer are clamped).
+    /// Creates an accumulator for series of `bands` bands, which is clamped to 1 to 8.
     pub fn new(bands: usize) -> Accumulator {
         let bands = bands.clamp(1, MAX_BANDS);
         let sums = Box::new([[F32x8::ZERO; BLOCKS]; MAX_FUNCTIONS]);
         Accumulator { bands, batch: Incidence8::EMPTY, filled: 0, sums }
     }
 
-    /// Resets it to a number of bands.
+    /// Resets the accumulator to a number of bands.
     pub fn reset(&mut self, bands: usize) {
         self.bands = bands.clamp(1, MAX_BANDS);
         self.sums.fill([F32x8::ZERO; BLOCKS]);
@@ -78,7 +76,7 @@ impl Accumulator {
         }
     }
 
-    /// Returns the sum of the light added since the last call, and resets it.
+    /// Returns the sum of the light added since the last call, and resets the sum.
     pub fn finish(&mut self) -> Radiance {
         if self.filled > 0 {
             self.flush();

@@ -1,23 +1,27 @@
-//! The basis functions and their derivatives as the receiver moves.
+//! Basis functions and their derivatives as the receiver moves.
 //!
 //! With ω = (x, y, z), t = 2z - 1 and σ² = 4z / (1 + z), H_l^m = N Q_l^m(t) · {Re, Im} (σ(x + iy))^|m|, Q_l^m
 //! = dᵐP_l / dtᵐ, N² = (2l + 1)(l - m)! / (2π(l + m)!), twice that for m ≠ 0. Q is computed by the recurrence
-//! in l of its normalised form, its derivative is Q of the next order.
+//! in l of its normalised form. Its derivative is Q of the next order.
 //!
-//! A source in direction ω at distance |q| is seen in another direction once the receiver has moved; the
-//! derivative by such motion along the tangent u is, with C = {Re, Im} (x + iy)^m and |∂ω| = 1 / |q|,
+//! The direction ω of a source at distance |q| changes as the receiver moves. The derivative by motion along the
+//! tangent u is, with C = {Re, Im} (x + iy)^m and |∂ω| = 1 / |q|,
 //! |q| ∂_u H = N { ω_u σᵐ C [ mQ + 2zQ' + mQ / (2(1 + z)) ] - σᵐ Q ∂C/∂u }.
 //!
 //! Paper: Gautron et al. 2004, equations 3 and 4.
-//! Deviations: theirs is written in angles, singular at the pole and, differentiated, at the horizon; this is
-//! the same function as a polynomial in x and y, finite everywhere with its derivatives.
+//! Deviations: the paper uses angles, which are singular at the pole and, differentiated, at the horizon. Here the
+//! functions are polynomials in x and y, which are finite everywhere with their derivatives.
 
 use base::math::Real;
 use std::f64::consts::PI;
 
+/// Number of colour channels.
+pub const CHANNELS: usize = 3;
+
 /// Maximum number of bands of an expansion.
 pub const MAX_BANDS: usize = 8;
-/// Number of functions in so many bands.
+
+/// Number of functions in [`MAX_BANDS`] bands.
 pub const MAX_FUNCTIONS: usize = MAX_BANDS * MAX_BANDS;
 
 /// Index of the function of degree `l` and order `m`, |m| <= l.
@@ -26,13 +30,13 @@ pub const fn index(l: usize, m: isize) -> usize {
     (l * l + l).wrapping_add_signed(m)
 }
 
-/// Constants of the recurrence, `[l][m]`.
+/// Constants of the recurrence by `[l][m]`.
 struct Recurrence {
-    /// N Q_m^m, a constant.
+    /// Constant N Q_m^m.
     start: [f64; MAX_BANDS],
     /// Factor of t times the function one degree lower.
     first: [[f64; MAX_BANDS]; MAX_BANDS],
-    /// Factor of the function two degrees lower, subtracted.
+    /// Factor of the function two degrees lower, which is subtracted.
     second: [[f64; MAX_BANDS]; MAX_BANDS],
     /// N Q' in units of the normalised function of the next order.
     derivative: [[f64; MAX_BANDS]; MAX_BANDS],
@@ -75,7 +79,7 @@ const RECURRENCE: Recurrence = {
     r
 };
 
-/// Square root at compile time, by Newton's method from above.
+/// Computes a square root at compile time, by Newton's method from above.
 const fn sqrt(x: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;
@@ -91,8 +95,8 @@ const fn sqrt(x: f64) -> f64 {
 
 /// Calls `f(k, H, |q| ∂_u H, |q| ∂_v H)` for each function of the first `BANDS` bands at the direction ω.
 ///
-/// Directions below the horizon, as rounding produces them, are moved to it. Arguments that `f` does not use
-/// are not computed.
+/// Directions slightly below the horizon, which rounding produces, are moved to it. The compiler removes arguments that
+/// `f` does not use.
 #[inline(always)]
 pub fn for_each<T: Real, const BANDS: usize>(omega: [T; 3], mut f: impl FnMut(usize, T, T, T)) {
     const { assert!(BANDS >= 1 && BANDS <= MAX_BANDS) };
@@ -132,7 +136,7 @@ pub fn for_each<T: Real, const BANDS: usize>(omega: [T; 3], mut f: impl FnMut(us
             column[l] = q;
             let slope = T::of(RECURRENCE.derivative[l][m]) * next_order[l];
             let radial = scaling * q + (z + z) * slope;
-            // By the Cauchy-Riemann equations the derivatives by y are those by x, exchanged.
+            // The derivatives by y are the exchanged derivatives by x (Cauchy-Riemann equations).
             let (along, across) = (re * radial, im * radial);
             f(index(l, m as isize), q * re, x * along - q * re_x, y * along + q * im_x);
             if m > 0 {
@@ -143,7 +147,7 @@ pub fn for_each<T: Real, const BANDS: usize>(omega: [T; 3], mut f: impl FnMut(us
     }
 }
 
-/// Evaluates the first `bands`² functions at ω, `bands` in 1..=8; the rest is 0.
+/// Evaluates the first `bands`² functions at ω, `bands` in 1..=8; other values are 0.
 pub fn evaluate<T: Real>(bands: usize, omega: [T; 3]) -> [T; MAX_FUNCTIONS] {
     let mut values = [T::of(0.0); MAX_FUNCTIONS];
     for_each::<T, MAX_BANDS>(omega, |k, h, _, _| values[k] = h);

@@ -1,30 +1,31 @@
-//! A lobe's coefficients by outgoing direction.
+//! Coefficients of a lobe by outgoing direction.
 //!
-//! Paper: Herzog et al. 2009, section 4, precompute them per outgoing direction without stating their number.
-//! Deviations: as many as linear interpolation needs, by subdivision; and over √(1 - cos θ) = √2 sin θ/2, in
-//! which coefficients are smooth: over cos θ those of order 1 begin like a square root at normal incidence.
+//! Paper: Herzog et al. 2009, section 4, which precomputes them per outgoing direction without stating the number.
+//! Deviations: subdivision adds as many directions as linear interpolation needs. The parameter is √(1 - cos θ) = √2
+//! sin θ/2, in which coefficients are smooth. As functions of cos θ, coefficients of order 1 would begin like a square
+//! root at normal incidence.
 
-use super::CHANNELS;
-use super::basis::{MAX_BANDS, MAX_FUNCTIONS};
+use super::basis::{CHANNELS, MAX_BANDS, MAX_FUNCTIONS};
 use super::kernel::{even_index, repeated};
-use super::projection::{Projection, Quadrature};
+use super::projection::{KernelProjection, Quadrature};
 use super::radiance::stride;
 use rayon::prelude::*;
 use world::material::DullLobe;
 
-/// Number of intervals to start with.
+/// Initial number of intervals.
 const COARSEST: usize = 8;
-/// Maximum number of halvings of these.
+
+/// Maximum number of halvings of an interval.
 const MAX_HALVINGS: usize = 8;
 
-/// Coefficients at some angles, with linear interpolation between.
+/// Coefficients at some outgoing directions, with linear interpolation.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LobeTable {
     /// Floats per channel, a multiple of the vectors' width.
     stride: usize,
-    /// Number of channels: 1 if all agree, else 3.
+    /// Number of channels: 1 if all channels are equal, otherwise 3.
     channels: usize,
-    /// Parameters of the nodes, ascending from 0 to 1.
+    /// Parameters of the tabulated directions, ascending from 0 to 1.
     nodes: Vec<f32>,
     /// Coefficients by node, channel and function, in the layout of [`super::kernel::Profile`].
     coefficients: Vec<f32>,
@@ -37,25 +38,25 @@ fn parameter(cos_o: f32) -> f32 {
 }
 
 impl LobeTable {
-    /// Tabulates the first `bands` of a lobe so that the error of the interpolated kernel is at most
-    /// `tolerance` of its norm.
+    /// Tabulates the first `bands` of a lobe so that the error of the interpolated kernel is at most `tolerance`,
+    /// relative to its norm.
     pub fn new(lobe: DullLobe, bands: usize, tolerance: f64, quadrature: &Quadrature) -> LobeTable {
         let bands = bands.clamp(1, MAX_BANDS);
         let used = even_index(bands, 0);
         let project = |node: f64| quadrature.project(lobe, 1.0 - node * node);
         let coarsest = |i: usize| i as f64 / COARSEST as f64;
-        let mut samples: Vec<(f64, Projection)> =
+        let mut samples: Vec<(f64, KernelProjection)> =
             (0..=COARSEST).into_par_iter().map(|i| (coarsest(i), project(coarsest(i)))).collect();
         // Intervals that may have to be split, by the index of their lower end.
         let mut open: Vec<usize> = (0..COARSEST).collect();
         for _ in 0..MAX_HALVINGS {
-            let halved: Vec<(f64, Projection, bool)> = open
+            let halved: Vec<(f64, KernelProjection, bool)> = open
                 .par_iter()
                 .map(|&i| {
                     let ((a, below), (b, above)) = (&samples[i], &samples[i + 1]);
                     let middle = 0.5 * (a + b);
                     let projection = project(middle);
-                    // The middle is kept in any case, and half the interval has a quarter of the error.
+                    // The middle is added in any case, and half the interval has a quarter of the error.
                     let split = midpoint_error(below, above, &projection, used) > 4.0 * tolerance;
                     (middle, projection, split)
                 })
@@ -123,8 +124,14 @@ fn cut_off(mut row: [f32; MAX_FUNCTIONS], bands: usize) -> impl Iterator<Item = 
     row.into_iter().take(stride(bands))
 }
 
-/// Returns the distance of the mean of two kernels from the one between, relative to the latter's norm.
-fn midpoint_error(below: &Projection, above: &Projection, middle: &Projection, used: usize) -> f64 {
+/// Returns the distance between the mean of two kernels and the kernel in the middle, relative to the norm of the
+/// latter.
+fn midpoint_error(
+    below: &KernelProjection,
+    above: &KernelProjection,
+    middle: &KernelProjection,
+    used: usize,
+) -> f64 {
     let mut error_sq = 0.0;
     for c in 0..CHANNELS {
         for k in 0..used {

@@ -1,18 +1,16 @@
 //! Representation of each material's reflection in cache records: irradiance, a series, or none.
 //!
-//! The kernel of a surface is base + lobes. The base, Lambertian and perhaps under a coat, varies with the
-//! height of the light only, by the coat's transmittance; it takes one row of functions and has hardly any
-//! error. All parts are projected with reflectance 1: colour and texture are factors on each, looked up at
-//! the point.
+//! The kernel of a surface is base + lobes. The base is Lambertian, perhaps under a coat. It varies only with the
+//! height of the light, by the coat's transmittance. So it takes one row of functions and has hardly any error. All
+//! parts are projected with reflectance 1. Colours and textures are factors on each part, looked up at the point.
 //!
-//! Deviations: the paper sets the number of bands by hand; here it is the minimum that keeps the error of the
-//! kernel within the tolerance, where each texture has the value of its mean.
+//! Deviations: the paper sets the number of bands by hand. Here it is the minimum at which the error of the kernel is
+//! within the tolerance, with every texture replaced by its mean.
 
-use super::CHANNELS;
-use super::basis::{MAX_BANDS, MAX_FUNCTIONS, index};
+use super::basis::{CHANNELS, MAX_BANDS, MAX_FUNCTIONS, index};
 use super::kernel::{Profile, even_index};
 use super::lobe_table::LobeTable;
-use super::projection::{Projection, Quadrature, ZonalProjection};
+use super::projection::{KernelProjection, Quadrature, ZonalProjection};
 use base::setting::{DOWN, settings};
 use rayon::prelude::*;
 use scene::MaterialId;
@@ -25,15 +23,15 @@ settings! {
     /// Accuracy of series. Errors are in the L2 norm over the incoming directions, relative to the whole kernel (base
     /// and lobes), averaged over outgoing inclinations up to 75°.
     pub struct SeriesSettings in "Records" {
-        /// Roughness α from which lobes are lit by records, 2 for none: sharper ones are lit by cuts.
+        /// Minimum roughness α of lobes that records light; 2 for none. Cuts light sharper lobes.
         min_alpha: f32 = 0.25 => [
             .named("series_alpha").positive().values(&["0.15", "0.2", "0.25", "0.35", "0.5", "2"])
         ];
-        /// Error below which a lobe's series gets no further bands, relative to the whole reflection.
+        /// Error of a lobe's series below which it gets no further bands, relative to the whole reflection.
         error: f64 = 0.05 => [.named("series_band_error").positive().scaled(&DOWN)];
-        /// Largest error of a lobe's series for which it is lit by records, relative to the whole reflection.
+        /// Maximum error of a lobe's series for which records light it, relative to the whole reflection.
         max_error: f64 = 0.12 => [.named("series_error").at_least(0.0).scaled(&DOWN)];
-        /// Largest error by interpolation between outgoing directions.
+        /// Maximum error of the interpolation between outgoing directions.
         interpolation_error: f64 = 0.002;
     }
 }
@@ -41,11 +39,11 @@ settings! {
 /// Content of the cache records of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Caching {
-    /// Irradiance is enough: there is no rough lobe (or only such sharp ones as the eye pass follows).
+    /// Irradiance: there is no rough lobe, or only lobes so sharp that the eye pass follows them.
     Irradiance,
-    /// A series of so many bands.
+    /// Series with this number of bands.
     Series(u8),
-    /// Too glossy for records, or of textured roughness.
+    /// Nothing: the material is too glossy for records, or its roughness is textured.
     PerSample,
 }
 
@@ -57,7 +55,7 @@ pub struct MaterialSeries {
 
 struct MaterialEntry {
     caching: Caching,
-    /// Lobes that the series stands for.
+    /// Lobes in the series.
     lobes: Vec<LobeUse>,
     /// Transmittance of the coat times cosine: functions of order 0.
     base: [f32; MAX_BANDS],
@@ -66,9 +64,9 @@ struct MaterialEntry {
 /// A lobe of a material.
 #[derive(Clone, Copy)]
 struct LobeUse {
-    /// Its place in the material.
+    /// Place in the material.
     slot: usize,
-    /// Number among the different lobes of all materials; once the tables are made, of its table.
+    /// Index among the different lobes of all materials; once the tables are made, index of the table.
     kind: usize,
 }
 
@@ -77,7 +75,7 @@ impl MaterialSeries {
     pub fn new(materials: &Materials, settings: &SeriesSettings) -> MaterialSeries {
         let quadrature = Quadrature::standard();
         let averages: Vec<Bsdf> = materials.averages().collect();
-        // One lobe of each kind, and for each material the slots and kinds of its own.
+        // Different lobes of all materials, and the lobes of each material.
         let mut kinds: Vec<DullLobe> = Vec::new();
         let mut used: Vec<Vec<LobeUse>> = Vec::with_capacity(averages.len());
         for bsdf in &averages {
@@ -90,7 +88,7 @@ impl MaterialSeries {
             let lobes = bsdf.dull_lobes();
             used.push(lobes.map(|(slot, lobe)| LobeUse { slot, kind: kind_of(lobe) }).collect());
         }
-        let tests: Vec<Vec<Projection>> = kinds
+        let tests: Vec<Vec<KernelProjection>> = kinds
             .par_iter()
             .map(|lobe| {
                 INCLINATIONS.par_iter().map(|d| quadrature.project(*lobe, d.to_radians().cos())).collect()
@@ -116,7 +114,7 @@ impl MaterialSeries {
             let uses_it = |s: &&mut MaterialEntry| s.lobes.iter().any(|lobe| lobe.kind == kind);
             let users: Vec<&mut MaterialEntry> = surfaces.iter_mut().filter(uses_it).collect();
             let Some(bands) = users.iter().filter_map(|s| s.caching.bands()).max() else { continue };
-            // There are no more tables than kinds, so none met later in this loop is taken for this one.
+            // There are no more tables than kinds, so an index of a table is not mistaken for a later kind.
             let uses = users.into_iter().flat_map(|s| &mut s.lobes);
             uses.filter(|lobe| lobe.kind == kind).for_each(|lobe| lobe.kind = lobes.len());
             lobes.push(LobeTable::new(*lobe, bands, settings.interpolation_error, &quadrature));
@@ -135,7 +133,7 @@ impl MaterialSeries {
         self.materials.iter().map(|surface| surface.caching)
     }
 
-    /// True if any material is to have a series.
+    /// True if any material has a series.
     pub fn any_series(&self) -> bool {
         self.cachings().any(|caching| caching.bands().is_some())
     }
@@ -147,7 +145,7 @@ impl MaterialSeries {
     }
 
     /// Returns the kernel of a material for outgoing directions at `cos_o` > 0 to the normal, at a point
-    /// whose BSDF is `bsdf`. Where [`MaterialSeries::caching`] is not a series it is that of the base alone.
+    /// with the BSDF `bsdf`. If [`MaterialSeries::caching`] is not a series, the kernel is that of the base alone.
     #[inline]
     pub fn profile(&self, bsdf: &Bsdf, cos_o: f32) -> Profile {
         let surface = &self.materials[bsdf.material().0 as usize];
@@ -166,7 +164,7 @@ impl MaterialSeries {
             for l in 0..MAX_BANDS {
                 row[index(l, 0)] += base[c] * surface.base[l];
             }
-            // The table may have more bands, for another material.
+            // The table may have more bands, which another material needs.
             row[bands * bands..].fill(0.0);
         }
         Profile { coefficients }
@@ -184,27 +182,27 @@ impl Caching {
 }
 
 impl MaterialEntry {
-    /// For a material with no lobe to expand.
+    /// Creates the entry of a material without lobes to expand.
     fn without_series(bsdf: &Bsdf, caching: Caching, quadrature: &Quadrature) -> MaterialEntry {
         let base = project_base(bsdf, quadrature).coefficients.map(|c| c as f32);
         MaterialEntry { caching, lobes: Vec::new(), base }
     }
 
-    /// For a material with lobes to expand, of roughness `alpha` or more, given the projections of each kind of lobe at
-    /// [`INCLINATIONS`].
+    /// Creates the entry of a material with `lobes` to expand, the sharpest of roughness `alpha`. `tests` are the
+    /// projections of each kind of lobe at [`INCLINATIONS`].
     fn new(
         bsdf: &Bsdf,
         lobes: &[LobeUse],
         alpha: f32,
-        tests: &[Vec<Projection>],
+        tests: &[Vec<KernelProjection>],
         quadrature: &Quadrature,
         settings: &SeriesSettings,
     ) -> MaterialEntry {
         let zonal = project_base(bsdf, quadrature);
-        let sums: Vec<Projection> = (0..INCLINATIONS.len())
+        let sums: Vec<KernelProjection> = (0..INCLINATIONS.len())
             .map(|at| {
                 let parts = lobes.iter().map(|lobe| (bsdf.lobe_scale(lobe.slot), &tests[lobe.kind][at]));
-                Projection::sum(&Vec::from_iter(parts))
+                KernelProjection::sum(&Vec::from_iter(parts))
             })
             .collect();
         let error = |bands: usize| mean_error(bsdf, &sums, &zonal, bands);
@@ -224,9 +222,9 @@ fn project_base(bsdf: &Bsdf, quadrature: &Quadrature) -> ZonalProjection {
     quadrature.project_zonal(|z| z * f64::from(bsdf.coat_transmittance(z as f32)))
 }
 
-/// Computes the error of a kernel in its first `bands`, given the projections of its lobes together at
-/// [`INCLINATIONS`].
-fn mean_error(bsdf: &Bsdf, lobes: &[Projection], zonal: &ZonalProjection, bands: usize) -> f64 {
+/// Computes the error of a kernel in its first `bands`, averaged over [`INCLINATIONS`]. `lobes` are the projections of
+/// its lobes together.
+fn mean_error(bsdf: &Bsdf, lobes: &[KernelProjection], zonal: &ZonalProjection, bands: usize) -> f64 {
     let errors = INCLINATIONS.iter().zip(lobes).map(|(degrees, lobes)| {
         let through = bsdf.coat_transmittance(degrees.to_radians().cos() as f32);
         let (mut left_out, mut whole) = (0.0, 0.0);

@@ -1,19 +1,20 @@
-//! Projection of reflection kernels onto the basis, by quadrature over the hemisphere in double precision.
+//! KernelProjection of reflection kernels onto the basis, by quadrature over the hemisphere in double precision.
 
-use super::CHANNELS;
-use super::basis::{MAX_BANDS, evaluate, index};
+use super::basis::{CHANNELS, MAX_BANDS, evaluate, index};
 use super::kernel::{MAX_EVEN, even_index};
 use base::math::{Rgb, gauss_legendre};
 use glam::Vec3;
 use std::f64::consts::PI;
 use world::material::DullLobe;
 
-/// Number of nodes in height and in azimuth: for α >= 0.15, coefficients and norms are accurate to 1e-5 of
-/// the norm at any inclination.
+/// Number of nodes in height. With this number and [`AZIMUTHS`], coefficients and norms are accurate to 1e-5 of the
+/// norm at any inclination, for α >= 0.15.
 const HEIGHTS: usize = 48;
+
+/// Number of nodes in azimuth.
 const AZIMUTHS: usize = 48;
 
-/// Quadrature rule for half the hemisphere, the other being its mirror image.
+/// Quadrature rule for half the hemisphere; the other half is its mirror image.
 pub(super) struct Quadrature {
     rings: Vec<Ring>,
     azimuths: Vec<Azimuth>,
@@ -24,7 +25,7 @@ struct Ring {
     z: f64,
     sin: f64,
     weight: f64,
-    /// The even functions at azimuth 0.
+    /// Values of the even functions at azimuth 0.
     even: [f64; MAX_EVEN],
 }
 
@@ -32,31 +33,32 @@ struct Azimuth {
     cos: f64,
     sin: f64,
     weight: f64,
-    /// cos mφ
+    /// Values of cos mφ.
     multiple: [f64; MAX_BANDS],
 }
 
-/// Coefficients of the even functions, and the square of the norm of the projected function, by channel.
+/// Coefficients of the even functions, and squared norm of the projected function, by channel.
 #[derive(Clone, Debug)]
-pub(super) struct Projection {
+pub(super) struct KernelProjection {
     pub coefficients: [[f64; MAX_EVEN]; CHANNELS],
     pub norm_sq: [f64; CHANNELS],
 }
 
-/// The same of a function of height alone, which has functions of order 0 only.
+/// Projection of a function of height alone, which has functions of order 0 only.
 #[derive(Clone, Debug)]
 pub(super) struct ZonalProjection {
     pub coefficients: [f64; MAX_BANDS],
     pub norm_sq: f64,
 }
 
-impl Projection {
-    /// Sum of projections times factors; its norm is the largest that it may have: what the coefficients lack may add
-    /// up.
-    pub fn sum(parts: &[(Rgb, &Projection)]) -> Projection {
-        let mut sum = Projection { coefficients: [[0.0; MAX_EVEN]; CHANNELS], norm_sq: [0.0; CHANNELS] };
+impl KernelProjection {
+    /// Returns the sum of projections times factors. Its norm is an upper bound, as if the parts that the coefficients
+    /// do not hold were parallel.
+    pub fn sum(parts: &[(Rgb, &KernelProjection)]) -> KernelProjection {
+        let mut sum =
+            KernelProjection { coefficients: [[0.0; MAX_EVEN]; CHANNELS], norm_sq: [0.0; CHANNELS] };
         for c in 0..CHANNELS {
-            // Norm of what the coefficients do not hold.
+            // Norm of the part that the coefficients do not hold.
             let mut left_out = 0.0;
             for (factor, part) in parts {
                 let (factor, row) = (f64::from(factor[c]), &part.coefficients[c]);
@@ -77,12 +79,14 @@ fn squares(row: &[f64]) -> f64 {
 }
 
 impl Quadrature {
+    /// Creates the rule for projections of lobes.
     pub fn standard() -> Quadrature {
         Quadrature::new(HEIGHTS, AZIMUTHS)
     }
 
+    /// Creates a rule with these numbers of nodes.
     pub fn new(heights: usize, azimuths: usize) -> Quadrature {
-        // In s = √z the basis is smooth at the horizon too.
+        // As a function of s = √z, the basis is smooth at the horizon, too.
         let ring = |(s, weight): (f64, f64)| {
             let z = s * s;
             let sin = ((1.0 - z) * (1.0 + z)).sqrt();
@@ -95,7 +99,7 @@ impl Quadrature {
             }
             Ring { z, sin, weight: 2.0 * s * weight, even }
         };
-        // Nodes are denser towards azimuth π, where a surface seen from azimuth 0 has its lobe.
+        // Nodes are denser towards azimuth π, the azimuth of the lobe of a surface seen from azimuth 0.
         let azimuth = |(t, weight): (f64, f64)| {
             let phi = PI * (1.0 - t * t);
             let multiple = std::array::from_fn(|m| (m as f64 * phi).cos());
@@ -107,12 +111,12 @@ impl Quadrature {
         }
     }
 
-    /// Projects BRDF · cosine of a lobe seen at cosine `cos_o` from azimuth 0.
-    pub fn project(&self, lobe: DullLobe, cos_o: f64) -> Projection {
+    /// Projects BRDF · cosine of a lobe for the outgoing direction at cosine `cos_o` and azimuth 0.
+    pub fn project(&self, lobe: DullLobe, cos_o: f64) -> KernelProjection {
         let cos_o = cos_o.clamp(1e-5, 1.0);
         let wo = Vec3::new(((1.0 - cos_o) * (1.0 + cos_o)).sqrt() as f32, 0.0, cos_o as f32);
         let mut projection =
-            Projection { coefficients: [[0.0; MAX_EVEN]; CHANNELS], norm_sq: [0.0; CHANNELS] };
+            KernelProjection { coefficients: [[0.0; MAX_EVEN]; CHANNELS], norm_sq: [0.0; CHANNELS] };
         for ring in &self.rings {
             let mut by_order = [[0.0; MAX_BANDS]; CHANNELS];
             for azimuth in &self.azimuths {

@@ -1,29 +1,28 @@
-//! Radiance arriving at a point, as a series, with its derivatives along the surface; and its reflection.
+//! Radiance that arrives at a point, as a series with its derivatives along the surface, and its reflection.
 //!
-//! Units: radiance; its derivatives are per metre (or whatever unit the scene has).
+//! Units: radiance; derivatives are per unit of length of the scene.
 
-use super::CHANNELS;
 #[cfg(test)]
 use super::basis::index;
-use super::basis::{MAX_BANDS, MAX_FUNCTIONS};
+use super::basis::{CHANNELS, MAX_BANDS, MAX_FUNCTIONS};
 use super::kernel::Kernel;
 use base::math::{F32x8, Rgb, WIDTH};
 use serde::{Deserialize, Serialize};
 
-/// Number of rows: value and two derivatives, each of every channel.
+/// Number of blocks: value and two derivatives, each by channel.
 pub(super) const BLOCKS: usize = 3 * CHANNELS;
 
 /// Radiance over the hemisphere, and its derivatives as the receiver moves along u and v.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Radiance {
     bands: u8,
-    /// Coefficients of the value's red, green and blue, then of the derivatives' along u and along v; each block
-    /// padded with zeros so that it is a multiple of the vectors' width.
+    /// Coefficients of the value by channel, then of the derivatives along u and along v. Each block is padded with
+    /// zeros to a multiple of the vectors' width.
     coefficients: Box<[f32]>,
 }
 
-/// Radiance that leaves a surface in one direction, and its derivatives as the receiver moves along u and v.
-/// May be negative, since the series is truncated.
+/// Radiance that leaves a surface in one direction, and its derivatives as the receiver moves along u and v. It may be
+/// negative, since the series is truncated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reflected {
     /// Value at the record.
@@ -48,18 +47,19 @@ pub(super) const fn stride(bands: usize) -> usize {
 }
 
 impl Radiance {
-    /// Returns a series without light.
+    /// Creates a series without light.
     pub fn black(bands: usize) -> Radiance {
         let bands = bands.clamp(1, MAX_BANDS);
         Radiance { bands: bands as u8, coefficients: vec![0.0; BLOCKS * stride(bands)].into() }
     }
 
-    /// True if there are as many coefficients as the bands have, as there are unless it was read from damaged bytes.
+    /// True if the number of coefficients fits the number of bands. It may not if the series was read from damaged
+    /// bytes.
     pub fn is_sound(&self) -> bool {
         (1..=MAX_BANDS).contains(&self.bands()) && self.coefficients.len() == BLOCKS * stride(self.bands())
     }
 
-    /// Memory beside the struct itself.
+    /// Heap memory, bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.coefficients)
     }
@@ -69,7 +69,7 @@ impl Radiance {
         usize::from(self.bands)
     }
 
-    /// Returns the same light without change along the surface.
+    /// Returns the light without change along the surface.
     pub fn without_gradients(mut self) -> Radiance {
         let values = CHANNELS * stride(self.bands());
         self.coefficients[values..].fill(0.0);
@@ -104,8 +104,8 @@ impl Radiance {
         Rgb::new(r, g, b)
     }
 
-    /// Returns the radiance reflected towards the direction that the kernel was made for, in the smaller
-    /// number of bands of kernel and radiance.
+    /// Returns the radiance reflected in the outgoing direction of the kernel, in the smaller number of bands of kernel
+    /// and radiance.
     #[inline]
     pub fn reflected(&self, kernel: &Kernel) -> Reflected {
         let stride = stride(self.bands());
@@ -121,14 +121,13 @@ impl Radiance {
         Reflected { value, gradient: [along_u, along_v] }
     }
 
-    /// Returns the irradiance: exact from two bands on.
+    /// Returns the irradiance, which two bands hold exactly.
     #[cfg(test)]
     pub fn irradiance(&self) -> Reflected {
         self.reflected(&Kernel::cosine(self.bands()))
     }
 
-    /// Returns the same light in a frame whose tangents are turned by `angle` about the normal, from u
-    /// towards v.
+    /// Returns the light in a frame whose tangents are turned by `angle` about the normal, from u towards v.
     #[cfg(test)]
     pub fn turned(&self, angle: f32) -> Radiance {
         let mut turned = self.clone();

@@ -1,41 +1,39 @@
-//! Weak singularities: indirect leaves so close to a point that they outshine everything else.
+//! Weak singularities: indirect leaves so close to a point that they outshine all other light.
 //!
 //! Paper: Herzog et al. 2009, Eq. 13: no indirect VPL contributes more than a share of the total's luminance.
-//! Deviations: the total is one in which no single indirect leaf counts for more than a quarter
-//! ([`frozen_luminance`]): a VPL close to the receiver would otherwise set its own limit, and hide the error
-//! of all others while the cut is refined.
+//! Deviations: in the total, no single indirect leaf counts for more than a quarter ([`frozen_luminance`]). Otherwise a
+//! VPL close to the receiver would set its own limit, and hide the errors of all others while the cut is refined.
 
 use super::CutCounts;
 use crate::lights::{LightNode, LightTrees, Origin};
 use base::math::{Rgb, luminance};
 
-/// Maximum share of the total luminance that a single indirect leaf may have and still count in the total
-/// that the others are compared with.
+/// Maximum share of a single indirect leaf in the total luminance that other clusters are compared with.
 pub(super) const DOMINANT: f32 = 0.25;
 
-/// The same share, relative to the rest of the total.
+/// [`DOMINANT`] relative to the rest of the total.
 pub(super) const DOMINANT_TO_REST: f32 = DOMINANT / (1.0 - DOMINANT);
 
 /// Maximum number of steps towards the frozen luminance of a cut.
 pub(super) const MAX_STEPS: u32 = 12;
 
-/// Indirect leaves, the only nodes that are clamped.
+/// True for an indirect leaf; only indirect leaves are clamped.
 #[inline]
 pub fn is_weak(node: &LightNode) -> bool {
     node.is_leaf() && node.origin() == Origin::Indirect
 }
 
-/// Luminance of a sum whose dominant summands are limited to a share of that luminance, to within 1 %.
+/// Returns the luminance of a sum whose dominant summands are limited to a share of that luminance, to within 1 %.
 ///
-/// `limited` is the sum's luminance if its summands are limited to their share of a given luminance; the
-/// fixed point is approached from above, from the luminance without limits, in at most `max_steps`. A single
-/// dominant summand leaves its share of the excess each step; only as many together as have the whole
-/// converge slower.
+/// `limited` returns the sum's luminance if summands are limited to their share of a given luminance. The fixed point
+/// is approached from above, from the luminance without limits, in at most `max_steps` steps. With a single dominant
+/// summand, each step leaves its share of the excess. Convergence is slower only if dominant summands together are the
+/// whole.
 pub fn frozen_luminance(unlimited: f32, max_steps: u32, mut limited: impl FnMut(f32) -> f32) -> f32 {
     let mut frozen = unlimited;
     for _ in 0..max_steps {
         let next = limited(frozen);
-        // Corrections drawn at random may leave less than nothing besides the limited summands.
+        // Random corrections may make the sum of the other summands negative.
         if next > 0.99 * frozen || next <= 0.0 {
             break;
         }
@@ -44,21 +42,21 @@ pub fn frozen_luminance(unlimited: f32, max_steps: u32, mut limited: impl FnMut(
     frozen
 }
 
-/// The light that one point gathers from a cut, before weak singularities are clamped.
+/// Light that one point gathers from a cut, before weak singularities are clamped.
 pub(super) struct Unclamped<'a, I> {
     pub trees: &'a LightTrees,
     /// Nodes and their contributions.
     pub contributions: I,
-    /// Light besides, which is not clamped.
+    /// Further light, which is not clamped.
     pub strong: Rgb,
-    /// Sum of both.
+    /// Sum of contributions and further light.
     pub sum: Rgb,
-    /// Luminance that the point reflects besides.
+    /// Luminance of other light that the point reflects.
     pub baseline: f32,
 }
 
 impl<I: Iterator<Item = (u32, Rgb)> + Clone> Unclamped<'_, I> {
-    /// The sum in which no weak singularity has more than the share `clamp` of the frozen luminance, and the
+    /// Returns the sum in which no weak singularity has more than the share `clamp` of the frozen luminance, and the
     /// luminance of that share.
     pub fn clamped(&self, clamp: f32, counts: &mut CutCounts) -> (Rgb, f32) {
         let unclamped = luminance(self.sum) + self.baseline;
@@ -72,7 +70,7 @@ impl<I: Iterator<Item = (u32, Rgb)> + Clone> Unclamped<'_, I> {
         (sum, limit)
     }
 
-    /// Returns the sum with the luminance of weak singularities limited, and their number.
+    /// Returns the sum with the luminance of weak singularities limited, and the number of limited ones.
     fn limited(&self, limit: f32) -> (Rgb, u64) {
         let (sum, clamped) = self.contributions.clone().fold(
             (self.strong.as_dvec3(), 0),

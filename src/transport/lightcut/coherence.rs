@@ -3,51 +3,66 @@
 use base::math::LANES;
 use glam::Vec3;
 
-/// Fewer points than this have cuts of their own.
+/// Minimum number of points that share a cut.
 pub const MIN_SHARED: usize = 4;
+
+/// Weight of the difference of unit normals in [`group_compact`], relative to that of positions over the scene's
+/// diagonal.
+const NORMAL_WEIGHT: f32 = 0.01;
+
+/// Position and normal of a point on a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct OrientedPoint {
+    /// Position.
+    pub position: Vec3,
+    /// Unit normal.
+    pub normal: Vec3,
+}
 
 /// Limit on the differences between points that share a cut.
 #[derive(Clone, Copy, Debug)]
 pub struct CoherenceLimit {
-    /// Minimum cosine between their normals.
+    /// Minimum cosine between the normals.
     min_cosine: f32,
-    /// Maximum distance, relative to the scene's diagonal.
+    /// Maximum distance.
     max_distance: f32,
     /// Number of groups open at once in [`group_coherent`].
     open: usize,
 }
 
 impl CoherenceLimit {
-    /// Points likely to have nearly the same cut.
-    pub const CLOSE: CoherenceLimit = CoherenceLimit { min_cosine: 0.8, max_distance: 0.02, open: 8 };
-    /// Points whose common cut is larger than that of each, but not by as much as they are many.
-    pub const REMOTE: CoherenceLimit = CoherenceLimit { min_cosine: 0.5, max_distance: 0.05, open: 64 };
+    /// Creates the limit for points that are likely to have nearly equal cuts, in a scene of this `diagonal`.
+    pub fn close(diagonal: f32) -> CoherenceLimit {
+        CoherenceLimit { min_cosine: 0.8, max_distance: 0.02 * diagonal, open: 8 }
+    }
 
-    /// True if two points, each with its normal, are within the limit.
+    /// Creates the limit for points whose common cut is cheaper than a cut for each, in a scene of this `diagonal`.
+    pub fn remote(diagonal: f32) -> CoherenceLimit {
+        CoherenceLimit { min_cosine: 0.5, max_distance: 0.05 * diagonal, open: 64 }
+    }
+
+    /// True if two points are within the limit.
     #[inline]
-    pub fn holds(self, diagonal: f32, (a, a_normal): (Vec3, Vec3), (b, b_normal): (Vec3, Vec3)) -> bool {
-        let limit = self.max_distance * diagonal;
-        a.distance_squared(b) <= limit * limit && a_normal.dot(b_normal) >= self.min_cosine
+    pub fn holds(self, a: OrientedPoint, b: OrientedPoint) -> bool {
+        let max_sq = self.max_distance * self.max_distance;
+        a.position.distance_squared(b.position) <= max_sq && a.normal.dot(b.normal) >= self.min_cosine
     }
 }
 
-/// Groups of at most `max_size` items that are each coherent with its first, from a list in which neighbours
-/// in space are near each other; `same` excludes pairs that must not be grouped for other reasons.
+/// Divides a list, in which neighbours in space are near each other, into groups of at most `max_size` items. Each item
+/// is coherent with the first item of its group, and `same` holds for the pair.
 pub fn group_coherent<T: Copy>(
     limit: CoherenceLimit,
     items: impl IntoIterator<Item = T>,
     max_size: usize,
-    diagonal: f32,
-    place: impl Fn(&T) -> (Vec3, Vec3),
+    place: impl Fn(&T) -> OrientedPoint,
     same: impl Fn(&T, &T) -> bool,
 ) -> Vec<Vec<T>> {
     let mut groups: Vec<Vec<T>> = Vec::new();
     for item in items {
         let open = groups.len().saturating_sub(limit.open);
         let joins = |group: &&mut Vec<T>| {
-            group.len() < max_size
-                && same(&group[0], &item)
-                && limit.holds(diagonal, place(&group[0]), place(&item))
+            group.len() < max_size && same(&group[0], &item) && limit.holds(place(&group[0]), place(&item))
         };
         match groups[open..].iter_mut().rev().find(joins) {
             Some(group) => group.push(item),
@@ -57,19 +72,15 @@ pub fn group_coherent<T: Copy>(
     groups
 }
 
-/// Weight of the difference of unit normals in [`group_compact`], relative to that of positions over the scene's
-/// diagonal.
-const NORMAL_WEIGHT: f32 = 0.01;
-
-/// Groups of up to sixteen items, as full and compact as can be: the list is halved across its largest extent in
+/// Divides a list into full and compact groups of up to sixteen items. The list is halved across its largest extent in
 /// position or normal, again and again.
 pub fn group_compact<T: Copy>(
     mut items: Vec<T>,
     diagonal: f32,
-    place: impl Fn(&T) -> (Vec3, Vec3),
+    place: impl Fn(&T) -> OrientedPoint,
 ) -> Vec<Vec<T>> {
     let key = |item: &T, axis: usize| {
-        let (position, normal) = place(item);
+        let OrientedPoint { position, normal } = place(item);
         if axis < 3 { position[axis] } else { normal[axis - 3] * NORMAL_WEIGHT * diagonal }
     };
     let mut groups = Vec::new();
@@ -101,14 +112,15 @@ mod tests {
     #[test]
     fn compact_groups_are_full_and_hold_every_item_once() {
         for count in [0u32, 1, 16, 17, 33, 500] {
-            let place = |&i: &u32| (owen_sobol_2d(i, 3).extend(0.0), Vec3::Z);
+            let place =
+                |&i: &u32| OrientedPoint { position: owen_sobol_2d(i, 3).extend(0.0), normal: Vec3::Z };
             let groups = group_compact((0..count).collect(), 2f32.sqrt(), place);
             assert_eq!(groups.len(), (count as usize).div_ceil(LANES));
             let mut all = groups.concat();
             all.sort_unstable();
             assert!(all.into_iter().eq(0..count));
             for group in groups.iter().filter(|_| count == 500) {
-                let distances = group.iter().map(|i| place(i).0.distance(place(&group[0]).0));
+                let distances = group.iter().map(|i| place(i).position.distance(place(&group[0]).position));
                 assert!(distances.fold(0.0, f32::max) < 0.5, "neighbours share a group");
             }
         }
@@ -117,7 +129,8 @@ mod tests {
     #[test]
     fn sides_of_a_wall_are_apart() {
         let side = |i: u32| if i.is_multiple_of(2) { Vec3::X } else { -Vec3::X };
-        let groups = group_compact((0..32).collect(), 100.0, |&i| (Vec3::Y * (i / 2) as f32 * 0.05, side(i)));
+        let place = |&i: &u32| OrientedPoint { position: Vec3::Y * (i / 2) as f32 * 0.05, normal: side(i) };
+        let groups = group_compact((0..32).collect(), 100.0, place);
         assert!(groups.iter().all(|group| group.iter().all(|&i| side(i) == side(group[0]))));
     }
 }

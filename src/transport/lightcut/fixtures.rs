@@ -12,10 +12,10 @@ use glam::{Vec2, Vec3};
 use scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene};
 use world::material::Materials;
 
-/// A stream of numbers in [0, 1), not of samples.
-pub struct Numbers(pub u32);
+/// Stream of pseudo-random numbers in [0, 1).
+pub struct RandomNumbers(pub u32);
 
-impl Numbers {
+impl RandomNumbers {
     pub fn next(&mut self) -> f32 {
         self.0 += 1;
         (hash(self.0, 0x51ed) >> 8) as f32 / (1 << 24) as f32
@@ -30,7 +30,7 @@ impl Numbers {
     }
 }
 
-/// One material of every kind, in a scene of nothing else.
+/// Returns a scene with one material of every kind.
 pub fn all_materials() -> Scene {
     let constant = |r: f32, g: f32, b: f32| Reflectance::Constant(Rgb::new(r, g, b));
     let rough = |distribution, alpha, fresnel| {
@@ -61,8 +61,8 @@ pub fn all_materials() -> Scene {
     Scene { materials, ..Scene::default() }
 }
 
-/// VPLs in a few groups of very different size, some flat as walls, some with equal normals.
-fn grouped(n: usize, kind: VplKind, scale: f32, numbers: &mut Numbers) -> VplSet {
+/// Makes VPLs in a few groups of very different size, some flat as walls, some with equal normals.
+fn grouped(n: usize, kind: VplKind, scale: f32, numbers: &mut RandomNumbers) -> VplSet {
     let mut set = VplSet::new(kind, Origin::Indirect);
     while set.len() < n {
         let (centre, axis) = (numbers.vec3(), numbers.direction());
@@ -85,11 +85,11 @@ fn grouped(n: usize, kind: VplKind, scale: f32, numbers: &mut Numbers) -> VplSet
     set
 }
 
-/// Profiles of one spot light and of 36 lobes of metals and mirrors of all roughness.
+/// Makes profiles of one spot light and of 36 lobes of metals and mirrors of all roughness.
 pub fn profiles() -> Profiles {
     let scene = all_materials();
     let materials = Materials::new(&scene);
-    let mut numbers = Numbers(7);
+    let mut numbers = RandomNumbers(7);
     let mut lobes = Vec::new();
     while lobes.len() < 36 {
         let id = MaterialId((numbers.next() * scene.materials.len() as f32) as u32);
@@ -109,7 +109,7 @@ pub fn profiles() -> Profiles {
     Profiles { spots: vec![spot], lobes }
 }
 
-pub fn all_kinds(n: usize, scale: f32, numbers: &mut Numbers) -> Vec<VplSet> {
+pub fn all_kinds(n: usize, scale: f32, numbers: &mut RandomNumbers) -> Vec<VplSet> {
     let kinds = [VplKind::Omni, VplKind::Oriented, VplKind::Directional, VplKind::Lobed];
     kinds.map(|k| grouped(n, k, scale, numbers)).into()
 }
@@ -118,7 +118,7 @@ pub fn random_receiver<'m>(
     materials: &'m Materials,
     scene: &Scene,
     scale: f32,
-    n: &mut Numbers,
+    n: &mut RandomNumbers,
 ) -> Receiver<'m> {
     let id = MaterialId((n.next() * scene.materials.len() as f32) as u32);
     let normal = n.direction();
@@ -171,7 +171,7 @@ impl RayVisibility for Ball {
 }
 
 /// The inside of a box: VPLs on its six walls, facing inwards.
-pub fn room(n: usize, numbers: &mut Numbers) -> VplSet {
+pub fn room(n: usize, numbers: &mut RandomNumbers) -> VplSet {
     let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
     for i in 0..n {
         let axis = i % 3;
@@ -192,9 +192,9 @@ pub fn rms(errors: &[f32]) -> f32 {
 pub const EXACT: CutSettings = CutSettings { epsilon: 0.02, max_cut: usize::MAX, clamp: None, origin: None };
 
 /// Points a millimetre to a decimetre above the floor of a room of VPLs, some of which are that near.
-pub fn points_near_vpls(numbers: &mut Numbers, count: usize) -> Vec<Receiver<'static>> {
+pub fn points_near_vpls(numbers: &mut RandomNumbers, count: usize) -> Vec<Receiver<'static>> {
     let frame = Frame::from_normal(Vec3::Y);
-    let at = |numbers: &mut Numbers| {
+    let at = |numbers: &mut RandomNumbers| {
         let p = numbers.vec3() * 0.9 + 0.05;
         Receiver::irradiance(p.with_y(0.1f32.powf(1.0 + 2.0 * p.y)), Vec3::Y, &frame)
     };
@@ -202,7 +202,7 @@ pub fn points_near_vpls(numbers: &mut Numbers, count: usize) -> Vec<Receiver<'st
 }
 
 /// A room whose floor is covered by lamps, a hand's breadth above it and shining down.
-pub fn low_lamps(numbers: &mut Numbers) -> LightTrees {
+pub fn low_lamps(numbers: &mut RandomNumbers) -> LightTrees {
     let mut set = room(3000, numbers);
     for _ in 0..300 {
         let position = numbers.vec3().with_y(0.05 + 0.05 * numbers.next());

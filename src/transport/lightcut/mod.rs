@@ -1,14 +1,18 @@
-//! Stage 3: a cut through the light trees per point, refined until every cluster's expected error is below
-//! the threshold.
+//! Lightcuts: a cut through the light trees for a point, refined until every cluster's expected error is below the
+//! threshold.
 //!
 //! Paper: Walter et al., *Lightcuts: A Scalable Approach to Illumination*, 2005.
 //!
-//! A [`Receiver`] defines the quantity gathered (reflected radiance or irradiance), [`Transfer`] the share of
-//! it from one VPL, and [`expected`] the expected error of a cluster. Four workspaces gather the light of
-//! all VPLs: [`Lightcut`] at a single point ([`single`]), [`PacketLightcut`] at up to sixteen neighbours,
-//! which share a cut ([`packet`]), and [`ReconstructionCut`] at the points between such neighbours
-//! ([`reconstruction`]); [`SampledCut`] takes some samples for each of up to sixteen points. `gather_all` is the
-//! exact sum that they approximate.
+//! A [`Receiver`] defines the quantity that is gathered (reflected radiance or irradiance), [`Transfer`] the
+//! contribution of one VPL, and [`expected`] the expected error of a cluster. Four workspaces gather the light of all
+//! VPLs:
+//!
+//! - [`Lightcut`] at a single point ([`single`]);
+//! - [`PacketLightcut`] at up to sixteen neighbours, which share a cut ([`packet`]);
+//! - [`ReconstructionCut`] at points between such neighbours ([`reconstruction`]);
+//! - [`SampledCut`] at up to sixteen points, by samples of a coarse cut.
+//!
+//! `gather_all` is the exact sum that they approximate.
 
 mod clamp;
 mod coherence;
@@ -28,8 +32,10 @@ mod transfer;
 mod visibility;
 
 pub use clamp::{frozen_luminance, is_weak};
-pub use coherence::{CoherenceLimit, MIN_SHARED, group_coherent, group_compact};
-pub use packet::{PacketCluster, PacketCut, PacketLightcut, PacketSum, ReceiverPacket, SampledCut, Samples};
+pub use coherence::{CoherenceLimit, MIN_SHARED, OrientedPoint, group_coherent, group_compact};
+pub use packet::{
+    PacketCluster, PacketCut, PacketLightcut, PacketSum, ReceiverPacket, SampledCut, SampledSettings, Samples,
+};
 pub use receiver::Receiver;
 pub use reconstruction::ReconstructionCut;
 pub use settings::{CutCounts, CutSettings};

@@ -1,7 +1,7 @@
-//! Receivers of light at a point: the function that a lightcut integrates against, and its upper bound.
+//! Receivers of light at a point: the weight of each direction of light, and its upper bound.
 //!
-//! The weight of each direction determines the meaning of the cut's sum: BRDF · cosine gives reflected
-//! radiance, the cosine alone irradiance.
+//! The weight determines the meaning of the cut's sum: BRDF · cosine gives reflected radiance, the cosine alone
+//! irradiance.
 
 use super::OffsetBox;
 use base::math::{Frame, Rgb};
@@ -9,7 +9,7 @@ use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 use world::material::{Bsdf, DirectionBound};
 
-/// A point on a surface seen from a direction: the cut's sum is the radiance it reflects there.
+/// Point on a surface, seen from a direction: the cut's sum is the radiance that it reflects in this direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver<'m> {
     position: Vec3,
@@ -19,19 +19,20 @@ pub struct Receiver<'m> {
     /// Frame whose z is the mirror direction of `wo`.
     mirror: Frame,
     wo: Vec3,
-    material: Kind<'m>,
+    material: ReceiverMaterial<'m>,
     baseline_luminance: f32,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Kind<'m> {
-    /// BRDF.
+enum ReceiverMaterial<'m> {
+    /// Lambertian BRDF.
     Lambert(Rgb),
     General(Bsdf<'m>),
 }
 
 impl<'m> Receiver<'m> {
-    /// The surface at `position` with the given normals and material, seen from the unit vector `out`.
+    /// Creates the receiver for the surface at `position` with the given normals and material, seen from the unit
+    /// vector `out`.
     pub fn new(
         position: Vec3,
         geometric_normal: Vec3,
@@ -47,18 +48,18 @@ impl<'m> Receiver<'m> {
             wo.z = -wo.z;
         }
         let material = match bsdf.lambert_albedo() {
-            _ if !front && !bsdf.two_sided() => Kind::Lambert(Rgb::ZERO),
-            Some(albedo) => Kind::Lambert(albedo * FRAC_1_PI),
-            None => Kind::General(bsdf),
+            _ if !front && !bsdf.two_sided() => ReceiverMaterial::Lambert(Rgb::ZERO),
+            Some(albedo) => ReceiverMaterial::Lambert(albedo * FRAC_1_PI),
+            None => ReceiverMaterial::General(bsdf),
         };
         let mirror = Frame::from_normal(frame.to_world(Vec3::new(-wo.x, -wo.y, wo.z)));
         Receiver { position, geometric_normal, frame, mirror, wo, material, baseline_luminance: 0.0 }
     }
 
-    /// Creates a receiver of irradiance on the side of the frame's z axis: a surface that reflects π times
-    /// the physical maximum.
+    /// Creates a receiver of irradiance on the side of the frame's z axis: a surface that reflects π times the physical
+    /// maximum.
     pub fn irradiance(position: Vec3, geometric_normal: Vec3, frame: &Frame) -> Receiver<'static> {
-        let material = Kind::Lambert(Rgb::ONE);
+        let material = ReceiverMaterial::Lambert(Rgb::ONE);
         let baseline_luminance = 0.0;
         Receiver {
             position,
@@ -71,62 +72,61 @@ impl<'m> Receiver<'m> {
         }
     }
 
-    /// The same, where light of this luminance is known to be reflected besides.
+    /// Returns the receiver with errors judged relative to this additional luminance of reflected light.
     pub fn with_baseline(self, baseline_luminance: f32) -> Self {
         Receiver { baseline_luminance, ..self }
     }
 
-    /// BRDF, if the material is Lambertian and nothing else.
+    /// BRDF of a Lambertian material; `None` for other materials.
     pub(super) fn lambert_brdf(&self) -> Option<Rgb> {
         match self.material {
-            Kind::Lambert(brdf) => Some(brdf),
-            Kind::General(_) => None,
+            ReceiverMaterial::Lambert(brdf) => Some(brdf),
+            ReceiverMaterial::General(_) => None,
         }
     }
 
-    /// BRDF of the base, for light that has passed the coat on its way in.
+    /// BRDF of the base, for light that has already passed the coat.
     pub fn base_brdf(&self) -> Rgb {
         match &self.material {
-            Kind::Lambert(brdf) => *brdf,
-            Kind::General(bsdf) => bsdf.split_base(self.wo.z).0,
+            ReceiverMaterial::Lambert(brdf) => *brdf,
+            ReceiverMaterial::General(bsdf) => bsdf.split_base(self.wo.z).0,
         }
     }
 
-    /// Returns the coat's transmittance for light from the direction of `incident`, which need not be of unit
-    /// length.
+    /// Returns the coat's transmittance for light from the direction of `incident`, which need not be of unit length.
     pub fn coat_transmittance(&self, incident: Vec3) -> f32 {
         match &self.material {
-            Kind::General(bsdf) if bsdf.coat() != 0 => {
+            ReceiverMaterial::General(bsdf) if bsdf.coat() != 0 => {
                 bsdf.coat_transmittance(self.frame.normal.dot(incident.normalize_or_zero()).clamp(0.0, 1.0))
             }
             _ => 1.0,
         }
     }
 
-    /// The material, where it is more than Lambertian, and the direction it is seen from, in the shading frame.
+    /// A material that is not just Lambertian, and the direction from which it is seen, in the shading frame.
     pub(super) fn bsdf(&self) -> Option<(Bsdf<'m>, Vec3)> {
         match self.material {
-            Kind::Lambert(_) => None,
-            Kind::General(bsdf) => Some((bsdf, self.wo)),
+            ReceiverMaterial::Lambert(_) => None,
+            ReceiverMaterial::General(bsdf) => Some((bsdf, self.wo)),
         }
     }
 
-    /// Shading frame, z on the side of the eye.
+    /// Shading frame; z is on the side of the eye.
     pub fn frame(&self) -> &Frame {
         &self.frame
     }
 
-    /// Frame whose z is the mirror direction of the eye's.
+    /// Frame whose z is the mirror direction of the direction to the eye.
     pub(super) fn mirror(&self) -> &Frame {
         &self.mirror
     }
 
-    /// No smaller than the response to any direction within `bound`.
+    /// Returns an upper bound of the response to all directions within `bound`.
     #[inline]
     pub(super) fn max_reflection(&self, bound: &DirectionBound) -> Rgb {
         match &self.material {
-            Kind::Lambert(brdf) => *brdf * bound.cos_i_max.max(0.0),
-            Kind::General(bsdf) => bsdf.bound(self.wo, bound),
+            ReceiverMaterial::Lambert(brdf) => *brdf * bound.cos_i_max.max(0.0),
+            ReceiverMaterial::General(bsdf) => bsdf.bound(self.wo, bound),
         }
     }
 
@@ -135,7 +135,7 @@ impl<'m> Receiver<'m> {
         (self.position, self.frame.normal)
     }
 
-    /// The same surface elsewhere.
+    /// Returns the surface moved to another position.
     pub fn moved(self, position: Vec3) -> Self {
         Receiver { position, ..self }
     }
@@ -146,13 +146,13 @@ impl<'m> Receiver<'m> {
         self.position
     }
 
-    /// Unit geometric normal, for starting shadow rays; zero if the point lies on no surface.
+    /// Unit geometric normal, from which shadow rays start; zero if the point lies on no surface.
     #[inline]
     pub fn geometric_normal(&self) -> Vec3 {
         self.geometric_normal
     }
 
-    /// Luminance gathered from trees that are left out of the cut: errors are judged against the whole.
+    /// Luminance of reflected light that is not part of the cut. Errors are judged relative to the whole.
     #[inline]
     pub fn baseline_luminance(&self) -> f32 {
         self.baseline_luminance
@@ -162,22 +162,23 @@ impl<'m> Receiver<'m> {
     #[inline]
     pub fn response(&self, wi: Vec3) -> Rgb {
         match &self.material {
-            Kind::Lambert(brdf) => *brdf * self.frame.normal.dot(wi).max(0.0),
-            Kind::General(bsdf) => {
+            ReceiverMaterial::Lambert(brdf) => *brdf * self.frame.normal.dot(wi).max(0.0),
+            ReceiverMaterial::General(bsdf) => {
                 let wi = self.frame.to_local(wi);
                 if wi.z > 0.0 { bsdf.eval(self.wo, wi) * wi.z } else { Rgb::ZERO }
             }
         }
     }
 
-    /// No smaller, in any channel, than the weight of any direction in a box; `local` is the box in the shading frame.
+    /// Returns an upper bound, by channel, of the weight of the directions in a box; `local` is the box in the shading
+    /// frame.
     #[inline]
     pub(super) fn max_response(&self, offsets: &OffsetBox, local: &OffsetBox) -> Rgb {
         let cos_max = local.max_cos_z();
         if cos_max <= 0.0 {
             return Rgb::ZERO;
         }
-        if let Kind::Lambert(brdf) = &self.material {
+        if let ReceiverMaterial::Lambert(brdf) = &self.material {
             return *brdf * cos_max;
         }
         self.max_reflection(&DirectionBound {

@@ -1,13 +1,12 @@
-//! The order of a node's children, which the refinement of a cut by a single point and by a packet share.
+//! Order of a node's children, which the refinement of cuts for single points and for packets share.
 //!
-//! The loops around it are two ([`super::single`], [`super::packet`]), because a packet's are not those of a point for
-//! sixteen lanes. The error of a cluster relative to a single point's total orders clusters once and for all, whatever
-//! the total becomes, so the worst are split in batches. The cubic mean over a packet's lanes reorders them as the
-//! lanes' totals change, so there thresholds fall round by round, and no order is kept.
+//! The refinement loops differ ([`super::single`], [`super::packet`]). For a single point, the order of clusters by
+//! error does not depend on the total, so the worst are split in batches. For a packet, the cubic mean over the lanes
+//! reorders clusters as the lanes' totals change. So thresholds fall round by round, and no order is stored.
 
 use crate::lights::{LightNode, LightTrees};
 
-/// Children of a node: the heir, which shares its representative, so that its response is known, and the other.
+/// Returns the children of a node: first the heir, which shares the node's representative and hence its response.
 #[inline]
 pub(super) fn heir_and_other(trees: &LightTrees, parent: &LightNode) -> Option<(u32, u32)> {
     let left = parent.children()?;

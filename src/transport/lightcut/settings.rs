@@ -7,42 +7,43 @@ use base::stats::add_fields;
 settings! {
     /// Settings of a cut.
     pub struct CutSettings in "Lightcuts" {
-        /// Largest error to expect of a cluster, relative to the sample's luminance.
+        /// Maximum expected error of a cluster, relative to the sample's luminance.
         ///
         /// See [`super::expected`].
         epsilon: f32 = 0.02 => [.fraction().scaled(&DOWN)];
-        /// Most clusters in a cut.
+        /// Maximum number of clusters in a cut.
         max_cut: usize = 5000 => [.at_least(1.0).scaled(&UP)];
-        /// Most that one indirect virtual point light may give, relative to the sample's luminance; 0 does not clamp.
+        /// Maximum contribution of one indirect virtual point light, relative to the sample's luminance; 0 does not
+        /// clamp.
         ///
-        /// `None` leaves weak singularities unclamped. Shares below a thousandth are refused: compensation gives back
-        /// what is taken of single lights, and clusters as bright as that are not taken apart.
+        /// `None` leaves weak singularities unclamped. Shares below 0.001 are refused, since compensation restores the
+        /// light of single VPLs only, and clusters of that brightness are not refined.
         clamp: Option<f32> = Some(0.02) => [.fraction().scaled(&UP).judged_by(JudgedBy::Light)];
-        /// Origin of the light whose trees alone are cut; `None` for all trees.
+        /// Origin of the light whose trees are cut; `None` for all trees.
         origin: Option<Origin> = None;
     }
 }
 
-/// Work done over any number of cuts; a packet's cut counts once for each of its points.
+/// Work of cuts. A packet's cut counts once for each of its points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CutCounts {
-    /// Cuts computed.
+    /// Number of cuts.
     pub cuts: u64,
-    /// Sum of their sizes.
+    /// Sum of the sizes of cuts.
     pub clusters: u64,
-    /// Cuts that ended at the cap with an error above the threshold.
+    /// Number of cuts that ended at the cap with an error above the threshold.
     pub capped: u64,
-    /// Shadow rays.
+    /// Number of shadow rays.
     pub rays: u64,
-    /// Packets of shadow rays.
+    /// Number of packets of shadow rays.
     pub packets: u64,
-    /// Bounds evaluated.
+    /// Number of bounds evaluated.
     pub bounds: u64,
-    /// Leaves whose contribution was clamped.
+    /// Number of leaves whose contribution was clamped.
     pub clamped: u64,
-    /// Luminance of all cuts' sums before clamping.
+    /// Sum of the luminances of cuts before clamping.
     pub luminance: f64,
-    /// Luminance taken away by clamping.
+    /// Luminance lost by clamping.
     pub lost: f64,
 }
 add_fields!(CutCounts { cuts, clusters, capped, rays, packets, bounds, clamped, luminance, lost });

@@ -1,4 +1,4 @@
-//! Shadow rays towards virtual lights: the one place that distinguishes kinds of lights.
+//! Shadow rays towards VPLs. Only this file distinguishes kinds of VPLs for shadow rays.
 
 use crate::lights::{Vpl, VplKind};
 use base::math::{LANES, Vec3x16};
@@ -6,7 +6,7 @@ use embree::{Ray, Rays16};
 use glam::Vec3;
 use world::shadow::{FAR_END, ULPS, ray_from, segment};
 
-/// The ray from the surface point `x` with geometric normal `normal` (zero on no surface) to a virtual light.
+/// Returns the ray to a VPL from the point `x` with geometric normal `normal`, which is zero if `x` lies on no surface.
 #[inline]
 pub fn to_vpl(x: Vec3, normal: Vec3, vpl: &Vpl, kind: VplKind) -> Ray {
     match kind {
@@ -16,8 +16,8 @@ pub fn to_vpl(x: Vec3, normal: Vec3, vpl: &Vpl, kind: VplKind) -> Ray {
     }
 }
 
-/// [`to_vpl`] from sixteen points at once, bit for bit. Rays start at the points: a coherent packet that fans
-/// out from the light loses hits.
+/// Returns the rays of [`to_vpl`] from sixteen points, bit for bit. Rays start at the points, since a packet that fans
+/// out from the light would lose hits.
 #[inline]
 pub fn to_vpl16(x: &Vec3x16, normal: &Vec3x16, vpl: &Vpl, kind: VplKind) -> Rays16 {
     let mut rays = Rays16::default();
@@ -51,7 +51,7 @@ fn set_origin(rays: &mut Rays16, l: usize, origin: Vec3) {
     (rays.origin_x[l], rays.origin_y[l], rays.origin_z[l]) = (origin.x, origin.y, origin.z);
 }
 
-/// The larger number by a comparison that vector code has.
+/// Returns the larger number, by a comparison that compiles to vector code.
 #[inline(always)]
 fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
@@ -62,7 +62,8 @@ fn largest(v: Vec3) -> f32 {
     larger(larger(v.x.abs(), v.y.abs()), v.z.abs())
 }
 
-/// `shadow::offset` by such comparisons, by the units of the coordinate `least` at least.
+/// Returns `shadow::offset` by comparisons that compile to vector code. The step is at least that of the coordinate
+/// `least`.
 #[inline(always)]
 fn moved(p: Vec3, normal: Vec3, direction: Vec3, least: f32) -> Vec3 {
     let step = larger(largest(p), least) * (ULPS * f32::EPSILON);

@@ -1,7 +1,7 @@
 //! Light transfer from one VPL to a receiver.
 //!
 //! Paper: Walter et al. 2005, Eq. 1: M · G, the material and the geometric term.
-//! Units: all per unit intensity, before visibility.
+//! Units: values per unit intensity, before visibility.
 
 use super::Receiver;
 use crate::lights::{LightTrees, Lights, Vpl, VplKind, min_dist_sq, near_sq_of_size};
@@ -14,19 +14,19 @@ pub struct Transfer<'a> {
     pub trees: &'a LightTrees,
     /// Minimum squared distance that the geometry term divides by.
     pub min_dist_sq: f32,
-    /// True if VPLs on area lights divide by no less than the area that they represent: a closer point sees
-    /// more of the light than one VPL can represent, and short rays recover the rest (see
-    /// [`crate::bias_compensation`]).
+    /// True if VPLs on area lights divide by no less than the area that they represent. A closer point sees more of the
+    /// light than one VPL can represent, and short rays find the rest (see [`crate::bias_compensation`]).
     pub patches: bool,
 }
 
 impl<'a> Transfer<'a> {
-    /// From the VPLs of `trees` in a scene of the given diagonal.
+    /// Creates the transfer from the VPLs of `trees` in a scene of this `diagonal`.
     pub fn new(trees: &'a LightTrees, diagonal: f32) -> Transfer<'a> {
         Transfer { trees, min_dist_sq: min_dist_sq(diagonal), patches: false }
     }
 
-    /// Transfer from the VPLs of a scene. With `patches`, VPLs on area lights divide by no less than their area.
+    /// Creates the transfer from the VPLs of a scene. With `patches`, VPLs on area lights divide by no less than their
+    /// area.
     pub fn of(lights: &Lights, patches: bool) -> Transfer<'_> {
         Transfer { patches, ..Transfer::new(&lights.trees, lights.diagonal) }
     }
@@ -40,7 +40,7 @@ impl<'a> Transfer<'a> {
         }
     }
 
-    /// Contribution of a VPL of unit intensity, if visible.
+    /// Contribution of a visible VPL of unit intensity.
     #[inline]
     pub fn unshadowed(&self, receiver: &Receiver, vpl: &Vpl, kind: VplKind) -> Rgb {
         if kind == VplKind::Directional {
@@ -49,7 +49,7 @@ impl<'a> Transfer<'a> {
         let offset = vpl.position - receiver.position();
         let dist_sq = offset.length_squared();
         if dist_sq == 0.0 {
-            return Rgb::ZERO; // on the receiver itself: no direction, no light
+            return Rgb::ZERO; // A VPL on the receiver itself has no direction.
         }
         let wi = offset / dist_sq.sqrt();
         let emitted = match kind {

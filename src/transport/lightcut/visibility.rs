@@ -14,7 +14,7 @@ pub trait Visibility {
     /// represents `node`.
     fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &LightNode) -> bool;
 
-    /// Share of the light of a visible VPL that passes the sheets on its way.
+    /// Transmittance of the thin sheets between the point and a visible VPL.
     fn transmittance(&self, _x: Vec3, _normal: Vec3, _vpl: &Vpl, _node: &LightNode) -> Rgb {
         Rgb::ONE
     }
@@ -22,24 +22,25 @@ pub trait Visibility {
 
 /// Visibility of a VPL from the points of a packet.
 pub trait PacketVisibility {
-    /// The lanes of `lanes` that see the VPL, which represents `node`.
+    /// Returns the lanes of `lanes` that see the VPL, which represents `node`.
     fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &LightNode) -> u16;
 
-    /// Multiplies the `light` in lanes that see the VPL by the share of it that passes the sheets on its way.
+    /// Multiplies the `light` in `lanes`, which see the VPL, by the transmittance of the thin sheets on its way.
     fn attenuate16(
         &self,
         _receivers: &ReceiverPacket,
         _lanes: u16,
-        (_vpl, _node): (&Vpl, &LightNode),
+        _vpl: &Vpl,
+        _node: &LightNode,
         _light: &mut Vec3x16,
     ) {
     }
 }
 
-/// Visibility along rays to VPLs, each to another.
+/// Visibility along rays to VPLs, one VPL per ray.
 pub trait RayVisibility {
-    /// The lanes of the first `count` whose rays are free; their `light` is multiplied by the share of it that passes
-    /// the sheets on its way.
+    /// Returns the lanes of the first `count` whose rays are not occluded. Multiplies their `light` by the
+    /// transmittance of the thin sheets on its way.
     fn arriving16(&self, rays: &Rays16, count: usize, light: &mut Vec3x16) -> u16;
 }
 
@@ -70,7 +71,8 @@ impl PacketVisibility for Engine<'_> {
         &self,
         receivers: &ReceiverPacket,
         lanes: u16,
-        (vpl, node): (&Vpl, &LightNode),
+        vpl: &Vpl,
+        node: &LightNode,
         light: &mut Vec3x16,
     ) {
         if self.world().has_sheets() {
@@ -117,10 +119,11 @@ impl PacketVisibility for World {
         &self,
         receivers: &ReceiverPacket,
         lanes: u16,
-        of: (&Vpl, &LightNode),
+        vpl: &Vpl,
+        node: &LightNode,
         light: &mut Vec3x16,
     ) {
-        Engine::new(self).attenuate16(receivers, lanes, of, light)
+        Engine::new(self).attenuate16(receivers, lanes, vpl, node, light)
     }
 }
 

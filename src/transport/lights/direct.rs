@@ -1,5 +1,5 @@
-//! VPLs of emitted light: stratified points on area lights, exact leaves for point, spot and directional
-//! lights, and luminance-stratified directions for the environment in a set of their own.
+//! VPLs of emitted light: stratified points on area lights; one VPL for each point, spot and directional light;
+//! luminance-stratified directions for the environment, in a set of their own.
 
 use super::{LightPassSettings, Origin, SpotProfile, Vpl, VplKind, VplSet, size_of_area};
 use base::progress::Control;
@@ -8,15 +8,15 @@ use scene::DeltaLight;
 use world::World;
 use world::light::{AreaLight, EnvironmentLight};
 
-/// Minimum number of points on an area light: with fewer, penumbrae would show bands.
+/// Minimum number of points on an area light. With fewer points, penumbrae would show bands.
 const MIN_PER_LIGHT: u32 = 256;
 
-/// Sum of the minimum numbers of all area lights: of the thousands of lights of a city none is large in the picture.
+/// Maximum of the sum of the minimum numbers over all area lights, for cities with thousands of lights.
 const MIN_OF_ALL: u32 = 1 << 18;
 
 /// VPLs of emitted light.
 pub struct DirectVpls {
-    /// The sets, including empty ones.
+    /// Sets of VPLs; some may be empty.
     pub sets: Vec<VplSet>,
     /// Profiles of the spot lights.
     pub spots: Vec<SpotProfile>,
@@ -24,7 +24,7 @@ pub struct DirectVpls {
     pub sizes: Vec<u32>,
 }
 
-/// Makes the VPLs of emitted light; some of them if `control` is cancelled.
+/// Makes the VPLs of emitted light; only some of them if `control` is cancelled.
 pub fn direct_vpls(world: &World, settings: &LightPassSettings, control: &Control) -> DirectVpls {
     let emitters = &world.emitters;
     let mut oriented = VplSet::new(VplKind::Oriented, Origin::Direct);
@@ -65,7 +65,7 @@ pub fn direct_vpls(world: &World, settings: &LightPassSettings, control: &Contro
 /// Division of an area light into patches.
 struct Patches {
     count: u32,
-    /// Size code, see [`size_of_area`].
+    /// Size code (see [`size_of_area`]).
     size: u32,
     seed: u32,
 }

@@ -1,11 +1,10 @@
-//! VPLs of reflected light: one for every photon, and one for each lobe that reflects much.
+//! VPLs of reflected light: one for each photon, and one for each strong lobe.
 //!
 //! Paper: Keller, *Instant Radiosity*, 1997; Herzog et al. 2009, section 3: the first hit's reflected light
 //! is already indirect, and moderately glossy reflection counts as diffuse where light is deposited.
-//! Deviations: only what reflects little of the light, as plastics do, counts as diffuse. Metals have VPLs that radiate
-//! by their lobes: in a room of a metal of roughness .27, evenly spread light was up to 16 % too bright. A limit on the
-//! edges of a path takes the receiver to be what the eye sees: behind mirrors and glass, light comes by up to as many
-//! edges more as are before it.
+//! Deviations: only weak lobes, as plastics have, count as diffuse. Metals have VPLs that radiate by their lobes. If
+//! the number of edges is limited, the receiver counts as seen directly: behind mirrors and glass, light may use as
+//! many further edges as the eye's path has.
 
 use super::{LightPassSettings, LobeProfile, Origin, Vpl, VplKind, VplSet};
 use crate::emission::{PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
@@ -18,7 +17,7 @@ use world::{SurfacePoint, World};
 
 /// VPLs of reflected light.
 pub struct IndirectVpls {
-    /// Those that radiate diffusely, and by lobes.
+    /// Diffuse VPLs, then VPLs with lobes.
     pub sets: [VplSet; 2],
     /// Profiles of the lobes.
     pub lobes: Vec<LobeProfile>,
@@ -26,15 +25,15 @@ pub struct IndirectVpls {
     pub photons: PhotonCounts,
 }
 
-/// Light that a photon leaves behind; intensities are those of a single path.
-struct Left {
+/// VPLs of one photon. Intensities are those of a single path.
+struct PhotonVpls {
     diffuse: (Vpl, Rgb),
-    /// Lobes and their intensities, where there are any.
+    /// Lobes and their intensities; `None` if there are none.
     lobes: Option<Box<[(LobeProfile, Rgb)]>>,
 }
 
-impl Left {
-    fn of(hit: &PhotonHit) -> Left {
+impl PhotonVpls {
+    fn of(hit: &PhotonHit) -> PhotonVpls {
         let photon = &hit.photon;
         let mut albedo = photon.albedo;
         let lobes: Box<[(LobeProfile, Rgb)]> = hit
@@ -53,7 +52,7 @@ impl Left {
             .collect();
         let intensity = photon.flux * albedo.max(Rgb::ZERO) * FRAC_1_PI;
         let diffuse = (Vpl::oriented(photon.position, photon.normal), intensity);
-        Left { diffuse, lobes: (!lobes.is_empty()).then_some(lobes) }
+        PhotonVpls { diffuse, lobes: (!lobes.is_empty()).then_some(lobes) }
     }
 
     /// Position of the lobes' VPLs.
@@ -63,9 +62,9 @@ impl Left {
     }
 }
 
-/// Returns about `settings.indirect` indirect VPLs (whole chunks of paths, so a few more, and up to as many that
-/// radiate by lobes) for the indirect light of points `seen`, or fewer where few paths hit a surface, or where they are
-/// aimed at what lights these.
+/// Makes about `settings.indirect` diffuse VPLs, and up to as many with lobes, for the indirect light of points `seen`.
+/// Whole chunks of paths are traced, so there may be a few more. There are fewer if few paths hit a surface, or if
+/// paths are aimed.
 pub fn indirect_vpls(
     world: &World,
     settings: &LightPassSettings,
@@ -73,10 +72,10 @@ pub fn indirect_vpls(
     max_depth: u32,
     control: &Control,
 ) -> IndirectVpls {
-    // One edge is the eye's, one joins VPL and receiver.
+    // One edge ends at the eye, another joins VPL and receiver.
     let max_edges = max_depth.saturating_sub(2);
     let wanted = PhotonSettings { photons: settings.indirect, seen, max_edges, seed: settings.seed };
-    let (found, photons) = trace_photons(world, &wanted, control, Left::of);
+    let (found, photons) = trace_photons(world, &wanted, control, PhotonVpls::of);
     let mut diffuse = VplSet::new(VplKind::Oriented, Origin::Indirect);
     let mut lobed = VplSet::new(VplKind::Lobed, Origin::Indirect);
     let mut lobes = Vec::new();

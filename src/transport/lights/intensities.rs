@@ -1,34 +1,37 @@
-//! Intensities of indirect virtual lights, by region of the scene.
+//! Intensities of indirect VPLs, by region of the scene.
 //!
-//! How much of their light is above a limit depends on them: a few bright virtual lights lose more than many faint ones
-//! of the same flux. They differ by albedo, and where photons come densely.
+//! The light that a limit takes away depends on them: a few bright VPLs lose more than many faint VPLs of the same
+//! flux. Intensities differ with the albedo and with the density of photons.
 
 use super::{Origin, Profiles, VplKind, VplSet};
 use base::math::luminance;
 use glam::Vec3;
 use world::light::Regions;
 
-/// Number of virtual lights that regions are made of, at most, and of those in a region.
-const SAMPLES: usize = 1 << 15;
-const IN_REGION: usize = 32;
+/// Maximum number of VPLs that regions are made of.
+const MAX_SAMPLES: usize = 1 << 15;
 
-/// Intensity over the geometric mean of a region from which on a virtual light does not count: that of a stray photon,
-/// around which all others would be thought as bright.
-const UNUSUAL: f64 = 3.0;
+/// Maximum number of VPLs in a region.
+const MAX_IN_REGION: usize = 32;
+
+/// Maximum intensity of a VPL that counts, relative to the geometric mean of its region. A brighter VPL is that of a
+/// stray photon.
+const MAX_TO_MEAN: f64 = 3.0;
 
 /// Mean intensities of indirect virtual lights.
 #[derive(Clone, Debug)]
 pub struct Intensities {
     regions: Regions,
-    /// By region: mean luminance of the intensities per cosine, by flux, without unusual ones.
+    /// Mean luminance of the intensities per cosine by region, weighted by flux, without stray photons.
     means: Vec<f32>,
 }
 
 impl Intensities {
-    /// Those of indirect lights among `sets`, lobed ones as diffuse ones of their flux; `None` if there are none.
+    /// Collects the intensities of indirect VPLs among `sets`; `None` if there are none. A VPL with a lobe counts as a
+    /// diffuse VPL of the same flux.
     pub fn new(sets: &[VplSet], profiles: &Profiles) -> Option<Intensities> {
         let indirect = || sets.iter().filter(|set| set.origin == Origin::Indirect);
-        let stride = indirect().map(VplSet::len).sum::<usize>().div_ceil(SAMPLES).max(1);
+        let stride = indirect().map(VplSet::len).sum::<usize>().div_ceil(MAX_SAMPLES).max(1);
         let (mut places, mut intensities) = (Vec::new(), Vec::new());
         for set in indirect() {
             for (vpl, intensity) in set.vpls.iter().zip(&set.intensities).step_by(stride) {
@@ -43,13 +46,13 @@ impl Intensities {
                 }
             }
         }
-        let (regions, members) = Regions::new(&places, IN_REGION);
+        let (regions, members) = Regions::new(&places, MAX_IN_REGION);
         let mean = |members: &Vec<u32>| {
             let of_members = || members.iter().map(|i| intensities[*i as usize]);
             let middle = (of_members().map(f64::ln).sum::<f64>() / members.len() as f64).exp();
-            let usual = || of_members().filter(|intensity| *intensity <= UNUSUAL * middle);
-            let squares: f64 = usual().map(|intensity| intensity * intensity).sum();
-            (squares / usual().sum::<f64>()) as f32
+            let counted = || of_members().filter(|intensity| *intensity <= MAX_TO_MEAN * middle);
+            let squares: f64 = counted().map(|intensity| intensity * intensity).sum();
+            (squares / counted().sum::<f64>()) as f32
         };
         (!places.is_empty()).then(|| Intensities { means: members.iter().map(mean).collect(), regions })
     }

@@ -9,9 +9,9 @@ const BITS: u32 = 14;
 const STEPS: f32 = ((1 << BITS) - 2) as f32;
 const MASK: u32 = (1 << BITS) - 1;
 
-/// Maps a unit vector to the octahedron unfolded over a square; the upper four bits are 0.
+/// Encodes a unit vector: maps it to the octahedron unfolded over a square. The upper four bits are 0.
 ///
-/// An even number of steps, so that the axes themselves are exact.
+/// The number of steps is even, so that the axes themselves are exact.
 pub fn encode(v: Vec3) -> u32 {
     let v = v / (v.x.abs() + v.y.abs() + v.z.abs()).max(f32::MIN_POSITIVE);
     let (x, y) = if v.z >= 0.0 {

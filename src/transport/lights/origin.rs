@@ -27,25 +27,25 @@ pub struct DirectIndirect<T> {
 }
 
 impl<T> DirectIndirect<T> {
-    /// Values by origin, that of direct light first.
+    /// Creates a pair from a function of the origin.
     #[inline]
     pub fn from_fn(mut value: impl FnMut(Origin) -> T) -> DirectIndirect<T> {
         DirectIndirect { direct: value(Origin::Direct), indirect: value(Origin::Indirect) }
     }
 
-    /// Function of each value.
+    /// Applies a function to each value.
     #[inline]
     pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> DirectIndirect<U> {
         DirectIndirect { direct: f(self.direct), indirect: f(self.indirect) }
     }
 
-    /// References to both.
+    /// References to both values.
     #[inline]
     pub fn as_ref(&self) -> DirectIndirect<&T> {
         DirectIndirect { direct: &self.direct, indirect: &self.indirect }
     }
 
-    /// Both values, that of direct light first.
+    /// Both values, the value of direct light first.
     #[inline]
     pub fn into_array(self) -> [T; 2] {
         [self.direct, self.indirect]
@@ -59,7 +59,7 @@ impl DirectIndirect<bool> {
         self.direct || self.indirect
     }
 
-    /// The one origin for which it holds; `None` if it holds for both or neither.
+    /// Returns the one origin for which it holds; `None` if it holds for both or neither.
     #[inline]
     pub fn only(self) -> Option<Origin> {
         match (self.direct, self.indirect) {

@@ -27,8 +27,8 @@ impl LightPass {
     }
 }
 
-/// Creates the VPLs of a scene for paths of at most `max_depth` edges, and for the indirect light of the points `seen`;
-/// of all points if there are none. Stops early, with some of them, if `control` is cancelled.
+/// Makes the VPLs of a scene for paths of at most `max_depth` edges and the indirect light of the points `seen` (if
+/// empty, of all points). Returns only some VPLs if `control` is cancelled.
 pub fn light_pass(
     world: &World,
     settings: &LightPassSettings,

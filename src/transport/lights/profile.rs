@@ -1,4 +1,4 @@
-//! Directional profiles of virtual lights: shares of the greatest intensity that leave in a direction.
+//! Directional profiles of virtual lights: intensity in a direction relative to the maximum.
 
 use base::math::{F32x16, Vec3x16};
 use glam::Vec3;
@@ -24,7 +24,7 @@ impl SpotProfile {
     }
 }
 
-/// Half the step by which slopes of lobes are measured, radians: an eighth of the width of the sharpest.
+/// Half the step of differences that estimate slopes of lobes, radians: an eighth of the width of the sharpest lobe.
 const STEP: f32 = 0.03;
 
 /// Lobe of a rough surface around the mirror direction of the light that it reflects.
@@ -34,7 +34,7 @@ pub struct LobeProfile {
     pub normal: Vec3,
     /// Unit vector to the light.
     pub towards_light: Vec3,
-    /// Distribution of what is reflected.
+    /// Distribution of the reflected light.
     pub shape: LobeShape,
     /// Bound of the intensity over the reflected flux, 1/sr.
     pub peak: f32,
@@ -47,19 +47,19 @@ impl LobeProfile {
         self.shape.share(self.normal, self.towards_light, away)
     }
 
-    /// The same in all lanes.
+    /// Returns [`LobeProfile::share`] in all lanes.
     #[inline]
     pub fn share16(&self, away: &Vec3x16) -> F32x16 {
         self.shape.share16(self.normal, self.towards_light, away)
     }
 
-    /// That, and its derivative by `away`, perpendicular to it, from differences.
+    /// Returns [`LobeProfile::share`] and its derivative by `away`, perpendicular to `away`, from differences.
     pub fn share_and_slope(&self, away: Vec3) -> (f32, Vec3) {
         let (share, slope, _) = self.share_and_derivatives(away);
         (share, slope)
     }
 
-    /// Those, and the sum of the magnitudes of the second derivatives along two axes.
+    /// Returns [`LobeProfile::share_and_slope`] and the sum of the magnitudes of the second derivatives along two axes.
     pub fn share_and_derivatives(&self, away: Vec3) -> (f32, Vec3, f32) {
         let share = self.share(away);
         let (u, v) = away.any_orthonormal_pair();
@@ -72,7 +72,7 @@ impl LobeProfile {
         (share, slope, curvature)
     }
 
-    /// Squared roughness by which [`LobeShape::max_share`] bounds it.
+    /// Squared roughness for the bound [`LobeShape::max_share`].
     pub fn width_sq(&self) -> f32 {
         self.shape.width_sq()
     }
@@ -83,7 +83,7 @@ impl LobeProfile {
         axis.try_normalize().unwrap_or(self.normal)
     }
 
-    /// Intensity per cosine of a diffuse light of the same flux, over the bound.
+    /// Intensity per cosine of a diffuse light of the same flux, relative to the bound.
     pub fn diffuse_equivalent(&self) -> f32 {
         1.0 / (PI * self.peak)
     }
@@ -92,9 +92,9 @@ impl LobeProfile {
 /// Profiles that virtual lights refer to.
 #[derive(Clone, Debug, Default)]
 pub struct Profiles {
-    /// Of spot lights among the omni ones.
+    /// Profiles of spot lights among the omni VPLs.
     pub spots: Vec<SpotProfile>,
-    /// Of lobes.
+    /// Profiles of lobes.
     pub lobes: Vec<LobeProfile>,
 }
 

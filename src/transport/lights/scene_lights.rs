@@ -1,12 +1,12 @@
-//! The virtual lights of a scene with what shading needs besides: trees, intensities, and distances below which a VPL
-//! cannot represent its patch.
+//! The virtual lights of a scene, as shading uses them: trees, intensities, and distances below which a VPL cannot
+//! represent its patch.
 
 use super::{Family, Intensities, LightPassSettings, LightTrees, light_pass, min_dist_sq, near_sq_of_size};
 use base::progress::Control;
 use base::stats::{Stage, Stats};
 use world::{SurfacePoint, World};
 
-/// Parameters of virtual lights, besides the scene.
+/// Parameters of the virtual lights of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightsWanted {
     /// Numbers of VPLs and the seed.

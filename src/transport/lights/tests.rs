@@ -1,7 +1,7 @@
 //! VPLs one by one, and those of whole scenes against closed forms.
 
 use super::*;
-use crate::lightcut::fixtures::{Numbers, profiles};
+use crate::lightcut::fixtures::{RandomNumbers, profiles};
 use base::math::{LANES, Rgb, Vec3x16};
 use base::progress::Control;
 use base::sampling::{owen_sobol_2d, uniform_sphere};
@@ -182,7 +182,7 @@ fn lobes_send_all_the_light_that_is_reflected_and_nowhere_more_than_their_bounds
 
 #[test]
 fn lanes_of_lobes_are_those_of_single_directions() {
-    let mut numbers = Numbers(3);
+    let mut numbers = RandomNumbers(3);
     for lobe in profiles().lobes {
         let mut away = Vec3x16::ZERO;
         (0..LANES - 1).for_each(|lane| away.set(lane, numbers.direction()));
@@ -196,7 +196,7 @@ fn lanes_of_lobes_are_those_of_single_directions() {
 
 #[test]
 fn slopes_of_lobes_are_perpendicular_and_those_of_their_shares() {
-    let mut numbers = Numbers(5);
+    let mut numbers = RandomNumbers(5);
     for lobe in profiles().lobes {
         let away = (lobe.axis() + 0.3 * numbers.direction()).normalize();
         let (share, slope) = lobe.share_and_slope(away);

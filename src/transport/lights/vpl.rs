@@ -15,24 +15,24 @@ use glam::Vec3;
 /// Directional distribution of a VPL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VplKind {
-    /// Equal in all directions, or within the cone of a spot light.
+    /// Equal in all directions, or restricted by the cone of a spot light.
     Omni,
     /// Proportional to the cosine to its normal: a patch of a diffuse surface.
     Oriented,
-    /// From infinitely far, without falloff: a directional light, or a patch of the environment.
+    /// Light from infinitely far, without falloff: a directional light, or a patch of the environment.
     Directional,
-    /// In a lobe: a patch of a rough surface that reflects much as metals do.
+    /// Lobe of a patch of a rough metal, or of a rough surface that reflects as much.
     Lobed,
 }
 
-/// The hot part of a VPL: 16 bytes, four to a cache line.
+/// Hot part of a VPL: 16 bytes, four per cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]
 pub struct Vpl {
     /// Position, or for [`VplKind::Directional`] the unit direction towards the light.
     pub position: Vec3,
-    /// Oriented: size in the upper four bits, normal in the others. Omni: index of the spot profile + 1, or 0. Lobed:
-    /// index of the lobe.
+    /// Oriented: size in the upper four bits, normal in the other bits. Omni: index of the spot profile + 1, or 0.
+    /// Lobed: index of the lobe.
     word: u32,
 }
 
@@ -42,31 +42,31 @@ impl Vpl {
         Vpl { position, word: 0 }
     }
 
-    /// An omni VPL restricted by the spot profile with index `profile`.
+    /// Creates an omni VPL restricted by the spot profile with index `profile`.
     pub fn spot(position: Vec3, profile: u32) -> Vpl {
         Vpl { position, word: profile + 1 }
     }
 
-    /// Creates a VPL of intensity proportional to the cosine to the unit vector `normal` (stored to within
-    /// 3e-4 rad).
+    /// Creates a VPL of intensity in proportion to the cosine to the unit vector `normal`, which is stored to within
+    /// 3e-4 rad.
     pub fn oriented(position: Vec3, normal: Vec3) -> Vpl {
         Vpl { position, word: octahedral::encode(normal) }
     }
 
-    /// Creates the same for a patch of the given size (see [`size_of_area`]).
+    /// Creates an oriented VPL for a patch with the size code `size` (see [`size_of_area`]).
     pub fn patch(position: Vec3, normal: Vec3, size: u32) -> Vpl {
         let mut vpl = Vpl::oriented(position, normal);
         vpl.word |= size.min(MAX_SIZE) << SIZE_SHIFT;
         vpl
     }
 
-    /// A VPL infinitely far in the unit direction `towards`.
+    /// Creates a VPL infinitely far in the unit direction `towards`.
     pub fn directional(towards: Vec3) -> Vpl {
         Vpl { position: towards, word: 0 }
     }
 
-    /// Creates a VPL with the lobe of index `lobe`, a little in front of its surface, so that shadow rays need not know
-    /// that.
+    /// Creates a VPL with the lobe of index `lobe`. Its position is a little in front of its surface, so that shadow
+    /// rays need no normal.
     pub fn lobed(position: Vec3, lobe: u32) -> Vpl {
         Vpl { position, word: lobe }
     }
@@ -77,7 +77,7 @@ impl Vpl {
         octahedral::decode(self.word)
     }
 
-    /// Size code of the patch of an oriented VPL; 0 if it is a point.
+    /// Size code of the patch of an oriented VPL; 0 if the VPL is a point.
     #[inline]
     pub fn size(&self) -> u32 {
         self.word >> SIZE_SHIFT
@@ -96,11 +96,11 @@ impl Vpl {
     }
 }
 
-/// Minimum distance as a fraction of the scene's diagonal: nearer ones are clamped to it, which keeps a VPL
-/// on the receiver finite.
+/// Minimum distance as a fraction of the scene's diagonal. Shorter distances are clamped to it, which keeps the light
+/// of a VPL on the receiver finite.
 pub const MIN_DISTANCE: f32 = 1e-5;
 
-/// The square of that distance.
+/// Square of the minimum distance in a scene.
 pub fn min_dist_sq(diagonal: f32) -> f32 {
     let distance = (diagonal * MIN_DISTANCE).max(1e-18);
     distance * distance
@@ -109,14 +109,15 @@ pub fn min_dist_sq(diagonal: f32) -> f32 {
 const SIZE_SHIFT: u32 = 28;
 const MAX_SIZE: u32 = 15;
 
-/// Size code of a patch of the given area, in powers of four times the minimum squared distance.
+/// Returns the size code of a patch of an area: its binary logarithm over the minimum squared distance, halved and
+/// rounded.
 pub fn size_of_area(area: f32, diagonal: f32) -> u32 {
     let steps = 0.5 * (area / min_dist_sq(diagonal)).log2();
-    // Not a number and too small areas become 0.
+    // NaN and areas that are too small become 0.
     steps.round().clamp(0.0, MAX_SIZE as f32) as u32
 }
 
-/// Squared distance from which on a patch of that size may be treated as a point.
+/// Minimum squared distance at which a patch with the size code `size` may be treated as a point.
 #[inline]
 pub fn near_sq_of_size(size: u32, min_dist_sq: f32) -> f32 {
     min_dist_sq * f32::from_bits((127 + 2 * size) << 23)
@@ -125,13 +126,13 @@ pub fn near_sq_of_size(size: u32, min_dist_sq: f32) -> f32 {
 /// VPLs of one kind and origin, over which one light tree is built.
 #[derive(Clone, Debug)]
 pub struct VplSet {
-    /// Kind of all of them.
+    /// Kind of all VPLs.
     pub kind: VplKind,
-    /// Origin of all of them.
+    /// Origin of all VPLs.
     pub origin: Origin,
-    /// Hot records.
+    /// Hot parts.
     pub vpls: Vec<Vpl>,
-    /// Intensity of each.
+    /// Intensity of each VPL.
     pub intensities: Vec<Rgb>,
 }
 
@@ -141,13 +142,13 @@ impl VplSet {
         VplSet { kind, origin, vpls: Vec::new(), intensities: Vec::new() }
     }
 
-    /// Makes room for so many more.
+    /// Reserves memory for `more` further VPLs.
     pub fn reserve(&mut self, more: usize) {
         self.vpls.reserve(more);
         self.intensities.reserve(more);
     }
 
-    /// Adds a VPL, unless it is black or not finite: it would add no light, or spoil every sum.
+    /// Adds a VPL, unless it is black or not finite.
     pub fn push(&mut self, vpl: Vpl, intensity: Rgb) {
         let usable = vpl.position.is_finite() && intensity.is_finite() && intensity.min_element() >= 0.0;
         if usable && luminance(intensity) > 0.0 {
@@ -161,7 +162,7 @@ impl VplSet {
         self.vpls.len()
     }
 
-    /// True if there are none.
+    /// True if there are no VPLs.
     pub fn is_empty(&self) -> bool {
         self.vpls.is_empty()
     }

@@ -7,15 +7,14 @@
 //! surfaces of another orientation, or from behind, are ignored. Only the part of the disc that is surface
 //! counts, and only photons there (see [`super::disc`]).
 //!
-//! Estimates are made at sites drawn independently of the photons that they count. At a photon there is
-//! certainly one; and the fewer photons chance has put into a region, the larger the area over which each
-//! one's estimate is used: either would bias the mean over the surface by about 1/k.
+//! Estimates are made at sites that are sampled independently of the photons that they count. Estimates at photons
+//! would have two biases of about 1/k. The photon itself would count, and estimates of regions with few photons would
+//! be used over larger areas.
 //!
-//! Deviations: on curved surfaces the disc stays flat; of light just behind a closed wall about 1e-4 is found before
-//! it.
+//! Deviations: on curved surfaces the disc stays flat. About 1e-4 of the light just behind a closed wall leaks through.
 //! Units: W/m².
 
-use super::disc::{self, Disc};
+use super::disc::{self, SurfaceDisc};
 use super::map::{PhotonMap, Site};
 use crate::emission::Photon;
 use base::math::{LANES, Rgb, Vec3x16, lanes_in, mask_of};
@@ -26,8 +25,7 @@ use std::f32::consts::PI;
 use std::ops::Range;
 use world::World;
 
-/// Maximum radius of a disc, as a fraction of the scene's diagonal: where photons are rarer, the estimate is
-/// dark.
+/// Maximum radius of a disc, as a fraction of the scene's diagonal. If photons are rarer, the estimate is too dark.
 const MAX_RADIUS: f32 = 0.05;
 
 /// Factor on distances along the normal.
@@ -48,49 +46,49 @@ pub struct IrradianceEstimate {
     pub normal: Vec3,
     /// Irradiance.
     pub irradiance: Rgb,
-    /// Radius of the disc that it is the mean over.
+    /// Radius of the disc over which it is the mean.
     pub radius: f32,
 }
 
-/// Square of the distance between points of a surface, larger off its plane.
+/// Returns the squared distance between points of a surface, larger off its plane.
 #[inline]
 pub fn surface_distance_sq(offset: Vec3, normal: Vec3) -> f32 {
     let height = offset.dot(normal) * NORMAL_SCALE;
     offset.length_squared() + height * height
 }
 
-/// Computes the estimates at the sites of the map, in their order, and the number of rays traced, unless `control` is
-/// cancelled.
+/// Computes the estimates at the sites of the map, in their order, and the number of rays. Returns `None` if `control`
+/// is cancelled.
 pub fn estimates(
     world: &World,
     map: &PhotonMap,
     nearest: usize,
     control: &Control,
 ) -> Option<(Vec<IrradianceEstimate>, u64)> {
-    let of_leaf = |near: &mut Candidates, leaf| {
+    let of_leaf = |near: &mut PhotonPackets, leaf| {
         (!control.is_cancelled()).then(|| leaf_estimates(world, map, nearest, leaf, near))
     };
     let by_leaf: Option<Vec<Vec<IrradianceEstimate>>> =
-        (0..map.site_index.leaves()).into_par_iter().map_init(Candidates::default, of_leaf).collect();
+        (0..map.site_index.leaves()).into_par_iter().map_init(PhotonPackets::default, of_leaf).collect();
     let all = by_leaf?.concat();
     let rays = all.len() as u64 * disc::RAYS;
     Some((all, rays))
 }
 
-/// Computes the estimates at the sites of a leaf, which share the search for photons around.
+/// Computes the estimates at the sites of a leaf, which share the search for photons around them.
 fn leaf_estimates(
     world: &World,
     map: &PhotonMap,
     nearest: usize,
     leaf: usize,
-    near: &mut Candidates,
+    near: &mut PhotonPackets,
 ) -> Vec<IrradianceEstimate> {
     let (photons, sites) = (&map.photons, &map.sites[map.site_index.leaf(leaf)]);
     let count = sites.len() as f32;
     let centre = sites.iter().map(|s| s.position).sum::<Vec3>() / count.max(1.0);
     let extent = sites.iter().map(|s| s.position.distance(centre)).fold(0.0, f32::max);
     let largest = MAX_RADIUS * world.diagonal;
-    // The number of photons is in proportion to that of the sites.
+    // The number of photons is in proportion to the number of sites.
     let around = count * photons.len() as f32 / map.sites.len().max(1) as f32;
     let guess = 1.5 * extent * (nearest as f32 / around.max(1.0)).sqrt();
     let mut radius = guess.clamp(1e-4 * largest, largest);
@@ -115,15 +113,15 @@ fn leaf_estimates(
 
 /// Photons that may be near sites, in packets of sixteen.
 #[derive(Default)]
-struct Candidates {
-    /// Indices of the photons; the last packet may be part empty.
+struct PhotonPackets {
+    /// Indices of the photons; the last packet may be partly empty.
     photon: Vec<u32>,
     position: Vec<Vec3x16>,
     normal: Vec<Vec3x16>,
     towards_light: Vec<Vec3x16>,
 }
 
-impl Candidates {
+impl PhotonPackets {
     fn clear(&mut self) {
         self.photon.clear();
         for packets in [&mut self.position, &mut self.normal, &mut self.towards_light] {
@@ -146,7 +144,7 @@ impl Candidates {
         }
     }
 
-    /// Appends those that count at a site and are within the radius, with the squares of their distances.
+    /// Appends the photons that count at a site and are within the radius, with their squared distances.
     fn within(&self, at: &Site, radius_sq: f32, distances: &mut Vec<(f32, u32)>) {
         let Site { position, normal } = *at;
         for (packet, photons) in self.photon.chunks(LANES).enumerate() {
@@ -172,7 +170,7 @@ fn estimate(
     distances: &mut [(f32, u32)],
 ) -> IrradianceEstimate {
     let order = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-    // The k-th photon ends the disc and is not in it.
+    // The distance of the k-th photon is the radius of the disc, which does not contain it.
     let (inside, radius_sq) = match nearest.checked_sub(1).filter(|&k| k < distances.len()) {
         Some(k) => {
             let (inside, last, _) = distances.select_nth_unstable_by(k, order);
@@ -184,7 +182,7 @@ fn estimate(
     let mut irradiance = Rgb::ZERO;
     if radius > 0.0 {
         inside.sort_unstable_by(order);
-        let disc = Disc::probe(world, at, radius);
+        let disc = SurfaceDisc::probe(world, at, radius);
         let kernel = |&(d, j): &(f32, u32)| photons[j as usize].flux * (1.0 - d / radius_sq);
         let sum: Rgb = match disc.share < 1.0 {
             true => inside.iter().filter(|(_, j)| disc.sees(world, &photons[*j as usize])).map(kernel).sum(),

@@ -1,7 +1,7 @@
-//! Share of a disc on a surface that is surface.
+//! Share of a disc that lies on the surface.
 //!
-//! Near edges and corners part of the disc is beyond the surface, where no photon can be. Rays from a point
-//! low above its middle measure that part, and test the visibility of photons on it: an occluded one may lie
+//! Near edges and corners, part of the disc is beyond the surface, where there can be no photons. Rays from a point low
+//! above the centre of the disc measure this part. They also test the visibility of photons: an occluded photon may lie
 //! in the next room, whose floor continues under the wall.
 
 use super::map::Site;
@@ -29,16 +29,16 @@ const SEED: u32 = 0xd15c;
 /// Number of rays that probe a disc.
 pub const RAYS: u64 = LANES as u64 + 1;
 
-/// A disc on a surface, probed from above its middle.
-pub struct Disc {
+/// Disc on a surface, probed from above its centre.
+pub struct SurfaceDisc {
     eye: Vec3,
-    /// Share of it that is surface, weighted by the kernel.
+    /// Share of the disc that lies on the surface, weighted by the kernel.
     pub share: f32,
 }
 
-impl Disc {
+impl SurfaceDisc {
     /// Probes the disc around a site.
-    pub fn probe(world: &World, site: &Site, radius: f32) -> Disc {
+    pub fn probe(world: &World, site: &Site, radius: f32) -> SurfaceDisc {
         let Site { position, normal } = *site;
         let frame = Frame::from_normal(normal);
         let up = shadow::ray_from(position, normal, normal);
@@ -46,11 +46,11 @@ impl Disc {
         let height = free.map_or(HEIGHT * radius, |hit| 0.5 * hit.t);
         let eye = position + normal * height;
         let mut rays = Rays16::default();
-        // Every disc has points of its own: the error of a common set would be correlated along a whole edge.
+        // Every disc has points of its own. The errors of a common set would be correlated along a whole edge.
         let seed = position.to_array().iter().fold(SEED, |seed, x| hash(x.to_bits(), seed));
         for lane in 0..LANES {
             let u = owen_sobol_2d(lane as u32, seed);
-            // The kernel's share within ρ is 2ρ² - ρ⁴.
+            // The share of the kernel within the radius ρ is 2ρ² - ρ⁴.
             let (sin, cos) = (TAU * u.x).sin_cos();
             let rho = (1.0 - (1.0 - u.y).sqrt()).max(0.0).sqrt() * radius;
             let target = position + frame.tangent * (rho * cos) + frame.bitangent * (rho * sin);
@@ -64,7 +64,7 @@ impl Disc {
             let normal_there = world.geometric_normal(hits.geometry[lane], hits.primitive[lane]);
             off.abs() <= FLATNESS * radius && normal_there.dot(normal).abs() >= MIN_COS
         });
-        Disc { eye, share: on_disc.count() as f32 / LANES as f32 }
+        SurfaceDisc { eye, share: on_disc.count() as f32 / LANES as f32 }
     }
 
     /// True if a photon is visible from above.

@@ -1,11 +1,11 @@
-//! A final gathering: rays into all strata of a point's hemisphere.
+//! Final gathering: rays into all strata of a point's hemisphere. Rays of sixteen neighbouring strata are traced as a
+//! coherent packet.
 //!
 //! Papers: Ward and Heckbert 1992; Krivanek et al. 2005.
-//! Rays of sixteen neighbouring strata start at one point and are traced as a coherent packet.
 
 use super::indirect_light::{GatherCounts, IndirectLight};
 use super::radiance::IncomingRadiance;
-use super::strata::{BLOCK, Met, Strata};
+use super::strata::{BLOCK, Strata, StrataHits};
 use base::math::{Frame, Rgb};
 use base::sampling::hash;
 use embree::Rays16;
@@ -18,7 +18,7 @@ use world::shadow;
 pub struct GatheredIrradiance {
     /// Irradiance.
     pub irradiance: Rgb,
-    /// Irradiance vector by channel, in the world.
+    /// Irradiance vector by channel, in world space.
     pub vector: Mat3,
     /// Gradient of the irradiance by channel, in the tangent plane.
     pub gradient: Mat3,
@@ -26,25 +26,25 @@ pub struct GatheredIrradiance {
     pub distance: f32,
 }
 
-/// A point at which light is gathered.
+/// Point at which light is gathered.
 #[derive(Clone, Copy, Debug)]
 pub struct GatherPoint {
     /// Position and normals.
     pub point: SurfacePoint,
-    /// Coat that the light has to pass; 0 for none.
+    /// Coat of the surface; 0 for none.
     pub coat: u32,
     /// Seed of the directions within the strata.
     pub seed: u32,
-    /// Inverse of the minimum distance, to which nearer surfaces are clamped in the gradient.
+    /// Inverse of the minimum distance of surfaces in the gradient.
     pub max_nearness: f32,
 }
 
-/// Gathers at a point; stores the surfaces that the rays hit in `met`.
+/// Gathers irradiance at a point; stores the surfaces that the rays hit in `met`.
 pub fn gather(
     light: &IndirectLight,
     strata: &Strata,
     at: &GatherPoint,
-    met: &mut Met,
+    met: &mut StrataHits,
     counts: &mut GatherCounts,
 ) -> GatheredIrradiance {
     let GatherPoint { point, coat, seed, max_nearness } = *at;

@@ -1,8 +1,8 @@
 //! Indirect light that surfaces reflect along the rays that hit them.
 //!
-//! A surface reflects the irradiance of the map, unless it is nearer than the map resolves (see
-//! [`super::near`]). Surfaces behind sheets and gaps count as well; light by mirrors, glass and other lobes too sharp
-//! to pass for diffuse is found with the eye samples, and not counted. Nor is emission, which is direct light.
+//! A surface reflects the irradiance of the map, unless it is nearer than the map resolves (see [`super::near`]).
+//! Surfaces behind thin sheets and gaps count as well. Light by mirrors, glass and other sharp lobes does not count,
+//! since eye samples find it. Emission does not count, since it is direct light.
 //!
 //! Units: radiance.
 
@@ -15,24 +15,24 @@ use std::f32::consts::FRAC_1_PI;
 use world::shadow;
 use world::{Surface, World};
 
-/// Maximum number of surfaces a ray is followed through.
+/// Maximum number of surfaces that a ray is followed through.
 const MAX_EDGES: u32 = 8;
 
 /// Counts of the work of gathering.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GatherCounts {
-    /// Rays from records.
+    /// Number of rays from records.
     pub record_rays: u64,
-    /// Rays from single samples.
+    /// Number of rays from single samples.
     pub own_rays: u64,
-    /// Rays continued behind sheets and gaps.
+    /// Number of rays continued behind sheets and gaps.
     pub followed: u64,
-    /// Surfaces too near for the map.
+    /// Number of surfaces too near for the map.
     pub near: u64,
 }
 add_fields!(GatherCounts { record_rays, own_rays, followed, near });
 
-/// The indirect light of a scene.
+/// Indirect light of a scene.
 #[derive(Clone, Copy)]
 pub struct IndirectLight<'w> {
     /// The scene.
@@ -42,8 +42,8 @@ pub struct IndirectLight<'w> {
 }
 
 impl IndirectLight<'_> {
-    /// Returns the radiance that a surface reflects against `direction`, from which it was hit at `distance`;
-    /// and the albedo of the reflection still missing, if it is too near for the map, else 0.
+    /// Returns the radiance that a surface, hit along `direction` at `distance`, reflects back. Also returns the albedo
+    /// of the reflection that is still missing because the surface is too near for the map; 0 if none is.
     #[inline]
     pub(super) fn sent(
         &self,

@@ -1,4 +1,4 @@
-//! Irradiance anywhere: that of the nearest estimate on a surface of similar orientation.
+//! Look-up of irradiance at any point: the nearest estimate on a surface of similar orientation.
 //!
 //! Paper: Christensen 1999: one look-up at each hit of a final gathering, instead of an estimate.
 
@@ -7,16 +7,15 @@ use base::kd_tree::{KdTree, WideKdTree};
 use base::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, lanes_in, mask_of};
 use glam::Vec3;
 
-/// Maximum number of packets of estimates in a leaf, given by the leaf size of the index.
+/// Maximum number of packets of estimates in a leaf, which follows from the leaf size of the index.
 const PACKETS: usize = 2;
 
-/// Positions and unit normals of a leaf's estimates, as structures of arrays; normals are zero in empty
-/// lanes.
+/// Positions and unit normals of a leaf's estimates as structures of arrays. Normals are zero in empty lanes.
 #[derive(Clone, Debug, Default)]
 struct Leaf {
     position: [Vec3x16; PACKETS],
     normal: [Vec3x16; PACKETS],
-    /// Index of its first estimate.
+    /// Index of the leaf's first estimate.
     first: u32,
 }
 
@@ -24,7 +23,7 @@ struct Leaf {
 pub struct IrradianceMap {
     leaves: Vec<Leaf>,
     index: WideKdTree,
-    /// Irradiance of each estimate, with the radius of the disc that it is the mean over.
+    /// Irradiance of each estimate, with the radius of the disc over which it is the mean.
     irradiance: Vec<(Rgb, f32)>,
     /// Square of the maximum distance at which any estimate is used.
     reach_sq: f32,
@@ -41,7 +40,7 @@ impl IrradianceMap {
             leaves: leaves.collect(),
             index: WideKdTree::new(index, &positions),
             irradiance: estimates.iter().map(|e| (e.irradiance, e.radius)).collect(),
-            // Rounded up, so that an estimate at exactly that distance counts.
+            // The square is rounded up, so that an estimate at exactly this distance counts.
             reach_sq: (furthest * furthest).next_up(),
         }
     }
@@ -52,7 +51,7 @@ impl IrradianceMap {
     }
 
     /// Looks up the irradiance at a point of a surface with unit normal `normal`, and the radius of the disc
-    /// that it is the mean over; `None` where no photon, hence no light, is near.
+    /// over which it is the mean; `None` if there is no photon near, hence no light.
     #[inline]
     pub fn at(&self, point: Vec3, normal: Vec3) -> Option<(Rgb, f32)> {
         let mut best = None;
@@ -91,7 +90,7 @@ impl Leaf {
     }
 }
 
-/// Squares of the distances to sixteen estimates; infinite to those on surfaces of another orientation.
+/// Returns the squared distances to sixteen estimates; infinite for estimates on surfaces of another orientation.
 #[inline(always)]
 fn distances_sq(positions: &Vec3x16, normals: &Vec3x16, point: Vec3, normal: Vec3) -> F32x16 {
     let mut distances = [f32::INFINITY; LANES];
@@ -102,8 +101,8 @@ fn distances_sq(positions: &Vec3x16, normals: &Vec3x16, point: Vec3, normal: Vec
     distances
 }
 
-/// Maximum distance at which an estimate is used, in radii of its disc. Were there as much light farther
-/// away, there would be a nearer site: of k photons in a disc, none but for e^(-k/4) of places.
+/// Maximum distance at which an estimate is used, in radii of its disc. If there were as much light farther
+/// away, there would be a nearer site, except with probability e^(-k/4) for k photons in a disc.
 const REACH: f32 = 1.0;
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
-//! The photons of a scene.
+//! Photon map of a scene.
 //!
-//! Every hit that reflects diffusely stores one, the first included: reflected direct light is indirect light
+//! Every hit that reflects diffusely stores a photon, the first hit included: reflected direct light is indirect light
 //! at the next surface. Direct light itself is computed elsewhere.
 //!
 //! Units: flux in watts.
@@ -14,11 +14,11 @@ use glam::Vec3;
 use rayon::prelude::*;
 use world::World;
 
-/// Number of photons for each site.
+/// Number of photons per site.
 const PHOTONS_PER_SITE: u32 = 4;
 
-/// A point where irradiance is estimated: the hit of a photon of another set, so that sites are dense where
-/// photons are, and independent of them.
+/// Point where irradiance is estimated: the hit of a photon of another set. So sites are dense where photons are dense,
+/// and independent of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Site {
     /// Position.
@@ -27,22 +27,22 @@ pub struct Site {
     pub normal: Vec3,
 }
 
-/// Photons in the order of an index over their positions, and sites likewise.
+/// Photons and sites, each in the order of an index over their positions.
 pub struct PhotonMap {
-    /// The photons; their flux has been divided by the number of paths.
+    /// Photons, with flux divided by the number of paths.
     pub photons: Vec<Photon>,
-    /// The hierarchy over them.
+    /// Index over the photons.
     pub index: KdTree,
     /// Sites at which irradiance is estimated.
     pub sites: Vec<Site>,
-    /// The hierarchy over those.
+    /// Index over the sites.
     pub site_index: KdTree,
-    /// Counts of tracing.
+    /// Counts of photon tracing.
     pub counts: PhotonCounts,
 }
 
 impl PhotonMap {
-    /// Traces the photons; there may be none once `control` is cancelled.
+    /// Traces the photons of a scene; there may be none if `control` is cancelled.
     pub fn new(world: &World, settings: &PhotonSettings, control: &Control) -> PhotonMap {
         let (mut photons, mut counts) = trace_photons(world, settings, control, |hit| hit.photon);
         let share = 1.0 / counts.paths.max(1) as f32;
@@ -67,10 +67,10 @@ impl PhotonMap {
     }
 }
 
-/// Number of items that are put in order between two looks at whether that is cancelled.
-const TOGETHER: usize = 1 << 18;
+/// Number of items that are reordered between two tests for cancellation.
+const ITEMS_PER_TEST: usize = 1 << 18;
 
-/// Builds a hierarchy over positions, and returns it with the items in its order; both are empty if `control` is
+/// Builds an index over the positions of items; returns it with the items in its order. Both are empty if `control` is
 /// cancelled.
 fn indexed<T: Copy + Send + Sync>(
     items: Vec<T>,
@@ -79,7 +79,7 @@ fn indexed<T: Copy + Send + Sync>(
 ) -> (KdTree, Vec<T>) {
     let (index, order) = KdTree::build_unless_cancelled(items.iter().map(position), control);
     let mut ordered = Vec::with_capacity(items.len());
-    for part in order.chunks(TOGETHER) {
+    for part in order.chunks(ITEMS_PER_TEST) {
         if control.is_cancelled() {
             return (KdTree::empty(), Vec::new());
         }

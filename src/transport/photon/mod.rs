@@ -4,12 +4,12 @@
 //! Illumination*, 1999; Ward and Heckbert, *Irradiance Gradients*, 1992; Krivanek et al., *Radiance Caching*,
 //! 2005.
 //!
-//! - [`map`]: the photons, in an order in which neighbours in space are neighbours in memory;
-//! - [`density`]: irradiance from the photons around a point; [`disc`]: the part of the disc around it that
+//! - [`map`]: photons, ordered so that neighbours in space are neighbours in memory;
+//! - [`density`]: irradiance from the photons around a point; [`disc`]: the part of the disc around the point that
 //!   is surface;
-//! - [`irradiance`]: look-ups of it anywhere;
-//! - [`strata`]: the directions of a final gathering; [`hemisphere`]: the surfaces they hit, and gradients;
-//! - [`indirect_light`]: light that a surface reflects along a ray; [`near`]: from surfaces nearer than the
+//! - [`irradiance`]: look-ups of irradiance anywhere;
+//! - [`strata`]: directions of a final gathering; [`hemisphere`]: the surfaces that they hit, and gradients;
+//! - [`indirect_light`]: light that a surface reflects along a ray; [`near`]: light of surfaces nearer than the
 //!   map resolves; [`radiance`]: light along packets of rays;
 //! - [`records`]: records of indirect light for the cache; [`own`]: light at single samples.
 

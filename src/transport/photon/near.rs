@@ -1,12 +1,10 @@
 //! Reflection by surfaces that are nearer than the photon map resolves.
 //!
-//! The map's irradiance is the mean over a disc. Seen from far, the blur averages out over the hemisphere;
-//! seen from nearer than the disc's width it does not: light leaks under objects and creases are dark. There,
-//! paths continue by another edge instead, with light sampled at their vertices, until they reach a surface
-//! far enough away.
+//! The map's irradiance is the mean over a disc. Seen from far, the blur averages out over the hemisphere. Seen from
+//! nearer than the disc's width it does not: light leaks under objects, and creases are dark. Instead, paths continue
+//! by further edges, with light sampled at their vertices, until they reach a surface that is far enough away.
 //!
-//! Papers: Jensen 1996 (importance of near hits); Christensen 1999; Veach 1997 (multiple importance
-//! sampling).
+//! Papers: Jensen 1996 (importance of near hits); Christensen 1999; Veach 1997 (multiple importance sampling).
 
 use super::density::MIN_COS;
 use super::indirect_light::{GatherCounts, IndirectLight};
@@ -19,32 +17,32 @@ use world::Surface;
 use world::light::Receivers16;
 use world::shadow;
 
-/// Maximum number of added edges; surfaces that are still too near after them use the map.
+/// Maximum number of added edges. Surfaces that are still too near use the map.
 const MAX_EDGES: u32 = 4;
 
-/// Maximum number of near surfaces that share the irradiance found on one of them.
+/// Maximum number of near surfaces that share the irradiance of one of them.
 const SHARED: usize = 4;
 
 /// Surfaces that are too near to the points that they light.
 #[derive(Default)]
-pub struct NearSurfaces {
+pub struct NearHits {
     /// Lanes in use.
     pub lanes: u16,
     position: Vec3x16,
     /// Unit shading normals on the side that reflects.
     normal: Vec3x16,
-    /// Unit geometric normals on that side.
+    /// Unit geometric normals on the side that reflects.
     geometric: Vec3x16,
-    /// Throughput of the ray that hit the surface, times the albedo.
+    /// Throughput of the rays that hit the surfaces, times albedo.
     throughput: Vec3x16,
 }
 
-impl NearSurfaces {
+impl NearHits {
     fn receivers(&self) -> Receivers16<'_> {
         Receivers16 { position: &self.position, normal: &self.normal, learned: None }
     }
 
-    /// Adds a surface hit along `direction`; `throughput` includes its albedo.
+    /// Adds a surface hit along `direction`; `throughput` includes the albedo.
     pub fn set(&mut self, lane: usize, surface: &Surface, direction: Vec3, throughput: Rgb) {
         let facing = |n: Vec3| if n.dot(direction) < 0.0 { n } else { -n };
         self.lanes |= 1 << lane;
@@ -56,11 +54,11 @@ impl NearSurfaces {
 }
 
 impl IndirectLight<'_> {
-    /// Adds to `radiance` the reflection of near surfaces hit by rays of neighbouring strata: of up to four
-    /// surfaces of similar orientation, a random one is followed, and its irradiance is used for the others.
+    /// Adds to `radiance` the reflection of near surfaces hit by rays of neighbouring strata. Of up to four surfaces of
+    /// similar orientation, a random one is followed, and its irradiance is used for all.
     pub fn follow_shared(
         &self,
-        near: NearSurfaces,
+        near: NearHits,
         seed: u32,
         radiance: &mut [Rgb; LANES],
         counts: &mut GatherCounts,
@@ -75,10 +73,10 @@ impl IndirectLight<'_> {
             let alike = |lane: &usize| near.geometric.get(*lane).dot(normal) >= MIN_COS;
             let group = || lanes_in(left).filter(alike).take(SHARED);
             let of = group().count().max(1);
-            let drawn = hash(u32::from(left), seed) as usize % of;
-            let follows = group().nth(drawn).unwrap_or(left.trailing_zeros() as usize);
+            let sampled = hash(u32::from(left), seed) as usize % of;
+            let follows = group().nth(sampled).unwrap_or(left.trailing_zeros() as usize);
             chosen |= 1 << follows;
-            // The first is always one of them, even if its normal is not a number.
+            // The first is always taken, even if its normal is not a number.
             let mut taken = left & left.wrapping_neg();
             for lane in group() {
                 taken |= 1 << lane;
@@ -89,7 +87,7 @@ impl IndirectLight<'_> {
         let mut lent = [Rgb::ZERO; LANES];
         let (lanes, albedo) = (near.lanes, near.throughput);
         let white = Vec3x16::splat(Rgb::ONE);
-        self.follow(NearSurfaces { lanes: chosen, throughput: white, ..near }, seed, &mut lent, counts);
+        self.follow(NearHits { lanes: chosen, throughput: white, ..near }, seed, &mut lent, counts);
         for lane in lanes_in(lanes) {
             radiance[lane] += albedo.get(lane) * lent[lender[lane]];
         }
@@ -98,7 +96,7 @@ impl IndirectLight<'_> {
     /// Adds to `radiance` the reflection of the near surfaces.
     pub fn follow(
         &self,
-        mut near: NearSurfaces,
+        mut near: NearHits,
         seed: u32,
         radiance: &mut [Rgb; LANES],
         counts: &mut GatherCounts,
@@ -115,8 +113,8 @@ impl IndirectLight<'_> {
         }
     }
 
-    /// Adds the direct light found by sampling emitters.
-    fn lit(&self, near: &NearSurfaces, samplers: &mut [Sampler; LANES], radiance: &mut [Rgb; LANES]) {
+    /// Adds direct light by sampling emitters.
+    fn lit(&self, near: &NearHits, samplers: &mut [Sampler; LANES], radiance: &mut [Rgb; LANES]) {
         let world = self.world;
         let (mut choice, mut u) = (F32x16::default(), Vec2x16::default());
         for lane in lanes_in(near.lanes) {
@@ -155,15 +153,16 @@ impl IndirectLight<'_> {
         }
     }
 
-    /// Traces a ray from each: adds the light that it hits, and returns the surfaces that are too near again.
+    /// Traces a ray from each surface and adds the light that it hits; returns the surfaces hit that are too near
+    /// again.
     fn next(
         &self,
-        near: &NearSurfaces,
+        near: &NearHits,
         last: bool,
         samplers: &mut [Sampler; LANES],
         radiance: &mut [Rgb; LANES],
         counts: &mut GatherCounts,
-    ) -> NearSurfaces {
+    ) -> NearHits {
         let world = self.world;
         let (mut rays, mut above, mut pdf) = (Rays16::default(), 0, F32x16::default());
         for lane in lanes_in(near.lanes) {
@@ -177,7 +176,7 @@ impl IndirectLight<'_> {
         let mut hits = Hits16::default();
         let met = world.accel.closest_hit16(&rays, above, false, &mut hits);
         self.sky(near, &rays, &pdf, above & !met, radiance);
-        let mut again = NearSurfaces::default();
+        let mut again = NearHits::default();
         for lane in lanes_in(met) {
             let surface = world.surface(&hits.get(lane));
             let (direction, throughput) = (rays.get(lane).direction, near.throughput.get(lane));
@@ -197,7 +196,7 @@ impl IndirectLight<'_> {
     }
 
     /// Adds the environment's light along rays that hit no surface.
-    fn sky(&self, near: &NearSurfaces, rays: &Rays16, pdf: &F32x16, lanes: u16, radiance: &mut [Rgb; LANES]) {
+    fn sky(&self, near: &NearHits, rays: &Rays16, pdf: &F32x16, lanes: u16, radiance: &mut [Rgb; LANES]) {
         let emitters = &self.world.emitters;
         let Some(environment) = emitters.environment.as_ref().filter(|_| lanes != 0) else { return };
         let choice = emitters.environment_choice(near.receivers());
@@ -209,8 +208,8 @@ impl IndirectLight<'_> {
         }
     }
 
-    /// Density with which sampling emitters from a lane would have found a point of an emitter.
-    fn density(&self, near: &NearSurfaces, surface: &Surface, direction: Vec3, lane: usize) -> f32 {
+    /// Returns the density with which sampling of emitters from a lane would choose a point of an emitter.
+    fn density(&self, near: &NearHits, surface: &Surface, direction: Vec3, lane: usize) -> f32 {
         let (mut mesh, mut distance, mut cos) = (U32x16::default(), F32x16::default(), F32x16::default());
         (mesh[lane], distance[lane], cos[lane]) = (surface.mesh, surface.t, surface.normal.dot(direction));
         let at = near.receivers();

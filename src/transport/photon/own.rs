@@ -1,4 +1,4 @@
-//! Indirect light at single eye samples for which records do not serve: rays drawn from the reflecting lobes.
+//! Indirect light at single eye samples that records cannot light: rays sampled from the reflecting lobes.
 
 use super::indirect_light::{GatherCounts, IndirectLight};
 use crate::eye::EyePass;
@@ -8,12 +8,12 @@ use embree::Rays16;
 use world::material::Bsdf;
 use world::shadow;
 
-/// Gathering at a single sample.
+/// Gathering at a single eye sample.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleGather {
     /// Index of the eye sample.
     pub sample: u32,
-    /// True if only the lobe on the base is to be sampled.
+    /// True if only the lobe on the base is sampled.
     pub lobe_only: bool,
     /// Approximate number of rays.
     pub rays: u32,
@@ -21,7 +21,7 @@ pub struct SampleGather {
     pub seed: u32,
 }
 
-/// Estimates the indirect radiance that a sample reflects to the eye.
+/// Estimates the indirect radiance that an eye sample reflects to the eye.
 pub fn reflected(
     light: &IndirectLight,
     samples: &EyePass,

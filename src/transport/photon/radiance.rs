@@ -3,27 +3,26 @@
 //! Units: radiance, and distance to the first surface.
 
 use super::indirect_light::{GatherCounts, IndirectLight, facing};
-use super::near::NearSurfaces;
+use super::near::NearHits;
 use base::math::{LANES, Rgb, lanes_in};
 use base::sampling::Sampler;
 use embree::{Hits16, Rays16};
 use glam::Vec3;
 
-/// Indirect light along a ray, and the surface that it comes from.
+/// Indirect light along a ray, and the surface from which it comes.
 #[derive(Clone, Copy, Debug)]
 pub struct IncomingRadiance {
     /// Indirect radiance arriving along the ray.
     pub radiance: Rgb,
     /// Distance to the first surface; infinite if there is none.
     pub distance: f32,
-    /// Its unit geometric normal on the side of the ray; zero if there is none.
+    /// Unit geometric normal of the first surface on the side of the ray; zero if there is none.
     pub normal: Vec3,
 }
 
 impl IndirectLight<'_> {
-    /// Computes the radiance along the rays of `valid` lanes, and the distances to the surfaces hit
-    /// (infinite: none). `seed` drives the random choice of continued paths. `coherent` rays are those of
-    /// neighbouring strata.
+    /// Computes the radiance along the rays of `valid` lanes, and the surfaces hit. `seed` determines the random
+    /// numbers of continued paths. `coherent` is true for rays of neighbouring strata.
     pub fn along16(
         &self,
         rays: &Rays16,
@@ -37,7 +36,7 @@ impl IndirectLight<'_> {
         let mut hits = Hits16::default();
         let met = self.world.accel.closest_hit16(rays, valid, coherent, &mut hits);
         let mut radiance = [Rgb::ZERO; LANES];
-        let mut near = NearSurfaces::default();
+        let mut near = NearHits::default();
         for lane in lanes_in(met) {
             let hit = hits.get(lane);
             let surface = self.world.surface(&hit);

@@ -1,13 +1,12 @@
-//! Records of indirect light by final gathering; those of direct light by cuts.
+//! Records of indirect light by final gathering, and records of direct light by cuts.
 //!
-//! Papers: Jensen 1996; Krivanek et al. 2005; Herzog et al. 2009, section 7 (the method they call PM).
+//! Papers: Jensen 1996; Krivanek et al. 2005; Herzog et al. 2009, section 7 (method PM).
 //! Deviations: for the series of glossy surfaces, the surface seen in a stratum is a patch that stays in
-//! place as the point moves (as the virtual lights of lightcuts do), so that these gradients ignore the edges
-//! of occluders.
+//! place as the point moves, like the virtual lights of lightcuts. So these gradients ignore the edges of occluders.
 
 use super::hemisphere::{GatherPoint, GatheredIrradiance, gather};
 use super::indirect_light::{GatherCounts, IndirectLight};
-use super::strata::{Met, Strata};
+use super::strata::{Strata, StrataHits};
 use crate::gradient::Incidence;
 use crate::hsh::Radiance;
 use crate::lightcut::CutCounts;
@@ -41,8 +40,8 @@ pub struct FinalGatherSource<'w> {
 }
 
 impl<'w> FinalGatherSource<'w> {
-    /// Creates a source whose directions of gathering are `strata`; `seed` determines the directions within
-    /// them.
+    /// Creates a source that gathers in the directions of `strata`; `seed` determines the directions within each
+    /// stratum.
     pub fn new(
         direct: LightcutSource<'w>,
         light: IndirectLight<'w>,
@@ -58,10 +57,10 @@ impl<'w> FinalGatherSource<'w> {
     }
 }
 
-/// A thread's buffers.
+/// Buffers of one thread.
 #[derive(Default)]
 struct GatherWorkspace {
-    met: Met,
+    met: StrataHits,
     series: SeriesGatherer,
 }
 
@@ -126,9 +125,9 @@ impl FinalGatherSource<'_> {
         Some(NewRecord { origin: Origin::Indirect, sample, record, series })
     }
 
-    /// Second derivatives of the light found. Its gradient is that of the strata, which includes the edges of
-    /// occluders.
-    fn hessian(&self, candidate: &Candidate, met: &Met) -> OcclusionHessian {
+    /// Returns the second derivatives of the gathered light. Its gradient is that of the strata, which includes the
+    /// edges of occluders.
+    fn hessian(&self, candidate: &Candidate, met: &StrataHits) -> OcclusionHessian {
         let rays = self.settings().probe_rays;
         let point = [(candidate.point, candidate.sample)];
         let mut hessian = OcclusionHessian::at_points(self.light.world, &point, rays).remove(0);
@@ -144,7 +143,7 @@ impl FinalGatherSource<'_> {
 }
 
 impl GatherWorkspace {
-    /// Light found, as a series, if the point is to have one.
+    /// Returns the gathered light as a series, if the point needs one.
     fn series(&mut self, strata: &Strata, candidate: &Candidate, max_nearness: f32) -> Option<Radiance> {
         self.series.begin(candidate);
         if !self.series.is_wanted() {
@@ -160,7 +159,7 @@ impl GatherWorkspace {
     }
 }
 
-/// Returns the light of unit radiance from a patch of surface seen under a solid angle, and its change as the
+/// Returns the light of unit radiance from a patch of surface seen under a solid angle, and its derivatives as the
 /// point moves.
 fn patch(direction: Vec3, nearness: f32, normal: Vec3, solid_angle: f32) -> Incidence<f32> {
     let cos = -direction.dot(normal);

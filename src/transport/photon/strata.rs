@@ -1,9 +1,8 @@
-//! The directions of a final gathering: rings by sectors of the hemisphere, all of the same projected solid
-//! angle.
+//! Directions of a final gathering: rings by sectors of the hemisphere, all of equal projected solid angle.
 //!
-//! Paper: Ward and Heckbert 1992; Krivanek et al. 2005, whose translational gradient is that of
-//! [`Strata::gradient`]: the boundaries between strata move as the point does, faster the nearer the nearer
-//! of the two surfaces is, and light of one stratum is replaced by that of the other.
+//! Papers: Ward and Heckbert 1992; Krivanek et al. 2005 for the translational gradient ([`Strata::gradient`]). The
+//! boundaries between strata move as the point moves, at a rate in inverse proportion to the distance of the nearer of
+//! the two surfaces. Light of one stratum is replaced by light of the other.
 
 use base::math::Rgb;
 use glam::{Mat3, Vec2, Vec3};
@@ -12,7 +11,7 @@ use std::f32::consts::{PI, TAU};
 /// Side in strata of a block whose rays are traced together.
 pub const BLOCK: usize = 4;
 
-/// A partition of the hemisphere.
+/// Partition of the hemisphere.
 #[derive(Clone, Debug)]
 pub struct Strata {
     /// Number of rings from the pole to the horizon; a multiple of [`BLOCK`].
@@ -25,20 +24,20 @@ pub struct Strata {
     azimuth: Vec<Vec2>,
 }
 
-/// Surfaces hit by the rays of a gathering, ring by ring.
+/// Surfaces hit by the rays of a final gathering, ring by ring.
 #[derive(Clone, Debug, Default)]
-pub struct Met {
+pub struct StrataHits {
     /// Radiance from each stratum.
     pub radiance: Vec<Rgb>,
-    /// Inverse distance to the surface hit; 0 if there is none.
+    /// Inverse distance of the surface hit; 0 if there is none.
     pub nearness: Vec<f32>,
-    /// Unit direction of its ray, in the frame of the hemisphere.
+    /// Unit direction of the ray, in the frame of the hemisphere.
     pub direction: Vec<Vec3>,
-    /// Unit normal of the surface hit, in that frame; zero if there is none.
+    /// Unit normal of the surface hit, in the frame of the hemisphere; zero if there is none.
     pub normal: Vec<Vec3>,
 }
 
-impl Met {
+impl StrataHits {
     /// Resets to `count` strata without hits.
     pub fn clear(&mut self, count: usize) {
         self.radiance.clear();
@@ -55,12 +54,12 @@ impl Met {
 impl Strata {
     /// Creates about `rays` strata, at least 16.
     pub fn new(rays: u32) -> Strata {
-        // Strata about as wide as long: sectors = π · rings (Ward and Heckbert).
+        // Strata are about as wide as long: sectors = π · rings (Ward and Heckbert).
         let blocks = |x: f64| ((x / BLOCK as f64).round() as usize).max(1) * BLOCK;
         let rings = blocks((f64::from(rays) / std::f64::consts::PI).sqrt());
         let sectors = blocks(f64::from(rays) / rings as f64);
         let edge = |j: usize| (j as f64 / rings as f64).sqrt().asin();
-        // ∫ sin²θ dθ
+        // Antiderivative of sin²θ.
         let primitive = |theta: f64| 0.5 * theta - 0.25 * (2.0 * theta).sin();
         let tangential = (0..rings).map(|j| (primitive(edge(j + 1)) - primitive(edge(j))) as f32).collect();
         let width = TAU / sectors as f32;
@@ -76,7 +75,7 @@ impl Strata {
         self.rings * self.sectors
     }
 
-    /// Index of a stratum in [`Met`].
+    /// Returns the index of a stratum in [`StrataHits`].
     #[inline]
     pub fn place(&self, ring: usize, sector: usize) -> usize {
         ring * self.sectors + sector
@@ -96,8 +95,8 @@ impl Strata {
         PI / self.len() as f32
     }
 
-    /// Irradiance vector by channel (column), in the frame of the hemisphere: z is the irradiance itself.
-    pub fn vector(&self, met: &Met) -> Mat3 {
+    /// Returns the irradiance vector by channel (column), in the frame of the hemisphere; z is the irradiance.
+    pub fn vector(&self, met: &StrataHits) -> Mat3 {
         let mut vector = Mat3::ZERO;
         for ring in 0..self.rings {
             for sector in 0..self.sectors {
@@ -110,9 +109,9 @@ impl Strata {
         vector
     }
 
-    /// Gradient of the irradiance as the point moves in its plane, by channel (column). Surfaces nearer than
-    /// 1 / `max_nearness` are clamped to that distance.
-    pub fn gradient(&self, met: &Met, max_nearness: f32) -> Mat3 {
+    /// Returns the gradient of the irradiance as the point moves in its plane, by channel (column). Surfaces nearer
+    /// than 1 / `max_nearness` count as at this distance.
+    pub fn gradient(&self, met: &StrataHits, max_nearness: f32) -> Mat3 {
         let (rings, sectors) = (self.rings, self.sectors);
         let width = TAU / sectors as f32;
         let sin = |ring: usize| (ring as f32 / rings as f32).sqrt();
@@ -147,8 +146,8 @@ impl Strata {
 mod tests {
     use super::*;
 
-    fn all(strata: &Strata, mut see: impl FnMut(Vec3) -> (f32, f32)) -> Met {
-        let mut met = Met::default();
+    fn all(strata: &Strata, mut see: impl FnMut(Vec3) -> (f32, f32)) -> StrataHits {
+        let mut met = StrataHits::default();
         met.clear(strata.len());
         for ring in 0..strata.rings {
             for sector in 0..strata.sectors {

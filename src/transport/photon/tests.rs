@@ -3,7 +3,7 @@
 use super::density::{IrradianceEstimate, estimates};
 use super::hemisphere::{GatherPoint, gather};
 use super::indirect_light::{GatherCounts, IndirectLight};
-use super::strata::{Met, Strata};
+use super::strata::{Strata, StrataHits};
 use super::{IrradianceMap, PhotonMap};
 use crate::emission::PhotonSettings;
 use base::math::{Frame, LANES, Rgb};
@@ -116,7 +116,7 @@ fn gathering_agrees_with_plain_sampling() {
     let mut counts = GatherCounts::default();
     for position in [Vec3::new(0.4, -1.0, 0.1), Vec3::new(-0.6, -1.0, 0.0), Vec3::new(-0.5, -1.0, 0.8)] {
         let point = SurfacePoint { position, normal: Vec3::Y, geometric_normal: Vec3::Y };
-        let mut met = Met::default();
+        let mut met = StrataHits::default();
         let strata = Strata::new(4000);
         let at = GatherPoint { point, coat: 0, seed: 1, max_nearness: f32::INFINITY };
         let g = gather(&light, &strata, &at, &mut met, &mut counts);

@@ -12,7 +12,7 @@ use super::source::LightcutSource;
 use crate::bias_compensation::near_surface::{Limit, NearSurface};
 use crate::bias_compensation::short_rays::{self, ClampedPoint};
 use crate::bias_compensation::{Compensation, choose_evenly, lobes};
-use crate::lightcut::{CutSettings, PacketLightcut, Receiver, ReceiverPacket, group_compact};
+use crate::lightcut::{CutSettings, OrientedPoint, PacketLightcut, Receiver, ReceiverPacket, group_compact};
 use crate::lights::DirectIndirect;
 use base::math::{Frame, LANES, Rgb, luminance};
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -86,7 +86,10 @@ pub fn add(
     for (record, met) in met.iter().enumerate() {
         choose(met, record, &mut lookups);
     }
-    let place = |lookup: &Lookup| (lookup.near.surface.position, lookup.near.normal);
+    let place = |lookup: &Lookup| OrientedPoint {
+        position: lookup.near.surface.position,
+        normal: lookup.near.normal,
+    };
     for group in group_compact(lookups, world.diagonal, place) {
         let irradiance = cutter.irradiance(c, source, &group);
         for (lookup, irradiance) in group.iter().zip(irradiance) {

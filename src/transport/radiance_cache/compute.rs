@@ -22,7 +22,7 @@ use super::series::SeriesGatherer;
 use super::settings::{CacheSettings, Footprints};
 use super::source::{LightcutSource, RecordSource};
 use crate::hsh::Radiance;
-use crate::lightcut::{CutCounts, CutSettings, PacketLightcut, ReceiverPacket, group_compact};
+use crate::lightcut::{CutCounts, CutSettings, OrientedPoint, PacketLightcut, ReceiverPacket, group_compact};
 use crate::lights::{DirectIndirect, Origin};
 use base::math::{LUMINANCE, luminance};
 use base::parallel::{ShortRuns, Workspaces};
@@ -62,7 +62,10 @@ struct GatheredLight {
 impl LightcutSource<'_> {
     /// Groups candidates that share a cut: neighbours that lack the same layers.
     pub fn groups(&self, candidates: &[Candidate]) -> Vec<Vec<Candidate>> {
-        let place = |candidate: &Candidate| (candidate.point.position, candidate.point.normal);
+        let place = |candidate: &Candidate| OrientedPoint {
+            position: candidate.point.position,
+            normal: candidate.point.normal,
+        };
         let lacks = |direct, indirect| DirectIndirect { direct, indirect };
         let mut groups = Vec::new();
         for missing in [lacks(true, true), lacks(true, false), lacks(false, true)] {

@@ -64,7 +64,14 @@ impl PacketVisibility for OccluderLog<'_> {
         lanes & !occluded
     }
 
-    fn attenuate16(&self, points: &ReceiverPacket, lanes: u16, of: (&Vpl, &LightNode), light: &mut Vec3x16) {
-        self.engine.attenuate16(points, lanes, of, light)
+    fn attenuate16(
+        &self,
+        points: &ReceiverPacket,
+        lanes: u16,
+        vpl: &Vpl,
+        node: &LightNode,
+        light: &mut Vec3x16,
+    ) {
+        self.engine.attenuate16(points, lanes, vpl, node, light)
     }
 }

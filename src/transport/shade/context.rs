@@ -1,4 +1,4 @@
-//! The light that points gather, the parts of it that are wanted, and how.
+//! Context, settings and tasks of the shading stage.
 
 use crate::bias_compensation::Compensation;
 use crate::eye::ShadingPoints;
@@ -8,19 +8,19 @@ use base::math::Frame;
 use world::World;
 use world::shadow::ShadowSettings;
 
-/// A scene and its virtual lights.
+/// Scene and its virtual lights, as the shading stage uses them.
 #[derive(Clone, Copy)]
 pub struct ShadingContext<'a> {
     /// The scene.
     pub world: &'a World,
     /// Transfer from its virtual lights.
     pub transfer: Transfer<'a>,
-    /// Compensation of clamped light; `None` for none.
+    /// Compensation of clamped light; `None` to leave it lost.
     pub compensation: Option<Compensation<'a>>,
 }
 
 impl<'a> ShadingContext<'a> {
-    /// Context for shading by `lights`. With `compensated`, short rays find the light that is clamped close to them.
+    /// Creates the context for shading by `lights`. With `compensated`, short rays find light clamped close to points.
     pub fn new(world: &'a World, lights: &'a Lights, compensated: bool) -> ShadingContext<'a> {
         let compensation = compensated.then(|| Compensation::new(world, lights));
         ShadingContext { world, transfer: Transfer::of(lights, compensated), compensation }
@@ -30,44 +30,44 @@ impl<'a> ShadingContext<'a> {
 /// Settings of the shading stage.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadeSettings {
-    /// Error and size of cuts.
+    /// Settings of cuts.
     pub cut: CutSettings,
     /// True if neighbours share cuts.
     pub share: bool,
-    /// Samples of the cuts of patches without other points than anchors, where fewer do than a cut has clusters; `None`
-    /// for cuts everywhere.
+    /// Samples for patches of anchors alone, which are taken if they are fewer than the clusters of a cut; `None` to
+    /// use cuts everywhere.
     pub samples: Option<Samples>,
-    /// Shadow rays that ask an occluder cache.
+    /// Settings of shadow rays, with those of the occluder cache.
     pub shadows: ShadowSettings,
 }
 
 impl ShadeSettings {
-    /// True if so many points share a cut.
+    /// True if a group of `points` points shares a cut.
     pub fn shares(&self, points: usize) -> bool {
         self.share && points >= MIN_SHARED
     }
 }
 
-/// Light wanted at a shading point.
+/// Light to gather at a shading point.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadingTask {
-    /// Number of the point.
+    /// Index of the point.
     pub point: u32,
     /// True if only the light reflected by the lobe on the base is wanted.
     pub lobe_only: bool,
     /// Origin of the light; `None` for both.
     pub origin: Option<Origin>,
-    /// Luminance of the radiance that the point reflects besides: errors are judged against the whole.
+    /// Luminance of other light that the point reflects. Errors are judged relative to the whole.
     pub baseline_luminance: f32,
 }
 
 impl ShadingTask {
-    /// All light of a point.
+    /// Creates the task of all light of a point.
     pub fn all(point: u32) -> ShadingTask {
         ShadingTask { point, lobe_only: false, origin: None, baseline_luminance: 0.0 }
     }
 
-    /// The receiver of the light.
+    /// Returns the receiver of the light.
     pub fn receiver<'w>(&self, points: &ShadingPoints<'w>) -> Receiver<'w> {
         let i = self.point as usize;
         let (geometry, surface) = (&points.geometry[i], &points.surfaces[i]);

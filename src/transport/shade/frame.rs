@@ -13,13 +13,13 @@ type ShadedPatch = Vec<(ShadingTask, Rgb)>;
 /// Radiance of shading points.
 #[derive(Default)]
 pub struct Shading {
-    /// By patch, in a fixed order.
+    /// Radiance by patch, in the order of the patches.
     pub patches: Vec<ShadedPatch>,
     /// Work done.
     pub counts: ShadingCounts,
 }
 
-/// Shades patches of tasks; none any more once cancelled.
+/// Shades patches of tasks; skips the remaining ones if `control` is cancelled.
 pub fn shade<'w>(
     context: &ShadingContext<'w>,
     points: &ShadingPoints<'w>,

@@ -1,9 +1,8 @@
 //! Shading of a patch by cuts.
 //!
-//! Sixteen anchors spread over a patch share a cut; the points between them are shaded by the reconstruction
-//! cut made of it, in packets spread over the patch, so that neighbours leave different clusters to chance. A
-//! patch of few points has no other points than anchors, or cuts of their own for all; or samples of a cut, where few
-//! of them do.
+//! Sixteen anchors spread over a patch share a cut. Its reconstruction cut shades the points between them, in packets
+//! spread over the patch, so that neighbours sample different clusters. All points of a small patch are anchors, or
+//! have cuts of their own. If few samples suffice, samples of a cut shade a small patch.
 
 use super::patches::anchors;
 use super::{ShadeSettings, ShadingContext, ShadingTask};
@@ -11,14 +10,14 @@ use crate::bias_compensation::points::{CompensationCounts, Compensator};
 use crate::eye::ShadingPoints;
 use crate::lightcut::{
     CutCounts, CutSettings, Lightcut, PacketLightcut, PacketSum, PacketVisibility, RayVisibility,
-    ReceiverPacket, ReconstructionCut, SampledCut, Samples, Visibility,
+    ReceiverPacket, ReconstructionCut, SampledCut, SampledSettings, Samples, Visibility,
 };
 use crate::lights::Origin;
 use base::math::{LANES, Rgb};
 use base::sampling::{hash, unit};
 use std::mem::take;
 
-/// Step of the random numbers of a patch's packets: its multiples, modulo 1, stay far from each other.
+/// Step of the random numbers of a patch's packets. The multiples of the golden ratio are well spread modulo 1.
 const GOLDEN: f32 = 0.618_034;
 
 /// Seed of the samples of cuts.
@@ -29,11 +28,11 @@ const SAMPLES_SEED: u32 = 0x3d4d_51cb;
 pub struct Shaded {
     /// Radiance.
     pub radiance: Rgb,
-    /// Clusters in the cut that it was gathered from; 0 if it was by samples.
+    /// Number of clusters in the cut; 0 if the light was gathered by samples.
     pub clusters: u32,
 }
 
-/// Workspaces for cuts; one a thread, so that their buffers are allocated once.
+/// Workspaces for cuts. Each thread has one, so that buffers are allocated once.
 #[derive(Default)]
 pub struct Gatherers<'w> {
     single: Lightcut,
@@ -45,7 +44,7 @@ pub struct Gatherers<'w> {
 }
 
 impl<'w> Gatherers<'w> {
-    /// Shades a patch of tasks that differ in nothing but their points, and calls `shaded` with each.
+    /// Shades a patch of tasks that differ only in their points; calls `shaded` with each task.
     pub fn shade<V: Visibility + PacketVisibility + RayVisibility>(
         &mut self,
         c: &ShadingContext,
@@ -60,7 +59,7 @@ impl<'w> Gatherers<'w> {
         let samples =
             settings.samples.filter(|_| patch.len() <= LANES && first.origin == Some(Origin::Indirect));
         if let Some(samples) = samples
-            && self.by_samples(c, rays, points, patch, (&cut, &samples), &mut shaded)
+            && self.by_samples(c, rays, points, patch, &sampled(&cut, &samples, first), &mut shaded)
         {
             return;
         }
@@ -73,7 +72,7 @@ impl<'w> Gatherers<'w> {
         }
     }
 
-    /// Work of cuts and of their compensation since this was last asked.
+    /// Returns the work of cuts and of compensation since the last call.
     pub fn take_counts(&mut self) -> (CutCounts, CompensationCounts) {
         let mut cuts = take(&mut self.single.counts);
         cuts += take(&mut self.packet.counts);
@@ -82,27 +81,28 @@ impl<'w> Gatherers<'w> {
         (cuts, self.compensator.take_counts())
     }
 
-    /// Shades up to sixteen points by samples of a cut; false if a cut takes less time.
+    /// Shades up to sixteen points by samples of a cut; returns false if a cut takes less time.
     fn by_samples<V: RayVisibility>(
         &mut self,
         c: &ShadingContext,
         rays: &V,
         points: &ShadingPoints<'w>,
         patch: &[ShadingTask],
-        wanted: (&CutSettings, &Samples),
+        settings: &SampledSettings,
         shaded: &mut impl FnMut(ShadingTask, Shaded),
     ) -> bool {
         self.receivers.set(patch.iter().map(|task| task.receiver(points)));
-        let seed = hash(patch[0].point, SAMPLES_SEED);
-        let found = self.sampled.gather(&c.transfer, rays, &self.receivers, wanted, seed);
+        let found = self.sampled.gather(&c.transfer, rays, &self.receivers, settings);
         let Some(mut sum) = found else { return false };
         if let Some(c) = &c.compensation {
-            self.compensator.anchors(c, wanted.0.origin, &self.receivers, &mut sum, Some(seed));
+            let origin = settings.cut.origin;
+            self.compensator.anchors(c, origin, &self.receivers, &mut sum, Some(settings.seed));
         }
         report(patch.iter().copied(), &sum, 0, shaded);
         true
     }
 
+    /// Shades a patch by the cut of its anchors.
     fn together<V: PacketVisibility>(
         &mut self,
         c: &ShadingContext,
@@ -169,6 +169,11 @@ impl<'w> Gatherers<'w> {
             shaded(*task, Shaded { radiance, clusters });
         }
     }
+}
+
+/// Returns the settings for samples of a cut; the first task of a patch determines their seed.
+fn sampled<'a>(cut: &'a CutSettings, samples: &'a Samples, first: &ShadingTask) -> SampledSettings<'a> {
+    SampledSettings { cut, samples, seed: hash(first.point, SAMPLES_SEED) }
 }
 
 fn report(

@@ -2,15 +2,15 @@
 
 use super::{ShadeSettings, ShadingTask};
 use crate::eye::{PointGeometry, ShadingPoints};
-use crate::lightcut::{CoherenceLimit, group_coherent};
+use crate::lightcut::{CoherenceLimit, OrientedPoint, group_coherent};
 use base::math::{Frame, LANES};
-use glam::Vec3;
 
-/// Smallest patch: below this too few points are interpolated to repay the sixteen anchors.
+/// Minimum number of points of a patch. In smaller patches too few points are interpolated to repay the sixteen
+/// anchors.
 const MIN_PATCH: usize = 64;
 
-/// Patches of tasks from a list in which neighbours in space are near each other; about `count` if there is
-/// one for each of the points.
+/// Divides tasks into patches. Neighbours in space must be near each other in the list. There are about `count` patches
+/// if there is one task for each point.
 pub fn patches(
     points: &ShadingPoints,
     tasks: &[ShadingTask],
@@ -24,18 +24,18 @@ pub fn patches(
         a.lobe_only == b.lobe_only && a.origin == b.origin && bsdf(a).same_lobes(bsdf(b))
     };
     let all = tasks.iter().copied();
-    let patches = group_coherent(CoherenceLimit::CLOSE, all, max_size, diagonal, place, same);
-    // A cut costs nearly as much for few points as for sixteen: remnants make do with less coherence. They are all
-    // anchors: far apart as they are, light that reaches one of them need not reach any of its neighbours.
+    let patches = group_coherent(CoherenceLimit::close(diagonal), all, max_size, place, same);
+    // A cut costs nearly as much for few points as for sixteen, so remnants are grouped with less coherence. All their
+    // points are anchors: they are far apart, and light that reaches one of them need not reach its neighbours.
     let (mut patches, remnants): (Vec<_>, Vec<_>) =
         patches.into_iter().partition(|patch| patch.len() >= MIN_PATCH);
     let remnants = remnants.into_iter().flatten();
-    patches.extend(group_coherent(CoherenceLimit::REMOTE, remnants, LANES, diagonal, place, same));
+    patches.extend(group_coherent(CoherenceLimit::remote(diagonal), remnants, LANES, place, same));
     patches
 }
 
-/// Moves a group for a shared cut out of the points `left`, in order: the first of them and up to fifteen others that
-/// are coherent with it, or it alone if those are too few. False if no point is left.
+/// Moves a group for a shared cut out of the points `left`, in order: the first point and up to fifteen points coherent
+/// with it, or the first point alone if there are too few. Returns false if no point is left.
 pub(super) fn next_group(
     points: &ShadingPoints,
     settings: &ShadeSettings,
@@ -46,7 +46,7 @@ pub(super) fn next_group(
     group.clear();
     let Some(&first) = left.first() else { return false };
     let place = |point: u32| place(&points.geometry[point as usize]);
-    let joins = |point: &u32| CoherenceLimit::CLOSE.holds(diagonal, place(first), place(*point));
+    let joins = |point: &u32| CoherenceLimit::close(diagonal).holds(place(first), place(*point));
     let count = left.iter().filter(|point| joins(point)).take(LANES).count();
     let count = if settings.shares(count) { count } else { 1 };
     left.retain(|&point| {
@@ -59,8 +59,8 @@ pub(super) fn next_group(
     true
 }
 
-/// The tasks of a patch that are its anchors: the outermost, so that light is never extrapolated, and every
-/// so many others, from the middle of each stretch.
+/// Returns which tasks of a patch are its anchors: the outermost points, so that light is never extrapolated, and
+/// points at a regular stride.
 pub(super) fn anchors(points: &ShadingPoints, patch: &[ShadingTask]) -> Vec<bool> {
     if patch.len() <= LANES {
         return vec![true; patch.len()];
@@ -79,6 +79,6 @@ pub(super) fn anchors(points: &ShadingPoints, patch: &[ShadingTask]) -> Vec<bool
     anchors
 }
 
-fn place(point: &PointGeometry) -> (Vec3, Vec3) {
-    (point.position, point.normal)
+fn place(point: &PointGeometry) -> OrientedPoint {
+    OrientedPoint { position: point.position, normal: point.normal }
 }

@@ -1,4 +1,4 @@
-//! A thread's part in the shading of a frame.
+//! Shading of a frame by one thread.
 
 use super::patches::next_group;
 use super::{Gatherers, ShadeSettings, Shaded, ShadingContext, ShadingTask};
@@ -10,14 +10,14 @@ use base::stats::add_fields;
 use std::mem::take;
 use world::shadow::{Engine, ShadowCounts};
 
-/// Work done.
+/// Work of shading.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShadingCounts {
-    /// Cuts.
+    /// Counts of cuts.
     pub cuts: CutCounts,
-    /// Their shadow rays.
+    /// Counts of shadow rays.
     pub shadows: ShadowCounts,
-    /// Compensation of clamped light.
+    /// Counts of compensation.
     pub compensation: CompensationCounts,
 }
 add_fields!(ShadingCounts { cuts, shadows, compensation });
@@ -28,13 +28,14 @@ pub struct Shader<'c, 'w> {
     settings: &'c ShadeSettings,
     gatherers: Gatherers<'w>,
     shadows: Engine<'w>,
-    /// Points that have no group yet, and the group in the making.
+    /// Points that have no group yet.
     left: Vec<u32>,
+    /// Group under construction.
     group: Vec<ShadingTask>,
 }
 
 impl<'c, 'w> Shader<'c, 'w> {
-    /// A thread's workspaces.
+    /// Creates the workspaces of a thread.
     pub fn new(context: &'c ShadingContext<'w>, settings: &'c ShadeSettings) -> Shader<'c, 'w> {
         let ShadeSettings { share, shadows, .. } = settings;
         let shadows = Engine::with(context.world, shadows.for_samples(*share), shadows.cache);
@@ -42,12 +43,12 @@ impl<'c, 'w> Shader<'c, 'w> {
         Shader { context, settings, gatherers: Gatherers::default(), shadows, left, group }
     }
 
-    /// Forgets the occluders seen, at boundaries of the work that do not depend on the number of threads.
+    /// Clears the occluder cache. Call it at boundaries of the work that do not depend on the number of threads.
     pub fn begin_chunk(&mut self) {
         self.shadows.begin_chunk();
     }
 
-    /// Shades a patch of tasks that differ in nothing but their points, and calls `shaded` with each.
+    /// Shades a patch of tasks that differ only in their points; calls `shaded` with each task.
     pub fn shade(
         &mut self,
         points: &ShadingPoints<'w>,
@@ -57,8 +58,8 @@ impl<'c, 'w> Shader<'c, 'w> {
         self.gatherers.shade(self.context, &self.shadows, points, patch, self.settings, shaded);
     }
 
-    /// Shades all light of some points, in groups of up to sixteen that share a cut, and calls `shaded` with each; no
-    /// more of them once cancelled.
+    /// Shades all light of some points, in groups of up to sixteen that share a cut; calls `shaded` with each task.
+    /// Skips the remaining points if `control` is cancelled.
     pub fn shade_all(
         &mut self,
         points: &ShadingPoints<'w>,
@@ -75,7 +76,7 @@ impl<'c, 'w> Shader<'c, 'w> {
         (self.left, self.group) = (left, group);
     }
 
-    /// Work done since this was last asked.
+    /// Returns the work since the last call.
     pub fn take_counts(&mut self) -> ShadingCounts {
         let (cuts, compensation) = self.gatherers.take_counts();
         ShadingCounts { cuts, shadows: self.shadows.take_counts(), compensation }

@@ -22,7 +22,7 @@ use transport::radiance_cache::store::Records;
 use transport::radiance_cache::targets::Targets;
 use transport::radiance_cache::work::rays_beside_samples;
 use transport::radiance_cache::{CLAMP, CacheSettings, DirectBy, MAX_CUT};
-use transport::shade::{Picture, ShadeSettings, ShadingContext};
+use transport::shade::{ShadeSettings, ShadedImage, ShadingContext};
 use world::World;
 use world::view::View;
 
@@ -122,7 +122,7 @@ impl Settings {
         let frame = CacheFrame::fill(targets, records, &source, control, &mut stats);
         counts::cuts(&mut stats, "Records", &frame.cuts);
 
-        let mut picture = Picture::new(&samples, self.inspect);
+        let mut picture = ShadedImage::new(&samples, self.inspect);
         let tasks = stats.time(Stage::Splat, || {
             resolve(frame.interpolate(records), &samples, cache.samples_direct_light(), &mut picture)
         });

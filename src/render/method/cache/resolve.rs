@@ -3,7 +3,7 @@
 use transport::eye::EyePass;
 use transport::lights::Origin;
 use transport::radiance_cache::resolve::{Interpolated, Remainder};
-use transport::shade::{Picture, ShadingTask};
+use transport::shade::{ShadedImage, ShadingTask};
 
 /// Adds the light of records to the picture. Returns tasks for the rest, which is shaded by cuts; if `drawn`, the eye
 /// pass has found the direct light.
@@ -11,7 +11,7 @@ pub fn resolve(
     light: impl Iterator<Item = Interpolated>,
     eye: &EyePass,
     drawn: bool,
-    picture: &mut Picture,
+    picture: &mut ShadedImage,
 ) -> Vec<ShadingTask> {
     let mut tasks = Vec::new();
     for (point, mut light) in light.enumerate() {

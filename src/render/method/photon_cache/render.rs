@@ -30,7 +30,7 @@ use transport::radiance_cache::store::Records;
 use transport::radiance_cache::targets::Targets;
 use transport::radiance_cache::work::rays_beside_samples;
 use transport::radiance_cache::{CacheSettings, DirectBy, MAX_CUT};
-use transport::shade::{Picture, ShadeSettings, ShadingContext, ShadingTask};
+use transport::shade::{ShadeSettings, ShadedImage, ShadingContext, ShadingTask};
 use world::World;
 use world::view::View;
 
@@ -114,7 +114,7 @@ impl Renderer for Settings {
             counts::cuts(&mut stats, "Records", &frame.cuts);
         }
 
-        let mut picture = Picture::new(&samples, self.inspect);
+        let mut picture = ShadedImage::new(&samples, self.inspect);
         let tasks = stats.time(Stage::Splat, || match &frame {
             Some(frame) => resolve(
                 frame.interpolate(&records),

@@ -4,7 +4,7 @@ use super::Settings;
 use crate::method::{Output, Prepared, counts};
 use base::progress::Control;
 use base::stats::{Stage, StageTime, Stopwatch};
-use transport::shade::{Picture, ShadingContext, ShadingTask, patches, shade};
+use transport::shade::{ShadedImage, ShadingContext, ShadingTask, patches, shade};
 use world::World;
 
 /// Minimum number of patches for an estimate of the time of all.
@@ -34,7 +34,7 @@ pub fn light(settings: &Settings, world: &World, prepared: Prepared, control: &C
     let Prepared { eye, lights, mut stats } = prepared;
     control.begin(Stage::Render, tasks.len() as u64);
     let context = ShadingContext::new(world, &lights, settings.compensation);
-    let mut picture = Picture::new(&eye, false);
+    let mut picture = ShadedImage::new(&eye, false);
     let counts = stats.time(Stage::Render, || {
         picture.shade(&context, &eye, &tasks, settings.patches, &settings.shading(), control)
     });

@@ -4,7 +4,7 @@ use super::Random;
 use crate::gradient::{Incidence, LocalVpl};
 use crate::hsh::basis::*;
 use crate::hsh::kernel::even_index;
-use crate::hsh::projection::{Projection, Quadrature};
+use crate::hsh::projection::{KernelProjection, Quadrature};
 use crate::hsh::*;
 use base::math::Rgb;
 use glam::{DVec3, Vec2, Vec3};
@@ -52,7 +52,7 @@ fn with_lobe<R>(material: Material, f: impl FnOnce(DullLobe) -> R) -> R {
     f(materials.at(&scene, MaterialId(0), Vec2::ZERO).dull_lobes().next().unwrap().1)
 }
 
-fn relative_error(projection: &Projection, bands: usize) -> f64 {
+fn relative_error(projection: &KernelProjection, bands: usize) -> f64 {
     let kept: f64 = projection.coefficients[0][..even_index(bands, 0)].iter().map(|c| c * c).sum();
     (1.0 - kept / projection.norm_sq[0]).max(0.0).sqrt()
 }

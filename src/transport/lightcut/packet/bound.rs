@@ -1,5 +1,5 @@
-//! Upper bounds of a cluster's light at all receivers of a packet: the formulas of the single-point version, written as
-//! loops over lanes that compile to vector code.
+//! Upper bounds of a cluster's light at all receivers of a packet: the formulas of [`crate::lightcut::single`] as loops
+//! over lanes, which compile to vector code.
 
 use super::ReceiverPacket;
 use super::receivers::Frames16;
@@ -11,12 +11,11 @@ use base::math::{F32x16, Frame, LANES, LUMINANCE, Vec3x16, lanes_in, luminance};
 use glam::Vec3;
 use world::material::{DirectionBound, DirectionBounds16, LobeShape};
 
-/// Margin by which boxes are widened: more than the rounding of the values computed from them.
+/// Relative margin of boxes: more than the rounding of the values computed from them.
 const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
 impl Transfer<'_> {
-    /// Error to expect of each receiver's luminance from a cluster of intensity `node.intensity`; 0 in lanes without a
-    /// receiver.
+    /// Returns the expected error of each receiver's luminance from a cluster; 0 in lanes without a receiver.
     pub fn errors16(&self, receivers: &ReceiverPacket, node: &LightNode) -> F32x16 {
         let (mut errors, shares) = self.bounds16(receivers, node);
         for l in 0..LANES {
@@ -25,18 +24,19 @@ impl Transfer<'_> {
         errors
     }
 
-    /// Upper bound of each receiver's luminance, 0 in lanes without a receiver, and the error to expect relative to it.
+    /// Returns the upper bound of each receiver's luminance, 0 in lanes without a receiver, and the expected error
+    /// relative to it.
     #[inline]
     pub(super) fn bounds16(&self, receivers: &ReceiverPacket, node: &LightNode) -> (F32x16, F32x16) {
         let cluster = ClusterBox::new(receivers, node);
-        let Geometry { geometry, cos_x, shares } = self.geometry16(&cluster, receivers, node);
+        let GeometryBounds { geometry, cos_x, shares } = self.geometry16(&cluster, receivers, node);
         let mut bounds = [0.0; LANES];
         let (i, w) = (node.intensity, &receivers.brdf_luminance);
         for l in 0..LANES {
             let reflected = i.x * w.x[l] + i.y * w.y[l] + i.z * w.z[l];
             bounds[l] = reflected * (geometry[l] * cos_x[l]);
         }
-        // Lanes whose lobes a part of the cluster may reach: for many a cluster there are none.
+        // Lanes whose lobes a part of the cluster may reach; many clusters have none.
         let mut lit = 0;
         for l in 0..LANES {
             lit |= u16::from(geometry[l] * cos_x[l] > 0.0) << l;
@@ -71,8 +71,13 @@ impl Transfer<'_> {
         (bounds, shares)
     }
 
-    /// Bounds of everything but the material.
-    fn geometry16(&self, cluster: &ClusterBox, receivers: &ReceiverPacket, node: &LightNode) -> Geometry {
+    /// Returns the bounds of all factors but the material.
+    fn geometry16(
+        &self,
+        cluster: &ClusterBox,
+        receivers: &ReceiverPacket,
+        node: &LightNode,
+    ) -> GeometryBounds {
         let &ClusterBox { local, half, rounding, .. } = cluster;
         let oriented = local && node.cos_beta > -1.0;
         let lobed = node.kind() == VplKind::Lobed;
@@ -81,7 +86,7 @@ impl Transfer<'_> {
         let axes = [emitter.tangent, emitter.bitangent, emitter.normal];
         let half_along = |axis: Vec3| axis.abs().dot(half) + rounding;
         let emitter_half = [half_along(axes[0]), half_along(axes[1]), half_along(axes[2])];
-        let mut all = Geometry { geometry: [0.0; LANES], cos_x: [0.0; LANES], shares: [0.0; LANES] };
+        let mut all = GeometryBounds { geometry: [0.0; LANES], cos_x: [0.0; LANES], shares: [0.0; LANES] };
         let normals = receivers.frame.normal();
         for l in 0..LANES {
             let cos_x = positive(cluster.max_cos(receivers, &receivers.frame, l));
@@ -121,17 +126,17 @@ impl Transfer<'_> {
     }
 }
 
-/// A cluster's geometry term for each receiver.
-struct Geometry {
-    /// Bound of the emitter's cosine over squared distance.
+/// Bounds of a cluster's geometry term for each receiver.
+struct GeometryBounds {
+    /// Bound of the emitter's cosine over the squared distance.
     geometry: F32x16,
     /// Bound of the receiver's cosine.
     cos_x: F32x16,
-    /// Error to expect relative to the bound.
+    /// Expected error relative to the bound.
     shares: F32x16,
 }
 
-/// A cluster's box, widened by the rounding of any lane.
+/// Box of a cluster, widened by the rounding of any lane.
 struct ClusterBox {
     /// True for a box in space, false for one of directions.
     local: bool,
@@ -148,14 +153,14 @@ impl ClusterBox {
         ClusterBox { local, centre, half: 0.5 * (node.max - node.min) + rounding, rounding }
     }
 
-    /// Centre of the box as seen from a receiver.
+    /// Returns the centre of the box relative to a receiver.
     #[inline(always)]
     fn offset(&self, receivers: &ReceiverPacket, l: usize) -> Vec3 {
         let origin = if self.local { 1.0 } else { 0.0 };
         self.centre - receivers.position.get(l) * origin
     }
 
-    /// Centre and half extent along an axis of a receiver's own.
+    /// Returns the centre and half extent along a lane's `axis`.
     #[inline(always)]
     fn along(&self, c: Vec3, axis: &Vec3x16, abs_axis: &Vec3x16, l: usize) -> (f32, f32) {
         let centre = c.x * axis.x[l] + c.y * axis.y[l] + c.z * axis.z[l];
@@ -163,7 +168,7 @@ impl ClusterBox {
         (centre, half + self.rounding)
     }
 
-    /// Centres and half extents along the three axes of a receiver's frame.
+    /// Returns the centres and half extents along the three axes of a receiver's frame.
     #[inline(always)]
     fn turned(&self, receivers: &ReceiverPacket, frames: &Frames16, l: usize) -> [(f32, f32); 3] {
         let c = self.offset(receivers, l);

@@ -3,28 +3,28 @@
 use crate::lightcut::CutCounts;
 use base::math::{F32x16, LANES, Rgb, Vec3x16};
 
-/// A cluster of a packet's cut.
+/// Cluster of a packet's cut.
 #[derive(Clone, Copy)]
 pub struct PacketCluster {
-    /// Number of the node.
+    /// Index of the node.
     pub node: u32,
     /// Contribution of a representative of unit intensity to each lane, with visibility.
     pub responses: Vec3x16,
 }
 
-/// The light of a cluster of a packet's cut before visibility.
+/// Light of a cluster of a packet's cut, before visibility.
 #[derive(Clone, Copy)]
 pub struct Unshadowed {
     /// Contribution of a representative of unit intensity to each lane.
     pub responses: Vec3x16,
-    /// Lanes that it lights.
+    /// Lanes that the representative lights.
     pub lit: u16,
 }
 
-/// The light that a packet gathers from a cut.
+/// Light that a packet gathers from a cut.
 #[derive(Clone, Copy, Debug)]
 pub struct PacketSum {
-    /// Radiance that each receiver reflects, or its irradiance; 0 in lanes without a receiver.
+    /// Radiance that each receiver reflects, or irradiance; 0 in lanes without a receiver.
     pub radiance: [Rgb; LANES],
     /// Luminance above which indirect leaves were clamped; infinite without clamping.
     pub limits: F32x16,
@@ -36,17 +36,17 @@ impl Default for PacketSum {
     }
 }
 
-/// A packet's cut, and the light gathered from it.
+/// Cut of a packet, and the light gathered from it.
 pub struct PacketCut<'c> {
     /// The light.
     pub sum: PacketSum,
     /// The clusters.
     pub clusters: &'c [PacketCluster],
-    /// Their light before visibility.
+    /// Light of the clusters before visibility.
     pub unshadowed: &'c [Unshadowed],
 }
 
-/// Workspace for cuts of packets; one a thread, so that its buffers are allocated once.
+/// Workspace for cuts of packets. Each thread has one, so that buffers are allocated once.
 #[derive(Default)]
 pub struct PacketLightcut {
     pub(super) clusters: Vec<PacketCluster>,
@@ -58,21 +58,21 @@ pub struct PacketLightcut {
     pub counts: CutCounts,
 }
 
-/// A cluster's part in the refinement.
+/// State of a cluster in the refinement.
 #[derive(Clone, Copy)]
 pub(super) struct Judgement {
-    /// Error to expect in each lane, luminance; 0 for a leaf.
+    /// Expected error in each lane, as luminance; 0 for a leaf.
     pub(super) errors: F32x16,
     /// Luminance with which the cluster counts in the running totals.
     pub(super) counted: F32x16,
-    /// Visibility of its representative, or of an ancestor's.
+    /// Visibility of the representative, or of an ancestor's.
     pub(super) sight: Sight,
 }
 
 /// Visibility from each lane.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Sight {
-    /// Lanes where it is known.
+    /// Lanes in which visibility is known.
     pub(super) known: u16,
     /// Lanes that see the representative.
     pub(super) seen: u16,

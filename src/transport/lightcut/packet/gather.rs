@@ -6,12 +6,12 @@ use crate::lightcut::{CutSettings, PacketVisibility, Transfer};
 use base::math::Vec3x16;
 
 impl PacketLightcut {
-    /// An empty workspace.
+    /// Creates an empty workspace.
     pub fn new() -> PacketLightcut {
         PacketLightcut::default()
     }
 
-    /// Gathers the light of all VPLs, on average over the lanes to within the settings' error.
+    /// Gathers the light of all VPLs to within the error of `settings`, on average over the lanes.
     pub fn gather<V: PacketVisibility>(
         &mut self,
         transfer: &Transfer,

@@ -1,4 +1,4 @@
-//! The points of a packet, lane by lane.
+//! Receivers of a packet, lane by lane.
 
 use crate::lightcut::{Receiver, to_vpl16};
 use crate::lights::{Vpl, VplKind};
@@ -8,41 +8,42 @@ use world::material::AlikeBsdfs16;
 
 /// Up to sixteen receivers as a structure of arrays.
 ///
-/// Lanes without a receiver repeat the first one's and are masked.
+/// Lanes without a receiver repeat the first receiver and are masked.
 #[derive(Default)]
 pub struct ReceiverPacket<'m> {
     receivers: Vec<Receiver<'m>>,
     /// Lanes that hold a receiver.
     pub(in crate::lightcut) valid: u16,
-    /// Lanes whose material is not just Lambert.
+    /// Lanes whose material is not just Lambertian.
     pub(in crate::lightcut) general: u16,
-    /// Their materials, if uniform: else their responses and bounds are computed one by one.
+    /// Materials of the general lanes, if they have equal lobes. Otherwise responses and bounds are computed one by
+    /// one.
     pub(in crate::lightcut) glossy: Option<AlikeBsdfs16<'m>>,
     pub(in crate::lightcut) position: Vec3x16,
-    /// Maximum coordinate of any position.
+    /// Maximum absolute coordinate of any position.
     pub(in crate::lightcut) reach: f32,
     pub(in crate::lightcut) geometric_normal: Vec3x16,
     /// Shading frames.
     pub(in crate::lightcut) frame: Frames16,
-    /// Frames about the mirror direction of the eye's.
+    /// Frames about the mirror direction of the direction to the eye.
     pub(in crate::lightcut) mirror: Frames16,
-    /// Luminance reflected besides.
+    /// Luminance of other reflected light.
     pub(in crate::lightcut) baseline: F32x16,
-    /// Lambert BRDF.
+    /// Lambertian BRDF.
     pub(in crate::lightcut) brdf: Vec3x16,
-    /// BRDF of the base, for light that has passed the coat on its way in.
+    /// BRDF of the base, for light that has already passed the coat.
     pub(in crate::lightcut) base: Vec3x16,
-    /// Lambert BRDF by its weight in the luminance.
+    /// Lambertian BRDF times the weights of the luminance.
     pub(in crate::lightcut) brdf_luminance: Vec3x16,
 }
 
 impl<'m> ReceiverPacket<'m> {
-    /// No receivers yet.
+    /// Creates a packet without receivers.
     pub fn new() -> ReceiverPacket<'m> {
         ReceiverPacket::default()
     }
 
-    /// Replaces the receivers; all beyond [`LANES`] are left out.
+    /// Replaces the receivers. Receivers beyond [`LANES`] are left out.
     pub fn set(&mut self, receivers: impl IntoIterator<Item = Receiver<'m>>) {
         self.receivers.clear();
         self.receivers.extend(receivers.into_iter().take(LANES));
@@ -74,34 +75,34 @@ impl<'m> ReceiverPacket<'m> {
         self.receivers.len()
     }
 
-    /// True if there is none.
+    /// True if there are no receivers.
     pub fn is_empty(&self) -> bool {
         self.receivers.is_empty()
     }
 
-    /// Rays to a virtual light, in all lanes.
+    /// Returns the rays to a VPL, in all lanes.
     #[inline]
     pub fn shadow_rays(&self, vpl: &Vpl, kind: VplKind) -> Rays16 {
         to_vpl16(&self.position, &self.geometric_normal, vpl, kind)
     }
 
-    /// Receiver number `lane`.
+    /// Returns receiver number `lane`.
     pub fn get(&self, lane: usize) -> &Receiver<'m> {
         &self.receivers[lane]
     }
 }
 
-/// An orthonormal frame for each receiver.
+/// Orthonormal frames, one per receiver.
 #[derive(Default)]
 pub(in crate::lightcut) struct Frames16 {
-    /// Tangents, bitangents, normals.
+    /// Tangents, bitangents and normals.
     pub axes: [Vec3x16; 3],
-    /// Their absolute values.
+    /// Absolute values of the axes.
     pub abs: [Vec3x16; 3],
 }
 
 impl Frames16 {
-    /// The z axes.
+    /// Z axes.
     #[inline(always)]
     pub fn normal(&self) -> &Vec3x16 {
         &self.axes[2]

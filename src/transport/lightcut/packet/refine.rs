@@ -11,43 +11,42 @@ use base::math::{F32x16, LANES, Vec3x16};
 /// Minimum luminance of a lane where errors are judged, relative to the brightest lane's.
 const MIN_LUMINANCE: f32 = 1.0 / 256.0;
 
-/// Ratio of the largest error of a whole tree to the least luminance that any lane counts with: errors have an order
-/// before any light is found, and sixteen of their cubes are finite.
+/// Maximum ratio of an error to the luminance of a lane. It orders errors before any light is found, and keeps the sum
+/// of sixteen cubes finite.
 const MAX_ERROR: f32 = 1e12;
 
-/// Divisor of the thresholds from one round to the next, at most.
-const FALL: f32 = 4.0;
+/// Maximum divisor of the thresholds from round to round.
+const MAX_FALL: f32 = 4.0;
 
-/// Thresholds this much above the error that is wanted are close enough.
-const CLOSE: f32 = 1.03;
+/// Maximum ratio of the final thresholds to the wanted errors.
+const TOLERANCE: f32 = 1.03;
 
-/// Share of the error that is wanted up to which a cluster is fine enough for a lane, so that its descendants are seen
-/// where it is.
-///
-/// At 1 the lane is as accurate as by a cut of its own and Sibenik loses .2 dB for a sixth of the rays.
+/// Maximum error of a cluster that is fine enough for a lane, relative to the wanted error. Its descendants are taken
+/// to be visible where it is.
 const FINE: f32 = 0.5;
 
 const ZERO: F32x16 = [0.0; LANES];
 
-/// One cut in the making.
+/// Refinement of one cut.
 pub(super) struct PacketRefinement<'a, 't, 'm, V> {
     trees: &'a LightTrees,
     transfer: &'a Transfer<'t>,
     visibility: &'a V,
     receivers: &'a ReceiverPacket<'m>,
     settings: &'a CutSettings,
-    /// Luminance of the cut in each lane, as far as it counts.
+    /// Luminance of the cut in each lane, with limited weak singularities.
     totals: F32x16,
-    /// Luminance below which no lane counts as darker.
+    /// Minimum luminance with which a lane counts.
     min_total: f32,
-    /// Errors up to which a cluster is fine enough for a lane, whatever the others need.
+    /// Maximum error, by lane, of a cluster that is fine enough for the lane.
     fine: F32x16,
-    /// Splits left before the cap.
+    /// Number of splits before the cap.
     room: usize,
     cut: &'a mut PacketLightcut,
 }
 
 impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
+    /// Prepares the refinement of the cut in the workspace `cut`.
     pub fn new(
         cut: &'a mut PacketLightcut,
         transfer: &'a Transfer<'t>,
@@ -69,9 +68,9 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
         }
     }
 
-    /// Finds the cut; true if it ended at the cap with an error above the threshold.
+    /// Refines the cut; returns true if it ended at the cap with an error above the threshold.
     ///
-    /// Thresholds fall round by round to the error that is wanted, as the totals become known to which it is relative.
+    /// Thresholds fall round by round to the wanted error. They are relative to totals, which converge meanwhile.
     pub fn run(mut self) -> bool {
         let mut thresholds = self.start();
         loop {
@@ -90,14 +89,14 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
                 }
                 place += 1;
             }
-            // Totals drift.
+            // Running totals accumulate rounding errors.
             self.retotal();
             let wanted = self.wanted();
             let mut done = true;
             for l in 0..LANES {
                 self.fine[l] = FINE * wanted[l];
-                done &= thresholds[l] <= CLOSE * wanted[l];
-                let fallen = thresholds[l] * (1.0 / FALL);
+                done &= thresholds[l] <= TOLERANCE * wanted[l];
+                let fallen = thresholds[l] * (1.0 / MAX_FALL);
                 let next = if wanted[l] > fallen { wanted[l] } else { fallen };
                 thresholds[l] = if next < thresholds[l] { next } else { thresholds[l] };
             }
@@ -107,7 +106,7 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
         }
     }
 
-    /// Starts with the roots; returns thresholds at which hardly any of them offends.
+    /// Starts with the roots; returns thresholds at which few of them are split.
     fn start(&mut self) -> F32x16 {
         self.cut.clusters.clear();
         self.cut.judgements.clear();
@@ -146,7 +145,7 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
         }
     }
 
-    /// Error that is wanted of each cluster, by lane.
+    /// Returns the wanted error of each cluster, by lane.
     fn wanted(&self) -> F32x16 {
         let brightest = halved(self.totals, |a, b| if b > a { b } else { a });
         let floor = (MIN_LUMINANCE * brightest).max(self.min_total);
@@ -181,7 +180,7 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
         self.cut.unshadowed.push(unshadowed);
     }
 
-    /// Errors of a node whose representative responds with `responses`, in a cut whose other clusters sum up to `rest`.
+    /// Returns the errors of a node whose representative contributes `responses`. The other clusters sum up to `rest`.
     fn judge(&mut self, node: u32, responses: &Vec3x16, sight: Sight, rest: &F32x16) -> Judgement {
         let n = &self.trees.nodes[node as usize];
         let mut counted = luminances(n.intensity, responses);
@@ -196,7 +195,7 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
         } else {
             self.cut.counts.bounds += self.receivers.len() as u64;
             let mut errors = self.transfer.errors16(self.receivers, n);
-            // As in a single point's cut: more than a quarter of the total offends, whatever is to be expected.
+            // As in a single point's cut, a cluster that gives more than a quarter of the total is split.
             let least = self.settings.epsilon / DOMINANT;
             for l in 0..LANES {
                 let doubt = least * counted[l];
@@ -207,8 +206,8 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
         Judgement { errors, counted, sight }
     }
 
-    /// Contribution of a node's representative at unit intensity, its visibility, as far as that is not `known`, and
-    /// the contribution without shadows.
+    /// Returns the contribution of a node's representative at unit intensity, its visibility, and the contribution
+    /// without shadows. No shadow rays are traced in lanes in which visibility is `known`.
     fn representative_responses(&mut self, node: u32, known: Sight) -> (Vec3x16, Sight, Unshadowed) {
         let node = &self.trees.nodes[node as usize];
         let vpl = &self.trees.vpls[node.representative()];
@@ -222,11 +221,11 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
             seen |= self.visibility.visible16(self.receivers, doubtful, vpl, node);
         }
         responses.keep(lit & seen);
-        self.visibility.attenuate16(self.receivers, lit & seen, (vpl, node), &mut responses);
+        self.visibility.attenuate16(self.receivers, lit & seen, vpl, node, &mut responses);
         (responses, Sight { known: known.known | lit, seen }, unshadowed)
     }
 
-    /// True if the cubic mean of a cluster's errors over the lanes is above that of their thresholds.
+    /// True if the cubic mean over the lanes of a cluster's errors, relative to the thresholds, is above 1.
     #[inline]
     fn offends(&self, place: usize, inverse_thresholds: &F32x16) -> bool {
         let errors = &self.cut.judgements[place].errors;
@@ -239,7 +238,7 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
     }
 }
 
-/// Folds lanes by halves, as vector code can; one after the other it could not.
+/// Folds lanes by halves, which compiles to vector code.
 #[inline(always)]
 pub(in crate::lightcut) fn halved<T: Copy>(mut lanes: [T; LANES], f: impl Fn(T, T) -> T) -> T {
     let mut half = LANES / 2;

@@ -1,4 +1,4 @@
-//! Sum of a packet's cut, with weak singularities clamped.
+//! Sum over a packet's cut, with weak singularities clamped.
 
 use super::{PacketCluster, PacketSum, ReceiverPacket};
 use crate::lightcut::CutCounts;
@@ -6,16 +6,16 @@ use crate::lightcut::clamp::{DOMINANT, Unclamped, is_weak};
 use crate::lights::LightTrees;
 use base::math::{F32x16, LANES, LUMINANCE, Rgb, Vec3x16, lanes_in, luminance};
 
-/// The light that a packet gathers.
+/// Light that a packet gathers.
 pub(in crate::lightcut) struct PacketLight<'a> {
-    /// Clusters, of which weak singularities are clamped.
+    /// Clusters; the weak singularities among them are clamped.
     pub clusters: &'a [PacketCluster],
-    /// Light besides, which is not clamped.
+    /// Further light, which is not clamped.
     pub strong: Vec3x16,
 }
 
 impl PacketLight<'_> {
-    /// The sum, in which no weak singularity has more than the share `clamp`.
+    /// Returns the sum, in which no weak singularity has more than the share `clamp`.
     pub fn sum(
         &self,
         trees: &LightTrees,
@@ -30,8 +30,7 @@ impl PacketLight<'_> {
             let total = luminance(sum) + baseline;
             counts.luminance += f64::from(luminance(sum));
             (all.radiance[lane], all.limits[lane]) = match clamp {
-                // Below this nothing is clamped: the frozen luminance is less than the unclamped one only if
-                // some leaf is a dominant part of it.
+                // Otherwise nothing is clamped: the frozen luminance is less than the total only if a leaf is dominant.
                 Some(clamp) if total > 0.0 && brightest_leaf[lane] > clamp.min(DOMINANT) * total => {
                     let contributions = self
                         .clusters
@@ -46,7 +45,7 @@ impl PacketLight<'_> {
         all
     }
 
-    /// The sum before clamping, and the luminance of the brightest weak singularity.
+    /// Returns the sum before clamping, and the luminance of the brightest weak singularity.
     fn unclamped(&self, trees: &LightTrees) -> (Vec3x16, F32x16) {
         let mut sums = self.strong;
         let mut brightest_leaf = [0.0; LANES];
@@ -63,11 +62,11 @@ impl PacketLight<'_> {
     }
 }
 
-/// Luminance of each lane's colour times `intensity`.
+/// Returns the luminance of each lane's colour times `intensity`.
 #[inline]
 pub(in crate::lightcut) fn luminances(intensity: Rgb, responses: &Vec3x16) -> F32x16 {
     let (w, r) = (intensity * LUMINANCE, responses);
-    // A loop: calls of closures may remain calls, lane by lane.
+    // Closures might not be inlined here, so this is a loop.
     let mut luminances = [0.0; LANES];
     for l in 0..LANES {
         luminances[l] = w.x * r.x[l] + w.y * r.y[l] + w.z * r.z[l];

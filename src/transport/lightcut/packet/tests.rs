@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::lightcut::fixtures::{
-    Ball, EXACT, Numbers, Unoccluded, all_kinds, all_materials, low_lamps, members, points_near_vpls,
+    Ball, EXACT, RandomNumbers, Unoccluded, all_kinds, all_materials, low_lamps, members, points_near_vpls,
     profiles, random_receiver, rms, room,
 };
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, Receiver, Transfer, gather_all};
@@ -19,7 +19,7 @@ fn neighbours<'m>(
     scene: &Scene,
     scale: f32,
     count: usize,
-    numbers: &mut Numbers,
+    numbers: &mut RandomNumbers,
 ) -> Vec<Receiver<'m>> {
     let first = random_receiver(materials, scene, scale, numbers);
     let lambert = materials.at(scene, MaterialId(0), Vec2::ZERO);
@@ -48,7 +48,7 @@ fn lanes_have_the_responses_of_single_points_and_bounds_above_them() {
     let materials = Materials::new(&scene);
     let mut points = ReceiverPacket::new();
     for round in 0..60u32 {
-        let mut numbers = Numbers(round << 20);
+        let mut numbers = RandomNumbers(round << 20);
         let scale = [1e-6, 1.0, 1e6][round as usize % 3];
         let sets = all_kinds(60, scale, &mut numbers);
         let trees = LightTrees::build(&sets, profiles(), 2.0 * scale, Family::Divisive, &Control::new());
@@ -90,7 +90,7 @@ fn errors(settings: &CutSettings) -> Vec<f32> {
     let materials = Materials::new(&scene);
     let ball = Ball { centre: Vec3::splat(0.5), radius: 0.25 };
     let trees = LightTrees::build(
-        &[room(20_000, &mut Numbers(1))],
+        &[room(20_000, &mut RandomNumbers(1))],
         Vec::new(),
         1.73,
         Family::Divisive,
@@ -98,7 +98,7 @@ fn errors(settings: &CutSettings) -> Vec<f32> {
     );
     let transfer = Transfer::new(&trees, 1.73);
     let (mut cut, mut points) = (PacketLightcut::new(), ReceiverPacket::new());
-    let mut numbers = Numbers(77);
+    let mut numbers = RandomNumbers(77);
     let mut errors = Vec::new();
     for _ in 0..30 {
         points.set(neighbours(&materials, &scene, 1.0, 16, &mut numbers));
@@ -123,7 +123,7 @@ fn shared_cuts_are_within_the_error_of_single_ones() {
 
 #[test]
 fn no_cluster_gives_the_lanes_more_than_a_quarter_however_coarse_the_cut() {
-    let mut numbers = Numbers(8);
+    let mut numbers = RandomNumbers(8);
     let trees = low_lamps(&mut numbers);
     let transfer = Transfer::new(&trees, 1.7);
     let (mut lightcut, mut points) = (PacketLightcut::new(), ReceiverPacket::new());
@@ -150,7 +150,7 @@ fn no_cluster_gives_the_lanes_more_than_a_quarter_however_coarse_the_cut() {
 fn one_lane_clamps_as_a_single_point_does() {
     let scene = all_materials();
     let materials = Materials::new(&scene);
-    let mut set = room(2000, &mut Numbers(4));
+    let mut set = room(2000, &mut RandomNumbers(4));
     let x = Vec3::splat(0.5);
     set.push(Vpl::oriented(x + Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
     // Below the horizon.
@@ -184,10 +184,15 @@ fn one_lane_clamps_as_a_single_point_does() {
 fn the_cap_holds_for_the_packet() {
     let scene = all_materials();
     let materials = Materials::new(&scene);
-    let trees =
-        LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let trees = LightTrees::build(
+        &[room(5000, &mut RandomNumbers(2))],
+        Vec::new(),
+        1.7,
+        Family::Divisive,
+        &Control::new(),
+    );
     let mut points = ReceiverPacket::new();
-    points.set(neighbours(&materials, &scene, 1.0, 16, &mut Numbers(3)));
+    points.set(neighbours(&materials, &scene, 1.0, 16, &mut RandomNumbers(3)));
     let settings = CutSettings { epsilon: 1e-4, max_cut: 77, clamp: None, origin: None };
     let mut cut = PacketLightcut::new();
     let size = cut.gather(&Transfer::new(&trees, 1.7), &Unoccluded, &points, &settings).clusters.len();

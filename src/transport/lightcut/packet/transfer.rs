@@ -1,5 +1,5 @@
-//! Light transfer from one VPL to all receivers of a packet: the formulas of the single-point version, written as loops
-//! over lanes that compile to vector code.
+//! Light transfer from one VPL to all receivers of a packet: the formulas for single points as loops over lanes, which
+//! compile to vector code.
 
 use super::ReceiverPacket;
 use crate::lightcut::Transfer;
@@ -9,7 +9,7 @@ use glam::Vec3;
 use world::material::AlikeBsdfs16;
 
 impl Transfer<'_> {
-    /// Lanes that a VPL of unit intensity lights, if it is visible, and its contributions.
+    /// Returns the lanes that a visible VPL of unit intensity lights, and its contributions.
     pub fn unshadowed16(&self, receivers: &ReceiverPacket, vpl: &Vpl, kind: VplKind) -> (u16, Vec3x16) {
         let mut responses = Vec3x16::ZERO;
         let mut one_by_one = receivers.general;
@@ -33,7 +33,7 @@ impl Transfer<'_> {
         (lit & receivers.valid, responses)
     }
 
-    /// Sets the contributions of a VPL that is no spot to the lanes with uniform materials, where they are not 0.
+    /// Sets the contributions of a VPL without spot profile to the general lanes, if they have equal lobes.
     fn respond(
         &self,
         glossy: &AlikeBsdfs16,
@@ -62,7 +62,7 @@ impl Transfer<'_> {
         for l in 0..LANES {
             lit |= u16::from((wi.z[l] > 0.0) & (emitted[l] > 0.0)) << l;
         }
-        // Most clusters of a cut that lie below one point's horizon lie below all of them.
+        // Most clusters below one point's horizon are below every point's horizon.
         if lit & receivers.general == 0 {
             return;
         }
@@ -75,7 +75,8 @@ impl Transfer<'_> {
         }
     }
 
-    /// Irradiance vector at each receiver from a VPL of unit intensity, if visible; 0 where it is below the horizon.
+    /// Returns the irradiance vector at each receiver from a visible VPL of unit intensity; 0 if it is below the
+    /// horizon.
     pub(in crate::lightcut) fn incidence16(
         &self,
         receivers: &ReceiverPacket,
@@ -111,7 +112,7 @@ impl Transfer<'_> {
         vector
     }
 
-    /// Irradiance on a surface at each receiver that faces a lobed VPL of unit intensity.
+    /// Returns the irradiance from a lobed VPL of unit intensity on a surface at each receiver that faces it.
     fn lobe_irradiance(&self, receivers: &ReceiverPacket, vpl: &Vpl) -> F32x16 {
         let (mut away, mut falloff) = (Vec3x16::ZERO, [0.0; LANES]);
         let (y, x) = (vpl.position, &receivers.position);
@@ -154,7 +155,7 @@ impl Transfer<'_> {
             let at_x = positive(dx * n.x[l] + dy * n.y[l] + dz * n.z[l]);
             let at_y = positive(-(dx * normal.x + dy * normal.y + dz * normal.z));
             let limited = if dist_sq > near_sq { dist_sq } else { near_sq };
-            // Cosines still lack one distance each.
+            // Each cosine is still multiplied by the distance.
             let unit = if dist_sq > 0.0 { 1.0 / dist_sq } else { 0.0 };
             let geometry = at_x * at_y * unit / limited;
             responses.x[l] = brdf.x[l] * geometry;
@@ -174,7 +175,7 @@ fn lambert_directional(receivers: &ReceiverPacket, towards: Vec3, responses: &mu
     }
 }
 
-/// The positive part; a plain comparison, which is one instruction where `f32::max` is three.
+/// Returns the positive part, by one plain comparison.
 #[inline(always)]
 pub(super) fn positive(x: f32) -> f32 {
     if x > 0.0 { x } else { 0.0 }

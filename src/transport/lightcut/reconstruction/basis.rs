@@ -5,15 +5,16 @@ use crate::lightcut::packet::halved;
 use base::math::{F32x16, Frame, LANES, lanes_in};
 use glam::Vec3;
 
-/// Fewer anchors than this are not fitted.
+/// Minimum number of anchors for a fit.
 const MIN_ANCHORS: u32 = 8;
-/// Extent of the anchors along an axis, relative to their largest, below which no slope is fitted along it.
+
+/// Minimum extent of the anchors along an axis for a slope, relative to their largest extent.
 const MIN_EXTENT: f32 = 1e-3;
 
 /// Values of the three functions, by lane.
 pub(super) type BasisValues = [F32x16; 3];
 
-/// The functions.
+/// Orthonormal functions of position.
 #[derive(Clone, Copy)]
 pub(super) struct LinearBasis {
     centre: Vec3,
@@ -24,12 +25,12 @@ pub(super) struct LinearBasis {
     axes: [Vec3; 2],
     /// Minimum and maximum of the linear functions at the anchors.
     ranges: [[f32; 2]; 2],
-    /// Values at the anchors; 0 in lanes without one.
+    /// Values at the anchors; 0 in lanes without an anchor.
     pub at_anchors: BasisValues,
 }
 
 impl LinearBasis {
-    /// Functions over these anchors; `None` if these are too few or all in one place.
+    /// Creates the functions over these anchors; `None` if there are too few or all are in one place.
     pub fn new(anchors: &ReceiverPacket) -> Option<LinearBasis> {
         if anchors.valid.count_ones() < MIN_ANCHORS {
             return None;
@@ -57,7 +58,8 @@ impl LinearBasis {
         Some(LinearBasis { centre, constant, radius_sq, axes, ranges, at_anchors })
     }
 
-    /// The functions at some points. Nothing is extrapolated: positions are limited to the anchors' extent.
+    /// Evaluates the functions at some points. Positions are limited to the anchors' extent, so nothing is
+    /// extrapolated.
     pub fn at(&self, receivers: &ReceiverPacket) -> BasisValues {
         let mut values = [[0.0; LANES]; 3];
         for l in 0..LANES {
@@ -71,13 +73,13 @@ impl LinearBasis {
         values
     }
 
-    /// Sum of the squares of the residuals of `values` at the anchors, times `inverse_totals`.
+    /// Returns the sum of squared residuals of `values` at the anchors, relative to their totals.
     pub fn squared_error(&self, values: &F32x16, inverse_totals: &F32x16) -> f32 {
         let k = self.at_anchors.each_ref().map(|f| dot(f, values));
         let [one, u, v] = &self.at_anchors;
         let mut squares = [0.0; LANES];
         for l in 0..LANES {
-            // The functions are 0 in lanes without an anchor, and so are the values.
+            // Functions and values are 0 in lanes without an anchor.
             let left = (values[l] - k[0] * one[l] - k[1] * u[l] - k[2] * v[l]) * inverse_totals[l];
             squares[l] = left * left;
         }
@@ -85,12 +87,12 @@ impl LinearBasis {
     }
 }
 
-/// Gradients in the tangent plane of two functions that are orthonormal over the anchors, of which `along` gives the
-/// coordinates along an axis; the second is 0 if the anchors lie on a line.
+/// Returns the gradients in the tangent plane of two functions that are orthonormal over the anchors. `along` returns
+/// the anchors' coordinates along an axis. The second gradient is 0 if the anchors lie on a line.
 fn axes(frame: &Frame, along: impl Fn(Vec3) -> F32x16) -> Option<[Vec3; 2]> {
     let (u, v) = (along(frame.tangent), along(frame.bitangent));
     let (uu, uv, vv) = (dot(&u, &u), dot(&u, &v), dot(&v, &v));
-    // The longer axis first, so that the remainder of the other is well conditioned.
+    // The longer axis comes first, so that the remainder of the other is well conditioned.
     let (first, second, longer) =
         if uu >= vv { (frame.tangent, frame.bitangent, uu) } else { (frame.bitangent, frame.tangent, vv) };
     if !(longer > 0.0) {
@@ -104,7 +106,7 @@ fn axes(frame: &Frame, along: impl Fn(Vec3) -> F32x16) -> Option<[Vec3; 2]> {
     Some([first / longer.sqrt(), second])
 }
 
-/// Inner product over the lanes.
+/// Returns the inner product over the lanes.
 pub(super) fn dot(a: &F32x16, b: &F32x16) -> f32 {
     halved(std::array::from_fn(|l| a[l] * b[l]), |a: f32, b| a + b)
 }

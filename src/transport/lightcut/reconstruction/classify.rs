@@ -8,16 +8,16 @@
 //! |---|--:|---|
 //! | `LARGE` | 0.35 | a share above `LARGE` · ε is evaluated with a shadow ray at every point (1) |
 //! | `SMOOTH` | 0.3 | a cluster visible from all anchors is fitted if error ≤ `SMOOTH` · ε · √share (2) |
-//! | `DOUBT` | 0.2 | the error of a cluster visible from some anchors only counts as at least `DOUBT` · share ... |
-//! | `CERTAIN` | 0.4 | ... and it is sampled with probability error / (`CERTAIN` · ε), evaluated if that reaches 1 |
-//! | `BRIGHTER` | 2 | factor over all anchors' brightness from which on a cluster needs a shadow ray at a point (3) |
+//! | `DOUBT` | 0.2 | minimum error, relative to the share, of a cluster visible from some anchors only |
+//! | `CERTAIN` | 0.4 | such a cluster is sampled with probability error / (`CERTAIN` · ε), and evaluated at 1 |
+//! | `BRIGHTER` | 2 | minimum brightness, relative to all anchors, at which a point needs a shadow ray (3) |
 //! | `MAX_CORRECTION` | 0.5 | maximum luminance of one correction, relative to the point's or the anchors' |
 //! | `MIN_LUMINANCE` | 1/16 | minimum luminance of an anchor where errors are judged, relative to the brightest |
 //!
-//! 1. The shadow of a small occluder is the more visible the more light it takes.
+//! 1. The more light a small occluder blocks, the more visible its shadow is.
 //! 2. The larger the cluster, the less relative error is tolerated.
-//! 3. Even if all anchors see it; and it is split if it gives more than ε of the radiance: the anchors were
-//!    too far from it to sample it.
+//! 3. This holds even if all anchors see the cluster. It is split if it gives more than ε of the radiance, since it is
+//!    much nearer to the point than to the anchors.
 
 use super::fit::{Interpolant, LinearFit};
 use crate::lightcut::clamp::is_weak;
@@ -33,25 +33,25 @@ const BRIGHTER: f32 = 2.0;
 pub(super) const MAX_CORRECTION: f32 = 0.5;
 const MIN_LUMINANCE: f32 = 1.0 / 16.0;
 
-/// Luminance, relative to that at which a leaf is clamped, above which a weak singularity is evaluated.
+/// Minimum luminance of a weak singularity that is evaluated, relative to the limit of clamping.
 const NEARLY_CLAMPED: f32 = 0.5;
 
-/// Share of its light that a cluster which counts as seen without sheets may lack: rounding.
+/// Minimum relative loss of light that counts as attenuation by thin sheets; less is rounding.
 const UNATTENUATED: f32 = 1e-4;
 
-/// A cluster that is evaluated at every point.
+/// Cluster that is evaluated at every point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Evaluated {
+pub(super) struct EvaluatedCluster {
     pub node: u32,
-    /// Luminance above which a point needs a shadow ray: 0 if the anchors disagree about whether the cluster is seen.
+    /// Luminance above which a point needs a shadow ray; 0 if the anchors disagree on the cluster's visibility.
     pub shadow_above: f32,
     /// Luminance above which the cluster is split.
     pub split_above: f32,
 }
 
-/// A cluster that is fitted, and corrected at random.
+/// Cluster that is fitted, and corrected at random.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sampled {
+pub(super) struct SampledCluster {
     pub node: u32,
     /// Probability of the correction.
     pub probability: f32,
@@ -62,8 +62,8 @@ pub(super) struct Sampled {
 pub(super) enum Class {
     Dropped,
     Fitted(LinearFit),
-    Evaluated(Evaluated),
-    Sampled(Sampled),
+    Evaluated(EvaluatedCluster),
+    Sampled(SampledCluster),
 }
 
 /// Anchors and the light that they gather.
@@ -72,25 +72,25 @@ pub(super) struct Anchors<'a, 't, 'm> {
     receivers: &'a ReceiverPacket<'m>,
     sum: &'a PacketSum,
     epsilon: f32,
-    /// Inverse of each anchor's luminance, as far as errors are judged by it.
+    /// Inverse of each anchor's luminance, which is limited from below for this.
     inverse_totals: F32x16,
     /// Mean luminance.
     pub luminance: f32,
 }
 
-/// One cluster's light at the anchors.
+/// Light of a cluster at the anchors.
 struct AtAnchors {
-    /// Anchors on its lit side.
+    /// Anchors that it would light without occluders.
     lit: u16,
     /// Anchors that see it.
     seen: u16,
-    /// True if enough anchors are lit to judge by.
-    known: bool,
-    /// True if some see it through sheets that take light, which fits know nothing of.
+    /// True if enough anchors are lit to judge visibility.
+    sufficient: bool,
+    /// True if some anchors see it through thin sheets that absorb light, which fits do not model.
     attenuated: bool,
     /// Unshadowed luminance.
     luminances: F32x16,
-    /// Mean over the anchors, relative to their totals.
+    /// Mean of the luminance over the anchors, relative to their totals.
     share: f32,
 }
 
@@ -120,17 +120,17 @@ impl<'a, 't, 'm> Anchors<'a, 't, 'm> {
         let at = self.light(cluster, unshadowed);
         let min_split = self.epsilon * self.luminance;
         let evaluated = |shadow_above, split_above| {
-            Class::Evaluated(Evaluated { node: cluster.node, shadow_above, split_above })
+            Class::Evaluated(EvaluatedCluster { node: cluster.node, shadow_above, split_above })
         };
         if at.lit == 0 {
-            // Below every anchor's horizon, which gives no information on the part above another point's.
+            // The cluster is below every anchor's horizon, but part of it may be above a point's horizon.
             return evaluated(0.0, min_split);
         }
-        if at.known && at.seen == 0 {
+        if at.sufficient && at.seen == 0 {
             return Class::Dropped;
         }
         let large = at.share > LARGE * self.epsilon;
-        let disputed = at.seen != at.lit || !at.known || large || at.attenuated;
+        let disputed = at.seen != at.lit || !at.sufficient || large || at.attenuated;
         let brighter = BRIGHTER * lanes_in(at.lit).map(|l| at.luminances[l]).fold(0.0, f32::max);
         let evaluated = || evaluated(if disputed { 0.0 } else { brighter }, brighter.max(min_split));
         let nearly_clamped = |l: usize| at.luminances[l] > NEARLY_CLAMPED * self.sum.limits[l];
@@ -150,7 +150,7 @@ impl<'a, 't, 'm> Anchors<'a, 't, 'm> {
         if probability >= 1.0 {
             return evaluated();
         }
-        Class::Sampled(Sampled { node: cluster.node, probability, fit })
+        Class::Sampled(SampledCluster { node: cluster.node, probability, fit })
     }
 
     fn light(&self, cluster: &PacketCluster, unshadowed: &Unshadowed) -> AtAnchors {
@@ -161,11 +161,10 @@ impl<'a, 't, 'm> Anchors<'a, 't, 'm> {
         let seen = lanes_in(lit).filter(reached).fold(0u16, |mask, lane| mask | 1 << lane);
         let lacks = |l| (unshadowed.get(l) - r.get(l)).cmpgt(UNATTENUATED * unshadowed.get(l)).any();
         let attenuated = lanes_in(seen).any(lacks);
-        // If only a few of the anchors are lit at all, little is known.
-        let known = lit.count_ones() * 2 >= self.receivers.valid.count_ones();
+        let sufficient = lit.count_ones() * 2 >= self.receivers.valid.count_ones();
         let luminances = luminances(node.intensity, unshadowed);
         let relative = lanes_in(lit).map(|l| luminances[l] * self.inverse_totals[l]);
         let share = relative.sum::<f32>() / self.receivers.len() as f32;
-        AtAnchors { lit, seen, known, attenuated, luminances, share }
+        AtAnchors { lit, seen, sufficient, attenuated, luminances, share }
     }
 }

@@ -1,9 +1,9 @@
 //! Linear functions of position, fitted to the light that anchors gather from clusters.
 //!
-//! A cluster of unit intensity gives each anchor an irradiance vector (0 if it is not seen), and the anchor's
-//! lobe, if it has one, reflects some of it. To both, functions of the position on the patch's tangent plane
-//! are fitted by least squares; the sum over the clusters, weighted by their intensities, serves all points
-//! of the patch, each with its own normal and base.
+//! A cluster of unit intensity gives each anchor an irradiance vector (0 if it is hidden), and the anchor's lobe, if it
+//! has one, reflects some of the light. Functions of the position on the patch's tangent plane are fitted to both by
+//! least squares. The sum over the clusters, weighted by their intensities, serves all points of the patch, each with
+//! its own normal and base.
 
 use super::basis::{BasisValues, LinearBasis, dot};
 use crate::lightcut::packet::PacketCluster;
@@ -12,7 +12,7 @@ use crate::lights::{LightNode, Vpl, VplKind};
 use base::math::{F32x16, LANES, LUMINANCE, Rgb, Vec3x16, lanes_in, luminance};
 use glam::Vec3;
 
-/// The fit to one cluster of unit intensity: coefficients of the three functions.
+/// Fit to one cluster of unit intensity: coefficients of the three functions.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LinearFit {
     /// Irradiance vector.
@@ -21,7 +21,7 @@ pub(super) struct LinearFit {
     lobe: [Rgb; 3],
 }
 
-/// The light of a cluster of unit intensity at each anchor.
+/// Light of a cluster of unit intensity at each anchor.
 pub(super) struct AnchorValues {
     /// Irradiance vector.
     vector: Vec3x16,
@@ -29,7 +29,7 @@ pub(super) struct AnchorValues {
     lobe: Vec3x16,
 }
 
-/// The sum of the fits to the clusters of a cut.
+/// Sum of the fits to the clusters of a cut.
 #[derive(Default)]
 pub(super) struct Interpolant {
     basis: Option<LinearBasis>,
@@ -49,8 +49,8 @@ impl Interpolant {
         self.base = (0..anchors.len()).map(|l| anchors.get(l).base_brdf()).sum::<Rgb>() / count;
     }
 
-    /// The fit to a cluster that `seen` of the anchors see, and the values fitted; `None` if there are too few
-    /// anchors or the cluster is too near.
+    /// Fits a cluster that the anchors in the lanes `seen` see; returns the fit and the fitted values. Returns `None`
+    /// if there are too few anchors or the cluster is too near.
     pub fn fit(
         &self,
         transfer: &Transfer,
@@ -88,8 +88,8 @@ impl Interpolant {
         Some((fit, AnchorValues { vector, lobe }))
     }
 
-    /// Root mean square of the luminance that the fit to `values` lacks or has too much at the anchors, times
-    /// `inverse_totals`.
+    /// Returns the root mean square, over the anchors, of the error of the fit to `values`, as luminance relative to
+    /// the totals.
     pub fn error(
         &self,
         anchors: &ReceiverPacket,
@@ -107,7 +107,7 @@ impl Interpolant {
             let lobe = std::array::from_fn(|l| w.x * r.x[l] + w.y * r.y[l] + w.z * r.z[l]);
             squares += basis.squared_error(&lobe, inverse_totals);
         }
-        // Three degrees of freedom are spent.
+        // The fit has three degrees of freedom.
         (squares / (anchors.len() as f32 - 3.0)).sqrt()
     }
 
@@ -121,12 +121,12 @@ impl Interpolant {
         }
     }
 
-    /// Values of the functions at some points; 0 if nothing is fitted.
+    /// Returns the values of the functions at some points; 0 if there is no fit.
     pub fn basis_at(&self, receivers: &ReceiverPacket) -> BasisValues {
         self.basis.as_ref().map_or([[0.0; LANES]; 3], |basis| basis.at(receivers))
     }
 
-    /// Radiance that each point reflects of the sum.
+    /// Returns the radiance that each point reflects from the sum.
     pub fn reflected(&self, receivers: &ReceiverPacket, basis: &BasisValues) -> Vec3x16 {
         let [one, u, v] = basis;
         let channel = |c: usize| {
@@ -145,7 +145,7 @@ impl Interpolant {
 }
 
 impl LinearFit {
-    /// Radiance that each point reflects of the cluster of unit intensity.
+    /// Returns the radiance that each point reflects from the cluster of unit intensity.
     pub fn reflected(&self, receivers: &ReceiverPacket, basis: &BasisValues) -> Vec3x16 {
         let irradiance = irradiance(receivers, basis, self.vector);
         let base = receivers.base.rows();
@@ -165,14 +165,14 @@ impl LinearFit {
     }
 }
 
-/// True if a representative is nearer to some anchor than the anchors to their centre: its light is not linear there.
+/// True if a representative is nearer to an anchor than the radius of the anchors. Its light is not linear there.
 fn is_near(anchors: &ReceiverPacket, basis: &LinearBasis, node: &LightNode, vpl: &Vpl) -> bool {
     let dist_sq = |l: usize| anchors.get(l).position().distance_squared(vpl.position);
     node.kind() != VplKind::Directional
         && (0..anchors.len()).map(dist_sq).fold(f32::INFINITY, f32::min) < basis.radius_sq
 }
 
-/// Irradiance at each point from the coefficients of one irradiance vector.
+/// Returns the irradiance at each point from the coefficients of one irradiance vector.
 #[inline]
 fn irradiance(receivers: &ReceiverPacket, basis: &BasisValues, vectors: [Vec3; 3]) -> F32x16 {
     let n = receivers.frame.normal();
@@ -185,7 +185,7 @@ fn irradiance(receivers: &ReceiverPacket, basis: &BasisValues, vectors: [Vec3; 3
     irradiance
 }
 
-/// Takes from irradiance vectors the light that coats reflect.
+/// Multiplies irradiance vectors by the transmittance of the coats.
 fn pass_coat(receivers: &ReceiverPacket, vector: &mut Vec3x16) {
     let n = receivers.frame.normal();
     let general = |l: usize| receivers.general >> l & 1 != 0;

@@ -1,18 +1,18 @@
-//! Light of evaluated clusters, and of sampled ones' corrections, at points among the anchors.
+//! Light of evaluated clusters, and corrections of sampled clusters, at points among the anchors.
 
 use super::basis::BasisValues;
-use super::classify::{Evaluated, MAX_CORRECTION, Sampled};
+use super::classify::{EvaluatedCluster, MAX_CORRECTION, SampledCluster};
 use crate::lightcut::clamp::is_weak;
 use crate::lightcut::packet::{PacketCluster, luminances};
 use crate::lightcut::{CutCounts, PacketVisibility, ReceiverPacket, Transfer};
 use base::math::{LANES, Rgb, Vec3x16};
 
-/// The gathering of a packet's light.
+/// Gathering of a packet's light.
 pub(super) struct Gathering<'a, 't, 'm, V> {
     pub transfer: &'a Transfer<'t>,
     pub visibility: &'a V,
     pub receivers: &'a ReceiverPacket<'m>,
-    /// Light so far that is not clamped.
+    /// Light gathered so far that is not clamped.
     pub strong: Vec3x16,
     /// Clusters that may be clamped.
     pub weak: &'a mut Vec<PacketCluster>,
@@ -20,19 +20,20 @@ pub(super) struct Gathering<'a, 't, 'm, V> {
 }
 
 impl<V: PacketVisibility> Gathering<'_, '_, '_, V> {
-    /// Adds clusters that are evaluated; their children, if they are split, are split above the luminance `min_split`.
-    pub fn evaluate(&mut self, clusters: &[Evaluated], min_split: f32) {
-        let mut parts: Vec<Evaluated> = Vec::new();
+    /// Adds evaluated clusters. If a cluster is split, its children are split above the luminance `min_split`.
+    pub fn evaluate(&mut self, clusters: &[EvaluatedCluster], min_split: f32) {
+        let mut parts: Vec<EvaluatedCluster> = Vec::new();
         for &cluster in clusters {
             parts.push(cluster);
-            while let Some(Evaluated { node, shadow_above, split_above }) = parts.pop() {
+            while let Some(EvaluatedCluster { node, shadow_above, split_above }) = parts.pop() {
                 let n = &self.transfer.trees.nodes[node as usize];
                 let Some(responses) = self.responses(node, shadow_above) else { continue };
                 let too_bright = || luminances(n.intensity, &responses).iter().any(|&y| y > split_above);
                 match n.children() {
                     _ if is_weak(n) => self.weak.push(PacketCluster { node, responses }),
                     Some(left) if too_bright() => {
-                        let part = |node| Evaluated { node, shadow_above: 0.0, split_above: min_split };
+                        let part =
+                            |node| EvaluatedCluster { node, shadow_above: 0.0, split_above: min_split };
                         parts.extend([part(left), part(left + 1)]);
                     }
                     _ => self.strong.add_scaled(n.intensity, &responses),
@@ -41,13 +42,13 @@ impl<V: PacketVisibility> Gathering<'_, '_, '_, V> {
         }
     }
 
-    /// Corrects the fits of sampled clusters, each with its probability. No correction of a point is brighter
-    /// than half its luminance, or the anchors' mean `luminance`: an unlikely cluster that is much brighter
-    /// at the point than at any anchor would be a firefly.
-    pub fn correct(&mut self, clusters: &[Sampled], basis: &BasisValues, start: f32, luminance: f32) {
+    /// Corrects the fits of sampled clusters, each with its probability. No correction is brighter than half the
+    /// luminance of the point or half the anchors' mean `luminance`. Otherwise an unlikely cluster that is much
+    /// brighter at the point than at any anchor would be a firefly.
+    pub fn correct(&mut self, clusters: &[SampledCluster], basis: &BasisValues, start: f32, luminance: f32) {
         let limits = luminances(Rgb::ONE, &self.strong).map(|y| MAX_CORRECTION * y.max(luminance));
         let mut ticket = start;
-        for Sampled { node, probability, fit } in clusters {
+        for SampledCluster { node, probability, fit } in clusters {
             ticket += probability;
             if ticket < 1.0 {
                 continue;
@@ -71,8 +72,8 @@ impl<V: PacketVisibility> Gathering<'_, '_, '_, V> {
         }
     }
 
-    /// Contribution of a cluster of unit intensity to each point, with a shadow ray where its luminance is above
-    /// `shadow_above`; `None` if it lights none.
+    /// Returns the contribution of a cluster of unit intensity to each point, with a shadow ray if its luminance is
+    /// above `shadow_above`; `None` if it lights no point.
     fn responses(&mut self, node: u32, shadow_above: f32) -> Option<Vec3x16> {
         let n = &self.transfer.trees.nodes[node as usize];
         let vpl = &self.transfer.trees.vpls[n.representative()];
@@ -87,7 +88,7 @@ impl<V: PacketVisibility> Gathering<'_, '_, '_, V> {
             self.counts.packets += 1;
             let visible = self.visibility.visible16(self.receivers, doubtful, vpl, n);
             responses.keep(visible | !doubtful);
-            self.visibility.attenuate16(self.receivers, visible, (vpl, n), &mut responses);
+            self.visibility.attenuate16(self.receivers, visible, vpl, n, &mut responses);
         }
         Some(responses)
     }

@@ -1,13 +1,11 @@
-//! Reconstruction cuts: the cut of a few anchor points of a patch of surface, evaluated at the points in
-//! between.
+//! Reconstruction cuts: the cut of a few anchor points of a patch of surface, evaluated at the points between them.
 //!
 //! Paper: Walter et al., *Lightcuts*, 2005, section 5 (reconstruction cuts: clusters on whose light and
-//! visibility the anchors agree are interpolated, others evaluated); cf. Rehfeld and Dachsbacher, *Lightcut
+//! visibility the anchors agree are interpolated, others evaluated); Rehfeld and Dachsbacher, *Lightcut
 //! Interpolation*, HPG 2016 (cuts, and per cluster visibility, interpolated from cache records).
 //!
-//! The anchors share one packet's cut, which is not refined again for the interpolated points, except for
-//! clusters much brighter at such a point than at any anchor. Each of its clusters is classified once for the
-//! patch ([`classify`]):
+//! The anchors share one packet's cut. At interpolated points, only clusters much brighter there than at any anchor are
+//! refined. Each cluster is classified once per patch ([`classify`]):
 //!
 //! | class | clusters | at an interpolated point |
 //! |---|---|---|
@@ -19,17 +17,16 @@
 //! A small evaluated cluster on whose visibility the anchors agree needs no shadow ray.
 //!
 //! Deviations:
-//! - One cut for all anchors, where the papers have one each: points in between have no cut to be
-//!   interpolated or traversed.
+//! - All anchors share one cut, while in the papers each has its own. Points between them need no cut.
 //! - A function linear in position is fitted to each cluster's light at all anchors by least squares, and the
-//!   sum of the fits is evaluated once a point; Walter et al. interpolate each cluster between the nearest
+//!   sum of the fits is evaluated once per point. Walter et al. interpolate each cluster between the nearest
 //!   anchors.
-//! - The light of clusters that anchors disagree about is corrected stochastically: one is evaluated with a
-//!   probability in proportion to its error, and the error found is divided by the probability, so that the
-//!   radiance is right on average. Walter et al. evaluate every such cluster.
-//! - A correction is capped, which is biased, lest it be visible as a firefly.
-//! - As in both papers, light and shadow that reach none of the anchors are missed: those of a small cluster
-//!   through a gap, for example.
+//! - The light of clusters on which anchors disagree is corrected stochastically: a cluster is evaluated with a
+//!   probability in proportion to its error, and its correction is divided by the probability. Walter et al. evaluate
+//!   every such cluster.
+//! - A correction is capped, so that it cannot become a firefly; this is biased.
+//! - As in both papers, light and shadow that reach none of the anchors are missed, for example the light of a small
+//!   cluster through a gap.
 
 mod basis;
 mod classify;
@@ -41,31 +38,31 @@ mod tests;
 use super::packet::{PacketCluster, PacketLight};
 use super::{CutCounts, CutSettings, PacketCut, PacketSum, PacketVisibility, ReceiverPacket, Transfer};
 use base::math::Rgb;
-use classify::{Anchors, Class, Evaluated, Sampled};
+use classify::{Anchors, Class, EvaluatedCluster, SampledCluster};
 use fit::Interpolant;
 use gather::Gathering;
 
-/// A cut, classified by the light that its anchors gather from it, and a workspace for its use; one a thread,
-/// so that its buffers are allocated once.
+/// Cut, classified by the light that its anchors gather from it, and a workspace. Each thread has one, so that buffers
+/// are allocated once.
 #[derive(Default)]
 pub struct ReconstructionCut {
-    evaluated: Vec<Evaluated>,
-    sampled: Vec<Sampled>,
+    evaluated: Vec<EvaluatedCluster>,
+    sampled: Vec<SampledCluster>,
     interpolant: Interpolant,
     /// Settings of the anchors' cut.
     settings: CutSettings,
     /// Mean luminance of the anchors.
     luminance: f32,
-    /// Clusters in the anchors' cut.
+    /// Number of clusters in the anchors' cut.
     size: usize,
-    /// Weak singularities at the points in question.
+    /// Weak singularities at the points that are gathered.
     weak: Vec<PacketCluster>,
-    /// Work done so far; a packet's sum counts as a cut for each of its points.
+    /// Work done so far. A packet's sum counts as one cut per point.
     pub counts: CutCounts,
 }
 
 impl ReconstructionCut {
-    /// Replaces the cut by that of `anchors`, found with `settings`.
+    /// Replaces the cut by the `cut` of `anchors`, which was gathered with `settings`.
     pub fn set(
         &mut self,
         transfer: &Transfer,
@@ -90,12 +87,12 @@ impl ReconstructionCut {
                 }
             }
         }
-        // Neighbours in the tree are drawn in turn, so that the draws are spread over the lights.
+        // In the order of the tree, systematic sampling spreads the samples over the lights.
         self.sampled.sort_unstable_by_key(|sampled| sampled.node);
     }
 
-    /// Gathers the light of all VPLs at points among the anchors; `start` (in [0, 1)) is the random number that
-    /// chooses the clusters to be corrected.
+    /// Gathers the light of all VPLs at points among the anchors. `start`, in [0, 1), is the random number that chooses
+    /// the clusters to correct.
     pub fn gather<V: PacketVisibility>(
         &mut self,
         transfer: &Transfer,

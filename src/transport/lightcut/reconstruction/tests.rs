@@ -1,7 +1,7 @@
 //! Points among the anchors must gather nearly the light of cuts of their own.
 
 use super::*;
-use crate::lightcut::fixtures::{Ball, EXACT, Numbers, rms, room};
+use crate::lightcut::fixtures::{Ball, EXACT, RandomNumbers, rms, room};
 use crate::lightcut::{PacketLightcut, Receiver, Visibility};
 use crate::lights::{Family, LightTrees};
 use base::math::{Frame, LANES, luminance};
@@ -17,7 +17,7 @@ fn lattice(count: usize) -> Vec<Receiver<'static>> {
 
 #[test]
 fn points_gather_nearly_the_light_of_cuts_of_their_own() {
-    let mut numbers = Numbers(77);
+    let mut numbers = RandomNumbers(77);
     let ball = Ball { centre: Vec3::new(0.5, 0.5, 0.6), radius: 0.15 };
     let trees =
         LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
@@ -45,7 +45,7 @@ fn points_gather_nearly_the_light_of_cuts_of_their_own() {
 #[test]
 fn sampled_clusters_are_right_on_average() {
     // Half in the shadow of a ball: the anchors disagree about many small clusters.
-    let mut numbers = Numbers(78);
+    let mut numbers = RandomNumbers(78);
     let ball = Ball { centre: Vec3::new(0.5, 0.5, 0.25), radius: 0.15 };
     let trees =
         LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
@@ -57,7 +57,7 @@ fn sampled_clusters_are_right_on_average() {
     let cut = packet.gather(&transfer, &ball, &points, &EXACT);
     reconstruction.set(&transfer, &points, &cut, &EXACT);
     points.set(receivers.iter().skip(3).step_by(4).copied());
-    // The same clusters, each with a shadow ray.
+    // A reference: all clusters, each with a shadow ray.
     let exact: Vec<f32> = (0..LANES)
         .map(|lane| {
             let given = |cluster: &PacketCluster| {

@@ -1,7 +1,7 @@
 //! Upper bound of the light that can reach a receiver from a cluster.
 //!
 //! Paper: Walter et al. 2005, section 3.2: bound = I · M⁺ · G⁺, visibility bounded by 1.
-//! Units: all per unit intensity, before visibility.
+//! Units: values per unit intensity, before visibility.
 
 use super::{OffsetBox, max_cos_to_cone, max_cos_to_cone_signed};
 use crate::lightcut::expected::{Outlook, expected_share, lobe_at};
@@ -11,17 +11,17 @@ use base::math::{Frame, Rgb};
 use glam::Vec3;
 use world::material::LobeShape;
 
-/// Upper bound of a cluster of unit intensity, before visibility, and the error to expect.
+/// Upper bound of a cluster of unit intensity, before visibility, and its expected error.
 #[derive(Clone, Copy, Debug)]
 pub struct Bound {
-    /// No smaller, in any channel, than the contribution of any member.
+    /// Upper bound, by channel, of the contribution of any member.
     pub most: Rgb,
-    /// Error to expect, relative to `most`: see [`crate::lightcut::expected`].
+    /// Expected error relative to `most` (see [`crate::lightcut::expected`]).
     pub share: f32,
 }
 
 impl Transfer<'_> {
-    /// Bound of a cluster of unit intensity, and the error to expect.
+    /// Returns the bound of a cluster of unit intensity, and its expected error.
     #[inline]
     pub fn bound(&self, receiver: &Receiver, node: &LightNode) -> Bound {
         let directional = node.kind() == VplKind::Directional;

@@ -4,23 +4,23 @@ use super::offenders::Offenders;
 use crate::lightcut::CutCounts;
 use base::math::Rgb;
 
-/// A cluster of a cut.
+/// Cluster of a cut.
 #[derive(Clone, Copy, Debug)]
 pub struct CutCluster {
-    /// Number of the node.
+    /// Index of the node.
     pub node: u32,
     /// Contribution of a representative of unit intensity, with visibility.
     pub response: Rgb,
-    /// Contribution of the cluster, its intensity times `response`, unclamped.
+    /// Unclamped contribution of the cluster: its intensity times `response`.
     pub contribution: Rgb,
     /// Luminance with which the cluster counts in the running total.
     pub(super) counted: f32,
 }
 
-/// A cut, and the light that its receiver gathers from it.
+/// Cut, and the light that its receiver gathers from it.
 #[derive(Clone, Copy, Debug)]
 pub struct Cut<'c> {
-    /// Radiance that the receiver reflects, or its irradiance.
+    /// Radiance that the receiver reflects, or irradiance.
     pub radiance: Rgb,
     /// Luminance above which indirect leaves were clamped; infinite without clamping.
     pub limit: f32,
@@ -28,13 +28,13 @@ pub struct Cut<'c> {
     pub clusters: &'c [CutCluster],
 }
 
-/// Workspace for cuts of single points; one a thread, so that its buffers are allocated once.
+/// Workspace for cuts of single points. Each thread has one, so that buffers are allocated once.
 #[derive(Default)]
 pub struct Lightcut {
     pub(super) clusters: Vec<CutCluster>,
-    /// By the error to expect, luminance.
+    /// Clusters by expected error, as luminance.
     pub(super) offenders: Offenders,
-    /// Places of clusters to be split this round.
+    /// Places of the clusters that are split this round.
     pub(super) batch: Vec<u32>,
     /// Work done so far.
     pub counts: CutCounts,

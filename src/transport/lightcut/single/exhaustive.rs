@@ -1,11 +1,10 @@
-//! The sum over all VPLs, one shadow ray each: the reference that a lightcut approximates, and is tested
-//! against.
+//! Sum over all VPLs, with one shadow ray each: the reference for tests of lightcuts.
 
 use crate::lightcut::{Receiver, Transfer, Visibility};
 use base::math::Rgb;
 use glam::DVec3;
 
-/// Gathers the light of all VPLs at `receiver`. Time is proportional to their number; nothing is clamped.
+/// Gathers the light of all VPLs at `receiver`, without clamping.
 pub fn gather_all<V: Visibility>(transfer: &Transfer, visibility: &V, receiver: &Receiver) -> Rgb {
     let mut sum = DVec3::ZERO;
     for leaf in transfer.trees.leaves() {

@@ -9,12 +9,12 @@ use base::math::{Rgb, luminance};
 use glam::DVec3;
 
 impl Lightcut {
-    /// An empty workspace.
+    /// Creates an empty workspace.
     pub fn new() -> Lightcut {
         Lightcut::default()
     }
 
-    /// Gathers the light of all VPLs, to within the settings' error.
+    /// Gathers the light of all VPLs to within the error of `settings`.
     pub fn gather<V: Visibility>(
         &mut self,
         transfer: &Transfer,
@@ -38,7 +38,7 @@ impl Lightcut {
         Cut { radiance, limit, clusters: &self.clusters }
     }
 
-    /// Sum of the cut anew, in one order and without the drift of the running total, and the luminance above which
+    /// Returns the sum over the cut, without the rounding errors of the running total, and the luminance above which
     /// leaves were clamped.
     fn sum(&mut self, trees: &LightTrees, clamp: Option<f32>, baseline: f32) -> (Rgb, f32) {
         let sum = self.clusters.iter().fold(DVec3::ZERO, |sum, c| sum + c.contribution.as_dvec3()).as_vec3();

@@ -1,11 +1,11 @@
-//! A cut for a single point.
+//! Cut for a single point.
 //!
-//! Paper: Walter et al., *Lightcuts*, 2005, section 3; Herzog et al. 2009, section 3 (one threshold for all
+//! Papers: Walter et al., *Lightcuts*, 2005, section 3; Herzog et al. 2009, section 3 (one threshold for all
 //! trees, relative to their common total) and Eq. 13 (weak singularities, see [`super::clamp`]).
 //!
-//! Deviations: the error of a cluster is not its upper bound but the one to expect under that bound (see
-//! [`super::expected`]), except that a cluster that gives more than a quarter of the total is always split;
-//! up to sixteen clusters are split a round; a leaf's error is 0, so it never waits to be split.
+//! Deviations: the error of a cluster is its expected error ([`super::expected`]), not its upper bound. A cluster that
+//! gives more than a quarter of the total is always split. Up to sixteen clusters are split per round. The error of a
+//! leaf is 0.
 
 mod bound;
 mod cut;

@@ -1,20 +1,20 @@
-//! The queue of clusters to be split.
+//! Queue of clusters to split.
 
 use std::collections::BinaryHeap;
 
-/// Clusters above the threshold, by their place in the cut, the worst first.
+/// Clusters by error, the worst first.
 ///
-/// Errors as bits stand above places: non-negative floats sort as integers.
+/// A key holds the bits of the error above the place in the cut. Non-negative floats sort as integers.
 #[derive(Default)]
 pub(super) struct Offenders(BinaryHeap<u64>);
 
 impl Offenders {
-    /// Removes all.
+    /// Removes all clusters.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// Queues the cluster at `place` by its error, unless it cannot be wrong.
+    /// Adds the cluster at `place`, unless its error is 0.
     #[inline]
     pub fn push(&mut self, error: f32, place: usize) {
         if error > 0.0 {
@@ -22,13 +22,13 @@ impl Offenders {
         }
     }
 
-    /// Error and place of the worst.
+    /// Error and place of the worst cluster.
     #[inline]
     pub fn worst(&self) -> Option<(f32, usize)> {
         self.0.peek().map(|&offender| (f32::from_bits((offender >> 32) as u32), offender as u32 as usize))
     }
 
-    /// Removes the worst.
+    /// Removes the worst cluster.
     #[inline]
     pub fn pop(&mut self) {
         self.0.pop();

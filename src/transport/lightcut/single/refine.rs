@@ -1,5 +1,5 @@
-//! The refinement: start from the roots, split the clusters with the largest expected error until none is
-//! above the threshold.
+//! Refinement of a single point's cut: starts from the roots, and splits the clusters with the largest expected errors
+//! until none is above the threshold.
 
 use super::{CutCluster, Lightcut};
 use crate::lightcut::clamp::{DOMINANT, DOMINANT_TO_REST, is_weak};
@@ -8,23 +8,23 @@ use crate::lightcut::{CutSettings, Receiver, Transfer, Visibility};
 use crate::lights::LightTrees;
 use base::math::{Rgb, luminance};
 
-/// Clusters split before the threshold is looked at again.
+/// Number of clusters split before the threshold is updated.
 const BATCH: usize = 16;
 
-/// One cut in the making.
+/// Refinement of one cut.
 pub(super) struct PointRefinement<'a, 't, 'm, V> {
     pub trees: &'a LightTrees,
     pub transfer: &'a Transfer<'t>,
     pub visibility: &'a V,
     pub receiver: &'a Receiver<'m>,
     pub settings: &'a CutSettings,
-    /// Luminance of the cut, as far as it counts.
+    /// Luminance of the cut, with limited weak singularities.
     pub total: f64,
     pub cut: &'a mut Lightcut,
 }
 
 impl<V: Visibility> PointRefinement<'_, '_, '_, V> {
-    /// Finds the cut.
+    /// Refines the cut.
     pub fn run(mut self) {
         self.start();
         while self.choose() {
@@ -48,7 +48,7 @@ impl<V: Visibility> PointRefinement<'_, '_, '_, V> {
         }
     }
 
-    /// Chooses the clusters to be split this round; false if there are none.
+    /// Chooses the clusters to split this round; returns false if there are none.
     fn choose(&mut self) -> bool {
         let threshold = (f64::from(self.settings.epsilon) * self.total.max(0.0)) as f32;
         let room = self.settings.max_cut.saturating_sub(self.cut.clusters.len());
@@ -85,7 +85,7 @@ impl<V: Visibility> PointRefinement<'_, '_, '_, V> {
         self.watch(place);
     }
 
-    /// Cluster of a node whose representative responds with `response`, in a cut whose other clusters sum up to `rest`.
+    /// Creates the cluster of a node whose representative contributes `response`. The other clusters sum up to `rest`.
     fn cluster(&self, node: u32, response: Rgb, rest: f64) -> CutCluster {
         let n = &self.trees.nodes[node as usize];
         let contribution = n.intensity * response;
@@ -112,7 +112,7 @@ impl<V: Visibility> PointRefinement<'_, '_, '_, V> {
         }
     }
 
-    /// Queues the cluster at `place` by the error to expect.
+    /// Queues the cluster at `place` by its expected error.
     fn watch(&mut self, place: usize) {
         let cluster = &self.cut.clusters[place];
         let node = &self.trees.nodes[cluster.node as usize];
@@ -121,8 +121,8 @@ impl<V: Visibility> PointRefinement<'_, '_, '_, V> {
         }
         self.cut.counts.bounds += 1;
         let bound = self.transfer.bound(self.receiver, node);
-        // A representative next to the receiver passes its nearness on to the whole cluster: one that gives more than
-        // a quarter of the total is split, whatever is to be expected.
+        // A representative next to the receiver makes the whole cluster look near. So a cluster that gives more than a
+        // quarter of the total is split, whatever its expected error.
         let doubt = self.settings.epsilon / DOMINANT * cluster.counted;
         let error = (luminance(bound.most * node.intensity) * bound.share).max(doubt);
         self.cut.offenders.push(error, place);

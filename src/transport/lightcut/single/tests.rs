@@ -14,7 +14,7 @@ fn no_member_contributes_more_than_the_clusters_bound() {
     let materials = Materials::new(&scene);
     let mut checked = 0u64;
     for round in 0..60u32 {
-        let mut numbers = Numbers(round << 20);
+        let mut numbers = RandomNumbers(round << 20);
         let scale = [1e-6, 1.0, 1e6][round as usize % 3];
         let family = if round % 2 == 0 { Family::Divisive } else { Family::Agglomerative };
         let diagonal = scale * 2.0;
@@ -63,7 +63,7 @@ fn relative_errors(trees: &LightTrees, settings: &CutSettings, rays: &impl Visib
     let transfer = Transfer::new(trees, 3f32.sqrt());
     let mut cut = Lightcut::new();
     let mut errors = Vec::new();
-    let mut numbers = Numbers(9);
+    let mut numbers = RandomNumbers(9);
     while errors.len() < 300 {
         let receiver = random_receiver(&materials, &scene, 1.0, &mut numbers);
         let receiver = receiver.moved(receiver.position() * 0.9 + 0.05);
@@ -78,7 +78,7 @@ fn relative_errors(trees: &LightTrees, settings: &CutSettings, rays: &impl Visib
 
 #[test]
 fn cuts_are_within_their_error_and_shrink_with_epsilon() {
-    let set = room(20_000, &mut Numbers(1));
+    let set = room(20_000, &mut RandomNumbers(1));
     let ball = Ball { centre: Vec3::splat(0.5), radius: 0.25 };
     for family in [Family::Divisive, Family::Agglomerative] {
         let trees =
@@ -97,7 +97,7 @@ fn cuts_are_within_their_error_and_shrink_with_epsilon() {
 
 #[test]
 fn no_cluster_gives_more_than_a_quarter_however_coarse_the_cut() {
-    let mut numbers = Numbers(8);
+    let mut numbers = RandomNumbers(8);
     let trees = low_lamps(&mut numbers);
     let transfer = Transfer::new(&trees, 1.7);
     let mut lightcut = Lightcut::new();
@@ -117,7 +117,7 @@ fn no_cluster_gives_more_than_a_quarter_however_coarse_the_cut() {
 
 #[test]
 fn with_no_tolerance_the_cut_is_the_full_sum() {
-    let mut numbers = Numbers(5);
+    let mut numbers = RandomNumbers(5);
     let trees = LightTrees::build(
         &all_kinds(300, 1.0, &mut numbers),
         profiles(),
@@ -131,8 +131,13 @@ fn with_no_tolerance_the_cut_is_the_full_sum() {
 
 #[test]
 fn the_cap_is_respected_and_counted() {
-    let trees =
-        LightTrees::build(&[room(5000, &mut Numbers(2))], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let trees = LightTrees::build(
+        &[room(5000, &mut RandomNumbers(2))],
+        Vec::new(),
+        1.7,
+        Family::Divisive,
+        &Control::new(),
+    );
     let settings = CutSettings { epsilon: 0.001, max_cut: 77, clamp: None, origin: None };
     let transfer = Transfer::new(&trees, 1.7);
     let receiver = Receiver::irradiance(Vec3::splat(0.4), Vec3::Y, &Frame::from_normal(Vec3::Y));
@@ -182,7 +187,7 @@ fn nothing_degenerate_breaks_a_cut() {
 #[test]
 fn the_same_room_at_any_scale_gives_the_same_cut() {
     // Lengths times s, intensities times s²: the same irradiance.
-    let reference = room(3000, &mut Numbers(3));
+    let reference = room(3000, &mut RandomNumbers(3));
     let at_scale = |s: f32| {
         let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
         for (vpl, &intensity) in reference.vpls.iter().zip(&reference.intensities) {
@@ -202,7 +207,7 @@ fn the_same_room_at_any_scale_gives_the_same_cut() {
 
 #[test]
 fn a_weak_singularity_is_clamped_once_and_lights_are_not() {
-    let mut set = room(2000, &mut Numbers(4));
+    let mut set = room(2000, &mut RandomNumbers(4));
     let x = Vec3::new(0.5, 0.5, 0.5);
     let trees_of = |set: &VplSet| {
         LightTrees::build(std::slice::from_ref(set), Vec::new(), 1.7, Family::Divisive, &Control::new())
@@ -236,8 +241,13 @@ fn few_vpls_share_the_light_and_lose_none_of_it_while_it_is_refined() {
 #[test]
 fn an_unlit_node_is_no_node() {
     // The gap behind each root is never reached.
-    let trees =
-        LightTrees::build(&[room(7, &mut Numbers(6))], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let trees = LightTrees::build(
+        &[room(7, &mut RandomNumbers(6))],
+        Vec::new(),
+        1.7,
+        Family::Divisive,
+        &Control::new(),
+    );
     let blank = |n: &&LightNode| n.intensity == Rgb::ZERO;
     assert_eq!(trees.nodes.iter().filter(blank).count(), 1);
     assert_eq!(trees.leaves().count(), 7);

@@ -1,20 +1,22 @@
 //! Bottom-up building: clusters merge with their nearest neighbour along a Morton curve.
 //!
 //! Paper: Meister & Bittner, *Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction*, 2018.
-//! Deviations: the curve runs through position and normal (6-D); the distance is the cost of the merged
-//! cluster; ties break by the XOR of the positions, and a round that merges almost nothing pairs
-//! neighbours outright, so that neither coincident VPLs nor intensities in geometric progression stall it.
+//! Deviations: the curve runs through position and normal (6-D). The distance is the cost of the merged cluster. Ties
+//! break by the XOR of the positions, and a round with few merges is followed by pairing of neighbours, so that neither
+//! coincident VPLs nor intensities in geometric progression stall the rounds.
 
 use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cost};
 use super::topology::Topology;
 use base::progress::Control;
 use rayon::prelude::*;
 
-/// Distance along the curve, in clusters, up to which a cluster searches for its neighbour.
+/// Maximum distance along the curve, in clusters, at which a cluster searches for its neighbour.
 const RADIUS: usize = 8;
-/// Number of clusters handled by one task; fixed, so that the order of the nodes does not depend on threads.
+
+/// Number of clusters per task. It is fixed, so that the order of the nodes does not depend on threads.
 const CHUNK: usize = 4096;
-/// Divisor of the number of clusters: a round with fewer merges than that is followed by outright pairing.
+
+/// Divisor of the number of clusters. A round with no more merges than the quotient is followed by pairing.
 const STALLED: usize = 32;
 
 #[derive(Clone, Copy)]
@@ -32,8 +34,8 @@ impl ActiveCluster {
     }
 }
 
-/// Builds a tree by rounds of mutual-nearest merges, unless `control` is cancelled; `c_sq` is the square of the scene's
-/// diagonal.
+/// Builds a tree by rounds of merges of mutual nearest neighbours; `None` if `control` is cancelled. `c_sq` is the
+/// square of the scene's diagonal.
 pub fn build(mut primitives: Vec<Primitive>, c_sq: f32, control: &Control) -> Option<Topology> {
     sort_along_curve(&mut primitives, c_sq);
     let leaf = |(i, r): (usize, &Primitive)| ActiveCluster {
@@ -67,7 +69,7 @@ fn sort_along_curve(primitives: &mut [Primitive], c_sq: f32) {
         let mut code = 0u64;
         for d in 0..DIMENSIONS {
             let x = (r.0[d] - bounds.min[d]) * weight(d) / widest;
-            // NaN, where all primitives coincide, becomes 0.
+            // If all primitives coincide, NaN becomes 0.
             code |= spread_by_6((x * 1023.0) as u64) << d;
         }
         code
@@ -79,7 +81,7 @@ fn sort_along_curve(primitives: &mut [Primitive], c_sq: f32) {
     }
 }
 
-/// Spreads ten bits, five zeros after each.
+/// Spreads ten bits, with five zeros after each.
 fn spread_by_6(x: u64) -> u64 {
     (0..10).fold(0, |code, bit| code | (x >> bit & 1) << (6 * bit))
 }
@@ -111,7 +113,7 @@ fn merge(clusters: &mut Vec<ActiveCluster>, nearest: &[u32], leaves: usize, pair
         let j = nearest[i] as usize;
         let mutual = j < clusters.len() && nearest[j] as usize == i;
         if mutual && j < i {
-            continue; // merged when its partner's turn came
+            continue; // already merged, by its partner
         }
         clusters[kept] = if mutual && j > i {
             let id = (leaves + pairs.len()) as u32;

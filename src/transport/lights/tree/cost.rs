@@ -1,30 +1,33 @@
-//! The primitives that both builders sort, their bounds, and the cost of a cluster.
+//! Primitives that both builders sort, their bounds, and the cost of a cluster.
 //!
 //! Paper: Walter et al., *Lightcuts: A Scalable Approach to Illumination*, 2005, section 3.1: I(α² + c²(1 - cos β)²).
-//! Deviations: while building, β is estimated from the box around the unit normals (a chord of length e
-//! spans a cone of sin β = e/2); the finished nodes carry exact cones. The paper's c is kept, the scene's diagonal: a
-//! tenth of it gives up to a quarter smaller cuts, but their error grows as much (six scenes, against full sums).
+//! c is the scene's diagonal, as in the paper.
+//! Deviations: while building, β is estimated from the box around the unit normals (a chord of length e spans a cone of
+//! sin β = e/2). The finished nodes carry exact cones.
 
-use crate::lights::{Profiles, Vpl, VplKind};
+use crate::lights::{Profiles, VplKind, VplSet};
+use base::math::luminance;
 use glam::Vec3;
 
 /// Coordinates of a primitive: position, normal, luminance of the intensity, and the bits of the VPL's index.
-pub type Coordinates = [f32; 8];
+pub type PrimitiveCoordinates = [f32; 8];
 
-/// Index of the luminance in [`Coordinates`].
+/// Index of the luminance in [`PrimitiveCoordinates`].
 pub const LUMINANCE: usize = 6;
-/// Number of coordinates to cluster by, which come first.
+/// Number of coordinates to cluster by: the first ones.
 pub const DIMENSIONS: usize = 6;
 
-/// One VPL for the builders: 32 bytes, one vector register.
+/// VPL in the layout of the builders: 32 bytes, one vector register.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub struct Primitive(pub Coordinates);
+pub struct Primitive(pub PrimitiveCoordinates);
 
 impl Primitive {
-    /// Creates the primitive of the VPL of index `index`.
-    pub fn new(vpl: &Vpl, kind: VplKind, profiles: &Profiles, (luminance, index): (f32, u32)) -> Primitive {
-        let (p, n) = match kind {
+    /// Creates the primitive of VPL number `index` of a set.
+    pub fn new(set: &VplSet, profiles: &Profiles, index: u32) -> Primitive {
+        let vpl = &set.vpls[index as usize];
+        let luminance = luminance(set.intensities[index as usize]);
+        let (p, n) = match set.kind {
             VplKind::Lobed => (vpl.position, profiles.lobes[vpl.lobe()].axis()),
             VplKind::Omni => (vpl.position, Vec3::ZERO),
             VplKind::Oriented => (vpl.position, vpl.normal()),
@@ -49,9 +52,9 @@ impl Primitive {
 #[repr(C, align(64))]
 pub struct PrimitiveBounds {
     /// Minimum of each coordinate.
-    pub min: Coordinates,
+    pub min: PrimitiveCoordinates,
     /// Maximum of each coordinate.
-    pub max: Coordinates,
+    pub max: PrimitiveCoordinates,
 }
 
 impl PrimitiveBounds {
@@ -65,13 +68,13 @@ impl PrimitiveBounds {
         self.min[0] == f32::INFINITY
     }
 
-    /// Box around one primitive.
+    /// Creates the box around one primitive.
     #[inline]
     pub fn of(r: &Primitive) -> PrimitiveBounds {
         PrimitiveBounds { min: r.0, max: r.0 }
     }
 
-    /// Box around many primitives.
+    /// Creates the box around many primitives.
     pub fn around<'a>(primitives: impl Iterator<Item = &'a Primitive>) -> PrimitiveBounds {
         let mut b = PrimitiveBounds::EMPTY;
         for r in primitives {
@@ -80,7 +83,7 @@ impl PrimitiveBounds {
         b
     }
 
-    /// Grows to contain `other`. Plain comparisons, which map to one instruction each (no NaN can occur).
+    /// Extends the box to contain `other`. Each plain comparison is one instruction; no NaN can occur.
     #[inline]
     pub fn add(&mut self, other: &PrimitiveBounds) {
         for i in 0..8 {
@@ -95,18 +98,18 @@ impl PrimitiveBounds {
         self.max[i] - self.min[i]
     }
 
-    /// Extent along one dimension in units of length; `half_c` is half the scene's diagonal.
+    /// Extent along one dimension in units of length; `half_c` is half the diagonal of the scene.
     #[inline]
     pub fn width(&self, i: usize, half_c: f32) -> f32 {
         self.extent(i) * if i < 3 { 1.0 } else { half_c }
     }
 }
 
-/// Cost of clustering primitives within `bounds` of total luminance `intensity`; `c_sq` is the square of
-/// the scene's diagonal, which makes an angle comparable with a length.
+/// Cost of a cluster of primitives within `bounds` of total luminance `intensity`. `c_sq` is the square of the scene's
+/// diagonal, which makes an angle comparable with a length.
 #[inline]
 pub fn cluster_cost(bounds: &PrimitiveBounds, intensity: f64, c_sq: f32) -> f64 {
-    let sq: Coordinates = std::array::from_fn(|i| {
+    let sq: PrimitiveCoordinates = std::array::from_fn(|i| {
         let extent = bounds.max[i] - bounds.min[i];
         extent * extent
     });
@@ -123,9 +126,13 @@ pub fn cluster_cost(bounds: &PrimitiveBounds, intensity: f64, c_sq: f32) -> f64 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lights::{Origin, Vpl};
+    use base::math::Rgb;
 
     fn oriented(p: Vec3, n: Vec3) -> Primitive {
-        Primitive::new(&Vpl::oriented(p, n), VplKind::Oriented, &Profiles::default(), (1.0, 7))
+        let mut set = VplSet::new(VplKind::Oriented, Origin::Direct);
+        (0..8).for_each(|_| set.push(Vpl::oriented(p, n), Rgb::ONE));
+        Primitive::new(&set, &Profiles::default(), 7)
     }
 
     #[test]

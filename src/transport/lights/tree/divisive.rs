@@ -1,46 +1,50 @@
 //! Top-down building: binned splits in position and normal.
 //!
-//! Paper: the cost is that of Walter et al. 2005 (see `cost`); binning as in Wald, *On fast Construction of
-//! SAH-based Bounding Volume Hierarchies*, 2007, over six dimensions in place of three.
-//! Deviations: clusters of at most [`SORTED`] are sorted along their widest dimension and split at the best
-//! of all places, which is cheaper than clearing bins and at least as good. Splits of large clusters are judged by a
-//! part of their members.
+//! Papers: Walter et al. 2005 for the cost (see `cost`); Wald, *On fast Construction of SAH-based Bounding Volume
+//! Hierarchies*, 2007, for binning.
+//! Deviations: there are six dimensions in place of three. Clusters of at most [`SORTED`] members are sorted along
+//! their widest dimension and split at the best of all places, which is cheaper than clearing bins. A subset of the
+//! members evaluates the splits of large clusters.
 
 use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cost};
 use super::topology::Topology;
 use base::progress::Control;
 
-/// Number of bins by dimension.
+/// Number of bins per dimension.
 const BINS: usize = 16;
-/// Width of a dimension over that of the widest below which a cluster is not split along it.
-const NARROW: f32 = 0.1;
+
+/// Minimum width of a dimension along which a cluster is split, relative to the widest dimension.
+const MIN_WIDTH: f32 = 0.1;
+
 /// Maximum size of a cluster that is sorted, not binned.
 const SORTED: usize = 16;
+
 /// Size above which both halves are built in parallel.
 const PARALLEL: usize = 4096;
-/// Maximum number of primitives by which a split is judged, evenly spaced among all as they come.
-const JUDGED: usize = 1 << 14;
 
-/// Bins along one dimension. Bounds fill a cache line each, so intensities stand apart.
+/// Maximum number of primitives that evaluate a split, evenly spaced in the order of the primitives.
+const MAX_EVALUATED: usize = 1 << 14;
+
+/// Bins along one dimension. Bounds fill a cache line each, so intensities are in an array of their own.
 #[derive(Clone)]
-struct Row {
+struct AxisBins {
     bounds: [PrimitiveBounds; BINS],
     intensity: [f64; BINS],
 }
 
-const EMPTY_ROW: Row = Row { bounds: [PrimitiveBounds::EMPTY; BINS], intensity: [0.0; BINS] };
+const NO_BINS: AxisBins = AxisBins { bounds: [PrimitiveBounds::EMPTY; BINS], intensity: [0.0; BINS] };
 
-/// Bins of the dimensions that a cluster extends along, in order.
-type Bins = [Row; DIMENSIONS];
+/// Bins along all dimensions; the first ones are those that a cluster extends along.
+type Bins = [AxisBins; DIMENSIONS];
 
 /// Union of the bins on one side of a border.
-struct Sweep {
+struct BinUnion {
     bounds: PrimitiveBounds,
     intensity: f64,
 }
 
-impl Sweep {
-    const EMPTY: Sweep = Sweep { bounds: PrimitiveBounds::EMPTY, intensity: 0.0 };
+impl BinUnion {
+    const EMPTY: BinUnion = BinUnion { bounds: PrimitiveBounds::EMPTY, intensity: 0.0 };
 
     #[inline]
     fn add(&mut self, bounds: &PrimitiveBounds, intensity: f64) {
@@ -93,13 +97,13 @@ fn split_all(primitives: &mut [Primitive], left_sizes: &mut [u32], c_sq: f32, co
     }
 }
 
-/// Sorts a small cluster along its widest dimension and returns the size of the cheapest left part.
+/// Sorts a small cluster along its widest dimension; returns the size of the cheapest left part.
 fn split_sorted(primitives: &mut [Primitive], c_sq: f32) -> usize {
     let bounds = PrimitiveBounds::around(primitives.iter());
     let half_c = 0.5 * c_sq.sqrt();
     let width = |lane: usize| bounds.width(lane, half_c);
     let widest = (1..DIMENSIONS).fold(0, |a, b| if width(b) > width(a) { b } else { a });
-    // Insertion sort: stable, and the fastest for so few.
+    // Insertion sort is stable, and the fastest for small clusters.
     for i in 1..primitives.len() {
         let mut j = i;
         while j > 0 && primitives[j].0[widest] < primitives[j - 1].0[widest] {
@@ -109,17 +113,17 @@ fn split_sorted(primitives: &mut [Primitive], c_sq: f32) -> usize {
     }
     let n = primitives.len();
     let mut right_costs = [0.0; SORTED];
-    let mut sweep = Sweep::EMPTY;
+    let mut sweep = BinUnion::EMPTY;
     for i in (1..n).rev() {
         sweep.add_one(&primitives[i]);
         right_costs[i] = cluster_cost(&sweep.bounds, sweep.intensity, c_sq);
     }
-    let mut sweep = Sweep::EMPTY;
+    let mut sweep = BinUnion::EMPTY;
     let mut best = (f64::INFINITY, n / 2);
     for i in 1..n {
         sweep.add_one(&primitives[i - 1]);
         let cost = cluster_cost(&sweep.bounds, sweep.intensity, c_sq) + right_costs[i];
-        // Equal costs (coincident VPLs) halve the cluster.
+        // If costs are equal (coincident VPLs), the cluster is halved.
         let balance = |k: usize| k.abs_diff(n / 2);
         if cost < best.0 || (cost == best.0 && balance(i) < balance(best.1)) {
             best = (cost, i);
@@ -128,13 +132,13 @@ fn split_sorted(primitives: &mut [Primitive], c_sq: f32) -> usize {
     best.1
 }
 
-/// Partitions a large cluster at the cheapest of all bin borders in all dimensions and returns the left size.
+/// Partitions a large cluster at the cheapest of all bin borders in all dimensions; returns the left size.
 #[inline(never)] // Its bins must not stay on the stack during the recursion.
 fn split_binned(primitives: &mut [Primitive], c_sq: f32) -> usize {
-    let judged = || primitives.iter().step_by(primitives.len().div_ceil(JUDGED));
-    let binning = Binning::new(&PrimitiveBounds::around(judged()), 0.5 * c_sq.sqrt());
-    let mut bins: Bins = [EMPTY_ROW; DIMENSIONS];
-    binning.fill(judged(), &mut bins);
+    let evaluated = || primitives.iter().step_by(primitives.len().div_ceil(MAX_EVALUATED));
+    let binning = Binning::new(&PrimitiveBounds::around(evaluated()), 0.5 * c_sq.sqrt());
+    let mut bins: Bins = [NO_BINS; DIMENSIONS];
+    binning.fill(evaluated(), &mut bins);
     let n = primitives.len();
     let Some((dimension, border)) = cheapest_border(&bins, &binning, c_sq) else { return n / 2 };
     let border = Binning::border(border);
@@ -146,7 +150,7 @@ fn split_binned(primitives: &mut [Primitive], c_sq: f32) -> usize {
 struct Binning {
     min: [f32; 8],
     scale: [f32; 8],
-    /// Dimensions that the primitives extend along, the first `count`: on a flat wall there are two of six.
+    /// Dimensions that the primitives extend along: the first `count`. A flat wall has two of six.
     dimensions: [usize; DIMENSIONS],
     count: usize,
 }
@@ -157,9 +161,9 @@ impl Binning {
         let width = |d: usize| bounds.width(d, half_c);
         let widest = (0..DIMENSIONS).map(width).fold(0.0, f32::max);
         for d in 0..DIMENSIONS {
-            // Slightly below 1, so that the maximum itself falls into the last bin.
+            // The factor is slightly below 1, so that the maximum itself falls into the last bin.
             let scale = (1.0 - 1e-6) / bounds.extent(d);
-            if scale.is_finite() && width(d) >= NARROW * widest {
+            if scale.is_finite() && width(d) >= MIN_WIDTH * widest {
                 binning.scale[d] = scale;
                 binning.dimensions[binning.count] = d;
                 binning.count += 1;
@@ -168,14 +172,14 @@ impl Binning {
         binning
     }
 
-    /// Place along a dimension, in [1, 2): there the first bits of the mantissa are the number of the bin. Conversions
-    /// to integers do not compile to vector code.
+    /// Returns the place along a dimension, in [1, 2), where the first bits of the mantissa are the number of the bin.
+    /// Conversions to integers would not compile to vector code.
     #[inline]
     fn place(&self, r: &Primitive, d: usize) -> f32 {
         (r.0[d] - self.min[d]) * self.scale[d] + 1.0
     }
 
-    /// Place at which a bin begins.
+    /// Returns the place at which a bin begins.
     fn border(bin: usize) -> f32 {
         1.0 + bin as f32 / BINS as f32
     }
@@ -202,7 +206,7 @@ fn cheapest_border(bins: &Bins, binning: &Binning, c_sq: f32) -> Option<(usize, 
     let mut best_cost = f64::INFINITY;
     for (d, row) in binning.dimensions[..binning.count].iter().zip(bins) {
         let mut right_costs = [f64::INFINITY; BINS + 1];
-        let mut sweep = Sweep::EMPTY;
+        let mut sweep = BinUnion::EMPTY;
         for i in (1..BINS).rev() {
             right_costs[i] = right_costs[i + 1];
             if row.bounds[i].is_empty() {
@@ -213,9 +217,9 @@ fn cheapest_border(bins: &Bins, binning: &Binning, c_sq: f32) -> Option<(usize, 
                 right_costs[i] = cluster_cost(&sweep.bounds, sweep.intensity, c_sq);
             }
         }
-        let mut sweep = Sweep::EMPTY;
+        let mut sweep = BinUnion::EMPTY;
         for i in 1..BINS {
-            // Behind an empty bin the parts are those before it.
+            // The parts on both sides of an empty bin are equal.
             if row.bounds[i - 1].is_empty() {
                 continue;
             }
@@ -232,7 +236,7 @@ fn cheapest_border(bins: &Bins, binning: &Binning, c_sq: f32) -> Option<(usize, 
     best
 }
 
-/// Moves primitives that satisfy `goes_left` to the front and returns their number.
+/// Moves primitives that satisfy `goes_left` to the front; returns their number.
 fn partition(primitives: &mut [Primitive], goes_left: impl Fn(&Primitive) -> bool) -> usize {
     let (mut i, mut j) = (0, primitives.len());
     loop {

@@ -1,9 +1,9 @@
-//! From the shape of a tree to its nodes: exact boxes and cones, f64 intensity sums, representatives.
+//! Nodes of a tree, given its shape: exact boxes and cones, f64 intensity sums, representatives.
 //!
-//! Paper: Walter et al. 2005: a cluster's representative is drawn from its children's in proportion to their
-//! intensities, so one child shares it and a split costs at most one new shadow ray.
-//! Deviations: the cone is the smallest about the centre of the normals' box that contains every member's
-//! normal, computed from the members themselves; merging the children's cones would be looser at every level.
+//! Paper: Walter et al. 2005: a cluster's representative is sampled from its children's in proportion to their
+//! intensities. One child shares it, so a split costs at most one new shadow ray.
+//! Deviations: the cone is the smallest about the centre of the normals' box that contains every member's normal. It is
+//! computed from the members, since merging the children's cones would be looser at every level.
 
 use super::cost::{Primitive, PrimitiveBounds};
 use super::node::LightNode;
@@ -13,12 +13,13 @@ use base::math::{Rgb, luminance};
 use base::progress::Control;
 use glam::{DVec3, Vec3};
 
-/// Size above which both halves are finished in parallel.
+/// Number of leaves above which both halves are finished in parallel.
 const PARALLEL: usize = 4096;
-/// Amount by which cosines are lowered: more than the rounding of a dot product of unit vectors.
+
+/// Margin of cosines: more than the rounding of a dot product of unit vectors.
 const COSINE_SLACK: f32 = 1e-6;
 
-/// Values of a cluster that its parent needs and its node lacks.
+/// Values of a cluster that its parent needs and that its node does not hold.
 struct Summary {
     bounds: PrimitiveBounds,
     intensity: DVec3,
@@ -31,37 +32,19 @@ impl Summary {
         Summary { bounds: PrimitiveBounds::EMPTY, intensity: DVec3::ZERO, luminance: 0.0, representative: 0 };
 }
 
-/// The set of VPLs whose tree is finished.
-struct Finisher<'a> {
-    set: &'a VplSet,
-    profiles: &'a Profiles,
-    /// Index of the set's first VPL among all VPLs of all trees.
-    first_vpl: u32,
-    control: &'a Control,
+/// Fills the nodes of a tree over a set of VPLs.
+pub struct Finisher<'a> {
+    /// The VPLs.
+    pub set: &'a VplSet,
+    /// Profiles that the VPLs refer to.
+    pub profiles: &'a Profiles,
+    /// Index of the set's first VPL among the VPLs of all trees.
+    pub first_vpl: u32,
+    /// Cancellation.
+    pub control: &'a Control,
 }
 
-/// Fills `nodes` (two a leaf: the root, a gap that keeps siblings aligned, then pairs of siblings, depth first)
-/// with the nodes of a tree, unless `control` is cancelled; `first_node` is the index of `nodes[0]` among all nodes.
-pub fn finish(
-    topology: &Topology,
-    (set, profiles): (&VplSet, &Profiles),
-    nodes: &mut [LightNode],
-    [first_node, first_vpl]: [usize; 2],
-    control: &Control,
-) -> Option<()> {
-    if control.is_cancelled() {
-        return None;
-    }
-    let finisher = Finisher { set, profiles, first_vpl: first_vpl as u32, control };
-    if let Some((root, rest)) = nodes.split_first_mut() {
-        let below = rest.get_mut(1..).unwrap_or_default();
-        let subtree = Subtree { leaves: &topology.leaves, left_sizes: &topology.left_sizes, first_leaf: 0 };
-        finisher.subtree(subtree, SubtreeNodes { root, below, below_index: first_node as u32 + 2 });
-    }
-    (!control.is_cancelled()).then_some(())
-}
-
-/// A subtree of a topology.
+/// Subtree of a topology.
 struct Subtree<'a> {
     leaves: &'a [Primitive],
     left_sizes: &'a [u32],
@@ -74,12 +57,29 @@ struct SubtreeNodes<'a> {
     root: &'a mut LightNode,
     /// Descendants of the root.
     below: &'a mut [LightNode],
-    /// Index of the first of them among all nodes.
+    /// Index of the first descendant among all nodes.
     below_index: u32,
 }
 
 impl Finisher<'_> {
-    /// Fills the nodes of a subtree; nothing is right once building is cancelled.
+    /// Fills `nodes` with the nodes of a tree; `None` if building is cancelled. `first_node` is the index of `nodes[0]`
+    /// among the nodes of all trees.
+    ///
+    /// There are two nodes per leaf: the root, a gap that keeps siblings aligned, then pairs of siblings, depth first.
+    pub fn finish(&self, topology: &Topology, nodes: &mut [LightNode], first_node: u32) -> Option<()> {
+        if self.control.is_cancelled() {
+            return None;
+        }
+        if let Some((root, rest)) = nodes.split_first_mut() {
+            let below = rest.get_mut(1..).unwrap_or_default();
+            let subtree =
+                Subtree { leaves: &topology.leaves, left_sizes: &topology.left_sizes, first_leaf: 0 };
+            self.subtree(subtree, SubtreeNodes { root, below, below_index: first_node + 2 });
+        }
+        (!self.control.is_cancelled()).then_some(())
+    }
+
+    /// Fills the nodes of a subtree. They are undefined once building is cancelled.
     fn subtree(&self, subtree: Subtree, nodes: SubtreeNodes) -> Summary {
         let Subtree { leaves, left_sizes, first_leaf } = subtree;
         if leaves.len() > PARALLEL && self.control.is_cancelled() {
@@ -141,7 +141,7 @@ impl Finisher<'_> {
         matches!(self.set.kind, VplKind::Oriented | VplKind::Lobed)
     }
 
-    /// Sets the cone about `axis` that contains every normal, or axis of a lobe.
+    /// Sets the cone about `axis` that contains the normals of all members, or the axes of their lobes.
     fn set_cone(&self, node: &mut LightNode, axis: Vec3, members: &[Primitive]) {
         let cos_beta = members.iter().fold(1.0f32, |least, r| {
             let cos = r.normal().dot(axis);
@@ -160,7 +160,7 @@ impl Finisher<'_> {
     }
 }
 
-/// Rounds up to f32 in every channel, so that a cluster is never dimmer than its members.
+/// Rounds up to f32 in every channel, so that a cluster is never dimmer than its members together.
 fn rounded_up(c: DVec3) -> Rgb {
     let up = |x: f64| {
         let nearest = x.min(f64::from(f32::MAX)) as f32;
@@ -169,7 +169,7 @@ fn rounded_up(c: DVec3) -> Rgb {
     Rgb::new(up(c.x), up(c.y), up(c.z))
 }
 
-/// Returns a number in [0, 1) that depends on the node alone.
+/// Returns a pseudo-random number in [0, 1) that depends on the node alone.
 ///
 /// Paper: the finaliser of Stafford's *Better Bit Mixing*, variant 13.
 fn unit_hash(node: u32) -> f64 {

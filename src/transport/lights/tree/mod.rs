@@ -1,9 +1,7 @@
-//! Stage 2: VPLs clustered in trees, each cluster with bounds, cone, intensity and representative.
+//! Light trees: VPLs clustered in binary trees. Each cluster has bounds, cone, intensity and representative.
 //!
-//! One tree for each kind and origin that the scene has, all in one array of nodes; the roots together
-//! stand for the virtual root above them. Both families of builders produce the same kind of tree.
-//!
-//! The same VPLs give the same trees for any number of threads.
+//! There is one tree for each kind and origin of VPLs. All trees share one array of nodes, and the roots together stand
+//! for the virtual root above them. Both builders produce trees of one form, which are equal for any number of threads.
 
 mod agglomerative;
 mod cost;
@@ -15,24 +13,16 @@ mod tests;
 mod topology;
 
 use crate::lights::{Origin, Profiles, Vpl, VplSet};
-use base::math::luminance;
 use base::progress::Control;
 use base::setting::{Each, Settings, Spec, choices};
 use cost::Primitive;
+use finish::Finisher;
 use rayon::prelude::*;
 
 pub use node::{LightNode, MAX_VPLS};
 
 choices! {
-    /// Way to build a tree.
-    ///
-    /// Seconds of processor time to build (one thread's worth) and mean uncapped cuts at ε = 2 % / 1 %, by
-    /// `lightsplat bench trees SCENE`:
-    ///
-    /// | | nave, 300k | nave, 1M | sibenik, 300k | sibenik, 1M |
-    /// |---|--:|--:|--:|--:|
-    /// | divisive | 0.19 s, 1143 / 1748 | 0.72 s, 1208 / 1840 | 0.18 s, 608 / 922 | 0.71 s, 630 / 953 |
-    /// | agglomerative | 0.23 s, 1291 / 1903 | 0.81 s, 1397 / 2034 | 0.23 s, 694 / 1015 | 0.81 s, 735 / 1066 |
+    /// Builder of light trees; `lightsplat bench trees SCENE` compares them.
     pub enum Family = Divisive {
         /// Top-down: binned splits in position and normal.
         Divisive = "divisive",
@@ -41,20 +31,18 @@ choices! {
     }
 }
 
-/// Declaration of the choice between them.
+/// Declaration of the setting.
 static TREE: Spec =
     Spec::new("tree", "Builder of the light trees", "Lightcuts").values(&["agglomerative", "divisive"]);
 
-/// A setting by itself.
 impl Settings for Family {
     fn each(&mut self, each: Each) {
         each(&TREE, self);
     }
 }
 
-/// Number of nodes that are laid out between two looks at whether building is cancelled: their memory takes longer to
-/// be had than they to be written.
-const LAID_OUT: usize = 1 << 18;
+/// Number of nodes allocated between two tests for cancellation. Allocation takes most of the time.
+const NODES_PER_TEST: usize = 1 << 18;
 
 /// The light trees of a scene.
 #[derive(Clone, Debug, Default)]
@@ -65,15 +53,14 @@ pub struct LightTrees {
     pub roots: Vec<u32>,
     /// The VPLs in the order of the leaves, tree after tree: neighbours in a tree are neighbours in memory.
     pub vpls: Vec<Vpl>,
-    /// Profiles that they refer to.
+    /// Profiles that the VPLs refer to.
     pub profiles: Profiles,
 }
 
 impl LightTrees {
-    /// Builds a tree over each of `sets`; `diagonal` of the scene sets the weight of an angle against a
-    /// length.
+    /// Builds a tree over each of `sets`. The scene's `diagonal` sets the weight of an angle against a length.
     ///
-    /// VPLs beyond [`MAX_VPLS`] in all are ignored. Trees that are not whole when `control` is cancelled are left out.
+    /// VPLs beyond [`MAX_VPLS`] in total are ignored. Incomplete trees are left out if `control` is cancelled.
     pub fn build(
         sets: &[VplSet],
         profiles: impl Into<Profiles>,
@@ -92,15 +79,14 @@ impl LightTrees {
         trees
     }
 
-    /// Adds a tree over a set, unless that is empty; `None` if `control` is cancelled, with some nodes left behind.
+    /// Adds a tree over a set, unless the set is empty. Returns `None` if `control` is cancelled, and then leaves some
+    /// nodes behind.
     fn add(&mut self, set: &VplSet, diagonal: f32, family: Family, control: &Control) -> Option<()> {
         let n = set.len().min(MAX_VPLS - self.vpls.len());
         if n == 0 {
             return Some(());
         }
-        let primitive = |i: usize| {
-            Primitive::new(&set.vpls[i], set.kind, &self.profiles, (luminance(set.intensities[i]), i as u32))
-        };
+        let primitive = |i: usize| Primitive::new(set, &self.profiles, i as u32);
         let primitives = (0..n).into_par_iter().map(primitive).collect();
         let topology = match family {
             Family::Divisive => divisive::build(primitives, diagonal * diagonal, control)?,
@@ -111,16 +97,17 @@ impl LightTrees {
         let end = first_node + 2 * n;
         self.nodes.reserve(2 * n);
         while self.nodes.len() < end && !control.is_cancelled() {
-            self.nodes.par_extend(rayon::iter::repeat_n(blank, LAID_OUT.min(end - self.nodes.len())));
+            self.nodes.par_extend(rayon::iter::repeat_n(blank, NODES_PER_TEST.min(end - self.nodes.len())));
         }
         let nodes = &mut self.nodes[first_node..];
-        finish::finish(&topology, (set, &self.profiles), nodes, [first_node, first_vpl], control)?;
+        let finisher = Finisher { set, profiles: &self.profiles, first_vpl: first_vpl as u32, control };
+        finisher.finish(&topology, nodes, first_node as u32)?;
         self.vpls.par_extend(topology.leaves.par_iter().map(|r| set.vpls[r.index() as usize]));
         self.roots.push(first_node as u32);
         Some(())
     }
 
-    /// Returns the roots of all trees, or of those for light of one origin.
+    /// Returns the roots of all trees, or of the trees for light of one `origin`.
     pub fn roots_of(&self, origin: Option<Origin>) -> impl Iterator<Item = u32> + '_ {
         let wanted = move |&root: &u32| origin.is_none_or(|o| self.nodes[root as usize].origin() == o);
         self.roots.iter().copied().filter(wanted)

@@ -1,4 +1,4 @@
-//! A cluster in the layout of a lightcut: one cache line, siblings next to each other, so that a split
+//! Nodes of a light tree in the layout of a lightcut: one cache line each. Siblings are neighbours, so that a split
 //! touches two adjacent lines.
 
 use crate::lights::{Origin, VplKind};
@@ -13,22 +13,22 @@ const KIND_SHIFT: u32 = INDEX_BITS + 1;
 /// Maximum number of VPLs in a [`super::LightTrees`].
 pub const MAX_VPLS: usize = 1 << INDEX_BITS;
 
-/// A cluster of VPLs, or a single one.
+/// Cluster of VPLs, or a single VPL.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub struct LightNode {
-    /// Corner of the box around the positions (directional: around the unit directions to the light).
+    /// Corner of the box around the positions; for directional VPLs, around the unit directions to the light.
     pub min: Vec3,
-    /// Cosine of the half angle β of the cone around the normals; -1 for omni VPLs. Of lobed ones it is
-    /// around the axes of their lobes.
+    /// Cosine of the half angle β of the cone around the normals; -1 for omni VPLs. For lobed VPLs the cone is around
+    /// the axes of the lobes.
     pub cos_beta: f32,
     /// The opposite corner.
     pub max: Vec3,
-    /// Sine of β, or of lobed VPLs, for which there is no other room, the greatest squared width.
+    /// Sine of β; for lobed VPLs, the maximum squared width of the lobes.
     sine_or_width: f32,
     /// Unit axis of the cone.
     pub axis: Vec3,
-    /// Index of the left child, the right one follows; 0 for a leaf (no child is ever at 0).
+    /// Index of the left child, which the right child follows; 0 for a leaf (no child has the index 0).
     children: u32,
     /// Sum of the members' intensities.
     pub intensity: Rgb,
@@ -58,7 +58,7 @@ impl LightNode {
         }
     }
 
-    /// Sets the half angle of the cone; of lobed VPLs also the greatest of [`crate::lights::LobeProfile::width_sq`].
+    /// Sets the cone; for lobed VPLs, also the maximum of [`crate::lights::LobeProfile::width_sq`].
     pub(super) fn set_cone(&mut self, axis: Vec3, cos_beta: f32, width_sq: Option<f32>) {
         (self.axis, self.cos_beta) = (axis, cos_beta);
         self.sine_or_width = width_sq.unwrap_or_else(|| sine(cos_beta));
@@ -70,7 +70,7 @@ impl LightNode {
         if self.kind() == VplKind::Lobed { sine(self.cos_beta) } else { self.sine_or_width }
     }
 
-    /// Greatest squared width of the members' lobes; only of lobed VPLs.
+    /// Maximum squared width of the members' lobes; defined only for lobed VPLs.
     #[inline]
     pub fn width_sq(&self) -> f32 {
         self.sine_or_width

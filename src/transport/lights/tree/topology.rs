@@ -1,12 +1,11 @@
-//! The shape of a binary tree over a row of leaves, before it has any bounds.
+//! Shape of a binary tree over a row of leaves, without bounds.
 
 use super::cost::Primitive;
 
-/// A binary tree: leaves in order, and for each inner node, in preorder, the number of leaves of its left
-/// child.
+/// Binary tree: leaves in order, and for each inner node, in preorder, the number of leaves of its left child.
 ///
-/// A subtree over `n` leaves owns `n` consecutive primitives and `n - 1` consecutive entries of `left_sizes`,
-/// of which the first is its root's: so a subtree is a pair of slices.
+/// A subtree over `n` leaves owns `n` consecutive primitives and `n - 1` consecutive entries of `left_sizes`, the first
+/// of which belongs to its root. So a subtree is a pair of slices.
 #[derive(Debug)]
 pub struct Topology {
     /// The leaves, in the tree's order.
@@ -16,8 +15,8 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// Converts from inner nodes as pairs of children: ids below `leaves.len()` are leaves, the others inner
-    /// nodes in the order of `pairs`; the last pair is the root.
+    /// Converts from inner nodes as pairs of children. Ids below `leaves.len()` are leaves, other ids inner nodes in
+    /// the order of `pairs`. The last pair is the root.
     pub fn from_pairs(leaves: &[Primitive], pairs: &[[u32; 2]]) -> Topology {
         let n = leaves.len();
         // Children precede their parents, so one sweep finds every size.

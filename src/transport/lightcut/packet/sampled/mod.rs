@@ -1,18 +1,18 @@
-//! Light of a packet's points by samples of a coarse cut, for pictures that have noise anyhow: with a fraction of a
-//! cut's shadow rays, and errors that are noise, not a pattern.
+//! Light of a packet's points from samples of a coarse cut, for images that are noisy anyway. It takes a fraction of
+//! the shadow rays of a cut, and its errors are noise, not a pattern.
 //!
-//! Paper: Yuksel, *Stochastic Lightcuts*, 2019: representatives are drawn anew for each point.
+//! Paper: Yuksel, *Stochastic Lightcuts*, 2019: representatives are sampled anew for each point.
 //!
-//! A point draws clusters in proportion to what they give it unshadowed, or to what they might by their bounds, and
-//! goes down a few levels of the tree from there, by the members' intensities. The mean is the light of all virtual
-//! lights, limited as in a cut, but for the fixed representatives of the nodes where it ends.
+//! A point samples clusters in proportion to their unshadowed contributions, or to a share of their bounds if that is
+//! more. From there it descends a few levels of the tree, in proportion to the members' intensities. The mean is the
+//! light of all VPLs, limited as in a cut, except that the nodes where the descent ends have fixed
+//! representatives.
 //!
-//! Errors: of points very close to a light, most of whose light is clamped, up to 3 % of all their light are not that a
-//! cut would clamp, since nodes above leaves are not.
+//! Errors: nodes above leaves are not clamped. So at points very close to a light, light remains that a cut would
+//! clamp.
 //!
-//! Deviations: clusters share a number of samples, instead of having one each, and the cut is that of sixteen points,
-//! in which all virtual lights count as seen. Rays of all points to a cluster are traced together, since they are
-//! alike.
+//! Deviations: clusters share a number of samples, instead of having one each. The cut is that of sixteen points, and
+//! all VPLs count as visible in it. Rays of all points to a cluster are traced together, since they are coherent.
 
 #[cfg(test)]
 mod tests;
@@ -26,74 +26,88 @@ use base::math::{F32x16, LANES, Rgb, Vec3x16, lanes_in, luminance};
 use base::sampling::{hash, unit};
 use embree::{Ray, Rays16};
 
-/// Error of the coarse cut.
+/// ε of the coarse cut.
 const EPSILON: f32 = 0.3;
 
-/// Share of a cluster's bound that counts as its light where its representative gives less.
+/// Share of a cluster's expected error that counts as its light if its representative gives less.
 const DOUBT: f32 = 0.3;
 
-/// Number of levels below a cluster at which its samples have their representatives.
+/// Maximum number of levels that a sample descends below its cluster.
 const LEVELS: u32 = 5;
 
-/// Mean number of samples of a packet's points from which on a cut takes less time, and how many times as many are
-/// wanted at points that reflect nothing besides if no coarse cut is made to find out.
-const MOST: f32 = 150.0;
-const TOO_MANY: f32 = 3.0;
+/// Maximum mean number of samples per point; with more, a cut takes less time.
+const MAX_SAMPLES: f32 = 150.0;
+
+/// Ratio of wanted samples to [`MAX_SAMPLES`] above which no coarse cut is made.
+const HOPELESS: f32 = 3.0;
 
 /// Numbers of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Samples {
-    /// Number at a point that reflects nothing besides; at others it falls with the share that their light has of all.
+    /// Number at a point that reflects no other light; at other points, the number is in proportion to the share of the
+    /// gathered light.
     pub whole: f32,
     /// Minimum number.
     pub least: f32,
 }
 
-/// Workspace for samples of cuts; one a thread, so that its buffers are allocated once.
+/// Cut to sample, numbers of samples, and their seed.
+#[derive(Clone, Copy, Debug)]
+pub struct SampledSettings<'a> {
+    /// Clamp and origin of the light; `epsilon` is that of the coarse cut instead.
+    pub cut: &'a CutSettings,
+    /// Numbers of samples.
+    pub samples: &'a Samples,
+    /// Seed of the samples.
+    pub seed: u32,
+}
+
+/// Workspace for samples of cuts. Each thread has one, so that buffers are allocated once.
 #[derive(Default)]
 pub struct SampledCut {
     cut: PacketLightcut,
-    /// By cluster: luminance by which it is drawn, in each lane.
+    /// Importance of each cluster in each lane, as luminance.
     importance: Vec<F32x16>,
-    /// By lane: samples whose virtual lights are seen.
+    /// Samples whose VPLs are visible, by lane.
     found: [Vec<Sample>; LANES],
     /// Work done so far.
     pub counts: CutCounts,
 }
 
-/// A cut in which everything is seen.
-struct AllSeen;
+/// Visibility of a cut in which all VPLs are visible.
+struct AllVisible;
 
-impl PacketVisibility for AllSeen {
+impl PacketVisibility for AllVisible {
     fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &LightNode) -> u16 {
         lanes
     }
 }
 
-/// A sample whose virtual light is seen.
+/// Sample whose VPL is visible.
 #[derive(Clone, Copy)]
 struct Sample {
     light: Rgb,
-    /// Inverse of the density, of samples of single lights that may be clamped; else infinite.
+    /// Inverse of the density for samples of leaves that may be clamped; infinite for others.
     factor: f32,
 }
 
-/// Samples of points whose rays are yet to be traced.
+/// Samples whose rays have not been traced yet.
 #[derive(Default)]
 struct Pending {
     rays: Rays16,
     light: Vec3x16,
     factors: F32x16,
-    /// Lanes of the points.
+    /// Lanes of the samples' points.
     points: [u8; LANES],
     count: usize,
 }
 
-/// Where the samples of a point are, on a line along which clusters follow one another by their importance.
+/// Position of a point's next sample on a line along which clusters follow one another, as long as their importance.
 #[derive(Clone, Copy, Default)]
-struct Progress {
-    /// Place of the next sample, and the distance between samples.
+struct SampleCursor {
+    /// Place of the next sample.
     next: f32,
+    /// Distance between samples.
     step: f32,
     /// End of the clusters so far.
     reached: f32,
@@ -103,8 +117,8 @@ struct Progress {
 }
 
 impl Samples {
-    /// Numbers for points that have these `totals` of luminance to gather, by lane; `None` if a cut takes less time, or
-    /// a total is not finite.
+    /// Returns the numbers of samples for points that gather these `totals` of luminance, by lane; `None` if a cut
+    /// takes less time, or if a total is not finite.
     fn of(&self, receivers: &ReceiverPacket, totals: &F32x16) -> Option<F32x16> {
         let mut numbers = [0.0; LANES];
         for lane in lanes_in(receivers.valid) {
@@ -112,48 +126,48 @@ impl Samples {
             let wanted = self.whole * share;
             numbers[lane] = if wanted > self.least { wanted } else { self.least };
         }
-        let few = numbers.iter().sum::<f32>() <= MOST * receivers.len() as f32;
+        let few = numbers.iter().sum::<f32>() <= MAX_SAMPLES * receivers.len() as f32;
         (few && totals.iter().all(|total| total.is_finite())).then_some(numbers)
     }
 }
 
 impl SampledCut {
-    /// Gathers the light of all VPLs by `samples`, which depend on nothing but the cut and `seed`; `None` if a cut
-    /// takes less time. The number of clusters in a cut is that of samples.
+    /// Gathers the light of all VPLs by samples; `None` if a cut takes less time. The counts hold the number of samples
+    /// as the number of clusters.
     pub fn gather<V: RayVisibility>(
         &mut self,
         transfer: &Transfer,
         visibility: &V,
         receivers: &ReceiverPacket,
-        (settings, samples): (&CutSettings, &Samples),
-        seed: u32,
+        settings: &SampledSettings,
     ) -> Option<PacketSum> {
-        if !(samples.whole < TOO_MANY * MOST) {
+        let SampledSettings { cut, samples, seed } = *settings;
+        if !(samples.whole < HOPELESS * MAX_SAMPLES) {
             return None;
         }
-        let coarse = CutSettings { epsilon: EPSILON, ..*settings };
-        let capped = PacketRefinement::new(&mut self.cut, transfer, &AllSeen, receivers, &coarse).run();
+        let coarse = CutSettings { epsilon: EPSILON, ..*cut };
+        let capped = PacketRefinement::new(&mut self.cut, transfer, &AllVisible, receivers, &coarse).run();
         self.counts.bounds += std::mem::take(&mut self.cut.counts).bounds;
         let totals = self.weigh(transfer);
         let numbers = samples.of(receivers, &totals)?;
         self.counts.capped += receivers.len() as u64 * u64::from(capped);
         self.counts.cuts += receivers.len() as u64;
-        let mut progress = [Progress::default(); LANES];
+        let mut cursors = [SampleCursor::default(); LANES];
         for lane in lanes_in(receivers.valid) {
             self.found[lane].clear();
             let (step, seed) = (totals[lane] / numbers[lane], hash(seed, lane as u32));
-            progress[lane] = Progress { next: step * unit(hash(seed, 0)), step, seed, ..Progress::default() };
+            cursors[lane] =
+                SampleCursor { next: step * unit(hash(seed, 0)), step, seed, ..SampleCursor::default() };
         }
-        self.draw(transfer, visibility, receivers, &mut progress);
+        self.sample(transfer, visibility, receivers, &mut cursors);
         let mut sum = PacketSum::default();
         for lane in lanes_in(receivers.valid) {
-            (sum.radiance[lane], sum.limits[lane]) =
-                self.clamped(lane, receivers.baseline[lane], settings.clamp);
+            (sum.radiance[lane], sum.limits[lane]) = self.clamped(lane, receivers.baseline[lane], cut.clamp);
         }
         Some(sum)
     }
 
-    /// Sets the importance of the clusters of the cut; returns its sums.
+    /// Sets the importance of the clusters of the cut; returns the sums of importance by lane.
     fn weigh(&mut self, transfer: &Transfer) -> F32x16 {
         self.importance.clear();
         let mut totals = [0.0; LANES];
@@ -170,29 +184,29 @@ impl SampledCut {
         totals
     }
 
-    /// Finds the samples of all lanes, one for each step of importance.
-    fn draw<V: RayVisibility>(
+    /// Takes the samples of all lanes, one for each step of importance.
+    fn sample<V: RayVisibility>(
         &mut self,
         transfer: &Transfer,
         visibility: &V,
         receivers: &ReceiverPacket,
-        progress: &mut [Progress; LANES],
+        cursors: &mut [SampleCursor; LANES],
     ) {
         let trees = transfer.trees;
-        // A total that is too small to be divided gives no light.
+        // If a total is too small to be divided, its step is 0 and it gives no light.
         let lanes =
-            lanes_in(receivers.valid).filter(|lane| progress[*lane].step > 0.0).fold(0, |l, i| l | 1 << i);
+            lanes_in(receivers.valid).filter(|lane| cursors[*lane].step > 0.0).fold(0, |l, i| l | 1 << i);
         let mut pending = Pending::default();
         for (cluster, importance) in self.cut.clusters.iter().zip(&self.importance) {
             for lane in lanes_in(lanes) {
-                let progress = &mut progress[lane];
-                progress.reached += importance[lane];
-                while progress.next < progress.reached {
-                    progress.next += progress.step;
-                    progress.number += 1;
-                    let u = unit(hash(progress.seed, progress.number));
+                let cursor = &mut cursors[lane];
+                cursor.reached += importance[lane];
+                while cursor.next < cursor.reached {
+                    cursor.next += cursor.step;
+                    cursor.number += 1;
+                    let u = unit(hash(cursor.seed, cursor.number));
                     let (node, density) = descend(&trees.nodes, cluster.node, u);
-                    let density = importance[lane] / progress.step * density;
+                    let density = importance[lane] / cursor.step * density;
                     let (vpl, receiver) = (&trees.vpls[node.representative()], receivers.get(lane));
                     let response = transfer.unshadowed(receiver, vpl, node.kind());
                     if response == Rgb::ZERO {
@@ -208,11 +222,11 @@ impl SampledCut {
             }
         }
         pending.trace(visibility, &mut self.found, &mut self.counts);
-        self.counts.clusters += progress.iter().map(|progress| u64::from(progress.number)).sum::<u64>();
+        self.counts.clusters += cursors.iter().map(|cursor| u64::from(cursor.number)).sum::<u64>();
     }
 
-    /// The sum of the samples found in a lane, in which no weak singularity has more than the share `clamp` of all
-    /// light, and the luminance of that share.
+    /// Returns the sum of the visible samples of a lane, in which no weak singularity has more than the share `clamp`
+    /// of all light, and the luminance of that share.
     fn clamped(&mut self, lane: usize, baseline: f32, clamp: Option<f32>) -> (Rgb, f32) {
         let found = &self.found[lane];
         let is_limited = |sample: &Sample, limit: f32| luminance(sample.light) > limit * sample.factor;
@@ -239,7 +253,7 @@ impl SampledCut {
 }
 
 impl Pending {
-    /// Adds a sample of the point in `lane`; true if there is no room for another.
+    /// Adds a sample of the point in `lane`; returns true if the packet is full.
     #[inline]
     fn push(&mut self, ray: &Ray, sample: Sample, lane: usize) -> bool {
         self.rays.set(self.count, ray);
@@ -250,7 +264,7 @@ impl Pending {
         self.count == LANES
     }
 
-    /// Traces the rays and keeps the samples that are seen.
+    /// Traces the rays, and keeps the samples whose VPLs are visible.
     fn trace<V: RayVisibility>(
         &mut self,
         visibility: &V,
@@ -270,7 +284,7 @@ impl Pending {
     }
 }
 
-/// A descendant of a node, drawn by luminance, and its probability.
+/// Samples a descendant of a node in proportion to luminance; returns it and its probability.
 fn descend(nodes: &[LightNode], node: u32, mut u: f32) -> (&LightNode, f32) {
     let (mut at, mut density) = (&nodes[node as usize], 1.0);
     for _ in 0..LEVELS {
@@ -281,7 +295,7 @@ fn descend(nodes: &[LightNode], node: u32, mut u: f32) -> (&LightNode, f32) {
         if u < p {
             (at, u, density) = (a, u / p, density * p);
         } else {
-            // Rounding must not make it 1, by which the other child would be drawn where it gives everything.
+            // Rounding must not make the number 1, which would choose a right child of probability 0.
             let rest = ((u - p) / (1.0 - p)).min(1.0 - f32::EPSILON);
             (at, u, density) = (b, rest, density * (1.0 - p));
         }

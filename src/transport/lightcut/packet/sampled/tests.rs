@@ -1,7 +1,9 @@
 //! Samples of cuts against all virtual lights.
 
 use super::*;
-use crate::lightcut::fixtures::{Ball, Numbers, all_kinds, all_materials, profiles, random_receiver, room};
+use crate::lightcut::fixtures::{
+    Ball, RandomNumbers, all_kinds, all_materials, profiles, random_receiver, room,
+};
 use crate::lightcut::{Receiver, gather_all};
 use crate::lights::{Family, LightTrees};
 use base::math::Frame;
@@ -18,7 +20,9 @@ fn mean(transfer: &Transfer, points: &ReceiverPacket, settings: &CutSettings, se
     let mut cut = SampledCut::default();
     let mut sums = vec![(Rgb::ZERO, 0.0, 0.0); points.len()];
     for seed in 0..seeds {
-        let found = cut.gather(transfer, &BALL, points, (settings, &FEW), seed).expect("few samples");
+        let found = cut
+            .gather(transfer, &BALL, points, &SampledSettings { cut: settings, samples: &FEW, seed })
+            .expect("few samples");
         for ((sum, y, squares), radiance) in sums.iter_mut().zip(found.radiance) {
             *sum += radiance;
             *y += luminance(radiance);
@@ -37,7 +41,7 @@ fn samples_have_the_mean_of_all_virtual_lights() {
     let mut points = ReceiverPacket::new();
     let (mut squares, mut count) = (0.0, 0);
     for round in 0..8u32 {
-        let mut numbers = Numbers(round << 20);
+        let mut numbers = RandomNumbers(round << 20);
         let trees = LightTrees::build(
             &all_kinds(60, 1.0, &mut numbers),
             profiles(),
@@ -68,7 +72,7 @@ fn samples_have_the_mean_of_all_virtual_lights() {
 
 #[test]
 fn single_lights_give_no_more_than_their_share() {
-    let mut numbers = Numbers(3);
+    let mut numbers = RandomNumbers(3);
     let trees =
         LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
@@ -97,7 +101,7 @@ fn single_lights_give_no_more_than_their_share() {
 
 #[test]
 fn light_too_faint_to_divide_among_samples_is_none() {
-    let mut numbers = Numbers(5);
+    let mut numbers = RandomNumbers(5);
     let mut set = room(500, &mut numbers);
     set.intensities.iter_mut().for_each(|intensity| *intensity *= 1e-46);
     let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new());
@@ -106,14 +110,15 @@ fn light_too_faint_to_divide_among_samples_is_none() {
     let mut points = ReceiverPacket::new();
     points.set([receiver]);
     let samples = Samples { whole: 100.0, least: 4.0 };
-    let sum = SampledCut::default().gather(&transfer, &BALL, &points, (&SETTINGS, &samples), 1).expect("few");
+    let settings = SampledSettings { cut: &SETTINGS, samples: &samples, seed: 1 };
+    let sum = SampledCut::default().gather(&transfer, &BALL, &points, &settings).expect("few");
     assert!(luminance(sum.radiance[0]) < 1e-40, "{}", sum.radiance[0]);
 }
 
 #[test]
 fn what_is_drawn_stands_for_all_light() {
     // A right child that has all but the last bits of the light, below one that has half of it.
-    let mut numbers = Numbers(9);
+    let mut numbers = RandomNumbers(9);
     let mut set = room(4, &mut numbers);
     for (intensity, y) in set.intensities.iter_mut().zip([1.0, 1e-30, 1.0, 1e-30]) {
         *intensity = Rgb::splat(y);
@@ -128,7 +133,7 @@ fn what_is_drawn_stands_for_all_light() {
 
 #[test]
 fn samples_are_as_many_as_the_light_is_worth() {
-    let mut numbers = Numbers(5);
+    let mut numbers = RandomNumbers(5);
     let trees =
         LightTrees::build(&[room(500, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
@@ -140,7 +145,8 @@ fn samples_are_as_many_as_the_light_is_worth() {
         points.set([receiver.with_baseline(baseline)]);
         let samples = Samples { whole, least: 4.0 };
         cut.counts = CutCounts::default();
-        cut.gather(&transfer, &BALL, &points, (&SETTINGS, &samples), 1).map(|_| cut.counts.clusters)
+        let settings = SampledSettings { cut: &SETTINGS, samples: &samples, seed: 1 };
+        cut.gather(&transfer, &BALL, &points, &settings).map(|_| cut.counts.clusters)
     };
     assert_eq!(number(0.0, 20.0), Some(20));
     let shared = number(total, 100.0).expect("few");

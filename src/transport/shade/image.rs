@@ -1,4 +1,4 @@
-//! The picture in the making, and if wanted its parts by the light's origin.
+//! Image under construction, and optionally its parts by the origin of light.
 
 use super::{ShadeSettings, ShadingContext, ShadingCounts, ShadingTask, patches, shade};
 use crate::eye::EyePass;
@@ -8,25 +8,25 @@ use base::math::Rgb;
 use base::progress::Control;
 use base::stats::{Contributions, Stats};
 
-/// Sums at each pixel.
-pub struct Picture {
+/// Sums of radiance at each pixel.
+pub struct ShadedImage {
     /// All light.
     pub color: Image,
-    /// Direct light, indirect light, and light not known apart.
+    /// Direct light, indirect light, and light of both origins together.
     parts: Option<[Image; 3]>,
-    /// Radiances that were not finite and left out.
+    /// Number of non-finite radiances, which were left out.
     pub nonfinite: u64,
-    /// The ways by which the light came.
+    /// Luminance by technique.
     contributions: Contributions,
 }
 
-impl Picture {
-    /// The light that the eye pass knows.
-    pub fn new(eye: &EyePass, with_parts: bool) -> Picture {
+impl ShadedImage {
+    /// Creates the image of the light found by the eye pass.
+    pub fn new(eye: &EyePass, with_parts: bool) -> ShadedImage {
         let color = eye.known.clone();
         let blank = || Image::new(color.width, color.height);
         let parts = with_parts.then(|| [blank(), blank(), blank()]);
-        Picture { color, parts, nonfinite: eye.nonfinite, contributions: eye.contributions.clone() }
+        ShadedImage { color, parts, nonfinite: eye.nonfinite, contributions: eye.contributions.clone() }
     }
 
     /// Adds radiance that a shading point reflects, of one origin or of both.
@@ -49,7 +49,8 @@ impl Picture {
         }
     }
 
-    /// Adds the light of `tasks`, shaded in patches: about `count` of them if there is a task for each point.
+    /// Shades `tasks` in patches and adds their light. There are about `count` patches if there is a task for each
+    /// point.
     pub fn shade<'w>(
         &mut self,
         context: &ShadingContext<'w>,
@@ -67,12 +68,13 @@ impl Picture {
         shading.counts
     }
 
-    /// Tells the way by which the light came that was added since this was called last.
+    /// Attributes the light added since the last call to a technique.
     pub fn came_by(&mut self, technique: &'static str) {
         self.contributions.rest(technique, self.color.luminance());
     }
 
-    /// The picture, its parts, and the number of radiances that were left out; reports the ways that its light came.
+    /// Returns the image, its parts, and the number of radiances that were left out; reports the luminance by
+    /// technique.
     pub fn finish(self, stats: &mut Stats) -> (Image, Vec<Layer>, u64) {
         self.contributions.report(stats);
         let parts = ["direct", "indirect", "both"].into_iter().zip(self.parts.into_iter().flatten());
