@@ -9,8 +9,8 @@ use std::sync::{Arc, Mutex};
 use transport::lights::{Family, LightPassSettings, Lights, LightsWanted};
 use world::{SurfacePoint, World};
 
-/// Returns the parameters of virtual lights: numbers and builder as in `settings`, seed and path limit as in
-/// `sampling`, for the indirect light of the points `seen` (if empty, of all points).
+/// Returns the parameters of virtual lights for the indirect light of the points `seen` (if empty, of all points).
+/// Numbers and builder are those of `settings`, seed and path limit those of `sampling`.
 pub fn lights_wanted(
     world: &World,
     sampling: Sampling,

@@ -10,8 +10,8 @@ use transport::lights::{Family, LightPassSettings, Lights};
 use world::view::View;
 use world::{SurfacePoint, World};
 
-/// Maximum number of points that photons are aimed for, each the beginning of a path that finds where light comes in,
-/// and the number of shading points for each of them.
+/// Maximum number of points whose indirect light photons are planned for, and minimum number of shading points per
+/// point.
 const SEEN: usize = 16384;
 const POINTS_A_PATH: usize = 4;
 
@@ -54,7 +54,7 @@ impl<'w> Prepared<'w> {
     }
 }
 
-/// Points that photons from infinitely far are aimed for, if there is such light.
+/// Returns the points whose indirect light photons are planned for; none if all emitters contribute alike.
 fn seen(world: &World, eye: &EyePass) -> Vec<SurfacePoint> {
     if !world.emitters.may_be_uneven() {
         return Vec::new();

@@ -14,12 +14,13 @@
 //! r²/A) of its radiance.
 //!
 //! Deviations: the paper does not limit direct light, hence not its second kind above. b comes from the mean intensity
-//! of the indirect virtual lights ([`crate::lights::Intensities`]) around the point, or around the surface met if
-//! limits are those of irradiance. So a much brighter virtual light may give more than the limit. Every point is
-//! compensated, even if no light of its cut is clamped: the two parts complement each other on average only. All points
-//! of an image share the directions, in frames of their own, so that their errors are similar and no noise is visible
-//! between them. Surfaces that rays meet reflect as virtual lights do: rough metals by their lobes ([`lobes`]), others
-//! diffusely. If the path length is limited, paths over surfaces that rays hit may have a further edge.
+//! of the indirect virtual lights ([`crate::lights::Intensities`]) around the point. If limits are those of irradiance,
+//! it comes from those around the surface met. So a much brighter virtual light may give more than the limit. Every
+//! point is compensated, even if no light of its cut is clamped: the two parts complement each other on average only.
+//! All points of an image share the directions, in frames of their own, so that their errors are similar and no noise
+//! is visible between them. Surfaces that rays meet reflect as virtual lights do: rough metals by their lobes
+//! ([`lobes`]), others diffusely. If the path length is limited, paths over surfaces that rays hit may have a further
+//! edge.
 //!
 //! Units: b in 1/m².
 

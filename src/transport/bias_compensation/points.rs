@@ -232,7 +232,7 @@ impl NearLight {
 }
 
 /// Returns the irradiance of a lane from a `cut`. No indirect cluster may give more than ε of the light to which it is
-/// added, since a coarse cut leaves clusters whose representative happens to be next to the point.
+/// added. Otherwise a coarse cut would leave clusters whose representative happens to be next to the point.
 fn limited(c: &Compensation, cut: &PacketCut, near: &NearSurface, lane: usize, baseline: f32) -> Rgb {
     let factors = lobes::factors(c, near, cut);
     let sum = |limit: f32| {

@@ -43,9 +43,6 @@ impl Lights {
         let made = stats.time(Stage::LightPass, pass);
         stats.count("VPLs/total", made.len() as u64);
         stats.count("VPLs/photon paths", made.photons.paths);
-        if made.photons.gain > 0.0 {
-            stats.add("VPLs/gain of aims", made.photons.gain.into());
-        }
         stats.count("Rays/closest hit", made.photons.rays);
 
         control.begin(Stage::Tree, 0);

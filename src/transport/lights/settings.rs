@@ -16,8 +16,6 @@ settings! {
         ];
         /// Approximate number of virtual point lights where light is reflected, at least those of 1024 paths. 0
         /// computes direct light only.
-        ///
-        /// As few as a quarter are made if light of sky and sun comes through openings, at which photons are aimed.
         indirect: u32 = 300_000 => [.named("vpls").at_least(0.0).scaled(&FEWER).judged_by(JudgedBy::Light)];
         /// Seed of the VPLs.
         seed: u32 = 0;

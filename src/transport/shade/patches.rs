@@ -34,8 +34,8 @@ pub fn patches(
     patches
 }
 
-/// Moves a group for a shared cut out of the points `left`, in order: the first point and up to fifteen points coherent
-/// with it, or the first point alone if there are too few. Returns false if no point is left.
+/// Moves a group for a shared cut out of the points `left`, in order. The group is the first point and up to fifteen
+/// points coherent with it, or the first point alone if there are too few. Returns false if no point is left.
 pub(super) fn next_group(
     points: &ShadingPoints,
     settings: &ShadeSettings,

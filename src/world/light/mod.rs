@@ -118,16 +118,9 @@ impl Emitters {
         !self.areas.is_empty() || self.environment.is_some()
     }
 
-    /// True if there is light from infinitely far.
-    pub fn have_far(&self) -> bool {
-        let is_directional = |light: &DeltaLight| matches!(light, DeltaLight::Directional { .. });
-        self.environment.is_some() || self.deltas.iter().any(is_directional)
-    }
-
-    /// True if photons may come from emitters of which some give more of what the eye sees than others: where there are
-    /// several, or light from infinitely far, of which little may come in.
+    /// True if there are several emitters, of which some may contribute more to the image than others.
     pub fn may_be_uneven(&self) -> bool {
-        self.areas.len() + self.deltas.len() + usize::from(self.environment.is_some()) > 1 || self.have_far()
+        self.areas.len() + self.deltas.len() + usize::from(self.environment.is_some()) > 1
     }
 
     /// True if lamps are so many that it pays to learn which are seen from where.

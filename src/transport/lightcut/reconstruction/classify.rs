@@ -1,8 +1,8 @@
 //! Classes of the clusters of an anchors' cut.
 //!
-//! ε is the cut's, "share" a cluster's unshadowed luminance relative to the anchors' total, averaged over the
-//! anchors, "error" the root mean square over the anchors of the difference between the fit and the cluster,
-//! relative to the total:
+//! ε is that of the cut. "Share" is a cluster's unshadowed luminance relative to the anchors' totals, averaged over the
+//! anchors. "Error" is the root mean square, over the anchors, of the difference between fit and cluster relative to
+//! the total:
 //!
 //! | threshold | value | meaning |
 //! |---|--:|---|

@@ -18,10 +18,9 @@
 //!
 //! Deviations:
 //! - All anchors share one cut, while in the papers each has its own. Points between them need no cut.
-//! - A function linear in position is fitted to each cluster's light at all anchors by least squares, and the
-//!   sum of the fits is evaluated once per point. Walter et al. interpolate each cluster between the nearest
-//!   anchors.
-//! - The light of clusters on which anchors disagree is corrected stochastically: a cluster is evaluated with a
+//! - A function linear in position is fitted to each cluster's light at all anchors by least squares. The sum of the
+//!   fits is evaluated once per point. Walter et al. interpolate each cluster between the nearest anchors.
+//! - The light of clusters on which anchors disagree is corrected stochastically. A cluster is evaluated with a
 //!   probability in proportion to its error, and its correction is divided by the probability. Walter et al. evaluate
 //!   every such cluster.
 //! - A correction is capped, so that it cannot become a firefly; this is biased.

@@ -73,8 +73,8 @@ impl OffsetBox {
     }
 }
 
-/// Returns an upper bound of the positive part of the cosine between any normal in a cone and any direction, if the
-/// cone's axis makes an angle of at least acos(`cos_theta`) with every direction.
+/// Returns an upper bound of the positive part of the cosine between any normal in a cone and any direction. The cone's
+/// axis makes an angle of at least acos(`cos_theta`) with every direction.
 #[inline]
 pub fn max_cos_to_cone(cos_theta: f32, cos_beta: f32, sin_beta: f32) -> f32 {
     max_cos_to_cone_signed(cos_theta, cos_beta, sin_beta).max(0.0)

@@ -2,7 +2,7 @@
 //!
 //! Paper: Meister & Bittner, *Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction*, 2018.
 //! Deviations: the curve runs through position and normal (6-D). The distance is the cost of the merged cluster. Ties
-//! break by the XOR of the positions, and a round with few merges is followed by pairing of neighbours, so that neither
+//! break by the XOR of the positions. A round with few merges is followed by pairing of neighbours. So neither
 //! coincident VPLs nor intensities in geometric progression stall the rounds.
 
 use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cost};

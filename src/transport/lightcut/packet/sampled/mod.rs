@@ -225,8 +225,8 @@ impl SampledCut {
         self.counts.clusters += cursors.iter().map(|cursor| u64::from(cursor.number)).sum::<u64>();
     }
 
-    /// Returns the sum of the visible samples of a lane, in which no weak singularity has more than the share `clamp`
-    /// of all light, and the luminance of that share.
+    /// Returns the sum of the visible samples of a lane, and the luminance to which weak singularities are limited: the
+    /// share `clamp` of all light.
     fn clamped(&mut self, lane: usize, baseline: f32, clamp: Option<f32>) -> (Rgb, f32) {
         let found = &self.found[lane];
         let is_limited = |sample: &Sample, limit: f32| luminance(sample.light) > limit * sample.factor;
