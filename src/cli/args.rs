@@ -1,4 +1,4 @@
-//! Arguments of the command line. Every option is documented here and nowhere else: `--help` is made of it.
+//! Arguments of the command line. `--help` prints the doc comments of this file.
 
 use super::bench_args::BenchArgs;
 use super::denoise_args::{DenoiseArgs, DenoiseFileArgs};
@@ -25,8 +25,12 @@ pub struct Cli {
 }
 
 impl Cli {
-    /// Parses `arguments`, the program's name first. Negative numbers are values, which are refused with the range of
-    /// those expected, and not options.
+    /// Parses `arguments`, the program's name first.
+    ///
+    /// Negative numbers are values, not options. Their parsers refuse them with the expected range.
+    ///
+    /// # Errors
+    /// If the arguments are wrong, or ask for help or the version.
     pub fn of(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Result<Cli, clap::Error> {
         let has_no_value = |arg: &Arg| {
             !arg.get_action().takes_values()
@@ -47,21 +51,21 @@ impl Cli {
 pub enum Command {
     /// Render a scene to OpenEXR and PNG
     Render(Box<RenderArgs>),
-    /// Render the frames of a walk-through along the scene's camera path
+    /// Render the frames of a walk-through along the camera path of a scene
     Walk(Box<WalkArgs>),
-    /// Render the pictures and walks of job files, reading each scene once
+    /// Render the images and walks that job files list, and read each scene once
     Batch(BatchArgs),
-    /// Say what a scene holds and requires
+    /// Print what a scene contains and requires
     Info(InfoArgs),
-    /// Take the noise off a picture that is there
+    /// Denoise an existing image
     Denoise(DenoiseFileArgs),
-    /// Merge pictures of the same view by different seeds into one with less noise
+    /// Merge images of one view with different seeds into one with less noise
     Merge(MergeArgs),
-    /// Put frames of a walk side by side on a contact sheet
+    /// Put the frames of a walk on a contact sheet
     Sheet(SheetArgs),
-    /// Measure how far a picture is from a reference, and show where
+    /// Compare an image with a reference, and show where they differ
     Compare(CompareArgs),
-    /// Measure how fast parts of the renderer are, ratios first
+    /// Benchmark parts of the renderer
     Bench(BenchArgs),
 }
 
@@ -71,19 +75,19 @@ pub enum Command {
 pub struct RenderArgs {
     /// Scene: native (.toml), Mitsuba (.xml) or glTF (.glb, .gltf)
     pub scene: PathBuf,
-    /// Picture to write: 32-bit float OpenEXR with variance and metadata where known
+    /// Image to write: 32-bit float OpenEXR with metadata, and with variance if it is known
     #[arg(short, long, value_name = "FILE.exr")]
     pub output: PathBuf,
     /// The method and its settings.
     #[command(flatten)]
     pub method: MethodArgs,
-    /// Options of pictures in general.
+    /// Options of all commands that render images.
     #[command(flatten)]
     pub picture: PictureArgs,
-    /// Frame of the scene's camera path, counted from 1, instead of its still camera
+    /// Use the camera of this frame of the camera path, counted from 1, instead of the still camera
     #[arg(long, value_name = "N", value_parser = counted)]
     pub frame: Option<NonZeroUsize>,
-    /// The tone-mapped picture.
+    /// The tone-mapped image.
     #[command(flatten)]
     pub png: PngArgs,
     /// Print counters and stage times to standard output
@@ -92,38 +96,38 @@ pub struct RenderArgs {
     /// The goal: quality, time or error.
     #[command(flatten)]
     pub plan: PlanArgs,
-    /// Measuring the error.
+    /// Measurement of the error.
     #[command(flatten)]
     pub verify: VerifyArgs,
 }
 
-/// Options that all commands have that render pictures.
+/// Options of all commands that render images.
 #[derive(Debug, Args)]
 pub struct PictureArgs {
-    /// Threads to use [default: all processors]; the picture is the same for any number
+    /// Number of threads [default: number of processors]; the image does not depend on it
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
-    /// Width and height in pixels instead of the scene's
+    /// Width and height in pixels, instead of those in the scene
     #[arg(long, value_name = "WxH")]
     pub resolution: Option<Resolution>,
-    /// Render only this part of the film, in pixels from its top-left corner: the whole picture's own pixels by path
-    /// and lightcuts; other methods share light between pixels, and differ from those by a per cent or so
+    /// Render only this rectangle, in pixels from the top-left corner; with path and lightcuts its pixels equal those
+    /// of the full image, with other methods they differ by about 1 %
     #[arg(long, value_name = "X,Y,W,H")]
     pub crop: Option<Crop>,
-    /// Layers to write beside the colour, about the surfaces seen, through mirrors and glass
+    /// Additional layers to write, about the visible surfaces; mirrors and glass show the surfaces behind them
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = feature())]
     pub aov: Vec<Feature>,
     /// Denoising.
     #[command(flatten)]
     pub denoise: DenoiseArgs,
-    /// Leave out pictures whose files are whole and come of the same scene, settings and version of the program; go on
-    /// with pictures of paths that were stopped
+    /// Skip images whose files are complete and come from the same scene, settings and program version; continue
+    /// path-traced images that were interrupted
     #[arg(long)]
     pub resume: bool,
-    /// Keep times and the number of threads out of the files: equal renders are equal bytes
+    /// Write no times and no number of threads, so that equal renders give equal files
     #[arg(long)]
     pub reproducible: bool,
-    /// How progress is told on standard error
+    /// Form of the messages on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     pub progress: ProgressMode,
     /// Reading of the scene.
@@ -134,19 +138,19 @@ pub struct PictureArgs {
 /// Options of reading a scene.
 #[derive(Clone, Debug, Default, Args)]
 pub struct ReadingArgs {
-    /// Camera of the scene, by its number, counted from 1, or its name [default: the first]
+    /// Camera of the scene: its number, counted from 1, or its name [default: 1]
     #[arg(long, value_name = "N|NAME")]
     camera: Option<String>,
-    /// Value of `$NAME` in a Mitsuba scene, in place of its `<default>`; may be given again
+    /// Value of `$NAME` in a Mitsuba scene, which replaces its `<default>`; may be repeated
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
     define: Vec<(String, String)>,
-    /// Fail on anything in the scene that is not modelled, and on a black picture, instead of warning
+    /// Fail, instead of warning, if the scene has an unsupported feature or the image is black
     #[arg(long)]
     pub strict: bool,
 }
 
 impl ReadingArgs {
-    /// The options of the scene's reader.
+    /// Returns the options of the scene reader.
     pub fn options(self) -> LoadOptions {
         LoadOptions { strict: self.strict, camera: self.camera, parameters: self.define }
     }
@@ -163,46 +167,47 @@ fn definition(text: &str) -> Result<(String, String), String> {
 pub struct WalkArgs {
     /// Scene with a camera path: native (.toml), or glTF (.glb, .gltf) with an animated camera
     pub scene: PathBuf,
-    /// Pictures to write, with a place for the frame's number: f.####.exr or f.%04d.exr
+    /// Images to write, with a placeholder for the number of the frame: f.####.exr or f.%04d.exr
     #[arg(short, long, value_name = "NAME.####.exr")]
     pub output: FileNames,
-    /// Frames, counted from 1: 7, 1-10, 1-100x5 (every fifth), or a list of those [default: all]
+    /// Frames to render, counted from 1: 7, 1-10, 1-100x5 (every fifth), or a list of such ranges [default: all]
     #[arg(long, value_name = "LIST")]
     pub frames: Option<FrameList>,
-    /// Begin without records at frames 1, N+1, 2N+1 and so on: chunks so long may be rendered by runs of their own, on
-    /// many machines, with the same pictures [default: one chunk]
+    /// Render the frames in chunks of N, which begin without records: separate runs, on any machines, may render one
+    /// chunk each and give the same images [default: one chunk]
     #[arg(long, value_name = "N", value_parser = counted)]
     pub chunk: Option<NonZeroUsize>,
-    /// Most frames for which a record that lights nothing in view is kept
+    /// Number of frames for which a record stays that lights nothing in view
     #[arg(long, value_name = "FRAMES", default_value_t = RetentionLimits::default().idle_frames)]
     pub idle_frames: u32,
-    /// Most memory for records between frames, like 512M or 2G [default: 1G]; the longest unused go first
+    /// Memory limit of the records that stay between frames, like 512M or 2G [default: 1G]; records that were not used
+    /// for the longest time are removed first
     #[arg(long, value_name = "BYTES", allow_hyphen_values = true)]
     pub memory_limit: Option<Bytes>,
-    /// Draw the direct light of every pixel anew in every frame, instead of mixing in that of the frame before: errors
-    /// are less, and a frame takes longer
+    /// Sample the direct light of every pixel in every frame, instead of reprojecting it from the previous frame:
+    /// smaller errors, longer frames
     #[arg(long)]
     pub no_reprojection: bool,
-    /// Quantisation scale of the contrasts in the frame before that hide differences between records: 4 for about 2 %
-    /// on plain surfaces, 0 for 2 % everywhere
+    /// Quantisation scale of the visibility model that allows differences between records where the previous frame has
+    /// contrasts: 4 allows about 2 % on plain surfaces, 0 allows 2 % everywhere
     #[arg(long, value_name = "SCALE", value_parser = q_scale, default_value_t = Q_SCALE)]
     pub q_scale: f32,
     /// The method and its settings.
     #[command(flatten)]
     pub method: MethodArgs,
-    /// Settings by name; those that are typed are held
+    /// Named settings; settings given on the command line are not changed
     #[arg(long, value_enum)]
     pub quality: Option<Quality>,
-    /// Options of pictures in general.
+    /// Options of all commands that render images.
     #[command(flatten)]
     pub picture: PictureArgs,
-    /// Do not write tone-mapped pictures
+    /// Do not write tone-mapped images
     #[arg(long, conflicts_with = "exposure")]
     pub no_png: bool,
-    /// Exposure of the PNGs in stops, or `auto`: the 90th percentile of luminance over the whole path becomes 0.8
+    /// Exposure of the PNG files in stops; `auto` maps the 90th percentile of luminance over the whole path to 0.8
     #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
     pub exposure: Exposure,
-    /// Print counters and stage times to standard output: a table of the frames, or an object a line and frame
+    /// Print counters and stage times to standard output: a table of the frames, or one JSON object per frame
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub stats: Option<StatsFormat>,
 }
@@ -211,36 +216,36 @@ pub struct WalkArgs {
 #[derive(Debug, Args)]
 #[command(after_help = exit::HELP)]
 pub struct BatchArgs {
-    /// Job files (.toml): pictures and walks, each with the options of its command
+    /// Job files (.toml), which list images and walks, each with the options of its command
     #[arg(required = true)]
     pub jobs: Vec<PathBuf>,
-    /// Leave out pictures and frames whose files are whole and come of the same scene, settings and program version
+    /// Skip images and frames whose files are complete and come from the same scene, settings and program version
     #[arg(long)]
     pub resume: bool,
-    /// Threads to use [default: all processors]; the pictures are the same for any number
+    /// Number of threads [default: number of processors]; the images do not depend on it
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
-    /// How progress is told on standard error
+    /// Form of the messages on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     pub progress: ProgressMode,
 }
 
-/// Options of the tone-mapped picture beside an OpenEXR file.
+/// Options of the tone-mapped image beside an OpenEXR file.
 #[derive(Clone, Debug, Default, Args)]
 pub struct PngArgs {
-    /// Tone-mapped picture to write [default: beside the OpenEXR file, named .png]
+    /// Tone-mapped image to write [default: the OpenEXR file with the extension .png]
     #[arg(long, value_name = "FILE.png")]
     png: Option<PathBuf>,
-    /// Do not write a tone-mapped picture
+    /// Do not write a tone-mapped image
     #[arg(long, conflicts_with_all = ["png", "exposure"])]
     no_png: bool,
-    /// Exposure of the PNG in stops, or `auto`: the 90th percentile of luminance becomes 0.8
+    /// Exposure of the PNG file in stops; `auto` maps the 90th percentile of luminance to 0.8
     #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
     pub exposure: Exposure,
 }
 
 impl PngArgs {
-    /// File of the tone-mapped picture beside `exr`, if it is wanted.
+    /// Returns the file of the tone-mapped image beside `exr`; `None` if there is to be none.
     pub fn file(&self, exr: &Path) -> Option<PathBuf> {
         if self.no_png {
             return None;
@@ -253,14 +258,14 @@ impl PngArgs {
 #[derive(Debug, Args)]
 #[command(after_help = exit::HELP)]
 pub struct MergeArgs {
-    /// Pictures (OpenEXR) of the same scene, view, method and settings by different seeds; each counts as much as it
-    /// has samples, pixel by pixel where paths were stopped. Of denoised ones, their layer `noisy`
+    /// Images (OpenEXR) of one scene, view, method and settings with different seeds; each is weighted by its number of
+    /// samples, per pixel if it was interrupted. The layer `noisy` of denoised images is merged
     #[arg(required = true, num_args = 2..)]
     pub inputs: Vec<PathBuf>,
-    /// Picture to write
+    /// Image to write
     #[arg(short, long, value_name = "FILE.exr")]
     pub output: PathBuf,
-    /// The tone-mapped picture.
+    /// The tone-mapped image.
     #[command(flatten)]
     pub png: PngArgs,
 }
@@ -269,49 +274,49 @@ pub struct MergeArgs {
 #[derive(Debug, Args)]
 #[command(after_help = exit::HELP)]
 pub struct SheetArgs {
-    /// Frames as walk's --output names them; their PNG files are shown
+    /// Names of the frames, as in walk --output; the sheet shows their PNG files
     #[arg(value_name = "NAME.####.exr")]
     pub names: FileNames,
-    /// Frames to show: 7, 1-10, 1-100x5 (every fifth), or a list of those; all have to be there
+    /// Frames to show: 7, 1-10, 1-100x5 (every fifth), or a list of such ranges; all of them must exist
     #[arg(long, value_name = "LIST")]
     pub frames: FrameList,
     /// Sheet to write
     #[arg(short, long, value_name = "FILE.png")]
     pub output: PathBuf,
-    /// Frames in a row [default: so many that the sheet is about 16:9]
+    /// Number of frames per row [default: chosen so that the sheet is about 16:9]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub columns: Option<u32>,
-    /// Width of a frame in pixels, at most its own
+    /// Width of a frame on the sheet in pixels; frames are not enlarged
     #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..))]
     pub width: u32,
 }
 
-/// Options that measure the picture's error.
+/// Options of the measurement of the error.
 #[derive(Clone, Debug, Default, Args, PartialEq)]
 #[command(
     next_help_heading = "Measured error",
     group(ArgGroup::new("measured").args(["verify", "error"]).multiple(true))
 )]
 pub struct VerifyArgs {
-    /// Path-trace about this many pixels and report the picture's error: bias, RMS and 95th percentile, each with
-    /// the interval that covers it in 95 of 100 cases
+    /// Path-trace about this many pixels and report the error of the image: bias, RMS and 95th percentile, each with
+    /// its 95 % confidence interval
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..))]
     pub verify: Option<u32>,
-    /// Meaning of a pixel's value [default: that of the method: pixels for path and for cache with direct
-    /// light drawn, else eye-samples]
+    /// Estimand of a pixel [default: pixels for path and for cache with sampled direct light, otherwise eye-samples]
     #[arg(long, value_enum, requires = "measured")]
     pub verify_against: Option<VerifyAgainst>,
-    /// Most paths a pixel [default: 4096]; how many pixels would need more to be known to 1 % is reported
+    /// Maximum number of paths per pixel [default: 4096]; the report says how many pixels would need more to be known
+    /// to 1 %
     #[arg(long, value_name = "SPP", requires = "measured", value_parser = clap::value_parser!(u32).range(64..))]
     pub verify_samples: Option<u32>,
 }
 
-/// Meaning of a pixel's value.
+/// Estimand of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum VerifyAgainst {
-    /// The mean radiance over the pixel: an edge that few samples cannot resolve counts as error
+    /// Mean radiance over the pixel: aliasing counts as an error
     Pixels,
-    /// The mean radiance through the picture's own eye samples: only wrong light counts as error
+    /// Mean radiance at the sample positions of the image: only wrong light counts as an error
     EyeSamples,
 }
 
@@ -333,20 +338,20 @@ pub struct InfoArgs {
 #[derive(Debug, Args)]
 #[command(after_help = exit::HELP)]
 pub struct CompareArgs {
-    /// Picture to judge (OpenEXR)
+    /// Image to judge (OpenEXR)
     pub test: PathBuf,
     /// Reference of the same scene and size (OpenEXR); it also sets the exposure
     pub reference: PathBuf,
-    /// Write test, reference and error next to each other
+    /// Write the image, the reference and their difference side by side
     #[arg(long, value_name = "FILE.png")]
     pub heatmap: Option<PathBuf>,
-    /// The error that the heatmap shows
+    /// Error measure of the heatmap
     #[arg(long, value_enum, default_value_t = HeatmapError::Flip, requires = "heatmap")]
     pub heatmap_of: HeatmapError,
-    /// Variance of the test's pixel means [default: its layer `variance`, if it has one]
+    /// Variance of the pixels of the image [default: its layer `variance`, if there is one]
     #[arg(long, value_name = "FILE.exr")]
     pub variance_a: Option<PathBuf>,
-    /// Variance of the reference's pixel means [default: its layer `variance`, if it has one]
+    /// Variance of the pixels of the reference [default: its layer `variance`, if there is one]
     #[arg(long, value_name = "FILE.exr")]
     pub variance_b: Option<PathBuf>,
     /// Print JSON
@@ -354,16 +359,16 @@ pub struct CompareArgs {
     pub json: bool,
 }
 
-/// Formats of the statistics.
+/// Format of statistics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum StatsFormat {
     /// A table for people
     Text,
-    /// One object for programs
+    /// One JSON object for programs
     Json,
 }
 
-/// Errors that a heatmap can show.
+/// Error measure of a heatmap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum HeatmapError {
     /// Perceived difference, 0 to 1

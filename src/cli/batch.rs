@@ -1,14 +1,15 @@
-//! `lightsplat batch`: renders the pictures and walks of job files; each scene is read once, and a broken one does not
-//! stop the others.
+//! `lightsplat batch`: renders the images and walks of job files.
+//!
+//! Each scene is read once. A failure of one entry does not stop the others.
 
 use super::args::{BatchArgs, Command};
-use super::batch_file::{self, Entry};
-use super::course::Span;
+use super::batch_file::{self, JobEntry};
+use super::course::RunSpan;
 use super::exit::{self, Failure};
 use super::job::RenderJob;
+use super::opened::{self, Opened};
 use super::walk_job::WalkJob;
-use super::{batch_outputs, interrupt, opened, render, talk, threads, walk};
-use ::render::session::Opened;
+use super::{batch_outputs, interrupt, render, talk, threads, walk};
 use anyhow::{Context, anyhow};
 use base::progress::Control;
 use base::stats::Stopwatch;
@@ -28,8 +29,9 @@ pub fn run(args: BatchArgs) -> Result<(), Failure> {
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     let pool = threads::pool(threads::count(args.threads))?;
-    let mut batch = Batch { args, control, span: Span::whole(), count: entries.len(), begun: 0, failed: 0 };
-    // Outputs that cannot be written are found before hours of work.
+    let mut batch =
+        BatchRun { args, control, span: RunSpan::whole(), count: entries.len(), begun: 0, failed: 0 };
+    // Report outputs that cannot be written before hours of work.
     entries.retain(|entry| {
         let checked = batch.command(entry).map(drop);
         batch.settle(entry, checked).is_some()
@@ -37,58 +39,60 @@ pub fn run(args: BatchArgs) -> Result<(), Failure> {
     pool.install(|| batch.render(entries))
 }
 
-/// A batch under way.
-struct Batch {
+/// A running batch.
+struct BatchRun {
     args: BatchArgs,
     control: Arc<Control>,
-    /// The run.
-    span: Span,
-    /// Pictures and walks, those begun, and those that have failed.
+    /// Part of the progress of the run that the batch takes.
+    span: RunSpan,
+    /// Number of entries.
     count: usize,
+    /// Number of entries that were started.
     begun: usize,
+    /// Number of entries that failed.
     failed: usize,
 }
 
-/// A picture or a walk, checked.
+/// A checked entry: an image or a walk.
 enum Job {
     Still(Box<RenderJob>),
     Walk(Box<WalkJob>),
 }
 
-impl Batch {
-    /// Renders the entries, those of a scene after each other.
-    fn render(mut self, mut left: Vec<Entry>) -> Result<(), Failure> {
+impl BatchRun {
+    /// Renders the entries, ordered by scene.
+    fn render(mut self, mut left: Vec<JobEntry>) -> Result<(), Failure> {
         while let Some(first) = left.first().cloned() {
             let is_of_scene =
-                |entry: &Entry| (&entry.scene, &entry.reading) == (&first.scene, &first.reading);
+                |entry: &JobEntry| (&entry.scene, &entry.reading) == (&first.scene, &first.reading);
             let (of_scene, others) = left.into_iter().partition(is_of_scene);
             left = others;
             self.scene(of_scene)?;
         }
         let done = self.count - self.failed;
         talk::summary(
-            &format!("{done} of {} pictures and walks done", self.count),
+            &format!("{done} of {} images and walks done", self.count),
             || json!({ "done": done, "failed": self.failed }),
         );
         match self.failed {
             0 => Ok(()),
             failed => {
-                let others = if done > 0 { "; the others are done" } else { "" };
-                let message = anyhow!("{failed} of {} pictures and walks failed{others}", self.count);
+                let others = if done > 0 { "; the others are complete" } else { "" };
+                let message = anyhow!("{failed} of {} images and walks failed{others}", self.count);
                 Err(Failure::in_part(message))
             }
         }
     }
 
-    /// Reads a scene and renders all that is wanted of it.
+    /// Reads a scene and renders its entries.
     ///
     /// # Errors
-    /// If a signal stopped the run; all other failures are counted.
-    fn scene(&mut self, entries: Vec<Entry>) -> Result<(), Failure> {
+    /// If a signal stopped the run. Other failures are counted.
+    fn scene(&mut self, entries: Vec<JobEntry>) -> Result<(), Failure> {
         let mut opened = None;
         for entry in &entries {
             if self.control.is_cancelled() {
-                let message = "interrupted; go on by the same command with --resume";
+                let message = "interrupted; run the same command with --resume to continue";
                 return Err(Failure::interrupted(anyhow!(message)));
             }
             talk::event(
@@ -97,10 +101,13 @@ impl Batch {
             );
             let span = self.span.part(self.begun, self.count);
             self.begun += 1;
-            // A defect in one picture is no reason to lose the others; it has been printed with its place.
+            // A defect of one image must not stop the others. The panic hook has printed it.
             let done = catch_unwind(AssertUnwindSafe(|| self.entry(entry, &mut opened, span)));
-            let done =
-                done.unwrap_or_else(|_| Err(Failure::render(anyhow!("an internal error; please report it"))));
+            let done = done.unwrap_or_else(|_| {
+                Err(Failure::render(anyhow!(
+                    "an internal error stopped this image; please report it with the lines above"
+                )))
+            });
             match done {
                 Err(failure) if self.control.is_cancelled() => return Err(failure),
                 done => {
@@ -115,8 +122,8 @@ impl Batch {
         Ok(())
     }
 
-    /// Renders an entry of a scene, which is read if it has not been.
-    fn entry(&self, entry: &Entry, opened: &mut Option<Opened>, span: Span) -> Result<(), Failure> {
+    /// Renders an entry. Reads its scene if `opened` is empty.
+    fn entry(&self, entry: &JobEntry, opened: &mut Option<Opened>, span: RunSpan) -> Result<(), Failure> {
         let job = self.command(entry)?;
         let opened = match opened {
             Some(opened) => opened,
@@ -128,7 +135,8 @@ impl Batch {
         }
     }
 
-    fn command(&self, entry: &Entry) -> Result<Job, Failure> {
+    /// Checks the command of an entry.
+    fn command(&self, entry: &JobEntry) -> Result<Job, Failure> {
         match entry.command()? {
             Command::Render(mut args) => {
                 args.picture.progress = self.args.progress;
@@ -138,12 +146,15 @@ impl Batch {
                 args.picture.progress = self.args.progress;
                 Ok(Job::Walk(Box::new(WalkJob::new(*args)?)))
             }
-            _ => Err(Failure::usage(anyhow!("{}: neither a picture nor a walk", entry.output.display()))),
+            _ => Err(Failure::usage(anyhow!(
+                "{}: this entry is neither an image nor a walk",
+                entry.output.display()
+            ))),
         }
     }
 
-    /// Counts and tells a failure; `None` if it was one.
-    fn settle(&mut self, entry: &Entry, done: Result<(), Failure>) -> Option<()> {
+    /// Counts and prints a failure; returns `None` if there is one.
+    fn settle(&mut self, entry: &JobEntry, done: Result<(), Failure>) -> Option<()> {
         done.map_err(|failure| {
             self.failed += 1;
             let is_of_job = failure.code() == exit::USAGE;

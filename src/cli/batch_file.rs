@@ -1,7 +1,7 @@
-//! Job files of batches: pictures and walks in TOML, each with the options of its command by their names.
+//! Job files of batches: images and walks in TOML, each with the options of its command.
 //!
-//! A picture becomes the arguments of `render` or, where its file's name has a place for a number, of `walk`, so that
-//! all that those know can stand in a job file, and means the same.
+//! An entry becomes the arguments of `render`, or of `walk` if the name of its file has a placeholder for a number. So
+//! a job file may hold every option of these commands, with the same meaning.
 
 use super::args::{Cli, Command};
 use super::exit::Failure;
@@ -19,7 +19,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use toml::{Spanned, Table, Value};
 
-/// Options of the batch, not of a picture.
+/// Options of the batch, which entries cannot have.
 const OF_THE_BATCH: [&str; 2] = ["threads", "progress"];
 
 /// Options that name a file.
@@ -28,13 +28,13 @@ const FILES: [&str; 1] = ["png"];
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct JobFile {
-    /// Options of all pictures.
+    /// Options of all entries.
     #[serde(default)]
     options: Table,
     picture: Vec<PictureTable>,
 }
 
-/// Keys alone, with their places, which are lost where their values are of any type.
+/// Keys of a job file with their places. Values of any type lose them.
 #[derive(Deserialize)]
 struct Keys {
     #[serde(default)]
@@ -46,30 +46,33 @@ struct Keys {
 struct PictureTable {
     scene: PathBuf,
     output: PathBuf,
-    /// Options of the picture, before those of all.
+    /// Options of the entry, which override those of all entries.
     #[serde(flatten)]
     options: Table,
 }
 
-/// A picture or a walk of a batch.
+/// An image or a walk of a batch.
 #[derive(Clone, Debug)]
-pub struct Entry {
-    /// The scene's file.
+pub struct JobEntry {
+    /// Scene file.
     pub scene: PathBuf,
-    /// Reading of the scene.
+    /// Options of the scene reader.
     pub reading: LoadOptions,
     /// Files to write.
     pub output: PathBuf,
-    /// Job file, and line of the output in it.
+    /// Job file, and the line of the output in it.
     pub place: String,
-    /// Lines of the keys in it.
+    /// Lines of the keys in the job file.
     lines: BTreeMap<String, usize>,
     file: PathBuf,
     arguments: Vec<OsString>,
 }
 
-impl Entry {
-    /// The command of the entry.
+impl JobEntry {
+    /// Parses the command of the entry.
+    ///
+    /// # Errors
+    /// If its options are wrong. The error names their place in the job file.
     pub fn command(&self) -> Result<Command, Failure> {
         Cli::of(&self.arguments).map(|cli| cli.command).map_err(|error| {
             let argument = match error.get(ContextKind::InvalidArg) {
@@ -82,7 +85,7 @@ impl Entry {
         })
     }
 
-    /// The error of an option, with its place.
+    /// Returns the error of an option with its place.
     fn wrong(&self, key: &str, what: &str) -> Failure {
         let place = match self.lines.get(key) {
             Some(line) => format!("{}, line {line}", self.file.display()),
@@ -92,7 +95,7 @@ impl Entry {
     }
 }
 
-/// The parser's message without what says how to call the program.
+/// Returns the message of the parser without the lines about the usage of the program.
 fn of_command_line(error: &clap::Error) -> String {
     let text = error.to_string();
     let lines = text.strip_prefix("error: ").unwrap_or(&text).lines().map(str::trim);
@@ -101,8 +104,11 @@ fn of_command_line(error: &clap::Error) -> String {
     own.filter(|line| !line.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
-/// Reads a job file. Paths in it are relative to its folder; `more` are arguments for every picture.
-pub fn read(path: &Path, more: &[&str]) -> Result<Vec<Entry>, Failure> {
+/// Reads a job file. Its paths are relative to its folder. `more` are arguments of every entry.
+///
+/// # Errors
+/// If the file cannot be read or is invalid.
+pub fn read(path: &Path, more: &[&str]) -> Result<Vec<JobEntry>, Failure> {
     let text = read_regular(path).and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other));
     let text = text.with_context(|| format!("cannot read {}", path.display())).map_err(Failure::input)?;
     let wrong = |error: toml::de::Error| {
@@ -126,7 +132,7 @@ pub fn read(path: &Path, more: &[&str]) -> Result<Vec<Entry>, Failure> {
             let line = lines.get("output").copied().unwrap_or_default();
             let mut options = file.options.clone();
             options.extend(picture.options);
-            let entry = Entry {
+            let entry = JobEntry {
                 scene: folder.join(picture.scene),
                 reading: LoadOptions::default(),
                 output: folder.join(picture.output),
@@ -140,16 +146,16 @@ pub fn read(path: &Path, more: &[&str]) -> Result<Vec<Entry>, Failure> {
         .collect()
 }
 
-impl Entry {
-    /// The entry with its options, of which those that name files are relative to `folder`.
-    fn with(mut self, folder: &Path, options: &Table, more: &[&str]) -> Result<Entry, Failure> {
+impl JobEntry {
+    /// Adds options to the entry. Those that name files are relative to `folder`.
+    fn with(mut self, folder: &Path, options: &Table, more: &[&str]) -> Result<JobEntry, Failure> {
         let is_walk = self.output.to_str().is_some_and(|name| name.parse::<FileNames>().is_ok());
         let command = if is_walk { "walk" } else { "render" };
         let mut arguments: Vec<OsString> = ["lightsplat", command].map(OsString::from).into();
         arguments.extend([self.scene.clone().into(), "-o".into(), self.output.clone().into()]);
         for (name, value) in options {
             if OF_THE_BATCH.contains(&name.as_str()) {
-                let remedy = format!("`{name}` is not a picture's: lightsplat batch --{name}");
+                let remedy = format!("`{name}` is an option of the batch: use lightsplat batch --{name}");
                 return Err(self.wrong(name, &remedy));
             }
             match value {
@@ -176,8 +182,9 @@ impl Entry {
     }
 }
 
-/// Arguments of an option: true stands for a flag, words in a list for the option as many times, numbers in a list for
-/// one value.
+/// Returns the arguments of an option.
+///
+/// `true` stands for a flag. A list of words repeats the option, a list of numbers is one value.
 fn option(name: &str, value: &Value) -> Option<Vec<String>> {
     let with = |value: String| Some(vec![format!("--{name}={value}")]);
     match value {
@@ -207,7 +214,7 @@ fn scalar(value: &Value) -> Option<String> {
 mod tests {
     use super::*;
 
-    fn entries(text: &str) -> Result<Vec<Entry>, Failure> {
+    fn entries(text: &str) -> Result<Vec<JobEntry>, Failure> {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("job.toml"), text).unwrap();
         read(&folder.path().join("job.toml"), &["--resume"])

@@ -1,7 +1,7 @@
-//! Outputs of a batch: no two of its pictures and walks write the same file.
+//! Outputs of a batch: no two entries may write the same file.
 
 use super::args::Command;
-use super::batch_file::Entry;
+use super::batch_file::JobEntry;
 use super::exit::Failure;
 use anyhow::anyhow;
 use base::film::atomic;
@@ -9,13 +9,13 @@ use render::walk::FileNames;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Refuses two entries that would write the same file. Walks may share names if their frames differ.
-pub fn check_apart(entries: &[Entry]) -> Result<(), Failure> {
-    let mut written: BTreeMap<PathBuf, &Entry> = BTreeMap::new();
-    // Those of walks by the names of all their files: the first of all frames of the path, and the first of some.
-    let mut walks: BTreeMap<PathBuf, [Option<&Entry>; 2]> = BTreeMap::new();
+/// Refuses two entries that would write the same file. Walks with different frames may share a name.
+pub fn check_apart(entries: &[JobEntry]) -> Result<(), Failure> {
+    let mut written: BTreeMap<PathBuf, &JobEntry> = BTreeMap::new();
+    // Walks by the name pattern of their files: the first walk of the whole path, and the first walk of listed frames.
+    let mut walks: BTreeMap<PathBuf, [Option<&JobEntry>; 2]> = BTreeMap::new();
     for entry in entries {
-        // What else is wrong with an entry is found where it is checked on its own.
+        // Other errors of an entry are reported when the entry is checked.
         let (Ok(command), Ok(target)) = (entry.command(), atomic::resolve(&entry.output)) else { continue };
         let mut files = vec![target.clone()];
         if let Command::Walk(args) = command {
@@ -38,9 +38,9 @@ pub fn check_apart(entries: &[Entry]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn shared(first: &Entry, second: &Entry) -> Failure {
+fn shared(first: &JobEntry, second: &JobEntry) -> Failure {
     Failure::usage(anyhow!(
-        "{}: {} and {} would write the same file: name another, or other frames",
+        "{}: {} and {} would write the same file; change the name or the frames of one",
         second.output.display(),
         first.place,
         second.place

@@ -1,4 +1,4 @@
-//! `lightsplat compare`: error measures of a picture against a reference, and a picture of where.
+//! `lightsplat compare`: error measures of an image against a reference, and a heatmap of the error.
 
 use super::args::{CompareArgs, HeatmapError};
 use super::exit::Failure;
@@ -41,7 +41,7 @@ pub fn run(args: CompareArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A picture and the variance of its pixel means: from `variance` if given, else from its own layer.
+/// Reads an image and the variance of its pixels: from `variance` if given, else from a layer of the image.
 fn read(path: &Path, variance: Option<&Path>) -> Result<(Image, Option<Image>), Failure> {
     let file = ExrFile::read(path).map_err(Failure::input)?;
     if file.metadata().text("partial") == Some("true") {
@@ -58,22 +58,23 @@ fn read(path: &Path, variance: Option<&Path>) -> Result<(Image, Option<Image>), 
     Ok((image, variance))
 }
 
+/// Replaces values that are not finite by 0, with a warning.
 fn finite(image: Result<Image, ImageError>, path: &Path) -> Result<Image, Failure> {
     let mut image = image.map_err(Failure::input)?;
     match image.remove_nonfinite() {
         0 => {}
-        n => talk::warning(&format!("{n} channels in {} are NaN or infinite; taken as 0", path.display())),
+        n => talk::warning(&format!("{n} values in {} are NaN or infinite and count as 0", path.display())),
     }
     Ok(image)
 }
 
-/// A picture of variances.
+/// Replaces negative variances by 0, with a warning.
 fn not_negative(image: Result<Image, ImageError>, path: &Path) -> Result<Image, Failure> {
     let mut image = finite(image, path)?;
     let negative = image.pixels.iter().filter(|variance| variance.min_element() < 0.0).count();
     if negative > 0 {
         talk::warning(&format!(
-            "variances of {negative} pixels in {} are negative; taken as 0",
+            "variances of {negative} pixels in {} are negative and count as 0",
             path.display()
         ));
         image.pixels.iter_mut().for_each(|variance| *variance = variance.max(Rgb::ZERO));
@@ -83,14 +84,14 @@ fn not_negative(image: Result<Image, ImageError>, path: &Path) -> Result<Image, 
 
 fn to_text(c: &Comparison) -> String {
     let mut text = String::new();
-    // Writing to a String cannot fail, hence the `let _`.
+    // Writing to a String cannot fail.
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "{name:<31}{value}");
     };
     line("relMSE", format!("{:.6e}", c.rel_mse));
-    line("relMSE, worst 0.1 % left out", format!("{:.6e}", c.rel_mse_trimmed));
+    line("relMSE without the worst 0.1 %", format!("{:.6e}", c.rel_mse_trimmed));
     if let Some(explained) = c.reference_rel_mse {
-        line("  of it the reference's noise", format!("{explained:.6e}"));
+        line("  due to noise of the reference", format!("{explained:.6e}"));
     }
     line("RMSE", format!("{:.6e}", c.rmse));
     line("PSNR [dB]", c.psnr.map_or("identical on screen".to_owned(), |p| format!("{p:.3}")));
@@ -102,7 +103,7 @@ fn to_text(c: &Comparison) -> String {
     }
     match c.z_test {
         Some(z) => line("z-test", z_text(&z)),
-        None => line("z-test", "needs the variance of both pictures".to_owned()),
+        None => line("z-test", "needs the variances of both images".to_owned()),
     }
     if let Some(z) = c.z_test_blocks {
         line(&format!("  of {0}x{0} pixels", metrics::BLOCK), z_text(&z));

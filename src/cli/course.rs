@@ -1,14 +1,14 @@
-//! The course of a run: the part of it that is done, and how long the rest will take.
+//! Progress of a run: the fraction that is done, and the remaining time.
 //!
-//! Frames count alike. Within a frame stages count by their usual shares of the time, from the first that the method
-//! has on, and those that the goal asks for. How far a plan is nobody knows: it counts as a whole once it is over.
+//! All frames have the same weight. Within a frame a stage has its typical share of the time, if the method and the
+//! goal include it. The progress of planning is unknown: a plan counts when it is complete.
 
 use base::progress::Progress;
 use base::stats::Stage;
 use render::session::{Goal, Wanted};
 use std::time::Instant;
 
-/// Stages in the order in which they begin, and their usual shares of a picture's time.
+/// Stages in their order, with their typical shares of the time of a frame.
 const SHARES: [(Stage, f64); 7] = [
     (Stage::EyePass, 0.35),
     (Stage::LightPass, 0.05),
@@ -19,15 +19,19 @@ const SHARES: [(Stage, f64); 7] = [
     (Stage::Verify, 0.5),
 ];
 
-/// Share of a frame's time after its last stage.
+/// Share of the time of a frame after its last stage.
 const END: f64 = 0.01;
 
-/// Shares of plans: of a method, and of settings for a time. A search for an error ends with the picture.
+/// Share of the choice of a method.
 const OF_CHOICE: f64 = 0.05;
+
+/// Share of planning the settings for a time.
 const OF_TIME: f64 = 0.3;
+
+/// Share of the search for an error. It ends with the complete image.
 const OF_ERROR: f64 = 1.0;
 
-/// Stages of a frame that its goal decides.
+/// Stages of a frame that depend on its goal.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stages {
     /// Share of planning.
@@ -37,7 +41,7 @@ pub struct Stages {
 }
 
 impl Stages {
-    /// The stages that lead to `goal`.
+    /// Returns the stages of a frame with this goal.
     pub fn of(goal: &Goal) -> Stages {
         let (plan, measures) = match goal.wanted {
             Wanted::AsSet if goal.may_choose && goal.denoises() => (OF_CHOICE, false),
@@ -48,7 +52,7 @@ impl Stages {
         Stages { plan, denoises: goal.denoises(), verifies: goal.verify.is_some() && !measures }
     }
 
-    /// Fraction of a frame that is done, of a method whose first stage is `first`.
+    /// Returns the fraction of a frame that is done. `first` is the first stage of the method.
     fn in_frame(&self, first: Stage, now: &Progress) -> f64 {
         let is_there = |stage: Stage| match stage {
             Stage::Denoise => self.denoises,
@@ -66,77 +70,78 @@ impl Stages {
 
 /// A part of a run.
 #[derive(Clone, Copy, Debug)]
-pub struct Span {
+pub struct RunSpan {
     /// Start of the run.
     start: Instant,
     /// Fractions of the run at which the part begins and ends.
     fractions: [f64; 2],
 }
 
-impl Span {
-    /// All of a run that begins now.
-    pub fn whole() -> Span {
-        Span { start: Instant::now(), fractions: [0.0, 1.0] }
+impl RunSpan {
+    /// Returns the whole of a run that begins now.
+    pub fn whole() -> RunSpan {
+        RunSpan { start: Instant::now(), fractions: [0.0, 1.0] }
     }
 
-    /// One of so many equal parts of it.
-    pub fn part(self, index: usize, count: usize) -> Span {
+    /// Returns one of `count` equal parts.
+    pub fn part(self, index: usize, count: usize) -> RunSpan {
         let [from, to] = self.fractions;
         let at = |index: usize| from + (to - from) * index as f64 / count.max(1) as f64;
-        Span { fractions: [at(index), at(index + 1)], ..self }
+        RunSpan { fractions: [at(index), at(index + 1)], ..self }
     }
 }
 
-/// Part of a run, and its progress.
+/// Progress of a part of a run.
 #[derive(Debug)]
-pub struct Course {
-    span: Span,
+pub struct RunProgress {
+    span: RunSpan,
     stages: Stages,
-    /// Frames in the part, and those that are done.
+    /// Number of frames in the part.
     frames: usize,
+    /// Number of complete frames.
     done: usize,
-    /// First stage of the frame at hand, after plans.
+    /// First stage of the current frame after planning.
     first: Option<Stage>,
-    /// Fraction of the run told last.
+    /// Last fraction that was reported.
     fraction: f64,
 }
 
-impl Course {
-    /// A part of a run with a number of frames, each of these stages.
-    pub fn new(frames: usize, stages: Stages, span: Span) -> Course {
-        Course { span, stages, frames, done: 0, first: None, fraction: span.fractions[0] }
+impl RunProgress {
+    /// Builds the progress of a part with `frames` frames of these stages.
+    pub fn new(frames: usize, stages: Stages, span: RunSpan) -> RunProgress {
+        RunProgress { span, stages, frames, done: 0, first: None, fraction: span.fractions[0] }
     }
 
-    /// Counts the frame at hand as done.
+    /// Counts the current frame as complete.
     pub fn frame_done(&mut self) {
         self.done += 1;
         self.first = None;
     }
 
-    /// Frames done and all frames of the part.
+    /// Returns the number of complete frames and the number of all frames of the part.
     pub fn frames(&self) -> [usize; 2] {
         [self.done, self.frames]
     }
 
-    /// Fraction of the run that is done; it never falls.
+    /// Returns the fraction of the run that is done. It never decreases.
     pub fn fraction(&mut self, now: Option<&Progress>) -> f64 {
         let in_frame = now.map_or(0.0, |now| self.in_frame(now));
         let in_part = (self.done as f64 + in_frame) / self.frames.max(1) as f64;
         let [from, to] = self.span.fractions;
-        // The end is told exactly.
+        // The last value is exact.
         let fraction = if in_part < 1.0 { from + in_part * (to - from) } else { to };
         self.fraction = self.fraction.max(fraction);
         self.fraction
     }
 
-    /// Seconds that the rest will take, at the pace so far; `None` as long as there is none.
+    /// Returns the expected seconds until the end; `None` before the first progress.
     pub fn eta_seconds(&self) -> Option<f64> {
         (self.fraction > 0.0)
             .then(|| self.span.start.elapsed().as_secs_f64() * (1.0 - self.fraction) / self.fraction)
     }
 
     fn in_frame(&mut self, now: &Progress) -> f64 {
-        if now.displayed_stage() == Stage::Plan {
+        if now.told() == Stage::Plan {
             return 0.0;
         }
         let first = *self.first.get_or_insert(now.stage);
@@ -156,7 +161,7 @@ mod tests {
 
     #[test]
     fn fractions_rise_through_stages_and_frames_to_the_end_of_their_span() {
-        let mut course = Course::new(2, ALL, Span::whole().part(2, 3));
+        let mut course = RunProgress::new(2, ALL, RunSpan::whole().part(2, 3));
         let mut last = course.fraction(None);
         assert!((last - 2.0 / 3.0).abs() < 1e-9);
         for _ in 0..2 {
@@ -176,7 +181,7 @@ mod tests {
     #[test]
     fn stages_that_a_run_has_not_leave_no_gap_and_fractions_never_fall() {
         let goal = Goal { denoise: Some(false), ..Goal::default() };
-        let mut course = Course::new(1, Stages::of(&goal), Span::whole());
+        let mut course = RunProgress::new(1, Stages::of(&goal), RunSpan::whole());
         assert_eq!((course.fraction(None), course.eta_seconds()), (0.0, None));
         let half = 0.5 * (1.0 - END);
         assert!((course.fraction(Some(&at(Stage::Render, 5))) - half).abs() < 1e-9);
@@ -189,14 +194,14 @@ mod tests {
     fn plans_and_measurements_have_their_shares() {
         let verify = Some(render::verify::Settings::default());
         let choice = Stages::of(&Goal { may_choose: true, verify, ..Goal::default() });
-        let mut course = Course::new(1, choice, Span::whole());
+        let mut course = RunProgress::new(1, choice, RunSpan::whole());
         assert_eq!(course.fraction(Some(&Progress { is_planning: true, ..at(Stage::Verify, 9) })), 0.0);
         assert!(course.fraction(Some(&at(Stage::Render, 0))) >= OF_CHOICE);
         assert!(course.fraction(Some(&at(Stage::Render, 10))) < 0.5);
         assert!(course.fraction(Some(&at(Stage::Verify, 5))) < 0.9);
         let searched = Wanted::Error { error: 0.1, max_samples: 1, held: Vec::new() };
         let mut course =
-            Course::new(1, Stages::of(&Goal { wanted: searched, ..Goal::default() }), Span::whole());
+            RunProgress::new(1, Stages::of(&Goal { wanted: searched, ..Goal::default() }), RunSpan::whole());
         assert_eq!(course.fraction(Some(&Progress { is_planning: true, ..at(Stage::Render, 9) })), 0.0);
         course.frame_done();
         assert_eq!(course.fraction(None), 1.0);

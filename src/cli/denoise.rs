@@ -1,4 +1,4 @@
-//! `lightsplat denoise`: takes the noise off a picture in a file; all else in the file stays.
+//! `lightsplat denoise`: denoises an image file. Everything else in the file stays.
 
 use super::denoise_args::DenoiseFileArgs;
 use super::exit::Failure;
@@ -18,7 +18,10 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
     Inputs::new([input]).check_apart([&output].into_iter().chain(&png).map(PathBuf::as_path))?;
     let mut file = ExrFile::read(input).map_err(Failure::input)?;
     if let Some(library) = file.metadata().text("denoised").filter(|library| *library != "false") {
-        return Err(Failure::input(anyhow!("{} has been denoised before, by {library}", input.display())));
+        return Err(Failure::input(anyhow!(
+            "{} was denoised before, with {library}; denoise the noisy image",
+            input.display()
+        )));
     }
     let color = file.color().map_err(Failure::input)?;
     let channels = file.channels();
@@ -26,12 +29,12 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
         guides::layer(&channels, names).map(|name| file.layer(&name).map(|image| (name, image))).transpose()
     };
     let albedo = guide(&guides::ALBEDO).map_err(Failure::input)?;
-    // Without albedo the library has no use for it.
+    // The library does not use normals without albedo.
     let normal = if albedo.is_some() { guide(&guides::NORMAL).map_err(Failure::input)? } else { None };
     let found = Guides {
         albedo: albedo.as_ref().map(|(_, image)| image),
         normal: normal.as_ref().map(|(_, image)| image),
-        // Those of other renderers may have noise, in blurred reflections above all.
+        // Guides of other renderers may be noisy, especially in blurred reflections.
         noise_free: file.metadata().text("method").is_some(),
     };
     let (library, clean) = threads::pool(threads::count(args.threads))?
@@ -60,7 +63,7 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
         write_png(path, &clean, *factor).map_err(Failure::output)?;
     }
     let guided_by = if guided_by.is_empty() { "no layer".to_owned() } else { guided_by.join(" and ") };
-    talk::note(&format!("denoised by {library}, guided by {guided_by}"));
+    talk::note(&format!("denoised with {library}, guided by {guided_by}"));
     talk::note(&said);
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Arguments of denoising.
+//! Options of denoising.
 
 use super::args::PngArgs;
 use super::exit;
@@ -8,21 +8,21 @@ use clap::{Args, ValueEnum};
 use render::denoise::Quality;
 use std::path::PathBuf;
 
-/// Options of `render` that denoise the picture.
+/// Options of `render` and `walk` for denoising.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct DenoiseArgs {
-    /// Take the noise off the picture by Open Image Denoise 2, guided by albedo and normals through mirrors and glass;
-    /// a picture without it and a warning where the library is missing. The default where the method is meant for it
+    /// Denoise with Open Image Denoise 2, guided by albedo and normals; the default for methods that leave noise. If
+    /// the library is missing, a warning is printed and the image stays noisy
     #[arg(long, overrides_with = "no_denoise")]
     denoise: bool,
-    /// Leave the noise in the picture
+    /// Do not denoise
     #[arg(long, overrides_with = "denoise")]
     no_denoise: bool,
-    /// Quality of denoising against its time [default: lower ones where the best takes a good part of all the work on a
-    /// still picture, as counted, which is better spent on samples; walks, whose frames are to be alike, have the best]
+    /// Quality of denoising [default: high for walks; lower for stills if high would take a large part of the work, as
+    /// counted]
     #[arg(long, value_enum, value_name = "QUALITY")]
     denoise_quality: Option<NamedQuality>,
-    /// Keep the picture as it was before denoising as layer `noisy`
+    /// Keep the noisy image in the layer `noisy`
     #[arg(long)]
     pub keep_noisy: bool,
 }
@@ -47,22 +47,22 @@ impl From<NamedQuality> for Quality {
 }
 
 impl DenoiseArgs {
-    /// True if the picture is to be denoised; `None` by default.
+    /// True if the image is to be denoised; `None` if the method decides.
     pub fn denoise(&self) -> Option<bool> {
         (self.denoise || self.no_denoise).then_some(self.denoise)
     }
 
-    /// Quality of denoising; `None` if it is to go with the work on the picture.
+    /// Returns the quality of denoising; `None` if the work on the image decides.
     pub fn quality(&self) -> Option<Quality> {
         self.denoise_quality.map(Quality::from)
     }
 
-    /// Refuses options that would have no effect on a picture that is not denoised.
+    /// Refuses options that have no effect on an image that is not denoised.
     pub fn check(&self, denoises: bool) -> Result<(), Failure> {
         let idle = [("--keep-noisy", self.keep_noisy), ("--denoise-quality", self.denoise_quality.is_some())];
         match idle.iter().find(|(_, is_there)| *is_there && !denoises) {
             Some((option, _)) => {
-                Err(Failure::usage(anyhow!("{option} goes with --denoise; the picture is not denoised here")))
+                Err(Failure::usage(anyhow!("{option} needs --denoise; this image is not denoised")))
             }
             None => Ok(()),
         }
@@ -73,28 +73,28 @@ impl DenoiseArgs {
 #[derive(Debug, Args)]
 #[command(after_help = exit::HELP)]
 pub struct DenoiseFileArgs {
-    /// Picture to denoise (OpenEXR), guided by its layers of albedo and normals where it has them, by the names that
-    /// this program, Blender, Mitsuba, pbrt or Arnold give them
+    /// Image to denoise (OpenEXR); layers of albedo and normals guide the denoiser, if they have the names of
+    /// lightsplat, Blender, Mitsuba, pbrt or Arnold
     pub input: PathBuf,
-    /// Picture to write: all that the other holds, its colour denoised [default: named .denoised.exr]
+    /// Image to write: the input with its colour denoised [default: the input with the extension .denoised.exr]
     #[arg(short, long, value_name = "FILE.exr")]
     pub output: Option<PathBuf>,
-    /// Quality against time; it matters where the guides are free of noise
+    /// Quality of denoising; it makes a difference if the guides are free of noise
     #[arg(long, value_enum, value_name = "QUALITY", default_value_t)]
     quality: NamedQuality,
-    /// Keep the colour as it was as layer `noisy`
+    /// Keep the noisy colour in the layer `noisy`
     #[arg(long)]
     pub keep_noisy: bool,
-    /// Threads to use [default: all processors]; the picture is the same for any number
+    /// Number of threads [default: number of processors]; the image does not depend on it
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
-    /// The tone-mapped picture.
+    /// The tone-mapped image.
     #[command(flatten)]
     pub png: PngArgs,
 }
 
 impl DenoiseFileArgs {
-    /// Quality of denoising.
+    /// Returns the quality of denoising.
     pub fn quality(&self) -> Quality {
         self.quality.into()
     }

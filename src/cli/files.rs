@@ -1,4 +1,4 @@
-//! Text files.
+//! Writes text files.
 
 use super::exit::Failure;
 use super::talk;
@@ -6,7 +6,10 @@ use base::film::{ImageError, atomic};
 use std::io::Write;
 use std::path::Path;
 
-/// Writes text to a file, whole or not at all.
+/// Writes text to a file. The file is complete or unchanged.
+///
+/// # Errors
+/// If the file cannot be written.
 pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
     atomic::write_atomically(path, |file| file.write_all(text.as_bytes()))
         .map_err(|error| ImageError::Write { path: path.to_owned(), error })

@@ -1,4 +1,4 @@
-//! `lightsplat info`: content and requirements of a scene.
+//! `lightsplat info`: prints the content and the requirements of a scene.
 
 use super::args::InfoArgs;
 use super::exit::Failure;

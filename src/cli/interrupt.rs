@@ -1,6 +1,8 @@
-//! Ctrl-C, SIGTERM and SIGHUP: the first asks the method to stop and return its partial result, the second
-//! ends the process at once. Files are written whole or not at all, so that even then former files are not
-//! lost. While a scene is opened there is no partial result, and the first ends the process.
+//! Signals: Ctrl-C, SIGTERM and SIGHUP.
+//!
+//! The first signal asks the method to stop and to return its partial result. The second signal ends the process at
+//! once. Files are complete or unchanged, so that no existing file is lost. While a scene is read there is no partial
+//! result, and the first signal ends the process.
 
 use super::exit::{self, Failure};
 use super::talk;
@@ -10,10 +12,10 @@ use embree::leave;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// True while a scene is opened.
+/// True while a scene is being read.
 static IS_OPENING: AtomicBool = AtomicBool::new(false);
 
-/// Sets [`IS_OPENING`] back, even if opening panics.
+/// Resets [`IS_OPENING`] when it is dropped, after a panic, too.
 struct Opening;
 
 impl Drop for Opening {
@@ -22,14 +24,17 @@ impl Drop for Opening {
     }
 }
 
-/// Does work that opens a scene and writes nothing.
+/// Runs `work`, which reads a scene and writes nothing.
 pub fn while_opening<R>(work: impl FnOnce() -> R) -> R {
     IS_OPENING.store(true, Ordering::SeqCst);
     let _opening = Opening;
     work()
 }
 
-/// Cancels `control` when a signal comes. To be called once in a process.
+/// Cancels `control` when a signal arrives. Call it once per process.
+///
+/// # Errors
+/// If the handler cannot be installed.
 pub fn cancel_on_signal(control: &Arc<Control>) -> Result<(), ctrlc::Error> {
     let control = Arc::clone(control);
     ctrlc::set_handler(move || {
@@ -38,10 +43,12 @@ pub fn cancel_on_signal(control: &Arc<Control>) -> Result<(), ctrlc::Error> {
         }
         control.cancel();
         if IS_OPENING.load(Ordering::SeqCst) {
-            talk::error(&Failure::interrupted(anyhow!("interrupted while the scene is read")));
+            talk::error(&Failure::interrupted(anyhow!(
+                "interrupted while reading the scene; nothing is written"
+            )));
             end(exit::INTERRUPTED);
         }
-        talk::note("interrupted: stopping; once more to stop at once");
+        talk::note("interrupted: finishing up; press Ctrl-C again to stop at once");
     })
 }
 

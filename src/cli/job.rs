@@ -1,4 +1,4 @@
-//! A render command that has been checked as far as it can be without the scene.
+//! A render command, checked as far as possible before the scene is read.
 
 use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
@@ -20,32 +20,35 @@ use world::view::Framing;
 pub struct RenderJob {
     /// Scene file.
     pub scene: PathBuf,
-    /// Reading of the scene.
+    /// Options of the scene reader.
     pub reading: LoadOptions,
-    /// OpenEXR file; its folder has been found writable.
+    /// OpenEXR file. Its folder is writable.
     pub output: PathBuf,
     /// PNG file and its exposure.
     pub png: Option<(PathBuf, Exposure)>,
-    /// True if the picture is left as it is where it is there.
+    /// True if an existing image with the same key is not rendered again.
     pub resume: bool,
-    /// True if the files hold nothing but what follows from scene and settings.
+    /// True if the files must depend on scene and settings alone.
     pub reproducible: bool,
-    /// Method, planned goal, and verification of the error.
+    /// Method, goal, and measurement of the error.
     pub goal: Goal,
     /// Number of threads.
     pub threads: usize,
-    /// Frame, film size and crop in place of the scene's.
+    /// Frame, film size and crop that replace those of the scene.
     pub framing: Framing,
     /// Start of the run.
     pub run: Stopwatch,
-    /// Statistics on stdout.
+    /// Format of the statistics on stdout.
     pub stats: Option<StatsFormat>,
-    /// Progress on stderr.
+    /// Form of the messages on stderr.
     pub progress: ProgressMode,
 }
 
 impl RenderJob {
-    /// Checks the arguments, and that the results can be written to their paths. The run began with `run`.
+    /// Checks the arguments, and that the results can be written. The run began with `run`.
+    ///
+    /// # Errors
+    /// If the arguments are wrong or a result cannot be written.
     pub fn new(args: RenderArgs, run: Stopwatch) -> Result<RenderJob, Failure> {
         let held = args.method.typed();
         let may_choose = args.method.is_open();
@@ -67,7 +70,7 @@ impl RenderJob {
         args.picture.denoise.check(goal.denoises())?;
         if args.picture.reproducible && args.plan.time.is_some() {
             return Err(Failure::usage(anyhow!(
-                "--reproducible: settings planned by --time differ from run to run"
+                "--reproducible does not go with --time, whose settings differ from run to run; use --quality or --error"
             )));
         }
         Ok(RenderJob {
@@ -90,7 +93,7 @@ impl RenderJob {
         })
     }
 
-    /// Key of the picture.
+    /// Returns the key of the image.
     pub fn key(&self, session: &Session) -> String {
         let exposure = self.png.as_ref().map(|(_, exposure)| exposure.to_string());
         job_key::of(session, &self.goal, json!([format!("{:?}", self.framing), exposure, self.reproducible]))

@@ -1,4 +1,4 @@
-//! The key of a picture: a hash of all that decides what is in its files, by which `--resume` knows them again.
+//! The key of an image: a hash of everything that its files depend on. `--resume` compares it.
 
 use base::film::ExrFile;
 use readers::fnv1a;
@@ -7,8 +7,8 @@ use render::session::{Goal, Session, Wanted};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Key of a picture of `session` for `goal`, by the version of the program, and `more` that decides; but for whether
-/// the denoiser is there.
+/// Returns the key of an image of `session` with `goal` by this version of the program. `more` holds further
+/// dependencies. The key does not depend on whether the denoiser is installed.
 pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
     let Goal { method, may_choose, wanted, features, denoise_quality, keep_noisy, verify, .. } = goal;
     let wanted = match wanted {
@@ -32,7 +32,7 @@ pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
     }))
 }
 
-/// Key of a frame whose records come of `frames`, of which it is the last, in a walk of key `walk`.
+/// Returns the key of the last of `frames` in a walk with the key `walk`. Its records come from `frames`.
 pub fn of_frame(walk: &str, frames: &[usize]) -> String {
     hash(json!([walk, frames]))
 }
@@ -41,18 +41,18 @@ fn hash(decisive: Value) -> String {
     format!("{:016x}", fnv1a(decisive.to_string().as_bytes()))
 }
 
-/// True if the files of a picture, the number of its frame given, are whole and have this key.
-pub fn is_done((exr, png): (&Path, Option<&Path>), frame: Option<usize>, key: &str) -> bool {
+/// Returns true if the files of an image are complete and have this key. `frame` is the number of its frame.
+pub fn is_done(exr: &Path, png: Option<&Path>, frame: Option<usize>, key: &str) -> bool {
     ExrFile::read(exr).is_ok_and(|file| file.color().is_ok() && is_it(&file, frame, key, "false"))
         && png.is_none_or(|png| image::open(png).is_ok())
 }
 
-/// True if the file is a part of the picture that has this key.
+/// Returns true if the file is a part of the image with this key.
 pub fn is_part(exr: &Path, frame: Option<usize>, key: &str) -> bool {
     ExrFile::read(exr).is_ok_and(|file| is_it(&file, frame, key, "true"))
 }
 
-/// The samples of the picture that has this key, where it was interrupted and can go on.
+/// Returns the samples of an interrupted image with this key, if it can continue.
 pub fn begun(exr: &Path, frame: Option<usize>, key: &str) -> Option<Begun> {
     let file = ExrFile::read(exr).ok()?;
     is_it(&file, frame, key, "true").then(|| Begun::of(&file)).flatten()

@@ -1,7 +1,7 @@
-//! The command line: arguments (`args`) become a validated job (`job`) that a command carries out.
+//! The command line: arguments (`args`) become a validated job (`job`), which a command runs.
 //!
-//! stdout is data (statistics, reports), stderr is messages (progress, warnings, errors). Exit codes are in
-//! `exit`.
+//! Data (statistics, reports) goes to stdout, messages (progress, warnings, errors) go to stderr. `exit` defines the
+//! exit codes.
 
 #![forbid(unsafe_code)]
 
@@ -47,12 +47,12 @@ use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
-/// Parses `arguments` (the program's name first), runs the command and says how it ended.
+/// Parses `arguments` (the program's name first), runs the command and returns its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = match Cli::of(arguments) {
         Ok(cli) => cli,
         Err(error) => {
-            // Help and version go to stdout with code 0, the rest to stderr with code 2.
+            // Help and version go to stdout with code 0, errors to stderr with code 2.
             let printed = error.print();
             return ExitCode::from(match printed {
                 _ if error.use_stderr() => exit::USAGE,
@@ -78,7 +78,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             talk::error(&failure);
             failure.code()
         }
-        // The panic hook has printed message and place.
+        // The panic hook has printed the message and its place.
         Err(_) => {
             talk::error(&Failure::render(anyhow::anyhow!(
                 "an internal error stopped the run; please report it with the lines above"

@@ -1,5 +1,6 @@
-//! `lightsplat merge`: one picture of several of the same view by different seeds, each counting as much as it has
-//! samples, pixel by pixel where it was interrupted.
+//! `lightsplat merge`: merges images of one view with different seeds.
+//!
+//! An image is weighted by its number of samples, per pixel if it was interrupted.
 
 use super::args::MergeArgs;
 use super::exit::Failure;
@@ -13,9 +14,9 @@ use render::method::path::Begun;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Layer of the variance of pixels' means.
+/// Layer of the variance of the pixels.
 const VARIANCE: &str = "variance";
-/// Facts that are one picture's own.
+/// Facts that do not apply to a merged image.
 const OWN: [&str; 3] = ["job", "render_seconds", "threads"];
 
 /// Runs the command.
@@ -34,17 +35,17 @@ pub fn run(args: MergeArgs) -> Result<(), Failure> {
         let refuse = |reason: String| Err(Failure::input(anyhow!("{}: {reason}", path.display())));
         let Some(spp) = own.number("spp").filter(|spp| *spp > 0.0) else {
             return refuse(
-                "it does not say how many samples it has; only pictures of this program do".to_owned(),
+                "it does not state its number of samples; merge images of lightsplat only".to_owned(),
             );
         };
         let first = args.inputs[0].display();
         if let Some(difference) = difference((&files[0].1, &facts[0]), (file, own)) {
-            return refuse(format!("its {difference} is not that of {first}"));
+            return refuse(format!("its {difference} differs from that of {first}"));
         }
         for seed in own_seeds(own) {
             if seeds.contains(&seed) {
                 return refuse(format!(
-                    "a picture before it has the seed {seed} too: render it with another --seed"
+                    "an earlier image has seed {seed}, too; render one of them with another --seed"
                 ));
             }
             seeds.push(seed);
@@ -67,7 +68,7 @@ pub fn run(args: MergeArgs) -> Result<(), Failure> {
     own.iter().filter(|key| key.starts_with("verified_")).for_each(|key| merged.remove_fact(key));
     merged.set("seed", seeds.join(","));
     count_samples(&mut merged, &weights, color.pixels.len());
-    let mut said = format!("wrote {}, merged of {} pictures", args.output.display(), weights.len());
+    let mut said = format!("wrote {}, merged from {} images", args.output.display(), weights.len());
     let mut written = vec![args.output.clone()];
     let factor = args.png.exposure.factor(&color);
     if let Some(path) = &png {
@@ -83,23 +84,23 @@ pub fn run(args: MergeArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A picture, as it was before denoising.
+/// Reads an image; returns it without denoising.
 fn noisy(path: &Path) -> Result<ExrFile, Failure> {
     let mut file = ExrFile::read(path).map_err(Failure::input)?;
     let facts = file.metadata();
     let refuse = |reason: &str| Err(Failure::input(anyhow!("{}: {reason}", path.display())));
     if facts.text("partial") == Some("true") && file.numbers(SAMPLES).is_none() {
         return refuse(
-            "its rendering was interrupted, and it does not say how many samples its pixels have: only --method path \
-             does; render the rest by the same command with --resume",
+            "its rendering was interrupted, and it does not state the samples of its pixels, as images of --method path \
+             do; render the rest with the same command and --resume",
         );
     }
     Begun::remove_squares(&mut file);
     if facts.text("denoised").is_some_and(|library| library != "false") {
         let Ok(noisy) = file.layer(NOISY) else {
             return refuse(
-                "it is denoised, and means of such pictures keep what the denoiser made of the noise: render it with \
-                 --no-denoise or --keep-noisy, and denoise the merged picture by `lightsplat denoise`",
+                "it is denoised, and merging does not remove the errors of the denoiser; render it with --no-denoise or \
+                 --keep-noisy, and denoise the merged image with `lightsplat denoise`",
             );
         };
         file.replace_color(&noisy, None).map_err(Failure::input)?;
@@ -110,8 +111,9 @@ fn noisy(path: &Path) -> Result<ExrFile, Failure> {
     Ok(file)
 }
 
-/// States the samples of a merged picture: their number, or its mean, and those of each pixel, where they differ. The
-/// picture is partial where a pixel has none.
+/// Stores the mean number of samples of a merged image, and the number of each pixel if they differ.
+///
+/// The image is partial if a pixel has no sample.
 fn count_samples(merged: &mut ExrFile, weights: &[Weight], pixels: usize) {
     let samples = |pixel| weights.iter().map(|weight| weight.of(pixel)).sum::<f64>();
     let all: Vec<f64> = (0..pixels).map(samples).collect();
@@ -122,7 +124,7 @@ fn count_samples(merged: &mut ExrFile, weights: &[Weight], pixels: usize) {
     }
 }
 
-/// Seeds of a picture: several, if it has been merged.
+/// Returns the seeds of an image. A merged image has several.
 fn own_seeds(facts: &Metadata) -> Vec<String> {
     match facts.text("seed") {
         Some(seeds) => seeds.split(',').map(str::to_owned).collect(),
@@ -130,7 +132,7 @@ fn own_seeds(facts: &Metadata) -> Vec<String> {
     }
 }
 
-/// First thing in which two pictures differ that have to be of one view and one method.
+/// Returns the first property in which two images differ that must be of one view and one method.
 fn difference(a: (&ExrFile, &Metadata), b: (&ExrFile, &Metadata)) -> Option<&'static str> {
     let settings = |facts: &Metadata| -> Option<Value> {
         let mut settings: Value = serde_json::from_str(facts.text("settings")?).ok()?;
@@ -144,7 +146,7 @@ fn difference(a: (&ExrFile, &Metadata), b: (&ExrFile, &Metadata)) -> Option<&'st
         ("camera or frame", a.0.camera() != b.0.camera() || a.1.number("frame") != b.1.number("frame")),
         ("film or crop", a.0.window() != b.0.window()),
         ("method", a.1.text("method") != b.1.text("method")),
-        ("sharpening, which interrupted pictures lack,", a.1.text("sharpened") != b.1.text("sharpened")),
+        ("sharpening, which interrupted images lack,", a.1.text("sharpened") != b.1.text("sharpened")),
         ("setting, besides --seed and --spp,", settings(a.1) != settings(b.1)),
     ];
     differs.into_iter().find(|(_, differs)| *differs).map(|(what, _)| what)

@@ -1,4 +1,4 @@
-//! `--method` and an option for every setting that a method has.
+//! The option `--method`, and an option for every setting of the methods.
 
 use super::exit::Failure;
 use anyhow::anyhow;
@@ -7,32 +7,34 @@ use clap::builder::{PossibleValue, PossibleValuesParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use render::method::Method;
 
-/// Name of the default method or another, whichever a pilot finds better.
+/// Name for a method that lightsplat chooses.
 const AUTO: &str = "auto";
 
-/// Its line for `--help`.
+/// Description of [`AUTO`] for `--help`.
 const ABOUT_AUTO: &str =
-    "cache, or denoised paths where a pilot finds that they come to as good a picture by less work";
+    "cache, or denoised path tracing if a few pixels show that it needs less work for the same quality";
 
-/// Settings that leave the method open.
+/// Settings that do not rule out a method.
 const OF_ANY_METHOD: [&str; 2] = ["seed", "max_depth"];
 
-/// The method and the settings that were typed.
+/// The method and the settings on the command line.
 #[derive(Clone, Debug)]
 pub struct MethodArgs {
     name: String,
-    /// Keys and texts.
+    /// Keys and values of the settings.
     typed: Vec<(&'static str, String)>,
 }
 
 impl MethodArgs {
-    /// Returns the method, with its defaults for options not given. A setting of other methods is an error:
-    /// it would have no effect.
+    /// Returns the method with the given settings and its defaults.
+    ///
+    /// # Errors
+    /// If a setting is invalid, or the method does not have it.
     pub fn method(&self) -> Result<Method, Failure> {
         let usage = |text: String| Failure::usage(anyhow!(text));
         let mut method = match &*self.name {
             AUTO => Method::default(),
-            name => Method::named(name).ok_or_else(|| usage(format!("no method {name}")))?,
+            name => Method::named(name).ok_or_else(|| usage(format!("there is no method {name}")))?,
         };
         for (key, text) in &self.typed {
             if !method
@@ -51,12 +53,12 @@ impl MethodArgs {
         Ok(method)
     }
 
-    /// True if a plan may choose the method: `auto`, without settings by which the cache is meant.
+    /// Returns true if lightsplat may choose the method: `auto` without settings of the cache.
     pub fn is_open(&self) -> bool {
         self.name == AUTO && self.typed.iter().all(|(key, _)| OF_ANY_METHOD.contains(key))
     }
 
-    /// Keys of the settings that were typed.
+    /// Returns the keys of the settings on the command line.
     pub fn typed(&self) -> Vec<&'static str> {
         self.typed.iter().map(|(key, _)| *key).collect()
     }
@@ -66,9 +68,9 @@ impl Args for MethodArgs {
     fn augment_args(command: Command) -> Command {
         let names = Method::all().map(|method| PossibleValue::new(method.name()).help(method.about()));
         let names = [PossibleValue::new(AUTO).help(ABOUT_AUTO)].into_iter().chain(names);
-        let method = Arg::new("method").long("method").help("How to render").help_heading(None::<&str>);
+        let method = Arg::new("method").long("method").help("Rendering method").help_heading(None::<&str>);
         let method = method.value_parser(PossibleValuesParser::new(names)).value_name("METHOD");
-        command.arg(method.default_value(AUTO)).args(settings().iter().map(Setting::arg))
+        command.arg(method.default_value(AUTO)).args(settings().iter().map(MethodSetting::arg))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -90,39 +92,39 @@ impl FromArgMatches for MethodArgs {
     }
 }
 
-/// A setting and the methods that have it.
-struct Setting {
+/// A setting with the methods that have it.
+struct MethodSetting {
     spec: &'static Spec,
     choices: &'static [Choice],
-    /// The methods and their defaults.
+    /// Methods with their defaults of the setting.
     defaults: Vec<(Method, String)>,
 }
 
-/// All settings of all methods, in the order in which methods have them.
-fn settings() -> Vec<Setting> {
-    let mut all: Vec<Setting> = Vec::new();
+/// Returns the settings of all methods in the order of the methods.
+fn settings() -> Vec<MethodSetting> {
+    let mut all: Vec<MethodSetting> = Vec::new();
     for method in Method::all() {
         method.visit(&mut |spec, value| {
             let default = (method, value.text());
             match all.iter_mut().find(|setting| setting.spec.key == spec.key) {
                 Some(setting) => setting.defaults.push(default),
-                None => all.push(Setting { spec, choices: value.choices(), defaults: vec![default] }),
+                None => all.push(MethodSetting { spec, choices: value.choices(), defaults: vec![default] }),
             }
         });
     }
     all
 }
 
-impl Setting {
-    /// Names of the methods that have it.
+impl MethodSetting {
+    /// Returns the names of the methods that have the setting.
     fn of(&self) -> Vec<&'static str> {
         self.defaults.iter().map(|(method, _)| method.name()).collect()
     }
 
-    /// The default of most methods, then those of others.
+    /// Returns the most common default, followed by the other defaults with their methods.
     fn default(&self) -> String {
         let count = |text: &str| self.defaults.iter().filter(|(_, other)| other == text).count();
-        // The last of those that are equally many is the one that `max_by_key` finds.
+        // `max_by_key` finds the last maximum. So the first of equally common defaults comes last.
         let most = self.defaults.iter().rev().map(|(_, text)| text).max_by_key(|text| count(text));
         let Some(most) = most else { return String::new() };
         let others = self.defaults.iter().filter(|(_, text)| text != most);
@@ -130,8 +132,9 @@ impl Setting {
         most.clone() + &others.collect::<String>()
     }
 
+    /// Builds the option.
     fn arg(&self) -> Arg {
-        let Setting { spec, defaults, .. } = self;
+        let MethodSetting { spec, defaults, .. } = self;
         let mut help = spec.help();
         let others: Vec<_> =
             Method::all().map(|method| method.name()).filter(|n| !self.of().contains(n)).collect();
@@ -156,7 +159,7 @@ impl Setting {
         arg.value_parser(self.parser())
     }
 
-    /// Checks a value by the first method that has the setting.
+    /// Builds the parser of the values. The first method that has the setting checks them.
     fn parser(&self) -> ValueParser {
         if !self.choices.is_empty() {
             let value = |choice: &Choice| PossibleValue::new(choice.name).help(choice.help());

@@ -1,56 +1,66 @@
-//! Opens the scene of a command, and prints the warnings of reading it.
+//! Reads the scene of a command and prints the warnings.
 
 use super::exit::Failure;
+use super::outputs::Inputs;
 use super::{interrupt, talk};
-use readers::{LoadOptions, Loaded, SanitizeReport, SceneError, Severity, Warning, load};
-use render::session::{OpenError, Opened, Session};
+use base::stats::{Stage, Stats};
+use readers::{Level, LoadOptions, Loaded, SceneError, Warning, load};
+use render::session::{OpenError, Session};
 use std::path::Path;
 
-/// Opens a session on the scene at `path`, and prints the warnings.
-pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
-    let opened = interrupt::while_opening(|| Session::open(path, options)).map_err(|error| match error {
-        OpenError::Scene(error) => unreadable(error),
-        OpenError::Build { .. } => Failure::render(error),
-    })?;
-    report(path, &opened.warnings, &opened.repairs);
-    Ok(opened)
-}
-
-/// Reads the scene at `path` without preparing it for rendering, and prints the warnings.
+/// Reads the scene at `path`.
 pub fn read(path: &Path, options: &LoadOptions) -> Result<Loaded, Failure> {
-    let loaded = load(path, options).map_err(unreadable)?;
-    report(path, &loaded.warnings, &loaded.repairs);
+    let loaded = load(path, options).map_err(|error| match error {
+        // The scene is valid. The command line asks for a camera that it lacks.
+        SceneError::Camera { .. } => Failure::usage(error),
+        _ => Failure::input(error),
+    })?;
+    for (warning, times) in grouped(&loaded.warnings) {
+        let more = if times > 1 { format!(" (and at {} more places)", times - 1) } else { String::new() };
+        match warning.level {
+            Level::Note => talk::note(&format!("{warning}{more}")),
+            Level::Warning => talk::warning(&format!("{warning}{more}")),
+        }
+    }
+    if !loaded.repairs.is_clean() {
+        talk::note(&format!("{}: {}", path.display(), loaded.repairs));
+    }
     Ok(loaded)
 }
 
-fn unreadable(error: SceneError) -> Failure {
-    match error {
-        // The scene is right; the command line asks for a camera that it lacks.
-        SceneError::Camera { .. } => Failure::usage(error),
-        _ => Failure::input(error),
-    }
+/// A session with facts about its scene file.
+pub struct Opened {
+    /// The session.
+    pub session: Session,
+    /// Number of warnings of the reader.
+    pub warnings: usize,
+    /// Files that the scene consists of.
+    pub inputs: Inputs,
 }
 
-fn report(path: &Path, warnings: &[Warning], repairs: &SanitizeReport) {
-    for (warning, times) in grouped(warnings) {
-        let more = if times > 1 { format!(" (and {} times more)", times - 1) } else { String::new() };
-        match warning.severity {
-            Severity::Note => talk::note(&format!("{warning}{more}")),
-            Severity::Warning => talk::warning(&format!("{warning}{more}")),
-        }
-    }
-    if !repairs.is_clean() {
-        talk::note(&format!("{}: {repairs}", path.display()));
-    }
+/// Opens a session on the scene at `path`.
+pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
+    interrupt::while_opening(|| open_now(path, options))
 }
 
-/// Returns each distinct warning once, with the number of its places, in order of appearance.
+fn open_now(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
+    let mut stats = Stats::new();
+    let loaded = stats.time(Stage::Load, || read(path, options))?;
+    let warnings = loaded.warnings.len();
+    let inputs = Inputs::new(&loaded.scene.sources);
+    let session = Session::of(loaded, path, stats).map_err(|error| match error {
+        OpenError::Scene(_) => Failure::input(error),
+        OpenError::Build { .. } => Failure::render(error),
+    })?;
+    Ok(Opened { session, warnings, inputs })
+}
+
+/// Groups warnings that differ in their place only. Returns the first of each group with the number of its members.
 fn grouped(warnings: &[Warning]) -> Vec<(&Warning, usize)> {
     let mut groups: Vec<(&Warning, usize)> = Vec::new();
     for warning in warnings {
         let same = |known: &Warning| {
-            (&known.what, &known.fallback, known.severity)
-                == (&warning.what, &warning.fallback, warning.severity)
+            (&known.what, &known.fallback, known.level) == (&warning.what, &warning.fallback, warning.level)
         };
         match groups.iter_mut().find(|(known, _)| same(known)) {
             Some((_, times)) => *times += 1,
@@ -63,13 +73,13 @@ fn grouped(warnings: &[Warning]) -> Vec<(&Warning, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use readers::Location;
+    use readers::Place;
 
     #[test]
     fn the_same_thing_at_many_places_is_said_once() {
         let at = |line, what: &str| Warning {
-            place: Location::line(Path::new("a.xml"), line),
-            severity: Severity::Warning,
+            place: Place::line(Path::new("a.xml"), line),
+            level: Level::Warning,
             what: what.to_owned(),
             fallback: "ignored".to_owned(),
         };

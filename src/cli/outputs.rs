@@ -1,15 +1,18 @@
-//! Files that a command writes: their names, that they can be written, and that they replace nothing it reads.
+//! Files that a command writes: checks of their names, of permissions, and that they replace no input.
 
 use super::exit::Failure;
 use anyhow::anyhow;
 use base::film::atomic;
-use render::session::Session;
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// Checks names of a picture's files, and that they can be written; where they `may_stay`, whether they are
-/// write-protected is looked at later ([`check_unprotected`]).
+/// Checks the names of the files of an image, and that they can be written.
+///
+/// If existing files `may_stay`, [`check_unprotected`] must check later whether they are write-protected.
+///
+/// # Errors
+/// If a name is wrong, a file cannot be written, or two files are the same.
 pub fn check_outputs(exr: &Path, png: Option<&Path>, may_stay: bool) -> Result<(), Failure> {
     check_name(exr, "exr", "--output")?;
     if let Some(path) = png {
@@ -21,39 +24,34 @@ pub fn check_outputs(exr: &Path, png: Option<&Path>, may_stay: bool) -> Result<(
     Inputs::default().check_apart(paths())
 }
 
-/// Checks that none of a picture's files is there and write-protected.
+/// Refuses existing files that are write-protected.
 pub fn check_unprotected<'a>(files: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
     files.into_iter().try_for_each(|path| atomic::check_unprotected(path).map_err(Failure::output))
 }
 
-/// Checks the ending of a file's name that `option` gives.
+/// Checks the extension of a file that `option` names.
 pub fn check_name(path: &Path, extension: &str, option: &str) -> Result<(), Failure> {
     if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
         let path = path.display();
         return Err(Failure::usage(anyhow!(
-            "{option} {path}: this names a folder; name a file, without / at its end"
+            "{option} {path}: this is the name of a folder; give the name of a file, without / at its end"
         )));
     }
     let right = path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case(extension));
     if right {
         return Ok(());
     }
-    Err(Failure::usage(anyhow!("{option} {}: the file's name must end in .{extension}", path.display())))
+    Err(Failure::usage(anyhow!("{option} {}: the name of the file must end in .{extension}", path.display())))
 }
 
-/// Files that a command reads, links followed.
+/// Files that a command reads, with resolved links.
 #[derive(Default)]
 pub struct Inputs(BTreeSet<PathBuf>);
 
 impl Inputs {
-    /// The files at `paths`.
+    /// Builds the set of the files at `paths`.
     pub fn new<P: AsRef<Path>>(paths: impl IntoIterator<Item = P>) -> Inputs {
         Inputs(paths.into_iter().filter_map(|path| atomic::resolve(path.as_ref()).ok()).collect())
-    }
-
-    /// The files of a session's scene.
-    pub fn of(session: &Session) -> Inputs {
-        Inputs::new(&session.world.scene.sources)
     }
 
     /// Refuses an output that would replace an input or another output.
@@ -62,9 +60,9 @@ impl Inputs {
         for path in outputs {
             let Ok(target) = atomic::resolve(path) else { continue };
             let refuse =
-                |what: &str| Err(Failure::usage(anyhow!("{}: {what}: name another file", path.display())));
+                |what: &str| Err(Failure::usage(anyhow!("{}: {what}; name another file", path.display())));
             if self.0.contains(&target) {
-                return refuse("this file is read, and would be lost");
+                return refuse("this file is an input and would be lost");
             }
             if !written.insert(target) {
                 return refuse("two results would be written to this file");
@@ -73,7 +71,7 @@ impl Inputs {
         Ok(())
     }
 
-    /// Refuses a PNG beside which PNGs of layers, named after it, might replace an input.
+    /// Refuses a PNG file if the PNG file of a layer, which is named after it, might replace an input.
     pub fn check_layers(&self, png: &Path) -> Result<(), Failure> {
         let Ok(target) = atomic::resolve(png) else { return Ok(()) };
         let stem = target.with_extension("");
@@ -83,7 +81,7 @@ impl Inputs {
         };
         match self.0.iter().find(is_layer) {
             Some(input) => Err(Failure::usage(anyhow!(
-                "{}: the PNG of a layer might replace {}, which is read: name another file",
+                "{}: the PNG file of a layer might replace the input {}; name another file",
                 png.display(),
                 input.display()
             ))),

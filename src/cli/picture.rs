@@ -1,37 +1,40 @@
-//! Files of a picture: OpenEXR, tone-mapped PNG, and PNGs of the layers that are meant to be shown.
+//! Files of an image: OpenEXR, the tone-mapped PNG, and PNG files of layers for display.
 
 use super::exit::Failure;
 use base::film::{ExrFile, Film, false_colour, write_exr, write_png, write_srgb8};
 use std::path::{Path, PathBuf};
 
-/// Files that have been written, and a line that says so.
+/// Files that have been written, with a message.
 pub struct Written {
-    /// The line.
+    /// The message.
     pub said: String,
     /// The files.
     pub files: Vec<PathBuf>,
 }
 
-/// Facts of a picture that differ between equal renders: time and machine.
+/// Facts of an image that differ between equal renders.
 const CIRCUMSTANCES: [&str; 2] = ["render_seconds", "threads"];
 
-/// Takes those facts out, so that equal renders are equal files.
+/// Removes the facts that differ between equal renders.
 pub fn forget_circumstances(film: &mut Film) {
     CIRCUMSTANCES.iter().for_each(|key| film.metadata.remove(key));
 }
 
-/// File of a part of the picture at `path`, beside it.
+/// Returns the file beside `path` for a partial image.
 pub fn beside(path: &Path) -> PathBuf {
     let extension = path.extension().map(|extension| extension.to_string_lossy());
     path.with_extension(format!("partial.{}", extension.unwrap_or_default()))
 }
 
-/// True if the file is a picture of which only a part has been rendered.
+/// Returns true if the file is a partial image.
 pub fn is_partial(exr: &Path) -> bool {
     ExrFile::read(exr).is_ok_and(|file| file.metadata().text("partial") == Some("true"))
 }
 
-/// Writes a picture to `exr`, then to a PNG by a factor on radiance.
+/// Writes an image to `exr`, then PNG files. The number is a factor on radiance.
+///
+/// # Errors
+/// If a file cannot be written.
 pub fn write(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> Result<Written, Failure> {
     let mut written = describe(exr, png, &mut film);
     write_exr(exr, &film).map_err(Failure::output)?;
@@ -39,7 +42,10 @@ pub fn write(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> Result<Wr
     Ok(written)
 }
 
-/// The same with the OpenEXR file last: where it is, the others are.
+/// Writes an image like [`write()`], with the OpenEXR file last: if it exists, the others exist.
+///
+/// # Errors
+/// If a file cannot be written.
 pub fn write_exr_last(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> Result<Written, Failure> {
     let mut written = describe(exr, png, &mut film);
     written.files.extend(write_previews(png, &film)?);
@@ -47,7 +53,7 @@ pub fn write_exr_last(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> 
     Ok(written)
 }
 
-/// Stores the exposure of the PNG in the film; returns the line that names the files, and the first of them.
+/// Stores the exposure of the PNG in the film. Returns the message and the OpenEXR file.
 fn describe(exr: &Path, png: Option<(&Path, f32)>, film: &mut Film) -> Written {
     let mut said = format!("wrote {}", exr.display());
     if let Some((path, factor)) = png {
@@ -57,7 +63,7 @@ fn describe(exr: &Path, png: Option<(&Path, f32)>, film: &mut Film) -> Written {
     Written { said, files: vec![exr.to_owned()] }
 }
 
-/// Writes the PNG, and beside it every layer that is meant to be shown as another, named after it; returns their files.
+/// Writes the PNG file, and a PNG file named after it for every layer for display. Returns the files.
 fn write_previews(png: Option<(&Path, f32)>, film: &Film) -> Result<Vec<PathBuf>, Failure> {
     let Some((picture, factor)) = png else { return Ok(Vec::new()) };
     write_png(picture, &film.color, factor).map_err(Failure::output)?;

@@ -8,24 +8,24 @@ use render::method::Method;
 use render::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE};
 use render::session::Wanted;
 
-/// Default of the maximum number of paths a pixel where its error is measured.
+/// Default of the maximum number of paths per pixel whose error is measured.
 const MAX_SAMPLES: u32 = 1 << 16;
 
 /// Named settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Quality {
-    /// To see whether the scene is right
+    /// To check the scene
     Draft,
-    /// To judge the light
+    /// To judge the lighting
     Preview,
-    /// To keep
+    /// Final image
     Final,
-    /// To hold others to
+    /// Reference for other images
     Reference,
 }
 
 impl Quality {
-    /// Level of its settings on the quality scale.
+    /// Returns the level of the settings on the quality scale.
     pub fn height(self) -> f64 {
         match self {
             Quality::Draft => DRAFT,
@@ -40,17 +40,15 @@ impl Quality {
 #[derive(Clone, Debug, Default, Args, PartialEq)]
 #[command(next_help_heading = "Planned settings")]
 pub struct PlanArgs {
-    /// Settings by name; those that are typed are held
+    /// Named settings; settings given on the command line are not changed
     #[arg(long, value_enum, conflicts_with_all = ["time", "error"])]
     pub quality: Option<Quality>,
-    /// Plan the settings so that the whole run, from start to written files, takes about this long (10s,
-    /// 500ms, 2m); only --verify comes on top. Settings that are typed are held. They depend on the machine;
-    /// the run says which they are
+    /// Choose settings so that the run takes about this long, from start to written files without --verify (10s, 500ms,
+    /// 2m); settings given on the command line are not changed. The settings depend on the machine and are printed
     #[arg(long, value_name = "TIME", value_parser = parse_time, allow_hyphen_values = true, conflicts_with = "error")]
     pub time: Option<f64>,
-    /// Find the cheapest settings whose measured relative RMS error is this or less (like 2%), known in 95 of
-    /// 100 cases; settings that are typed are held. --verify says how many pixels are measured [default:
-    /// 1000]
+    /// Find the cheapest settings whose measured relative RMS error is at most this (like 2%) with 95 % confidence;
+    /// settings given on the command line are not changed. --verify sets the number of measured pixels [default: 1000]
     #[arg(long, value_name = "PERCENT", value_parser = parse_percent, allow_hyphen_values = true)]
     pub error: Option<f64>,
 }
@@ -63,8 +61,11 @@ impl PlanArgs {
         Ok(ladder.at(quality.height()))
     }
 
-    /// Returns the goal that settings of `method` are planned for, except those pinned in `held`;
-    /// `max_samples` as given. The run began with `run`.
+    /// Returns the goal for which settings of `method` are planned, except those pinned in `held`. The run began with
+    /// `run`.
+    ///
+    /// # Errors
+    /// If the method has no scale of settings.
     pub fn wanted(
         &self,
         method: &Method,
@@ -85,14 +86,14 @@ impl PlanArgs {
     }
 }
 
-/// Error of a method without a scale of settings, with those that have one.
+/// Returns the error of a method without a scale of settings, which names the methods that have one.
 fn unplannable(options: &str) -> Failure {
     let planned = Method::all().filter(|method| !method.ladder().is_empty());
     let planned: Vec<_> = planned.map(|method| method.name()).collect();
-    Failure::usage(anyhow!("{options} settings of --method {}", planned.join(", ")))
+    Failure::usage(anyhow!("{options} settings of --method {} only", planned.join(", ")))
 }
 
-/// Seconds.
+/// Parses a duration; returns seconds.
 fn parse_time(text: &str) -> Result<f64, String> {
     let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("h", 3600.0), ("", 1.0)];
     let seconds = units.iter().find_map(|&(unit, factor)| {
@@ -105,7 +106,7 @@ fn parse_time(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A fraction.
+/// Parses a percentage; returns a fraction.
 fn parse_percent(text: &str) -> Result<f64, String> {
     match text.strip_suffix('%').and_then(|number| number.trim().parse::<f64>().ok()) {
         Some(percent) if percent > 0.0 && percent <= 1000.0 => Ok(percent / 100.0),

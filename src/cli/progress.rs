@@ -1,6 +1,6 @@
-//! Progress messages on stderr, from a thread of its own that reads the method's [`Control`].
+//! Progress messages on stderr. A thread of their own reads the [`Control`] of the method.
 
-use super::course::Course;
+use super::course::RunProgress;
 use super::talk;
 use super::values::ProgressMode;
 use base::progress::{Control, Progress};
@@ -15,23 +15,24 @@ use std::time::Duration;
 const BAR_INTERVAL: Duration = Duration::from_millis(100);
 /// Interval between events.
 const LINE_INTERVAL: Duration = Duration::from_millis(500);
-/// Interval between lines for agents, which write each to a log.
+/// Interval between lines for agents, which log every line.
 const AGENT_INTERVAL: Duration = Duration::from_secs(2);
 
-/// Tells of the progress of a run's frames.
+/// Reporter of the progress of frames.
 pub struct Watch {
     mode: ProgressMode,
-    course: Course,
+    run: RunProgress,
 }
 
 impl Watch {
-    /// A watch over the frames of a part of the run.
-    pub fn new(mode: ProgressMode, course: Course) -> Watch {
-        Watch { mode, course }
+    /// Builds the reporter of a part of a run.
+    pub fn new(mode: ProgressMode, run: RunProgress) -> Watch {
+        Watch { mode, run }
     }
 
-    /// Runs `work`, which renders a frame, while another thread tells of its progress; all is told when this returns.
-    /// The frame is done if `is_done` says so of the result.
+    /// Runs `work`, which renders a frame, while another thread reports its progress.
+    ///
+    /// The frame counts as complete if `is_done` accepts the result.
     pub fn frame<R>(
         &mut self,
         number: Option<usize>,
@@ -41,44 +42,45 @@ impl Watch {
     ) -> R {
         control.begin_frame();
         let bar = std::io::stderr().is_terminal();
-        let [done, frames] = self.course.frames();
-        let course = &mut self.course;
+        let [done, frames] = self.run.frames();
+        let place = format!("picture {} of {frames}", done + 1);
+        let run = &mut self.run;
         let result = match self.mode {
             ProgressMode::None => work(),
             ProgressMode::Auto if !bar => work(),
             ProgressMode::Auto => beside(work, |stop| show_bar(control, stop)),
             ProgressMode::Ndjson => beside(work, |stop| {
                 while goes_on(&stop, LINE_INTERVAL) {
-                    write_events(control, number, |now| told(course, Some(now)));
+                    write_events(control, number, |now| fraction_and_eta(run, Some(now)));
                 }
             }),
             ProgressMode::Openjd => beside(work, |stop| {
                 while goes_on(&stop, AGENT_INTERVAL) {
-                    write_for_agents(control, (done, frames), |now| course.fraction(Some(now)));
+                    write_for_agents(control, &place, |now| run.fraction(Some(now)));
                 }
             }),
         };
         if is_done(&result) {
-            self.course.frame_done();
+            self.run.frame_done();
         }
-        // The fraction of a frame that is not done stays as it was told last.
+        // The fraction of a frame that is not complete stays at its last value.
         match self.mode {
-            ProgressMode::Ndjson => write_events(control, number, |_| told(&mut self.course, None)),
+            ProgressMode::Ndjson => write_events(control, number, |_| fraction_and_eta(&mut self.run, None)),
             ProgressMode::Openjd => {
-                write_for_agents(control, (done, frames), |_| self.course.fraction(None));
+                write_for_agents(control, &place, |_| self.run.fraction(None));
             }
             ProgressMode::Auto | ProgressMode::None => {}
         }
         result
     }
 
-    /// Frames done and all frames.
+    /// Returns the number of complete frames and the number of all frames.
     pub fn frames(&self) -> [usize; 2] {
-        self.course.frames()
+        self.run.frames()
     }
 }
 
-/// Runs `work` here and `watch` in a thread that learns of the end by its channel closing, panic or not.
+/// Runs `work` here and `watch` in another thread. The channel of `watch` closes when `work` ends or panics.
 fn beside<R>(work: impl FnOnce() -> R, watch: impl FnOnce(Receiver<()>) + Send) -> R {
     thread::scope(|scope| {
         let (open, stop) = channel();
@@ -89,22 +91,23 @@ fn beside<R>(work: impl FnOnce() -> R, watch: impl FnOnce(Receiver<()>) + Send) 
     })
 }
 
-/// Waits; false when the work has ended.
+/// Waits for an interval. Returns false when the work has ended.
 fn goes_on(stop: &Receiver<()>, interval: Duration) -> bool {
     matches!(stop.recv_timeout(interval), Err(RecvTimeoutError::Timeout))
 }
 
+/// Shows a progress bar until the work ends.
 fn show_bar(control: &Control, stop: Receiver<()>) {
     let known = style("{msg:<10} [{bar:40}] {percent:>3} %  {elapsed_precise}  (ends in {eta})");
     let unknown = style("{msg:<10} {spinner} {pos}  {elapsed_precise}");
-    // Whatever is set draws the bar anew, by the style that it has then.
+    // Every change redraws the bar in its current style. So it is hidden until its first stage is set.
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(unknown.clone());
     let mut stage = None;
     while goes_on(&stop, BAR_INTERVAL) {
         let Some(progress) = control.progress() else { continue };
         if stage != Some((progress.stage, progress.is_planning)) {
             bar.set_style(if progress.total > 0 { known.clone() } else { unknown.clone() });
-            bar.set_message(progress.displayed_stage().name());
+            bar.set_message(progress.told().name());
             bar.set_length(progress.total);
             bar.reset();
             if stage.is_none() {
@@ -120,20 +123,21 @@ fn show_bar(control: &Control, stop: Receiver<()>) {
 }
 
 fn style(template: &str) -> ProgressStyle {
-    // The templates are constants; were one wrong, the plain bar would do.
+    // The templates are constants. The default bar replaces a wrong one.
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
-/// Fraction of the run that is done, and the seconds that the rest will take; at the end of a frame, there is no `now`.
-fn told(course: &mut Course, now: Option<&Progress>) -> (f64, Option<f64>) {
-    (course.fraction(now), course.eta_seconds())
+/// Returns the fraction of the run that is done, and the expected seconds until its end. `now` is `None` at the end of
+/// a frame.
+fn fraction_and_eta(run: &mut RunProgress, now: Option<&Progress>) -> (f64, Option<f64>) {
+    (run.fraction(now), run.eta_seconds())
 }
 
-/// Writes the stages begun since the last time, and the progress if there is any.
+/// Writes events of the stages that began since the last call, and of the progress if there is any.
 fn write_events(
     control: &Control,
     number: Option<usize>,
-    told: impl FnOnce(&Progress) -> (f64, Option<f64>),
+    fraction_and_eta: impl FnOnce(&Progress) -> (f64, Option<f64>),
 ) {
     let (begun, now) = control.news();
     for stage in begun {
@@ -141,9 +145,9 @@ fn write_events(
     }
     let Some(now) = now else { return };
     talk::event("progress", || {
-        let (fraction, eta_seconds) = told(&now);
+        let (fraction, eta_seconds) = fraction_and_eta(&now);
         let fields = json!({
-            "stage": now.displayed_stage(),
+            "stage": now.told(),
             "done": now.done,
             "total": now.total,
             "fraction": fraction,
@@ -161,33 +165,28 @@ fn with_frame(number: Option<usize>, mut fields: Value) -> Value {
     fields
 }
 
-/// Writes the percentage and the stage at hand, as Open Job Description's sessions read them, of the frame at `place`
-/// among `frames`.
-fn write_for_agents(
-    control: &Control,
-    (place, frames): (usize, usize),
-    fraction: impl FnOnce(&Progress) -> f64,
-) {
+/// Writes the percentage, the place and the stage for sessions of Open Job Description.
+fn write_for_agents(control: &Control, place: &str, fraction: impl FnOnce(&Progress) -> f64) {
     if let (_, Some(now)) = control.news() {
         talk::line(&format!("openjd_progress: {:.2}", 100.0 * fraction(&now)));
-        let stage = now.displayed_stage().name();
-        talk::line(&format!("openjd_status: picture {} of {frames}: {stage}", place + 1));
+        let stage = now.told().name();
+        talk::line(&format!("openjd_status: {place}: {stage}"));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::course::{Span, Stages};
+    use crate::course::{RunSpan, Stages};
 
     #[test]
     fn the_watcher_ends_with_the_work_and_the_result_comes_through() {
         let control = Control::new();
         for mode in [ProgressMode::None, ProgressMode::Auto, ProgressMode::Ndjson, ProgressMode::Openjd] {
-            let mut watch = Watch::new(mode, Course::new(2, Stages::default(), Span::whole()));
+            let mut watch = Watch::new(mode, RunProgress::new(2, Stages::default(), RunSpan::whole()));
             assert_eq!(watch.frame(None, &control, || 7, |result| *result == 7), 7);
             assert_eq!(watch.frame(None, &control, || 8, |result| *result == 7), 8);
-            assert_eq!(watch.course.frames(), [1, 2]);
+            assert_eq!(watch.frames(), [1, 2]);
         }
     }
 

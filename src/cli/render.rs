@@ -1,19 +1,19 @@
-//! `lightsplat render`: opens a session, renders the frame, writes it; whatever happens, no file is left half-written.
+//! `lightsplat render`: opens a session, renders a frame and writes it. No file is left incomplete.
 
 use super::args::{RenderArgs, StatsFormat};
-use super::course::{Course, Span, Stages};
+use super::course::{RunProgress, RunSpan, Stages};
 use super::exit::Failure;
 use super::job::RenderJob;
 use super::job_key;
-use super::outputs::{self, Inputs};
+use super::opened::Opened;
 use super::progress::Watch;
-use super::{interrupt, opened, picture, talk, threads};
+use super::{interrupt, opened, outputs, picture, talk, threads};
 use anyhow::{Context, anyhow};
 use base::film::SAMPLES;
 use base::progress::Control;
 use base::stats::{Stage, Stopwatch, peak_resident_bytes};
 use render::method::path::Begun;
-use render::session::{BLACK, Frame, FrameError, Opened, Remark};
+use render::session::{BLACK, Frame, FrameError, Remark};
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -28,34 +28,38 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     threads::pool(job.threads)?.install(|| {
         let opened = opened::open(&job.scene, &job.reading)?;
-        still(&job, &opened, Span::whole(), &control)
+        still(&job, &opened, RunSpan::whole(), &control)
     })
 }
 
-/// Renders the picture, unless it is there and may stay, and says what came of it. It is the part `span` of the run.
-pub fn still(job: &RenderJob, opened: &Opened, span: Span, control: &Control) -> Result<(), Failure> {
+/// Renders an image and reports the result, unless a complete image exists that may stay. The image takes the part
+/// `span` of the run.
+///
+/// # Errors
+/// If the image cannot be rendered or written, or a signal interrupted the run.
+pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control) -> Result<(), Failure> {
     let (exr, png) = (&job.output, job.png.as_ref().map(|(path, _)| path.as_path()));
     let key = job.key(&opened.session);
-    if job.resume && job_key::is_done((exr, png), job.framing.frame, &key) {
-        talk::note(&format!("{} is there already, left as it is", exr.display()));
+    if job.resume && job_key::is_done(exr, png, job.framing.frame, &key) {
+        talk::note(&format!("{} exists already and is left as it is", exr.display()));
         return Ok(());
     }
     let paths = || [exr.as_path()].into_iter().chain(png);
-    let inputs = Inputs::of(&opened.session);
-    inputs.check_apart(paths())?;
+    opened.inputs.check_apart(paths())?;
     outputs::check_unprotected(paths())?;
     if let Some(png) = png.filter(|_| job.goal.method.text("inspect").is_some_and(|inspect| inspect == "on"))
     {
-        inputs.check_layers(png)?;
+        opened.inputs.check_layers(png)?;
     }
     let parts = [exr.clone(), picture::beside(exr)];
     let begun = parts.iter().filter(|_| job.resume);
     let begun = begun.filter_map(|part| Some((part, job_key::begun(part, job.framing.frame, &key)?))).next();
     let begun = begun.map(|(part, begun)| {
-        talk::note(&format!("goes on with the samples of {}", part.display()));
+        talk::note(&format!("continuing with the samples of {}", part.display()));
         begun
     });
-    let mut frame = render(job, opened, begun, (span, control))?;
+    let progress = Watch::new(job.progress, RunProgress::new(1, Stages::of(&job.goal), span));
+    let mut frame = render(job, opened, begun, progress, control)?;
     let (exr, png) = files(job, frame.complete);
     frame.facts["output"] = exr.to_string_lossy().into();
     frame.facts["png"] = png.as_ref().map(|path| path.to_string_lossy()).into();
@@ -97,16 +101,17 @@ pub fn still(job: &RenderJob, opened: &Opened, span: Span, control: &Control) ->
     match (complete, unverified) {
         (true, _) if job.reading.strict && is_black => Err(Failure::render(anyhow!("{output}: {BLACK}"))),
         (true, false) => Ok(()),
-        (true, true) => {
-            Err(Failure::interrupted(anyhow!("interrupted; {output} is complete, its error not measured")))
-        }
+        (true, true) => Err(Failure::interrupted(anyhow!(
+            "interrupted; {output} is complete, but its error is not measured"
+        ))),
         (false, _) => {
-            let further = if can_go_on { "; go on by the same command with --resume" } else { "" };
+            let further = if can_go_on { "; run the same command with --resume to continue" } else { "" };
             Err(Failure::interrupted(anyhow!("interrupted; {output} is partial{further}")))
         }
     }
 }
 
+/// Prints the remarks of a frame.
 fn say(remarks: &[Remark]) {
     for remark in remarks {
         match remark {
@@ -116,19 +121,19 @@ fn say(remarks: &[Remark]) {
     }
 }
 
-/// The frame, with the times of opening its session and the facts that only the command knows.
+/// Renders the frame. Adds the times of opening the session, and the facts that only the command knows.
 fn render(
     job: &RenderJob,
     opened: &Opened,
     begun: Option<Begun>,
-    (span, control): (Span, &Control),
+    mut progress: Watch,
+    control: &Control,
 ) -> Result<Frame, Failure> {
     let Opened { session, warnings, .. } = opened;
     let view = View::new(&session.cameras, &job.framing).map_err(Failure::usage)?;
     if control.is_cancelled() {
         return Err(Failure::interrupted(FrameError::Interrupted));
     }
-    let mut progress = Watch::new(job.progress, Course::new(1, Stages::of(&job.goal), span));
     let work = || match begun {
         Some(begun) => session.rest_of_frame(&view, &job.goal, begun, control),
         None => session.frame(&view, &job.goal, control),
@@ -148,12 +153,11 @@ fn render(
     if let Some(number) = job.framing.frame {
         frame.film.metadata.set("frame", number as f64);
     }
-    frame.facts["scene_warnings"] = warnings.len().into();
+    frame.facts["scene_warnings"] = (*warnings).into();
     Ok(frame)
 }
 
-/// Removes the part of the picture that was written beside a former one, now that the whole is there. That it cannot be
-/// removed is no harm.
+/// Removes the partial image that an interrupted run wrote beside an older one. A failure to remove it does no harm.
 fn remove_parts(job: &RenderJob, key: &str) {
     let exr = picture::beside(&job.output);
     if !job_key::is_part(&exr, job.framing.frame, key) {
@@ -165,7 +169,7 @@ fn remove_parts(job: &RenderJob, key: &str) {
     }
 }
 
-/// The job's files, OpenEXR and PNG; for a part of a picture ones beside them, where one is that may be whole.
+/// Returns the OpenEXR and the PNG file of the job. A partial image gets files beside them if these may be complete.
 fn files(job: &RenderJob, is_complete: bool) -> (PathBuf, Option<PathBuf>) {
     let png = job.png.as_ref().map(|(path, _)| path);
     if is_complete || !job.output.exists() || picture::is_partial(&job.output) {

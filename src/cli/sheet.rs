@@ -1,4 +1,4 @@
-//! `lightsplat sheet`: frames of a walk side by side in one picture, smaller.
+//! `lightsplat sheet`: puts thumbnails of the frames of a walk on one image.
 
 use super::args::SheetArgs;
 use super::exit::Failure;
@@ -9,11 +9,11 @@ use base::film::{atomic, write_srgb8};
 use image::RgbImage;
 use image::imageops::{replace, thumbnail};
 
-/// Pixels between frames.
+/// Gap between frames in pixels.
 const GAP: u32 = 4;
-/// Grey between frames.
+/// Grey level of the gaps.
 const GREY: u8 = 32;
-/// Ratio of the sides of a sheet, about.
+/// Approximate aspect ratio of a sheet.
 const ASPECT: f64 = 16.0 / 9.0;
 /// Maximum number of pixels of a sheet.
 const MAX_PIXELS: u64 = 1 << 28;
@@ -29,7 +29,10 @@ pub fn run(args: SheetArgs) -> Result<(), Failure> {
     for (place, number) in (0..).zip(args.frames.iter()) {
         let path = picture_of(number);
         let picture = image::open(&path).map_err(|error| {
-            Failure::input(anyhow!("{}: {error}; the frames need their PNG files", path.display()))
+            Failure::input(anyhow!(
+                "{}: {error}; a sheet needs the PNG files of all its frames",
+                path.display()
+            ))
         })?;
         let picture = picture.into_rgb8();
         let sheet = match &mut sheet {
@@ -41,11 +44,11 @@ pub fn run(args: SheetArgs) -> Result<(), Failure> {
     let Some(Sheet { image, .. }) = sheet else { return Ok(()) };
     let size = [image.width(), image.height()];
     write_srgb8(&args.output, size, image.as_raw()).map_err(Failure::output)?;
-    talk::wrote(&format!("wrote {}, {count} frames", args.output.display()), &[args.output]);
+    talk::wrote(&format!("wrote {} with {count} frames", args.output.display()), &[args.output]);
     Ok(())
 }
 
-/// Frames in rows, from left to right and top to bottom.
+/// Sheet of frames in rows, from left to right and top to bottom.
 struct Sheet {
     image: RgbImage,
     columns: u32,
@@ -54,7 +57,10 @@ struct Sheet {
 }
 
 impl Sheet {
-    /// An empty sheet for so many frames of the shape of the first.
+    /// Builds an empty sheet for `count` frames with the aspect ratio of the first.
+    ///
+    /// # Errors
+    /// If the sheet would be too large.
     fn new(count: u32, columns: Option<u32>, width: u32, first: (u32, u32)) -> Result<Sheet, Failure> {
         let width = width.min(first.0);
         let height = (f64::from(first.1) * f64::from(width) / f64::from(first.0)).round().max(1.0) as u32;
@@ -65,7 +71,7 @@ impl Sheet {
         let sides = [side(columns, width), side(count.div_ceil(columns), height)];
         if sides[0].saturating_mul(sides[1]) > MAX_PIXELS {
             return Err(Failure::usage(anyhow!(
-                "a sheet of {count} frames would have {} x {} pixels: take fewer --frames, or a smaller --width",
+                "a sheet of {count} frames would have {} x {} pixels; use fewer --frames or a smaller --width",
                 sides[0],
                 sides[1]
             )));
@@ -74,7 +80,7 @@ impl Sheet {
         Ok(Sheet { image: RgbImage::from_pixel(w, h, image::Rgb([GREY; 3])), columns, cell: [width, height] })
     }
 
-    /// Puts a frame in its place.
+    /// Puts a frame at its place.
     fn put(&mut self, place: u32, picture: &RgbImage) {
         let [width, height] = self.cell;
         let at = |index: u32, size: u32| i64::from(GAP + index * (size + GAP));

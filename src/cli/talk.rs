@@ -1,5 +1,7 @@
-//! Output: messages on stderr, data on stdout. Messages are prose, or events, one JSON object a line, by the schema in
-//! docs/progress.md; or prose with lines between that agents of Open Job Description read.
+//! Output: messages go to stderr, data goes to stdout.
+//!
+//! Messages are prose, or events (one JSON object per line, by the schema in docs/progress.md), or prose with
+//! additional lines for agents of Open Job Description.
 
 use super::exit::Failure;
 use super::values::ProgressMode;
@@ -10,43 +12,43 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::Instant;
 
-/// Version of the schema of events: it grows when a field or event goes or changes its meaning, not when one comes.
+/// Version of the schema of events. A version ends if a field or an event is removed or changes its meaning.
 const SCHEMA: u32 = 1;
 
-/// Kind of messages, and the start of the run. Set once, before any message.
+/// Kind of messages, and the start of the run. The first call of [`start`] sets it.
 static VOICE: OnceLock<(ProgressMode, Instant)> = OnceLock::new();
 
 fn mode() -> ProgressMode {
     VOICE.get().map_or(ProgressMode::Auto, |(mode, _)| *mode)
 }
 
-/// Seconds since the start of the run.
+/// Returns the seconds since the start of the run.
 pub fn seconds() -> f64 {
     VOICE.get().map_or(0.0, |(_, start)| start.elapsed().as_secs_f64())
 }
 
-/// Chooses the kind of messages for the rest of the run, and says that it begins.
+/// Sets the kind of messages for the rest of the run, and writes the first event.
 pub fn start(mode: ProgressMode, command: &str) {
     VOICE.get_or_init(|| (mode, Instant::now()));
     event("start", || json!({ "command": command, "version": env!("CARGO_PKG_VERSION") }));
 }
 
-/// Says how the run ended, for programs.
+/// Writes the last event.
 pub fn end(code: u8) {
     event("end", || json!({ "exit": code, "seconds": seconds() }));
 }
 
-/// Something the user should know.
+/// Prints a note.
 pub fn note(text: &str) {
     say("note", text);
 }
 
-/// Prints a warning that the result may differ from the user's expectation.
+/// Prints a warning: the result may differ from what the user expects.
 pub fn warning(text: &str) {
     say("warning", text);
 }
 
-/// Why the run, or a part of it, failed.
+/// Prints why the run, or a part of it, failed.
 pub fn error(failure: &Failure) {
     if mode() == ProgressMode::Openjd {
         line(&format!("openjd_fail: {failure}"));
@@ -54,7 +56,7 @@ pub fn error(failure: &Failure) {
     say("error", &failure.to_string());
 }
 
-/// Files that have been written, whole.
+/// Reports files that are complete.
 pub fn wrote(text: &str, files: &[PathBuf]) {
     match mode() {
         ProgressMode::Ndjson => event("wrote", || {
@@ -65,7 +67,7 @@ pub fn wrote(text: &str, files: &[PathBuf]) {
     }
 }
 
-/// The sum of a run of several pictures, with figures for programs.
+/// Reports the result of a run of several images. `figures` are for programs.
 pub fn summary(text: &str, figures: impl FnOnce() -> Value) {
     match mode() {
         ProgressMode::Ndjson => event("summary", || {
@@ -77,7 +79,7 @@ pub fn summary(text: &str, figures: impl FnOnce() -> Value) {
     }
 }
 
-/// An event for programs that watch, where they do: its kind and its fields, an object.
+/// Writes an event for programs, if the messages are events. `fields` returns an object.
 pub fn event(kind: &str, fields: impl FnOnce() -> Value) {
     if mode() == ProgressMode::Ndjson {
         let mut object = fields();
@@ -87,7 +89,7 @@ pub fn event(kind: &str, fields: impl FnOnce() -> Value) {
     }
 }
 
-/// One line. Nobody may be listening, which is no error.
+/// Writes a line. A closed stderr is no error.
 pub fn line(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
@@ -100,7 +102,7 @@ fn say(kind: &str, text: &str) {
     }
 }
 
-/// Writes data to stdout. That the reader has gone (`| head`) is no error.
+/// Writes data to stdout. A reader that has closed the pipe (`| head`) is no error.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {

@@ -1,4 +1,4 @@
-//! Values that options may have.
+//! Values of options.
 
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -7,36 +7,36 @@ use scene::MAX_SIDE;
 use std::num::NonZeroUsize;
 use std::str::FromStr;
 
-/// Ways of telling progress.
+/// Form of the messages on stderr.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ProgressMode {
-    /// A bar on a terminal, nothing elsewhere
+    /// A progress bar on a terminal, no progress otherwise
     Auto,
-    /// All talk as one JSON object a line, by the schema in docs/progress.md
+    /// All messages as JSON, one object per line, by the schema in docs/progress.md
     Ndjson,
-    /// Lines that agents of Open Job Description read between the others
+    /// Additional lines for agents of Open Job Description
     Openjd,
-    /// None
+    /// No progress
     None,
 }
 
-/// A feature by its name.
+/// Returns the parser of names of features.
 pub fn feature() -> impl TypedValueParser<Value = Feature> {
     PossibleValuesParser::new(Feature::ALL.map(Feature::name)).try_map(|name| name.parse::<Feature>())
 }
 
-/// A number of things, or of one among them.
+/// Parses a count, or a number that counts from 1.
 pub fn counted(text: &str) -> Result<NonZeroUsize, String> {
     text.parse().map_err(|_| "expected a whole number, 1 or more".to_owned())
 }
 
-/// A scale of quantisation.
+/// Parses a quantisation scale.
 pub fn q_scale(text: &str) -> Result<f32, String> {
     let scale = text.parse().ok().filter(|scale| *scale == 0.0 || (0.01..=1000.0).contains(scale));
     scale.ok_or_else(|| "expected 0 or a scale from 0.01 to 1000, like 4".to_owned())
 }
 
-/// `WxH`.
+/// Film size, parsed from `WxH`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Resolution(pub [u32; 2]);
 
@@ -54,12 +54,12 @@ impl FromStr for Resolution {
     }
 }
 
-/// `X,Y,W,H`.
+/// Rectangle of the film, parsed from `X,Y,W,H`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crop {
-    /// First column and row.
+    /// First column and first row.
     pub offset: [u32; 2],
-    /// Columns and rows.
+    /// Number of columns and of rows.
     pub size: [u32; 2],
 }
 
@@ -75,7 +75,7 @@ impl FromStr for Crop {
     }
 }
 
-/// Number of bytes, as `512M` or `2G`.
+/// Number of bytes, parsed from `512M` or `2G`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bytes(pub u64);
 

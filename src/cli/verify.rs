@@ -1,12 +1,11 @@
-//! `render --verify`: how the error of a picture is measured.
+//! Settings of `render --verify`.
 
 use super::args::{VerifyAgainst, VerifyArgs};
 use render::method::Method;
 use render::verify::Settings;
 use transport::paths::Estimand;
 
-/// Returns the settings of the verification, if asked for; `always` (where settings are planned by the error)
-/// even if not.
+/// Returns the settings of the verification if the options ask for it, or `always`: planning by the error needs it.
 pub fn settings(args: &VerifyArgs, method: &Method, always: bool) -> Option<Settings> {
     let defaults = Settings::default();
     if args.verify.is_none() && !always {

@@ -1,18 +1,18 @@
-//! `lightsplat walk`: renders frame after frame of a camera path; each is written whole before the next begins.
+//! `lightsplat walk`: renders the frames of a camera path. Each file is complete before the next frame begins.
 
 use super::args::WalkArgs;
-use super::course::{Course, Span, Stages};
+use super::course::{RunProgress, RunSpan, Stages};
 use super::exit::Failure;
-use super::outputs::{self, Inputs};
+use super::opened::Opened;
 use super::progress::Watch;
 use super::walk_job::{PlannedChunk, WalkJob};
-use super::walk_report::Report;
-use super::{interrupt, opened, picture, talk, threads};
+use super::walk_report::WalkReport;
+use super::{interrupt, opened, outputs, picture, talk, threads};
 use anyhow::{Context, anyhow};
 use base::film::{Exposure, Film, Image};
 use base::progress::Control;
 use base::stats::{Stage, Stopwatch};
-use render::session::{BLACK, Frame, FrameError, Opened, Remark, Session};
+use render::session::{BLACK, Frame, FrameError, Remark, Session};
 use render::walk::saved::{self, Pace};
 use render::walk::{Walk, exposure};
 use serde_json::json;
@@ -32,54 +32,56 @@ pub fn run(args: WalkArgs) -> Result<(), Failure> {
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     threads::pool(job.threads)?.install(|| {
         let opened = opened::open(&job.scene, &job.reading)?;
-        walk(&job, &opened, Span::whole(), &control)
+        walk(&job, &opened, RunSpan::whole(), &control)
     })
 }
 
-/// Renders the frames that are not there yet, and says what came of it. They are the part `span` of the run.
-pub fn walk(job: &WalkJob, opened: &Opened, span: Span, control: &Control) -> Result<(), Failure> {
+/// Renders the frames that do not exist yet, and reports the result. They take the part `span` of the run.
+///
+/// # Errors
+/// If a frame cannot be rendered or written, or a signal interrupted the run.
+pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) -> Result<(), Failure> {
     let Opened { session, warnings, .. } = opened;
     let chunks = job.plan(session)?;
-    let inputs = Inputs::of(session);
     for number in chunks.iter().flat_map(|chunk| &chunk.frames) {
         let (exr, png) = job.files(*number);
-        inputs.check_apart([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
+        opened.inputs.check_apart([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
     }
     for number in chunks.iter().flat_map(PlannedChunk::unwritten) {
         let (exr, png) = job.files(number);
         outputs::check_unprotected([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
     }
-    let mut report = Report::new(job.stats);
+    let mut report = WalkReport::new(job.stats);
     for number in chunks.iter().flat_map(PlannedChunk::untouched) {
         report.skip();
         talk::event("frame", || json!({ "frame": number, "state": "skipped" }));
     }
     let count = chunks.iter().map(PlannedChunk::count).sum();
-    let progress = Watch::new(job.progress, Course::new(count, Stages::of(&job.goal), span));
+    let progress = Watch::new(job.progress, RunProgress::new(count, Stages::of(&job.goal), span));
     let said = BTreeSet::new();
     let mut frames =
-        Frames { job, session, warnings: warnings.len(), control, factor: None, report, progress, said };
+        Frames { job, session, warnings: *warnings, control, factor: None, report, progress, said };
     let ended = chunks.into_iter().try_for_each(|chunk| frames.chunk(chunk));
     ended.and(frames.report.sum_up())
 }
 
-/// A walk under way.
+/// A running walk.
 struct Frames<'a> {
     job: &'a WalkJob,
     session: &'a Session,
-    /// Warnings of reading the scene.
+    /// Number of warnings of the reader.
     warnings: usize,
     control: &'a Control,
-    /// Factor of the PNG files, once it is known.
+    /// Factor on radiance in the PNG files, once it is known.
     factor: Option<f32>,
-    report: Report,
+    report: WalkReport,
     progress: Watch,
-    /// Remarks made before.
+    /// Remarks that were printed.
     said: BTreeSet<String>,
 }
 
 impl Frames<'_> {
-    /// Renders the frames of a chunk that lack, and those that have to be for their records.
+    /// Renders the missing frames of a chunk, and those frames whose records they need.
     fn chunk(&mut self, mut chunk: PlannedChunk) -> Result<(), Failure> {
         let Frames { job, session, .. } = *self;
         let records = job.records_file(&chunk);
@@ -88,7 +90,7 @@ impl Frames<'_> {
         let mut restored =
             saved.and_then(|(_, bytes)| Walk::restored(session, job.goal.clone(), job.limits, &bytes));
         if restored.is_none() && behind > 0 {
-            // Written by another program of this version: all begins anew.
+            // Another build of this version wrote the records. The chunk starts without them.
             return self.chunk(chunk.without_saved());
         }
         let mut pace = Pace::default();
@@ -108,14 +110,14 @@ impl Frames<'_> {
                 }
             }
         }
-        // Nobody will go on from these. That they cannot be removed is no harm.
+        // No run continues from these records. A failure to remove them does no harm.
         if let Some(path) = records.filter(|_| chunk.ends) {
             let _ = fs::remove_file(path);
         }
         Ok(())
     }
 
-    /// Renders a frame of a chunk, and writes it unless it is there.
+    /// Renders a frame of a chunk, and writes it unless it exists.
     fn frame(&mut self, walk: &mut Walk, chunk: &PlannedChunk, index: usize) -> Result<(), Failure> {
         let Frames { job, session, control, .. } = *self;
         let (number, is_there) = (chunk.frames[index], chunk.done[index]);
@@ -156,7 +158,7 @@ impl Frames<'_> {
         Ok(())
     }
 
-    /// Writes a frame and states its files.
+    /// Writes a frame and reports its files.
     fn write(&mut self, frame: &mut Frame, number: usize, key: &str, view: &View) -> Result<(), Failure> {
         let (exr, png) = self.job.files(number);
         let factor = self.factor(number, view)?;
@@ -175,8 +177,10 @@ impl Frames<'_> {
         Ok(())
     }
 
-    /// Factor of the PNG files, if they are wanted. Frames of the whole path decide, so that any part of it has the
-    /// same; frame `number` is the first that needs it.
+    /// Returns the factor on radiance in the PNG files; `None` if there are none.
+    ///
+    /// It depends on frames of the whole path, so that every part of the walk has the same factor. `number` is the
+    /// frame that needs it.
     fn factor(&mut self, number: usize, view: &View) -> Result<Option<f32>, Failure> {
         let Some(exposure) = self.job.exposure.filter(|_| self.factor.is_none()) else {
             return Ok(self.factor);
@@ -192,7 +196,7 @@ impl Frames<'_> {
         Ok(self.factor)
     }
 
-    /// Prints the remarks of a frame that no frame before it had.
+    /// Prints the remarks of a frame that no earlier frame had.
     fn say_once(&mut self, frame: &Frame, number: usize) {
         for remark in &frame.remarks {
             let (Remark::Note(text) | Remark::Warning(text)) = remark;
@@ -207,9 +211,9 @@ impl Frames<'_> {
     }
 }
 
-/// The frame at hand was not begun or is given up; those before it are whole.
+/// Returns the failure of a frame that was interrupted. The frames before it are complete.
 fn interrupted(number: usize) -> Failure {
     Failure::interrupted(anyhow!(
-        "interrupted before frame {number} was done, which is not written; go on by the same command with --resume"
+        "interrupted before frame {number} was complete; it is not written; run the same command with --resume to continue"
     ))
 }

@@ -1,4 +1,4 @@
-//! A walk command that has been checked as far as it can be without the scene.
+//! A walk command, checked as far as possible before the scene is read.
 
 use super::args::{StatsFormat, WalkArgs};
 use super::exit::Failure;
@@ -22,27 +22,27 @@ use world::view::Framing;
 pub struct WalkJob {
     /// Scene file.
     pub scene: PathBuf,
-    /// Reading of the scene.
+    /// Options of the scene reader.
     pub reading: LoadOptions,
-    /// Frames; `None` for all of the path.
+    /// Frames to render; `None` for the whole path.
     pub frames: Option<FrameList>,
-    /// Frames of a chunk, which begins without records; `None` for all of the path.
+    /// Number of frames per chunk, which begins without records; `None` for one chunk.
     pub chunk: Option<NonZeroUsize>,
-    /// True if frames whose files are there are left out.
+    /// True if existing frames with the same key are skipped.
     pub resume: bool,
-    /// True if the files hold nothing but what follows from scene and settings.
+    /// True if the files must depend on scene and settings alone.
     pub reproducible: bool,
-    /// Exposure of the PNG files, if they are wanted.
+    /// Exposure of the PNG files; `None` if there are none.
     pub exposure: Option<Exposure>,
     /// Method and features.
     pub goal: Goal,
-    /// Bounds of the records that are kept.
+    /// Limits of the records that stay between frames.
     pub limits: RetentionLimits,
     /// Number of threads.
     pub threads: usize,
-    /// Statistics on stdout.
+    /// Format of the statistics on stdout.
     pub stats: Option<StatsFormat>,
-    /// Progress on stderr.
+    /// Form of the messages on stderr.
     pub progress: ProgressMode,
     names: FileNames,
     framing: Framing,
@@ -50,6 +50,9 @@ pub struct WalkJob {
 
 impl WalkJob {
     /// Checks the arguments, and, if the frames are listed, that their files can be written.
+    ///
+    /// # Errors
+    /// If the arguments are wrong or a file cannot be written.
     pub fn new(args: WalkArgs) -> Result<WalkJob, Failure> {
         let held = args.method.typed();
         let plan = PlanArgs { quality: args.quality, ..PlanArgs::default() };
@@ -92,7 +95,7 @@ impl WalkJob {
             },
         };
         let listed = job.frames.iter().flat_map(FrameList::iter);
-        // Without a list the first frame speaks for all.
+        // Without a list the first frame stands for all.
         for frame in listed.chain(job.frames.is_none().then_some(1)) {
             let (exr, png) = job.files(frame);
             check_outputs(&exr, png.as_deref(), job.resume)?;
@@ -100,19 +103,19 @@ impl WalkJob {
         Ok(job)
     }
 
-    /// Files of a frame: OpenEXR and, if wanted, PNG.
+    /// Returns the files of a frame: OpenEXR, and PNG if there is to be one.
     pub fn files(&self, frame: usize) -> (PathBuf, Option<PathBuf>) {
         let exr = self.names.of(frame);
         let png = self.exposure.map(|_| exr.with_extension("png"));
         (exr, png)
     }
 
-    /// Framing of a frame.
+    /// Returns the framing of a frame.
     pub fn framing(&self, frame: usize) -> Framing {
         Framing { frame: Some(frame), ..self.framing }
     }
 
-    /// Numbers of the frames wanted.
+    /// Returns the numbers of the frames to render.
     ///
     /// # Errors
     /// If the scene has no camera path, or a frame lies beyond it.
@@ -121,20 +124,20 @@ impl WalkJob {
         let scene = self.scene.display();
         if frames == 0 {
             return Err(Failure::usage(anyhow!(
-                "{scene} has no camera path: give a TOML scene keys in a table [camera.path], as in \
-                 scenes/apartment.toml, or a glTF model an animated camera, or render the still camera by `lightsplat render`"
+                "{scene} has no camera path; add keys in a table [camera.path] to a TOML scene, as in \
+                 scenes/apartment.toml, or an animated camera to a glTF file, or use `lightsplat render` for a still"
             )));
         }
         let Some(list) = &self.frames else { return Ok((1..=frames).collect()) };
         match list.last() {
             last if last > frames => Err(Failure::usage(anyhow!(
-                "--frames: there is no frame {last}; the camera path of {scene} has {frames}, counted from 1"
+                "--frames: there is no frame {last}; the camera path of {scene} has {frames} frames, counted from 1"
             ))),
             _ => Ok(list.iter().collect()),
         }
     }
 
-    /// The frames wanted, by chunks, and those of them to render.
+    /// Divides the frames into chunks, and decides which frames to render.
     ///
     /// # Errors
     /// If the scene has no camera path, or a frame lies beyond it.
@@ -150,18 +153,19 @@ impl WalkJob {
                 self.reproducible,
             ]),
         );
-        // Without records, frames have nothing to do with each other.
+        // Without records, frames do not depend on each other.
         let size = if self.goal.method.keeps_records() { self.chunk } else { NonZeroUsize::new(1) };
         let chunks = chunk::chunks(&numbers, size, session.cameras.path.len());
         Ok(chunks.into_iter().map(|chunk| self.planned(chunk, &key)).collect())
     }
 
+    /// Decides which frames of a chunk to render.
     fn planned(&self, chunk: Chunk, key: &str) -> PlannedChunk {
         let Chunk { frames, ends } = chunk;
         let keys: Vec<String> = (0..frames.len()).map(|i| job_key::of_frame(key, &frames[..=i])).collect();
         let is_done = |(number, key): (&usize, &String)| {
             let (exr, png) = self.files(*number);
-            self.resume && job_key::is_done((&exr, png.as_deref()), Some(*number), key)
+            self.resume && job_key::is_done(&exr, png.as_deref(), Some(*number), key)
         };
         let done: Vec<bool> = frames.iter().zip(&keys).map(is_done).collect();
         let mut chunk = PlannedChunk { frames, keys, done, ends, saved: None, runs: Vec::new() };
@@ -173,52 +177,52 @@ impl WalkJob {
         chunk
     }
 
-    /// File of the records of a chunk, between its frames; none where there are no others to go on to.
+    /// Returns the file of the records of a chunk; `None` if no frame can follow.
     pub fn records_file(&self, chunk: &PlannedChunk) -> Option<PathBuf> {
         let first = chunk.frames.first().filter(|_| chunk.frames.len() > 1 || !chunk.ends)?;
         Some(self.names.of(*first).with_extension("records"))
     }
 }
 
-/// Frames of a chunk, and what is there of them.
+/// Frames of a chunk and the state of their files.
 #[derive(Debug)]
 pub struct PlannedChunk {
     /// Numbers of the frames.
     pub frames: Vec<usize>,
     /// Keys of their files.
     pub keys: Vec<String>,
-    /// True where the files are whole.
+    /// Flag per frame: true if its files are complete.
     pub done: Vec<bool>,
-    /// True if no later run can want further frames of the chunk.
+    /// True if no later run can extend the chunk.
     pub ends: bool,
-    /// Records that were saved, and the index of the frame after which they were.
+    /// Saved records, with the index of the frame after which they were saved.
     pub saved: Option<(usize, Vec<u8>)>,
     /// Frames to render.
     pub runs: Vec<Run>,
 }
 
 impl PlannedChunk {
-    /// The same where no records were saved.
+    /// Returns the chunk without saved records.
     pub fn without_saved(self) -> PlannedChunk {
         PlannedChunk { runs: chunk::runs(&self.done, None), saved: None, ..self }
     }
 
-    /// Number of frames to render.
+    /// Returns the number of frames to render.
     pub fn count(&self) -> usize {
         self.runs.iter().map(|run| run.frames.len()).sum()
     }
 
-    /// Numbers of the frames that are there and stay.
+    /// Returns the numbers of the frames that stay as they are.
     pub fn untouched(&self) -> impl Iterator<Item = usize> {
         self.frames.iter().zip(&self.done).filter(|(_, done)| **done).map(|(number, _)| *number)
     }
 
-    /// Numbers of the frames whose files are to be written.
+    /// Returns the numbers of the frames to write.
     pub fn unwritten(&self) -> impl Iterator<Item = usize> {
         self.frames.iter().zip(&self.done).filter(|(_, done)| !**done).map(|(number, _)| *number)
     }
 
-    /// True if no frame of the chunk comes after this one.
+    /// Returns true if no frame of the chunk can follow this one.
     pub fn is_last(&self, index: usize) -> bool {
         self.ends && index + 1 == self.frames.len()
     }

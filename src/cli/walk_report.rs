@@ -1,4 +1,4 @@
-//! Reports of a walk: statistics of its frames on stdout, a summary on stderr.
+//! Report of a walk: statistics of its frames on stdout, a summary on stderr.
 
 use super::args::StatsFormat;
 use super::chart::chart;
@@ -8,13 +8,14 @@ use base::stats::{Counter, Stage, StageTime, Stats};
 use render::session::Frame;
 use serde_json::json;
 
-/// Columns of the table of frames, their widths, and the counters or stages that they show.
+/// Columns of the table of frames with their counters.
 const COUNTS: [(&str, &str); 4] = [
     ("new", "Walk/new records"),
     ("kept", "Walk/records kept"),
     ("idle", "Walk/records evicted, idle"),
     ("over", "Walk/records evicted for memory"),
 ];
+/// Columns of the table of frames with their stages.
 const STAGES: [(&str, Stage); 6] = [
     ("eye", Stage::EyePass),
     ("records", Stage::Records),
@@ -26,36 +27,40 @@ const STAGES: [(&str, Stage); 6] = [
 
 /// Sums over the frames rendered so far.
 #[derive(Default)]
-pub struct Report {
+pub struct WalkReport {
     format: Option<StatsFormat>,
-    /// Frames rendered, and frames left out because their files were there.
+    /// Number of frames rendered.
     rendered: u64,
+    /// Number of frames skipped because their files exist.
     skipped: u64,
-    /// Of those, the frames rendered all the same, for their records.
+    /// Number of skipped frames that were rendered for their records.
     repeated: u64,
     new_records: u64,
-    /// By frame in order: its number, and bytes of the records kept after it.
+    /// Number of each frame, and the bytes of the records after it.
     bytes: Vec<(usize, u64)>,
     time: StageTime,
 }
 
-impl Report {
-    /// A report with statistics in a format, if they are wanted.
-    pub fn new(format: Option<StatsFormat>) -> Report {
-        Report { format, ..Report::default() }
+impl WalkReport {
+    /// Builds a report. `format` is the format of the statistics, if there are to be any.
+    pub fn new(format: Option<StatsFormat>) -> WalkReport {
+        WalkReport { format, ..WalkReport::default() }
     }
 
-    /// Counts a frame that is left out.
+    /// Counts a frame that is skipped.
     pub fn skip(&mut self) {
         self.skipped += 1;
     }
 
-    /// Counts a frame that is left out, but rendered for its records.
+    /// Counts a skipped frame that is rendered for its records.
     pub fn repeat(&mut self) {
         self.repeated += 1;
     }
 
     /// Adds a frame and prints its statistics.
+    ///
+    /// # Errors
+    /// If they cannot be printed.
     pub fn add(&mut self, number: usize, frame: &Frame) -> Result<(), Failure> {
         let stats = &frame.stats;
         let is_first = self.rendered == 0;
@@ -75,10 +80,10 @@ impl Report {
         }
     }
 
-    /// Says how it went for all frames.
+    /// Prints the summary.
     ///
     /// # Errors
-    /// If statistics are wanted and cannot be printed.
+    /// If the statistics cannot be printed.
     pub fn sum_up(&self) -> Result<(), Failure> {
         if let (Some(StatsFormat::Text), [first, .., last]) = (self.format, &self.bytes[..]) {
             let kept: Vec<f64> = self.bytes.iter().map(|(_, bytes)| mib(*bytes)).collect();
@@ -97,7 +102,7 @@ impl Report {
     }
 
     fn text(&self) -> String {
-        let Report { rendered, skipped, repeated, .. } = self;
+        let WalkReport { rendered, skipped, repeated, .. } = self;
         let mut text = format!("{rendered} frames rendered");
         if *skipped > 0 {
             text += &format!(", {skipped} left as they were");
@@ -107,7 +112,7 @@ impl Report {
         }
         if *rendered > 0 {
             let frames = *rendered as f64;
-            text += &format!(", {:.2} s a frame", self.time.wall_seconds / frames);
+            text += &format!(", {:.2} s per frame", self.time.wall_seconds / frames);
         }
         let most = self.bytes.iter().map(|(_, bytes)| *bytes).max().unwrap_or(0);
         if most > 0 {
@@ -129,9 +134,9 @@ fn count(stats: &Stats, name: &str) -> u64 {
     }
 }
 
-/// Head of the table: counts of records, then CPU seconds.
-fn header(wanted: bool) -> String {
-    if !wanted {
+/// Returns the head of the table, or nothing after the first frame.
+fn header(is_first: bool) -> String {
+    if !is_first {
         return String::new();
     }
     let counts: String = COUNTS.iter().map(|(name, _)| format!("{name:>9}")).collect();
@@ -139,6 +144,7 @@ fn header(wanted: bool) -> String {
     format!("{:>7}{counts}{stages}  (CPU s)\n", "frame")
 }
 
+/// Returns the row of a frame: counts of records, then CPU seconds.
 fn row(number: usize, stats: &Stats) -> String {
     let counts: String = COUNTS.iter().map(|(_, name)| format!("{:>9}", count(stats, name))).collect();
     let seconds = |stage| stats.stage(stage).map_or(0.0, |time| time.cpu_seconds);

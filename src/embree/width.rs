@@ -1,23 +1,23 @@
 //! Widths of Embree's packets.
 
-/// Number of rays per query.
+/// Number of rays that a query takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Width {
-    /// One ray: `rtcOccluded1`.
+    /// One: `rtcOccluded1`.
     One,
-    /// Four rays: `rtcOccluded4`.
+    /// `rtcOccluded4`.
     Four,
-    /// Eight rays: `rtcOccluded8`.
+    /// `rtcOccluded8`.
     Eight,
-    /// Sixteen rays: `rtcOccluded16`.
+    /// `rtcOccluded16`.
     Sixteen,
 }
 
 impl Width {
-    /// All widths, in ascending order.
+    /// All widths, the narrowest first.
     pub const ALL: [Width; 4] = [Width::One, Width::Four, Width::Eight, Width::Sixteen];
 
-    /// Returns the number of rays.
+    /// Number of rays.
     pub fn rays(self) -> usize {
         match self {
             Width::One => 1,

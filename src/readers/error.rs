@@ -1,29 +1,27 @@
-//! Errors of reading scenes, and warnings about features that are not modelled.
-//!
-//! Both name the file and, if possible, the line.
+//! Errors in scenes, and warnings about parts that are not modelled: both name the file and the line.
 
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// A file, and a line of it if known.
+/// A file, and the line, if available.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Location {
+pub struct Place {
     /// The file.
     pub path: PathBuf,
     /// Line, counted from 1.
     pub line: Option<u32>,
 }
 
-impl Location {
-    /// Returns the location of a file as a whole.
-    pub fn file(path: &Path) -> Location {
-        Location { path: path.to_owned(), line: None }
+impl Place {
+    /// Returns the place of the file as a whole.
+    pub fn file(path: &Path) -> Place {
+        Place { path: path.to_owned(), line: None }
     }
 
-    /// Returns the location of a line, counted from 1.
-    pub fn line(path: &Path, line: u32) -> Location {
-        Location { path: path.to_owned(), line: Some(line) }
+    /// Returns the place of line `line` (from 1) of the file.
+    pub fn line(path: &Path, line: u32) -> Place {
+        Place { path: path.to_owned(), line: Some(line) }
     }
 
     /// Returns the error of a wrong value here.
@@ -31,12 +29,12 @@ impl Location {
         SceneError::Value { place: self.clone(), what: what.into(), remedy: remedy.into() }
     }
 
-    /// Returns the error of a name that is used here and not defined.
+    /// Returns the error of a name used here that is not defined.
     pub fn undefined(&self, kind: &'static str, name: &str) -> SceneError {
         SceneError::Reference { place: self.clone(), kind, name: name.to_owned() }
     }
 
-    /// Returns the error of a requested camera that the scene lacks.
+    /// Returns the error of a camera asked for that is not in the scene.
     pub(crate) fn no_camera(&self, name: &str, remedy: impl Into<String>) -> SceneError {
         SceneError::Camera { place: self.clone(), name: name.to_owned(), remedy: remedy.into() }
     }
@@ -47,7 +45,7 @@ impl Location {
     }
 }
 
-impl fmt::Display for Location {
+impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self.line {
             Some(line) => write!(f, "{}:{line}", self.path.display()),
@@ -58,20 +56,20 @@ impl fmt::Display for Location {
 
 /// Severity of a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
-    /// The expected image is the one described, apart from filtering or tessellation.
+pub enum Level {
+    /// The expected picture is the one described, to within filtering or tessellation.
     Note,
-    /// The image differs from the one described. This is an error under `strict`.
+    /// The picture will differ from the one described; an error under `strict`.
     Warning,
 }
 
 /// A feature requested by a scene file that is not modelled, and its replacement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// Location of the request.
-    pub place: Location,
+    /// Place of the request.
+    pub place: Place,
     /// Severity.
-    pub severity: Severity,
+    pub level: Level,
     /// The feature requested.
     pub what: String,
     /// The replacement.
@@ -92,27 +90,27 @@ pub enum SceneError {
     Read {
         /// The file.
         path: PathBuf,
-        /// Location of the reference to the file.
-        from: Location,
-        /// Error of the operating system; no `source`, because the message contains it.
+        /// Place that refers to it.
+        from: Place,
+        /// Error of the operating system; no `source`, since the message holds it.
         error: std::io::Error,
     },
-    /// A file whose extension belongs to no supported format.
+    /// A file whose extension is that of no supported format.
     #[error("{}: unknown kind of scene; name a .toml (native), .xml (Mitsuba), .glb or .gltf file", .0.display())]
     UnknownFormat(PathBuf),
     /// Text that is not well-formed XML or TOML.
     #[error("{place}: {message}; correct the file's syntax")]
     Syntax {
-        /// Location of the error.
-        place: Location,
+        /// Place of the error.
+        place: Place,
         /// Message of the parser.
         message: String,
     },
     /// A value that is missing, of the wrong type or out of range.
     #[error("{place}: {what}; {remedy}")]
     Value {
-        /// Location of the value.
-        place: Location,
+        /// Place of the value.
+        place: Place,
         /// Description of the error.
         what: String,
         /// Remedy.
@@ -121,47 +119,47 @@ pub enum SceneError {
     /// A reference to a name that is not defined in the scene.
     #[error("{place}: there is no {kind} called \"{name}\"; define it or correct the name")]
     Reference {
-        /// Location of the reference.
-        place: Location,
+        /// Place of the reference.
+        place: Place,
         /// Kind of object referred to.
         kind: &'static str,
         /// The name.
         name: String,
     },
-    /// A requested camera that the scene lacks.
+    /// A camera that was asked for, and is not in the scene.
     #[error("{place}: there is no camera \"{name}\"; {remedy}")]
     Camera {
         /// The scene.
-        place: Location,
+        place: Place,
         /// Number or name of the camera.
         name: String,
-        /// Remedy, with a list of the scene's cameras.
+        /// Remedy, with the cameras that there are.
         remedy: String,
     },
     /// A mesh file with wrong contents.
     #[error("{place}: {what}; repair or re-export the mesh")]
     Mesh {
-        /// Location of the error.
-        place: Location,
+        /// Place of the error.
+        place: Place,
         /// Description of the error.
         what: String,
     },
-    /// An image that cannot be decoded.
+    /// A picture that cannot be decoded.
     #[error("{place}: cannot decode {}: {what}; convert it to PNG, JPEG, BMP, TGA, Radiance HDR or OpenEXR", .path.display())]
-    Image {
-        /// Location of the reference to the file.
-        place: Location,
-        /// The image file.
+    Picture {
+        /// Place that refers to it.
+        place: Place,
+        /// The picture.
         path: PathBuf,
         /// Message of the decoder.
         what: String,
     },
-    /// Errors of several parts of a scene, in the order of the description.
+    /// Errors of several parts of a scene, the first of them in the order of the description.
     #[error("{}{}", lines(.first), more(.left_out))]
     Several {
-        /// The first errors, at most [`MAX_ERRORS`].
+        /// The first [`MAX_ERRORS`].
         first: Vec<SceneError>,
-        /// Number of errors after these.
+        /// Number of those after them.
         left_out: usize,
     },
     /// A warning, under `strict`.
@@ -169,12 +167,12 @@ pub enum SceneError {
     Strict(Warning),
 }
 
-/// Maximum number of errors in one message.
+/// Maximum number of errors that are told at once.
 const MAX_ERRORS: usize = 10;
 
-/// Returns the location that refers to a file, if it is in another file.
-fn asker(from: &Location, path: &Path) -> String {
-    if *from == Location::file(path) { String::new() } else { format!("{from}: ") }
+/// The place that asks for a file, where that is another file.
+fn asker(from: &Place, path: &Path) -> String {
+    if *from == Place::file(path) { String::new() } else { format!("{from}: ") }
 }
 
 fn lines(errors: &[SceneError]) -> String {
@@ -186,7 +184,7 @@ fn more(left_out: &usize) -> String {
 }
 
 impl SceneError {
-    /// Returns one error for all of `errors`, without repetitions.
+    /// Returns the error that stands for all of `errors`, each once.
     pub fn all(errors: Vec<SceneError>) -> SceneError {
         let mut said = BTreeSet::new();
         let mut first: Vec<SceneError> =
@@ -197,14 +195,12 @@ impl SceneError {
     }
 
     /// Returns the error of a wrong mesh file.
-    pub fn mesh(place: Location, what: impl Into<String>) -> SceneError {
+    pub fn mesh(place: Place, what: impl Into<String>) -> SceneError {
         SceneError::Mesh { place, what: what.into() }
     }
 }
 
-/// Log of warnings, and of the errors of independent parts of a description.
-///
-/// Under `strict`, warnings are errors.
+/// Collects warnings, or turns them into errors under `strict`, and the errors of independent parts of a description.
 #[derive(Debug, Default)]
 pub(crate) struct Log {
     strict: bool,
@@ -218,7 +214,7 @@ impl Log {
         Log { strict, ..Log::default() }
     }
 
-    /// Returns the value of a part of the description, or stores its error and returns `None`.
+    /// Returns the value of a part of the description, or keeps its error while others are read.
     pub fn part<T>(&mut self, outcome: Result<T, SceneError>) -> Option<T> {
         outcome.map_err(|error| self.errors.push(error)).ok()
     }
@@ -232,19 +228,16 @@ impl Log {
         }
     }
 
-    /// Adds a warning about a change of the image.
-    ///
-    /// # Errors
-    /// Under `strict`.
+    /// Adds a warning about a change of the picture.
     pub fn warn(
         &mut self,
-        place: &Location,
+        place: &Place,
         what: impl Into<String>,
         fallback: impl Into<String>,
     ) -> Result<(), SceneError> {
         let warning = Warning {
             place: place.clone(),
-            severity: Severity::Warning,
+            level: Level::Warning,
             what: what.into(),
             fallback: fallback.into(),
         };
@@ -255,24 +248,24 @@ impl Log {
         Ok(())
     }
 
-    /// Adds a note about a feature that does not change the expected image.
-    pub fn note(&mut self, place: &Location, what: impl Into<String>, fallback: impl Into<String>) {
+    /// Adds a note that does not concern the expected picture.
+    pub fn note(&mut self, place: &Place, what: impl Into<String>, fallback: impl Into<String>) {
         self.push(Warning {
             place: place.clone(),
-            severity: Severity::Note,
+            level: Level::Note,
             what: what.into(),
             fallback: fallback.into(),
         });
     }
 
-    /// Adds a warning, unless the log already contains it.
+    /// The same message for the same place is added once.
     fn push(&mut self, warning: Warning) {
         if !self.warnings.contains(&warning) {
             self.warnings.push(warning);
         }
     }
 
-    /// Returns the warnings in the order in which they were added.
+    /// Returns the warnings, in the order in which they came.
     pub fn into_warnings(self) -> Vec<Warning> {
         self.warnings
     }
@@ -285,7 +278,7 @@ mod tests {
     #[test]
     fn errors_of_parts_are_told_together_each_once_and_no_more_than_ten() {
         let mut log = Log::new(false);
-        let place = |line| Location::line(Path::new("s.xml"), line);
+        let place = |line| Place::line(Path::new("s.xml"), line);
         assert_eq!(log.part(Ok(7)), Some(7));
         assert!(log.conclude(Ok(())).is_ok());
         log.part::<()>(Err(place(1).wrong("a", "b")));

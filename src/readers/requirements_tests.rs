@@ -1,4 +1,4 @@
-//! Tests of the requirements of scene files.
+//! Requirements of scenes that files describe.
 
 use crate::{LoadOptions, load};
 use scene::Requirements;

@@ -1,14 +1,13 @@
-//! Pixel filters.
+//! Filters of the film's pixels.
 //!
-//! Filters are sampled, not splatted: samples of a pixel are distributed by a density and have equal weights. So the
-//! noise of neighbours is independent, as denoisers expect. Every method filters by the positions of its eye rays.
+//! Filters are sampled, not splatted: a pixel's samples lie around it by a density, and count alike. So the noise of
+//! neighbours is independent, as denoisers expect, and every method filters by the places of its eye rays.
 //!
-//! A filter with negative lobes is no density. Its samples follow a wider density, and the clean image is sharpened.
-//! Along both axes a sharpened pixel is (1 + 2a) times its value minus a times each neighbour.
-//!
-//! The density is the filter's convolution with the inverse of (-a, 1 + 2a, -a), clipped at [`REACH`] and at 0. The
-//! constant a minimises the mean square difference that clipping leaves. Relative to the filter's norm, the difference
-//! is 0.09 % for Mitchell and Netravali, 0.2 % for Catmull and Rom, and 2.8 % for Lanczos with three lobes.
+//! A filter with negative lobes is no density. It is one that is wider, sharpened afterwards: each pixel of the clean
+//! picture is 1 + 2a of its own less a of each neighbour, along both axes. The density is what gives the filter when
+//! sharpened, the filter's convolution with the inverse of (-a, 1 + 2a, -a), cut off at [`REACH`] and at 0; a is that
+//! of the least difference which this leaves in the mean square over the film, relative to the filter's norm: .09 % for
+//! Mitchell and Netravali's, .2 % for Catmull and Rom's, 2.8 % for Lanczos's of three lobes, most of it in the third.
 //!
 //! Papers: M. Ernst, M. Stamminger, G. Greiner, *Filter Importance Sampling*, 2006; D. Mitchell, A. Netravali,
 //! *Reconstruction Filters in Computer Graphics*, 1988. F. Harris, *On the Use of Windows for Harmonic Analysis with
@@ -19,56 +18,55 @@ use glam::Vec2;
 use std::f32::consts::PI;
 use std::sync::OnceLock;
 
-/// Weights of samples around a pixel's centre.
+/// Weights of light around a pixel's middle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum PixelFilter {
-    /// Box: constant over the pixel.
+    /// Even over the pixel itself.
     #[default]
     Box,
-    /// Tent: falls linearly along each axis to 0 at distance `radius`.
+    /// Falling linearly along each axis, to 0 at the distance `radius`, in pixels.
     Tent {
-        /// Half the width, in pixels.
+        /// Half its width.
         radius: f32,
     },
-    /// Normal distribution, clipped at four standard deviations.
+    /// A normal distribution, cut off at four times its deviation, in pixels.
     Gaussian {
-        /// Standard deviation, in pixels.
+        /// Standard deviation.
         deviation: f32,
     },
-    /// Window of Blackman and Harris of four terms, three pixels wide.
+    /// The window of Blackman and Harris, of four terms, three pixels wide.
     BlackmanHarris,
-    /// Returns the cubic of Mitchell and Netravali at distance `x`.
+    /// The cubic of Mitchell and Netravali with B = C = 1/3, four pixels wide.
     Mitchell,
-    /// Interpolating cubic of Catmull and Rom, four pixels wide.
+    /// The cubic through its samples, four pixels wide.
     CatmullRom,
-    /// Windowed sinc of three lobes, six pixels wide.
+    /// The windowed sinc of three lobes, six pixels wide.
     Lanczos,
 }
 
-/// Half the width of the window of Blackman and Harris, in pixels.
+/// Half the width, in pixels, of the window of Blackman and Harris.
 const BLACKMAN_HARRIS: f32 = 1.5;
 
-/// Half the width of the density of samples for filters with negative lobes, in pixels.
+/// Half the width, in pixels, of the density of samples for filters with negative lobes.
 const REACH: f32 = 2.5;
 
-/// Number of integration steps per pixel for tables of densities.
+/// Number of steps to a pixel by which tables of densities are found.
 const STEPS: usize = 64;
 
-/// Number of parts of equal probability in a table.
+/// Number of equal parts of probability in a table.
 const PARTS: usize = 512;
 
-/// Quantiles of the distance along an axis, for the probabilities 0, 1 / PARTS, ..., 1.
+/// Distances along an axis that are not exceeded with probability 0, 1 / PARTS, ... 1.
 type Quantiles = [f32; PARTS + 1];
 
 impl PixelFilter {
-    /// Tent of Mitsuba's default width.
+    /// Tent and Gaussian as wide as Mitsuba's by default.
     pub const TENT: PixelFilter = PixelFilter::Tent { radius: 1.0 };
-    /// Gaussian of Mitsuba's default width.
+    /// See [`PixelFilter::TENT`].
     pub const GAUSSIAN: PixelFilter = PixelFilter::Gaussian { deviation: 0.5 };
 
-    /// Maps the unit square to the position of a sample, in pixels from the pixel's top-left corner.
-    ///
-    /// The square's middle becomes the pixel's middle.
+    /// Maps the unit square to the place of a sample, in pixels from the pixel's top-left corner, and its middle to the
+    /// pixel's.
     #[inline]
     pub fn place(&self, u: Vec2) -> Vec2 {
         match *self {
@@ -98,8 +96,8 @@ impl PixelFilter {
         }
     }
 
-    /// Returns the weight a of sharpening, by which a pixel is diminished by each neighbour along an axis; 0 for
-    /// densities.
+    /// How much of each of its two neighbours along an axis a pixel loses when the picture is sharpened; 0 if the
+    /// filter is a density.
     pub fn sharpening(&self) -> f32 {
         match self {
             PixelFilter::Mitchell => 0.07,
@@ -112,7 +110,7 @@ impl PixelFilter {
         }
     }
 
-    /// Returns the filter along an axis at distance `x` in pixels, up to a factor, for filters with tables.
+    /// The filter along an axis at distance `x` in pixels, up to a factor; only of filters that have tables.
     fn weight(&self, x: f32) -> f32 {
         let x = x.abs();
         match self {
@@ -130,7 +128,7 @@ impl PixelFilter {
         }
     }
 
-    /// Returns the density of samples along an axis, up to a factor. Sharpening turns it into the filter.
+    /// Density of samples along an axis, up to a factor: what gives the filter once it is sharpened.
     fn density(&self, x: f32) -> f32 {
         let a = self.sharpening();
         if a == 0.0 {
@@ -139,13 +137,13 @@ impl PixelFilter {
         if x.abs() >= REACH {
             return 0.0;
         }
-        // The inverse of (-a, 1 + 2a, -a) sums powers of the root of its polynomial inside the unit circle.
+        // The inverse of (-a, 1 + 2a, -a) is a sum of powers of the root of its polynomial within the unit circle.
         let root = (1.0 + 2.0 * a - (1.0 + 4.0 * a).sqrt()) / (2.0 * a);
         let shifted = (-8..=8).map(|shift: i32| root.powi(shift.abs()) * self.weight(x - shift as f32));
         shifted.sum::<f32>().max(0.0)
     }
 
-    /// Returns the table of a filter's density along an axis.
+    /// The table of a filter's density along an axis.
     fn quantiles(&self) -> &'static Quantiles {
         static TABLES: [OnceLock<Quantiles>; 4] = [const { OnceLock::new() }; 4];
         let table = match self {
@@ -174,7 +172,7 @@ impl PixelFilter {
     }
 }
 
-/// Maps the unit interval to a distance along an axis; 0.5 becomes 0.
+/// Maps the unit interval to a distance along an axis, and its middle to 0.
 fn quantile(quantiles: &Quantiles, u: f32) -> f32 {
     let side = 2.0 * u - 1.0;
     let part = (side.abs() * PARTS as f32).min(PARTS as f32);
@@ -183,7 +181,7 @@ fn quantile(quantiles: &Quantiles, u: f32) -> f32 {
     (quantiles[index] + within * (quantiles[index + 1] - quantiles[index])).copysign(side)
 }
 
-/// Returns the cubic of Mitchell and Netravali at distance `x`.
+/// Cubic of Mitchell and Netravali at distance `x`.
 fn cubic(x: f32, b: f32, c: f32) -> f32 {
     let polynomial = |k: [f32; 4]| k[0] + x * (k[1] + x * (k[2] + x * k[3]));
     if x < 1.0 {
@@ -238,7 +236,7 @@ mod tests {
         }
     }
 
-    /// Samples and sharpening together pass waves along the film as the filter itself does.
+    /// Waves along the film pass samples and sharpening as they pass the filter itself.
     #[test]
     fn sharpened_densities_are_the_filters_with_negative_lobes() {
         let n = 1 << 14;

@@ -93,7 +93,7 @@ fn scenes_are_read_once_and_resuming_renders_what_lacks() {
         1,
         "{stderr}"
     );
-    assert!(stderr.contains("3 of 3 pictures and walks done"), "{stderr}");
+    assert!(stderr.contains("3 of 3 images and walks done"), "{stderr}");
     let kept = ["a", "c"].map(|n| read(&sandbox.path(&format!("out/{n}.exr"))));
     fs::remove_file(sandbox.path("out/b.exr")).unwrap();
     let stderr = batch(&sandbox, &["--resume"]).expect(0).stderr;
@@ -102,7 +102,7 @@ fn scenes_are_read_once_and_resuming_renders_what_lacks() {
     assert!(sandbox.path("out/b.exr").exists());
     // A camera that is not there.
     fs::write(sandbox.path("jobs.toml"), jobs).unwrap();
-    assert!(batch(&sandbox, &[]).expect(5).stderr.contains("0 of 3 pictures"));
+    assert!(batch(&sandbox, &[]).expect(5).stderr.contains("0 of 3 images"));
 }
 
 #[test]

@@ -86,11 +86,11 @@ fn interrupted_paths_go_on_to_the_bytes_of_an_undisturbed_render() {
         assert_eq!(file.metadata().number("nonfinite"), Some(0.0));
     }
     let stderr = sandbox.run(&arguments).expect(0).stderr;
-    assert!(stderr.contains("goes on with the samples") && files() == whole, "{stderr}");
+    assert!(stderr.contains("continuing with the samples") && files() == whole, "{stderr}");
     // Other settings make another picture.
     interrupted_often(&sandbox, &arguments, 1);
     let stderr = sandbox.run(&Sandbox::path_tracing("16", &["--resume", "--seed", "1"])).expect(0).stderr;
-    assert!(!stderr.contains("goes on"), "{stderr}");
+    assert!(!stderr.contains("continuing"), "{stderr}");
 }
 
 #[test]
@@ -166,7 +166,7 @@ fn a_part_beside_a_whole_picture_is_gone_on_from_and_goes_when_it_is_whole() {
     });
     assert!(is_interrupted && sandbox.path("a.partial.exr").exists());
     let stderr = sandbox.run(&arguments).expect(0).stderr;
-    assert!(stderr.contains("goes on with the samples of a.partial.exr"), "{stderr}");
+    assert!(stderr.contains("continuing with the samples of a.partial.exr"), "{stderr}");
     assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"]);
     assert_eq!(ExrFile::read(&sandbox.path("a.exr")).unwrap().metadata().number("spp"), Some(3000.0));
 }
@@ -256,7 +256,7 @@ fn a_signal_while_a_scene_is_read_ends_the_run_at_once() {
         let output = child.wait_with_output().unwrap();
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(75), "{name}: {stderr}");
-        assert_eq!(stderr, "error: interrupted while the scene is read\n");
+        assert_eq!(stderr, "error: interrupted while reading the scene; nothing is written\n");
     }
     assert!(!sandbox.path("b.exr").exists());
 }
@@ -275,7 +275,7 @@ fn a_second_signal_ends_the_run_at_once() {
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
     assert!(lines.any(|line| line.contains(r#""event":"wrote""#)));
     signal(&child, "-INT");
-    assert!(lines.any(|line| line.contains("once more to stop at once")));
+    assert!(lines.any(|line| line.contains("again to stop at once")));
     signal(&child, "-INT");
     assert!(lines.any(|line| line.contains(r#""event":"end","exit":130"#)));
     assert_eq!(child.wait().unwrap().code(), Some(130));

@@ -32,7 +32,7 @@ fn pictures_count_as_much_as_they_have_samples_and_merged_ones_can_be_merged_aga
         render(&sandbox, name, seed, spp, &path);
     }
     let stderr = merge(&sandbox, &["a.exr", "b.exr"]).expect(0).stderr;
-    assert!(stderr.contains("merged of 2 pictures") && sandbox.path("m.png").exists(), "{stderr}");
+    assert!(stderr.contains("merged from 2 images") && sandbox.path("m.png").exists(), "{stderr}");
     let [a, b, m] = ["a.exr", "b.exr", "m.exr"].map(|name| file(&sandbox, name));
     let color = |file: &ExrFile| file.color().unwrap();
     assert_mean(&color(&m), &color(&a), &color(&b), [0.25, 0.75]);
@@ -54,7 +54,7 @@ fn pictures_count_as_much_as_they_have_samples_and_merged_ones_can_be_merged_aga
     let error = |file: &ExrFile| file.metadata().number("standard_error").unwrap();
     let ratio = error(&all) / error(&file(&sandbox, "whole.exr"));
     assert!((0.9..1.1).contains(&ratio), "{ratio}");
-    assert!(merge(&sandbox, &["ab.exr", "b.exr"]).expect(3).stderr.contains("seed 2 too"));
+    assert!(merge(&sandbox, &["ab.exr", "b.exr"]).expect(3).stderr.contains("seed 2, too"));
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn pictures_that_do_not_belong_together_are_refused_with_the_reason() {
     let path = ["--method", "path"];
     render(&sandbox, "a.exr", "1", "1", &path);
     let cases: [(&str, &[&str]); 5] = [
-        ("seed 1 too", &["--method", "path", "--seed", "1"]),
+        ("seed 1, too", &["--method", "path", "--seed", "1"]),
         ("setting, besides", &["--method", "path", "--seed", "2", "--max-depth", "2"]),
         ("film or crop", &["--method", "path", "--seed", "2", "--crop", "0,0,4,4"]),
         ("method", &["--seed", "2", "--vpls", "100", "--no-denoise"]),

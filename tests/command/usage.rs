@@ -120,7 +120,7 @@ fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
         ("--frame", "-1", "1 or more"),
         ("--resolution", "65537x1", "from 1 to 65536"),
         ("--camera", "bob", "chooses among 1"),
-        ("--denoise-quality", "fast", "goes with --denoise"),
+        ("--denoise-quality", "fast", "needs --denoise"),
     ] {
         let typed = ["render", "room.xml", "-o", "a.exr", "--method", "path", option, value];
         let stderr = sandbox.run(&typed).expect(2).stderr;

@@ -160,7 +160,7 @@ fn wrong_names_ranges_and_scenes_are_errors_and_nothing_is_written() {
         assert!(error("1", &["--chunk", chunk], 2).contains("expected a whole number, 1 or more"));
     }
     assert!(error("1", &["--q-scale", "-1"], 2).contains("from 0.01 to 1000"));
-    assert!(error("1", &["--denoise-quality", "fast"], 2).contains("goes with --denoise"));
+    assert!(error("1", &["--denoise-quality", "fast"], 2).contains("needs --denoise"));
     assert!(error("1", &["--camera", "2"], 2).contains("no camera \"2\""));
     sandbox.run(&["info", "path.toml", "--camera", "1"]).expect(0);
     assert!(error("1", &["--time", "3s"], 2).contains("--time"));

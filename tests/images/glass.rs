@@ -72,6 +72,11 @@ fn spotlight(scene: &mut SceneAndView) {
 /// Relative difference of means that the noise of these images explains.
 pub(crate) const NOISE: f64 = 0.02;
 
+/// Samples per pixel for so many samples of the whole image.
+fn spp_of(world: &WorldAndView, samples: u32) -> u32 {
+    samples / world.view.window.pixel_count() as u32
+}
+
 /// Mean of the image by a method.
 pub(crate) fn mean_by(world: &WorldAndView, settings: &impl Renderer) -> DVec3 {
     mean(&image(world, settings))
@@ -79,15 +84,16 @@ pub(crate) fn mean_by(world: &WorldAndView, settings: &impl Renderer) -> DVec3 {
 
 /// Mean of the image by paths.
 pub(crate) fn by_paths(world: &WorldAndView) -> DVec3 {
-    mean_by(world, &path::Settings { spp: 4096, ..Default::default() })
+    mean_by(world, &path::Settings { spp: spp_of(world, 1 << 19), ..Default::default() })
 }
 
 /// Mean of the default's images over some seeds.
 ///
 /// Few virtual lights count behind a coloured pane. They scatter the mean of one seed by a per cent.
 pub(crate) fn by_default(world: &WorldAndView) -> DVec3 {
-    const SEEDS: u32 = 8;
-    let of_seed = |seed| mean_by(world, &cache::Settings { spp: 1024 / SEEDS, seed, ..Default::default() });
+    const SEEDS: u32 = 4;
+    let spp = spp_of(world, (1 << 17) / SEEDS);
+    let of_seed = |seed| mean_by(world, &cache::Settings { spp, seed, ..Default::default() });
     (0..SEEDS).map(of_seed).sum::<DVec3>() / f64::from(SEEDS)
 }
 
@@ -144,8 +150,7 @@ fn worlds() -> [(WorldAndView, &'static str); 6] {
 
 #[test]
 fn light_comes_through_panes_and_bulbs_and_over_mirrors() {
-    for (world, what) in worlds() {
-        let world = &world;
+    for (world, what) in &worlds() {
         assert_means_within(NOISE, by_default(world), by_paths(world), what);
     }
 }
@@ -269,25 +274,26 @@ fn glass_ware_under_a_lamp_and_the_sky_agrees_with_paths() {
     assert_means_within(NOISE, by_default(world), by_paths(world), "glass ware");
 }
 
-mod slow_methods {
-    use super::*;
-
+/// Asserts that methods which gather light by cuts or photons agree with paths.
+fn assert_methods_agree(world: &WorldAndView, spp: u32, what: &str) {
     /// Relative difference of means that the noise of few paths through glass explains.
     const NOISE: f64 = 0.05;
+    let exact = by_paths(world);
+    let agrees = |found, name: &str| assert_means_within(NOISE, found, exact, &format!("{what}, {name}"));
+    agrees(mean_by(world, &lightcuts::Settings { spp, ..Default::default() }), "lightcuts");
+    agrees(mean_by(world, &reconstruction::Settings { spp, ..Default::default() }), "reconstruction");
+    agrees(mean_by(world, &photon_cache::Settings { spp, ..Default::default() }), "photon-cache");
+}
 
-    #[test]
-    fn all_methods_agree() {
-        for (world, what) in &worlds() {
-            let (spp, exact) = (128, by_paths(world));
-            let agrees = |found, name: &str| {
-                assert_means_within(NOISE, found, exact, &format!("{what}, {name}"));
-            };
-            let settings = lightcuts::Settings { spp, ..Default::default() };
-            agrees(mean_by(world, &settings), "lightcuts");
-            let settings = reconstruction::Settings { spp, ..Default::default() };
-            agrees(mean_by(world, &settings), "reconstruction");
-            let settings = photon_cache::Settings { spp, ..Default::default() };
-            agrees(mean_by(world, &settings), "photon-cache");
-        }
+#[test]
+fn all_methods_agree_behind_a_thin_pane() {
+    assert_methods_agree(&two_rooms(thin_panes), 32, "thin panes");
+}
+
+#[test]
+#[ignore = "a study: all methods behind all kinds of panes and mirrors"]
+fn all_methods_agree_behind_panes_and_mirrors() {
+    for (world, what) in &worlds() {
+        assert_methods_agree(world, 128, what);
     }
 }

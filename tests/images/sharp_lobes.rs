@@ -8,7 +8,8 @@ use lightsplat::math::Rgb;
 use lightsplat::method::{lightcuts, path};
 use lightsplat::scene::{Distribution, Environment, Fresnel, Lobe, Material, Reflectance};
 
-const SIZE: u32 = 48;
+/// Side of the film in pixels.
+const SIZE: u32 = 32;
 
 /// A rough mirror below two lamps, one small and one that fills much of the lobe, half hidden by a sheet.
 fn below_lamps() -> SceneAndView {

@@ -37,9 +37,9 @@ fn all_methods_find_the_sun_through_a_pane() {
     let exact = mean_by(&world, &path::Settings { spp: 2048, ..Default::default() });
     let found = [
         ("cache", mean_by(&world, &cache::Settings { spp: 256, ..Default::default() })),
-        ("lightcuts", mean_by(&world, &lightcuts::Settings { spp: 64, ..Default::default() })),
-        ("reconstruction", mean_by(&world, &reconstruction::Settings { spp: 64, ..Default::default() })),
-        ("photon-cache", mean_by(&world, &photon_cache::Settings { spp: 64, ..Default::default() })),
+        ("lightcuts", mean_by(&world, &lightcuts::Settings { spp: 16, ..Default::default() })),
+        ("reconstruction", mean_by(&world, &reconstruction::Settings { spp: 16, ..Default::default() })),
+        ("photon-cache", mean_by(&world, &photon_cache::Settings { spp: 16, ..Default::default() })),
     ];
     for (name, found) in found {
         assert_means_within(0.02, found, exact, name);

@@ -1,20 +1,20 @@
-//! Weighted means of several images of one view, channel by channel.
+//! Several pictures of one view, as weighted means of their channels.
 
 use super::exr_read::text;
 use super::{ExrFile, ImageError};
 use ::exr::prelude::FlatSamples;
 
-/// Weight of an image.
+/// Weight of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Weight {
-    /// One weight for all pixels.
+    /// The same for all pixels.
     Whole(f64),
-    /// One weight per pixel.
+    /// By pixel.
     ByPixel(Vec<u32>),
 }
 
 impl Weight {
-    /// Returns the weight of a pixel.
+    /// The weight of a pixel.
     pub fn of(&self, pixel: usize) -> f64 {
         match self {
             Weight::Whole(weight) => *weight,
@@ -24,13 +24,11 @@ impl Weight {
 }
 
 impl ExrFile {
-    /// Replaces every float channel by the weighted mean of the images. Layers of `variances` become the variance of
-    /// that mean.
-    ///
-    /// Pixels without weight are 0. Ids stay unchanged.
+    /// Puts the weighted mean of the pictures in the place of every channel of floats, and of the layers of `variances`
+    /// the variance of that mean; 0 where nothing has weight. Ids stay. All pictures have the same channels and size.
     ///
     /// # Errors
-    /// If channels or sizes differ.
+    /// If they have not.
     pub fn merge(
         &mut self,
         others: &[ExrFile],
@@ -66,7 +64,7 @@ impl ExrFile {
         Ok(())
     }
 
-    /// Returns the sizes of the parts and the names of their channels.
+    /// Sizes of the parts, and names of their channels.
     fn shape(&self) -> Vec<(usize, usize, Vec<String>)> {
         let parts = self.parts.layer_data.iter();
         let names = |part: &::exr::prelude::Layer<_>| -> Vec<String> {

@@ -1,4 +1,4 @@
-//! Layers: further images of an image file. The type of a layer names its channels.
+//! Layers: images beside a picture's colour, each of a type that names its channels.
 //!
 //! | type | channels of layer `name` |
 //! |---|---|
@@ -10,78 +10,78 @@
 use super::Image;
 use crate::math::Rgb;
 
-/// Layer of the number of samples per pixel, if it varies.
+/// Layer of the samples of each pixel, where they differ.
 pub const SAMPLES: &str = "samples";
 
-/// A further image of an image file.
+/// An image beside the colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
     /// Name in the file.
     pub name: String,
-    /// Value of each pixel.
+    /// Values by pixel.
     pub pixels: Pixels,
-    /// Display as an image of its own, if there is one.
+    /// Display as a picture of its own, if the layer is meant to have one.
     pub preview: Option<Preview>,
 }
 
 /// Values of a layer by their type.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pixels {
-    /// Radiances, albedos, or triples of related numbers.
+    /// Radiances, albedos, or up to three numbers that belong together.
     Color(Image),
     /// Vectors and points in world space.
     Vector(Image),
     /// Numbers.
     Scalar(Image<f32>),
-    /// Ids of objects; never averaged. 0 stands for no object.
+    /// Names of things: never averaged, 0 for nothing.
     Id(Image<u32>),
 }
 
 /// Display of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preview {
-    /// Radiance, with the exposure of the image.
+    /// As radiance, exposed as the picture is.
     Exposed,
-    /// Points over the darkened image: red if the first channel is above 0, green if the second is.
+    /// Points over the darkened picture: red where the first, green where the second channel is above 0.
     Marks,
-    /// Hues of directions, in the plane of the two axes of greatest variation.
+    /// Directions in the plane of the two axes along which they vary most, as hues.
     Hues,
-    /// Magma colours of the channels' weighted sum minus an offset.
+    /// Numbers in magma colours: the channels' weighted sum, less an offset.
     Magma {
         /// Weights of the channels.
         weights: Rgb,
-        /// Offset subtracted from the sum.
+        /// Offset taken off the sum.
         offset: f32,
     },
 }
 
 impl Layer {
-    /// Creates a layer of colours.
+    /// A layer of colours.
     pub fn color(name: impl Into<String>, image: Image) -> Layer {
         Layer { name: name.into(), pixels: Pixels::Color(image), preview: None }
     }
 
-    /// Creates a layer of vectors.
+    /// A layer of vectors.
     pub fn vector(name: impl Into<String>, image: Image) -> Layer {
         Layer { name: name.into(), pixels: Pixels::Vector(image), preview: None }
     }
 
-    /// Creates a layer of numbers.
+    /// A layer of numbers.
     pub fn scalar(name: impl Into<String>, image: Image<f32>) -> Layer {
         Layer { name: name.into(), pixels: Pixels::Scalar(image), preview: None }
     }
 
-    /// Creates a layer of ids.
+    /// A layer of ids.
     pub fn id(name: impl Into<String>, image: Image<u32>) -> Layer {
         Layer { name: name.into(), pixels: Pixels::Id(image), preview: None }
     }
 
-    /// Returns the layer with a display of its own.
+    /// The same layer, shown as a picture of its own.
     pub fn shown(self, preview: Preview) -> Layer {
         Layer { preview: Some(preview), ..self }
     }
 
-    /// Returns the values of layers with three channels.
+    /// Values of three channels by pixel, where the layer has as many.
     pub fn triples(&self) -> Option<&Image> {
         match &self.pixels {
             Pixels::Color(image) | Pixels::Vector(image) => Some(image),
@@ -89,7 +89,7 @@ impl Layer {
         }
     }
 
-    /// Returns width and height, and the number of pixels.
+    /// Width and height, and the number of pixels held.
     pub(super) fn size(&self) -> ([u32; 2], usize) {
         match &self.pixels {
             Pixels::Color(image) | Pixels::Vector(image) => image.size(),
@@ -98,7 +98,7 @@ impl Layer {
         }
     }
 
-    /// Replaces every non-finite channel by 0; returns their number.
+    /// Replaces every channel that is not finite by 0 and returns their number.
     pub(super) fn remove_nonfinite(&mut self) -> u64 {
         match &mut self.pixels {
             Pixels::Color(image) | Pixels::Vector(image) => image.remove_nonfinite(),

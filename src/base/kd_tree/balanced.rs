@@ -1,10 +1,8 @@
-//! A balanced kd-tree.
+//! A balanced kd-tree: splatting asks it for the points in a footprint, and sampling for cells that spread records
+//! evenly.
 //!
-//! Splatting searches points in a footprint with it, and sampling uses its cells to spread records evenly.
-//!
-//! Every node splits its points in halves along the longest side of their box. Node `i` of level `l` is the range of
-//! points from `n·i / 2^l` to `n·(i + 1) / 2^l`. So the tree has no pointers, and points that are close in space are
-//! close in memory.
+//! Every node splits its points in halves along the longest side of their box, so that node `i` of level `l` is the
+//! range of points from `n·i / 2^l` to `n·(i + 1) / 2^l`: no pointers, and the order of the points is that in space.
 
 use crate::progress::Control;
 use glam::Vec3;
@@ -13,10 +11,10 @@ use std::ops::Range;
 
 /// Maximum number of points in a leaf.
 const LEAF: usize = 32;
-/// Number of points up to which one thread sorts a range.
+/// Smaller ranges are sorted by one thread.
 const PARALLEL: usize = 8192;
 
-/// A bounding box; initially empty.
+/// A box, empty until something is added.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
     /// Minimum coordinates.
@@ -32,14 +30,14 @@ impl Bounds {
         Bounds { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// Returns the squared distance from a point to the box.
+    /// Square of the distance from a point to the box.
     #[inline]
     pub fn distance_squared(&self, p: Vec3) -> f32 {
         (self.min - p).max(p - self.max).max(Vec3::ZERO).length_squared()
     }
 }
 
-/// The tree. Points must be stored in its order.
+/// The hierarchy; points must be stored in its order.
 pub struct KdTree {
     count: usize,
     depth: u32,
@@ -48,18 +46,17 @@ pub struct KdTree {
 }
 
 impl KdTree {
-    /// Returns the tree over no points.
+    /// The hierarchy over no points.
     pub fn empty() -> KdTree {
         KdTree::build([].into_iter()).0
     }
 
-    /// Builds the tree over `positions`; returns it with the order in which to store the items.
+    /// Builds the hierarchy over `positions`; returns it with the order in which to store the items.
     pub fn build(positions: impl ExactSizeIterator<Item = Vec3>) -> (KdTree, Vec<u32>) {
         KdTree::build_unless_cancelled(positions, &Control::new())
     }
 
-    /// Builds the tree like [`KdTree::build`] unless `control` is cancelled. Boxes are then still correct, but the
-    /// order is arbitrary and boxes are large.
+    /// The same, but the order may be any once `control` is cancelled: boxes are right, and large.
     pub fn build_unless_cancelled(
         positions: impl ExactSizeIterator<Item = Vec3>,
         control: &Control,
@@ -83,29 +80,29 @@ impl KdTree {
         (index, items.into_iter().map(|item| item.1).collect())
     }
 
-    /// Returns the level of the leaves; the root is level 0.
+    /// Level of the leaves; the root is level 0.
     pub fn depth(&self) -> u32 {
         self.depth
     }
 
-    /// Returns the number of leaves.
+    /// Number of leaves.
     pub fn leaves(&self) -> usize {
         1 << self.depth
     }
 
-    /// Returns the points of node `i` of a level. Levels below the leaves divide leaves in storage order.
+    /// Points of node `i` of a level. Levels below the leaves divide leaves in the same way, in storage order.
     #[inline]
     pub fn range(&self, level: u32, i: usize) -> Range<usize> {
         range(self.count, level, i)
     }
 
-    /// Returns the points of a leaf.
+    /// Points of a leaf.
     #[inline]
     pub fn leaf(&self, leaf: usize) -> Range<usize> {
         self.range(self.depth, leaf)
     }
 
-    /// Calls `visit` for every leaf whose box is within `radius` of `p`.
+    /// Calls `visit` with every leaf whose box comes within `radius` of `p`.
     pub fn leaves_near(&self, p: Vec3, radius: f32, mut visit: impl FnMut(usize)) {
         let radius_sq = radius * radius;
         let mut stack = [0usize; 64];
@@ -135,7 +132,7 @@ fn range(count: usize, level: u32, i: usize) -> Range<usize> {
     at(i)..at(i + 1)
 }
 
-/// Sorts the items of node `i` of a level; `items` is the range of the node.
+/// Sorts the items of node `i` of a level, whose range they are.
 fn sort(items: &mut [(Vec3, u32)], count: usize, level: u32, i: usize, depth: u32, control: &Control) {
     if level == depth || control.is_cancelled() {
         return;
@@ -152,7 +149,7 @@ fn sort(items: &mut [(Vec3, u32)], count: usize, level: u32, i: usize, depth: u3
         2
     };
     let middle = range(count, level + 1, 2 * i + 1).start - range(count, level, i).start;
-    // Equal coordinates are ordered by index, so the order is the same on every run.
+    // By number where positions are equal, so that the order is one and the same on every run.
     items.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
     let (left, right) = items.split_at_mut(middle);
     let mut halves = [(left, 2 * i), (right, 2 * i + 1)];

@@ -1,4 +1,4 @@
-//! Sums of structs of counts.
+//! Sums of counts of parts of the work.
 
 /// Implements `+=` field by field.
 #[macro_export]
@@ -7,7 +7,7 @@ macro_rules! add_fields {
         impl std::ops::AddAssign for $counts {
             #[inline]
             fn add_assign(&mut self, other: $counts) {
-                // The pattern has no `..`, so that no field is forgotten.
+                // Without `..`, so that a field cannot be forgotten.
                 let $counts { $($field),+ } = other;
                 $(self.$field += $field;)+
             }

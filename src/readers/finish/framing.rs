@@ -1,15 +1,14 @@
-//! Cameras for scenes without one: they see the whole scene.
+//! Cameras for scenes that describe none: everything is in view.
 
 use crate::draft::Draft;
 use base::math::unit;
 use glam::{DVec2, DVec3};
 
-/// Fraction of the film's height and width that stays empty around the scene.
+/// Share of the film's height and width that is left free around the scene.
 const MARGIN: f64 = 0.05;
 
-/// Returns the direction from a scene to its viewer: above the front, to the right.
-///
-/// The front is +z if y is up, and -y if z is up.
+/// Returns a direction from a scene to its viewer: above its front, to the right. The front is +z where y is up, and
+/// -y where z is.
 pub fn outlook(up: DVec3) -> DVec3 {
     let up = unit(up).unwrap_or(DVec3::Y);
     let front = if up.z.abs() > up.y.abs() { DVec3::NEG_Y } else { DVec3::Z };
@@ -19,9 +18,8 @@ pub fn outlook(up: DVec3) -> DVec3 {
     level * elevation.cos() + up * elevation.sin()
 }
 
-/// Moves a camera with `fits` to the nearest point from which it sees all vertices.
-///
-/// The direction and field of view stay. Without vertices the camera moves to `centre`.
+/// Moves a camera that is to see everything to the nearest point from which it sees all vertices, for its own
+/// direction and field of view; to `centre`, about which they are, if there are none.
 pub fn frame(draft: &mut Draft, centre: DVec3) {
     if !draft.shot.fits {
         return;

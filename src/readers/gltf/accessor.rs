@@ -1,17 +1,15 @@
-//! Conversion of accessors to numbers.
-//!
-//! The file's statements about an accessor are checked before memory is read or allocated.
+//! Accessors to numbers. Everything that a file says of them is checked before memory is read or asked for.
 
-use super::document::GltfFile;
+use super::document::Document;
 use crate::error::SceneError;
 use gltf_json::accessor::{Accessor, ComponentType, Type};
 use gltf_json::validation::{Checked, USize64};
 use gltf_json::{Index, buffer};
 
-/// Maximum number of elements of an accessor without bytes of its own.
+/// Most elements of an accessor that has no bytes of its own.
 const MAX_ZEROS: u64 = 1 << 24;
 
-/// Elements in the bytes of a view.
+/// Range of elements in the bytes of a view.
 struct Elements<'a> {
     bytes: &'a [u8],
     stride: usize,
@@ -25,10 +23,9 @@ impl Elements<'_> {
     }
 }
 
-impl GltfFile {
-    /// Returns the vectors of `N` numbers of the accessor; `what` names it in errors.
-    ///
-    /// If the accessor is `normalized`, integers are fractions of their range.
+impl Document {
+    /// Vectors of `N` numbers of the accessor, integers as shares of their range where it is `normalized`; `what`
+    /// names it.
     pub fn vectors<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -77,7 +74,7 @@ impl GltfFile {
         Ok(vectors)
     }
 
-    /// Returns the unsigned integers of the accessor.
+    /// Unsigned integers of the accessor.
     pub fn integers(&self, index: Index<Accessor>, what: &str) -> Result<Vec<u32>, SceneError> {
         let accessor = self.get(index, "accessor")?;
         let wrong = |problem: &str| self.wrong(format!("{what}: accessor {} {problem}", index.value()));
@@ -120,7 +117,7 @@ impl GltfFile {
     }
 }
 
-/// Returns the number of components of a type.
+/// Number of components of a type.
 fn components(kind: &Checked<Type>) -> Option<usize> {
     match kind {
         Checked::Valid(kind) => Some(kind.multiplicity()),
@@ -132,7 +129,7 @@ fn unsigned(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |value, &byte| value << 8 | u32::from(byte))
 }
 
-/// Returns a component of a vector. If `normalized`, integers are fractions of their range.
+/// A component of a vector; `normalized` integers as shares of their range.
 fn number(kind: ComponentType, bytes: &[u8], normalized: bool) -> f32 {
     let bits = unsigned(bytes);
     let (value, range) = match kind {

@@ -1,9 +1,9 @@
 //! Cameras, and their animation as a camera path.
 
 use super::animation::{self, Track};
-use super::document::GltfFile;
+use super::document::Document;
 use super::nodes::{Local, Placed};
-use super::report::Findings;
+use super::report::Report;
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::error::SceneError;
 use base::math::{right_of, unit};
@@ -12,22 +12,20 @@ use gltf_json::camera::{Camera, Type};
 use gltf_json::validation::Checked;
 use scene::{MAX_FRAMES, PixelFilter, Projection};
 
-/// Default frames per second of animations. glTF counts in seconds.
+/// Frames a second of animations, which glTF counts in seconds.
 pub(crate) const FRAMES_PER_SECOND: f64 = 24.0;
 
-/// Cameras of a file, and its transform to the world.
+/// A camera of a file, in a world of which the file is a part.
 pub(super) struct Viewer<'a> {
-    pub document: &'a GltfFile,
+    pub document: &'a Document,
     pub tree: &'a [Placed],
     pub to_world: DMat4,
     pub fps: f64,
 }
 
 impl Viewer<'_> {
-    /// Returns the shot of the file's first camera, or of the one that `wanted` names or numbers from 1.
-    ///
-    /// Returns `None` for files without cameras.
-    pub fn shot(&self, wanted: Option<&str>, report: &mut Findings) -> Result<Option<Shot>, SceneError> {
+    /// The shot of the file's first camera, or of that which `wanted` names or numbers from 1; none without cameras.
+    pub fn shot(&self, wanted: Option<&str>, report: &mut Report) -> Result<Option<Shot>, SceneError> {
         let nodes = &self.document.root.nodes;
         let mut cameras = Vec::new();
         for (at, placed) in self.tree.iter().enumerate() {
@@ -36,7 +34,7 @@ impl Viewer<'_> {
             }
         }
         let name = |at: usize| nodes[self.tree[at].node].name.as_deref().unwrap_or_default();
-        // Lists numbers and names; a camera without name has a number only.
+        // Numbers and names, of cameras without name in the file the numbers alone.
         let names = |cameras: &[(usize, &Camera)]| {
             let named = |(i, (at, _)): (usize, &(usize, &Camera))| match name(*at) {
                 "" => (i + 1).to_string(),
@@ -76,13 +74,13 @@ impl Viewer<'_> {
         Ok(Some(Shot { camera: still, fits: false, path, resolution, crop: None }))
     }
 
-    /// Returns one camera per frame, if an animation moves the camera.
+    /// One camera a frame, if an animation moves it.
     fn path(
         &self,
         at: usize,
         lens: &Lens,
         resolution: [u32; 2],
-        report: &mut Findings,
+        report: &mut Report,
     ) -> Result<Vec<DraftCamera>, SceneError> {
         let chain: Vec<usize> = std::iter::successors(Some(at), |&at| self.tree[at].parent).collect();
         let is_on_the_way = |node: usize| chain.iter().any(|&at| self.tree[at].node == node);
@@ -119,7 +117,7 @@ impl Viewer<'_> {
         (0..frames).map(frame).collect()
     }
 
-    /// Returns the transform of the first node in a chain of parents to the file's coordinates, at a time in seconds.
+    /// Transform to the file's coordinates of the first node in a chain of parents at a time in seconds.
     fn moved(&self, chain: &[usize], tracks: &[Track], time: f64) -> DMat4 {
         chain.iter().rev().fold(DMat4::IDENTITY, |to_file, &at| {
             let node = self.tree[at].node;
@@ -152,7 +150,7 @@ impl Viewer<'_> {
 /// Projection of a camera.
 #[derive(Clone, Copy)]
 struct Lens {
-    /// Tangent of half the vertical field of view; half the film's height for a parallel projection.
+    /// Tangent of half the vertical field of view, or half the film's height in a parallel projection.
     half_height: f64,
     aspect: Option<f64>,
     near: f64,
@@ -184,7 +182,7 @@ impl Lens {
         }
     }
 
-    /// Returns a film of the default area in the camera's aspect ratio.
+    /// A film of the default's area in the camera's aspect ratio.
     fn resolution(&self) -> [u32; 2] {
         let [width, height] = DEFAULT_RESOLUTION.map(f64::from);
         match self.aspect.filter(|aspect| (0.01..=100.0).contains(aspect)) {

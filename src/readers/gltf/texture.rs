@@ -1,10 +1,10 @@
-//! Textures: images, samplers and transforms of texture coordinates.
+//! Textures: pictures, samplers and transforms of texture coordinates.
 
+use super::Importer;
 use super::document::Resolved;
-use super::importer::Importer;
-use crate::decode::Channel;
 use crate::error::SceneError;
-use crate::plan::{ImageSource, TexturePlan, TextureSource};
+use crate::picture::Channel;
+use crate::plan::{Image, PictureSource, TexturePlan};
 use glam::{Mat3, Vec2, Vec3};
 use gltf_json::extensions::texture::TextureTransform;
 use gltf_json::material::NormalTexture;
@@ -13,34 +13,33 @@ use gltf_json::validation::Checked;
 use gltf_json::{Index, image};
 use scene::{Filter, TextureId, Wrap};
 
-/// Reference of a material to a texture.
+/// A material's use of a texture.
 #[derive(Clone, Debug)]
-pub(super) struct TextureUse {
+pub(super) struct Slot {
     texture: Index<Texture>,
-    /// Index of the set of texture coordinates.
+    /// Set of texture coordinates.
     pub set: u32,
     transform: Option<TextureTransform>,
 }
 
-impl TextureUse {
-    pub fn of(info: &Info) -> TextureUse {
+impl Slot {
+    pub fn of(info: &Info) -> Slot {
         let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
-        TextureUse::new(info.index, info.tex_coord, transform)
+        Slot::new(info.index, info.tex_coord, transform)
     }
 
-    pub fn of_normal(info: &NormalTexture) -> TextureUse {
+    pub fn of_normal(info: &NormalTexture) -> Slot {
         let raw = info.extensions.as_ref().and_then(|e| e.others.get("KHR_texture_transform"));
         let transform = raw.and_then(|raw| serde_json::from_value(raw.clone()).ok());
-        TextureUse::new(info.index, info.tex_coord, transform)
+        Slot::new(info.index, info.tex_coord, transform)
     }
 
-    fn new(texture: Index<Texture>, set: u32, transform: Option<TextureTransform>) -> TextureUse {
+    fn new(texture: Index<Texture>, set: u32, transform: Option<TextureTransform>) -> Slot {
         let set = transform.as_ref().and_then(|transform| transform.tex_coord).unwrap_or(set);
-        TextureUse { texture, set, transform }
+        Slot { texture, set, transform }
     }
 
-    /// Returns the transform of texture coordinates in the convention of the renderer, v upwards. glTF counts v
-    /// downwards.
+    /// Transform of texture coordinates that count v upwards, as all do here but glTF's own.
     fn to_uv(&self) -> Mat3 {
         let Some(transform) = &self.transform else { return Mat3::IDENTITY };
         let (sin, cos) = transform.rotation.0.sin_cos();
@@ -52,10 +51,10 @@ impl TextureUse {
 }
 
 impl Importer<'_> {
-    /// Returns the texture of the material `name`; `None` if its image format is not supported.
+    /// The texture of a slot of the material `name`; none if its picture is of a kind that cannot be read.
     pub(super) fn texture(
         &mut self,
-        slot: &TextureUse,
+        slot: &Slot,
         channel: Channel,
         name: &str,
     ) -> Result<Option<TextureId>, SceneError> {
@@ -65,7 +64,7 @@ impl Importer<'_> {
             self.report.lacks(what, "they are left out", name);
             return Ok(None);
         }
-        let image = self.document.get(texture.source, "image")?;
+        let picture = self.document.get(texture.source, "image")?;
         let default = Sampler::default();
         let sampler = match texture.sampler {
             Some(index) => self.document.get(index, "sampler")?,
@@ -83,9 +82,9 @@ impl Importer<'_> {
             Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
             _ => Filter::Bilinear,
         };
-        let image_name = image.name.clone().unwrap_or_else(|| format!("image {}", texture.source.value()));
-        let source = self.image(image, texture.source)?;
-        let image = TextureSource::Part { name: image_name, source, channel };
+        let image_name = picture.name.clone().unwrap_or_else(|| format!("image {}", texture.source.value()));
+        let source = self.picture(picture, texture.source)?;
+        let image = Image::Part { name: image_name, source, channel };
         let to_uv = slot.to_uv();
         if !to_uv.is_finite() {
             return Err(self.document.wrong(format!("a texture transform of {name} is not finite")));
@@ -94,21 +93,25 @@ impl Importer<'_> {
         Ok(Some(self.contents.add_texture(TexturePlan { place, image, filter, wrap, to_uv })))
     }
 
-    fn image(&mut self, image: &image::Image, index: Index<image::Image>) -> Result<ImageSource, SceneError> {
-        if let Some(source) = self.images.get(&index.value()) {
+    fn picture(
+        &mut self,
+        picture: &image::Image,
+        index: Index<image::Image>,
+    ) -> Result<PictureSource, SceneError> {
+        if let Some(source) = self.pictures.get(&index.value()) {
             return Ok(source.clone());
         }
-        let source = match (&image.uri, image.buffer_view) {
+        let source = match (&picture.uri, picture.buffer_view) {
             (Some(uri), _) => match self.document.resolve(uri)? {
-                Resolved::Bytes(bytes) => ImageSource::Bytes(bytes.into()),
-                Resolved::File(path) => ImageSource::File(path),
+                Resolved::Bytes(bytes) => PictureSource::Bytes(bytes.into()),
+                Resolved::File(path) => PictureSource::File(path),
             },
-            (None, Some(view)) => ImageSource::Bytes(self.document.view(view)?.into()),
+            (None, Some(view)) => PictureSource::Bytes(self.document.view(view)?.into()),
             (None, None) => {
                 return Err(self.document.wrong(format!("image {} has no picture", index.value())));
             }
         };
-        self.images.insert(index.value(), source.clone());
+        self.pictures.insert(index.value(), source.clone());
         Ok(source)
     }
 }

@@ -1,24 +1,24 @@
-//! Conversion of BSDFs to materials.
+//! Bsdfs to materials.
 //!
-//! Deviations: anisotropic glass and layered coatings have no counterpart. The nearest material replaces each of them,
-//! with a warning.
+//! Deviations: anisotropic glass and layered coatings have no counterpart; each is replaced by the
+//! nearest material, with a warning.
 
+use super::Converter;
 use super::bsdf_kinds::{diffuse, glass};
-use super::converter::Converter;
 use super::tree::Object;
 use super::value::numbers;
 use crate::error::SceneError;
 use crate::layers;
-use crate::layers::CoatSurface;
+use crate::layers::Surface;
 use base::math::{Rgb, luminance};
 use scene::{Fresnel, Lobe, Material, MaterialId, Reflectance, Relief, Share};
 use std::rc::Rc;
 
-/// Sum of missing weights of a mixture, above which that share is absorbed. Less is rounding.
+/// Share of the light lost by the weights of a mixture, above which it is absorbed: less is rounding.
 const MIN_LOST: f64 = 1e-4;
 
 impl Converter<'_> {
-    /// Returns the material of a shape: its BSDF's, or Mitsuba's default, which is black for emitters.
+    /// The material of a shape: its bsdf's, or Mitsuba's default, which is black on emitters.
     pub(super) fn material_of_shape(
         &mut self,
         bsdf: Option<&Rc<Object>>,
@@ -35,7 +35,7 @@ impl Converter<'_> {
             self.default_materials[slot] = Some(id);
             return Ok(id);
         };
-        // The document owns every object, so an address identifies an object.
+        // The document keeps every object, so the address is its identity.
         let key = Rc::as_ptr(bsdf);
         if let Some((_, id)) = self.material_of.iter().find(|(object, _)| *object == key) {
             return Ok(*id);
@@ -59,7 +59,7 @@ impl Converter<'_> {
         });
         let material = match bsdf.plugin.as_str() {
             "diffuse" => {
-                // Mitsuba 0.6 accepts both names.
+                // 0.6 knows both names.
                 let old = bsdf.has("diffuse_reflectance");
                 let parameter = if old { "diffuse_reflectance" } else { "reflectance" };
                 diffuse(name, self.reflectance(bsdf, parameter, 0.5)?)
@@ -82,12 +82,7 @@ impl Converter<'_> {
             "dielectric" | "thindielectric" | "roughdielectric" => self.dielectric(bsdf, name)?,
             "principled" => self.principled(bsdf, name)?,
             "phong" | "ward" => self.classic_glossy(bsdf, name)?,
-            "null" => {
-                let white = Reflectance::Constant(Rgb::ONE);
-                let clear =
-                    Lobe::Dielectric { eta: 1.0, thin: false, reflectance: white, transmittance: white };
-                glass(name, clear)
-            }
+            "null" => glass(name, (1.0, false), [Reflectance::Constant(Rgb::ONE); 2]),
             "twosided" => self.two_sided(bsdf, depth)?,
             "mask" => self.masked(bsdf, depth)?,
             "bumpmap" | "bump" | "normalmap" => self.relieved(bsdf, depth)?,
@@ -104,7 +99,7 @@ impl Converter<'_> {
         Ok(material)
     }
 
-    /// Returns the nested BSDF as two-sided.
+    /// The nested bsdf seen from both sides.
     fn two_sided(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let nested = self.nested(bsdf, depth)?;
         if let [Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. }, ..] = nested.lobes[..] {
@@ -113,7 +108,7 @@ impl Converter<'_> {
         Ok(Material { two_sided: true, ..nested })
     }
 
-    /// Returns the nested BSDF with an opacity.
+    /// The nested bsdf with gaps.
     fn masked(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let opacity = self.share(bsdf, "opacity", 0.5)?;
         let nested = self.nested(bsdf, depth)?;
@@ -135,7 +130,8 @@ impl Converter<'_> {
         Ok(Material { opacity: Some(opacity), ..nested })
     }
 
-    /// Returns the nested BSDF under a dielectric coat; see [`layers::coated`].
+    /// The nested bsdf under a dielectric coat: a diffuse one is that of plastic, and lobes lose at the coat as much as
+    /// at normal incidence.
     fn coated(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let eta = self.relative_ior(bsdf, "bk7")?;
         let scale = self.reflectance(bsdf, "specular_reflectance", 1.0)?;
@@ -149,7 +145,7 @@ impl Converter<'_> {
         };
         let nested = self.nested(bsdf, depth)?;
         let coats_before = nested.lobes.len();
-        let surface = CoatSurface { eta, lobe: coat, through };
+        let surface = Surface { eta, lobe: coat, through };
         let nested = layers::coated(nested, surface, &bsdf.place, self.log)?;
         if nested.lobes.len() == coats_before {
             return Ok(nested);
@@ -160,7 +156,7 @@ impl Converter<'_> {
         Ok(nested)
     }
 
-    /// Returns the mixture of two nested BSDFs.
+    /// Two nested bsdfs, mixed.
     fn blended(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let weight = self.share(bsdf, "weight", 0.5)?;
         let nested = self.tagged(bsdf, "bsdf")?;
@@ -172,7 +168,7 @@ impl Converter<'_> {
         layers::blended(weight, [first, other], &bsdf.place, self.log)
     }
 
-    /// Returns the nested BSDF with a relief.
+    /// The nested bsdf with a relief.
     fn relieved(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let nested = self.nested(bsdf, depth)?;
         let normals = bsdf.plugin == "normalmap";
@@ -201,7 +197,7 @@ impl Converter<'_> {
         Ok(Material { relief: relief.or(nested.relief), ..nested })
     }
 
-    /// Returns nested BSDFs, each with its share of the light. The remaining share is absorbed.
+    /// Nested bsdfs, each with a share of the light; the rest is absorbed.
     fn mixed(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let text = bsdf.string("weights")?.unwrap_or_default();
         let nested = self.tagged(bsdf, "bsdf")?;
@@ -223,7 +219,7 @@ impl Converter<'_> {
         if lost > MIN_LOST {
             parts.push((lost, diffuse(bsdf.plugin.clone(), Reflectance::BLACK)));
         }
-        // Parts are blended from the last to the first: each with the mixture of all later parts.
+        // From the last to the first, each with those behind it as one.
         let mut whole: Option<(f64, Material)> = None;
         for (weight, part) in parts.into_iter().filter(|(weight, _)| *weight > 0.0).rev() {
             whole = Some(match whole {

@@ -1,6 +1,5 @@
-//! Keys of each table of the native format.
-//!
-//! Any other key is an error, so that misspelt keys are reported.
+//! The native format as text: the keys of each table. Any other key is an error, so that a misspelt one
+//! cannot pass unnoticed.
 
 use glam::DVec3;
 use serde::Deserialize;
@@ -13,7 +12,7 @@ pub(super) struct SceneText {
     pub generator: Option<Spanned<String>>,
     pub max_depth: Option<Spanned<u32>>,
     pub hide_emitters: Option<bool>,
-    pub resolution: Option<Spanned<FixedArray<u32, 2>>>,
+    pub resolution: Option<Spanned<Row<u32, 2>>>,
     pub camera: Option<Spanned<CameraText>>,
     #[serde(default)]
     pub material: Vec<Spanned<MaterialText>>,
@@ -25,7 +24,7 @@ pub(super) struct SceneText {
     pub sky: Option<Spanned<SkyText>>,
 }
 
-/// A number in the range of f32.
+/// A number that `f32` holds.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(try_from = "f64")]
 pub(super) struct Number(pub f64);
@@ -41,22 +40,22 @@ impl TryFrom<f64> for Number {
     }
 }
 
-/// An array of exactly `N` values. The parser's own arrays ignore surplus values.
+/// Just so many values: the parser's own arrays would leave out those that follow.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(try_from = "Vec<T>")]
 #[serde(bound(deserialize = "T: Deserialize<'de>"))]
-pub(super) struct FixedArray<T, const N: usize>(pub [T; N]);
+pub(super) struct Row<T, const N: usize>(pub [T; N]);
 
-impl<T, const N: usize> TryFrom<Vec<T>> for FixedArray<T, N> {
+impl<T, const N: usize> TryFrom<Vec<T>> for Row<T, N> {
     type Error = String;
 
-    fn try_from(values: Vec<T>) -> Result<FixedArray<T, N>, String> {
-        values.try_into().map(FixedArray).map_err(|_| format!("expected an array of length {N}"))
+    fn try_from(values: Vec<T>) -> Result<Row<T, N>, String> {
+        values.try_into().map(Row).map_err(|_| format!("expected an array of length {N}"))
     }
 }
 
-/// An array of numbers.
-pub(super) type NumberArray<const N: usize> = FixedArray<Number, N>;
+/// A row of numbers.
+pub(super) type Numbers<const N: usize> = Row<Number, N>;
 
 impl From<Number> for f64 {
     fn from(number: Number) -> f64 {
@@ -64,14 +63,14 @@ impl From<Number> for f64 {
     }
 }
 
-impl From<NumberArray<2>> for [f64; 2] {
-    fn from(numbers: NumberArray<2>) -> [f64; 2] {
+impl From<Numbers<2>> for [f64; 2] {
+    fn from(numbers: Numbers<2>) -> [f64; 2] {
         numbers.0.map(f64::from)
     }
 }
 
-impl From<NumberArray<3>> for DVec3 {
-    fn from(numbers: NumberArray<3>) -> DVec3 {
+impl From<Numbers<3>> for DVec3 {
+    fn from(numbers: Numbers<3>) -> DVec3 {
         DVec3::from(numbers.0.map(f64::from))
     }
 }
@@ -79,9 +78,9 @@ impl From<NumberArray<3>> for DVec3 {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraText {
-    pub origin: Option<NumberArray<3>>,
-    pub target: Option<NumberArray<3>>,
-    pub up: Option<NumberArray<3>>,
+    pub origin: Option<Numbers<3>>,
+    pub target: Option<Numbers<3>>,
+    pub up: Option<Numbers<3>>,
     pub fov: Option<Number>,
     pub fov_axis: Option<Spanned<String>>,
     pub near: Option<f64>,
@@ -104,13 +103,13 @@ pub(super) struct PathText {
 #[serde(deny_unknown_fields)]
 pub(super) struct KeyText {
     pub frame: Option<usize>,
-    pub origin: NumberArray<3>,
-    pub target: NumberArray<3>,
-    pub up: Option<NumberArray<3>>,
+    pub origin: Numbers<3>,
+    pub target: Numbers<3>,
+    pub up: Option<Numbers<3>>,
     pub fov: Option<Number>,
 }
 
-/// Keys of all kinds of material; `material` checks which kind allows which.
+/// All keys of all kinds of material; `material` checks which kind allows which.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MaterialText {
@@ -149,7 +148,7 @@ pub(super) struct MaterialText {
     pub base: Option<String>,
 }
 
-/// A colour, in any of its forms.
+/// A colour: the same in every place that takes one.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
@@ -157,8 +156,8 @@ pub(super) struct MaterialText {
 )]
 pub(super) enum ColourText {
     Grey(Number),
-    Rgb(NumberArray<3>),
-    /// Hexadecimal digits after `#`, or the name of an image.
+    Rgb(Numbers<3>),
+    /// Hexadecimal after `#`, else the name of a picture.
     Named(String),
     /// A colour times a factor.
     Scaled {
@@ -168,7 +167,7 @@ pub(super) enum ColourText {
     Texture(TextureText),
 }
 
-/// A number, or an image with or without options.
+/// A number, or the name of a picture with or without how to read it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
@@ -177,15 +176,15 @@ pub(super) enum ColourText {
 )]
 pub(super) enum NumberText {
     Number(Number),
-    File(String),
+    Picture(String),
     Texture(TextureText),
 }
 
-/// An image with or without options.
+/// The name of a picture, with or without how to read it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(untagged, expecting = "expected a picture's name or { file = \"...\" }")]
 pub(super) enum MapText {
-    File(String),
+    Picture(String),
     Texture(TextureText),
 }
 
@@ -200,11 +199,11 @@ pub(super) struct TextureText {
     /// Factor on every texel.
     pub scale: Option<Number>,
     /// Repetitions along u and v.
-    pub tiles: Option<NumberArray<2>>,
+    pub tiles: Option<Numbers<2>>,
 }
 
 impl TextureText {
-    /// Returns the factor on every texel.
+    /// Factor on every texel.
     pub fn scale(&self) -> f64 {
         self.scale.map_or(1.0, f64::from)
     }
@@ -233,13 +232,13 @@ pub(super) struct MeshText {
     pub shape: Option<String>,
     /// Index of the mesh in a `.serialized` file.
     pub index: Option<usize>,
-    /// Groups of an OBJ file, or nodes of a glTF model, to read.
+    /// Groups of an OBJ file, or nodes of a glTF model, that are asked for.
     pub group: Option<NamesText>,
-    /// Groups or nodes to leave out.
+    /// Those that are left out.
     pub except: Option<NamesText>,
-    /// Units of a glTF model's lights per unit of the renderer.
+    /// Units of a glTF model's lights for one here.
     pub lumens_per_watt: Option<Number>,
-    /// Frames per second of a glTF model's animation.
+    /// Frames a second of a glTF model's animation.
     pub fps: Option<Number>,
     pub material: Option<Spanned<String>>,
     #[serde(default)]
@@ -264,21 +263,21 @@ pub(super) enum NamesText {
 pub(super) struct StepText {
     pub scale: Option<ScaleText>,
     pub rotate: Option<RotateText>,
-    pub translate: Option<NumberArray<3>>,
-    pub matrix: Option<NumberArray<16>>,
+    pub translate: Option<Numbers<3>>,
+    pub matrix: Option<Numbers<16>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(untagged, expecting = "expected a number or [x, y, z]")]
 pub(super) enum ScaleText {
     Uniform(Number),
-    Axes(NumberArray<3>),
+    Axes(Numbers<3>),
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RotateText {
-    pub axis: NumberArray<3>,
+    pub axis: Numbers<3>,
     pub angle: Number,
 }
 
@@ -286,12 +285,12 @@ pub(super) struct RotateText {
 #[serde(deny_unknown_fields)]
 pub(super) struct LightText {
     pub kind: String,
-    pub position: Option<NumberArray<3>>,
-    pub target: Option<NumberArray<3>>,
+    pub position: Option<Numbers<3>>,
+    pub target: Option<Numbers<3>>,
     pub intensity: Option<ColourText>,
     pub inner_angle: Option<Number>,
     pub outer_angle: Option<Number>,
-    pub direction: Option<NumberArray<3>>,
+    pub direction: Option<Numbers<3>>,
     pub irradiance: Option<ColourText>,
     pub angle: Option<Number>,
 }
@@ -308,17 +307,17 @@ pub(super) struct EnvironmentText {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SkyText {
-    pub up: Option<NumberArray<3>>,
-    pub sun_direction: Option<NumberArray<3>>,
+    pub up: Option<Numbers<3>>,
+    pub sun_direction: Option<Numbers<3>>,
     pub date: Option<toml::value::Datetime>,
-    /// Latitude (north) and longitude (east), in degrees.
-    pub place: Option<NumberArray<2>>,
+    /// Latitude to the north and longitude to the east, degrees.
+    pub place: Option<Numbers<2>>,
     pub turbidity: Option<Number>,
     pub albedo: Option<ColourText>,
     pub scale: Option<Number>,
     pub sun_scale: Option<Number>,
-    /// Diameter of the sun, in degrees.
+    /// Diameter of the sun, degrees.
     pub sun_angle: Option<Number>,
-    /// Angle from north of the scene to north of the place, counter-clockwise, in degrees.
+    /// Degrees from north of the scene to that of the place, counter-clockwise.
     pub rotate_y: Option<Number>,
 }

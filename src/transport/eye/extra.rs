@@ -34,7 +34,10 @@ mod tests {
     #[test]
     fn extra_samples_are_fewer_the_more_of_the_time_samples_take() {
         let share = |most, rays| ExtraSamples { most, other_rays: Some(1e7) }.share(rays);
-        assert_eq!([1e3, 1e6, 6e6, 1e8].map(|rays| share(1.0, rays)), [1.0, 1.0, 0.5, MIN_SHARE]);
+        let shares: Vec<f32> = (0..40).map(|i| share(1.0, 10f64.powf(3.0 + 0.125 * f64::from(i)))).collect();
+        assert!(shares.is_sorted_by(|a, b| a >= b), "{shares:?}");
+        assert_eq!([shares[0], shares[39]], [1.0, MIN_SHARE]);
+        assert!(shares.iter().any(|share| *share > MIN_SHARE && *share < 1.0), "{shares:?}");
         assert_eq!([1e3, 6e6, 1e8].map(|rays| share(0.1, rays)), [0.1; 3]);
         assert_eq!(share(1.0, 0.0), 1.0);
         assert_eq!(ExtraSamples { most: 0.7, other_rays: None }.share(1e9), 0.7);

@@ -1,59 +1,58 @@
-//! Decoding of image files to linear colour: PNG, JPEG, BMP and TGA with the crate `image`, Radiance HDR, and OpenEXR.
+//! Pictures from files to linear colour: PNG, JPEG, BMP, TGA through `image`, Radiance HDR and OpenEXR.
 //!
-//! Images of 8 or 16 bits are sRGB unless read raw. Floating-point images are linear. Alpha is dropped, as in Mitsuba.
+//! 8- and 16-bit pictures are sRGB unless read raw; floating-point ones are linear. Alpha is dropped, as in
+//! Mitsuba.
 
 use super::budget::lacking;
-use super::error::{Location, SceneError};
+use super::error::{Place, SceneError};
 use base::math::Rgb;
 use image::{DynamicImage, ImageDecoder};
 use scene::Texels;
 use std::io::Cursor;
 use std::path::Path;
 
-/// Maximum number of pixels: 16384 by 16384.
+/// Maximum number of pixels: 16k by 16k.
 const MAX_PIXELS: usize = 1 << 28;
-/// Number of pixels up to which a file may be of any length.
+/// Maximum number of pixels of a small file, and of pixels a byte of larger ones, which only a file of one colour has.
 const MAX_SMALL: usize = 1 << 24;
-/// Maximum number of pixels per byte of larger images. Only files of one colour reach it.
 const MAX_PIXELS_PER_BYTE: usize = 1 << 13;
-/// Maximum bytes per decoded pixel: four channels of 32 bits.
+/// Maximum number of bytes of a decoded pixel: four channels of 32 bits.
 const MAX_PIXEL_BYTES: u64 = 16;
 
-/// Estimated bytes per pixel while an image of 8 bits per channel is decoded and stored.
+/// Memory of a pixel while its picture is decoded and put into squares, about: in 8 bits a channel, and in more, beside
+/// the channels of OpenEXR.
 const SHORT_PIXEL_BYTES: u64 = 12;
-/// Estimated bytes per pixel while a deeper image is decoded and stored.
 const LONG_PIXEL_BYTES: u64 = 36;
 
-/// Remedy for an image that does not fit into memory.
+/// Remedy for a picture that there is no memory for.
 pub(super) const SMALLER: &str = "make it smaller, or give more memory";
 
-/// A decoded image, top row first.
+/// A decoded picture, top row first.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DecodedImage {
+pub struct Picture {
     pub width: usize,
     pub height: usize,
     pub texels: Texels,
 }
 
-/// Channels of an image to decode.
+/// Part of a picture that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Channel {
     /// Linear colour.
     Colour,
-    /// All channels, without decoding from sRGB.
+    /// Integer values of all channels as they are, not decoded from sRGB.
     Data,
-    /// One channel, without decoding from sRGB, as a grey of 8 bits. 0 to 3 stand for red, green, blue and alpha; a
-    /// missing channel is 1.
+    /// One such channel alone in 8 bits, as a grey: 0 to 3 for red, green, blue and alpha, 1 where there is none.
     One(usize),
-    /// 1 if alpha is at least the value, else 0.
+    /// 1 where alpha is at least so much, else 0.
     AlphaFrom(f32),
 }
 
-/// Reason for rejecting an image.
+/// Reason why there is no picture.
 enum Refusal {
-    /// The bytes are no image.
+    /// Bytes that are no picture.
     Undecodable(String),
-    /// The image does not fit into memory.
+    /// A picture that there is no memory for.
     TooLarge(String),
 }
 
@@ -63,29 +62,26 @@ impl<E: std::fmt::Display> From<E> for Refusal {
     }
 }
 
-/// Decodes channels of an image; `path` tells the format of files without a signature.
-pub fn decode(
-    bytes: &[u8],
-    channel: Channel,
-    path: &Path,
-    place: &Location,
-) -> Result<DecodedImage, SceneError> {
-    let image = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
+/// Decodes a part of `bytes`; `path` tells the format of files without a signature.
+pub fn decode(bytes: &[u8], channel: Channel, path: &Path, place: &Place) -> Result<Picture, SceneError> {
+    let picture = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
         decode_exr(bytes)
     } else {
         decode_common(bytes, channel, path)
     };
-    let image = image.and_then(|p| match p.texels.is_empty() {
+    let picture = picture.and_then(|p| match p.texels.is_empty() {
         true => Err("it has no pixels".into()),
         false => Ok(p),
     });
-    image.map_err(|refusal| match refusal {
-        Refusal::Undecodable(what) => SceneError::Image { place: place.clone(), path: path.to_owned(), what },
+    picture.map_err(|refusal| match refusal {
+        Refusal::Undecodable(what) => {
+            SceneError::Picture { place: place.clone(), path: path.to_owned(), what }
+        }
         Refusal::TooLarge(what) => place.wrong(format!("{}: {what}", path.display()), SMALLER),
     })
 }
 
-fn decode_exr(bytes: &[u8]) -> Result<DecodedImage, Refusal> {
+fn decode_exr(bytes: &[u8]) -> Result<Picture, Refusal> {
     use exr::prelude::*;
     // The size is checked before any allocation that depends on it.
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)?;
@@ -94,7 +90,7 @@ fn decode_exr(bytes: &[u8]) -> Result<DecodedImage, Refusal> {
         let of_channels = 4 * header.channels.list.len() as u64;
         check_size(width, height, of_channels + LONG_PIXEL_BYTES, bytes)?;
     }
-    // Mitsuba names luminance images Y, and `rgb_channels` rejects them.
+    // Mitsuba names luminance images Y; `rgb_channels` would refuse those.
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -122,12 +118,11 @@ fn decode_exr(bytes: &[u8]) -> Result<DecodedImage, Refusal> {
     if texels.len() != width * height {
         return Err("subsampled channels".into());
     }
-    Ok(DecodedImage { width, height, texels: Texels::new(width, &texels) })
+    Ok(Picture { width, height, texels: Texels::new(width, &texels) })
 }
 
-/// Rejects sizes that no image has, that the file is too short for, or that do not fit into memory.
-///
-/// This happens before anything of that size is allocated.
+/// Rejects sizes that no picture has, or none of so few bytes, or for which there is no memory, before anything is
+/// allocated for them.
 fn check_size(width: usize, height: usize, pixel_bytes: u64, bytes: &[u8]) -> Result<(), Refusal> {
     let most = bytes.len().saturating_mul(MAX_PIXELS_PER_BYTE).clamp(MAX_SMALL, MAX_PIXELS);
     let Some(pixels) = width.checked_mul(height).filter(|pixels| *pixels <= most) else {
@@ -142,8 +137,8 @@ fn check_size(width: usize, height: usize, pixel_bytes: u64, bytes: &[u8]) -> Re
     }
 }
 
-fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<DecodedImage, Refusal> {
-    // Mitsuba writes the other signature of Radiance HDR, which the decoder rejects.
+fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture, Refusal> {
+    // The other signature of Radiance HDR, which Mitsuba writes and the decoder does not know.
     let signed = bytes.strip_prefix(b"#?RGBE").map(|rest| [b"#?RADIANCE", rest].concat());
     let bytes = signed.as_deref().unwrap_or(bytes);
     let mut reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
@@ -166,7 +161,7 @@ fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<DecodedI
     let grey = |code: &dyn Fn(&[u8; 4]) -> u8| {
         let codes: Vec<[u8; 4]> = image.to_rgba8().pixels().map(|p| [code(&p.0); 4]).collect();
         let texels = Texels::coded(width, &codes, std::array::from_fn(|code| code as f32 / 255.0));
-        Ok(DecodedImage { width, height, texels })
+        Ok(Picture { width, height, texels })
     };
     let raw = match channel {
         Channel::Colour => false,
@@ -192,7 +187,7 @@ fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<DecodedI
             Texels::coded(width, &codes, std::array::from_fn(|code| linear(code as f32 / 255.0, raw)))
         }
     };
-    Ok(DecodedImage { width, height, texels })
+    Ok(Picture { width, height, texels })
 }
 
 fn linear(encoded: f32, raw: bool) -> f32 {
@@ -209,9 +204,9 @@ mod tests {
     use super::*;
     use std::path::PathBuf;
 
-    fn decode_file(bytes: &[u8], raw: bool, name: &str) -> Result<DecodedImage, SceneError> {
+    fn decode_file(bytes: &[u8], raw: bool, name: &str) -> Result<Picture, SceneError> {
         let channel = if raw { Channel::Data } else { Channel::Colour };
-        decode(bytes, channel, Path::new(name), &Location::file(Path::new("s.toml")))
+        decode(bytes, channel, Path::new(name), &Place::file(Path::new("s.toml")))
     }
 
     fn corpus(name: &str) -> Vec<u8> {
@@ -273,7 +268,7 @@ mod tests {
         let sky = decode_file(&radiance(width, height), false, "sky.hdr").unwrap();
         assert_eq!((sky.width, sky.height), (width.into(), height));
         assert!((sky.texels.get(0, height - 1) - Rgb::new(1.0, 0.5, 0.25)).length() < 1e-2);
-        // Both signatures are read.
+        // Of either signature.
         let small = radiance(8, 2);
         let other = [b"#?RGBE", &small[b"#?RADIANCE".len()..]].concat();
         let decoded = |bytes: &[u8]| decode_file(bytes, false, "sky.hdr").unwrap();
